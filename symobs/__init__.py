@@ -26,8 +26,6 @@ def __getattr__(name: str) -> Any:
 
     if name == "StateSpace":
         return importlib.import_module("symobs.system").StateSpace
-    if name in FUNCTIONS:
-        return getattr(importlib.import_module(FUNCTIONS[name]), name)
     if name == "__version__":
         return importlib.import_module("importlib.metadata").version("symobs")
     if name in FUNCTIONS:

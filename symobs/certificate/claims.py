@@ -2,7 +2,7 @@
 
 A claim is a relation between two formulas in an environment: `det(sI − A + LC) = φ(s)`.  Checking it needs products
 and a comparison, never the method that met it.  Small claims are evaluated exactly.  Large ones are evaluated at
-random points modulo random 64-bit primes; the probability that a false one passes is bounded by following degrees and
+random points modulo random primes of one word; the probability that a false one passes is bounded by following degrees and
 heights through the same formulas, and the bound is part of the certificate.  Points and primes come from a generator
 seeded by the SHA-256 of the claim, so runs repeat.
 """
@@ -282,7 +282,7 @@ def _holds_at_points(
         points += 1
         error *= _error_bound(relation, environment, arithmetic, draws << roots if roots else 1)
         if error <= ERROR_GOAL:
-            return f"at {points} random point{'s' if points > 1 else ''} modulo 64-bit primes", error
+            return f"at {points} random point{'s' if points > 1 else ''} modulo {PRIME_BITS}-bit primes", error
     return "", 0.0
 
 

@@ -30,6 +30,7 @@ COMMANDS = {
     "examples": "List the worked examples, or print the one called NAME.",
     "methods": "List every task and its methods.",
     "schema": "Print the JSON schema of problem files, or that of the results of the command NAME.",
+    "serve": "Move poles, parameters and entries in a browser, every answer checked; FILE is the problem to begin with.",
     "sheet": "Put several problem FILEs on one sheet: all questions first, then all solutions.",
     "solve": "Solve a problem FILE (TOML or JSON; - is standard input) and print its derivation.",
     "sweep": "Design at every point of a grid, each exact and checked, into a table.",

@@ -50,6 +50,7 @@ FLOORS = {
     "problem": 12,
     "audit": 13,
     "batching": 13,
+    "live": 13,
     "checking": 14,
     "cli": 15,
     "__main__": 16,

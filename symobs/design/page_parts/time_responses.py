@@ -59,7 +59,7 @@ def _plot(
     slowest, fastest = spectral_abscissae(value)
     if slowest >= 0 or fastest < _SPREAD * slowest * (1 + 1e-9):
         return
-    end = _rounded(_TIMES / -slowest)
+    end = rounded_up(_TIMES / -slowest)
     if not is_slow(value, end / (2 * _STEPS)):  # a mode would turn unseen between two instants
         return
     try:
@@ -131,7 +131,7 @@ def _course(row: Sequence[Fraction], states: Sequence[Sequence[int]]) -> tuple[i
     return tuple(sum(map(mul, whole, state)) // common for state in states)
 
 
-def _rounded(value: float) -> Fraction:
+def rounded_up(value: float) -> Fraction:
     """Return a round number that is not smaller."""
     power = Fraction(1)
     while power * 10 <= value:

@@ -92,6 +92,22 @@ def integers(coefficients: Sequence[Fraction]) -> list[int]:
     return [int(c * below) for c in coefficients]
 
 
+def root_boxes(coefficients: Sequence[Fraction], places: int) -> list[tuple[tuple[Fraction, ...], int]]:
+    """Return (least real, largest real, least imaginary, largest imaginary part) of each root, and its multiplicity.
+
+    The bounds are decimals of `places` places, rounded outwards.
+    """
+    below, found = 10**places, []
+    for root, multiplicity in _roots(fmpz_poly(list(reversed(integers(coefficients)))), 64 + 4 * places):
+        box = []
+        for part in (root.real, root.imag):
+            scaled: Any = part * below
+            low, high = scaled.lower().floor(), scaled.upper().ceil()
+            box += [Fraction(int(low.unique_fmpz()), below), Fraction(int(high.unique_fmpz()), below)]
+        found.append((tuple(box), multiplicity))
+    return found
+
+
 def complex_roots(coefficients: Sequence[Fraction]) -> list[tuple[Fraction, Fraction]]:
     """Return rational approximations (real, imaginary) of all roots, with multiplicity."""
     found = []

@@ -1,6 +1,6 @@
 """Check of a cylindrical decomposition by independent means (trusted).
 
-Discriminants and resultants are held against Sylvester's determinants at random points modulo random 64-bit primes, the
+Discriminants and resultants are held against Sylvester's determinants at random points modulo random primes of one word, the
 numbers of walls and of branches against Sturm's theorem.  Where these hold, no curve turns back, runs off to infinity or
 meets another between two walls, so that every stack stands over its whole slab.
 """
@@ -16,7 +16,7 @@ from flint import fmpz_poly, nmod, nmod_mat, nmod_poly
 
 from symobs.exact.algebraic.real_algebraic import RealNumber, count_roots
 from symobs.exact.cad.decomposition import in_first
-from symobs.exact.core.modular import random_prime
+from symobs.exact.core.modular import PRIME_BITS, random_prime
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -24,8 +24,8 @@ if TYPE_CHECKING:
 
     from symobs.exact.cad.decomposition import Plane, Slab
 
-#: Points at which each determinant is compared: one lets a false value pass with a probability below 10⁻¹⁵.
-_POINTS = 2
+#: Points at which each determinant is compared: one of 64 bits lets a false value pass with a probability below 10⁻¹⁵.
+_POINTS = 2 * 64 // PRIME_BITS
 
 
 def holds(plane: Plane) -> bool:

@@ -1,12 +1,14 @@
 """Exact values at a random point modulo a prime, for the randomised check of large claims.
 
 A polynomial identity of total degree d that is false survives a random point of {0, …, 2⁶¹−1}ᵏ with probability at most
-d / 2⁶¹ (Schwartz and Zippel); an integer identity of height h survives a random 64-bit prime with probability at
-most h / (63 · 2·10¹⁷), there being more than 2·10¹⁷ such primes.
+d / 2⁶¹ (Schwartz and Zippel); an integer identity of height h survives a random prime of w bits with probability at
+most h / ((w − 1) N), N a lower bound for their number: 2·10¹⁷ for w = 64.  FLINT's word has 32 bits on some platforms, and
+so have the primes there: π(2³²) − π(2³¹) = 98,182,656 of them, and more points are drawn for the same bound.
 """
 
 from __future__ import annotations
 
+import sys
 from math import gcd
 from typing import TYPE_CHECKING
 
@@ -24,8 +26,10 @@ if TYPE_CHECKING:
     from symobs.exact.core.scalar import Scalar
 
 POINT_BITS = 61
-PRIME_BITS = 64
-PRIMES_BELOW = 2 * 10**17
+PRIME_BITS = 64 if sys.maxsize > 2**32 else 32
+PRIMES_BELOW = 2 * 10**17 if PRIME_BITS == 64 else 9 * 10**7
+#: The largest prime of a word.
+LARGEST_PRIME = 2**64 - 59 if PRIME_BITS == 64 else 2**32 - 5
 _ZERO = fmpz(0)
 #: The product of the odd primes below 50: most candidates share one, which is sooner seen than that they are composite.
 _SMALL_PRIMES = 3 * 5 * 7 * 11 * 13 * 17 * 19 * 23 * 29 * 31 * 37 * 41 * 43 * 47
@@ -45,7 +49,7 @@ class Point:
     __slots__ = ("bits", "prime", "values")
 
     def __init__(self, names: Iterable[str], generator: random.Random) -> None:
-        """Draw a prime of 64 bits and a residue for each name."""
+        """Draw a prime of one word and a residue for each name."""
         self.prime = random_prime(generator)
         self.values = {name: generator.getrandbits(POINT_BITS) for name in sorted(names)}
         self.values |= {name: root_modulo(square, self.prime) for name, square in squares_of(self.values).items()}
@@ -95,7 +99,7 @@ def root_modulo(square: int, prime: int) -> int:
 
 
 def random_prime(generator: random.Random) -> int:
-    """Return a random prime of 64 bits."""
+    """Return a random prime of one word, its highest bit set."""
     while True:
         candidate = generator.getrandbits(PRIME_BITS) | 1 << (PRIME_BITS - 1) | 1
         if gcd(candidate, _SMALL_PRIMES) == 1 and fmpz(candidate).is_prime():

@@ -15,6 +15,7 @@ from flint import fmpq_mat, fmpz, fmpz_mat, nmod_mat
 from symobs._dataclass import dataclass
 from symobs.exact.core import ring
 from symobs.exact.core.matrix import Matrix
+from symobs.exact.core.modular import LARGEST_PRIME
 from symobs.exact.core.ring import number_of
 from symobs.exact.core.scalar import Scalar
 
@@ -25,9 +26,6 @@ if TYPE_CHECKING:
     from flint import fmpz_mpoly
 
     from symobs.exact.core.field import Field
-
-#: A determinant that is not 0 modulo this prime is not 0.
-_PRIME = 2**64 - 59
 
 
 @dataclass(frozen=True)
@@ -57,10 +55,10 @@ class Krylov:
 
     @property
     def is_singular(self) -> bool:
-        """Whether det 𝒪 is 0 identically."""
+        """Whether det 𝒪 is 0 identically: a determinant that is not 0 modulo a prime is not 0."""
         if self.field.names:
             return not self._integral_determinant
-        return int(nmod_mat(self._numbers, _PRIME).det()) == 0 and self._numbers.det() == 0
+        return int(nmod_mat(self._numbers, LARGEST_PRIME).det()) == 0 and self._numbers.det() == 0
 
     @cached_property
     def _numbers(self) -> fmpz_mat:

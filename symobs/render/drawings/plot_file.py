@@ -63,9 +63,14 @@ def _written(picture: Picture, result: Result, suffix: str) -> bytes:
 
 def _require_checked(picture: Picture, result: Result) -> None:
     """Raise `DerivationRejected` unless the plot is one of the result's checked page."""
-    result.derivation.check()
-    if picture not in set(_shown(result.derivation.steps)):
+    if not is_shown(picture, result):
         raise DerivationRejected("the page shows another picture", repair="please report this: it is a bug of symobs")
+
+
+def is_shown(picture: Picture, result: Result) -> bool:
+    """Return whether a plot is one of the result's page, which is checked."""
+    result.derivation.check()
+    return picture in set(_shown(result.derivation.steps))
 
 
 def _shown(steps: Sequence[Step]) -> Iterator[Picture]:

@@ -195,7 +195,9 @@ def _line(picture: LinePicture, measure: Measure) -> Scene:
         strokes.append(Stroke(((at(begin.place if begin else low), 0), (at(end.place if end else high), 0)), "piece"))
         ends |= {at(found.place): _label(found, measure) for found in (begin, end) if found is not None}
     signs = [Sign(_SIGNS[kind], (at(place), 7.0)) for place, kind in picture.marks if kind != "excluded"]
-    signs += [Sign("ring", (x, 0)) for x in {*ends, *(at(p) for p, kind in picture.marks if kind == "excluded")}]
+    signs += [
+        Sign("ring", (x, 0)) for x in sorted({*ends, *(at(p) for p, kind in picture.marks if kind == "excluded")})
+    ]
     texts = [TextLabel(symbol(picture.axis), (_LINE + _BEYOND + _LETTER, 0), "west"), *_rows(ends, measure)]
     strokes += [Stroke((text.place, (text.place[0], 0)), "zero") for text in texts[1:] if text.place[1] < -3 * _TICK]
     covered = [text.box(measure(text.content)) for text in texts]

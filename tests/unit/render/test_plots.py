@@ -8,7 +8,7 @@ import sys
 import xml.etree.ElementTree as ET
 from dataclasses import replace
 from fractions import Fraction
-from itertools import combinations
+from itertools import combinations, pairwise
 from typing import TYPE_CHECKING
 
 import pytest
@@ -16,13 +16,14 @@ import pytest
 import symobs
 from symobs.derivation import Derivation, Plot
 from symobs.errors import UsageError
+from symobs.exact import Scalar
 from symobs.figures.plot import Curve, End, LinePicture, MarkedPoint, RegionPicture
 from symobs.formula import Environment, Letter, Relation, Roots
 from symobs.phrases import PHRASES
 from symobs.render.drawings.captions import below, words_of
 from symobs.render.drawings.clipping import chained, clipped, clipped_area, thinned
 from symobs.render.drawings.matplotlib_writer import drawn_by_matplotlib
-from symobs.render.drawings.plot_layout import ticks
+from symobs.render.drawings.plot_layout import plot_scene, ticks
 from symobs.render.drawings.scene import Rectangle, Scene
 from symobs.render.drawings.svg import measure_for as measure_svg
 from symobs.render.drawings.svg import svg, svg_file, svg_scene
@@ -368,3 +369,11 @@ def test_marks_and_ends_may_be_anything_that_is_allowed() -> None:
     assert "$" in tikz_file(chi_line, LatexPrinter())
     region = replace(hand.hyperbola(), marks=(MarkedPoint((Fraction(3), Fraction(3)), "excluded"),))
     assert "circle[radius=2.3]" in tikz_file(region, LatexPrinter())
+
+
+def test_open_ends_are_drawn_from_left_to_right() -> None:
+    ends = [End(Fraction(k * k, 7), Scalar.of(k)) for k in range(12)]  # a set of these is in another order
+    picture = LinePicture("k", (Fraction(-1), Fraction(18)), tuple(pairwise(ends)))
+    places = [sign.place[0] for sign in plot_scene(picture, lambda _: (4.0, 4.0)).signs if sign.kind == "ring"]
+    assert list(set(places)) != sorted(places)
+    assert places == sorted(places)

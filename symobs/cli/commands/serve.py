@@ -1,0 +1,71 @@
+"""The command `serve`: live answers in a browser."""
+
+from __future__ import annotations
+
+import click
+
+from symobs.cli.shared.common import read_file
+from symobs.errors import UsageError
+
+
+@click.command("serve")
+@click.argument("file", required=False)
+@click.option("--port", type=click.IntRange(0, 65535), default=0, metavar="N", help="Listen there; 0 is any free port.")
+@click.option("--host", default="127.0.0.1", metavar="NAME", help="127.0.0.1, ::1 or localhost.")
+@click.option("--no-browser", is_flag=True, help="Do not open a browser.")
+@click.option(
+    "--timeout",
+    type=click.FloatRange(0, min_open=True),
+    default=5.0,
+    metavar="SECONDS",
+    help="What an answer may take.",
+)
+@click.option("--memory", type=click.IntRange(100), default=1000, metavar="MB", help="What an answer may use.")
+@click.option("--convention", "convention_name", metavar="NAME", help="Write answers in another convention.")
+def command(
+    file: str | None,
+    port: int,
+    host: str,
+    no_browser: bool,  # noqa: FBT001 - click's signature
+    timeout: float,
+    memory: int,
+    convention_name: str | None,
+) -> None:
+    """Move poles, parameters and entries in a browser, every answer checked; FILE is the problem to begin with."""
+    from symobs.live.links import link_of  # noqa: PLC0415 - only a server imports it
+    from symobs.live.process import Budget  # noqa: PLC0415
+    from symobs.live.server import HOSTS, Server, serve  # noqa: PLC0415
+
+    if host not in HOSTS:
+        raise UsageError(
+            f"{host[:40]!r} is not this machine's own address",
+            where="--host",
+            repair="leave it out; to look at it from another machine, use an SSH tunnel",
+        )
+    state = ""
+    if file is not None or convention_name is not None:
+        from symobs.problem import parse, validate  # noqa: PLC0415 - only with a file
+
+        text = read_file(file) if file is not None else ""
+        data = parse(text, file or "problem") if file is not None else {}
+        if file is not None:
+            validate(data)
+        if convention_name is not None:
+            from symobs.convention import conventions  # noqa: PLC0415 - only with --convention
+
+            if convention_name not in conventions():
+                repair = f"use one of {', '.join(conventions())}"
+                raise UsageError(f"{convention_name[:40]!r} is not a convention", where="--convention", repair=repair)
+            data = {**data, "convention": convention_name}
+        state = link_of(data)
+    try:
+        server = Server(host, port, Budget(timeout, memory))
+    except OSError as error:
+        raise UsageError(error.strerror or "cannot listen", where="--port", repair="leave it out") from None
+    url = server.url + (f"&{state}" if state else "")
+    click.echo(url)
+    if not no_browser:
+        import webbrowser  # noqa: PLC0415 - not without one
+
+        webbrowser.open(url)
+    serve(server)

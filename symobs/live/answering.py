@@ -1,0 +1,324 @@
+"""Answering: a request is read, its problem solved within the process, and what is asked for is returned."""
+
+from __future__ import annotations
+
+import sys
+import traceback
+from collections import OrderedDict
+from collections.abc import Callable, Mapping
+from typing import TYPE_CHECKING, Any
+
+from symobs._dataclass import dataclass
+from symobs.conditions import sign_of
+from symobs.errors import (
+    CertificateRejected,
+    DerivationRejected,
+    InputError,
+    OutOfBudget,
+    ProblemErrors,
+    SymobsError,
+)
+from symobs.exact import Scalar
+from symobs.exact.algebraic.root_location import complex_roots
+from symobs.formula import Letter, Literal, Relation
+from symobs.live.page import export_object, page_object
+from symobs.live.point import point_object, region_object
+from symobs.live.request import SCHEMA, Request, put_in, read
+from symobs.live.time_responses import NoResponse, readout, responses_of
+from symobs.live.views import view_object, view_of
+from symobs.render.cards import Card, CardPrinter, cards
+from symobs.result import tasks
+from symobs.result.conversions import to_json
+from symobs.specification import read_poles
+from symobs.system import Symbols, read_scalar
+
+if TYPE_CHECKING:
+    from symobs.problem import Problem
+    from symobs.result import Case, Result
+
+#: Solved problems that are kept: those of the tabs that are open, and what a drag comes back to.
+_KEPT = 8
+
+
+@dataclass(frozen=True)
+class Solved:
+    """A problem with the result of its task."""
+
+    problem: Problem
+    result: Result
+
+
+_solved: OrderedDict[str, Solved] = OrderedDict()
+
+
+def answer(request: object) -> dict[str, Any]:
+    """Return the response to a request of the protocol `symobs-live/1`; nothing is raised.
+
+    `status` is `done`, `no` (a mathematical no), `bad` (all errors of the request), `undecided`, or `bug`.
+    """
+    identity = request.get("id") if isinstance(request, Mapping) else None
+    head: dict[str, Any] = {"schema": SCHEMA, "id": identity if isinstance(identity, (int, str)) else None}
+    try:
+        asked = read(request)
+        _require_at(asked)
+        return head | _WANTED[asked.want](asked)
+    except (CertificateRejected, DerivationRejected) as error:
+        return head | _bug(error)
+    except OutOfBudget as error:
+        return head | {"status": "undecided", "message": error.message}
+    except SymobsError as error:
+        return head | {"status": "bad", "errors": errors_of(error)}
+    except MemoryError:
+        return head | {"status": "undecided", "message": "memory was not enough"}
+    except RecursionError:
+        return head | {"status": "undecided", "message": "nested too deep"}
+    except Exception as error:  # noqa: BLE001 - the last line of defence: a bug of ours, said as such
+        return head | _bug(error)
+
+
+def _bug(error: Exception) -> dict[str, Any]:
+    """Return the message; the whole goes to standard error, never to who asked."""
+    traceback.print_exception(error, file=sys.stderr)
+    return {"status": "bug", "message": f"internal error: {type(error).__name__}; please report this"}
+
+
+def errors_of(error: SymobsError) -> list[dict[str, str]]:
+    """Return every error with its place and its repair."""
+    several = error.errors if isinstance(error, ProblemErrors) else (error,)
+    return [{"where": each.where, "message": each.message, "repair": each.repair} for each in several]
+
+
+def _solve(key: str, find: Callable[[], Problem]) -> Solved:
+    """Return a solved problem, remembered by what it depends on."""
+    if key in _solved:
+        _solved.move_to_end(key)
+        return _solved[key]
+    problem = find()
+    found = Solved(problem, problem.solve()[-1])
+    _solved[key] = found
+    while len(_solved) > _KEPT:
+        _solved.popitem(last=False)
+    return found
+
+
+def _as_given(asked: Request) -> Solved:
+    return _solve(asked.key, asked.problem)
+
+
+def _there(asked: Request) -> Solved:
+    """Return the problem with the values of `at`."""
+    return _solve(asked.key_there, asked.problem_there) if asked.at else _as_given(asked)
+
+
+def _require_at(asked: Request) -> None:
+    """Raise an error for values of names that are no symbols, that cannot be read, or are of another sign."""
+    table = asked.data.get("symbols")
+    declared = Symbols.of(table) if isinstance(table, Mapping) else Symbols.of({})
+    errors: list[SymobsError] = []
+    for name, text in asked.at.items():
+        where = f"at.{name}"
+        try:
+            if name not in declared.signs:
+                raise InputError("no symbol of the problem", where=where, repair="declare it, or leave it out")
+            value = read_scalar(text, declared, where)
+            sign = declared.signs[name]
+            if not value.names and not _agrees(value, sign):
+                raise InputError(f"{name} is {sign}", where=where, repair="choose another value, or declare it real")
+        except SymobsError as error:
+            errors.append(error)
+    if errors:
+        raise ProblemErrors(tuple(errors))
+
+
+def _agrees(value: Scalar, sign: str) -> bool:
+    """Return whether a number may stand for a symbol of this sign."""
+    found = sign_of(value, {})
+    allowed = {
+        "positive": {"positive"},
+        "negative": {"negative"},
+        "nonnegative": {"positive", "zero", "nonnegative"},
+        "nonpositive": {"negative", "zero", "nonpositive"},
+        "nonzero": {"positive", "negative", "nonzero"},
+    }
+    return sign not in allowed or found in allowed[sign]
+
+
+# -- what is wanted ---------------------------------------------------------------------------------------------------
+
+
+def _answer(asked: Request) -> dict[str, Any]:
+    """Return verdict, cards, readouts and responses."""
+    there = _there(asked)
+    shown = there if asked.cards_at or not asked.at else _as_given(asked)
+    result, convention = shown.result, shown.problem.convention
+    names = view_of(result.task).cards if asked.names is None else asked.names
+    printer, found = CardPrinter(result, convention), cards(result, names, convention)
+    notes, responses = [], None
+    if asked.responses is not None:
+        try:
+            responses = responses_of(there.result, asked.responses)
+        except NoResponse as reason:
+            notes += [str(reason)] if str(reason) else []
+    notes += _notes(there.result)
+    claims = len(result.all_certificates)
+    whole = {
+        "status": _status(result),
+        "verdict": result.verdict,
+        "result": {
+            "task": result.task,
+            "method": result.method,
+            **{name: to_json(result.fields[name]) for name in names if name in result.fields},
+        },
+        "claims": claims,
+        "conditions": [_condition(found, printer) for found in result.holds_where],
+        "cards": [card_object(card, printer) for card in found],
+        "readouts": _readouts(there),
+        "marks": _marks(there.result),
+        "courses": responses,
+    }
+    if asked.cases:
+        whole["cases"] = [_case(case, printer) for case in result.case_tree]
+    return whole | ({"note": " ".join(notes)} if notes else {})
+
+
+def _page(asked: Request) -> dict[str, Any]:
+    found = _there(asked) if asked.cards_at else _as_given(asked)
+    return {
+        "status": _status(found.result),
+        "verdict": found.result.verdict,
+        "claims": len(found.result.all_certificates),
+        **page_object(found.problem, found.result, asked.detail),
+    }
+
+
+def _point(asked: Request) -> dict[str, Any]:
+    found = _as_given(asked)
+    if found.result.task != "stability_region":
+        raise InputError("only a stability region has points", where="want", repair='ask for "answer"')
+    return {"status": "done", **point_object(found.result, asked.at, found.problem.convention)}
+
+
+def _view(asked: Request) -> dict[str, Any]:
+    found = _as_given(asked)
+    whole = view_object(found.result, found.problem.specification)
+    symbols = found.result.plant.symbols
+    whole["symbols"] = {name: symbols.sign(name) for name in sorted(symbols.signs)}
+    if found.result.task == "stability_region":
+        whole["region"] = region_object(found.result)
+    return {"status": "done", "verdict": found.result.verdict, "view": whole}
+
+
+def _export(asked: Request) -> dict[str, Any]:
+    found = _there(asked) if asked.cards_at else _as_given(asked)
+    data = put_in(asked.data, asked.at) if asked.cards_at else asked.data
+    text = export_object(found.problem, found.result, asked.export, data, found.result.task)
+    return {"status": "done", **text}
+
+
+def _start(_: Request) -> dict[str, Any]:
+    from symobs.convention import conventions  # noqa: PLC0415 - asked once
+    from symobs.live.examples import examples  # noqa: PLC0415
+
+    return {
+        "status": "done",
+        "tasks": {name: task.summary for name, task in sorted(tasks().items())},
+        "conventions": sorted(conventions()),
+        "examples": examples(),
+    }
+
+
+_WANTED: dict[str, Callable[[Request], dict[str, Any]]] = {
+    "answer": _answer,
+    "page": _page,
+    "point": _point,
+    "view": _view,
+    "export": _export,
+    "start": _start,
+}
+
+
+# -- parts ------------------------------------------------------------------------------------------------------------
+
+
+def _status(result: Result) -> str:
+    return result.verdict if result.verdict in {"no", "undecided"} else "done"
+
+
+def card_object(card: Card, printer: CardPrinter) -> dict[str, str]:
+    """Return a card in every form."""
+    return {"name": card.name, "mathml": printer.mathml(card), "latex": printer.latex(card), "says": printer.says(card)}
+
+
+def _condition(condition: Any, printer: CardPrinter) -> dict[str, str]:
+    relation = Relation(
+        (Literal(condition.expression), Literal(Scalar.of(0))), (condition.operator.replace("==", "="),)
+    )
+    return {"text": to_json(condition), "mathml": printer.mathml(Card("condition", relation, None))}
+
+
+def _case(case: Case, printer: CardPrinter) -> dict[str, Any]:
+    """Return a stratum: its conditions, its verdict, and the values that lie on it."""
+    at = {name: str(value) for name, value in case.substitution.items()}
+    whole: dict[str, Any] = {
+        "when": [_condition(condition, printer) for condition in case.when],
+        "verdict": "undecided" if case.result is None else case.result.verdict,
+        "at": at,
+    }
+    rank = None if case.result is None else case.result.fields.get("rank")
+    equations = [Card("when", Relation((Letter(n), Literal(v)), ("=",)), v) for n, v in case.substitution.items()]
+    whole["mathml"] = [printer.mathml(card) for card in equations]
+    return whole | ({"rank": rank} if isinstance(rank, int) else {})
+
+
+def _readouts(solved: Solved) -> list[dict[str, str]]:
+    """Return frequency, damping and settling time of every pole that was given as a number, a pair once."""
+    found, plant = [], solved.result.plant
+    for group in view_of(solved.result.task).sets:
+        for key in (group.key, *(f"{half}_{group.key}" for half in ("control", "observer"))):
+            given = solved.problem.specification.get(key)
+            if given is None:
+                continue
+            poles = read_poles(given, plant.symbols, f"specification.{key}")
+            upper = [pole for pole in poles if pole.imaginary.names or pole.imaginary.fraction() >= 0]
+            for place, pole in enumerate(upper):
+                if pole.real.names or pole.imaginary.names:
+                    continue
+                read_out = readout(pole.real.fraction(), pole.imaginary.fraction(), discrete=plant.is_discrete)
+                found.append({"handle": f"{key}.{place}", **read_out})
+    return found
+
+
+def _marks(result: Result) -> list[dict[str, str]]:
+    """Return what stands fixed in the plane: the plant's poles, and those of F; decimals for drawing alone."""
+    plant = result.plant
+    known: list[tuple[str, Any]] = []
+    if plant.polynomial is None and not plant.is_time_varying and view_of(result.task).sets:
+        known.append(("plant", plant.matrices.A))
+        known.append(("F", result.fields.get("compensator_matrix")))
+    found = []
+    for kind, matrix in known:
+        if matrix is None or matrix.names:
+            continue
+        chi = matrix.characteristic_polynomial(plant.variable).coefficients(plant.variable)
+        for real, imaginary in complex_roots([entry.fraction() for entry in chi]):
+            found.append({"kind": kind, "re": f"{float(real):.6f}", "im": f"{float(imaginary):.6f}"})
+    return found
+
+
+def _notes(result: Result) -> list[str]:
+    """Return why there is no design, and what a look at the curves may miss."""
+    whole: Any = result
+    parts = [getattr(whole, name) for name in ("feedback", "estimator") if name in vars(result)] or [result]
+    notes = []
+    for part in parts if result.verdict == "no" else []:
+        fixed = part.fields.get("fixed_modes") or ()
+        pair = "(A, B)" if part.task == "state_feedback" else "(C, A)"
+        if fixed:
+            notes.append(
+                f"No gain moves the mode{'s' if len(fixed) > 1 else ''} {', '.join(map(str, fixed))} of {pair}."
+            )
+    stable = {
+        "compensator_stable": "F is not stable by itself.",
+        "stable": "A pole lies outside the region of stability.",
+    }
+    return notes + [text for name, text in stable.items() if result.fields.get(name) == "no"]

@@ -1,0 +1,823 @@
+// @ts-check
+// The front-end of symobs live: it draws what it is told and computes no mathematics. A pointer is snapped to a grid of
+// rationals and sent as exact text; whatever is shown came from Python, where it was checked.
+
+const SCHEMA = "symobs-live/1", GRID = 20, REST = 250, BUSY = 150, LONGEST = 8000;
+const SVG = "http://www.w3.org/2000/svg";
+const SNAPS = { "1/20": 1, "1/10": 2, "1/4": 5, "1/2": 10, 1: 20 };
+const SHORT = { control: "control_poles", observer: "observer_poles", kind: "observer" };
+const PLANT = ["A", "B", "C", "D", "transfer_function", "dt"];
+const OWN = ["v", "task", "symbols", "convention", "at", "snap", "closed", "x0", "xh0"];
+const TITLES = { plane: "Poles", responses: "Responses", cards: "Answers", cases: "Cases", region: "Region", page: "Derivation" };
+
+/** Post questions to the server of `symobs serve`. @param {string} token */
+export const http = (token) => async (body, signal) => {
+  const headers = { "Content-Type": "application/json", "X-Symobs-Token": token };
+  const got = await fetch("api", { method: "POST", headers, body: JSON.stringify(body), signal });
+  if (!got.ok) throw new Error(got.status === 403 ? "this page is not the one the server opened" : `the server says ${got.status}`);
+  return got.json();
+};
+
+// -- exact numbers of a grid: [numerator, denominator] ------------------------------------------------------------
+
+const gcd = (a, b) => (b ? gcd(b, a % b) : Math.abs(a));
+const ratio = (n, d = 1) => { const g = gcd(n, d) || 1; return d < 0 ? [-n / g, -d / g] : [n / g, d / g]; };
+const plus = (a, b) => ratio(a[0] * b[1] + b[0] * a[1], a[1] * b[1]);
+const value = (a) => a[0] / a[1];
+const text = (a) => (a[1] === 1 ? `${a[0]}` : `${a[0]}/${a[1]}`);
+const pretty = (s) => s.replace(/-/g, "−");
+
+/** Read a rational number; null for anything else. @param {string} source */
+function rational(source) {
+  const found = /^([+-]?)\s*(\d+)(?:\/(\d+)|\.(\d+))?$/.exec(source.trim());
+  if (!found || source.length > 15) return null;
+  const [, sign, whole, below, digits] = found;
+  const number = digits ? ratio(Number(whole + digits), 10 ** digits.length) : ratio(Number(whole), Number(below ?? 1));
+  return number[1] ? (sign === "-" ? ratio(-number[0], number[1]) : number) : null;
+}
+
+/** Split at commas outside of parentheses. @param {string} source */
+function parts(source) {
+  const found = [""];
+  let depth = 0;
+  for (const c of source.replace(/^\s*\[|\]\s*$/g, "")) {
+    depth += c === "(" ? 1 : c === ")" ? -1 : 0;
+    if ((c === "," || c === ";") && depth === 0) found.push("");
+    else found[found.length - 1] += c;
+  }
+  return found.map((part) => part.trim()).filter(Boolean);
+}
+
+/** Read poles: handles {re, im}, a pair once, and texts that no handle can hold. @param {string} source */
+function handles(source) {
+  const waiting = parts(source).map((entry) => {
+    const plain = entry.replace(/\s+/g, "").replace(/−/g, "-");
+    const real = rational(plain);
+    if (real) return { re: real, im: [0, 1] };
+    const found = /^([+-]?[\d./]+(?=[+-]))?([+-]?[\d./]*)\*?[ij]$/.exec(plain);
+    if (!found) return { raw: entry };
+    const re = rational(found[1] ?? "0"), im = rational(/\d/.test(found[2]) ? found[2] : `${found[2]}1`);
+    return re && im ? { re, im } : { raw: entry };
+  });
+  const kept = [];
+  while (waiting.length) {
+    const one = waiting.shift();
+    if (one.raw || one.im[0] === 0) { kept.push(one); continue; }
+    const other = waiting.findIndex((p) => !p.raw && text(p.re) === text(one.re) && p.im[0] === -one.im[0] && p.im[1] === one.im[1]);
+    if (other < 0) { kept.push({ raw: written(one) }); continue; }
+    waiting.splice(other, 1);
+    kept.push({ re: one.re, im: ratio(Math.abs(one.im[0]), one.im[1]), pair: true });
+  }
+  return kept;
+}
+
+function written(p) {
+  if (p.raw) return p.raw;
+  if (!p.pair) return p.im[0] ? `${p.re[0] ? text(p.re) : ""}${p.im[0] > 0 && p.re[0] ? "+" : ""}${text(p.im)}i` : text(p.re);
+  if (!p.im[0]) return `${text(p.re)}, ${text(p.re)}`;
+  const re = p.re[0] ? text(p.re) : "";
+  return `${re}${re ? "+" : ""}${text(p.im)}i, ${re}-${text(p.im)}i`;
+}
+
+const poles = (list) => list.map(written).join(", ");
+const settled = (list) => list.flatMap((p) => (p.pair && !p.im[0] ? [{ re: p.re, im: [0, 1] }, { re: p.re, im: [0, 1] }] : [p]));
+
+// -- matrices as grids of fields ------------------------------------------------------------------------------------
+
+/** Split a matrix into cells; null where rows differ. @param {string} source */
+function cells(source) {
+  const inside = String(source).trim().replace(/^\[|\]$/g, "");
+  const rows = inside.split(/[;\n]/).map((row) => {
+    const found = [""];
+    let depth = 0;
+    [...row.trim()].forEach((c, k, all) => {
+      depth += c === "(" ? 1 : c === ")" ? -1 : 0;
+      const before = all.slice(0, k).join("").trimEnd().slice(-1), after = all.slice(k).join("").trimStart();
+      const joins = /[-+*/^]/.test(before) || /^[*/^]/.test(after) || /^[-+]\s/.test(after);
+      if (depth === 0 && (c === "," || (/\s/.test(c) && !joins))) { if (found[found.length - 1]) found.push(""); }
+      else if (!/\s/.test(c) || depth) found[found.length - 1] += c;
+    });
+    return found.filter(Boolean);
+  });
+  return rows.every((row) => row.length === rows[0].length && row.length) ? rows : null;
+}
+const matrix = (rows) => `[${rows.map((row) => row.map((c) => c.trim() || "0").join(" ")).join("; ")}]`;
+
+// -- state in a link ------------------------------------------------------------------------------------------------
+
+/** @param {string} link */
+function decoded(link) {
+  const given = Object.fromEntries(new URLSearchParams(link.replace(/^#/, "").replace(/\+/g, "%2B")));
+  const state = { task: given.task ?? "", plant: {}, spec: {}, symbols: {}, at: {}, convention: given.convention ?? "" };
+  const listed = (source) => Object.fromEntries((source ?? "").split(",").filter(Boolean).map((e) => e.split(/:(.*)/s).slice(0, 2)));
+  Object.assign(state, { symbols: listed(given.symbols), at: listed(given.at) });
+  Object.assign(state, { snap: given.snap in SNAPS ? given.snap : "1/2", closed: (given.closed ?? "").split(",").filter(Boolean) });
+  Object.assign(state, { x0: given.x0 ?? "", xh0: given.xh0 ?? "" });
+  for (const [key, entry] of Object.entries(given)) {
+    if (PLANT.includes(key)) state.plant[key] = entry;
+    else if (!OWN.includes(key) && key !== "token") state.spec[SHORT[key] ?? key] = entry;
+  }
+  return state;
+}
+
+function encoded(state) {
+  const long = Object.fromEntries(Object.entries(SHORT).map(([a, b]) => [b, a]));
+  const paired = (table) => Object.entries(table).map(([name, entry]) => `${name}:${entry}`).join(",");
+  const spec = Object.fromEntries(Object.entries(state.spec).map(([key, entry]) => [long[key] ?? key, entry]));
+  const all = { v: 1, task: state.task, ...state.plant, ...spec, symbols: paired(state.symbols), at: paired(state.at) };
+  Object.assign(all, { convention: state.convention, snap: state.snap === "1/2" ? "" : state.snap });
+  Object.assign(all, { closed: state.closed.join(","), x0: state.x0, xh0: state.xh0 });
+  const plain = (t) => encodeURIComponent(t).replace(/%(2C|3B|3A|2F|5B|5D|5E)/g, decodeURIComponent);
+  return Object.entries(all).filter(([, entry]) => entry !== "" && entry !== undefined).map(([key, entry]) => `${key}=${plain(String(entry))}`).join("&");
+}
+
+/** The state of a problem file, as JSON has it. */
+function stateOf(problem, task, before) {
+  const flat = (entry) => (Array.isArray(entry) ? (Array.isArray(entry[0]) ? matrix(entry.map((r) => r.map((c) => (/\s/.test(c) ? `(${c})` : `${c}`)))) : entry.join(", ")) : String(entry));
+  const table = (entries) => Object.fromEntries(Object.entries(entries ?? {}).map(([key, entry]) => [key, flat(entry)]));
+  const symbols = Object.fromEntries(Object.entries(problem.symbols ?? {}).map(([name, sign]) => [name, sign.sign ?? (typeof sign === "string" ? sign : "real")]));
+  return { ...before, task, plant: table(problem.plant), spec: table(problem.specification), symbols, at: {}, convention: problem.convention ?? "", x0: "", xh0: "" };
+}
+
+// -- elements ---------------------------------------------------------------------------------------------------------
+
+function h(tag, attributes = {}, ...inside) {
+  const made = tag.startsWith("svg:") ? document.createElementNS(SVG, tag.slice(4)) : document.createElement(tag);
+  for (const [name, entry] of Object.entries(attributes)) {
+    if (name.startsWith("on")) made.addEventListener(name.slice(2), entry);
+    else if (entry !== undefined && entry !== false) made.setAttribute(name, entry === true ? "" : entry);
+  }
+  made.append(...inside.flat(Infinity).filter((part) => part !== null && part !== undefined));
+  return made;
+}
+
+/** Round numbers of an interval, about so many. */
+function ticks(low, high, count) {
+  const rough = (high - low) / count, power = 10 ** Math.floor(Math.log10(rough));
+  const step = [1, 2, 5, 10].map((k) => k * power).find((s) => s >= rough) ?? rough;
+  const found = [];
+  for (let k = Math.ceil(low / step - 1e-9); k * step <= high + step * 1e-9; k += 1) found.push(Number((k * step).toPrecision(12)));
+  return found;
+}
+
+const SUB = (n) => String(n).replace(/\d/g, (d) => "₀₁₂₃₄₅₆₇₈₉"[Number(d)]);
+const SIGNALS = { x: "x", x_hat: "x̂", e: "e", e_2: "e" };
+const nameOf = (line) => `${SIGNALS[line.signal] ?? line.signal}${line.component ? SUB(line.component) : ""}`;
+const DEMO = "v=1&task=compensator&A=[0 1; 0 -1]&B=[0; 1]&C=[1 0]&control=-2, -2&observer=-10, -10";
+
+/**
+ * Show a problem in an element, and ask `transport` what is true of it.
+ * @param {HTMLElement} element
+ * @param {(body: object, signal?: AbortSignal) => Promise<any>} transport
+ * @param {{state?: string, changed?: (state: string, final: boolean) => void, link?: (state: string) => string}} options
+ */
+export function mount(element, transport, options = {}) {
+  const root = h("div", { class: "symobs-live" });
+  element.append(root);
+  let s = decoded(options.state || DEMO);
+  let view = null, viewed = "", answer = null, sets = {}, held = null, frame = null, start = null, point = null;
+  let waiting = null, running = false, number = 0, drawn = 0, resting = 0, restTimer = 0, busyTimer = 0, said = 0, gone = false, quiet = false, before = "";
+  let aborted = new AbortController();
+  const el = {};
+
+  // -- the frame of the page ------------------------------------------------------------------------------------------
+
+  const panel = (name, ...inside) => {
+    const close = h("button", { class: "quiet", title: "Close", "aria-label": `Close ${TITLES[name]}`, onclick: () => fold(name, true) }, "×");
+    return (el[name] = h("section", { class: `panel ${name}`, "aria-label": TITLES[name] }, h("header", {}, h("h2", {}, TITLES[name]), (el[`${name}Bar`] = h("span", { class: "tools" })), close), (el[`${name}Body`] = h("div", { class: "body" }, inside))));
+  };
+  el.task = h("select", { "aria-label": "Task", onchange: () => { s.task = el.task.value; problemChanged(); } });
+  el.examples = h("select", { "aria-label": "Example", onchange: choose }, h("option", { value: "" }, "Examples …"));
+  el.snap = h("select", { "aria-label": "Grid", title: "Grid on which poles move", onchange: () => { s.snap = el.snap.value; commit(true); drawPlane(); } }, Object.keys(SNAPS).map((k) => h("option", { value: k }, k)));
+  el.message = h("div", { class: "message", hidden: true });
+  el.verdict = h("p", { class: "verdict" });
+  el.notes = h("p", { class: "notes" });
+  el.list = h("div", { class: "list" });
+  el.live = h("div", { class: "hidden", "aria-live": "polite", role: "status" });
+  el.poles = h("svg:svg", { class: "picture", viewBox: "0 0 480 360", role: "group", "aria-label": "Plane of the poles" });
+  el.texts = h("div", { class: "fields" });
+  el.curves = h("svg:svg", { class: "picture", viewBox: "0 0 480 300", role: "img" });
+  el.legend = h("p", { class: "legend" });
+  el.starts = h("div", { class: "fields starts" });
+  el.map = h("div", { class: "map" });
+  el.point = h("div", { class: "point" });
+  el.html = h("div", { class: "html", tabindex: "0", "aria-label": "Derivation" });
+  el.plant = h("section", { class: "panel plant", "aria-label": "Problem" });
+  el.reopen = h("span", { class: "reopen" });
+  const save = (as, label) => h("button", { onclick: () => take(as) }, label);
+  el.copy = h("button", { class: "copy", onclick: copyLink }, "Copy link");
+  root.append(
+    h("header", { class: "bar" }, h("strong", {}, "symobs"), el.task, el.examples, el.reopen, h("span", { class: "space" }), el.copy, h("details", { class: "menu" }, h("summary", {}, "Save"), h("div", {}, save("toml", "Problem file"), save("python", "Python"), save("latex", "LaTeX"), save("html", "Page")))),
+    el.message,
+    h("div", { class: "grid" }, el.plant, panel("region", el.map, el.point), panel("plane", el.poles, el.texts), panel("responses", el.curves, el.legend, el.starts), panel("cases"), panel("cards", el.verdict, el.notes, el.list), panel("page", el.html)),
+    el.live,
+  );
+  el.planeBar.append(h("label", {}, "grid ", el.snap));
+  el.detail = h("select", { "aria-label": "Detail", onchange: () => { drawn = 0; rest(0); } }, ["full", "outline", "answer"].map((d) => h("option", { value: d }, d)));
+  el.pageBar.append(el.detail);
+
+  function fold(name, close) {
+    s.closed = close ? [...new Set([...s.closed, name])] : s.closed.filter((n) => n !== name);
+    commit(true);
+    showPanels();
+    if (!close) ask();
+  }
+
+  function showPanels() {
+    const known = view?.panels ?? ["cards"];
+    for (const name of Object.keys(TITLES)) el[name].hidden = !known.includes(name) || s.closed.includes(name);
+    el.reopen.replaceChildren(...known.filter((n) => s.closed.includes(n)).map((n) => h("button", { class: "quiet", onclick: () => fold(n, false) }, `+ ${TITLES[n]}`)));
+    root.dataset.task = s.task;
+  }
+
+  // -- asking: one question under way, the newest waits -----------------------------------------------------------------
+
+  const problem = () => {
+    const told = { task: s.task, plant: { ...s.plant }, specification: { ...s.spec }, symbols: s.symbols };
+    if (/^\d+$/.test(s.plant.dt ?? "")) told.plant.dt = Number(s.plant.dt);
+    if (s.plant.dt === "true") told.plant.dt = true;
+    if (!Object.keys(told.plant).length) delete told.plant;
+    if (told.specification.parameters) told.specification.parameters = parts(told.specification.parameters);
+    if (s.convention) told.convention = s.convention;
+    return told;
+  };
+  const signature = () => JSON.stringify([s.task, s.plant, s.symbols, s.convention, s.task === "stability_region" ? s.spec : Object.keys(s.spec)]);
+  const free = () => Object.fromEntries(Object.entries(s.at).filter(([name]) => !view?.region?.parameters?.includes(name)));
+  const asking = (want, more = {}) => ({ schema: SCHEMA, id: ++number, want, problem: problem(), ...more });
+
+  function ask() {
+    waiting = true;
+    resting = 0;
+    aborted.abort();
+    clearTimeout(restTimer);
+    if (!running) run();
+  }
+
+  async function run() {
+    running = true;
+    clearTimeout(busyTimer);
+    busyTimer = setTimeout(() => busy(true), BUSY);
+    while (waiting && !gone) {
+      waiting = null;
+      const moving = held !== null;
+      try {
+        if (signature() !== viewed) {
+          const mark = signature(), got = await transport(asking("view"));
+          if (got.status === "done") { view = got.view; viewed = mark; takeView(); }
+          else { drawAnswer(got); continue; }
+          if (waiting) continue;
+        }
+        const region = view.panels.includes("region") && view.region?.handle && Object.keys(s.at).length;
+        if (region) {
+          const got = await transport(asking("point", { at: s.at }));
+          await painted();
+          drawPoint(got);
+          if (waiting || moving) continue;
+        }
+        const at = free(), courses = open("responses") ? { start: s.x0, estimate: s.xh0, end: null, count: 129 } : undefined;
+        const more = { at, cards_at: Object.keys(at).length > 0, cases: !moving && open("cases") };
+        if (courses) more.courses = courses;
+        const question = asking("answer", more), got = await transport(question);
+        await painted();
+        if (got.id >= drawn || !got.id) drawAnswer(got);
+      } catch (error) {
+        if (!gone) say(`No answer: ${error.message}.`, () => ask());
+      }
+    }
+    running = false;
+    clearTimeout(busyTimer);
+    busy(false);
+    rest(REST);
+  }
+
+  const open = (name) => view?.panels.includes(name) && !s.closed.includes(name);
+  const painted = () => new Promise((done) => requestAnimationFrame(done));
+  function busy(is) {
+    root.classList.toggle("busy", is);
+    root.setAttribute("aria-busy", String(is));
+  }
+
+  function rest(after) {
+    clearTimeout(restTimer);
+    if (held || gone) return;
+    restTimer = setTimeout(async () => {
+      announce();
+      if (!open("page") || running || answer?.status === "bad") return;
+      aborted = new AbortController();
+      const signal = aborted.signal, at = free();
+      el.page.setAttribute("aria-busy", "true");
+      try {
+        const got = await transport(asking("page", { detail: el.detail.value, at, cards_at: Object.keys(at).length > 0 }), signal);
+        if (signal.aborted) return;
+        if (got.html) el.html.innerHTML = got.html;
+        else el.html.replaceChildren(h("p", { class: "pale" }, got.message ?? got.errors?.map((e) => e.message).join("; ") ?? "no derivation"), got.status === "undecided" ? h("button", { onclick: () => rest(0) }, "Try again") : null);
+        el.page.setAttribute("aria-busy", "false");
+      } catch { /* a newer question has taken its place */ }
+    }, after);
+  }
+
+  function announce() {
+    if (!answer?.cards || Date.now() - said < 1000) return;
+    said = Date.now();
+    el.live.textContent = `${el.verdict.textContent}. ${answer.cards.filter((c) => /^[KLF]$/.test(c.name)).map((c) => c.says).join(". ")}`;
+  }
+
+  function say(words, again) {
+    el.message.hidden = !words;
+    el.message.replaceChildren(...(words ? [h("span", {}, words), again ? h("button", { onclick: () => { say(""); again(); } }, "Try again") : ""] : []));
+  }
+
+  // -- changes ----------------------------------------------------------------------------------------------------------
+
+  function commit(final) {
+    const link = encoded(s);
+    if (link.length > LONGEST) say("This problem is too long for a link: save the problem file instead.");
+    else options.changed?.(link, final);
+  }
+  function problemChanged() { commit(true); build(); ask(); }
+
+  async function choose() {
+    const found = start?.examples.find((e) => e.name === el.examples.value);
+    if (!found) return;
+    s = stateOf(found.problem, found.task, s);
+    view = null;
+    el.examples.value = "";
+    problemChanged();
+  }
+
+  async function copyLink() {
+    const link = options.link ? options.link(encoded(s)) : encoded(s);
+    try {
+      await navigator.clipboard.writeText(link);
+      el.copy.textContent = "Copied";
+      setTimeout(() => { el.copy.textContent = "Copy link"; }, 1500);
+    } catch {
+      const field = h("input", { value: link, "aria-label": "Link", readonly: true });
+      el.message.hidden = false;
+      el.message.replaceChildren("Copy this link: ", field);
+      field.select();
+    }
+  }
+
+  async function take(as) {
+    try {
+      const got = await transport(asking("export", { as, at: free(), cards_at: Object.keys(free()).length > 0 }));
+      if (!got.text) throw new Error(got.message ?? got.errors?.[0]?.message ?? "nothing to save");
+      const url = URL.createObjectURL(new Blob([got.text], { type: "text/plain" }));
+      h("a", { href: url, download: got.file }).click();
+      setTimeout(() => URL.revokeObjectURL(url), 1000);
+    } catch (error) { say(`Not saved: ${error.message}.`); }
+  }
+
+  // -- the problem: matrices, specification, symbols ---------------------------------------------------------------------
+
+  function field(where, label, given, changed, wide = true) {
+    const input = h("input", { value: given ?? "", "aria-label": label, "data-where": where, spellcheck: "false", autocapitalize: "off", autocomplete: "off", onchange: () => changed(input.value.trim()), onkeydown: (e) => { if (e.key === "Enter") changed(input.value.trim()); } });
+    return wide ? h("label", { class: "field" }, h("span", {}, label), input, h("small", { class: "wrong" })) : input;
+  }
+
+  function build() {
+    const isRegion = s.task === "stability_region";
+    const listed = ["A", "B", "C", "D"].filter((name) => s.plant[name] !== undefined);
+    const rows = listed.map((name) => {
+      const table = cells(s.plant[name]);
+      const set = (t) => { s.plant[name] = t; problemChanged(); };
+      if (!table) return field(`plant.${name}`, name, s.plant[name], set);
+      const grid = h("span", { class: "matrix", style: `--columns:${table[0].length}` }, table.map((row, i) => row.map((cell, j) => {
+        const size = Math.max(2, Math.min(14, Math.max(...table.map((r) => r[j].length))));
+        const input = field(`plant.${name}[${i + 1},${j + 1}]`, `${name} row ${i + 1} column ${j + 1}`, cell, (t) => { if (t === table[i][j]) return; table[i][j] = t; s.plant[name] = matrix(table.map((r) => r.map((c) => (/\s/.test(c) ? `(${c})` : c)))); commit(true); ask(); build(); }, false);
+        input.style.setProperty("--size", `${size}ch`);
+        return input;
+      })));
+      return h("div", { class: "named" }, h("i", {}, name), h("span", { class: "equals" }, "="), grid, h("small", { class: "wrong", "data-of": `plant.${name}` }));
+    });
+    const all = h("details", { class: "astext" }, h("summary", {}, "as text"), ["A", "B", "C", "D", "transfer_function", "dt"].map((name) => field(`text.${name}`, name.replace("_", " "), s.plant[name], (t) => { if (t) s.plant[name] = t; else delete s.plant[name]; problemChanged(); })), field("text.symbols", "symbols", Object.entries(s.symbols).map(([n, g]) => `${n}: ${g}`).join(", "), (t) => { s.symbols = Object.fromEntries(t.split(",").map((e) => e.split(":").map((p) => p.trim())).filter(([n]) => n).map(([n, g]) => [n, g || "real"])); problemChanged(); }));
+    if (s.plant.transfer_function !== undefined) rows.push(field("plant.transfer_function", "P(s)", s.plant.transfer_function, (t) => { s.plant.transfer_function = t; problemChanged(); }));
+    const setKeys = (view?.sets ?? []).map((g) => g.key);
+    const others = Object.keys(s.spec).filter((key) => !setKeys.includes(key) && key !== "observer").map((key) => field(`specification.${key}`, key.replace(/_/g, " "), s.spec[key], (t) => { if (t) s.spec[key] = t; else delete s.spec[key]; problemChanged(); }));
+    const kind = s.task === "compensator" ? h("label", { class: "field" }, h("span", {}, "observer"), h("select", { "aria-label": "Kind of observer", onchange: (e) => { s.spec.observer = e.target.value; fitObserver(); problemChanged(); } }, ["full", "minimal"].map((k) => h("option", { value: k, selected: (s.spec.observer ?? "full") === k }, k === "full" ? "full order" : "minimal order")))) : null;
+    const names = Object.keys(s.symbols).filter((n) => !(isRegion && view?.region?.parameters?.includes(n)));
+    const sliders = names.map((name) => slider(name));
+    el.plant.replaceChildren(h("header", {}, h("h2", {}, "Problem")), h("div", { class: "body" }, h("div", { class: "matrices" }, rows), kind, others, sliders.length ? h("div", { class: "sliders" }, sliders) : null, all));
+    if ([...el.task.options].some((o) => o.value === s.task)) el.task.value = s.task;
+    el.snap.value = s.snap;
+    buildSets();
+    showPanels();
+  }
+
+  /** An observer of minimal order has fewer poles: drop the last ones, or repeat the first. */
+  function fitObserver() {
+    const rows = cells(s.plant.C ?? "")?.length ?? 1, order = cells(s.plant.A ?? "")?.length ?? 0;
+    const wanted = order - (s.spec.observer === "minimal" ? rows : 0), list = settled(handles(s.spec.observer_poles ?? ""));
+    const flat = list.flatMap((p) => (p.pair ? [{ re: p.re, im: [0, 1] }, { re: p.re, im: [0, 1] }] : [p]));
+    if (list.reduce((n, p) => n + (p.pair ? 2 : 1), 0) === wanted || !flat.length) return;
+    s.spec.observer_poles = Array.from({ length: wanted }, (_, k) => written(flat[Math.min(k, flat.length - 1)])).join(", ");
+  }
+
+  function slider(name) {
+    const sign = s.symbols[name], low = /positive|nonnegative/.test(sign) ? 0 : -10, high = /negative|nonpositive/.test(sign) && sign !== "nonnegative" ? 0 : 10;
+    const set = (t, final) => { if (t) s.at[name] = t; else delete s.at[name]; exact.value = t; range.value = t && rational(t) ? String(value(rational(t)) * GRID) : range.value; commit(final); ask(); };
+    const range = h("input", { type: "range", min: (low || 0) * GRID, max: high * GRID, step: 1, value: rational(s.at[name] ?? "") ? value(rational(s.at[name])) * GRID : (low + high) * GRID / 2, "aria-label": `${name}, ${sign}`, oninput: () => { held = "slider"; set(text(ratio(Number(range.value), GRID)), false); }, onchange: () => { held = null; commit(true); ask(); } });
+    const exact = field(`at.${name}`, `value of ${name}`, s.at[name] ?? "", (t) => set(t, true), false);
+    exact.setAttribute("placeholder", "letter");
+    return h("div", { class: "slider" }, h("i", {}, name), range, exact, h("small", { class: "wrong", "data-of": `at.${name}` }));
+  }
+
+  function takeView() {
+    build();
+    const region = view.region;
+    el.map.replaceChildren();
+    if (!view.panels.includes("region")) return;
+    el.map.innerHTML = region?.svg ?? "";
+    for (const [name, given] of Object.entries(region?.drawn_for ?? {})) s.at[name] ??= given;
+    if (region?.handle) {
+      region.parameters.forEach((name, k) => { s.at[name] ??= region.handle[k]; });
+      buildPoint();
+    } else el.point.replaceChildren(h("p", { class: "pale" }, "There is no picture of this region; its conditions stand in the derivation."));
+  }
+
+  // -- poles in their plane ---------------------------------------------------------------------------------------------
+
+  function buildSets() {
+    sets = Object.fromEntries((view?.sets ?? []).map((group) => [group.key, handles(s.spec[group.key] ?? "")]));
+    el.texts.replaceChildren(...(view?.sets ?? []).map((group) => h("label", { class: `field ${group.mark}` }, h("span", {}, `${group.label}s`), poleField(group), h("small", { class: "wrong", "data-of": `specification.${group.key}` }))));
+    el.starts.replaceChildren(field("courses.start", "x(0)", s.x0 || "", (t) => { s.x0 = t; commit(true); ask(); }), ...(s.task === "state_feedback" ? [] : [field("courses.estimate", "x̂(0)", s.xh0 || "", (t) => { s.xh0 = t; commit(true); ask(); })]));
+    for (const [input, fallback] of [[el.starts.querySelectorAll("input")[0], "1, 1, …"], [el.starts.querySelectorAll("input")[1], "0, 0, …"]]) input?.setAttribute("placeholder", fallback);
+    drawPlane(true);
+  }
+
+  function poleField(group) {
+    const input = h("input", { value: s.spec[group.key] ?? "", "data-set": group.key, "aria-label": `${group.label}s`, spellcheck: "false", onchange: () => { s.spec[group.key] = input.value.trim(); sets[group.key] = handles(input.value); drawPlane(true); commit(true); ask(); } });
+    return input;
+  }
+
+  function moved(final) {
+    for (const key of Object.keys(sets)) {
+      s.spec[key] = poles(sets[key]);
+      const input = el.texts.querySelector(`[data-set="${key}"]`);
+      if (input && root.getRootNode().activeElement !== input) input.value = s.spec[key];
+    }
+    commit(final);
+    drawPlane();
+    ask();
+  }
+
+  function fit() {
+    const xs = [0], ys = [1];
+    const add = (re, im) => { xs.push(re); ys.push(Math.abs(im)); };
+    Object.values(sets).flat().forEach((p) => p.raw || add(value(p.re), value(p.im)));
+    (answer?.marks ?? []).forEach((m) => add(Number(m.re), Number(m.im)));
+    if (view?.discrete) { add(1, 1); add(-1, 1); }
+    const left = Math.min(...xs), right = Math.max(...xs), up = Math.max(...ys), width = 480 - 56, height = 360 - 40;
+    const scale = Math.min(width / ((right - left) * 1.3 + 1), height / (2 * up * 1.35 + 0.4));
+    frame = { scale, x: 40 + width / 2 - ((left + right) / 2) * scale, y: 16 + height / 2 };
+  }
+  const X = (x) => frame.x + x * frame.scale, Y = (y) => frame.y - y * frame.scale;
+
+  function drawPlane(refit = false) {
+    if (!view?.panels.includes("plane")) return;
+    if (!frame || (refit && !held)) fit();
+    const focus = root.getRootNode().activeElement?.getAttribute?.("data-handle");
+    const [x0, x1, y0, y1] = [(40 - frame.x) / frame.scale, (464 - frame.x) / frame.scale, (frame.y - 336) / frame.scale, (frame.y - 16) / frame.scale];
+    const line = (name, a, b, c, d) => h("svg:line", { class: name, x1: a, y1: b, x2: c, y2: d });
+    const label = (x, y, words, anchor) => h("svg:text", { x, y, "text-anchor": anchor }, pretty(words));
+    const parts = [h("svg:rect", { class: "ground", x: 40, y: 16, width: 424, height: 320 })];
+    if (view.discrete) parts.push(h("svg:circle", { class: "stable", cx: X(0), cy: Y(0), r: frame.scale }));
+    else parts.push(h("svg:rect", { class: "stable", x: 40, y: 16, width: Math.max(0, Math.min(464, X(0)) - 40), height: 320 }));
+    for (const x of ticks(x0, x1, 8)) parts.push(line("rule", X(x), 16, X(x), 336), label(X(x), 350, String(x), "middle"));
+    for (const y of ticks(y0, y1, 6)) parts.push(line("rule", 40, Y(y), 464, Y(y)), label(34, Y(y) + 4, y ? `${y}` : "0", "end"));
+    parts.push(line("axis", 40, Y(0), 464, Y(0)));
+    if (X(0) > 40 && X(0) < 464) parts.push(line("axis", X(0), 16, X(0), 336));
+    parts.push(label(464, Y(0) - 6, "Re", "end"), label(Math.min(456, Math.max(46, X(0) + 6)), 28, "Im", "start"));
+    for (const m of answer?.marks ?? []) {
+      const [x, y] = [X(Number(m.re)), Y(Number(m.im))];
+      if (x > 38 && x < 466 && y > 14 && y < 338) parts.push(h("svg:path", { class: `mark ${m.kind}`, d: m.kind === "F" ? `M${x - 4} ${y}h8M${x} ${y - 4}v8` : `M${x - 3.5} ${y - 3.5}l7 7m0 -7l-7 7` }, h("svg:title", {}, m.kind === "F" ? "pole of F" : "pole of the plant")));
+    }
+    for (const group of view.sets) {
+      const list = sets[group.key] ?? [], count = list.length;
+      list.forEach((p, k) => p.raw || parts.push(handle(group, list, p, k, count)));
+    }
+    if (Object.values(sets).flat().some((p) => p.raw)) parts.push(h("svg:text", { x: 46, y: 330, class: "remark" }, "poles with letters, or off a pair, are in the text fields"));
+    el.poles.replaceChildren(...parts);
+    if (focus) refocus(focus);
+  }
+
+  /** Give the focus back to a handle that was drawn again; where it stood when it came there stays known. */
+  function refocus(name) {
+    quiet = true;
+    el.poles.querySelector(`[data-handle="${name}"]`)?.focus({ preventScroll: true });
+    quiet = false;
+  }
+
+  function handle(group, list, p, k, count) {
+    const spoken = pretty(p.pair && p.im[0] ? `${text(p.re)} plus or minus ${text(p.im)} i` : text(p.re));
+    const same = list.slice(0, k).filter((q) => !q.raw && !q.pair && !p.pair && text(q.re) === text(p.re)).length;
+    const places = p.pair ? [[X(value(p.re)), Y(value(p.im))], [X(value(p.re)), Y(-value(p.im))]] : [[X(value(p.re)), Y(0)]];
+    const nested = p.pair && !p.im[0];
+    const glyph = ([x, y], index) => {
+      const r = 6.5 + 4 * (same + (nested ? index : 0));
+      return [h("svg:circle", { class: "hit", cx: x, cy: y, r: 18 }), h("svg:circle", { class: "halo", cx: x, cy: y, r: 12 }), group.mark === "cross" ? h("svg:path", { class: "glyph", d: `M${x - r} ${y - r}l${2 * r} ${2 * r}m0 ${-2 * r}l${-2 * r} ${2 * r}` }) : h("svg:circle", { class: "glyph", cx: x, cy: y, r })];
+    };
+    const said = answer?.readouts?.find((r) => r.handle === `${group.key}.${k}`);
+    const isHeld = held && held.p === p;
+    const mine = h("svg:g", {
+      class: `handle ${group.mark}${isHeld ? " held" : ""}`, tabindex: 0, role: "slider", "data-handle": `${group.key}.${k}`,
+      "aria-label": `${group.label} ${k + 1} of ${count}`, "aria-roledescription": "pole", "aria-valuemin": -100, "aria-valuemax": 100, "aria-valuenow": value(p.re), "aria-valuetext": spoken,
+      onpointerdown: (e) => grab(e, group, p), onkeydown: (e) => key(e, group, p, k), onfocus: () => { if (!quiet) before = JSON.stringify(sets); },
+    }, places.map(glyph));
+    if (isHeld || root.getRootNode().activeElement?.getAttribute?.("data-handle") === `${group.key}.${k}`) {
+      const [x, y] = places[0], right = x < 300;
+      const lines = [pretty(p.pair && p.im[0] ? `${text(p.re)} ± ${text(p.im)} i` : text(p.re))];
+      if (said?.damping && p.pair) lines.push(`ζ = ${pretty(said.damping)}, ${said.exact}`);
+      if (said?.settles) lines.push(`settles in ${said.settles}`);
+      if (said?.modulus) lines.push(`|z| = ${said.modulus}`);
+      const top = y < 70 ? y + 26 : y - 12 - 16 * (lines.length - 1);
+      mine.append(...lines.map((words, n) => h("svg:text", { class: n ? "readout" : "readout first", x: x + (right ? 16 : -16), y: top + 16 * n, "text-anchor": right ? "start" : "end" }, words)));
+    }
+    return mine;
+  }
+
+  const step = () => SNAPS[s.snap];
+  const snapped = (x) => ratio(Math.round((x * GRID) / step()) * step(), GRID);
+
+  /** Move a handle to a place of the plane, and keep the number of poles and their pairs. */
+  function place(group, p, re, im) {
+    const list = sets[group.key];
+    if (!p.pair && Math.abs(im) >= 1.5 * (step() / GRID)) {
+      const others = list.filter((q) => q !== p && !q.raw && !q.pair);
+      if (others.length) {
+        const nearest = others.reduce((a, b) => (Math.abs(value(a.re) - re) <= Math.abs(value(b.re) - re) ? a : b));
+        list.splice(list.indexOf(nearest), 1);
+        p.pair = true;
+      }
+    }
+    p.re = snapped(re);
+    p.im = p.pair ? snapped(Math.abs(im)) : [0, 1];
+  }
+
+  function where(event, svg) {
+    const there = new DOMPoint(event.clientX, event.clientY).matrixTransform(svg.getScreenCTM().inverse());
+    return [there.x, there.y];
+  }
+
+  function grab(event, group, p) {
+    if (event.button) return;
+    event.preventDefault();
+    const svg = el.poles;
+    before = JSON.stringify(sets);
+    held = { p };
+    svg.setPointerCapture(event.pointerId);
+    const follow = (e) => {
+      const [x, y] = where(e, svg);
+      place(group, p, (Math.max(40, Math.min(464, x)) - frame.x) / frame.scale, (frame.y - Math.max(16, Math.min(336, y))) / frame.scale);
+      moved(false);
+    };
+    const done = (back) => {
+      svg.removeEventListener("pointermove", follow);
+      svg.removeEventListener("pointerup", let_go);
+      svg.removeEventListener("pointercancel", cancel);
+      root.removeEventListener("keydown", escape, true);
+      held = null;
+      if (back) sets = JSON.parse(before);
+      const k = sets[group.key].indexOf(p);
+      sets[group.key] = settled(sets[group.key]);
+      fit();
+      moved(true);
+      refocus(`${group.key}.${Math.max(0, k)}`);
+    };
+    const let_go = () => done(false), cancel = () => done(true), escape = (e) => { if (e.key === "Escape") done(true); };
+    svg.addEventListener("pointermove", follow);
+    svg.addEventListener("pointerup", let_go);
+    svg.addEventListener("pointercancel", cancel);
+    root.addEventListener("keydown", escape, true);
+    drawPlane();
+  }
+
+  function key(event, group, p, k) {
+    const far = (event.shiftKey ? 10 : 1) * step(), by = ratio(far, GRID), back = ratio(-far, GRID);
+    const list = sets[group.key];
+    switch (event.key) {
+      case "ArrowLeft": p.re = plus(p.re, back); break;
+      case "ArrowRight": p.re = plus(p.re, by); break;
+      case "ArrowUp": if (p.pair) p.im = plus(p.im, by); else place(group, p, value(p.re), Math.max(2 * step(), far) / GRID); break;
+      case "ArrowDown": if (!p.pair) return; p.im = plus(p.im, back); if (p.im[0] < 0) p.im = [0, 1]; break;
+      case "Enter": el.texts.querySelector(`[data-set="${group.key}"]`)?.focus(); event.preventDefault(); return;
+      case "Escape": if (before) sets = JSON.parse(before); moved(true); event.preventDefault(); return;
+      default: return;
+    }
+    event.preventDefault();
+    sets[group.key] = settled(list);
+    moved(true);
+    if (outside(p)) { fit(); drawPlane(); }
+    refocus(`${group.key}.${k}`);
+  }
+  const outside = (p) => X(value(p.re)) < 48 || X(value(p.re)) > 456 || Y(value(p.im)) < 24;
+
+  // -- the region -------------------------------------------------------------------------------------------------------
+
+  function buildPoint() {
+    const region = view.region, svg = el.map.querySelector("svg");
+    const fields = region.parameters.map((name) => field(`at.${name}`, name, s.at[name], (t) => { s.at[name] = t; commit(true); ask(); drawPointHandle(); }));
+    const values = region.values;
+    const scrub = values ? h("input", { type: "range", class: "scrub", "aria-label": region.parameters[0], min: 0, max: 400, step: 1, value: Math.round(((value(rational(s.at[region.parameters[0]]) ?? [0, 1]) - numberOf(values[0])) / (numberOf(values[1]) - numberOf(values[0]))) * 400), oninput: () => { held = "scrub"; s.at[region.parameters[0]] = onGrid(numberOf(values[0]) + (Number(scrub.value) / 400) * (numberOf(values[1]) - numberOf(values[0])), numberOf(values[1]) - numberOf(values[0])); fields[0].querySelector("input").value = s.at[region.parameters[0]]; commit(false); ask(); }, onchange: () => { held = null; commit(true); ask(); } }) : null;
+    el.pointVerdict = h("p", { class: "verdict" });
+    el.pointMath = h("div", { class: "symobs" });
+    el.point.replaceChildren(h("div", { class: "fields" }, fields), scrub ?? "", el.pointVerdict, el.pointMath);
+    if (!svg || region.kind !== "plane") return;
+    el.dot = h("svg:g", { class: "handle pick", tabindex: 0, role: "slider", "aria-roledescription": "point", "aria-label": `point ${region.parameters.join(", ")}`, "aria-valuenow": 0, onkeydown: (e) => {
+      const moves = { ArrowLeft: [0, -1], ArrowRight: [0, 1], ArrowDown: [1, -1], ArrowUp: [1, 1] }[e.key];
+      if (!moves) return;
+      e.preventDefault();
+      const name = region.parameters[moves[0]];
+      s.at[name] = text(plus(rational(s.at[name]) ?? [0, 1], ratio(moves[1] * step() * (e.shiftKey ? 10 : 1), GRID)));
+      drawPointHandle();
+      commit(true);
+      ask();
+    }, onpointerdown: grabPoint }, h("svg:circle", { class: "hit", r: 12 }), h("svg:circle", { class: "halo", r: 6 }), h("svg:circle", { class: "glyph", r: 3.4 }));
+    svg.append(el.dot);
+    svg.addEventListener("pointerdown", (e) => { if (!el.dot.contains(e.target)) grabPoint(e); });
+    drawPointHandle();
+  }
+
+  const numberOf = (t) => value(rational(t) ?? ratio(Math.round(Number(t) * 1000), 1000));
+  const onGrid = (x, width) => { let grid = GRID; while (grid * width < 40) grid *= 10; return text(ratio(Math.round(x * grid), grid)); };
+  function placeOf(k) {
+    const [left, top, width, height] = view.region.frame, [low, high] = view.region.window[k].map(numberOf);
+    const part = (numberOf(s.at[view.region.parameters[k]]) - low) / (high - low);
+    return k ? top + height * (1 - part) : left + width * part;
+  }
+  function drawPointHandle() {
+    const region = view.region;
+    if (region.kind === "plane" && el.dot) {
+      const inside = region.parameters.every((name) => rational(s.at[name]));
+      el.dot.toggleAttribute("hidden", !inside);
+      if (inside) el.dot.setAttribute("transform", `translate(${placeOf(0)} ${placeOf(1)})`);
+      el.dot.setAttribute("aria-valuetext", region.parameters.map((n) => `${n} = ${pretty(s.at[n])}`).join(", "));
+    }
+    region.parameters.forEach((name) => { const input = el.point.querySelector(`[data-where="at.${name}"]`); if (input && root.getRootNode().activeElement !== input) input.value = s.at[name]; });
+  }
+
+  function grabPoint(event) {
+    if (event.button) return;
+    event.preventDefault();
+    const svg = el.map.querySelector("svg"), region = view.region, [left, top, width, height] = region.frame, before = { ...s.at };
+    held = "point";
+    svg.setPointerCapture(event.pointerId);
+    const follow = (e) => {
+      const [x, y] = where(e, svg), part = [(x - left) / width, 1 - (y - top) / height];
+      region.parameters.forEach((name, k) => {
+        const [low, high] = region.window[k].map(numberOf);
+        s.at[name] = onGrid(low + Math.max(0, Math.min(1, part[k])) * (high - low), high - low);
+      });
+      drawPointHandle();
+      commit(false);
+      ask();
+    };
+    const done = (back) => {
+      svg.removeEventListener("pointermove", follow);
+      svg.removeEventListener("pointerup", let_go);
+      root.removeEventListener("keydown", escape, true);
+      held = null;
+      if (back) s.at = before;
+      drawPointHandle();
+      commit(true);
+      ask();
+      el.dot.focus({ preventScroll: true });
+    };
+    const let_go = () => done(false), escape = (e) => { if (e.key === "Escape") done(true); };
+    svg.addEventListener("pointermove", follow);
+    svg.addEventListener("pointerup", let_go);
+    root.addEventListener("keydown", escape, true);
+    follow(event);
+  }
+
+  const WORDS = { stable: "stable", unstable: "not stable", boundary: "on the boundary, not stable", excluded: "outside of the declared signs", undefined: "not defined here" };
+  function drawPoint(got) {
+    if (got.status !== "done") { drawAnswer(got); return; }
+    clearWrong();
+    point = got;
+    el.pointVerdict.textContent = `${view.region.parameters.map((n) => `${n} = ${pretty(s.at[n])}`).join(", ")}: ${WORDS[got.verdict]}`;
+    el.pointVerdict.dataset.verdict = got.verdict;
+    el.pointMath.innerHTML = [...(got.cards ?? []), ...(got.boundary ?? [])].map((c) => `<div class="display">${c.mathml}</div>`).join("");
+    const middle = (p) => (Number(p[0]) + Number(p[1])) / 2, digits = (p) => pretty(middle(p).toFixed(3));
+    const roots = got.roots.map((r) => `${digits(r.re)}${Number(r.im[1]) > 0 && Number(r.im[0]) > 0 ? ` + ${digits(r.im)} i` : Number(r.im[1]) < 0 ? ` − ${digits(r.im).slice(1)} i` : ""}${r.multiplicity > 1 ? ` (${r.multiplicity}×)` : ""}`);
+    el.pointMath.append(h("p", { class: "roots" }, roots.length ? `Roots ≈ ${roots.join(",  ")}` : ""));
+    if (view.region.kind === "locus") {
+      const svg = el.map.querySelector("svg"), [left, top, width, height] = view.region.frame, [[a, b], [c, d]] = view.region.window.map((w) => w.map(numberOf));
+      svg.querySelectorAll(".root").forEach((e) => e.remove());
+      for (const r of got.roots) svg.append(h("svg:circle", { class: "root", cx: left + (width * (middle(r.re) - a)) / (b - a), cy: top + height * (1 - (middle(r.im) - c) / (d - c)), r: 2.6 }));
+    }
+  }
+
+  // -- answers ----------------------------------------------------------------------------------------------------------
+
+  function clearWrong() {
+    root.querySelectorAll(".wrong").forEach((e) => e.replaceChildren());
+    root.querySelectorAll("[aria-invalid]").forEach((e) => e.removeAttribute("aria-invalid"));
+    root.classList.remove("stale");
+    say("");
+  }
+
+  function showErrors(errors) {
+    root.classList.add("stale");
+    const left = [];
+    for (const { where, message, repair } of errors) {
+      const words = `${message}${repair ? `: ${repair}` : ""}`, base = where.replace(/\[.*$/, "");
+      const exact = where.replace(/\[(\d+)\]\[(\d+)\]$/, (_, i, j) => `[${Number(i) + 1},${Number(j) + 1}]`);
+      const input = root.querySelector(`[data-where="${CSS.escape(exact)}"]`) ?? root.querySelector(`[data-set="${CSS.escape(base.replace("specification.", ""))}"]`) ?? root.querySelector(`[data-where="${CSS.escape(base)}"]`);
+      input?.setAttribute("aria-invalid", "true");
+      const spot = input?.closest("label")?.querySelector(".wrong") ?? root.querySelector(`.wrong[data-of="${CSS.escape(base)}"]`);
+      if (spot) spot.append(h("span", {}, words)); else left.push(`${where ? `${where}: ` : ""}${words}`);
+    }
+    if (left.length) say(left.slice(0, 4).join(" · "));
+  }
+
+  const VERDICTS = { yes: "Checked", no: "No", conditional: "Checked, under conditions", undecided: "Undecided" };
+  function drawAnswer(got) {
+    if (got.id) drawn = got.id;
+    if (got.status === "bad") { answer = answer && { ...answer, status: "bad" }; clearWrong(); showErrors(got.errors); return; }
+    clearWrong();
+    if (got.status === "bug" || (got.status === "undecided" && !got.cards)) { root.classList.add("stale"); say(got.status === "bug" ? got.message : `Undecided: ${got.message}.`, () => ask()); return; }
+    answer = got;
+    const noun = got.claims === 1 ? "claim" : "claims";
+    el.verdict.textContent = `${VERDICTS[got.verdict] ?? got.verdict}${got.verdict === "no" ? "" : ` · ${got.claims} ${noun}`}`;
+    el.verdict.dataset.verdict = got.verdict;
+    el.notes.textContent = got.note ?? "";
+    drawCards(got);
+    if (!el.cases.hidden) drawCases(got);
+    if (!el.responses.hidden) drawCurves(got.courses);
+    drawPlane();
+  }
+
+  function drawCards(got) {
+    const names = got.cards.map((c) => c.name);
+    if ([...el.list.children].map((c) => c.dataset.name).join() !== [...names, "conditions"].join()) {
+      el.list.replaceChildren(...got.cards.map((card) => h("article", { class: "card symobs", "data-name": card.name }, h("div", { class: "display" }), h("button", { class: "quiet tex", title: "Copy LaTeX", "aria-label": `Copy LaTeX of ${card.name}`, onclick: async (e) => {
+        const b = e.currentTarget;
+        try { await navigator.clipboard.writeText(answer.cards.find((c) => c.name === card.name)?.latex ?? ""); b.textContent = "copied"; } catch { b.textContent = "refused"; }
+        setTimeout(() => { b.textContent = "TeX"; }, 1200);
+      } }, "TeX"))), h("article", { class: "conditions symobs", "data-name": "conditions" }));
+    }
+    got.cards.forEach((card, k) => {
+      const box = el.list.children[k].firstChild;
+      if (box.dataset.latex !== card.latex) { box.innerHTML = card.mathml; box.dataset.latex = card.latex; }
+    });
+    const last = el.list.lastChild;
+    last.innerHTML = got.conditions.length ? `<p>Provided that</p>${got.conditions.map((c) => `<div class="display">${c.mathml}</div>`).join("")}` : "";
+  }
+
+  function drawCases(got) {
+    if (!got.cases) return;
+    const general = h("button", { class: Object.keys(free()).length ? "" : "chosen", onclick: () => { s.at = {}; commit(true); build(); ask(); } }, "in general");
+    const made = got.cases.map((c) => {
+      const usable = Object.keys(c.at).length > 0;
+      const b = h("button", { disabled: !usable, "data-case": JSON.stringify(c.at), onclick: () => { s.at = { ...c.at }; commit(true); build(); ask(); } });
+      b.innerHTML = (c.mathml.length ? c.mathml : c.when.map((w) => w.mathml)).join(" ");
+      return h("div", { class: "case-row" }, b, h("span", { class: "pale" }, c.rank !== undefined ? `rank ${c.rank}` : c.verdict));
+    });
+    if (made.length || !Object.keys(free()).length) el.casesBody.replaceChildren(...(made.length ? [general, ...made] : [h("p", { class: "pale" }, Object.keys(s.symbols).length ? "No values of the letters change the answer." : "No letters, no cases.")]));
+    else { const first = el.casesBody.querySelector("button"); first?.classList.remove("chosen"); }
+    el.casesBody.querySelectorAll("[data-case]").forEach((b) => b.classList.toggle("chosen", b.dataset.case === JSON.stringify(free())));
+  }
+
+  function drawCurves(got) {
+    el.curves.classList.toggle("absent", !got);
+    if (!got) { el.curves.replaceChildren(); el.legend.replaceChildren(); return; }
+    const [[t0, t1], [low, high]] = got.window.map((w) => w.map(numberOf2));
+    const px = (t) => 40 + ((t - t0) / (t1 - t0)) * 424, py = (v) => 268 - ((v - low) / (high - low || 1)) * 252;
+    const made = [h("svg:rect", { class: "ground", x: 40, y: 16, width: 424, height: 252 })];
+    for (const t of ticks(t0, t1, 7)) made.push(h("svg:line", { class: "rule", x1: px(t), y1: 16, x2: px(t), y2: 268 }), h("svg:text", { x: px(t), y: 284, "text-anchor": "middle" }, String(t)));
+    for (const v of ticks(low, high, 6)) made.push(h("svg:line", { class: v ? "rule" : "axis", x1: 40, y1: py(v), x2: 464, y2: py(v) }), h("svg:text", { x: 34, y: py(v) + 4, "text-anchor": "end" }, pretty(String(v))));
+    made.push(h("svg:text", { x: 464, y: 298, "text-anchor": "end" }, got.discrete ? "k" : "t"));
+    const told = [];
+    for (const line of got.lines) {
+      const n = line.heights.length - 1, place = (v, k) => `${px(t0 + ((t1 - t0) * k) / n).toFixed(1)} ${py(v / got.parts).toFixed(1)}`;
+      const kind = `curve c${((line.component || 1) - 1) % 4}${line.dashed ? " dashed" : ""}`;
+      made.push(h("svg:path", { class: kind, d: `M${line.heights.map(place).join("L")}` }));
+      if (got.discrete) line.heights.forEach((v, k) => { const [x, y] = place(v, k).split(" "); made.push(h("svg:circle", { class: kind, cx: x, cy: y, r: 2.6 })); });
+      const peak = line.heights.reduce((a, b) => (Math.abs(b) > Math.abs(a) ? b : a), 0) / got.parts;
+      told.push(`${nameOf(line)} peaks at ${peak.toPrecision(3)} and ends at ${(line.heights[n] / got.parts).toPrecision(2)}`);
+    }
+    el.curves.replaceChildren(h("svg:title", {}, `Responses up to ${got.end}: ${told.join("; ")}`), ...made);
+    el.legend.replaceChildren(...got.lines.map((line) => h("span", {}, h("svg:svg", { viewBox: "0 0 24 8", "aria-hidden": "true" }, h("svg:path", { class: `curve c${((line.component || 1) - 1) % 4}${line.dashed ? " dashed" : ""}`, d: "M1 4h22" })), nameOf(line))));
+  }
+  const numberOf2 = (t) => (rational(t) ? value(rational(t)) : Number(t));
+
+  // -- begin ------------------------------------------------------------------------------------------------------------
+
+  build();
+  transport({ schema: SCHEMA, id: ++number, want: "start" }).then((got) => {
+    start = got;
+    const shown = Object.entries(got.tasks ?? {});
+    el.task.replaceChildren(...shown.map(([name, about]) => h("option", { value: name, title: about }, name.replace(/_/g, " "))));
+    el.task.value = s.task;
+    const by = Object.groupBy ? Object.groupBy(got.examples ?? [], (e) => e.task) : { all: got.examples };
+    el.examples.append(...Object.entries(by).map(([task, list]) => h("optgroup", { label: task.replace(/_/g, " ") }, list.map((e) => h("option", { value: e.name }, e.title)))));
+  }).catch(() => {});
+  ask();
+  return {
+    destroy() { gone = true; aborted.abort(); root.remove(); },
+    state: () => encoded(s),
+    set(link) { s = decoded(link || DEMO); frame = null; build(); ask(); },
+  };
+}

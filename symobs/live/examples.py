@@ -1,0 +1,30 @@
+"""The worked examples that come with the package, as problems to begin with."""
+
+from __future__ import annotations
+
+import tomllib
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+from symobs.live.views import VIEWS
+
+_PLACES = (Path(__file__).parents[1] / "worked_examples", Path(__file__).parents[2] / "worked_examples")
+#: One of a few hundred kilobytes takes longer to look at than to solve.
+_LARGE = {"cart_pole"}
+
+
+@cache
+def examples() -> list[dict[str, Any]]:
+    """Return name, title, task and problem of every example whose task has something to move."""
+    folder = next((place for place in _PLACES if place.is_dir()), None)
+    found = []
+    for path in sorted(folder.glob("*.toml")) if folder is not None else []:
+        data = tomllib.loads(path.read_text(encoding="utf-8"), parse_float=str)
+        names = data.get("tasks", [data.get("task")])
+        task = next((name for name in reversed(names) if name in VIEWS), None)
+        if task is None or path.stem in _LARGE:
+            continue
+        kept = {key: data[key] for key in ("convention", "symbols", "plant", "specification") if key in data}
+        found.append({"name": path.stem, "title": data.get("title", path.stem), "task": task, "problem": kept})
+    return found

@@ -1,0 +1,50 @@
+"""The state in a link: a problem as the text after `#`, which never reaches a server."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from typing import Any
+from urllib.parse import quote
+
+#: Keys of a specification that a link calls by shorter names.
+SHORT = {"control_poles": "control", "observer_poles": "observer", "observer": "kind"}
+
+
+def link_of(data: Mapping[str, Any]) -> str:
+    """Return the state of a problem: `v=1&task=compensator&A=[0 1; 0 -1]&…`, encoded."""
+    parts: dict[str, str] = {"v": "1"}
+    names = data.get("tasks")
+    task = names[-1] if isinstance(names, list) and names else data.get("task")
+    if isinstance(task, str):
+        parts["task"] = task
+    for name, value in _table(data, "plant").items():
+        parts[name] = _text(value, matrix=True)
+    for name, value in _table(data, "specification").items():
+        parts[SHORT.get(name, name)] = _text(value, matrix=name in {"K", "L", "T", "reference_matrix", "Q", "R"})
+    signs = {
+        name: sign["sign"] if isinstance(sign, Mapping) else sign for name, sign in _table(data, "symbols").items()
+    }
+    if signs:
+        parts["symbols"] = ",".join(f"{name}:{sign}" for name, sign in signs.items())
+    if "convention" in data:
+        parts["convention"] = str(data["convention"])
+    return "&".join(f"{quote(name, safe='')}={quote(text, safe=',;:/-*^()[]')}" for name, text in parts.items())
+
+
+def _table(data: Mapping[str, Any], name: str) -> Mapping[str, Any]:
+    table = data.get(name)
+    return table if isinstance(table, Mapping) else {}
+
+
+def _text(value: Any, *, matrix: bool) -> str:
+    """Return a value as it is typed: a matrix in brackets, a list with commas."""
+    if isinstance(value, (list, tuple)):
+        if matrix and value and all(isinstance(row, (list, tuple)) for row in value):
+            return f"[{'; '.join(' '.join(map(_cell, row)) for row in value)}]"
+        return ", ".join(str(entry) for entry in value) if not matrix else f"[{' '.join(map(str, value))}]"
+    return str(value) if isinstance(value, (str, int)) and not isinstance(value, bool) else json.dumps(value)
+
+
+def _cell(entry: Any) -> str:
+    return f"({entry})" if " " in str(entry) else str(entry)

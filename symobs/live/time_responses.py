@@ -1,0 +1,222 @@
+"""Time responses as whole numbers over `parts`: each height is within 1/parts of the truth."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from math import ceil, isqrt, lcm, log, log10
+from operator import mul
+from typing import TYPE_CHECKING, Any
+
+from symobs.design.page_parts.time_responses import rounded_up
+from symobs.errors import InputError
+from symobs.exact import Matrix
+from symobs.system import Symbols, read_matrix
+
+if TYPE_CHECKING:
+    from symobs.live.request import Responses
+    from symobs.result import Result
+
+#: States are enclosed in these parts; a response is rounded from them to coarser ones.
+_FINE = 10**15
+#: The slowest mode has fallen to e⁻⁶ at the end; one that grows has grown to e³.
+_TIMES, _GROWN = 6.0, 3.0
+_LONGEST = Fraction(10**6)
+#: Thousandths of the height of the picture, or finer.
+_COARSE, _FINEST = 3, 9
+_DEAD, _SAMPLES = 1e-9, 40
+
+
+class NoResponse(Exception):
+    """There is none, for a reason worth saying; its text may be empty."""
+
+
+class Signals:
+    """A linear equation with its initial state, and the signals drawn: name, component, row of the state, dashed."""
+
+    def __init__(self, matrix: Matrix, start: list[Fraction], drawn: list[tuple[str, Matrix, bool]]) -> None:
+        """Take the signals apart into rows."""
+        self.matrix, self.start = matrix, start
+        self.rows = [
+            (name, place if table.shape[0] > 1 else 0, [entry.fraction() for entry in row], dashed)
+            for name, table, dashed in drawn
+            for place, row in enumerate(table.rows, 1)
+        ]
+
+
+def responses_of(result: Result, asked: Responses) -> dict[str, Any]:
+    """Return the responses of a design; raises `NoResponse` where it has none, `InputError` for what was asked."""
+    signals = _signals(result, asked)
+    end = _end(signals.matrix, asked.end, discrete=result.plant.is_discrete)
+    if result.plant.is_discrete:
+        count = int(end) + 1
+        heights = _stepped(signals, count)
+    else:
+        heights = _enclosed(signals, end, asked.count)
+    peak = max(abs(height) for line in heights for height in line)
+    digits = _COARSE if not peak else min(_FINEST, max(_COARSE, _COARSE - int(log10(peak / _FINE))))
+    parts = 10**digits
+    coarser = _FINE // parts
+    rounded = [[(height + coarser // 2) // coarser for height in line] for line in heights]
+    lines = [
+        {"signal": name, "component": place, "dashed": dashed, "heights": line}
+        for (name, place, _, dashed), line in zip(signals.rows, rounded, strict=True)
+    ]
+    low, high = min(map(min, rounded)), max(map(max, rounded))
+    room = Fraction(max(high - low, 1), 20)
+    window = [["0", str(end)], [_decimal((low - room) / parts), _decimal((high + room) / parts)]]
+    return {"end": str(end), "parts": parts, "window": window, "discrete": result.plant.is_discrete, "lines": lines}
+
+
+# -- which ------------------------------------------------------------------------------------------------------------
+
+
+def _signals(result: Result, asked: Responses) -> Signals:
+    """Return what is drawn of a design."""
+    given: Any = result
+    fields, order = result.fields, result.plant.order
+    state = _vector(asked.start, order, Fraction(1), "courses.start")
+    estimate = _vector(asked.estimate, order, Fraction(0), "courses.estimate")
+    error = [a - b for a, b in zip(state, estimate, strict=True)]
+    start: list[Fraction] = []
+    drawn: list[tuple[str, Matrix, bool]] = []
+    match result.task:
+        case "observer":
+            matrix, start, drawn = fields["A"], error, [("e", Matrix.identity(order), False)]
+        case "state_feedback":
+            matrix, start, drawn = fields["closed_loop_matrix"], state, [("x", Matrix.identity(order), False)]
+        case "reduced_order_observer":
+            matrix = fields["F"]
+            if matrix is not None:
+                start = _below(fields["T"], error, matrix.shape[0])
+                drawn = [("e_2", Matrix.identity(matrix.shape[0]), False)]
+        case "compensator" | "feedforward":
+            matrix = fields["closed_loop_matrix"]
+            if matrix is not None:
+                unseen, hidden = _unseen(given, order, matrix.shape[0] - order)
+                start = state + (error if unseen is None else _below(unseen, error, hidden))
+                drawn = _state_and_estimate(order, unseen, hidden)
+        case _:
+            raise NoResponse
+    if matrix is None:
+        raise NoResponse
+    if matrix.names or result.plant.relations:
+        raise NoResponse("Responses need numbers: give every symbol a value.")
+    return Signals(matrix, start, drawn)
+
+
+def _unseen(result: Any, order: int, size: int) -> tuple[Matrix | None, int]:
+    """Return T of an observer of reduced order, None for one of full order, and the size of the error."""
+    T = result.fields.get("T")
+    return (T if size < order else None), size
+
+
+def _state_and_estimate(order: int, T: Matrix | None, size: int) -> list[tuple[str, Matrix, bool]]:
+    """Return x and x̂ = x − e, or x̂ = x − T⁻¹ [0; e₂]."""
+    whole = Matrix.identity(order) if T is None else T.inverse().select(range(order), range(order - size, order))
+    plain = Matrix.block([[Matrix.identity(order), Matrix.zeros(order, size)]])
+    return [("x", plain, False), ("x_hat", Matrix.block([[Matrix.identity(order), -whole]]), True)]
+
+
+def _below(T: Matrix, error: list[Fraction], size: int) -> list[Fraction]:
+    """Return the last components of T e."""
+    if T.names:
+        raise NoResponse("Responses need numbers: give every symbol a value.")
+    product = T @ Matrix.column(error)
+    return [entry.fraction() for entry in product.entries][-size:]
+
+
+def _vector(text: str, size: int, otherwise: Fraction, where: str) -> list[Fraction]:
+    """Return an initial state: numbers with commas between, or the same for every component."""
+    if not text.strip():
+        return [otherwise] * size
+    entries = read_matrix(f"[{text.strip().strip('[]')}]", Symbols.of({}), where).entries
+    if len(entries) != size or any(not entry.is_constant or entry.names for entry in entries):
+        raise InputError(f"{size} numbers are expected", where=where, repair='write for example "1, 0"')
+    return [entry.fraction() for entry in entries]
+
+
+# -- when -------------------------------------------------------------------------------------------------------------
+
+
+def _end(matrix: Matrix, asked: str | None, *, discrete: bool) -> Fraction:
+    """Return the last instant: as it was asked for, or where the slowest mode has converged."""
+    from symobs.exact.time_functions.state_response import spectral_abscissae, spectral_radius  # noqa: PLC0415 - FLINT
+
+    if asked is not None:
+        (value,) = _vector(asked, 1, Fraction(1), "courses.end")
+        if not 0 < value <= _LONGEST or (discrete and (value.denominator != 1 or value > 1000)):
+            raise InputError("no such last instant", where="courses.end", repair='write a positive number: "3"')
+        return value
+    if discrete:
+        radius, order = spectral_radius(matrix), matrix.shape[0]
+        usual = order + 2 if radius < _DEAD else ceil(_TIMES / -log(radius)) if radius < 1 else _SAMPLES
+        return Fraction(max(6, min(usual, _SAMPLES)))
+    largest, smallest = spectral_abscissae(matrix)
+    if largest > 0:
+        return rounded_up(_GROWN / largest)
+    slowest = -largest if largest < 0 else max(-smallest, 0.0) / 4
+    return min(rounded_up(_TIMES / slowest), _LONGEST) if slowest > 0 else Fraction(10)
+
+
+# -- how --------------------------------------------------------------------------------------------------------------
+
+
+def _enclosed(signals: Signals, end: Fraction, count: int) -> list[list[int]]:
+    """Return the heights of every signal in fine parts, within a quarter of the finest ones that are shown."""
+    from symobs.exact.time_functions.state_response import state_response  # noqa: PLC0415 - FLINT
+
+    if any(4 * (sum(map(abs, row)) + 1) * 10**_FINEST > _FINE for _, _, row, _ in signals.rows):
+        raise NoResponse("A response is left out: its enclosure stays too wide.")
+    try:
+        states = state_response(signals.matrix, signals.start, end / (count - 1), count, _FINE)
+    except ArithmeticError:
+        raise NoResponse("A response is left out: its enclosure stays too wide.") from None
+    lines = []
+    for _, _, row, _ in signals.rows:
+        common = lcm(*(part.denominator for part in row))
+        whole = [int(part * common) for part in row]
+        lines.append([sum(map(mul, whole, state)) // common for state in states])
+    return lines
+
+
+def _stepped(signals: Signals, count: int) -> list[list[int]]:
+    """Return the values at 0, 1, 2, … in fine parts, rounded from exact ones."""
+    table = [[entry.fraction() for entry in row] for row in signals.matrix.rows]
+    state, states = list(signals.start), []
+    for _ in range(count):
+        states.append(state)
+        state = [sum(map(mul, row, state), Fraction(0)) for row in table]
+    return [
+        [round(sum(map(mul, row, state), Fraction(0)) * _FINE) for state in states] for _, _, row, _ in signals.rows
+    ]
+
+
+def _decimal(value: Fraction) -> str:
+    return f"{float(value):.6g}"
+
+
+# -- readouts ---------------------------------------------------------------------------------------------------------
+
+
+def readout(real: Fraction, imaginary: Fraction, *, discrete: bool) -> dict[str, str]:
+    """Return natural frequency, damping ratio and settling time of a pole, or its modulus in discrete time."""
+    square = real * real + imaginary * imaginary
+    if discrete:
+        return {"exact": f"|z|² = {square}", "modulus": _places(_root(square))}
+    exact = f"ωₙ² = {square}" if imaginary else f"ωₙ = {abs(real)}"
+    found = {"exact": exact}
+    if square:
+        found["damping"] = _places(-real / _root(square))
+    if real < 0:
+        found["settles"] = f"{log(50) / float(-real):.3g}"
+    return found
+
+
+def _root(square: Fraction) -> Fraction:
+    """Return the square root, to twelve places."""
+    scale = 10**24
+    return Fraction(isqrt(square.numerator * scale // square.denominator), 10**12)
+
+
+def _places(value: Fraction) -> str:
+    return f"{float(value):.3f}".rstrip("0").rstrip(".")

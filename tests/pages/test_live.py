@@ -1,0 +1,461 @@
+"""The page of `symobs serve` in a real browser: dragged, typed into, tabbed through, and looked at."""
+
+from __future__ import annotations
+
+import json
+import random
+import re
+import subprocess
+import sys
+import threading
+from typing import TYPE_CHECKING, Any
+from urllib.parse import quote
+
+import pytest
+
+from symobs.live import answer
+from symobs.live.process import Budget
+from symobs.live.server import Server
+from tests.support.tools.command_line import environment
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+
+pytestmark = pytest.mark.slow
+SERVO = "v=1&task=compensator&A=[0 1; 0 -1]&B=[0; 1]&C=[1 0]&control=-2, -2&observer=-10, -10"
+PAIR = SERVO.replace("observer=-10, -10", "observer=-5+5/2i, -5-5/2i")
+CASES = "v=1&task=observability&A=[0 1; -2 -3]&C=[1 c]&symbols=c:real"
+REGION = "v=1&task=stability_region&A=[0 1; 9 0]&C=[0 1]&L=[h1; h2]&parameters=h1, h2&symbols=h1:real,h2:real"
+LOCUS = "v=1&task=stability_region&polynomial=s^3+2 s^2+3 s+k&parameters=k&symbols=k:real"
+PATIENCE = 60_000  # milliseconds; ends a page that hangs, measures nothing
+_FLAGS = ["--headless", "--no-sandbox", "--disable-gpu", "--disable-background-networking"]
+
+
+@pytest.fixture(name="chromium", scope="module")
+def launched(require_tool: Callable[[str], str]) -> Iterator[Any]:
+    path = require_tool("chromium")
+    playwright = pytest.importorskip("playwright.sync_api", reason="needs playwright: pip install symobs[browser-test]")
+    with playwright.sync_playwright() as driver:
+        browser = driver.chromium.launch(executable_path=path, args=_FLAGS)
+        yield browser
+        browser.close()
+
+
+@pytest.fixture(name="server", scope="module")
+def running_server() -> Iterator[Server]:
+    server = Server(budget=Budget(60, 1000))
+    thread = threading.Thread(target=server.serve_forever, kwargs={"poll_interval": 0.05})
+    thread.start()
+    yield server
+    server.shutdown()
+    thread.join()
+    server.server_close()
+
+
+class Opened:
+    """A page with what it asked, what it was told, and what it complained about."""
+
+    def __init__(self, chromium: Any, server: Server, state: str, **context: Any) -> None:
+        self.context = chromium.new_context(viewport={"width": 1180, "height": 900}, **context)
+        self.context.grant_permissions(["clipboard-read", "clipboard-write"])
+        self.page = self.context.new_page()
+        self.page.set_default_timeout(PATIENCE)
+        self.asked: list[dict[str, Any]] = []
+        self.complaints: list[str] = []
+        self.others: list[str] = []
+        self.open, self.most = 0, 0
+        base = server.url.partition("#")[0]
+        self.page.on("request", lambda request: self._begin(request, base))
+        self.page.on("requestfinished", self._end)
+        self.page.on("requestfailed", self._end)
+        self.page.on("console", lambda said: self.complaints.append(said.text) if said.type == "error" else None)
+        self.page.on("pageerror", lambda error: self.complaints.append(str(error)))
+        self.page.goto(f"{server.url}&{quote(state, safe='=&')}")
+
+    def _begin(self, request: Any, base: str) -> None:
+        if not request.url.startswith((base, "data:", "blob:")):
+            self.others.append(request.url)
+        if request.method == "POST":
+            self.asked.append(json.loads(request.post_data))
+            self.open += self._is_tier_one(request)
+            self.most = max(self.most, self.open)
+
+    def _end(self, request: Any) -> None:
+        self.open -= self._is_tier_one(request)
+
+    @staticmethod
+    def _is_tier_one(request: Any) -> bool:
+        return request.method == "POST" and json.loads(request.post_data)["want"] in {"answer", "point", "view"}
+
+    def at_rest(self) -> None:
+        """Wait until every question is answered and drawn."""
+        self.page.wait_for_selector(".card math, .map svg")
+        self.page.wait_for_timeout(400)
+        self.wait_for("!document.querySelector('[aria-busy=true]')")
+
+    def wait_for(self, condition: str) -> None:
+        """Wait until a condition holds; the policy of the page lets nobody evaluate it there again and again."""
+        for _ in range(PATIENCE // 50):
+            if self.page.evaluate(condition):
+                return
+            self.page.wait_for_timeout(50)
+        pytest.fail(f"not within {PATIENCE} ms: {condition}")
+
+    def latex(self, name: str) -> str:
+        found: str = self.page.get_attribute(f'.card[data-name="{name}"] .display', "data-latex")
+        return found
+
+    def middle(self, handle: str, index: int = 0) -> tuple[float, float]:
+        box = None
+        while box is None:  # a handle that is drawn again at this moment has none
+            box = self.page.locator(f'[data-handle="{handle}"] .hit').nth(index).bounding_box()
+        return box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
+
+    def drag(self, begin: tuple[float, float], end: tuple[float, float], steps: int = 12) -> None:
+        self.page.mouse.move(*begin)
+        self.page.mouse.down()
+        for k in range(1, steps + 1):
+            self.page.mouse.move(*(a + (b - a) * k / steps for a, b in zip(begin, end, strict=True)))
+        self.page.mouse.up()
+
+    def poles(self, key: str) -> str:
+        found: str = self.page.input_value(f'[data-set="{key}"]')
+        return found
+
+    def close(self) -> None:
+        """Close; whatever the page did, it complained of nothing and asked nobody else."""
+        self.context.close()
+        assert self.complaints == []
+        assert self.others == []
+
+
+@pytest.fixture(name="opened")
+def open_pages(chromium: Any, server: Server) -> Iterator[Callable[..., Opened]]:
+    pages: list[Opened] = []
+
+    def opening(state: str, **context: Any) -> Opened:
+        pages.append(Opened(chromium, server, state, **context))
+        pages[-1].at_rest()
+        return pages[-1]
+
+    yield opening
+    for page in pages:
+        page.close()
+
+
+def count(text: str) -> int:
+    return len([pole for pole in text.split(",") if pole.strip()])
+
+
+def test_the_servo_opens(opened: Callable[..., Opened]) -> None:
+    live = opened(SERVO)
+    assert live.latex("K") == r"K=\begin{bmatrix}4&3\end{bmatrix}"
+    assert live.latex("L") == r"L=\begin{bmatrix}19\\81\end{bmatrix}"
+    assert live.latex("F") == r"F(s)=\frac{319s+400}{s^2+23s+161}"
+    assert live.page.inner_text(".cards .verdict") == "Checked · 3 claims"
+    live.page.wait_for_selector(".html math")
+    assert "Observer" in live.page.inner_text(".html")
+
+
+def test_the_last_answer_of_a_drag_belongs_to_the_last_place(opened: Callable[..., Opened]) -> None:
+    live = opened(PAIR)
+    x, y = live.middle("observer_poles.0")
+    before = len(live.asked)
+    live.drag((x, y), (x - 90, y - 60), steps=150)
+    live.at_rest()
+    assert live.most == 1
+    assert 0 < len(live.asked) - before <= 152
+    told = answer(
+        {
+            "schema": "symobs-live/1",
+            "problem": {
+                "task": "compensator",
+                "plant": {"A": "[0 1; 0 -1]", "B": "[0; 1]", "C": "[1 0]"},
+                "specification": {"control_poles": "-2, -2", "observer_poles": live.poles("observer_poles")},
+            },
+        }
+    )
+    assert live.poles("observer_poles") != "-5+5/2i, -5-5/2i"
+    for card in told["cards"]:
+        assert live.latex(card["name"]) == card["latex"]
+    path = live.page.get_attribute(".curve.c0", "d")
+    assert path.startswith("M40.0")
+
+
+def test_pairs_form_and_part(opened: Callable[..., Opened]) -> None:
+    live = opened(PAIR)
+    x, y = live.middle("observer_poles.0")
+    axis = (y + live.middle("observer_poles.0", 1)[1]) / 2
+    live.drag((x, y), (x, axis))
+    live.at_rest()
+    assert live.poles("observer_poles") == "-5, -5"
+    assert live.page.locator(".handle.ring").count() == 2
+    x, axis = live.middle("observer_poles.0")
+    live.drag((x, axis), (x, axis - 70))
+    live.at_rest()
+    assert re.fullmatch(r"-5\+([\d/]+)i, -5-\1i", live.poles("observer_poles"))
+    x, y = live.middle("observer_poles.0")
+    live.drag((x, y), (x, (y + live.middle("observer_poles.0", 1)[1]) / 2))
+    live.at_rest()
+    x, axis = live.middle("observer_poles.1")
+    live.drag((x, axis), (x - 80, axis))
+    live.at_rest()
+    moved = live.poles("observer_poles")
+    assert moved.startswith("-5, -")
+    assert moved != "-5, -5"
+
+
+def test_the_only_real_pole_of_a_set_stays_on_the_axis(opened: Callable[..., Opened]) -> None:
+    live = opened(SERVO.replace("observer=-10, -10", "observer=-4&kind=minimal"))
+    x, y = live.middle("observer_poles.0")
+    live.drag((x, y), (x, y - 90))
+    live.at_rest()
+    assert re.fullmatch(r"-\d+(/\d+)?", live.poles("observer_poles"))
+
+
+def test_no_move_changes_the_number_of_poles(opened: Callable[..., Opened]) -> None:
+    live = opened("v=1&task=observer&A=[0 1 0; 0 0 1; -1 -2 -3]&C=[1 0 0]&poles=-2+i, -2-i, -4&closed=page,responses")
+    generator = random.Random(5)  # noqa: S311 - repeatable by design
+    box = live.page.locator(".plane svg").bounding_box()
+    for _ in range(60):
+        handles = live.page.locator(".plane .handle")
+        name = handles.nth(generator.randrange(handles.count())).get_attribute("data-handle")
+        x = box["x"] + generator.uniform(0.02, 0.98) * box["width"]
+        y = box["y"] + generator.choice([0.5, generator.uniform(0.02, 0.98)]) * box["height"]
+        live.drag(live.middle(name), (x, y), steps=4)
+        poles = live.poles("poles")
+        assert count(poles) == 3, poles
+        assert poles.count("+") + len(re.findall(r"(?<=\d)-", poles)) in {0, 2}, poles
+    live.at_rest()
+    assert "Checked" in live.page.inner_text(".cards .verdict")
+
+
+def test_the_keyboard_alone_moves_poles(opened: Callable[..., Opened]) -> None:
+    live = opened(PAIR)
+    keyboard = live.page.keyboard
+    for _ in range(60):
+        keyboard.press("Tab")
+        if live.page.evaluate("document.activeElement.dataset?.handle") == "observer_poles.0":
+            break
+    handle = '[data-handle="observer_poles.0"]'
+    assert live.page.get_attribute(handle, "role") == "slider"
+    assert live.page.get_attribute(handle, "aria-label") == "observer pole 1 of 1"
+    assert live.page.get_attribute(handle, "aria-valuetext") == "−5 plus or minus 5/2 i"
+    keyboard.press("ArrowLeft")
+    keyboard.press("Shift+ArrowUp")
+    assert live.poles("observer_poles") == "-11/2+15/2i, -11/2-15/2i"
+    keyboard.press("Escape")
+    assert live.poles("observer_poles") == "-5+5/2i, -5-5/2i"
+    keyboard.press("Enter")
+    keyboard.press("Control+a")
+    keyboard.type("-7/3, -8")
+    keyboard.press("Tab")
+    live.at_rest()
+    assert live.latex("L") == r"L=\frac{1}{3}\begin{bmatrix}28\\28\end{bmatrix}"  # 31/3 − 1, 56/3 − 28/3
+
+
+def test_everything_that_takes_the_focus_has_a_name(opened: Callable[..., Opened]) -> None:
+    live = opened(CASES)
+    names = live.page.evaluate(
+        """[...document.querySelectorAll('button, input, select, summary, [tabindex]')].filter(e => e.offsetParent
+        !== null || e.ownerSVGElement).filter(e => !(e.getAttribute('aria-label') || e.textContent.trim() ||
+        e.closest('label')?.textContent.trim())).map(e => e.outerHTML)"""
+    )
+    assert names == []
+    assert live.page.locator("[tabindex]:not([tabindex='0'])").count() == 0
+
+
+def test_a_bad_entry_is_said_at_its_field(opened: Callable[..., Opened]) -> None:
+    live = opened(SERVO)
+    entry = live.page.get_by_label("A row 2 column 2")
+    entry.fill("q")
+    entry.press("Tab")
+    live.page.wait_for_selector(".symobs-live.stale")
+    assert "q" in live.page.inner_text(".plant .wrong >> nth=0")
+    assert live.latex("K") == r"K=\begin{bmatrix}4&3\end{bmatrix}"
+    assert live.page.eval_on_selector(".cards .list", "e => getComputedStyle(e).opacity") == "0.38"
+    entry = live.page.get_by_label("A row 2 column 2")
+    entry.fill("-2")
+    entry.press("Tab")
+    live.page.wait_for_selector(".symobs-live:not(.stale)")
+    live.at_rest()
+    assert live.latex("K") == r"K=\begin{bmatrix}4&2\end{bmatrix}"
+
+
+def test_a_case_is_set_exactly(opened: Callable[..., Opened]) -> None:
+    live = opened(CASES)
+    live.page.click("""[data-case='{"c":"1"}']""")
+    live.at_rest()
+    assert live.page.get_attribute(".cards .verdict", "data-verdict") == "no"
+    assert live.latex("kernel") == r"N=\begin{bmatrix}-1\\1\end{bmatrix}"
+    assert live.page.input_value('[data-where="at.c"]') == "1"
+    live.page.click("text=in general")
+    live.at_rest()
+    assert live.page.get_attribute(".cards .verdict", "data-verdict") == "conditional"
+
+
+def test_a_letter_has_a_slider(opened: Callable[..., Opened]) -> None:
+    live = opened("v=1&task=observer&A=[0 1; -omega^2 0]&C=[1 0]&poles=-2, -2&symbols=omega:positive")
+    assert r"\omega" in live.latex("L")
+    live.page.get_by_label("value of omega").fill("3/2")
+    live.page.get_by_label("value of omega").press("Tab")
+    live.at_rest()
+    assert live.latex("L") == r"L=\begin{bmatrix}4\\[4pt]\frac{7}{4}\end{bmatrix}"  # 4 − 9/4
+    assert live.page.locator(".curve.c0").first.get_attribute("d")
+    slider = live.page.get_by_label("omega, positive")
+    assert slider.get_attribute("min") == "0"
+
+
+def test_the_verdict_of_a_point_changes_on_the_boundary(opened: Callable[..., Opened]) -> None:
+    live = opened(REGION)  # s² + h₂ s + 9 h₁ − 9: stable exactly for h₁ > 1 and h₂ > 0
+    verdict = ".point .verdict"
+    assert live.page.get_attribute(verdict, "data-verdict") == "stable"
+    for point, expected in (
+        (("1", "1"), "boundary"), (("1001/1000", "1"), "stable"), (("999/1000", "1"), "unstable"),
+        (("2", "0"), "boundary"), (("2", "1/20"), "stable"), (("2", "-1/20"), "unstable"),
+    ):  # fmt: skip
+        for name, value in zip(("h1", "h2"), point, strict=True):
+            live.page.fill(f'.point [data-where="at.{name}"]', value)
+            live.page.press(f'.point [data-where="at.{name}"]', "Tab")
+        live.at_rest()
+        assert live.page.get_attribute(verdict, "data-verdict") == expected, point
+    box = live.page.locator(".pick .hit").bounding_box()
+    begin = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
+    live.drag(begin, (begin[0], begin[1] - 60))
+    live.at_rest()
+    assert live.page.get_attribute(verdict, "data-verdict") == "stable"
+
+
+def test_one_parameter_is_scrubbed(opened: Callable[..., Opened]) -> None:
+    live = opened(LOCUS)  # stable exactly for 0 < k < 6
+    for value, expected in (("6", "boundary"), ("5", "stable"), ("7", "unstable")):
+        live.page.fill('.point [data-where="at.k"]', value)
+        live.page.press('.point [data-where="at.k"]', "Tab")
+        live.at_rest()
+        assert live.page.get_attribute(".point .verdict", "data-verdict") == expected
+    assert live.page.locator(".map .root").count() == 3
+    live.page.focus(".scrub")
+    live.page.keyboard.press("Home")
+    live.at_rest()
+    assert live.page.get_attribute(".point .verdict", "data-verdict") == "unstable"
+
+
+def test_a_page_is_given_up_for_a_newer_question(opened: Callable[..., Opened]) -> None:
+    live = opened(PAIR)
+    live.page.wait_for_selector(".html math")
+    pages = [ask for ask in live.asked if ask["want"] == "page"]
+    assert pages
+    x, y = live.middle("observer_poles.0")
+    live.page.mouse.move(x, y)
+    live.page.mouse.down()
+    live.page.mouse.move(x - 40, y)
+    live.page.wait_for_timeout(900)
+    assert [ask for ask in live.asked if ask["want"] == "page"] == pages  # none while a handle is held
+    live.page.mouse.up()
+    live.at_rest()
+    assert len([ask for ask in live.asked if ask["want"] == "page"]) > len(pages)
+
+
+def test_a_link_opens_the_same_and_back_undoes(opened: Callable[..., Opened]) -> None:
+    live = opened(PAIR)
+    assert "token" not in live.page.url
+    x, y = live.middle("observer_poles.0")
+    live.drag((x, y), (x - 60, y))
+    live.at_rest()
+    moved = live.poles("observer_poles")
+    live.page.click(".copy")
+    link = live.page.evaluate("navigator.clipboard.readText()")
+    assert "token" not in link
+    other = opened(re.sub(r"%(..)", lambda c: chr(int(c[1], 16)), link.partition("#")[2]))
+    assert other.poles("observer_poles") == moved
+    assert other.latex("L") == live.latex("L")
+    live.page.go_back()
+    live.at_rest()
+    assert live.poles("observer_poles") == "-5+5/2i, -5-5/2i"
+
+
+@pytest.mark.parametrize("state", [PAIR, CASES, REGION], ids=["poles", "cases", "region"])
+@pytest.mark.parametrize(("width", "scheme"), [(320, "light"), (590, "dark"), (1180, "dark")])
+def test_nothing_overflows(opened: Callable[..., Opened], state: str, width: int, scheme: str) -> None:
+    live = opened(state, color_scheme=scheme)
+    live.page.set_viewport_size({"width": width, "height": 800})
+    live.page.wait_for_timeout(200)
+    assert live.page.evaluate("document.documentElement.scrollWidth") <= width
+    live.page.emulate_media(media="print")
+    assert len(set(live.page.screenshot())) > 200
+    live.page.emulate_media(media="screen", forced_colors="active")
+    assert len(set(live.page.screenshot())) > 200
+
+
+_CONTRAST = """() => {
+  const rgb = c => { const d = document.createElement('canvas').getContext('2d'); d.fillStyle = c; d.fillRect(0, 0, 1, 1);
+    return [...d.getImageData(0, 0, 1, 1).data].slice(0, 3); };
+  const light = c => { const [r, g, b] = rgb(c).map(v => (v /= 255) <= .03928 ? v / 12.92 : ((v + .055) / 1.055) ** 2.4);
+    return .2126 * r + .7152 * g + .0722 * b; };
+  const style = getComputedStyle(document.querySelector('.symobs-live')), of = n => light(style.getPropertyValue(n));
+  return ['--ink', '--control', '--observer', '--pale', '--bad', '--good', '--c2', '--c3'].flatMap(n =>
+    ['--paper', '--back', '--ground'].map(b => { const [x, y] = [of(n), of(b)].sort((p, q) => q - p);
+      return [n + ' on ' + b, (x + .05) / (y + .05)]; }));
+}"""
+
+
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+def test_every_colour_can_be_read(opened: Callable[..., Opened], scheme: str) -> None:
+    live = opened(SERVO, color_scheme=scheme)
+    assert {name: ratio for name, ratio in live.page.evaluate(_CONTRAST) if ratio < 4.5} == {}
+
+
+def test_markup_of_a_user_does_nothing(opened: Callable[..., Opened]) -> None:
+    hostile = '<img src=x onerror="document.title=1">'
+    live = opened(SERVO)
+    live.page.get_by_label("A row 1 column 1").fill(hostile)
+    live.page.get_by_label("A row 1 column 1").press("Tab")
+    live.page.wait_for_selector(".symobs-live.stale")
+    assert live.page.title() == "symobs live"
+    assert live.page.locator("img").count() == 0
+    refused = live.page.evaluate("(() => { try { return eval('1 + 1'); } catch (error) { return error.name; } })()")
+    assert refused in {"EvalError", 2}  # the tool's own script may be excepted; a script of the page is not
+    live.page.evaluate(
+        "const s = document.createElement('script'); s.textContent = 'document.title = 2'; document.body.append(s)"
+    )
+    assert live.page.title() == "symobs live"
+    live.complaints[:] = [each for each in live.complaints if "Content Security Policy" not in each]
+
+
+def test_what_cannot_be_seen_is_said_at_rest_only(opened: Callable[..., Opened]) -> None:
+    live = opened(PAIR)
+    live.wait_for("document.querySelector('[aria-live]').textContent.includes('K equals')")
+    assert live.page.locator("[aria-live]").count() == 1
+    x, y = live.middle("observer_poles.0")
+    before = live.page.inner_text("[aria-live]")
+    live.page.mouse.move(x, y)
+    live.page.mouse.down()
+    live.page.mouse.move(x - 50, y)
+    live.page.wait_for_timeout(1200)
+    assert live.page.inner_text("[aria-live]") == before
+    live.page.mouse.up()
+
+
+def test_a_server_that_is_gone_is_said_and_the_state_stays(chromium: Any) -> None:
+    run = subprocess.Popen(
+        [sys.executable, "-m", "symobs", "serve", "--no-browser"],
+        env=environment(),
+        stdout=subprocess.PIPE,
+        text=True,
+    )
+    assert run.stdout is not None
+    url = run.stdout.readline().strip()
+    context = chromium.new_context()
+    page = context.new_page()
+    page.set_default_timeout(PATIENCE)
+    page.goto(url)
+    page.wait_for_selector(".card math")
+    run.kill()
+    run.wait()
+    run.stdout.close()
+    page.fill('[data-set="control_poles"]', "-3, -3")
+    page.press('[data-set="control_poles"]', "Tab")
+    page.wait_for_selector(".message:not([hidden])")
+    assert "Try again" in page.inner_text(".message")
+    assert page.input_value('[data-set="control_poles"]') == "-3, -3"
+    context.close()

@@ -1,0 +1,184 @@
+"""How fast live answers are, in one run: `python -m tests.programs.live_goals`.
+
+CPU time where it can be measured, wall time of the round trip and of the browser else; goals are those of a machine with two
+cores to itself.  The browser's figures need playwright and chromium, and are left out without them.
+"""
+
+from __future__ import annotations
+
+import http.client
+import json
+import random
+import shutil
+import statistics
+import threading
+import time
+from fractions import Fraction
+from typing import Any
+
+from symobs.live import answer
+from symobs.live.process import Budget
+from symobs.live.server import Server
+
+GENERATOR = random.Random(7)  # noqa: S311 - repeatable by design
+ANSWER_GOALS = {2: 15, 3: 25, 4: 35, 6: 60}
+
+
+def poles(order: int) -> str:
+    """Poles on the grid of twentieths, in pairs where they fit."""
+    found: list[str] = []
+    while len(found) < order:
+        real = Fraction(GENERATOR.randint(-200, -10), 20)
+        imaginary = Fraction(GENERATOR.randint(1, 100), 20)
+        pair = len(found) + 2 <= order and GENERATOR.random() < 0.5
+        found += [f"{real}+{imaginary}i", f"{real}-{imaginary}i"] if pair else [str(real)]
+    return ", ".join(found)
+
+
+def problem(order: int) -> dict[str, Any]:
+    """A compensator for a chain of integrators with feedback."""
+    rows = [" ".join("1" if j == i + 1 else "0" for j in range(order)) for i in range(order - 1)]
+    rows.append(" ".join(str(GENERATOR.randint(-3, 3)) for _ in range(order)))
+    zeros = "; ".join("0" for _ in range(order - 1))
+    plant = {"A": f"[{'; '.join(rows)}]", "B": f"[{zeros}; 1]", "C": f"[{' '.join(['1', *['0'] * (order - 1)])}]"}
+    specification = {"control_poles": poles(order), "observer_poles": poles(order)}
+    return {"task": "compensator", "plant": plant, "specification": specification}
+
+
+def question(order: int, want: str = "answer") -> dict[str, Any]:
+    """A request for what is shown while a pole moves, or for the page."""
+    asked = {"schema": "symobs-live/1", "want": want, "problem": problem(order)}
+    return asked | ({"cards": ["K", "L", "F"], "courses": {"count": 129}} if want == "answer" else {})
+
+
+def spent(requests: list[dict[str, Any]]) -> list[float]:
+    """CPU milliseconds of each answer."""
+    found = []
+    for request in requests:
+        begin = time.process_time()
+        assert answer(request)["status"] == "done"
+        found.append(1000 * (time.process_time() - begin))
+    return found
+
+
+def row(what: str, values: list[float], goal: float) -> None:
+    """Print median, 95th percentile and goal."""
+    high = statistics.quantiles(values, n=20)[-1] if len(values) > 1 else values[0]
+    print(f"| {what} | {statistics.median(values):.1f} | {high:.1f} | {goal:g} |")
+
+
+def over_http() -> list[float]:
+    """Milliseconds of a round trip above those of the answer, as its child measured them."""
+    server = Server(budget=Budget(60, 1000))
+    thread = threading.Thread(target=server.serve_forever, kwargs={"poll_interval": 0.05})
+    thread.start()
+    place = f"127.0.0.1:{server.server_address[1]}"
+    headers = {"Origin": f"http://{place}", "Content-Type": "application/json", "X-Symobs-Token": server.token}
+    connection, found = http.client.HTTPConnection(place), []
+    for _ in range(150):
+        body = json.dumps(question(2))
+        begin = time.perf_counter()
+        connection.request("POST", "/api", body, headers)
+        content = connection.getresponse().read()
+        found.append(1000 * (time.perf_counter() - begin) - json.loads(content)["ms"])
+    connection.close()
+    server.shutdown()
+    thread.join()
+    server.server_close()
+    return found[20:]
+
+
+_PAINTED = """async ([x, y, steps]) => {
+  const svg = document.querySelector('.plane svg'), list = document.querySelector('.cards .list'), found = [];
+  const at = (kind, k) => new PointerEvent(kind,
+    { bubbles: true, pointerId: 1, clientX: x - 3 * k, clientY: y - k, button: 0 });
+  const frame = () => new Promise(requestAnimationFrame);
+  svg.setPointerCapture = () => {};
+  document.querySelector('[data-handle="observer_poles.0"] .hit').dispatchEvent(at('pointerdown', 0));
+  for (let k = 1; k <= steps; k += 1) {
+    const changed = new Promise(done => new MutationObserver((_, o) => { o.disconnect(); done(); })
+      .observe(list, { subtree: true, childList: true }));
+    const begin = performance.now();
+    svg.dispatchEvent(at('pointermove', 12 * (k % 5) + k));
+    await Promise.race([changed, new Promise(done => setTimeout(done, 3000))]);
+    await frame();
+    found.push(performance.now() - begin);
+  }
+  svg.dispatchEvent(at('pointerup', steps));
+  return found;
+}"""
+
+
+def in_the_browser() -> None:
+    """Print the times from a pointer to the painted answer, and from the server's start to the first one."""
+    from playwright.sync_api import sync_playwright  # noqa: PLC0415 - only where it is
+
+    with sync_playwright() as driver:
+        flags = ["--headless", "--no-sandbox", "--disable-gpu", "--disable-background-networking"]
+        browser = driver.chromium.launch(executable_path=shutil.which("chromium"), args=flags)
+        page = browser.new_page(viewport={"width": 1180, "height": 900})
+        page.set_default_timeout(300_000)
+        begin = time.perf_counter()
+        server = Server(budget=Budget(60, 1000))
+        threading.Thread(target=server.children.warm, daemon=True).start()
+        thread = threading.Thread(target=server.serve_forever, kwargs={"poll_interval": 0.05})
+        thread.start()
+        for order in (2, 4):
+            told = problem(order)
+            state = "&".join(
+                f"{name}={value}"
+                for name, value in (
+                    ("task", "compensator"),
+                    *told["plant"].items(),
+                    ("control", told["specification"]["control_poles"]),
+                    ("observer", ", ".join([*["-4"] * (order - 2), "-5+3i", "-5-3i"])),
+                    ("snap", "1/20"),
+                    ("closed", "page"),
+                )
+            ).replace("+", "%2B")
+            page.goto("about:blank")
+            page.goto(f"{server.url}&v=1&{state}")
+            page.wait_for_selector(".card math")
+            if order == 2:
+                row("start of the server to first answer, ms", [1000 * (time.perf_counter() - begin)], 1500)
+            page.wait_for_timeout(1500)
+            handle = page.locator(".handle.ring").first.get_attribute("data-handle")
+            box = page.locator(".handle.ring .hit").first.bounding_box()
+            script = _PAINTED.replace("observer_poles.0", str(handle))
+            times = page.evaluate(script, [box["x"] + box["width"] / 2, box["y"] + box["height"] / 2, 60])
+            row(f"pointer to painted, n = {order}, ms", times[5:], 100)
+        browser.close()
+        server.shutdown()
+        thread.join()
+        server.server_close()
+
+
+def main() -> None:
+    """Measure everything and print the table."""
+    spent([question(2) for _ in range(10)])
+    print("| what | median | 95 % | goal |\n|---|---:|---:|---:|")
+    for order, goal in ANSWER_GOALS.items():
+        row(f"answer, n = {order}, CPU ms", spent([question(order) for _ in range(100)]), goal)
+    region = {
+        "task": "stability_region",
+        "plant": {"A": "[0 1; 9 0]", "C": "[0 1]"},
+        "specification": {"L": "[h1; h2]", "parameters": ["h1", "h2"]},
+        "symbols": {"h1": "real", "h2": "real"},
+    }
+    points = [
+        {"schema": "symobs-live/1", "want": "point", "problem": region, "at": {"h1": f"{k}/20", "h2": f"{40 - k}/20"}}
+        for k in range(-20, 60)
+    ]
+    spent(points[:2])
+    row("point of a region, CPU ms", spent(points), 40)
+    pages = [question(GENERATOR.choice((2, 3, 4)), "page") for _ in range(200)]
+    row("page, 200 compensators of order 2 to 4, CPU ms", spent(pages), 1000)
+    row("HTTP above the answer, n = 2, ms", over_http(), 5)
+    try:
+        in_the_browser()
+    except ImportError:
+        print("(no browser: pip install symobs[browser-test])")
+
+
+if __name__ == "__main__":
+    main()

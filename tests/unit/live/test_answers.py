@@ -1,0 +1,333 @@
+"""The protocol: what every want returns, what is refused, and that an answer is the one of `symobs solve`."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+import tomllib
+from typing import TYPE_CHECKING, Any
+
+import mpmath
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from jsonschema import Draft202012Validator  # type: ignore[import-untyped]
+
+from symobs.live import answer
+from symobs.live.request import MOST_BYTES, parsed
+from symobs.problem import validate
+from symobs.render.formats.json import result_object
+from tests.support.tools.command_line import EXAMPLES, SAFETY, environment
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+SERVO: dict[str, Any] = {
+    "task": "compensator",
+    "plant": {"A": "[0 1; 0 -1]", "B": "[0; 1]", "C": "[1 0]"},
+    "specification": {"control_poles": "-2, -2", "observer_poles": "-10, -10"},
+}
+DETECTABLE: dict[str, Any] = {
+    "task": "observability",
+    "plant": {"A": "[0 1; -2 -3]", "C": "[1 c]"},
+    "symbols": {"c": "real"},
+}
+SMALL = [path for path in EXAMPLES if path.stem not in {"cart_pole", "region_three_gains"}]
+_TEXT = {"type": "string"}
+_CARD = {
+    "type": "object",
+    "properties": {"name": _TEXT, "mathml": _TEXT, "latex": _TEXT, "says": _TEXT},
+    "required": ["name", "mathml", "latex", "says"],
+}
+_ERROR = {"type": "object", "required": ["where", "message", "repair"], "additionalProperties": _TEXT}
+_LINE = {
+    "type": "object",
+    "required": ["signal", "component", "dashed", "heights"],
+    "properties": {"heights": {"type": "array", "items": {"type": "integer"}}},
+}
+SCHEMA = Draft202012Validator(
+    {
+        "type": "object",
+        "required": ["schema", "id", "status"],
+        "properties": {
+            "schema": {"const": "symobs-live/1"},
+            "status": {"enum": ["done", "no", "bad", "undecided", "bug"]},
+            "errors": {"type": "array", "minItems": 1, "items": _ERROR},
+            "cards": {"type": "array", "items": _CARD},
+            "claims": {"type": "integer"},
+            "courses": {
+                "type": ["object", "null"],
+                "required": ["end", "parts", "window", "lines"],
+                "properties": {"lines": {"type": "array", "items": _LINE}},
+            },
+        },
+    }
+)
+
+
+def asked(problem: object, want: str = "answer", **more: object) -> dict[str, Any]:
+    """The response to a request, which keeps the schema and is JSON."""
+    found = answer({"schema": "symobs-live/1", "id": 7, "want": want, "problem": problem, **more})
+    SCHEMA.validate(json.loads(json.dumps(found)))
+    assert found["id"] == 7
+    return found
+
+
+def data_of(path: Path) -> dict[str, Any]:
+    return tomllib.loads(path.read_text(encoding="utf-8"), parse_float=str)
+
+
+@pytest.mark.parametrize("path", SMALL, ids=lambda path: path.stem)
+def test_an_answer_is_that_of_solve(path: Path) -> None:
+    data = data_of(path)
+    name = data["tasks"][-1] if "tasks" in data else data["task"]
+    found = asked(data, courses={"count": 9}, cases=True)
+    (result,) = validate({**data, "expect": {}}, name).solve()
+    own = result_object(result)
+    assert found["status"] == (result.verdict if result.verdict in {"no", "undecided"} else "done")
+    assert found["verdict"] == own["verdict"]
+    assert found["claims"] == len(own["certificates"])
+    assert [each["text"] for each in found["conditions"]] == own["conditions"]
+    assert {key: own[key] for key in found["result"]} == found["result"]
+    assert len(found["cases"]) == len(own["cases"])
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("path", SMALL, ids=lambda path: path.stem)
+def test_every_want_is_answered(path: Path) -> None:
+    data = data_of(path)
+    for detail in ("full", "outline", "answer"):
+        assert '<div class="symobs">' in asked(data, "page", detail=detail)["html"]
+    view = asked(data, "view")["view"]
+    assert view["panels"]
+    for form in ("latex", "toml", "python", "json", "html"):
+        assert asked(data, "export", **{"as": form})["text"]
+    again = asked(tomllib.loads(asked(data, "export", **{"as": "toml"})["text"], parse_float=str))
+    assert again["result"] == asked(data)["result"]
+
+
+def test_the_servo() -> None:
+    found = asked(SERVO, cards=["K", "L", "F"], courses={"start": "1, 1", "estimate": "0, 0", "count": 129})
+    assert found["result"]["K"] == [["4", "3"]]
+    assert found["result"]["L"] == [["19"], ["81"]]
+    assert [card["latex"] for card in found["cards"][:2]] == [
+        r"K=\begin{bmatrix}4&3\end{bmatrix}",
+        r"L=\begin{bmatrix}19\\81\end{bmatrix}",
+    ]
+    assert [card["says"] for card in found["cards"][:1]] == ["K equals [4 3]"]
+    # ω = 2 and ζ = 1; ln 50 / 2 = 1.956.
+    assert found["readouts"][0] == {
+        "handle": "control_poles.0", "exact": "ωₙ = 2", "damping": "1", "settles": "1.96",
+    }  # fmt: skip
+
+
+def test_responses_are_within_their_bound() -> None:
+    found = asked(SERVO, courses={"start": "1, -1/2", "estimate": "1/4, 0", "end": "3", "count": 33})
+    parts, lines = found["courses"]["parts"], found["courses"]["lines"]
+    loop = mpmath.matrix([[0, 1, 0, 0], [0, -1, -4, -3], [19, 0, -19, 1], [81, 0, -85, -4]])  # (x, x̂) by hand
+    with mpmath.workdps(50):
+        for k in range(33):
+            state = mpmath.expm(loop * mpmath.mpf(3 * k) / 32) * mpmath.matrix([1, -0.5, 0.25, 0])
+            for place, line in enumerate(lines):
+                assert abs(line["heights"][k] - parts * state[place]) <= 1
+    assert [(line["signal"], line["component"], line["dashed"]) for line in lines] == [
+        ("x", 1, False), ("x", 2, False), ("x_hat", 1, True), ("x_hat", 2, True),
+    ]  # fmt: skip
+
+
+def test_responses_of_an_observer_of_minimal_order_are_within_their_bound() -> None:
+    # ẋ = (x₂, −x₂ + u), y = x₁, z = x₂ − 9 x₁ with pole −10: x̂₂ = z + 9 x₁, e₂ = x₂ − x̂₂ falls as e^{−10 t}.
+    problem = {**SERVO, "specification": {"control_poles": "-2, -2", "observer_poles": "-10", "observer": "minimal"}}
+    found = asked(problem, courses={"start": "1, 1", "estimate": "0, 1/2", "end": "1", "count": 11})
+    parts, lines = found["courses"]["parts"], {(x["signal"], x["component"]): x for x in found["courses"]["lines"]}
+    for k in range(11):
+        error = mpmath.exp(-k) / 2
+        x, seen = (lines["x", 2]["heights"][k], lines["x_hat", 2]["heights"][k])
+        assert abs(x - seen - parts * error) <= 2
+        assert abs(lines["x", 1]["heights"][k] - lines["x_hat", 1]["heights"][k]) <= 1
+
+
+def test_discrete_responses_are_exact() -> None:
+    plant = {"A": "[1 1; 0 1]", "C": "[1 0]", "dt": 1}
+    found = asked({"task": "observer", "plant": plant, "specification": {"poles": "0, 0"}}, courses={})
+    assert [line["heights"][:4] for line in found["courses"]["lines"]] == [[1000, 0, 0, 0], [1000, 0, 0, 0]]
+
+
+def test_a_value_takes_the_place_of_its_symbol() -> None:
+    general = asked(DETECTABLE, cases=True)
+    assert general["verdict"] == "conditional"
+    assert [case["at"] for case in general["cases"]] == [{"c": "1/2"}, {"c": "1"}]
+    there = asked(DETECTABLE, at={"c": "1"}, cards_at=True)
+    assert there["status"] == "no"
+    kernel = next(card for card in there["cards"] if card["name"] == "kernel")
+    assert kernel["says"] == "N equals [-1; 1]"  # C x = x₁ + x₂ = 0
+
+
+@pytest.mark.parametrize(
+    ("at", "where", "message"),
+    [
+        ({"q": "1"}, "at.q", "no symbol of the problem"),
+        ({"c": "1) + (2"}, "at.c", ""),
+        ({"c": "zz"}, "at.c", ""),
+        ({"c": ""}, "at.c", "an exact value is expected"),
+        ({"c": True}, "at.c", "an exact value is expected"),
+        ({"c": "1" * 201}, "at.c", "an exact value is expected"),
+        ({"__class__": "1"}, "at.__class__", "no name of a symbol"),
+    ],
+)
+def test_a_value_that_cannot_be_is_refused(at: dict[str, object], where: str, message: str) -> None:
+    found = asked(DETECTABLE, at=at)
+    assert found["status"] == "bad"
+    assert found["errors"][0]["where"].startswith(where)
+    assert message in found["errors"][0]["message"]
+
+
+def test_a_value_keeps_the_declared_sign() -> None:
+    problem = {**DETECTABLE, "symbols": {"c": "positive"}}
+    found = asked(problem, at={"c": "-1"}, cards_at=True)
+    assert [error["message"] for error in found["errors"]] == ["c is positive"]
+    assert asked(problem, at={"c": "2"}, cards_at=True)["status"] == "done"
+
+
+def test_the_stability_of_a_point_is_exact() -> None:
+    # s³ + 2 s² + 3 s + k is stable exactly for 0 < k < 6; at 6 it is (s + 2)(s² + 3).
+    specification = {"polynomial": "s^3 + 2 s^2 + 3 s + k", "parameters": ["k"]}
+    problem = {"task": "stability_region", "specification": specification, "symbols": {"k": "real"}}
+    verdicts = {k: asked(problem, "point", at={"k": k})["verdict"] for k in ("0", "1/1000000", "6", "5999999/1000000")}
+    assert verdicts == {"0": "boundary", "1/1000000": "stable", "6": "boundary", "5999999/1000000": "stable"}
+    edge = asked(problem, "point", at={"k": "6"})
+    assert edge["boundary"][0]["latex"] == "k-6=0"
+    for root, true in zip(sorted(edge["roots"], key=lambda r: float(r["re"][0])), (-2, 0, 0), strict=True):
+        assert float(root["re"][0]) <= true <= float(root["re"][1])
+    pair = [root for root in edge["roots"] if float(root["im"][0]) > 0]
+    assert len(pair) == 1
+    assert float(pair[0]["im"][0]) ** 2 <= 3 <= float(pair[0]["im"][1]) ** 2
+    assert asked(problem, "point", at={})["errors"][0]["message"] == "a value is missing for k"
+
+
+def test_a_region_has_its_checked_picture() -> None:
+    plant = {"A": "[0 1; 9 0]", "C": "[0 1]"}
+    problem = {
+        "task": "stability_region",
+        "plant": plant,
+        "specification": {"L": "[h1; h2]", "parameters": ["h1", "h2"]},
+        "symbols": {"h1": "real", "h2": "real"},
+    }
+    region = asked(problem, "view")["view"]["region"]
+    assert region["parameters"] == ["h1", "h2"]
+    assert region["svg"].startswith("<svg")
+    point = dict(zip(region["parameters"], region["handle"], strict=True))
+    assert asked(problem, "point", at=point)["verdict"] == "stable"
+
+
+def test_no_gain_is_said_with_its_reason() -> None:
+    plant = {"A": "[1 0; 0 -1]", "B": "[0; 1]", "C": "[1 1]"}
+    found = asked({"task": "state_feedback", "plant": plant, "specification": {"poles": "-2, -2"}})
+    assert found["status"] == "no"
+    assert found["note"] == "No gain moves the mode 1 of (A, B)."
+
+
+def test_an_answer_is_pure() -> None:
+    request = {"schema": "symobs-live/1", "id": 1, "problem": SERVO, "courses": {}, "cases": True}
+    assert json.dumps(answer(request)) == json.dumps(answer(json.loads(json.dumps(request))))
+
+
+@pytest.mark.parametrize(
+    ("change", "where"),
+    [
+        ({"schema": "symobs-live/2"}, "schema"),
+        ({"want": "everything"}, "want"),
+        ({"extra": 1}, "extra"),
+        ({"cards_at": 1}, "cards_at"),
+        ({"cards": "K"}, "cards"),
+        ({"courses": {"count": 10**9}}, "courses.count"),
+        ({"courses": {"count": True}}, "courses.count"),
+        ({"courses": {"start": "1"}}, "courses.start"),
+        ({"courses": {"end": "-1"}}, "courses.end"),
+        ({"courses": []}, "courses"),
+        ({"at": {"c": 0.5}}, "at.c"),
+        ({"problem": {**SERVO, "plant": {"A": [[0.5]]}}}, "problem.plant.A[0][0]"),
+        ({"problem": {**SERVO, "task": "observer "}}, "task"),
+        ({"problem": {**SERVO, "convention": "../../etc/passwd"}}, "convention"),
+        ({"problem": {**SERVO, "convention": "/etc/passwd.toml"}}, "convention"),
+        ({"problem": {**SERVO, "open": 1}}, "open"),
+        ({"task": "import os"}, "task"),
+    ],
+)
+def test_a_request_that_cannot_be_is_refused_at_its_place(change: dict[str, Any], where: str) -> None:
+    found = asked(SERVO, **{"courses": {}, **change}) if "problem" not in change else asked(change["problem"])
+    if "schema" in change or "want" in change:
+        found = answer({"schema": "symobs-live/1", "id": 7, "problem": SERVO, **change})
+    assert found["status"] == "bad"
+    assert where in [error["where"] for error in found["errors"]]
+
+
+def test_all_errors_are_said_at_once() -> None:
+    found = answer({"schema": "x", "want": "y", "cards": 1, "problem": SERVO})
+    assert {error["where"] for error in found["errors"]} == {"schema", "want", "cards"}
+    wrong = {
+        **SERVO,
+        "plant": {"A": "[0 1; q 0]", "B": "[0; 1", "C": "[1 0]"},
+        "specification": {"control_poles": "-2, ("},
+    }
+    assert len(asked(wrong)["errors"]) >= 3
+
+
+def test_the_size_of_a_request_is_bounded() -> None:
+    for body in (b" " * (MOST_BYTES + 1), b"[" * 5000, b"\xff", b"{", b'{"a": 1' + b"0" * 5000 + b"}"):
+        with pytest.raises(Exception, match=r"longer|JSON|UTF-8"):
+            parsed(body)
+    deep: Any = "x"
+    for _ in range(30):
+        deep = [deep]
+    assert "nested" in asked({**SERVO, "text": deep})["errors"][0]["message"]
+
+
+_LEAVES = st.none() | st.booleans() | st.integers() | st.floats() | st.text(max_size=30)
+_ANY = st.recursive(_LEAVES, lambda s: st.lists(s, max_size=4) | st.dictionaries(st.text(max_size=12), s, max_size=4))
+_KEYS = st.sampled_from(["want", "problem", "task", "at", "cards", "courses", "detail", "as", "cases", "id", "format"])
+
+
+@settings(max_examples=100, deadline=None)
+@given(_ANY | st.dictionaries(_KEYS, _ANY, max_size=6))
+def test_no_request_is_a_bug(request: Any) -> None:
+    whole = {"schema": "symobs-live/1", "problem": SERVO, **request} if isinstance(request, dict) else request
+    found = answer(whole)
+    assert found["status"] in {"bad", "done", "no"}
+    SCHEMA.validate(json.loads(json.dumps(found, allow_nan=False)))
+
+
+@settings(max_examples=60, deadline=None)
+@given(
+    st.sampled_from(["A", "B", "C", "control_poles", "observer_poles"]), st.text("01a-+*/^()[];, .i'\"\\", max_size=14)
+)
+def test_no_text_of_a_user_is_a_bug(key: str, text: str) -> None:
+    table = "plant" if len(key) == 1 else "specification"
+    found = answer({"schema": "symobs-live/1", "problem": {**SERVO, table: {**SERVO[table], key: text}}, "courses": {}})
+    assert found["status"] in {"bad", "done", "no", "undecided"}
+
+
+def test_an_answer_imports_nothing_heavy() -> None:
+    code = f"""
+import sys
+from symobs.live import answer
+found = answer({{"schema": "symobs-live/1", "problem": {SERVO!r}, "courses": {{}}}})
+assert found["status"] == "done", found
+print(*sys.modules, sep="\\n")
+"""
+    run = subprocess.run(
+        [sys.executable, "-c", code], env=environment(), capture_output=True, text=True, timeout=SAFETY, check=True
+    )
+    heavy = {"sympy", "numpy", "jinja2", "click", "mpmath", "http.server", "multiprocessing", "matplotlib"}
+    assert set(run.stdout.split()) & heavy == set()
+
+
+def test_the_start_names_tasks_and_examples() -> None:
+    found = answer({"schema": "symobs-live/1", "want": "start"})
+    assert len(json.dumps(found)) < 2**20
+    assert {"compensator", "observer"} <= found["tasks"].keys()
+    names = {example["name"] for example in found["examples"]}
+    assert "output_feedback_servo" in names
+    for example in found["examples"][::12]:
+        assert asked(example["problem"], task=example["task"])["status"] in {"done", "no"}
