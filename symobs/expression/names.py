@@ -70,12 +70,20 @@ class Scope:
     roots: bool = False
 
     @staticmethod
-    def of(names: Names, variable: str | None, where: str, **reading: bool) -> Scope:
+    def of(
+        names: Names,
+        variable: str | None,
+        where: str,
+        *,
+        functions: bool = False,
+        rounding: bool = False,
+        roots: bool = False,
+    ) -> Scope:
         """Return the scope; raises ExpressionError if the variable of the polynomial is declared as a symbol."""
         if names is not None and variable in names:
             message = f'"{variable}" is the variable of the polynomial and cannot be a symbol'
             raise ExpressionError(message, where=where, repair="give the symbol another name")
-        return Scope(names, variable, **reading)
+        return Scope(names, variable, functions=functions, rounding=rounding, roots=roots)
 
     def declares(self, name: str) -> bool:
         """Return whether the name is declared by name, not only admitted because every name is."""

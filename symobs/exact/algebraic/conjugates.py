@@ -33,7 +33,7 @@ def conjugates(value: Complex, *, of_numbers: bool) -> tuple[Complex, ...]:
 
 
 def _with_sign_changed(value: Complex, root: Function) -> Complex:
-    images = {root.name: -root.value}
+    images: dict[str, Scalar] = {root.name: -root.value}
     return tidied(Complex(value.real.substitute(images), value.imaginary.substitute(images)))
 
 

@@ -10,7 +10,6 @@ factor over the field each, once a shift of one variable by the roots has made t
 from __future__ import annotations
 
 from functools import reduce
-from itertools import count
 from typing import TYPE_CHECKING
 
 from symobs.exact.core.ring import factors_of
@@ -137,22 +136,26 @@ def _irreducible(field: Field, polynomial: fmpz_mpoly) -> list[fmpz_mpoly]:
         divisor = common_divisor(field, polynomial, polynomial.derivative(index))
     if not divisor.is_one():
         return _irreducible(field, divisor) + _irreducible(field, quotient(field, polynomial, divisor))
-    generators = list(field.context.gens())
-    for step in count():
-        shift = field.zero
-        for place, (root, _) in enumerate(field.roots):
-            shift = shift + generators[root] * (step * (place + 1) ** 2)
-        moved = field.normal(_shifted(generators, polynomial, index, -shift))
-        parts = factors_of(field, field.norm(moved))[1]
-        if all(power == 1 for _, power in parts):
-            break
+    parts, shift = _factors_of_norm(field, polynomial, index)
     if len(parts) == 1:
         return [scaled(field, polynomial)]
-    back = (field.normal(_shifted(generators, part, index, shift)) for part, _ in parts)
-    return [common_divisor(field, polynomial, part) for part in back]
+    return [common_divisor(field, polynomial, _shifted(field, part, index, shift)) for part in parts]
 
 
-def _shifted(generators: list[fmpz_mpoly], polynomial: fmpz_mpoly, index: int, shift: fmpz_mpoly) -> fmpz_mpoly:
-    images = list(generators)
+def _factors_of_norm(field: Field, polynomial: fmpz_mpoly, index: int) -> tuple[list[fmpz_mpoly], fmpz_mpoly]:
+    """Return the factors of a norm without squares, and the shift of a generator by roots that leads to it."""
+    step = 0
+    while True:
+        shift = field.zero
+        for place, (root, _) in enumerate(field.roots):
+            shift = shift + field.context.gen(root) * (step * (place + 1) ** 2)
+        parts = factors_of(field, field.norm(_shifted(field, polynomial, index, -shift)))[1]
+        if all(power == 1 for _, power in parts):
+            return [part for part, _ in parts], shift
+        step += 1
+
+
+def _shifted(field: Field, polynomial: fmpz_mpoly, index: int, shift: fmpz_mpoly) -> fmpz_mpoly:
+    images = list(field.context.gens())
     images[index] = images[index] + shift
-    return polynomial.compose(*images, ctx=polynomial.context())
+    return field.normal(polynomial.compose(*images, ctx=field.context))

@@ -53,8 +53,9 @@ def added(left: Rows, right: Rows) -> Rows:
     return tuple(tuple(x + y for x, y in zip(p, q, strict=True)) for p, q in zip(left, right, strict=True))
 
 
-def normal_table(field: Field, rows: Rows, denominator: fmpz_mpoly) -> tuple[Rows, fmpz_mpoly]:
+def normal_table(field: Field, table: fmpz_mat | Rows, denominator: fmpz_mpoly) -> tuple[Rows, fmpz_mpoly]:
     """Return the same matrix with its entries and its denominator in normal form; roots may stay in the denominator."""
+    rows = rows_of(table, field) if isinstance(table, fmpz_mat) else table
     return tuple(tuple(map(field.normal, row)) for row in rows), field.normal(denominator)
 
 

@@ -345,15 +345,15 @@ def _factored(value: Scalar, names: tuple[str, ...]) -> tuple[Scalar, tuple[tupl
     parts = [part.numerator_part for part in (value.numerator, value.denominator)]
     if field.roots:
         over, under = (number_field.factors_over(field, part) for part in parts)
+        unit = value
     else:
         (above, over), (below, under) = (factors_of(field, part) for part in parts)
+        unit = Scalar.rational(above, below)
     found = [(Scalar(field, part, field.one), power) for part, power in over]
     found += [(Scalar(field, part, field.one), -power) for part, power in under]
-    if not field.roots:
-        return Scalar.rational(above, below), tuple(found)
-    for factor, power in found:
-        value = value / factor**power
-    return value, tuple(found)
+    for factor, power in found if field.roots else ():
+        unit = unit / factor**power
+    return unit, tuple(found)
 
 
 @lru_cache(maxsize=1024)

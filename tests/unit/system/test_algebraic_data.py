@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import random
+from typing import Any
 
 import pytest
 import sympy
@@ -20,7 +21,7 @@ from symobs.problem import read
 k = sympy.Symbol("k", real=True)
 
 
-def _observability(C: str) -> so.Result:
+def _observability(C: str) -> Any:
     return so.observability(so.StateSpace("[0 1; 2 0]", C=C))
 
 
