@@ -53,7 +53,7 @@ def require_numbers(matrices: Iterable[Matrix], wanted: str) -> None:
 def to_control(result: Any) -> dict[str, Any]:
     """Return the systems of a design as systems of python-control, as `Result.to_control` says."""
     try:
-        import control
+        import control  # type: ignore[import-untyped, unused-ignore]
     except ImportError:
         message = "systems of python-control need python-control, which is not installed"
         raise UsageError(message, repair='pip install "symobs[control]"') from None

@@ -315,7 +315,15 @@ class Result(Faces):
     def to(self, format_name: Code, *, period: object = None, hold: Literal["zoh", "tustin"] = "zoh") -> str: ...
 
     @overload
-    def to(self, format_name: str, *, convention: str = "standard", detail: str = "full") -> str | bytes: ...
+    def to(
+        self,
+        format_name: str,
+        *,
+        convention: str = "standard",
+        detail: str = "full",
+        period: object = None,
+        hold: str = "zoh",
+    ) -> str | bytes: ...
 
     def to(
         self,

@@ -17,7 +17,8 @@ from symobs.exact.floating.sampled import balls
 if TYPE_CHECKING:
     from flint import arb_mat
 
-    from symobs.exact.floating.sampled import Quadruple, Sampled
+    from symobs.exact.floating.sampled import Sampled
+    from symobs.exact.linear_algebra.realisation import Realisation
 
 #: Steps for which the bound is found at least.
 STEPS = 1000
@@ -39,7 +40,7 @@ class Deviation(NamedTuple):
     always: bool
 
 
-def deviation(exact: Sampled, rounded: Quadruple) -> Deviation | None:
+def deviation(exact: Sampled, rounded: Realisation) -> Deviation | None:
     """Return bounds of the deviation, None where there are none in double precision."""
     powers = next((found for bits in _BITS if (found := _sum_of_powers(exact, bits)) is not None), None)
     if powers is None:

@@ -16,6 +16,7 @@ from symobs.exact.algebraic.enclosure import _ball
 from symobs.exact.core.matrix import Matrix
 from symobs.exact.core.precision import Precision
 from symobs.exact.core.scalar import Scalar
+from symobs.exact.linear_algebra.realisation import Realisation
 
 HOLDS = ("zoh", "tustin")
 #: Bits of the enclosures that are tried in turn until both ends round to one double.
@@ -24,19 +25,10 @@ _BITS = (128, 512, 2048)
 _SMALLEST = Fraction(1, 2**1075)
 
 
-class Quadruple(NamedTuple):
-    """The matrices A, B, C, D of a system, exact."""
-
-    A: Matrix
-    B: Matrix
-    C: Matrix
-    D: Matrix
-
-
 class Sampled(NamedTuple):
     """A system and how its difference equation is made: with a period in a `hold`, or as it is where there is none."""
 
-    system: Quadruple
+    system: Realisation
     period: Fraction | None = None
     hold: str = "zoh"
 
@@ -49,14 +41,14 @@ class Sampled(NamedTuple):
             h = arb(self.period.numerator) / self.period.denominator
             return (*held(A, B, h), C, D) if self.hold == "zoh" else bilinear(A, B, C, D, h)
 
-    def rounded(self) -> Quadruple:
+    def rounded(self) -> Realisation:
         """Return the nearest doubles of Φ, Γ and of the matrices of the output, as exact numbers."""
         tried = [self.enclosed(bits) for bits in _BITS[:1]]
         for bits in _BITS[1:]:
             if all(_double(entry) is not None for matrix in tried[-1] for entry in matrix.entries()):
                 break
             tried.append(self.enclosed(bits))
-        return Quadruple(*(_doubles(matrix) for matrix in tried[-1]))
+        return Realisation(*(_doubles(matrix) for matrix in tried[-1]))
 
 
 def balls(matrix: Matrix) -> arb_mat:
@@ -104,8 +96,7 @@ def joined(blocks: list[list[arb_mat]]) -> arb_mat:
 
 
 def _ends(ball: arb) -> tuple[Fraction, Fraction]:
-    middle, radius = ball.mid().fmpq(), ball.rad().fmpq()
-    middle, radius = (Fraction(int(q.p), int(q.q)) for q in (middle, radius))
+    middle, radius = (Fraction(int(q.p), int(q.q)) for q in (ball.mid().fmpq(), ball.rad().fmpq()))
     return middle - radius, middle + radius
 
 

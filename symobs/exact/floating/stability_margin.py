@@ -18,7 +18,7 @@ from symobs.exact.floating.sampled import Sampled, balls, held, joined
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from symobs.exact.floating.sampled import Quadruple
+    from symobs.exact.linear_algebra.realisation import Realisation
 
     #: Encloses a matrix with so many bits.
     Enclosed = Callable[[int], arb_mat]
@@ -29,7 +29,7 @@ _BITS = (128, 256, 512, 1024, 2048, 4096)
 _LEAST_EXPONENT = -15
 
 
-def loop_matrix(plant: Quadruple, period: Fraction | None, controller: Quadruple) -> Enclosed:
+def loop_matrix(plant: Realisation, period: Fraction | None, controller: Realisation) -> Enclosed:
     """Return [Φ + ΓD_cC, ΓC_c; B_cC, A_c], the plant (without feedthrough) sampled and held, u = C_c ξ + D_c y."""
 
     def enclosed(bits: int) -> arb_mat:
@@ -43,7 +43,7 @@ def loop_matrix(plant: Quadruple, period: Fraction | None, controller: Quadruple
     return enclosed
 
 
-def own_matrix(controller: Quadruple) -> Enclosed:
+def own_matrix(controller: Realisation) -> Enclosed:
     """Return the matrix of a system that nothing is fed back to."""
     return lambda bits: Sampled(controller).enclosed(bits)[0]
 

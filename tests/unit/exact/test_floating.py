@@ -9,7 +9,7 @@ from typing import Any
 import mpmath
 import numpy as np
 import pytest
-from scipy import signal
+from scipy import signal  # type: ignore[import-untyped]
 
 from symobs.errors import InputError
 from symobs.exact import Matrix, Scalar

@@ -11,7 +11,7 @@ import pytest
 
 import symobs
 from symobs.errors import InexactInput, InputError, SymobsError, UsageError
-from symobs.render.formats.code import program as module
+from symobs.exact.floating.sampled import Sampled
 from symobs.result import formats
 
 LANGUAGES = ("c", "matlab", "modelica", "python")
@@ -63,14 +63,14 @@ def test_a_bad_rounding_is_refused(language: str, monkeypatch: pytest.MonkeyPatc
     plant = symobs.StateSpace("[0 1; 4 0]", "[0; 1]", "[1 0]")
     design = symobs.compensator(plant, control_poles="-1/10, -1/5", observer_poles="-2, -3")
     assert "Proved" in design.to(language, period="1/100")
-    right = module.Sampled.rounded
+    right = Sampled.rounded
 
     def to_two_digits(self: Any) -> Any:
         found = right(self)
         rounded = [[[Fraction(f"{float(e.fraction()):.1e}") for e in row] for row in m.rows] for m in found]
         return type(found)(*(type(found.A).of(rows) for rows in rounded))
 
-    monkeypatch.setattr(module.Sampled, "rounded", to_two_digits)
+    monkeypatch.setattr(Sampled, "rounded", to_two_digits)
     with pytest.raises(InputError, match="is not proved stable"):
         design.to(language, period="1/100")
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import random
 from fractions import Fraction
+from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 import pytest
@@ -12,7 +13,6 @@ import sympy
 import symobs
 from symobs.errors import CertificateRejected, InexactInput, InputError, ProblemErrors
 from symobs.problem import read
-from symobs.result import at_values as module
 from symobs.result import tasks
 from symobs.specification import KINDS
 from tests.support.paths import ROOT
@@ -165,12 +165,13 @@ def test_where_there_is_no_plant_and_where_a_sign_is_another() -> None:
     with pytest.raises(InputError, match=r"values\.k: -1 is not positive, as k is declared"):
         result.at(k=-1)
     with pytest.raises(InputError, match="holds in one case of a result; give the values to the result itself"):
-        symobs.observer(HIDDEN, poles="-k, -5").cases[0].result.at(k=1)  # type: ignore[union-attr]
+        symobs.observer(HIDDEN, poles="-k, -5").cases[0].result.at(k=1)
 
 
 def test_a_wrong_value_of_a_gain_is_rejected_by_the_constructor(monkeypatch: pytest.MonkeyPatch) -> None:
     """A substitution that is wrong by one gives the gain of the plant itself, never a wrong one."""
     result = symobs.compensator(WIDE, control_poles="-1, -2, -k", observer_poles="-3, -4, -5")
+    module: Any = import_module("symobs.result.at_values")
     right, rejected = module.substitute, []
 
     def wrong(value: Any, values: Any) -> Any:
@@ -197,5 +198,6 @@ def test_a_wrong_value_of_a_gain_is_rejected_by_the_constructor(monkeypatch: pyt
 
 
 def test_every_kind_of_keyword_is_read_or_has_no_parameters() -> None:
+    module: Any = import_module("symobs.result.at_values")
     assert module._READERS.keys() | {"Name", "Sign", "Entries"} == KINDS.keys()
     assert {kind for task in tasks().values() for kind in task.keywords.values()} <= KINDS.keys()

@@ -7,7 +7,7 @@ import sys
 from fractions import Fraction
 from typing import Any
 
-import control
+import control  # type: ignore[import-untyped]
 import numpy as np
 import pytest
 

@@ -66,7 +66,7 @@ def test_every_point_is_what_at_finds() -> None:
     found = result.evaluate({"c": c, "k": k})["L"]
     missing = 0
     for index in np.ndindex(c.shape):
-        there = result.at(c=Fraction(c[index]), k=Fraction(k[index]))
+        there = result.at(c=Fraction(float(c[index])), k=Fraction(float(k[index])))
         if there.answer["L"] is None:
             assert np.isnan(found[index]).all()
             missing += 1
