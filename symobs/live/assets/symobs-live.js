@@ -174,7 +174,8 @@ const DEMO = "v=1&task=compensator&A=[0 1; 0 -1]&B=[0; 1]&C=[1 0]&control=-2, -2
 export function mount(element, transport, options = {}) {
   const root = h("div", { class: "symobs-live" });
   element.append(root);
-  let s = decoded(options.state || DEMO);
+  const begun = (link) => decoded(/(^|[#&])task=/.test(link) ? link : `${DEMO}&${link.replace(/^#/, "")}`);
+  let s = begun(options.state ?? "");
   let view = null, viewed = "", answer = null, sets = {}, held = null, frame = null, start = null, point = null;
   let waiting = null, running = false, number = 0, drawn = 0, resting = 0, restTimer = 0, busyTimer = 0, said = 0, gone = false, quiet = false, before = "";
   let aborted = new AbortController();
@@ -818,6 +819,6 @@ export function mount(element, transport, options = {}) {
   return {
     destroy() { gone = true; aborted.abort(); root.remove(); },
     state: () => encoded(s),
-    set(link) { s = decoded(link || DEMO); frame = null; build(); ask(); },
+    set(link) { s = begun(link); frame = null; build(); ask(); },
   };
 }
