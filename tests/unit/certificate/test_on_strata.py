@@ -99,7 +99,7 @@ def test_points_on_a_locus_are_left_out_one_locus_at_a_time() -> None:
 def test_a_denominator_that_vanishes_nowhere_is_accepted_where_an_ideal_is_too_long(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    def too_long(self: Pointwise) -> Ideal:
+    def too_long(_: Pointwise) -> Ideal:
         raise TooLarge
 
     monkeypatch.setattr(Pointwise, "ideal", property(too_long))
