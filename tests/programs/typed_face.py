@@ -47,11 +47,12 @@ from sympy.matrices import MatrixBase
 '''
 NAMES = """
 _Number: TypeAlias = str | float | complex | Fraction | Decimal | Expr
-_Plant: TypeAlias = StateSpace | tuple[Sequence[Any], Sequence[Any]] | Any  # or a system of another program
+_Plant: TypeAlias = StateSpace | tuple[Sequence[_Number], Sequence[_Number]]
 _Matrix: TypeAlias = str | Sequence[object] | MatrixBase
 
 TASK_PACKAGES: tuple[str, ...]
 FORMAT_PACKAGE: str
+FUNCTIONS: dict[str, str]
 __version__: str
 """
 
