@@ -51,7 +51,7 @@ from symobs.errors import UsageError as UsageError
 from symobs.system import StateSpace as StateSpace
 
 _Number: TypeAlias = str | float | complex | Fraction | Decimal | Expr
-_Plant: TypeAlias = StateSpace | tuple[Sequence[Any], Sequence[Any]] | Any  # or a system of another program
+_Plant: TypeAlias = StateSpace | tuple[Sequence[_Number], Sequence[_Number]]
 _Matrix: TypeAlias = str | Sequence[object] | MatrixBase
 
 TASK_PACKAGES: tuple[str, ...]

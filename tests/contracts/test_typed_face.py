@@ -27,6 +27,8 @@ symobs.StateSpace([[0, 1], [0, -1]], dt=True, symbols={"a": "positive"})
 symobs.StateSpace.from_transfer_function("1/(s^2 + s)")
 design = symobs.observer(plant, poles=[-10, -10])
 symobs.observer(plant, poles="-10, -10")
+symobs.observer(([1], [1, 2, 0]), poles=[-1.5, -2 + 0j], floats="decimal")
+bounded: object = symobs.bounded(lambda: symobs.observer(plant, poles=[-1, -2]), timeout=60, memory=2000).L
 symobs.observer(plant, polynomial="(s + 10)^2", method="ackermann")
 symobs.observer(plant, L="[19; 81]")
 symobs.observer(plant, poles=[sympy.Symbol("p"), "-q"], zero="(1, 1)")
@@ -111,7 +113,7 @@ def test_uses_are_accepted_and_misuses_refused(checker: str, tmp_path: Path) -> 
 
 def test_only_public_names_are_listed_each_documented() -> None:
     raised = {name for name, kind in vars(errors).items() if isinstance(kind, type) and issubclass(kind, Exception)}
-    assert set(dir(symobs)) == {"StateSpace", "__version__", *raised, *tasks()}
+    assert set(dir(symobs)) == {"StateSpace", "__version__", *raised, *symobs.FUNCTIONS, *tasks()}
     for name in dir(symobs):
         if name != "__version__":
             assert pydoc.getdoc(getattr(symobs, name)), name

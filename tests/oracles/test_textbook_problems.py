@@ -317,7 +317,8 @@ def solved(row: dict[str, Any]) -> Any:
     if "transfer_function" in row:
         plant: Any = symobs.StateSpace.from_transfer_function(row["transfer_function"], row.get("dt", 0))
     elif "A" in row:
-        plant = symobs.StateSpace(*(row.get(name) for name in "ABCD"), dt=row.get("dt", 0))
+        A, B, C, D = (row.get(name) for name in "ABCD")
+        plant = symobs.StateSpace(A, B, C, D, dt=row.get("dt", 0))
     elif row.get("dt"):
         plant = symobs.StateSpace.from_polynomial(row["polynomial"], row["dt"])
         specification.pop("polynomial")

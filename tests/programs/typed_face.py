@@ -47,7 +47,7 @@ from sympy.matrices import MatrixBase
 '''
 NAMES = """
 _Number: TypeAlias = str | float | complex | Fraction | Decimal | Expr
-_Plant: TypeAlias = StateSpace | tuple[Sequence[Any], Sequence[Any]] | Any  # or a system of another program
+_Plant: TypeAlias = StateSpace | tuple[Sequence[_Number], Sequence[_Number]]
 _Matrix: TypeAlias = str | Sequence[object] | MatrixBase
 
 TASK_PACKAGES: tuple[str, ...]
