@@ -26,8 +26,8 @@ from symobs.analysis.time_response.matrix_exponential import MatrixExponential a
 from symobs.analysis.time_varying.time_varying_observability import TimeVaryingObservability as _TimeVaryingObservability
 from symobs.batching import batch as batch
 from symobs.batching.sweep import sweep as sweep
-from symobs.cli.shared.time_and_memory import bounded as bounded
 from symobs.checking import check as check
+from symobs.cli.shared.time_and_memory import bounded as bounded
 from symobs.design.compensator.output_feedback import OutputFeedback as _OutputFeedback
 from symobs.design.full_order.observer import ObserverDesign as _ObserverDesign
 from symobs.design.full_order.state_feedback import StateFeedbackDesign as _StateFeedbackDesign
