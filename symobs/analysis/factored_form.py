@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from symobs.exact import Factored, Scalar, factored
+from symobs.conditions import sign_of
+from symobs.exact import Factored, Scalar, factored, product_of
 from symobs.formula import Literal, Negative, Power, Product, Quotient
 
 if TYPE_CHECKING:
@@ -38,3 +39,30 @@ def formula_of_factored(form: Factored) -> Formula:
 
 def _power(factor: Scalar, exponent: int) -> Formula:
     return Literal(factor) if exponent == 1 else Power(Literal(factor), exponent)
+
+
+def over(numerator: Scalar, own: Scalar, polynomial: Factored) -> Factored:
+    """Return numerator · own / Π factors: the denominator's factors as asked for, and no factor made monic."""
+    unit, above = numerator.factors()
+    sign = _sign(own)
+    below = tuple((factor, -power) for factor, power in polynomial.factors)
+    return Factored(unit * sign, (*above, (own * sign, 1), *below))
+
+
+def _sign(polynomial: Scalar) -> int:
+    """Return the sign that a polynomial is printed with, as a factor."""
+    return -1 if sign_of(polynomial.factors()[0], {}) == "negative" else 1
+
+
+def cancelled(numerator: Scalar, own: Scalar, polynomial: Factored, variable: str) -> Factored:
+    """Return the same, with the parameters that `own` divides by cancelled against those in front of the numerator."""
+    form = over(numerator, own, polynomial)
+    if own.denominator.is_constant:
+        return form
+    unit, above = numerator.factors()
+    whole = product_of(factor**power for factor, power in above if variable not in factor.names) * own
+    number, below = whole.denominator.factors()
+    rest = ((factor, power) for factor, power in above if variable in factor.names)
+    sign = _sign(whole.numerator)
+    parts = (*rest, (whole.numerator * sign, 1), *((factor, -power) for factor, power in below))
+    return Factored(unit * sign / number, (*parts, *(f for f in form.factors if f[1] < 0 and variable in f[0].names)))

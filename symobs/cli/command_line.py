@@ -61,7 +61,7 @@ class Tasks(click.Group):
         task = task_named(cmd_name.replace("-", "_"))
         if task is None:
             return None
-        from symobs.cli.commands.of_task import task_command  # noqa: PLC0415 - it reads the task's signature
+        from symobs.cli.task_command import task_command  # noqa: PLC0415 - it reads the task's signature
 
         return task_command(task)
 

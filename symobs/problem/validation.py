@@ -8,18 +8,18 @@ from dataclasses import field
 from difflib import get_close_matches
 from itertools import islice
 from typing import TYPE_CHECKING, Any
-from unicodedata import category
 
 from symobs._dataclass import dataclass
 from symobs.convention import STANDARD, Convention, convention_named
-from symobs.errors import InputError, ProblemErrors, SymobsError, UsageError
+from symobs.errors import ProblemErrors, UsageError
 from symobs.expect import unreadable
 from symobs.expression import declared_name, parse_polynomial
 from symobs.expression.source import shown
 from symobs.problem.constants import with_constants
 from symobs.problem.file_tables import Decimal, came
 from symobs.problem.marking import Marking, read_marking
-from symobs.problem.schema import PLANT, PRINTED, TOP, keys_of, kinds_of, missing_poles, repair_of
+from symobs.problem.noted_errors import Errors, check_text, report_unknown, table_of, text_of
+from symobs.problem.schema import PLANT, PRINTED, TOP, keys_of, kinds_of, missing_poles
 from symobs.result import Document, Result, Task, task_named, tasks
 from symobs.result.in_convention import Viewed, names_in
 from symobs.specification import parse_signal, read_poles
@@ -62,11 +62,11 @@ class Problem:
         All errors of all tasks are raised together.
         """
         results: list[Result] = []
-        errors = _Errors()
+        errors = Errors()
         for task in self.tasks:
             if report is not None:
                 report(task.name, tuple(results))
-            own, keys = _Errors(), keys_of(task, self.specification)
+            own, keys = Errors(), keys_of(task, self.specification)
             with own:
                 found = task.function(self.plant, **{name: self.specification[keys[name]] for name in keys})
                 results.append(found.at(self.values) if self.values else found)
@@ -87,64 +87,26 @@ class Problem:
         return Document(self.title, self.source, results, convention or self.convention, self.text)
 
 
-class _Errors:
-    """Collects errors: `with errors:` keeps what its block raises and goes on behind it."""
-
-    def __init__(self) -> None:
-        self.found: list[SymobsError] = []
-
-    def note(self, message: str, where: str, repair: str) -> None:
-        """Keep an error that was not raised."""
-        self.found.append(InputError(message, where=where, repair=repair))
-
-    def __enter__(self) -> None:
-        pass
-
-    def __exit__(self, _kind: object, error: BaseException | None, _traceback: object) -> bool:
-        self.found += error.errors if isinstance(error, ProblemErrors) else ()
-        if isinstance(error, SymobsError) and not isinstance(error, ProblemErrors):
-            self.found.append(error)
-        return isinstance(error, SymobsError)
-
-    def add_elsewhere(self, others: _Errors) -> None:
-        """Add those of the others that stand at a place nothing was said of yet."""
-        taken = {error.where for error in self.found}
-        self.found += [error for error in others.found if error.where not in taken]
-
-    def move(self, places: Mapping[str, str]) -> None:
-        """Say of every error where it stands in the file."""
-        for error in self.found:
-            whole, cell = re.fullmatch(r"([^\[]*)(.*)", error.where, re.DOTALL).groups()  # type: ignore[union-attr]
-            error.where = places.get(whole, whole) + cell
-
-    def together(self, convention: Convention = STANDARD) -> ProblemErrors:
-        """Return all of them, each once, at places named as the convention names them."""
-        for own, (name, _) in names_in(convention).items():
-            for error in self.found:
-                error.where = re.sub(rf"^specification\.{name}\b", f"specification.{own}", error.where)
-        return ProblemErrors(tuple({str(error): error for error in self.found}.values()))
-
-
 def validate(data: Mapping[str, Any], only: str | None = None, folder: Path | None = None) -> Problem:
     """Return the problem of a file's tables; `only` names a task to run instead of the file's own.
 
     `folder` is where a convention of the user's own may lie.  Raises `ProblemErrors` with every error found.
     """
-    errors = _Errors()
-    _report_unknown(data, TOP, "", errors)
-    title, source, text = (_text(data, name, errors) for name in ("title", "source", "text"))
+    errors = Errors()
+    report_unknown(data, TOP, "", errors)
+    title, source, text = (text_of(data, name, errors) for name in ("title", "source", "text"))
     ids = _ids(data.get("id", []), errors)
     convention = _convention(data, folder, errors)
     asked = _tasks(data, errors, required=only is None)
     wanted = asked if only is None else (tasks()[only],)
-    symbols = Symbols() if data.get("symbols") is OPEN else _symbols(_table(data, "symbols", errors), errors)
-    symbols = with_constants(_table(data, "constants", errors), symbols, errors)
+    symbols = Symbols() if data.get("symbols") is OPEN else _symbols(table_of(data, "symbols", errors), errors)
+    symbols = with_constants(table_of(data, "constants", errors), symbols, errors)
     dt = _period(data, symbols, errors)
     plant = _plant(data, symbols, dt, errors, alone=bool(wanted) and all(task.alone for task in wanted))
     specification = _specification(data, (*asked, *wanted), convention, symbols, errors)
-    expect = _table(data, "expect", errors)
+    expect = table_of(data, "expect", errors)
     printed = _printed(data.get("printed", []), errors)
-    values = _table(data, "values", errors)
+    values = table_of(data, "values", errors)
     marking = read_marking(data.get("marking", {}), [task.name for task in asked], errors.note)
     if not errors.found and plant is not None:
         return Problem(
@@ -161,43 +123,7 @@ def validate(data: Mapping[str, Any], only: str | None = None, folder: Path | No
     raise errors.together(convention)
 
 
-def _report_unknown(table: Mapping[str, Any], known: Collection[str], where: str, errors: _Errors) -> None:
-    """Note every key that is not known, with the key or the place that was meant."""
-    unknown = [key for key in table if key not in known]
-    for key in unknown[:_MAX_UNKNOWN]:
-        errors.note("unknown key", f"{where}.{shown(key, 40)}".lstrip("."), repair_of(key, known, where))
-    if len(unknown) > _MAX_UNKNOWN:
-        errors.note(f"{len(unknown) - _MAX_UNKNOWN} more unknown keys", where or "the file", "leave them out")
-
-
-def _table(data: Mapping[str, Any], name: str, errors: _Errors) -> Mapping[str, Any]:
-    value = data.get(name, {})
-    if isinstance(value, Mapping):
-        return value
-    errors.note(f"a table is expected, but {came(value)} came", name, f"write [{name}] and its keys below")
-    return {}
-
-
-def _text(table: Mapping[str, Any], name: str, errors: _Errors) -> str:
-    value = table.get(name, "")
-    _check_text(value, name, errors)
-    return value if isinstance(value, str) and not isinstance(value, Decimal) else ""
-
-
-def _check_text(value: object, where: str, errors: _Errors) -> None:
-    """Note what is no text, or one that is too long or cannot be printed."""
-    if not isinstance(value, str) or isinstance(value, Decimal):
-        errors.note(f"a text is expected, but {came(value)} came", where, "write it in quotes")
-        return
-    if len(value) > _MAX_TEXT:
-        errors.note(f"the text has more than {_MAX_TEXT} characters", where, "shorten it")
-    for character in value[:_MAX_TEXT]:
-        if category(character) in {"Cc", "Cs"} and character not in "\t\n":
-            errors.note(f"the character U+{ord(character):04X} cannot be printed", where, "leave it out")
-            break
-
-
-def _ids(value: object, errors: _Errors) -> tuple[str, ...]:
+def _ids(value: object, errors: Errors) -> tuple[str, ...]:
     entries = value if isinstance(value, list) else [value]
     for i, entry in enumerate(entries):
         if not isinstance(entry, str) or isinstance(entry, Decimal):
@@ -206,7 +132,7 @@ def _ids(value: object, errors: _Errors) -> tuple[str, ...]:
     return tuple(str(entry) for entry in entries)
 
 
-def _printed(value: object, errors: _Errors) -> tuple[Mapping[str, Any], ...]:
+def _printed(value: object, errors: Errors) -> tuple[Mapping[str, Any], ...]:
     """Return what a source prints, of the right shape; its equations are read by the audit alone."""
     entries = value if isinstance(value, list) else [value]
     if len(entries) > _MAX_PRINTED:
@@ -216,22 +142,22 @@ def _printed(value: object, errors: _Errors) -> tuple[Mapping[str, Any], ...]:
         if not isinstance(entry, Mapping):
             errors.note(f"a table is expected, but {came(entry)} came", where, "write [[printed]] and its keys below")
             continue
-        _report_unknown(entry, PRINTED, where, errors)
+        report_unknown(entry, PRINTED, where, errors)
         texts = {f"{where}.{key}": entry[key] for key in entry if PRINTED.get(key, {}).get("type") == "string"}
         for key in [key for key in ("let", "expect") if key in entry]:
-            meanings = _table(entry, key, errors) if isinstance(entry[key], Mapping) else None
+            meanings = table_of(entry, key, errors) if isinstance(entry[key], Mapping) else None
             if meanings is None:
                 errors.note(f"a table is expected, but {came(entry[key])} came", f"{where}.{key}", "write { … }")
             elif key == "let":
                 texts |= {f"{where}.let.{shown(name, 40)}": meaning for name, meaning in meanings.items()}
         for place, text in texts.items():
-            _check_text(text, place, errors)
+            check_text(text, place, errors)
         if ("relation" in entry) == ("expect" in entry):
             errors.note("one of relation and expect is expected", where, 'write relation = "L = [19; 81]"')
     return tuple(entry for entry in entries if isinstance(entry, Mapping))
 
 
-def _tasks(data: Mapping[str, Any], errors: _Errors, *, required: bool) -> tuple[Task, ...]:
+def _tasks(data: Mapping[str, Any], errors: Errors, *, required: bool) -> tuple[Task, ...]:
     key = "tasks" if "tasks" in data else "task"
     if "task" in data and "tasks" in data:
         errors.note("both task and tasks are given", "tasks", "keep one of them")
@@ -257,7 +183,7 @@ def _listed(name: str = "") -> str:
     return f"{f'did you mean {near[0]}? ' if near else ''}known tasks are {', '.join(sorted(tasks()))}"
 
 
-def _symbols(table: Mapping[str, Any], errors: _Errors) -> Symbols:
+def _symbols(table: Mapping[str, Any], errors: Errors) -> Symbols:
     """Return the symbols; one that is declared wrongly is still known, where its name can be one."""
     if len(table) > _MAX_SYMBOLS:
         errors.note(f"{len(table)} symbols are declared, more than {_MAX_SYMBOLS}", "symbols", "declare what is used")
@@ -274,7 +200,7 @@ def _symbols(table: Mapping[str, Any], errors: _Errors) -> Symbols:
     return Symbols.of(kept)
 
 
-def _period(data: Mapping[str, Any], symbols: Symbols, errors: _Errors) -> object:
+def _period(data: Mapping[str, Any], symbols: Symbols, errors: Errors) -> object:
     """Return dt, 0 where it is none."""
     table = data.get("plant")
     with errors:
@@ -284,19 +210,19 @@ def _period(data: Mapping[str, Any], symbols: Symbols, errors: _Errors) -> objec
     return 0
 
 
-def _plant(data: Mapping[str, Any], symbols: Symbols, dt: object, errors: _Errors, *, alone: bool) -> StateSpace | None:
+def _plant(data: Mapping[str, Any], symbols: Symbols, dt: object, errors: Errors, *, alone: bool) -> StateSpace | None:
     """Return the plant, None where it cannot be had; with `alone` a polynomial does instead."""
-    table = _table(data, "plant", errors)
+    table = table_of(data, "plant", errors)
     if not isinstance(data.get("plant", {}), Mapping):
         return None
-    _report_unknown(table, PLANT, "plant", errors)
+    report_unknown(table, PLANT, "plant", errors)
     given = [name for name in "ABCD" if name in table]
     if "transfer_function" in table and given:
         errors.note(f"both transfer_function and {given[0]} are given", "plant", "keep one of them")
     elif "transfer_function" in table:
         with errors:
             return StateSpace.from_transfer_function(table["transfer_function"], dt, symbols=symbols)
-    elif alone and not given and "polynomial" in (specification := _table(data, "specification", errors)):
+    elif alone and not given and "polynomial" in (specification := table_of(data, "specification", errors)):
         with errors:
             known = symbols.naming(specification.get("parameters"), "specification.parameters")
             return StateSpace.from_polynomial(specification["polynomial"], dt, symbols=known)
@@ -306,14 +232,14 @@ def _plant(data: Mapping[str, Any], symbols: Symbols, dt: object, errors: _Error
         with errors:
             B, C, D = (table.get(name) for name in "BCD")
             return StateSpace(table["A"], B, C, D, dt, symbols=symbols)
-        others = _Errors()
+        others = Errors()
         for name in given:
             _read_cells(table[name], symbols.with_time(), f"plant.{name}", others)
         errors.add_elsewhere(others)
     return None
 
 
-def _convention(data: Mapping[str, Any], folder: Path | None, errors: _Errors) -> Convention:
+def _convention(data: Mapping[str, Any], folder: Path | None, errors: Errors) -> Convention:
     """Return the convention the file is written in, the standard one where it names none that exists."""
     name = data.get("convention", STANDARD.name)
     if not isinstance(name, str) or isinstance(name, Decimal):
@@ -333,12 +259,12 @@ def _specification(
     wanted: Collection[Task],
     convention: Convention,
     symbols: Symbols,
-    errors: _Errors,
+    errors: Errors,
 ) -> dict[str, Any]:
     """Return what the tasks can use of the specification, in standard letters and signs."""
-    table, kinds = _table(data, "specification", errors), _kinds(wanted)
+    table, kinds = table_of(data, "specification", errors), _kinds(wanted)
     named = {own: pair for own, pair in names_in(convention).items() if pair[0] in kinds}
-    _report_unknown(table, {**kinds, **dict.fromkeys(named, "GainText")}, "specification", errors)
+    report_unknown(table, {**kinds, **dict.fromkeys(named, "GainText")}, "specification", errors)
     gains: dict[str, Any] = {}
     for own, (name, sign) in named.items():
         if own in table:
@@ -361,7 +287,7 @@ def _specification(
     return found
 
 
-def _read_cells(value: object, symbols: Symbols, where: str, errors: _Errors) -> None:
+def _read_cells(value: object, symbols: Symbols, where: str, errors: Errors) -> None:
     """Note every cell of a matrix in lists that cannot be read; whoever reads the whole matrix stops at the first."""
     rows = value if isinstance(value, list) else []
     cells = ((i, j, cell) for i, row in enumerate(rows) if isinstance(row, list) for j, cell in enumerate(row))
@@ -381,10 +307,10 @@ def _read_alone(
     expect: Mapping[str, Any],
     symbols: Symbols,
     variable: str,
-    errors: _Errors,
+    errors: Errors,
 ) -> None:
     """Note what cannot be read even by itself: where there is an error already, the tasks do not come to read it."""
-    others = _Errors()
+    others = Errors()
     for name, value in specification.items():
         where = f"specification.{name}"
         with others:

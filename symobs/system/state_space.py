@@ -140,9 +140,7 @@ class StateSpace:
     def from_control(cls, system: Any, *, symbols: Mapping[str, Any] | None = None) -> StateSpace:
         """Return the plant of a python-control system; each float is read as its shortest decimal.
 
-        The page says so.  A system of `Result.to_control` is read back exactly.
-
-        Raises `InputError` where it is no system of numbers.
+        The page says so; what `Result.to_control` made is read back exactly.  Raises `InputError` for other objects.
         """
         if symbols is None and (exact := exact_of(system)) is not None:
             return cast("StateSpace", exact)
@@ -301,8 +299,6 @@ class StateSpace:
     def feedback(self, other: object = 1, sign: int = -1) -> StateSpace:
         """Return y = (I − sign P₁ P₂)⁻¹ P₁ u, P₂ a plant or a gain in the feedback path."""
         return connected("feedback" if sign < 0 else "positive feedback", self, other)
-
-    # -- what is found on strata ---------------------------------------------------------------------------------------
 
     @cached_property
     def findings(self) -> Findings:

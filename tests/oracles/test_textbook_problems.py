@@ -22,7 +22,7 @@ from symobs.errors import InputError
 TABLE = tomllib.loads(Path(__file__).with_suffix(".toml").with_stem("textbook_problems").read_text(encoding="utf-8"))
 ROWS = TABLE["problems"]
 #: Rows with square roots in their data, which are tried where the reader takes them.
-ALGEBRAIC, READS_ROOTS = TABLE["algebraic"], False
+ALGEBRAIC = TABLE["algebraic"]
 ABOUT = {"source", "task", "verdict", "printed", "refused"}
 PLANT = {"A", "B", "C", "D", "transfer_function", "dt"}
 s, z, t = sympy.symbols("s z t")
@@ -327,7 +327,7 @@ def solved(row: dict[str, Any]) -> Any:
     return getattr(symobs, row["task"])(plant, **specification)
 
 
-@pytest.mark.parametrize("row", [*ROWS, *(ALGEBRAIC if READS_ROOTS else ())], ids=lambda row: row["source"])
+@pytest.mark.parametrize("row", [*ROWS, *ALGEBRAIC], ids=lambda row: row["source"])
 def test_a_problem_goes_through_as_it_is_printed(row: dict[str, Any]) -> None:
     if "refused" in row:
         with pytest.raises(InputError, match=row["refused"]):

@@ -16,7 +16,7 @@ from symobs.formula import Conjunction, Letter, Literal, Relation
 from symobs.formula.plain_text import plain_relation
 from symobs.phrases import ASSERTS, EXPLAINS, PHRASES, SPELLS_OUT, slots_of
 from symobs.problem import read
-from symobs.render.page.blocks import CaseBlock, Caution, Display, Paragraph, Verified, every
+from symobs.render.page.blocks import CaseBlock, Caution, Display, Paragraph, References, Verified, every
 from symobs.render.page.detail_level import DETAILS, at_detail
 from symobs.render.page.narrator import narrate
 from tests.support.tools.command_line import EXAMPLES, SERVO, inside
@@ -72,7 +72,7 @@ def test_a_shorter_page_hides_nothing_that_conditions_an_answer(path: Path) -> N
 
 
 def is_sources(block: Block) -> bool:
-    return isinstance(block, Caution) and not block.warns
+    return isinstance(block, References)
 
 
 @pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.stem)

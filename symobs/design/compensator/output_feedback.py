@@ -6,6 +6,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar, Self, TypeAlias
 
 from symobs._dataclass import dataclass
+from symobs.analysis.factored_form import cancelled, over
 from symobs.analysis.strata.strata import places, solved
 from symobs.certificate.claims import Certificate, Claim, check
 from symobs.conditions import sign_of, vanishing_factors
@@ -13,7 +14,7 @@ from symobs.derivation.builder import relation
 from symobs.design.gain.gain_cases import places_where
 from symobs.design.gain.gain_design import letters_of
 from symobs.errors import CertificateRejected
-from symobs.exact import Factored, Matrix, Scalar, factored, product_of, resultant, roots_of, transfer
+from symobs.exact import Factored, Matrix, Scalar, factored, resultant, roots_of, transfer
 from symobs.exact.linear_algebra.realisation import Realisation, closed
 from symobs.exact.linear_algebra.transfer_function import transfer_matrix
 from symobs.formula import Environment
@@ -255,7 +256,7 @@ class OutputFeedback(Result):
         polynomial = self.loop_polynomial
         value = numerator * own / polynomial.value
         kept = value.denominator.degree(self.plant.variable) == polynomial.value.degree(self.plant.variable)
-        form = _over(numerator, own, polynomial) if kept else factored(value, self.plant.variable, monic=False)
+        form = over(numerator, own, polynomial) if kept else factored(value, self.plant.variable, monic=False)
         e = Environment(variable=self.plant.variable, values={"P": P, "F": F, "G_cl": value})
         P_, F_, one = letter("P", e), letter("F", e), Term(relation(1, 1).members[0], e)
         check(Claim(relation(letter("G_cl", e), P_ / (one + P_ @ F_)), e.under(self.plant.relations)))
@@ -272,7 +273,7 @@ class OutputFeedback(Result):
         e = Environment(variable=variable, values={"P": self.plant_function, "F": self.answer["F"], "G_r": value})
         P, F, one = letter("P", e), letter("F", e), Term(relation(1, 1).members[0], e)
         check(Claim(relation(letter("G_r", e), P @ F / (one + P @ F)), e.under(self.plant.relations)))
-        return _cancelled(numerator, own, polynomial, variable) if kept else factored(value, variable, monic=False)
+        return cancelled(numerator, own, polynomial, variable) if kept else factored(value, variable, monic=False)
 
     @cached_property
     def loop_polynomial(self) -> Factored:
@@ -395,30 +396,3 @@ def _factors_of(design: GainDesign | ReducedOrderObserver) -> tuple[tuple[Scalar
     if design.desired is not None:
         return design.desired.grouped()
     return factored(design.answer["polynomial"], design.plant.variable).factors
-
-
-def _over(numerator: Scalar, own: Scalar, polynomial: Factored) -> Factored:
-    """Return numerator · own / Π factors: the denominator's factors as asked for, and no factor made monic."""
-    unit, above = numerator.factors()
-    sign = _sign(own)
-    below = tuple((factor, -power) for factor, power in polynomial.factors)
-    return Factored(unit * sign, (*above, (own * sign, 1), *below))
-
-
-def _sign(polynomial: Scalar) -> int:
-    """Return the sign that a polynomial is printed with, as a factor."""
-    return -1 if sign_of(polynomial.factors()[0], {}) == "negative" else 1
-
-
-def _cancelled(numerator: Scalar, own: Scalar, polynomial: Factored, variable: str) -> Factored:
-    """Return the same, with the parameters that `own` divides by cancelled against those in front of the numerator."""
-    form = _over(numerator, own, polynomial)
-    if own.denominator.is_constant:
-        return form
-    unit, above = numerator.factors()
-    whole = product_of(factor**power for factor, power in above if variable not in factor.names) * own
-    number, below = whole.denominator.factors()
-    rest = ((factor, power) for factor, power in above if variable in factor.names)
-    sign = _sign(whole.numerator)
-    parts = (*rest, (whole.numerator * sign, 1), *((factor, -power) for factor, power in below))
-    return Factored(unit * sign / number, (*parts, *(f for f in form.factors if f[1] < 0 and variable in f[0].names)))

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from symobs.exact import Ideal
 
 #: Where placement by the equation comes from.
-SYLVESTER = "S. P. Bhattacharyya and E. de Souza 1982, Systems & Control Letters 1, 261-263"
+SYLVESTER = "bhattacharyya1982"
 #: A general gain whose determinant could have more terms than this is not written out.
 WRITTEN_UP_TO = 60_000
 

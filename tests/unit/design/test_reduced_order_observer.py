@@ -13,7 +13,7 @@ from sympy import Matrix, Rational
 
 import symobs
 from symobs import StateSpace
-from symobs.design.reduced_order.reduced_order_observer import completed
+from symobs.design.reduced_order.partition import completed
 from symobs.errors import CertificateRejected, InputError
 from symobs.exact import Ideal, Scalar
 from symobs.exact import Matrix as Exact

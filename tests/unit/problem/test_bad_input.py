@@ -344,7 +344,7 @@ FLOATS: dict[str, tuple[Callable[[], object], str, str]] = {
     "SymPy": (lambda: symobs.StateSpace(sympy.Matrix([[0.5]])), "plant.A[0][0]", "Rational"),
     "poles": (lambda: symobs.observer(servo(), poles=[-1, -0.1]), "specification.poles[1]", "-1/10"),
     "array of poles": (
-        lambda: symobs.observer(servo(), poles=np.array([-0.5, -1])),  # type: ignore[arg-type]
+        lambda: symobs.observer(servo(), poles=np.array([-0.5, -1])),
         "specification.poles[0]",
         "-1/2",
     ),
