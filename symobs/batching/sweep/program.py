@@ -191,7 +191,7 @@ class Program:
         count = len(self.columns())
         try:
             result = self.solved_at(point)
-        except InputError:  # a denominator of the data vanishes there
+        except (InputError, ZeroDivisionError):  # a denominator of the data vanishes there
             return Row("undefined", [None] * count, case)
         verdict = result.verdict
         status = {"no": "no", "undecided": "undecided"}.get(verdict, "done")

@@ -139,9 +139,8 @@ def _schema(table: Swept, *, decimals: bool) -> Any:
     fields += [pa.field("status", pa.string()), pa.field("case", pa.int32()), pa.field("checked", pa.bool_())]
     told = {"schema": SCHEMA, "fingerprint": fingerprint(), "way": table.plan.way}
     told["problem"] = json.dumps(table.plan.tables, sort_keys=True, ensure_ascii=False)
-    return pa.schema(
-        fields, metadata={key: value if isinstance(value, str) else json.dumps(value) for key, value in told.items()}
-    )
+    told["over"] = json.dumps(_over(table))
+    return pa.schema(fields, metadata=told)
 
 
 def _over(table: Swept) -> list[Any]:

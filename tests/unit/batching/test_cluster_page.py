@@ -39,10 +39,9 @@ def folder_of_the_page(tmp_path: Path) -> Path:
 
 def started(line: str, folder: Path, port: int = 8786) -> subprocess.Popen[str]:
     program, *words = shlex.split(line.replace("8786", str(port)))
-    log = (folder / "log.txt").open("a", encoding="utf-8")
-    return subprocess.Popen(
-        [*PROGRAMS[program], *words], cwd=folder, env=environment(), stdout=log, stderr=log, text=True
-    )
+    command = [*PROGRAMS[program], *words]
+    with (folder / "log.txt").open("a", encoding="utf-8") as log:
+        return subprocess.Popen(command, cwd=folder, env=environment(), stdout=log, stderr=log, text=True)
 
 
 def test_its_lines_for_one_machine(folder: Path) -> None:

@@ -149,12 +149,9 @@ def test_a_block_that_was_changed_is_found() -> None:
 def test_numbers_put_in_wrongly_are_seen(monkeypatch: pytest.MonkeyPatch) -> None:
     from symobs.batching.sweep import program  # noqa: PLC0415
 
-    wrong = program.Program(
-        {**read_payload(next(Plan(CART, "l=1, m=1").jobs()).payload)["program"]["problem"]}, ("l", "m"), None
-    )
-    monkeypatch.setattr(
-        program, "_put_in", lambda value, _: json.loads(json.dumps(value).replace("l", "2").replace("m", "3"))
-    )
+    wrong = program.Program(Plan(CART, "l=1, m=1", way="each").tables, ("l", "m"), None)
+    put_in = program._put_in
+    monkeypatch.setattr(program, "_put_in", lambda value, values: put_in(value, {**values, "l": Fraction(7)}))
     with pytest.raises(CertificateRejected, match="the plant of a point has another A"):
         wrong.alone((Fraction(1), Fraction(1)), None)
 
