@@ -18,12 +18,8 @@ from symobs.design.page_parts.component_equations import combination, summed
 from symobs.design.page_parts.pole_cautions import caution_poles
 from symobs.design.page_parts.time_responses import plot_error
 from symobs.design.pole_placement.fresh_names import fresh_names, taken_names
-from symobs.design.reduced_order.reduced_order_observer import (
-    DependentOutputs,
-    Partition,
-    ReducedOrderObserver,
-    partition,
-)
+from symobs.design.reduced_order.partition import Partition, partition
+from symobs.design.reduced_order.reduced_order_observer import DependentOutputs, ReducedOrderObserver
 from symobs.design.reduced_order.undetermined_matrices_page import write_undetermined
 from symobs.exact import Factored, Matrix, Scalar, roots_of
 from symobs.formula import Roots
