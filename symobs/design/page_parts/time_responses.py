@@ -24,7 +24,9 @@ _SPREAD, _RESPONSES = 15.0, 6
 _TIMES = 6.0
 #: In discrete time: the radius below which all modes are dead at once, and how many instants are drawn.
 _DEAD, _FEWEST, _SAMPLES = 1e-9, 5, 30
-_STEPS, _PARTS = 400, 10**6
+#: How many segments are drawn, more where a response changes fast at first: none passes by the values between its ends at
+#: more than this part of the window.
+_STEPS, _BETWEEN, _PARTS = (400, 800, 1600), Fraction(1, 110), 10**6
 _ROUND = (Fraction(1), Fraction(3, 2), Fraction(2), Fraction(3), Fraction(4), Fraction(5), Fraction(6), Fraction(8))
 
 
@@ -60,18 +62,28 @@ def _plot(
     if slowest >= 0 or fastest < _SPREAD * slowest * (1 + 1e-9):
         return
     end = rounded_up(_TIMES / -slowest)
-    if not is_slow(value, end / (2 * _STEPS)):  # a mode would turn unseen between two instants
+    if not is_slow(value, end / (2 * _STEPS[0])):  # a mode would turn unseen between two instants
         return
-    try:
-        states_there = state_response(value, (Fraction(1),) * value.shape[0], end / _STEPS, _STEPS + 1, _PARTS)
-    except ArithmeticError:
-        return
-    made = tuple(
-        Response(name, index if table.shape[0] > 1 else 0, row, _course(row, states_there), dashed)
-        for name, table, dashed in signals
-        for index, row in enumerate(_rows(table), 1)
-    )
-    page.plot(TimeResponse(states, _starts(page, states), made, _window(end, made, _PARTS), _PARTS), matrix, say=say)
+    for steps in _STEPS:
+        try:
+            between = state_response(value, (Fraction(1),) * value.shape[0], end / (2 * steps), 2 * steps + 1, _PARTS)
+        except ArithmeticError:
+            return
+        made = tuple(
+            Response(name, index if table.shape[0] > 1 else 0, row, _course(row, between[::2]), dashed)
+            for name, table, dashed in signals
+            for index, row in enumerate(_rows(table), 1)
+        )
+        window = _window(end, made, _PARTS)
+        if all(_is_smooth(_course(response.row, between), window[1]) for response in made):
+            page.plot(TimeResponse(states, _starts(page, states), made, window, _PARTS), matrix, say=say)
+            return
+
+
+def _is_smooth(course: Sequence[int], edges: Interval) -> bool:
+    """Return whether segments from every other instant to the next pass close by the values between them."""
+    allowed = 2 * _BETWEEN * (edges[1] - edges[0]) * _PARTS
+    return all(abs(a - 2 * v + b) <= allowed for a, v, b in zip(course[::2], course[1::2], course[2::2], strict=False))
 
 
 def _plot_samples(

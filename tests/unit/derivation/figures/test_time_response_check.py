@@ -293,3 +293,11 @@ def test_every_course_has_its_name_in_every_format(page: Callable[[], Result]) -
         assert drawn.count("circle[radius=") >= sum(len(course.heights) for course in picture.responses)
     assert ("stroke-dasharray" in written) == dashes
     assert ("dash" in drawn) == dashes
+
+
+def test_an_estimate_that_catches_up_at_once_is_drawn_with_more_segments() -> None:
+    """With observer poles ten times as fast, x̂ has gone half of its way within the first of 400 segments."""
+    plant = symobs.StateSpace("[0 1 0; 0 0 1; -6 -11 -5]", "[0; 0; 1]", "[1 0 0]")
+    design = symobs.compensator(plant, control_poles=[-1, -2, -3], observer_poles=[-10, -12, -14])
+    ((_, picture),) = plots(design)
+    assert [len(response.heights) for response in picture.responses] == [801] * 6
