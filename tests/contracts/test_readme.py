@@ -71,6 +71,7 @@ def test_the_set_up_is_two_commands_of_one_line() -> None:
     assert [len(block.splitlines()) for block in blocks("sh", section)] == [1, 1]
 
 
+@pytest.mark.slow
 def test_shell_lines_run_on_the_problem_file(require_tool: Callable[[str], str], tmp_path: Path) -> None:
     require_tool("latexmk")
     require_tool("pdflatex")

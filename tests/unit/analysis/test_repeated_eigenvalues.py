@@ -32,6 +32,8 @@ from symobs.stability.criteria.stability import meetings
 from tests.programs.campaign.points import answer_at, holds
 from tests.support.problems.strategies import unimodular
 
+pytestmark = pytest.mark.slow
+
 s = sympy.Symbol("s")
 NAMES = ("a", "b")
 

@@ -225,6 +225,7 @@ def expressions(draw: st.DrawFn, depth: int = 3) -> str:
     return shape.format(*(f"({draw(expressions(depth=depth - 1))})" for _ in range(shape.count("{}"))))
 
 
+@pytest.mark.slow
 @given(expressions(), expressions())
 @settings(deadline=None, max_examples=60)
 def test_nothing_that_is_printed_breaks_the_audit(left: str, right: str) -> None:

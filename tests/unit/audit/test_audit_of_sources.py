@@ -79,6 +79,7 @@ def found(erratum: str) -> list[Finding]:
     return [each for one in audited() for each in one.findings if each.erratum == erratum]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("erratum", EXPECTED)
 def test_an_erratum_is_found_with_what_is_right_and_why(erratum: str) -> None:
     assert {each.right for each in found(erratum)} == {right for right, _ in EXPECTED[erratum]}

@@ -34,6 +34,8 @@ if TYPE_CHECKING:
     from pathlib import Path
 from types import SimpleNamespace
 
+pytestmark = pytest.mark.slow
+
 SOURCES = sorted((ROOT / "symobs" / "batching").rglob("*.py"))
 
 

@@ -27,6 +27,8 @@ from tests.support.tools.command_line import environment, inside
 if TYPE_CHECKING:
     from pathlib import Path
 
+pytestmark = pytest.mark.slow
+
 CART = """
 task = "compensator"
 [symbols]

@@ -156,6 +156,7 @@ def test_pages_speak_the_letters_of_their_book(name: str) -> None:
         assert "(C, A)" not in told
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.stem)
 def test_every_page_holds_in_every_convention(path: Path) -> None:
     """Each translated line is checked again before it is told."""

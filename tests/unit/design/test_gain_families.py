@@ -32,6 +32,8 @@ from tests.support.independent_algebra.plain import (
     subtract,
 )
 
+pytestmark = pytest.mark.slow
+
 FULL = os.environ.get("SYMOBS_FULL") == "1"
 PLANTS = 500 if FULL else 60
 SINGLE = 2_000 if FULL else 120

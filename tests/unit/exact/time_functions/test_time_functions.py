@@ -62,6 +62,7 @@ def gramian_of(A: Any, C: Any, end: Any) -> Any:
     return integral(lambda time: (C * expm(A, time)).T * (C * expm(A, time)), end, A.rows, A.rows)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", sorted(PROBLEMS_IN_TIME))
 def test_worked_examples_against_quadrature(name: str) -> None:
     found = problem.read((FOLDER / f"{name}.toml").read_text(encoding="utf-8"), name)
