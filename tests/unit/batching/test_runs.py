@@ -319,7 +319,6 @@ def test_a_killed_run_goes_on_where_it_was(hostile: Path, tmp_path: Path) -> Non
     killed_and_gone_on(hostile, tmp_path / "out", count=150, kills=2)
 
 
-@pytest.mark.slow
 def test_a_run_killed_ten_times_goes_on_where_it_was(hostile: Path, tmp_path: Path) -> None:
     killed_and_gone_on(hostile, tmp_path / "out", count=1500, kills=10)
 

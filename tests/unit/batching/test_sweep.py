@@ -110,7 +110,6 @@ def test_formulas_and_single_solutions_agree(name: str) -> None:
     compared(*PROBLEMS[name], points=25)
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("name", PROBLEMS)
 def test_formulas_and_single_solutions_agree_at_three_hundred_points(name: str) -> None:
     compared(*PROBLEMS[name], points=300)
@@ -188,7 +187,6 @@ def test_tables_say_exactly_what_was_found(tmp_path: Path) -> None:
     assert json.loads(table.schema.metadata[b"over"])[0][:2] == ["l", 40]
 
 
-@pytest.mark.slow
 def test_a_sweep_killed_on_the_way_is_the_one_that_was_not(tmp_path: Path) -> None:
     pq = pytest.importorskip("pyarrow.parquet")
     (tmp_path / "cart.toml").write_text(CART, encoding="utf-8")
