@@ -121,11 +121,14 @@ def _registered(function: Callback) -> Callback:
 
 
 def _kind(annotation: Any) -> str:
-    """Return the name of a kind: of the text `Poles | None` as of the types themselves."""
+    """Return the name of a kind: of the text `Poles | None` as of the types themselves; no name where there is none."""
     if isinstance(annotation, str):
         return annotation.split(" ")[0]
     kinds: tuple[str, ...] = getattr(annotation, "__metadata__", ())
-    return kinds[0] if kinds else _kind(get_args(annotation)[0])
+    if kinds:
+        return kinds[0]
+    alternatives = get_args(annotation)
+    return _kind(alternatives[0]) if alternatives else ""
 
 
 def method(name: str, *, source: str, page: Callable[..., None] | None = None) -> Callable[[Callback], Callback]:

@@ -211,7 +211,7 @@ def test_explanations_go() -> None:
 def test_python_and_the_shell_know_the_levels() -> None:
     plant = symobs.StateSpace("[0 1; 0 -1]", "[0; 1]", "[1 0]")
     result = symobs.observer(plant, poles=[-10, -10])
-    full, outline, answer = (str(result.to("text", detail=detail)) for detail in DETAILS)
+    full, outline, answer = (" ".join(str(result.to("text", detail=detail)).split()) for detail in DETAILS)
     assert len(answer) < len(outline) < len(full)
     assert "with a correction proportional to the output error" in full
     assert "with a correction proportional to the output error" not in outline

@@ -63,7 +63,9 @@ def test_every_line_on_the_left_has_its_dual_on_the_right() -> None:
 
 
 def test_sources_are_numbered_as_they_are_read() -> None:
-    numbers = [int(number) for number in re.findall(r"\[(\d+)\]", str(render(document(), "text")).split("Sources.")[0])]
+    page = str(render(document(), "text")).split("References\n")[0]
+    cited = [part for entry in re.findall(r"\[(\d+(?:[;,] [^\]]*)?)\]", page) for part in entry.split("; ")]
+    numbers = [int(part.split(",")[0]) for part in cited if part[0].isdigit()]
     firsts = list(dict.fromkeys(numbers))
     assert firsts == sorted(firsts)
 

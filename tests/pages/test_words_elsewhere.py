@@ -241,8 +241,8 @@ def test_a_gramian_that_may_not_exist_is_not_said_to_have_no_kernel() -> None:
 
 def test_without_input_noise_there_is_one_part() -> None:
     plant = symobs.StateSpace("[-1]", "[1]", "[1]")
-    assert "two parts" not in text_of(symobs.initial_state_covariance(plant, R="r", horizon="T"))
-    assert "two parts" in text_of(symobs.initial_state_covariance(plant, Q="q", R="r", horizon="T"))
+    assert "sum of two terms" not in text_of(symobs.initial_state_covariance(plant, R="r", horizon="T"))
+    assert "sum of two terms" in text_of(symobs.initial_state_covariance(plant, Q="q", R="r", horizon="T"))
 
 
 @pytest.mark.parametrize(("B", "Q"), [("[0]", "q"), ("[1]", "0")])

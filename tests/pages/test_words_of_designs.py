@@ -51,7 +51,7 @@ def test_a_stable_loop_around_an_unstable_law_is_called_so() -> None:
     # P = (s - 1)/(s (s - 2)): no stable law stabilises it, between the zeros 1 and infinity lies one pole.
     text = page("[0 1; 0 2]", "[0; 1]", "[-1 1]", "-1, -2", "-3, -4")
     assert "The compensator itself is not stable" in text
-    assert "although the closed loop is." in text
+    assert "although the closed loop is stable." in text
 
 
 def test_poles_that_cancel_in_the_loop_are_told() -> None:

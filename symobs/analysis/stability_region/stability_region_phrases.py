@@ -80,6 +80,8 @@ DEMANDS: dict[str, str] = {
 }
 
 RESTS_ON: dict[str, str] = {
+    "mapped": "bilinear",
+    "mapped_from_v": "bilinear",
     "cells_decide": "collins",
     "points_decide": "sturm",
     "point_decides": "sturm",
@@ -91,6 +93,7 @@ RESTS_ON: dict[str, str] = {
 }
 
 THEOREMS: dict[str, str] = {
+    "bilinear": "jury1964",
     "sturm": "sturm1829",
     "orlando": "orlando1911",
     "collins": "collins1975",

@@ -93,6 +93,7 @@ RESTS_ON: dict[str, str] = {
     "separation": "separation",
     "transfer_function_of_compensator": "compensator",
     "closed_loop_matrix": "closed_loop",
+    "no_stable_compensator": "parity_interlacing",
     "compensator_stable_low": "hurwitz",
     "compensator_unstable_low": "hurwitz",
     "compensator_unstable_low_alone": "hurwitz",

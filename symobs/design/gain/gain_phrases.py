@@ -106,7 +106,7 @@ RESTS_ON: dict[str, str] = {
 THEOREMS: dict[str, str] = {
     "observer_poles": "luenberger1966; wonham1967",
     "row_reduction": "moore1976; brogan1991",
-    "companion_form": "bass1965",
+    "companion_form": "bass1965; luenberger1967",
 }
 
 EXPLAINS = (

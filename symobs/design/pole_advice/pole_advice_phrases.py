@@ -68,6 +68,7 @@ DEMANDS: dict[str, str] = {
 RESTS_ON: dict[str, str] = {
     "zeros_taken": "zeros_first",
     "some_on_circle": "butterworth",
+    "always_unstable": "parity_interlacing",
 }
 
 THEOREMS: dict[str, str] = {

@@ -79,7 +79,7 @@ def test_the_covariance_may_end_at_a_horizon_called_t(data: dict[str, str]) -> N
     assert called.output_part == sympy.Matrix([[4 / t, -6 / t**2], [-6 / t**2, 12 / t**3]]).as_immutable()
     assert [None if each is None else each.replace("t", "T") for each in called.best_horizon] == usual.best_horizon
     told, plain = (" ".join(each.to("text").split()) for each in (called, usual))
-    assert "which the question calls t, is written T" in told
+    assert "called t in the question, is therefore written T" in told
     assert "is written T" not in plain
 
 

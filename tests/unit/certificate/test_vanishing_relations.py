@@ -61,7 +61,7 @@ def test_a_basis_beyond_the_limits_leaves_the_question_open() -> None:
     ]
     with pytest.raises(TooLarge):
         Ideal.of(dense)
-    assert verify(said(a, "=", a), Environment(relations=tuple(dense)))[0] == ""
+    assert verify(said(dense[0], "=", Scalar.of(0)), Environment(relations=tuple(dense)))[0] == ""
 
 
 small = st.integers(-3, 3)

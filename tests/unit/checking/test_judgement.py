@@ -119,7 +119,10 @@ def test_all_forms_of_a_value_are_read_exactly() -> None:
         assert one(check(SERVO, {"L": gain}), "L").verdict == "right"
     assert one(check(SERVO, {"L": "[19; 81.0001]"}), "L").verdict == "wrong"
     part = one(check(SERVO, {"L": [[19.5], [81]]}), "L")
-    assert (part.verdict, part.reason) == ("unreadable", '19.5 is a float; write an exact value such as "39/2"')
+    assert (part.verdict, part.reason) == (
+        "unreadable",
+        '19.5 is a float; write an exact value such as "39/2", or give the plant or the task floats="decimal"',
+    )
 
 
 def test_a_single_value_is_the_one_part_that_is_asked_for() -> None:

@@ -16,6 +16,7 @@ from jsonschema import Draft202012Validator  # type: ignore[import-untyped]
 
 from symobs.cli.commands import solve
 from symobs.errors import CertificateRejected
+from symobs.phrases.literature import written_out
 from symobs.result import formats, methods, tasks
 from tests.support.paths import ROOT
 from tests.support.tools.command_line import EXAMPLES, SAFETY, SERVO, environment, fresh, inside
@@ -391,7 +392,7 @@ def test_methods_lists_every_method_with_its_source() -> None:
     run = inside("methods")
     assert run.code == 0
     for found in methods().values():
-        assert f"    {found.name}: {found.summary}\n        {found.source}\n" in run.out
+        assert f"    {found.name}: {found.summary}\n        {written_out(found.source)}\n" in run.out
     assert [line.split(":")[0] for line in run.out.splitlines() if not line.startswith(" ")] == sorted(tasks())
 
 

@@ -91,7 +91,9 @@ def test_the_numbers_alone(folder: Path) -> None:
 
 def test_names_are_those_of_the_convention() -> None:
     example = next(
-        path for path in EXAMPLES if 'convention = "S0"' in path.read_text(encoding="utf-8") and "observer" in path.stem
+        path
+        for path in EXAMPLES
+        if 'convention = "minusK-minusLC-gramianM"' in path.read_text(encoding="utf-8") and "observer" in path.stem
     )
     found = json.loads(inside("solve", str(example), "--format", "json").out)["results"]
     own = {name: value for result in found for name, value in result["in_convention"].items() if name != "name"}

@@ -216,7 +216,7 @@ def test_json_and_python_stay_standard() -> None:
     (shown,) = json.loads(page(problem(DESIGN, "S1"), "json"))["results"]
     assert (shown["K"], shown["L"]) == ([["2", "2"]], [["3"], ["2"]])
     own = shown["in_convention"]
-    assert (own["name"], own["K"], own["M"]) == ("S1", [["-2", "-2"]], [["-3"], ["-2"]])
+    assert (own["name"], own["K"], own["M"]) == ("plusK-plusMC", [["-2", "-2"]], [["-3"], ["-2"]])
     assert "L" not in own
     (result,) = problem(DESIGN, "S1").solve()
     assert "A + M C" in str(result.to("text", convention="S1"))
@@ -397,7 +397,7 @@ def test_every_error_of_a_convention_is_told_at_once() -> None:
 
 
 def test_a_convention_that_does_not_exist(tmp_path: Path) -> None:
-    with pytest.raises(UsageError, match="use one of standard, S0"):
+    with pytest.raises(UsageError, match="use one of standard, minusK-minusLC"):
         convention_named("S9")
     with pytest.raises(ProblemErrors, match='convention: "S9" is not a convention'):
         read('convention = "S9"\n' + DESIGN)

@@ -66,7 +66,7 @@ def test_an_unstable_loop_is_said(time: int, said: str) -> None:
     plant = StateSpace(SERVO.A, SERVO.B, SERVO.C, dt=time)
     found = symobs.compensator(plant, K=[-5, 2], L=[3, 4])
     assert found.stable == "no"
-    assert f"{said}: with these gains it is unstable" in " ".join(str(found.to("text")).split())
+    assert f"{said}: with these gains the closed loop is unstable" in " ".join(str(found.to("text")).split())
     stable = symobs.compensator(SERVO, K=[1, 2], L=[3, 4])
     assert "it is unstable" not in stable.to("text")
 

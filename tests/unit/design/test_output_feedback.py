@@ -244,7 +244,7 @@ def test_pages_of_plants_that_are_hidden_on_both_sides(plant: Any, control: list
 def test_a_pole_three_times_in_discrete_time_has_a_page() -> None:
     plant = StateSpace("[-1 2 1; -2 -1 0; 2 1 2]", "[-2; 0; 0]", "[1 0 0]", dt=True)
     found = symobs.compensator(plant, control_poles=["-1/2"] * 3, observer_poles=[-2] * 3)
-    assert "A caution" in found.to("text")
+    assert "Remark." in found.to("text")
 
 
 def test_outputs_that_see_nothing_leave_the_modes_where_they_are() -> None:

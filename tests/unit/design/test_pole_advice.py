@@ -157,7 +157,7 @@ def test_one_pole_has_no_overshoot() -> None:
 def test_zeros_slower_than_the_settling_time_are_not_used() -> None:
     result = advice("(s + 1) (s + 9)/s^4", settling_time=1, overshoot="0.05")
     assert result.zeros_used == (-9,)
-    assert any("too slow for the settling time, s = -1" in warning for warning in result.warnings)
+    assert any("s = -1, is too slow for the specified settling time" in warning for warning in result.warnings)
 
 
 # -- warnings ----------------------------------------------------------------------------------------------------------
@@ -178,7 +178,7 @@ WARNED = [
 
 @pytest.mark.parametrize(("transfer_function", "words"), WARNED)
 def test_warnings(transfer_function: str, words: str) -> None:
-    result = advice(transfer_function, radius=100 if "beyond" in words else 3)
+    result = advice(transfer_function, radius=100 if "exceeds" in words else 3)
     assert any(words in warning for warning in result.warnings)
     page = " ".join(result.to("text").split())
     assert page.count("Remark.") == len(result.warnings)

@@ -104,7 +104,13 @@ def test_parameters_that_leave_it_open_are_not_cautioned() -> None:
 HIDDEN = [
     # the observer cannot move the mode 1, nor does K look at it: F = 2/(s + 4)
     (("[1 0; 0 -1]", "[1; 1]", "[0 1]"), "1, -3", "1, -2", "no", "the cancelled mode 1 does not lie in"),
-    (("[a 0; 0 -1]", "[1; 1]", "[0 1]"), "a, -3", "a, -2", "conditional", "a, is stable if and only if a < 0"),
+    (
+        ("[a 0; 0 -1]", "[1; 1]", "[0 1]"),
+        "a, -3",
+        "a, -2",
+        "conditional",
+        "the cancelled mode a is stable if and only if a < 0",
+    ),
     (("[-1 0; 0 -2]", "[1; 1]", "[0 1]"), "-1, -3", "-1, -4", "yes", ""),
     (
         ("[1 0 0; 0 -1 0; 0 0 -2]", "[1 0; 1 0; 0 1]", "[0 1 0; 0 0 1]"),

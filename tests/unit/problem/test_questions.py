@@ -95,11 +95,11 @@ def asked(
         (
             "compensator",
             'control_poles = [-2, -2]\nobserver_polynomial = "s + 10"\nobserver = "minimal"',
-            "The desired control poles are -2, -2. The desired observer polynomial is s + 10.",
+            "Place the control poles at -2, -2.",
         ),
         ("gramian", 'horizon = "inf"', "the infinite-horizon observability Gramian"),
-        ("gramian", "horizon = 2", "the observability Gramian over the horizon 2,"),
-        ("gramian", "", "the observability Gramian over the horizon T,"),
+        ("gramian", "horizon = 2", "the observability Gramian over the horizon 2 and its determinant"),
+        ("gramian", "", "the observability Gramian over the horizon T and its determinant"),
         ("detectability", 'meaning = "lyapunov"', "stable in the sense of Lyapunov?"),
         ("state_feedback", 'K = "[4 3]"', "Find the characteristic polynomial of the loop with the feedback gain K."),
         (

@@ -188,9 +188,11 @@ def words(picture: Picture) -> str:
 
 
 def test_captions_say_what_is_shown() -> None:
-    drawn_for = "Stable for (h₁, h₂) in the shaded region; boundary excluded. Dots are stable points, crosses"
+    drawn_for = (
+        "Shaded: stable values of (h₁, h₂), boundary excluded. Dots: stable test points; crosses: unstable ones."
+    )
     assert words(hand.pendulum()).startswith(drawn_for)
-    assert words(hand.pendulum()).endswith("Drawn for b = 1, ω = 1.")
+    assert words(hand.pendulum()).endswith("Plotted for b = 1, ω = 1.")
     assert "Open circles: excluded points." in words(hand.ring_hole())
     assert words(replace(hand.ring_hole(), areas=(), marks=())) == (
         "No value of (h₁, h₂) in the range shown is stable."

@@ -217,7 +217,7 @@ def test_the_page_says_what_the_table_says_and_names_the_theorem() -> None:
     assert isinstance(table, TableBlock)
     assert finding == Paragraph(
         (
-            "All entries of the first column are positive, so all roots lie in the open left half plane\N{NO-BREAK SPACE}[1].",
+            "All entries of the first column are positive, so all roots lie in the open left half-plane\N{NO-BREAK SPACE}[1].",
         )
     )
     assert "Routh, A Treatise" in str(sources)

@@ -83,8 +83,8 @@ def test_json_says_an_answer_once() -> None:
     plant = symobs.StateSpace("[0 1; 0 -1]", "[0; 1]", "[1 0]")
     design = symobs.observer(plant, poles=[-10, -10])
     assert json.loads(design.to_json())["results"][0]["in_convention"] == {"name": "standard"}
-    other = json.loads(str(design.to("json", convention="S1")))["results"][0]["in_convention"]
-    assert other == {"name": "S1", "M": [["-19"], ["-81"]]}
+    other = json.loads(str(design.to("json", convention="plusK-plusMC")))["results"][0]["in_convention"]
+    assert other == {"name": "plusK-plusMC", "M": [["-19"], ["-81"]]}
 
 
 @pytest.mark.parametrize(

@@ -97,7 +97,7 @@ def test_floats_are_their_shortest_decimals(given: Any) -> None:
     plant = StateSpace(given, floats="decimal")
     tenth, thousandth = sympy.Rational(1, 10), sympy.Rational(1, 1000)
     assert sympy.Matrix([[tenth, 1], [-sympy.Rational(5, 2), thousandth]]) == plant.A
-    assert "Floating-point numbers are read as their shortest decimals." in symobs.pbh(
+    assert "Floating-point entries are taken as the shortest decimals that represent them." in symobs.pbh(
         StateSpace(given, C=[1, 0], floats="decimal")
     ).to("text")
 
@@ -106,7 +106,7 @@ def test_floats_are_specifications_where_the_task_is_told_so() -> None:
     result = symobs.observer(SERVO, poles=[-1.5 + 0.5j, -1.5 - 0.5j], floats="decimal")
     error = SERVO.A - result.L * SERVO.C
     assert (error.trace(), error.det()) == (-3, sympy.Rational(5, 2))
-    assert "Floating-point numbers are read as their shortest decimals." in result.to("text")
+    assert "Floating-point entries are taken as the shortest decimals that represent them." in result.to("text")
     assert "Floating-point" not in symobs.observer(SERVO, poles=["-1.5", -1], floats="decimal").to("text")
     margin = symobs.stability_region(polynomial="s^2 + h s + 2", margin=0.5, floats="decimal")
     assert "Floating-point" in margin.to("text")
@@ -184,7 +184,7 @@ def test_transfer_matrices_of_other_programs_are_plants() -> None:
 def test_a_transfer_matrix_is_stated_with_what_cancels_in_it() -> None:
     plant = StateSpace.from_transfer_function("[1/(s+1) (s-1)/((s-1)(s+2)); 0 1/s]")
     page = " ".join(str(symobs.observability(plant).to("text")).split())
-    assert "A minimal realisation of this is" in page
+    assert "A minimal realisation is" in page
     assert "A caution. The pole 1 cancels" in page
 
 

@@ -26,11 +26,15 @@ def text_of(transfer_function: object, dt: object = 0) -> str:
 @pytest.mark.parametrize(
     ("function", "dt", "said"),
     [
-        ("(s+1)/((s+1)(s+2))", 0, "The pole -1 cancels, and what follows is about the function in lowest terms."),
-        ("(s-1)/((s-1)(s+2))", 0, "Remark. The pole 1 cancels, .* it does not lie in the open left half plane"),
-        ("(z-1/2)/((z-1/2) z)", 1, "The pole 1/2 cancels, and what follows is about the function in lowest terms."),
+        ("(s+1)/((s+1)(s+2))", 0, "The pole -1 cancels; what follows refers to the transfer function in lowest terms."),
+        ("(s-1)/((s-1)(s+2))", 0, "Remark. The pole 1 cancels, .* it does not lie in the open left half-plane"),
+        (
+            "(z-1/2)/((z-1/2) z)",
+            1,
+            "The pole 1/2 cancels; what follows refers to the transfer function in lowest terms.",
+        ),
         ("(z-2)/((z-2) z)", 1, "Remark. The pole 2 cancels, .* it does not lie inside the unit circle"),
-        ("s(s+1)/(s^2 (s+1)^2)", 0, "Remark. The poles 0, -1 cancel, .* not all lie in the open left half plane"),
+        ("s(s+1)/(s^2 (s+1)^2)", 0, "Remark. The poles 0, -1 cancel, .* not all lie in the open left half-plane"),
         ("(s+b)/((s+b)(s+2))", 0, "Remark. The pole -b cancels, .* stable if and only if b > 0"),
         ("1/(s+1) - s/(s+1)^2 - 1/(s+1)^2 + 1/s", 0, "The poles -1, -1 cancel"),
         ((s**2 - 1) / (s**2 + s - 2), 0, "Remark. The pole 1 cancels"),
@@ -60,7 +64,7 @@ def test_what_a_fraction_divides_by_stays_a_condition(function: object) -> None:
     ):
         assert list(result.conditions) == [sympy.Ne(b, 0, evaluate=False)]
         assert result.verdict == "yes"
-        assert "What cancels is not zero, for the function has no meaning elsewhere: b ≠ 0" in " ".join(
+        assert "The cancelled factor is nonzero, since the function is undefined elsewhere: b ≠ 0" in " ".join(
             str(result.to("text")).split()
         )
     positive = StateSpace.from_transfer_function(function, symbols={"b": "positive"})

@@ -291,8 +291,8 @@ def test_paths_go_from_one_value_to_the_other() -> None:
         along=tuple(along[::-1] for along in picture.along),
     )
     accept(backwards, hand.SECOND_ORDER)
-    refuse(replace(picture, values=(Fraction(0), Fraction(3))), hand.SECOND_ORDER, "varies from 0 to 3")
-    refuse(replace(picture, along=(picture.along[0][:-1],) * 2), hand.SECOND_ORDER, "varies from 0 to 2")
+    refuse(replace(picture, values=(Fraction(0), Fraction(3))), hand.SECOND_ORDER, "goes from 0 to 3")
+    refuse(replace(picture, along=(picture.along[0][:-1],) * 2), hand.SECOND_ORDER, "goes from 0 to 2")
     refuse(replace(picture, along=()), hand.SECOND_ORDER, "there are 2 poles")
     refuse(replace(picture, discrete=True), hand.SECOND_ORDER, "the poles are those in s")
     refuse(picture, hand.SECOND_ORDER + h1, "depends on k alone")

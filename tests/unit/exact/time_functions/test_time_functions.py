@@ -553,7 +553,7 @@ def test_a_horizon_that_may_be_zero_is_said_to_be_positive(asked: dict[str, Any]
     )
     for result in results:
         assert [(c.kind, str(c)) for c in result.holds_where] == [("domain", "T > 0")]
-        assert "Throughout, $T>0$." in result.to_latex()
+        assert "Throughout, we assume $T>0$." in result.to_latex()
 
 
 def test_a_positive_horizon_needs_no_words() -> None:
