@@ -6,6 +6,7 @@ from pathlib import Path
 
 from symobs.convention.builtin import PROFILES, convention_named, conventions
 from symobs.convention.convention import STANDARD, Convention
+from symobs.errors import UsageError
 from symobs.notation import LETTERS
 
 _HEAD = ("name", "control law", "observer matrix", "observable pair")
@@ -61,8 +62,10 @@ def _letters(found: Convention) -> list[str]:
 
 def file_of(name: str) -> str:
     """Return the TOML of a convention; raises `UsageError` naming those that exist."""
-    if name == STANDARD.name:
+    found = convention_named(name).name
+    if found == STANDARD.name:
         return _OF_STANDARD
-    convention_named(name)
-    path = Path(name) if name.endswith(".toml") else PROFILES / f"{name}.toml"
+    path = Path(name) if name.endswith(".toml") else PROFILES / f"{found}.toml"
+    if not path.is_file():
+        raise UsageError("no convention of the package has this law", repair="write a file like that of standard")
     return path.read_text(encoding="utf-8")

@@ -91,7 +91,11 @@ def format_named(name: str) -> Any:
     import_named(symobs.FORMAT_PACKAGE, name)
     if name not in _FORMATS and name not in formats():
         message = f"{name[:40]!r} is not an output format"
-        meant = [found for found in ("latex", *sorted(_FORMATS)) if _FORMATS[found].suffix == f".{name}"]
+        meant = [
+            found
+            for found in sorted(_FORMATS, key=lambda each: (each != "latex", each))
+            if _FORMATS[found].suffix == f".{name}"
+        ]
         nearest = f"did you mean {meant[0]}? " if meant else ""
         raise UsageError(message, repair=f"{nearest}use one of {', '.join(sorted(_FORMATS))}")
     return _FORMATS[name]

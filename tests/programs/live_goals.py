@@ -144,6 +144,7 @@ def in_the_browser() -> None:
             page.wait_for_timeout(1500)
             handle = page.locator(".handle.ring").first.get_attribute("data-handle")
             box = page.locator(".handle.ring .hit").first.bounding_box()
+            assert box is not None
             script = _PAINTED.replace("observer_poles.0", str(handle))
             times = page.evaluate(script, [box["x"] + box["width"] / 2, box["y"] + box["height"] / 2, 60])
             row(f"pointer to painted, n = {order}, ms", times[5:], 100)

@@ -76,6 +76,7 @@ from symobs.result import output_format
 @output_format
 class Plain:
     name = "plain"
+    suffix = ".plain"
 """,
     "formats_of_three.others": """
 from symobs.result import output_format
@@ -83,6 +84,7 @@ from symobs.result import output_format
 @output_format
 class Odd:
     name = "odd"
+    suffix = ".odd"
 """,
 }
 PACKAGES = {name.split(".")[0] for name in MODULES}

@@ -185,7 +185,7 @@ def test_a_transfer_matrix_is_stated_with_what_cancels_in_it() -> None:
     plant = StateSpace.from_transfer_function("[1/(s+1) (s-1)/((s-1)(s+2)); 0 1/s]")
     page = " ".join(str(symobs.observability(plant).to("text")).split())
     assert "A minimal realisation is" in page
-    assert "A caution. The pole 1 cancels" in page
+    assert "Remark. The pole 1 cancels" in page
 
 
 @pytest.mark.parametrize(
