@@ -128,7 +128,7 @@ def _ids(value: object, errors: Errors) -> tuple[str, ...]:
     for i, entry in enumerate(entries):
         if not isinstance(entry, str) or isinstance(entry, Decimal):
             where = f"id[{i}]" if isinstance(value, list) else "id"
-            errors.note(f"a text is expected, but {came(entry)} came", where, 'write id = ["S0-Ex4.2"]')
+            errors.note(f"a text is expected, but {came(entry)} came", where, 'write id = ["Ex4.2"]')
     return tuple(str(entry) for entry in entries)
 
 

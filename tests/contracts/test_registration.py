@@ -278,7 +278,7 @@ def test_a_method_tells_its_own_page_or_none(copy: Copy) -> None:
     for text in told.values():
         assert "✓ det(sI - A + L C) = s² + 20s + 100" in text
     assert "A gain that assigns it is" in told["dummy"]
-    assert "No gain with zero entries at" in told["second"]
+    assert "With the prescribed entries zero" in told["second"]
     assert "A gain that assigns it is" not in told["second"] + told["ackermann"]
 
 
