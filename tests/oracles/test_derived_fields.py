@@ -49,9 +49,12 @@ if TYPE_CHECKING:
 pytestmark = pytest.mark.slow
 
 FOLDER = ROOT / "worked_examples"
+#: Fractions know no roots: examples with roots in their plant are held to PARI.
+WITH_ROOTS = {"coupled_masses_irrational", "sensor_at_a_node"}
 EVERY: list[tuple[str, Result]] = [
     (f"{path.stem}: {where}", part)
     for path in sorted(FOLDER.glob("*.toml"))
+    if path.stem not in WITH_ROOTS
     for result in read(path.read_text(encoding="utf-8")).solve()
     for where, part in parts_of(result)
 ]
@@ -344,7 +347,8 @@ def said_stable(part: Result) -> list[tuple[Scalar, str, list[str] | None]]:
     """Return the polynomials that a result calls stable or not, with verdict and region."""
     found: list[tuple[Scalar, str, list[str] | None]] = []
     if "stable" in part.fields:
-        found.append((part.answer["polynomial"], part.fields["stable"], part.fields["stable_if"]))
+        polynomial = part.loop_polynomial.value if part.task == "compensator" else part.answer["polynomial"]
+        found.append((polynomial, part.fields["stable"], part.fields["stable_if"]))
     if part.fields.get("F_stable") is not None:
         F = part.answer["F"]
         entries = F.entries if isinstance(F, Matrix) else [F]

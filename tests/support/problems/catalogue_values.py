@@ -16,7 +16,7 @@ VALUES: dict[str, tuple[str, ...]] = {
     ),
     "S0-Thm4.4": (
         "line: the pair (A, C) is observable",
-        "line: the dual pair (Aᵀ, Cᵀ)",
+        "line: the pair (Aᵀ, Cᵀ)",
         "line: det(sI - Aᵀ)",
         "line: det(sI - A + L C) =",
     ),
