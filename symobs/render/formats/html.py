@@ -178,7 +178,7 @@ class HtmlWriter:
                 return f'<p class="caution"><strong>{plain(label)}</strong> {self.sentence(inlines)}</p>'
             case References(label, entries):
                 listed = "\n".join(f"<li>{plain(entry)}</li>" for entry in entries)
-                return f'<section class="references">\n<h2>{plain(label)}</h2>\n<ol>\n{listed}\n</ol>\n</section>'
+                return f'<p class="references"><strong>{plain(label)}</strong></p>\n<ol class="references">\n{listed}\n</ol>'
             case TableBlock():
                 table, told = html_table(block, self.printer, self.sentence)
                 below = f"\n<p>{self.sentence(block.where)}</p>\n{self._display(told)}" if told else ""
