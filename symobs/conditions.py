@@ -136,10 +136,9 @@ def _sign_without_roots(factor: Scalar, signs: Mapping[str, str]) -> str:
     """Return the sign of an irreducible polynomial in one parameter that has no root where its sign lets the parameter be."""
     names = factor.names
     (name,) = names if len(names) == 1 else ("",)
-    is_parameter = name not in {"", PI, EIGENVALUE} and function_named(name) is None
-    if not is_parameter or factor.degree(name) < 2:
+    if name not in signs or factor.degree(name) < 2:
         return "real"
-    low, high = _LINE.get(signs.get(name, "real"), (None, None))
+    low, high = _LINE.get(signs[name], (None, None))
     polynomial = integer_factor(factor, name)
     if (polynomial.degree() % 2 and low is high) or count_roots(polynomial, low, high):
         return "real"

@@ -21,7 +21,7 @@ from symobs.conditions import (
     sign_of,
     vanishing_factors,
 )
-from symobs.exact import EIGENVALUE, Scalar
+from symobs.exact import Scalar
 from tests.support.independent_algebra.plain import has_sign, random_fraction, seeded, value_at
 from tests.support.problems.strategies import Twin, polynomials, rational_functions
 
@@ -191,11 +191,3 @@ def test_a_polynomial_in_one_parameter_has_a_sign_where_it_has_no_root(
 def test_what_may_be_complex_has_no_sign() -> None:
     assert sign_of(a**2 - a + 1, {}) == "real"  # nobody declared it
     assert sign_of(a**2 - a * b + b**2, {"a": "real", "b": "real"}) == "real"
-
-
-def test_a_parameter_that_nobody_declared_is_real() -> None:
-    """−a² − a − 1 has the discriminant −3; of a² + a − 1 nothing is certain, nor of what an eigenvalue may be."""
-    assert sign_of(-(a**2) - a - 1, {}) == sign_of(-(a**2) - a - 1, {"a": "real"}) == "negative"
-    assert sign_of(a**2 + a - 1, {}) == "real"
-    eigenvalue = Scalar.symbol(EIGENVALUE)
-    assert sign_of(eigenvalue**2 + eigenvalue + 1, {}) == "real"

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 from symobs._dataclass import dataclass
 from symobs.conditions import FACTORED_UP_TO, sign_of, vanishing_factors
 from symobs.exact import Matrix, Scalar, from_coefficients, resultant
+from symobs.exact.core.generators import function_named
 from symobs.stability.inequalities.written_form import as_inequality
 
 if TYPE_CHECKING:
@@ -39,7 +40,14 @@ class StabilityVerdict:
 
 
 def stability(polynomial: Scalar, variable: str, signs: Mapping[str, str], *, discrete: bool) -> StabilityVerdict:
-    """Return whether every root lies in Re s < 0 (|z| < 1), or the conditions under which it does."""
+    """Return whether every root lies in Re s < 0 (|z| < 1), or the conditions under which it does.
+
+    Parameters that nobody declared are real.
+    """
+    signs = {
+        **dict.fromkeys((name for name in polynomial.names - {variable} if not function_named(name)), "real"),
+        **signs,
+    }
     found = polynomial.coefficients(variable)
     if len(found) == 1:
         return StabilityVerdict("yes")

@@ -349,3 +349,10 @@ def test_points_prove_that_both_outcomes_occur() -> None:
     assert stable_somewhere(s + a, "s", {"a": "positive"}, discrete=False) == {True}
     assert stable_somewhere(s**2 + a**2 * s + b**2 + 1, "s", {"a": "nonzero"}, discrete=False) == {True}
     assert stable_somewhere(z - a, "z", {"a": "positive"}, discrete=True) == {True, False}
+
+
+def test_a_parameter_that_nobody_declared_is_real() -> None:
+    """Of s³ − (a + 1) s² + a s + 1 the second Hurwitz determinant is −a² − a − 1, which is negative for every real a."""
+    polynomial = s**3 - (a + 1) * s**2 + a * s + 1
+    verdicts = {stability(polynomial, "s", signs, discrete=False).verdict for signs in ({}, {"a": "real"})}
+    assert verdicts == {"no"}
