@@ -326,6 +326,16 @@ cart_pole = {
 
 PROBLEMS = {
     "servo_observer": Hand(**servo, observer=(s + 10) ** 2),
+    "servo_optimal_gains": Hand(**servo, control=(s + 1) ** 2, observer=(s + 2) ** 2),
+    "servo_with_irrational_poles": Hand(
+        Matrix([[0, 1, 0], [0, 0, 1], [0, -2, -3]]), B=Matrix([0, 0, 1]), control=((s + 2) ** 2 + 12) * (s + 10)
+    ),
+    "coupled_masses_irrational": Hand(
+        Matrix([[0, 1, 0, 0], [-1, 0, 0, 0], [0, 0, 0, 1], [0, 0, -3, 0]]),
+        Matrix([[1, 0, 1 / sympy.sqrt(3), 0]]),
+        observer=(s**2 + sympy.sqrt(3) * s + 1) * (s**2 + 2 * sympy.sqrt(3) * s + 3),
+    ),
+    "sensor_at_a_node": Hand(Matrix([[0, 1], [2, 0]]), Matrix([[sympy.sqrt(2) * k, 1]]), signs={"k": "positive"}),
     "output_feedback_servo": Hand(**servo, control=(s + 2) ** 2, observer=(s + 10) ** 2),
     "servo_feedthrough": Hand(**servo, D=Matrix([[1]]), control=(s + 2) ** 2, observer=(s + 10) ** 2),
     "servo_feedthrough_parametric": Hand(
