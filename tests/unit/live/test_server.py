@@ -9,6 +9,7 @@ import socket
 import subprocess
 import sys
 import threading
+import time
 from contextlib import closing
 from typing import TYPE_CHECKING, Any
 from urllib.parse import parse_qsl
@@ -211,6 +212,7 @@ def test_the_command_prints_one_line_and_ends_with_an_interrupt() -> None:
     )
     assert run.stdout is not None
     url = run.stdout.readline().strip()
+    time.sleep(3)  # while the process that answers is being started, Python's own server of forks may still complain
     run.send_signal(signal.SIGINT)
     out, err = run.communicate(timeout=SAFETY)
     assert run.returncode == 130
