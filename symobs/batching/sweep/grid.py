@@ -3,26 +3,19 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Iterable, Mapping
 from fractions import Fraction
 from math import prod
 from typing import Any
 
 from symobs._dataclass import dataclass
+from symobs.derivation.figures.plot_points import ALLOWS
 from symobs.errors import InputError, ProblemErrors, SymobsError
 
 #: More points need somebody who says that they are meant.
 MOST_POINTS = 10**8
 _ENTRY = re.compile(r"\s*([A-Za-z][A-Za-z0-9_]*)\s*=\s*(.+?)\s*", re.DOTALL)
 _EXAMPLE = "write for example l=0.1:0.1:10, m=[1, 2, 5], k=0:1/11 (11 points) or g=decade(1e-3:1e3)"
-_SIGNS: dict[str, Callable[[Fraction], bool]] = {
-    "positive": lambda value: value > 0,
-    "negative": lambda value: value < 0,
-    "nonnegative": lambda value: value >= 0,
-    "nonpositive": lambda value: value <= 0,
-    "nonzero": lambda value: value != 0,
-    "real": lambda _: True,
-}
 
 
 @dataclass(frozen=True)
@@ -188,7 +181,7 @@ def _require_signs(axis: Axis, signs: Mapping[str, str]) -> Axis:
         raise _wrong(axis.name, "it is not declared in [symbols]", f"declare it, or name one of {known}")
     ends = axis.listed or (axis.at(0), axis.at(axis.count - 1))
     wanted = signs[axis.name]
-    wrong = [value for value in ends if not _SIGNS[wanted](value)]
+    wrong = [value for value in ends if not ALLOWS[wanted](value)]
     if wanted == "nonzero" and not axis.listed and axis.step and 0 <= -axis.start / axis.step < axis.count:
         place = -axis.start / axis.step
         wrong += [Fraction(0)] if place.denominator == 1 else []
