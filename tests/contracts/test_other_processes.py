@@ -118,6 +118,7 @@ def quick_switches() -> Iterator[None]:
     sys.setswitchinterval(before)
 
 
+@pytest.mark.filterwarnings("ignore:Generating overly large repr")  # of other test modules' data, seen on the way
 def test_fresh_symbols_leave_nothing_behind(monkeypatch: pytest.MonkeyPatch) -> None:
     """Every cache has a bound, and no other table of the process holds a symbol of a design that is gone."""
     caches = [each for each in gc.get_objects() if isinstance(each, functools._lru_cache_wrapper)]
