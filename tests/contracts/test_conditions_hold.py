@@ -34,6 +34,7 @@ from tests.support.independent_algebra.plain import (
 )
 from tests.support.independent_algebra.plain_fractions import World
 from tests.support.paths import ROOT
+from tests.support.sampling import FULL
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -42,9 +43,10 @@ if TYPE_CHECKING:
 
 pytestmark = pytest.mark.slow
 
-POINTS, FEW = 200, 20
+#: With SYMOBS_FULL=1 more of them.
+POINTS, FEW = (200, 20) if FULL else (50, 8)
 #: Points on a stratum: one parameter is solved for, the others are random.
-ON_STRATUM = 15
+ON_STRATUM = 15 if FULL else 8
 
 BUILT = {
     f"fixed_modes_{'_'.join(str(-pole) for pole in poles)}": f"""

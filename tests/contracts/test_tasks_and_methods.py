@@ -315,7 +315,7 @@ def test_gains_have_the_shapes_of_the_convention(name: str) -> None:
 
 @pytest.mark.parametrize("task", TASKS)
 @given(plants())
-@settings(max_examples=20)
+@settings(max_examples=8)
 def test_all_methods_of_a_task_agree_and_meet_the_claim(task: str, sample: Sample) -> None:
     plant = plant_of(sample)
     assume(is_for(task, plant, sample.poles))
@@ -350,7 +350,7 @@ def test_all_methods_of_a_task_agree_and_meet_the_claim(task: str, sample: Sampl
 
 @pytest.mark.parametrize("task", ["observer", "state_feedback"])
 @given(plants(("dense", "hidden", "defective")))
-@settings(max_examples=25)
+@settings(max_examples=10)
 def test_the_verdict_of_a_numeric_design_is_the_solvability_of_the_linear_system(task: str, sample: Sample) -> None:
     plant = plant_of(sample)
     at = Setting.of(plant, {"poles": sample.poles}, {})
@@ -389,7 +389,7 @@ def test_a_result_survives_the_specialisation_of_its_parameters(name: str, sampl
 
 @pytest.mark.parametrize("task", TASKS)
 @given(plants(("dense", "hidden", "parametric"), largest=3), st.data())
-@settings(max_examples=20)
+@settings(max_examples=8)
 def test_a_change_of_coordinates_maps_the_gains(task: str, sample: Sample, data: st.DataObject) -> None:
     """With x̄ = T x: L̄ = T L, K̄ = K T⁻¹, and what belongs to input and output stays."""
     drawn, back = data.draw(unimodular(sample.order))
@@ -412,7 +412,7 @@ def test_a_change_of_coordinates_maps_the_gains(task: str, sample: Sample, data:
 
 
 @given(plants(largest=3))
-@settings(max_examples=20)
+@settings(max_examples=8)
 def test_an_observer_is_the_transpose_of_state_feedback_of_the_dual_pair(sample: Sample) -> None:
     plant = plant_of(sample)
     dual = symobs.StateSpace(plant.A.T, plant.C.T, plant.B.T)

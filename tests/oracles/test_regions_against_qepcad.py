@@ -5,7 +5,6 @@ By default every sixth problem; with SYMOBS_FULL=1 all of them, and longer time 
 
 from __future__ import annotations
 
-import os
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -21,13 +20,13 @@ from tests.support.regions.region_problems import PROBLEMS, by_name
 from tests.support.regions.region_proofs import nothing_in, same_intervals, same_relations
 from tests.support.regions.region_texts import expression, formula, polynomial
 from tests.support.regions.region_translation import Translation, conjunction
+from tests.support.sampling import FULL
 
 if TYPE_CHECKING:
     from tests.support.regions.region_problem import Problem
 
 pytestmark = pytest.mark.slow
 
-FULL = os.environ.get("SYMOBS_FULL") == "1"
 SLICE = PROBLEMS if FULL else PROBLEMS[::6]
 SECONDS_FOR_ROOTS = 20 if FULL else 2
 

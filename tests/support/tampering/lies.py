@@ -5,7 +5,6 @@ A change that makes another true statement is proved to be one in plain fraction
 
 from __future__ import annotations
 
-import os
 from contextlib import nullcontext
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
@@ -44,6 +43,7 @@ from tests.support.independent_algebra.regions_in_plain_fractions import (
     points,
 )
 from tests.support.independent_algebra.truth import still_true
+from tests.support.sampling import FULL
 from tests.support.tampering.mutations import Change, Line, answer_changes, changes, lines_of
 from tests.support.tools.remembered import remembered
 
@@ -55,14 +55,12 @@ if TYPE_CHECKING:
     from symobs.result import Result
     from tests.support.independent_algebra.plain import Rows
 
-#: With SYMOBS_FULL=1 every change is tried, else a stratified sample, the same in every run.
-WHOLE = os.environ.get("SYMOBS_FULL") == "1"
 #: How many changes are tried by default: of one answer, and of all the lines of a page together at least.
-OF_AN_ANSWER, OF_LINES = (10**9, 10**9) if WHOLE else (12, 130)
+OF_AN_ANSWER, OF_LINES = (10**9, 10**9) if FULL else (8, 80)
 #: Of a region, an interval or a map of poles at least so many: what the check asks of its other places is kept.
-OF_A_PICTURE = 60
+OF_A_PICTURE = 40
 #: Where the lines are so few or so short that fewer changes than this would be tried, more are tried of each.
-LEAST = 110
+LEAST = 70
 
 
 def sample(found: Sequence[Change], most: int) -> Sequence[Change]:

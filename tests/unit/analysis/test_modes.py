@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import random
 import shutil
 import subprocess
@@ -21,6 +20,7 @@ from symobs.result import render
 from symobs.stability.criteria.stability import is_beyond, is_marginal, on_boundary
 from tests.support.independent_algebra.second_reader import sympy_scalar
 from tests.support.problems.strategies import Sample, plants, unimodular
+from tests.support.sampling import FULL
 
 numeric = plants(("dense", "hidden", "defective"))
 s = sympy.Symbol("s")
@@ -124,7 +124,7 @@ def components(n: int, edges: list[set[int]]) -> list[set[int]]:
 
 # -- another system ------------------------------------------------------------------------------------------------------
 
-COUNT = 10_000 if os.environ.get("SYMOBS_FULL") == "1" else 150
+COUNT = 10_000 if FULL else 150
 #: For each plant: the rank of 𝒪, the dimension of its kernel, and the polynomial of A on the kernel, highest power first.
 SCRIPT = """
 obs(A,C)={my(R=C,K=C);for(k=1,matsize(A)[1]-1,K=K*A;R=matconcat([R;K]));R};

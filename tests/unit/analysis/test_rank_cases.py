@@ -33,6 +33,7 @@ from tests.support.independent_algebra.plain import (
     seeded,
     value_at,
 )
+from tests.support.sampling import FULL
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping
@@ -40,7 +41,7 @@ if TYPE_CHECKING:
 pytestmark = pytest.mark.slow
 
 
-POINTS, ON_EACH = 1_000, 25
+POINTS, ON_EACH = (1_000, 25) if FULL else (300, 10)
 Point = dict[str, Fraction]
 
 

@@ -5,7 +5,6 @@ Judged by plain fractions and by SymPy; nothing here asks symobs whether symobs 
 
 from __future__ import annotations
 
-import os
 import random
 from contextlib import suppress
 from fractions import Fraction
@@ -31,10 +30,10 @@ from tests.support.independent_algebra.plain import (
     rank_of,
     subtract,
 )
+from tests.support.sampling import FULL
 
 pytestmark = pytest.mark.slow
 
-FULL = os.environ.get("SYMOBS_FULL") == "1"
 PLANTS = 500 if FULL else 60
 SINGLE = 2_000 if FULL else 120
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
@@ -26,13 +25,14 @@ from tests.support.independent_algebra.plain import (
     transposed,
 )
 from tests.support.independent_algebra.plain_fractions import determinant, identity, inverse, plus, times
+from tests.support.sampling import FULL
 
 if TYPE_CHECKING:
     import random
 
     from tests.support.independent_algebra.plain import Rows
 
-DRAWS = 400 if os.environ.get("SYMOBS_FULL") else 40
+DRAWS = 400 if FULL else 40
 #: order, inputs, outputs
 SIZES = ((2, 1, 1), (3, 1, 2), (3, 2, 1), (3, 2, 2), (4, 2, 2), (4, 1, 3), (4, 2, 3))
 

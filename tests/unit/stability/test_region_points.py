@@ -5,7 +5,6 @@ By default some hundred points a problem; with SYMOBS_FULL=1 ten thousand.
 
 from __future__ import annotations
 
-import os
 import random
 import subprocess
 from dataclasses import replace
@@ -22,6 +21,7 @@ from tests.support.regions.region_answers import Answer, Cell
 from tests.support.regions.region_points import Oracle, Points, on_boundary, stable_at
 from tests.support.regions.region_problems import OBSERVERS, PROBLEMS, by_name
 from tests.support.regions.region_texts import UnreadableError, expression, formula, polynomial
+from tests.support.sampling import FULL
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -30,7 +30,6 @@ if TYPE_CHECKING:
 
 pytestmark = pytest.mark.slow
 
-FULL = os.environ.get("SYMOBS_FULL") == "1"
 POINTS = 10_000 if FULL else 300
 
 every_problem = pytest.mark.parametrize("problem", PROBLEMS, ids=lambda problem: problem.name)
