@@ -91,12 +91,16 @@ def _power_sign(sign: str, exponent: int) -> str:
     return "positive" if sign in {"positive", "negative", "nonzero"} else "nonnegative"
 
 
-def _sign_of_undeclared(name: str) -> str:
-    """Return the sign of a generator that is no parameter: of π, and of the square root of a number."""
+def _sign_of_undeclared(name: str, signs: Mapping[str, str]) -> str:
+    """Return the sign of a generator that is no parameter: of π, of a root, of exp and cosh."""
     found = function_named(name)
     if found is None:
         return "positive" if name == PI else "real"
-    return "positive" if found.kind == "sqrt" and sign_of_number(found.argument) == "positive" else "real"
+    if found.kind == "CRootOf":
+        return sign_of_number(found.value)
+    if found.kind == "sqrt":
+        return "positive" if sign_of(found.argument, signs) == "positive" else "real"
+    return "positive" if found.kind in {"exp", "cosh"} else "real"
 
 
 def _sum_of_terms(polynomial: Scalar, signs: Mapping[str, str]) -> str:
@@ -106,7 +110,7 @@ def _sum_of_terms(polynomial: Scalar, signs: Mapping[str, str]) -> str:
     for lead, powers in _signed_terms(polynomial):
         sign = lead
         for name, exponent in powers:
-            sign = _product_sign(sign, _power_sign(signs.get(name) or _sign_of_undeclared(name), exponent))
+            sign = _product_sign(sign, _power_sign(signs.get(name) or _sign_of_undeclared(name, signs), exponent))
         total = _sum_sign(total, sign)
         if total == "real":
             break

@@ -35,24 +35,27 @@ def has_decimals(value: object) -> bool:
     return _DECIMAL.search(str(value)) is not None if isinstance(value, str) else False
 
 
-def read_matrix(value: object, symbols: Symbols, where: str, beside: Sequence[object] = ()) -> Matrix:
+def read_matrix(
+    value: object, symbols: Symbols, where: str, beside: Sequence[object] = (), *, functions: bool = False
+) -> Matrix:
     """Return the exact matrix of a text, nested lists (numbers, texts, SymPy expressions) or a SymPy matrix.
 
-    That of a text stands in one context with the matrices of the texts `beside` it.
+    That of a text stands in one context with the matrices of the texts `beside` it.  With `functions`, functions of
+    parameters are read as generators.
     """
     if isinstance(value, Matrix):
         return value
     if isinstance(value, str):
-        return parse_matrix(value, symbols.names, where=where, beside=beside)
+        return parse_matrix(value, symbols.names, where=where, beside=beside, functions=functions)
     if is_sympy(value) and hasattr(value, "tolist") and len(getattr(value, "shape", ())) == 2:
         from symobs.exact.sympy_bridge.conversion import matrix_from_sympy  # noqa: PLC0415
 
-        return matrix_from_sympy(value, where)
+        return matrix_from_sympy(value, where, roots=functions)
     if str(type(value).__module__).startswith("numpy"):
         value = _from_numpy(value, where)
     if isinstance(value, Sequence) and sympy_symbols(value) | ({"": 0} if _any_sympy(value) else {}):
-        return _mixed_rows(value, symbols, where)
-    return parse_matrix(value, symbols.names, where=where)
+        return _mixed_rows(value, symbols, where, functions=functions)
+    return parse_matrix(value, symbols.names, where=where, functions=functions)
 
 
 def _any_sympy(value: object) -> bool:
@@ -61,7 +64,7 @@ def _any_sympy(value: object) -> bool:
     return is_sympy(value)
 
 
-def _mixed_rows(value: Sequence[Any], symbols: Symbols, where: str) -> Matrix:
+def _mixed_rows(value: Sequence[Any], symbols: Symbols, where: str, *, functions: bool) -> Matrix:
     rows = [list(row) if isinstance(row, (list, tuple)) else [row] for row in value]
     lengths = {len(row) for row in rows}
     if len(lengths) > 1:
@@ -69,21 +72,21 @@ def _mixed_rows(value: Sequence[Any], symbols: Symbols, where: str) -> Matrix:
         raise ShapeMismatch(message, where=where, repair="give every row the same number of entries")
     return Matrix.of(
         [
-            [read_scalar(entry, symbols, f"{where}[{i}][{j}]") for j, entry in enumerate(row)]
+            [read_scalar(entry, symbols, f"{where}[{i}][{j}]", functions=functions) for j, entry in enumerate(row)]
             for i, row in enumerate(rows)
         ]
     )
 
 
-def read_scalar(value: object, symbols: Symbols, where: str) -> Scalar:
-    """Return the exact scalar of a number, a text or a SymPy expression."""
+def read_scalar(value: object, symbols: Symbols, where: str, *, functions: bool = False) -> Scalar:
+    """Return the exact scalar of a number, a text or a SymPy expression; `functions` as for a matrix."""
     if isinstance(value, Scalar):
         return value
     if is_sympy(value):
         from symobs.exact.sympy_bridge.conversion import scalar_from_sympy  # noqa: PLC0415
 
-        return scalar_from_sympy(value, where)
-    return parse_scalar(value, symbols.names, where=where)
+        return scalar_from_sympy(value, where, roots=functions)
+    return parse_scalar(value, symbols.names, where=where, functions=functions)
 
 
 def read_values(values: Mapping[Any, Any], symbols: Symbols, names: Collection[str]) -> dict[str, Scalar]:

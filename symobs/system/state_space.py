@@ -6,12 +6,14 @@ from copy import copy
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, cast
 
-from symobs.errors import InputError, ProblemErrors, SymobsError
+from symobs.errors import InputError, SymobsError, raise_all
 from symobs.exact import Field, Ideal, Matrix, Scalar, apart_from_zero, companion, modulo
+from symobs.exact.core.generators import substitute
 from symobs.system.connections import connected
 from symobs.system.control_system import exact_of, read_control_system
 from symobs.system.findings import Findings
 from symobs.system.floats import read_floats
+from symobs.system.functions_of_parameters import over_a_base
 from symobs.system.matrices import Matrices, as_rows, shape_errors
 from symobs.system.reading import has_decimals, read_matrix, read_values
 from symobs.system.symbols import Symbols
@@ -65,15 +67,15 @@ class StateSpace:
         parts: dict[str, Matrix | None] = {}
         for name, value in (("A", A), ("B", B), ("C", C), ("D", D)):
             try:
-                parts[name] = None if value is None else read_matrix(value, named, f"plant.{name}", texts)
+                parts[name] = None if value is None else read_matrix(value, named, f"plant.{name}", texts, functions=True)
             except SymobsError as error:
                 errors.append(error)
         if parts.get("D") == Matrix.zeros(1, 1):
             parts["D"] = None
         if "A" in parts:
             errors += shape_errors({name: parts.get(name) for name in "ABC"} | {"D": None if errors else parts["D"]})
-        if errors:
-            _raise_all(errors)
+        raise_all(errors)
+        parts, relations = over_a_base(parts, known.signs)
         self.matrices = Matrices(parts["A"], parts["B"], parts["C"], parts["D"])  # type: ignore[arg-type]
         self.symbols = known
         self.time = read_time(dt, known)
@@ -92,6 +94,9 @@ class StateSpace:
         if clash and not self.is_time_varying:
             message = f"{self.variable} is the variable of the polynomials and cannot be a parameter of the plant"
             raise InputError(message, where="plant", repair="give the parameter another name")
+        if relations:
+            there = self.restricted(relations)
+            self.matrices, self.equations = there.matrices, there.equations
 
     @classmethod
     def from_transfer_function(
@@ -231,13 +236,13 @@ class StateSpace:
         """
         m, symbols = self.matrices, self.symbols.seen(list(values.values()))
         values = read_values(values, symbols, {*self.field.names, *symbols.signs})
-        B = m.B.substitute(values) if m.has_input else None
-        C = m.C.substitute(values) if m.has_output else None
-        D = m.D.substitute(values) if m.has_input and m.has_output else None
-        plant = StateSpace(m.A.substitute(values), B, C, D, self.dt, symbols=symbols)
-        images = [equation.substitute(values).numerator for equation in self.equations]
-        nonzero = [value.substitute(values).numerator for value in self.nonzero]
-        if any(value.is_zero for value in nonzero):
+        B = substitute(m.B, values) if m.has_input else None
+        C = substitute(m.C, values) if m.has_output else None
+        D = substitute(m.D, values) if m.has_input and m.has_output else None
+        plant = StateSpace(substitute(m.A, values), B, C, D, self.dt, symbols=symbols)
+        images = [substitute(equation, values).numerator for equation in self.equations]
+        nonzero = [substitute(value, values).numerator for value in self.nonzero]
+        if any(value.is_zero for value in nonzero) or any(i.is_constant and not i.is_zero for i in images):
             message = "what does not vanish is 0"
             raise ZeroDivisionError(message)
         return plant.restricted([image for image in images if not image.is_zero], nonzero)
@@ -393,7 +398,3 @@ class StateSpace:
         shown = [f"A={m.A}"] + [f"{n}={getattr(m, n)}" for n in "BC" if getattr(m, n).entries]
         return f"StateSpace({', '.join(shown)}, dt={self.dt})"
 
-
-def _raise_all(errors: Sequence[SymobsError]) -> None:
-    """Raise one error, or several as `ProblemErrors`."""
-    raise errors[0] if len(errors) == 1 else ProblemErrors(tuple(errors))

@@ -350,3 +350,9 @@ def roots_of_scalar(polynomial: Scalar, name: str) -> list[RealNumber]:
 def integer_factor(polynomial: Scalar, name: str) -> fmpz_poly:
     """Return the numerator as a polynomial in one name."""
     return fmpz_poly([int(c.fraction()) for c in reversed(polynomial.numerator.coefficients(name))])
+
+
+def root_of_fraction(number: Fraction, degree: int) -> Scalar:
+    """Return the positive root, of some degree, of a positive fraction."""
+    coefficients = [-number.numerator, *([0] * (degree - 1)), number.denominator]
+    return max(real_roots(fmpz_poly(coefficients))).scalar()
