@@ -58,6 +58,10 @@ class Condition:
         return f"{self.expression} {self.operator} 0"
 
 
+#: What a sum of terms of one sign is that cannot all vanish.
+_WEAK = {"nonnegative": "positive", "nonpositive": "negative"}
+
+
 def _product_sign(left: str, right: str) -> str:
     if "zero" in (left, right):
         return "zero"
@@ -114,7 +118,20 @@ def _sum_of_terms(polynomial: Scalar, signs: Mapping[str, str]) -> str:
         total = _sum_sign(total, sign)
         if total == "real":
             break
+    if total in _WEAK and polynomial.field.functions and _has_both_of_an_angle(polynomial, signs):
+        return _WEAK[total]
     return total
+
+
+def _has_both_of_an_angle(polynomial: Scalar, signs: Mapping[str, str]) -> bool:
+    """Tell whether two terms are a power of cos x and one of sin x, which do not vanish together, times what never does."""
+    found = set()
+    for _, powers in polynomial.each_term():
+        varying = [n for n, _ in powers if (signs.get(n) or _sign_of_undeclared(n, signs)) not in _NEVER_ZERO]
+        function = function_named(varying[0]) if len(varying) == 1 else None
+        if function is not None:
+            found.add((function.kind, function.argument))
+    return any(("cos", argument) in found for kind, argument in found if kind == "sin")
 
 
 def _signed_terms(polynomial: Scalar) -> Iterator[tuple[str, tuple[tuple[str, int], ...]]]:

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from decimal import Decimal
 from typing import Any
 
 from symobs.conditions import sign_of
 from symobs.errors import InexactInput, InputError, ShapeMismatch
 from symobs.exact import Complex, Matrix, Scalar
+from symobs.exact.core.generators import function_named, identities, symbols_named
 from symobs.expression import parse_matrix, parse_scalar
 from symobs.expression.parse import FLOATS
 from symobs.expression.source import shown
@@ -98,13 +99,13 @@ def read_values(values: Mapping[Any, Any], symbols: Symbols, names: Collection[s
     for key, value in values.items():
         name = str(getattr(key, "name", key))
         where = f"substitute.{shown(name, 40)}"
-        if name not in names and not isinstance(value, Scalar):
+        if name not in names and not isinstance(value, Scalar):  # our own values are of generators, too
             message, repair = (
                 f"{shown(name, 40)} is no parameter of the plant",
                 f"use {', '.join(sorted(names)) or 'none'}",
             )
             raise InputError(message, where=where, repair=repair)
-        read[name] = read_scalar(value, symbols, where)
+        read[name] = read_scalar(value, symbols, where, functions=True)
         sign = symbols.sign(name)
         if not isinstance(value, Scalar) and sign_of(read[name], symbols.signs) in _EXCLUDED.get(sign, ()):
             message = f"{read[name]} is not {sign}, as {name} is declared"
@@ -125,3 +126,50 @@ def read_complex(value: object, where: str) -> Complex:
     from symobs.exact.sympy_bridge.conversion import complex_from_sympy  # noqa: PLC0415
 
     return complex_from_sympy(value, where, roots=True)
+
+
+# -- functions of parameters -------------------------------------------------------------------------------------------
+#
+# cos θ and sin θ, e⁻ᵀ and roots are generators, letters of their own; what is known of them are the polynomials that
+# vanish, cos² θ + sin² θ = 1, and their signs.  What no polynomial says, that e⁻ᵀ decreases with T, is not known here:
+# answers then hold for all values of the letters, those that occur among them.
+
+
+def over_a_base(
+    matrices: Mapping[str, Matrix | None], signs: Mapping[str, str], where: str = "plant"
+) -> tuple[dict[str, Matrix | None], tuple[Scalar, ...]]:
+    """Return matrices with their functions in a common base, and the polynomials in the base that vanish.
+
+    Raises `InputError` for a function of time, and for a square root of what may be negative.
+    """
+    given = [matrix for matrix in matrices.values() if matrix is not None]
+    functions = {f for matrix in given for name in matrix.names if (f := function_named(name)) is not None}
+    if all(f.square for f in functions):
+        return dict(matrices), ()
+    for f in sorted(functions, key=lambda f: f.text):
+        if f.symbols & {"t", "s", "z"}:
+            message = f"{f.text} is a function of {', '.join(f.symbols & {'t', 's', 'z'})}"
+            raise InputError(message, where=where, repair="entries are rational in t, and have no s or z")
+        if f.kind == "sqrt" and not f.square and sign_of(f.argument, signs) not in {"positive", "nonnegative"}:
+            message = f"{f.text}: {f.argument} may be negative"
+            raise InputError(message, where=where, repair="declare the sign of its symbols, positive for example")
+    meanings, relations = identities(given)
+    moved = {name: None if matrix is None else _in_base(matrix, meanings) for name, matrix in matrices.items()}
+    return moved, relations
+
+
+def _in_base(matrix: Matrix, meanings: Mapping[str, Scalar]) -> Matrix:
+    images = {name: meanings[name] for name in matrix.names if name in meanings}
+    return matrix.substitute(images) if images else matrix
+
+
+def is_identity(value: Scalar) -> bool:
+    """Tell whether a polynomial vanishes because of what its functions are, as cos² θ + sin² θ − 1 does."""
+    if not any(function_named(name) for name in value.names):
+        return False
+    return any(value in {relation, -relation} for relation in identities([value])[1])
+
+
+def plain_symbols(names: Iterable[str]) -> frozenset[str]:
+    """Return the symbols among the names of generators, those inside functions too."""
+    return frozenset(symbol for name in names for symbol in symbols_named(name))

@@ -13,16 +13,15 @@ from symobs.system.connections import connected
 from symobs.system.control_system import exact_of, read_control_system
 from symobs.system.findings import Findings
 from symobs.system.floats import read_floats
-from symobs.system.functions_of_parameters import over_a_base
 from symobs.system.matrices import Matrices, as_rows, shape_errors
-from symobs.system.reading import has_decimals, read_matrix, read_values
+from symobs.system.reading import has_decimals, over_a_base, plain_symbols, read_matrix, read_values
 from symobs.system.symbols import Symbols
 from symobs.system.time_domain import Continuous, Discrete, TimeVarying, read_time
 from symobs.system.transfer_function_text import WrittenTransferFunction, read_characteristic
 from symobs.system.transfer_matrix import WrittenTransferMatrix, read_written
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Mapping, Sequence
+    from collections.abc import Callable, Iterable, Mapping
 
 #: Equations of more terms than this cost no more: where they are long, what they leave is mostly few points.
 _LONG = 25
@@ -67,7 +66,9 @@ class StateSpace:
         parts: dict[str, Matrix | None] = {}
         for name, value in (("A", A), ("B", B), ("C", C), ("D", D)):
             try:
-                parts[name] = None if value is None else read_matrix(value, named, f"plant.{name}", texts, functions=True)
+                parts[name] = (
+                    None if value is None else read_matrix(value, named, f"plant.{name}", texts, functions=True)
+                )
             except SymobsError as error:
                 errors.append(error)
         if parts.get("D") == Matrix.zeros(1, 1):
@@ -94,9 +95,8 @@ class StateSpace:
         if clash and not self.is_time_varying:
             message = f"{self.variable} is the variable of the polynomials and cannot be a parameter of the plant"
             raise InputError(message, where="plant", repair="give the parameter another name")
-        if relations:
-            there = self.restricted(relations)
-            self.matrices, self.equations = there.matrices, there.equations
+        there = self.restricted(relations)
+        self.matrices, self.equations = there.matrices, there.equations
 
     @classmethod
     def from_transfer_function(
@@ -235,7 +235,7 @@ class StateSpace:
         Raises `InputError` for what is no parameter or cannot have the value, ZeroDivisionError where no plant is left.
         """
         m, symbols = self.matrices, self.symbols.seen(list(values.values()))
-        values = read_values(values, symbols, {*self.field.names, *symbols.signs})
+        values = read_values(values, symbols, {*plain_symbols(self.field.names), *symbols.signs})
         B = substitute(m.B, values) if m.has_input else None
         C = substitute(m.C, values) if m.has_output else None
         D = substitute(m.D, values) if m.has_input and m.has_output else None
@@ -397,4 +397,3 @@ class StateSpace:
         m = self.matrices
         shown = [f"A={m.A}"] + [f"{n}={getattr(m, n)}" for n in "BC" if getattr(m, n).entries]
         return f"StateSpace({', '.join(shown)}, dt={self.dt})"
-

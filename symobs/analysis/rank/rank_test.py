@@ -14,13 +14,13 @@ from symobs.analysis.strata.rank_cases import (
     Stratum,
     answer_on,
     answer_with,
+    equations_of_locus,
     generic_claims,
     kernel_claims,
     minors_claim,
     piece_of,
     stratum_claims,
     stratum_of,
-    equations_of_locus,
 )
 from symobs.analysis.strata.rank_stratification import (
     ELIMINATED_UP_TO,

@@ -26,7 +26,7 @@ from symobs.conditions import Condition
 from symobs.derivation.builder import relation
 from symobs.exact import Matrix, Scalar, apart_from_zero
 from symobs.formula import Environment
-from symobs.system.functions_of_parameters import is_identity
+from symobs.system.reading import is_identity
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping

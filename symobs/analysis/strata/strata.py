@@ -10,7 +10,7 @@ from functools import partial
 from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 
 from symobs.analysis.strata.loci import Region, loci
-from symobs.analysis.strata.rank_cases import parametrised, equations_of_locus
+from symobs.analysis.strata.rank_cases import equations_of_locus, parametrised
 from symobs.analysis.strata.rank_stratification import Node
 from symobs.conditions import Condition, never_zero, vanishing_factors
 from symobs.errors import CertificateRejected

@@ -185,6 +185,16 @@ class RealRoot(Function):
         return f"CRootOf({self.argument}, {self.number.index})"
 
     @property
+    def radicand(self) -> Scalar | None:
+        """The fraction a where this is the positive root of some degree of a, else None."""
+        first, *others, last = map(int, self.number.polynomial.coeffs())
+        return (
+            Scalar.of(Fraction(-first, last))
+            if first < 0 and not any(others) and self.number.interval()[0] >= 0
+            else None
+        )
+
+    @property
     def symbols(self) -> frozenset[str]:
         """Nothing: a number has no symbols."""
         return frozenset()

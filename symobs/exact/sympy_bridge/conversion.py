@@ -221,7 +221,13 @@ def complex_from_sympy(expression: Any, where: str, *, roots: bool = False) -> C
     if roots and isinstance(expression, sympy.CRootOf) and expression.is_real:
         factor = scalar_from_sympy(expression.expr, where)
         return Complex.of(roots_of_scalar(factor, *factor.names)[expression.index].scalar())
-    if roots and expression.is_Pow and expression.base.is_Rational and expression.exp.is_Rational and expression.base > 0:
+    if (
+        roots
+        and expression.is_Pow
+        and expression.base.is_Rational
+        and expression.exp.is_Rational
+        and expression.base > 0
+    ):
         base = Fraction(int(expression.base.p), int(expression.base.q))
         return Complex.of(root_of_fraction(base, int(expression.exp.q)) ** int(expression.exp.p))
     if roots and expression.is_Function and str(expression.func) in functions.KINDS:
