@@ -17,7 +17,7 @@ from symobs.expression import parse_matrix, parse_polynomial
 from symobs.expression.source import shown
 from symobs.specification import parse_signal, read_names, read_poles
 from symobs.system import StateSpace, read_matrix, read_scalar
-from symobs.system.reading import plain_symbols, read_values
+from symobs.system.reading import read_values
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -51,7 +51,7 @@ def at_values(result: Any, given: Mapping[Any, Any]) -> Any:
 
 def _values(given: Mapping[Any, Any], plant: StateSpace, asked: set[str]) -> dict[str, Scalar]:
     """Return exact values by name; raises `InputError` for what is no parameter, or what its sign excludes."""
-    known = {*plain_symbols(plant.field.names), *plant.symbols.signs, *asked} - {plant.variable, "t"}
+    known = {*plant.matrices.symbols, *plant.symbols.signs, *asked} - {plant.variable, "t"}
     symbols, names = plant.symbols.seen(list(given.values())), {name for name in known if name.isidentifier()}
     try:
         read = together(*(partial(read_values, {name: value}, symbols, names) for name, value in given.items()))

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Iterable, Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from decimal import Decimal
 from typing import Any
 
 from symobs.conditions import sign_of
 from symobs.errors import InexactInput, InputError, ShapeMismatch
 from symobs.exact import Complex, Matrix, Scalar
-from symobs.exact.core.generators import function_named, identities, symbols_named
+from symobs.exact.core.generators import function_named, identities
 from symobs.expression import parse_matrix, parse_scalar
 from symobs.expression.parse import FLOATS
 from symobs.expression.source import shown
@@ -168,8 +168,3 @@ def is_identity(value: Scalar) -> bool:
     if not any(function_named(name) for name in value.names):
         return False
     return any(value in {relation, -relation} for relation in identities([value])[1])
-
-
-def plain_symbols(names: Iterable[str]) -> frozenset[str]:
-    """Return the symbols among the names of generators, those inside functions too."""
-    return frozenset(symbol for name in names for symbol in symbols_named(name))

@@ -11,6 +11,7 @@ import sympy
 
 import symobs
 from symobs.errors import InputError
+from symobs.expect.expectations import mismatches
 from symobs.problem import validate
 from symobs.problem.file_tables import parse
 
@@ -116,9 +117,29 @@ def test_constants_of_a_file_are_functions_or_roots() -> None:
         poles = [-2, -3]
     """
     (design,) = validate(parse(text, "problem")).solve()
+    assert set(design.symbols) == {"theta"}
     for angle in (0.2, 0.9):
         A, C, L = (numbers(value, {"theta": angle}) for value in (design.plant.A, design.plant.C, design.L))
         assert np.poly(A - L @ C) == pytest.approx([1, 5, 6], abs=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("entry", "missed"), [("(3*omega - d)^2 - omega^2*cos(theta)", []), ("omega^2*cos(theta)", ["L"])]
+)
+def test_expected_answers_are_read_with_functions(entry: str, missed: list[str]) -> None:
+    text = f"""
+        task = "observer"
+        symbols = {{ omega = "positive", d = "real", theta = "real" }}
+        [plant]
+        A = "[0 1; -omega^2*cos(theta) -d]"
+        C = "[1 0]"
+        [specification]
+        poles = "-3*omega, -3*omega"
+        [expect]
+        L = "[6*omega - d; {entry}]"
+    """  # s² + (d + l₁)s + ω² cos θ + d l₁ + l₂ = (s + 3ω)²
+    problem = validate(parse(text, "problem"))
+    assert [each.split(":")[0] for each in mismatches(problem.solve(), problem.expect)] == missed
 
 
 @pytest.mark.parametrize(
