@@ -124,7 +124,7 @@ def test_constants_of_a_file_are_functions_or_roots() -> None:
 
 
 @pytest.mark.parametrize(
-    ("entry", "missed"), [("(3*omega - d)^2 - omega^2*cos(theta)", []), ("omega^2*cos(theta)", ["L"])]
+    ("entry", "missed"), [("(3*omega - d)^2 - omega^2*cos(theta)", []), ("omega^2*cos(theta)", ["expect.L"])]
 )
 def test_expected_answers_are_read_with_functions(entry: str, missed: list[str]) -> None:
     text = f"""
