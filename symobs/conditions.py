@@ -58,6 +58,10 @@ class Condition:
         return f"{self.expression} {self.operator} 0"
 
 
+#: What a sum of terms of one sign is that cannot all vanish.
+_WEAK = {"nonnegative": "positive", "nonpositive": "negative"}
+
+
 def _product_sign(left: str, right: str) -> str:
     if "zero" in (left, right):
         return "zero"
@@ -91,12 +95,16 @@ def _power_sign(sign: str, exponent: int) -> str:
     return "positive" if sign in {"positive", "negative", "nonzero"} else "nonnegative"
 
 
-def _sign_of_undeclared(name: str) -> str:
-    """Return the sign of a generator that is no parameter: of π, and of the square root of a number."""
+def _sign_of_undeclared(name: str, signs: Mapping[str, str]) -> str:
+    """Return the sign of a generator that is no parameter: of π, of a root, of exp and cosh."""
     found = function_named(name)
     if found is None:
         return "positive" if name == PI else "real"
-    return "positive" if found.kind == "sqrt" and sign_of_number(found.argument) == "positive" else "real"
+    if found.kind == "CRootOf":
+        return sign_of_number(found.value)
+    if found.kind == "sqrt":
+        return "positive" if sign_of(found.argument, signs) == "positive" else "real"
+    return "positive" if found.kind in {"exp", "cosh"} else "real"
 
 
 def _sum_of_terms(polynomial: Scalar, signs: Mapping[str, str]) -> str:
@@ -106,11 +114,24 @@ def _sum_of_terms(polynomial: Scalar, signs: Mapping[str, str]) -> str:
     for lead, powers in _signed_terms(polynomial):
         sign = lead
         for name, exponent in powers:
-            sign = _product_sign(sign, _power_sign(signs.get(name) or _sign_of_undeclared(name), exponent))
+            sign = _product_sign(sign, _power_sign(signs.get(name) or _sign_of_undeclared(name, signs), exponent))
         total = _sum_sign(total, sign)
         if total == "real":
             break
+    if total in _WEAK and polynomial.field.functions and _has_both_of_an_angle(polynomial, signs):
+        return _WEAK[total]
     return total
+
+
+def _has_both_of_an_angle(polynomial: Scalar, signs: Mapping[str, str]) -> bool:
+    """Tell whether two terms are a power of cos x and one of sin x, which do not vanish together, times what never does."""
+    found = set()
+    for _, powers in polynomial.each_term():
+        varying = [n for n, _ in powers if (signs.get(n) or _sign_of_undeclared(n, signs)) not in _NEVER_ZERO]
+        function = function_named(varying[0]) if len(varying) == 1 else None
+        if function is not None:
+            found.add((function.kind, function.argument))
+    return any(("cos", argument) in found for kind, argument in found if kind == "sin")
 
 
 def _signed_terms(polynomial: Scalar) -> Iterator[tuple[str, tuple[tuple[str, int], ...]]]:

@@ -11,7 +11,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Sequence
 
 
 class SymobsError(Exception):
@@ -101,9 +101,14 @@ def together(*actions: Callable[[], Any]) -> tuple[Any, ...]:
             errors += several.errors
         except InputError as error:
             errors.append(error)
+    raise_all(errors)
+    return tuple(values)
+
+
+def raise_all(errors: Sequence[SymobsError]) -> None:
+    """Raise one error, or several as `ProblemErrors`; nothing where there is none."""
     if errors:
         raise errors[0] if len(errors) == 1 else ProblemErrors(tuple(errors))
-    return tuple(values)
 
 
 class UsageError(SymobsError):

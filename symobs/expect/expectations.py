@@ -158,8 +158,9 @@ def names_of(result: Answered) -> Any:
         used = {plant.variable}.union(*map(symbols_in, exact))
     else:
         used = {name for value in exact for name in value.names} - {plant.variable}
-    if result.in_time:  # t is the variable there, and generators such as exp(-t) are no names
-        used = {name for name in used if name.isidentifier()} - {"t"}
+    used = {name for name in used if name.isidentifier()}  # generators such as exp(-t) are no names
+    if result.in_time:  # t is the variable there
+        used -= {"t"}
     return {**dict.fromkeys(sorted(used), "real"), **declared}
 
 
@@ -175,12 +176,16 @@ def shown_value(value: Any) -> str:
 def met(result: Answered, name: str, expected: Any, where: str) -> bool:
     """Return whether an expected answer equals that of the result."""
     found, names, variable = found_in(result, name), names_of(result), result.plant.variable
-    if (result.in_time or result.plant.is_time_varying) and isinstance(found, (Matrix, Scalar)):
+    in_time = result.in_time or result.plant.is_time_varying
+    has_functions = any(not function.square for function in result.plant.field.functions.values())
+    if in_time and isinstance(found, (Matrix, Scalar)):
         names = names and {name: sign for name, sign in names.items() if name != "t"}
         read = parse_matrix if isinstance(found, Matrix) else parse_scalar
         return functions_agree(read(expected, names, variable="t", where=where, functions=True, rounding=True), found)
     if isinstance(found, Matrix):
         known = names if names is None or variable not in found.names else {**names, variable: "real"}
+        if has_functions:
+            return functions_agree(parse_matrix(expected, known, where=where, functions=True, rounding=True), found)
         return agrees(parse_matrix(expected, known, where=where, rounding=True), found)
     table = factored_table(found)
     if table is not None:
@@ -191,7 +196,7 @@ def met(result: Answered, name: str, expected: Any, where: str) -> bool:
     if isinstance(found, (Scalar, Factored)):
         value = found.value if isinstance(found, Factored) else found
         free = None if names is not None and variable in names else variable
-        if roots_in(value):
+        if has_functions or roots_in(value):
             read_as = parse_scalar(expected, names, variable=free, where=where, functions=True, rounding=True)
             return functions_agree(read_as, value)
         return agrees(parse_scalar(expected, names, variable=free, where=where, rounding=True), value)

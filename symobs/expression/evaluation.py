@@ -9,6 +9,7 @@ from symobs._dataclass import dataclass
 from symobs.errors import BudgetExceeded
 from symobs.exact import Complex, Scalar
 from symobs.exact.algebraic.conjugates import root_in_field
+from symobs.exact.algebraic.real_algebraic import root_of_fraction
 from symobs.exact.core import generators
 from symobs.exact.core.generators import PI
 from symobs.expression.fast_path import plain_rows
@@ -28,6 +29,8 @@ if TYPE_CHECKING:
     Entry: TypeAlias = "Number | Grid"
 
 MOST_CHARACTERS = 10_000
+#: The highest degree of a root of a number.
+_MOST_DEGREE = 12
 _SMALLER = "write something smaller, with a symbol in place of what is large"
 
 
@@ -73,6 +76,14 @@ _OPERATIONS: dict[str, Callable[[Any, Any], Any]] = {
 }
 #: What one operation with complex numbers takes of operations with scalars.
 _SCALAR_OPERATIONS = 12
+
+
+def _degree_of_root(base: Scalar, exponent: Number) -> int:
+    """Return q where a positive number is raised to p/q, of a low degree; else 0."""
+    if isinstance(exponent, Complex) or not (exponent.is_constant and base.is_constant) or base.fraction() <= 0:
+        return 0
+    degree = exponent.fraction().denominator
+    return degree if 1 < degree <= _MOST_DEGREE and abs(exponent.fraction().numerator) <= _MOST_DEGREE else 0
 
 
 class Evaluator:
@@ -131,6 +142,9 @@ class Evaluator:
                 return self._call(node, numbers[0])
 
     def _power(self, base: Number, place: int, value: Number) -> Number:
+        if self.functions and isinstance(base, Scalar) and (degree := _degree_of_root(base, value)):
+            root = root_of_fraction(base.fraction(), degree)
+            return root ** int(value.fraction() * degree)  # type: ignore[union-attr]
         exponent = self._exponent(value, place)
         if isinstance(base, Complex):
             return self._complex_power(base, exponent, place)

@@ -1,4 +1,4 @@
-"""The constants of a problem file: names for numbers, `r = "sqrt(3)"`, that texts may use."""
+"""The constants of a problem file: names for numbers, `r = "sqrt(3)"` or `c = "cos(theta)"`, that texts may use."""
 
 from __future__ import annotations
 
@@ -6,8 +6,10 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from symobs.errors import InputError
-from symobs.exact.algebraic.enclosure import is_number
-from symobs.expression import declared_name, parse_scalar
+from symobs.exact.algebraic.real_algebraic import roots_of_scalar
+from symobs.exact.core.generators import PI, function_named
+from symobs.expect.roots import COUNTED
+from symobs.expression import declared_name, parse_polynomial, parse_scalar
 from symobs.expression.source import shown
 from symobs.problem.file_tables import came
 
@@ -15,6 +17,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
     from contextlib import AbstractContextManager
 
+    from symobs.exact import Scalar
     from symobs.system import Symbols
 
 _MAX_CONSTANTS = 100
@@ -43,8 +46,20 @@ def _with_constant(name: str, value: Any, symbols: Symbols) -> Symbols:
         raise InputError(message, where=where, repair="keep one of the two declarations")
     if not isinstance(value, (str, int)) or isinstance(value, bool):
         raise InputError(f"a number is expected, but {came(value)} came", where=where, repair='write r = "sqrt(3)"')
-    found = parse_scalar(value, {**symbols.signs, **known}, where=where)
-    if not is_number(found):
-        message = f"{name} contains a symbol, and a constant is a number"
+    found = _counted(value, where) or parse_scalar(value, {**symbols.signs, **known}, where=where, functions=True)
+    if any(function_named(part) is None for part in found.names - {PI}):
+        message = f"{name} contains a symbol that is not inside a function, and a constant is a number"
         raise InputError(message, where=where, repair="write the expression where it is needed")
     return replace(symbols, constants={**known, name: found})
+
+
+def _counted(value: object, where: str) -> Scalar | None:
+    """Return the real root that `CRootOf(x^3 - x - 1, 0)` names, counted from the least; None for another text."""
+    written = COUNTED.fullmatch(value) if isinstance(value, str) else None
+    if written is None:
+        return None
+    roots = roots_of_scalar(parse_polynomial(written[1], "x", {}, where=where), "x")
+    if int(written[2]) >= len(roots):
+        message = f"the polynomial has {len(roots)} real roots, and the first of them is number 0"
+        raise InputError(message, where=where, repair='write r = "CRootOf(x^3 - x - 1, 0)"')
+    return roots[int(written[2])].scalar()

@@ -51,7 +51,7 @@ def at_values(result: Any, given: Mapping[Any, Any]) -> Any:
 
 def _values(given: Mapping[Any, Any], plant: StateSpace, asked: set[str]) -> dict[str, Scalar]:
     """Return exact values by name; raises `InputError` for what is no parameter, or what its sign excludes."""
-    known = {*plant.field.names, *plant.symbols.signs, *asked} - {plant.variable, "t"}
+    known = {*plant.matrices.symbols, *plant.symbols.signs, *asked} - {plant.variable, "t"}
     symbols, names = plant.symbols.seen(list(given.values())), {name for name in known if name.isidentifier()}
     try:
         read = together(*(partial(read_values, {name: value}, symbols, names) for name, value in given.items()))

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from symobs.errors import InputError, UsageError
 from symobs.exact.algebraic.enclosure import is_number
+from symobs.exact.core.generators import symbols_in
 from symobs.exact.floating.doubles import nearest_double
 from symobs.system import StateSpace
 
@@ -42,7 +43,9 @@ def observer_of(result: Any) -> Controller | None:
 
 def require_numbers(matrices: Iterable[Matrix], wanted: str) -> None:
     """Raise `InputError` where matrices contain letters, naming them and how to give them values."""
-    names = {name for matrix in matrices for entry in matrix.entries if not is_number(entry) for name in entry.names}
+    names = {
+        name for matrix in matrices for entry in matrix.entries if not is_number(entry) for name in symbols_in(entry)
+    }
     if names:
         listed = ", ".join(sorted(names))
         message = f"{wanted} needs numbers, and {listed} {'has' if len(names) == 1 else 'have'} no value"

@@ -55,7 +55,7 @@ class Faces:
 
 def signs(plant: StateSpace, values: Iterable[Any] = ()) -> dict[str, str]:
     """Return every symbol of a plant and of some values with its sign."""
-    names = {*plant.symbols.signs, *plant.field.names}.union(*(getattr(value, "names", ()) for value in values))
+    names = {*plant.symbols.signs, *plant.matrices.symbols}.union(*(getattr(value, "names", ()) for value in values))
     names = {plain for name in names for plain in symbols_named(name)} - {plant.variable, "t", PI}
     return {name: plant.symbols.sign(name) for name in sorted(names)}
 

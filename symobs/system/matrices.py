@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 from symobs.errors import InputError, ShapeMismatch, SymobsError
 from symobs.exact import Matrix
+from symobs.exact.core.generators import symbols_in
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -30,6 +31,11 @@ class Matrices:
     def has_feedthrough(self) -> bool:
         """Whether D is not zero."""
         return not self.D.is_zero
+
+    @property
+    def symbols(self) -> frozenset[str]:
+        """The plain symbols of the entries, those inside functions too."""
+        return symbols_in(self.A) | symbols_in(self.B) | symbols_in(self.C) | symbols_in(self.D)
 
     def __eq__(self, other: object) -> bool:
         return self._value == other._value if isinstance(other, Matrices) else NotImplemented

@@ -10,6 +10,7 @@ from typing import Any
 from symobs.conditions import sign_of
 from symobs.errors import InexactInput, InputError, ShapeMismatch
 from symobs.exact import Complex, Matrix, Scalar
+from symobs.exact.core.generators import function_named, identities
 from symobs.expression import parse_matrix, parse_scalar
 from symobs.expression.parse import FLOATS
 from symobs.expression.source import shown
@@ -35,24 +36,27 @@ def has_decimals(value: object) -> bool:
     return _DECIMAL.search(str(value)) is not None if isinstance(value, str) else False
 
 
-def read_matrix(value: object, symbols: Symbols, where: str, beside: Sequence[object] = ()) -> Matrix:
+def read_matrix(
+    value: object, symbols: Symbols, where: str, beside: Sequence[object] = (), *, functions: bool = False
+) -> Matrix:
     """Return the exact matrix of a text, nested lists (numbers, texts, SymPy expressions) or a SymPy matrix.
 
-    That of a text stands in one context with the matrices of the texts `beside` it.
+    That of a text stands in one context with the matrices of the texts `beside` it.  With `functions`, functions of
+    parameters are read as generators.
     """
     if isinstance(value, Matrix):
         return value
     if isinstance(value, str):
-        return parse_matrix(value, symbols.names, where=where, beside=beside)
+        return parse_matrix(value, symbols.names, where=where, beside=beside, functions=functions)
     if is_sympy(value) and hasattr(value, "tolist") and len(getattr(value, "shape", ())) == 2:
         from symobs.exact.sympy_bridge.conversion import matrix_from_sympy  # noqa: PLC0415
 
-        return matrix_from_sympy(value, where)
+        return matrix_from_sympy(value, where, roots=functions)
     if str(type(value).__module__).startswith("numpy"):
         value = _from_numpy(value, where)
     if isinstance(value, Sequence) and sympy_symbols(value) | ({"": 0} if _any_sympy(value) else {}):
-        return _mixed_rows(value, symbols, where)
-    return parse_matrix(value, symbols.names, where=where)
+        return _mixed_rows(value, symbols, where, functions=functions)
+    return parse_matrix(value, symbols.names, where=where, functions=functions)
 
 
 def _any_sympy(value: object) -> bool:
@@ -61,7 +65,7 @@ def _any_sympy(value: object) -> bool:
     return is_sympy(value)
 
 
-def _mixed_rows(value: Sequence[Any], symbols: Symbols, where: str) -> Matrix:
+def _mixed_rows(value: Sequence[Any], symbols: Symbols, where: str, *, functions: bool) -> Matrix:
     rows = [list(row) if isinstance(row, (list, tuple)) else [row] for row in value]
     lengths = {len(row) for row in rows}
     if len(lengths) > 1:
@@ -69,21 +73,21 @@ def _mixed_rows(value: Sequence[Any], symbols: Symbols, where: str) -> Matrix:
         raise ShapeMismatch(message, where=where, repair="give every row the same number of entries")
     return Matrix.of(
         [
-            [read_scalar(entry, symbols, f"{where}[{i}][{j}]") for j, entry in enumerate(row)]
+            [read_scalar(entry, symbols, f"{where}[{i}][{j}]", functions=functions) for j, entry in enumerate(row)]
             for i, row in enumerate(rows)
         ]
     )
 
 
-def read_scalar(value: object, symbols: Symbols, where: str) -> Scalar:
-    """Return the exact scalar of a number, a text or a SymPy expression."""
+def read_scalar(value: object, symbols: Symbols, where: str, *, functions: bool = False) -> Scalar:
+    """Return the exact scalar of a number, a text or a SymPy expression; `functions` as for a matrix."""
     if isinstance(value, Scalar):
         return value
     if is_sympy(value):
         from symobs.exact.sympy_bridge.conversion import scalar_from_sympy  # noqa: PLC0415
 
-        return scalar_from_sympy(value, where)
-    return parse_scalar(value, symbols.names, where=where)
+        return scalar_from_sympy(value, where, roots=functions)
+    return parse_scalar(value, symbols.names, where=where, functions=functions)
 
 
 def read_values(values: Mapping[Any, Any], symbols: Symbols, names: Collection[str]) -> dict[str, Scalar]:
@@ -95,13 +99,13 @@ def read_values(values: Mapping[Any, Any], symbols: Symbols, names: Collection[s
     for key, value in values.items():
         name = str(getattr(key, "name", key))
         where = f"substitute.{shown(name, 40)}"
-        if name not in names and not isinstance(value, Scalar):
+        if name not in names and not isinstance(value, Scalar):  # our own values are of generators, too
             message, repair = (
                 f"{shown(name, 40)} is no parameter of the plant",
                 f"use {', '.join(sorted(names)) or 'none'}",
             )
             raise InputError(message, where=where, repair=repair)
-        read[name] = read_scalar(value, symbols, where)
+        read[name] = read_scalar(value, symbols, where, functions=True)
         sign = symbols.sign(name)
         if not isinstance(value, Scalar) and sign_of(read[name], symbols.signs) in _EXCLUDED.get(sign, ()):
             message = f"{read[name]} is not {sign}, as {name} is declared"
@@ -122,3 +126,45 @@ def read_complex(value: object, where: str) -> Complex:
     from symobs.exact.sympy_bridge.conversion import complex_from_sympy  # noqa: PLC0415
 
     return complex_from_sympy(value, where, roots=True)
+
+
+# -- functions of parameters -------------------------------------------------------------------------------------------
+#
+# cos θ and sin θ, e⁻ᵀ and roots are generators, letters of their own; what is known of them are the polynomials that
+# vanish, cos² θ + sin² θ = 1, and their signs.  What no polynomial says, that e⁻ᵀ decreases with T, is not known here:
+# answers then hold for all values of the letters, those that occur among them.
+
+
+def over_a_base(
+    matrices: Mapping[str, Matrix | None], signs: Mapping[str, str], where: str = "plant"
+) -> tuple[dict[str, Matrix | None], tuple[Scalar, ...]]:
+    """Return matrices with their functions in a common base, and the polynomials in the base that vanish.
+
+    Raises `InputError` for a function of time, and for a square root of what may be negative.
+    """
+    given = [matrix for matrix in matrices.values() if matrix is not None]
+    functions = {f for matrix in given for name in matrix.names if (f := function_named(name)) is not None}
+    if all(f.square for f in functions):
+        return dict(matrices), ()
+    for f in sorted(functions, key=lambda f: f.text):
+        if f.symbols & {"t", "s", "z"}:
+            message = f"{f.text} is a function of {', '.join(f.symbols & {'t', 's', 'z'})}"
+            raise InputError(message, where=where, repair="entries are rational in t, and have no s or z")
+        if f.kind == "sqrt" and not f.square and sign_of(f.argument, signs) not in {"positive", "nonnegative"}:
+            message = f"{f.text}: {f.argument} may be negative"
+            raise InputError(message, where=where, repair="declare the sign of its symbols, positive for example")
+    meanings, relations = identities(given)
+    moved = {name: None if matrix is None else _in_base(matrix, meanings) for name, matrix in matrices.items()}
+    return moved, relations
+
+
+def _in_base(matrix: Matrix, meanings: Mapping[str, Scalar]) -> Matrix:
+    images = {name: meanings[name] for name in matrix.names if name in meanings}
+    return matrix.substitute(images) if images else matrix
+
+
+def is_identity(value: Scalar) -> bool:
+    """Tell whether a polynomial vanishes because of what its functions are, as cos² θ + sin² θ − 1 does."""
+    if not any(function_named(name) for name in value.names):
+        return False
+    return any(value in {relation, -relation} for relation in identities([value])[1])

@@ -6,21 +6,22 @@ from copy import copy
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, cast
 
-from symobs.errors import InputError, ProblemErrors, SymobsError
+from symobs.errors import InputError, SymobsError, raise_all
 from symobs.exact import Field, Ideal, Matrix, Scalar, apart_from_zero, companion, modulo
+from symobs.exact.core.generators import substitute
 from symobs.system.connections import connected
 from symobs.system.control_system import exact_of, read_control_system
 from symobs.system.findings import Findings
 from symobs.system.floats import read_floats
 from symobs.system.matrices import Matrices, as_rows, shape_errors
-from symobs.system.reading import has_decimals, read_matrix, read_values
+from symobs.system.reading import has_decimals, over_a_base, read_matrix, read_values
 from symobs.system.symbols import Symbols
 from symobs.system.time_domain import Continuous, Discrete, TimeVarying, read_time
 from symobs.system.transfer_function_text import WrittenTransferFunction, read_characteristic
 from symobs.system.transfer_matrix import WrittenTransferMatrix, read_written
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Mapping, Sequence
+    from collections.abc import Callable, Iterable, Mapping
 
 #: Equations of more terms than this cost no more: where they are long, what they leave is mostly few points.
 _LONG = 25
@@ -65,15 +66,17 @@ class StateSpace:
         parts: dict[str, Matrix | None] = {}
         for name, value in (("A", A), ("B", B), ("C", C), ("D", D)):
             try:
-                parts[name] = None if value is None else read_matrix(value, named, f"plant.{name}", texts)
+                parts[name] = (
+                    None if value is None else read_matrix(value, named, f"plant.{name}", texts, functions=True)
+                )
             except SymobsError as error:
                 errors.append(error)
         if parts.get("D") == Matrix.zeros(1, 1):
             parts["D"] = None
         if "A" in parts:
             errors += shape_errors({name: parts.get(name) for name in "ABC"} | {"D": None if errors else parts["D"]})
-        if errors:
-            _raise_all(errors)
+        raise_all(errors)
+        parts, relations = over_a_base(parts, known.signs)
         self.matrices = Matrices(parts["A"], parts["B"], parts["C"], parts["D"])  # type: ignore[arg-type]
         self.symbols = known
         self.time = read_time(dt, known)
@@ -92,6 +95,8 @@ class StateSpace:
         if clash and not self.is_time_varying:
             message = f"{self.variable} is the variable of the polynomials and cannot be a parameter of the plant"
             raise InputError(message, where="plant", repair="give the parameter another name")
+        there = self.restricted(relations)
+        self.matrices, self.equations = there.matrices, there.equations
 
     @classmethod
     def from_transfer_function(
@@ -230,14 +235,14 @@ class StateSpace:
         Raises `InputError` for what is no parameter or cannot have the value, ZeroDivisionError where no plant is left.
         """
         m, symbols = self.matrices, self.symbols.seen(list(values.values()))
-        values = read_values(values, symbols, {*self.field.names, *symbols.signs})
-        B = m.B.substitute(values) if m.has_input else None
-        C = m.C.substitute(values) if m.has_output else None
-        D = m.D.substitute(values) if m.has_input and m.has_output else None
-        plant = StateSpace(m.A.substitute(values), B, C, D, self.dt, symbols=symbols)
-        images = [equation.substitute(values).numerator for equation in self.equations]
-        nonzero = [value.substitute(values).numerator for value in self.nonzero]
-        if any(value.is_zero for value in nonzero):
+        values = read_values(values, symbols, {*m.symbols, *symbols.signs})
+        B = substitute(m.B, values) if m.has_input else None
+        C = substitute(m.C, values) if m.has_output else None
+        D = substitute(m.D, values) if m.has_input and m.has_output else None
+        plant = StateSpace(substitute(m.A, values), B, C, D, self.dt, symbols=symbols)
+        images = [substitute(equation, values).numerator for equation in self.equations]
+        nonzero = [substitute(value, values).numerator for value in self.nonzero]
+        if any(value.is_zero for value in nonzero) or any(i.is_constant and not i.is_zero for i in images):
             message = "what does not vanish is 0"
             raise ZeroDivisionError(message)
         return plant.restricted([image for image in images if not image.is_zero], nonzero)
@@ -392,8 +397,3 @@ class StateSpace:
         m = self.matrices
         shown = [f"A={m.A}"] + [f"{n}={getattr(m, n)}" for n in "BC" if getattr(m, n).entries]
         return f"StateSpace({', '.join(shown)}, dt={self.dt})"
-
-
-def _raise_all(errors: Sequence[SymobsError]) -> None:
-    """Raise one error, or several as `ProblemErrors`."""
-    raise errors[0] if len(errors) == 1 else ProblemErrors(tuple(errors))

@@ -14,13 +14,13 @@ from symobs.analysis.strata.rank_cases import (
     Stratum,
     answer_on,
     answer_with,
+    equations_of_locus,
     generic_claims,
     kernel_claims,
     minors_claim,
     piece_of,
     stratum_claims,
     stratum_of,
-    undecided_conditions,
 )
 from symobs.analysis.strata.rank_stratification import (
     ELIMINATED_UP_TO,
@@ -241,7 +241,7 @@ class RankResult(Result):
             is_open = self.is_too_long or (self.piece is None and bool(self.answer["matrix"].names))
             return ((Case((), {}, None),) if is_open else ()), ()
         certificates: list[Certificate] = []
-        cases = [Case(undecided_conditions(locus), {}, None) for locus in self._tree.undecided]
+        cases = [Case(equations_of_locus(locus), {}, None) for locus in self._tree.undecided]
         found = []
         for node in self._tree.strata:
             try:
@@ -249,7 +249,7 @@ class RankResult(Result):
                 certificates += check_all(stratum_claims(stratum, self._region), self.plant.relations)
                 found.append(self._case(stratum))
             except (CertificateRejected, TooLarge):  # a claim beyond the limits of what can be checked
-                cases.append(Case(undecided_conditions(node.locus), {}, None))
+                cases.append(Case(equations_of_locus(node.locus), {}, None))
         try:
             certificates += check_all(
                 generic_claims(self.answer["matrix"], self._tree, self._region), self.plant.relations

@@ -9,6 +9,7 @@ from symobs._dataclass import dataclass
 from symobs.conditions import sign_of
 from symobs.errors import BudgetExceeded, InputError
 from symobs.exact import Scalar
+from symobs.exact.core.generators import function_named
 from symobs.specification import read_gain, read_names
 from symobs.stability.criteria.critical_polynomials import CriticalPolynomials, StabilityBoundary
 from symobs.system import StateSpace, read_scalar
@@ -93,6 +94,10 @@ def read_question(
         repair = "write a symbol in its place: the inequalities then hold for its value"
         raise InputError(message, where="specification.polynomial", repair=repair)
     names = sorted(asked.polynomial.names - {plant.variable})
+    written = [name for name in names if (f := function_named(name)) is not None and not f.square]
+    if written:
+        message = f"{written[0]} is no polynomial, and a region is described by polynomials in its parameters"
+        raise InputError(message, where="plant", repair="write a symbol in its place, or give numbers")
     degree = asked.polynomial.degree(plant.variable)
     if names and degree > MOST_DEGREE:
         message = f"a polynomial of degree {degree} with parameters, more than {MOST_DEGREE}"

@@ -26,6 +26,7 @@ from symobs.conditions import Condition
 from symobs.derivation.builder import relation
 from symobs.exact import Matrix, Scalar, apart_from_zero
 from symobs.formula import Environment
+from symobs.system.reading import is_identity
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
@@ -65,7 +66,7 @@ class Stratum:
 
 def stratum_of(node: Node, region: Region) -> Stratum:
     """Return equations and inequations of a node, and a parametrisation of it."""
-    equations = [Condition("existence", value, "==") for value in node.locus.equations]
+    equations = [*equations_of_locus(node.locus)]
     others = [Condition("existence", value) for value in exclusions(node, region)]
     return Stratum(node, (*equations, *others), parametrised(node, region))
 
@@ -206,6 +207,6 @@ def _listed(equations: Iterable[Scalar]) -> str:
     return " and ".join(f"{equation} = 0" for equation in equations)
 
 
-def undecided_conditions(locus: Locus) -> tuple[Condition, ...]:
-    """Return the equations of a locus about which nothing is known."""
-    return tuple(Condition("existence", value, "==") for value in locus.equations)
+def equations_of_locus(locus: Locus) -> tuple[Condition, ...]:
+    """Return the equations of a locus, without those that hold everywhere because of what their functions are."""
+    return tuple(Condition("existence", value, "==") for value in locus.equations if not is_identity(value))

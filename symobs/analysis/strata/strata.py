@@ -10,7 +10,7 @@ from functools import partial
 from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 
 from symobs.analysis.strata.loci import Region, loci
-from symobs.analysis.strata.rank_cases import parametrised, undecided_conditions
+from symobs.analysis.strata.rank_cases import equations_of_locus, parametrised
 from symobs.analysis.strata.rank_stratification import Node
 from symobs.conditions import Condition, never_zero, vanishing_factors
 from symobs.errors import CertificateRejected
@@ -101,7 +101,7 @@ def region_of(plant: StateSpace) -> Region:
 def _below(equations: Iterable[Scalar], region: Region) -> Iterator[Place]:
     """Yield the common zeros of equations, with the values of parameters where they can be solved for them."""
     for locus in loci(equations, region):
-        when = undecided_conditions(locus)
+        when = equations_of_locus(locus)
         if locus.ideal is None:
             yield Place(when, {}, is_open=False)
         elif locus != region.whole:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from symobs.analysis.rank.observability import Controllability, Observability
 from symobs.analysis.strata.loci import loci
-from symobs.analysis.strata.rank_cases import undecided_conditions
+from symobs.analysis.strata.rank_cases import equations_of_locus
 from symobs.analysis.strata.strata import carried, region_of, strata
 from symobs.conditions import Condition, vanishing_factors
 from symobs.design.pole_advice.pole_candidates import OPEN, needed_of
@@ -89,4 +89,4 @@ def _of_kept_modes(advice: AdvisedPoles) -> Iterator[Case]:
     left = [c.numerator for c in rest.coefficients(advice.plant.variable) if not c.is_zero]
     if not any(c.is_constant for c in left) and not any(function_named(name) for c in left for name in c.names):
         for locus in loci(left, region_of(advice.plant)):
-            yield Case(undecided_conditions(locus), {}, None)
+            yield Case(equations_of_locus(locus), {}, None)

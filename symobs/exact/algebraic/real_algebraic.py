@@ -185,6 +185,16 @@ class RealRoot(Function):
         return f"CRootOf({self.argument}, {self.number.index})"
 
     @property
+    def radicand(self) -> Scalar | None:
+        """The fraction a where this is the positive root of some degree of a, else None."""
+        first, *others, last = map(int, self.number.polynomial.coeffs())
+        return (
+            Scalar.of(Fraction(-first, last))
+            if first < 0 and not any(others) and self.number.interval()[0] >= 0
+            else None
+        )
+
+    @property
     def symbols(self) -> frozenset[str]:
         """Nothing: a number has no symbols."""
         return frozenset()
@@ -350,3 +360,9 @@ def roots_of_scalar(polynomial: Scalar, name: str) -> list[RealNumber]:
 def integer_factor(polynomial: Scalar, name: str) -> fmpz_poly:
     """Return the numerator as a polynomial in one name."""
     return fmpz_poly([int(c.fraction()) for c in reversed(polynomial.numerator.coefficients(name))])
+
+
+def root_of_fraction(number: Fraction, degree: int) -> Scalar:
+    """Return the positive root, of some degree, of a positive fraction."""
+    coefficients = [-number.numerator, *([0] * (degree - 1)), number.denominator]
+    return max(real_roots(fmpz_poly(coefficients))).scalar()

@@ -113,7 +113,8 @@ class Ideal:
         above, below, one = self.reduced_column([value.numerator, value.denominator, Scalar.of(1)])
         if below.is_zero or one.is_zero:
             return value
-        return above / below if above.size + below.size <= value.size else value
+        found = above / below
+        return found if found.size <= value.size else value
 
     @cached_property
     def _bounds(self) -> tuple[int, ...] | None:

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 from symobs.errors import InexactInput, InputError
 from symobs.exact.algebraic.complex import Complex
 from symobs.exact.algebraic.conjugates import root_in_field
-from symobs.exact.algebraic.real_algebraic import RealRoot
+from symobs.exact.algebraic.real_algebraic import RealRoot, root_of_fraction, roots_of_scalar
 from symobs.exact.core import generators as functions
 from symobs.exact.core.field import EIGENVALUE
 from symobs.exact.core.matrix import Matrix
@@ -187,7 +187,7 @@ def relation_to_sympy(left: Scalar, operator: str, objects: Mapping[str, Any]) -
 def complex_from_sympy(expression: Any, where: str, *, roots: bool = False) -> Complex:
     """Return the exact value of a SymPy expression built from numbers and their roots, symbols, i and the four operations.
 
-    With `roots` square roots of other real expressions are generators.
+    With `roots` square roots of other real expressions, and functions of real arguments, are generators.
     """
     if isinstance(expression, (int, Fraction)):
         return Complex.of(expression)
@@ -218,6 +218,22 @@ def complex_from_sympy(expression: Any, where: str, *, roots: bool = False) -> C
         found = _square_root(complex_from_sympy(expression.base, where, roots=roots), roots=roots)
         if found is not None:
             return found ** int(expression.exp.p)
+    if roots and isinstance(expression, sympy.CRootOf) and expression.is_real:
+        factor = scalar_from_sympy(expression.expr, where)
+        return Complex.of(roots_of_scalar(factor, *factor.names)[expression.index].scalar())
+    if (
+        roots
+        and expression.is_Pow
+        and expression.base.is_Rational
+        and expression.exp.is_Rational
+        and expression.base > 0
+    ):
+        base = Fraction(int(expression.base.p), int(expression.base.q))
+        return Complex.of(root_of_fraction(base, int(expression.exp.q)) ** int(expression.exp.p))
+    if roots and expression.is_Function and str(expression.func) in functions.KINDS:
+        argument = complex_from_sympy(arguments[0], where, roots=roots)
+        if argument.is_real:
+            return Complex.of(functions.function(str(expression.func), argument.real))
     message = f"{str(expression)[:200]} is not a rational expression"
     repair = "use numbers, roots of rational numbers, symbols and + - * / with integer powers"
     raise InputError(message, where=where, repair=repair)
@@ -257,20 +273,24 @@ def fraction_from_sympy(expression: Any, where: str) -> tuple[Complex, Complex]:
     return complex_from_sympy(expression, where), Complex.of(1)
 
 
-def scalar_from_sympy(expression: Any, where: str) -> Scalar:
+def scalar_from_sympy(expression: Any, where: str, *, roots: bool = False) -> Scalar:
     """Return the scalar of a real SymPy expression."""
-    value = complex_from_sympy(expression, where)
+    value = complex_from_sympy(expression, where, roots=roots)
     if not value.is_real:
         message = f"{expression} is not real"
         raise InputError(message, where=where)
     return value.real
 
 
-def matrix_from_sympy(matrix: Any, where: str) -> Matrix:
+def matrix_from_sympy(matrix: Any, where: str, *, roots: bool = False) -> Matrix:
     """Return the exact matrix of a SymPy matrix."""
     rows, columns = matrix.shape
     return Matrix.of(
-        [[scalar_from_sympy(matrix[i, j], f"{where}[{i}][{j}]") for j in range(columns)] for i in range(rows)], columns
+        [
+            [scalar_from_sympy(matrix[i, j], f"{where}[{i}][{j}]", roots=roots) for j in range(columns)]
+            for i in range(rows)
+        ],
+        columns,
     )
 
 

@@ -110,8 +110,8 @@ class FormulaWriter(ABC, Generic[B]):
         """Return the exponential of an argument."""
 
     @abstractmethod
-    def root(self, argument: B) -> B:
-        """Return a square root."""
+    def root(self, argument: B, degree: int = 2) -> B:
+        """Return a root, a square root by default."""
 
     @abstractmethod
     def summed(self, over: B, term: B) -> B:

@@ -224,9 +224,10 @@ class LatexPrinter(Printer[LatexBox]):
         exponent = script.scalar(argument)
         return LatexBox(0.47 + widths.SCRIPT * exponent.width, Level.POWER, f"e^{{{exponent.source}}}")
 
-    def root(self, argument: LatexBox) -> LatexBox:
+    def root(self, argument: LatexBox, degree: int = 2) -> LatexBox:
         r"""Return `\sqrt`."""
-        return LatexBox(argument.width + 0.9, Level.ATOM, rf"\sqrt{{{argument.source}}}", argument.height)
+        index = "" if degree == 2 else f"[{degree}]"
+        return LatexBox(argument.width + 0.9, Level.ATOM, rf"\sqrt{index}{{{argument.source}}}", argument.height)
 
     def summed(self, over: LatexBox, term: LatexBox) -> LatexBox:
         r"""Return `\sum_{λ³+λ+1=0} …`."""

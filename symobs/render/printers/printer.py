@@ -193,6 +193,8 @@ class Printer(FormulaWriter[B]):
             return self.named(self.symbols[function.name])
         if function.kind == "exp":
             return self.exponential(function.argument)
+        if isinstance(function, RealRoot) and function.radicand is not None:
+            return self.root(self.scalar(function.radicand), function.number.degree)
         if isinstance(function, RealRoot):
             return self.named(rf"{function.number.truncated()}\ldots")
         if isinstance(function, RootSum):

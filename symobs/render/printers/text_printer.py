@@ -201,9 +201,10 @@ class TextPrinter(Printer[TextBox]):
         """exp(-t)."""
         return self.joined([text_box("exp"), self.grouped(self.scalar(argument))], Level.POWER)
 
-    def root(self, argument: TextBox) -> TextBox:
-        """Return √3, √(ω² - b²)."""
-        return self.joined([text_box("√"), self.at_least(Level.ATOM, argument)], Level.POWER)
+    def root(self, argument: TextBox, degree: int = 2) -> TextBox:
+        """Return √3, √(ω² - b²), ⁵√2."""
+        sign = "√" if degree == 2 else f"{degree}√".translate(_SUPERSCRIPTS)
+        return self.joined([text_box(sign), self.at_least(Level.ATOM, argument)], Level.POWER)
 
     def summed(self, over: TextBox, term: TextBox) -> TextBox:
         """Return Σ[λ³ + λ + 1 = 0] …."""

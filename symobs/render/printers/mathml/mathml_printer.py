@@ -277,9 +277,10 @@ class MathmlPrinter(Printer[MathmlBox]):
         element = f"<msup><mi>e</mi>{exponent.one}</msup>"
         return MathmlBox(0.47 + widths.SCRIPT * exponent.width, Level.POWER, (element,))
 
-    def root(self, argument: MathmlBox) -> MathmlBox:
-        """Return a square root."""
-        return MathmlBox(argument.width + 0.9, Level.ATOM, (f"<msqrt>{argument.source}</msqrt>",), argument.height)
+    def root(self, argument: MathmlBox, degree: int = 2) -> MathmlBox:
+        """Return a root."""
+        root = f"<msqrt>{argument.source}</msqrt>" if degree == 2 else f"<mroot>{argument.one}<mn>{degree}</mn></mroot>"
+        return MathmlBox(argument.width + 0.9, Level.ATOM, (root,), argument.height)
 
     def summed(self, over: MathmlBox, term: MathmlBox) -> MathmlBox:
         """Return a sum over all that fulfil an equation."""
