@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import shutil
-from contextlib import suppress
 from fractions import Fraction
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -13,6 +12,7 @@ from symobs.batching.engine import Settings
 from symobs.batching.jobs import Budget, job, read_payload, solve_job
 from symobs.batching.kept import CHILD
 from symobs.batching.run import Batch, texts_of
+from symobs.batching.store import work_folder
 from symobs.batching.sweep.grid import Grid, read_grid
 from symobs.batching.sweep.program import GAINS, Program
 from symobs.batching.sweep.table import check_target, write_table
@@ -214,15 +214,4 @@ def sweep(
     return table
 
 
-def work_folder(out: Path) -> Path:
-    """Return where the blocks of a sweep wait for its table: beside it, so that a run that was ended goes on."""
-    return out.with_name(f"{out.name}.work")
-
-
-def discard_work(out: Path) -> None:
-    """Remove the blocks once the table is whole."""
-    with suppress(OSError):
-        shutil.rmtree(work_folder(out))
-
-
-__all__ = ["Plan", "SweepTable", "discard_work", "sweep", "work_folder"]
+__all__ = ["Plan", "SweepTable", "sweep"]
