@@ -7,9 +7,11 @@ import os
 import time
 from concurrent.futures import Executor, Future, ThreadPoolExecutor
 from contextlib import contextmanager, suppress
+from functools import partial
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from symobs.batching.kept import children, end_children, identity, run_chunk, run_in_process
+from symobs.batching.kept import CHILD, identity, run_chunk, run_in_process
+from symobs.child_processes.child import Kept
 from symobs.errors import InputError, SymobsError, UsageError, reason_of
 
 if TYPE_CHECKING:
@@ -75,13 +77,13 @@ def workforce(
         with _cluster(scheduler, worker_timeout) as found:
             yield found
         return
-    count, before = workers or os.cpu_count() or 1, children()
+    count, children = workers or os.cpu_count() or 1, Kept(CHILD)
     pool = ThreadPoolExecutor(count, thread_name_prefix="symobs")
     try:
-        yield Workforce(pool, count)
+        yield Workforce(pool, count, partial(run_chunk, children=children))
     finally:
         pool.shutdown(wait=False, cancel_futures=True)
-        end_children(before)
+        children.close()
 
 
 # -- dask -------------------------------------------------------------------------------------------------------------

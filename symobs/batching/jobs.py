@@ -94,6 +94,12 @@ def digest(result: Any) -> str:
     return hashlib.sha256(text.encode("utf-8", "surrogatepass")).hexdigest()
 
 
+def row_text(key: str, kind: str, row: dict[str, Any]) -> str:
+    """Return a row as JSON; its key and its status stand first, where an index is read from."""
+    whole = {"key": key, "status": row.pop("status"), "kind": kind, **row}
+    return json.dumps(whole, ensure_ascii=False, separators=(",", ":"))
+
+
 _quoted = json.JSONEncoder(ensure_ascii=False).encode
 
 

@@ -17,6 +17,7 @@ from typing import Any
 from symobs.result import tasks
 
 KINDS = {
+    "check": "symobs.checking.classes.row",
     "sheet-entry": "symobs.cli.commands.sheet",
     "solve": "symobs.batching.solving",
     "sweep-block": "symobs.batching.sweep.block",

@@ -14,6 +14,7 @@ import hashlib
 import json
 import os
 import re
+import shutil
 import socket
 import struct
 import time
@@ -236,6 +237,17 @@ class Store:
             write_whole(self.folder / "manifest.json", text.encode())
         except OSError as error:
             raise _refused(error, self.folder) from None
+
+
+def work_folder(out: Path) -> Path:
+    """Return where the rows of a run wait for what is made of them: beside it, so that a run that was ended goes on."""
+    return out.with_name(f"{out.name}.work")
+
+
+def discard_work(out: Path) -> None:
+    """Remove the rows once what is made of them is whole."""
+    with suppress(OSError):
+        shutil.rmtree(work_folder(out))
 
 
 def write_whole(place: Path, data: bytes) -> None:

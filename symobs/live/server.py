@@ -266,7 +266,6 @@ class _Limited:
 
 def serve(server: Server) -> None:
     """Serve until interrupted."""
-    threading.Thread(target=server.children.warm, daemon=True).start()
     try:
         server.serve_forever(poll_interval=0.1)
     finally:

@@ -88,8 +88,11 @@ def signals(
         _partitioned(known, plant, (L, first), rate, called, right)
     else:
         known.stacked("x", plant.order, rate, mentioned)
-        if L is not None:
-            _full_order(known, m, L, called, (mentioned, right))
+    is_full = L is not None and L.shape == (plant.order, p)
+    if is_full:
+        _full_order(known, m, L, called, (mentioned, right))
+    if (L is not None or "K_d" in answers) and called["x_hat"] not in known.formulas:
+        known.free(called["x_hat"], plant.order)  # the law needs it, its equations are not known
     if m.C is not None and not measured:
         through = None if m.D is None or m.D.is_zero else _times(m.D, "u")
         known.formulas["y"] = _sum(_times(m.C, "x"), through)

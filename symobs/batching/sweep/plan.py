@@ -2,19 +2,21 @@
 
 from __future__ import annotations
 
+import json
 import shutil
-from contextlib import suppress
 from fractions import Fraction
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from symobs.batching.engine import Settings
 from symobs.batching.jobs import Budget, job, read_payload, solve_job
-from symobs.batching.kept import Child
+from symobs.batching.kept import CHILD
 from symobs.batching.run import Batch, texts_of
+from symobs.batching.store import work_folder
 from symobs.batching.sweep.grid import Grid, read_grid
 from symobs.batching.sweep.program import GAINS, Program
 from symobs.batching.sweep.table import check_target, write_table
+from symobs.child_processes.child import Died, started
 from symobs.errors import InputError, SymobsError, UsageError
 
 if TYPE_CHECKING:
@@ -69,10 +71,10 @@ class Plan:
     def _once(self) -> dict[str, Any] | None:
         """Return the answer with the swept names as symbols, None where there is none to evaluate."""
         asked = job("solve", {"problem": self.tables, "fields": "cases", "formats": []})
-        child = Child("solve", _ONCE.megabytes)
+        child = started(CHILD, asked.kind, megabytes=_ONCE.megabytes)
         try:
-            row = child.row(asked.kind, asked.payload, _ONCE.seconds)
-        except (TimeoutError, RuntimeError):
+            row = json.loads(child.ask((asked.key, asked.kind, asked.payload), _ONCE.seconds))
+        except (TimeoutError, Died):
             return None
         finally:
             child.end()
@@ -212,15 +214,4 @@ def sweep(
     return table
 
 
-def work_folder(out: Path) -> Path:
-    """Return where the blocks of a sweep wait for its table: beside it, so that a run that was ended goes on."""
-    return out.with_name(f"{out.name}.work")
-
-
-def discard_work(out: Path) -> None:
-    """Remove the blocks once the table is whole."""
-    with suppress(OSError):
-        shutil.rmtree(work_folder(out))
-
-
-__all__ = ["Plan", "SweepTable", "discard_work", "sweep", "work_folder"]
+__all__ = ["Plan", "SweepTable", "sweep"]

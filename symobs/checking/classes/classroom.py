@@ -7,7 +7,10 @@ import json
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from symobs.checking.classes.row import key_of, report_of, solved
+from symobs.batching.engine import Settings
+from symobs.batching.jobs import Budget
+from symobs.batching.run import Batch
+from symobs.checking.classes.row import job_of, report_of_row, solved
 from symobs.checking.classes.submissions import read_submissions
 from symobs.checking.classes.summary import as_markdown, marks, summary
 from symobs.expect import available
@@ -17,7 +20,9 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from symobs.checking.checker import Checked
-    from symobs.checking.report.report import CheckReport
+
+#: So many submissions are worth starting processes for.
+_WORTH_CHILDREN = 24
 
 
 def check_class(
@@ -28,22 +33,30 @@ def check_class(
     columns: Mapping[str, str],
     show: str,
     feedback: bool,
+    work: Path,
+    workers: int | None,
+    budget: Budget,
     progress: Callable[[int, int], None],
 ) -> tuple[dict[str, str], int]:
     """Return the files of the results by name, and the exit code: 5 where some are undecided.
 
+    Reports are kept in the folder `work` until the files are there: a run that was ended goes on from it.
     Raises `ProblemErrors` where the problem or the table as a whole cannot be used.
     """
     checked = solved(problem, str(folder))
     submissions = read_submissions(path, _parts(checked), columns)
-    seen: dict[object, CheckReport] = {}
-    reports: list[CheckReport] = []
-    for number, submission in enumerate(submissions.entries, start=1):
-        key = key_of(submission)
-        if key not in seen:
-            seen[key] = report_of(problem, str(folder), submission, show)
-        reports.append(replace(seen[key], student=submission.student, variant=submission.variant))
-        progress(number, len(submissions.entries))
+    jobs = [job_of(problem, str(folder), submission, show) for submission in submissions.entries]
+    few = workers is None and budget == Budget(None, None) and len(jobs) < _WORTH_CHILDREN
+    allowed = Budget(*(given or usual for given, usual in zip(budget, Budget(), strict=True)))
+    settings = Settings(allowed, chunk_seconds=0.5, recheck=0)
+    run = Batch(lambda: jobs, work, workers=workers, in_process=few, settings=settings)
+    for _ in run:
+        progress(sum(run.counts.values()), len(jobs))
+    done = {row["key"]: report_of_row(row, problem, str(folder), show) for row in run.rows()}
+    reports = [
+        replace(done[job.key], student=submission.student, variant=submission.variant)
+        for job, submission in zip(jobs, submissions.entries, strict=True)
+    ]
     found = summary(checked.problem.title, reports, submissions.superseded)
     files = {
         "results.jsonl": "".join(json.dumps(report.as_data(), ensure_ascii=False) + "\n" for report in reports),

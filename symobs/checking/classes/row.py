@@ -6,17 +6,19 @@ from functools import lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from symobs.batching.jobs import Job, job
 from symobs.checking.answers.answer_file import MAX_BYTES, Answer, read_answer
 from symobs.checking.checker import Checked
+from symobs.checking.classes.submissions import Submission
+from symobs.checking.report.report import CheckReport
 from symobs.errors import InputError, ProblemErrors, SymobsError
 from symobs.problem import read
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from symobs.checking.classes.submissions import Submission
-    from symobs.checking.report.report import CheckReport
-
+#: What of a submission decides its report.
+_HANDED_IN = ("text", "values", "convention", "steps")
 DAMAGED = "this answer could not be checked: please report it"
 
 
@@ -24,6 +26,31 @@ DAMAGED = "this answer could not be checked: please report it"
 def solved(problem: str, folder: str = "") -> Checked:
     """Return the solved problem of a file's text; a process solves each problem once."""
     return Checked.of(read(problem, "problem", Path(folder) if folder else None))
+
+
+def job_of(problem: str, folder: str, submission: Submission, show: str) -> Job:
+    """Return the job of checking a submission: whoever hands in the same has the same one, and it is done once."""
+    handed_in = {name: getattr(submission, name) for name in _HANDED_IN}
+    data = {"problem": problem, "folder": folder, "show": show, "submission": handed_in}
+    return job("check", data, submission.student)
+
+
+def run(payload: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the row of a submission: its report, which names no student."""
+    submission = Submission("", **payload["submission"])
+    report = report_of(payload["problem"], payload["folder"], submission, payload["show"])
+    return {"status": "done", "result": {**report.as_data(), "page": report.page}}
+
+
+def recheck(_payload: Mapping[str, Any], _row: Mapping[str, Any]) -> None:
+    """Return that nothing is looked at again: a verdict is the check."""
+
+
+def report_of_row(row: Mapping[str, Any], problem: str, folder: str, show: str) -> CheckReport:
+    """Return the report of a row: `undecided` where time, memory or the process came to an end."""
+    if "result" in row:
+        return CheckReport.from_data(row["result"])
+    return solved(problem, folder).without_answer("", None, "undecided", "; ".join(row["error"]), show)
 
 
 def report_of(problem: str, folder: str, submission: Submission, show: str) -> CheckReport:
@@ -71,14 +98,3 @@ def _within(values: dict[str, Any], task: str) -> dict[str, Any]:
         return values
     found = values.setdefault(task, {})
     return found if isinstance(found, dict) else {}
-
-
-def key_of(submission: Submission) -> tuple[Any, ...]:
-    """Return what two submissions share that hand in the same: they are checked once."""
-    values: Mapping[str, Any] = submission.values or {}
-    return (
-        submission.text,
-        str(sorted(values.items(), key=lambda item: item[0])),
-        submission.convention,
-        submission.steps,
-    )

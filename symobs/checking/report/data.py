@@ -148,6 +148,36 @@ class ReportData:
             "hints": list(self.hints),
         }
 
+    @classmethod
+    def from_data(cls, data: Mapping[str, Any]) -> Self:
+        """Return the report that `as_data` has written; `page` may stand beside its data."""
+        parts = [
+            {
+                **{name: value for name, value in part.items() if name != "from"},
+                "weight": Fraction(part["weight"]),
+                "credit": None if part["credit"] is None else Fraction(part["credit"]),
+                "effect": part["effect"] or {},
+                "origins": tuple(part["from"]),
+                "alternatives": tuple(part["alternatives"]),
+                "hints": tuple(part["hints"]),
+            }
+            for part in data["parts"]
+        ]
+        lines = [
+            {**{name: value for name, value in line.items() if name != "from"}, "origins": tuple(line["from"])}
+            for line in data["lines"]
+        ]
+        return cls(
+            *(data[name] for name in ("title", "student", "variant", "convention", "show")),
+            tuple(Part(**part) for part in parts),
+            tuple(Line(**line) for line in lines),
+            tuple((each["relation"], Fraction(each["points"]), each["met"]) for each in data["milestones"]),
+            Fraction(data["total"]),
+            tuple((each["claim"], each["holds"], each["how"]) for each in data["certificates"]),
+            tuple(data["hints"]),
+            page=data.get("page", ""),
+        )
+
     def to_json(self) -> str:
         """Return the report as JSON."""
         return json.dumps(self.as_data(), indent=2, ensure_ascii=False) + "\n"

@@ -15,7 +15,7 @@ from symobs.batching.executors import Unfinished
 from symobs.batching.jobs import Budget, solve_job
 from symobs.batching.run import Batch, files_of, require_texts, texts_of, verified
 from symobs.cli.shared.common import EXIT_NO, EXIT_UNDECIDED, write_message
-from symobs.cli.shared.options import options
+from symobs.cli.shared.options import WORKERS, options
 from symobs.errors import UsageError
 
 if TYPE_CHECKING:
@@ -31,12 +31,7 @@ _SECONDS, _MEGABYTES = 60.0, 2000.0
 def of_a_run(command: Callable[..., Any]) -> Callable[..., Any]:
     """Give a command the options that say who does the work, and how long."""
     given = [
-        click.option(
-            "--workers",
-            type=click.IntRange(1, 1024),
-            metavar="N",
-            help="Processes of this machine; default: as many as it has processors.",
-        ),
+        WORKERS,
         click.option(
             "--scheduler", metavar="ADDRESS", help="Let the workers of a dask scheduler do the work: tcp://HOST:8786."
         ),

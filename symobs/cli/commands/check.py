@@ -11,7 +11,7 @@ import click
 from symobs.checking import SHOW, Checked
 from symobs.checking.asked import answer_file
 from symobs.cli.shared.common import place_of, read_file, run_work, write_message
-from symobs.cli.shared.options import LIMITS, options, quoted
+from symobs.cli.shared.options import LIMITS, WORKERS, options, quoted
 from symobs.cli.shared.outcome import Outcome, convention_of
 from symobs.cli.shared.output import check_target, make_folder, write_all
 from symobs.errors import UsageError
@@ -40,6 +40,7 @@ FORMATS = ("text", "markdown", "html", "json")
 @click.option("--map", "mapped", multiple=True, metavar="COLUMN=FIELD", help="Read a column of the CSV as a field.")
 @click.option("--feedback", is_flag=True, help="Write a page of feedback for each student of a class.")
 @options("convention", *LIMITS)
+@WORKERS
 def command(
     problem: str,
     answer: str | None,
@@ -53,9 +54,12 @@ def command(
     convention_name: str | None,
     timeout: float | None,
     memory: float | None,
+    workers: int | None,
 ) -> None:
     """Check an ANSWER, or those of a class, against a PROBLEM file: any valid answer is right.
 
+    A class is checked on all processors, --timeout and --memory are for each answer, and the same command after a run
+    that was ended goes on.
     Exit code 0: right; 4: wrong or incomplete; 3: unreadable; 5: undecided. For a class 0 where all have a verdict.
     """
     if format_name not in FORMATS:
@@ -69,7 +73,8 @@ def command(
         raise UsageError("standard input holds one file", repair="give one of the two as a path")
     convention = convention_of(convention_name)
     if submissions is not None:
-        _class(problem, submissions, target, mapped, show, feedback=feedback)
+        limits = (timeout, memory)
+        _class(problem, submissions, target, mapped, show, feedback=feedback, workers=workers, limits=limits)
         return
     check_target(target)
 
@@ -96,10 +101,20 @@ def _outcome(report: CheckReport, format_name: str, target: str | None) -> Outco
 
 
 def _class(
-    problem: str, submissions: str, target: str | None, mapped: tuple[str, ...], show: str, *, feedback: bool
+    problem: str,
+    submissions: str,
+    target: str | None,
+    mapped: tuple[str, ...],
+    show: str,
+    *,
+    feedback: bool,
+    workers: int | None,
+    limits: tuple[float | None, float | None],
 ) -> None:
     """Check a class and write its results into a folder."""
-    from symobs.checking.classes.classroom import check_class  # noqa: PLC0415 - a single answer does not pay for it
+    from symobs.batching.jobs import Budget  # noqa: PLC0415 - a single answer does not pay for it
+    from symobs.batching.store import discard_work, work_folder  # noqa: PLC0415
+    from symobs.checking.classes.classroom import check_class  # noqa: PLC0415
 
     if target is None:
         raise UsageError("the results of a class need a folder", where="-o", repair="write -o RESULTS/")
@@ -111,6 +126,7 @@ def _class(
                 f"{quoted(entry)} maps nothing", where="--map", repair='write --map "Email address=student"'
             )
         columns[column] = name
+    folder = Path(target)
     shown = sys.stderr is not None and sys.stderr.isatty()
 
     def progress(done: int, total: int) -> None:
@@ -124,10 +140,13 @@ def _class(
         columns=columns,
         show=show,
         feedback=feedback,
+        work=work_folder(folder),
+        workers=workers,
+        budget=Budget(*limits),
         progress=progress,
     )
-    folder = Path(target)
     for made in (folder, folder / "feedback") if feedback else (folder,):
         make_folder(made)
     write_all([(content, str(folder / name)) for name, content in files.items()])
+    discard_work(folder)
     sys.exit(code)

@@ -194,6 +194,13 @@ OPTIONS: dict[str, Callable[[Any], Any]] = {
 #: Those of a command that writes the page of one problem, and those that bound its work.
 LIMITS = ("timeout", "memory")
 OF_A_PAGE = tuple(OPTIONS)
+#: That of a command whose work is done by many processes.
+WORKERS = click.option(
+    "--workers",
+    type=click.IntRange(1, 1024),
+    metavar="N",
+    help="Processes of this machine; default: as many as it has processors.",
+)
 
 
 def options(*names: str) -> Callable[[Optioned], Optioned]:

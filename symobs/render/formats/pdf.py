@@ -17,7 +17,7 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from symobs.child_processes import running
+from symobs.child_processes.inside import running
 from symobs.errors import TypesettingError
 from symobs.render.formats.latex import typeset, typeset_sheet, values_of
 from symobs.result import output_format

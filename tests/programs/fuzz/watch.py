@@ -106,7 +106,11 @@ class Watch:
             return ""
         if event == "open":
             return self._fault_of_open(*arguments)
-        if self.works and event in _PROCESSES and "symobs.cli.shared.time_and_memory" in frames[:3]:
+        if (
+            self.works
+            and event in _PROCESSES
+            and any(name.startswith("symobs.child_processes.") for name in frames[:3])
+        ):
             return ""
         if event in _CODE and self.works and any(name.startswith("jinja2") for name in frames[:4]):
             return ""

@@ -146,6 +146,27 @@ def test_the_sign_of_the_law_is_the_convention_s(convention: str, law: str, clos
     assert finding(turned, convention=convention, **servo).right == law
 
 
+@pytest.mark.parametrize(
+    ("tasks", "C", "estimate", "observer"),
+    [
+        ("full", "[1 0]", "x_0", "x_0' = A x_0 + B u + L (y - [1 0] x_0)"),
+        ("full", "[0 1]", "x_0", "x_0' = A x_0 + B u + L (y - C x_0)"),
+        ("minimal", "[0 1]", "x_0", ""),
+        ("minimal", "[0 1]", "x_hat", ""),
+    ],
+)
+def test_the_law_of_every_observer_is_known(tasks: str, C: str, estimate: str, observer: str) -> None:
+    """A full-order observer where the states are measured in part, and one whose measured states are not the first."""
+    plant = {"A": "[0 1; 0 -1]", "B": "[0; 1]", "C": C} if C == "[1 0]" else {"A": "[-1 0; 1 0]", "B": "[1; 0]", "C": C}
+    gain = "K = [4 3]" if C == "[1 0]" else "K = [3 4]"
+    poles = {"control_poles": [-2, -2], "observer_poles": [-10, -10] if tasks == "full" else [-10], "observer": tasks}
+    asked = {"tasks": ["compensator"], "specification": poles, "plant": plant}
+    convention = "S2" if estimate == "x_0" else "standard"
+    equations = (f"u = -K {estimate}", gain, *filter(None, [observer]))
+    assert findings(*equations, convention=convention, **asked) == []
+    assert finding(f"u = K {estimate}", convention=convention, **asked).right == f"u = -K {estimate}"
+
+
 def test_the_matrices_of_input_and_measurement_are_exchanged_between_two_sources() -> None:
     minimal = {"tasks": ["reduced_order_observer"], "specification": {"poles": [-10]}}
     assert findings("z' = F z + G u + H y", "H = -90", convention="S0", **minimal) == []

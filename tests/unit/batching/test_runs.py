@@ -36,7 +36,9 @@ from types import SimpleNamespace
 
 pytestmark = pytest.mark.slow
 
-SOURCES = sorted((ROOT / "symobs" / "batching").rglob("*.py"))
+SOURCES = sorted(
+    [*(ROOT / "symobs" / "batching").rglob("*.py"), *(ROOT / "symobs" / "child_processes").glob("[!f]*.py")]
+)
 
 
 def stored(folder: Path) -> list[str]:

@@ -6,15 +6,20 @@ import csv
 import hashlib
 import io
 import json
+import subprocess
+import sys
 from typing import TYPE_CHECKING
 
 import pytest
 from jsonschema import Draft202012Validator  # type: ignore[import-untyped]
 
+from symobs.checking import SHOW, Checked, CheckReport
+from symobs.checking.classes.row import report_of_row
 from symobs.checking.classes.summary import safe
 from symobs.checking.report.schema import schema
 from tests.support.problems.answered import SERVO
-from tests.support.tools.command_line import Run, inside
+from tests.support.problems.batches import children_of, eventually
+from tests.support.tools.command_line import Run, environment, inside
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -86,6 +91,48 @@ def test_the_same_bytes_whatever_was_there_before(folder: Path) -> None:
     (folder / "RESULTS" / "marks.csv").write_text("half", encoding="utf-8")
     run(folder, "--map", "Email address=student")
     assert {path.name: path.read_bytes() for path in (folder / "RESULTS").iterdir()} == first
+
+
+@pytest.mark.slow
+def test_the_same_bytes_whoever_works_and_after_an_end_in_the_middle(folder: Path) -> None:
+    rows = [["student", "K", "L", "compensator.F"]]
+    rows += [[f"s{n}", "[4 3]", f"[19; {n + 60}]", "" if n % 3 else F] for n in range(40)]
+    (folder / "class.csv").write_text("\n".join(",".join(row) for row in rows), encoding="utf-8")
+    command = [sys.executable, "-m", "symobs", "check", "problem.toml", "--submissions", "class.csv", "-o", "KILLED"]
+    with subprocess.Popen([*command, "--workers", "2"], cwd=folder, env=environment()) as process:
+        assert eventually(lambda: list(folder.glob("KILLED.work/rows/*/*.jsonl")))
+        process.kill()
+    assert eventually(lambda: not children_of(process.pid))
+    assert not (folder / "KILLED").exists()
+    found = {}
+    for name, workers in (("ONE", "1"), ("KILLED", "2")):
+        arguments = ["check", "problem.toml", "--submissions", "class.csv", "-o", name, "--workers", workers]
+        assert inside(*arguments, folder=folder).code == 0
+        found[name] = {path.name: path.read_bytes() for path in (folder / name).iterdir()}
+        assert not (folder / f"{name}.work").exists()
+    assert found["KILLED"] == found["ONE"]
+    reports = [json.loads(line) for line in found["ONE"]["results.jsonl"].splitlines()]
+    assert [report["student"] for report in reports] == [row[0] for row in rows[1:]]
+    assert [report["student"] for report in reports if report["verdict"] == "right"] == ["s21"]
+
+
+def test_what_ended_its_process_is_undecided() -> None:
+    report = report_of_row({"status": "undecided", "error": ["4 seconds were not enough"]}, SERVO, "", "reason")
+    assert (report.verdict, report.score) == ("undecided", None)
+    assert {part.reason for part in report.parts} == {"4 seconds were not enough"}
+
+
+@pytest.mark.parametrize("show", SHOW)
+def test_a_report_is_read_back_as_it_was(show: str) -> None:
+    steps = ["det(s*I - A + L*C) = s^2 + 19*s + 81", "L = [19; 80]"]
+    for answer in ({"K": "[4 3]", "L": "[19; 80]", "F": "1/s"}, {"L": "[-19; -81]"}, f"L = [19; 81]\n{steps[0]}"):
+        report = Checked.of(SERVO).report(answer, show)
+        read = CheckReport.from_data({**json.loads(json.dumps(report.as_data())), "page": report.page})
+        assert (read.to_html(), read.to_text(), read.as_data()) == (
+            report.to_html(),
+            report.to_text(),
+            report.as_data(),
+        )
 
 
 @pytest.mark.parametrize(

@@ -9,7 +9,6 @@ import socket
 import subprocess
 import sys
 import threading
-import time
 from contextlib import closing
 from typing import TYPE_CHECKING, Any
 from urllib.parse import parse_qsl
@@ -19,12 +18,15 @@ import pytest
 from symobs.live.links import link_of
 from symobs.live.process import Budget, Children, Gone
 from symobs.live.server import ASSETS, Server, routes
+from tests.support.paths import ROOT
+from tests.support.problems.batches import eventually
 from tests.support.tools.command_line import SAFETY, SERVO, environment
-from tests.support.tools.live_children import obedient
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
+    from pathlib import Path
 
+OBEDIENT = "tests.support.tools.live_children"
 QUESTION = json.dumps(
     {
         "schema": "symobs-live/1",
@@ -163,7 +165,7 @@ def ask(children: Children, **what: object) -> dict[str, Any]:
 
 
 def test_a_child_that_sleeps_or_swells_is_replaced() -> None:
-    children = Children(Budget(60, 300), obedient)
+    children = Children(Budget(60, 300), OBEDIENT)
     try:
         first = ask(children)["process"]
         assert ask(children)["process"] == first
@@ -188,13 +190,14 @@ def test_a_child_that_sleeps_or_swells_is_replaced() -> None:
 
 
 def test_a_child_at_work_ends_with_the_server() -> None:
-    children = Children(Budget(600, 300), obedient)
+    children = Children(Budget(600, 300), OBEDIENT)
     process = ask(children)["process"]
     found: list[dict[str, Any]] = []
-    thread = threading.Thread(target=lambda: found.append(ask(children, do="sleep")))
+    is_asked = threading.Event()
+    body = b'{"do": "sleep"}'
+    thread = threading.Thread(target=lambda: found.append(json.loads(children.answer(body, is_asked.set))))
     thread.start()
-    while not children.busy:
-        thread.join(0.01)
+    assert is_asked.wait(SAFETY)
     children.close()
     thread.join(SAFETY)
     assert [each["status"] for each in found] == ["undecided"]
@@ -202,19 +205,39 @@ def test_a_child_at_work_ends_with_the_server() -> None:
         os.kill(process, 0)
 
 
-def test_the_command_prints_one_line_and_ends_with_an_interrupt() -> None:
-    run = subprocess.Popen(
+#: Whoever imports what answers tells so, and goes on when the server has ended.
+_SLOW_START = """
+import os, sys
+
+class Finder:
+    def find_spec(self, name, path=None, target=None):
+        if name in {"symobs.live.child", "symobs.live.warm"}:
+            parent = os.getppid()
+            open(os.environ["BEGUN"], "w").close()
+            while os.getppid() == parent:
+                pass
+
+sys.meta_path.insert(0, Finder())
+"""
+
+
+def test_an_interrupt_while_the_first_child_is_started_is_all_that_is_said(tmp_path: Path) -> None:
+    (tmp_path / "sitecustomize.py").write_text(_SLOW_START, encoding="utf-8")
+    begun = tmp_path / "begun"
+    paths = {"BEGUN": str(begun), "PYTHONPATH": os.pathsep.join([str(tmp_path), str(ROOT)])}
+    with subprocess.Popen(
         [sys.executable, "-m", "symobs", "serve", "--no-browser", str(SERVO)],
-        env=environment(),
+        env=environment() | paths,
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         text=True,
-    )
-    assert run.stdout is not None
-    url = run.stdout.readline().strip()
-    time.sleep(3)  # while the process that answers is being started, Python's own server of forks may still complain
-    run.send_signal(signal.SIGINT)
-    out, err = run.communicate(timeout=SAFETY)
+        start_new_session=True,
+    ) as run:
+        assert run.stdout is not None
+        url = run.stdout.readline().strip()
+        assert eventually(begun.exists)
+        os.killpg(run.pid, signal.SIGINT)  # as a terminal does
+        out, err = run.communicate(timeout=SAFETY)
     assert run.returncode == 130
     assert (out, err.strip()) == ("", "interrupted")
     given = dict(parse_qsl(url.partition("#")[2]))
