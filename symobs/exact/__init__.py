@@ -8,6 +8,7 @@ from symobs.exact.algebraic.decimals import decimal_digits, decimal_places, is_r
 from symobs.exact.algebraic.extension import AlgebraicExtension
 from symobs.exact.algebraic.polynomial_roots import Factored, Root, Shifted, factored, root_of_pole, roots_are, roots_of
 from symobs.exact.algebraic.real_algebraic import RealNumber
+from symobs.exact.numerals.significant_digits import is_correctly_written, is_written_exactly, significant
 from symobs.exact.core.field import EIGENVALUE, RATIONALS, VARIABLES, Field
 from symobs.exact.core.generators import derivative
 from symobs.exact.core.matrix import Matrix
@@ -66,8 +67,10 @@ __all__ = [
     "from_coefficients",
     "hankel_of",
     "independent_rows",
+    "is_correctly_written",
     "is_inverse",
     "is_rounding",
+    "is_written_exactly",
     "kernel",
     "matrix_of_numbers",
     "modulo",
@@ -81,6 +84,7 @@ __all__ = [
     "roots_are",
     "roots_of",
     "rounded",
+    "significant",
     "stable_roots",
     "transfer",
     "transfer_matrix",

@@ -48,7 +48,7 @@ class Layout(Generic[B]):
 
     def rows(self, relations: Sequence[Relation]) -> tuple[list[DisplayRow[B]], bool]:
         """Return the rows, and whether they are aligned (else each is centred)."""
-        if self.boxed and not any("=" in relation.operators for relation in relations):
+        if self.boxed and all({"=", "≈"}.isdisjoint(relation.operators) for relation in relations):
             return self._inequalities(relations)
         last = len(relations) - 1
         whole = [self._on_one_line(relation, is_last=index == last) for index, relation in enumerate(relations)]

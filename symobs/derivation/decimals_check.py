@@ -1,0 +1,190 @@
+"""The check of a page in decimals against its exact steps (trusted).
+
+The exact steps have been checked before.  What is printed differs from them in nothing but numbers: every decimal is the
+correct rounding of the exact number that stands there, or that number; `≈` stands for `=` beside a rounded one and
+nowhere else.  What conditions an answer, and a value without a relation sign before it, is never rounded.
+"""
+
+from __future__ import annotations
+
+from dataclasses import fields, is_dataclass
+from fractions import Fraction
+from itertools import pairwise
+from typing import TYPE_CHECKING, Any
+
+from symobs.certificate.claims import UNREADABLE
+from symobs.derivation.facts.rejection import BUG, reject
+from symobs.derivation.steps import Case, Given, Where
+from symobs.errors import DerivationRejected
+from symobs.exact import Scalar, is_correctly_written, is_written_exactly
+from symobs.exact.numerals.rounded_roots import are_rounded_roots
+from symobs.formula import (
+    Apply,
+    At,
+    Block,
+    Decimals,
+    Derivative,
+    Environment,
+    Exact,
+    HoldsExactlyWhere,
+    Identity,
+    Integral,
+    Letter,
+    Literal,
+    Negative,
+    Numeral,
+    Power,
+    Product,
+    Quotient,
+    Relation,
+    RoundedRoots,
+    Shown,
+    Sum,
+    Transpose,
+    children,
+    evaluate,
+    letters,
+    with_children,
+)
+
+if TYPE_CHECKING:
+    from symobs.formula import Formula
+
+_FORMULAS = (
+    Apply,
+    At,
+    Block,
+    Decimals,
+    Derivative,
+    Identity,
+    Integral,
+    Letter,
+    Literal,
+    Negative,
+    Numeral,
+    Power,
+    Product,
+    Quotient,
+    Sum,
+    Transpose,
+)
+_ORDER = {
+    "<": lambda left, right: left < right,
+    ">": lambda left, right: left > right,
+    "<=": lambda left, right: left <= right,
+    ">=": lambda left, right: left >= right,
+    "!=": lambda left, right: left != right,
+}
+
+
+def check_decimals(exact: object, shown: object, variable: str, digits: int) -> None:
+    """Raise `DerivationRejected` unless steps in decimals say what the exact steps say, correctly rounded."""
+    try:
+        _Comparison(variable, digits).compare(exact, shown)
+    except UNREADABLE as error:
+        message = f"a step in decimals cannot be read: {error}"
+        raise DerivationRejected(message, repair=BUG, line=str(shown)) from error
+
+
+class _Comparison:
+    """The comparison of a page with its exact steps; `variable` is that of polynomials."""
+
+    def __init__(self, variable: str, digits: int) -> None:
+        self.environment = Environment(variable=variable)
+        self.digits = digits
+
+    def compare(self, exact: Any, shown: Any, *, exactly: bool = False) -> None:
+        """Compare steps, sentences, facts or formulas; `exactly` where nothing may be rounded."""
+        if isinstance(exact, Relation) and isinstance(shown, Relation):
+            self._relation(exact, shown, exactly=exactly)
+        elif isinstance(shown, RoundedRoots):
+            if shown.polynomial != exact.polynomial or shown.values != exact.values:
+                reject(f"{shown}, which are other roots,")
+            if not are_rounded_roots(shown.values, shown.texts, self.digits):
+                reject(f"that the roots are about {shown.texts}")
+        elif isinstance(exact, _FORMULAS):
+            self._formula(exact, shown)
+            if is_rounded(shown):
+                reject(f"{shown}, rounded without a sign that says so,")
+        elif isinstance(exact, tuple) and isinstance(shown, tuple) and len(exact) == len(shown):
+            for one, other in zip(exact, shown, strict=True):
+                self.compare(one, other, exactly=exactly)
+        elif is_dataclass(exact) and type(exact) is type(shown):
+            exactly = exactly or isinstance(exact, Given | Where | HoldsExactlyWhere | Shown)
+            for part in fields(exact):
+                conditions = isinstance(exact, Case) and part.name == "when"
+                one, other = getattr(exact, part.name), getattr(shown, part.name)
+                self.compare(one, other, exactly=exactly or conditions)
+        elif exact != shown:
+            reject(f"{shown}, in place of {exact},")
+
+    def _relation(self, exact: Relation, shown: Relation, *, exactly: bool) -> None:
+        """Compare chains, the last member perhaps once exactly and once in decimals, and every sign between members."""
+        if len(shown.members) == len(exact.members) + 1:
+            exact = Relation((*exact.members, exact.members[-1]), (*exact.operators, "="))
+        if len(exact.members) != len(shown.members) or len(exact.operators) != len(shown.operators):
+            reject(f"{shown}, a chain of another length,")
+        for one, other in zip(exact.members, shown.members, strict=True):
+            self._formula(one, other)
+        rounded = [is_rounded(member) for member in shown.members]
+        if exactly and any(rounded):
+            reject(f"{shown}, a condition that is rounded,")
+        if not is_in_order(shown):
+            reject(f"{shown}, whose decimals are not in this order,")
+        for before, operator, beside in zip(exact.operators, shown.operators, pairwise(rounded), strict=True):
+            if operator != ("≈" if before == "=" and any(beside) else before):
+                reject(f"{shown}, where {operator} stands for {before},")
+
+    def _formula(self, exact: Formula, shown: Formula) -> None:
+        """Compare formulas: part by part, or as values that are equal where they are written in another form."""
+        if exact == shown:
+            return
+        parts = children(shown)
+        if parts and len(parts) == len(children(exact)) and with_children(exact, parts) == shown:
+            for one, other in zip(children(exact), parts, strict=True):
+                self._formula(one, other)
+            return
+        if (letters(exact) | letters(shown)) - {"s"}:
+            reject(f"{shown}, in place of {exact},")
+        arithmetic = Exact(self.environment)
+        found = [evaluate(each, self.environment, arithmetic) for each in (exact, self._meant(shown))]
+        if found[0] != found[1]:
+            reject(f"{shown}, whose value is not that of {exact},")
+
+    def _meant(self, shown: Formula) -> Formula:
+        """Return a formula with the exact numbers of its decimals, which must be written correctly."""
+        if isinstance(shown, Numeral):
+            if not is_correctly_written(shown.value, shown.text, self.digits):
+                reject(f"{shown.value} ≈ {shown.text}")
+            return Literal(shown.value)
+        return with_children(shown, tuple(map(self._meant, children(shown))))
+
+
+def is_rounded(shown: Formula) -> bool:
+    """Return whether a decimal in a formula is not exactly its number."""
+    if isinstance(shown, Numeral):
+        return not is_written_exactly(shown.value, shown.text)
+    return any(map(is_rounded, children(shown)))
+
+
+def is_in_order(shown: Relation) -> bool:
+    """Return whether a comparison with a rounded number holds for the numbers that are read."""
+    for operator, (left, right) in zip(shown.operators, pairwise(shown.members), strict=True):
+        if operator in _ORDER and (is_rounded(left) or is_rounded(right)):
+            first, second = _read(left), _read(right)
+            if first is None or second is None or not _ORDER[operator](first, second):
+                return False
+    return True
+
+
+def _read(shown: Formula) -> Fraction | None:
+    """Return the number that a reader reads, None where it is no number."""
+    match shown:
+        case Numeral(text=text):
+            return Fraction(text)
+        case Negative(operand):
+            size = _read(operand)
+            return None if size is None else -size
+        case Literal(Scalar() as value) if value.is_constant:
+            return value.fraction()
+    return None

@@ -1,0 +1,195 @@
+"""The steps of a page in decimals: the checked exact steps, every number in them rounded for itself.
+
+What is given, and what an answer is conditional on, is written in decimals only where these are exact.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+from symobs.derivation import (
+    Case,
+    Conclude,
+    Define,
+    Diagram,
+    Equal,
+    Given,
+    Note,
+    Plot,
+    Section,
+    Sentence,
+    Solve,
+    Survey,
+    Tabulate,
+)
+from symobs.derivation.decimals_check import check_decimals, is_in_order, is_rounded
+from symobs.exact import Matrix, Scalar
+from symobs.exact.numerals.rounded_roots import rounded_roots
+from symobs.formula import (
+    Conjunction,
+    Decimals,
+    Formula,
+    HoldsExactlyWhere,
+    Literal,
+    Predicate,
+    Relation,
+    RoundedRoots,
+    Roots,
+    Shown,
+    SymbolList,
+    children,
+    letters,
+)
+from symobs.render.decimals.formulas import InDecimals
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Sequence
+
+    from symobs.derivation import Derivation, Step
+
+#: The sentence before an answer in decimals on a page of fractions.
+_NUMERICALLY = "in_decimals"
+#: An exact answer stands beside its decimals where no entry, and no row, has more characters than this.
+_WIDEST_ENTRY, _WIDEST_ROW = 11, 40
+
+
+def in_decimals(derivation: Derivation, steps: Sequence[Step], digits: int) -> tuple[Step, ...]:
+    """Return steps of a derivation in decimals of so many significant digits.
+
+    Raises `DerivationRejected` where a decimal is not the correct rounding of what it stands for.
+    """
+    exact = tuple(_without_decimals(steps))
+    written = _Writer(derivation, digits)
+    shown = tuple(map(written.step, exact))
+    check_decimals(exact, shown, derivation.variable, digits)
+    return shown
+
+
+def _without_decimals(steps: Iterable[Step]) -> Iterator[Step]:
+    """Yield the steps without the decimals that a page of fractions has beside an answer."""
+    for step in steps:
+        match step:
+            case Section(steps=inner) | Case(steps=inner):
+                yield replace(step, steps=tuple(_without_decimals(inner)))
+            case Equal(sentence=Sentence(key=key)) if key == _NUMERICALLY:
+                pass
+            case Define(relation=relation):
+                yield replace(step, relation=_without_last(relation))
+            case Equal(relations=relations):
+                yield replace(step, relations=tuple(map(_without_last, relations)))
+            case _:
+                yield step
+
+
+def _without_last(relation: Relation) -> Relation:
+    """Return a chain without decimals behind the exact value."""
+    if len(relation.members) > 2 and isinstance(relation.members[-1], Decimals):
+        return Relation(relation.members[:-1], relation.operators[:-1])
+    return relation
+
+
+def is_short(value: Scalar | Matrix) -> bool:
+    """Return whether an exact value is read as easily as its decimals."""
+    rows = value.rows if isinstance(value, Matrix) else ((value,),)
+    widths = [[len(str(entry)) for entry in row] for row in rows]
+    return all(sum(row) <= _WIDEST_ROW and max(row) <= _WIDEST_ENTRY for row in widths if row)
+
+
+class _Writer:
+    """Steps, sentences and facts in decimals."""
+
+    def __init__(self, derivation: Derivation, digits: int) -> None:
+        self.decimals = InDecimals(derivation.variable, digits)
+        self.digits = digits
+        self.parameters = frozenset(derivation.start.signs)
+
+    def step(self, step: Step) -> Step:
+        """Return a step in decimals."""
+        match step:
+            case Section(title, steps):
+                return Section(self.sentence(title), tuple(map(self.step, steps)))
+            case Case(steps=steps):
+                return self._said(replace(step, steps=tuple(map(self.step, steps))))
+            case Given(relations=relations):
+                return self._said(replace(step, relations=tuple(map(self.exactly, relations))))
+            case Define(relation=relation, answer=answer):
+                return self._said(replace(step, relation=self.answer(relation) if answer else self.relation(relation)))
+            case Equal(relations=relations, answer=answer):
+                *others, last = relations
+                shown = *map(self.relation, others), self.answer(last) if answer else self.relation(last)
+                return self._said(replace(step, relations=shown))
+            case Solve(equation=equation, solution=solution):
+                return self._said(
+                    replace(step, equation=self.relation(equation), solution=self.relation(solution))
+                )
+            case Tabulate(findings=findings) | Survey(findings=findings):
+                return self._said(replace(step, findings=tuple(map(self.sentence, findings))))
+            case Conclude() | Note() | Diagram() | Plot():
+                return self._said(step)
+        return step
+
+    def _said(self, step: Any) -> Any:
+        return step if step.sentence is None else replace(step, sentence=self.sentence(step.sentence))
+
+    def sentence(self, sentence: Sentence) -> Sentence:
+        """Return a sentence with its slots in decimals."""
+        return replace(sentence, slots=tuple((name, self.slot(slot)) for name, slot in sentence.slots))
+
+    def slot(self, slot: Any) -> Any:
+        """Return a slot in decimals; a value without a sign that says it is rounded stays exact."""
+        match slot:
+            case Relation():
+                return self.relation(slot)
+            case Roots():
+                return self.roots(slot)
+            case Conjunction(relations):
+                return Conjunction(tuple(map(self.relation, relations)))
+            case HoldsExactlyWhere(where=where):
+                return replace(slot, where=tuple(map(self.exactly, where)))
+            case Predicate(subject=subject):
+                return replace(slot, subject=self.value(subject))
+            case Shown(value=value):
+                return replace(slot, value=self.value(value))
+            case str() | SymbolList():
+                return slot
+        return self.value(slot)
+
+    def roots(self, roots: Roots) -> Roots:
+        """Return roots in decimals, where they have them."""
+        texts = rounded_roots(roots.values, self.digits)
+        return roots if texts is None else RoundedRoots(roots.polynomial, roots.values, texts)
+
+    def value(self, formula: Formula) -> Formula:
+        """Return a formula in decimals, itself where one would be rounded."""
+        shown = self.decimals.formula(formula)
+        return formula if is_rounded(shown) else shown
+
+    def relation(self, relation: Relation) -> Relation:
+        """Return a relation in decimals; what tells the value of a decimal, and a condition, where nothing is rounded."""
+        if isinstance(relation.members[0], Decimals):
+            return relation
+        shown = self.decimals.relation(relation)
+        return self.exactly(relation) if self._is_condition(relation) or not is_in_order(shown) else shown
+
+    def answer(self, relation: Relation) -> Relation:
+        """Return an answer in decimals, the exact value before them where that is short."""
+        shown, value = self.relation(relation), relation.members[-1]
+        is_brief = isinstance(value, Literal) and shown.operators[-1] == "≈" and relation.operators[-1] == "="
+        if not is_brief or not is_short(value.value) or is_rounded(shown.members[-2]):  # type: ignore[union-attr]
+            return shown
+        return Relation((*shown.members[:-1], value, shown.members[-1]), (*shown.operators[:-1], "=", "≈"))
+
+    def exactly(self, relation: Relation) -> Relation:
+        """Return a relation in decimals, itself where one would be rounded."""
+        shown = self.decimals.relation(relation)
+        return relation if any(map(is_rounded, shown.members)) else shown
+
+    def _is_condition(self, relation: Relation) -> bool:
+        """Return whether a relation says something of parameters alone."""
+        return not any(map(letters, relation.members)) and any(map(self._names, relation.members))
+
+    def _names(self, formula: Formula) -> frozenset[str]:
+        if isinstance(formula, Literal):
+            return formula.value.names & self.parameters
+        return frozenset().union(*map(self._names, children(formula)))
