@@ -16,7 +16,7 @@ from symobs.certificate.claims import UNREADABLE
 from symobs.derivation.facts.rejection import BUG, reject
 from symobs.derivation.steps import Case, Given, Where
 from symobs.errors import DerivationRejected
-from symobs.exact import Scalar, is_correctly_written, is_written_exactly
+from symobs.exact import Scalar, is_correctly_written
 from symobs.exact.numerals.rounded_roots import are_rounded_roots
 from symobs.formula import (
     Apply,
@@ -43,7 +43,8 @@ from symobs.formula import (
     Transpose,
     children,
     evaluate,
-    letters,
+    exact_meaning,
+    is_rounded,
     with_children,
 )
 
@@ -136,35 +137,28 @@ class _Comparison:
                 reject(f"{shown}, where {operator} stands for {before},")
 
     def _formula(self, exact: Formula, shown: Formula) -> None:
-        """Compare formulas: part by part, or as values that are equal where they are written in another form."""
+        """Compare formulas: values by what they are, whatever their form, and others part by part."""
         if exact == shown:
             return
-        parts = children(shown)
-        if parts and len(parts) == len(children(exact)) and with_children(exact, parts) == shown:
-            for one, other in zip(children(exact), parts, strict=True):
-                self._formula(one, other)
+        if _is_value(exact) and _is_value(shown):
+            arithmetic = Exact(self.environment)
+            self._digits(shown)
+            found = [evaluate(each, self.environment, arithmetic) for each in (exact, exact_meaning(shown))]
+            if found[0] != found[1]:
+                reject(f"{shown}, whose value is not that of {exact},")
             return
-        if (letters(exact) | letters(shown)) - {"s"}:
+        parts = children(shown)
+        if type(exact) is not type(shown) or len(parts) != len(children(exact)) or with_children(exact, parts) != shown:
             reject(f"{shown}, in place of {exact},")
-        arithmetic = Exact(self.environment)
-        found = [evaluate(each, self.environment, arithmetic) for each in (exact, self._meant(shown))]
-        if found[0] != found[1]:
-            reject(f"{shown}, whose value is not that of {exact},")
+        for one, other in zip(children(exact), parts, strict=True):
+            self._formula(one, other)
 
-    def _meant(self, shown: Formula) -> Formula:
-        """Return a formula with the exact numbers of its decimals, which must be written correctly."""
-        if isinstance(shown, Numeral):
-            if not is_correctly_written(shown.value, shown.text, self.digits):
-                reject(f"{shown.value} ≈ {shown.text}")
-            return Literal(shown.value)
-        return with_children(shown, tuple(map(self._meant, children(shown))))
-
-
-def is_rounded(shown: Formula) -> bool:
-    """Return whether a decimal in a formula is not exactly its number."""
-    if isinstance(shown, Numeral):
-        return not is_written_exactly(shown.value, shown.text)
-    return any(map(is_rounded, children(shown)))
+    def _digits(self, shown: Formula) -> None:
+        """Reject a decimal that is not the correct rounding of its number."""
+        if isinstance(shown, Numeral) and not is_correctly_written(shown.value, shown.text, self.digits):
+            reject(f"{shown.value} ≈ {shown.text}")
+        for part in children(shown):
+            self._digits(part)
 
 
 def is_in_order(shown: Relation) -> bool:
@@ -175,6 +169,12 @@ def is_in_order(shown: Relation) -> bool:
             if first is None or second is None or not _ORDER[operator](first, second):
                 return False
     return True
+
+
+def _is_value(formula: Formula) -> bool:
+    """Return whether a formula is arithmetic of values written out, and of the variable."""
+    arithmetic = Literal, Numeral, Sum, Negative, Product, Quotient, Power, Block, Transpose, Identity
+    return formula == Letter("s") or (isinstance(formula, arithmetic) and all(map(_is_value, children(formula))))
 
 
 def _read(shown: Formula) -> Fraction | None:

@@ -40,6 +40,7 @@ from symobs.formula.nodes import (
     roots_written,
     with_children,
 )
+from symobs.formula.numerals import exact_meaning, is_rounded
 from symobs.formula.sign_changes import Turned
 
 __all__ = [
@@ -83,7 +84,9 @@ __all__ = [
     "differ",
     "divisors",
     "evaluate",
+    "exact_meaning",
     "is_rational",
+    "is_rounded",
     "letters",
     "roots_written",
     "with_children",

@@ -5,16 +5,20 @@ Every decimal is read from the exact number that stands there, never from anothe
 
 from __future__ import annotations
 
+from dataclasses import replace
+from math import prod
 from typing import TYPE_CHECKING
 
-from symobs.derivation.decimals_check import is_rounded
 from symobs.exact import Matrix, Scalar, is_written_exactly, significant
 from symobs.exact.algebraic.enclosure import is_number, sign_of_number
 from symobs.exact.core.generators import function_named
 from symobs.formula import (
     Block,
     Decimals,
+    Environment,
+    Exact,
     Formula,
+    Integral,
     Letter,
     Literal,
     Negative,
@@ -25,13 +29,16 @@ from symobs.formula import (
     Relation,
     Sum,
     children,
+    evaluate,
+    exact_meaning,
+    is_rounded,
     with_children,
 )
 from symobs.render.printers.rational_formula import human_order, is_leaf, product, sum_of
-from symobs.render.printers.scalar_formula import formula_of, is_time_function
+from symobs.render.printers.scalar_formula import is_time_function, separate_formula
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterator, Sequence
 
 _ONE = Scalar.of(1)
 
@@ -63,6 +70,8 @@ class InDecimals:
                 return self.matrix(value)
             case Letter() | Decimals():
                 return formula
+            case Integral(integrand):
+                return replace(formula, integrand=self.formula(integrand))
         parts = self._parts(formula)
         if parts is not None:
             number, rest = parts
@@ -85,7 +94,7 @@ class InDecimals:
         if is_leaf(value):
             return Literal(value)
         if any(is_time_function(name) for name in value.names):
-            return self._numbers_of(formula_of(value, self.variable))
+            return self._numbers_of(separate_formula(value))
         return self._rational(value)
 
     def number(self, value: Scalar) -> Formula:
@@ -156,8 +165,8 @@ class InDecimals:
         for coefficient, powers in human_order(value.numerator.terms()):
             number = self.number(Scalar.of(coefficient) / below)
             body = number.operand if isinstance(number, Negative) else number
-            names = [self._power(name, exponent) for name, exponent in powers]
-            whole = product([*([] if body == Literal(_ONE) else [body]), *(name for name in names if name)])
+            names = [power for name, exponent in powers if (power := self._power(name, exponent))]
+            whole = product([*([body] if body != Literal(_ONE) or not names else []), *names])
             found.append(Negative(whole) if isinstance(number, Negative) else whole)
         return found
 
@@ -222,6 +231,9 @@ class InDecimals:
         """Return number · rest, in the numerator of a fraction."""
         if rest is None:
             return self.number(number)
+        expanded = self._expanded(number, rest)
+        if expanded is not None:
+            return expanded
         front = self.number(number)
         is_negative = isinstance(front, Negative)
         body = front.operand if isinstance(front, Negative) else front
@@ -234,6 +246,18 @@ class InDecimals:
             whole = product((body, rest))
         return Negative(whole) if is_negative else whole
 
+    def _expanded(self, number: Scalar, rest: Formula) -> Formula | None:
+        """Return number · polynomial multiplied out where nothing needs to be rounded then, None elsewhere."""
+        above = rest.numerator if isinstance(rest, Quotient) else rest
+        if not isinstance(above, Sum) or not (is_rounded(above) or is_rounded(self.number(number))):
+            return None
+        start = Environment(variable=self.variable)
+        value = evaluate(exact_meaning(above), start, Exact(start)) * number
+        shown = self.scalar(value)
+        if is_rounded(shown):
+            return None
+        return Quotient(shown, rest.denominator) if isinstance(rest, Quotient) else shown
+
     # -- functions of time -----------------------------------------------------------------------------------------------
 
     def _numbers_of(self, formula: Formula) -> Formula:
@@ -241,7 +265,37 @@ class InDecimals:
         value = _number_in(formula)
         if value is not None:
             return self.number(value)
+        if isinstance(formula, Product):
+            return self._product(formula.factors)
+        if isinstance(formula, Quotient) and (below := _number_in(formula.denominator)) is not None:
+            return self._product((Literal(_ONE / below), formula.numerator))
         return with_children(formula, tuple(map(self._numbers_of, children(formula))))
+
+    def _product(self, factors: Sequence[Formula]) -> Formula:
+        """Return a product with all its numbers in front, as one."""
+        number, others = _ONE, list[Formula]()
+        for factor in _flat(factors):
+            value = _number_in(factor)
+            if value is None:
+                others.append(self._numbers_of(factor))
+            else:
+                number = number * value
+        front = self.number(number)
+        body = front.operand if isinstance(front, Negative) else front
+        whole = product([*([body] if body != Literal(_ONE) or not others else []), *others])
+        return Negative(whole) if isinstance(front, Negative) else whole
+
+
+def _flat(factors: Sequence[Formula]) -> Iterator[Formula]:
+    """Yield the factors of products, numbers before the fractions that they divide."""
+    for factor in factors:
+        match factor:
+            case Product(inner):
+                yield from _flat(inner)
+            case Quotient(above, below) if _number_in(below) is not None:
+                yield from _flat((Literal(_ONE / _number_in(below)), above))  # type: ignore[arg-type, operator]
+            case _:
+                yield factor
 
 
 def _number_in(formula: Formula) -> Scalar | None:
@@ -256,18 +310,9 @@ def _number_in(formula: Formula) -> Scalar | None:
             top, bottom = _number_in(above), _number_in(below)
             return None if top is None or bottom is None else top / bottom
         case Product(factors):
-            return _product_of_numbers(factors)
+            numbers = [_number_in(factor) for factor in factors]
+            return None if None in numbers else prod(numbers, start=_ONE)  # type: ignore[type-var, return-value]
     return None
-
-
-def _product_of_numbers(factors: Sequence[Formula]) -> Scalar | None:
-    whole = _ONE
-    for factor in factors:
-        value = _number_in(factor)
-        if value is None:
-            return None
-        whole = whole * value
-    return whole
 
 
 def _is_plain_number(value: Scalar) -> bool:

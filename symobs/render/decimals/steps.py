@@ -5,7 +5,7 @@ What is given, and what an answer is conditional on, is written in decimals only
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import fields, is_dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 from symobs.derivation import (
@@ -23,7 +23,7 @@ from symobs.derivation import (
     Survey,
     Tabulate,
 )
-from symobs.derivation.decimals_check import check_decimals, is_in_order, is_rounded
+from symobs.derivation.decimals_check import check_decimals, is_in_order
 from symobs.exact import Matrix, Scalar
 from symobs.exact.numerals.rounded_roots import rounded_roots
 from symobs.formula import (
@@ -39,6 +39,7 @@ from symobs.formula import (
     Shown,
     SymbolList,
     children,
+    is_rounded,
     letters,
 )
 from symobs.render.decimals.formulas import InDecimals
@@ -63,7 +64,25 @@ def in_decimals(derivation: Derivation, steps: Sequence[Step], digits: int) -> t
     written = _Writer(derivation, digits)
     shown = tuple(map(written.step, exact))
     check_decimals(exact, shown, derivation.variable, digits)
-    return shown
+    return tuple(_saying_so(step, digits) for step in shown) if any(map(_is_rounded, shown)) else shown
+
+
+def _saying_so(step: Step, digits: int) -> Step:
+    """Return the data with the remark that decimals are rounded, and to how many digits."""
+    if not isinstance(step, Section) or step.title.key != "given":
+        return step
+    return replace(step, steps=(*step.steps, Note(Sentence("rounded_digits", (("digits", str(digits)),)))))
+
+
+def _is_rounded(part: Any) -> bool:
+    """Return whether anything in a step is rounded."""
+    if isinstance(part, tuple):
+        return any(map(_is_rounded, part))
+    if isinstance(part, Relation):
+        return "≈" in part.operators
+    if isinstance(part, RoundedRoots):
+        return any(is_rounded for *_, is_rounded in part.texts)
+    return is_dataclass(part) and any(_is_rounded(getattr(part, each.name)) for each in fields(part))
 
 
 def _without_decimals(steps: Iterable[Step]) -> Iterator[Step]:
