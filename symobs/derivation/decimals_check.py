@@ -14,10 +14,11 @@ from typing import TYPE_CHECKING, Any
 
 from symobs.certificate.claims import UNREADABLE
 from symobs.derivation.facts.rejection import BUG, reject
-from symobs.derivation.steps import Case, Given, Where
+from symobs.derivation.steps import Case, Diagram, Given, Where
 from symobs.errors import DerivationRejected
 from symobs.exact import Scalar, is_correctly_written
 from symobs.exact.numerals.rounded_roots import are_rounded_roots
+from symobs.figures.block_diagram import letter_for
 from symobs.formula import (
     Apply,
     At,
@@ -110,6 +111,13 @@ class _Comparison:
         elif isinstance(exact, tuple) and isinstance(shown, tuple) and len(exact) == len(shown):
             for one, other in zip(exact, shown, strict=True):
                 self.compare(one, other, exactly=exactly)
+        elif isinstance(exact, Diagram) and isinstance(shown, Diagram):
+            if exact.name != shown.name or dict(exact.labels).keys() != dict(shown.labels).keys():
+                reject(f"{shown}, another figure,")
+            self.compare(exact.sentence, shown.sentence, exactly=exactly)
+            for (place, label), (_, other) in zip(exact.labels, shown.labels, strict=True):
+                if other != letter_for(exact.name, place, label):  # which a format may draw for any label
+                    self.compare(label, other, exactly=exactly)
         elif is_dataclass(exact) and type(exact) is type(shown):
             exactly = exactly or isinstance(exact, Given | Where | HoldsExactlyWhere | Shown)
             for part in fields(exact):

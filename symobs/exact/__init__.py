@@ -8,7 +8,6 @@ from symobs.exact.algebraic.decimals import decimal_digits, decimal_places, is_r
 from symobs.exact.algebraic.extension import AlgebraicExtension
 from symobs.exact.algebraic.polynomial_roots import Factored, Root, Shifted, factored, root_of_pole, roots_are, roots_of
 from symobs.exact.algebraic.real_algebraic import RealNumber
-from symobs.exact.numerals.significant_digits import is_correctly_written, is_written_exactly, significant
 from symobs.exact.core.field import EIGENVALUE, RATIONALS, VARIABLES, Field
 from symobs.exact.core.generators import derivative
 from symobs.exact.core.matrix import Matrix
@@ -35,6 +34,7 @@ from symobs.exact.linear_algebra.elimination import (
 )
 from symobs.exact.linear_algebra.smith_mcmillan import pole_and_zero_polynomial
 from symobs.exact.linear_algebra.transfer_function import controller, transfer, transfer_matrix
+from symobs.exact.numerals.significant_digits import is_correctly_written, is_written_exactly, significant
 from symobs.exact.sympy_bridge.stable_roots import stable_roots
 from symobs.exact.time_functions.antiderivative import antiderivative, exponential_of_integral
 

@@ -342,7 +342,7 @@ class Result(Faces):
         """Return the result in a format: latex, html, text, json, pdf, …; in a convention, by name or TOML file.
 
         `detail` says how much of the derivation is told: full, outline or answer.  Data typed as decimals make a page of
-        decimals; `digits` asks for one with so many significant digits (5 of themselves), `exact` for fractions.  python, matlab, c and modelica are the
+        decimals; `digits` asks for so many significant ones, `exact` for none.  python, matlab, c and modelica are the
         observer or compensator as a program, sampled with a `period` such as "1/100" by a zero-order hold (zoh) or by the
         bilinear map (tustin); numpy and csv the numbers alone.
         """

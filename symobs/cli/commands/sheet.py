@@ -279,9 +279,7 @@ def _part(document: Document, wanted: _Wanted) -> Any:
     """Return the part of a sheet for a question or a solution, in its format."""
     convention = wanted.convention or document.convention
     digits = document.digits if wanted.digits is None else wanted.digits
-    told = replace(
-        document, convention=convention, detail=wanted.detail, digits=digits, templates=wanted.templates
-    )
+    told = replace(document, convention=convention, detail=wanted.detail, digits=digits, templates=wanted.templates)
     return wanted.format.part(told)
 
 

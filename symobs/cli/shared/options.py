@@ -150,7 +150,9 @@ OPTIONS: dict[str, Callable[[Any], Any]] = {
         callback=_digits,
     ),
     "exact": click.option(
-        "--exact", is_flag=True, help="Write the numbers of the page exactly, also where the data are typed as decimals."
+        "--exact",
+        is_flag=True,
+        help="Write the numbers of the page exactly, also where the data are typed as decimals.",
     ),
     "templates": click.option(
         "--templates", type=AFile("dir"), metavar="FOLDER", help="Use your own LaTeX templates: see `symobs templates`."

@@ -83,7 +83,9 @@ class InDecimals:
         rows = tuple(tuple(map(self.scalar, row)) for row in matrix.rows)
         is_plain = all(isinstance(entry, Literal) for row in rows for entry in row)
         is_plain = is_plain or all(
-            isinstance(entry.operand if isinstance(entry, Negative) else entry, Literal) for row in rows for entry in row
+            isinstance(entry.operand if isinstance(entry, Negative) else entry, Literal)
+            for row in rows
+            for entry in row
         )
         return Literal(matrix) if is_plain or not rows or not rows[0] else Block(rows)
 

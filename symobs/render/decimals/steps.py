@@ -26,6 +26,7 @@ from symobs.derivation import (
 from symobs.derivation.decimals_check import check_decimals, is_in_order
 from symobs.exact import Matrix, Scalar
 from symobs.exact.numerals.rounded_roots import rounded_roots
+from symobs.figures.block_diagram import letter_for
 from symobs.formula import (
     Conjunction,
     Decimals,
@@ -34,8 +35,8 @@ from symobs.formula import (
     Literal,
     Predicate,
     Relation,
-    RoundedRoots,
     Roots,
+    RoundedRoots,
     Shown,
     SymbolList,
     children,
@@ -48,6 +49,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
 
     from symobs.derivation import Derivation, Step
+    from symobs.figures.block_diagram import Label
 
 #: The sentence before an answer in decimals on a page of fractions.
 _NUMERICALLY = "in_decimals"
@@ -139,12 +141,13 @@ class _Writer:
                 shown = *map(self.relation, others), self.answer(last) if answer else self.relation(last)
                 return self._said(replace(step, relations=shown))
             case Solve(equation=equation, solution=solution):
-                return self._said(
-                    replace(step, equation=self.relation(equation), solution=self.relation(solution))
-                )
+                return self._said(replace(step, equation=self.relation(equation), solution=self.relation(solution)))
             case Tabulate(findings=findings) | Survey(findings=findings):
                 return self._said(replace(step, findings=tuple(map(self.sentence, findings))))
-            case Conclude() | Note() | Diagram() | Plot():
+            case Diagram(name=name, labels=labels):
+                shown = tuple((place, self.label(name, place, label)) for place, label in labels)
+                return self._said(replace(step, labels=shown))
+            case Conclude() | Note() | Plot():
                 return self._said(step)
         return step
 
@@ -173,6 +176,13 @@ class _Writer:
             case str() | SymbolList():
                 return slot
         return self.value(slot)
+
+    def label(self, figure: str, place: str, label: Label) -> Label:
+        """Return a label of a block diagram: the letter of a value that would be rounded."""
+        if isinstance(label, Conjunction):
+            return Conjunction(tuple(map(self.relation, label.relations)))
+        shown = self.decimals.formula(label)
+        return letter_for(figure, place, label) or label if is_rounded(shown) else shown
 
     def roots(self, roots: Roots) -> Roots:
         """Return roots in decimals, where they have them."""

@@ -39,7 +39,12 @@ class RootGlyphs:
     written: Callable[[Any, Formula | Relation], str] = lambda printer, item: printer.inline(item)
 
 
-LATEX = RootGlyphs(lambda inside: rf"\sqrt{{{inside}}}", r"\pm ", lambda s, equation: rf"\{{{s}:{equation}\}}", about=r"\approx ")
+LATEX = RootGlyphs(
+    lambda inside: rf"\sqrt{{{inside}}}",
+    r"\pm ",
+    lambda s, equation: rf"\{{{s}:{equation}\}}",
+    about=r"\approx ",
+)
 TEXT = RootGlyphs(
     lambda inside: f"√{inside}" if inside.isalnum() else f"√({inside})",
     " ± ",
