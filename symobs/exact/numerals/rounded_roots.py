@@ -7,7 +7,6 @@ empty.  Roots with a closed form are held against it; the others, all roots of t
 from __future__ import annotations
 
 from collections import Counter
-from fractions import Fraction
 from typing import TYPE_CHECKING, TypeAlias
 
 from symobs.exact.algebraic.enclosure import is_number, sign_of_number
@@ -18,6 +17,7 @@ from symobs.exact.numerals.significant_digits import is_correctly_written, is_wr
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
+    from fractions import Fraction
 
     from symobs.exact.algebraic.polynomial_roots import Root
 

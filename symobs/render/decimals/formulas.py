@@ -186,7 +186,7 @@ class InDecimals:
         match formula:
             case Product(factors):
                 found = [self._parts(factor) for factor in factors]
-                if not all(found):
+                if not all(found) or sum(isinstance(part[1], Quotient) for part in found if part) > 1:
                     return None
                 number, rests = _ONE, []
                 for part in found:
@@ -249,15 +249,14 @@ class InDecimals:
         return Negative(whole) if is_negative else whole
 
     def _expanded(self, number: Scalar, rest: Formula) -> Formula | None:
-        """Return number · polynomial multiplied out where nothing needs to be rounded then, None elsewhere."""
+        """Return number · polynomial multiplied out, None where several factors stand in the numerator."""
         above = rest.numerator if isinstance(rest, Quotient) else rest
-        if not isinstance(above, Sum) or not (is_rounded(above) or is_rounded(self.number(number))):
+        if not isinstance(above, Sum):
             return None
         start = Environment(variable=self.variable)
-        value = evaluate(exact_meaning(above), start, Exact(start)) * number
-        shown = self.scalar(value)
-        if is_rounded(shown):
-            return None
+        shown = self.scalar(evaluate(exact_meaning(above), start, Exact(start)) * number)
+        if isinstance(rest, Quotient) and isinstance(shown, Negative):
+            return Negative(Quotient(shown.operand, rest.denominator))
         return Quotient(shown, rest.denominator) if isinstance(rest, Quotient) else shown
 
     # -- functions of time -----------------------------------------------------------------------------------------------
