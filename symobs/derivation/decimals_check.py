@@ -7,16 +7,17 @@ nowhere else.  What conditions an answer, and a value without a relation sign be
 
 from __future__ import annotations
 
-from dataclasses import fields, is_dataclass
+from dataclasses import fields, is_dataclass, replace
 from fractions import Fraction
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
-from symobs.certificate.claims import UNREADABLE
+from symobs.certificate.claims import UNREADABLE, verify
 from symobs.derivation.facts.rejection import BUG, reject
 from symobs.derivation.steps import Case, Diagram, Given, Where
 from symobs.errors import DerivationRejected
 from symobs.exact import Scalar, is_correctly_written
+from symobs.exact.core.generators import identities
 from symobs.exact.numerals.rounded_roots import are_rounded_roots
 from symobs.figures.block_diagram import letter_for
 from symobs.formula import (
@@ -50,6 +51,9 @@ from symobs.formula import (
 )
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from symobs.exact import Matrix
     from symobs.formula import Formula
 
 _FORMULAS = (
@@ -152,7 +156,7 @@ class _Comparison:
             arithmetic = Exact(self.environment)
             self._digits(shown)
             found = [evaluate(each, self.environment, arithmetic) for each in (exact, exact_meaning(shown))]
-            if found[0] != found[1]:
+            if found[0] != found[1] and not self._are_equal_in_time(exact, exact_meaning(shown)):
                 reject(f"{shown}, whose value is not that of {exact},")
             return
         parts = children(shown)
@@ -160,6 +164,12 @@ class _Comparison:
             reject(f"{shown}, in place of {exact},")
         for one, other in zip(children(exact), parts, strict=True):
             self._formula(one, other)
+
+    def _are_equal_in_time(self, exact: Formula, shown: Formula) -> bool:
+        """Return whether functions of time are equal by what is known of them: e^{−2aT} is the square of e^{−aT}."""
+        meanings, vanishing = identities([*_values(exact), *_values(shown)])
+        start = replace(self.environment, coefficients=meanings).under(vanishing)
+        return bool(meanings or vanishing) and verify(Relation((exact, shown), ("=",)), start)[0] != ""
 
     def _digits(self, shown: Formula) -> None:
         """Reject a decimal that is not the correct rounding of its number."""
@@ -183,6 +193,13 @@ def _is_value(formula: Formula) -> bool:
     """Return whether a formula is arithmetic of values written out, and of the variable."""
     arithmetic = Literal, Numeral, Sum, Negative, Product, Quotient, Power, Block, Transpose, Identity
     return formula == Letter("s") or (isinstance(formula, arithmetic) and all(map(_is_value, children(formula))))
+
+
+def _values(formula: Formula) -> Iterator[Scalar | Matrix]:
+    if isinstance(formula, Literal):
+        yield formula.value
+    for part in children(formula):
+        yield from _values(part)
 
 
 def _read(shown: Formula) -> Fraction | None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import warnings
 from dataclasses import fields, is_dataclass, replace
 from decimal import ROUND_HALF_EVEN, Context, Decimal
 from fractions import Fraction
@@ -18,6 +19,7 @@ from hypothesis import strategies as st
 from symobs import (
     StateSpace,
     compensator,
+    gramian,
     observer,
     reduced_order_observer,
     stability_region,
@@ -26,7 +28,7 @@ from symobs import (
 )
 from symobs.derivation import Case, Conclude, Define, Equal, Given, Section, Sentence
 from symobs.derivation.decimals_check import check_decimals
-from symobs.errors import DerivationRejected, ProblemErrors, UsageError
+from symobs.errors import DerivationRejected, ProblemErrors, SymobsWarning, UsageError
 from symobs.exact import Scalar, is_correctly_written, roots_of, significant
 from symobs.exact.numerals.rounded_roots import are_rounded_roots, rounded_roots
 from symobs.formula import Letter, Literal, Negative, Numeral, Product, Relation, RoundedRoots
@@ -83,6 +85,7 @@ def number(text: str) -> Scalar:
         ("123456789012", 5, "1.2346e11"),
         ("125/1000", 2, "0.12"),  # of two that are equally near the even one
         ("135/1000", 2, "0.14"),
+        ("19/20", 1, "1"),
         ("0", 5, "0"),
     ],
 )
@@ -367,3 +370,20 @@ def test_parametric_values_have_decimal_coefficients() -> None:
     page = " ".join(str(observer(plant, poles="-4.5, -6").to("text")).split())
     assert "det 𝒪 = 0.1233 k³ - 0.105 k + 1 ≠ 0" in page
     assert "(3.3333 k² - 65.693 k + 82.320)/(k³ - 0.85158 k + 8.1103)" in page
+
+
+def test_functions_of_time_are_compared_by_what_is_known_of_them() -> None:
+    """∫ e^{−2at} dt contains the square of e^{−aT}, written as e^{−2aT}."""
+    plant = StateSpace("[-a]", C="[0.3]", symbols={"a": "positive", "T": "positive"})
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        page = " ".join(str(gramian(plant, horizon="T").to("text")).split())
+    assert "0.045 - 0.045 exp(-2T a)" in page.replace("a T", "T a") or "0.09" in page
+
+
+def test_a_line_whose_decimals_fail_their_check_stays_exact(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("symobs.render.decimals.formulas.significant", lambda *_: "0.5")
+    design = state_feedback(StateSpace("[0 1; -0.3 0.7]", "[0; 3]"), poles="-1, -2")
+    with pytest.warns(SymobsWarning, match="a line in decimals is left out"):
+        page = str(design.to("text"))
+    assert "(1/30)[17  37]" in page

@@ -12,10 +12,11 @@ from fractions import Fraction
 from typing import TYPE_CHECKING
 
 from symobs.exact.algebraic.enclosure import is_number, near, sign_of_number
-from symobs.exact.core.scalar import Scalar
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
+
+    from symobs.exact.core.scalar import Scalar
 
 _WRITTEN = re.compile(r"(?P<whole>0|[1-9][0-9]*)(?:\.(?P<places>[0-9]+))?(?:e(?P<power>-?[1-9][0-9]*))?")
 #: Powers of ten from which on an exact number, and the least one below which any number, is written with a power of ten.
@@ -37,19 +38,13 @@ def is_correctly_written(exact: Scalar, text: str, digits: int) -> bool:
         return True
     if len(str(units)) != digits or units == 0:
         return False
+    is_below = exact.fraction() < shown if exact.is_constant else sign_of_number(shown - exact) == "positive"
+    if is_below and units == 10 ** (digits - 1):  # below a power of ten the digits stand one place further
+        units, unit = 10 * units, unit / 10
     if exact.is_constant:
-        number = exact.fraction()
-        half = _unit_below(units, unit, digits, is_below=number < shown) / 2
-        off = abs(number - shown)
-        return off < half or (off == half and units % 2 == 0)
-    is_below = sign_of_number(Scalar.of(shown) - exact) == "positive"
-    half = _unit_below(units, unit, digits, is_below=is_below) / 2
-    return all(sign_of_number(half + off) == "positive" for off in (exact - shown, shown - exact))
-
-
-def _unit_below(units: int, unit: Fraction, digits: int, *, is_below: bool) -> Fraction:
-    """Return the unit of the last place of the number: below a power of ten it is a tenth of that of the power."""
-    return unit / 10 if is_below and units == 10 ** (digits - 1) else unit
+        off = abs(exact.fraction() - shown)
+        return 2 * off < unit or (2 * off == unit and units % 2 == 0)
+    return all(sign_of_number(unit / 2 + off) == "positive" for off in (exact - shown, shown - exact))
 
 
 def is_written_exactly(exact: Scalar, text: str) -> bool:

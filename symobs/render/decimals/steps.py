@@ -23,7 +23,9 @@ from symobs.derivation import (
     Survey,
     Tabulate,
 )
+from symobs.derivation.builder import left_out
 from symobs.derivation.decimals_check import check_decimals, is_in_order
+from symobs.errors import DerivationRejected
 from symobs.exact import Matrix, Scalar
 from symobs.exact.numerals.rounded_roots import rounded_roots
 from symobs.figures.block_diagram import letter_for
@@ -55,18 +57,37 @@ if TYPE_CHECKING:
 _NUMERICALLY = "in_decimals"
 #: An exact answer stands beside its decimals where no entry, and no row, has more characters than this.
 _WIDEST_ENTRY, _WIDEST_ROW = 11, 40
+#: What may not be rounded is written in decimals of up to so many digits.
+_EXACT_DIGITS = 12
 
 
 def in_decimals(derivation: Derivation, steps: Sequence[Step], digits: int) -> tuple[Step, ...]:
     """Return steps of a derivation in decimals of so many significant digits.
 
-    Raises `DerivationRejected` where a decimal is not the correct rounding of what it stands for.
+    A step whose decimals fail their check stays exact, with a `SymobsWarning`.
     """
     exact = tuple(_without_decimals(steps))
     written = _Writer(derivation, digits)
     shown = tuple(map(written.step, exact))
-    check_decimals(exact, shown, derivation.variable, digits)
+    try:
+        check_decimals(exact, shown, derivation.variable, digits)
+    except DerivationRejected:
+        left_out("a line in decimals")
+        shown = tuple(_held(*pair, derivation.variable, digits) for pair in zip(exact, shown, strict=True))
+        check_decimals(exact, shown, derivation.variable, digits)
     return tuple(_saying_so(step, digits) for step in shown) if any(map(_is_rounded, shown)) else shown
+
+
+def _held(exact: Any, shown: Any, variable: str, digits: int) -> Any:
+    """Return a step in decimals, with the exact one in place of each whose decimals fail their check."""
+    if isinstance(exact, Section | Case):
+        pairs = zip(exact.steps, shown.steps, strict=True)
+        return replace(exact, steps=tuple(_held(*pair, variable, digits) for pair in pairs))
+    try:
+        check_decimals(exact, shown, variable, digits)
+    except DerivationRejected:
+        return exact
+    return shown
 
 
 def _saying_so(step: Step, digits: int) -> Step:
@@ -122,6 +143,7 @@ class _Writer:
 
     def __init__(self, derivation: Derivation, digits: int) -> None:
         self.decimals = InDecimals(derivation.variable, digits)
+        self.precise = InDecimals(derivation.variable, _EXACT_DIGITS)
         self.digits = digits
         self.parameters = frozenset(derivation.start.signs)
 
@@ -130,8 +152,12 @@ class _Writer:
         match step:
             case Section(title, steps):
                 return Section(self.sentence(title), tuple(map(self.step, steps)))
-            case Case(steps=steps):
-                return self._said(replace(step, steps=tuple(map(self.step, steps))))
+            case Case(when=when, steps=steps):
+                if isinstance(when, Conjunction):
+                    where: Relation | Conjunction = Conjunction(tuple(map(self.exactly, when.relations)))
+                else:
+                    where = self.exactly(when)
+                return self._said(replace(step, when=where, steps=tuple(map(self.step, steps))))
             case Given(relations=relations):
                 return self._said(replace(step, relations=tuple(map(self.exactly, relations))))
             case Define(relation=relation, answer=answer):
@@ -190,9 +216,9 @@ class _Writer:
         return roots if texts is None else RoundedRoots(roots.polynomial, roots.values, texts)
 
     def value(self, formula: Formula) -> Formula:
-        """Return a formula in decimals, itself where one would be rounded."""
-        shown = self.decimals.formula(formula)
-        return formula if is_rounded(shown) else shown
+        """Return a formula in decimals that are not rounded, itself where there are none."""
+        written = (each.formula(formula) for each in (self.decimals, self.precise))
+        return next((shown for shown in written if not is_rounded(shown)), formula)
 
     def relation(self, relation: Relation) -> Relation:
         """Return a relation in decimals; what tells the value of a decimal, and a condition, where nothing is rounded."""
@@ -210,9 +236,9 @@ class _Writer:
         return Relation((*shown.members[:-1], value, shown.members[-1]), (*shown.operators[:-1], "=", "≈"))
 
     def exactly(self, relation: Relation) -> Relation:
-        """Return a relation in decimals, itself where one would be rounded."""
-        shown = self.decimals.relation(relation)
-        return relation if any(map(is_rounded, shown.members)) else shown
+        """Return a relation in decimals that are not rounded, itself where there are none."""
+        written = (each.relation(relation) for each in (self.decimals, self.precise))
+        return next((shown for shown in written if not any(map(is_rounded, shown.members))), relation)
 
     def _is_condition(self, relation: Relation) -> bool:
         """Return whether a relation says something of parameters alone."""
