@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 SCHEMA = "symobs-batch/1"
 #: What of a problem file changes no answer, and what only its page shows.
 _SAYS_NOTHING = {"id", "printed"}
-_ON_A_PAGE = {"title", "source", "text"}
+_ON_A_PAGE = {"title", "source", "text", "digits", "exact"}
 _JSON_NUMBER = re.compile(r"-?(0|[1-9][0-9]*)(\.[0-9]+)?([eE][-+]?[0-9]+)?")
 
 
@@ -104,13 +104,21 @@ _quoted = json.JSONEncoder(ensure_ascii=False).encode
 
 
 def solve_job(
-    text: str, name: str, folder: Path | None = None, *, formats: tuple[str, ...] = (), fields: str = "all"
+    text: str,
+    name: str,
+    folder: Path | None = None,
+    *,
+    formats: tuple[str, ...] = (),
+    fields: str = "all",
+    digits: int | None = None,
 ) -> Job:
     """Return the job of solving a problem, given as the text of its file.
 
     What changes neither an answer nor a page that is asked for does not enter the key: comments, spaces, order, ids.
     """
     options: dict[str, Any] = {"fields": fields, "formats": sorted(set(formats))}
+    if formats and digits is not None:
+        options["digits"] = digits
     try:
         tables = parse(text, name)
         left_out = _SAYS_NOTHING if formats else _SAYS_NOTHING | _ON_A_PAGE

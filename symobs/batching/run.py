@@ -11,6 +11,7 @@ from symobs.batching.executors import Unfinished, workforce
 from symobs.batching.jobs import Budget, Job, digest, key_of, solve_job
 from symobs.batching.store import STATUSES, Store
 from symobs.errors import InputError, UsageError, reason_of
+from symobs.result.digits_of_page import digits_asked
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Sequence
@@ -132,6 +133,8 @@ def batch(
     memory: float | None = 2000.0,
     formats: Sequence[str] = (),
     fields: str = "all",
+    digits: int | None = None,
+    exact: bool = False,
     recheck: float = 0.01,
 ) -> Batch:
     """Solve many problems in processes of their own, on this machine or a cluster.
@@ -144,6 +147,7 @@ def batch(
     timeout, memory   seconds and megabytes of one problem: one that takes more is `undecided` and loses no other
     formats    pages to be written beside the results: latex, html, markdown, text
     fields     `answer`: only what was asked for, not what follows from it
+    digits, exact   how the pages write their numbers: with so many significant digits, or exactly
     recheck    the share of results that is checked again by other code; of the first 200 all are
 
     Raises `InputError` for a folder in use, a scheduler that does not answer or other versions there, `Unfinished`
@@ -152,10 +156,11 @@ def batch(
     if fields not in {"all", "answer"}:
         raise UsageError(f"{fields[:40]!r} names no fields", where="fields", repair="write all or answer")
     require_texts(formats)
+    asked = digits_asked(digits, exact=exact)
 
     def jobs() -> Iterator[Job]:
         for text, name, folder in texts_of(problems):
-            yield solve_job(text, name, folder, formats=tuple(formats), fields=fields)
+            yield solve_job(text, name, folder, formats=tuple(formats), fields=fields, digits=asked)
 
     settings = Settings(Budget(timeout, memory), recheck=recheck)
     folder = None if out is None else Path(out)

@@ -29,7 +29,7 @@ def run(payload: Mapping[str, Any]) -> dict[str, Any]:
     shown = _SHOWN[payload["fields"]]
     row: dict[str, Any] = {**_how_it_went(problem, results), "result": [shown(result) for result in results]}
     if payload["formats"]:
-        document = replace(problem.document(results), templates=None)
+        document = replace(problem.document(results), templates=None, digits=payload.get("digits", problem.digits))
         row["files"] = {name: render(document, name) for name in payload["formats"]}
     return row
 

@@ -34,6 +34,7 @@ from symobs.exact.linear_algebra.elimination import (
 )
 from symobs.exact.linear_algebra.smith_mcmillan import pole_and_zero_polynomial
 from symobs.exact.linear_algebra.transfer_function import controller, transfer, transfer_matrix
+from symobs.exact.numerals.significant_digits import is_correctly_written, is_written_exactly, significant
 from symobs.exact.sympy_bridge.stable_roots import stable_roots
 from symobs.exact.time_functions.antiderivative import antiderivative, exponential_of_integral
 
@@ -66,8 +67,10 @@ __all__ = [
     "from_coefficients",
     "hankel_of",
     "independent_rows",
+    "is_correctly_written",
     "is_inverse",
     "is_rounding",
+    "is_written_exactly",
     "kernel",
     "matrix_of_numbers",
     "modulo",
@@ -81,6 +84,7 @@ __all__ = [
     "roots_are",
     "roots_of",
     "rounded",
+    "significant",
     "stable_roots",
     "transfer",
     "transfer_matrix",

@@ -126,6 +126,14 @@ def without_sign(label: Label) -> tuple[bool, Label]:
     return negative, label
 
 
+def letter_for(name: str, place: str, label: Label) -> Formula | None:
+    """Return what a figure has in place of a label that is not written out, with its sign; None where it has nothing."""
+    letter = dict(figure_of(name).letters).get(place)
+    if letter is None:
+        return None
+    return Negative(Letter(letter)) if without_sign(label)[0] else Letter(letter)
+
+
 def _figure(
     *,
     grid: str,

@@ -19,12 +19,14 @@ from symobs.formula.nodes import (
     Letter,
     Literal,
     Negative,
+    Numeral,
     Power,
     Predicate,
     Product,
     Quotient,
     Relation,
     Roots,
+    RoundedRoots,
     Shown,
     Sum,
     SymbolList,
@@ -38,6 +40,7 @@ from symobs.formula.nodes import (
     roots_written,
     with_children,
 )
+from symobs.formula.numerals import exact_meaning, is_rounded
 from symobs.formula.sign_changes import Turned
 
 __all__ = [
@@ -59,6 +62,7 @@ __all__ = [
     "Literal",
     "Modular",
     "Negative",
+    "Numeral",
     "Power",
     "Predicate",
     "Product",
@@ -66,6 +70,7 @@ __all__ = [
     "Relation",
     "Restricted",
     "Roots",
+    "RoundedRoots",
     "Shown",
     "Signal",
     "Sum",
@@ -79,7 +84,9 @@ __all__ = [
     "differ",
     "divisors",
     "evaluate",
+    "exact_meaning",
     "is_rational",
+    "is_rounded",
     "letters",
     "roots_written",
     "with_children",

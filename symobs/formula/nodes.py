@@ -41,6 +41,17 @@ class Decimals:
 
 
 @dataclass(frozen=True)
+class Numeral:
+    """An exact number that is not negative, and the decimals printed for it: `0.33333`, `1.2346e-7`, or exactly `10.78`.
+
+    It stands on pages only, never in a derivation: `decimals_check` holds what is printed against the exact line.
+    """
+
+    value: Scalar
+    text: str
+
+
+@dataclass(frozen=True)
 class Identity:
     """The identity matrix I."""
 
@@ -138,6 +149,7 @@ Formula: TypeAlias = (
     Letter
     | Literal
     | Decimals
+    | Numeral
     | Identity
     | Sum
     | Negative
@@ -194,6 +206,13 @@ class Roots:
 
     polynomial: Formula
     values: tuple[Root, ...]
+
+
+@dataclass(frozen=True)
+class RoundedRoots(Roots):
+    """The same on a page in decimals: (real part, imaginary part, whether one is rounded) for each root."""
+
+    texts: tuple[tuple[str, str, bool], ...]
 
 
 @dataclass(frozen=True)

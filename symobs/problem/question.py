@@ -23,6 +23,7 @@ from symobs.phrases import QUESTIONS
 from symobs.phrases.english.question_phrases import UNSAID
 from symobs.problem.schema import keys_of
 from symobs.result import Document
+from symobs.result.digits_of_page import DIGITS
 from symobs.specification import (
     desired_polynomial,
     parse_signal,
@@ -33,6 +34,7 @@ from symobs.specification import (
     read_quantity,
 )
 from symobs.system import read_matrix, read_scalar
+from symobs.system.reading import has_decimals
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
@@ -74,7 +76,10 @@ def question_of(problem: Problem) -> Question:
                 page.remark("part", letter=_letter_of(place))
             for key in sentences_for(task, tokens_of(task, values, problem)):
                 page.steps.append(Note(_filled(page, task, key, values)))
-    return Question(problem.title, problem.source, (), problem.convention, problem.text, page=page.derivation())
+    typed = problem.plant.is_in_decimals or has_decimals([*problem.specification.values()])
+    digits = DIGITS if problem.digits is None and typed else problem.digits
+    of_page = {"page": page.derivation(), "digits": digits}
+    return Question(problem.title, problem.source, (), problem.convention, problem.text, **of_page)
 
 
 def _has(asked: Iterable[tuple[Task, Mapping[str, Any]]], name: str) -> bool:

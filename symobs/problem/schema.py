@@ -9,6 +9,7 @@ from symobs.conditions import SIGNS
 from symobs.convention import conventions
 from symobs.problem.marking import MARKING
 from symobs.result import tasks
+from symobs.result.digits_of_page import MOST_DIGITS
 from symobs.result.in_convention import names_in
 from symobs.specification import CHOICES, KINDS
 
@@ -29,6 +30,13 @@ TOP: dict[str, dict[str, Any]] = {
         "type": "string",
         "pattern": "^[A-Za-z][A-Za-z0-9_-]{0,39}$",
     },
+    "digits": {
+        "description": "significant digits of a page in decimals; 5 where data are typed as decimals",
+        "type": "integer",
+        "minimum": 1,
+        "maximum": MOST_DIGITS,
+    },
+    "exact": {"description": "true: a page of exact numbers, however the data are typed", "type": "boolean"},
     "symbols": {"description": 'every free name: name = "positive", or name = { sign = "positive", latex = "b" }'},
     "constants": {
         "description": 'names for numbers: r = "sqrt(3)", c = "cos(pi/6)"; a text may use them',

@@ -21,6 +21,7 @@ from symobs.problem.marking import Marking, read_marking
 from symobs.problem.noted_errors import Errors, check_text, report_unknown, table_of, text_of
 from symobs.problem.schema import PLANT, PRINTED, TOP, keys_of, kinds_of, missing_poles
 from symobs.result import Document, Result, Task, task_named, tasks
+from symobs.result.digits_of_page import digits_asked
 from symobs.result.in_convention import Viewed, names_in
 from symobs.specification import parse_signal, read_poles
 from symobs.system import StateSpace, Symbols, read_matrix, read_scalar
@@ -55,6 +56,7 @@ class Problem:
     printed: tuple[Mapping[str, Any], ...] = ()
     values: Mapping[str, Any] = field(default_factory=dict)  # of symbols: the results are those there
     marking: Marking = Marking()
+    digits: int | None = None  # of the numbers on the page, as a document has them
 
     def solve(self, report: Callable[[str, tuple[Result, ...]], None] | None = None) -> tuple[Result, ...]:
         """Run every task; `report` is told which one begins and the results there are.
@@ -84,7 +86,8 @@ class Problem:
 
     def document(self, results: tuple[Result, ...], convention: Convention | None = None) -> Document:
         """Return what a format renders, in the file's convention or in another one."""
-        return Document(self.title, self.source, results, convention or self.convention, self.text)
+        told = convention or self.convention
+        return Document(self.title, self.source, results, told, self.text, digits=self.digits)
 
 
 def validate(data: Mapping[str, Any], only: str | None = None, folder: Path | None = None) -> Problem:
@@ -107,11 +110,11 @@ def validate(data: Mapping[str, Any], only: str | None = None, folder: Path | No
     expect = table_of(data, "expect", errors)
     printed = _printed(data.get("printed", []), errors)
     values = table_of(data, "values", errors)
+    digits = _digits(data, errors)
     marking = read_marking(data.get("marking", {}), [task.name for task in asked], errors.note)
     if not errors.found and plant is not None:
-        return Problem(
-            title, source, ids, wanted, plant, specification, expect, convention, text, printed, values, marking
-        )
+        about = title, source, ids, wanted, plant, specification, expect, convention, text, printed, values, marking
+        return Problem(*about, digits)
     if plant is not None and wanted:
         with errors:
             Problem(title, source, ids, wanted, plant, specification, expect, convention, values=values).solve()
@@ -130,6 +133,19 @@ def _ids(value: object, errors: Errors) -> tuple[str, ...]:
             where = f"id[{i}]" if isinstance(value, list) else "id"
             errors.note(f"a text is expected, but {came(entry)} came", where, 'write id = ["Ex4.2"]')
     return tuple(str(entry) for entry in entries)
+
+
+def _digits(data: Mapping[str, Any], errors: Errors) -> int | None:
+    """Return the digits of the numbers on the page: 0 for exact ones, None where nothing is said."""
+    exact = data.get("exact", False)
+    if not isinstance(exact, bool):
+        errors.note(f"true or false is expected, but {came(exact)} came", "exact", "write exact = true")
+        return None
+    try:
+        return digits_asked(data.get("digits"), exact=exact)
+    except UsageError as error:
+        errors.note(error.message, "digits", error.repair)
+        return None
 
 
 def _printed(value: object, errors: Errors) -> tuple[Mapping[str, Any], ...]:

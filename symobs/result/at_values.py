@@ -17,7 +17,7 @@ from symobs.expression import parse_matrix, parse_polynomial
 from symobs.expression.source import shown
 from symobs.specification import parse_signal, read_names, read_poles
 from symobs.system import StateSpace, read_matrix, read_scalar
-from symobs.system.reading import read_values
+from symobs.system.reading import has_decimals, read_values
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -45,6 +45,7 @@ def at_values(result: Any, given: Mapping[Any, Any]) -> Any:
     if not values:
         return result
     there = _plant(plant, values)
+    there.is_in_decimals = there.is_in_decimals or has_decimals([*given.values()])
     moved = {name: _moved(value, values) for name, value in read.items() if values.keys() & _names(value)}
     return _with_chosen(result, task(there, **{**result.specification, **moved}), values)
 

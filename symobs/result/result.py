@@ -20,6 +20,7 @@ from symobs.derivation.builder import Page
 from symobs.errors import CertificateRejected, DerivationRejected
 from symobs.exact.linear_algebra.realisation import Realisation
 from symobs.result.conversions import Faces
+from symobs.result.digits_of_page import digits_asked
 from symobs.result.writers import render, writer_of
 
 if TYPE_CHECKING:
@@ -306,10 +307,10 @@ class Result(Faces):
         return sorted({*own, "conditions", "cases", *self.fields})
 
     @overload
-    def to(self, format_name: Literal["pdf"], *, convention: str = "standard", detail: str = "full") -> bytes: ...
+    def to(self, format_name: Literal["pdf"], *, convention: str = ..., detail: str = ..., **numbers: Any) -> bytes: ...
 
     @overload
-    def to(self, format_name: Text, *, convention: str = "standard", detail: str = "full") -> str: ...
+    def to(self, format_name: Text, *, convention: str = ..., detail: str = ..., **numbers: Any) -> str: ...
 
     @overload
     def to(self, format_name: Code, *, period: object = None, hold: Literal["zoh", "tustin"] = "zoh") -> str: ...
@@ -321,6 +322,8 @@ class Result(Faces):
         *,
         convention: str = "standard",
         detail: str = "full",
+        digits: int | None = None,
+        exact: bool = False,
         period: object = None,
         hold: str = "zoh",
     ) -> str | bytes: ...
@@ -331,17 +334,20 @@ class Result(Faces):
         *,
         convention: str = "standard",
         detail: str = "full",
+        digits: int | None = None,
+        exact: bool = False,
         period: object = None,
         hold: str = "zoh",
     ) -> str | bytes:
         """Return the result in a format: latex, html, text, json, pdf, …; in a convention, by name or TOML file.
 
-        `detail` says how much of the derivation is told: full, outline or answer.  python, matlab, c and modelica are the
+        `detail` says how much of the derivation is told: full, outline or answer.  Data typed as decimals make a page of
+        decimals; `digits` asks for so many significant ones, `exact` for none.  python, matlab, c and modelica are the
         observer or compensator as a program, sampled with a `period` such as "1/100" by a zero-order hold (zoh) or by the
         bilinear map (tustin); numpy and csv the numbers alone.
         """
-        document = Document("", "", (self,), convention_named(convention), detail=detail, period=period, hold=hold)
-        return render(document, format_name)
+        of_page = {"detail": detail, "digits": digits_asked(digits, exact=exact), "period": period, "hold": hold}
+        return render(Document("", "", (self,), convention_named(convention), **of_page), format_name)
 
     def __repr__(self) -> str:
         """Show the answers in short; of one with many terms their number, for a display may not take seconds."""
@@ -383,6 +389,8 @@ class Document:
     hold: str = field(default="zoh", kw_only=True)
     #: The answers that are printed alone, by name; none means the whole document.
     printed: tuple[str, ...] = field(default=(), kw_only=True)
+    #: The significant digits of the numbers on a page: 0 writes them exactly, None does as the data are typed.
+    digits: int | None = field(default=None, kw_only=True)
 
     @cached_property
     def derivations(self) -> tuple[Derivation, ...]:

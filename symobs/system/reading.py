@@ -24,7 +24,7 @@ _EXCLUDED = {
     "nonpositive": ("positive",),
     "nonzero": ("zero",),
 }
-_DECIMAL = re.compile(r"\d\.\d")
+_DECIMAL = re.compile(r"\.\d|(?<![A-Za-z_\d])\d+[eE]-\d")
 
 
 def has_decimals(value: object) -> bool:

@@ -121,7 +121,7 @@ class StateSpace:
         written = read_written(given, known, time.variable, where)
         A, B, C, D = written.realised(where)
         plant = cls(A, B, C, D, dt, symbols=known, transfer_function=written)
-        plant.is_from_floats = given is not transfer_function
+        plant.is_from_floats, plant.is_in_decimals = given is not transfer_function, has_decimals(given)
         return plant
 
     @classmethod
@@ -138,7 +138,7 @@ class StateSpace:
         value = read_characteristic(polynomial, known, time.variable, "specification.polynomial")
         lead, *rest = value.coefficients(time.variable)
         plant = cls(companion([c / lead for c in rest]), dt=dt, symbols=known)
-        plant.polynomial = value
+        plant.polynomial, plant.is_in_decimals = value, has_decimals(polynomial)
         return plant
 
     @classmethod

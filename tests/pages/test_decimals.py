@@ -92,7 +92,8 @@ def test_what_depends_on_a_parameter_has_no_decimals() -> None:
 
 def test_decimals_of_the_data_are_given_as_decimals() -> None:
     plant = StateSpace("[0 0 0 1; 0 0 1 0; 0 10.78 0 0; 0 -0.98 0 0]", "[0; 0; -1; 1]", "[1 0 0 0]")
-    page = str(reduced_order_observer(plant, poles="-20, -20+20i, -20-20i").to("text"))
+    design = reduced_order_observer(plant, poles="-20, -20+20i, -20-20i")
+    page = str(design.to("text", exact=True))
     given_part = page.partition("1. Observability")[0]
     assert "10.78" in given_part
     assert "The decimals are taken as exact: 10.78 = 539/50, 0.98 = 49/50." in " ".join(given_part.split())

@@ -17,6 +17,7 @@ from symobs.batching.run import Batch, files_of, require_texts, texts_of, verifi
 from symobs.cli.shared.common import EXIT_NO, EXIT_UNDECIDED, write_message
 from symobs.cli.shared.options import WORKERS, options
 from symobs.errors import UsageError
+from symobs.result.digits_of_page import digits_asked
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -86,7 +87,7 @@ def of_a_run(command: Callable[..., Any]) -> Callable[..., Any]:
     default="all",
     help="answer: only what is asked for, not what follows from it.",
 )
-@options("timeout", "memory")
+@options("digits", "exact", "timeout", "memory")
 @click.option("--retry", type=click.Choice(["failed", "undecided"]), multiple=True, help="Try these again.")
 @click.option("--fail-fast", is_flag=True, help="End at the first problem that fails.")
 @click.option("--dry-run", is_flag=True, help="Say what would be done, and do nothing.")
@@ -97,10 +98,12 @@ def command(
     out: str | None,
     formats: str,
     fields: str,
+    digits: object,
+    exact: bool,  # noqa: FBT001 - click's signature
     timeout: float | None,
     memory: float | None,
     retry: tuple[str, ...],
-    fail_fast: bool,  # noqa: FBT001 - click's signature
+    fail_fast: bool,  # noqa: FBT001
     dry_run: bool,  # noqa: FBT001
     verify: str | None,
     **run: Any,
@@ -120,10 +123,11 @@ def command(
     files = [file for each in problems for file in files_of(Path(each))]
     pages = tuple(name for name in formats.replace(" ", "").split(",") if name)
     require_texts(pages)
+    asked = digits_asked(digits, exact=exact, where="--digits")
 
     def jobs() -> Iterator[Job]:
         for text, name, folder in texts_of(files):
-            yield solve_job(text, name, folder, formats=pages, fields=fields)
+            yield solve_job(text, name, folder, formats=pages, fields=fields, digits=asked)
 
     budget = Budget(timeout or _SECONDS, memory or _MEGABYTES)
     work = batch_of(jobs, Path(out), budget, run, retry=retry, fail_fast=fail_fast)

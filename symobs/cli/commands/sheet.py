@@ -57,6 +57,7 @@ class _Wanted:
     questions: bool
     solutions: bool
     detail: str
+    digits: int | None = None
     templates: Path | None = None
     convention: Any = None
     timeout: float | None = None
@@ -69,7 +70,7 @@ class _Wanted:
 @click.option("--title", default="", metavar="TEXT", help="The title of the sheet.")
 @click.option("--questions", is_flag=True, help="The questions only.")
 @click.option("--solutions", is_flag=True, help="The solutions only; they begin with the data.")
-@options("detail", "templates", "convention", *LIMITS)
+@options("detail", "digits", "exact", "templates", "convention", *LIMITS)
 def command(
     files: tuple[str, ...],
     target: str | None,
@@ -78,6 +79,8 @@ def command(
     questions: bool,  # noqa: FBT001 - click's signature
     solutions: bool,  # noqa: FBT001
     detail: str,
+    digits: object,
+    exact: bool,  # noqa: FBT001
     templates: str | None,
     convention_name: str | None,
     timeout: float | None,
@@ -91,7 +94,7 @@ def command(
     if questions and solutions:
         raise UsageError("both --questions and --solutions are given", repair="leave both out for both")
     chosen = _sheet_format(format_name, target)
-    told = page_of(detail, templates, chosen.name)
+    told = page_of(detail, templates, chosen.name, digits=digits, exact=exact)
     wanted = _Wanted(
         chosen,
         not solutions,
@@ -275,7 +278,8 @@ def _worked_out(
 def _part(document: Document, wanted: _Wanted) -> Any:
     """Return the part of a sheet for a question or a solution, in its format."""
     convention = wanted.convention or document.convention
-    told = replace(document, convention=convention, detail=wanted.detail, templates=wanted.templates)
+    digits = document.digits if wanted.digits is None else wanted.digits
+    told = replace(document, convention=convention, detail=wanted.detail, digits=digits, templates=wanted.templates)
     return wanted.format.part(told)
 
 

@@ -32,6 +32,8 @@ def command(
     bibliography: str | None,
     convention_name: str | None,
     detail: str,
+    digits: object,
+    exact: bool,  # noqa: FBT001 - click's signature
     templates: str | None,
     printed: tuple[str, ...],
     period: str | None,
@@ -46,7 +48,8 @@ def command(
         raise UsageError(f"{quoted(task_name)} is not a task", repair=f"known tasks are {', '.join(sorted(tasks()))}")
     check_targets(target, plot, bibliography)
     convention = convention_of(convention_name)
-    page = page_of(detail, templates, chosen, printed=printed, period=period, hold=hold)
+    numbers = {"printed": printed, "period": period, "hold": hold}
+    page = page_of(detail, templates, chosen, digits=digits, exact=exact, **numbers)
 
     def work(report_progress: Progress) -> Outcome:
         found = validate(parse(read_file(file), file), task_name, Path(file).parent)

@@ -15,6 +15,7 @@ if TYPE_CHECKING:
 
 Optioned = TypeVar("Optioned", bound="Callable[..., Any] | click.Command")
 
+_LONG_NUMBER = 10
 _LEAST_MEMORY = 64  # megabytes; symobs and its libraries take half of that before they begin
 
 
@@ -51,6 +52,11 @@ def _names(_: click.Context, __: click.Parameter, value: str | None) -> tuple[st
     if value is not None and not names:
         raise UsageError("no answer is named", where="--print", repair="write for example --print K,L")
     return names
+
+
+def _digits(_: click.Context, __: click.Parameter, value: str | None) -> object:
+    """Return the number of --digits; whoever writes the page says which numbers there are."""
+    return int(value) if value is not None and value.isdecimal() and len(value) < _LONG_NUMBER else value
 
 
 class OneOf(click.ParamType):  # type: ignore[type-arg]  # generic in the newest click alone
@@ -135,6 +141,18 @@ OPTIONS: dict[str, Callable[[Any], Any]] = {
         default="full",
         type=OneOf(_details),
         help="Level of detail of the derivation; full where nothing is said.",
+    ),
+    "digits": click.option(
+        "--digits",
+        metavar="N",
+        help="Write the numbers of the page in decimals with N significant digits, correctly rounded; 5 where the data "
+        "are typed as decimals and nothing is said.",
+        callback=_digits,
+    ),
+    "exact": click.option(
+        "--exact",
+        is_flag=True,
+        help="Write the numbers of the page exactly, also where the data are typed as decimals.",
     ),
     "templates": click.option(
         "--templates", type=AFile("dir"), metavar="FOLDER", help="Use your own LaTeX templates: see `symobs templates`."

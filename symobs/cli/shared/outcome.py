@@ -38,15 +38,20 @@ def convention_of(name: str | None) -> Any:
     return convention_named(name)
 
 
-def page_of(detail: str, templates: str | None, format_name: str, **of_numbers: Any) -> dict[str, Any]:
-    """Return the options of --detail and --templates, and those of programs and numbers as they are.
+def page_of(
+    detail: str, templates: str | None, format_name: str, *, digits: object = None, exact: bool = False, **others: Any
+) -> dict[str, Any]:
+    """Return the options of --detail, --digits, --exact and --templates, and those of programs and numbers as they are.
 
     Raises `UsageError` for unknown values.
     """
     from symobs.render.page.detail_level import detail_named  # noqa: PLC0415 - it imports the steps
+    from symobs.result.digits_of_page import digits_asked  # noqa: PLC0415
 
+    asked = digits_asked(digits, exact=exact, where="--digits")
+    found = {"detail": detail_named(detail), **({} if asked is None else {"digits": asked}), **others}
     if templates is None:
-        return {"detail": detail_named(detail), **of_numbers}
+        return found
     from symobs.render.formats.templates import check_folder  # noqa: PLC0415 - only with --templates
     from symobs.result import format_named, formats  # noqa: PLC0415
 
@@ -55,7 +60,7 @@ def page_of(detail: str, templates: str | None, format_name: str, **of_numbers: 
         message = f"the format {format_name} has no LaTeX template"
         raise UsageError(message, where="--templates", repair=f"use one of {having}, or leave it out")
     check_folder(Path(templates))
-    return {"detail": detail_named(detail), "templates": Path(templates), **of_numbers}
+    return {**found, "templates": Path(templates)}
 
 
 def check_targets(target: str | None, plot: str | None, bibliography: str | None = None) -> None:

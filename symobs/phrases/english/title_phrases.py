@@ -24,6 +24,7 @@ PHRASES: dict[str, str] = {
     "realised": "A realisation in controllable canonical form is",
     "from_floats": "Floating-point entries are taken as the shortest decimals that represent them.",
     "exact_decimals": "The decimals are taken as exact: {numbers}.",
+    "rounded_digits": "Numbers after ≈ are exact values rounded to {digits} significant digits.",
     "without_serifs": "The sans-serif {parameter} denotes a parameter of the data, not the matrix or signal with that letter.",
     "declared": "Throughout, we assume {signs}.",
     "desired_pole": "The desired pole is {poles}.",

@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, TypeAlias
 
 from symobs._dataclass import dataclass
 from symobs.exact import Scalar
-from symobs.figures.block_diagram import Figure, figure_of, is_box, is_integrator, key, without_sign
-from symobs.formula import Conjunction, Derivative, Letter, Literal, Negative, Power, Quotient
+from symobs.figures.block_diagram import Figure, figure_of, is_box, is_integrator, key, letter_for, without_sign
+from symobs.formula import Conjunction, Derivative, Letter, Literal, Power, Quotient
 from symobs.render.drawings.scene import Box, Rectangle, Scene, Sign, Stroke, TextLabel
 
 if TYPE_CHECKING:
@@ -60,9 +60,8 @@ def diagram_scene(drawing: Drawing, metrics: Metrics, width: float, *, discrete:
         if scene.whole.right <= width or not letters:
             return scene
         widest = max(letters, key=lambda name: metrics.measure(without_sign(labels[name])[1])[0])
-        negative, _ = without_sign(labels[widest])
-        letter = Letter(letters.pop(widest))
-        labels[widest] = Negative(letter) if negative else letter
+        labels[widest] = letter_for(drawing.name, widest, labels[widest]) or labels[widest]
+        del letters[widest]
 
 
 class _Arranging:

@@ -59,6 +59,7 @@ _ROOTS = RootGlyphs(
     number=lambda number: f"<mn>{number}</mn>",
     minus=f"<mo>{MINUS}</mo>",
     plus=f"<mo>{PLUS}</mo>",
+    about="<mo>≈</mo>",
     imaginary="<mi>i</mi>",
     written=lambda printer, item: printer.running_box(item).source,
 )

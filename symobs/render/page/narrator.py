@@ -52,6 +52,7 @@ from symobs.render.page.convention_notes import letters_used, stated_conventions
 from symobs.render.page.detail_level import at_detail
 from symobs.render.page.prose import filled, joined, with_reference
 from symobs.render.page.side_by_side import in_rows
+from symobs.result.digits_of_page import shown_digits
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -84,6 +85,10 @@ def narrate(document: Document) -> tuple[Block, ...]:
     for derivation in document.derivations:
         derivation.check()
     parts = [at_detail(derivation.steps, document.detail) for derivation in document.derivations]
+    if digits := shown_digits(document):
+        from symobs.render.decimals.steps import in_decimals  # noqa: PLC0415 - only pages in decimals pay for it
+
+        parts = [in_decimals(*pair, digits) for pair in zip(document.derivations, parts, strict=True)]
     works, citations = cited_literature(step for steps in parts for step in steps)
     page = _PageBlocks(document.convention, citations=citations)
     page.blocks.append(_title(document))

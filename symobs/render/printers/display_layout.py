@@ -10,6 +10,7 @@ from itertools import groupby
 from typing import TYPE_CHECKING, Generic
 
 from symobs._dataclass import dataclass
+from symobs.formula import is_rounded
 from symobs.render.printers.glyphs import B, Level
 from symobs.render.printers.line_breaking import Breaker
 
@@ -48,7 +49,7 @@ class Layout(Generic[B]):
 
     def rows(self, relations: Sequence[Relation]) -> tuple[list[DisplayRow[B]], bool]:
         """Return the rows, and whether they are aligned (else each is centred)."""
-        if self.boxed and not any("=" in relation.operators for relation in relations):
+        if self.boxed and all({"=", "≈"}.isdisjoint(relation.operators) for relation in relations):
             return self._inequalities(relations)
         last = len(relations) - 1
         whole = [self._on_one_line(relation, is_last=index == last) for index, relation in enumerate(relations)]
@@ -190,7 +191,7 @@ class Layout(Generic[B]):
     def _definition(self, name: B, entry: Formula, room: float) -> list[B]:
         """Return the lines of name = entry."""
         printer, indent = self.printer, self.printer.indent()
-        sign = printer.joined([name, printer.comparison("=")], Level.SUM)
+        sign = printer.joined([name, printer.comparison("≈" if is_rounded(entry) else "=")], Level.SUM)
         space = room - max(sign.width, indent.width)
         first, *rest = self.breaker.lines(self.breaker.pieces(entry, space), space, space)
         return [printer.joined(pair, Level.SUM) for pair in [(sign, first), *((indent, line) for line in rest)]]

@@ -20,11 +20,13 @@ from symobs.formula import (
     Letter,
     Literal,
     Negative,
+    Numeral,
     Power,
     Product,
     Quotient,
     Sum,
     Transpose,
+    contains,
 )
 from symobs.render.printers.glyphs import B, Level
 from symobs.render.printers.printer import factors, shifted, signed_terms
@@ -306,5 +308,5 @@ def _is_table(formula: Formula) -> bool:
     """Return whether a formula is a matrix with its entries written out."""
     if isinstance(formula, Block):
         entries = [entry.value if isinstance(entry, Literal) else entry for row in formula.rows for entry in row]
-        return all(isinstance(entry, (Quotient, Scalar)) for entry in entries)
+        return all(isinstance(entry, (Quotient, Scalar)) or contains(entry, (Numeral,)) for entry in entries)
     return isinstance(formula, Literal) and isinstance(formula.value, Matrix)

@@ -26,6 +26,7 @@ from symobs.formula import (
     Letter,
     Literal,
     Negative,
+    Numeral,
     Power,
     Product,
     Quotient,
@@ -144,6 +145,8 @@ class Printer(FormulaWriter[B]):
                 return self.decimals(value)
             case Decimals(Matrix() as value):
                 return self.matrix([[self.decimals(entry) for entry in row] for row in value.rows])
+            case Numeral(text=text):
+                return self.numeral(text)
             case Identity():
                 return self.identity()
             case Sum() | Negative():
@@ -183,9 +186,17 @@ class Printer(FormulaWriter[B]):
 
     def decimals(self, value: Scalar) -> B:
         """Return a number with its digits after the point."""
-        box = self.digits(decimal_digits(value))
+        box = self.numeral(decimal_digits(value))
         is_negative = value.fraction() < 0
         return self.joined([self.sign(negative=True, leading=True), box], Level.SUM) if is_negative else box
+
+    def numeral(self, text: str) -> B:
+        """Return decimals, 1.2346e-7 with its power of ten."""
+        digits, _, power = text.partition("e")
+        if not power:
+            return self.digits(digits)
+        ten = self.raised(self.digits("10"), int(power))
+        return ten if digits == "1" else self.joined(self.spaced([self.digits(digits), ten]), Level.FRACTION)
 
     def function_of_time(self, function: Function) -> B:
         """Return a function of time or a root, e^{−t}, sin ωt, √3, or the letter defined for it."""

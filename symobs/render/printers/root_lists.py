@@ -8,14 +8,19 @@ from typing import TYPE_CHECKING, Any
 
 from symobs._dataclass import dataclass
 from symobs.exact import Scalar
-from symobs.formula import Letter, Literal, Relation
+from symobs.formula import Letter, Literal, Numeral, Relation, RoundedRoots
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
     from symobs.exact.algebraic.polynomial_roots import Root
+    from symobs.exact.numerals.rounded_roots import RootText
     from symobs.formula import Formula, Roots
     from symobs.render.printers.printer import Printer
+
+
+#: What a number of a list stands for is said by the list.
+_NOTHING = Scalar.of(0)
 
 
 @dataclass(frozen=True)
@@ -29,11 +34,17 @@ class RootGlyphs:
     minus: str = "-"
     plus: str = "+"
     imaginary: str = "i"
+    about: str = "≈ "
     fraction: Callable[[str], str] = str
     written: Callable[[Any, Formula | Relation], str] = lambda printer, item: printer.inline(item)
 
 
-LATEX = RootGlyphs(lambda inside: rf"\sqrt{{{inside}}}", r"\pm ", lambda s, equation: rf"\{{{s}:{equation}\}}")
+LATEX = RootGlyphs(
+    lambda inside: rf"\sqrt{{{inside}}}",
+    r"\pm ",
+    lambda s, equation: rf"\{{{s}:{equation}\}}",
+    about=r"\approx ",
+)
 TEXT = RootGlyphs(
     lambda inside: f"√{inside}" if inside.isalnum() else f"√({inside})",
     " ± ",
@@ -44,6 +55,8 @@ TEXT = RootGlyphs(
 
 def listed(roots: Roots, printer: Printer[Any], glyphs: RootGlyphs) -> list[str]:
     """Return the roots one after the other, a pair as one item."""
+    if isinstance(roots, RoundedRoots):
+        return [_in_decimals(*text, paired, printer, glyphs) for text, paired in _paired(roots.texts)]
     return [_written(root, paired, printer, glyphs) for root, paired in _grouped(roots.values)]
 
 
@@ -63,6 +76,46 @@ def _grouped(values: tuple[Root, ...]) -> Iterator[tuple[Root, bool]]:
         if is_pair:
             remaining.remove(partner)
         yield root, is_pair
+
+
+def _paired(texts: tuple[RootText, ...]) -> Iterator[tuple[RootText, bool]]:
+    """Yield each root in decimals with whether it stands for a conjugate pair, or for a real one with its negative."""
+    remaining = list(texts)
+    while remaining:
+        real, imaginary, is_rounded = text = remaining.pop(0)
+        partner = (real, _opposite(imaginary), is_rounded) if imaginary else (_opposite(real), "", is_rounded)
+        is_pair = partner != text and partner in remaining
+        if is_pair:
+            remaining.remove(partner)
+        yield text, is_pair
+
+
+def _opposite(text: str) -> str:
+    return text[1:] if text.startswith("-") else text if text == "0" else f"-{text}"
+
+
+def _in_decimals(
+    real: str,
+    imaginary: str,
+    is_rounded: bool,  # noqa: FBT001 - as the texts have it
+    paired: bool,  # noqa: FBT001
+    printer: Printer[Any],
+    glyphs: RootGlyphs,
+) -> str:
+    """Return a root in decimals, or a pair, behind a sign that it is rounded."""
+
+    def size(text: str) -> str:
+        return glyphs.written(printer, Numeral(_NOTHING, text.removeprefix("-")))
+
+    moved = imaginary or real
+    sign = glyphs.plus_minus if paired else glyphs.minus if moved.startswith("-") else glyphs.plus * bool(imaginary)
+    if not imaginary:
+        written = f"{sign}{size(real)}"
+    else:
+        centre = "" if real == "0" else f"{glyphs.minus * real.startswith('-')}{size(real)}"
+        sign = sign if centre or paired or moved.startswith("-") else ""
+        written = f"{centre}{sign}{size(imaginary) if moved.removeprefix('-') != '1' else ''}{glyphs.imaginary}"
+    return f"{glyphs.about * is_rounded}{written.strip()}"
 
 
 def _written(root: Root, paired: bool, printer: Printer[Any], glyphs: RootGlyphs) -> str:  # noqa: FBT001

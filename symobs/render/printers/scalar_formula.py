@@ -82,6 +82,13 @@ def _time_function(value: Scalar) -> Formula:
     return whole if size(whole) < size(separate) else separate
 
 
+def separate_formula(value: Scalar) -> Formula:
+    """Return a value that contains functions of time, each term with a coefficient of its own."""
+    if any(is_time_function(name) for name in value.denominator.names):
+        return _time_function(value)
+    return _grouped(_parts(value.numerator), value.denominator)
+
+
 def _over(above: Scalar, below: Scalar) -> Formula:
     """Return 1/d (numerator) with the content of the numerator in the parameters in front."""
     parts = _parts(above)

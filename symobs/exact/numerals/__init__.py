@@ -1,0 +1,1 @@
+"""Decimals that are printed for exact numbers."""

@@ -1,0 +1,1 @@
+"""Pages in decimals: exact lines, written with the decimals of their numbers."""

@@ -1,0 +1,38 @@
+"""How the numbers of a page are written: exactly, or with so many significant digits."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from symobs.errors import UsageError
+from symobs.expression.source import shown
+from symobs.system.reading import has_decimals
+
+#: The significant digits of a page whose data are typed as decimals, and the most that can be asked for.
+DIGITS, MOST_DIGITS = 5, 40
+
+
+def digits_asked(digits: object, *, exact: bool = False, where: str = "digits") -> int | None:
+    """Return the digits of a document: 0 for exact numbers, None where nothing is said.
+
+    Raises `UsageError` for what is no number of digits, and where exact numbers are asked for as well.
+    """
+    if digits is None:
+        return 0 if exact else None
+    if exact:
+        message = "digits and exact numbers are both asked for"
+        raise UsageError(message, where=where, repair="keep one of them")
+    if isinstance(digits, bool) or not isinstance(digits, int) or not 1 <= digits <= MOST_DIGITS:
+        message = f"{shown(str(digits), 40)!r} is not a number of significant digits"
+        raise UsageError(message, where=where, repair=f"write a whole number from 1 to {MOST_DIGITS}, for example 5")
+    return digits
+
+
+def shown_digits(document: Any) -> int:
+    """Return the significant digits of the numbers of a document, 0 where they are exact."""
+    if document.digits is not None:
+        return int(document.digits)
+    typed = any(
+        result.plant.is_in_decimals or has_decimals([*result.specification.values()]) for result in document.results
+    )
+    return DIGITS if typed else 0
