@@ -28,9 +28,9 @@ def write_tracking(page: Page, design: TrackingDesign) -> None:
             _law(page, design)
         _gain(page, design)
         if design.has_gains and design.answer["K_d"] is not None:
+            caution_law(page, loop)
             draw_tracking(page, minimal=isinstance(loop.estimator, ReducedOrderObserver))
             _errors(page, design)
-            caution_law(page, loop)
 
 
 def _reference(page: Page, design: TrackingDesign) -> None:
@@ -96,13 +96,15 @@ def _gain(page: Page, design: TrackingDesign) -> None:
     if not page.knows("K_d"):
         page.set("K_d", design.answer["K_d"])
     K_d = page["K_d"]
-    zero = page.value(Matrix.zeros(order, columns))
+    zero = block([[page.value(Matrix.zeros(order, columns))]])
     condition = page["A_ref"] - A + B @ K_d
     page.equal(
         relation(condition if V is None else condition @ V, zero),
         say="tracking_condition" if V is None else "tracking_condition_then",
     )
     page.equal(relation(K_d, K_d.shown), say="tracking_solved", answer=True)
+    if K_d.value.is_zero:
+        page.conclude("tracking_no_feedforward", relation(K_d, Matrix.zeros(*K_d.value.shape)))
 
 
 def _errors(page: Page, design: TrackingDesign) -> None:
