@@ -68,6 +68,9 @@ P = TypeVar("P", bound="Printer[Any]")
 #: The sections of a question.
 _UNNUMBERED = {"task", "tasks"}
 
+#: With more answers than this in one section, the last alone are set in boxes.
+_MOST_BOXES = 3
+
 #: The few words of a page that belong to no step.
 LABELS: dict[str, str] = {
     "conventions": "Notation:",
@@ -270,6 +273,7 @@ class _PageBlocks:
         number = ".".join(str(part) for part in self.numbers) + "." if is_numbered else ""
         heading = Heading(number, filled(title, self.convention))
         self.blocks.append(heading)
+        start = len(self.blocks)
         self.numbers.append(0)
         columns = [step for step in steps if isinstance(step, Section)] if title.key in BESIDE else []
         self.blocks += self.side_by_side(columns)
@@ -277,6 +281,7 @@ class _PageBlocks:
             if step not in columns and (isinstance(step, Section) or step not in self.printed):
                 self.emit_step(step)
         self.numbers.pop()
+        self.blocks[start:] = _with_few_boxes(self.blocks[start:])
         if self.blocks[-1] is heading and not self.printed.isdisjoint(steps):  # all of it is printed already
             self.blocks.pop()
             self.numbers[-1] -= is_numbered
@@ -335,6 +340,20 @@ class _PageBlocks:
             self.blocks[-1] = Display((*last.relations, *relations), boxed)
         else:
             self.blocks.append(Display(relations, boxed))
+
+
+def _with_few_boxes(blocks: Sequence[Block]) -> list[Block]:
+    """Return the blocks of a section, only the last answers in boxes where there are many: those are the result."""
+    boxes = [place for place, block in enumerate(blocks) if isinstance(block, Display) and block.boxed]
+    if len(boxes) <= _MOST_BOXES:
+        return list(blocks)
+    result = boxes[-1]
+    while result - 1 in boxes:
+        result -= 1
+    return [
+        replace(block, boxed=False) if isinstance(block, Display) and place < result else block
+        for place, block in enumerate(blocks)
+    ]
 
 
 def _is_statement(step: Step) -> bool:

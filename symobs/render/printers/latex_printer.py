@@ -341,7 +341,7 @@ def under_one_another(rows: Sequence[str], heights: Sequence[int], ruled: Sequen
     body = rows[0]
     for number, (row, above, below) in enumerate(zip(rows[1:], heights, heights[1:], strict=False), 1):
         body += r"\\[12pt]" if above > 1 else r"\\[4pt]" if max(above, below) else r"\\"
-        body += (r"\hline " if number in ruled else "") + row
+        body += (r"\hline\rule{0pt}{2.4ex}" if number in ruled else "") + row
     return body
 
 
