@@ -225,7 +225,10 @@ def _error_coordinates(page: Page, design: MinimalOrderCompensator) -> None:
     driven = G + H @ page["D"] if page.plant.matrices.has_feedthrough else G
     second = block([[A - B @ K_y @ C, -(B @ K_2)], [(H - driven @ K_y) @ C, F - driven @ K_2]])
     states = block([[x], [z]])
-    page.equal(relation(states.derivative, second @ states, in_blocks(page, second.value, parts, parts) @ states), say="reduced_coordinates")
+    page.equal(
+        relation(states.derivative, second @ states, in_blocks(page, second.value, parts, parts) @ states),
+        say="reduced_coordinates",
+    )
     plot_estimate(
         page, "e_2", page["A_cl"], (page["T"].inverse.value).select(range(order), range(order - estimated, order))
     )

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 WIDEST, HIGHEST = 270.0, 160.0  # points
 _LINE, _LONGEST_END = 290.0, 0.3
-_TIME_HEIGHT = 84.0
+_TIME_HEIGHT = 80.0
 _SMALLEST_SIDE = 100.0
 #: Windows that are not much longer than high are drawn with equal scales.
 _EQUAL_UP_TO = 2.0

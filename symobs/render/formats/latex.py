@@ -204,7 +204,7 @@ class LatexWriter:
 
 
 def _kept_with_next(display: str) -> str:
-    """Return a display on one line that no page break separates from the rest of its sentence."""
+    """Return a display on one line that no page break separates from what follows it."""
     return display.removesuffix(r"\]") + r"\postdisplaypenalty=5000 \]" if display.endswith(r"\]") else display
 
 

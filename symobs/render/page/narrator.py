@@ -350,10 +350,15 @@ def _with_few_boxes(blocks: Sequence[Block]) -> list[Block]:
     result = boxes[-1]
     while result - 1 in boxes:
         result -= 1
-    return [
-        replace(block, boxed=False) if isinstance(block, Display) and place < result else block
-        for place, block in enumerate(blocks)
-    ]
+    kept: list[Block] = []
+    for place, block in enumerate(blocks):
+        if not isinstance(block, Display) or place >= result:
+            kept.append(block)
+        elif kept and isinstance(before := kept[-1], Display) and not before.boxed:
+            kept[-1] = Display((*before.relations, *block.relations))
+        else:
+            kept.append(replace(block, boxed=False))
+    return kept
 
 
 def _is_statement(step: Step) -> bool:

@@ -166,7 +166,9 @@ class Printer(FormulaWriter[B]):
             case Block(rows) if table := partitioned(rows):
                 entries, rules = table
                 return self.matrix([[self.typeset(Literal(entry)) for entry in row] for row in entries], rules)
-            case Block(((entry,),)) if isinstance(entry, Literal) and isinstance(entry.value, Matrix) and entry.value.is_zero:
+            case Block(((entry,),)) if (
+                isinstance(entry, Literal) and isinstance(entry.value, Matrix) and entry.value.is_zero
+            ):
                 return self.block_entry(entry)
             case Block(rows):
                 return self.matrix([[self.block_entry(entry) for entry in row] for row in rows])
@@ -381,7 +383,9 @@ def signed_terms(formula: Formula, variable: str, *, flat: bool = True) -> list[
         case Product((first, *rest)):
             ((negative, body),) = signed_terms(first, variable, flat=False)
             unit = isinstance(first, Literal) and isinstance(first.value, Matrix) and body == Literal(Scalar.of(1))
-            return [(True, Product(tuple(rest) if unit and rest else (body, *rest)))] if negative else [(False, formula)]
+            return (
+                [(True, Product(tuple(rest) if unit and rest else (body, *rest)))] if negative else [(False, formula)]
+            )
         case Quotient(above, below):
             ((negative, body),) = signed_terms(above, variable, flat=False)
             return [(True, Quotient(body, below))] if negative else [(False, formula)]

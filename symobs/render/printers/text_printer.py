@@ -17,9 +17,8 @@ from symobs.render.printers.rational_formula import decimal
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from symobs.render.printers.glyphs import Rules
-
     from symobs.exact import Scalar
+    from symobs.render.printers.glyphs import Rules
 
 _SUPERSCRIPT_DIGITS = "⁰¹²³⁴⁵⁶⁷⁸⁹⁻"
 _SUPERSCRIPTS = str.maketrans("0123456789-", _SUPERSCRIPT_DIGITS)
@@ -194,7 +193,9 @@ class TextPrinter(Printer[TextBox]):
             gaps = [bar if ruled else text_box("  ") for bar, ruled in zip(bars, between, strict=True)]
             spaced = [cells[0], *(part for pair in zip(gaps, cells[1:], strict=True) for part in pair)]
             if number in rules[0]:
-                lines.append("".join("─" * int(w) + ("─┼─" if r else "──") for w, r in zip(widths, between, strict=False)))
+                lines.append(
+                    "".join("─" * int(w) + ("─┼─" if r else "──") for w, r in zip(widths, between, strict=False))
+                )
                 lines[-1] += "─" * int(widths[-1])
             lines += self.joined(spaced, Level.ATOM).lines
         width = sum(widths) + 2 * len(between) + sum(between)

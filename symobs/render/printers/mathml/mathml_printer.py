@@ -49,9 +49,8 @@ from symobs.render.printers.rational_formula import decimal
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from symobs.render.printers.glyphs import Rules
-
     from symobs.exact import Scalar
+    from symobs.render.printers.glyphs import Rules
 
 _SPACED = f"{TIMES}{THIN}"
 #: In running text (in em, or digits): what still goes under a fraction bar, into a matrix, into an unbroken number.
@@ -253,7 +252,9 @@ class MathmlPrinter(Printer[MathmlBox]):
         if self.running and width > _WIDE:
             return _list_of(rows)
         struts = (STRUT, *("" for _ in range(columns - 1)))
-        ruled = [[_ruled(below in rules[0], after in rules[1]) for after in range(columns)] for below in range(len(rows))]
+        ruled = [
+            [_ruled(below in rules[0], after in rules[1]) for after in range(columns)] for below in range(len(rows))
+        ]
         body = "".join(
             f"<mtr>{''.join(map(self._cell, line, struts, ends))}</mtr>" for line, ends in zip(rows, ruled, strict=True)
         )
