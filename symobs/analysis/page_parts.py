@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from itertools import accumulate
 from typing import TYPE_CHECKING
 
 from symobs.analysis.factored_form import formula_of_factored
@@ -11,11 +12,12 @@ from symobs.derivation import Note, Step
 from symobs.derivation.builder import Page, predicate, relation, sentence
 from symobs.exact import Factored, Matrix, Scalar, decimal_places, root_of_pole
 from symobs.formula import Conjunction, Decimals, HoldsExactlyWhere, Roots
+from symobs.formula.term import block
 from symobs.stability.criteria.stability import stability
 from symobs.stability.inequalities.written_form import as_inequality
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Sequence
 
     from symobs.conditions import Condition
     from symobs.derivation import Step
@@ -147,6 +149,15 @@ def state_signs(page: Page) -> None:
     declared = [relation(Scalar.symbol(name), facts[sign], 0) for sign, names in by_sign.items() for name in names]
     if declared:
         page.conclude("declared", signs=Conjunction(tuple(declared)))
+
+
+def in_blocks(page: Page, value: Matrix, heights: Sequence[int], widths: Sequence[int]) -> Term:
+    """Return a matrix divided into blocks, between which pages draw lines; blocks without rows or columns are left out."""
+    parts = [
+        [range(end - size, end) for size, end in zip(sizes, accumulate(sizes), strict=True) if size]
+        for sizes in (heights, widths)
+    ]
+    return block([[page.value(value.select(rows, columns)) for columns in parts[1]] for rows in parts[0]])
 
 
 def is_narrow(*matrices: Matrix) -> bool:

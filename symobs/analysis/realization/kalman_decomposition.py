@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 from symobs._dataclass import dataclass
 from symobs.analysis.factored_form import factored_form
-from symobs.analysis.page_parts import case_steps, given
+from symobs.analysis.page_parts import case_steps, given, in_blocks
 from symobs.analysis.rank.observability import power_rows
 from symobs.analysis.realization.coordinates import BLOCKS, basis, minor_of, transfer_matrix
 from symobs.analysis.strata.strata import strata
@@ -185,9 +185,18 @@ class Decomposition(Result):
         )
         page.define("T", page["S"].inverse, say="", answer=True)
         T, S = page["T"], page["S"]
-        page.define("A_bar", T @ page["A"] @ S, say="decomposed", answer=True)
-        page.define("B_bar", T @ page["B"], answer=True)
-        page.define("C_bar", page["C"] @ S, answer=True)
+        sizes, inputs, outputs = self.dimensions, [self.plant.inputs], [self.plant.outputs]
+        parts = {name: self.answer[name] for name in "ABC"}
+        page.define(
+            "A_bar",
+            T @ page["A"] @ S,
+            in_blocks(page, parts["A"], sizes, sizes),
+            say="decomposed",
+            answer=True,
+            closing=False,
+        )
+        page.define("B_bar", T @ page["B"], in_blocks(page, parts["B"], sizes, inputs), answer=True, closing=False)
+        page.define("C_bar", page["C"] @ S, in_blocks(page, parts["C"], outputs, sizes), answer=True, closing=False)
         page.remark("zero_pattern")
 
     def _minimal(self, page: Page) -> None:

@@ -47,7 +47,7 @@ PHRASES: dict[str, str] = {
     "hole": "The isolated point ({first}, {second}) = ({x}, {y}) is excluded, although the region surrounds it.",
     "curve_missing": "The curve {curve} is excluded, although the region lies on both sides of part of it.",
     "number_is_root": "Here {number} is {which} of {equation}.",
-    "poles_move": "The root locus for increasing {names} is shown below.",
+    "poles_move": "The root locus for increasing {names}.",
     "parts_are": "Solving for the parameters gives",
 }
 

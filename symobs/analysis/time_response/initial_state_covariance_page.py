@@ -36,6 +36,8 @@ def write_covariance(page: Page, result: InitialStateCovariance) -> None:
     with page.section("covariance"):
         if result.answer["called_t"]:
             page.remark("horizon_called_t")
+        if result.verdict != "no":
+            page.remark("estimator_with_input" if result.plant.matrices.has_input else "estimator")
         tell_polynomial(page)
         result.write_branches(page, _write_branch)
 

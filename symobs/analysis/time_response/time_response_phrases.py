@@ -65,6 +65,8 @@ PHRASES: dict[str, str] = {
     "initial_inconsistent": "These equations are inconsistent: with {row} one has {zero}, but {rest}. No initial state is consistent with these data.",
     "covariance": "Covariance of the initial-state estimate.",
     "noise": "The known input is corrupted by white noise of intensity $Q$ and the output by white noise of intensity $R$,",
+    "estimator": "The initial state is estimated by least squares: the output, multiplied by $exp_Atᵀ Cᵀ$ and integrated over the horizon, is multiplied by the inverse of the Gramian $W$.",
+    "estimator_with_input": "The initial state is estimated by least squares: the output less its forced response, multiplied by $exp_Atᵀ Cᵀ$ and integrated over the horizon, is multiplied by the inverse of the Gramian $W$.",
     "noise_output_only": "The output is corrupted by white noise of intensity $R$,",
     "estimate_is": "The estimate is linear in the data and exact without noise, and the noise has zero mean: the estimate is unbiased. Its covariance is the sum of two terms. The output noise contributes through",
     "estimate_of_output": "The estimate is linear in the data and exact without noise, and the noise has zero mean: the estimate is unbiased. The output noise contributes to its covariance through",

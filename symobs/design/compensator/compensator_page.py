@@ -6,7 +6,7 @@ from collections import Counter
 from typing import TYPE_CHECKING
 
 from symobs.analysis.factored_form import factored_form, formula_of_factored
-from symobs.analysis.page_parts import given, is_narrow
+from symobs.analysis.page_parts import given, in_blocks, is_narrow
 from symobs.derivation.builder import Page, predicate, relation
 from symobs.design.compensator.compensator import CompensatorDesign
 from symobs.design.compensator.defective_poles import caution_repeated
@@ -53,6 +53,7 @@ def write_compensator(page: Page, design: CompensatorDesign) -> None:
             write_gain(
                 page, design.feedback, FEEDBACK, page_style("auto", plant, several=plant.inputs > 1), of_loop=True
             )
+    caution_repeated(page, design)
     if large:
         name_entries(page, "K")
     with page.section("observer"):
@@ -62,7 +63,7 @@ def write_compensator(page: Page, design: CompensatorDesign) -> None:
         if large:
             name_entries(page, "L")
         if design.answer["L"] is not None:
-            write_observer(page)
+            write_observer(page, alone=False)
     if design.answer["F"] is None:
         return
     with page.section("compensator"):
@@ -73,6 +74,7 @@ def write_compensator(page: Page, design: CompensatorDesign) -> None:
             _named_transfer_function(page, design)
         else:
             _transfer_function(page, design)
+        caution_hidden(page, design.answer["F"], design.own_matrix)
     with page.section("closed_loop"):
         _error_coordinates(page, design, large=large)
         if not design.is_single:
@@ -82,8 +84,6 @@ def write_compensator(page: Page, design: CompensatorDesign) -> None:
             named_return_path(page, design, own)
         else:
             return_path(page, design)
-    caution_hidden(page, design.answer["F"], design.own_matrix)
-    caution_repeated(page, design)
 
 
 def _state_space(page: Page, design: CompensatorDesign) -> None:
@@ -94,14 +94,19 @@ def _state_space(page: Page, design: CompensatorDesign) -> None:
     closed, shown = A - B @ K - L @ C, A.shown - (B @ K).shown - (L @ C).shown
     if m.has_feedthrough:
         closed, shown = closed + L @ page["D"] @ K, shown + (L @ page["D"] @ K).shown
-    page.equal(relation(x_hat.derivative, closed @ x_hat + L @ page["y"]), say="observer_closed")
+    own, is_written = closed @ x_hat + L @ page["y"], closed.value.size <= readability.MATRIX
+    if not is_written:
+        page.equal(relation(x_hat.derivative, own), say="observer_closed")
     small = page.plant.order == readability.PRODUCTS_ORDER and not m.has_feedthrough
     apart = [A.shown - B.shown @ K.shown - L.shown @ C.shown] if small else []
-    page.define("A_c", closed, *apart, shown, say="compensator_matrix")
-    if closed.value.size <= readability.MATRIX:
+    page.define("A_c", closed, *apart, shown, say="observer_closed_matrix" if is_written else "compensator_matrix")
+    if is_written:
         written = page["A_c"].shown @ x_hat + L.shown @ page["y"]
+        page.conclude_silently(relation(x_hat.derivative, own))
         page.equal(
-            relation(x_hat.derivative, written), relation(page["u"], -K.shown @ x_hat), say="compensator_written"
+            relation(x_hat.derivative, page["A_c"] @ x_hat + L @ page["y"], written),
+            relation(page["u"], -K.shown @ x_hat),
+            say="compensator_written",
         )
     draw_compensator(page)
 
@@ -200,7 +205,9 @@ def _error_coordinates(page: Page, design: CompensatorDesign, *, large: bool) ->
     zero = page.value(Matrix.zeros(order, order))
     state = block([[x], [e]])
     matrix = block([[A - B @ K, B @ K], [zero, A - L @ C]])
-    page.define("A_cl", matrix, say="closed_loop_matrix", closing=not large and is_narrow(matrix.value))
+    halves = [order, order]
+    numbers = [in_blocks(page, matrix.value, halves, halves)] if not large and is_narrow(matrix.value) else []
+    page.define("A_cl", matrix, *numbers, say="closed_loop_matrix", closing=False)
     page.equal(relation(state.derivative, page["A_cl"] @ state))
     determinant = (page.s @ page.identity(2 * order) - page["A_cl"]).apply("det")
     parts = FEEDBACK.error_determinant(page) @ OBSERVER.error_determinant(page)
@@ -211,7 +218,7 @@ def _error_coordinates(page: Page, design: CompensatorDesign, *, large: bool) ->
     states = block([[x], [page["x_hat"]]])
     members = [states.derivative, second @ states]
     if not large and is_narrow(second.value):
-        members.append(second.shown @ states)
+        members.append(in_blocks(page, second.value, halves, halves) @ states)
     page.equal(relation(*members), say="estimate_coordinates")
     one = page.identity(order)
     turn = block([[one, zero], [one, -one]])
@@ -251,7 +258,7 @@ def _say_poles(page: Page, design: OutputFeedback, loop: Scalar) -> None:
     lost, product = whole.value / denominator, page["phi_c"] @ page["phi_o"]
     short = all(_has_short_roots(factor, variable) for factor, _ in whole.factors)
     if lost.is_one and short:
-        page.conclude("loop_poles", Roots(product.formula, poles), poles=Roots(page["G_cl"].formula, poles))
+        page.conclude_silently(Roots(product.formula, poles), Roots(page["G_cl"].formula, poles))
     elif lost.is_one:
         page.conclude(f"loop_polynomial{of_given(design)}", relation(product / page.value(denominator), 1))
     elif short:

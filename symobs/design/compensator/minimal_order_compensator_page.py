@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from symobs.analysis.factored_form import formula_of_factored
-from symobs.analysis.page_parts import given
+from symobs.analysis.page_parts import given, in_blocks
 from symobs.conditions import vanishing_factors
 from symobs.derivation import Case as CaseStep
 from symobs.derivation import Conclude
@@ -44,6 +44,7 @@ def write_minimal_order(page: Page, design: MinimalOrderCompensator) -> None:
         write_gain(page, design.feedback, FEEDBACK, style, of_loop=True)
         if large:
             name_entries(page, "K")
+    caution_repeated(page, design)
     write_observer_of_rest(page, design.estimator)
     if design.answer["K"] is None or design.answer["L"] is None:
         return
@@ -53,6 +54,7 @@ def write_minimal_order(page: Page, design: MinimalOrderCompensator) -> None:
             return
         _closed(page, large=large)
         _transfer_function(page, design, large=large)
+        caution_hidden(page, design.answer["F"], design.own_matrix)
     with page.section("closed_loop"):
         _error_coordinates(page, design)
         if not design.is_single:
@@ -61,8 +63,6 @@ def write_minimal_order(page: Page, design: MinimalOrderCompensator) -> None:
             named_return_path(page, design, _own_denominator(page))
         else:
             return_path(page, design)
-    caution_hidden(page, design.answer["F"], design.own_matrix)
-    caution_repeated(page, design)
 
 
 def _one(page: Page) -> Term:
@@ -212,7 +212,8 @@ def _error_coordinates(page: Page, design: MinimalOrderCompensator) -> None:
     )
     estimated = order - page.plant.outputs
     zero = page.value(Matrix.zeros(estimated, order))
-    page.define("A_cl", block([[A - B @ K, B @ K_2], [zero, F]]), say="closed_loop_matrix")
+    matrix, parts = block([[A - B @ K, B @ K_2], [zero, F]]), [order, estimated]
+    page.define("A_cl", matrix, in_blocks(page, matrix.value, parts, parts), say="closed_loop_matrix", closing=False)
     state = block([[x], [e]])
     page.equal(relation(state.derivative, page["A_cl"] @ state))
     determinant = (page.s @ page.identity(order + estimated) - page["A_cl"]).apply("det")
@@ -224,7 +225,10 @@ def _error_coordinates(page: Page, design: MinimalOrderCompensator) -> None:
     driven = G + H @ page["D"] if page.plant.matrices.has_feedthrough else G
     second = block([[A - B @ K_y @ C, -(B @ K_2)], [(H - driven @ K_y) @ C, F - driven @ K_2]])
     states = block([[x], [z]])
-    page.equal(relation(states.derivative, second @ states, second.shown @ states), say="reduced_coordinates")
+    page.equal(
+        relation(states.derivative, second @ states, in_blocks(page, second.value, parts, parts) @ states),
+        say="reduced_coordinates",
+    )
     plot_estimate(
         page, "e_2", page["A_cl"], (page["T"].inverse.value).select(range(order), range(order - estimated, order))
     )

@@ -120,8 +120,11 @@ class ObserverDesign(GainDesign):
                 plot_error(page, "e", page["A"] - page["L"] @ page["C"])
 
 
-def write_observer(page: Page, *, drawn: bool = False) -> None:
-    """Write the observer in both forms and its error equation, each line checked on signals."""
+def write_observer(page: Page, *, drawn: bool = False, alone: bool = True) -> None:
+    """Write the observer in both forms and its error equation, each line checked on signals.
+
+    `alone`, it is the answer, and its components are written out; else it is a part of a compensator.
+    """
     m = page.plant.matrices
     A, C, L, x_hat, y = (page[name] for name in ("A", "C", "L", "x_hat", "y"))
     model, predicted = A @ x_hat, C @ x_hat
@@ -146,12 +149,14 @@ def write_observer(page: Page, *, drawn: bool = False) -> None:
     if m.has_input:
         driven = page["B"] - L @ page["D"] if m.has_feedthrough else page["B"]
         collected, numbers = collected + driven @ page["u"], numbers + driven.shown @ page["u"]
-    page.equal(
-        relation(x_hat.derivative, collected + L @ y, numbers + L.shown @ y),
-        say="observer_collected_with_feedthrough" if m.has_feedthrough else "observer_collected",
-        answer=True,
-    )
-    write_components(page, driven)
+    whole = relation(x_hat.derivative, collected + L @ y, numbers + L.shown @ y)
+    if not alone and not m.has_feedthrough:  # its matrix stands in the equation of the error
+        page.conclude_silently(whole)
+        return
+    said = "observer_collected_with_feedthrough" if m.has_feedthrough else "observer_collected"
+    page.equal(whole, say=said, answer=alone)
+    if alone:
+        write_components(page, driven)
 
 
 def _say_deadbeat(page: Page, closed: Term) -> None:

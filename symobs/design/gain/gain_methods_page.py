@@ -219,8 +219,12 @@ def _relations(page: Page, part: Reduction, number: int) -> None:
     for row, pivot in enumerate(part.pivots):
         right = part.reduced[row, width] if part.before is not None else Scalar.of(0)
         lines.append(relation(xi[pivot], sum((xi[j] * -part.reduced[row, j] for j in free), start=right)))
+    chosen = [relation(xi[j], part.vector[j, 0]) for j in free]
+    if number > 1:  # as for the first pole
+        page.equal(*lines, *chosen, say="relations_again")
+        return
     page.equal(*lines, say="relations_read_off")
-    page.equal(*(relation(xi[j], part.vector[j, 0]) for j in free), say="free_chosen")
+    page.equal(*chosen, say="free_chosen")
 
 
 def _pair(part: Reduction) -> bool:

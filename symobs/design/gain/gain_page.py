@@ -156,8 +156,10 @@ def _say_canonical(page: Page) -> None:
     """Say that (A, B) is in controllable canonical form already."""
     order, variable = page.plant.order, page.plant.variable
     chi = page.plant.matrices.A.characteristic_polynomial(variable)
+    tested = block([[page["A"] ** k @ page["B"] if k else page["B"] for k in range(order)]])
     page.remark(
         "already_canonical",
+        relation(tested.apply("rank"), order),
         relation(page["A"], companion(chi.coefficients(variable)[1:])),
         relation(page["B"], Matrix.unit(order, order - 1)),
         chi=relation((page.s @ page.identity(order) - page["A"]).apply("det"), page.value(chi)),

@@ -208,6 +208,13 @@ def _polynomial(page: Page, advice: PoleAdvice) -> None:
     zeros, plant, whole = advice.zeros, page.plant, formula_of_factored(advice.answer["polynomial"])
     parts = [*([page["phi_z"]] if zeros.used else []), *([page["phi_r"]] if advice.count else [])]
     page.define("phi_o", product(parts), page.term(whole), say="advised_polynomial", answer=True, closing=False)
+    both = {factor for factor, _ in zeros.used} & {factor for factor, _ in advice.answer["rest"].factors}
+    for factor in sorted(both, key=str):
+        if factor.degree(plant.variable) == 1:
+            twice = page["phi_o"] / page.value(factor**2)
+            alone = page["phi_z"] / page.value(page["phi_z"].scalar / factor)
+            repeated = Roots(alone.formula, roots_of(factor, plant.variable))
+            page.remark("pole_twice", predicate("polynomial", twice), repeated=repeated)
     if advice.wish.radius is None or zeros.unused or not zeros.used or not advice.count:
         return
     if not plant.matrices.has_feedthrough:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from symobs.analysis.factored_form import formula_of_factored
-from symobs.analysis.page_parts import given
+from symobs.analysis.page_parts import given, in_blocks
 from symobs.analysis.rank.observability import Observability
 from symobs.analysis.rank.rank_page import rank_cases, square_test
 from symobs.conditions import vanishing_factors
@@ -28,6 +28,8 @@ from symobs.result import page_of
 from symobs.stability.criteria.stability import stability
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from symobs.formula import Relation
 
 
@@ -102,15 +104,24 @@ def _coordinates(page: Page, parts: Partition) -> None:
     exceptions = vanishing_factors([parts.T.determinant()], plant.symbols.signs)
     if exceptions:
         page.assume("coordinates_assumed", *exceptions)
-    blocks = block([[page["A_11"], page["A_12"]], [page["A_21"], page["A_22"]]])
-    shown = [relation(page["T"] @ page["A"] @ page["T"].inverse, blocks, blocks.shown)]
-    if parts.B1 is not None:
-        inputs = block([[page["B_1"]], [page["B_2"]]])
-        shown.append(relation(page["T"] @ page["B"], inputs, inputs.shown))
+    whole, driven = [page["T"] @ page["A"] @ page["T"].inverse], [page["T"] @ page["B"]]
+    shown = _in_parts(page, whole, driven)
     if trivial:
         page.conclude_silently(*shown)
     else:
         page.equal(*shown, say="measured_are_first" if exceptions else "measured_first")
+
+
+def _in_parts(page: Page, whole: Sequence[Term], driven: Sequence[Term]) -> list[Relation]:
+    """Return the blocks of A and B, those of measured and of other states divided by lines; what equals them before."""
+    plant = page.plant
+    sizes = [plant.outputs, plant.order - plant.outputs]
+    blocks = block([[page["A_11"], page["A_12"]], [page["A_21"], page["A_22"]]])
+    shown = [relation(*whole, blocks, in_blocks(page, blocks.value, sizes, sizes))]
+    if plant.matrices.has_input:
+        inputs = block([[page["B_1"]], [page["B_2"]]])
+        shown.append(relation(*driven, inputs, in_blocks(page, inputs.value, sizes, [plant.inputs])))
+    return shown
 
 
 def _parts(page: Page, design: ReducedOrderObserver) -> None:
@@ -132,8 +143,7 @@ def _parts(page: Page, design: ReducedOrderObserver) -> None:
     }
     key = "parts_with_feedthrough" if feedthrough else "parts"
     if trivial and page.plant.order > readability.BLOCKS_ORDER:
-        names = [f"A_{i}{j}" for i in "12" for j in "12"] + (["B_1", "B_2"] if driven else [])
-        page.equal(*(relation(page[name], page[name].shown) for name in names), say=f"{key}_blocks", **said)
+        page.equal(*_in_parts(page, [], []), say=f"{key}_blocks", **said)
         key, said = "two_parts", {}
     page.equal(
         relation(x_1.derivative, summed(first), combination(page, first)),

@@ -33,8 +33,8 @@ def write_feedforward(page: Page, design: FeedforwardDesign) -> None:
             return
         _loop(page, design, minimal=minimal)
         _gain(page, design)
-        draw_feedforward(page, minimal=minimal)
         caution_law(page, loop)
+        draw_feedforward(page, minimal=minimal)
 
 
 def _at_rest(page: Page) -> Term:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from symobs.analysis.factored_form import formula_of_factored
+from symobs.analysis.page_parts import in_blocks
 from symobs.derivation.builder import Page, relation
 from symobs.design.compensator.estimate_feedback_page import is_ill_posed, write_both_gains
 from symobs.design.compensator.minimal_order_compensator_page import partitioned_gain
@@ -11,7 +12,7 @@ from symobs.design.page_parts.block_diagrams import draw_tracking
 from symobs.design.reduced_order.reduced_order_observer import ReducedOrderObserver
 from symobs.design.reference.tracking import TrackingDesign
 from symobs.exact import Matrix
-from symobs.formula.term import Term, block
+from symobs.formula.term import block
 from symobs.result import page_of
 
 
@@ -28,9 +29,9 @@ def write_tracking(page: Page, design: TrackingDesign) -> None:
             _law(page, design)
         _gain(page, design)
         if design.has_gains and design.answer["K_d"] is not None:
+            caution_law(page, loop)
             draw_tracking(page, minimal=isinstance(loop.estimator, ReducedOrderObserver))
             _errors(page, design)
-            caution_law(page, loop)
 
 
 def _reference(page: Page, design: TrackingDesign) -> None:
@@ -96,13 +97,15 @@ def _gain(page: Page, design: TrackingDesign) -> None:
     if not page.knows("K_d"):
         page.set("K_d", design.answer["K_d"])
     K_d = page["K_d"]
-    zero = page.value(Matrix.zeros(order, columns))
+    zero = block([[page.value(Matrix.zeros(order, columns))]])
     condition = page["A_ref"] - A + B @ K_d
     page.equal(
         relation(condition if V is None else condition @ V, zero),
         say="tracking_condition" if V is None else "tracking_condition_then",
     )
     page.equal(relation(K_d, K_d.shown), say="tracking_solved", answer=True)
+    if K_d.value.is_zero:
+        page.conclude("tracking_no_feedforward", relation(K_d, Matrix.zeros(*K_d.value.shape)))
 
 
 def _errors(page: Page, design: TrackingDesign) -> None:
@@ -114,14 +117,21 @@ def _errors(page: Page, design: TrackingDesign) -> None:
     through = B @ page["K_2"] if minimal else B @ K
     zero = page.value(Matrix.zeros(size - order, order))
     one = design.start is not None
+    whole, parts = block([[A - B @ K, -through], [zero, own]]), [order, size - order]
     page.define(
-        "A_e", block([[A - B @ K, -through], [zero, own]]), say="tracking_errors_one" if one else "", silent=not one
+        "A_e",
+        whole,
+        in_blocks(page, whole.value, parts, parts),
+        say="tracking_errors_one" if one else "",
+        silent=not one,
+        closing=False,
     )
     if not one:
         state = block([[page["e_d"]], [page["e_2" if minimal else "e"]]])
-        matrix: Term = block([[A - B @ K, -through], [zero, own]])
         page.equal(
-            relation(state.derivative, matrix @ state, page["A_e"].shown @ state), say="tracking_errors", answer=True
+            relation(state.derivative, whole @ state, in_blocks(page, whole.value, parts, parts) @ state),
+            say="tracking_errors",
+            answer=True,
         )
     determinant = (page.s @ page.identity(size) - page["A_e"]).apply("det")
     page.equal(

@@ -10,6 +10,7 @@ PHRASES: dict[str, str] = {
     "tracking_condition_one": "Along the trajectory from {start}, which stays in the span of the columns of",
     "tracking_condition_then": "the reference does not excite the tracking error if",
     "tracking_solved": "which is satisfied by",
+    "tracking_no_feedforward": "No feedforward is needed: the reference is a trajectory of the unforced plant.",
     "tracking_impossible": "With {row}, {annuls}, but {left}. Hence no $K_d$ can make $B K_d$ equal to $A - A_ref$: the plant cannot track this reference.",
     "tracking_impossible_one": "With {row}, {annuls}, but {left}. Hence no such $K_d$ exists: the plant cannot track this trajectory.",
     "tracking_errors": "The tracking and estimation errors together satisfy",

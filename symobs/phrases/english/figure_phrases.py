@@ -1,20 +1,21 @@
-"""What is said beside a block diagram, and beside courses over time."""
+"""Captions of block diagrams and of time responses."""
 
 from __future__ import annotations
 
 PHRASES: dict[str, str] = {
     "block_diagram": "Block diagram",
-    "drawn_copy": "Block diagram of the observer: a model of the plant, with the difference between $y$ and the model output fed back through $L$:",
-    "drawn_collected": "With terms collected, the observer is a single loop driven by input and output:",
-    "drawn_collected_free": "With terms collected, the observer is a single loop driven by the output:",
-    "drawn_compensator": "The block diagram of plant, observer and state feedback is:",
-    "drawn_loop": "Here $G_cl$ is the transfer function from $r_in$ to $y$ of the following loop:",
-    "drawn_unity_loop": "Here $G_r$ is the transfer function from $r_in$ to $y$ of the following loop:",
-    "drawn_feedforward": "The block diagram is:",
-    "drawn_tracking": "The block diagram is as follows, with the reference model on the left:",
-    "drawn_feedforward_minimal": "The block diagram is as follows; $M_z$ assembles the estimate from the output and the observer state:",
-    "drawn_tracking_minimal": "The block diagram is as follows, with the reference model on the left; $M_z$ assembles the estimate from the output and the observer state:",
-    "plot_error": "The estimation error is plotted below.",
-    "plot_estimate": "The state and its estimate are plotted below.",
-    "drawn_minimal_order": "The block diagram is as follows; $M_z$ assembles the estimate from the output and the observer state:",
+    "figure": "Figure",
+    "drawn_copy": "The observer: a model of the plant, with the difference between $y$ and the model output fed back through $L$.",
+    "drawn_collected": "The observer with terms collected: a single loop driven by input and output.",
+    "drawn_collected_free": "The observer with terms collected: a single loop driven by the output.",
+    "drawn_compensator": "Plant, observer and state feedback.",
+    "drawn_loop": "The loop with the transfer function $G_cl$ from $r_in$ to $y$.",
+    "drawn_unity_loop": "The loop with the transfer function $G_r$ from $r_in$ to $y$.",
+    "drawn_feedforward": "Plant, observer, state feedback and feedforward.",
+    "drawn_tracking": "Tracking: the reference model stands on the left.",
+    "drawn_feedforward_minimal": "Plant, observer, state feedback and feedforward; $M_z$ assembles the estimate from the output and the observer state.",
+    "drawn_tracking_minimal": "Tracking: the reference model stands on the left; $M_z$ assembles the estimate from the output and the observer state.",
+    "plot_error": "The estimation error.",
+    "plot_estimate": "The state and its estimate.",
+    "drawn_minimal_order": "The reduced-order observer; $M_z$ assembles the estimate from the output and the observer state.",
 }

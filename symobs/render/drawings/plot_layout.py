@@ -23,16 +23,20 @@ if TYPE_CHECKING:
     from symobs.formula import Formula
     from symobs.render.drawings.scene import Content, Measure, Point
 
-WIDEST, HIGHEST = 270.0, 205.0  # points
+WIDEST, HIGHEST = 270.0, 160.0  # points
 _LINE, _LONGEST_END = 290.0, 0.3
-_TIME_HEIGHT = 90.0
+_TIME_HEIGHT = 80.0
 _SMALLEST_SIDE = 100.0
 #: Windows that are not much longer than high are drawn with equal scales.
 _EQUAL_UP_TO = 2.0
 _TICK, _BEYOND, _LETTER = 3.0, 11.0, 4.0
 _TICKS = 5
 _CURVES = {True: "boundary", False: "divider"}
-_CURVES_OF_TIME = {True: "estimate", False: "path"}
+#: The styles of the components of a signal; beside an estimate, which is dashed, they differ in width and colour.
+_COMPONENTS = ("path", "path 2", "path 3", "path 4")
+_BESIDE_ESTIMATE = {False: ("path", "state 2", "state 3"), True: ("estimate", "estimate 2", "estimate 3")}
+#: Signals whose largest values differ by more than this factor have an axis each, of this height and distance.
+_ONE_AXIS, _PANEL, _BETWEEN_PANELS = 4, 48.0, 26.0
 _SIGNS = {"stable": "dot", "unstable": "cross", "excluded": "ring"}
 
 
@@ -94,7 +98,7 @@ def _region(picture: RegionPicture, measure: Measure) -> Scene:
         runs.setdefault((curve.equation, curve.boundary), []).extend(frame.lines(curve.points))
     curves = {key: chained(lines) for key, lines in runs.items() if lines}
     strokes = [Stroke(line, _CURVES[boundary]) for (_, boundary), lines in curves.items() for line in lines]
-    signs = tuple(Sign(_SIGNS[mark.kind], frame.at(*mark.place)) for mark in picture.marks)
+    signs = tuple(Sign("ring", frame.at(*mark.place)) for mark in picture.marks if mark.kind == "excluded")
     lines = tuple(stroke.points for stroke in strokes)
     pale = tuple(_zero_lines(frame))
     around = Surroundings(frame.box, lines, tuple(_box(sign) for sign in signs), pale, shades)
@@ -156,7 +160,7 @@ def _axes(frame: _Frame, names: tuple[Content, ...], measure: Measure) -> tuple[
 
 def _fitting(height: float, measure: Measure) -> int:
     """Return the number of ticks with room above one another."""
-    return max(2, min(_TICKS, int(height / (2 * measure("0")[1]))))
+    return max(3, min(_TICKS, int(height / (2 * measure("0")[1]))))
 
 
 def _zero_lines(frame: _Frame) -> Iterator[tuple[Point, Point]]:
@@ -264,7 +268,11 @@ def _poles(picture: PoleMap, measure: Measure) -> Scene:
 
 
 def _responses(picture: TimeResponse, measure: Measure) -> Scene:
-    """Return signals over time, each with its name beside it."""
+    """Return signals over time, each with its name beside it, or on an axis of its own."""
+    peaks = [max(map(abs, response.heights)) for response in picture.responses]
+    alone = not picture.discrete and not any(response.dashed for response in picture.responses)
+    if alone and 0 < _ONE_AXIS * min(peaks) < max(peaks):
+        return _panels(picture, measure)
     frame = _Frame(_decimal(picture.window[0]), _decimal(picture.window[1]), WIDEST, _TIME_HEIGHT)
     counted = replace(frame, vertical=(frame.vertical[0] * picture.parts, frame.vertical[1] * picture.parts))
     lines = [
@@ -276,7 +284,7 @@ def _responses(picture: TimeResponse, measure: Measure) -> Scene:
     names = {name_of(response): parts for response, parts in zip(picture.responses, lines, strict=True)}
     labels, numbered = labelled(names, Surroundings(frame.box, every, (), pale, ()), measure)
     axes, written = _axes(frame, (symbol(time_axis(picture)),), measure)
-    styles = ["zero" if picture.discrete else _CURVES_OF_TIME[response.dashed] for response in picture.responses]
+    styles = ["zero" if picture.discrete else _style_of(response, picture) for response in picture.responses]
     sampled = picture.responses if picture.discrete else ()
     signs = tuple(
         Sign("ring" if response.dashed else "dot", frame.at(*place))
@@ -288,6 +296,37 @@ def _responses(picture: TimeResponse, measure: Measure) -> Scene:
     zeros = (Stroke(line, "zero") for line in pale)
     whole = whole_of(axes, texts, measure)
     return Scene(frame.box, whole, (), (*zeros, *axes, *strokes), (), signs, texts, tuple(numbered))
+
+
+def _style_of(response: Response, picture: TimeResponse) -> str:
+    """Return the style of a curve: no two of a signal are alike."""
+    compared = any(other.dashed for other in picture.responses)
+    styles = _BESIDE_ESTIMATE[response.dashed] if compared else _COMPONENTS
+    return styles[max(0, response.component - 1) % len(styles)]
+
+
+def _panels(picture: TimeResponse, measure: Measure) -> Scene:
+    """Return signals over time one below the other, each on an axis of its own with its name."""
+    strokes: list[Stroke] = []
+    texts: list[TextLabel] = []
+    for row, response in enumerate(reversed(picture.responses)):
+        up = row * (_PANEL + _BETWEEN_PANELS)
+        low, high = (bound(0, bound(response.heights)) / picture.parts for bound in (min, max))
+        room = (high - low) / 20
+        frame = _Frame(_decimal(picture.window[0]), (low - room, high + room), WIDEST, _PANEL)
+        axes, written = _axes(frame, (symbol(time_axis(picture)), name_of(response)), measure)
+        steps = len(response.heights) - 1
+        counted = replace(
+            frame, horizontal=(0.0, float(steps)), vertical=tuple(edge * picture.parts for edge in frame.vertical)
+        )
+        runs = [Stroke(line, "zero") for line in _zero_lines(frame)] + axes
+        runs += [Stroke(line, "path") for line in counted.lines(enumerate(response.heights))]
+        strokes += [replace(run, points=tuple((x, y + up) for x, y in run.points)) for run in runs]
+        shown = written if not row else [text for text in written if text.anchor != "north" and text is not written[0]]
+        texts += [replace(text, place=(text.place[0], text.place[1] + up)) for text in shown]
+    height = len(picture.responses) * (_PANEL + _BETWEEN_PANELS) - _BETWEEN_PANELS
+    whole = whole_of(strokes, texts, measure)
+    return Scene(Rectangle(0.0, 0.0, WIDEST, height), whole, (), tuple(strokes), (), (), tuple(texts))
 
 
 def name_of(response: Response) -> Formula:

@@ -110,7 +110,7 @@ class Style:
 
     width: float
     colour: str
-    dashes: tuple[float, float] | None = None
+    dashes: tuple[float, ...] | None = None
     has_head: bool = False
 
 
@@ -124,7 +124,14 @@ STYLES = {
     "divider": Style(0.4, "text", (2.5, 1.8)),
     "piece": Style(2.6, "ink"),
     "path": Style(0.9, "ink"),
+    "path 2": Style(0.9, "ink", (5.0, 2.0)),
+    "path 3": Style(0.9, "ink", (1.2, 1.6)),
+    "path 4": Style(0.9, "ink", (5.0, 2.0, 1.2, 2.0)),
     "estimate": Style(0.9, "ink", (3.0, 2.0)),
+    "state 2": Style(0.6, "text"),
+    "estimate 2": Style(0.6, "text", (3.0, 2.0)),
+    "state 3": Style(1.6, "ink"),
+    "estimate 3": Style(1.6, "ink", (3.0, 2.0)),
 }
 RADIUS = {"dot": 1.6, "cross": 2.2, "ring": 2.3}
 ARROW = 5.0

@@ -158,7 +158,7 @@ class _Writer:
         style = STYLES[name]
         colour = _INK if style.colour == "ink" else "currentColor"
         attributes = [f'class="{_CLASSES[style.colour]}" stroke="{colour}" stroke-width="{style.width}"']
-        attributes += [f'stroke-dasharray="{style.dashes[0]} {style.dashes[1]}"'] if style.dashes else []
+        attributes += [f'stroke-dasharray="{" ".join(map(str, style.dashes))}"'] if style.dashes else []
         attributes += ['stroke-opacity=".35"'] if style.colour == "pale" else []
         yield f'<path {" ".join(attributes)} d="{"".join(self.path(stroke.points) for stroke in strokes)}"/>'
         if style.has_head:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import cycle
 from typing import TYPE_CHECKING
 
 from symobs.formula import Conjunction, Roots
@@ -60,11 +61,16 @@ def tikz(scene: Scene, printer: LatexPrinter) -> str:
     return "\n".join(lines)
 
 
+#: A diagram higher than this (in em) is drawn smaller.
+_TALL = 10.0
+
+
 def figure(scene: Scene, printer: LatexPrinter, words: str = "") -> str:
     """Return a centred scene, with the text below it on one page."""
+    size = "\\small\n" if scene.is_diagram and abs(scene.whole.top - scene.whole.bottom) > _TALL else ""
     if not words:
-        return centred(f"\n{tikz(scene, printer)}\n")
-    told = f"{tikz(scene, printer)}\n\\par\\smallskip{{\\small {words}\\par}}\n"
+        return centred(f"\n{size}{tikz(scene, printer)}\n")
+    told = f"{size}{tikz(scene, printer)}\n\\par\\smallskip{{\\small {words}\\par}}\n"
     return centred(f"\\begin{{minipage}}{{.92\\linewidth}}\\centering\n{told}\\end{{minipage}}")
 
 
@@ -121,7 +127,8 @@ def _stroke(stroke: Stroke) -> str:
         return rf"\draw{_WIRES[stroke.style]} {_path(stroke.points)};"
     style = STYLES[stroke.style]
     options = [_COLOURS[style.colour], f"line width={style.width}pt"]
-    options += [f"dash pattern=on {style.dashes[0]}pt off {style.dashes[1]}pt"] if style.dashes else []
+    pattern = [f"{word} {length}pt" for word, length in zip(cycle(("on", "off")), style.dashes or (), strict=False)]
+    options += [f"dash pattern={' '.join(pattern)}"] if pattern else []
     options += ["->"] if style.has_head else []
     return rf"\draw[{','.join(options)}] {_path(stroke.points)};"
 
@@ -153,7 +160,7 @@ def _sign(sign: Sign) -> str:
         case "+" | "-":
             (x, y), (across, down) = sign.place, sign.direction
             place = _point((x - _ALONG * across + _BESIDE * abs(down), y - _ALONG * down - _BESIDE * abs(across)))
-            return rf"\node at {place} {{\footnotesize${sign.kind}$}};"
+            return rf"\node at {place} {{\scriptsize${sign.kind}$}};"
         case _:
             x, y, r = *sign.place, RADIUS["cross"]
             strokes = f"{_path(((x - r, y - r), (x + r, y + r)))} {_path(((x - r, y + r), (x + r, y - r)))}"

@@ -237,7 +237,9 @@ class HtmlWriter:
 
         printer = TextPrinter.of(self.printer)
         if isinstance(block, Drawing):
-            return f"<figure>\n{svg(svg_scene(block, printer), printer, PHRASES['block_diagram'])}\n</figure>"
+            drawn = svg(svg_scene(block, printer), printer, PHRASES["block_diagram"])
+            words = f"<figcaption>{self.sentence(block.caption)}</figcaption>\n" if block.caption else ""
+            return f"<figure>\n{drawn}\n{words}</figure>"
         scene = svg_scene(block.picture, printer)
         words = below(block.caption, scene)
         spoken = "".join(

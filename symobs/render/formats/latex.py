@@ -142,7 +142,8 @@ class LatexWriter:
             case Paragraph(inlines):
                 return self.sentence(inlines)
             case Display(relations, boxed, closing):
-                return self.printer.display(relations, boxed=boxed, end=closing)
+                written = self.printer.display(relations, boxed=boxed, end=closing)
+                return _kept_with_next(written) if closing == "," else written
             case Verified(inlines):
                 return rf"\verified{{{self.sentence(inlines)}}}"
             case Caution(label, inlines):
@@ -170,7 +171,7 @@ class LatexWriter:
         from symobs.render.drawings.tikz import figure, tikz_scene  # noqa: PLC0415
 
         if isinstance(block, Drawing):
-            return figure(tikz_scene(block, self.printer), self.printer)
+            return figure(tikz_scene(block, self.printer), self.printer, self.sentence(block.caption))
         scene = tikz_scene(block.picture, self.printer)
         return figure(scene, self.printer, self.sentence(below(block.caption, scene)))
 
@@ -200,6 +201,11 @@ class LatexWriter:
         if isinstance(part, Roots):
             return ", ".join(f"${root}$" for root in listed(part, self.printer, LATEX))
         return f"${self.printer.inline(part)}$"
+
+
+def _kept_with_next(display: str) -> str:
+    """Return a display on one line that no page break separates from what follows it."""
+    return display.removesuffix(r"\]") + r"\postdisplaypenalty=5000 \]" if display.endswith(r"\]") else display
 
 
 def _gap(before: Block, after: Block) -> str:

@@ -49,7 +49,7 @@ if TYPE_CHECKING:
     from symobs.result import Document
 
 _SKETCH = 78  # columns
-_SOURCE = re.compile(r"\\(?:\\(?:\[\d+pt\])?|[A-Za-z]+ ?|.)|[<>|]", re.DOTALL)
+_SOURCE = re.compile(r"\\begin\{array\}\{[c|l]+\}|\\(?:\\(?:\[\d+pt\])?|[A-Za-z]+ ?|.)|[<>|]", re.DOTALL)
 #: What a command of the LaTeX pages is here; all others are known everywhere and stay.
 _NAMED = {
     r"\,": r"\thinspace ",
@@ -100,6 +100,8 @@ def portable(latex: str) -> str:
 
 def _renamed(match: re.Match[str]) -> str:
     found = match[0]
+    if found.startswith(r"\begin{array}"):  # its bars are the lines between blocks
+        return found
     if found.startswith("\\\\"):
         return r"\cr "
     name = found.rstrip() if found[-1:] == " " and len(found) > 2 else found
@@ -154,15 +156,15 @@ class MarkdownWriter:
             case References(label, entries):
                 listed = (f"- \\[{number}\\] {plain(entry)}" for number, entry in enumerate(entries, 1))
                 return "\n".join([f"**{plain(label)}**", "", *listed])
-            case Drawing():
-                return self._sketch(block)
+            case Drawing(caption=words):
+                return f"{self._sketch(block)}\n\n{self.sentence(words)}" if words else self._sketch(block)
             case TableBlock():
                 table, told = markdown_table(block, self.printer, self.sentence, self.mathematics)
                 return "\n\n".join([table, self.sentence(block.where), self.display(told)]) if told else table
-            case PictureBlock(picture):
+            case PictureBlock(picture, _, title):
                 from symobs.render.page.plot_captions import caption  # noqa: PLC0415 - only pages with pictures
 
-                return f"{self._sketch(picture)}\n\n{self.sentence(caption(picture, sketched=True))}"
+                return f"{self._sketch(picture)}\n\n{self.sentence((*title, *caption(picture, sketched=True)))}"
             case CaseBlock(label, blocks):
                 inside = MarkdownWriter(self.printer, level=self.level + 1).body(blocks)
                 return quoted(f"**{self.sentence(label)}**\n\n{inside}")

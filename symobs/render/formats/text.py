@@ -118,18 +118,19 @@ class TextWriter:
                 listed = (wrapped(printable(entry), width, first=f"[{n}] ") for n, entry in enumerate(entries, 1))
                 return "\n".join([underlined(label, "-", width), *listed])
             case Drawing():
-                return indented(self._sketch(block))
+                words = wrapped(self.sentence(block.caption), width - len(INDENT))
+                return indented(f"{self._sketch(block)}\n\n{words}") if words else indented(self._sketch(block))
             case TableBlock():
                 from symobs.render.tables.text_and_latex import text_table  # noqa: PLC0415 - only pages with tables
 
                 table, told = text_table(block, self.printer, self.remark)
                 below = f"\n\n{wrapped(self.sentence(block.where), width)}\n\n{indented(told)}" if told else ""
                 return f"{indented(table)}{below}"
-            case PictureBlock(picture):
+            case PictureBlock(picture, _, title):
                 from symobs.render.page.plot_captions import caption  # noqa: PLC0415 - only pages with pictures
 
                 plot = self._sketch(picture)
-                words = wrapped(self.sentence(caption(picture, sketched=True)), width - len(INDENT))
+                words = wrapped(self.sentence((*title, *caption(picture, sketched=True))), width - len(INDENT))
                 return f"{indented(plot)}\n\n{indented(words)}"
             case CaseBlock(label, blocks):
                 inside = TextWriter(self.printer, width - len(INDENT)).body(blocks)

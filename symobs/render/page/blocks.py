@@ -82,10 +82,11 @@ class References:
 
 @dataclass(frozen=True)
 class Drawing:
-    """A block diagram: a figure of `flow` by its name, with the formulas and equations that label it."""
+    """A block diagram: a figure of `flow` by its name, with the formulas and equations that label it, and its caption."""
 
     name: str
     labels: tuple[tuple[str, Label], ...]
+    caption: Inlines = ()
 
 
 @dataclass(frozen=True)
@@ -103,10 +104,11 @@ class TableBlock:
 
 @dataclass(frozen=True)
 class PictureBlock:
-    """A plot and its caption."""
+    """A plot and its caption; `title` stands before every caption of it, the number of the figure and what it shows."""
 
     picture: Picture
     caption: Inlines
+    title: Inlines = ()
 
 
 @dataclass(frozen=True)

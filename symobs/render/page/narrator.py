@@ -7,7 +7,7 @@ displays without a sentence between them on one line, what is given said once, s
 from __future__ import annotations
 
 from dataclasses import replace
-from itertools import zip_longest
+from itertools import count, zip_longest
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from symobs.convention import OF_REDUCED_ORDER
@@ -68,6 +68,9 @@ P = TypeVar("P", bound="Printer[Any]")
 
 #: The sections of a question.
 _UNNUMBERED = {"task", "tasks"}
+
+#: With more answers than this in one section, the last alone are set in boxes.
+_MOST_BOXES = 3
 
 #: The few words of a page that belong to no step.
 LABELS: dict[str, str] = {
@@ -168,8 +171,10 @@ class _PageBlocks:
         given: Mapping[Formula, Relation] | None = None,
         numbered: bool = True,
         citations: Mapping[str, str] | None = None,
+        figures: Iterator[int] | None = None,
     ) -> None:
         self.convention = convention
+        self.figures = count(1) if figures is None else figures
         self.blocks: list[Block] = []
         self.citations = dict(citations or {})
         self.given = dict(given or {})
@@ -177,6 +182,12 @@ class _PageBlocks:
         self.printed: set[Step] = set()
         self.numbers = [0]
         self.numbered = numbered
+
+    def inside(self, *, numbered: bool = True) -> _PageBlocks:
+        """Return the blocks of a part set apart from the page: its data hold there only, its figures are counted on."""
+        return _PageBlocks(
+            self.convention, given=self.given, numbered=numbered, citations=self.citations, figures=self.figures
+        )
 
     def emit(self, steps: Sequence[Step]) -> None:
         """Emit a derivation, the given data first."""
@@ -234,8 +245,7 @@ class _PageBlocks:
             case Conclude(sentence=sentence) | Note(sentence=sentence):
                 self.emit_sentence(sentence)
             case Diagram(name=name, labels=labels, sentence=sentence):
-                self.emit_sentence(sentence)
-                self.blocks.append(Drawing(name, labels))
+                self.blocks.append(Drawing(name, labels, self.figure_title(sentence)))
             case Tabulate(table=table, variable=variable, sentence=sentence, findings=findings):
                 self.emit_sentence(sentence)
                 from symobs.render.page.routh_remarks import remarks  # noqa: PLC0415 - only pages with tables
@@ -251,10 +261,10 @@ class _PageBlocks:
             case Survey():
                 self.emit_survey(step)
             case Plot(picture=picture, sentence=sentence):
-                self.emit_sentence(sentence)
                 from symobs.render.page.plot_captions import caption  # noqa: PLC0415 - only pages with pictures
 
-                self.blocks.append(PictureBlock(picture, caption(picture)))
+                title = joined((*self.figure_title(sentence), " "))
+                self.blocks.append(PictureBlock(picture, joined((*title, *caption(picture))), title))
             case Case(when=when, steps=steps, sentence=sentence):
                 self.emit_case(when, steps, sentence)
             case Section() if _is_statement(step):
@@ -268,6 +278,7 @@ class _PageBlocks:
         number = ".".join(str(part) for part in self.numbers) + "." if is_numbered else ""
         heading = Heading(number, filled(title, self.convention))
         self.blocks.append(heading)
+        start = len(self.blocks)
         self.numbers.append(0)
         columns = [step for step in steps if isinstance(step, Section)] if title.key in BESIDE else []
         self.blocks += self.side_by_side(columns)
@@ -275,6 +286,7 @@ class _PageBlocks:
             if step not in columns and (isinstance(step, Section) or step not in self.printed):
                 self.emit_step(step)
         self.numbers.pop()
+        self.blocks[start:] = _with_few_boxes(self.blocks[start:])
         if self.blocks[-1] is heading and not self.printed.isdisjoint(steps):  # all of it is printed already
             self.blocks.pop()
             self.numbers[-1] -= is_numbered
@@ -283,13 +295,18 @@ class _PageBlocks:
         """Emit sections in columns."""
         rows: list[tuple[tuple[Block, ...], ...]] = []
         for row in in_rows([column.steps for column in columns]):
-            cells = [_PageBlocks(self.convention, given=self.given, citations=self.citations) for _ in row]
+            cells = [self.inside() for _ in row]
             for cell, steps in zip(cells, row, strict=True):
                 for step in steps:
                     cell.emit_step(step)
             rows.append(tuple(_punctuated(cell.blocks) for cell in cells))
         if rows:
             yield Columns(tuple(filled(column.title, self.convention) for column in columns), tuple(rows))
+
+    def figure_title(self, sentence: Sentence | None) -> Inlines:
+        """Return the number of the next figure, and what it shows."""
+        numbered = f"{PHRASES['figure']}\N{NO-BREAK SPACE}{next(self.figures)}."
+        return (numbered,) if sentence is None else joined((f"{numbered} ", *filled(sentence, self.convention)))
 
     def emit_survey(self, step: Survey) -> None:
         """Emit the summary of a region, its parts one below the other."""
@@ -301,7 +318,7 @@ class _PageBlocks:
 
     def emit_case(self, when: Relation | Conjunction, steps: Sequence[Step], sentence: Sentence | None) -> None:
         """Emit the steps of a case, whose data hold only there."""
-        inner = _PageBlocks(self.convention, given=self.given, numbered=False, citations=self.citations)
+        inner = self.inside(numbered=False)
         inner.emit_sentence(sentence)
         inner.emit(steps)
         label: list[Inline] = [f"{LABELS['case']} "]
@@ -328,6 +345,25 @@ class _PageBlocks:
             self.blocks[-1] = Display((*last.relations, *relations), boxed)
         else:
             self.blocks.append(Display(relations, boxed))
+
+
+def _with_few_boxes(blocks: Sequence[Block]) -> list[Block]:
+    """Return the blocks of a section, only the last answers in boxes where there are many: those are the result."""
+    boxes = [place for place, block in enumerate(blocks) if isinstance(block, Display) and block.boxed]
+    if len(boxes) <= _MOST_BOXES:
+        return list(blocks)
+    result = boxes[-1]
+    while result - 1 in boxes:
+        result -= 1
+    kept: list[Block] = []
+    for place, block in enumerate(blocks):
+        if not isinstance(block, Display) or place >= result:
+            kept.append(block)
+        elif kept and isinstance(before := kept[-1], Display) and not before.boxed:
+            kept[-1] = Display((*before.relations, *block.relations))
+        else:
+            kept.append(replace(block, boxed=False))
+    return kept
 
 
 def _is_statement(step: Step) -> bool:

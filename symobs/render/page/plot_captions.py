@@ -69,7 +69,8 @@ def _sentences(picture: Picture) -> Iterator[Sentence]:
     match picture:
         case RegionPicture(axes=(first, second)):
             yield caption_sentence(f"region{_extent(picture)}", first=symbol(first), second=symbol(second))
-            yield from (caption_sentence(kind) for kind in _kinds(mark.kind for mark in picture.marks))
+            if any(mark.kind == "excluded" for mark in picture.marks):
+                yield caption_sentence("excluded")
             if any(not curve.boundary for curve in drawn(picture)):
                 yield caption_sentence("dashed")
         case LinePicture(axis=axis):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from enum import IntEnum
-from typing import TYPE_CHECKING, ClassVar, Generic, TypeVar
+from typing import TYPE_CHECKING, ClassVar, Generic, TypeAlias, TypeVar
 
 from symobs._dataclass import dataclass
 
@@ -33,6 +33,10 @@ class GlyphBox:
 
 
 B = TypeVar("B", bound=GlyphBox)
+
+#: The numbers of rows above a horizontal line, and of columns before a vertical one.
+Rules: TypeAlias = tuple[tuple[int, ...], tuple[int, ...]]
+NO_RULES: Rules = ((), ())
 
 
 class FormulaWriter(ABC, Generic[B]):
@@ -96,8 +100,8 @@ class FormulaWriter(ABC, Generic[B]):
         """Return a function's name before its already grouped argument."""
 
     @abstractmethod
-    def matrix(self, rows: Sequence[Sequence[B]]) -> B:
-        """Return a table in brackets."""
+    def matrix(self, rows: Sequence[Sequence[B]], rules: Rules = NO_RULES) -> B:
+        """Return a table in brackets, with lines between its blocks where a display has room for them."""
 
     @abstractmethod
     def rate(self, box: B, name: str = "t") -> B:

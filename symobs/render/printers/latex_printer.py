@@ -13,7 +13,7 @@ from symobs.formula import Formula, Relation
 from symobs.notation import OPERATORS, symbol_latex
 from symobs.render.printers import widths
 from symobs.render.printers.display_layout import Layout
-from symobs.render.printers.glyphs import GlyphBox, Level
+from symobs.render.printers.glyphs import NO_RULES, GlyphBox, Level
 from symobs.render.printers.printer import Printer
 from symobs.render.printers.rational_formula import decimal
 
@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from symobs.exact import Scalar
+    from symobs.render.printers.glyphs import Rules
 
 _WORD = r"\mathit"
 _FRACTION_OF_LETTERS = re.compile(r"-?\\frac\{(?!\d+\}\{\d+\}$)")
@@ -191,7 +192,7 @@ class LatexPrinter(Printer[LatexBox]):
         width = widths.source_width(name) + argument.width + 0.2
         return LatexBox(width, Level.PRODUCT, source, argument.height)
 
-    def matrix(self, rows: Sequence[Sequence[LatexBox]]) -> LatexBox:
+    def matrix(self, rows: Sequence[Sequence[LatexBox]], rules: Rules = NO_RULES) -> LatexBox:
         """Return a table in brackets; in running text small, or a list where it is wide."""
         if not self.running:
             rows = [[opened(entry) for entry in row] for row in rows]
@@ -201,9 +202,14 @@ class LatexPrinter(Printer[LatexBox]):
         if self.running and width > _WIDE:
             source = r";\allowbreak\ ".join(r",\allowbreak\ ".join(entry.source for entry in row) for row in rows)
             return LatexBox(width, Level.ATOM, f"[{source}]")
-        body = under_one_another(["&".join(entry.source for entry in row) for row in rows], _heights(rows))
+        body = under_one_another(["&".join(entry.source for entry in row) for row in rows], _heights(rows), rules[0])
         if self.running and len(rows) > 1:
             source = rf"\left[\begin{{smallmatrix}}{body}\end{{smallmatrix}}\right]"
+        elif any(rules):
+            edges = (0, *rules[1], columns)
+            preamble = "|".join("c" * (after - before) for before, after in pairwise(edges))
+            source = rf"\left[\begin{{array}}{{{preamble}}}{body}\end{{array}}\right]"
+            width += widths.COLUMN_GAP
         elif columns <= _MATRIX_COLUMNS:
             source = rf"\begin{{bmatrix}}{body}\end{{bmatrix}}"
         else:
@@ -331,11 +337,12 @@ def _heights(rows: Sequence[Sequence[LatexBox]]) -> list[int]:
     return [max(entry.height for entry in row) for row in rows]
 
 
-def under_one_another(rows: Sequence[str], heights: Sequence[int]) -> str:
+def under_one_another(rows: Sequence[str], heights: Sequence[int], ruled: Sequence[int] = ()) -> str:
     r"""Return rows joined by `\\`, with the depth that tall ones need below their strut: an array adds none by itself."""
     body = rows[0]
-    for row, above, below in zip(rows[1:], heights, heights[1:], strict=False):
-        body += (r"\\[12pt]" if above > 1 else r"\\[4pt]" if max(above, below) else r"\\") + row
+    for number, (row, above, below) in enumerate(zip(rows[1:], heights, heights[1:], strict=False), 1):
+        body += r"\\[12pt]" if above > 1 else r"\\[4pt]" if max(above, below) else r"\\"
+        body += (r"\hline\rule{0pt}{2.4ex}" if number in ruled else "") + row
     return body
 
 

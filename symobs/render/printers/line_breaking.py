@@ -29,7 +29,7 @@ from symobs.formula import (
     contains,
 )
 from symobs.render.printers.glyphs import B, Level
-from symobs.render.printers.printer import factors, shifted, signed_terms
+from symobs.render.printers.printer import factors, partitioned, shifted, signed_terms
 from symobs.render.printers.rational_formula import decimal, is_leaf
 from symobs.render.printers.scalar_formula import formula_of, formula_of_matrix
 
@@ -247,7 +247,8 @@ class Breaker(Generic[B]):
     def _matrix(self, formula: Formula, room: float, head: B | None = None) -> list[LinePiece[B]]:
         """Return the matrix with its widest entries named, or listed row by row if it still does not fit."""
         if isinstance(formula, Block):
-            rows = formula.rows
+            table = partitioned(formula.rows)
+            rows = formula.rows if table is None else tuple(tuple(map(Literal, row)) for row in table[0])
         elif isinstance(formula, Literal) and isinstance(formula.value, Matrix):
             rows = tuple(tuple(Literal(entry) for entry in row) for row in formula.value.rows)
         else:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from abc import abstractmethod
 from dataclasses import replace
+from itertools import accumulate
 from typing import TYPE_CHECKING
 
 from symobs.exact import EIGENVALUE, Matrix, Scalar, decimal_digits
@@ -37,7 +38,7 @@ from symobs.formula import (
     with_children,
 )
 from symobs.notation import FUNCTIONS, LETTERS, TIMED, is_of_time, shows_time, symbol_latex, symbol_text
-from symobs.render.printers.glyphs import B, FormulaWriter, Level
+from symobs.render.printers.glyphs import B, FormulaWriter, Level, Rules
 from symobs.render.printers.rational_formula import is_leaf
 from symobs.render.printers.scalar_formula import formula_of, formula_of_matrix
 
@@ -138,11 +139,15 @@ class Printer(FormulaWriter[B]):
                 return self.letter(name, "k" if self.discrete and name in SIGNALS else "")
             case Literal(Scalar() as value):
                 return self.scalar(value)
+            case Literal(Matrix(shape=(1, 1)) as value):
+                return self.scalar(value[0, 0])
             case Literal(Matrix() as value):
                 written = formula_of_matrix(value, self.variable)
                 return self.product(written) if isinstance(written, Product) else self.plain_matrix(value)
             case Decimals(Scalar() as value):
                 return self.decimals(value)
+            case Decimals(Matrix(shape=(1, 1)) as value):
+                return self.decimals(value[0, 0])
             case Decimals(Matrix() as value):
                 return self.matrix([[self.decimals(entry) for entry in row] for row in value.rows])
             case Numeral(text=text):
@@ -161,6 +166,13 @@ class Printer(FormulaWriter[B]):
                 return self.transposed(self.base(operand))
             case Apply(function, argument):
                 return self.application(function, argument)
+            case Block(rows) if table := partitioned(rows):
+                entries, rules = table
+                return self.matrix([[self.typeset(Literal(entry)) for entry in row] for row in entries], rules)
+            case Block(((entry,),)) if (
+                isinstance(entry, Literal) and isinstance(entry.value, Matrix) and entry.value.is_zero
+            ):
+                return self.block_entry(entry)
             case Block(rows):
                 return self.matrix([[self.block_entry(entry) for entry in row] for row in rows])
             case Derivative(operand, name):
@@ -267,13 +279,13 @@ class Printer(FormulaWriter[B]):
 
     def base(self, formula: Formula) -> B:
         """Return the base of an exponent or a transposition sign."""
-        if isinstance(formula, Literal) and isinstance(formula.value, Matrix):
+        if isinstance(formula, Literal) and isinstance(formula.value, Matrix) and is_table(formula):
             return self.plain_matrix(formula.value)
         return self.at_least(Level.ATOM, self.typeset(formula))
 
     def application(self, function: str, argument: Formula) -> B:
         """Return det A, but det(sI − A); polynomials of a matrix always with parentheses."""
-        is_matrix = isinstance(argument, Literal) and isinstance(argument.value, Matrix)
+        is_matrix = is_table(argument)
         inner = self.base(argument) if is_matrix else self.typeset(argument)
         if inner.level < Level.POWER or (function.endswith("_at") and not is_matrix):
             inner = self.grouped(inner)
@@ -337,6 +349,30 @@ class Printer(FormulaWriter[B]):
         return box if box.level >= level else self.grouped(box)
 
 
+def partitioned(rows: Sequence[Sequence[Formula]]) -> tuple[list[list[Scalar]], Rules] | None:
+    """Return the entries of blocks that are all matrices of values, and the rows and columns that end a block."""
+    blocks = [[block.value for block in row if isinstance(block, Literal)] for row in rows]
+    if len(rows) == len(rows[0]) == 1 or [len(row) for row in blocks] != [len(row) for row in rows]:
+        return None
+    if not all(isinstance(block, Matrix) and 0 not in block.shape for row in blocks for block in row):
+        return None
+    tables = [[block for block in row if isinstance(block, Matrix)] for row in blocks]
+    entries = [
+        [entry for block in row for entry in block.rows[line]] for row in tables for line in range(row[0].shape[0])
+    ]
+    heights, widths = [row[0].shape[0] for row in tables], [block.shape[1] for block in tables[0]]
+    return entries, (tuple(accumulate(heights))[:-1], tuple(accumulate(widths))[:-1])
+
+
+def is_table(formula: Formula) -> bool:
+    """Return whether a formula is a matrix of values, which is printed in brackets: one of a single entry is a number."""
+    return isinstance(formula, Literal) and isinstance(formula.value, Matrix) and formula.value.shape != (1, 1)
+
+
+def _is_unit(formula: Formula) -> bool:
+    return isinstance(formula, Literal) and isinstance(formula.value, Matrix) and formula.value == Matrix.identity(1)
+
+
 def shifted(formula: Formula) -> Formula:
     """Return the formula of the next instant, with the shift moved one level inwards."""
     return with_children(formula, tuple(Derivative(part) for part in children(formula)))
@@ -352,12 +388,17 @@ def signed_terms(formula: Formula, variable: str, *, flat: bool = True) -> list[
             return [part for term in terms for part in signed_terms(term, variable)]
         case Negative(operand):
             return [(True, operand)]
+        case Literal(Matrix(shape=(1, 1)) as value):
+            return signed_terms(Literal(value[0, 0]), variable, flat=flat)
         case Literal(Scalar() as value) if not is_leaf(value):
             written = formula_of(value, variable)
             return signed_terms(written, variable) if flat or not isinstance(written, Sum) else [(False, formula)]
         case Product((first, *rest)):
             ((negative, body),) = signed_terms(first, variable, flat=False)
-            return [(True, Product((body, *rest)))] if negative else [(False, formula)]
+            unit = isinstance(first, Literal) and isinstance(first.value, Matrix) and body == Literal(Scalar.of(1))
+            return (
+                [(True, Product(tuple(rest) if unit and rest else (body, *rest)))] if negative else [(False, formula)]
+            )
         case Quotient(above, below):
             ((negative, body),) = signed_terms(above, variable, flat=False)
             return [(True, Quotient(body, below))] if negative else [(False, formula)]
@@ -369,7 +410,10 @@ def factors(formula: Formula, variable: str) -> list[Formula]:
     """Return the factors of nested products, values spelled out."""
     match formula:
         case Product(parts):
-            return [factor for part in parts for factor in factors(part, variable)]
+            shown = [part for part in parts if not _is_unit(part)] or parts[:1]
+            return [factor for part in shown for factor in factors(part, variable)]
+        case Literal(Matrix(shape=(1, 1)) as table):
+            return factors(Literal(table[0, 0]), variable)
         case Literal(Scalar() as value) if not is_leaf(value):
             written = formula_of(value, variable)
             return factors(written, variable) if isinstance(written, Product) else [formula]

@@ -10,7 +10,7 @@ from symobs._dataclass import dataclass
 from symobs.formula import Formula, Relation
 from symobs.notation import FUNCTIONS, OPERATORS, symbol_text
 from symobs.render.printers.display_layout import Layout
-from symobs.render.printers.glyphs import GlyphBox, Level
+from symobs.render.printers.glyphs import NO_RULES, GlyphBox, Level
 from symobs.render.printers.printer import Printer
 from symobs.render.printers.rational_formula import decimal
 
@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from symobs.exact import Scalar
+    from symobs.render.printers.glyphs import Rules
 
 _SUPERSCRIPT_DIGITS = "⁰¹²³⁴⁵⁶⁷⁸⁹⁻"
 _SUPERSCRIPTS = str.maketrans("0123456789-", _SUPERSCRIPT_DIGITS)
@@ -177,18 +178,28 @@ class TextPrinter(Printer[TextBox]):
         space = "" if argument.line[0] in "([" or len(argument.lines) > 1 else " "
         return self.joined([text_box(name + space), argument], Level.PRODUCT)
 
-    def matrix(self, rows: Sequence[Sequence[TextBox]]) -> TextBox:
+    def matrix(self, rows: Sequence[Sequence[TextBox]], rules: Rules = NO_RULES) -> TextBox:
         """Return a table in brackets; on one line its entries are written without spaces."""
         if self.flat:
             written = (" ".join(_tight(entry.line) for entry in row) for row in rows)
             return text_box(f"[{'; '.join(written)}]")
         widths = [max(row[j].width for row in rows) for j in range(len(rows[0]))]
         lines: list[str] = []
-        for row in rows:
+        between = [1 if number in rules[1] else 0 for number in range(1, len(widths))]
+        for number, row in enumerate(rows):
             cells = [_pad_left(entry, width) for entry, width in zip(row, widths, strict=True)]
-            spaced = [part for cell in cells for part in (text_box("  "), cell)][1:]
+            height = max(len(cell.lines) for cell in cells)
+            bars = [TextBox(3, Level.ATOM, (" │ ",) * height, max(cell.baseline for cell in cells))] * len(between)
+            gaps = [bar if ruled else text_box("  ") for bar, ruled in zip(bars, between, strict=True)]
+            spaced = [cells[0], *(part for pair in zip(gaps, cells[1:], strict=True) for part in pair)]
+            if number in rules[0]:
+                lines.append(
+                    "".join("─" * int(w) + ("─┼─" if r else "──") for w, r in zip(widths, between, strict=False))
+                )
+                lines[-1] += "─" * int(widths[-1])
             lines += self.joined(spaced, Level.ATOM).lines
-        body = TextBox(sum(widths) + 2 * len(widths) - 2, Level.ATOM, tuple(lines), (len(lines) - 1) // 2)
+        width = sum(widths) + 2 * len(between) + sum(between)
+        body = TextBox(width, Level.ATOM, tuple(lines), (len(lines) - 1) // 2)
         return self._fenced(body, "[", "]", Level.ATOM)
 
     def rate(self, box: TextBox, name: str = "t") -> TextBox:

@@ -1,10 +1,10 @@
-"""Widths of LaTeX mathematics in Computer Modern at 11 pt, in em, for line breaking."""
+"""Widths of LaTeX mathematics in Computer Modern, in em, for line breaking."""
 
 from __future__ import annotations
 
 import re
 
-TEXT_WIDTH = 40.0  # A4 with 27 mm margins is 40.5 em
+TEXT_WIDTH = 40.0  # the line of the template is 41.5 em
 SCRIPT = 0.74
 DIGIT = 0.5
 OPERATOR = 1.23

@@ -15,7 +15,7 @@ from symobs.formula import Formula, Relation
 from symobs.notation import symbol_latex
 from symobs.render.printers import widths
 from symobs.render.printers.display_layout import Layout
-from symobs.render.printers.glyphs import GlyphBox, Level
+from symobs.render.printers.glyphs import NO_RULES, GlyphBox, Level
 from symobs.render.printers.mathml.latex_to_mathml import accented, elements_of, indexed, parts_of
 from symobs.render.printers.mathml.mathml_elements import (
     APPLY,
@@ -50,6 +50,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from symobs.exact import Scalar
+    from symobs.render.printers.glyphs import Rules
 
 _SPACED = f"{TIMES}{THIN}"
 #: In running text (in em, or digits): what still goes under a fraction bar, into a matrix, into an unbroken number.
@@ -243,7 +244,7 @@ class MathmlPrinter(Printer[MathmlBox]):
         elements = (*elements_of(form), APPLY, *(() if is_enclosed else (THIN,)), *argument.elements)
         return MathmlBox(widths.source_width(form) + argument.width + 0.2, Level.PRODUCT, elements, argument.height)
 
-    def matrix(self, rows: Sequence[Sequence[MathmlBox]]) -> MathmlBox:
+    def matrix(self, rows: Sequence[Sequence[MathmlBox]], rules: Rules = NO_RULES) -> MathmlBox:
         """Return a table in brackets; in running text small, or a list where it is wide."""
         columns = len(rows[0])
         width = sum(max(row[j].width for row in rows) for j in range(columns))
@@ -251,15 +252,20 @@ class MathmlPrinter(Printer[MathmlBox]):
         if self.running and width > _WIDE:
             return _list_of(rows)
         struts = (STRUT, *("" for _ in range(columns - 1)))
-        body = "".join(f"<mtr>{''.join(map(self._cell, line, struts))}</mtr>" for line in rows)
+        ruled = [
+            [_ruled(below in rules[0], after in rules[1]) for after in range(columns)] for below in range(len(rows))
+        ]
+        body = "".join(
+            f"<mtr>{''.join(map(self._cell, line, struts, ends))}</mtr>" for line, ends in zip(rows, ruled, strict=True)
+        )
         small = ' scriptlevel="+1"' if self.running and len(rows) > 1 else ""
         fences = '<mo form="prefix">[</mo>', '<mo form="postfix">]</mo>'
         element = f"<mrow{small}>{fences[0]}<mtable>{body}</mtable>{fences[1]}</mrow>"
         return MathmlBox(width, Level.ATOM, (element,), max(2, len(rows)))
 
-    def _cell(self, entry: MathmlBox, strut: str) -> str:
+    def _cell(self, entry: MathmlBox, strut: str, ruled: str = "") -> str:
         size = LARGE if not self.running and is_large(entry) else ""
-        return f"<mtd{size}>{strut}{entry.source}</mtd>"
+        return f"<mtd{size}{ruled}>{strut}{entry.source}</mtd>"
 
     def rate(self, box: MathmlBox, name: str = "t") -> MathmlBox:
         """Return d/dt before a stack."""
@@ -398,3 +404,9 @@ def _sized(opening: str, closing: str, size: str, width: float) -> tuple[MathmlB
         f'<mo form="{form}" {attributes}>{fence}</mo>' for form, fence in (("prefix", opening), ("postfix", closing))
     )
     return MathmlBox(width, Level.SUM, (left,)), MathmlBox(width, Level.SUM, (right,))
+
+
+def _ruled(above: bool, before: bool) -> str:  # noqa: FBT001 - two edges of a cell
+    """Return the class of a cell with lines at its edges: attributes of tables for them are not in MathML Core."""
+    names = " ".join(name for name, drawn in (("top", above), ("left", before)) if drawn)
+    return f' class="{names}"' if names else ""
