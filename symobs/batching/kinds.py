@@ -17,7 +17,7 @@ from typing import Any
 from symobs.result import tasks
 
 KINDS = {
-    "sheet-entry": "symobs.cli.commands.sheet",
+    "sheet-entry": "symobs.cli.shared.sheet_entries",
     "solve": "symobs.batching.solving",
     "sweep-block": "symobs.batching.sweep.block",
 }

@@ -383,6 +383,8 @@ class Document:
     hold: str = field(default="zoh", kw_only=True)
     #: The answers that are printed alone, by name; none means the whole document.
     printed: tuple[str, ...] = field(default=(), kw_only=True)
+    #: What a sheet adds to each part of a question: its points, in words, and the room for an answer.
+    handout: tuple[Any, ...] = field(default=(), kw_only=True)
 
     @cached_property
     def derivations(self) -> tuple[Derivation, ...]:
