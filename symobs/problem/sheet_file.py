@@ -9,7 +9,7 @@ from difflib import get_close_matches
 from fractions import Fraction
 from os.path import normpath
 from pathlib import Path, PurePosixPath
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from symobs._dataclass import dataclass
 from symobs.errors import InputError, ProblemErrors, SymobsError, reason_of
@@ -17,8 +17,12 @@ from symobs.expression import parse_scalar
 from symobs.expression.source import shown
 from symobs.problem.file_tables import Decimal, came, parse
 from symobs.problem.noted_errors import Errors, check_text
+from symobs.problem.validation import read_convention
 from symobs.render.page.blocks import AnswerSpace
 from symobs.render.page.sheet import Header, Logo
+
+if TYPE_CHECKING:
+    from symobs.convention import Convention
 
 #: The keys of the file, each with what it is for.
 SHEET: dict[str, str] = {
@@ -31,6 +35,7 @@ SHEET: dict[str, str] = {
     "logo": "a picture at its head: the path of a png, jpg or pdf beside the file",
     "text": "words below the head, for all problems",
     "language": "the language of the sheet",
+    "convention": "the convention of all its pages; that of each problem where nothing is said",
     "style": "exercise: all questions, then all solutions; exam: a page a problem, its solution right after it",
     "name": "true: a line for name and student number",
     "answers": "none, space, or lines: room for answers on questions that are handed out alone",
@@ -55,9 +60,9 @@ _SPACE = (4, 25)  # centimetres: where nothing is said, and at most
 _MOST_OF_LOGO = 2 << 20  # bytes
 _BEGINNINGS = {"png": b"\x89PNG\r\n\x1a\n", "jpg": b"\xff\xd8\xff", "pdf": b"%PDF-"}
 _SAFE_PATH = re.compile(r"[A-Za-z0-9._/-]+")
-_OWN = "|".join(key for key in SHEET if key not in {"title", "text"})
+_OWN = "|".join(key for key in SHEET if key not in {"title", "text", "language", "convention"})
 _SHEET_KEY = re.compile(rf"""^\s*(?:\[\[\s*"?problem"?\s*\]\]|"?(?:{_OWN})"?\s*=)""", re.MULTILINE)
-_PROBLEM_KEY = re.compile(r"""^\s*(?:"?tasks?"?\s*=|\[\s*"?(?:plant|specification)"?\s*\])""", re.MULTILINE)
+_PROBLEM_KEY = re.compile(r"""^\s*(?:"?tasks?"?\s*=|\[\s*"?(?:plant|specification|symbols)"?\s*\])""", re.MULTILINE)
 _IN_JSON = re.compile(rf'"(?:{_OWN})"\s*:'), re.compile(r'"(?:tasks?|plant|specification)"\s*:')
 
 
@@ -80,6 +85,7 @@ class SheetFile:
     problems: tuple[Asked, ...]
     texts: tuple[str, ...]
     has_final_answers: bool = False
+    convention: Convention | None = None
 
 
 def is_sheet(text: str) -> bool:
@@ -114,9 +120,10 @@ def read_sheet(text: str, where: str, folder: Path, read: Callable[[str], str]) 
         problems.append(asked)
         texts.append(problem_text)
     final = _flag(data, "final_answers", errors, default=False)
+    convention = read_convention(data, folder, errors) if "convention" in data else None
     if errors.found:
         raise _placed(errors, where)
-    return SheetFile(words["title"], header, tuple(problems), tuple(texts), final)
+    return SheetFile(words["title"], header, tuple(problems), tuple(texts), final, convention)
 
 
 def _placed(errors: Errors, where: str) -> ProblemErrors:

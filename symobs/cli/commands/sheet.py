@@ -77,10 +77,11 @@ def command(
         chosen,
         not solutions,
         not questions,
-        convention=convention_of(convention_name),
+        convention=convention_of(convention_name) or file.convention,
         timeout=timeout,
         memory=memory,
         final_answers=file.has_final_answers,
+        is_exam=file.header.is_exam,
         **told,
     )
     header = _header(file, target, chosen, files[0])

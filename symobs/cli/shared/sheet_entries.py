@@ -52,6 +52,8 @@ class Wanted:
     timeout: float | None = None
     memory: float | None = None
     final_answers: bool = False
+    #: Whether every solution stands below its question, and need not say again where it comes from.
+    is_exam: bool = False
     #: Whether more than the question is wanted.
     is_solved: bool = True
 
@@ -183,7 +185,9 @@ def _worked_out(entry: SheetEntry, asked: Asked, text: str, wanted: Wanted, repo
         results = problem.solve()
         document = problem.document(results)
         if wanted.solutions:
-            entry = replace(entry, solution=_part(document, wanted))
+            is_below = wanted.is_exam and wanted.questions
+            told = replace(document, source="", text="") if is_below else document
+            entry = replace(entry, solution=_part(told, wanted))
         if wanted.questions and wanted.final_answers:
             entry = replace(entry, answer=_part(document, replace(wanted, detail=FINAL)))
     except Exception as error:  # noqa: BLE001 - as above

@@ -63,15 +63,23 @@ class Beamer:
         for chapter in sheet.chapters():
             decks += [_title(chapter.title)] if chapter.title else []
             for item in chapter.items:
-                points = f" ({item.points})" if item.points else ""
-                title = f"{chapter.label(item)} {escape(item.entry.title)}{points}".strip()
-                told = {**_title(""), "source": escape(item.text)}
-                decks.append({**(item.part or told), "title": title})
+                points = f" ({item.points.replace(' ', '~')})" if item.points else ""
+                label, title = chapter.heading(item)
+                told = {**_title(""), "source": escape(item.text), **(item.part or {})}
+                told["title"] = f"{label} {escape(title)}{points}".strip()
+                decks.append(_on_one_slide(told) if item.part and item.kind == "questions" else told)
         return _slides(decks, sheet.templates)
 
 
 def _slides(decks: list[dict[str, Any]], folder: Path | None) -> str:
     return fill(Beamer.template, {"decks": decks, "drawings": any(deck["drawings"] for deck in decks)}, folder=folder)
+
+
+def _on_one_slide(deck: dict[str, Any]) -> dict[str, Any]:
+    """Return a question without a slide for its title, which is that of its only one."""
+    below = f"\\framesubtitle{{{deck['source']}}}\n" if deck["source"] else ""
+    body = "\n\n".join(f"\\textbf{{{frame['title']}.}} {frame['body']}" for frame in deck["frames"])
+    return {**_title(""), "drawings": deck["drawings"], "frames": [{"title": deck["title"], "body": below + body}]}
 
 
 def _title(text: str) -> dict[str, Any]:

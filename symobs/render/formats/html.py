@@ -96,7 +96,8 @@ class Html:
             for item in chapter.items:
                 points = f' <span class="points">{item.points}</span>' if item.points else ""
                 kind = "problem apart" if sheet.header.is_exam and item.kind == "questions" else "problem"
-                heading = f"{chapter.label(item)} {plain(item.entry.title)}{points}"
+                label, title = chapter.heading(item)
+                heading = f"{label} {plain(title)}{points}".strip()
                 pieces.append(f'<h3 class="{kind}" id="{item.place}">{heading}</h3>')
                 body = item.part or f"<p>{plain(item.text)}</p>"
                 pieces.append(body.replace(_SOMEWHERE, f"{item.place}-"))

@@ -41,7 +41,6 @@ if TYPE_CHECKING:
     from symobs.result import Document
 
 _INSET = 1.5  # em, as in the templates
-_RULE = r"\hrule"
 _GUTTER = 0.06  # between columns, of the line
 
 
@@ -107,18 +106,12 @@ def typeset_sheet(sheet: Sheet, template: str) -> str:
     words = sheet_words()
     chapters: list[dict[str, Any]] = []
     for chapter in sheet.chapters():
-        problems: list[dict[str, Any]] = [
-            {
-                "source": "",
-                "conventions": "",
-                "body": "",
-                **(item.part or {}),
-                "title": escape(item.entry.title).strip(),
-            }
-            | {"number": item.entry.number, "label": chapter.label(item), "kind": item.kind, "place": item.place}
-            | {"points": item.points, "failure": escape(item.text)}
-            for item in chapter.items
-        ]
+        problems: list[dict[str, Any]] = []
+        for item in chapter.items:
+            label, title = chapter.heading(item)
+            told = {"label": label, "title": escape(title).strip(), "points": item.points, "failure": escape(item.text)}
+            place = {"number": item.entry.number, "kind": item.kind, "place": item.place}
+            problems.append({"source": "", "conventions": "", "body": "", **(item.part or {}), **told, **place})
         chapters.append({"name": chapter.name, "title": chapter.title, "problems": problems})
     values = {
         "title": escape(sheet.heading).strip(),
@@ -188,7 +181,7 @@ class LatexWriter:
             case Columns():
                 return self._columns(block)
             case AnswerSpace(is_ruled=is_ruled, lines=lines):
-                return rf"\answerspace{{{lines}}}{{{_RULE * is_ruled}}}"
+                return rf"\answer{'lines' if is_ruled else 'space'}{{{lines}}}"
             case Title(text):
                 return escape(text)
 

@@ -76,10 +76,10 @@ class Text:
         for chapter in sheet.chapters():
             pieces += [underlined(chapter.title, "=", WIDTH)] if chapter.title else []
             for item in chapter.items:
-                label = chapter.label(item)
-                label = label if label[:1].isalpha() else f"{PHRASES['sheet_problem']} {label}"
+                label, title = chapter.heading(item)
+                whole = f"{PHRASES['sheet_problem']} {label} {printable(title)}" if title else label
                 points = f" ({item.points})" if item.points else ""
-                heading = underlined(wrapped(f"{label} {printable(item.entry.title)}{points}", WIDTH), "=", WIDTH)
+                heading = underlined(wrapped(f"{whole}{points}", WIDTH), "=", WIDTH)
                 pieces += [heading, item.part or wrapped(printable(item.text), WIDTH)]
         return "\n\n".join(pieces) + "\n"
 

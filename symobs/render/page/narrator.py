@@ -92,8 +92,8 @@ def narrate(document: Document) -> tuple[Block, ...]:
     page.blocks += [Paragraph((" ".join(part.split()),)) for part in document.text.split("\n\n") if part.strip()]
     together, apart = _statements(parts)
     page.emit_given(together)
-    if is_final:  # the question has said it all
-        del page.blocks[1:]
+    if is_final:  # the question has said what is given, and where it comes from
+        page.blocks[:] = [replace(_title(document), source="")]
     for index, steps in enumerate(parts):
         if index in apart:
             page.printed.clear()

@@ -92,6 +92,8 @@ class Item:
     entry: SheetEntry
     part: Any
     text: str
+    #: Whether it is a solution in a chapter of solutions.
+    is_alone: bool = False
 
     @property
     def place(self) -> str:
@@ -101,7 +103,7 @@ class Item:
     @property
     def points(self) -> str:
         """The points of the problem, in words."""
-        return points_in_words(self.entry.points) if self.kind in {"questions", "solutions"} else ""
+        return points_in_words(self.entry.points) if self.kind == "questions" or self.is_alone else ""
 
 
 @dataclass(frozen=True)
@@ -112,10 +114,11 @@ class Chapter:
     title: str
     items: tuple[Item, ...]
 
-    def label(self, item: Item) -> str:
-        """Return what stands before the title of a problem: its number; where questions are beside it, what it is."""
-        is_among = not self.title and item.kind == "solutions"
-        return f"{PHRASES['sheet_one_solution']} {item.entry.number}." if is_among else f"{item.entry.number}."
+    def heading(self, item: Item) -> tuple[str, str]:
+        """Return what a problem begins with, its number and its title; a solution below its question has no title."""
+        if not self.title and item.kind == "solutions":
+            return f"{PHRASES['sheet_one_solution']} {item.entry.number}", ""
+        return f"{item.entry.number}.", item.entry.title
 
 
 @dataclass(frozen=True)
@@ -199,4 +202,5 @@ class Sheet:
     def _items(self, kind: str) -> Iterator[Item]:
         for entry in self.entries:
             part = {"questions": entry.question, "answers": entry.answer, "solutions": entry.solution}[kind]
-            yield Item(kind, entry, part, "" if part else entry.failure)
+            is_alone = kind == "solutions" and not self.header.is_exam
+            yield Item(kind, entry, part, "" if part else entry.failure, is_alone)
