@@ -152,7 +152,7 @@ def _text(value: object, where: str, errors: Errors) -> str:
 def _choice(value: object, known: Collection[str], where: str, errors: Errors) -> str:
     if value not in known or not isinstance(value, str):
         given = f'"{shown(value, 40)}"' if isinstance(value, str) else came(value)
-        errors.note(f"{given} is no {where}", where, f"write one of {', '.join(known)}")
+        errors.note(f"{given} is no choice", where, f"write one of {', '.join(known)}")
         return next(iter(known))
     return value
 
