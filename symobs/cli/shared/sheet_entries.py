@@ -18,7 +18,7 @@ from symobs.phrases import PHRASES
 from symobs.problem import parse, validate
 from symobs.problem.question import question_of
 from symobs.render.page.detail_level import FINAL
-from symobs.render.page.sheet import SheetEntry, points_in_words
+from symobs.render.page.sheet import SheetEntry, points_in_words, sheet_words
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -207,7 +207,7 @@ def _worked_out(entry: SheetEntry, asked: Asked, text: str, wanted: Wanted, repo
 def _handout(asked: Asked, parts: int, wanted: Wanted) -> tuple[Any, ...]:
     """Return what a sheet adds to each part of a question: its points, and room for answers where none are given."""
     each = asked.points if len(asked.points) == parts > 1 else ()
-    words = [points_in_words((points,)) for points in each] or [""] * parts
+    words = [points_in_words((points,), sheet_words()) for points in each] or [""] * parts
     space = None if wanted.solutions else asked.space
     return tuple((word, space) for word in words) if each or space else ()
 

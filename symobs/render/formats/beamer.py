@@ -64,9 +64,8 @@ class Beamer:
             decks += [_title(chapter.title)] if chapter.title else []
             for item in chapter.items:
                 points = f" ({item.points.replace(' ', '~')})" if item.points else ""
-                label, title = chapter.heading(item)
                 told = {**_title(""), "source": escape(item.text), **(item.part or {})}
-                told["title"] = f"{label} {escape(title)}{points}".strip()
+                told["title"] = f"{item.label} {escape(item.title)}{points}".strip()
                 decks.append(_on_one_slide(told) if item.part and item.kind == "questions" else told)
         return _slides(decks, sheet.templates)
 

@@ -96,8 +96,7 @@ class Html:
             for item in chapter.items:
                 points = f' <span class="points">{item.points}</span>' if item.points else ""
                 kind = "problem apart" if sheet.header.is_exam and item.kind == "questions" else "problem"
-                label, title = chapter.heading(item)
-                heading = f"{label} {plain(title)}{points}".strip()
+                heading = f"{item.label} {plain(item.title)}{points}" if item.title else f"{item.label}{points}"
                 pieces.append(f'<h3 class="{kind}" id="{item.place}">{heading}</h3>')
                 body = item.part or f"<p>{plain(item.text)}</p>"
                 pieces.append(body.replace(_SOMEWHERE, f"{item.place}-"))
@@ -143,11 +142,11 @@ def _contents(sheet: Sheet) -> str:
     names = sheet.kinds
     rows = []
     for entry in sheet.entries:
-        links = [f'<a href="#{name}-{entry.number}">{PHRASES["sheet_solution"]}</a>' for name in names[1:]]
+        links = [f'<a href="#{name}-{entry.number}">{sheet.words["solution"]}</a>' for name in names[1:]]
         first = f'<a href="#{names[0]}-{entry.number}">{plain(entry.title)}</a>'
         rows.append(f"<li>{first}{''.join(f' ({link})' for link in links)}</li>")
     listed = "\n".join(rows)
-    return f"<nav>\n<h2>{PHRASES['sheet_contents']}</h2>\n<ol>\n{listed}\n</ol>\n</nav>"
+    return f"<nav>\n<h2>{sheet.words['contents']}</h2>\n<ol>\n{listed}\n</ol>\n</nav>"
 
 
 def page(title: str, body: str, *, has_picture: bool = False) -> str:

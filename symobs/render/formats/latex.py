@@ -26,7 +26,6 @@ from symobs.render.page.blocks import (
     opened,
 )
 from symobs.render.page.narrator import narrate, printer_for
-from symobs.render.page.sheet import sheet_words
 from symobs.render.printers.latex_escape import escape
 from symobs.render.printers.latex_printer import LatexPrinter
 from symobs.render.printers.root_lists import LATEX, listed
@@ -103,13 +102,12 @@ def has_drawings(blocks: Sequence[Block]) -> bool:
 
 def typeset_sheet(sheet: Sheet, template: str) -> str:
     """Return a sheet in a template; the values of a problem are those of its part, its number, and its failure."""
-    words = sheet_words()
     chapters: list[dict[str, Any]] = []
     for chapter in sheet.chapters():
         problems: list[dict[str, Any]] = []
         for item in chapter.items:
-            label, title = chapter.heading(item)
-            told = {"label": label, "title": escape(title).strip(), "points": item.points, "failure": escape(item.text)}
+            told = {"label": item.label, "title": escape(item.title).strip(), "points": item.points}
+            told |= {"failure": escape(item.text)}
             place = {"number": item.entry.number, "kind": item.kind, "place": item.place}
             problems.append({"source": "", "conventions": "", "body": "", **(item.part or {}), **told, **place})
         chapters.append({"name": chapter.name, "title": chapter.title, "problems": problems})
@@ -120,8 +118,8 @@ def typeset_sheet(sheet: Sheet, template: str) -> str:
         "is_exam": sheet.header.is_exam,
         "chapters": chapters,
         "kinds": sheet.kinds,
-        "contents": words["contents"] if sheet.is_long else "",
-        "words": words,
+        "contents": sheet.words["contents"] if sheet.is_long else "",
+        "words": sheet.words,
         "drawings": any(problem.get("drawings") for chapter in chapters for problem in chapter["problems"]),
     }
     return fill(template, values, folder=sheet.templates)

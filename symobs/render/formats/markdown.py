@@ -90,8 +90,7 @@ class Markdown:
             pieces += [f"## {chapter.title}"] if chapter.title else []
             for item in chapter.items:
                 points = f" ({item.points})" if item.points else ""
-                label, title = chapter.heading(item)
-                pieces.append(f"### {label} {plain(title)}".strip() + points)
+                pieces.append(f"### {item.label} {plain(item.title)}".strip() + points)
                 pieces.append(item.part or paragraph(plain(item.text)))
         return "\n\n".join(pieces) + "\n"
 

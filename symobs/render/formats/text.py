@@ -9,7 +9,6 @@ from itertools import pairwise, zip_longest
 from typing import TYPE_CHECKING, ClassVar
 
 from symobs.formula import Roots
-from symobs.phrases import PHRASES
 from symobs.render.formats.code.numbers import exact_answers
 from symobs.render.page.blocks import (
     AnswerSpace,
@@ -76,8 +75,8 @@ class Text:
         for chapter in sheet.chapters():
             pieces += [underlined(chapter.title, "=", WIDTH)] if chapter.title else []
             for item in chapter.items:
-                label, title = chapter.heading(item)
-                whole = f"{PHRASES['sheet_problem']} {label} {printable(title)}" if title else label
+                label = f"{sheet.words['problem']} {item.label}" if item.label[:1].isdigit() else item.label
+                whole = f"{label} {printable(item.title)}"
                 points = f" ({item.points})" if item.points else ""
                 heading = underlined(wrapped(f"{whole}{points}", WIDTH), "=", WIDTH)
                 pieces += [heading, item.part or wrapped(printable(item.text), WIDTH)]

@@ -7,13 +7,14 @@ question or solution, and `sheet(sheet)` returns the whole.  Parts are made one 
 from __future__ import annotations
 
 from fractions import Fraction
+from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 from symobs._dataclass import dataclass
 from symobs.phrases import PHRASES
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Iterator, Mapping, Sequence
     from pathlib import Path
 
 #: A sheet of more problems than this begins with a table of contents.
@@ -24,7 +25,7 @@ _PREFIX = "sheet_"
 
 
 def sheet_words() -> dict[str, str]:
-    """Return the fixed words of a sheet, by the keys of their phrases without the prefix."""
+    """Return the fixed words of a sheet, by the keys of their phrases without the prefix: all come from here."""
     return {key.removeprefix(_PREFIX): words for key, words in PHRASES.items() if key.startswith(_PREFIX)}
 
 
@@ -34,10 +35,10 @@ def decimal_of(points: Fraction) -> str:
     return f"{whole}.{rest:02}".rstrip("0").rstrip(".")
 
 
-def points_in_words(points: Sequence[Fraction]) -> str:
+def points_in_words(points: Sequence[Fraction], words: Mapping[str, str]) -> str:
     """Return the sum of some points, `1 point` or `7.5 points`; nothing where there are none."""
     total = sum(points, Fraction(0))
-    return f"{decimal_of(total)} {PHRASES['sheet_point' if total == 1 else 'sheet_points']}" if points else ""
+    return f"{decimal_of(total)} {words['point' if total == 1 else 'points']}" if points else ""
 
 
 @dataclass(frozen=True)
@@ -86,39 +87,29 @@ class SheetEntry:
 
 @dataclass(frozen=True)
 class Item:
-    """One piece of a chapter: a part of a problem, or a text in its place."""
+    """One piece of a chapter: what it begins with, and a part of a problem or a text in its place."""
 
     kind: str
     entry: SheetEntry
-    part: Any
-    text: str
-    #: Whether it is a solution in a chapter of solutions.
-    is_alone: bool = False
+    label: str
+    title: str
+    part: Any = None
+    text: str = ""
+    points: str = ""
 
     @property
     def place(self) -> str:
         """The name of its place on the sheet."""
         return f"{self.kind}-{self.entry.number}"
 
-    @property
-    def points(self) -> str:
-        """The points of the problem, in words."""
-        return points_in_words(self.entry.points) if self.kind == "questions" or self.is_alone else ""
-
 
 @dataclass(frozen=True)
 class Chapter:
-    """A chapter of a sheet; without a title it is the only one of its kind."""
+    """A chapter of a sheet; that of an examination has no title."""
 
     name: str
     title: str
     items: tuple[Item, ...]
-
-    def heading(self, item: Item) -> tuple[str, str]:
-        """Return what a problem begins with, its number and its title; a solution below its question has no title."""
-        if not self.title and item.kind == "solutions":
-            return f"{PHRASES['sheet_one_solution']} {item.entry.number}", ""
-        return f"{item.entry.number}.", item.entry.title
 
 
 @dataclass(frozen=True)
@@ -137,10 +128,15 @@ class Sheet:
         """Whether the sheet has a table of contents."""
         return len(self.entries) > WITHOUT_CONTENTS and not self.header.is_exam
 
+    @cached_property
+    def words(self) -> dict[str, str]:
+        """The fixed words of the sheet."""
+        return sheet_words()
+
     @property
     def heading(self) -> str:
         """The number of the sheet and its title."""
-        number = f"{PHRASES['sheet_number']} {self.header.number}" if self.header.number else ""
+        number = f"{self.words['number']} {self.header.number}" if self.header.number else ""
         return ": ".join(filter(None, (number, self.title)))
 
     @property
@@ -151,17 +147,14 @@ class Sheet:
     @property
     def facts(self) -> tuple[tuple[str, str], ...]:
         """Who gives the sheet out and when it is due, each after its word."""
-        told = (
-            (PHRASES["sheet_instructor"], self.header.instructor),
-            (PHRASES["sheet_due"], self.header.due),
-        )
+        told = ((self.words["instructor"], self.header.instructor), (self.words["due"], self.header.due))
         return tuple((word, value) for word, value in told if value)
 
     @property
     def fields(self) -> tuple[str, ...]:
         """What is to be filled in at the head, on a sheet that is handed out."""
         is_handed_out = self.header.has_name and not self.has_solutions
-        return (PHRASES["sheet_name"], PHRASES["sheet_student_number"]) if is_handed_out else ()
+        return (self.words["name"], self.words["student_number"]) if is_handed_out else ()
 
     @property
     def totals(self) -> tuple[tuple[tuple[str, ...], ...], ...]:
@@ -170,12 +163,12 @@ class Sheet:
             return ()
         cells = [(str(entry.number), decimal_of(sum(entry.points, Fraction(0)))) for entry in self.entries]
         total = sum((point for entry in self.entries for point in entry.points), Fraction(0))
-        cells.append((PHRASES["sheet_total"], decimal_of(total)))
+        cells.append((self.words["total"], decimal_of(total)))
         tables = []
         for some in (cells[start : start + _COLUMNS] for start in range(0, len(cells), _COLUMNS)):
             numbers, points = zip(*some, strict=True)
-            rows = [(PHRASES["sheet_problem"], *numbers), (PHRASES["sheet_points_row"], *points)]
-            rows += [] if self.has_solutions else [(PHRASES["sheet_score_row"], *("" for _ in some))]
+            rows = [(self.words["problem"], *numbers), (self.words["points_row"], *points)]
+            rows += [] if self.has_solutions else [(self.words["score_row"], *("" for _ in some))]
             tables.append(tuple(rows))
         return tuple(tables)
 
@@ -186,21 +179,33 @@ class Sheet:
 
     def chapters(self) -> tuple[Chapter, ...]:
         """Return the chapters: questions, hints and final answers where there are any, and solutions."""
-        hints = tuple(Item("hints", entry, None, entry.hint) for entry in self.entries if entry.hint)
-        answers = tuple(self._items("answers")) if any(entry.answer for entry in self.entries) else ()
-        ends = {"hints": hints, "answers": answers} if self.has_questions else {}
+        ends = {"hints": self._hints(), "answers": self._answers()} if self.has_questions else {}
         if self.header.is_exam:
             both = [self._items(kind) for kind in self.kinds]
             named = {"problems": tuple(item for items in zip(*both, strict=True) for item in items), **ends}
         else:
             named = {kind: tuple(self._items(kind)) for kind in self.kinds[:1]} | ends
             named |= {kind: tuple(self._items(kind)) for kind in self.kinds[1:]}
-        return tuple(
-            Chapter(name, PHRASES.get(f"{_PREFIX}{name}", ""), items) for name, items in named.items() if items
-        )
+        return tuple(Chapter(name, self.words.get(name, ""), items) for name, items in named.items() if items)
 
     def _items(self, kind: str) -> Iterator[Item]:
+        """Yield the questions or the solutions; one below its question needs neither title nor points."""
+        is_below = self.header.is_exam and kind == "solutions"
         for entry in self.entries:
-            part = {"questions": entry.question, "answers": entry.answer, "solutions": entry.solution}[kind]
-            is_alone = kind == "solutions" and not self.header.is_exam
-            yield Item(kind, entry, part, "" if part else entry.failure, is_alone)
+            part = entry.question if kind == "questions" else entry.solution
+            label = f"{self.words['one_solution']} {entry.number}" if is_below else f"{entry.number}."
+            points = "" if is_below else points_in_words(entry.points, self.words)
+            yield Item(kind, entry, label, "" if is_below else entry.title, part, "" if part else entry.failure, points)
+
+    def _hints(self) -> tuple[Item, ...]:
+        hinted = (entry for entry in self.entries if entry.hint)
+        return tuple(Item("hints", entry, f"{entry.number}.", entry.title, None, entry.hint) for entry in hinted)
+
+    def _answers(self) -> tuple[Item, ...]:
+        """Return the final answers, none where there are none at all."""
+        if not any(entry.answer for entry in self.entries):
+            return ()
+        return tuple(
+            Item("answers", entry, f"{entry.number}.", entry.title, entry.answer, "" if entry.answer else entry.failure)
+            for entry in self.entries
+        )
