@@ -255,14 +255,13 @@ def test_a_problem_that_fails_keeps_its_place_and_its_points(folder: Path) -> No
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("limits", [(), ("--timeout", "120", "--memory", "4000")])
-def test_children_write_the_same_sheet(limits: tuple[str, ...], folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_children_write_the_same_sheet(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (folder / "broken.toml").write_text('task = "pbh"\n', encoding="utf-8")
     (folder / "sheet.toml").write_text(f'{HEAD}{PROBLEMS}[[problem]]\nfile = "broken.toml"\n', encoding="utf-8")
     arguments = ("sheet", "sheet.toml", "--format", "latex")
     alone = inside(*arguments, folder=folder)
     monkeypatch.setattr("symobs.cli.shared.sheet_entries._WORTH_CHILDREN", 2)
-    assert inside(*arguments, *limits, folder=folder) == alone
+    assert inside(*arguments, "--memory", "4000", folder=folder) == alone
     assert alone.code == 3
 
 
@@ -295,7 +294,7 @@ def test_what_takes_a_child_too_long_keeps_its_question(folder: Path, monkeypatc
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("options", [("--questions",), ("--solutions",), (), ("--format", "beamer", "--questions")])
+@pytest.mark.parametrize("options", [("--questions",), (), ("--format", "beamer", "--questions")])
 def test_the_worked_sheet_is_typeset_without_a_fault(
     options: tuple[str, ...], tmp_path: Path, require_tool: RequireTool
 ) -> None:

@@ -35,7 +35,8 @@ if TYPE_CHECKING:
     Show = Callable[[int, str], None]
 
 _LONGEST_TITLE = 300
-#: So many problems are worth starting processes for.
+#: So many problems are worth starting processes for: of 12, these would take four thirds of the time, of 24 five sixths, of
+#: 118 half of it.
 _WORTH_CHILDREN = 24
 
 
