@@ -18,7 +18,7 @@ from symobs.result import tasks
 
 KINDS = {
     "check": "symobs.checking.classes.row",
-    "sheet-entry": "symobs.cli.commands.sheet",
+    "sheet-entry": "symobs.cli.shared.sheet_entries",
     "solve": "symobs.batching.solving",
     "sweep-block": "symobs.batching.sweep.block",
 }

@@ -92,6 +92,8 @@ def repair_of(key: str, known: Collection[str], where: str) -> str:
         key[:64], known, 1
     )
     of = [task.name for task in tasks().values() if key in task.keywords]
+    if key == "problem" and not where:
+        return "the file of a sheet is for `symobs sheet`"
     if key in PLANT:
         return "it belongs to [plant]"
     if of:

@@ -99,7 +99,7 @@ def validate(data: Mapping[str, Any], only: str | None = None, folder: Path | No
     report_unknown(data, TOP, "", errors)
     title, source, text = (text_of(data, name, errors) for name in ("title", "source", "text"))
     ids = _ids(data.get("id", []), errors)
-    convention = _convention(data, folder, errors)
+    convention = read_convention(data, folder, errors)
     asked = _tasks(data, errors, required=only is None)
     wanted = asked if only is None else (tasks()[only],)
     symbols = Symbols() if data.get("symbols") is OPEN else _symbols(table_of(data, "symbols", errors), errors)
@@ -255,7 +255,7 @@ def _plant(data: Mapping[str, Any], symbols: Symbols, dt: object, errors: Errors
     return None
 
 
-def _convention(data: Mapping[str, Any], folder: Path | None, errors: Errors) -> Convention:
+def read_convention(data: Mapping[str, Any], folder: Path | None, errors: Errors) -> Convention:
     """Return the convention the file is written in, the standard one where it names none that exists."""
     name = data.get("convention", STANDARD.name)
     if not isinstance(name, str) or isinstance(name, Decimal):

@@ -209,7 +209,7 @@ def test_a_bug_in_one_problem_loses_no_other(folder: Path, monkeypatch: pytest.M
         message = "of ours"
         raise ZeroDivisionError(message)
 
-    monkeypatch.setattr("symobs.cli.commands.sheet.question_of", failing)
+    monkeypatch.setattr("symobs.cli.shared.sheet_entries.question_of", failing)
     run = inside("sheet", "good.toml", "bad.toml", "--format", "text", folder=folder)
     assert run.code == 1
     assert run.lines[0] == "good.toml: internal error: ZeroDivisionError: of ours; please report this"
@@ -237,7 +237,7 @@ def test_what_can_be_said_before_work_starts_is(
     arguments: list[str], code: int, said: str, folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     (folder / "folder.tex").mkdir()
-    monkeypatch.setattr("symobs.cli.commands.sheet._entry", lambda *_: pytest.fail("work has started"))
+    monkeypatch.setattr("symobs.cli.shared.sheet_entries._entry", lambda *_: pytest.fail("work has started"))
     run = inside("sheet", *arguments, folder=folder)
     assert (run.code, run.out) == (code, "")
     assert said in run.err
@@ -332,7 +332,7 @@ def test_the_pdf_of_a_sheet(folder: Path, require_tool: RequireTool) -> None:
 def test_tex_has_more_time_for_a_longer_sheet(monkeypatch: pytest.MonkeyPatch) -> None:
     limits: list[float] = []
 
-    def recorded(_: str, *, time_limit: float) -> bytes:
+    def recorded(_: str, *, time_limit: float, **_pictures: object) -> bytes:
         limits.append(time_limit)
         return b""
 

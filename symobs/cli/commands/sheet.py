@@ -1,12 +1,12 @@
-"""The command `sheet`: several problems on one sheet; a failing one does not affect the others."""
+"""The command `sheet`: several problems on one sheet; a failing one does not affect the others.
+
+The problems are files named on the command line, or the entries of one file that describes the whole sheet.
+"""
 
 from __future__ import annotations
 
-import base64
 import os
-import pickle
 import sys
-import warnings
 from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
@@ -14,12 +14,10 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from symobs._dataclass import dataclass
 from symobs.cli.shared.common import (
     EXIT_BUG,
     EXIT_NO,
     EXIT_UNDECIDED,
-    NOT_ENOUGH_MEMORY,
     chosen_format,
     place_of,
     read_file,
@@ -28,40 +26,18 @@ from symobs.cli.shared.common import (
 from symobs.cli.shared.options import LIMITS, AFile, options
 from symobs.cli.shared.outcome import convention_of, page_of
 from symobs.cli.shared.output import check_target, write
-from symobs.errors import InputError, OutOfBudget, ProblemErrors, SymobsError, TypesettingError, UsageError
-from symobs.expect import mismatches
+from symobs.cli.shared.sheet_entries import Wanted, worked_out_all
+from symobs.errors import InputError, ProblemErrors, SymobsError, UsageError
 from symobs.expression.source import shown
-from symobs.phrases import PHRASES
-from symobs.problem import parse, validate
-from symobs.problem.question import question_of
-from symobs.render.page.sheet import Sheet, SheetEntry
+from symobs.problem.sheet_file import Asked, SheetFile, is_sheet, read_sheet
+from symobs.render.page.sheet import Header, Sheet, SheetEntry
 from symobs.result import format_named, formats, tasks
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping, Sequence
+    from collections.abc import Sequence
 
-    from symobs.cli.shared.time_and_memory import Progress
-    from symobs.result import Document
 
-_LONGEST_TITLE = 300
-#: So many problems are worth starting processes for.
-_WORTH_CHILDREN = 24
 _WORST_FIRST = (EXIT_BUG, InputError.exit_code, EXIT_NO, EXIT_UNDECIDED)
-
-
-@dataclass(frozen=True)
-class _Wanted:
-    """The options of the command."""
-
-    format: Any
-    questions: bool
-    solutions: bool
-    detail: str
-    digits: int | None = None
-    templates: Path | None = None
-    convention: Any = None
-    timeout: float | None = None
-    memory: float | None = None
 
 
 @click.command("sheet")
@@ -88,6 +64,8 @@ def command(
 ) -> None:
     """Put several problem FILEs on one sheet: all questions first, then all solutions.
 
+    One FILE may describe the whole sheet: course, due date, logo, points, hints, room for answers, and its [[problem]]s.
+
     A problem that cannot be worked out keeps its place on the sheet, which says so; the reasons go to standard error.
     --timeout and --memory are for each problem: one that takes more loses no other.
     """
@@ -95,31 +73,36 @@ def command(
         raise UsageError("both --questions and --solutions are given", repair="leave both out for both")
     chosen = _sheet_format(format_name, target)
     told = page_of(detail, templates, chosen.name, digits=digits, exact=exact)
-    wanted = _Wanted(
+    check_target(target)
+    file = _sheet_file(files)
+    wanted = Wanted(
         chosen,
         not solutions,
         not questions,
-        convention=convention_of(convention_name),
+        convention=convention_of(convention_name) or file.convention,
         timeout=timeout,
         memory=memory,
+        final_answers=file.has_final_answers,
+        is_exam=file.header.is_exam,
         **told,
     )
-    check_target(target)
-    texts = _texts(files)
+    header = _header(file, target, chosen, files[0])
+    texts = list(zip(file.problems, file.texts, strict=True))
     if timeout is not None or memory is not None:
         tasks()  # what all problems need is imported once, not in the process of each
     entries: list[SheetEntry] = []
     codes: set[int] = set()
     progress = _Progress(len(texts))
-    for number, (entry, code, messages) in enumerate(_worked_out_all(texts, wanted, progress), 1):
-        name = place_of(texts[number - 1][0])
+    for number, (entry, code, messages) in enumerate(worked_out_all(texts, wanted, progress.show), 1):
+        name = place_of(texts[number - 1][0].file)
         entries.append(entry)
         codes.add(code)
         progress.clear()
         for message in messages:
             write_message(message if message.startswith(f"{name}, ") else f"{name}: {message}")
     progress.say("typesetting" if wanted.format.name == "pdf" else "writing")
-    whole = wanted.format.sheet(Sheet(title, tuple(entries), wanted.questions, wanted.solutions, wanted.templates))
+    sheet = Sheet(title or file.title, tuple(entries), wanted.questions, wanted.solutions, wanted.templates, header)
+    whole = wanted.format.sheet(sheet)
     progress.clear()
     write(whole, target)
     sys.exit(next((code for code in _WORST_FIRST if code in codes), 0))
@@ -135,6 +118,33 @@ def _sheet_format(name: str | None, target: str | None) -> Any:
         having = ", ".join(sorted(each.name for each in formats().values() if hasattr(each, "sheet")))
         raise UsageError(f"the format {found.name} is for one problem", where="--format", repair=f"use one of {having}")
     return found
+
+
+def _sheet_file(files: Sequence[str]) -> SheetFile:
+    """Return the sheet that the only file describes, or that of the problems in all files."""
+    texts = _texts(files)
+    described = [file for file, text in texts if is_sheet(text)]
+    if described and len(files) > 1:
+        repair = "name it alone; its problems stand in it as [[problem]]"
+        raise UsageError(f"{place_of(described[0])} describes a whole sheet", repair=repair)
+    if described:
+        file, text = texts[0]
+        return read_sheet(text, place_of(file), Path(file).parent, read_file)
+    problems, contents = zip(*((Asked(file), text) for file, text in texts), strict=True)
+    return SheetFile("", Header(), problems, contents)
+
+
+def _header(file: SheetFile, target: str | None, chosen: Any, name: str) -> Header:
+    """Return the head of a sheet, its picture where LaTeX finds it from the folder of the target."""
+    header = file.header
+    if header.logo is None:
+        return header
+    if header.logo.kind not in getattr(chosen, "pictures", (header.logo.kind,)):
+        message = f"the format {chosen.name} shows no picture of the kind {header.logo.kind}"
+        repair = f"give it as {' or '.join(chosen.pictures)}, or write another format"
+        raise InputError(message, where=f"{place_of(name)}, logo", repair=repair)
+    path = os.path.relpath(header.logo.path, Path(target).parent if target else None)
+    return replace(header, logo=replace(header.logo, path=Path(path).as_posix()))
 
 
 def _texts(files: Sequence[str]) -> list[tuple[str, str]]:
@@ -153,154 +163,6 @@ def _texts(files: Sequence[str]) -> list[tuple[str, str]]:
     if errors:
         raise ProblemErrors(tuple(errors))
     return texts
-
-
-# -- many problems ----------------------------------------------------------------------------------------------------
-
-
-def _worked_out_all(
-    texts: Sequence[tuple[str, str]], wanted: _Wanted, progress: _Progress
-) -> Iterator[tuple[SheetEntry, int, list[str]]]:
-    """Yield entry, exit code and messages of every problem; many without a budget are worked out on all processors."""
-    if wanted.timeout is None and wanted.memory is None and len(texts) >= _WORTH_CHILDREN and (os.cpu_count() or 1) > 1:
-        yield from _by_children(texts, wanted, progress)
-        return
-    for number, (file, text) in enumerate(texts, 1):
-        progress.show(number, Path(file).stem)
-        yield _bounded_entry(number, file, text, wanted)
-
-
-def _by_children(
-    texts: Sequence[tuple[str, str]], wanted: _Wanted, progress: _Progress
-) -> Iterator[tuple[SheetEntry, int, list[str]]]:
-    """Yield the same, worked out by kept child processes, in the order of the sheet."""
-    from symobs.batching.engine import Settings, work  # noqa: PLC0415 - a short sheet pays for none of it
-    from symobs.batching.executors import workforce  # noqa: PLC0415
-    from symobs.batching.jobs import Budget, job  # noqa: PLC0415
-
-    asked = [(number, file, text, wanted) for number, (file, text) in enumerate(texts, 1)]
-    jobs = [job("sheet-entry", {"asked": _packed(each)}, each[1]) for each in asked]
-    found: dict[str, Any] = {}
-    with workforce() as force:
-        for chunk in work(iter(jobs), force, Settings(Budget(None, None), chunk_seconds=0.5, recheck=0)):
-            found |= {row["key"]: row for row in chunk.rows}
-            progress.show(len(found), Path(chunk.rows[-1]["name"]).stem)
-    for each, its_job in zip(asked, jobs, strict=True):
-        row = found[its_job.key]
-        if "result" in row:
-            yield _unpacked(row["result"])
-        else:
-            entry = replace(_empty(*each[:2]), failure=PHRASES["sheet_failed"])
-            yield entry, EXIT_UNDECIDED if row["status"] == "undecided" else EXIT_BUG, list(row["error"])
-
-
-def run(payload: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the row of one problem of a sheet, as a child process works it out."""
-    with warnings.catch_warnings(record=True) as warned:
-        number, file, text, wanted = _unpacked(payload["asked"])
-        entry, code, messages = _entry(number, file, text, wanted, lambda _: None)
-    told = [f"{each.category.__name__}: {each.message}" for each in warned]
-    return {"status": "done", "result": _packed((entry, code, [*told, *messages]))}
-
-
-def recheck(_payload: Mapping[str, Any], _row: Mapping[str, Any]) -> None:
-    """Return that nothing is looked at again: every line of a page was checked where it was written."""
-
-
-def _packed(value: object) -> str:
-    return base64.b64encode(pickle.dumps(value)).decode()
-
-
-def _unpacked(text: str) -> Any:
-    return pickle.loads(base64.b64decode(text))  # noqa: S301 - this process and its own children alone
-
-
-# -- one problem ------------------------------------------------------------------------------------------------------
-
-
-def _bounded_entry(number: int, file: str, text: str, wanted: _Wanted) -> tuple[SheetEntry, int, list[str]]:
-    """Return the value of `_entry`, or the partial entry if its budget is exhausted."""
-    if wanted.timeout is None and wanted.memory is None:
-        return _entry(number, file, text, wanted, lambda _: None)
-    from symobs.cli.shared.time_and_memory import Budget, within  # noqa: PLC0415 - a budget costs nothing where there is none
-
-    try:
-        budget = Budget(wanted.timeout, wanted.memory)
-        return within(budget, lambda report_progress: _entry(number, file, text, wanted, report_progress))
-    except OutOfBudget as error:
-        left: Any = error.facts["left"] or _empty(number, file)
-        return replace(left, failure=PHRASES["sheet_undecided"]), error.exit_code, [str(error)]
-
-
-def _empty(number: int, file: str) -> SheetEntry:
-    return SheetEntry(number, file, Path(file).stem if file != "-" else "")
-
-
-def _entry(
-    number: int, file: str, text: str, wanted: _Wanted, report_progress: Progress
-) -> tuple[SheetEntry, int, list[str]]:
-    """Return the entry of a problem, its exit code, and its messages."""
-    entry = _empty(number, file)
-    try:
-        return _worked_out(entry, text, wanted, report_progress)
-    except Exception as error:  # noqa: BLE001 - whatever fails here, the other problems are not lost
-        return _failed(entry, error, wanted)
-
-
-def _worked_out(
-    entry: SheetEntry, text: str, wanted: _Wanted, report_progress: Progress
-) -> tuple[SheetEntry, int, list[str]]:
-    """Return the entry with its parts; if the solution fails, with the question alone."""
-    data = parse(text, entry.file)
-    entry = replace(entry, title=str(data.get("title") or entry.title)[:_LONGEST_TITLE])
-    try:
-        problem = validate(data, folder=Path(entry.file).parent)
-        if wanted.questions:
-            entry = replace(entry, question=_part(question_of(problem), wanted))
-        report_progress(entry)
-        results = problem.solve()
-        if wanted.solutions:
-            entry = replace(entry, solution=_part(problem.document(results), wanted))
-    except Exception as error:  # noqa: BLE001 - as above
-        return _failed(entry, error, wanted)
-    try:
-        unmet = mismatches(problem.viewed(results), problem.expect)
-    except SymobsError as error:  # what is expected cannot be read: the solution stands all the same
-        return entry, *_failure(error)
-    if problem.expect:
-        return entry, EXIT_NO if unmet else 0, unmet
-    verdicts = [(result.task, result.verdict) for result in results if result.verdict in {"no", "undecided"}]
-    messages = [f"{task}: {verdict}" for task, verdict in verdicts]
-    codes = [EXIT_NO if verdict == "no" else EXIT_UNDECIDED for _, verdict in verdicts]
-    return entry, min(codes, default=0), messages
-
-
-def _part(document: Document, wanted: _Wanted) -> Any:
-    """Return the part of a sheet for a question or a solution, in its format."""
-    convention = wanted.convention or document.convention
-    digits = document.digits if wanted.digits is None else wanted.digits
-    told = replace(document, convention=convention, detail=wanted.detail, digits=digits, templates=wanted.templates)
-    return wanted.format.part(told)
-
-
-def _failed(entry: SheetEntry, error: Exception, wanted: _Wanted) -> tuple[SheetEntry, int, list[str]]:
-    """Return the entry of a failed problem; exhausted memory is reported by the budget."""
-    if wanted.memory is not None and isinstance(error, MemoryError | SystemError | ImportError):
-        raise error
-    phrase = "sheet_undecided" if isinstance(error, MemoryError) else "sheet_failed"
-    return replace(entry, failure=PHRASES[phrase]), *_failure(error)
-
-
-def _failure(error: Exception) -> tuple[int, list[str]]:
-    """Return exit code and messages of a failure; missing TeX fails for all problems."""
-    if isinstance(error, TypesettingError):
-        raise error
-    if isinstance(error, MemoryError):
-        return EXIT_UNDECIDED, [NOT_ENOUGH_MEMORY]
-    if isinstance(error, SymobsError):
-        several = error.errors if isinstance(error, ProblemErrors) else (error,)
-        return max(found.exit_code for found in several), str(error).split("\n")
-    return EXIT_BUG, [f"internal error: {type(error).__name__}: {str(error)[:200]}; please report this"]
 
 
 # -- what a terminal shows --------------------------------------------------------------------------------------------

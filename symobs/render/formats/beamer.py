@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from symobs.phrases import PHRASES
-from symobs.render.formats.latex import LatexWriter, has_drawings
+from symobs.render.formats.latex import LatexWriter, has_drawings, head_of
 from symobs.render.formats.templates import fill
-from symobs.render.page.blocks import Columns, Display, Drawing, Heading, PictureBlock, TableBlock, opened
+from symobs.render.page.blocks import AnswerSpace, Columns, Display, Drawing, Heading, PictureBlock, TableBlock, opened
 from symobs.render.page.narrator import narrate, printer_for
 from symobs.render.printers.latex_escape import escape
 from symobs.render.printers.latex_printer import LatexPrinter
@@ -49,6 +48,7 @@ class Beamer:
             "title": escape(title.text).strip(),
             "source": escape(title.source).strip(),
             "conventions": writer.sentence(title.conventions),
+            "head": None,
             "frames": [
                 {"title": writer.sentence(heading).removesuffix("."), "body": writer.body(body)}
                 for heading, body in _frames(blocks)
@@ -58,13 +58,15 @@ class Beamer:
 
     def sheet(self, sheet: Sheet) -> str:
         """Return the LaTeX of all problems' slides, those of each chapter after its title."""
-        decks = [_title(sheet.title)]
-        for name, parts in sheet.chapters():
-            decks.append(_title(PHRASES[f"sheet_{name}"]))
-            for entry, part in parts:
-                title = f"{entry.number}. {escape(entry.title)}".strip()
-                failed = {**_title(entry.title), "source": escape(entry.failure)}
-                decks.append({**(part or failed), "title": title})
+        head = head_of(sheet)
+        decks = [{**_title(sheet.heading), "head": head if any(head.values()) else None}]
+        for chapter in sheet.chapters():
+            decks += [_title(chapter.title)] if chapter.title else []
+            for item in chapter.items:
+                points = f" ({item.points.replace(' ', '~')})" if item.points else ""
+                told = {**_title(""), "source": escape(item.text), **(item.part or {})}
+                told["title"] = f"{item.label} {escape(item.title)}{points}".strip()
+                decks.append(_on_one_slide(told) if item.part and item.kind == "questions" else told)
         return _slides(decks, sheet.templates)
 
 
@@ -72,9 +74,17 @@ def _slides(decks: list[dict[str, Any]], folder: Path | None) -> str:
     return fill(Beamer.template, {"decks": decks, "drawings": any(deck["drawings"] for deck in decks)}, folder=folder)
 
 
+def _on_one_slide(deck: dict[str, Any]) -> dict[str, Any]:
+    """Return a question without a slide for its title, which is that of its only one."""
+    below = f"\\framesubtitle{{{deck['source']}}}\n" if deck["source"] else ""
+    body = "\n\n".join(f"\\textbf{{{frame['title']}.}} {frame['body']}" for frame in deck["frames"])
+    return {**_title(""), "drawings": deck["drawings"], "frames": [{"title": deck["title"], "body": below + body}]}
+
+
 def _title(text: str) -> dict[str, Any]:
     """Return slides with a title only."""
-    return {"title": escape(text).strip(), "source": "", "conventions": "", "frames": [], "drawings": False}
+    told = {"title": escape(text).strip(), "source": "", "conventions": "", "head": None}
+    return {**told, "frames": [], "drawings": False}
 
 
 def _frames(blocks: Sequence[Block]) -> Iterator[tuple[Inlines, tuple[Block, ...]]]:
@@ -98,6 +108,8 @@ class _SlideWriter(LatexWriter):
 
     def block(self, block: Block) -> str:
         """Return one block."""
+        if isinstance(block, AnswerSpace):  # nobody writes on a slide
+            return ""
         written = super().block(block)
         is_tall = isinstance(block, Display) and written.count(r"\\") > _TALL
         if is_tall or isinstance(block, Columns | Drawing | PictureBlock | TableBlock):

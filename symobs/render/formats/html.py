@@ -6,6 +6,7 @@ Mathematics is MathML, pictures are SVG, and there is no script: the page forbid
 from __future__ import annotations
 
 import re
+from base64 import b64encode
 from copy import copy
 from dataclasses import replace
 from html import escape
@@ -17,6 +18,7 @@ from typing import TYPE_CHECKING, ClassVar
 from symobs.formula import Roots
 from symobs.phrases import PHRASES
 from symobs.render.page.blocks import (
+    AnswerSpace,
     CaseBlock,
     Caution,
     Columns,
@@ -40,7 +42,7 @@ from symobs.render.tables.html_and_markdown import html_table
 from symobs.result import output_format
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterator, Sequence
 
     from symobs.render.page.blocks import Block, Inline, Inlines
     from symobs.render.page.sheet import Sheet
@@ -49,6 +51,7 @@ if TYPE_CHECKING:
 #: Stands for the place of a part on a sheet until it is known; no text contains it.
 _SOMEWHERE = "\0"
 _FOLDER = Path(__file__).parent
+_PICTURES = {"png": "image/png", "jpg": "image/jpeg"}
 _INSET = 2.0  # em, as in the style
 _CONTROL = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\ufffe\uffff\ud800-\udfff\u202a-\u202e\u2066-\u2069]")
 _OPENING_QUOTE = re.compile(r'(?:^|(?<=[\s(\[{]))"')
@@ -71,6 +74,8 @@ class Html:
 
     name: ClassVar[str] = "html"
     suffix: ClassVar[str] = ".html"
+    #: The kinds of picture that a browser shows.
+    pictures: ClassVar[tuple[str, ...]] = tuple(_PICTURES)
 
     def render(self, document: Document) -> str:
         """Return the document as a page."""
@@ -85,15 +90,18 @@ class Html:
 
     def sheet(self, sheet: Sheet) -> str:
         """Return the sheet as one page, its contents linked to questions and solutions."""
-        pieces = [f"<h1>{plain(sheet.title)}</h1>"] if sheet.title else []
+        pieces = list(_head(sheet))
         pieces += [_contents(sheet)] if sheet.is_long else []
-        for name, parts in sheet.chapters():
-            pieces.append(f'<h2 class="chapter" id="{name}">{PHRASES[f"sheet_{name}"]}</h2>')
-            for entry, part in parts:
-                place = f"{name}-{entry.number}"
-                pieces.append(f'<h3 class="problem" id="{place}">{entry.number}. {plain(entry.title)}</h3>')
-                pieces.append(part.replace(_SOMEWHERE, f"{place}-") if part else f"<p>{plain(entry.failure)}</p>")
-        return page(sheet.title, "\n".join(pieces))
+        for chapter in sheet.chapters():
+            pieces += [f'<h2 class="chapter" id="{chapter.name}">{chapter.title}</h2>'] if chapter.title else []
+            for item in chapter.items:
+                points = f' <span class="points">{item.points}</span>' if item.points else ""
+                kind = "problem apart" if sheet.header.is_exam and item.kind == "questions" else "problem"
+                heading = f"{item.label} {plain(item.title)}{points}" if item.title else f"{item.label}{points}"
+                pieces.append(f'<h3 class="{kind}" id="{item.place}">{heading}</h3>')
+                body = item.part or f"<p>{plain(item.text)}</p>"
+                pieces.append(body.replace(_SOMEWHERE, f"{item.place}-"))
+        return page(sheet.heading, "\n".join(pieces), has_picture=sheet.header.logo is not None)
 
 
 @output_format
@@ -110,22 +118,43 @@ class HtmlFragment:
         return f'<div class="symobs">\n<style>\n{style()}</style>\n{body}\n</div>\n'
 
 
+def _head(sheet: Sheet) -> Iterator[str]:
+    """Yield the pieces of the head of a sheet, its picture as data."""
+    if (logo := sheet.header.logo) is not None:
+        data = b64encode(logo.content).decode("ascii")
+        yield f'<img class="logo" alt="" src="data:{_PICTURES[logo.kind]};base64,{data}"/>'
+    if sheet.course:
+        yield f'<p class="course">{plain(sheet.course)}</p>'
+    if sheet.heading:
+        yield f"<h1>{plain(sheet.heading)}</h1>"
+    if sheet.facts:
+        told = (f"<span>{word}: {plain(value)}</span>" for word, value in sheet.facts)
+        yield f'<p class="facts">{" ".join(told)}</p>'
+    if sheet.fields:
+        yield f'<p class="fields">{" ".join(f"<span>{word}</span>" for word in sheet.fields)}</p>'
+    for rows in sheet.totals:
+        cells = (f'<th scope="row">{row[0]}</th>{"".join(f"<td>{cell}</td>" for cell in row[1:])}' for row in rows)
+        yield f'<div class="table"><table class="totals">{"".join(f"<tr>{row}</tr>" for row in cells)}</table></div>'
+    yield from (f"<p>{plain(part)}</p>" for part in sheet.header.text.split("\n\n") if part.strip())
+
+
 def _contents(sheet: Sheet) -> str:
     """Return the table of contents: every problem once, with a link to each of its parts."""
-    names = [name for name, _ in sheet.chapters()]
+    names = sheet.kinds
     rows = []
     for entry in sheet.entries:
-        links = [f'<a href="#{name}-{entry.number}">{PHRASES["sheet_solution"]}</a>' for name in names[1:]]
+        links = [f'<a href="#{name}-{entry.number}">{sheet.words["solution"]}</a>' for name in names[1:]]
         first = f'<a href="#{names[0]}-{entry.number}">{plain(entry.title)}</a>'
         rows.append(f"<li>{first}{''.join(f' ({link})' for link in links)}</li>")
     listed = "\n".join(rows)
-    return f"<nav>\n<h2>{PHRASES['sheet_contents']}</h2>\n<ol>\n{listed}\n</ol>\n</nav>"
+    return f"<nav>\n<h2>{sheet.words['contents']}</h2>\n<ol>\n{listed}\n</ol>\n</nav>"
 
 
-def page(title: str, body: str) -> str:
-    """Return a whole page around a body, which is HTML already."""
+def page(title: str, body: str, *, has_picture: bool = False) -> str:
+    """Return a whole page around a body, which is HTML already; pictures are allowed as data alone, where there is one."""
     skeleton = Template((_FOLDER / "html_page.html").read_text(encoding="utf-8"))
-    return skeleton.substitute(title=plain(title) or "symobs", style=style(), body=body)
+    allowed = "; img-src data:" if has_picture else ""
+    return skeleton.substitute(title=plain(title) or "symobs", style=style(), body=body, allowed=allowed)
 
 
 def style() -> str:
@@ -194,6 +223,9 @@ class HtmlWriter:
                 return f'<div class="case">\n{label_line}\n{inside.body(blocks)}\n</div>'
             case Columns():
                 return self._columns(block)
+            case AnswerSpace(is_ruled=is_ruled, lines=lines):
+                kind = "space ruled" if is_ruled else "space"
+                return f'<div class="{kind}">{"<div></div>" * lines}</div>'
 
     def sentence(self, inlines: Inlines) -> str:
         """Return running text, words escaped and mathematics as MathML."""

@@ -10,6 +10,7 @@ from symobs.convention import STANDARD, Convention
 from symobs.exact import Complex, Matrix, Root, Scalar
 from symobs.exact.algebraic.enclosure import is_number
 from symobs.exact.floating.doubles import nearest_double
+from symobs.render.page.sheet import decimal_of
 from symobs.result import Case, Result, output_format
 from symobs.result.conversions import signs, to_json
 from symobs.result.in_convention import Viewed
@@ -22,6 +23,8 @@ if TYPE_CHECKING:
     from symobs.system import StateSpace
 
 SCHEMA = "symobs/1"
+#: The texts at the head of a sheet.
+_HEAD = ("course", "term", "number", "due", "instructor", "text")
 
 
 @output_format
@@ -49,12 +52,19 @@ class Json:
         problems = []
         for entry in sheet.entries:
             problem = {"file": entry.file, "title": entry.title}
+            if entry.points:
+                problem["points"] = [decimal_of(points) for points in entry.points]
+            if entry.hint and sheet.has_questions:
+                problem["hint"] = entry.hint
+            if entry.answer and sheet.has_questions:
+                problem["answer"] = entry.answer
             if sheet.has_questions:
                 problem["question"] = entry.question
             if sheet.has_solutions:
                 problem["results"] = entry.solution
             problems.append(problem | ({"failure": entry.failure} if entry.failure else {}))
-        return _written({"schema": SCHEMA, "title": sheet.title, "problems": problems})
+        head = {name: getattr(sheet.header, name) for name in _HEAD if getattr(sheet.header, name)}
+        return _written({"schema": SCHEMA, "title": sheet.title, **head, "problems": problems})
 
 
 def given_up(document: Document, tasks: Sequence[str], method: str, signs: Mapping[str, str]) -> str:

@@ -7,9 +7,9 @@ from itertools import pairwise, zip_longest
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from symobs.formula import Roots
-from symobs.phrases import PHRASES
 from symobs.render.formats.templates import fill
 from symobs.render.page.blocks import (
+    AnswerSpace,
     CaseBlock,
     Caution,
     Columns,
@@ -103,21 +103,37 @@ def has_drawings(blocks: Sequence[Block]) -> bool:
 def typeset_sheet(sheet: Sheet, template: str) -> str:
     """Return a sheet in a template; the values of a problem are those of its part, its number, and its failure."""
     chapters: list[dict[str, Any]] = []
-    for name, parts in sheet.chapters():
-        problems: list[dict[str, Any]] = [
-            {"source": "", "conventions": "", "body": "", **(part or {}), "title": escape(entry.title).strip()}
-            | {"number": entry.number, "failure": "" if part else escape(entry.failure)}
-            for entry, part in parts
-        ]
-        chapters.append({"name": name, "title": PHRASES[f"sheet_{name}"], "problems": problems})
+    for chapter in sheet.chapters():
+        problems: list[dict[str, Any]] = []
+        for item in chapter.items:
+            told = {"label": item.label, "title": escape(item.title).strip(), "points": item.points}
+            told |= {"failure": escape(item.text)}
+            place = {"number": item.entry.number, "kind": item.kind, "place": item.place}
+            problems.append({"source": "", "conventions": "", "body": "", **(item.part or {}), **told, **place})
+        chapters.append({"name": chapter.name, "title": chapter.title, "problems": problems})
     values = {
-        "title": escape(sheet.title).strip(),
+        "title": escape(sheet.heading).strip(),
+        "head": head_of(sheet),
+        "totals": sheet.totals,
+        "is_exam": sheet.header.is_exam,
         "chapters": chapters,
-        "contents": PHRASES["sheet_contents"] if sheet.is_long else "",
-        "words": {"problem": PHRASES["sheet_problem"]},
+        "kinds": sheet.kinds,
+        "contents": sheet.words["contents"] if sheet.is_long else "",
+        "words": sheet.words,
         "drawings": any(problem.get("drawings") for chapter in chapters for problem in chapter["problems"]),
     }
     return fill(template, values, folder=sheet.templates)
+
+
+def head_of(sheet: Sheet) -> dict[str, Any]:
+    """Return the template values of the head of a sheet."""
+    return {
+        "course": escape(sheet.course).strip(),
+        "facts": [(word, escape(value).strip()) for word, value in sheet.facts],
+        "fields": sheet.fields,
+        "text": [escape(part).strip() for part in sheet.header.text.split("\n\n") if part.strip()],
+        "logo": sheet.header.logo.path if sheet.header.logo else "",
+    }
 
 
 class LatexWriter:
@@ -163,6 +179,8 @@ class LatexWriter:
                 return f"\\begin{{inset}}\n\\textbf{{{self.sentence(label)}}}{first}{body}\n\\end{{inset}}"
             case Columns():
                 return self._columns(block)
+            case AnswerSpace(is_ruled=is_ruled, lines=lines):
+                return rf"\answer{'lines' if is_ruled else 'space'}{{{lines}}}"
             case Title(text):
                 return escape(text)
 

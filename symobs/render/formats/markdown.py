@@ -14,9 +14,9 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, ClassVar
 
 from symobs.formula import Roots
-from symobs.phrases import PHRASES
 from symobs.render.formats.text import printable
 from symobs.render.page.blocks import (
+    AnswerSpace,
     CaseBlock,
     Caution,
     Columns,
@@ -40,7 +40,7 @@ from symobs.render.tables.html_and_markdown import markdown_table
 from symobs.result import output_format
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterator, Sequence
 
     from symobs.figures.plot import Picture
     from symobs.formula import Relation
@@ -85,12 +85,28 @@ class Markdown:
 
     def sheet(self, sheet: Sheet) -> str:
         """Return the sheet as Markdown; forges make a table of contents of its headings by themselves."""
-        pieces = [f"# {plain(sheet.title).strip()}"] if sheet.title.strip() else []
-        for name, parts in sheet.chapters():
-            pieces.append(f"## {PHRASES[f'sheet_{name}']}")
-            for entry, part in parts:
-                pieces += [f"### {entry.number}. {plain(entry.title).strip()}", part or paragraph(plain(entry.failure))]
+        pieces = list(_head(sheet))
+        for chapter in sheet.chapters():
+            pieces += [f"## {chapter.title}"] if chapter.title else []
+            for item in chapter.items:
+                points = f" ({item.points})" if item.points else ""
+                pieces.append(f"### {item.label} {plain(item.title)}".strip() + points)
+                pieces.append(item.part or paragraph(plain(item.text)))
         return "\n\n".join(pieces) + "\n"
+
+
+def _head(sheet: Sheet) -> Iterator[str]:
+    """Yield the paragraphs of the head of a sheet; a picture would be another file, and nobody fills in Markdown."""
+    if sheet.heading.strip():
+        yield f"# {plain(sheet.heading).strip()}"
+    if sheet.course:
+        yield paragraph(plain(sheet.course))
+    if sheet.facts:
+        yield "  \n".join(f"**{word}:** {plain(value)}" for word, value in sheet.facts)
+    for rows in sheet.totals:
+        lines = [f"| {' | '.join(row)} |" for row in rows[:2]]
+        yield "\n".join([lines[0], f"|{' --- |' * len(rows[0])}", lines[1]])
+    yield from (paragraph(plain(part)) for part in sheet.header.text.split("\n\n") if part.strip())
 
 
 def portable(latex: str) -> str:
@@ -165,6 +181,8 @@ class MarkdownWriter:
                 from symobs.render.page.plot_captions import caption  # noqa: PLC0415 - only pages with pictures
 
                 return f"{self._sketch(picture)}\n\n{self.sentence((*title, *caption(picture, sketched=True)))}"
+            case AnswerSpace():  # nobody writes on it by hand
+                return ""
             case CaseBlock(label, blocks):
                 inside = MarkdownWriter(self.printer, level=self.level + 1).body(blocks)
                 return quoted(f"**{self.sentence(label)}**\n\n{inside}")

@@ -14,7 +14,9 @@ import tempfile
 import threading
 import time
 from contextlib import contextmanager, suppress
+from dataclasses import replace
 from pathlib import Path
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from symobs.child_processes.inside import running
@@ -74,17 +76,26 @@ class Pdf:
 
     def sheet(self, sheet: Sheet) -> bytes:
         """Return the bytes of the sheet's PDF."""
+        logo, pictures = sheet.header.logo, {}
+        if logo is not None:  # TeX sees nothing but its own folder
+            name = f"logo.{logo.kind}"
+            sheet = replace(sheet, header=replace(sheet.header, logo=replace(logo, path=name)))
+            pictures = {name: logo.content}
         source = typeset_sheet(sheet, "sheet.tex")
-        return compiled(source, time_limit=max(TIME_LIMIT, len(source) / SLOWEST))
+        return compiled(source, time_limit=max(TIME_LIMIT, len(source) / SLOWEST), pictures=pictures)
 
 
-def compiled(source: str, *, time_limit: float = TIME_LIMIT) -> bytes:
-    """Return the PDF of a LaTeX document by TeX."""
+def compiled(
+    source: str, *, time_limit: float = TIME_LIMIT, pictures: Mapping[str, bytes] = MappingProxyType({})
+) -> bytes:
+    """Return the PDF of a LaTeX document by TeX; `pictures` are the files that it names."""
     commands = _commands()
     try:
         with _ending_in_order(), tempfile.TemporaryDirectory(prefix="symobs-", ignore_cleanup_errors=True) as name:
             folder = Path(name)
             (folder / _SOURCE).write_text(source, encoding="utf-8")
+            for picture, content in pictures.items():
+                (folder / picture).write_bytes(content)
             page = (folder / _SOURCE).with_suffix(".pdf")
             if any(_run(command, folder, time_limit) != 0 for command in commands) or not page.exists():
                 raise _failure(folder)

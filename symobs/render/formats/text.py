@@ -9,9 +9,9 @@ from itertools import pairwise, zip_longest
 from typing import TYPE_CHECKING, ClassVar
 
 from symobs.formula import Roots
-from symobs.phrases import PHRASES
 from symobs.render.formats.code.numbers import exact_answers
 from symobs.render.page.blocks import (
+    AnswerSpace,
     CaseBlock,
     Caution,
     Columns,
@@ -33,7 +33,7 @@ from symobs.render.printers.text_printer import TextPrinter, text_width
 from symobs.result import output_format
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterator, Sequence
 
     from symobs.figures.plot import Picture
     from symobs.render.page.blocks import Block, Inline, Inlines
@@ -71,13 +71,32 @@ class Text:
 
     def sheet(self, sheet: Sheet) -> str:
         """Return the sheet as plain text."""
-        pieces = [underlined(wrapped(printable(sheet.title), WIDTH), "=", WIDTH)] if sheet.title else []
-        for name, parts in sheet.chapters():
-            pieces.append(underlined(PHRASES[f"sheet_{name}"], "=", WIDTH))
-            for entry, part in parts:
-                heading = f"{PHRASES['sheet_problem']} {entry.number}. {printable(entry.title)}"
-                pieces += [underlined(wrapped(heading, WIDTH), "=", WIDTH), part or entry.failure]
+        pieces = list(_head(sheet))
+        for chapter in sheet.chapters():
+            pieces += [underlined(chapter.title, "=", WIDTH)] if chapter.title else []
+            for item in chapter.items:
+                label = f"{sheet.words['problem']} {item.label}" if item.label[:1].isdigit() else item.label
+                whole = f"{label} {printable(item.title)}"
+                points = f" ({item.points})" if item.points else ""
+                heading = underlined(wrapped(f"{whole}{points}", WIDTH), "=", WIDTH)
+                pieces += [heading, item.part or wrapped(printable(item.text), WIDTH)]
         return "\n\n".join(pieces) + "\n"
+
+
+def _head(sheet: Sheet) -> Iterator[str]:
+    """Yield the paragraphs of the head of a sheet."""
+    if sheet.course:
+        yield wrapped(printable(sheet.course), WIDTH)
+    if sheet.heading:
+        yield underlined(wrapped(printable(sheet.heading), WIDTH), "=", WIDTH)
+    if sheet.facts:
+        yield "\n".join(wrapped(f"{word}: {printable(value)}", WIDTH) for word, value in sheet.facts)
+    if sheet.fields:
+        yield "\n\n".join(f"{word}: ".ljust(WIDTH, "_") for word in sheet.fields)
+    for rows in sheet.totals:
+        first = max(len(row[0]) for row in rows)
+        yield "\n".join(f"{row[0]:{first}} {''.join(f'{cell:>6}' for cell in row[1:])}".rstrip() for row in rows)
+    yield from (wrapped(printable(part), WIDTH) for part in sheet.header.text.split("\n\n") if part.strip())
 
 
 class TextWriter:
@@ -120,6 +139,9 @@ class TextWriter:
             case Drawing():
                 words = wrapped(self.sentence(block.caption), width - len(INDENT))
                 return indented(f"{self._sketch(block)}\n\n{words}") if words else indented(self._sketch(block))
+                return indented(self._sketch(block))
+            case AnswerSpace(is_ruled=is_ruled, lines=lines):
+                return "\n\n".join(["_" * width if is_ruled else ""] * lines)
             case TableBlock():
                 from symobs.render.tables.text_and_latex import text_table  # noqa: PLC0415 - only pages with tables
 

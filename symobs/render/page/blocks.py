@@ -127,6 +127,19 @@ class Columns:
     rows: tuple[tuple[tuple[Block, ...], ...], ...]
 
 
+@dataclass(frozen=True)
+class AnswerSpace:
+    """Room for an answer written by hand, in centimetres; ruled, with a line every eight millimetres."""
+
+    height: int
+    is_ruled: bool
+
+    @property
+    def lines(self) -> int:
+        """The number of lines."""
+        return max(1, self.height * 10 // 8)
+
+
 Block: TypeAlias = (
     Title
     | Heading
@@ -140,6 +153,7 @@ Block: TypeAlias = (
     | TableBlock
     | CaseBlock
     | Columns
+    | AnswerSpace
 )
 
 

@@ -22,6 +22,8 @@ if TYPE_CHECKING:
     from symobs.formula import Formula
 
 DETAILS = ("full", "outline", "answer")
+#: The answers below their question at the end of a sheet: as `answer`, but without data, checks and references.
+FINAL = "final"
 
 
 def detail_named(name: str) -> str:
@@ -34,6 +36,8 @@ def detail_named(name: str) -> str:
 
 def at_detail(steps: Sequence[Step], detail: str) -> tuple[Step, ...]:
     """Return the steps of a page at this level of detail."""
+    if detail == FINAL:
+        return tuple(_unproved(at_detail(steps, "answer")))
     if detail_named(detail) == "full":
         return tuple(steps)
     kept: list[Step] = []
@@ -48,6 +52,18 @@ def at_detail(steps: Sequence[Step], detail: str) -> tuple[Step, ...]:
         kept += inner
         passed = []
     return tuple(kept)
+
+
+def _unproved(steps: Sequence[Step]) -> Iterator[Step]:
+    """Yield the steps without the checks of answers, and without sections of nothing else."""
+    for step in steps:
+        if isinstance(step, Section):
+            if inner := tuple(_unproved(step.steps)):
+                yield replace(step, steps=inner)
+        elif isinstance(step, Case):
+            yield replace(step, steps=tuple(_unproved(step.steps)))
+        elif not (isinstance(step, Conclude) and step.verified):
+            yield step
 
 
 def _shortened(step: Step, detail: str) -> Iterator[Step]:

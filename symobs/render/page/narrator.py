@@ -49,7 +49,8 @@ from symobs.render.page.blocks import (
 )
 from symobs.render.page.citations import cited_literature
 from symobs.render.page.convention_notes import letters_used, stated_conventions
-from symobs.render.page.detail_level import at_detail
+from symobs.render.page.detail_level import FINAL, at_detail
+from symobs.render.page.handout import handed_out
 from symobs.render.page.prose import filled, joined, with_reference
 from symobs.render.page.side_by_side import in_rows
 from symobs.result.digits_of_page import shown_digits
@@ -92,12 +93,15 @@ def narrate(document: Document) -> tuple[Block, ...]:
         from symobs.render.decimals.steps import in_decimals  # noqa: PLC0415 - only pages in decimals pay for it
 
         parts = [in_decimals(*pair, digits) for pair in zip(document.derivations, parts, strict=True)]
-    works, citations = cited_literature(step for steps in parts for step in steps)
+    is_final = document.detail == FINAL
+    works, citations = cited_literature(() if is_final else (step for steps in parts for step in steps))
     page = _PageBlocks(document.convention, citations=citations)
     page.blocks.append(_title(document))
     page.blocks += [Paragraph((" ".join(part.split()),)) for part in document.text.split("\n\n") if part.strip()]
     together, apart = _statements(parts)
     page.emit_given(together)
+    if is_final:  # the question has said what is given, and where it comes from
+        page.blocks[:] = [replace(_title(document), source="")]
     for index, steps in enumerate(parts):
         if index in apart:
             page.printed.clear()
@@ -108,7 +112,7 @@ def narrate(document: Document) -> tuple[Block, ...]:
         page.printed |= _inside(steps)
     if works:
         page.blocks.append(References(LABELS["sources"], tuple(f"{reference(key)}." for key in works)))
-    return _punctuated(page.blocks)
+    return handed_out(_punctuated(page.blocks), document.handout)
 
 
 def _statements(parts: Sequence[Sequence[Step]]) -> tuple[list[Step], dict[int, list[Step]]]:
