@@ -19,6 +19,7 @@ from symobs.result import tasks
 KINDS = {
     "sheet-entry": "symobs.cli.commands.sheet",
     "solve": "symobs.batching.solving",
+    "variant": "symobs.variation.acceptance.solving",
     "sweep-block": "symobs.batching.sweep.block",
 }
 

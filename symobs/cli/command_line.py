@@ -35,6 +35,7 @@ COMMANDS = {
     "solve": "Solve a problem FILE (TOML or JSON; - is standard input) and print its derivation.",
     "sweep": "Design at every point of a grid, each exact and checked, into a table.",
     "templates": "List the built-in LaTeX templates, or copy them.",
+    "variants": "Make many problems of the same kind from a PROBLEM file with a table [variants].",
 }
 
 

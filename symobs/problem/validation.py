@@ -108,6 +108,10 @@ def validate(data: Mapping[str, Any], only: str | None = None, folder: Path | No
     printed = _printed(data.get("printed", []), errors)
     values = table_of(data, "values", errors)
     marking = read_marking(data.get("marking", {}), [task.name for task in asked], errors.note)
+    check_text(data.get("variant", ""), "variant", errors)
+    if "variants" in data:
+        repair = "solve one with `symobs solve FILE --variant 1`, or write them with `symobs variants FILE -o FOLDER`"
+        errors.note("this file stands for many problems", "variants", repair)
     if not errors.found and plant is not None:
         return Problem(
             title, source, ids, wanted, plant, specification, expect, convention, text, printed, values, marking
