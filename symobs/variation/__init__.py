@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 from symobs.errors import InputError, reason_of
 from symobs.variation.search import TooFew, Variant, Variants
 
-__all__ = ["TooFew", "Variant", "Variants", "variants"]
+__all__ = ["TooFew", "Variant", "Variants", "variant_of", "variants"]
 
 
 def variants(problem: str | Path, count: int, seed: int = 0, *, workers: int | None = None) -> Variants:
@@ -29,3 +30,10 @@ def variants(problem: str | Path, count: int, seed: int = 0, *, workers: int | N
         repair = "give the path of a problem file, or its text"
         raise InputError(reason_of(error), where=str(path)[:200], repair=repair) from None
     return Variants(text, count, seed, where=str(path), folder=path.parent, workers=workers)
+
+
+def variant_of(text: str, where: str, number: int) -> dict[str, Any]:
+    """Return the tables of the variant of this number, of seed 0; its text says so."""
+    found = Variants(text, number, where=where, folder=Path(where).parent, in_process=True)[number - 1]
+    said = f"Variant {number} of seed 0."
+    return {**found.data, "text": f"{found.data['text']} {said}" if found.data.get("text") else said}

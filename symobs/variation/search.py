@@ -201,8 +201,8 @@ class Variants:
             number = start
             while number <= last() + self.attempts:
                 found = candidate(self.table, self.seed, number)
-                test = cheap(self.table, found)
-                reason = test.reason or self._seen_unlike(found)
+                test = cheap(self.table, found, self._reference and self._reference[0])
+                reason = test.reason or (_SAME if data_key(found) in self._taken else None)
                 order = None if reason else self._job(found, test)
                 waiting.append((found, reason, order.key if order else ""))
                 number += 1
@@ -231,12 +231,6 @@ class Variants:
             **self._convention,
         }
         return job("variant", payload, f"candidate {found.number}")
-
-    def _seen_unlike(self, found: Candidate) -> str | None:
-        """Return what the data alone show: another structure than the first one, or the data of another variant."""
-        if self._reference is not None and kind_of(found) != self._reference[0]:
-            return "another structure"
-        return _SAME if data_key(found) in self._taken else None
 
     def _refusal(self, found: Candidate, row: Mapping[str, Any]) -> str | None:
         """Return why a solved candidate is no variant, None where it is one."""

@@ -17,7 +17,7 @@ from symobs.variation.drawing.stream import Draws
 from symobs.variation.reading.substitution import matrix_text, text_of, with_values
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Mapping, Sequence
 
     from symobs.variation.drawing.constructions import Made
     from symobs.variation.drawing.parameters import Value
@@ -27,8 +27,6 @@ if TYPE_CHECKING:
 _HALVES = {
     "control_poles": ("control_poles", "control_polynomial", "poles", "polynomial", "K"),
     "observer_poles": ("observer_poles", "observer_polynomial", "poles", "polynomial", "L"),
-    "polynomial": ("polynomial",),
-    "parameters": ("parameters",),
 }
 
 
@@ -39,6 +37,8 @@ class Candidate(NamedTuple):
     data: Mapping[str, Any]
     values: Mapping[str, Value]
     matrices: Mapping[str, Rows]
+    #: Rows, columns and zeros of each matrix of numbers.
+    shapes: Mapping[str, tuple[int, int, int]]
     #: The ranks of 𝒞 and 𝒪 that a construction means to have.
     ranks: tuple[int, int] | None = None
 
@@ -55,20 +55,22 @@ def candidate(table: Table, seed: int, number: int) -> Candidate:
     values = {name: parameter.drawn(draws[name]) for name, parameter in table.parameters.items()}
     data = with_values(table.base, values)
     if table.construct is None:
-        return _tidied(Candidate(number, data, values, {}))
+        return _tidied(Candidate(number, data, values, {}, {}))
     made = CONSTRUCTIONS[table.construct][0](draws, table.shape)
     plant = {name: entry for name, entry in data.get("plant", {}).items() if name not in "ABC"}
+    if "dt" in made.specification:
+        data["plant"] = {"dt": made.specification["dt"], **plant}
     if made.plant:
         data["plant"] = {**{name: matrix_text(rows) for name, rows in made.plant.items()}, **plant}
     data["specification"] = _specified(data, made)
     sizes = table.shape.get("sizes")
     ranks = (sizes[0] + sizes[1], sizes[0] + sizes[2]) if sizes else None
-    return _tidied(Candidate(number, data, values, made.plant, ranks))
+    return _tidied(Candidate(number, data, values, made.plant, {}, ranks))
 
 
 def base_candidate(table: Table) -> Candidate:
     """Return the problem that the file has of its own."""
-    return _tidied(Candidate(-1, dict(table.base), {}, {}))
+    return _tidied(Candidate(-1, with_values(table.base, {}), {}, {}, {}))
 
 
 def _specified(data: Mapping[str, Any], made: Made) -> dict[str, Any]:
@@ -78,7 +80,7 @@ def _specified(data: Mapping[str, Any], made: Made) -> dict[str, Any]:
     read = {key for name in names if (task := task_named(name)) is not None for key in kinds_of(task)}
     is_reduced = given.get("observer") == "minimal" or "reduced_order_observer" in names
     for key, value in made.specification.items():
-        if key not in read or any(other in given for other in _HALVES[key]):
+        if key not in read or any(other in given for other in _HALVES.get(key, (key,))):
             continue
         if isinstance(value, Poles) and key == "observer_poles" and is_reduced:
             value = Poles(value.pairs[: len(value.pairs) - len(made.plant["C"])])  # noqa: PLW2901
@@ -98,15 +100,21 @@ def _tidied(found: Candidate) -> Candidate:
     if not isinstance(plant, dict):
         return found
     matrices = dict(found.matrices)
+    shapes = {name: _shape(rows) for name, rows in matrices.items()}
     for name in "ABCD":
         if name in plant and name not in matrices:
             entries = _entries(plant[name])
             if entries is None:
                 continue
-            plant[name] = matrix_text(entries)  # type: ignore[arg-type]
+            plant[name] = matrix_text(entries)
+            shapes[name] = _shape(entries)
             if all(entry.denominator == 1 for row in entries for entry in row):
                 matrices[name] = tuple(tuple(int(entry) for entry in row) for row in entries)
-    return found._replace(matrices=matrices)
+    return found._replace(matrices=matrices, shapes=shapes)
+
+
+def _shape(rows: Sequence[Sequence[object]]) -> tuple[int, int, int]:
+    return len(rows), len(rows[0]), sum(not entry for row in rows for entry in row)
 
 
 def _entries(value: object) -> tuple[tuple[Any, ...], ...] | None:

@@ -52,8 +52,8 @@ class Cheap(NamedTuple):
     gains: Mapping[str, Rows] = {}
 
 
-def cheap(table: Table, found: Candidate) -> Cheap:
-    """Return what the cheap tests find."""
+def cheap(table: Table, found: Candidate, kind: Mapping[str, Any] | None = None) -> Cheap:
+    """Return what the cheap tests find; `kind` is that of the data of the problem that candidates are to be like."""
     for relation in table.when:
         if not holds(relation, found):
             return Cheap(f"when: {relation}")
@@ -62,6 +62,8 @@ def cheap(table: Table, found: Candidate) -> Cheap:
     for name, rows in found.matrices.items():
         if longest(rows) > digits.get(name, digits.get("*", 99)):
             return Cheap(f"{name} has too many digits")
+    if kind is not None and kind_of(found) != kind:
+        return Cheap("another structure")
     if not found.is_whole:
         return Cheap()
     return _of_plant(found, constraints, digits)
@@ -192,7 +194,6 @@ def _number(text: str) -> Fraction:
 
 def kind_of(found: Candidate) -> dict[str, Any]:
     """Return what of the structure can be seen in the data: shapes, zeros, and the kinds of poles."""
-    shapes = {name: [len(rows), len(rows[0]), sum(row.count(0) for row in rows)] for name, rows in found.matrices.items()}
-    return {"matrices": shapes, "poles": pole_kinds(found.data)}
+    return {"matrices": found.shapes, "poles": pole_kinds(found.data)}
 
 

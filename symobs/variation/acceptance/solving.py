@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from symobs.batching.solving import problem_of
 from symobs.batching.solving import recheck as recheck_answers
+from symobs.checking.judgement.parts import asked_of
 from symobs.errors import CertificateRejected
 from symobs.exact import Matrix
 from symobs.expect import mismatches
@@ -20,6 +21,7 @@ if TYPE_CHECKING:
 
     from symobs.problem import Problem
     from symobs.result import Result
+    from symobs.result.in_convention import Viewed
 
 
 def run(payload: Mapping[str, Any]) -> dict[str, Any]:
@@ -55,13 +57,17 @@ def _agree(gains: Mapping[str, Any], results: Sequence[Result]) -> None:
 
 
 def expected(problem: Problem, results: Sequence[Result]) -> dict[str, Any]:
-    """Return the answers as `[expect]` of a file has them, in the letters of its convention."""
+    """Return what is asked for as `[expect]` of a file has it, in the letters of its convention."""
     tables: dict[str, Any] = {}
     for view in problem.viewed(tuple(results)):
-        asked = view.result.asked_fields
-        own = {name: view.fields[name] for name in view.own if view.standard(name)[0] in asked}
-        tables[view.task] = {name: value for name, each in own.items() if (value := _written(each)) is not None}
+        own = {standard: name for name, (standard, _) in view.names.items()}
+        found = {own.get(name, name): _value_of(view, own.get(name, name)) for name in asked_of(view.result)}
+        tables[view.task] = {name: value for name, value in found.items() if value is not None}
     return tables if len(tables) > 1 else next(iter(tables.values()))
+
+
+def _value_of(view: Viewed, name: str) -> Any:
+    return view.verdict if name == "verdict" else _written(view.fields[name])
 
 
 def _written(value: Any) -> Any:

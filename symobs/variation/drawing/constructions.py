@@ -5,7 +5,6 @@ Each is a function from draws and a shape to the matrices of the plant and what 
 
 from __future__ import annotations
 
-from math import gcd
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from symobs.variation.drawing.integers import (
@@ -49,7 +48,7 @@ def unit_system(draws: Draws, shape: Shape, name: str = "", poles: Poles | None 
     """
     chosen = poles or _plant_poles(draws[f"{name}plant poles"], shape)
     chi = of_poles(chosen.pairs)
-    numerator: Poly = draws[f"{name}numerator"].one_of(unit_numerators(chi, chosen.pairs))
+    numerator: Poly = draws[f"{name}numerator"].one_of(unit_numerators(chi, tuple(chosen.pairs)))
     order = len(chi) - 1
     return companion(chi), transposed(identity(order)[-1:]), (numerator,)
 
@@ -179,32 +178,41 @@ def second_order(draws: Draws, shape: Shape) -> Made:
 
 
 def region(draws: Draws, shape: Shape) -> Made:
-    """Return a polynomial with two gains whose region is a triangle with whole corners, or is bounded by h₁h₂ = c."""
+    """Return a polynomial with two gains whose region has whole corners, or is bounded by h₁h₂ = c.
+
+    triangle   z² + ℓ₁z + ℓ₂ is stable in the triangle with the corners (±2, 1), (0, −1); ℓ = Uh + c with U unimodular
+    wedge      s³ + a s² + ℓ₁s + ℓ₂ is stable where ℓ₂ > 0 and aℓ₁ > ℓ₂; both sides go through a whole corner
+    curve      s³ + ℓ₁s² + ℓ₂s + c with ℓ = h − p is stable where ℓ₁ℓ₂ > c and ℓ₁ > 0
+    """
     draw = draws["region"]
-    if shape["region"] == "curve":
-        return Made({}, _of_gains(f"s^3 + h1 s^2 + h2 s + {1 + draw.below(12)}"))
     low, high = shape["corners"]
-    area = 0
-    while area <= 0:
-        corners = [(low + draw.below(high - low + 1), low + draw.below(high - low + 1)) for _ in range(3)]
-        (x0, y0), (x1, y1), (x2, y2) = corners
-        area = (x1 - x0) * (y2 - y0) - (x2 - x0) * (y1 - y0)
-    first, second, third = (_side(corners[i], corners[(i + 1) % 3]) for i in range(3))
-    return Made({}, _of_gains(f"(s + {first}) (s^2 + ({second}) s + {third})".replace("+ -", "- ")))
+    corner = [low + draw.below(high - low + 1) for _ in range(2)]
+    if shape["region"] == "curve":
+        first, second = (_linear(row, corner, 0) for row in ((1, 0), (0, 1)))
+        return Made({}, _of_gains(f"s^3 + {first} s^2 + {second} s + {1 + draw.below(12)}"))
+    if shape["region"] == "triangle":
+        U = unimodular(draws["U"], 2, 2)
+        first, second = (_linear(row, corner, at) for row, at in zip(U, (0, -1), strict=True))
+        return Made({}, {**_of_gains(f"z^2 + {first} z + {second}"), "dt": True})
+    a = 1 + draw.below(3)
+    normals = [(0, 0), (0, 0)]
+    while normals[0][0] * normals[1][1] == normals[0][1] * normals[1][0]:
+        normals = [(draw.below(5) - 2, draw.below(5) - 2) for _ in range(2)]
+    first, second = (_linear(normal, corner, 0) for normal in normals)
+    return Made({}, _of_gains(f"s^3 + {a} s^2 + {first} s + {second}".replace(" 1 s^2", " s^2")))
 
 
 def _of_gains(polynomial: str) -> dict[str, Any]:
     return {"polynomial": polynomial, "parameters": ["h1", "h2"]}
 
 
-def _side(start: tuple[int, int], end: tuple[int, int]) -> str:
-    """Return the linear form that is positive on the left of a side, with coprime whole coefficients."""
-    a, b = start[1] - end[1], end[0] - start[0]
-    common = gcd(a, b)
-    a, b = a // common, b // common
-    constant = -a * start[0] - b * start[1]
-    terms = [f"{value} {name}" for value, name in ((a, "h1"), (b, "h2")) if value]
-    return f"({' + '.join([*terms, str(constant)] if constant else terms)})".replace("+ -", "- ")
+def _linear(normal: Sequence[int], corner: Sequence[int], value: int) -> str:
+    """Return the linear form of h₁ and h₂ with these coefficients and this value at a corner, in parentheses."""
+    constant = value - sum(n * c for n, c in zip(normal, corner, strict=True))
+    terms = [(normal[0], " h1"), (normal[1], " h2"), (constant, "")]
+    text = " ".join(f"{'-' if factor < 0 else '+'} {abs(factor)}{name}" for factor, name in terms if factor)
+    text = text.replace(" 1 h", " h")
+    return f"({f'-{text[2:]}' if text.startswith('-') else text[2:]})"
 
 
 # -- parts ------------------------------------------------------------------------------------------------------------

@@ -5,9 +5,10 @@ A matrix is a tuple of rows.  A polynomial is the tuple of its coefficients, the
 
 from __future__ import annotations
 
-from functools import reduce
+from functools import lru_cache, reduce
 from itertools import product
 from math import gcd
+from operator import mul
 from typing import TYPE_CHECKING, TypeAlias
 
 if TYPE_CHECKING:
@@ -40,12 +41,12 @@ def transposed(rows: Rows) -> Rows:
 def times(left: Rows, right: Rows) -> Rows:
     """Return the product of two matrices."""
     columns = transposed(right)
-    return tuple(tuple(sum(a * b for a, b in zip(row, column, strict=True)) for column in columns) for row in left)
+    return tuple([tuple([sum(map(mul, row, column)) for column in columns]) for row in left])
 
 
 def plus(left: Rows, right: Rows, factor: int = 1) -> Rows:
     """Return left + factor·right."""
-    return tuple(tuple(a + factor * b for a, b in zip(*rows, strict=True)) for rows in zip(left, right, strict=True))
+    return tuple([tuple([a + factor * b for a, b in zip(*rows, strict=True)]) for rows in zip(left, right, strict=True)])
 
 
 def block(blocks: Sequence[Sequence[Rows]]) -> Rows:
@@ -230,7 +231,8 @@ def unimodular(draw: Draw, order: int, steps: int) -> Rows:
 # -- numerators that keep all of it whole -----------------------------------------------------------------------------
 
 
-def unit_numerators(chi: Poly, poles: Sequence[tuple[int, int]]) -> list[Poly]:
+@lru_cache(maxsize=1024)
+def unit_numerators(chi: Poly, poles: tuple[tuple[int, int], ...]) -> list[Poly]:
     """Return polynomials b of lower degree with Res(χ, b) = ±1.
 
     Where the poles are distinct and real these are the ones with b(λ) = ±1 at each: all sign patterns are interpolated.

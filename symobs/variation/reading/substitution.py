@@ -13,7 +13,8 @@ from symobs.problem import Decimal
 from symobs.variation.drawing.parameters import Poles
 
 if TYPE_CHECKING:
-    from symobs.variation.drawing.integers import Rows
+    from collections.abc import Sequence
+
     from symobs.variation.drawing.parameters import Value
 
 #: Tables whose texts are expressions, and texts for people, where a letter stands in braces.
@@ -90,7 +91,7 @@ def text_of(value: Value) -> str:
     return matrix_text(value)
 
 
-def matrix_text(rows: Rows) -> str:
+def matrix_text(rows: Sequence[Sequence[object]]) -> str:
     """Return a matrix of numbers as a text."""
     return f"[{'; '.join(' '.join(map(str, row)) for row in rows)}]"
 

@@ -98,7 +98,7 @@ def _construct(table: Mapping[str, Any], note: Note) -> tuple[str | None, dict[s
         if key not in shape:
             note("unknown key", where, f"the shape of {kind} has {', '.join(shape)}")
         elif isinstance(shape[key], str):
-            words = {"of": ("observer", "state_feedback"), "region": ("triangle", "curve"), "hidden": ("stable", "unstable")}
+            words = {"of": ("observer", "state_feedback"), "region": ("triangle", "wedge", "curve"), "hidden": ("stable", "unstable")}
             if value not in words[key]:
                 note("this is no choice", where, f"write one of {', '.join(words[key])}")
         elif key == "sizes":
