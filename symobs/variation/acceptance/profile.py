@@ -25,11 +25,12 @@ def profile(results: Iterable[Result], derivations: Iterable[Derivation]) -> dic
     peak   the digits of the longest number
     """
     results, derivations = tuple(results), tuple(derivations)
-    numbers = [number for each in derivations for value in _values(each.steps) for number in numbers_of(value)]
+    values = [value for each in derivations for value in _values(each.steps)]
+    numbers = [number for value in values for number in numbers_of(value)]
     steps = [_kind(step) for each in derivations for step in _each_step(each.steps)]
     return {
         "load": sum(_load(number) for number in numbers),
-        "peak": max((digits_of(number) for number in numbers), default=0),
+        "peak": max((_longest(value) for value in values), default=0),
         "fractions": sum(number.denominator != 1 for number in numbers),
         "lines": sum(len(_relations(step)) for each in derivations for step in _each_step(each.steps)),
         "structure": {
@@ -39,9 +40,14 @@ def profile(results: Iterable[Result], derivations: Iterable[Derivation]) -> dic
     }
 
 
-def digits_of(number: Fraction) -> int:
-    """Return the digits of a number: of numerator or denominator, whichever is longer."""
-    return max(len(str(abs(number.numerator))), len(str(number.denominator)))
+def _longest(value: object) -> int:
+    """Return the digits of the longest number of a value, which may stand over one common denominator or be reduced."""
+    if isinstance(value, Matrix):
+        return max((_longest(entry) for entry in value.entries), default=0)
+    if not isinstance(value, Scalar):
+        return 0
+    parts = (value.numerator, value.denominator)
+    return max((len(str(abs(factor))) for part in parts for factor, _ in part.terms()), default=1)
 
 
 def _load(number: Fraction) -> int:
