@@ -50,9 +50,14 @@ def desired(A: Rows, poles: list[tuple[int, int]]) -> Rows:
     return total
 
 
-@pytest.mark.parametrize("shape", [{}, {"order": 2}, {"order": 4, "plant_poles": [-2, 3]}, {"pairs": 1, "steps": 4}])
-def test_all_gains_of_compensators_are_whole(shape: dict[str, Any]) -> None:
-    for plant, asked in made("compensator", 120, **shape):
+#: Few of each kind in a quick run, as many as a class of classes may need in the long one.
+COUNTS = [pytest.param(15, id="few"), pytest.param(500, id="many", marks=pytest.mark.slow)]
+
+
+@pytest.mark.parametrize("count", COUNTS)
+@pytest.mark.parametrize("shape", [{}, {"order": 4, "plant_poles": [-2, 3]}, {"pairs": 1, "steps": 4}])
+def test_all_gains_of_compensators_are_whole(shape: dict[str, Any], count: int) -> None:
+    for plant, asked in made("compensator", count, **shape):
         A, B, C = (table(plant[name]) for name in "ABC")
         O, controllability = observability(A, C), turned(observability(turned(A), turned(B)))
         assert abs(determinant(O)) == abs(determinant(controllability)) == 1
@@ -63,14 +68,14 @@ def test_all_gains_of_compensators_are_whole(shape: dict[str, Any]) -> None:
 
 
 def test_members_have_a_whole_gain_for_their_poles() -> None:
-    for c, (plant, asked) in enumerate(made("member", 60)):
+    for c, (plant, asked) in enumerate(made("member", 12)):
         draw = Draws(11, c)["L"]
         L = sp.Matrix(3, 2, lambda _i, _j, draw=draw: draw.below(5) - 2)
         A, C = sp.Matrix(plant["A"]), sp.Matrix(plant["C"])
         phi = sp.prod(s - pole for pole, _ in asked["observer_poles"].pairs)
         assert C.rank() == 2
         assert sp.expand((A - L * C).charpoly(s).as_expr() - phi) == 0
-    for (plant, asked), (dual, wanted) in zip(made("member", 9), made("member", 9, of="state_feedback"), strict=True):
+    for (plant, asked), (dual, wanted) in zip(made("member", 5), made("member", 5, of="state_feedback"), strict=True):
         assert dual["A"] == tuple(zip(*plant["A"], strict=True))
         assert dual["B"] == tuple(zip(*plant["C"], strict=True))
         assert asked["observer_poles"] == wanted["control_poles"]
@@ -91,7 +96,7 @@ def test_parts_are_hidden_where_the_sizes_say(sizes: list[int]) -> None:
 
 @pytest.mark.parametrize("hidden", ["stable", "unstable"])
 def test_hidden_modes_have_the_sign_that_is_wanted(hidden: str) -> None:
-    for plant, _ in made("ranks", 60, hidden=hidden, sizes=[2, 1, 0, 0]):
+    for plant, _ in made("ranks", 10, hidden=hidden, sizes=[2, 1, 0, 0]):
         A, C = sp.Matrix(plant["A"]), sp.Matrix(plant["C"])
         roots = sp.Poly(A.charpoly(s).as_expr(), s).ground_roots()
         modes = [root for root in roots if (A - root * sp.eye(3)).col_join(C).rank() < 3]
@@ -100,7 +105,7 @@ def test_hidden_modes_have_the_sign_that_is_wanted(hidden: str) -> None:
 
 
 def test_modes_and_their_vectors_are_whole() -> None:
-    for plant, _ in made("modal", 60):
+    for plant, _ in made("modal", 10):
         A = sp.Matrix(plant["A"])
         roots = sp.Poly(A.charpoly(s).as_expr(), s).ground_roots()
         assert len(roots) == 3
@@ -117,13 +122,13 @@ def read(text: str) -> sp.Expr:
 
 
 def test_corners_of_regions_are_whole() -> None:
-    for _, asked in made("region", 40, region="triangle"):
+    for _, asked in made("region", 8, region="triangle"):
         _, middle, last = sp.Poly(read(asked["polynomial"]), sp.Symbol("z")).all_coeffs()
         sides = [1 + middle + last, 1 - middle + last, 1 - last]  # Jury
         for pair in ((0, 1), (0, 2), (1, 2)):
             corner = sp.linsolve([sides[i] for i in pair], [h1, h2])
             assert all(value.is_integer for value in next(iter(corner)))
-    for _, asked in made("region", 40, region="wedge"):
+    for _, asked in made("region", 8, region="wedge"):
         _, a, middle, last = sp.Poly(read(asked["polynomial"]), s).all_coeffs()
         corner = sp.linsolve([last, sp.expand(a * middle - last)], [h1, h2])  # Routh
         assert all(value.is_integer for value in next(iter(corner)))
