@@ -6,7 +6,8 @@ from pathlib import Path
 from typing import Any
 
 from symobs.errors import InputError, reason_of
-from symobs.variation.search import TooFew, Variant, Variants
+from symobs.variation.search import TooFew, Variants
+from symobs.variation.variant import Variant
 
 __all__ = ["TooFew", "Variant", "Variants", "variant_of", "variants"]
 

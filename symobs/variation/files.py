@@ -8,16 +8,16 @@ import io
 import json
 from contextlib import contextmanager, suppress
 from importlib.metadata import PackageNotFoundError, version
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from symobs.errors import InputError, reason_of
 from symobs.variation.drawing.stream import VERSION
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
+    from collections.abc import Iterator, Mapping, Sequence
     from pathlib import Path
 
-    from symobs.variation.search import Variant, Variants
+    from symobs.variation.variant import Variant
 
 SCHEMA = "symobs-variants/1"
 #: Cells that a spreadsheet would take for formulas begin with one of these.
@@ -28,26 +28,34 @@ LIMIT = (
 )
 
 
-def manifest(variants: Variants, listed: list[Variant]) -> dict[str, Any]:
+class About(NamedTuple):
+    """Where variants come from: the hash of the problem file, the seed, and the candidates left out by reason."""
+
+    problem: str
+    seed: int
+    rejected: Mapping[str, int]
+
+
+def manifest(about: About, listed: Sequence[Variant]) -> dict[str, Any]:
     """Return what was made, as JSON."""
     return {
         "schema": SCHEMA,
         "engine": f"symobs {_version()}",
-        "problem": variants.problem_hash,
+        "problem": about.problem,
         "version": VERSION,
-        "seed": variants.seed,
+        "seed": about.seed,
         "count": len(listed),
         "variants": [each.as_data() for each in listed],
-        "rejected": variants.rejected,
+        "rejected": dict(about.rejected),
     }
 
 
-def write_folder(variants: Variants, folder: Path, *, report: bool) -> None:
+def write_folder(folder: Path, about: About, listed: Sequence[Variant], *, report: bool) -> None:
     """Write the variants that were found into a folder: all files or none, the manifest last.
 
     Raises `InputError` where the folder cannot be written, or holds variants of other numbers.
     """
-    files = files_of(variants, list(variants.found), report=report)
+    files = files_of(about, listed, report=report)
     with _explained(folder):
         others = {f"variants/{path.name}" for path in (folder / "variants").glob("*.toml")} - files.keys()
         if others:
@@ -93,18 +101,18 @@ def _version() -> str:
         return "unknown"
 
 
-def files_of(variants: Variants, listed: list[Variant], *, report: bool) -> dict[str, str]:
+def files_of(about: About, listed: Sequence[Variant], *, report: bool) -> dict[str, str]:
     """Return the files by name, the manifest last."""
     files = {f"variants/{each.name}.toml": each.text for each in listed}
     if report:
-        files["report.md"] = report_of(variants, listed)
-    text = json.dumps(manifest(variants, listed), indent=1, ensure_ascii=False)
+        files["report.md"] = report_of(about, listed)
+    text = json.dumps(manifest(about, listed), indent=1, ensure_ascii=False)
     return {**files, "manifest.json": f"{text}\n"}
 
 
-def report_of(variants: Variants, listed: Iterable[Variant]) -> str:
+def report_of(about: About, listed: Sequence[Variant]) -> str:
     """Return the report: data, answers, load and peak of each, and why candidates were left out."""
-    lines = ["# Variants", "", f"Seed {variants.seed}.", "", "| file | data | answers | load | longest number |"]
+    lines = ["# Variants", "", f"Seed {about.seed}.", "", "| file | data | answers | load | longest number |"]
     lines.append("|---|---|---|---:|---:|")
     for each in listed:
         plant = each.data.get("plant") or each.data.get("specification", {})
@@ -112,7 +120,7 @@ def report_of(variants: Variants, listed: Iterable[Variant]) -> str:
         cells = (each.name, data, _short(each.expect), each.profile["load"], f"{each.profile['peak']} digits")
         lines.append(f"| {' | '.join(_cell(cell) for cell in cells)} |")
     lines += ["", "## Candidates left out", "", "| reason | candidates |", "|---|---:|"]
-    lines += [f"| {_cell(reason)} | {count} |" for reason, count in variants.rejected.items()]
+    lines += [f"| {_cell(reason)} | {count} |" for reason, count in about.rejected.items()]
     return "\n".join([*lines, "", LIMIT, ""])
 
 

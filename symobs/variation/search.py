@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections import Counter, deque
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 from symobs.batching.engine import Settings, work
 from symobs.batching.executors import workforce
@@ -19,8 +19,9 @@ from symobs.variation.acceptance.cheap import Cheap, cheap, kind_of
 from symobs.variation.acceptance.distinct import data_key, keys_of
 from symobs.variation.acceptance.profile import unlike
 from symobs.variation.drawing.stream import LARGEST_SEED
-from symobs.variation.reading.substitution import toml_text
+from symobs.variation.files import About, manifest, write_folder
 from symobs.variation.reading.table import Table, read_table
+from symobs.variation.variant import Variant
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping
@@ -39,45 +40,6 @@ class TooFew(SymobsError):
     """There are not so many variants among the candidates that were tried; `facts["rejected"]` says why."""
 
     exit_code = 4
-
-
-class Variant(NamedTuple):
-    """A problem of its own: solved, checked, and like the others in what it takes to work it out."""
-
-    index: int
-    id: str
-    candidate: int
-    data: Mapping[str, Any]
-    answers: list[Any]
-    profile: Mapping[str, Any]
-    expect: Mapping[str, Any]
-
-    @property
-    def name(self) -> str:
-        """The name of its file."""
-        return f"v{self.index:03d}"
-
-    @property
-    def text(self) -> str:
-        """The problem file: numbers in place, and the checked answers as what is expected."""
-        return toml_text({**self.data, "variant": self.id, "expect": self.expect})
-
-    @property
-    def certificates(self) -> int:
-        """How many claims were checked for it."""
-        return sum(len(answer["certificates"]) for answer in self.answers)
-
-    def as_data(self) -> dict[str, Any]:
-        """Return it as JSON."""
-        return {
-            "id": self.id,
-            "file": f"variants/{self.name}.toml",
-            "candidate": self.candidate,
-            "data": dict(self.data),
-            "answers": dict(self.expect),
-            "profile": {key: self.profile[key] for key in ("load", "peak", "fractions", "lines")},
-            "certificates": self.certificates,
-        }
 
 
 class Variants:
@@ -103,7 +65,9 @@ class Variants:
             repair = f"take a whole number from 0 to {LARGEST_SEED}"
             raise UsageError(f"{seed!r} is no seed", where="seed", repair=repair)
         if profile not in PROFILES:
-            raise UsageError(f"{profile[:40]!r} is no profile", where="profile", repair=f"write {' or '.join(PROFILES)}")
+            raise UsageError(
+                f"{profile[:40]!r} is no profile", where="profile", repair=f"write {' or '.join(PROFILES)}"
+            )
         self.table: Table = read_table(text, where)
         self.count, self.seed, self.is_strict = count, seed, profile == "strict"
         self.attempts = attempts or self.table.attempts
@@ -112,6 +76,7 @@ class Variants:
         self._convention = own_convention(self.table.base, folder)
         self._who = {"workers": workers, "in_process": in_process}
         self._found: list[Variant] = []
+        self._last = -1
         self._reasons: list[tuple[int, str]] = []
         self._reference: tuple[Mapping[str, Any], Mapping[str, Any]] | None = None
         self._keys: set[str] = set()
@@ -142,14 +107,9 @@ class Variants:
         return tuple(self._found)
 
     @property
-    def last(self) -> int:
-        """The number of the last candidate taken, −1 before there is one."""
-        return self._found[-1].candidate if self._found else -1
-
-    @property
     def rejected(self) -> dict[str, int]:
         """How many candidates were left out before the last one taken, by the reason."""
-        return self._counted(self.last)
+        return self._counted(self._last)
 
     def _counted(self, last: int) -> dict[str, int]:
         counts = Counter(reason for number, reason in self._reasons if number < last)
@@ -158,50 +118,49 @@ class Variants:
     @property
     def manifest(self) -> dict[str, Any]:
         """What was made, as JSON: all data and answers, so that old variants depend on no program."""
-        from symobs.variation.files import manifest  # noqa: PLC0415 - it imports this module
+        listed = list(self)
+        return manifest(self._about, listed)
 
-        return manifest(self, list(self))
+    @property
+    def _about(self) -> About:
+        return About(self.problem_hash, self.seed, self.rejected)
 
     def write(self, folder: str | Path, *, report: bool = False) -> None:
         """Write what was found so far: problem files and the manifest, all of them or none."""
-        from symobs.variation.files import write_folder  # noqa: PLC0415 - as above
-
-        write_folder(self, Path(folder), report=report)
+        write_folder(Path(folder), self._about, self.found, report=report)
 
     # -- the search ---------------------------------------------------------------------------------------------------
 
     def _search(self) -> Iterator[Variant]:
         """Yield the variants.  The first one, or the file's own plant, is what the others have to be like."""
-        last, start = -1, 0
+        start = 0
         with workforce(**self._who) as force:  # type: ignore[arg-type]
             if self.table.like == "base":
                 self._measure_base(force)
             while len(self._found) < self.count:
                 is_first = self._reference is None
-                for found, outcome in self._judged(force, start, lambda: last):
+                for found, outcome in self._judged(force, start):
                     start = found.number + 1
                     reason = outcome if isinstance(outcome, str) else self._refusal(found, outcome)
                     if reason is not None:
                         self._reasons.append((found.number, reason))
                         continue
-                    last = found.number
+                    self._last = found.number
                     yield self._accepted(found, outcome)
                     if is_first or len(self._found) == self.count:
                         break
                 else:
-                    if start > last + self.attempts:
+                    if start > self._last + self.attempts:
                         raise self._too_few(start)
 
-    def _judged(
-        self, force: Workforce, start: int, last: Callable[[], int]
-    ) -> Iterator[tuple[Candidate, str | dict[str, Any]]]:
+    def _judged(self, force: Workforce, start: int) -> Iterator[tuple[Candidate, str | dict[str, Any]]]:
         """Yield candidates in their order from `start` on, each with the cheap reason against it or what became of it."""
         waiting: deque[tuple[Candidate, str | None, str]] = deque()
         rows: dict[str, dict[str, Any]] = {}
 
         def jobs() -> Iterator[Job]:
             number = start
-            while number <= last() + self.attempts:
+            while number <= self._last + self.attempts:
                 found = candidate(self.table, self.seed, number)
                 test = cheap(self.table, found, self._reference and self._reference[0])
                 reason = test.reason or (_SAME if data_key(found) in self._taken else None)
@@ -289,7 +248,9 @@ class Variants:
         counts = self._counted(tried)
         most, often = next(iter(counts.items()), ("", 0))
         message = f"{len(self._found)} of {self.count} variants were found among {tried} candidates"
-        repair = f"most often ({100 * often / max(1, sum(counts.values())):.0f} %): {most}; widen that, or draw from more"
+        repair = (
+            f"most often ({100 * often / max(1, sum(counts.values())):.0f} %): {most}; widen that, or draw from more"
+        )
         return TooFew(message, where="variants", repair=repair, rejected=counts)
 
 

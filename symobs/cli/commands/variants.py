@@ -54,9 +54,7 @@ def command(
     if listed and (report or assign or partial):
         raise UsageError("with --list nothing is written", repair="write -o FOLDER instead")
     if profile not in PROFILES:
-        raise UsageError(
-            f"{quoted(profile)} is no profile", where="--profile", repair=f"write {' or '.join(PROFILES)}"
-        )
+        raise UsageError(f"{quoted(profile)} is no profile", where="--profile", repair=f"write {' or '.join(PROFILES)}")
     students = read_file(assign) if assign is not None else None
     found = Variants(
         read_file(problem),

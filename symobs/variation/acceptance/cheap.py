@@ -28,7 +28,6 @@ from symobs.variation.drawing.integers import (
     times,
     transposed,
     trimmed,
-
 )
 from symobs.variation.reading.substitution import in_text
 
@@ -195,5 +194,3 @@ def _number(text: str) -> Fraction:
 def kind_of(found: Candidate) -> dict[str, Any]:
     """Return what of the structure can be seen in the data: shapes, zeros, and the kinds of poles."""
     return {"matrices": found.shapes, "poles": pole_kinds(found.data)}
-
-

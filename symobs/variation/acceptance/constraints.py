@@ -84,7 +84,9 @@ def _is_minimal_phase(plant: StateSpace, _: Sequence[Result]) -> bool:
             return False
         value = value[0, 0]
     top = value.numerator
-    return bool(top) and stability(top, plant.variable, plant.symbols.signs, discrete=plant.is_discrete).verdict == "yes"
+    return (
+        bool(top) and stability(top, plant.variable, plant.symbols.signs, discrete=plant.is_discrete).verdict == "yes"
+    )
 
 
 def _numbers(polynomial: Scalar, variable: str) -> list[Fraction] | None:
@@ -113,7 +115,7 @@ def _poles_are(kind: str, plant: StateSpace) -> bool:
 def _is_square(polynomial: Scalar, variable: str) -> bool:
     """Return whether the discriminant of a polynomial of second order is the square of a rational number."""
     found = _numbers(polynomial, variable)
-    if found is None or len(found) != 3:  # noqa: PLR2004
+    if found is None or len(found) != 3:
         return False
     discriminant = found[1] ** 2 - 4 * found[0] * found[2]
     return discriminant >= 0 and rational_sqrt(discriminant) is not None
@@ -134,7 +136,10 @@ _FLAGS: dict[str, Callable[[StateSpace, Sequence[Result]], bool]] = {
 
 
 def _not_square(names: Sequence[str], plant: StateSpace, results: Sequence[Result]) -> str | None:
-    polynomials = {"plant": [_chi(plant)], "closed_loop": [f for r in results if isinstance(f := r.fields.get("polynomial"), Scalar)]}
+    polynomials = {
+        "plant": [_chi(plant)],
+        "closed_loop": [f for r in results if isinstance(f := r.fields.get("polynomial"), Scalar)],
+    }
     for name in names:
         if not all(_is_square(each, plant.variable) for each in polynomials[name]):
             return f"the discriminant of {name} is no square"

@@ -49,7 +49,10 @@ def _moved(A: Sequence[Sequence[int]], *vectors: Sequence[Sequence[int]]) -> Ite
     """Yield P A P⁻¹ with the columns of P B and the rows of C P⁻¹, each up to its sign."""
     for places, signs in each_signed_permutation(len(A)):
         moved = [[signs[i] * signs[j] * A[places[i]][places[j]] for j in range(len(A))] for i in range(len(A))]
-        others = [[max(w, [-x for x in w]) for v in group for w in [[s * v[p] for p, s in zip(places, signs, strict=True)]]] for group in vectors]
+        others = [
+            [max(w, [-x for x in w]) for v in group for w in [[s * v[p] for p, s in zip(places, signs, strict=True)]]]
+            for group in vectors
+        ]
         yield moved, *others
 
 

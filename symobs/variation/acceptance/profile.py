@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import fields, is_dataclass
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
@@ -12,6 +11,8 @@ from symobs.exact import Matrix, Scalar
 from symobs.formula.nodes import Literal
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Mapping
+
     from symobs.derivation import Derivation
     from symobs.result import Result
 

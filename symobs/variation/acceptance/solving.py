@@ -88,5 +88,3 @@ def recheck(payload: Mapping[str, Any], row: Mapping[str, Any]) -> str | None:
         return None
     told = {"status": "done", "result": row["result"]["answers"], "key": row["key"]}
     return recheck_answers(payload, told)
-
-

@@ -180,9 +180,9 @@ def second_order(draws: Draws, shape: Shape) -> Made:
 def region(draws: Draws, shape: Shape) -> Made:
     """Return a polynomial with two gains whose region has whole corners, or is bounded by h₁h₂ = c.
 
-    triangle   z² + ℓ₁z + ℓ₂ is stable in the triangle with the corners (±2, 1), (0, −1); ℓ = Uh + c with U unimodular
-    wedge      s³ + a s² + ℓ₁s + ℓ₂ is stable where ℓ₂ > 0 and aℓ₁ > ℓ₂; both sides go through a whole corner
-    curve      s³ + ℓ₁s² + ℓ₂s + c with ℓ = h − p is stable where ℓ₁ℓ₂ > c and ℓ₁ > 0
+    triangle   z² + fz + g is stable in the triangle with the corners (±2, 1), (0, −1); [f; g] = Uh + c with U unimodular
+    wedge      s³ + a s² + fs + g is stable where g > 0 and af > g; both sides go through a whole corner
+    curve      s³ + fs² + gs + c with [f; g] = h − p is stable where fg > c and f > 0
     """
     draw = draws["region"]
     low, high = shape["corners"]

@@ -46,7 +46,9 @@ def times(left: Rows, right: Rows) -> Rows:
 
 def plus(left: Rows, right: Rows, factor: int = 1) -> Rows:
     """Return left + factor·right."""
-    return tuple([tuple([a + factor * b for a, b in zip(*rows, strict=True)]) for rows in zip(left, right, strict=True)])
+    return tuple(
+        [tuple([a + factor * b for a, b in zip(*rows, strict=True)]) for rows in zip(left, right, strict=True)]
+    )
 
 
 def block(blocks: Sequence[Sequence[Rows]]) -> Rows:
@@ -180,9 +182,7 @@ def common_divisor(one: Poly, other: Poly) -> Poly:
     while other:
         while len(one) >= len(other):
             shift = (0,) * (len(one) - len(other))
-            one = trimmed(
-                tuple(other[-1] * a - one[-1] * b for a, b in zip(one, (*shift, *other), strict=True))
-            )
+            one = trimmed(tuple(other[-1] * a - one[-1] * b for a, b in zip(one, (*shift, *other), strict=True)))
         one, other = other, primitive(one)[0]
     return primitive(one)[0]
 

@@ -117,7 +117,7 @@ def read_parameter(name: str, table: object, note: Note) -> Parameter | None:
 
 def interval(value: object, where: str, note: Note) -> tuple[int, int] | None:
     """Return the two ends of an interval of whole numbers; None, with an error noted, for anything else."""
-    if isinstance(value, list) and len(value) == 2 and all(is_integer(end) for end in value):  # noqa: PLR2004
+    if isinstance(value, list) and len(value) == 2 and all(is_integer(end) for end in value):
         low, high = value
         if low <= high and max(-low, high) <= _LARGEST and high - low < _MOST_VALUES:
             return low, high
@@ -130,7 +130,9 @@ def is_integer(value: object) -> bool:
     return isinstance(value, int) and not isinstance(value, bool)
 
 
-def count_of(table: Mapping[str, Any], key: str, where: str, note: Note, least: int = 1, most: int = _MOST_ORDER) -> int:
+def count_of(
+    table: Mapping[str, Any], key: str, where: str, note: Note, least: int = 1, most: int = _MOST_ORDER
+) -> int:
     """Return a small whole number of a table."""
     value = table.get(key, least)
     if is_integer(value) and least <= value <= most:
@@ -210,7 +212,7 @@ def _poles(table: Mapping[str, Any], where: str, note: Note) -> list[tuple[int, 
 
 def _matrix(table: Mapping[str, Any], where: str, note: Note) -> None:
     shape = table["matrix"]
-    is_shape = isinstance(shape, list) and len(shape) == 2  # noqa: PLR2004
+    is_shape = isinstance(shape, list) and len(shape) == 2
     if not is_shape or not all(is_integer(size) and 1 <= size <= _MOST_ORDER for size in shape):
         note("two sizes are expected, rows first", f"{where}.matrix", "write matrix = [3, 3]")
         return

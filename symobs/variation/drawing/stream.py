@@ -1,8 +1,8 @@
-"""The stream `variants/1`: words made by SHA-256 of seed, candidate, name and number, the same on every machine for ever.
+r"""The stream `variants/1`: words made by SHA-256 of seed, candidate, name and number, the same on every machine for ever.
 
 Word k of the draw `name` for candidate c of seed S is the first eight bytes, as a big-endian number, of
 
-    SHA-256("symobs-variants/1\\n" + S + "\\n" + c + "\\n" + name + "\\n" + k)
+    SHA-256("symobs-variants/1\n" + S + "\n" + c + "\n" + name + "\n" + k)
 
 Nothing here may change: a variant is made again from its seed and its number.  Another stream needs another version.
 """

@@ -98,11 +98,15 @@ def _construct(table: Mapping[str, Any], note: Note) -> tuple[str | None, dict[s
         if key not in shape:
             note("unknown key", where, f"the shape of {kind} has {', '.join(shape)}")
         elif isinstance(shape[key], str):
-            words = {"of": ("observer", "state_feedback"), "region": ("triangle", "wedge", "curve"), "hidden": ("stable", "unstable")}
+            words = {
+                "of": ("observer", "state_feedback"),
+                "region": ("triangle", "wedge", "curve"),
+                "hidden": ("stable", "unstable"),
+            }
             if value not in words[key]:
                 note("this is no choice", where, f"write one of {', '.join(words[key])}")
         elif key == "sizes":
-            if not (isinstance(value, list) and len(value) == 4 and all(is_integer(v) and 0 <= v <= 4 for v in value)):  # noqa: PLR2004
+            if not (isinstance(value, list) and len(value) == 4 and all(is_integer(v) and 0 <= v <= 4 for v in value)):
                 note("four whole numbers are expected", where, "write sizes = [1, 1, 1, 0]")
             elif not sum(value) or value[0] + value[2] == 0 or value[0] + value[1] == 0:
                 note("no input or no output is left", where, "write sizes = [1, 1, 1, 0]")
@@ -118,7 +122,7 @@ def _construct(table: Mapping[str, Any], note: Note) -> tuple[str | None, dict[s
 
 def _enough(kind: str, shape: Mapping[str, Any], note: Note) -> None:
     """Note a shape that nothing has."""
-    if "plant_poles" not in shape or not isinstance(shape["plant_poles"], list) or len(shape["plant_poles"]) != 2:  # noqa: PLR2004
+    if "plant_poles" not in shape or not isinstance(shape["plant_poles"], list) or len(shape["plant_poles"]) != 2:
         return
     order = sum(shape["sizes"]) if "sizes" in shape else shape.get("order", 2) - 2 * shape.get("pairs", 0)
     low, high = shape["plant_poles"]
@@ -146,7 +150,7 @@ def _difficulty(table: object, note: Note) -> tuple[str, Fraction]:
     if like not in LIKE:
         note("this is no choice", f"{where}.like", f"write one of {', '.join(LIKE)}")
     digits = str(load).removesuffix("%")
-    if not str(load).endswith("%") or not digits.isdecimal() or len(digits) > 3:  # noqa: PLR2004
+    if not str(load).endswith("%") or not digits.isdecimal() or len(digits) > 3:
         note("a percentage is expected", f"{where}.load", 'write load = "20%"')
         return like, LOAD
     return like, Fraction(int(digits), 100)

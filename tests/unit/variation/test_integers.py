@@ -22,7 +22,7 @@ def poly(coefficients: whole.Poly) -> sp.Expr:
 
 
 def test_matrices_are_those_of_sympy() -> None:
-    dice = random.Random(1)
+    dice = random.Random(1)  # noqa: S311 - test matrices, no secrets
     for _ in range(15):
         order = dice.randint(1, 4)
         rows = matrix(dice, order, order)
@@ -37,9 +37,9 @@ def test_matrices_are_those_of_sympy() -> None:
 
 
 def test_polynomials_are_those_of_sympy() -> None:
-    dice = random.Random(2)
+    dice = random.Random(2)  # noqa: S311 - test matrices, no secrets
     for _ in range(15):
-        one, other, shared = (tuple(dice.randint(-3, 3) for _ in range(n)) + (dice.choice((1, 2)),) for n in (2, 1, 1))
+        one, other, shared = ((*(dice.randint(-3, 3) for _ in range(n)), dice.choice((1, 2))) for n in (2, 1, 1))
         left, right = whole.multiplied(one, shared), whole.multiplied(other, shared)
         divisor = whole.common_divisor(left, right)
         expected = sp.Poly(sp.gcd(poly(left), poly(right)), s).primitive()[1]
@@ -61,11 +61,12 @@ def test_numerators_are_all_whole_ones_with_values_plus_or_minus_one() -> None:
         assert found == expected
         assert all(abs(sp.resultant(poly(chi), each, s)) == 1 for each in found)
     pairs = ((-1, 2), (0, 0))
-    assert all(abs(sp.resultant(poly(whole.of_poles(pairs)), poly(b), s)) == 1 for b in whole.unit_numerators(whole.of_poles(pairs), pairs))
+    chi = whole.of_poles(pairs)
+    assert all(abs(sp.resultant(poly(chi), poly(b), s)) == 1 for b in whole.unit_numerators(chi, pairs))
 
 
 def test_compensators_are_those_of_sympy() -> None:
-    dice = random.Random(3)
+    dice = random.Random(3)  # noqa: S311 - test matrices, no secrets
     for _ in range(6):
         A, B, C, D = matrix(dice, 2, 2), matrix(dice, 2, 1), matrix(dice, 1, 2), matrix(dice, 1, 1)
         K, L = matrix(dice, 1, 2), matrix(dice, 2, 1)
@@ -73,4 +74,6 @@ def test_compensators_are_those_of_sympy() -> None:
         expected = (k * (s * sp.eye(2) - a + b * k + gain * c - gain * d * k).inv() * gain)[0, 0]
         top, bottom = controller({"A": A, "B": B, "C": C, "D": D}, K, L)
         assert sp.cancel(expected - poly(top) / poly(bottom)) == 0
-        assert sp.Poly(poly(bottom), s).degree() == sp.Poly(sp.fraction(sp.cancel(expected))[1], s).degree() or not any(top)
+        assert sp.Poly(poly(bottom), s).degree() == sp.Poly(sp.fraction(sp.cancel(expected))[1], s).degree() or not any(
+            top
+        )

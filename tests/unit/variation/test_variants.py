@@ -107,7 +107,9 @@ def _gains_by_pari(variants: list[Any]) -> None:
         if "K" in each.expect:
             poles = asked.get("control_poles", asked.get("poles"))
             lines.append(f"fit(Mat(obs({A}~, {B}~, [{poles}]))~, {_of_pari(each.expect['K'])});")
-    run_of = subprocess.run(["gp", "-q"], input="\n".join(lines), capture_output=True, text=True, check=True, timeout=60)
+    run_of = subprocess.run(
+        ["gp", "-q"], input="\n".join(lines), capture_output=True, text=True, check=True, timeout=60
+    )
     assert run_of.stdout.split() == ["1"] * (len(lines) - 4)
 
 
@@ -126,7 +128,8 @@ def test_processes_change_nothing() -> None:
 
 
 def drawn(plant: str) -> Any:
-    text = f'task = "observer"\n[plant]\n{plant}\n[specification]\npoles = "p"\n[variants.parameters]\np = {{ poles = 2, from = [-2, -2] }}\n'
+    specification = '[specification]\npoles = "p"\n[variants.parameters]\np = { poles = 2, from = [-2, -2] }\n'
+    text = f'task = "observer"\n[plant]\n{plant}\n{specification}'
     return candidate(read_table(text), 0, 0)
 
 
@@ -141,7 +144,8 @@ def test_the_same_plant_in_other_coordinates_is_known() -> None:
 
 
 def test_the_order_of_poles_makes_no_new_problem() -> None:
-    text = 'task = "observer"\n[plant]\nA = "[0 1; 0 a]"\nC = "[1 0]"\n[specification]\npoles = "{}"\n[variants.parameters]\na = {{ set = [1] }}\n'
+    text = 'task = "observer"\n[plant]\nA = "[0 1; 0 a]"\nC = "[1 0]"\n[specification]\npoles = "{}"\n'
+    text += "[variants.parameters]\na = {{ set = [1] }}\n"
     first, second, third = (candidate(read_table(text.format(p)), 0, 0) for p in ("-1, -2", "-2, -1", "-1, -1"))
     assert data_key(first) == data_key(second) != data_key(third)
 
@@ -248,7 +252,9 @@ def test_what_nothing_meets_ends_after_the_attempts_with_the_reasons() -> None:
 # -- constraints ------------------------------------------------------------------------------------------------------
 
 
-def outcome(constraints: dict[str, Any], plant: dict[str, str], task: str = "characteristic_polynomial", **asked: str) -> Any:
+def outcome(
+    constraints: dict[str, Any], plant: dict[str, str], task: str = "characteristic_polynomial", **asked: str
+) -> Any:
     problem = {"task": task, "plant": plant, "specification": asked}
     return run({"problem": problem, "constraints": constraints, "gains": {}})["result"]["reason"]
 
