@@ -41,6 +41,11 @@ COMMANDS = {
 }
 
 
+def place_of(name: str) -> str:
+    """Return the module of a command of the table."""
+    return f"symobs.cli.{'listings' if name in LISTINGS else 'commands'}.{name}"
+
+
 class Tasks(click.Group):
     """The commands of the table, and one for every registered task."""
 
@@ -57,8 +62,7 @@ class Tasks(click.Group):
     def get_command(self, _: click.Context, cmd_name: str) -> click.Command | None:
         """Return a command; that of a task is made from its signature."""
         if cmd_name in COMMANDS:
-            folder = "listings" if cmd_name in LISTINGS else "commands"
-            found: click.Command = import_module(f"symobs.cli.{folder}.{cmd_name}").command
+            found: click.Command = import_module(place_of(cmd_name)).command
             return found
         from symobs.result import task_named  # noqa: PLC0415
 
