@@ -18,6 +18,7 @@ from symobs.variation.acceptance.candidates import Candidate, base_candidate, ca
 from symobs.variation.acceptance.cheap import Cheap, cheap, kind_of
 from symobs.variation.acceptance.distinct import data_key, keys_of
 from symobs.variation.acceptance.profile import unlike
+from symobs.variation.drawing.parameters import is_integer
 from symobs.variation.drawing.stream import LARGEST_SEED
 from symobs.variation.files import About, manifest, write_folder
 from symobs.variation.reading.table import Table, read_table
@@ -59,9 +60,9 @@ class Variants:
         in_process: bool = False,
     ) -> None:
         """Read the table of the file; raises `ProblemErrors` with all that is wrong with it."""
-        if isinstance(count, bool) or not isinstance(count, int) or not 1 <= count <= MOST:
+        if not is_integer(count) or not 1 <= count <= MOST:
             raise UsageError(f"{count!r} variants cannot be made", where="count", repair=f"ask for 1 to {MOST}")
-        if isinstance(seed, bool) or not isinstance(seed, int) or not 0 <= seed <= LARGEST_SEED:
+        if not is_integer(seed) or not 0 <= seed <= LARGEST_SEED:
             repair = f"take a whole number from 0 to {LARGEST_SEED}"
             raise UsageError(f"{seed!r} is no seed", where="seed", repair=repair)
         if profile not in PROFILES:

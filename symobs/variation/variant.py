@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 class Variant(NamedTuple):
     """A problem of its own: solved, checked, and like the others in what it takes to work it out."""
 
-    index: int
+    number: int
     id: str
     candidate: int
     data: Mapping[str, Any]
@@ -24,7 +24,7 @@ class Variant(NamedTuple):
     @property
     def name(self) -> str:
         """The name of its file."""
-        return f"v{self.index:03d}"
+        return f"v{self.number:03d}"
 
     @property
     def text(self) -> str:

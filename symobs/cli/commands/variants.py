@@ -69,7 +69,7 @@ def command(
     shares = None if students is None else assignment(students, seed, count, place_of(str(assign)))
     found.told = _told(count)
     if target is None:
-        lines = [json.dumps({"index": each.index, **each.as_data()}, ensure_ascii=False) for each in found]
+        lines = [json.dumps({"number": each.number, **each.as_data()}, ensure_ascii=False) for each in found]
         write("".join(f"{line}\n" for line in lines))
         return
     code = 0

@@ -8,7 +8,7 @@ from symobs.batching.jobs import canonical, digest
 from symobs.variation.drawing.integers import each_signed_permutation
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping, Sequence
+    from collections.abc import Iterator, Sequence
 
     from symobs.variation.acceptance.candidates import Candidate
 
@@ -56,7 +56,7 @@ def _moved(A: Sequence[Sequence[int]], *vectors: Sequence[Sequence[int]]) -> Ite
         yield moved, *others
 
 
-def keys_of(found: Candidate, answers: Mapping[str, Any], kind: str) -> set[str]:
+def keys_of(found: Candidate, answers: Sequence[Any], kind: str) -> set[str]:
     """Return the keys of which two variants may share none."""
     keys = set()
     if kind in {"data", "both"}:

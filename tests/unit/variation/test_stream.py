@@ -67,7 +67,7 @@ FROZEN = {
 
 
 def drawn(kind: str) -> list[str]:
-    found = read_parameter(kind, KINDS[kind], pytest.fail)
+    found = read_parameter(kind, KINDS[kind], lambda *told: pytest.fail(str(told)))
     assert isinstance(found, Parameter)
     return [str(found.drawn(Draws(seed, c)[kind])) for seed in SEEDS for c in range(200)]
 
