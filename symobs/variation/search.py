@@ -77,7 +77,7 @@ class Variants:
         self._convention = own_convention(self.table.base, folder)
         self._who = {"workers": workers, "in_process": in_process}
         self._found: list[Variant] = []
-        self._last = -1
+        self._last, self._was_read = -1, False
         self._reasons: list[tuple[int, str]] = []
         self._reference: tuple[Mapping[str, Any], Mapping[str, Any]] | None = None
         self._keys: set[str] = set()
@@ -204,10 +204,10 @@ class Variants:
                 error = "; ".join(row["error"])[:500]
                 raise CertificateRejected(f"candidate {found.number} of seed {self.seed}: {error}")
             case "unreadable":
-                if not self._reasons:
+                if not self._was_read:  # what the first one has, all have
                     raise ProblemErrors(tuple(InputError(line) for line in row["error"]))
                 return "it cannot be read"
-        result = row["result"]
+        self._was_read, result = True, row["result"]
         if result["reason"] is not None:
             return str(result["reason"])
         if self._reference is not None:

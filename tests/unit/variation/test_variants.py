@@ -229,7 +229,7 @@ def test_all_errors_of_the_table_come_together_with_place_and_repair() -> None:
     }
     assert all(error.repair for error in told.values())
     with pytest.raises(ProblemErrors, match=r"specification.colour: unknown key"):
-        found(OBSERVER + '\n[specification]\ncolour = "red"\n', 1)[0]
+        found(OBSERVER + '\n[specification]\ncolour = "red"\n', 1)[0]  # the first eleven are left out before
     with pytest.raises(ProblemErrors, match="this file stands for many problems"):
         read(OBSERVER)
 
