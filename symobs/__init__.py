@@ -17,6 +17,7 @@ FUNCTIONS = {
     "batch": "symobs.batching",
     "check": "symobs.checking",
     "sweep": "symobs.batching.sweep",
+    "variants": "symobs.variation",
 }
 
 

@@ -49,6 +49,7 @@ from symobs.errors import TypesettingError as TypesettingError
 from symobs.errors import UnknownName as UnknownName
 from symobs.errors import UsageError as UsageError
 from symobs.system import StateSpace as StateSpace
+from symobs.variation import variants as variants
 
 _Number: TypeAlias = str | float | complex | Fraction | Decimal | Expr
 _Plant: TypeAlias = StateSpace | tuple[Sequence[_Number], Sequence[_Number]]

@@ -123,12 +123,12 @@ def solve_job(
         tables = parse(text, name)
         left_out = _SAYS_NOTHING if formats else _SAYS_NOTHING | _ON_A_PAGE
         problem = {key: value for key, value in tables.items() if key not in left_out}
-        return job("solve", {**options, "problem": problem, **_own_convention(tables, folder)}, name)
+        return job("solve", {**options, "problem": problem, **own_convention(tables, folder)}, name)
     except (ProblemErrors, TypeError):  # not TOML, or a date in it: whoever works on it says what is wrong
         return job("solve", {**options, "text": text}, name)
 
 
-def _own_convention(tables: Mapping[str, Any], folder: Path | None) -> dict[str, str]:
+def own_convention(tables: Mapping[str, Any], folder: Path | None) -> dict[str, str]:
     """Return the text of the convention file that lies beside the problem, where it is written in one."""
     name = str(tables.get("convention", ""))
     stem = re.sub(r"(\.toml)+\Z", "", name)

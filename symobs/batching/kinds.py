@@ -20,6 +20,7 @@ KINDS = {
     "check": "symobs.checking.classes.row",
     "sheet-entry": "symobs.cli.shared.sheet_entries",
     "solve": "symobs.batching.solving",
+    "variant": "symobs.variation.acceptance.solving",
     "sweep-block": "symobs.batching.sweep.block",
 }
 

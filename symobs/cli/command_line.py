@@ -21,7 +21,9 @@ if TYPE_CHECKING:
     from click.shell_completion import CompletionItem
 
 _MOST_LINES = 100
-#: What each command does; `command` in the module of its name in `symobs.cli.commands` is imported when it is called.
+#: What each command does; `command` in the module of its name in `symobs.cli.commands` is imported when it is called,
+#: or in `symobs.cli.listings` where it is one of these.
+LISTINGS = ("conventions", "methods")
 COMMANDS = {
     "audit": "Recompute what a source prints: every FILE's [[printed]] equations.",
     "batch": "Solve many problems, on all processors or on a cluster, into a folder from which a run goes on.",
@@ -35,7 +37,13 @@ COMMANDS = {
     "solve": "Solve a problem FILE (TOML or JSON; - is standard input) and print its derivation.",
     "sweep": "Design at every point of a grid, each exact and checked, into a table.",
     "templates": "List the built-in LaTeX templates, or copy them.",
+    "variants": "Make many problems of the same kind from a PROBLEM file with a table [variants].",
 }
+
+
+def place_of(name: str) -> str:
+    """Return the module of a command of the table."""
+    return f"symobs.cli.{'listings' if name in LISTINGS else 'commands'}.{name}"
 
 
 class Tasks(click.Group):
@@ -54,7 +62,7 @@ class Tasks(click.Group):
     def get_command(self, _: click.Context, cmd_name: str) -> click.Command | None:
         """Return a command; that of a task is made from its signature."""
         if cmd_name in COMMANDS:
-            found: click.Command = import_module(f"symobs.cli.commands.{cmd_name}").command
+            found: click.Command = import_module(place_of(cmd_name)).command
             return found
         from symobs.result import task_named  # noqa: PLC0415
 

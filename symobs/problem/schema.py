@@ -49,6 +49,8 @@ TOP: dict[str, dict[str, Any]] = {
     "expect": {"description": "answers to hold the results against; [expect.TASK] for one task", "type": "object"},
     "printed": {"description": "what a source prints, for symobs audit: [[printed]], one an entry"},
     "marking": {"description": "what counts of an answer, for symobs check"},
+    "variants": {"description": "how many problems like this one are drawn, for symobs variants", "type": "object"},
+    "variant": {"description": "the id of the variant that this problem is", "type": "string"},
 }
 #: What one entry of [[printed]] may say.
 PRINTED: dict[str, dict[str, Any]] = {

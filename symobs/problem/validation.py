@@ -112,6 +112,10 @@ def validate(data: Mapping[str, Any], only: str | None = None, folder: Path | No
     values = table_of(data, "values", errors)
     digits = _digits(data, errors)
     marking = read_marking(data.get("marking", {}), [task.name for task in asked], errors.note)
+    check_text(data.get("variant", ""), "variant", errors)
+    if "variants" in data:
+        repair = "solve one with `symobs solve FILE --variant 1`, or write them with `symobs variants FILE -o FOLDER`"
+        errors.note("this file stands for many problems", "variants", repair)
     if not errors.found and plant is not None:
         about = title, source, ids, wanted, plant, specification, expect, convention, text, printed, values, marking
         return Problem(*about, digits)

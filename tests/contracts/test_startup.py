@@ -135,7 +135,7 @@ def test_tasks_and_formats_are_listed_without_importing_one() -> None:
     formats = {name: kind.suffix for name, kind in sorted(result.formats().items())}
     assert task_index.format_suffixes(symobs.FORMAT_PACKAGE) == formats
     for name, summary in command_line.COMMANDS.items():
-        module = import_module(f"symobs.cli.commands.{name}")
+        module = import_module(command_line.place_of(name))
         assert module.command.name == name
         assert " ".join(module.command.help.partition("\n\n")[0].split()) == summary
     found = after("--help")

@@ -10,9 +10,10 @@ from symobs.checking.report.schema import schema as of_check
 from symobs.cli.shared.output import write
 from symobs.errors import UsageError
 from symobs.problem import schema as of_problem
+from symobs.variation.schema import schema as of_variants
 
 #: What has a schema, by the name that the command takes.
-SCHEMAS = {"problem": of_problem, "check": of_check}
+SCHEMAS = {"problem": of_problem, "check": of_check, "variants": of_variants}
 
 
 @click.command("schema")
@@ -20,7 +21,7 @@ SCHEMAS = {"problem": of_problem, "check": of_check}
 def command(name: str) -> None:
     """Print the JSON schema of problem files, or that of the results of the command NAME.
 
-    NAME is problem (default) or check.
+    NAME is problem (default), check or variants (their manifest).
     """
     if name not in SCHEMAS:
         raise UsageError(f"{name[:40]!r} has no schema", repair=f"take {', '.join(SCHEMAS)}")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -22,10 +22,12 @@ if TYPE_CHECKING:
 @click.command("solve")
 @click.argument("file", type=AFile())
 @click.option("--task", "task_name", type=OneOf(tasks), metavar="NAME", help="Run this task only.")
+@click.option("--variant", type=click.IntRange(1), metavar="N", help="Of a file with [variants]: the N-th one (1).")
 @options(*OF_A_PAGE)
 def command(
     file: str,
     task_name: str | None,
+    variant: int | None,
     format_name: str | None,
     target: str | None,
     plot: str | None,
@@ -52,7 +54,8 @@ def command(
     page = page_of(detail, templates, chosen, digits=digits, exact=exact, **numbers)
 
     def work(report_progress: Progress) -> Outcome:
-        found = validate(parse(read_file(file), file), task_name, Path(file).parent)
+        tables = _tables(read_file(file), file, variant)
+        found = validate(tables, task_name, Path(file).parent)
         report_progress = progress_on_terminal(report_progress)
         return solved(
             found,
@@ -68,3 +71,16 @@ def command(
         )
 
     run_work(work, timeout, memory, place_of(file))
+
+
+def _tables(text: str, file: str, variant: int | None) -> dict[str, Any]:
+    """Return the tables of a problem, or those of one of its variants."""
+    tables = parse(text, file)
+    if "variants" not in tables:
+        if variant is not None:
+            repair = "leave --variant out, or name a file with [variants]"
+            raise UsageError("the file has no table [variants]", where="--variant", repair=repair)
+        return tables
+    from symobs.variation import variant_of  # noqa: PLC0415 - for files that have variants only
+
+    return variant_of(text, file, variant or 1)

@@ -1,0 +1,1 @@
+"""Which candidates become variants: the cheap tests, the constraints, the profile and the keys of what is distinct."""

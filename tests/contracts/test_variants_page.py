@@ -1,0 +1,62 @@
+"""The page on variants shows what the commands do."""
+
+from __future__ import annotations
+
+import json
+import re
+import shlex
+from typing import TYPE_CHECKING
+
+import pytest
+
+from symobs.problem import parse
+from symobs.variation.drawing.constructions import CONSTRUCTIONS
+from symobs.variation.drawing.parameters import read_parameter
+from symobs.variation.reading.constraint_table import BOUNDS, FLAGS, LISTS, PAGE
+from tests.support.paths import ROOT
+from tests.support.tools.command_line import inside
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+PAGE_TEXT = (ROOT / "docs" / "variants.md").read_text(encoding="utf-8")
+
+
+def block(language: str) -> str:
+    (found,) = re.findall(rf"^```{language}\n(.*?)^```", PAGE_TEXT, re.MULTILINE | re.DOTALL)
+    return str(found)
+
+
+def test_the_page_names_all_there_is() -> None:
+    for name in (*CONSTRUCTIONS, *FLAGS, *LISTS, *BOUNDS, *PAGE):
+        assert re.search(rf"\b{name}\b", PAGE_TEXT), name
+    for name, table in parse(block("text")).items():
+        assert name == "when" or read_parameter(name, table, lambda *told: pytest.fail(str(told)))
+
+
+@pytest.mark.slow
+def test_every_command_of_the_page_runs(tmp_path: Path) -> None:
+    (tmp_path / "problem.toml").write_text(block("toml"), encoding="utf-8")
+    (tmp_path / "students.csv").write_text("student;name\ns01;A\n=cmd();B\ns02;C\ns01;A\n", encoding="utf-8")
+    (tmp_path / "answer.txt").write_text("L = [-4; 9]\n", encoding="utf-8")
+    runs = [inside(*shlex.split(line, comments=True)[1:], folder=tmp_path) for line in block("sh").splitlines()]
+    assert [run.code for run in runs] == [0] * 7
+    assert "variant 2" in runs[0].out
+    assert "Variant 2 of seed 0." in runs[0].out
+    manifest = json.loads((tmp_path / "SET" / "manifest.json").read_text(encoding="utf-8"))
+    assert [each["file"] for each in manifest["variants"]] == [f"variants/v00{i}.toml" for i in (1, 2, 3)]
+    assert manifest["variants"][1]["answers"]["L"] == "[-4; 9]"
+    rows = (tmp_path / "SET" / "assignment.csv").read_text(encoding="utf-8").splitlines()
+    assert rows[0] == "student,variant"
+    assert [row.split(",")[0] for row in rows[1:]] == ["s01", "'=cmd()", "s02"]
+    assert len((tmp_path / "SET" / "report.md").read_text(encoding="utf-8").splitlines()) > 10
+    handout, key = ((tmp_path / name).read_text(encoding="utf-8") for name in ("handout.tex", "key.tex"))
+    assert handout.count("variant ") == 3
+    assert r"\begin{bmatrix}-4\\9\end{bmatrix}" not in handout
+    assert r"\begin{bmatrix}-4\\9\end{bmatrix}" in key
+    assert [json.loads(line)["id"] for line in runs[5].out.splitlines()] == [
+        each["id"] for each in manifest["variants"][:2]
+    ]
+    again = inside(*shlex.split("variants problem.toml --count 2 --seed 7 -o SET"), folder=tmp_path)
+    assert again.code == 3
+    assert "there are variants already" in again.err

@@ -1,0 +1,95 @@
+"""The command `variants`: what it refuses, and what it leaves behind then."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import pytest
+
+from tests.support.paths import ROOT
+from tests.support.tools.command_line import inside
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+OBSERVER = ROOT / "worked_examples" / "variants" / "observer.toml"
+FEW = """
+title = "a is {a}"
+task = "observability"
+[plant]
+A = "[0 1; 0 a]"
+C = "[1 0]"
+[variants]
+attempts = 20
+distinct = "data"
+[variants.parameters]
+a = { set = [1, 2] }
+"""
+
+
+@pytest.mark.parametrize(
+    ("arguments", "code", "message"),
+    [
+        ([], 2, "a folder or a list is expected"),
+        (["-o", "set", "--list"], 2, "a folder or a list is expected"),
+        (["--list", "--report"], 2, "nothing is written"),
+        (["--list", "--profile", "same"], 2, "is no profile"),
+        (["--list", "--seed", "-1"], 2, "is no seed"),
+        (["--list", "--count", "20000"], 2, "cannot be made"),
+        (["-o", "set", "--assign", "nobody.csv"], 3, "nobody.csv"),
+        (["-o", "set", "--assign", "strangers.csv"], 3, "there is no column student"),
+    ],
+)
+def test_what_it_refuses(tmp_path: Path, arguments: list[str], code: int, message: str) -> None:
+    (tmp_path / "strangers.csv").write_text("name,mark\n", encoding="utf-8")
+    run = inside("variants", str(OBSERVER), *arguments, folder=tmp_path)
+    assert run.code == code
+    assert message in run.err
+    assert not (tmp_path / "set").exists()
+
+
+def test_none_at_all_leave_nothing_behind(tmp_path: Path) -> None:
+    (tmp_path / "none.toml").write_text(f'{FEW}when = ["a > 2"]\n', encoding="utf-8")
+    run = inside("variants", "none.toml", "--count", "5", "-o", "set", "--partial", folder=tmp_path)
+    assert run.code == 4
+    assert "0 of 5 variants were found among 20 candidates" in run.err
+    assert run.lines[-1].split(maxsplit=1) == ["20", "when: a > 2"]
+    assert not (tmp_path / "set").exists()
+
+
+@pytest.mark.slow
+def test_too_few_leave_nothing_behind_and_partial_ones_what_there_is(tmp_path: Path) -> None:
+    (tmp_path / "few.toml").write_text(FEW, encoding="utf-8")
+    call = ("variants", "few.toml", "--count", "5", "--workers", "1", "-o", "set")
+    run = inside(*call, folder=tmp_path)
+    assert run.code == 4
+    assert "2 of 5 variants were found" in run.err
+    assert run.lines[-1].split(maxsplit=1)[1] == "the same as another variant"
+    assert not (tmp_path / "set").exists()
+    assert inside(*call, "--partial", folder=tmp_path).code == 4
+    files = sorted(path.name for path in (tmp_path / "set").rglob("*.*"))
+    assert files == ["manifest.json", "v001.toml", "v002.toml"]
+    texts = [path.read_text(encoding="utf-8") for path in sorted((tmp_path / "set" / "variants").iterdir())]
+    assert {text.splitlines()[0] for text in texts} in (
+        {'title = "A is 1, variant 1"', 'title = "A is 2, variant 2"'},
+        {'title = "A is 2, variant 1"', 'title = "A is 1, variant 2"'},
+    )
+    (tmp_path / "set" / "manifest.json").unlink()
+    (tmp_path / "set" / "manifest.json").mkdir()
+    for path in (tmp_path / "set" / "variants").iterdir():
+        path.write_text("before", encoding="utf-8")
+    assert inside(*call, "--partial", folder=tmp_path).code == 3
+    assert sorted(path.name for path in (tmp_path / "set").rglob("*.*")) == files
+
+
+def test_solve_takes_one_of_them(tmp_path: Path) -> None:
+    (tmp_path / "few.toml").write_text(FEW, encoding="utf-8")
+    first = inside("solve", "few.toml", "--format", "text", folder=tmp_path)
+    assert first.code == 0
+    assert "Variant 1 of seed 0." in first.out
+    second = inside("solve", "few.toml", "--variant", "2", "--format", "text", folder=tmp_path)
+    assert second.out != first.out
+    plain = ROOT / "worked_examples" / "servo_observer.toml"
+    refused = inside("solve", str(plain), "--variant", "2", folder=tmp_path)
+    assert refused.code == 2
+    assert "no table [variants]" in refused.err
