@@ -1,0 +1,1 @@
+"""Questions for learning platforms: each with a grader that accepts what `symobs check` accepts, or refused."""
