@@ -1,1 +1,9 @@
-"""Questions for learning platforms: each with a grader that accepts what `symobs check` accepts, or refused."""
+"""Questions for learning platforms: each with a grader that accepts what `symobs check` accepts, or refused.
+
+A platform that cannot hold what decides about an answer is refused the question; nothing is rounded or compared by a tolerance.
+"""
+
+from symobs.exporting.exercise import Exercise, ExerciseSet, exercises
+from symobs.exporting.platforms import FOLDERS, PLATFORMS, export
+
+__all__ = ["FOLDERS", "PLATFORMS", "Exercise", "ExerciseSet", "exercises", "export"]

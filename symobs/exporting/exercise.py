@@ -35,6 +35,7 @@ class Exercise:
     identifier: str
     parts: tuple[ExportedPart, ...]
     question: dict[str, Any]
+    problem_text: str = ""
 
     @property
     def title(self) -> str:
@@ -85,7 +86,7 @@ def exercises(
     points: Fraction | None = None,
     report: Callable[[str], None] | None = None,
 ) -> tuple[ExerciseSet, ...]:
-    """Return the questions of problem files and folders; raises `ProblemErrors` with everything that is wrong in any of them."""
+    """Return the questions of problem files and folders; raises `ProblemErrors` with all that is wrong in any of them."""
     found: list[tuple[str, Exercise]] = []
     errors: list[SymobsError] = []
     paths = problem_files(sources)
@@ -187,7 +188,7 @@ def _exercise(path: Path, asked: Sequence[str], points: Fraction | None) -> Exer
         "sign_of_F": marking.sign_of_F,
     }
     question = {"names": sorted(declared), "marks": marks, "parts": [dict(part.data) for part in parts]}
-    return Exercise(problem, checked, _hash(text), tuple(parts), question)
+    return Exercise(problem, checked, _hash(text), tuple(parts), question, text)
 
 
 def _unheld(problem: Problem) -> list[SymobsError]:

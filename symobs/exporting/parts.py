@@ -84,7 +84,7 @@ def exported_part(view: Viewed, field: str, name: str, weight: str) -> ExportedP
         word = view.result.verdict
         if word == "undecided":
             raise _refused(made["part"], "what is right is undecided")
-        return _part(made | {"kind": "word", "right": word}, ((word,),))
+        return _part(made | {"kind": "word", "symbolic": False, "right": word}, ((word,),))
     if field in GAINS.get(view.task, ()):
         return _gain(view, field, made)
     if isinstance(view.result, CompensatorDesign) and field == "F":
@@ -126,7 +126,8 @@ def _gain(view: Viewed, field: str, made: dict[str, Any]) -> ExportedPart:
         "right": texts(gain.rows),
     }
     _require_rational(view, made["part"], (*pair.A.entries, *pair.c.entries, phi, *gain.entries))
-    return _part(data, (-gain if sign < 0 else gain).rows, _parameters(design))
+    given = (*pair.A.entries, *pair.c.entries, phi, *gain.entries)
+    return _part(data | {"symbolic": _has_symbols(given, s)}, (-gain if sign < 0 else gain).rows, _parameters(design))
 
 
 def _parameters(design: GainDesign) -> int:
@@ -147,6 +148,7 @@ def _compensator(view: Viewed, made: dict[str, Any]) -> ExportedPart:
     _require_rational(view, made["part"], [entry for matrix in matrices.values() for entry in matrix.entries])
     data = made | {
         "kind": "compensator",
+        "symbolic": _has_symbols((value,), s),
         "function": True,
         "order": result.own_matrix.shape[0],
         "phi": [str(entry) for entry in phi.coefficients(s)],
@@ -172,12 +174,17 @@ def _value(view: Viewed, field: str, made: dict[str, Any]) -> ExportedPart:
     _require_rational(view, made["part"], entries, made["variable"])
     function = any(made["variable"] in entry.names for entry in entries)
     data = made | {"kind": "value", "function": function, "exact": whole, "right": texts(rows)}
+    data["symbolic"] = _has_symbols(entries, made["variable"])
     return _part(data, tuple(map(tuple, rows)))
 
 
 def texts(rows: Iterable[Iterable[Scalar]]) -> list[list[str]]:
     """Return entries as exact texts."""
     return [[str(entry) for entry in row] for row in rows]
+
+
+def _has_symbols(values: Iterable[Scalar], variable: str) -> bool:
+    return any(value.names - {variable} for value in values)
 
 
 def _require_rational(view: Viewed, part: str, values: Iterable[Scalar], variable: str | None = None) -> None:

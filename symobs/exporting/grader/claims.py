@@ -42,7 +42,10 @@ if TYPE_CHECKING:
 
 def product(X: Rows, Y: Rows) -> Rows:
     """Return X Y."""
-    return [[sum((a * b for a, b in zip(row, column, strict=True)), Fraction(0)) for column in zip(*Y, strict=False)] for row in X]
+    return [
+        [sum((a * b for a, b in zip(row, column, strict=True)), Fraction(0)) for column in zip(*Y, strict=False)]
+        for row in X
+    ]
 
 
 def minus(X: Rows, Y: Rows) -> Rows:
@@ -209,17 +212,16 @@ def judge_compensator(
     right = {name: gains[name][1] if kinds[name] == "right" else part[f"right_{name}"] for name in "KL"}
     wrong = [name for name in "KL" if kinds[name] == "wrong"]
     exact = compensator(part, right["K"], right["L"])
-    if exact == F:
-        return "right", "", "", Fraction(1)
-    if wrong and compensator(part, *(gains[name][1] if name in wrong else right[name] for name in "KL")) == F:
-        easy = any(is_degenerate(gains[name][1], right[name]) for name in wrong) or max(map(len, F)) < 2
-        said = "it follows from your earlier result" + (
-            ", which makes this part too easy to count" if easy and marks["guard"] else ""
-        )
-        return "follows", "", said, Fraction(0 if easy and marks["guard"] else marks["follow_through"])
     opposite = (scaled(F[0], -1), F[1])
-    if opposite == exact and marks["sign_of_F"] == "either":
-        return "right", "", "with the other sign", Fraction(1)
+    taken = (F, opposite) if marks["sign_of_F"] == "either" else (F,)
+    if exact in taken:
+        return "right", "", "", Fraction(1)
+    if wrong and compensator(part, *(gains[name][1] if name in wrong else right[name] for name in "KL")) in taken:
+        easy = any(is_degenerate(gains[name][1], right[name]) for name in wrong) or max(map(len, F)) < 2
+        said = "it follows from your earlier result"
+        if easy and marks["guard"]:
+            return "follows", "", f"{said}, which makes this part too easy to count", Fraction(0)
+        return "follows", "", said, Fraction(marks["follow_through"])
     if not gains and closes_the_loop(part, F):
         return "right", "", "another compensator with the same closed loop", Fraction(1)
     if opposite == exact:
