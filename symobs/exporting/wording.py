@@ -43,8 +43,9 @@ def plain(text: str) -> str:
 
 
 def html_text(text: str) -> str:
-    """Return text as HTML that no platform reads as anything else."""
-    return _SPECIAL.sub(lambda found: _NOT_TEX.format(f"&#{ord(found[0])};"), escape(plain(text), quote=False))
+    """Return text as HTML that no platform reads as anything else; the spaces at its ends stay."""
+    shown = escape(_CONTROL.sub(" ", text), quote=False)
+    return _SPECIAL.sub(lambda found: _NOT_TEX.format(f"&#{ord(found[0])};"), shown)
 
 
 # -- the page ---------------------------------------------------------------------------------------------------------
