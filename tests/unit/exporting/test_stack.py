@@ -40,7 +40,10 @@ def as_maxima(rows: list[list[str]], *, is_matrix: bool) -> str:
 def run(question: Element, answers: list[dict[str, str]], seed: int = 1) -> list[list[int]]:
     """The verdict of every tree for every answer, in one Maxima."""
     trees = question.findall("prt")
-    lines = [f"stack_seed: {seed}$", text_of(question, "questionvariables/text").replace(";\n", "$\n").rstrip(";") + "$"]
+    lines = [
+        f"stack_seed: {seed}$",
+        text_of(question, "questionvariables/text").replace(";\n", "$\n").rstrip(";") + "$",
+    ]
     for answer in answers:
         lines += [f"{name}: {value}$" for name, value in answer.items()]
         for tree in trees:
@@ -95,7 +98,9 @@ def test_the_trees_give_the_credits_of_check(name: str) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", ["two_inputs_feedback", "tanks_observer_parametric", "third_order_plant", "detectable"])
+@pytest.mark.parametrize(
+    "name", ["two_inputs_feedback", "tanks_observer_parametric", "third_order_plant", "detectable"]
+)
 def test_the_trees_give_the_credits_of_check_in_more_examples(name: str) -> None:
     agree(name, 40)
 
@@ -113,5 +118,3 @@ def test_the_tests_of_the_question_pass() -> None:
             assert score == Fraction(text_of(expected, "expectedscore"))
             assert note == text_of(expected, "expectedanswernote")
     assert len(tests) == 2
-
-
