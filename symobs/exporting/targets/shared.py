@@ -71,7 +71,8 @@ def unique_number(part: ExportedPart) -> tuple[str, str] | None:
         why = f"it is not unique here: {part.free} free parameter{plural}"
         return why, "export to stack or prairielearn, or ask for entries that vanish (zero = ...)"
     if part.numbers is None:
-        return "an expression is no number", "export to stack, prairielearn or ipynb, or leave it out with --asked"
+        why = "its entries hold symbols" if part.data["symbolic"] else "an expression is no number"
+        return why, "export to stack, prairielearn or ipynb, or leave it out with --asked"
     if any(terminating(entry) is None for row in part.numbers for entry in row):
         return "a fraction is no number of this platform", "take variants with integer answers"
     return None
