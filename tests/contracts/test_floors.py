@@ -52,8 +52,9 @@ FLOORS = {
     "batching": 13,
     "live": 13,
     "checking": 14,
-    "cli": 15,
-    "__main__": 16,
+    "exporting": 15,
+    "cli": 16,
+    "__main__": 17,
 }
 # The package itself (`__init__.py`) stands above all floors. It lists the modules in which methods and formats
 # register, and two modules may look at it or load by name: the registry (the only way up) and the command line.

@@ -86,7 +86,7 @@ def test_an_r_exams_file_has_one_solution_one_type_and_one_point_a_gap(name: str
     meta = dict(re.findall(r"^(ex[a-z]+): (.*)$", text, re.MULTILINE))
     columns = {key: meta[key].split("|") for key in ("exsolution", "exclozetype", "expoints")}
     cells = [str(cell) for part in each.first.parts for row in part.right for cell in row]
-    expected = [str("yes no conditional".split().index(cell)) if cell in {"yes", "no"} else cell for cell in cells]
+    expected = [str(["yes", "no", "conditional"].index(cell)) if cell in {"yes", "no"} else cell for cell in cells]
     found = [
         str(value.index("1")) if kind == "schoice" else value
         for value, kind in zip(columns["exsolution"], columns["exclozetype"], strict=True)
