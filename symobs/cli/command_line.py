@@ -21,7 +21,9 @@ if TYPE_CHECKING:
     from click.shell_completion import CompletionItem
 
 _MOST_LINES = 100
-#: What each command does; `command` in the module of its name in `symobs.cli.commands` is imported when it is called.
+#: What each command does; `command` in the module of its name in `symobs.cli.commands` is imported when it is called,
+#: or in `symobs.cli.listings` where it is one of these.
+LISTINGS = ("conventions", "methods")
 COMMANDS = {
     "audit": "Recompute what a source prints: every FILE's [[printed]] equations.",
     "batch": "Solve many problems, on all processors or on a cluster, into a folder from which a run goes on.",
@@ -55,7 +57,8 @@ class Tasks(click.Group):
     def get_command(self, _: click.Context, cmd_name: str) -> click.Command | None:
         """Return a command; that of a task is made from its signature."""
         if cmd_name in COMMANDS:
-            found: click.Command = import_module(f"symobs.cli.commands.{cmd_name}").command
+            folder = "listings" if cmd_name in LISTINGS else "commands"
+            found: click.Command = import_module(f"symobs.cli.{folder}.{cmd_name}").command
             return found
         from symobs.result import task_named  # noqa: PLC0415
 

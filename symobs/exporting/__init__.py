@@ -3,7 +3,7 @@
 A platform that cannot hold what decides about an answer is refused the question; nothing is rounded or compared by a tolerance.
 """
 
-from symobs.exporting.exercise import Exercise, ExerciseSet, exercises
 from symobs.exporting.platforms import FOLDERS, PLATFORMS, export
+from symobs.exporting.questions.exercise import Exercise, ExerciseSet, exercises
 
 __all__ = ["FOLDERS", "PLATFORMS", "Exercise", "ExerciseSet", "exercises", "export"]

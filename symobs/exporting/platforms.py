@@ -11,7 +11,7 @@ from symobs.expression.source import shown
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from symobs.exporting.exercise import ExerciseSet
+    from symobs.exporting.questions.exercise import ExerciseSet
     from symobs.exporting.targets.shared import Files
 
 #: What writes the files of a platform.

@@ -5,15 +5,15 @@ from __future__ import annotations
 from html import escape
 from typing import TYPE_CHECKING
 
+from symobs.exporting.questions.wording import instruction, label, matrix_text, plain, question_html
 from symobs.exporting.targets.shared import refuse, terminating, unique_number
-from symobs.exporting.wording import instruction, label, matrix_text, plain, question_html
 from symobs.phrases import PHRASES
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from symobs.exporting.exercise import Exercise, ExerciseSet
-    from symobs.exporting.parts import ExportedPart
+    from symobs.exporting.questions.exercise import Exercise, ExerciseSet
+    from symobs.exporting.questions.parts import ExportedPart
     from symobs.exporting.targets.shared import Files
 
 _WORDS = ("yes", "no", "conditional")

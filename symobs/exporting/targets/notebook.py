@@ -6,9 +6,9 @@ import hashlib
 from typing import TYPE_CHECKING, Any
 
 from symobs.errors import InputError
-from symobs.exporting.exercise import total_of
+from symobs.exporting.questions.exercise import total_of
+from symobs.exporting.questions.wording import instruction, label, matrix_text, plain, question_markdown
 from symobs.exporting.targets.shared import as_json, refuse
-from symobs.exporting.wording import instruction, label, matrix_text, plain, question_markdown
 from symobs.phrases import PHRASES
 from symobs.problem import read
 from symobs.render.formats.markdown import plain as markdown_text
@@ -16,8 +16,8 @@ from symobs.render.formats.markdown import plain as markdown_text
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from symobs.exporting.exercise import Exercise, ExerciseSet
-    from symobs.exporting.parts import ExportedPart
+    from symobs.exporting.questions.exercise import Exercise, ExerciseSet
+    from symobs.exporting.questions.parts import ExportedPart
     from symobs.exporting.targets.shared import Files
 
 _TEST = """### BEGIN HIDDEN TESTS

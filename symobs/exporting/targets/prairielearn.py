@@ -6,15 +6,15 @@ import uuid
 from html import escape
 from typing import TYPE_CHECKING, Any
 
+from symobs.exporting.questions.wording import instruction, label, matrix_text, question_html
 from symobs.exporting.targets.shared import CLAIMS, as_json, claims_module
-from symobs.exporting.wording import instruction, label, matrix_text, question_html
 from symobs.phrases import PHRASES
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from symobs.exporting.exercise import Exercise, ExerciseSet
-    from symobs.exporting.parts import ExportedPart
+    from symobs.exporting.questions.exercise import Exercise, ExerciseSet
+    from symobs.exporting.questions.parts import ExportedPart
     from symobs.exporting.targets.shared import Files
 
 _NAMESPACE = uuid.UUID("6ba7b811-9dad-11d1-80b4-00c04fd430c8")  # of names that are addresses

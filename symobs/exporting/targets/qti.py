@@ -10,16 +10,16 @@ from xml.etree.ElementTree import Element, SubElement, fromstring, indent, tostr
 from zipfile import ZIP_DEFLATED, ZipFile, ZipInfo
 
 from symobs.exact import Matrix, Scalar
-from symobs.exporting.exercise import total_of
+from symobs.exporting.questions.exercise import total_of
+from symobs.exporting.questions.wording import instruction, label, plain, question_xhtml
 from symobs.exporting.targets.shared import refuse, terminating, unique_number
-from symobs.exporting.wording import instruction, label, plain, question_xhtml
 from symobs.expression import parse_scalar
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
-    from symobs.exporting.exercise import Exercise, ExerciseSet
-    from symobs.exporting.parts import ExportedPart
+    from symobs.exporting.questions.exercise import Exercise, ExerciseSet
+    from symobs.exporting.questions.parts import ExportedPart
     from symobs.exporting.targets.shared import Files
 
 #: A claim of more is refused: an item is no program.

@@ -13,8 +13,8 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
     from symobs.exact import Scalar
-    from symobs.exporting.exercise import Exercise, ExerciseSet
-    from symobs.exporting.parts import ExportedPart
+    from symobs.exporting.questions.exercise import Exercise, ExerciseSet
+    from symobs.exporting.questions.parts import ExportedPart
 
     #: File names, relative to the target, and contents.
     Files = dict[str, str | bytes]

@@ -8,17 +8,17 @@ from html import escape
 from typing import TYPE_CHECKING
 
 from symobs.exact import Scalar
-from symobs.exporting.exercise import ExerciseSet, total_of
+from symobs.exporting.questions.exercise import ExerciseSet, total_of
+from symobs.exporting.questions.wording import instruction, label, question_html
 from symobs.exporting.targets import stack_maxima as code
 from symobs.exporting.targets.moodle import category, cdata, quiz, xml_text
 from symobs.exporting.targets.shared import refuse, terminating
-from symobs.exporting.wording import instruction, label, question_html
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from symobs.exporting.exercise import Exercise
-    from symobs.exporting.parts import ExportedPart
+    from symobs.exporting.questions.exercise import Exercise
+    from symobs.exporting.questions.parts import ExportedPart
     from symobs.exporting.targets.shared import Files
 
 #: The version of STACK whose format this is.

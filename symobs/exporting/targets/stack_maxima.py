@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from symobs.exporting.exercise import ExerciseSet
-    from symobs.exporting.parts import ExportedPart
+    from symobs.exporting.questions.exercise import ExerciseSet
+    from symobs.exporting.questions.parts import ExportedPart
 
 RIGHT, SIGN, TRANSPOSED, ENTRY, SEVERAL, OTHER_HALF, FOLLOWS, EASY, OTHER, WRONG, SIZE = range(11)
 

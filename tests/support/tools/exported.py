@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import random
 import re
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
@@ -11,8 +10,10 @@ from symobs.exporting import exercises
 from tests.support.paths import ROOT
 
 if TYPE_CHECKING:
+    import random
+
     from symobs.exporting import Exercise, ExerciseSet
-    from symobs.exporting.parts import ExportedPart
+    from symobs.exporting.questions.parts import ExportedPart
 
     Given = dict[str, list[list[str]]]
 

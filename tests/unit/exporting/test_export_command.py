@@ -31,7 +31,10 @@ TEN = (
     "output_feedback_servo",
 )
 GAINS = ("compensator.K", "compensator.L")
-HOSTILE = r"</script> ]]> {@sy_A@} {#n#} [[input:ans9]] {1:NUMERICAL:=1} \(x\) $(x)$ `r 1+1` exsolution: 3 <pl-code> {{x}} & END SOLUTION"
+HOSTILE = (
+    r"</script> ]]> {@sy_A@} {#n#} [[input:ans9]] {1:NUMERICAL:=1} \(x\) $(x)$ `r 1+1` exsolution: 3 <pl-code> {{x}} &"
+    " END SOLUTION"
+)
 
 
 def run(*arguments: object) -> Run:
@@ -78,12 +81,12 @@ def test_ten_examples_and_thirty_variants_are_exported_and_again_byte_by_byte(pl
             assert len({json.dumps(each["question"]) for each in of_thirty}) == 30
             assert {seed % len(of_thirty) for seed in range(30)} == set(range(30))
         case "stack":
-            (question,) = [q for q in fromstring(text[""]) if q.findtext("name/text") == "Thirty"]
+            (question,) = [q for q in fromstring(text[""]) if q.findtext("name/text") == "Thirty"]  # noqa: S314
             assert [int(seed.text or "") for seed in question.findall("deployedseed")] == list(range(1, 31))
             notes = re.findall(r"\b[0-9a-f]{12}\b", question.findtext("questionnote/text", ""))
             assert len(set(notes)) == 30
         case "moodle":
-            questions = [q for q in fromstring(text[""]) if q.findtext("name/text") == "Thirty"]
+            questions = [q for q in fromstring(text[""]) if q.findtext("name/text") == "Thirty"]  # noqa: S314
             assert (
                 len({q.findtext("idnumber") for q in questions})
                 == len({q.findtext("questiontext/text") for q in questions})
@@ -199,12 +202,12 @@ def hostile_problem(tmp_path: Path) -> str:
 
 def visible(html: str) -> str:
     """What a reader of a page sees of it."""
-    return "".join(fromstring(f"<div>{html}</div>").itertext())
+    return "".join(fromstring(f"<div>{html}</div>").itertext())  # noqa: S314
 
 
 def test_hostile_text_stands_literally_in_moodle_and_stack(hostile: str) -> None:
     for platform in ("moodle", "stack"):
-        question = fromstring(str(export(platform, exercises([hostile]))[""]))[1]
+        question = fromstring(str(export(platform, exercises([hostile]))[""]))[1]  # noqa: S314
         assert question.findtext("name/text") == HOSTILE
         body = question.findtext("questiontext/text", "")
         assert HOSTILE in visible(re.sub(r"\\[\[(].*?\\[\])]", "", body))
@@ -227,7 +230,7 @@ def test_hostile_text_stands_literally_in_the_other_exports(hostile: str) -> Non
     content = export("qti", sets)[""]
     assert isinstance(content, bytes)
     with ZipFile(io.BytesIO(content)) as package:
-        item = fromstring(package.read(next(n for n in package.namelist() if n.startswith("items"))))
+        item = fromstring(package.read(next(n for n in package.namelist() if n.startswith("items"))))  # noqa: S314
     assert item.get("title") == HOSTILE
     assert HOSTILE in "".join(item.itertext())
     rmd = next(str(text) for name, text in export("rexams", sets).items() if name.endswith(".Rmd"))

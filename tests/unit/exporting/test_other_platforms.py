@@ -43,8 +43,8 @@ def cloze_right(gap: tuple[int, str, str], cell: str) -> bool:
 
 @pytest.mark.parametrize("name", CLOZE)
 def test_a_moodle_quiz_takes_what_check_takes(name: str) -> None:
-    each, draw = held(name), random.Random(name)
-    quiz = fromstring(str(export("moodle", [each])[""]))
+    each, draw = held(name), random.Random(name)  # noqa: S311
+    quiz = fromstring(str(export("moodle", [each])[""]))  # noqa: S314
     assert [question.get("type") for question in quiz] == ["category", "cloze"]
     gaps = gaps_of(quiz[1].findtext("questiontext/text", ""))
     assert len(gaps) == sum(prod(part.shape) for part in each.first.parts)
@@ -55,7 +55,7 @@ def test_a_moodle_quiz_takes_what_check_takes(name: str) -> None:
         told, left = checked(each.first, answer), iter(gaps)
         for part in each.first.parts:
             cells = [str(number(cell)) if part.kind != "word" else cell for row in answer[part.name] for cell in row]
-            taken = all([cloze_right(next(left), cell) for cell in cells])
+            taken = sum(cloze_right(next(left), cell) for cell in cells) == len(cells)
             assert taken == (told[part.name][0] == "right"), (part.name, answer)
 
 
@@ -108,7 +108,7 @@ def item_of(each: ExerciseSet, platform: str = "qti") -> Element:
         assert package.testzip() is None
         (name,) = [name for name in package.namelist() if name.startswith("items/")]
         assert f'href="{name}"' in package.read("imsmanifest.xml").decode()
-        return fromstring(re.sub(r' xmlns="[^"]*"', "", package.read(name).decode(), count=1))
+        return fromstring(re.sub(r' xmlns="[^"]*"', "", package.read(name).decode(), count=1))  # noqa: S314
 
 
 def processed(item: Element, responses: dict[str, Any]) -> dict[str, Any]:
@@ -160,7 +160,7 @@ def processed(item: Element, responses: dict[str, Any]) -> dict[str, Any]:
 
 @pytest.mark.parametrize("name", QTI)
 def test_an_item_gives_full_marks_where_check_does(name: str) -> None:
-    each, draw = held(name), random.Random(name)
+    each, draw = held(name), random.Random(name)  # noqa: S311
     item = item_of(each)
     answers = [{part.name: right(part) for part in each.first.parts}]
     answers += [random_answer(each.first, draw, exact=True) for _ in range(25)]
@@ -213,8 +213,8 @@ def graded_cell(each: ExerciseSet, assigned: dict[str, Any]) -> tuple[float, str
     assert lines[-1] == "### END HIDDEN TESTS"
     names: dict[str, Any] = dict(assigned)
     with redirect_stdout(io.StringIO()) as printed:
-        exec(compile("\n".join(lines[:-2]), "cell", "exec"), names)
-        value = eval(lines[-2], names)
+        exec(compile("\n".join(lines[:-2]), "cell", "exec"), names)  # noqa: S102
+        value = eval(lines[-2], names)  # noqa: S307
     return value, printed.getvalue()
 
 

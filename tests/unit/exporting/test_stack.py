@@ -23,7 +23,7 @@ pytestmark = pytest.mark.skipif(shutil.which("maxima") is None, reason="maxima i
 
 def question_of(each: ExerciseSet) -> Element:
     """The question of an export."""
-    quiz = fromstring(str(export("stack", [each])[""]))
+    quiz = fromstring(str(export("stack", [each])[""]))  # noqa: S314
     return next(found for found in quiz if found.get("type") == "stack")
 
 
@@ -81,7 +81,7 @@ def answered(each: ExerciseSet, given: dict[str, list[list[str]]]) -> dict[str, 
 
 def agree(name: str, count: int) -> None:
     """Scores of the trees are the credits of `check`."""
-    each, draw = held(name), random.Random(name)
+    each, draw = held(name), random.Random(name)  # noqa: S311
     given = [random_answer(each.first, draw, exact=True) for _ in range(count)]
     question = question_of(each)
     trees = question.findall("prt")

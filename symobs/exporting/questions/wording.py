@@ -25,8 +25,8 @@ from symobs.render.printers.mathml.mathml_printer import MathmlPrinter
 from symobs.render.printers.root_lists import LATEX, listed
 
 if TYPE_CHECKING:
-    from symobs.exporting.exercise import Exercise
-    from symobs.exporting.parts import ExportedPart
+    from symobs.exporting.questions.exercise import Exercise
+    from symobs.exporting.questions.parts import ExportedPart
     from symobs.problem.question import Question
     from symobs.render.page.blocks import Block, Inlines
 

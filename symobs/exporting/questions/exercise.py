@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 from symobs._dataclass import dataclass
 from symobs.checking import Checked
 from symobs.errors import InputError, ProblemErrors, SymobsError, reason_of
-from symobs.exporting.parts import SLIPS, ExportedPart, exported_part
+from symobs.exporting.questions.parts import SLIPS, ExportedPart, exported_part
 from symobs.expression.source import shown
 from symobs.problem import MAX_BYTES, Problem, read
 
