@@ -135,7 +135,8 @@ def test_tasks_and_formats_are_listed_without_importing_one() -> None:
     formats = {name: kind.suffix for name, kind in sorted(result.formats().items())}
     assert task_index.format_suffixes(symobs.FORMAT_PACKAGE) == formats
     for name, summary in command_line.COMMANDS.items():
-        module = import_module(f"symobs.cli.commands.{name}")
+        folder = "listings" if name in command_line.LISTINGS else "commands"
+        module = import_module(f"symobs.cli.{folder}.{name}")
         assert module.command.name == name
         assert " ".join(module.command.help.partition("\n\n")[0].split()) == summary
     found = after("--help")

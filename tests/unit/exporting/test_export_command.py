@@ -5,14 +5,14 @@ from __future__ import annotations
 import io
 import json
 import re
-from pathlib import Path
+from pathlib import Path  # noqa: TC003
 from xml.etree.ElementTree import fromstring
 from zipfile import ZipFile
 
 import pytest
 
 from symobs.errors import ProblemErrors
-from symobs.exporting import FOLDERS, PLATFORMS, exercises, export
+from symobs.exporting import FOLDERS, PLATFORMS, ExerciseSet, exercises, export
 from tests.support.paths import ROOT
 from tests.support.tools.command_line import Run, inside
 
@@ -50,7 +50,7 @@ def written(folder: Path) -> dict[str, bytes]:
 def variants(folder: Path, count: int) -> Path:
     """A folder of variants: a servo with other poles each, and a manifest."""
     below = folder / "variants"
-    below.mkdir(parents=True)
+    below.mkdir()
     (folder / "manifest.json").write_text('{"schema": "symobs-variants/1"}')
     (folder / "sheet.toml").write_text("")
     for number in range(1, count + 1):
@@ -61,16 +61,26 @@ def variants(folder: Path, count: int) -> Path:
     return folder
 
 
+@pytest.fixture(name="ten_and_thirty", scope="module")
+def solved_once(tmp_path_factory: pytest.TempPathFactory) -> list[ExerciseSet]:
+    """Ten worked examples, and thirty variants of one question."""
+    found = [
+        exercises([str(EXAMPLES / f"{name}.toml")], GAINS if name == "output_feedback_servo" else ()) for name in TEN
+    ]
+    return [each for sets in found for each in sets] + list(
+        exercises([str(variants(tmp_path_factory.mktemp("class"), 30))])
+    )
+
+
+@pytest.mark.slow
 @pytest.mark.parametrize("platform", PLATFORMS)
-def test_ten_examples_and_thirty_variants_are_exported_and_again_byte_by_byte(platform: str, tmp_path: Path) -> None:
-    sources = [str(EXAMPLES / f"{name}.toml") for name in TEN]
-    asked = {name: GAINS if name == "output_feedback_servo" else () for name in TEN}
-    found = [exercises([source], asked[Path(source).stem]) for source in sources]
-    (thirty,) = exercises([str(variants(tmp_path / "class", 30))])
-    sets = [*(each for (each,) in found), thirty]
+def test_ten_examples_and_thirty_variants_are_exported_and_again_byte_by_byte(
+    platform: str, ten_and_thirty: list[ExerciseSet]
+) -> None:
+    sets = ten_and_thirty
     first = export(platform, sets)
     assert first == export(platform, sets)
-    assert len(thirty.variants) == 30
+    assert [len(each.variants) for each in sets] == [1] * 10 + [30]
     text = {name: str(content) for name, content in first.items() if isinstance(content, str)}
     match platform:
         case "prairielearn":

@@ -76,20 +76,31 @@ def raw(each: ExerciseSet, given: dict[str, list[list[str]]]) -> dict[str, str]:
     return found
 
 
-@pytest.mark.parametrize("name", HELD)
-def test_the_grader_gives_the_verdicts_of_check(name: str) -> None:
+def agree(name: str, count: int) -> None:
+    """Verdicts and credits of the grader are those of `check`."""
     exercise, draw = held(name).first, random.Random(name)  # noqa: S311
-    for _ in range(12):
+    for _ in range(count):
         given = random_answer(exercise, draw)
         found = {part: (told["verdict"], told["credit"]) for part, told in judge(exercise.question, given).items()}
         assert found == checked(exercise, given), given
+
+
+@pytest.mark.parametrize("name", HELD)
+def test_the_grader_gives_the_verdicts_of_check(name: str) -> None:
+    agree(name, 5)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", HELD)
+def test_the_grader_gives_the_verdicts_of_check_on_a_thousand_answers(name: str) -> None:
+    agree(name, 85)
 
 
 @pytest.mark.parametrize("name", ["output_feedback_servo", "triple_pole_two_outputs"])
 def test_the_server_gives_the_credits_of_check(name: str, tmp_path: Path) -> None:
     each, draw = held(name), random.Random(name)  # noqa: S311
     installed(each, tmp_path)
-    given = [random_answer(each.first, draw) for _ in range(40)]
+    given = [random_answer(each.first, draw) for _ in range(15)]
     for answer, data in zip(given, graded(tmp_path, [{"seed": "7", "raw": raw(each, g)} for g in given]), strict=True):
         told = checked(each.first, answer)
         unreadable = {part for part, (verdict, _) in told.items() if verdict == "unreadable"}

@@ -92,17 +92,17 @@ def agree(name: str, count: int) -> None:
         assert scores == [told[part.name][1] for part in each.first.parts], (answer, told, verdicts)
 
 
-@pytest.mark.parametrize("name", ["output_feedback_servo", "triple_pole_two_outputs"])
-def test_the_trees_give_the_credits_of_check(name: str) -> None:
-    agree(name, 12)
+def test_the_trees_give_the_credits_of_check() -> None:
+    agree("output_feedback_servo", 10)
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize(
-    "name", ["two_inputs_feedback", "tanks_observer_parametric", "third_order_plant", "detectable"]
+    "name",
+    ["triple_pole_two_outputs", "two_inputs_feedback", "tanks_observer_parametric", "third_order_plant", "detectable"],
 )
 def test_the_trees_give_the_credits_of_check_in_more_examples(name: str) -> None:
-    agree(name, 40)
+    agree(name, 25)
 
 
 def test_the_tests_of_the_question_pass() -> None:
