@@ -11,6 +11,7 @@ from zipfile import ZIP_DEFLATED, ZipFile, ZipInfo
 
 from symobs.exact import Matrix, Scalar
 from symobs.exporting.questions.exercise import total_of
+from symobs.exporting.questions.parts import texts
 from symobs.exporting.questions.wording import instruction, label, plain, question_xhtml
 from symobs.exporting.targets.shared import refuse, terminating, unique_number
 from symobs.expression import parse_scalar
@@ -117,6 +118,7 @@ def _item(exercise: Exercise, name: str) -> Element:
     SubElement(item, "qti-outcome-declaration", _variable("FEEDBACK", "identifier"))
     body = SubElement(item, "qti-item-body")
     body.append(fromstring(f"<div>{question_xhtml(exercise)}</div>"))  # noqa: S314 - our own text
+    SubElement(body, "p").text = _data(exercise)
     for _, part, names in inputs:
         _write_input(body, part, names)
     processing = SubElement(item, "qti-response-processing")
@@ -124,6 +126,20 @@ def _item(exercise: Exercise, name: str) -> Element:
         _judge(processing, exercise, part, k, [identifier for identifier, _ in names])
     _score(processing, exercise, total, [k for k, _, _ in inputs])
     return item
+
+
+def _data(exercise: Exercise) -> str:
+    """Return the plant as text: some players take MathML apart, and students copy it."""
+    plant, written = exercise.problem.plant, exercise.problem.convention.written(reduced=False)
+    found = {"A": plant.matrices.A, "B": plant.matrices.B, "C": plant.matrices.C}
+    if plant.matrices.has_feedthrough:
+        found["D"] = plant.matrices.D
+    given = {
+        name: [" ".join(cell.replace(" ", "") for cell in row) for row in texts(matrix.rows)]
+        for name, matrix in found.items()
+        if 0 not in matrix.shape
+    }
+    return ", ".join(f"{written.get(name, name)} = [{'; '.join(rows)}]" for name, rows in given.items())
 
 
 def _variable(identifier: str, kind: str) -> dict[str, str]:
