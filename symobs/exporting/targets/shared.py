@@ -69,7 +69,7 @@ def unique_number(part: ExportedPart) -> tuple[str, str] | None:
     if part.free:
         plural = "s" if part.free > 1 else ""
         why = f"it is not unique here: {part.free} free parameter{plural}"
-        return why, "export to stack or prairielearn, or ask for entries that vanish (zero = ...)"
+        return why, "export to stack, prairielearn or ipynb"
     if part.numbers is None:
         why = "its entries hold symbols" if part.data["symbolic"] else "an expression is no number"
         return why, "export to stack, prairielearn or ipynb, or leave it out with --asked"

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import re
 from fractions import Fraction
+from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any
 
 from symobs.exporting import exercises
@@ -33,13 +35,40 @@ HELD = (
     "detectable",
     "tanks_observer_parametric",
 )
+#: Problems whose marks and signs are less usual: asked zeros, the other signs, a square gain, feedthrough.
+BY_HAND = {
+    "zeros": (
+        'task = "observer"\n[plant]\nA = "[0 1 0; 0 0 1; 1 2 3]"\nC = "[1 0 0; 0 0 1]"\n'
+        '[specification]\npoles = "-1, -1, -1"\nzero = ["1,1"]\n'
+    ),
+    "other signs": (
+        'task = "compensator"\nconvention = "u = K x_hat, A + M C"\n[plant]\nA = "[0 1; 0 -1]"\nB = "[0; 1]"\nC = "[1 0]"\n'
+        '[specification]\ncontrol_poles = "-2, -3"\nobserver_poles = "-10, -11"\n'
+    ),
+    "either sign": (
+        'task = "compensator"\n[plant]\nA = "[0 1; 0 -1]"\nB = "[0; 1]"\nC = "[1 0]"\nD = "[2]"\n'
+        '[specification]\ncontrol_poles = "-2, -3"\nobserver_poles = "-10, -11"\n'
+        '[marking]\nsign_of_F = "either"\nguard = false\nfollow_through = "1/2"\nparts = { "compensator.F" = 3 }\n'
+    ),
+    "square": (
+        'task = "state_feedback"\n[plant]\nA = "[0 1; 2 3]"\nB = "[1 0; 0 1]"\nC = "[1 0]"\n[specification]\npoles = "-2, -3"\n'
+    ),
+}
+#: Gains of the first problem with signs that place the poles of the other half, in its letters.
+OTHER_HALF = {"K": [["-110", "-20"]], "M": [["-4"], ["-2"]]}
 _UNREADABLE = ("x", "1..2", "2 3", "1/2 3", "3/0", "(1", "1 +", "__import__('os')")
 
 
 def held(name: str) -> ExerciseSet:
-    """A worked example as a question."""
-    (found,) = exercises([str(EXAMPLES / f"{name}.toml")])
-    return found
+    """A worked example, or a problem by hand, as a question."""
+    if name not in BY_HAND:
+        (found,) = exercises([str(EXAMPLES / f"{name}.toml")])
+        return found
+    with TemporaryDirectory() as folder:
+        path = Path(folder) / "problem.toml"
+        path.write_text(BY_HAND[name], encoding="utf-8")
+        (found,) = exercises([str(path)])
+        return found
 
 
 def right(part: ExportedPart) -> list[list[str]]:

@@ -99,7 +99,16 @@ def test_the_trees_give_the_credits_of_check() -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize(
     "name",
-    ["triple_pole_two_outputs", "two_inputs_feedback", "tanks_observer_parametric", "third_order_plant", "detectable"],
+    [
+        "other signs",
+        "either sign",
+        "zeros",
+        "square",
+        "two_inputs_feedback",
+        "tanks_observer_parametric",
+        "third_order_plant",
+        "detectable",
+    ],
 )
 def test_the_trees_give_the_credits_of_check_in_more_examples(name: str) -> None:
     agree(name, 25)
