@@ -133,7 +133,7 @@ def _explanation(view: Viewed, judgement: TaskJudgement, judged: Judged) -> Expl
         turned = view.standard(judged.letter)[1] < 0
         right = design.answer[design.letter]
         rounded = right is not None and _rounds(judged, right, turned=turned)
-        other = _other_polynomial(judgement.right, judged.name)
+        other = other_polynomial(judgement.right, judged.name)
         return explain_gain(design, judged.value, judged.letter, other, turned=turned, rounded=rounded)
     right = _exact(judgement.right.fields.get(judged.name))
     if right is None or (judged.name in IN_COORDINATES.get(view.task, ()) and view.task != "reduced_order_observer"):
@@ -166,7 +166,7 @@ def _rounds(judged: Judged, right: Matrix, *, turned: bool) -> bool:
     return read.shape == right.shape and read != judged.value and agrees(-read if turned else read, right)
 
 
-def _other_polynomial(result: Result, name: str) -> Scalar | None:
+def other_polynomial(result: Result, name: str) -> Scalar | None:
     """Return the polynomial of the other half of a compensator, where it has the same degree."""
     loop = result if isinstance(result, OutputFeedback) else getattr(result, "loop", None)
     if not isinstance(loop, OutputFeedback):

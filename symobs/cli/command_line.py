@@ -30,6 +30,7 @@ COMMANDS = {
     "check": "Check an ANSWER, or those of a class, against a PROBLEM file: any valid answer is right.",
     "conventions": "List the conventions a page can be written in, or print the file of the one called NAME.",
     "examples": "List the worked examples, or print the one called NAME.",
+    "export": "Export problems as questions of a learning platform, which accept what `symobs check` accepts.",
     "methods": "List every task and its methods.",
     "schema": "Print the JSON schema of problem files, or that of the results of the command NAME.",
     "serve": "Move poles, parameters and entries in a browser, every answer checked; FILE is the problem to begin with.",

@@ -53,6 +53,7 @@ FLOORS = {
     "live": 13,
     "checking": 14,
     "variation": 15,
+    "exporting": 15,
     "cli": 16,
     "__main__": 17,
 }

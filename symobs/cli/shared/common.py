@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import click
 
 from symobs.cli.shared.options import quoted
-from symobs.cli.shared.output import binary, write_all
+from symobs.cli.shared.output import binary, make_folder, write_all
 from symobs.errors import InputError, UsageError, reason_of
 
 if TYPE_CHECKING:
@@ -37,6 +37,8 @@ def run_work(work: Callable[[Progress], Outcome], timeout: float | None, memory:
         from symobs.cli.shared.outcome import bounded  # noqa: PLC0415 - it is there already, with the work
 
         outcome = bounded(work, timeout, memory, where)
+    for folder in outcome.folders:
+        make_folder(folder)
     write_all(outcome.outputs)
     for line in outcome.messages:
         write_message(line)

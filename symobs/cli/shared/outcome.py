@@ -22,11 +22,12 @@ EXIT_NO, EXIT_UNDECIDED = 4, 5
 
 @dataclass(frozen=True)
 class Outcome:
-    """The outputs with their targets, the messages, and the exit code."""
+    """The outputs with their targets, the messages, the exit code, and the folders to be made, outer ones first."""
 
     outputs: tuple[tuple[str | bytes, str | None], ...]
     messages: tuple[str, ...] = ()
     code: int = 0
+    folders: tuple[Path, ...] = ()
 
 
 def convention_of(name: str | None) -> Any:

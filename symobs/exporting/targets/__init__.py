@@ -1,0 +1,1 @@
+"""One module a learning platform: each says what it cannot hold, and writes its files."""
