@@ -20,6 +20,7 @@ from symobs.derivation.builder import Page
 from symobs.errors import CertificateRejected, DerivationRejected
 from symobs.exact.linear_algebra.realisation import Realisation
 from symobs.result.conversions import Faces
+from symobs.result.web_page import PLAIN, WebPage
 from symobs.result.writers import render, writer_of
 
 if TYPE_CHECKING:
@@ -383,6 +384,8 @@ class Document:
     hold: str = field(default="zoh", kw_only=True)
     #: The answers that are printed alone, by name; none means the whole document.
     printed: tuple[str, ...] = field(default=(), kw_only=True)
+    #: What a page of HTML offers besides its text.
+    web: WebPage = field(default=PLAIN, kw_only=True)
 
     @cached_property
     def derivations(self) -> tuple[Derivation, ...]:

@@ -26,7 +26,7 @@ from symobs.cli.shared.common import (
     write_message,
 )
 from symobs.cli.shared.options import LIMITS, AFile, options
-from symobs.cli.shared.outcome import convention_of, page_of
+from symobs.cli.shared.outcome import convention_of, of_problem, page_of
 from symobs.cli.shared.output import check_target, write
 from symobs.errors import InputError, OutOfBudget, ProblemErrors, SymobsError, TypesettingError, UsageError
 from symobs.expect import mismatches
@@ -36,6 +36,7 @@ from symobs.problem import parse, validate
 from symobs.problem.question import question_of
 from symobs.render.page.sheet import Sheet, SheetEntry
 from symobs.result import format_named, formats, tasks
+from symobs.result.web_page import PLAIN, WebPage
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -58,6 +59,7 @@ class _Wanted:
     solutions: bool
     detail: str
     templates: Path | None = None
+    web: WebPage = PLAIN
     convention: Any = None
     timeout: float | None = None
     memory: float | None = None
@@ -69,7 +71,7 @@ class _Wanted:
 @click.option("--title", default="", metavar="TEXT", help="The title of the sheet.")
 @click.option("--questions", is_flag=True, help="The questions only.")
 @click.option("--solutions", is_flag=True, help="The solutions only; they begin with the data.")
-@options("detail", "templates", "convention", *LIMITS)
+@options("detail", "details", "copy", "live", "templates", "convention", *LIMITS)
 def command(
     files: tuple[str, ...],
     target: str | None,
@@ -78,6 +80,9 @@ def command(
     questions: bool,  # noqa: FBT001 - click's signature
     solutions: bool,  # noqa: FBT001
     detail: str,
+    details: bool,  # noqa: FBT001
+    copy: bool,  # noqa: FBT001
+    live: str,
     templates: str | None,
     convention_name: str | None,
     timeout: float | None,
@@ -91,7 +96,7 @@ def command(
     if questions and solutions:
         raise UsageError("both --questions and --solutions are given", repair="leave both out for both")
     chosen = _sheet_format(format_name, target)
-    told = page_of(detail, templates, chosen.name)
+    told = page_of(detail, templates, chosen.name, WebPage(details, copy, live))
     wanted = _Wanted(
         chosen,
         not solutions,
@@ -116,7 +121,10 @@ def command(
         for message in messages:
             write_message(message if message.startswith(f"{name}, ") else f"{name}: {message}")
     progress.say("typesetting" if wanted.format.name == "pdf" else "writing")
-    whole = wanted.format.sheet(Sheet(title, tuple(entries), wanted.questions, wanted.solutions, wanted.templates))
+    halves = (wanted.questions, wanted.solutions)
+    whole = wanted.format.sheet(
+        Sheet(title, tuple(entries), *halves, wanted.templates, web=wanted.web, detail=wanted.detail)
+    )
     progress.clear()
     write(whole, target)
     sys.exit(next((code for code in _WORST_FIRST if code in codes), 0))
@@ -253,11 +261,13 @@ def _worked_out(
     try:
         problem = validate(data, folder=Path(entry.file).parent)
         if wanted.questions:
-            entry = replace(entry, question=_part(question_of(problem), wanted))
+            asked = replace(wanted, web=replace(wanted.web, details=False, live=""))
+            entry = replace(entry, question=_part(question_of(problem), asked))
         report_progress(entry)
         results = problem.solve()
         if wanted.solutions:
-            entry = replace(entry, solution=_part(problem.document(results), wanted))
+            told = replace(wanted, web=of_problem(wanted.web, data))
+            entry = replace(entry, solution=_part(problem.document(results), told))
     except Exception as error:  # noqa: BLE001 - as above
         return _failed(entry, error, wanted)
     try:
@@ -275,7 +285,8 @@ def _worked_out(
 def _part(document: Document, wanted: _Wanted) -> Any:
     """Return the part of a sheet for a question or a solution, in its format."""
     convention = wanted.convention or document.convention
-    told = replace(document, convention=convention, detail=wanted.detail, templates=wanted.templates)
+    page = {"detail": wanted.detail, "templates": wanted.templates, "web": wanted.web}
+    told = replace(document, convention=convention, **page)
     return wanted.format.part(told)
 
 

@@ -9,10 +9,11 @@ import click
 
 from symobs.cli.shared.common import chosen_format, place_of, progress_on_terminal, read_file, run_work
 from symobs.cli.shared.options import OF_A_PAGE, AFile, OneOf, options, quoted
-from symobs.cli.shared.outcome import check_targets, convention_of, page_of, solved
+from symobs.cli.shared.outcome import check_targets, convention_of, of_problem, page_of, solved
 from symobs.errors import UsageError
 from symobs.problem import parse, validate
 from symobs.result import tasks
+from symobs.result.web_page import WebPage
 
 if TYPE_CHECKING:
     from symobs.cli.shared.outcome import Outcome
@@ -32,6 +33,9 @@ def command(
     bibliography: str | None,
     convention_name: str | None,
     detail: str,
+    details: bool,  # noqa: FBT001 - click's signature
+    copy: bool,  # noqa: FBT001
+    live: str,
     templates: str | None,
     printed: tuple[str, ...],
     period: str | None,
@@ -46,10 +50,13 @@ def command(
         raise UsageError(f"{quoted(task_name)} is not a task", repair=f"known tasks are {', '.join(sorted(tasks()))}")
     check_targets(target, plot, bibliography)
     convention = convention_of(convention_name)
-    page = page_of(detail, templates, chosen, printed=printed, period=period, hold=hold)
+    web = WebPage(details, copy, live)
+    page = page_of(detail, templates, chosen, web, printed=printed, period=period, hold=hold)
 
     def work(report_progress: Progress) -> Outcome:
-        found = validate(parse(read_file(file), file), task_name, Path(file).parent)
+        data = parse(read_file(file), file)
+        found = validate(data, task_name, Path(file).parent)
+        page["web"] = of_problem(web, data if task_name is None else {**data, "task": task_name, "tasks": None})
         report_progress = progress_on_terminal(report_progress)
         return solved(
             found,

@@ -1,6 +1,7 @@
 """HTML: the formats `html` (one self-contained page) and `html_fragment` (for insertion into another page).
 
-Mathematics is MathML, pictures are SVG, and there is no script: the page forbids itself everything but its own style.
+Mathematics is MathML, pictures are SVG, and there is no script: the page forbids itself everything but its own style, and
+where it offers buttons that copy LaTeX their one script, known by its hash.
 """
 
 from __future__ import annotations
@@ -16,6 +17,7 @@ from typing import TYPE_CHECKING, ClassVar
 
 from symobs.formula import Roots
 from symobs.phrases import PHRASES
+from symobs.render.formats.html_web import folded, levels, live_link, script_of, style_of, switch
 from symobs.render.page.blocks import (
     CaseBlock,
     Caution,
@@ -31,13 +33,16 @@ from symobs.render.page.blocks import (
     Verified,
     opened,
 )
+from symobs.render.page.detail_level import DETAILS
 from symobs.render.page.narrator import narrate, printer_for
+from symobs.render.printers.latex_printer import LatexPrinter
 from symobs.render.printers.mathml.mathml_elements import MINUS, PLUS
 from symobs.render.printers.mathml.mathml_printer import MathmlPrinter
 from symobs.render.printers.root_lists import RootGlyphs, listed
 from symobs.render.printers.text_printer import TextPrinter
 from symobs.render.tables.html_and_markdown import html_table
 from symobs.result import output_format
+from symobs.result.web_page import PLAIN
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -45,6 +50,7 @@ if TYPE_CHECKING:
     from symobs.render.page.blocks import Block, Inline, Inlines
     from symobs.render.page.sheet import Sheet
     from symobs.result import Document
+    from symobs.result.web_page import WebPage
 
 #: Stands for the place of a part on a sheet until it is known; no text contains it.
 _SOMEWHERE = "\0"
@@ -73,26 +79,31 @@ class Html:
 
     def render(self, document: Document) -> str:
         """Return the document as a page."""
-        title, _ = opened(blocks := narrate(document))
-        return page(title.text, HtmlWriter(printer_for(document, MathmlPrinter)).body(blocks))
+        title, blocks = opened(narrate(document))
+        offered = (live_link(document.web), switch(document.web, document.detail))
+        pieces = (_writer(document).block(title), *offered, _told(document, blocks))
+        return page(title.text, "\n".join(filter(None, pieces)), document.web)
 
     def part(self, document: Document) -> str:
         """Return a question or a solution below its title, independent of its place."""
         title, blocks = opened(narrate(document))
-        writer = HtmlWriter(printer_for(document, MathmlPrinter), prefix=_SOMEWHERE, level=3)
-        return writer.body((replace(title, text=""), *blocks))
+        head = _writer(document, level=3).block(replace(title, text=""))
+        told = _told(document, blocks, prefix=_SOMEWHERE, level=3)
+        return "\n".join(filter(None, (head, live_link(document.web), told)))
 
     def sheet(self, sheet: Sheet) -> str:
         """Return the sheet as one page, its contents linked to questions and solutions."""
         pieces = [f"<h1>{plain(sheet.title)}</h1>"] if sheet.title else []
+        pieces += [switch(sheet.web, sheet.detail)] if sheet.web.details and sheet.has_solutions else []
         pieces += [_contents(sheet)] if sheet.is_long else []
         for name, parts in sheet.chapters():
             pieces.append(f'<h2 class="chapter" id="{name}">{PHRASES[f"sheet_{name}"]}</h2>')
             for entry, part in parts:
                 place = f"{name}-{entry.number}"
                 pieces.append(f'<h3 class="problem" id="{place}">{entry.number}. {plain(entry.title)}</h3>')
-                pieces.append(part.replace(_SOMEWHERE, f"{place}-") if part else f"<p>{plain(entry.failure)}</p>")
-        return page(sheet.title, "\n".join(pieces))
+                told = part.replace(_SOMEWHERE, f"{place}-") if part else f"<p>{plain(entry.failure)}</p>"
+                pieces.append(folded(told) if part and sheet.web.details and name == "solutions" else told)
+        return page(sheet.title, "\n".join(pieces), sheet.web)
 
 
 @output_format
@@ -109,6 +120,26 @@ class HtmlFragment:
         return f'<div class="symobs">\n<style>\n{style()}</style>\n{body}\n</div>\n'
 
 
+def _writer(document: Document, prefix: str = "", level: int = 1) -> HtmlWriter:
+    """Return the writer of a document; with buttons that copy, it knows LaTeX too."""
+    writer = HtmlWriter(printer_for(document, MathmlPrinter), prefix=prefix, level=level)
+    if document.web.copy:
+        writer.latex = printer_for(document, LatexPrinter)
+        writer.latex.paged = False
+    return writer
+
+
+def _told(document: Document, blocks: Sequence[Block], prefix: str = "", level: int = 1) -> str:
+    """Return what stands below the title, at each level of detail where there is a choice; ids differ between levels."""
+    if not document.web.details:
+        return _writer(document, prefix, level).body(blocks)
+    bodies = {}
+    for detail in DETAILS:
+        _, shown = opened(narrate(replace(document, detail=detail)))
+        bodies[detail] = _writer(document, f"{prefix}{detail}-", level).body(shown)
+    return levels(bodies)
+
+
 def _contents(sheet: Sheet) -> str:
     """Return the table of contents: every problem once, with a link to each of its parts."""
     names = [name for name, _ in sheet.chapters()]
@@ -121,10 +152,12 @@ def _contents(sheet: Sheet) -> str:
     return f"<nav>\n<h2>{PHRASES['sheet_contents']}</h2>\n<ol>\n{listed}\n</ol>\n</nav>"
 
 
-def page(title: str, body: str) -> str:
-    """Return a whole page around a body, which is HTML already."""
+def page(title: str, body: str, web: WebPage = PLAIN) -> str:
+    """Return a whole page around a body, which is HTML already, with what the page offers besides."""
     skeleton = Template((_FOLDER / "html_page.html").read_text(encoding="utf-8"))
-    return skeleton.substitute(title=plain(title) or "symobs", style=style(), body=body)
+    script, policy = script_of(web)
+    whole = {"style": style() + style_of(web), "body": body, "script": script, "policy": policy}
+    return skeleton.substitute(title=plain(title) or "symobs", **whole)
 
 
 def style() -> str:
@@ -156,6 +189,7 @@ class HtmlWriter:
         self.prefix = prefix
         self.level = level
         self.unnumbered = count(1)
+        self.latex: LatexPrinter | None = None
 
     def body(self, blocks: Sequence[Block]) -> str:
         """Return all blocks."""
@@ -171,7 +205,10 @@ class HtmlWriter:
             case Paragraph(inlines):
                 return f"<p>{self.sentence(inlines)}</p>"
             case Display(relations, boxed, closing):
-                return self._display(self.printer.display(relations, boxed=boxed, end=closing))
+                shown = self._display(self.printer.display(relations, boxed=boxed, end=closing))
+                if self.latex is None:
+                    return shown
+                return f'<div data-latex="{escape(self.latex.display(relations, end=""))}">{shown}</div>'
             case Verified(inlines):
                 return f'<p class="verified">{self.sentence(inlines)}</p>'
             case Caution(label, inlines):
@@ -188,7 +225,7 @@ class HtmlWriter:
             case CaseBlock(label, blocks):
                 prefix = None if self.prefix is None else f"{self.prefix}case-"
                 inside = HtmlWriter(self.printer, prefix=prefix, level=self.level + 1, inset=_INSET)
-                inside.unnumbered = self.unnumbered
+                inside.unnumbered, inside.latex = self.unnumbered, self.latex
                 label_line = f"<p><strong>{self.sentence(label)}</strong></p>"
                 return f'<div class="case">\n{label_line}\n{inside.body(blocks)}\n</div>'
             case Columns():
@@ -222,6 +259,7 @@ class HtmlWriter:
         """Return a table with a column of blocks for each head."""
         inset = self.printer.width - (self.printer.width - _INSET) / len(block.heads)
         inside = HtmlWriter(self.printer, prefix=None, level=self.level + 1, inset=inset)
+        inside.latex = self.latex
         heads = "".join(f'<th scope="col">{self.sentence(head)}</th>' for head in block.heads)
         rows = ["".join(f"<td>{inside.body(cell)}</td>" for cell in row) for row in block.rows]
         body = "\n".join(f"<tr>{row}</tr>" for row in rows)

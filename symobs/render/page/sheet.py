@@ -9,6 +9,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from symobs._dataclass import dataclass
+from symobs.result.web_page import PLAIN, WebPage
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -39,6 +40,9 @@ class Sheet:
     has_questions: bool = True
     has_solutions: bool = True
     templates: Path | None = None
+    #: For a page of HTML: what it offers besides its text, and the level of detail that is shown first.
+    web: WebPage = PLAIN
+    detail: str = "full"
 
     @property
     def is_long(self) -> bool:
