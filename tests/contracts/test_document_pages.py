@@ -1,0 +1,73 @@
+"""The pages of the documentation do what they say: shell lines run in order, print what is shown, Python gives its values."""
+
+from __future__ import annotations
+
+import os
+import re
+import shlex
+import subprocess
+import sys
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+from tests.support.paths import ROOT
+from tests.support.tools.command_line import SAFETY, environment
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+PAGES = ["start", "how_to", "web_pages", "live", "tutorials/engineer", "tutorials/lecturer", "tutorials/student"]
+#: Pages whose blocks other tests run: they need more than the lines of the page.
+ELSEWHERE = {"guide", "values_and_programs", "checking", "cluster"}
+#: Without blocks of a shell or of Python, or with those of a developer.
+WITHOUT = {"index", "architecture", "measurements", "changelog", "contributing"}
+BLOCK = re.compile(r"^```(\w+)\n(.*?)^```", re.MULTILINE | re.DOTALL)
+#: What opens a browser, and what needs a notebook.
+INTERACTIVE = re.compile(r"^symobs serve$|symobs\.live\(", re.MULTILINE)
+
+
+def blocks(page: str) -> list[tuple[str, str]]:
+    return BLOCK.findall((ROOT / "docs" / f"{page}.md").read_text(encoding="utf-8"))
+
+
+def test_every_page_is_run_somewhere() -> None:
+    there = {str(path.relative_to(ROOT / "docs").with_suffix("")) for path in (ROOT / "docs").rglob("*.md")}
+    written = {name for name in there if name.split("/")[0] not in {"gallery", "reference"}}
+    assert written - WITHOUT == {*PAGES, *ELSEWHERE}
+    for name in WITHOUT & written - {"contributing"}:
+        assert not {language for language, _ in blocks(name)} & {"sh", "python"}, name
+
+
+def shell(tmp_path: Path) -> dict[str, str]:
+    """An environment in which `symobs` is that of the checkout."""
+    program = tmp_path / "bin" / "symobs"
+    program.parent.mkdir()
+    program.write_text(f'#!/bin/sh\nexec {shlex.quote(sys.executable)} -m symobs "$@"\n', encoding="utf-8")
+    program.chmod(0o755)
+    given = environment()
+    return {**given, "PATH": f"{program.parent}{os.pathsep}{given['PATH']}"}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("page", PAGES)
+def test_a_page_does_what_it_says(page: str, tmp_path: Path) -> None:
+    given, folder = shell(tmp_path), tmp_path / "work"
+    folder.mkdir()
+    names: dict[str, Any] = {}
+    printed: str | None = None
+    for language, block in blocks(page):
+        if INTERACTIVE.search(block):
+            printed = None
+        elif language == "sh":
+            command = ["bash", "-e", "-o", "pipefail", "-c", block]
+            run = subprocess.run(command, cwd=folder, env=given, capture_output=True, timeout=SAFETY, check=False)
+            printed = run.stdout.decode()
+            assert run.returncode == 0, f"{block}\n{printed}\n{run.stderr.decode()}"
+        elif language == "text" and printed is not None:
+            assert all(line in printed for line in block.splitlines()), f"{block}\n{printed}"
+        elif language == "python":
+            exec(block, names)  # noqa: S102 - the text of our own page
+            for expression, value in re.findall(r"^(\S.*?)  # (.+)$", block, re.MULTILINE):
+                shown = re.sub(r",\s+", ", ", repr(eval(expression, names)))  # noqa: S307
+                assert re.sub(r"\[\s+", "[", shown) == value, expression
