@@ -42,9 +42,7 @@ def pages() -> dict[str, str]:
 def tasks_page() -> str:
     """Every task: its function, what it takes, its methods, what it answers."""
     fields = answers()
-    parts = [
-        "# Tasks\n\nA task is a function, a command and a word of problem files, with the same keywords.\n"
-    ]
+    parts = ["# Tasks\n\nA task is a function, a command and a word of problem files, with the same keywords.\n"]
     for name, task in sorted(tasks().items()):
         parts += [f"## {name}\n", function(name, task.function), _keywords(task), _methods(task), _fields(fields[name])]
     return "\n".join(filter(None, parts))

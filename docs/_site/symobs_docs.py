@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import re
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, Any
 
 import gallery_pages
 import reference_pages
 from docutils import nodes
-from docutils.parsers.rst import directives
 from pygments.lexers.special import TextLexer
 from sphinx.util.docutils import SphinxDirective
 
@@ -26,10 +25,9 @@ LINKS = {
 
 
 class Example(SphinxDirective):
-    """A worked example: its problem file, how to run it, and its derivation, solved and held against `[expect]`."""
+    """A worked example: how to run it, its problem file, and its derivation, solved and held against `[expect]`."""
 
     required_arguments = 1
-    option_spec: ClassVar[Any] = {"derivation-only": directives.flag}
 
     def run(self) -> list[nodes.Node]:
         """Return the nodes."""
@@ -38,15 +36,14 @@ class Example(SphinxDirective):
         self.env.note_dependency(str(example.path))
         fragment = self.env.app.symobs_fragments.get(name, "")
         told = [nodes.raw("", fragment, format="html")] if fragment else []
-        if "derivation-only" in self.options:
-            return told
         run = f"symobs examples {name} > {name}.toml\nsymobs solve {name}.toml -o {name}.html\nsymobs serve {name}.toml"
         parts: list[nodes.Node] = [nodes.literal_block(run, run, language="sh")]
         address = self.config.symobs_live
         if address:
             link = nodes.reference("", "Open live", refuri=f"{address}#{example.link}")
             parts.append(nodes.paragraph("", "", link))
-        return [*parts, nodes.literal_block(example.text, example.text, language="toml"), *told]
+        file = example.text.partition("\n[[printed]]")[0]  # what its source prints is for `symobs audit`
+        return [*parts, nodes.literal_block(file, file, language="toml"), *told]
 
 
 def write_pages(app: Sphinx) -> None:
