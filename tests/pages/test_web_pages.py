@@ -31,7 +31,8 @@ def html(*options: str) -> str:
 
 
 def policy(page: str) -> str:
-    return re.findall(r'Content-Security-Policy" content="([^"]*)"', page)[0]
+    (found,) = re.findall(r'Content-Security-Policy" content="([^"]*)"', page)
+    return str(found)
 
 
 def body(page: str) -> str:

@@ -285,8 +285,7 @@ def _worked_out(
 def _part(document: Document, wanted: _Wanted) -> Any:
     """Return the part of a sheet for a question or a solution, in its format."""
     convention = wanted.convention or document.convention
-    page = {"detail": wanted.detail, "templates": wanted.templates, "web": wanted.web}
-    told = replace(document, convention=convention, **page)
+    told = replace(document, convention=convention, detail=wanted.detail, templates=wanted.templates, web=wanted.web)
     return wanted.format.part(told)
 
 
