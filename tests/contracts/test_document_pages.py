@@ -18,8 +18,6 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 PAGES = ["start", "how_to", "web_pages", "live", "tutorials/engineer", "tutorials/lecturer", "tutorials/student"]
-#: Pages whose blocks other tests run: they need more than the lines of the page.
-ELSEWHERE = {"guide", "values_and_programs", "checking", "cluster"}
 #: Without blocks of a shell or of Python, or with those of a developer.
 WITHOUT = {"index", "architecture", "measurements", "changelog", "contributing"}
 BLOCK = re.compile(r"^```(\w+)\n(.*?)^```", re.MULTILINE | re.DOTALL)
@@ -31,10 +29,26 @@ def blocks(page: str) -> list[tuple[str, str]]:
     return BLOCK.findall((ROOT / "docs" / f"{page}.md").read_text(encoding="utf-8"))
 
 
-def test_every_page_is_run_somewhere() -> None:
+@pytest.fixture(name="written")
+def pages_written() -> set[str]:
+    """The pages that are not written from the code when the site is built."""
     there = {str(path.relative_to(ROOT / "docs").with_suffix("")) for path in (ROOT / "docs").rglob("*.md")}
-    written = {name for name in there if name.split("/")[0] not in {"gallery", "reference"}}
-    assert written - WITHOUT == {*PAGES, *ELSEWHERE}
+    return {name for name in there if name.split("/")[0] not in {"gallery", "reference"}}
+
+
+def test_every_page_is_in_the_contents_of_the_site(written: set[str]) -> None:
+    contents = (ROOT / "docs" / "index.md").read_text(encoding="utf-8").splitlines()
+    assert written - {"index"} - set(contents) == set()
+
+
+def test_every_page_is_run_somewhere(written: set[str]) -> None:
+    others = [path for path in (ROOT / "tests").rglob("test_*.py") if path.name != "test_document_pages.py"]
+    tests = "".join(path.read_text(encoding="utf-8") for path in others)
+    elsewhere = {
+        name for name in written if re.search(rf'docs(?:/|" / "){name}\.md"', tests)
+    }  # they need more than its lines
+    assert {"guide", "checking", "cluster", "values_and_programs"} <= elsewhere
+    assert written - elsewhere - WITHOUT == set(PAGES)
     for name in WITHOUT & written - {"contributing"}:
         assert not {language for language, _ in blocks(name)} & {"sh", "python"}, name
 
