@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-import os
 import re
 import shlex
-import subprocess
-import sys
+from itertools import takewhile
 from typing import TYPE_CHECKING, Any
 
 import pytest
 
 from tests.support.paths import ROOT
-from tests.support.tools.command_line import SAFETY, environment
+from tests.support.tools.command_line import inside
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -53,31 +51,40 @@ def test_every_page_is_run_somewhere(written: set[str]) -> None:
         assert not {language for language, _ in blocks(name)} & {"sh", "python"}, name
 
 
-def shell(tmp_path: Path) -> dict[str, str]:
-    """An environment in which `symobs` is that of the checkout."""
-    program = tmp_path / "bin" / "symobs"
-    program.parent.mkdir()
-    program.write_text(f'#!/bin/sh\nexec {shlex.quote(sys.executable)} -m symobs "$@"\n', encoding="utf-8")
-    program.chmod(0o755)
-    given = environment()
-    return {**given, "PATH": f"{program.parent}{os.pathsep}{given['PATH']}"}
+def run(block: str, folder: Path) -> str:
+    """What the lines of a shell print: `symobs` with `>`, `| grep` and `|| test $? =`, and `cat` with and without a text."""
+    printed, lines = "", iter(block.splitlines())
+    for line in lines:
+        if text := re.fullmatch(r"cat (>>?) (\S+) <<'END'", line):
+            with (folder / text[2]).open("a" if text[1] == ">>" else "w", encoding="utf-8") as file:
+                file.writelines(f"{each}\n" for each in takewhile(lambda each: each != "END", lines))
+        elif line.startswith("cat "):
+            printed += (folder / line[4:]).read_text(encoding="utf-8")
+        elif line:
+            command, _, code = line.partition(" || test $? = ")
+            command, _, wanted = command.partition(" | grep ")
+            words, _, target = command.partition(" > ")
+            ran = inside(*shlex.split(words)[1:], folder=folder)
+            assert words.startswith("symobs ")
+            assert (ran.code, line) == (int(code or 0), line), ran.err
+            assert wanted.removeprefix("-i ").lower() in ran.out.lower()
+            if target:
+                (folder / target).write_text(ran.out, encoding="utf-8")
+            else:
+                printed += ran.out
+    return printed
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("page", PAGES)
 def test_a_page_does_what_it_says(page: str, tmp_path: Path) -> None:
-    given, folder = shell(tmp_path), tmp_path / "work"
-    folder.mkdir()
     names: dict[str, Any] = {}
     printed: str | None = None
     for language, block in blocks(page):
         if INTERACTIVE.search(block):
             printed = None
         elif language == "sh":
-            command = ["bash", "-e", "-o", "pipefail", "-c", block]
-            run = subprocess.run(command, cwd=folder, env=given, capture_output=True, timeout=SAFETY, check=False)
-            printed = run.stdout.decode()
-            assert run.returncode == 0, f"{block}\n{printed}\n{run.stderr.decode()}"
+            printed = run(block, tmp_path)
         elif language == "text" and printed is not None:
             assert all(line in printed for line in block.splitlines()), f"{block}\n{printed}"
         elif language == "python":

@@ -217,7 +217,7 @@ def test_a_clipboard_that_is_refused_is_said(chromium: Any, files: Path) -> None
 
 @pytest.mark.slow
 def test_every_example_offers_all_and_keeps_its_ids_apart() -> None:
-    for path in EXAMPLES[::9]:
+    for path in EXAMPLES[::20]:
         run = inside("solve", str(path), "--format", "html", "--details", "--copy", "--live", LIVE)
         ids = re.findall(r' id="([^"]*)"', run.out)
         assert len(ids) == len(set(ids)), path.stem
