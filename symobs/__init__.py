@@ -16,6 +16,7 @@ FUNCTIONS = {
     "bounded": "symobs.cli.shared.time_and_memory",
     "batch": "symobs.batching",
     "check": "symobs.checking",
+    "live": "symobs.live",
     "sweep": "symobs.batching.sweep",
     "variants": "symobs.variation",
 }
@@ -30,7 +31,8 @@ def __getattr__(name: str) -> Any:
     if name == "__version__":
         return importlib.import_module("importlib.metadata").version("symobs")
     if name in FUNCTIONS:
-        return getattr(importlib.import_module(FUNCTIONS[name]), name)
+        module = importlib.import_module(FUNCTIONS[name])
+        return module if FUNCTIONS[name] == f"symobs.{name}" else getattr(module, name)  # one is called itself
     if name[:1].isupper():
         if name in _errors():
             return _errors()[name]

@@ -48,6 +48,7 @@ from symobs.errors import SymobsError as SymobsError
 from symobs.errors import TypesettingError as TypesettingError
 from symobs.errors import UnknownName as UnknownName
 from symobs.errors import UsageError as UsageError
+from symobs.live import live as live
 from symobs.system import StateSpace as StateSpace
 from symobs.variation import variants as variants
 

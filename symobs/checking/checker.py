@@ -17,10 +17,10 @@ from symobs.checking.marks import missing, part_of
 from symobs.checking.report.data import SHOW, Part
 from symobs.checking.report.report import CheckReport
 from symobs.convention import Convention, convention_named
-from symobs.errors import InputError, ProblemErrors, SymobsError, UsageError, reason_of
+from symobs.errors import InputError, ProblemErrors, SymobsError, UsageError
 from symobs.expect import available
 from symobs.expression.source import shown
-from symobs.problem import MAX_BYTES, Problem, read
+from symobs.problem import MAX_BYTES, Problem, is_text, read, text_of
 from symobs.result import Result
 from symobs.result.in_convention import Viewed
 
@@ -67,7 +67,7 @@ class Checked:
             results = tuple(problem)
             return Checked(Problem("", "", (), (), results[0].plant, {}), results)
         if isinstance(problem, (str, Path)):
-            text, folder = _text_of(problem)
+            text, folder = text_of(problem)
             problem = read(text, "problem" if folder is None else str(problem), folder)
         assert isinstance(problem, Problem)  # noqa: S101 - nothing else is left
         return Checked(problem, problem.solve())
@@ -158,8 +158,8 @@ class Checked:
         """Return what was handed in: read, or the one value that is asked for."""
         if isinstance(answer, Answer):
             return answer
-        if isinstance(answer, Path) or (isinstance(answer, str) and not _is_text(answer)):
-            return read_answer(_text_of(answer, limit=MAX_BYTES)[0], "answer")
+        if isinstance(answer, Path) or (isinstance(answer, str) and not is_text(answer)):
+            return read_answer(text_of(answer, limit=MAX_BYTES)[0], "answer")
         if isinstance(answer, (str, Mapping)):
             return read_answer(answer)
         views = self.views()
@@ -217,20 +217,3 @@ def _given(answer: Answer, views: Sequence[Viewed]) -> dict[str, dict[str, Any]]
 def _unknown(name: str, views: Sequence[Viewed]) -> InputError:
     known = ", ".join(dict.fromkeys(field for view in views for field in available(view)))
     return InputError("no task here has such a field", where=f"answer.{shown(name, 60)}", repair=f"known: {known}")
-
-
-def _is_text(given: str) -> bool:
-    return "\n" in given or "=" in given or given.lstrip().startswith("{") or not given.strip()
-
-
-def _text_of(given: str | Path, limit: int = MAX_BYTES) -> tuple[str, Path | None]:
-    """Return the text of a path, with its folder, or a text itself."""
-    if isinstance(given, str) and _is_text(given):
-        return given, None
-    path = Path(given)
-    try:
-        with path.open("rb") as stream:
-            return stream.read(limit + 1).decode("utf-8-sig"), path.parent
-    except (OSError, ValueError) as error:
-        repair = "give the path of a file, or its text"
-        raise InputError(reason_of(error), where=shown(str(given), 200), repair=repair) from None

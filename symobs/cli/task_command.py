@@ -14,6 +14,7 @@ from symobs.cli.shared.outcome import check_targets, convention_of, page_of, sol
 from symobs.errors import ProblemErrors, SymobsError, UsageError
 from symobs.problem import OPEN, validate
 from symobs.result import methods
+from symobs.result.web_page import WebPage
 from symobs.specification import CHOICES, KINDS
 
 if TYPE_CHECKING:
@@ -52,7 +53,8 @@ def task_command(task: Any) -> click.Command:
         help="\n\n".join([first, *(f"\b\n{paragraph}" for paragraph in rest.split("\n\n"))]),
         short_help=task.summary,
     )
-    return options(*OF_A_PAGE)(command)
+    # A link to a live page needs the signs that a file declares.
+    return options(*(name for name in OF_A_PAGE if name != "live"))(command)
 
 
 def _words(task: Any, name: str) -> OneOf | None:
@@ -82,7 +84,8 @@ def _run_task(task: Any, options_given: dict[str, Any]) -> None:
     chosen = chosen_format(options_given["format_name"], options_given["target"], default=default)
     check_targets(options_given["target"], options_given["plot"], options_given["bibliography"])
     of_numbers = {name: options_given[name] for name in ("digits", "exact", "printed", "period", "hold")}
-    page = page_of(options_given["detail"], options_given["templates"], chosen, **of_numbers)
+    web = WebPage(options_given["details"], options_given["copy"])
+    page = page_of(options_given["detail"], options_given["templates"], chosen, web, **of_numbers)
     page["settings"] = options_given["settings"]
     plant = given("plant_")
     if plant.get("dt", "").lower() == "true":

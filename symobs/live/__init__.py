@@ -2,8 +2,48 @@
 
 `answer` is one pure function from a request to a response, both JSON objects of the protocol `symobs-live/1`.  Whatever
 carries them (the server of `symobs serve`, a notebook, a worker in a browser) computes no mathematics of its own.
+
+The package is called as a function, `symobs.live(…)`, for a widget in a notebook.
 """
 
+from __future__ import annotations
+
+import sys
+from types import ModuleType
+from typing import TYPE_CHECKING, Any
+
+from symobs.errors import UsageError
 from symobs.live.answering import answer
 
-__all__ = ["answer"]
+if TYPE_CHECKING:
+    from symobs.live.notebook import LiveWidget
+
+__all__ = ["answer", "live"]
+
+
+def live(problem: Any = None, /, *, plant: Any = None, task: str | None = None, **specification: Any) -> LiveWidget:
+    """Show a problem in a notebook, where its poles, entries and parameters are moved and every answer is checked.
+
+    problem         a problem file (its path or its text), or a mapping with its tables
+    plant, task     in its place: a plant and the name of a task, with the keywords of the task
+    Returns a widget: `result` is the result of the newest answer, `state` the text of a link, and `on_change(f)` calls
+    f(result) after every answer.  Raises `ProblemErrors` for what is wrong with the problem, and `UsageError` where the
+    extra `notebook` (anywidget) is not installed.
+    """
+    try:
+        from symobs.live.notebook import widget  # noqa: PLC0415 - it needs anywidget
+    except ImportError:
+        repair = "pip install 'symobs[notebook]', or use `symobs serve`"
+        raise UsageError("anywidget is not installed", repair=repair) from None
+    return widget(problem, plant, task, specification)
+
+
+class _Called(ModuleType):
+    """A module that is called as its function of the same name."""
+
+    def __call__(self, *arguments: Any, **keywords: Any) -> LiveWidget:
+        """Return the widget."""
+        return live(*arguments, **keywords)
+
+
+sys.modules[__name__].__class__ = _Called

@@ -76,6 +76,11 @@ def answer(request: object) -> dict[str, Any]:
         return head | _bug(error)
 
 
+def result_of(request: object) -> Result:
+    """Return the result that an answer speaks of: it is remembered from answering."""
+    return _there(read(request)).result
+
+
 def _bug(error: Exception) -> dict[str, Any]:
     """Return the message; the whole goes to standard error, never to who asked."""
     traceback.print_exception(error, file=sys.stderr)

@@ -5,11 +5,11 @@ A file is never executed and never partly trusted: its size, its nesting and its
 
 from pathlib import Path
 
-from symobs.problem.file_tables import MAX_BYTES, Decimal, parse
+from symobs.problem.file_tables import MAX_BYTES, Decimal, is_text, parse, text_of
 from symobs.problem.schema import schema
 from symobs.problem.validation import OPEN, Problem, validate
 
-__all__ = ["MAX_BYTES", "OPEN", "Decimal", "Problem", "parse", "read", "schema", "validate"]
+__all__ = ["MAX_BYTES", "OPEN", "Decimal", "Problem", "is_text", "parse", "read", "schema", "text_of", "validate"]
 
 
 def read(text: str, where: str = "problem", folder: Path | None = None) -> Problem:

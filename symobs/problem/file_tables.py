@@ -6,13 +6,32 @@ import json
 import re
 import tomllib
 from collections.abc import Mapping
+from pathlib import Path
 from typing import Any
 
-from symobs.errors import InputError, ProblemErrors
+from symobs.errors import InputError, ProblemErrors, reason_of
 from symobs.expression.source import shown
 from symobs.parser_limits import refuse_costly
 
 MAX_BYTES = 256 * 1024
+
+
+def is_text(given: str) -> bool:
+    """Return whether this is the text of a file rather than its path."""
+    return "\n" in given or "=" in given or given.lstrip().startswith("{") or not given.strip()
+
+
+def text_of(given: str | Path, limit: int = MAX_BYTES) -> tuple[str, Path | None]:
+    """Return the text of a path, with its folder, or a text itself.  Raises `InputError` where it cannot be read."""
+    if isinstance(given, str) and is_text(given):
+        return given, None
+    path = Path(given)
+    try:
+        with path.open("rb") as stream:
+            return stream.read(limit + 1).decode("utf-8-sig"), path.parent
+    except (OSError, ValueError) as error:
+        repair = "give the path of a file, or its text"
+        raise InputError(reason_of(error), where=shown(str(given), 200), repair=repair) from None
 
 
 class Decimal(str):

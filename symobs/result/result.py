@@ -21,6 +21,7 @@ from symobs.errors import CertificateRejected, DerivationRejected
 from symobs.exact.linear_algebra.realisation import Realisation
 from symobs.result.conversions import Faces
 from symobs.result.digits_of_page import digits_asked
+from symobs.result.web_page import PLAIN, WebPage
 from symobs.result.writers import render, writer_of
 
 if TYPE_CHECKING:
@@ -393,6 +394,8 @@ class Document:
     digits: int | None = field(default=None, kw_only=True)
     #: What a sheet adds to each part of a question: its points, in words, and the room for an answer.
     handout: tuple[Any, ...] = field(default=(), kw_only=True)
+    #: What a page of HTML offers besides its text.
+    web: WebPage = field(default=PLAIN, kw_only=True)
 
     @cached_property
     def derivations(self) -> tuple[Derivation, ...]:

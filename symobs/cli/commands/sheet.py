@@ -32,6 +32,7 @@ from symobs.expression.source import shown
 from symobs.problem.sheet_file import Asked, SheetFile, is_sheet, read_sheet
 from symobs.render.page.sheet import Header, Sheet, SheetEntry
 from symobs.result import format_named, formats, tasks
+from symobs.result.web_page import WebPage
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -46,7 +47,7 @@ _WORST_FIRST = (EXIT_BUG, InputError.exit_code, EXIT_NO, EXIT_UNDECIDED)
 @click.option("--title", default="", metavar="TEXT", help="The title of the sheet.")
 @click.option("--questions", is_flag=True, help="The questions only.")
 @click.option("--solutions", is_flag=True, help="The solutions only; they begin with the data.")
-@options("detail", "digits", "exact", "templates", "convention", *LIMITS)
+@options("detail", "digits", "exact", "details", "copy", "live", "templates", "convention", *LIMITS)
 def command(
     files: tuple[str, ...],
     target: str | None,
@@ -57,6 +58,9 @@ def command(
     detail: str,
     digits: object,
     exact: bool,  # noqa: FBT001
+    details: bool,  # noqa: FBT001
+    copy: bool,  # noqa: FBT001
+    live: str,
     templates: str | None,
     convention_name: str | None,
     timeout: float | None,
@@ -72,7 +76,8 @@ def command(
     if questions and solutions:
         raise UsageError("both --questions and --solutions are given", repair="leave both out for both")
     chosen = _sheet_format(format_name, target)
-    told = page_of(detail, templates, chosen.name, digits=digits, exact=exact)
+    web = WebPage(details, copy, live)
+    told = page_of(detail, templates, chosen.name, web, digits=digits, exact=exact)
     check_target(target)
     file = _sheet_file(files)
     wanted = Wanted(
@@ -101,7 +106,9 @@ def command(
         for message in messages:
             write_message(message if message.startswith(f"{name}, ") else f"{name}: {message}")
     progress.say("typesetting" if wanted.format.name == "pdf" else "writing")
-    sheet = Sheet(title or file.title, tuple(entries), wanted.questions, wanted.solutions, wanted.templates, header)
+    halves = (wanted.questions, wanted.solutions)
+    offered = {"web": wanted.web, "detail": wanted.detail}
+    sheet = Sheet(title or file.title, tuple(entries), *halves, wanted.templates, header, **offered)
     whole = wanted.format.sheet(sheet)
     progress.clear()
     write(whole, target)

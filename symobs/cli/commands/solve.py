@@ -9,10 +9,11 @@ import click
 
 from symobs.cli.shared.common import chosen_format, place_of, progress_on_terminal, read_file, run_work
 from symobs.cli.shared.options import OF_A_PAGE, AFile, OneOf, options, quoted
-from symobs.cli.shared.outcome import check_targets, convention_of, page_of, solved
+from symobs.cli.shared.outcome import check_targets, convention_of, of_problem, page_of, solved
 from symobs.errors import UsageError
 from symobs.problem import parse, validate
 from symobs.result import tasks
+from symobs.result.web_page import WebPage
 
 if TYPE_CHECKING:
     from symobs.cli.shared.outcome import Outcome
@@ -36,6 +37,9 @@ def command(
     detail: str,
     digits: object,
     exact: bool,  # noqa: FBT001 - click's signature
+    details: bool,  # noqa: FBT001
+    copy: bool,  # noqa: FBT001
+    live: str,
     templates: str | None,
     printed: tuple[str, ...],
     period: str | None,
@@ -51,11 +55,13 @@ def command(
     check_targets(target, plot, bibliography)
     convention = convention_of(convention_name)
     numbers = {"printed": printed, "period": period, "hold": hold}
-    page = page_of(detail, templates, chosen, digits=digits, exact=exact, **numbers)
+    web = WebPage(details, copy, live)
+    page = page_of(detail, templates, chosen, web, digits=digits, exact=exact, **numbers)
 
     def work(report_progress: Progress) -> Outcome:
         tables = _tables(read_file(file), file, variant)
         found = validate(tables, task_name, Path(file).parent)
+        page["web"] = of_problem(web, tables if task_name is None else {**tables, "task": task_name, "tasks": None})
         report_progress = progress_on_terminal(report_progress)
         return solved(
             found,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from contextlib import suppress
 from typing import TYPE_CHECKING, Any, TypeVar
 
@@ -44,6 +45,15 @@ def _settings(_: click.Context, __: click.Parameter, entries: tuple[str, ...]) -
             raise UsageError(f"{quoted(name)} is set twice", where="--set", repair="keep one of them")
         found[name] = value
     return found
+
+
+def _address(_: click.Context, __: click.Parameter, value: str | None) -> str:
+    """Return the address of a page without what stands after #; raises `UsageError` for what is none."""
+    address = (value or "").partition("#")[0]
+    if value is not None and not re.fullmatch(r"https?://[^\s\"'<>\\]+", address):
+        repair = "write for example --live https://example.org/live/"
+        raise UsageError(f"{quoted(value)} is not the address of a page", where="--live", repair=repair)
+    return address
 
 
 def _names(_: click.Context, __: click.Parameter, value: str | None) -> tuple[str, ...]:
@@ -153,6 +163,18 @@ OPTIONS: dict[str, Callable[[Any], Any]] = {
         "--exact",
         is_flag=True,
         help="Write the numbers of the page exactly, also where the data are typed as decimals.",
+    ),
+    "details": click.option(
+        "--details",
+        is_flag=True,
+        help="For HTML: every level of detail on one page, to choose from; solutions of a sheet folded.",
+    ),
+    "copy": click.option("--copy", is_flag=True, help="For HTML: a button at each display that copies its LaTeX."),
+    "live": click.option(
+        "--live",
+        metavar="URL",
+        help="For HTML: a link that opens the problem on the live page at URL.",
+        callback=_address,
     ),
     "templates": click.option(
         "--templates", type=AFile("dir"), metavar="FOLDER", help="Use your own LaTeX templates: see `symobs templates`."

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 from symobs._dataclass import dataclass
 from symobs.cli.shared.output import check_target
 from symobs.errors import InputError, OutOfBudget, ProblemErrors, UsageError
+from symobs.result.web_page import PLAIN, WebPage
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -40,19 +41,29 @@ def convention_of(name: str | None) -> Any:
 
 
 def page_of(
-    detail: str, templates: str | None, format_name: str, *, digits: object = None, exact: bool = False, **others: Any
+    detail: str,
+    templates: str | None,
+    format_name: str,
+    web: WebPage = PLAIN,
+    *,
+    digits: object = None,
+    exact: bool = False,
+    **others: Any,
 ) -> dict[str, Any]:
-    """Return the options of --detail, --digits, --exact and --templates, and those of programs and numbers as they are.
+    """Return the options of --detail, --digits, --exact, --templates and web pages, those of programs and numbers as they are.
 
-    Raises `UsageError` for unknown values.
+    Raises `UsageError` for unknown values, and for options of pages that the format does not write.
     """
     from symobs.render.page.detail_level import detail_named  # noqa: PLC0415 - it imports the steps
     from symobs.result.digits_of_page import digits_asked  # noqa: PLC0415
 
     asked = digits_asked(digits, exact=exact, where="--digits")
-    found = {"detail": detail_named(detail), **({} if asked is None else {"digits": asked}), **others}
+    page = {"detail": detail_named(detail), "web": web, **({} if asked is None else {"digits": asked}), **others}
+    if web != PLAIN and format_name != "html":
+        where = next(f"--{name}" for name in ("details", "copy", "live") if getattr(web, name))
+        raise UsageError(f"the format {format_name} is no web page", where=where, repair="use --format html")
     if templates is None:
-        return found
+        return page
     from symobs.render.formats.templates import check_folder  # noqa: PLC0415 - only with --templates
     from symobs.result import format_named, formats  # noqa: PLC0415
 
@@ -61,7 +72,16 @@ def page_of(
         message = f"the format {format_name} has no LaTeX template"
         raise UsageError(message, where="--templates", repair=f"use one of {having}, or leave it out")
     check_folder(Path(templates))
-    return {**found, "templates": Path(templates)}
+    return {**page, "templates": Path(templates)}
+
+
+def of_problem(web: WebPage, data: Mapping[str, Any]) -> WebPage:
+    """Return what a page offers, its link with the state of a problem."""
+    if not web.live:
+        return web
+    from symobs.live.links import link_of  # noqa: PLC0415 - only with --live
+
+    return replace(web, live=f"{web.live}#{link_of(data)}")
 
 
 def check_targets(target: str | None, plot: str | None, bibliography: str | None = None) -> None:

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from symobs._dataclass import dataclass
 from symobs.cli.shared.common import EXIT_BUG, EXIT_NO, EXIT_UNDECIDED, NOT_ENOUGH_MEMORY
+from symobs.cli.shared.outcome import of_problem
 from symobs.errors import OutOfBudget, ProblemErrors, SymobsError, TypesettingError
 from symobs.expect import mismatches
 from symobs.phrases import PHRASES
@@ -19,6 +20,7 @@ from symobs.problem import parse, validate
 from symobs.problem.question import question_of
 from symobs.render.page.detail_level import FINAL
 from symobs.render.page.sheet import SheetEntry, points_in_words, sheet_words
+from symobs.result.web_page import PLAIN, WebPage
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -50,6 +52,7 @@ class Wanted:
     detail: str
     digits: int | None = None
     templates: Path | None = None
+    web: WebPage = PLAIN
     convention: Any = None
     timeout: float | None = None
     memory: float | None = None
@@ -180,7 +183,7 @@ def _worked_out(entry: SheetEntry, asked: Asked, text: str, wanted: Wanted, repo
         problem = validate(data, folder=Path(entry.file).parent)
         if wanted.questions:
             question = replace(question_of(problem), handout=_handout(asked, len(problem.tasks), wanted))
-            entry = replace(entry, question=_part(question, wanted))
+            entry = replace(entry, question=_part(question, replace(wanted, web=wanted.web.of_question)))
         report_progress(entry)
         if not wanted.is_solved:
             return entry, 0, []
@@ -189,9 +192,9 @@ def _worked_out(entry: SheetEntry, asked: Asked, text: str, wanted: Wanted, repo
         if wanted.solutions:
             is_below = wanted.is_exam and wanted.questions
             told = replace(document, source="", text="") if is_below else document
-            entry = replace(entry, solution=_part(told, wanted))
+            entry = replace(entry, solution=_part(told, replace(wanted, web=of_problem(wanted.web, data))))
         if wanted.questions and wanted.final_answers:
-            entry = replace(entry, answer=_part(document, replace(wanted, detail=FINAL)))
+            entry = replace(entry, answer=_part(document, replace(wanted, detail=FINAL, web=wanted.web.of_question)))
     except Exception as error:  # noqa: BLE001 - as above
         return _failed(entry, error, wanted)
     try:
@@ -218,7 +221,8 @@ def _part(document: Document, wanted: Wanted) -> Any:
     """Return the part of a sheet for a question or a solution, in its format."""
     convention = wanted.convention or document.convention
     digits = document.digits if wanted.digits is None else wanted.digits
-    told = replace(document, convention=convention, detail=wanted.detail, digits=digits, templates=wanted.templates)
+    of_page = {"detail": wanted.detail, "digits": digits, "templates": wanted.templates, "web": wanted.web}
+    told = replace(document, convention=convention, **of_page)
     return wanted.format.part(told)
 
 

@@ -1,6 +1,7 @@
 """HTML: the formats `html` (one self-contained page) and `html_fragment` (for insertion into another page).
 
-Mathematics is MathML, pictures are SVG, and there is no script: the page forbids itself everything but its own style.
+Mathematics is MathML, pictures are SVG, and there is no script: the page forbids itself everything but its own style, and
+where it offers buttons that copy LaTeX their one script, known by its hash.
 """
 
 from __future__ import annotations
@@ -17,6 +18,7 @@ from typing import TYPE_CHECKING, ClassVar
 
 from symobs.formula import Roots
 from symobs.phrases import PHRASES
+from symobs.render.formats.html_web import folded, levels, live_link, script_of, style_of, switch
 from symobs.render.page.blocks import (
     AnswerSpace,
     CaseBlock,
@@ -33,13 +35,16 @@ from symobs.render.page.blocks import (
     Verified,
     opened,
 )
+from symobs.render.page.detail_level import DETAILS
 from symobs.render.page.narrator import narrate, printer_for
+from symobs.render.printers.latex_printer import LatexPrinter
 from symobs.render.printers.mathml.mathml_elements import MINUS, PLUS
 from symobs.render.printers.mathml.mathml_printer import MathmlPrinter
 from symobs.render.printers.root_lists import RootGlyphs, listed
 from symobs.render.printers.text_printer import TextPrinter
 from symobs.render.tables.html_and_markdown import html_table
 from symobs.result import output_format
+from symobs.result.web_page import PLAIN
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -47,6 +52,7 @@ if TYPE_CHECKING:
     from symobs.render.page.blocks import Block, Inline, Inlines
     from symobs.render.page.sheet import Sheet
     from symobs.result import Document
+    from symobs.result.web_page import WebPage
 
 #: Stands for the place of a part on a sheet until it is known; no text contains it.
 _SOMEWHERE = "\0"
@@ -79,18 +85,22 @@ class Html:
 
     def render(self, document: Document) -> str:
         """Return the document as a page."""
-        title, _ = opened(blocks := narrate(document))
-        return page(title.text, HtmlWriter(printer_for(document, MathmlPrinter)).body(blocks))
+        title, blocks = opened(narrate(document))
+        offered = (live_link(document.web), switch(document.web, document.detail))
+        pieces = (_writer(document).block(title), *offered, _told(document, blocks))
+        return page(title.text, "\n".join(filter(None, pieces)), document.web)
 
     def part(self, document: Document) -> str:
         """Return a question or a solution below its title, independent of its place."""
         title, blocks = opened(narrate(document))
-        writer = HtmlWriter(printer_for(document, MathmlPrinter), prefix=_SOMEWHERE, level=3)
-        return writer.body((replace(title, text=""), *blocks))
+        head = _writer(document, level=3).block(replace(title, text=""))
+        told = _told(document, blocks, prefix=_SOMEWHERE, level=3)
+        return "\n".join(filter(None, (head, live_link(document.web), told)))
 
     def sheet(self, sheet: Sheet) -> str:
         """Return the sheet as one page, its contents linked to questions and solutions."""
         pieces = list(_head(sheet))
+        pieces += [switch(sheet.web, sheet.detail)] if sheet.web.details and sheet.has_solutions else []
         pieces += [_contents(sheet)] if sheet.is_long else []
         for chapter in sheet.chapters():
             pieces += [f'<h2 class="chapter" id="{chapter.name}">{chapter.title}</h2>'] if chapter.title else []
@@ -100,8 +110,9 @@ class Html:
                 heading = f"{item.label} {plain(item.title)}{points}" if item.title else f"{item.label}{points}"
                 pieces.append(f'<h3 class="{kind}" id="{item.place}">{heading}</h3>')
                 body = item.part or f"<p>{plain(item.text)}</p>"
-                pieces.append(body.replace(_SOMEWHERE, f"{item.place}-"))
-        return page(sheet.heading, "\n".join(pieces), has_picture=sheet.header.logo is not None)
+                told = body.replace(_SOMEWHERE, f"{item.place}-")
+                pieces.append(folded(told) if item.part and sheet.web.details and item.kind == "solutions" else told)
+        return page(sheet.heading, "\n".join(pieces), sheet.web, has_picture=sheet.header.logo is not None)
 
 
 @output_format
@@ -138,6 +149,26 @@ def _head(sheet: Sheet) -> Iterator[str]:
     yield from (f"<p>{plain(part)}</p>" for part in sheet.header.text.split("\n\n") if part.strip())
 
 
+def _writer(document: Document, prefix: str = "", level: int = 1) -> HtmlWriter:
+    """Return the writer of a document; with buttons that copy, it knows LaTeX too."""
+    writer = HtmlWriter(printer_for(document, MathmlPrinter), prefix=prefix, level=level)
+    if document.web.copy:
+        writer.latex = printer_for(document, LatexPrinter)
+        writer.latex.paged = False
+    return writer
+
+
+def _told(document: Document, blocks: Sequence[Block], prefix: str = "", level: int = 1) -> str:
+    """Return what stands below the title, at each level of detail where there is a choice; ids differ between levels."""
+    if not document.web.details:
+        return _writer(document, prefix, level).body(blocks)
+    bodies = {}
+    for detail in DETAILS:
+        _, shown = opened(narrate(replace(document, detail=detail)))
+        bodies[detail] = _writer(document, f"{prefix}{detail}-", level).body(shown)
+    return levels(bodies)
+
+
 def _contents(sheet: Sheet) -> str:
     """Return the table of contents: every problem once, with a link to each of its parts."""
     names = sheet.kinds
@@ -150,11 +181,16 @@ def _contents(sheet: Sheet) -> str:
     return f"<nav>\n<h2>{sheet.words['contents']}</h2>\n<ol>\n{listed}\n</ol>\n</nav>"
 
 
-def page(title: str, body: str, *, has_picture: bool = False) -> str:
-    """Return a whole page around a body, which is HTML already; pictures are allowed as data alone, where there is one."""
+def page(title: str, body: str, web: WebPage = PLAIN, *, has_picture: bool = False) -> str:
+    """Return a whole page around a body, which is HTML already, with what the page offers besides.
+
+    Pictures are allowed as data alone, where there is one.
+    """
     skeleton = Template((_FOLDER / "html_page.html").read_text(encoding="utf-8"))
-    allowed = "; img-src data:" if has_picture else ""
-    return skeleton.substitute(title=plain(title) or "symobs", style=style(), body=body, allowed=allowed)
+    script, policy = script_of(web)
+    policy += "; img-src data:" if has_picture else ""
+    whole = {"style": style() + style_of(web), "body": body, "script": script, "policy": policy}
+    return skeleton.substitute(title=plain(title) or "symobs", **whole)
 
 
 def style() -> str:
@@ -186,6 +222,7 @@ class HtmlWriter:
         self.prefix = prefix
         self.level = level
         self.unnumbered = count(1)
+        self.latex: LatexPrinter | None = None
 
     def body(self, blocks: Sequence[Block]) -> str:
         """Return all blocks."""
@@ -201,7 +238,10 @@ class HtmlWriter:
             case Paragraph(inlines):
                 return f"<p>{self.sentence(inlines)}</p>"
             case Display(relations, boxed, closing):
-                return self._display(self.printer.display(relations, boxed=boxed, end=closing))
+                shown = self._display(self.printer.display(relations, boxed=boxed, end=closing))
+                if self.latex is None:
+                    return shown
+                return f'<div data-latex="{escape(self.latex.display(relations, end=""))}">{shown}</div>'
             case Verified(inlines):
                 return f'<p class="verified">{self.sentence(inlines)}</p>'
             case Caution(label, inlines):
@@ -218,7 +258,7 @@ class HtmlWriter:
             case CaseBlock(label, blocks):
                 prefix = None if self.prefix is None else f"{self.prefix}case-"
                 inside = HtmlWriter(self.printer, prefix=prefix, level=self.level + 1, inset=_INSET)
-                inside.unnumbered = self.unnumbered
+                inside.unnumbered, inside.latex = self.unnumbered, self.latex
                 label_line = f"<p><strong>{self.sentence(label)}</strong></p>"
                 return f'<div class="case">\n{label_line}\n{inside.body(blocks)}\n</div>'
             case Columns():
@@ -255,6 +295,7 @@ class HtmlWriter:
         """Return a table with a column of blocks for each head."""
         inset = self.printer.width - (self.printer.width - _INSET) / len(block.heads)
         inside = HtmlWriter(self.printer, prefix=None, level=self.level + 1, inset=inset)
+        inside.latex = self.latex
         heads = "".join(f'<th scope="col">{self.sentence(head)}</th>' for head in block.heads)
         rows = ["".join(f"<td>{inside.body(cell)}</td>" for cell in row) for row in block.rows]
         body = "\n".join(f"<tr>{row}</tr>" for row in rows)

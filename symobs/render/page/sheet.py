@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from symobs._dataclass import dataclass
 from symobs.phrases import PHRASES
+from symobs.result.web_page import PLAIN, WebPage
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -122,6 +123,9 @@ class Sheet:
     has_solutions: bool = True
     templates: Path | None = None
     header: Header = Header()
+    #: For a page of HTML: what it offers besides its text, and the level of detail that is shown first.
+    web: WebPage = PLAIN
+    detail: str = "full"
 
     @property
     def is_long(self) -> bool:
