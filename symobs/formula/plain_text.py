@@ -16,6 +16,7 @@ from symobs.formula.nodes import (
     Letter,
     Literal,
     Negative,
+    Numeral,
     Power,
     Product,
     Quotient,
@@ -55,6 +56,8 @@ def plain(formula: Formula, variable: str) -> str:
             return f"{name}({variable})" if name in _FUNCTIONS_OF_THE_VARIABLE else name
         case Literal(value) | Decimals(value):
             return _literal(value)
+        case Numeral(text=text):
+            return text
         case Identity():
             return "I"
         case Sum(terms):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, TypedDict
 
 from symobs.errors import UsageError
 from symobs.expression.source import shown
@@ -12,7 +12,14 @@ from symobs.system.reading import has_decimals
 DIGITS, MOST_DIGITS = 5, 40
 
 
-def digits_asked(digits: object, *, exact: bool = False, where: str = "digits") -> int | None:
+class Numbers(TypedDict, total=False):
+    """How `result.to` writes the numbers of a page: with so many significant digits, or exactly."""
+
+    digits: int | None
+    exact: bool
+
+
+def digits_asked(digits: object = None, *, exact: bool = False, where: str = "digits") -> int | None:
     """Return the digits of a document: 0 for exact numbers, None where nothing is said.
 
     Raises `UsageError` for what is no number of digits, and where exact numbers are asked for as well.

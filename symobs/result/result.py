@@ -9,7 +9,7 @@ from dataclasses import field, replace
 from dataclasses import fields as parts_of
 from functools import cache, cached_property, partial
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any, ClassVar, Literal, NamedTuple, NoReturn, Self, TypeAlias, overload
+from typing import TYPE_CHECKING, Any, ClassVar, Literal, NamedTuple, NoReturn, Self, TypeAlias, Unpack, overload
 
 from symobs._dataclass import dataclass
 from symobs.certificate.claims import UNREADABLE, Certificate, Claim, Statement, check_all
@@ -32,6 +32,7 @@ if TYPE_CHECKING:
     from symobs.exact import Matrix, Scalar
     from symobs.figures.plot import Picture
     from symobs.result.control_systems import Controller
+    from symobs.result.digits_of_page import Numbers
     from symobs.system import StateSpace
 
 
@@ -308,10 +309,12 @@ class Result(Faces):
         return sorted({*own, "conditions", "cases", *self.fields})
 
     @overload
-    def to(self, format_name: Literal["pdf"], *, convention: str = ..., detail: str = ..., **numbers: Any) -> bytes: ...
+    def to(
+        self, format_name: Literal["pdf"], *, convention: str = ..., detail: str = ..., **numbers: Unpack[Numbers]
+    ) -> bytes: ...
 
     @overload
-    def to(self, format_name: Text, *, convention: str = ..., detail: str = ..., **numbers: Any) -> str: ...
+    def to(self, format_name: Text, *, convention: str = ..., detail: str = ..., **numbers: Unpack[Numbers]) -> str: ...
 
     @overload
     def to(self, format_name: Code, *, period: object = None, hold: Literal["zoh", "tustin"] = "zoh") -> str: ...
@@ -323,10 +326,9 @@ class Result(Faces):
         *,
         convention: str = "standard",
         detail: str = "full",
-        digits: int | None = None,
-        exact: bool = False,
         period: object = None,
         hold: str = "zoh",
+        **numbers: Unpack[Numbers],
     ) -> str | bytes: ...
 
     def to(
@@ -335,10 +337,9 @@ class Result(Faces):
         *,
         convention: str = "standard",
         detail: str = "full",
-        digits: int | None = None,
-        exact: bool = False,
         period: object = None,
         hold: str = "zoh",
+        **numbers: Unpack[Numbers],
     ) -> str | bytes:
         """Return the result in a format: latex, html, text, json, pdf, …; in a convention, by name or TOML file.
 
@@ -347,7 +348,7 @@ class Result(Faces):
         observer or compensator as a program, sampled with a `period` such as "1/100" by a zero-order hold (zoh) or by the
         bilinear map (tustin); numpy and csv the numbers alone.
         """
-        of_page = {"detail": detail, "digits": digits_asked(digits, exact=exact), "period": period, "hold": hold}
+        of_page: dict[str, Any] = {"detail": detail, "digits": digits_asked(**numbers), "period": period, "hold": hold}
         return render(Document("", "", (self,), convention_named(convention), **of_page), format_name)
 
     def __repr__(self) -> str:

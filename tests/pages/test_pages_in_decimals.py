@@ -133,7 +133,9 @@ def other_last_digits(text: str) -> Iterator[str]:
 def test_roots_in_decimals_are_those_of_another_program(coefficients: str) -> None:
     numbers = coefficients.split()
     text = " + ".join(f"({number}) s^{len(numbers) - place}" for place, number in enumerate(numbers, 1))
-    roots = roots_of(StateSpace.from_polynomial(text).polynomial, "s")
+    value = StateSpace.from_polynomial(text).polynomial
+    assert value is not None
+    roots = roots_of(value, "s")
     texts = rounded_roots(roots, 6)
     assert texts is not None
     wanted = sympy.Poly([sympy.Rational(number) for number in numbers], sympy.Symbol("s")).nroots(n=40, maxsteps=300)

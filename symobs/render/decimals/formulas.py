@@ -188,10 +188,9 @@ class InDecimals:
                 found = [self._parts(factor) for factor in factors]
                 if not all(found) or sum(isinstance(part[1], Quotient) for part in found if part) > 1:
                     return None
-                number, rests = _ONE, []
-                for part in found:
-                    number, rests = number * part[0], [*rests, *([] if part[1] is None else [part[1]])]  # type: ignore[index]
-                return number, product(rests) if rests else None
+                parts = [part for part in found if part is not None]
+                rests = [rest for _, rest in parts if rest is not None]
+                return prod((number for number, _ in parts), start=_ONE), product(rests) if rests else None
             case Quotient(above, below):
                 top, bottom = self._parts(above), self._parts(below)
                 if top is None or bottom is None:
@@ -294,7 +293,7 @@ def _flat(factors: Sequence[Formula]) -> Iterator[Formula]:
             case Product(inner):
                 yield from _flat(inner)
             case Quotient(above, below) if _number_in(below) is not None:
-                yield from _flat((Literal(_ONE / _number_in(below)), above))  # type: ignore[arg-type, operator]
+                yield from _flat((Literal(_ONE / _number_in(below)), above))  # type: ignore[operator]
             case _:
                 yield factor
 
@@ -305,14 +304,14 @@ def _number_in(formula: Formula) -> Scalar | None:
         case Literal(Scalar() as value):
             return value if _is_plain_number(value) else None
         case Negative(operand):
-            value = _number_in(operand)
-            return None if value is None else -value
+            number = _number_in(operand)
+            return None if number is None else -number
         case Quotient(above, below):
             top, bottom = _number_in(above), _number_in(below)
             return None if top is None or bottom is None else top / bottom
         case Product(factors):
-            numbers = [_number_in(factor) for factor in factors]
-            return None if None in numbers else prod(numbers, start=_ONE)  # type: ignore[type-var, return-value]
+            numbers = [number for factor in factors if (number := _number_in(factor)) is not None]
+            return prod(numbers, start=_ONE) if len(numbers) == len(factors) else None
     return None
 
 

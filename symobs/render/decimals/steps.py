@@ -147,7 +147,7 @@ class _Writer:
         self.digits = digits
         self.parameters = frozenset(derivation.start.signs)
 
-    def step(self, step: Step) -> Step:
+    def step(self, step: Step) -> Any:
         """Return a step in decimals."""
         match step:
             case Section(title, steps):
@@ -171,8 +171,8 @@ class _Writer:
             case Tabulate(findings=findings) | Survey(findings=findings):
                 return self._said(replace(step, findings=tuple(map(self.sentence, findings))))
             case Diagram(name=name, labels=labels):
-                shown = tuple((place, self.label(name, place, label)) for place, label in labels)
-                return self._said(replace(step, labels=shown))
+                written = tuple((place, self.label(name, place, label)) for place, label in labels)
+                return self._said(replace(step, labels=written))
             case Conclude() | Note() | Plot():
                 return self._said(step)
         return step

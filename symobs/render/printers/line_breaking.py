@@ -308,6 +308,10 @@ class Breaker(Generic[B]):
 def _is_table(formula: Formula) -> bool:
     """Return whether a formula is a matrix with its entries written out."""
     if isinstance(formula, Block):
-        entries = [entry.value if isinstance(entry, Literal) else entry for row in formula.rows for entry in row]
-        return all(isinstance(entry, (Quotient, Scalar)) or contains(entry, (Numeral,)) for entry in entries)
+        entries = [entry for row in formula.rows for entry in row]
+        return all(
+            isinstance(entry.value if isinstance(entry, Literal) else entry, (Quotient, Scalar))
+            or contains(entry, (Numeral,))
+            for entry in entries
+        )
     return isinstance(formula, Literal) and isinstance(formula.value, Matrix)

@@ -93,10 +93,10 @@ def _gains_by_pari(variants: list[Any]) -> None:
     if not variants or shutil.which("gp") is None:
         return
     lines = [
-        "O(A, C) = {my(M = C, R = C); for(i = 2, #A, R = R * A; M = matconcat([M; R])); M};",
+        "stack(A, C) = {my(M = C, R = C); for(i = 2, #A, R = R * A; M = matconcat([M; R])); M};",
         "phi(A, p) = {my(M = matid(#A)); for(i = 1, #p, M = M * (A - p[i] * matid(#A))); M};",
-        "obs(A, C, p) = phi(A, p) * O(A, C)^-1 * matid(#A)[, #A];",
-        "fit(X, Y) = print(X == Y && denominator(X) == 1);",
+        "obs(A, C, p) = phi(A, p) * stack(A, C)^-1 * matid(#A)[, #A];",
+        "fit(X, Y) = print(X == Mat(Y) && denominator(X) == 1);",
     ]
     for each in variants:
         plant, asked = each.data["plant"], each.data["specification"]
