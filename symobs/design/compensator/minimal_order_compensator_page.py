@@ -212,8 +212,8 @@ def _error_coordinates(page: Page, design: MinimalOrderCompensator) -> None:
     )
     estimated = order - page.plant.outputs
     zero = page.value(Matrix.zeros(estimated, order))
-    matrix, parts = block([[A - B @ K, B @ K_2], [zero, F]]), [order, estimated]
-    page.define("A_cl", matrix, in_blocks(page, matrix.value, parts, parts), say="closed_loop_matrix", closing=False)
+    matrix, sizes = block([[A - B @ K, B @ K_2], [zero, F]]), [order, estimated]
+    page.define("A_cl", matrix, in_blocks(page, matrix.value, sizes, sizes), say="closed_loop_matrix", closing=False)
     state = block([[x], [e]])
     page.equal(relation(state.derivative, page["A_cl"] @ state))
     determinant = (page.s @ page.identity(order + estimated) - page["A_cl"]).apply("det")
@@ -226,7 +226,7 @@ def _error_coordinates(page: Page, design: MinimalOrderCompensator) -> None:
     second = block([[A - B @ K_y @ C, -(B @ K_2)], [(H - driven @ K_y) @ C, F - driven @ K_2]])
     states = block([[x], [z]])
     page.equal(
-        relation(states.derivative, second @ states, in_blocks(page, second.value, parts, parts) @ states),
+        relation(states.derivative, second @ states, in_blocks(page, second.value, sizes, sizes) @ states),
         say="reduced_coordinates",
     )
     plot_estimate(

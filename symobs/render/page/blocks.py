@@ -5,13 +5,14 @@ The narrator writes them, the formats read them, and neither knows the other.  T
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING, TypeAlias
 
 from symobs._dataclass import dataclass
 from symobs.formula import Formula, Relation, Roots
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
+    from collections.abc import Iterable, Iterator, Sequence
 
     from symobs.figures.block_diagram import Label
     from symobs.figures.plot import Picture
@@ -173,3 +174,26 @@ def opened(page: tuple[Block, ...]) -> tuple[Title, tuple[Block, ...]]:
     if not isinstance(title, Title):
         raise TypeError(f"a page begins with its title, not with {type(title).__name__}")
     return title, tuple(body)
+
+
+#: With more answers than this in one section, the last alone are set in boxes.
+_MOST_BOXES = 3
+
+
+def with_few_boxes(blocks: Sequence[Block]) -> list[Block]:
+    """Return the blocks of a section, only the last answers in boxes where there are many: those are the result."""
+    boxes = [place for place, block in enumerate(blocks) if isinstance(block, Display) and block.boxed]
+    if len(boxes) <= _MOST_BOXES:
+        return list(blocks)
+    result = boxes[-1]
+    while result - 1 in boxes:
+        result -= 1
+    kept: list[Block] = []
+    for place, block in enumerate(blocks):
+        if not isinstance(block, Display) or place >= result:
+            kept.append(block)
+        elif kept and isinstance(before := kept[-1], Display) and not before.boxed:
+            kept[-1] = Display((*before.relations, *block.relations))
+        else:
+            kept.append(replace(block, boxed=False))
+    return kept

@@ -46,6 +46,7 @@ from symobs.render.page.blocks import (
     TableBlock,
     Title,
     Verified,
+    with_few_boxes,
 )
 from symobs.render.page.citations import cited_literature
 from symobs.render.page.convention_notes import letters_used, stated_conventions
@@ -69,9 +70,6 @@ P = TypeVar("P", bound="Printer[Any]")
 
 #: The sections of a question.
 _UNNUMBERED = {"task", "tasks"}
-
-#: With more answers than this in one section, the last alone are set in boxes.
-_MOST_BOXES = 3
 
 #: The few words of a page that belong to no step.
 LABELS: dict[str, str] = {
@@ -290,7 +288,7 @@ class _PageBlocks:
             if step not in columns and (isinstance(step, Section) or step not in self.printed):
                 self.emit_step(step)
         self.numbers.pop()
-        self.blocks[start:] = _with_few_boxes(self.blocks[start:])
+        self.blocks[start:] = with_few_boxes(self.blocks[start:])
         if self.blocks[-1] is heading and not self.printed.isdisjoint(steps):  # all of it is printed already
             self.blocks.pop()
             self.numbers[-1] -= is_numbered
@@ -349,25 +347,6 @@ class _PageBlocks:
             self.blocks[-1] = Display((*last.relations, *relations), boxed)
         else:
             self.blocks.append(Display(relations, boxed))
-
-
-def _with_few_boxes(blocks: Sequence[Block]) -> list[Block]:
-    """Return the blocks of a section, only the last answers in boxes where there are many: those are the result."""
-    boxes = [place for place, block in enumerate(blocks) if isinstance(block, Display) and block.boxed]
-    if len(boxes) <= _MOST_BOXES:
-        return list(blocks)
-    result = boxes[-1]
-    while result - 1 in boxes:
-        result -= 1
-    kept: list[Block] = []
-    for place, block in enumerate(blocks):
-        if not isinstance(block, Display) or place >= result:
-            kept.append(block)
-        elif kept and isinstance(before := kept[-1], Display) and not before.boxed:
-            kept[-1] = Display((*before.relations, *block.relations))
-        else:
-            kept.append(replace(block, boxed=False))
-    return kept
 
 
 def _is_statement(step: Step) -> bool:

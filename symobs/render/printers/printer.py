@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from abc import abstractmethod
 from dataclasses import replace
-from itertools import accumulate
 from typing import TYPE_CHECKING
 
 from symobs.exact import EIGENVALUE, Matrix, Scalar, decimal_digits
@@ -38,9 +37,9 @@ from symobs.formula import (
     with_children,
 )
 from symobs.notation import FUNCTIONS, LETTERS, TIMED, is_of_time, shows_time, symbol_latex, symbol_text
-from symobs.render.printers.glyphs import B, FormulaWriter, Level, Rules
+from symobs.render.printers.glyphs import B, FormulaWriter, Level
 from symobs.render.printers.rational_formula import is_leaf
-from symobs.render.printers.scalar_formula import formula_of, formula_of_matrix
+from symobs.render.printers.scalar_formula import formula_of, formula_of_matrix, is_table, is_unit, partitioned
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -349,30 +348,6 @@ class Printer(FormulaWriter[B]):
         return box if box.level >= level else self.grouped(box)
 
 
-def partitioned(rows: Sequence[Sequence[Formula]]) -> tuple[list[list[Scalar]], Rules] | None:
-    """Return the entries of blocks that are all matrices of values, and the rows and columns that end a block."""
-    blocks = [[block.value for block in row if isinstance(block, Literal)] for row in rows]
-    if len(rows) == len(rows[0]) == 1 or [len(row) for row in blocks] != [len(row) for row in rows]:
-        return None
-    if not all(isinstance(block, Matrix) and 0 not in block.shape for row in blocks for block in row):
-        return None
-    tables = [[block for block in row if isinstance(block, Matrix)] for row in blocks]
-    entries = [
-        [entry for block in row for entry in block.rows[line]] for row in tables for line in range(row[0].shape[0])
-    ]
-    heights, widths = [row[0].shape[0] for row in tables], [block.shape[1] for block in tables[0]]
-    return entries, (tuple(accumulate(heights))[:-1], tuple(accumulate(widths))[:-1])
-
-
-def is_table(formula: Formula) -> bool:
-    """Return whether a formula is a matrix of values, which is printed in brackets: one of a single entry is a number."""
-    return isinstance(formula, Literal) and isinstance(formula.value, Matrix) and formula.value.shape != (1, 1)
-
-
-def _is_unit(formula: Formula) -> bool:
-    return isinstance(formula, Literal) and isinstance(formula.value, Matrix) and formula.value == Matrix.identity(1)
-
-
 def shifted(formula: Formula) -> Formula:
     """Return the formula of the next instant, with the shift moved one level inwards."""
     return with_children(formula, tuple(Derivative(part) for part in children(formula)))
@@ -410,7 +385,7 @@ def factors(formula: Formula, variable: str) -> list[Formula]:
     """Return the factors of nested products, values spelled out."""
     match formula:
         case Product(parts):
-            shown = [part for part in parts if not _is_unit(part)] or parts[:1]
+            shown = [part for part in parts if not is_unit(part)] or parts[:1]
             return [factor for part in shown for factor in factors(part, variable)]
         case Literal(Matrix(shape=(1, 1)) as table):
             return factors(Literal(table[0, 0]), variable)

@@ -6,6 +6,7 @@ T − 1 + e^{−T};  1/(2b) (ω² − e^{−bT}(…)).  The formula always has t
 from __future__ import annotations
 
 from functools import lru_cache
+from itertools import accumulate
 from typing import TYPE_CHECKING
 
 from symobs.exact import Matrix, Scalar
@@ -16,6 +17,8 @@ from symobs.render.printers.rational_formula import common_divisor, is_leaf, pro
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
+
+    from symobs.render.printers.glyphs import Rules
 
 #: A common denominator of more terms, or more bits, is not put in front of a matrix.
 FRONT_UP_TO = 40
@@ -53,6 +56,31 @@ def formula_of_matrix(matrix: Matrix, variable: str) -> Formula:
     inside = sum(size(formula_of(entry, variable)) for entry in cleared.entries)
     kept = sum(size(formula_of(entry, variable)) for entry in matrix.entries)
     return Product((front, Literal(cleared))) if size(front) + inside < kept else Literal(matrix)
+
+
+def partitioned(rows: Sequence[Sequence[Formula]]) -> tuple[list[list[Scalar]], Rules] | None:
+    """Return the entries of blocks that are all matrices of values, and the rows and columns that end a block."""
+    blocks = [[block.value for block in row if isinstance(block, Literal)] for row in rows]
+    if len(rows) == len(rows[0]) == 1 or [len(row) for row in blocks] != [len(row) for row in rows]:
+        return None
+    if not all(isinstance(block, Matrix) and 0 not in block.shape for row in blocks for block in row):
+        return None
+    tables = [[block for block in row if isinstance(block, Matrix)] for row in blocks]
+    entries = [
+        [entry for block in row for entry in block.rows[line]] for row in tables for line in range(row[0].shape[0])
+    ]
+    heights, widths = [row[0].shape[0] for row in tables], [block.shape[1] for block in tables[0]]
+    return entries, (tuple(accumulate(heights))[:-1], tuple(accumulate(widths))[:-1])
+
+
+def is_table(formula: Formula) -> bool:
+    """Return whether a formula is a matrix of values, which is printed in brackets: one of a single entry is a number."""
+    return isinstance(formula, Literal) and isinstance(formula.value, Matrix) and formula.value.shape != (1, 1)
+
+
+def is_unit(formula: Formula) -> bool:
+    """Return whether a formula is the identity matrix of one row, which a product leaves out."""
+    return isinstance(formula, Literal) and isinstance(formula.value, Matrix) and formula.value == Matrix.identity(1)
 
 
 def _least_common_multiple(values: Iterable[Scalar]) -> Scalar | None:

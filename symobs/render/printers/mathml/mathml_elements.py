@@ -77,3 +77,18 @@ def pieces(elements: tuple[str, ...], width: float) -> Iterator[str]:
 def is_word(element: str) -> bool:
     """Return whether an element is a name of several letters."""
     return re.match(r"<m(?:sub><m)?i>[^<]{2,}</mi>", element) is not None
+
+
+def ruled_edges(above: bool, before: bool) -> str:  # noqa: FBT001 - two edges of a cell
+    """Return the class of a cell with lines at its edges: attributes of tables for them are not in MathML Core."""
+    names = " ".join(name for name, drawn in (("top", above), ("left", before)) if drawn)
+    return f' class="{names}"' if names else ""
+
+
+def sized(opening: str, closing: str, size: str) -> tuple[str, str]:
+    """Return a pair of fences of one size."""
+    attributes = f'stretchy="true" symmetric="true" minsize="{size}" maxsize="{size}"'
+    return (
+        f'<mo form="prefix" {attributes}>{opening}</mo>',
+        f'<mo form="postfix" {attributes}>{closing}</mo>',
+    )

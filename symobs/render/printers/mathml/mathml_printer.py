@@ -40,6 +40,8 @@ from symobs.render.printers.mathml.mathml_elements import (
     is_word,
     pieces,
     row,
+    ruled_edges,
+    sized,
     table,
     text,
 )
@@ -252,12 +254,10 @@ class MathmlPrinter(Printer[MathmlBox]):
         if self.running and width > _WIDE:
             return _list_of(rows)
         struts = (STRUT, *("" for _ in range(columns - 1)))
-        ruled = [
-            [_ruled(below in rules[0], after in rules[1]) for after in range(columns)] for below in range(len(rows))
-        ]
-        body = "".join(
-            f"<mtr>{''.join(map(self._cell, line, struts, ends))}</mtr>" for line, ends in zip(rows, ruled, strict=True)
-        )
+        body = ""
+        for below, line in enumerate(rows):
+            ends = [ruled_edges(below in rules[0], after in rules[1]) for after in range(columns)]
+            body += f"<mtr>{''.join(map(self._cell, line, struts, ends))}</mtr>"
         small = ' scriptlevel="+1"' if self.running and len(rows) > 1 else ""
         fences = '<mo form="prefix">[</mo>', '<mo form="postfix">]</mo>'
         element = f"<mrow{small}>{fences[0]}<mtable>{body}</mtable>{fences[1]}</mrow>"
@@ -366,8 +366,7 @@ class MathmlPrinter(Printer[MathmlBox]):
 
     def stacked(self, lines: Sequence[MathmlBox]) -> MathmlBox:
         """Return lines of a table, all but the first indented."""
-        first, *rest = lines
-        indented = [first, *(self.joined([self.indent(), line], Level.SUM) for line in rest)]
+        indented = [lines[0], *(self.joined([self.indent(), line], Level.SUM) for line in lines[1:])]
         element = table([f"<mtd>{line.source}</mtd>" for line in indented], "lines")
         return MathmlBox(max(line.width for line in indented) + widths.COLUMN_GAP, Level.SUM, (element,), 2)
 
@@ -382,8 +381,9 @@ class MathmlPrinter(Printer[MathmlBox]):
 
 def is_large(entry: MathmlBox) -> bool:
     """Return whether an entry of a table is set large: a fraction with more than numbers in it."""
-    has_fraction = any(element.startswith("<mfrac>") for element in entry.elements[:2])
-    return has_fraction and not _FRACTION_OF_NUMBERS.fullmatch(entry.elements[-1])
+    return any(element.startswith("<mfrac>") for element in entry.elements[:2]) and not _FRACTION_OF_NUMBERS.fullmatch(
+        entry.elements[-1]
+    )
 
 
 def _list_of(rows: Sequence[Sequence[MathmlBox]]) -> MathmlBox:
@@ -399,14 +399,5 @@ def _list_of(rows: Sequence[Sequence[MathmlBox]]) -> MathmlBox:
 
 def _sized(opening: str, closing: str, size: str, width: float) -> tuple[MathmlBox, MathmlBox]:
     """Return a pair of fences of one size."""
-    attributes = f'stretchy="true" symmetric="true" minsize="{size}" maxsize="{size}"'
-    left, right = (
-        f'<mo form="{form}" {attributes}>{fence}</mo>' for form, fence in (("prefix", opening), ("postfix", closing))
-    )
+    left, right = sized(opening, closing, size)
     return MathmlBox(width, Level.SUM, (left,)), MathmlBox(width, Level.SUM, (right,))
-
-
-def _ruled(above: bool, before: bool) -> str:  # noqa: FBT001 - two edges of a cell
-    """Return the class of a cell with lines at its edges: attributes of tables for them are not in MathML Core."""
-    names = " ".join(name for name, drawn in (("top", above), ("left", before)) if drawn)
-    return f' class="{names}"' if names else ""
