@@ -75,7 +75,7 @@ def faddeev_leverrier(A: Rows) -> tuple[Poly, list[Rows]]:
     coefficients, M, matrices = [Fraction(1)], one, [one]
     for k in range(1, n + 1):
         AM = product(A, M)
-        c = -sum(AM[i][i] for i in range(n)) / k
+        c = -sum((AM[i][i] for i in range(n)), Fraction(0)) / k
         coefficients.append(c)
         M = [[AM[i][j] + c * one[i][j] for j in range(n)] for i in range(n)]
         matrices.append(M)
@@ -294,7 +294,8 @@ def _judged(
     question: Mapping[str, Any], given: Mapping[str, Texts], point: Mapping[str, Ratio]
 ) -> dict[str, dict[str, Any]]:
     """Return the outcomes at one point."""
-    found, gains = {}, {}
+    found: dict[str, dict[str, Any]] = {}
+    gains: dict[str, tuple[str, Rows]] = {}
     for part in sorted(question["parts"], key=lambda part: part["kind"] != "gain"):
         texts = given.get(part["name"])
         if not texts or not any(cell.strip() for row in texts for cell in row):
@@ -327,11 +328,11 @@ def _part(
             message = "the rows have different lengths"
             raise UnreadableError(message)
         if part["kind"] == "gain":
-            value = [[number(entry) for entry in row] for row in value]
-            value = negative(value) if part["turned"] else value
-            verdict, slip, reason = judge_gain(part, value, texts, exact=not point)
-            fits = size(value) == size(part["right"])
-            gains[part["part"]] = (verdict if fits else "misshapen", value)
+            gain = [[number(entry) for entry in row] for row in value]
+            gain = negative(gain) if part["turned"] else gain
+            verdict, slip, reason = judge_gain(part, gain, texts, exact=not point)
+            fits = size(gain) == size(part["right"])
+            gains[part["part"]] = (verdict if fits else "misshapen", gain)
         elif part["kind"] == "compensator":
             task = part["part"].partition(".")[0]
             own = {name: gains[f"{task}.{name}"] for name in "KL" if f"{task}.{name}" in gains}

@@ -38,10 +38,10 @@ class UnreadableError(Exception):
 
 def poly(values: Iterable[Fraction | int]) -> Poly:
     """Return coefficients without zeros at the end."""
-    values = [Fraction(value) for value in values]
-    while values and not values[-1]:
-        values.pop()
-    return tuple(values)
+    found = [Fraction(value) for value in values]
+    while found and not found[-1]:
+        found.pop()
+    return tuple(found)
 
 
 def plus(p: Poly, q: Poly) -> Poly:
@@ -91,17 +91,18 @@ def divided_by(above: Poly, below: Poly = ONE) -> Ratio:
 
 def read(text: str, names: Mapping[str, Ratio]) -> Ratio:
     """Return the value of a text; `names` holds the values of its letters."""
-    if not isinstance(text, str) or len(text) > MOST_CHARACTERS:
+    if len(text) > MOST_CHARACTERS:
         message = "this is too long"
         raise UnreadableError(message)
-    text, tokens, place = text.translate(MINUS), [], 0
+    tokens: list[tuple[str, str]] = []
+    text, place = text.translate(MINUS), 0
     while place < len(text):
         found = _TOKEN.match(text, place)
         if found is None:
             message = f"{text[place]!r} cannot stand in a value"
             raise UnreadableError(message)
         if found.lastgroup != "space":
-            tokens.append((found.lastgroup, found.group().replace("**", "^")))
+            tokens.append((str(found.lastgroup), found.group().replace("**", "^")))
         place = found.end()
     reader = _Reader(tokens, names)
     value = reader.sum(0)

@@ -78,7 +78,13 @@ class ExportedPart:
 def exported_part(view: Viewed, field: str, name: str, weight: str) -> ExportedPart:
     """Return a part of a question; raises `InputError` where no grader outside symobs can hold it."""
     letter = next((own for own, (standard, _) in view.names.items() if standard == field), field)
-    made = {"name": name, "part": f"{view.task}.{field}", "letter": letter, "weight": weight, "function": False}
+    made: dict[str, Any] = {
+        "name": name,
+        "part": f"{view.task}.{field}",
+        "letter": letter,
+        "weight": weight,
+        "function": False,
+    }
     made["variable"] = "t" if view.in_time else view.plant.variable
     if field == "verdict":
         word = view.result.verdict

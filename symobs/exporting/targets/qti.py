@@ -112,9 +112,9 @@ def _item(exercise: Exercise, name: str) -> Element:
             SubElement(SubElement(declared, "qti-correct-response"), "qti-value").text = value
     total = total_of(exercise)
     outcomes = [("SCORE", Fraction(0)), ("MAXSCORE", total), *((f"S{k}", Fraction(0)) for k, _, _ in inputs)]
-    for identifier, value in outcomes:
+    for identifier, share in outcomes:
         declared = SubElement(item, "qti-outcome-declaration", _variable(identifier, "float"))
-        SubElement(SubElement(declared, "qti-default-value"), "qti-value").text = _decimal(value)
+        SubElement(SubElement(declared, "qti-default-value"), "qti-value").text = _decimal(share)
     SubElement(item, "qti-outcome-declaration", _variable("FEEDBACK", "identifier"))
     body = SubElement(item, "qti-item-body")
     body.append(fromstring(f"<div>{question_xhtml(exercise)}</div>"))  # noqa: S314 - our own text

@@ -214,7 +214,7 @@ def _node(i: int, nodes: Sequence[tuple[int, str, Fraction, str]], k: int, effec
 def _tests(each: ExerciseSet) -> list[str]:
     """Return the question's own tests: all right; and each matrix with the other sign, the other inputs right."""
     parts = each.first.parts
-    cases = [("the right answer", {}, {})]
+    cases: list[tuple[str, dict[int, str], dict[int, str]]] = [("the right answer", {}, {})]
     for k, part in enumerate(parts, 1):
         depends = any(other.kind == "compensator" for other in parts)
         if part.kind == "gain" and not depends and any(not e.is_zero for e in _entries(part)) and not _is_even(part):

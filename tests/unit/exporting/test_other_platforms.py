@@ -167,7 +167,8 @@ def test_an_item_gives_full_marks_where_check_does(name: str) -> None:
     if name == "triple_pole_two_outputs":
         answers.append({"L": [["0", "1"], ["0", "2"], ["0", "6"]]})
     for answer in answers:
-        told, responses = checked(each.first, answer), {}
+        told = checked(each.first, answer)
+        responses: dict[str, Any] = {}
         for k, part in enumerate(each.first.parts, 1):
             cells = [cell for row in answer[part.name] for cell in row]
             responses |= (

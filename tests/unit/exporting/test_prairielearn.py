@@ -68,7 +68,7 @@ def graded(folder: Path, asked: list[dict[str, Any]]) -> list[dict[str, Any]]:
 
 def raw(each: ExerciseSet, given: dict[str, list[list[str]]]) -> dict[str, str]:
     """What the inputs of the page send."""
-    found = {}
+    found: dict[str, str] = {}
     for part in each.first.parts:
         cells = [cell for row in given[part.name] for cell in row]
         alone = part.shape == (1, 1) and part.kind != "gain"
