@@ -82,7 +82,7 @@ def _run_task(task: Any, options_given: dict[str, Any]) -> None:
     chosen = chosen_format(options_given["format_name"], options_given["target"], default=default)
     check_targets(options_given["target"], options_given["plot"], options_given["bibliography"])
     of_numbers = {name: options_given[name] for name in ("printed", "period", "hold")}
-    page = page_of(options_given["detail"], options_given["templates"], chosen, **of_numbers)
+    page = page_of(options_given["detail"], options_given["language"], options_given["templates"], chosen, **of_numbers)
     page["settings"] = options_given["settings"]
     plant = given("plant_")
     if plant.get("dt", "").lower() == "true":

@@ -74,7 +74,15 @@ def question_of(problem: Problem) -> Question:
                 page.remark("part", letter=_letter_of(place))
             for key in sentences_for(task, tokens_of(task, values, problem)):
                 page.steps.append(Note(_filled(page, task, key, values)))
-    return Question(problem.title, problem.source, (), problem.convention, problem.text, page=page.derivation())
+    return Question(
+        problem.title,
+        problem.source,
+        (),
+        problem.convention,
+        problem.text,
+        page=page.derivation(),
+        language=problem.language,
+    )
 
 
 def _has(asked: Iterable[tuple[Task, Mapping[str, Any]]], name: str) -> bool:

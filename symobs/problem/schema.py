@@ -29,6 +29,7 @@ TOP: dict[str, dict[str, Any]] = {
         "type": "string",
         "pattern": "^[A-Za-z][A-Za-z0-9_-]{0,39}$",
     },
+    "language": {"description": "the language of the page: en or de", "type": "string"},
     "symbols": {"description": 'every free name: name = "positive", or name = { sign = "positive", latex = "b" }'},
     "constants": {
         "description": 'names for numbers: r = "sqrt(3)", c = "cos(pi/6)"; a text may use them',

@@ -306,10 +306,14 @@ class Result(Faces):
         return sorted({*own, "conditions", "cases", *self.fields})
 
     @overload
-    def to(self, format_name: Literal["pdf"], *, convention: str = "standard", detail: str = "full") -> bytes: ...
+    def to(
+        self, format_name: Literal["pdf"], *, convention: str = "standard", detail: str = "full", language: str = "en"
+    ) -> bytes: ...
 
     @overload
-    def to(self, format_name: Text, *, convention: str = "standard", detail: str = "full") -> str: ...
+    def to(
+        self, format_name: Text, *, convention: str = "standard", detail: str = "full", language: str = "en"
+    ) -> str: ...
 
     @overload
     def to(self, format_name: Code, *, period: object = None, hold: Literal["zoh", "tustin"] = "zoh") -> str: ...
@@ -321,6 +325,7 @@ class Result(Faces):
         *,
         convention: str = "standard",
         detail: str = "full",
+        language: str = "en",
         period: object = None,
         hold: str = "zoh",
     ) -> str | bytes: ...
@@ -331,16 +336,18 @@ class Result(Faces):
         *,
         convention: str = "standard",
         detail: str = "full",
+        language: str = "en",
         period: object = None,
         hold: str = "zoh",
     ) -> str | bytes:
         """Return the result in a format: latex, html, text, json, pdf, …; in a convention, by name or TOML file.
 
-        `detail` says how much of the derivation is told: full, outline or answer.  python, matlab, c and modelica are the
-        observer or compensator as a program, sampled with a `period` such as "1/100" by a zero-order hold (zoh) or by the
-        bilinear map (tustin); numpy and csv the numbers alone.
+        `detail` says how much of the derivation is told: full, outline or answer; `language` is en or de.  python, matlab,
+        c and modelica are the observer or compensator as a program, sampled with a `period` such as "1/100" by a zero-order
+        hold (zoh) or by the bilinear map (tustin); numpy and csv the numbers alone.
         """
-        document = Document("", "", (self,), convention_named(convention), detail=detail, period=period, hold=hold)
+        told: dict[str, Any] = {"detail": detail, "language": language, "period": period, "hold": hold}
+        document = Document("", "", (self,), convention_named(convention), **told)
         return render(document, format_name)
 
     def __repr__(self) -> str:
@@ -377,6 +384,8 @@ class Document:
     convention: Convention = STANDARD
     text: str = ""
     detail: str = field(default="full", kw_only=True)
+    #: The code of the language of the page.
+    language: str = field(default="en", kw_only=True)
     templates: Path | None = field(default=None, kw_only=True)
     #: For a format that is a program: the sampling period, and how the input is held.
     period: object = field(default=None, kw_only=True)

@@ -31,7 +31,7 @@ from symobs.cli.shared.output import check_target, write
 from symobs.errors import InputError, OutOfBudget, ProblemErrors, SymobsError, TypesettingError, UsageError
 from symobs.expect import mismatches
 from symobs.expression.source import shown
-from symobs.phrases import PHRASES
+from symobs.phrases.languages import ENGLISH, language_named
 from symobs.problem import parse, validate
 from symobs.problem.question import question_of
 from symobs.render.page.sheet import Sheet, SheetEntry
@@ -58,6 +58,7 @@ class _Wanted:
     solutions: bool
     detail: str
     templates: Path | None = None
+    language: str = ""
     convention: Any = None
     timeout: float | None = None
     memory: float | None = None
@@ -69,7 +70,7 @@ class _Wanted:
 @click.option("--title", default="", metavar="TEXT", help="The title of the sheet.")
 @click.option("--questions", is_flag=True, help="The questions only.")
 @click.option("--solutions", is_flag=True, help="The solutions only; they begin with the data.")
-@options("detail", "templates", "convention", *LIMITS)
+@options("detail", "language", "templates", "convention", *LIMITS)
 def command(
     files: tuple[str, ...],
     target: str | None,
@@ -78,6 +79,7 @@ def command(
     questions: bool,  # noqa: FBT001 - click's signature
     solutions: bool,  # noqa: FBT001
     detail: str,
+    language: str | None,
     templates: str | None,
     convention_name: str | None,
     timeout: float | None,
@@ -91,7 +93,7 @@ def command(
     if questions and solutions:
         raise UsageError("both --questions and --solutions are given", repair="leave both out for both")
     chosen = _sheet_format(format_name, target)
-    told = page_of(detail, templates, chosen.name)
+    told = page_of(detail, language, templates, chosen.name)
     wanted = _Wanted(
         chosen,
         not solutions,
@@ -187,7 +189,7 @@ def _by_children(
         if "result" in row:
             yield _unpacked(row["result"])
         else:
-            entry = replace(_empty(*each[:2]), failure=PHRASES["sheet_failed"])
+            entry = _said_failed(_empty(*each[:2]), "sheet_failed", wanted)
             yield entry, EXIT_UNDECIDED if row["status"] == "undecided" else EXIT_BUG, list(row["error"])
 
 
@@ -226,7 +228,13 @@ def _bounded_entry(number: int, file: str, text: str, wanted: _Wanted) -> tuple[
         return within(budget, lambda report_progress: _entry(number, file, text, wanted, report_progress))
     except OutOfBudget as error:
         left: Any = error.facts["left"] or _empty(number, file)
-        return replace(left, failure=PHRASES["sheet_undecided"]), error.exit_code, [str(error)]
+        return _said_failed(left, "sheet_undecided", wanted), error.exit_code, [str(error)]
+
+
+def _said_failed(entry: SheetEntry, phrase: str, wanted: _Wanted) -> SheetEntry:
+    """Return an entry that says what became of it."""
+    language = language_named(wanted.language or entry.language or ENGLISH.code)
+    return replace(entry, failure=language.phrases[phrase], language=wanted.language or entry.language)
 
 
 def _empty(number: int, file: str) -> SheetEntry:
@@ -252,6 +260,7 @@ def _worked_out(
     entry = replace(entry, title=str(data.get("title") or entry.title)[:_LONGEST_TITLE])
     try:
         problem = validate(data, folder=Path(entry.file).parent)
+        entry = replace(entry, language=wanted.language or problem.language)
         if wanted.questions:
             entry = replace(entry, question=_part(question_of(problem), wanted))
         report_progress(entry)
@@ -275,7 +284,8 @@ def _worked_out(
 def _part(document: Document, wanted: _Wanted) -> Any:
     """Return the part of a sheet for a question or a solution, in its format."""
     convention = wanted.convention or document.convention
-    told = replace(document, convention=convention, detail=wanted.detail, templates=wanted.templates)
+    language = wanted.language or document.language
+    told = replace(document, convention=convention, detail=wanted.detail, language=language, templates=wanted.templates)
     return wanted.format.part(told)
 
 
@@ -284,7 +294,7 @@ def _failed(entry: SheetEntry, error: Exception, wanted: _Wanted) -> tuple[Sheet
     if wanted.memory is not None and isinstance(error, MemoryError | SystemError | ImportError):
         raise error
     phrase = "sheet_undecided" if isinstance(error, MemoryError) else "sheet_failed"
-    return replace(entry, failure=PHRASES[phrase]), *_failure(error)
+    return _said_failed(entry, phrase, wanted), *_failure(error)
 
 
 def _failure(error: Exception) -> tuple[int, list[str]]:

@@ -32,6 +32,7 @@ def command(
     bibliography: str | None,
     convention_name: str | None,
     detail: str,
+    language: str | None,
     templates: str | None,
     printed: tuple[str, ...],
     period: str | None,
@@ -46,7 +47,7 @@ def command(
         raise UsageError(f"{quoted(task_name)} is not a task", repair=f"known tasks are {', '.join(sorted(tasks()))}")
     check_targets(target, plot, bibliography)
     convention = convention_of(convention_name)
-    page = page_of(detail, templates, chosen, printed=printed, period=period, hold=hold)
+    page = page_of(detail, language, templates, chosen, printed=printed, period=period, hold=hold)
 
     def work(report_progress: Progress) -> Outcome:
         found = validate(parse(read_file(file), file), task_name, Path(file).parent)

@@ -38,13 +38,19 @@ def convention_of(name: str | None) -> Any:
     return convention_named(name)
 
 
-def page_of(detail: str, templates: str | None, format_name: str, **of_numbers: Any) -> dict[str, Any]:
-    """Return the options of --detail and --templates, and those of programs and numbers as they are.
+def page_of(
+    detail: str, language: str | None, templates: str | None, format_name: str, **of_numbers: Any
+) -> dict[str, Any]:
+    """Return the options of --detail, --language and --templates, and those of programs and numbers as they are.
 
     Raises `UsageError` for unknown values.
     """
     from symobs.render.page.detail_level import detail_named  # noqa: PLC0415 - it imports the steps
 
+    if language is not None:
+        from symobs.phrases.languages import language_named  # noqa: PLC0415 - only with --language
+
+        of_numbers["language"] = language_named(language).code
     if templates is None:
         return {"detail": detail_named(detail), **of_numbers}
     from symobs.render.formats.templates import check_folder  # noqa: PLC0415 - only with --templates
@@ -123,7 +129,7 @@ def solved(
 
         report_progress("the picture")
         try:
-            outputs.append((picture_file(results, plot), plot))
+            outputs.append((picture_file(results, plot, document_of(results).language), plot))
         except UsageError as error:  # there is none: the result stands all the same
             return Outcome(tuple(outputs), (str(error),), error.exit_code)
     if expect:

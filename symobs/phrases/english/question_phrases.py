@@ -84,3 +84,6 @@ UNSAID = (
     "subspaces",
     "transpose",
 )
+
+#: Phrases that go on with the sentence before them.
+CONTINUES = ("sheet_solution",)

@@ -41,7 +41,7 @@ def tikz_scene(item: Drawing | Picture, printer: LatexPrinter) -> Scene:
     """Return the scene of a plot or a diagram in the measures of LaTeX."""
     if isinstance(item, Drawing):
         return diagram_scene(item, metrics_for(printer), printer.width, discrete=printer.discrete)
-    return plot_scene(item, measure_for(printer))
+    return plot_scene(item, measure_for(printer), printer.language)
 
 
 def tikz(scene: Scene, printer: LatexPrinter) -> str:
@@ -74,7 +74,9 @@ def tikz_file(picture: Picture, printer: LatexPrinter) -> str:
     place = _point((scene.whole.left, scene.whole.bottom - ABOVE))
     room = max(scene.whole.right - scene.whole.left, NARROWEST)
     options = f"anchor=north west,align=left,text width={coordinate(room)}pt"
-    words = "".join(_inline(part, printer) for part in below(caption(picture), scene))
+    words = "".join(
+        _inline(part, printer) for part in below(caption(picture, printer.language), scene, printer.language)
+    )
     caption_node = rf"\node[{options}] at {place} {{{words}}};"
     body = tikz(scene, printer).replace("\\end{tikzpicture}", f"{caption_node}\n\\end{{tikzpicture}}")
     return f"% Needs tikz, amsmath and amssymb.\n{body}\n"

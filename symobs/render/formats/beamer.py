@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from symobs.phrases import PHRASES
+from symobs.phrases.languages import Language, language_named
 from symobs.render.formats.latex import LatexWriter, has_drawings
 from symobs.render.formats.templates import fill
 from symobs.render.page.blocks import Columns, Display, Drawing, Heading, PictureBlock, TableBlock, opened
@@ -37,7 +37,7 @@ class Beamer:
 
     def render(self, document: Document) -> str:
         """Return the LaTeX of the slides."""
-        return _slides([self.part(document)], document.templates)
+        return _slides([self.part(document)], language_named(document.language), document.templates)
 
     def part(self, document: Document) -> dict[str, Any]:
         """Return the template values of a document: its title and its frames."""
@@ -58,18 +58,20 @@ class Beamer:
 
     def sheet(self, sheet: Sheet) -> str:
         """Return the LaTeX of all problems' slides, those of each chapter after its title."""
-        decks = [_title(sheet.title)]
+        decks, language = [_title(sheet.title)], language_named(sheet.language)
         for name, parts in sheet.chapters():
-            decks.append(_title(PHRASES[f"sheet_{name}"]))
+            decks.append(_title(language.phrases[f"sheet_{name}"]))
             for entry, part in parts:
                 title = f"{entry.number}. {escape(entry.title)}".strip()
                 failed = {**_title(entry.title), "source": escape(entry.failure)}
                 decks.append({**(part or failed), "title": title})
-        return _slides(decks, sheet.templates)
+        return _slides(decks, language, sheet.templates)
 
 
-def _slides(decks: list[dict[str, Any]], folder: Path | None) -> str:
-    return fill(Beamer.template, {"decks": decks, "drawings": any(deck["drawings"] for deck in decks)}, folder=folder)
+def _slides(decks: list[dict[str, Any]], language: Language, folder: Path | None) -> str:
+    drawings = any(deck["drawings"] for deck in decks)
+    values = {"decks": decks, "drawings": drawings, "babel": language.words["babel"]}
+    return fill(Beamer.template, values, folder=folder)
 
 
 def _title(text: str) -> dict[str, Any]:

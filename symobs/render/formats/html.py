@@ -15,7 +15,7 @@ from string import Template
 from typing import TYPE_CHECKING, ClassVar
 
 from symobs.formula import Roots
-from symobs.phrases import PHRASES
+from symobs.phrases.languages import language_named
 from symobs.render.page.blocks import (
     CaseBlock,
     Caution,
@@ -74,7 +74,7 @@ class Html:
     def render(self, document: Document) -> str:
         """Return the document as a page."""
         title, _ = opened(blocks := narrate(document))
-        return page(title.text, HtmlWriter(printer_for(document, MathmlPrinter)).body(blocks))
+        return page(title.text, HtmlWriter(printer_for(document, MathmlPrinter)).body(blocks), document.language)
 
     def part(self, document: Document) -> str:
         """Return a question or a solution below its title, independent of its place."""
@@ -86,13 +86,14 @@ class Html:
         """Return the sheet as one page, its contents linked to questions and solutions."""
         pieces = [f"<h1>{plain(sheet.title)}</h1>"] if sheet.title else []
         pieces += [_contents(sheet)] if sheet.is_long else []
+        phrases = language_named(sheet.language).phrases
         for name, parts in sheet.chapters():
-            pieces.append(f'<h2 class="chapter" id="{name}">{PHRASES[f"sheet_{name}"]}</h2>')
+            pieces.append(f'<h2 class="chapter" id="{name}">{phrases[f"sheet_{name}"]}</h2>')
             for entry, part in parts:
                 place = f"{name}-{entry.number}"
                 pieces.append(f'<h3 class="problem" id="{place}">{entry.number}. {plain(entry.title)}</h3>')
                 pieces.append(part.replace(_SOMEWHERE, f"{place}-") if part else f"<p>{plain(entry.failure)}</p>")
-        return page(sheet.title, "\n".join(pieces))
+        return page(sheet.title, "\n".join(pieces), sheet.language)
 
 
 @output_format
@@ -112,19 +113,20 @@ class HtmlFragment:
 def _contents(sheet: Sheet) -> str:
     """Return the table of contents: every problem once, with a link to each of its parts."""
     names = [name for name, _ in sheet.chapters()]
+    phrases = language_named(sheet.language).phrases
     rows = []
     for entry in sheet.entries:
-        links = [f'<a href="#{name}-{entry.number}">{PHRASES["sheet_solution"]}</a>' for name in names[1:]]
+        links = [f'<a href="#{name}-{entry.number}">{phrases["sheet_solution"]}</a>' for name in names[1:]]
         first = f'<a href="#{names[0]}-{entry.number}">{plain(entry.title)}</a>'
         rows.append(f"<li>{first}{''.join(f' ({link})' for link in links)}</li>")
     listed = "\n".join(rows)
-    return f"<nav>\n<h2>{PHRASES['sheet_contents']}</h2>\n<ol>\n{listed}\n</ol>\n</nav>"
+    return f"<nav>\n<h2>{phrases['sheet_contents']}</h2>\n<ol>\n{listed}\n</ol>\n</nav>"
 
 
-def page(title: str, body: str) -> str:
-    """Return a whole page around a body, which is HTML already."""
+def page(title: str, body: str, language: str = "en") -> str:
+    """Return a whole page around a body, which is HTML already, in a language."""
     skeleton = Template((_FOLDER / "html_page.html").read_text(encoding="utf-8"))
-    return skeleton.substitute(title=plain(title) or "symobs", style=style(), body=body)
+    return skeleton.substitute(title=plain(title) or "symobs", style=style(), body=body, language=language)
 
 
 def style() -> str:
@@ -236,9 +238,9 @@ class HtmlWriter:
 
         printer = TextPrinter.of(self.printer)
         if isinstance(block, Drawing):
-            return f"<figure>\n{svg(svg_scene(block, printer), printer, PHRASES['block_diagram'])}\n</figure>"
+            return f"<figure>\n{svg(svg_scene(block, printer), printer, printer.language.phrases['block_diagram'])}\n</figure>"
         scene = svg_scene(block.picture, printer)
-        words = below(block.caption, scene)
+        words = below(block.caption, scene, printer.language)
         spoken = "".join(
             part if isinstance(part, str) else printer.inline(part) for part in words if not isinstance(part, Roots)
         )

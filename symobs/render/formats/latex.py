@@ -7,7 +7,7 @@ from itertools import pairwise, zip_longest
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from symobs.formula import Roots
-from symobs.phrases import PHRASES
+from symobs.phrases.languages import language_named
 from symobs.render.formats.templates import fill
 from symobs.render.page.blocks import (
     CaseBlock,
@@ -92,6 +92,7 @@ def values_of(document: Document) -> dict[str, object]:
         "conventions": writer.sentence(title.conventions),
         "body": writer.body(blocks),
         "drawings": has_drawings(blocks),
+        "babel": writer.printer.language.words["babel"],
     }
 
 
@@ -103,19 +104,21 @@ def has_drawings(blocks: Sequence[Block]) -> bool:
 def typeset_sheet(sheet: Sheet, template: str) -> str:
     """Return a sheet in a template; the values of a problem are those of its part, its number, and its failure."""
     chapters: list[dict[str, Any]] = []
+    language = language_named(sheet.language)
     for name, parts in sheet.chapters():
         problems: list[dict[str, Any]] = [
             {"source": "", "conventions": "", "body": "", **(part or {}), "title": escape(entry.title).strip()}
             | {"number": entry.number, "failure": "" if part else escape(entry.failure)}
             for entry, part in parts
         ]
-        chapters.append({"name": name, "title": PHRASES[f"sheet_{name}"], "problems": problems})
+        chapters.append({"name": name, "title": language.phrases[f"sheet_{name}"], "problems": problems})
     values = {
         "title": escape(sheet.title).strip(),
         "chapters": chapters,
-        "contents": PHRASES["sheet_contents"] if sheet.is_long else "",
-        "words": {"problem": PHRASES["sheet_problem"]},
+        "contents": language.phrases["sheet_contents"] if sheet.is_long else "",
+        "words": {"problem": language.phrases["sheet_problem"]},
         "drawings": any(problem.get("drawings") for chapter in chapters for problem in chapter["problems"]),
+        "babel": language.words["babel"],
     }
     return fill(template, values, folder=sheet.templates)
 
@@ -172,7 +175,7 @@ class LatexWriter:
         if isinstance(block, Drawing):
             return figure(tikz_scene(block, self.printer), self.printer)
         scene = tikz_scene(block.picture, self.printer)
-        return figure(scene, self.printer, self.sentence(below(block.caption, scene)))
+        return figure(scene, self.printer, self.sentence(below(block.caption, scene, self.printer.language)))
 
     def _columns(self, block: Columns) -> str:
         """Return rows of boxes with a continuous rule between the columns; a page may break between rows."""

@@ -14,7 +14,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, ClassVar
 
 from symobs.formula import Roots
-from symobs.phrases import PHRASES
+from symobs.phrases.languages import language_named
 from symobs.render.formats.text import printable
 from symobs.render.page.blocks import (
     CaseBlock,
@@ -87,7 +87,7 @@ class Markdown:
         """Return the sheet as Markdown; forges make a table of contents of its headings by themselves."""
         pieces = [f"# {plain(sheet.title).strip()}"] if sheet.title.strip() else []
         for name, parts in sheet.chapters():
-            pieces.append(f"## {PHRASES[f'sheet_{name}']}")
+            pieces.append(f"## {language_named(sheet.language).phrases[f'sheet_{name}']}")
             for entry, part in parts:
                 pieces += [f"### {entry.number}. {plain(entry.title).strip()}", part or paragraph(plain(entry.failure))]
         return "\n\n".join(pieces) + "\n"
@@ -162,7 +162,7 @@ class MarkdownWriter:
             case PictureBlock(picture):
                 from symobs.render.page.plot_captions import caption  # noqa: PLC0415 - only pages with pictures
 
-                return f"{self._sketch(picture)}\n\n{self.sentence(caption(picture, sketched=True))}"
+                return f"{self._sketch(picture)}\n\n{self.sentence(caption(picture, self.printer.language, sketched=True))}"
             case CaseBlock(label, blocks):
                 inside = MarkdownWriter(self.printer, level=self.level + 1).body(blocks)
                 return quoted(f"**{self.sentence(label)}**\n\n{inside}")

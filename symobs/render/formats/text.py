@@ -9,7 +9,7 @@ from itertools import pairwise, zip_longest
 from typing import TYPE_CHECKING, ClassVar
 
 from symobs.formula import Roots
-from symobs.phrases import PHRASES
+from symobs.phrases.languages import language_named
 from symobs.render.formats.code.numbers import exact_answers
 from symobs.render.page.blocks import (
     CaseBlock,
@@ -72,10 +72,11 @@ class Text:
     def sheet(self, sheet: Sheet) -> str:
         """Return the sheet as plain text."""
         pieces = [underlined(wrapped(printable(sheet.title), WIDTH), "=", WIDTH)] if sheet.title else []
+        phrases = language_named(sheet.language).phrases
         for name, parts in sheet.chapters():
-            pieces.append(underlined(PHRASES[f"sheet_{name}"], "=", WIDTH))
+            pieces.append(underlined(phrases[f"sheet_{name}"], "=", WIDTH))
             for entry, part in parts:
-                heading = f"{PHRASES['sheet_problem']} {entry.number}. {printable(entry.title)}"
+                heading = f"{phrases['sheet_problem']} {entry.number}. {printable(entry.title)}"
                 pieces += [underlined(wrapped(heading, WIDTH), "=", WIDTH), part or entry.failure]
         return "\n\n".join(pieces) + "\n"
 
@@ -129,7 +130,9 @@ class TextWriter:
                 from symobs.render.page.plot_captions import caption  # noqa: PLC0415 - only pages with pictures
 
                 plot = self._sketch(picture)
-                words = wrapped(self.sentence(caption(picture, sketched=True)), width - len(INDENT))
+                words = wrapped(
+                    self.sentence(caption(picture, self.printer.language, sketched=True)), width - len(INDENT)
+                )
                 return f"{indented(plot)}\n\n{indented(words)}"
             case CaseBlock(label, blocks):
                 inside = TextWriter(self.printer, width - len(INDENT)).body(blocks)

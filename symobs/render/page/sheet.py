@@ -28,6 +28,8 @@ class SheetEntry:
     solution: Any = None
     #: What the sheet says in place of a part that could not be made.
     failure: str = ""
+    #: The code of the language of its parts.
+    language: str = ""
 
 
 @dataclass(frozen=True)
@@ -39,6 +41,12 @@ class Sheet:
     has_questions: bool = True
     has_solutions: bool = True
     templates: Path | None = None
+
+    @property
+    def language(self) -> str:
+        """The language of the sheet's own words: that of all its problems, English where they differ."""
+        found = {entry.language for entry in self.entries if entry.language}
+        return found.pop() if len(found) == 1 else "en"
 
     @property
     def is_long(self) -> bool:

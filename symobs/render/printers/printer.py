@@ -36,6 +36,7 @@ from symobs.formula import (
     with_children,
 )
 from symobs.notation import FUNCTIONS, LETTERS, TIMED, is_of_time, shows_time, symbol_latex, symbol_text
+from symobs.phrases.languages import ENGLISH
 from symobs.render.printers.glyphs import B, FormulaWriter, Level
 from symobs.render.printers.rational_formula import is_leaf
 from symobs.render.printers.scalar_formula import formula_of, formula_of_matrix
@@ -45,6 +46,7 @@ if TYPE_CHECKING:
 
     from symobs.exact.core.generators import Function
     from symobs.notation import LetterForm
+    from symobs.phrases.languages import Language
 
 #: Letters that are functions of time; in discrete time they carry the index k.
 SIGNALS = frozenset(
@@ -88,6 +90,7 @@ class Printer(FormulaWriter[B]):
         self.variable = variable
         self.symbols = dict(symbols or {})
         self.letters: Mapping[str, LetterForm] = LETTERS
+        self.language: Language = ENGLISH
         self.discrete = discrete
         self.known: dict[Scalar, B] = {}
 
@@ -182,8 +185,8 @@ class Printer(FormulaWriter[B]):
         return box
 
     def decimals(self, value: Scalar) -> B:
-        """Return a number with its digits after the point."""
-        box = self.digits(decimal_digits(value))
+        """Return a number with its digits after the decimal mark of the language."""
+        box = self.digits(self.language.decimal(decimal_digits(value)))
         is_negative = value.fraction() < 0
         return self.joined([self.sign(negative=True, leading=True), box], Level.SUM) if is_negative else box
 

@@ -62,7 +62,7 @@ class TextPrinter(Printer[TextBox]):
     def of(cls, other: Printer[Any], *, width: int = 96, flat: bool = False) -> Self:
         """Return a printer with the letters of another one."""
         printer = cls(other.variable, other.symbols, discrete=other.discrete, width=width, flat=flat)
-        printer.letters = other.letters
+        printer.letters, printer.language = other.letters, other.language
         return printer
 
     def inline(self, item: Formula | Relation) -> str:
