@@ -13,6 +13,7 @@ WORDS: dict[str, str] = {
     "babel": "",
     "decimal_mark": ".",
     "numbers": "no one two three four five six seven eight nine ten eleven twelve",
+    "rank": "rank",
     "and": " and ",
     "state": "state {number}",
     "or": " or ",

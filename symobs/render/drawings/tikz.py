@@ -167,7 +167,7 @@ def _text(text: TextLabel, printer: LatexPrinter, *, is_plot: bool) -> str:
     if not is_plot:
         return rf"\node{_BESIDE_WIRES[text.anchor]} at {place} {{${printer.unbroken(content)}$}};"  # type: ignore[arg-type]
     if isinstance(content, str):
-        written = f"${content}$" if _is_number(content) else escape(content)
+        written = f"${content.replace(',', '{,}')}$" if _is_number(content) else escape(content)
     else:
         written = _inline(content, printer)  # type: ignore[arg-type]
     return rf"\node[anchor={text.anchor}] at {place} {{{written}}};"
@@ -180,7 +180,7 @@ def _inline(part: Inline, printer: LatexPrinter) -> str:
 
 
 def _is_number(content: str) -> bool:
-    return content.lstrip("-−").replace(".", "", 1).isdigit()
+    return content.lstrip("-−").replace(",", ".").replace(".", "", 1).isdigit()
 
 
 def _path(points: Iterable[Point]) -> str:

@@ -121,6 +121,8 @@ class Printer(FormulaWriter[B]):
 
     def function_latex(self, name: str) -> str:
         """Return the LaTeX of a function's name."""
+        if name == "rank":
+            return rf"\operatorname{{{self.language.words['rank']}}}"
         known = self.letters[name].latex if name in self.letters else FUNCTIONS.get(name, ("",))[0]
         return known or rf"\operatorname{{{name.replace('_', ' ')}}}"
 
