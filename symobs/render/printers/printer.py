@@ -199,7 +199,8 @@ class Printer(FormulaWriter[B]):
         if function.kind == "exp":
             return self.exponential(function.argument)
         if isinstance(function, RealRoot):
-            return self.named(rf"{function.number.truncated()}\ldots")
+            digits = self.language.decimal(str(function.number.truncated())).replace(",", "{,}")
+            return self.named(rf"{digits}\ldots")
         if isinstance(function, RootSum):
             q, below = (self.typeset(formula_of(part, EIGENVALUE)) for part in (function.polynomial, function.slope))
             over = self.joined([q, self.comparison("="), self.scalar(Scalar.of(0))], Level.SUM)

@@ -212,7 +212,7 @@ class TextPrinter(Printer[TextBox]):
     def named(self, form: str) -> TextBox:
         """Return the letter: a Greek one by its glyph."""
         if form.endswith(r"\ldots"):
-            return text_box(form.replace(r"\ldots", "…"))
+            return text_box(form.replace(r"\ldots", "…").replace("{,}", ","))
         return text_box(symbol_text(form.lstrip("\\").replace("{", "").replace("}", "")))
 
     def evaluated(self, box: TextBox, equations: Sequence[TextBox]) -> TextBox:

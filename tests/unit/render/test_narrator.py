@@ -11,7 +11,7 @@ from symobs.derivation import Conclude, Define, Derivation, Equal, Given, Note, 
 from symobs.errors import DerivationRejected, ProblemErrors
 from symobs.exact import Matrix, Scalar
 from symobs.formula import Environment, HoldsExactlyWhere, Letter, Literal, Predicate, Relation, Transpose
-from symobs.phrases import PHRASES
+from symobs.phrases import PHRASES, WORDS
 from symobs.problem.validation import validate
 from symobs.render.page.blocks import (
     Block,
@@ -25,7 +25,7 @@ from symobs.render.page.blocks import (
     Verified,
     every,
 )
-from symobs.render.page.narrator import LABELS, narrate
+from symobs.render.page.narrator import narrate
 from symobs.render.page.prose import filled, with_reference
 from symobs.result import render
 from tests.support.problems import render_examples as example
@@ -75,7 +75,7 @@ def test_the_page_to_aim_at_block_by_block() -> None:
 
 
 def test_every_word_comes_from_a_phrase_or_a_label() -> None:
-    words = " ".join([*PHRASES.values(), *LABELS.values()])
+    words = " ".join([*PHRASES.values(), *WORDS.values()])
     for block in every(narrate(example.target_document())[1:]):
         for inline in getattr(block, "inlines", ()):
             for word in inline.split() if isinstance(inline, str) else ():
@@ -184,7 +184,7 @@ def test_sections_are_numbered_through_the_page_and_nest() -> None:
 def test_a_case_says_when_it_holds_and_keeps_its_own_data() -> None:
     block = narrate(document(example.with_a_case()))[-1]
     assert isinstance(block, CaseBlock)
-    assert block.label[0] == f"{LABELS['case']} "
+    assert block.label[0] == f"{WORDS['case']} "
     assert block.blocks == (
         Paragraph((PHRASES["test_case"],)),
         Display((equals(C, values((1, 0))),), closing="."),
