@@ -48,6 +48,11 @@ class Language:
         """Numbers in words, from 0."""
         return self.words["numbers"].split()
 
+    @property
+    def has_comma(self) -> bool:
+        """Whether decimals have a comma, so that a list of them needs semicolons."""
+        return self.words["decimal_mark"] == ","
+
     def put(self, spoken: Counted | StateChoice) -> str:
         """Return in words what a slot holds."""
         if isinstance(spoken, StateChoice):

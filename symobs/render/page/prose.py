@@ -14,6 +14,7 @@ from symobs.convention import STANDARD, Convention
 from symobs.exact import Scalar
 from symobs.formula import (
     Conjunction,
+    Decimals,
     HoldsExactlyWhere,
     Letter,
     Literal,
@@ -27,6 +28,7 @@ from symobs.formula import (
     SymbolList,
     Transpose,
     Turned,
+    children,
 )
 from symobs.notation import LETTERS
 from symobs.phrases.languages import COUNTED, ENGLISH
@@ -105,10 +107,17 @@ def _shown(slot: Formula | Fact | Counted | StateChoice | str, language: Languag
                 between = "" if not place else language.words["and"] if place + 1 == len(names) else ", "
                 yield from (between, Literal(Scalar.symbol(name)))
         case HoldsExactlyWhere(where=where) | Conjunction(relations=where):
+            apart = "; " if language.has_comma and any(map(_has_decimals, where)) else ", "
             for place, relation in enumerate(where):
-                yield from (", ", relation) if place else (relation,)
+                yield from (apart, relation) if place else (relation,)
         case _:
             yield slot
+
+
+def _has_decimals(part: Formula | Relation) -> bool:
+    if isinstance(part, Decimals):
+        return True
+    return any(map(_has_decimals, part.members if isinstance(part, Relation) else children(part)))
 
 
 def _pair(first: str, second: str, convention: Convention) -> str:
