@@ -110,9 +110,8 @@ def test_every_letter_kept_is_typeset(faults: Callable[[str], list[str]]) -> Non
     shown = [chr(code) for code in range(0xA1, 0x2300) if escape(chr(code)) not in {"", "?"}]
     words = "\n".join(escape(character) for character in [*characters, *shown])
     for style in ("", r"\bfseries "):
-        source = fill(
-            "article.tex", {"title": "", "source": "", "conventions": "", "body": style + words, "drawings": False}
-        )
+        values = {"title": "", "source": "", "conventions": "", "body": style + words, "drawings": False, "babel": ""}
+        source = fill("article.tex", values)
         assert faults(source) == []
 
 
