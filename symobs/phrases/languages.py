@@ -21,7 +21,7 @@ from symobs.phrases.literature import reference
 from symobs.phrases.spoken import Counted, StateChoice
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
+    from collections.abc import Callable, Iterator, Mapping
 
 _FOLDER = Path(__file__).parent
 _WORDS = "words.toml"
@@ -118,12 +118,13 @@ def language_named(code: str) -> Language:
 @cache
 def _read(folder: Path) -> Language:
     """Return the language of a folder; raises ValueError where something of it is missing."""
-    missing = list(faults(folder))
-    if missing:
-        raise ValueError("\n".join(missing))
-    words = _table(folder / _WORDS)
-    phrases = {key: text for name in phrases_of_modules() for key, text in _table(folder / f"{name}.toml").items()}
-    return Language(phrases, words["WORDS"], words["COUNTS"])
+    words, wanted = _table(folder / _WORDS), phrases_of_modules()
+    phrases = {key: text for name in wanted for key, text in _table(folder / f"{name}.toml").items()}
+    found = Language(phrases, words.get("WORDS", {}), words.get("COUNTS", {}))
+    is_whole = phrases.keys() == {key for of_module in wanted.values() for key in of_module}
+    if not is_whole or found.words.keys() != WORDS.keys() or found.counts.keys() != COUNTS.keys():
+        raise ValueError("\n".join(faults(folder)))
+    return found
 
 
 def _table(path: Path) -> dict[str, Any]:
@@ -148,8 +149,10 @@ def faults(folder: Path) -> Iterator[str]:
             elif wrong := [of for of, parts in _PARTS.items() if parts(found[key]) != parts(english)]:
                 yield f"{place}: {_toml(key)} differs in its {' and '.join(wrong)} from {_toml(english)}"
         yield from (f"{place}: take out {_toml(key)}, which is no phrase" for key in found.keys() - wanted)
-    words, place = _table(folder / _WORDS), folder / _WORDS
-    for table, of_table in {"WORDS": WORDS, "COUNTS": COUNTS}.items():
+    words = _table(folder / _WORDS)
+    place = (folder / _WORDS).relative_to(package) if folder.is_relative_to(package) else folder / _WORDS
+    tables: dict[str, Mapping[str, object]] = {"WORDS": WORDS, "COUNTS": COUNTS}
+    for table, of_table in tables.items():
         for key in of_table.keys() - words.get(table, {}).keys():
             yield f"{place}: write a translation of  {_toml(key)} in [{table}], in English {of_table[key]!r}"
         yield from (f"{place}: take {key} out of [{table}]" for key in words.get(table, {}).keys() - of_table.keys())
@@ -167,7 +170,7 @@ def _formulas(phrase: str) -> list[str]:
 
 
 #: What every translation of a phrase has in common with it.
-_PARTS = {
+_PARTS: dict[str, Callable[[str], object]] = {
     "slots": _slots,
     "formulas": _formulas,
     "forms for one and several": lambda phrase: bool(COUNTED.search(phrase)),
