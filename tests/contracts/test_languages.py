@@ -11,6 +11,7 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -232,7 +233,7 @@ def test_a_false_number_in_a_sentence_is_rejected_in_every_language() -> None:
             render(HandWritten("", "", (), written=(lying,), language=code), "text")
 
 
-def _one_more(slot: object) -> object:
+def _one_more(slot: Any) -> Any:
     return replace(slot, count=slot.count + 1) if isinstance(slot, Counted) else slot
 
 
