@@ -46,6 +46,7 @@ from symobs.formula import (
 from symobs.formula.plain_text import plain_relation
 from symobs.formula.term import Term
 from symobs.notation import LETTERS
+from symobs.phrases.spoken import SPOKEN, Counted, StateChoice
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
@@ -55,10 +56,10 @@ if TYPE_CHECKING:
     from symobs.system import StateSpace
 
 #: What a slot of a sentence may hold besides formulas and words.
-FACTS = (Relation, Predicate, Roots, HoldsExactlyWhere, Conjunction, Shown, SymbolList)
+FACTS = (Relation, Predicate, Roots, HoldsExactlyWhere, Conjunction, Shown, SymbolList, *SPOKEN)
 
 Member: TypeAlias = Term | Scalar | Matrix | int
-Slot: TypeAlias = Term | Fact | str | Scalar | Matrix | int
+Slot: TypeAlias = Term | Fact | Counted | StateChoice | str | Scalar | Matrix | int
 
 
 def left_out(what: str) -> None:

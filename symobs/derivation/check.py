@@ -61,6 +61,7 @@ from symobs.formula import (
 )
 from symobs.formula.plain_text import plain, plain_relation
 from symobs.phrases import ASSERTS, NAMING
+from symobs.phrases.spoken import SPOKEN
 from symobs.stability.criteria.stability import monic
 
 if TYPE_CHECKING:
@@ -195,7 +196,7 @@ def _sentence(sentence: Sentence, environment: Environment, discrete: bool) -> N
             reject(f"{slot}, which is not what {sentence.key} speaks of,")
         if isinstance(slot, (Relation, Predicate, Roots, HoldsExactlyWhere, Conjunction, Shown, SymbolList)):
             _fact(slot, environment, discrete)
-        elif not isinstance(slot, str):
+        elif not isinstance(slot, (str, *SPOKEN)):
             _established(slot, environment)
             if _has_values(slot) and sentence.key not in NAMING:
                 reject(f"{plain(slot, environment.variable)}, a value in a sentence without what it is the value of,")

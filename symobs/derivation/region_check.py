@@ -9,7 +9,7 @@ from symobs.derivation.steps import Sentence
 from symobs.exact import Scalar
 from symobs.exact.algebraic.real_algebraic import real_roots
 from symobs.formula import Literal, Relation, SymbolList
-from symobs.phrases.english.counting import counted, in_words, root_in_words
+from symobs.phrases.spoken import Counted
 from symobs.stability.criteria.critical_polynomials import CriticalPolynomials, StabilityBoundary
 from symobs.stability.criteria.stability_conditions import is_stable_where, stable_where
 from symobs.stability.inequalities.solved_bounds import box
@@ -80,8 +80,8 @@ def _of_everything(region: LineRegion | PlaneRegion, names: tuple[str, ...]) -> 
 
 def _of_line(region: LineRegion) -> Iterator[Sentence]:
     if region.points:
-        slots = {"points": counted(len(region.points), "point")} if len(region.points) > 1 else {}
-        slots["stable"] = counted(len(region.intervals), "interval")
+        slots = {"points": Counted("point", len(region.points))} if len(region.points) > 1 else {}
+        slots["stable"] = Counted("interval", len(region.intervals))
         yield Sentence("points_decide" if len(region.points) > 1 else "point_decides", tuple(slots.items()))
     for point in region.cuts:
         number = Literal(point.scalar(region.name))
@@ -93,7 +93,7 @@ def _how_plane(region: PlaneRegion) -> Iterator[Sentence]:
     allowed = [cell for cell in region.cells if cell.allowed]
     if len(allowed) > 1:
         stable = sum(cell.stable for cell in allowed)
-        slots = {"cells": counted(len(allowed), "open piece"), "stable": in_words(stable, len(allowed))}
+        slots = {"cells": Counted("open_piece", len(allowed)), "stable": Counted("of_them", stable, len(allowed))}
         yield Sentence("cells_decide", tuple(slots.items()))
 
 
@@ -102,7 +102,7 @@ def _of_plane(region: PlaneRegion) -> Iterator[Sentence]:
     if count == 1:
         yield Sentence("connected_bounded" if bounded else "connected_unbounded")
     else:
-        slots = {"count": counted(count, "piece"), "bounded": in_words(bounded, count)}
+        slots = {"count": Counted("piece", count), "bounded": Counted("of_them", bounded, count)}
         yield Sentence("pieces", tuple(slots.items()))
     x, y = region.names
     for hole in region.holes:
@@ -121,7 +121,8 @@ def _numbers(ends: Iterable[RealNumber | None], name: str) -> Iterator[Sentence]
     for number in dict.fromkeys(end for end in ends if end is not None and end.closed_form() is None):
         polynomial = number.minimal_polynomial(name)
         equation = Relation((Literal(polynomial), Literal(Scalar.of(0))), ("=",))
-        which = root_in_words(number.index, len(real_roots(number.polynomial)))
+        is_only = len(real_roots(number.polynomial)) == 1
+        which = Counted("only_real_root" if is_only else "real_root", number.index + 1)
         slots = (("number", Literal(number.scalar(name))), ("which", which), ("equation", equation))
         yield Sentence("number_is_root", slots)
 

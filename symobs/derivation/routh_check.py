@@ -9,7 +9,7 @@ from symobs.derivation.steps import Sentence
 from symobs.exact import Ideal, Scalar, remainder
 from symobs.exact import from_coefficients as polynomial_from
 from symobs.formula import Literal, Relation
-from symobs.phrases.english.counting import changes_sign, roots_lie
+from symobs.phrases.spoken import Counted
 from symobs.stability.criteria.cauchy_index import imaginary_axis_roots, right_half_plane_roots
 from symobs.stability.criteria.routh_table import is_routh_table, sign_changes
 from symobs.stability.criteria.stability import hurwitz_matrix
@@ -76,7 +76,11 @@ def _positive(epsilon: str) -> Relation:
 def _counted(table: RouthTable, coefficients: Sequence[Scalar]) -> Sentence:
     """Return where the roots of a polynomial without parameters lie."""
     changes, right, axis = sign_changes(table), right_half_plane_roots(coefficients), imaginary_axis_roots(coefficients)
-    slots = {"changes": changes_sign(changes), "right": roots_lie(right), "axis": roots_lie(axis)}
+    slots = {
+        "changes": Counted("sign_changes", changes),
+        "right": Counted("root_lies", right),
+        "axis": Counted("root_lies", axis),
+    }
     if changes != right:
         small = ("epsilon", Literal(Scalar.symbol(table.epsilon)))
         return Sentence("routh_misleads", (small, ("right", slots["right"]), ("axis", slots["axis"])))

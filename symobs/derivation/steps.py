@@ -15,15 +15,16 @@ if TYPE_CHECKING:
     from symobs.figures.block_diagram import Label
     from symobs.figures.plot import Picture
     from symobs.formula import Conjunction, Fact, Formula, HoldsExactlyWhere, Relation
+    from symobs.phrases.spoken import Counted, StateChoice
     from symobs.stability.criteria.routh_table import RouthTable
 
 
 @dataclass(frozen=True)
 class Sentence:
-    """A phrase of `phrases.PHRASES` with its slots filled by formulas, facts or plain words."""
+    """A phrase of `phrases.PHRASES`, its slots filled by formulas, facts, text, or what a language puts into words."""
 
     key: str
-    slots: tuple[tuple[str, Formula | Fact | str], ...] = ()
+    slots: tuple[tuple[str, Formula | Fact | Counted | StateChoice | str], ...] = ()
 
     def __post_init__(self) -> None:
         """Refuse slots that do not match the phrase."""

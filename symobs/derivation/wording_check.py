@@ -189,7 +189,7 @@ def require_known(demands: Mapping[str, str]) -> None:
 require_known(DEMANDS)
 
 
-def fits(key: str, relation: Formula | Fact | str, environment: Environment) -> bool:
+def fits(key: str, relation: object, environment: Environment) -> bool:
     """Tell whether the relation of a sentence, which is true, is one that its words speak of."""
     is_said = _OF_SLOTS.get(DEMANDS.get(key, ""))
     return is_said is None or (isinstance(relation, Relation) and is_said(relation, environment))

@@ -1,8 +1,10 @@
-"""Every sentence a derivation can say, in one place: the language of the prose lives here and nowhere else."""
+"""Every sentence a derivation can say: the languages of the prose live here and nowhere else."""
 
 from symobs.phrases.catalogue import (
     ASSERTS,
     BESIDE,
+    CONTINUES,
+    COUNTS,
     DEMANDS,
     EXPLAINS,
     FIGURES,
@@ -13,12 +15,15 @@ from symobs.phrases.catalogue import (
     RESTS_ON,
     SPELLS_OUT,
     THEOREMS,
+    WORDS,
     slots_of,
 )
 
 __all__ = [
     "ASSERTS",
     "BESIDE",
+    "CONTINUES",
+    "COUNTS",
     "DEMANDS",
     "EXPLAINS",
     "FIGURES",
@@ -29,5 +34,6 @@ __all__ = [
     "RESTS_ON",
     "SPELLS_OUT",
     "THEOREMS",
+    "WORDS",
     "slots_of",
 ]

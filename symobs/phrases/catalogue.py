@@ -4,6 +4,7 @@ A phrase is plain text with slots in braces, filled by a formula or fact (set as
 signs stand formulas in the letters of `notation` that only name things.  Steps name a phrase by its key; a step whose
 slots do not match its phrase cannot be made.  A task's sentences, what they owe and rest on, and how its question is put,
 stand in modules `…_phrases.py` of its folder that contain nothing but tables; those of all pages stand in `english`.
+These are the phrases in English; `languages` reads them in the others.
 """
 
 from __future__ import annotations
@@ -94,9 +95,11 @@ FIGURES: dict[str, dict[str, Any]] = _collected("FIGURES")
 #: Phrases that name a value and claim nothing of it: in all others a value stands with what it is the value of.
 NAMING: frozenset[str] = _listing("NAMING").union(QUESTIONS)
 
+#: Phrases that go on with the sentence before them, in every language; all others begin one.
+CONTINUES = _listing("CONTINUES")
+
 #: Phrases that begin a new paragraph wherever they stand.
 OPENS = _listing("OPENS")
-
 
 #: Phrases that only explain, and refer to nothing but what was just shown: a shorter page leaves them out.
 EXPLAINS = _listing("EXPLAINS")
@@ -106,6 +109,21 @@ BESIDE = _listing("BESIDE")
 
 #: Phrases before a display that says what the short names stand for in which answers are written: no page goes without.
 SPELLS_OUT = _listing("SPELLS_OUT")
+
+
+#: The words of pages that belong to no phrase, and how many of a thing there are: `english.words_phrases` explains both.
+WORDS: dict[str, str] = _collected("WORDS")
+COUNTS: dict[str, dict[str, str]] = _collected("COUNTS")
+
+
+def phrases_of_modules() -> dict[str, dict[str, str]]:
+    """Return the phrases of each module `NAME_phrases`, under NAME: the files of another language have these names."""
+    found: dict[str, dict[str, str]] = {}
+    for module in _MODULES:
+        phrases = {**getattr(module, "PHRASES", {}), **getattr(module, "QUESTIONS", {})}
+        if phrases:
+            found[module.__name__.rpartition(".")[2].removesuffix("_phrases")] = phrases
+    return found
 
 
 def slots_of(key: str) -> frozenset[str]:

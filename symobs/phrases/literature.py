@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from symobs.phrases.english.words_phrases import WORDS
+
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Mapping
 
 #: Key → kind of publication and its fields, as they are to be printed.
 LITERATURE: dict[str, tuple[str, dict[str, str]]] = {}
@@ -303,18 +305,20 @@ def written_out(references: str) -> str:
     return "; ".join(f"{reference(key)}{', ' * bool(place)}{place}" for key, place in cited(references))
 
 
-def reference(key: str) -> str:
-    """Return one entry in standard form; what is no key is returned."""
+def reference(key: str, words: Mapping[str, str] = WORDS) -> str:
+    """Return one entry in standard form, with the words of a language; what is no key is returned."""
     if key not in LITERATURE:
         return key
     kind, of = LITERATURE[key]
+    author = of["author"].replace(" and ", words["authors"])
     pages = f", {of['pages']}" if of.get("pages") else ""
     if kind == "article":
-        return f"{of['author']}, {of['title']}, {of['journal']} {of['volume']} ({of['year']}){pages}"
+        return f"{author}, {of['title']}, {of['journal']} {of['volume']} ({of['year']}){pages}"
     if kind == "book":
-        edition = f"{of['edition']} ed., " if "edition" in of else ""
-        return f"{of['author']}, {of['title']}, {edition}{of['publisher']}, {of['year']}"
-    return f"{of['author']}, {of['title']}, in: {of['booktitle']}, {of['year']}{pages}"
+        ordinal = of.get("edition", "")
+        edition = words["edition"].format(ordinal=ordinal, number=ordinal.rstrip("dhnrst")) + ", " if ordinal else ""
+        return f"{author}, {of['title']}, {edition}{of['publisher']}, {of['year']}"
+    return f"{author}, {of['title']}, in: {of['booktitle']}, {of['year']}{pages}"
 
 
 def bibliography(keys: Iterable[str]) -> str:

@@ -78,7 +78,7 @@ def question_of(problem: Problem) -> Question:
                 page.steps.append(Note(_filled(page, task, key, values)))
     typed = problem.plant.is_in_decimals or has_decimals([*problem.specification.values()])
     digits = DIGITS if problem.digits is None and typed else problem.digits
-    of_page: dict[str, Any] = {"page": page.derivation(), "digits": digits}
+    of_page: dict[str, Any] = {"page": page.derivation(), "digits": digits, "language": problem.language}
     return Question(problem.title, problem.source, (), problem.convention, problem.text, **of_page)
 
 

@@ -30,6 +30,7 @@ TOP: dict[str, dict[str, Any]] = {
         "type": "string",
         "pattern": "^[A-Za-z][A-Za-z0-9_-]{0,39}$",
     },
+    "language": {"description": "the language of the page: en or de", "type": "string"},
     "digits": {
         "description": "significant digits of a page in decimals; 5 where data are typed as decimals",
         "type": "integer",

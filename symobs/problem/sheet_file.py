@@ -15,6 +15,7 @@ from symobs._dataclass import dataclass
 from symobs.errors import InputError, ProblemErrors, SymobsError, reason_of
 from symobs.expression import parse_scalar
 from symobs.expression.source import shown
+from symobs.phrases.languages import languages
 from symobs.problem.file_tables import Decimal, came, parse
 from symobs.problem.noted_errors import Errors, check_text
 from symobs.problem.validation import read_convention
@@ -50,9 +51,7 @@ PROBLEM: dict[str, str] = {
     "hint": "words for the end of the sheet",
     "space": "as for the sheet",
 }
-#: Languages of pages.
-LANGUAGES = ("en",)
-_CHOICES = {"language": LANGUAGES, "style": ("exercise", "exam"), "answers": ("none", "space", "lines")}
+_CHOICES = {"style": ("exercise", "exam"), "answers": ("none", "space", "lines")}
 _TEXTS = ("title", "course", "term", "instructor", "text")
 _MOST_PROBLEMS = 200
 _MOST_POINTS = 1000
@@ -86,6 +85,8 @@ class SheetFile:
     texts: tuple[str, ...]
     has_final_answers: bool = False
     convention: Convention | None = None
+    #: The code of the language of the sheet and all its pages; empty where the file names none.
+    language: str = ""
 
 
 def is_sheet(text: str) -> bool:
@@ -100,6 +101,7 @@ def read_sheet(text: str, where: str, folder: Path, read: Callable[[str], str]) 
     _report_unknown(data, SHEET, "", errors)
     words = {key: _text(data.get(key, ""), key, errors) for key in _TEXTS}
     chosen = {key: _choice(data.get(key, known[0]), known, key, errors) for key, known in _CHOICES.items()}
+    language = _choice(data["language"], languages(), "language", errors) if "language" in data else ""
     is_exam = chosen["style"] == "exam"
     header = Header(
         course=words["course"],
@@ -123,7 +125,7 @@ def read_sheet(text: str, where: str, folder: Path, read: Callable[[str], str]) 
     convention = read_convention(data, folder, errors) if "convention" in data else None
     if errors.found:
         raise _placed(errors, where)
-    return SheetFile(words["title"], header, tuple(problems), tuple(texts), final, convention)
+    return SheetFile(words["title"], header, tuple(problems), tuple(texts), final, convention, language)
 
 
 def _placed(errors: Errors, where: str) -> ProblemErrors:

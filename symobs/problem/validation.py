@@ -15,6 +15,7 @@ from symobs.errors import ProblemErrors, UsageError
 from symobs.expect import unreadable
 from symobs.expression import declared_name, parse_polynomial
 from symobs.expression.source import shown
+from symobs.phrases.languages import ENGLISH, language_named
 from symobs.problem.constants import with_constants
 from symobs.problem.file_tables import Decimal, came
 from symobs.problem.marking import Marking, read_marking
@@ -57,6 +58,7 @@ class Problem:
     values: Mapping[str, Any] = field(default_factory=dict)  # of symbols: the results are those there
     marking: Marking = Marking()
     digits: int | None = None  # of the numbers on the page, as a document has them
+    language: str = ENGLISH.code
 
     def solve(self, report: Callable[[str, tuple[Result, ...]], None] | None = None) -> tuple[Result, ...]:
         """Run every task; `report` is told which one begins and the results there are.
@@ -87,7 +89,7 @@ class Problem:
     def document(self, results: tuple[Result, ...], convention: Convention | None = None) -> Document:
         """Return what a format renders, in the file's convention or in another one."""
         told = convention or self.convention
-        return Document(self.title, self.source, results, told, self.text, digits=self.digits)
+        return Document(self.title, self.source, results, told, self.text, digits=self.digits, language=self.language)
 
 
 def validate(data: Mapping[str, Any], only: str | None = None, folder: Path | None = None) -> Problem:
@@ -100,6 +102,7 @@ def validate(data: Mapping[str, Any], only: str | None = None, folder: Path | No
     title, source, text = (text_of(data, name, errors) for name in ("title", "source", "text"))
     ids = _ids(data.get("id", []), errors)
     convention = read_convention(data, folder, errors)
+    language = _language(data, errors)
     asked = _tasks(data, errors, required=only is None)
     wanted = asked if only is None else (tasks()[only],)
     symbols = Symbols() if data.get("symbols") is OPEN else _symbols(table_of(data, "symbols", errors), errors)
@@ -118,7 +121,7 @@ def validate(data: Mapping[str, Any], only: str | None = None, folder: Path | No
         errors.note("this file stands for many problems", "variants", repair)
     if not errors.found and plant is not None:
         about = title, source, ids, wanted, plant, specification, expect, convention, text, printed, values, marking
-        return Problem(*about, digits)
+        return Problem(*about, digits, language)
     if plant is not None and wanted:
         with errors:
             Problem(title, source, ids, wanted, plant, specification, expect, convention, values=values).solve()
@@ -272,6 +275,19 @@ def read_convention(data: Mapping[str, Any], folder: Path | None, errors: Errors
     except ProblemErrors as wrong:
         errors.found += wrong.errors
     return STANDARD
+
+
+def _language(data: Mapping[str, Any], errors: Errors) -> str:
+    """Return the code of the language of the page, English where the file names none that exists."""
+    code = data.get("language", ENGLISH.code)
+    if not isinstance(code, str) or isinstance(code, Decimal):
+        errors.note(f"a name is expected, but {came(code)} came", "language", 'write language = "de"')
+        return ENGLISH.code
+    try:
+        return language_named(code).code
+    except UsageError as error:
+        errors.note(error.message, "language", error.repair)
+        return ENGLISH.code
 
 
 def _specification(

@@ -19,8 +19,8 @@ _RELATIONS = {"!=": "!=", "=": "==", "==": "==", ">": ">", ">=": ">=", "<": "<",
 class Faces:
     """The formats of a result under names of their own, and what a notebook shows of it."""
 
-    def to(self, format_name: str, *, convention: str = "standard") -> str | bytes:
-        """Return the result in a format, in a convention."""
+    def to(self, format_name: str, *, convention: str = "standard", language: str = "en") -> str | bytes:
+        """Return the result in a format, in a convention and a language."""
         raise NotImplementedError
 
     @property
@@ -29,17 +29,17 @@ class Faces:
         result: Any = self
         return signs(result.plant, result.answer.values())
 
-    def to_latex(self) -> str:
+    def to_latex(self, *, language: str = "en") -> str:
         """Return the derivation as a LaTeX article."""
-        return str(self.to("latex"))
+        return str(self.to("latex", language=language))
 
-    def to_html(self) -> str:
+    def to_html(self, *, language: str = "en") -> str:
         """Return the derivation as an HTML page of its own."""
-        return str(self.to("html"))
+        return str(self.to("html", language=language))
 
-    def to_markdown(self) -> str:
+    def to_markdown(self, *, language: str = "en") -> str:
         """Return the derivation as Markdown."""
-        return str(self.to("markdown"))
+        return str(self.to("markdown", language=language))
 
     def to_json(self) -> str:
         """Return the result as JSON."""

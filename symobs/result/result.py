@@ -310,11 +310,25 @@ class Result(Faces):
 
     @overload
     def to(
-        self, format_name: Literal["pdf"], *, convention: str = ..., detail: str = ..., **numbers: Unpack[Numbers]
+        self,
+        format_name: Literal["pdf"],
+        *,
+        convention: str = ...,
+        detail: str = ...,
+        language: str = ...,
+        **numbers: Unpack[Numbers],
     ) -> bytes: ...
 
     @overload
-    def to(self, format_name: Text, *, convention: str = ..., detail: str = ..., **numbers: Unpack[Numbers]) -> str: ...
+    def to(
+        self,
+        format_name: Text,
+        *,
+        convention: str = ...,
+        detail: str = ...,
+        language: str = ...,
+        **numbers: Unpack[Numbers],
+    ) -> str: ...
 
     @overload
     def to(self, format_name: Code, *, period: object = None, hold: Literal["zoh", "tustin"] = "zoh") -> str: ...
@@ -326,6 +340,7 @@ class Result(Faces):
         *,
         convention: str = "standard",
         detail: str = "full",
+        language: str = "en",
         period: object = None,
         hold: str = "zoh",
         **numbers: Unpack[Numbers],
@@ -337,18 +352,25 @@ class Result(Faces):
         *,
         convention: str = "standard",
         detail: str = "full",
+        language: str = "en",
         period: object = None,
         hold: str = "zoh",
         **numbers: Unpack[Numbers],
     ) -> str | bytes:
         """Return the result in a format: latex, html, text, json, pdf, …; in a convention, by name or TOML file.
 
-        `detail` says how much of the derivation is told: full, outline or answer.  Data typed as decimals make a page of
-        decimals; `digits` asks for so many significant ones, `exact` for none.  python, matlab, c and modelica are the
-        observer or compensator as a program, sampled with a `period` such as "1/100" by a zero-order hold (zoh) or by the
-        bilinear map (tustin); numpy and csv the numbers alone.
+        `detail` says how much of the derivation is told: full, outline or answer; `language` is en or de.  Data typed as
+        decimals make a page of decimals; `digits` asks for so many significant ones, `exact` for none.  python, matlab, c
+        and modelica are the observer or compensator as a program, sampled with a `period` such as "1/100" by a zero-order
+        hold (zoh) or by the bilinear map (tustin); numpy and csv the numbers alone.
         """
-        of_page: dict[str, Any] = {"detail": detail, "digits": digits_asked(**numbers), "period": period, "hold": hold}
+        of_page: dict[str, Any] = {
+            "detail": detail,
+            "language": language,
+            "digits": digits_asked(**numbers),
+            "period": period,
+            "hold": hold,
+        }
         return render(Document("", "", (self,), convention_named(convention), **of_page), format_name)
 
     def __repr__(self) -> str:
@@ -385,6 +407,8 @@ class Document:
     convention: Convention = STANDARD
     text: str = ""
     detail: str = field(default="full", kw_only=True)
+    #: The code of the language of the page.
+    language: str = field(default="en", kw_only=True)
     templates: Path | None = field(default=None, kw_only=True)
     #: For a format that is a program: the sampling period, and how the input is held.
     period: object = field(default=None, kw_only=True)

@@ -199,7 +199,7 @@ def test_there_is_something_to_look_at() -> None:
         ("symobs.design.full_order.observer", "import symobs"),
         ("symobs.design.full_order.observer", "import importlib"),
         ("symobs.design.full_order.observer", "from importlib import import_module"),
-        ("symobs.phrases.english.counting", "from importlib import import_module"),
+        ("symobs.phrases.languages", "from importlib import import_module"),
         ("symobs.helpers", ""),
         ("symobs.helpers.deep", ""),
         ("symobs.system", "if TYPE_CHECKING:\n    from flint import fmpz"),

@@ -84,16 +84,3 @@ def repair_claims(
         if most < X.shape[0]:
             numbers = tuple(index + 1 for index in chosen)
             yield Claim(relation(most, "<", X.shape[0]), e, f"with states {numbers} {verb} too it is not")
-
-
-def in_words(sets: tuple[tuple[int, ...], ...]) -> str:
-    """Return sets of states as words: `state 1 or state 2`, `one of the states 1, 2 and 4`, `states 1 and 3, or 2 and 3`."""
-    if len(sets[0]) > 1:
-        return "states " + ", or ".join(_listed(numbers) for numbers in sets)
-    singles = tuple(numbers[0] for numbers in sets)
-    few = " or ".join(f"state {number}" for number in singles)
-    return few if len(singles) <= 2 else f"one of the states {_listed(singles)}"
-
-
-def _listed(numbers: tuple[int, ...]) -> str:
-    return ", ".join(map(str, numbers[:-1])) + f" and {numbers[-1]}"

@@ -13,7 +13,6 @@ from symobs.analysis.page_parts import (
     hidden_polynomial,
     undecided,
 )
-from symobs.analysis.rank.missing_measurements import in_words
 from symobs.conditions import vanishing_factors
 from symobs.derivation import Case as CaseStep
 from symobs.derivation import Conclude, Equal, Step
@@ -22,6 +21,7 @@ from symobs.derivation.wording_check import fits
 from symobs.exact import Matrix, roots_of, unit_rows
 from symobs.formula import Conjunction, Roots
 from symobs.formula.term import block
+from symobs.phrases.spoken import StateChoice
 
 if TYPE_CHECKING:
     from symobs.analysis.rank.rank_test import RankResult
@@ -103,7 +103,7 @@ def repair(page: Page, letter: str, result: RankResult, kind: str) -> list[Step]
         if not shows(facts, e):
             return []
     words = "one" if len(sets[0]) == 1 else "several"
-    return [Conclude(sentence(f"repair_{words}_{kind}", {"states": in_words(sets)}), tuple(facts))]
+    return [Conclude(sentence(f"repair_{words}_{kind}", {"states": StateChoice(sets)}), tuple(facts))]
 
 
 def _deficient(page: Page, letter: str, result: RankResult, kind: str) -> None:

@@ -14,6 +14,7 @@ from symobs.derivation.builder import predicate, relation, sentence
 from symobs.derivation.region_check import findings_of_conditions, findings_of_region, interval_relations
 from symobs.exact import Scalar
 from symobs.formula import HoldsExactlyWhere, Literal, Power, Product, Quotient, Sum, SymbolList
+from symobs.phrases.spoken import Counted
 from symobs.result import page_of
 from symobs.stability.criteria.stability import hurwitz_matrix
 from symobs.stability.plots.region_plot import picture_of_line
@@ -155,7 +156,7 @@ def _of_power(coefficient: Scalar, w: Scalar, power: int) -> Formula:
 def _crossing(page: Page, result: StabilityRegion, chi: str) -> None:
     """Show the critical polynomials."""
     critical = result.critical
-    vary = "varies" if len(result.question.parameters) == 1 else "vary"
+    vary = Counted("varies", len(result.question.parameters))
     name = f"{chi}_at"
     places = (1, -1) if critical.boundary.discrete else (0,)
     shown: list[Relation] = []

@@ -120,3 +120,10 @@ EXPLAINS = (
     "points_decide",
     "point_decides",
 )
+
+#: Phrases that go on with the sentence before them.
+CONTINUES = (
+    "left_half_plane",
+    "unit_disc",
+    "hurwitz_determinant",
+)

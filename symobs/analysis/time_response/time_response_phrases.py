@@ -133,3 +133,16 @@ EXPLAINS = (
     "exponential_sum",
     "gramian_integral",
 )
+
+#: Phrases that go on with the sentence before them.
+CONTINUES = (
+    "root_named",
+    "kernel_unseen",
+    "kernel_unseen_several",
+    "kernel_of_gramian",
+    "output_solution",
+    "moments_right",
+    "initial_refused",
+    "estimate_input_integral",
+    "input_part",
+)

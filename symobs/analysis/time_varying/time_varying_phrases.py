@@ -100,3 +100,11 @@ EXPLAINS = (
     "transition_exponential",
     "stack_drops",
 )
+
+#: Phrases that go on with the sentence before them.
+CONTINUES = (
+    "input_given",
+    "transition_exponential",
+    "peano_baker_sum",
+    "x0_formula",
+)

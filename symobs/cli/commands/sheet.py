@@ -47,7 +47,7 @@ _WORST_FIRST = (EXIT_BUG, InputError.exit_code, EXIT_NO, EXIT_UNDECIDED)
 @click.option("--title", default="", metavar="TEXT", help="The title of the sheet.")
 @click.option("--questions", is_flag=True, help="The questions only.")
 @click.option("--solutions", is_flag=True, help="The solutions only; they begin with the data.")
-@options("detail", "digits", "exact", "details", "copy", "live", "templates", "convention", *LIMITS)
+@options("detail", "language", "digits", "exact", "details", "copy", "live", "templates", "convention", *LIMITS)
 def command(
     files: tuple[str, ...],
     target: str | None,
@@ -56,6 +56,7 @@ def command(
     questions: bool,  # noqa: FBT001 - click's signature
     solutions: bool,  # noqa: FBT001
     detail: str,
+    language: str | None,
     digits: object,
     exact: bool,  # noqa: FBT001
     details: bool,  # noqa: FBT001
@@ -77,9 +78,10 @@ def command(
         raise UsageError("both --questions and --solutions are given", repair="leave both out for both")
     chosen = _sheet_format(format_name, target)
     web = WebPage(details, copy, live)
-    told = page_of(detail, templates, chosen.name, web, digits=digits, exact=exact)
+    page_of(detail, language, templates, chosen.name, web, digits=digits, exact=exact)  # what is wrong is said at once
     check_target(target)
     file = _sheet_file(files)
+    told = page_of(detail, language or file.language or None, templates, chosen.name, web, digits=digits, exact=exact)
     wanted = Wanted(
         chosen,
         not solutions,

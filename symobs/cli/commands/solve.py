@@ -35,6 +35,7 @@ def command(
     bibliography: str | None,
     convention_name: str | None,
     detail: str,
+    language: str | None,
     digits: object,
     exact: bool,  # noqa: FBT001 - click's signature
     details: bool,  # noqa: FBT001
@@ -56,7 +57,7 @@ def command(
     convention = convention_of(convention_name)
     numbers = {"printed": printed, "period": period, "hold": hold}
     web = WebPage(details, copy, live)
-    page = page_of(detail, templates, chosen, web, digits=digits, exact=exact, **numbers)
+    page = page_of(detail, language, templates, chosen, web, digits=digits, exact=exact, **numbers)
 
     def work(report_progress: Progress) -> Outcome:
         tables = _tables(read_file(file), file, variant)

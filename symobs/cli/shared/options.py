@@ -124,6 +124,12 @@ def _conventions() -> Iterable[str]:
     return conventions()
 
 
+def _languages() -> Iterable[str]:
+    from symobs.phrases.languages import languages  # noqa: PLC0415 - for help and completion only
+
+    return languages()
+
+
 def _details() -> Iterable[str]:
     from symobs.render.page.detail_level import DETAILS  # noqa: PLC0415 - for help and completion only
 
@@ -151,6 +157,11 @@ OPTIONS: dict[str, Callable[[Any], Any]] = {
         default="full",
         type=OneOf(_details),
         help="Level of detail of the derivation; full where nothing is said.",
+    ),
+    "language": click.option(
+        "--language",
+        type=OneOf(_languages),
+        help="The language of the page; that of the file, or en, where nothing is said.",
     ),
     "digits": click.option(
         "--digits",

@@ -42,6 +42,7 @@ def convention_of(name: str | None) -> Any:
 
 def page_of(
     detail: str,
+    language: str | None,
     templates: str | None,
     format_name: str,
     web: WebPage = PLAIN,
@@ -50,7 +51,7 @@ def page_of(
     exact: bool = False,
     **others: Any,
 ) -> dict[str, Any]:
-    """Return the options of --detail, --digits, --exact, --templates and web pages, those of programs and numbers as they are.
+    """Return the options of a page: --detail, --language, --digits, --templates, web pages; the others as they are.
 
     Raises `UsageError` for unknown values, and for options of pages that the format does not write.
     """
@@ -62,6 +63,10 @@ def page_of(
     if web != PLAIN and format_name != "html":
         where = next(f"--{name}" for name in ("details", "copy", "live") if getattr(web, name))
         raise UsageError(f"the format {format_name} is no web page", where=where, repair="use --format html")
+    if language is not None:
+        from symobs.phrases.languages import language_named  # noqa: PLC0415 - only with --language
+
+        page["language"] = language_named(language).code
     if templates is None:
         return page
     from symobs.render.formats.templates import check_folder  # noqa: PLC0415 - only with --templates
@@ -149,7 +154,7 @@ def solved(
 
         report_progress("the picture")
         try:
-            outputs.append((picture_file(results, plot), plot))
+            outputs.append((picture_file(results, plot, document_of(results).language), plot))
         except UsageError as error:  # there is none: the result stands all the same
             return Outcome(tuple(outputs), (str(error),), error.exit_code)
     if expect:

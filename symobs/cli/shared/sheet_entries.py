@@ -15,11 +15,11 @@ from symobs.cli.shared.common import EXIT_BUG, EXIT_NO, EXIT_UNDECIDED, NOT_ENOU
 from symobs.cli.shared.outcome import of_problem
 from symobs.errors import OutOfBudget, ProblemErrors, SymobsError, TypesettingError
 from symobs.expect import mismatches
-from symobs.phrases import PHRASES
+from symobs.phrases.languages import ENGLISH, Language, language_named
 from symobs.problem import parse, validate
 from symobs.problem.question import question_of
 from symobs.render.page.detail_level import FINAL
-from symobs.render.page.sheet import SheetEntry, points_in_words, sheet_words
+from symobs.render.page.sheet import SheetEntry, points_in_words
 from symobs.result.web_page import PLAIN, WebPage
 
 if TYPE_CHECKING:
@@ -53,6 +53,7 @@ class Wanted:
     digits: int | None = None
     templates: Path | None = None
     web: WebPage = PLAIN
+    language: str = ""
     convention: Any = None
     timeout: float | None = None
     memory: float | None = None
@@ -94,9 +95,9 @@ def _by_children(texts: Sequence[Text], wanted: Wanted, show: Show) -> Iterator[
         elif row["status"] == "undecided":
             known = left[number]
             entry = _unpacked(known["result"])[0] if known["status"] == "done" else _empty(number, asked)
-            yield replace(entry, failure=PHRASES["sheet_undecided"]), EXIT_UNDECIDED, [_undecided(row["error"][0])]
+            yield _said_failed(entry, "sheet_undecided", wanted), EXIT_UNDECIDED, [_undecided(row["error"][0])]
         else:
-            yield replace(_empty(number, asked), failure=PHRASES["sheet_failed"]), EXIT_BUG, list(row["error"])
+            yield _said_failed(_empty(number, asked), "sheet_failed", wanted), EXIT_BUG, list(row["error"])
 
 
 def _undecided(reason: str) -> str:
@@ -158,7 +159,13 @@ def _bounded_entry(number: int, asked: Asked, text: str, wanted: Wanted) -> Foun
         return within(budget, lambda report_progress: _entry(number, asked, text, wanted, report_progress))
     except OutOfBudget as error:
         left: Any = error.facts["left"] or _empty(number, asked)
-        return replace(left, failure=PHRASES["sheet_undecided"]), error.exit_code, [str(error)]
+        return _said_failed(left, "sheet_undecided", wanted), error.exit_code, [str(error)]
+
+
+def _said_failed(entry: SheetEntry, phrase: str, wanted: Wanted) -> SheetEntry:
+    """Return an entry that says what became of it, in the language of the sheet."""
+    code = wanted.language or entry.language
+    return replace(entry, failure=language_named(code or ENGLISH.code).phrases[phrase], language=code)
 
 
 def _empty(number: int, asked: Asked) -> SheetEntry:
@@ -181,8 +188,12 @@ def _worked_out(entry: SheetEntry, asked: Asked, text: str, wanted: Wanted, repo
     entry = replace(entry, title=str(data.get("title") or entry.title)[:_LONGEST_TITLE])
     try:
         problem = validate(data, folder=Path(entry.file).parent)
+        entry = replace(entry, language=wanted.language or problem.language)
         if wanted.questions:
-            question = replace(question_of(problem), handout=_handout(asked, len(problem.tasks), wanted))
+            question = replace(
+                question_of(problem),
+                handout=_handout(asked, len(problem.tasks), wanted, language_named(entry.language)),
+            )
             entry = replace(entry, question=_part(question, replace(wanted, web=wanted.web.of_question)))
         report_progress(entry)
         if not wanted.is_solved:
@@ -209,10 +220,10 @@ def _worked_out(entry: SheetEntry, asked: Asked, text: str, wanted: Wanted, repo
     return entry, min(codes, default=0), messages
 
 
-def _handout(asked: Asked, parts: int, wanted: Wanted) -> tuple[Any, ...]:
+def _handout(asked: Asked, parts: int, wanted: Wanted, language: Language) -> tuple[Any, ...]:
     """Return what a sheet adds to each part of a question: its points, and room for answers where none are given."""
     each = asked.points if len(asked.points) == parts > 1 else ()
-    words = [points_in_words((points,), sheet_words()) for points in each] or [""] * parts
+    words = [points_in_words((points,), language) for points in each] or [""] * parts
     space = None if wanted.solutions else asked.space
     return tuple((word, space) for word in words) if each or space else ()
 
@@ -221,7 +232,8 @@ def _part(document: Document, wanted: Wanted) -> Any:
     """Return the part of a sheet for a question or a solution, in its format."""
     convention = wanted.convention or document.convention
     digits = document.digits if wanted.digits is None else wanted.digits
-    of_page = {"detail": wanted.detail, "digits": digits, "templates": wanted.templates, "web": wanted.web}
+    of_page = {"detail": wanted.detail, "digits": digits, "language": wanted.language or document.language}
+    of_page |= {"templates": wanted.templates, "web": wanted.web}
     told = replace(document, convention=convention, **of_page)
     return wanted.format.part(told)
 
@@ -231,7 +243,7 @@ def _failed(entry: SheetEntry, error: Exception, wanted: Wanted) -> tuple[SheetE
     if wanted.memory is not None and isinstance(error, MemoryError | SystemError | ImportError):
         raise error
     phrase = "sheet_undecided" if isinstance(error, MemoryError) else "sheet_failed"
-    return replace(entry, failure=PHRASES[phrase]), *_failure(error)
+    return _said_failed(entry, phrase, wanted), *_failure(error)
 
 
 def _failure(error: Exception) -> tuple[int, list[str]]:

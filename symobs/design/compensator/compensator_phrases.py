@@ -185,3 +185,14 @@ FIGURES: dict[str, dict[str, object]] = {
         "signals": {"u": "u", "y": "y", "x": "x_hat"},
     },
 }
+
+#: Phrases that go on with the sentence before them.
+CONTINUES = (
+    "compensator_matrix",
+    "closed_loop_matrix",
+    "polynomial_splits",
+    "loop_after",
+    "with_coefficients",
+    "polynomial_splits_given",
+    "gain_transposed",
+)

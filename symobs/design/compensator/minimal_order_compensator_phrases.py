@@ -48,3 +48,6 @@ OPENS = (
     "minimal_control",
     "partitioned_gain",
 )
+
+#: Phrases that go on with the sentence before them.
+CONTINUES = ("minimal_control_in_y",)

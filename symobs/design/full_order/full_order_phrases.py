@@ -87,3 +87,6 @@ FIGURES: dict[str, dict[str, object]] = {
         "optional": ("B",),
     },
 }
+
+#: Phrases that go on with the sentence before them.
+CONTINUES = ("existence_left",)

@@ -53,3 +53,10 @@ THEOREMS: dict[str, str] = {
 }
 
 NAMING = ("impossible_zero_unless",)
+
+#: Phrases that go on with the sentence before them.
+CONTINUES = (
+    "determinant_free",
+    "solution_long",
+    "solution_of_member",
+)

@@ -125,3 +125,15 @@ EXPLAINS = (
 )
 
 SPELLS_OUT = ("coefficients",)
+
+#: Phrases that go on with the sentence before them.
+CONTINUES = (
+    "coefficients",
+    "polynomial_of_unknown",
+    "solution_of_system",
+    "companion_reached",
+    "with_determinant",
+    "ackermann_observer",
+    "ackermann_state_feedback",
+    "closed_matrix",
+)

@@ -19,6 +19,7 @@ from symobs.exact.core.generators import function
 from symobs.exact.time_functions.butterworth import butterworth_angles, twice_cosine
 from symobs.formula import Literal, Power, Roots, Sum
 from symobs.formula.term import product
+from symobs.phrases.spoken import Counted
 from symobs.result import page_of
 from symobs.stability.inequalities.written_form import as_inequality
 
@@ -29,8 +30,6 @@ if TYPE_CHECKING:
     from symobs.design.pole_advice.pole_warnings import Beware
     from symobs.formula import Relation
     from symobs.formula.term import Term
-
-_COUNTS = ("no", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten")
 
 
 @page_of(PoleAdvice)
@@ -102,10 +101,6 @@ def _asked(page: Page, advice: PoleAdvice) -> None:
     page.environment = page.environment.having(values={"T_s": time, "M_p": overshoot})
 
 
-def _in_words(count: int) -> str:
-    return _COUNTS[count] if count < len(_COUNTS) else str(count)
-
-
 def _product(page: Page, factors: tuple[tuple[Scalar, int], ...]) -> Term:
     """Return a product of factors as they are."""
     return page.term(formula_of_factored(Factored(Scalar.of(1), factors)))
@@ -146,7 +141,7 @@ def _circle(page: Page, advice: PoleAdvice, radius: Scalar) -> None:
     if count == 1:
         page.define("phi_r", whole, say="one_on_circle", closing=False)
     else:
-        page.define("phi_r", whole, say="some_on_circle", closing=False, count=_in_words(count))
+        page.define("phi_r", whole, say="some_on_circle", closing=False, count=Counted("number", count))
     powers = [page.value(radius) ** (2 * count), page.s ** (2 * count)]
     circle = powers[0] + powers[1] if count % 2 == 0 else powers[0] - powers[1]
     identity = relation(page["phi_r"] @ (-page.s).apply("phi_r_at"), circle)
@@ -198,8 +193,8 @@ def _pair(page: Page, advice: PoleAdvice) -> None:
         _product(page, factors),
         say="pair_dominates",
         closing=False,
-        count=_in_words(count),
-        factor=_in_words(FURTHER_LEFT),
+        count=Counted("number", count),
+        factor=Counted("number", FURTHER_LEFT),
     )
 
 

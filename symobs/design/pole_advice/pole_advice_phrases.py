@@ -78,3 +78,9 @@ THEOREMS: dict[str, str] = {
 }
 
 NAMING = ("radius_is_positive",)
+
+#: Phrases that go on with the sentence before them.
+CONTINUES = (
+    "transfer_from_numerator",
+    "decayed",
+)

@@ -130,3 +130,14 @@ FIGURES: dict[str, dict[str, object]] = {
         "signals": {"u": "u", "y": "y", "x": "x_hat", "z": "z_o"},
     },
 }
+
+#: Phrases that go on with the sentence before them.
+CONTINUES = (
+    "measured_first",
+    "two_parts",
+    "undetermined_left",
+    "wanted_polynomial",
+    "hence_gain",
+    "reduced_final",
+    "assembled",
+)

@@ -58,3 +58,10 @@ FIGURES: dict[str, dict[str, object]] = {
         "signals": {"r": "x_d", "u": "u", "y": "y", "x": "x_hat"},
     },
 }
+
+#: Phrases that go on with the sentence before them.
+CONTINUES = (
+    "tracking_condition_then",
+    "tracking_solved",
+    "tracking_polynomial",
+)

@@ -102,3 +102,6 @@ UNSAID = (
     "subspaces",
     "transpose",
 )
+
+#: Phrases that go on with the sentence before them.
+CONTINUES = ("sheet_solution",)

@@ -5,8 +5,8 @@ from __future__ import annotations
 from itertools import pairwise
 from typing import TYPE_CHECKING, TypeVar
 
+from symobs.convention import STANDARD
 from symobs.formula import Roots
-from symobs.phrases import PHRASES
 from symobs.render.drawings.scene import Rectangle
 from symobs.render.page.plot_captions import caption, caption_sentence
 from symobs.render.page.prose import filled, joined
@@ -16,6 +16,7 @@ if TYPE_CHECKING:
 
     from symobs.figures.plot import Picture
     from symobs.formula import Formula, Relation
+    from symobs.phrases.languages import Language
     from symobs.render.drawings.scene import Point, Scene
     from symobs.render.page.blocks import Inline, Inlines
 
@@ -27,24 +28,25 @@ ABOVE, ROW = 9.0, 12.5
 NARROWEST = 250.0
 
 
-def numbered(equations: Sequence[Formula | Relation]) -> Inlines:
+def numbered(equations: Sequence[Formula | Relation], language: Language) -> Inlines:
     """Return the list of the equations of curves labelled by numbers."""
     if len(equations) == 1:
-        return filled(caption_sentence("curve", curve=equations[0]))
-    words: list[Inline] = [PHRASES["picture_curves"]]
+        return filled(caption_sentence("curve", curve=equations[0]), STANDARD, language)
+    words: list[Inline] = [language.phrases["picture_curves"]]
     for place, equation in enumerate(equations, 1):
         words += [f"{',' if place > 1 else ''} ({place}) ", equation]
     return joined((*words, "."))
 
 
-def below(words: Inlines, scene: Scene) -> Inlines:
+def below(words: Inlines, scene: Scene, language: Language) -> Inlines:
     """Return a caption with the equations of numbered curves added."""
-    return joined((*words, " ", *numbered(scene.numbered))) if scene.numbered else words
+    return joined((*words, " ", *numbered(scene.numbered, language))) if scene.numbered else words
 
 
 def caption_below(
     picture: Picture,
     scene: Scene,
+    language: Language,
     plain: Callable[[str], Piece],
     mathematics: Callable[[Formula | Relation], list[Piece]],
     width: Callable[[Piece], float],
@@ -52,7 +54,7 @@ def caption_below(
 ) -> tuple[Rectangle, list[tuple[Point, list[list[Piece]]]]]:
     """Return the rectangle of a plot with its caption, and the rows of the caption, in words, with their places."""
     box = scene.whole
-    words = words_of(below(caption(picture), scene), plain, mathematics)
+    words = words_of(below(caption(picture, language), scene, language), plain, mathematics)
     rows: list[list[list[Piece]]] = []
     taken = widest = 0.0
     for word in words:

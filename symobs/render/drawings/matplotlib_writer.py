@@ -48,7 +48,7 @@ def drawn_by_matplotlib(picture: Picture, kind: str, latex: LatexPrinter, text: 
     from matplotlib.figure import Figure
 
     write = _writer(latex, text)
-    scene = plot_scene(picture, lambda content: _size(write(content)))
+    scene = plot_scene(picture, lambda content: _size(write(content)), latex.language)
     widest = max(scene.whole.right - scene.whole.left, NARROWEST) / 2
 
     def mathematics(content: Formula | Relation) -> list[str]:
@@ -56,7 +56,9 @@ def drawn_by_matplotlib(picture: Picture, kind: str, latex: LatexPrinter, text: 
         piece = write(content)
         return [piece] if _size(piece)[0] <= widest else _broken(piece)
 
-    whole, rows = caption_below(picture, scene, _escaped, mathematics, lambda piece: _size(piece)[0], _SPACE)
+    whole, rows = caption_below(
+        picture, scene, latex.language, _escaped, mathematics, lambda piece: _size(piece)[0], _SPACE
+    )
     figure = Figure(figsize=((whole.right - whole.left) / 72, (whole.top - whole.bottom) / 72), facecolor="white")
     axes = figure.add_axes((0, 0, 1, 1))
     axes.set(xlim=(whole.left, whole.right), ylim=(whole.bottom, whole.top))

@@ -36,8 +36,8 @@ def check_target(path: str) -> None:
         require_matplotlib()
 
 
-def picture_file(results: Sequence[Result], path: str) -> bytes:
-    """Return the plot of the first result with one, in the format of the suffix of `path`."""
+def picture_file(results: Sequence[Result], path: str, language: str = "en") -> bytes:
+    """Return the plot of the first result with one, in the format of the suffix of `path`, its caption in a language."""
     check_target(path)
     result = next((result for result in results if result.picture is not None), None)
     if result is None or result.picture is None:
@@ -46,11 +46,11 @@ def picture_file(results: Sequence[Result], path: str) -> bytes:
             message, where="--plot", repair="leave --plot out, or ask for a task whose page shows a picture"
         )
     _require_checked(result.picture, result)
-    return _written(result.picture, result, Path(path).suffix.lower())
+    return _written(result.picture, result, Path(path).suffix.lower(), language)
 
 
-def _written(picture: Picture, result: Result, suffix: str) -> bytes:
-    document = Document("", "", (result,))
+def _written(picture: Picture, result: Result, suffix: str, language: str) -> bytes:
+    document = Document("", "", (result,), language=language)
     latex, text = printer_for(document, LatexPrinter), printer_for(document, TextPrinter)
     match suffix:
         case ".svg":

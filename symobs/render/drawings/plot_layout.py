@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 
     from symobs.figures.plot import End, Interval, Picture, Response
     from symobs.formula import Formula
+    from symobs.phrases.languages import Language
     from symobs.render.drawings.scene import Content, Measure, Point
 
 WIDEST, HIGHEST = 270.0, 160.0  # points
@@ -40,8 +41,17 @@ _ONE_AXIS, _PANEL, _BETWEEN_PANELS = 4, 48.0, 26.0
 _SIGNS = {"stable": "dot", "unstable": "cross", "excluded": "ring"}
 
 
-def plot_scene(picture: Picture, measure: Measure) -> Scene:
-    """Return the scene of a plot on paper; `measure` gives the size of text in a format."""
+def plot_scene(picture: Picture, measure: Measure, language: Language) -> Scene:
+    """Return the scene of a plot on paper, its decimals in a language; `measure` gives the size of text in a format."""
+    scene = _scene(picture, measure)
+    texts = [
+        replace(text, content=language.decimal(text.content)) if isinstance(text.content, str) else text
+        for text in scene.texts
+    ]
+    return replace(scene, texts=tuple(texts))
+
+
+def _scene(picture: Picture, measure: Measure) -> Scene:
     match picture:
         case RegionPicture():
             return _region(picture, measure)

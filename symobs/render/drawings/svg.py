@@ -49,7 +49,7 @@ def svg_scene(item: Drawing | Picture, printer: TextPrinter) -> Scene:
     """Return the scene of a plot or a diagram in the measures of SVG."""
     if isinstance(item, Drawing):
         return diagram_scene(item, metrics_of(printer), _WIDEST, discrete=printer.discrete)
-    return plot_scene(item, measure_for(printer))
+    return plot_scene(item, measure_for(printer), printer.language)
 
 
 def svg(scene: Scene, printer: TextPrinter, title: str = "") -> str:
@@ -70,7 +70,9 @@ def svg_file(picture: Picture, printer: TextPrinter) -> str:
         parts = [piece.text] if _width([piece]) <= widest else piece.text.split(" ")
         return [TextRun(part, is_math=True) for part in parts]
 
-    whole, rows = caption_below(picture, scene, TextRun, mathematics, lambda piece: _width([piece]), _width([space]))
+    whole, rows = caption_below(
+        picture, scene, printer.language, TextRun, mathematics, lambda piece: _width([piece]), _width([space])
+    )
     lines = [(place, spaced(row, space)) for place, row in rows]
     writer = _Writer(scene, printer)
     under = [writer.written(line, place, "start") for place, line in lines]

@@ -150,13 +150,13 @@ def _framed(
     """Return the rows with axes, their names and the ends of the window."""
     (left, right), (bottom, top) = window
     first, second = ([printer.inline(name) for name in names] + [""])[:2]
-    low, high = _short(bottom), _short(top)
+    low, high, start, end = (printer.language.decimal(_short(value)) for value in (bottom, top, left, right))
     margin = max(len(low), len(high))
     lines = [f"{' ' * margin} {second}"] if second else []
     for row, characters in enumerate(grid):
         label = {0: high, _ROWS - 1: low}.get(row, "")
         lines.append(f"{label:>{margin}} │{''.join(characters)}")
-    ends = f"{_short(left)}{_short(right):>{_COLUMNS - len(_short(left))}}"
+    ends = f"{start}{end:>{_COLUMNS - len(start)}}"
     return "\n".join([*lines, f"{' ' * margin} └{'─' * _COLUMNS} {first}", f"{' ' * margin}  {ends}"])
 
 
@@ -183,11 +183,13 @@ def _line(picture: LinePicture, printer: TextPrinter, width: int) -> str:
     for place in ends:
         drawn[column(place)] = "○"
     labels = {
-        column(place): label if isinstance(label, str) else printer.inline(Literal(label))
+        column(place): printer.language.decimal(label) if isinstance(label, str) else printer.inline(Literal(label))
         for place, label in ends.items()
     }
     if not labels:
-        labels = {column(Fraction(value)): text for value, text in ticks(float(low), float(high))}
+        labels = {
+            column(Fraction(value)): printer.language.decimal(text) for value, text in ticks(float(low), float(high))
+        }
     return "\n".join([f"{''.join(drawn)} {printer.inline(symbol(picture.axis))}", *_rows(labels, width)])
 
 

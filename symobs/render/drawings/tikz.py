@@ -42,7 +42,7 @@ def tikz_scene(item: Drawing | Picture, printer: LatexPrinter) -> Scene:
     """Return the scene of a plot or a diagram in the measures of LaTeX."""
     if isinstance(item, Drawing):
         return diagram_scene(item, metrics_for(printer), printer.width, discrete=printer.discrete)
-    return plot_scene(item, measure_for(printer))
+    return plot_scene(item, measure_for(printer), printer.language)
 
 
 def tikz(scene: Scene, printer: LatexPrinter) -> str:
@@ -80,7 +80,9 @@ def tikz_file(picture: Picture, printer: LatexPrinter) -> str:
     place = _point((scene.whole.left, scene.whole.bottom - ABOVE))
     room = max(scene.whole.right - scene.whole.left, NARROWEST)
     options = f"anchor=north west,align=left,text width={coordinate(room)}pt"
-    words = "".join(_inline(part, printer) for part in below(caption(picture), scene))
+    words = "".join(
+        _inline(part, printer) for part in below(caption(picture, printer.language), scene, printer.language)
+    )
     caption_node = rf"\node[{options}] at {place} {{{words}}};"
     body = tikz(scene, printer).replace("\\end{tikzpicture}", f"{caption_node}\n\\end{{tikzpicture}}")
     return f"% Needs tikz, amsmath and amssymb.\n{body}\n"
@@ -172,7 +174,7 @@ def _text(text: TextLabel, printer: LatexPrinter, *, is_plot: bool) -> str:
     if not is_plot:
         return rf"\node{_BESIDE_WIRES[text.anchor]} at {place} {{${printer.unbroken(content)}$}};"  # type: ignore[arg-type]
     if isinstance(content, str):
-        written = f"${content}$" if _is_number(content) else escape(content)
+        written = f"${content.replace(',', '{,}')}$" if _is_number(content) else escape(content)
     else:
         written = _inline(content, printer)  # type: ignore[arg-type]
     return rf"\node[anchor={text.anchor}] at {place} {{{written}}};"
@@ -185,7 +187,7 @@ def _inline(part: Inline, printer: LatexPrinter) -> str:
 
 
 def _is_number(content: str) -> bool:
-    return content.lstrip("-−").replace(".", "", 1).isdigit()
+    return content.lstrip("-−").replace(",", ".").replace(".", "", 1).isdigit()
 
 
 def _path(points: Iterable[Point]) -> str:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, ClassVar
 
+from symobs.phrases.languages import Language, language_named
 from symobs.render.formats.latex import LatexWriter, has_drawings, head_of
 from symobs.render.formats.templates import fill
 from symobs.render.page.blocks import AnswerSpace, Columns, Display, Drawing, Heading, PictureBlock, TableBlock, opened
@@ -36,7 +37,7 @@ class Beamer:
 
     def render(self, document: Document) -> str:
         """Return the LaTeX of the slides."""
-        return _slides([self.part(document)], document.templates)
+        return _slides([self.part(document)], language_named(document.language), document.templates)
 
     def part(self, document: Document) -> dict[str, Any]:
         """Return the template values of a document: its title and its frames."""
@@ -67,11 +68,13 @@ class Beamer:
                 told = {**_title(""), "source": escape(item.text), **(item.part or {})}
                 told["title"] = f"{item.label} {escape(item.title)}{points}".strip()
                 decks.append(_on_one_slide(told) if item.part and item.kind == "questions" else told)
-        return _slides(decks, sheet.templates)
+        return _slides(decks, language_named(sheet.language), sheet.templates)
 
 
-def _slides(decks: list[dict[str, Any]], folder: Path | None) -> str:
-    return fill(Beamer.template, {"decks": decks, "drawings": any(deck["drawings"] for deck in decks)}, folder=folder)
+def _slides(decks: list[dict[str, Any]], language: Language, folder: Path | None) -> str:
+    drawings = any(deck["drawings"] for deck in decks)
+    values = {"decks": decks, "drawings": drawings, "babel": language.words["babel"]}
+    return fill(Beamer.template, values, folder=folder)
 
 
 def _on_one_slide(deck: dict[str, Any]) -> dict[str, Any]:

@@ -17,7 +17,6 @@ from string import Template
 from typing import TYPE_CHECKING, ClassVar
 
 from symobs.formula import Roots
-from symobs.phrases import PHRASES
 from symobs.render.formats.html_web import folded, levels, live_link, script_of, style_of, switch
 from symobs.render.page.blocks import (
     AnswerSpace,
@@ -88,7 +87,7 @@ class Html:
         title, blocks = opened(narrate(document))
         offered = (live_link(document.web), switch(document.web, document.detail))
         pieces = (_writer(document).block(title), *offered, _told(document, blocks))
-        return page(title.text, "\n".join(filter(None, pieces)), document.web)
+        return page(title.text, "\n".join(filter(None, pieces)), document.web, language=document.language)
 
     def part(self, document: Document) -> str:
         """Return a question or a solution below its title, independent of its place."""
@@ -112,7 +111,13 @@ class Html:
                 body = item.part or f"<p>{plain(item.text)}</p>"
                 told = body.replace(_SOMEWHERE, f"{item.place}-")
                 pieces.append(folded(told) if item.part and sheet.web.details and item.kind == "solutions" else told)
-        return page(sheet.heading, "\n".join(pieces), sheet.web, has_picture=sheet.header.logo is not None)
+        return page(
+            sheet.heading,
+            "\n".join(pieces),
+            sheet.web,
+            language=sheet.language,
+            has_picture=sheet.header.logo is not None,
+        )
 
 
 @output_format
@@ -181,15 +186,15 @@ def _contents(sheet: Sheet) -> str:
     return f"<nav>\n<h2>{sheet.words['contents']}</h2>\n<ol>\n{listed}\n</ol>\n</nav>"
 
 
-def page(title: str, body: str, web: WebPage = PLAIN, *, has_picture: bool = False) -> str:
-    """Return a whole page around a body, which is HTML already, with what the page offers besides.
+def page(title: str, body: str, web: WebPage = PLAIN, *, language: str = "en", has_picture: bool = False) -> str:
+    """Return a whole page around a body, which is HTML already, in a language, with what the page offers besides.
 
     Pictures are allowed as data alone, where there is one.
     """
     skeleton = Template((_FOLDER / "html_page.html").read_text(encoding="utf-8"))
     script, policy = script_of(web)
     policy += "; img-src data:" if has_picture else ""
-    whole = {"style": style() + style_of(web), "body": body, "script": script, "policy": policy}
+    whole = {"style": style() + style_of(web), "body": body, "script": script, "policy": policy, "language": language}
     return skeleton.substitute(title=plain(title) or "symobs", **whole)
 
 
@@ -310,11 +315,11 @@ class HtmlWriter:
 
         printer = TextPrinter.of(self.printer)
         if isinstance(block, Drawing):
-            drawn = svg(svg_scene(block, printer), printer, PHRASES["block_diagram"])
+            drawn = svg(svg_scene(block, printer), printer, printer.language.phrases["block_diagram"])
             words = f"<figcaption>{self.sentence(block.caption)}</figcaption>\n" if block.caption else ""
             return f"<figure>\n{drawn}\n{words}</figure>"
         scene = svg_scene(block.picture, printer)
-        words = below(block.caption, scene)
+        words = below(block.caption, scene, printer.language)
         spoken = "".join(
             part if isinstance(part, str) else printer.inline(part) for part in words if not isinstance(part, Roots)
         )

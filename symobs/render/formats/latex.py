@@ -7,6 +7,7 @@ from itertools import pairwise, zip_longest
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from symobs.formula import Roots
+from symobs.phrases.languages import language_named
 from symobs.render.formats.templates import fill
 from symobs.render.page.blocks import (
     AnswerSpace,
@@ -92,6 +93,7 @@ def values_of(document: Document) -> dict[str, object]:
         "conventions": writer.sentence(title.conventions),
         "body": writer.body(blocks),
         "drawings": has_drawings(blocks),
+        "babel": writer.printer.language.words["babel"],
     }
 
 
@@ -103,6 +105,7 @@ def has_drawings(blocks: Sequence[Block]) -> bool:
 def typeset_sheet(sheet: Sheet, template: str) -> str:
     """Return a sheet in a template; the values of a problem are those of its part, its number, and its failure."""
     chapters: list[dict[str, Any]] = []
+    language = language_named(sheet.language)
     for chapter in sheet.chapters():
         problems: list[dict[str, Any]] = []
         for item in chapter.items:
@@ -121,6 +124,7 @@ def typeset_sheet(sheet: Sheet, template: str) -> str:
         "contents": sheet.words["contents"] if sheet.is_long else "",
         "words": sheet.words,
         "drawings": any(problem.get("drawings") for chapter in chapters for problem in chapter["problems"]),
+        "babel": language.words["babel"],
     }
     return fill(template, values, folder=sheet.templates)
 
@@ -191,7 +195,7 @@ class LatexWriter:
         if isinstance(block, Drawing):
             return figure(tikz_scene(block, self.printer), self.printer, self.sentence(block.caption))
         scene = tikz_scene(block.picture, self.printer)
-        return figure(scene, self.printer, self.sentence(below(block.caption, scene)))
+        return figure(scene, self.printer, self.sentence(below(block.caption, scene, self.printer.language)))
 
     def _columns(self, block: Columns) -> str:
         """Return rows of boxes with a continuous rule between the columns; a page may break between rows."""

@@ -180,7 +180,8 @@ class MarkdownWriter:
             case PictureBlock(picture, _, title):
                 from symobs.render.page.plot_captions import caption  # noqa: PLC0415 - only pages with pictures
 
-                return f"{self._sketch(picture)}\n\n{self.sentence((*title, *caption(picture, sketched=True)))}"
+                words = (*title, *caption(picture, self.printer.language, sketched=True))
+                return f"{self._sketch(picture)}\n\n{self.sentence(words)}"
             case AnswerSpace():  # nobody writes on it by hand
                 return ""
             case CaseBlock(label, blocks):

@@ -152,7 +152,10 @@ class TextWriter:
                 from symobs.render.page.plot_captions import caption  # noqa: PLC0415 - only pages with pictures
 
                 plot = self._sketch(picture)
-                words = wrapped(self.sentence((*title, *caption(picture, sketched=True))), width - len(INDENT))
+                words = wrapped(
+                    self.sentence((*title, *caption(picture, self.printer.language, sketched=True))),
+                    width - len(INDENT),
+                )
                 return f"{indented(plot)}\n\n{indented(words)}"
             case CaseBlock(label, blocks):
                 inside = TextWriter(self.printer, width - len(INDENT)).body(blocks)

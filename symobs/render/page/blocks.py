@@ -41,9 +41,10 @@ class Heading:
 
 @dataclass(frozen=True)
 class Paragraph:
-    """Sentences."""
+    """Sentences; the first may go on with what stands before them."""
 
     inlines: Inlines
+    continues: bool = False
 
 
 @dataclass(frozen=True)

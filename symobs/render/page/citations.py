@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from symobs.phrases import RESTS_ON, THEOREMS
+from symobs.phrases.languages import ENGLISH
 from symobs.phrases.literature import bibliography, cited
 from symobs.render.page.detail_level import at_detail
 from symobs.render.page.side_by_side import is_beside, row_by_row
@@ -13,16 +14,17 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
     from symobs.derivation import Sentence, Step
+    from symobs.phrases.languages import Language
     from symobs.result import Document
 
 
-def cited_literature(steps: Iterable[Step]) -> tuple[tuple[str, ...], dict[str, str]]:
+def cited_literature(steps: Iterable[Step], language: Language = ENGLISH) -> tuple[tuple[str, ...], dict[str, str]]:
     """Return the works cited, in the order of the page, and how each theorem is cited by their numbers."""
     works: dict[str, int] = {}
     citations: dict[str, str] = {}
     for theorem in dict.fromkeys(RESTS_ON[said.key] for said in _sentences(steps) if said.key in RESTS_ON):
         places = [
-            f"{works.setdefault(key, len(works) + 1)}{', ' * bool(place)}{place}"
+            f"{works.setdefault(key, len(works) + 1)}{', ' * bool(place)}{language.place(place)}"
             for key, place in cited(THEOREMS[theorem])
         ]
         citations[theorem] = f"[{'; '.join(places)}]"

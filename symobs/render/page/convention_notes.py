@@ -34,9 +34,10 @@ from symobs.formula import (
     Turned,
     letters,
 )
+from symobs.phrases.spoken import SPOKEN
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
+    from collections.abc import Iterable, Iterator, Mapping
 
     from symobs.convention import Convention
     from symobs.derivation import Sentence, Step
@@ -50,7 +51,7 @@ def letters_used(steps: Iterable[Step]) -> frozenset[str]:
 
 
 def stated_conventions(
-    used: frozenset[str], convention: Convention, words: dict[str, str]
+    used: frozenset[str], convention: Convention, words: Mapping[str, str]
 ) -> tuple[tuple[Inline, ...], ...]:
     """Return the conventions of the letters used, each as words and a formula."""
     turned = Turned(convention.turned)
@@ -124,5 +125,5 @@ def _in_sentence(sentence: Sentence | None) -> Iterator[Formula]:
             yield from _in_facts((value,))
         elif isinstance(value, Shown):
             yield value.value
-        elif not isinstance(value, str | SymbolList):
+        elif not isinstance(value, (str, SymbolList, *SPOKEN)):
             yield value

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 from symobs.derivation import Case, Conclude, Define, Diagram, Equal, Note, Plot, Section, Solve, Survey, Tabulate
 from symobs.errors import UsageError
 from symobs.formula import Conjunction, HoldsExactlyWhere, Predicate, Relation, Transpose, children
-from symobs.phrases import ASSERTS, EXPLAINS, PHRASES, SPELLS_OUT
+from symobs.phrases import ASSERTS, CONTINUES, EXPLAINS, SPELLS_OUT
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -155,7 +155,7 @@ def _is_seen(step: Step) -> bool:
 
 def _begins(sentence: Sentence | None) -> bool:
     """Return whether a sentence is complete without the one before it."""
-    return sentence is not None and PHRASES[sentence.key][:1].isupper()
+    return sentence is not None and sentence.key not in CONTINUES
 
 
 def _speaks_of_before(step: Step) -> bool:

@@ -28,8 +28,8 @@ from symobs.derivation import (
     Where,
 )
 from symobs.formula import Conjunction
-from symobs.phrases import BESIDE, OPENS, PHRASES, RESTS_ON
-from symobs.phrases.literature import reference
+from symobs.phrases import BESIDE, CONTINUES, OPENS, RESTS_ON
+from symobs.phrases.languages import ENGLISH, language_named
 from symobs.render.page.blocks import (
     Block,
     CaseBlock,
@@ -63,6 +63,7 @@ if TYPE_CHECKING:
     from symobs.derivation import Step
     from symobs.formula import Formula, Relation
     from symobs.notation import LetterForm
+    from symobs.phrases.languages import Language
     from symobs.render.printers.printer import Printer
     from symobs.result import Document
 
@@ -70,16 +71,6 @@ P = TypeVar("P", bound="Printer[Any]")
 
 #: The sections of a question.
 _UNNUMBERED = {"task", "tasks"}
-
-#: The few words of a page that belong to no step.
-LABELS: dict[str, str] = {
-    "conventions": "Notation:",
-    "observer_matrix": "observer matrix",
-    "error": "error",
-    "case": "Case",
-    "caution": "Remark.",
-    "sources": "References",
-}
 
 
 def narrate(document: Document) -> tuple[Block, ...]:
@@ -92,14 +83,15 @@ def narrate(document: Document) -> tuple[Block, ...]:
 
         parts = [in_decimals(*pair, digits) for pair in zip(document.derivations, parts, strict=True)]
     is_final = document.detail == FINAL
-    works, citations = cited_literature(() if is_final else (step for steps in parts for step in steps))
-    page = _PageBlocks(document.convention, citations=citations)
-    page.blocks.append(_title(document))
+    language = language_named(document.language)
+    works, citations = cited_literature(() if is_final else (step for steps in parts for step in steps), language)
+    page = _PageBlocks(document.convention, language, citations=citations)
+    page.blocks.append(_title(document, language))
     page.blocks += [Paragraph((" ".join(part.split()),)) for part in document.text.split("\n\n") if part.strip()]
     together, apart = _statements(parts)
     page.emit_given(together)
     if is_final:  # the question has said what is given, and where it comes from
-        page.blocks[:] = [replace(_title(document), source="")]
+        page.blocks[:] = [replace(_title(document, language), source="")]
     for index, steps in enumerate(parts):
         if index in apart:
             page.printed.clear()
@@ -109,7 +101,7 @@ def narrate(document: Document) -> tuple[Block, ...]:
                 page.emit_step(step)
         page.printed |= _inside(steps)
     if works:
-        page.blocks.append(References(LABELS["sources"], tuple(f"{reference(key)}." for key in works)))
+        page.blocks.append(References(language.words["sources"], tuple(f"{language.reference(key)}." for key in works)))
     return handed_out(_punctuated(page.blocks), document.handout)
 
 
@@ -146,12 +138,13 @@ def _inside(steps: Sequence[Step]) -> set[Step]:
 
 def printer_for(document: Document, kind: type[P]) -> P:
     """Return a printer for the mathematics of a document: variable, symbols, letters, time domain."""
-    if not document.derivations:
-        return kind()
-    first = document.derivations[0]
-    symbols = {name: form for derivation in document.derivations for name, form in derivation.symbols.items()}
-    printer = kind(first.variable, symbols, discrete=first.discrete)
-    printer.letters = {**printer.letters, **_letters(document)}
+    printer = kind()
+    if document.derivations:
+        first = document.derivations[0]
+        symbols = {name: form for derivation in document.derivations for name, form in derivation.symbols.items()}
+        printer = kind(first.variable, symbols, discrete=first.discrete)
+        printer.letters = {**printer.letters, **_letters(document)}
+    printer.language = language_named(document.language)
     return printer
 
 
@@ -169,27 +162,29 @@ class _PageBlocks:
     def __init__(
         self,
         convention: Convention,
+        language: Language = ENGLISH,
         *,
         given: Mapping[Formula, Relation] | None = None,
-        numbered: bool = True,
         citations: Mapping[str, str] | None = None,
         figures: Iterator[int] | None = None,
     ) -> None:
         self.convention = convention
         self.figures = count(1) if figures is None else figures
+        self.language = language
         self.blocks: list[Block] = []
         self.citations = dict(citations or {})
         self.given = dict(given or {})
         self.stated: set[Sentence] = set()
         self.printed: set[Step] = set()
         self.numbers = [0]
-        self.numbered = numbered
+        self.numbered = True
 
     def inside(self, *, numbered: bool = True) -> _PageBlocks:
         """Return the blocks of a part set apart from the page: its data hold there only, its figures are counted on."""
-        return _PageBlocks(
-            self.convention, given=self.given, numbered=numbered, citations=self.citations, figures=self.figures
-        )
+        apart = {"given": self.given, "citations": self.citations, "figures": self.figures}
+        found = _PageBlocks(self.convention, self.language, **apart)
+        found.numbered = numbered
+        return found
 
     def emit(self, steps: Sequence[Step]) -> None:
         """Emit a derivation, the given data first."""
@@ -202,7 +197,7 @@ class _PageBlocks:
         """Emit the given data that are not printed yet."""
         news = [new for step in statement for new in self.news(step)]
         if news:
-            self.blocks.append(Heading("", (PHRASES["given"],)))
+            self.blocks.append(Heading("", (self.language.phrases["given"],)))
             for step in news:
                 self.emit_step(step)
 
@@ -241,9 +236,9 @@ class _PageBlocks:
                 self.emit_sentence(sentence)
                 self.emit_display((equation, solution))
             case Conclude(sentence=Sentence() as sentence, verified=True):
-                self.blocks.append(Verified(filled(sentence, self.convention)))
+                self.blocks.append(Verified(self.filled(sentence)))
             case Note(sentence=sentence, caution=True):
-                self.blocks.append(Caution(LABELS["caution"], filled(sentence, self.convention)))
+                self.blocks.append(Caution(self.language.words["caution"], self.filled(sentence)))
             case Conclude(sentence=sentence) | Note(sentence=sentence):
                 self.emit_sentence(sentence)
             case Diagram(name=name, labels=labels, sentence=sentence):
@@ -253,7 +248,9 @@ class _PageBlocks:
                 from symobs.render.page.routh_remarks import remarks  # noqa: PLC0415 - only pages with tables
 
                 self.blocks.append(
-                    TableBlock(table, variable, remarks(table, variable), filled(Sentence("routh_where")))
+                    TableBlock(
+                        table, variable, remarks(table, variable, self.language), self.filled(Sentence("routh_where"))
+                    )
                 )
                 for finding in findings:
                     self.emit_sentence(finding)
@@ -266,7 +263,7 @@ class _PageBlocks:
                 from symobs.render.page.plot_captions import caption  # noqa: PLC0415 - only pages with pictures
 
                 title = joined((*self.figure_title(sentence), " "))
-                self.blocks.append(PictureBlock(picture, joined((*title, *caption(picture))), title))
+                self.blocks.append(PictureBlock(picture, joined((*title, *caption(picture, self.language))), title))
             case Case(when=when, steps=steps, sentence=sentence):
                 self.emit_case(when, steps, sentence)
             case Section() if _is_statement(step):
@@ -278,7 +275,7 @@ class _PageBlocks:
         is_numbered = self.numbered and title.key not in _UNNUMBERED
         self.numbers[-1] += is_numbered
         number = ".".join(str(part) for part in self.numbers) + "." if is_numbered else ""
-        heading = Heading(number, filled(title, self.convention))
+        heading = Heading(number, self.filled(title))
         self.blocks.append(heading)
         start = len(self.blocks)
         self.numbers.append(0)
@@ -303,12 +300,12 @@ class _PageBlocks:
                     cell.emit_step(step)
             rows.append(tuple(_punctuated(cell.blocks) for cell in cells))
         if rows:
-            yield Columns(tuple(filled(column.title, self.convention) for column in columns), tuple(rows))
+            yield Columns(tuple(self.filled(column.title) for column in columns), tuple(rows))
 
     def figure_title(self, sentence: Sentence | None) -> Inlines:
         """Return the number of the next figure, and what it shows."""
-        numbered = f"{PHRASES['figure']}\N{NO-BREAK SPACE}{next(self.figures)}."
-        return (numbered,) if sentence is None else joined((f"{numbered} ", *filled(sentence, self.convention)))
+        numbered = f"{self.language.phrases['figure']}\N{NO-BREAK SPACE}{next(self.figures)}."
+        return (numbered,) if sentence is None else joined((f"{numbered} ", *self.filled(sentence)))
 
     def emit_survey(self, step: Survey) -> None:
         """Emit the summary of a region, its parts one below the other."""
@@ -323,7 +320,7 @@ class _PageBlocks:
         inner = self.inside(numbered=False)
         inner.emit_sentence(sentence)
         inner.emit(steps)
-        label: list[Inline] = [f"{LABELS['case']} "]
+        label: list[Inline] = [f"{self.language.words['case']} "]
         for place, relation in enumerate(when.relations if isinstance(when, Conjunction) else (when,)):
             label += [", ", relation] if place else [relation]
         self.blocks.append(CaseBlock((*label, "."), _punctuated(inner.blocks)))
@@ -332,12 +329,16 @@ class _PageBlocks:
         """Emit a sentence, appended to a paragraph before it."""
         if sentence is None:
             return
-        inlines = with_reference(filled(sentence, self.convention), self.citations.get(RESTS_ON.get(sentence.key, "")))
+        inlines = with_reference(self.filled(sentence), self.citations.get(RESTS_ON.get(sentence.key, "")))
         goes_on = sentence.key not in OPENS
         if goes_on and self.blocks and isinstance(last := self.blocks[-1], Paragraph):
-            self.blocks[-1] = Paragraph(joined((*last.inlines, " ", *inlines)))
+            self.blocks[-1] = replace(last, inlines=joined((*last.inlines, " ", *inlines)))
         else:
-            self.blocks.append(Paragraph(inlines))
+            self.blocks.append(Paragraph(inlines, sentence.key in CONTINUES))
+
+    def filled(self, sentence: Sentence) -> Inlines:
+        """Return a sentence in the language and the convention of the page."""
+        return filled(sentence, self.convention, self.language)
 
     def emit_display(self, relations: tuple[Relation, ...], *, boxed: bool = False) -> None:
         """Emit a display, appended to an unfinished display before it; a box ends a display."""
@@ -360,12 +361,12 @@ def _is_condition(step: Given) -> bool:
     return all(relation.operators[0] == "!=" for relation in step.relations)
 
 
-def _title(document: Document) -> Title:
+def _title(document: Document, language: Language) -> Title:
     steps = [step for derivation in document.derivations for step in derivation.steps]
-    conventions = stated_conventions(letters_used(steps), document.convention, LABELS)
+    conventions = stated_conventions(letters_used(steps), document.convention, language.words)
     if not conventions:
         return Title(document.title, _as_sentence(document.source), ())
-    listed: list[Inline] = [f"{LABELS['conventions']} "]
+    listed: list[Inline] = [f"{language.words['conventions']} "]
     for convention in conventions:
         listed += [*convention, ", "]
     return Title(document.title, _as_sentence(document.source), joined((*listed[:-1], ".")))
@@ -379,17 +380,13 @@ def _as_sentence(text: str) -> str:
 def _punctuated(blocks: Sequence[Block]) -> tuple[Block, ...]:
     """Return the blocks with punctuation after every display without a box.
 
-    A comma where the sentence goes on in small letters after it, else a full stop.
+    A comma where the sentence goes on after it, else a full stop.
     """
     punctuated: list[Block] = []
     for block, following in zip_longest(blocks, blocks[1:]):
         if isinstance(block, Display) and not block.boxed:
-            goes_on = isinstance(following, Paragraph) and _starts_small(following.inlines)
+            goes_on = isinstance(following, Paragraph) and following.continues
             punctuated.append(replace(block, closing="," if goes_on else "."))
         else:
             punctuated.append(block)
     return tuple(punctuated)
-
-
-def _starts_small(inlines: Inlines) -> bool:
-    return bool(inlines) and isinstance(inlines[0], str) and inlines[0][:1].islower()

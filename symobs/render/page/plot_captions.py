@@ -5,10 +5,12 @@ from __future__ import annotations
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
+from symobs.convention import STANDARD
 from symobs.derivation import Sentence
 from symobs.exact import Matrix, Scalar
 from symobs.figures.plot import LinePicture, PoleMap, RegionPicture, TimeResponse
 from symobs.formula import Apply, At, Conjunction, Letter, Literal, Relation
+from symobs.phrases.languages import ENGLISH
 from symobs.render.page.prose import filled, joined
 
 if TYPE_CHECKING:
@@ -16,6 +18,7 @@ if TYPE_CHECKING:
 
     from symobs.figures.plot import Curve, Picture
     from symobs.formula import Fact, Formula
+    from symobs.phrases.languages import Language
     from symobs.render.page.blocks import Inline, Inlines
 
 #: With more equations than this, curves that are no boundary are left out.
@@ -23,7 +26,7 @@ _MOST_DIVIDERS = 4
 _UNSKETCHED = {"picture_samples", "picture_stable", "picture_unstable", "picture_dashed"}
 
 
-def caption(picture: Picture, *, sketched: bool = False) -> Inlines:
+def caption(picture: Picture, language: Language = ENGLISH, *, sketched: bool = False) -> Inlines:
     """Return the caption of a plot; plots in characters have neither samples nor dashes."""
     sentences = [said for said in _sentences(picture) if not (sketched and said.key in _UNSKETCHED)]
     if picture.drawn_for:
@@ -31,7 +34,8 @@ def caption(picture: Picture, *, sketched: bool = False) -> Inlines:
         sentences.append(caption_sentence("drawn_for", values=Conjunction(values)))
     words: list[Inline] = []
     for sentence in sentences:
-        words += [" ", *filled(sentence)] if words else filled(sentence)
+        words += [" "] if words else []
+        words += filled(sentence, STANDARD, language)
     return joined(words)
 
 

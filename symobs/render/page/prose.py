@@ -14,6 +14,7 @@ from symobs.convention import STANDARD, Convention
 from symobs.exact import Scalar
 from symobs.formula import (
     Conjunction,
+    Decimals,
     HoldsExactlyWhere,
     Letter,
     Literal,
@@ -27,40 +28,42 @@ from symobs.formula import (
     SymbolList,
     Transpose,
     Turned,
+    children,
 )
 from symobs.notation import LETTERS
-from symobs.phrases import PHRASES
+from symobs.phrases.languages import COUNTED, ENGLISH
+from symobs.phrases.spoken import SPOKEN
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
 
     from symobs.derivation import Sentence
     from symobs.formula import Fact, Formula
+    from symobs.phrases.languages import Language
+    from symobs.phrases.spoken import Counted, StateChoice
     from symobs.render.page.blocks import Inline, Inlines
 
 
 #: Where in a phrase the number of what it rests on stands, if not at its end.
 MARK = "§"
 
-#: Words of a phrase for one root in its slot, and for several: `the <mode|modes> {roots}`.
-_COUNTED = re.compile(r"<([^<|>]*)\|([^<|>]*)>")
 #: A pair of matrices in a phrase, `($C$, $A$)`, and the first members of those that are observable.
 _PAIR = re.compile(r"\((\$[^$]*\$), (\$[^$]*\$)\)")
 _OUTPUTS = {"$C$", "$A_12$", "$C_dual$"}
 
 
-def filled(sentence: Sentence, convention: Convention = STANDARD) -> Inlines:
-    """Return the phrase of a sentence with its slots filled, in the letters and signs of a convention."""
+def filled(sentence: Sentence, convention: Convention = STANDARD, language: Language = ENGLISH) -> Inlines:
+    """Return the phrase of a sentence in a language, its slots filled, in the letters and signs of a convention."""
     slots, turned = dict(sentence.slots), Turned(convention.turned)
     several = any(isinstance(slot, Roots) and len(slot.values) > 1 for slot in slots.values())
-    phrase = _COUNTED.sub(lambda words: words[2 if several else 1], PHRASES[sentence.key])
+    phrase = COUNTED.sub(lambda words: words[2 if several else 1], language.phrases[sentence.key])
     if not convention.is_standard:
         phrase = _PAIR.sub(lambda pair: _pair(pair[1], pair[2], convention), phrase)
     inlines: list[Inline] = []
     for text, name, _, _ in string.Formatter().parse(phrase):
         inlines += _prose(text, turned, convention.letters)
         if name is not None:
-            inlines += _shown(slots[name])
+            inlines += _shown(slots[name], language)
     return joined(inlines)
 
 
@@ -89,8 +92,11 @@ def joined(inlines: Iterable[Inline]) -> Inlines:
     return tuple(result)
 
 
-def _shown(slot: Formula | Fact | str) -> Iterator[Inline]:
+def _shown(slot: Formula | Fact | Counted | StateChoice | str, language: Language) -> Iterator[Inline]:
     """Yield the content of a slot: of a property its subject, of a region its inequalities."""
+    if isinstance(slot, SPOKEN):
+        yield language.put(slot)
+        return
     match slot:
         case Predicate(subject=subject):
             yield subject
@@ -98,13 +104,20 @@ def _shown(slot: Formula | Fact | str) -> Iterator[Inline]:
             yield value
         case SymbolList(names):
             for place, name in enumerate(names):
-                between = "" if not place else " and " if place + 1 == len(names) else ", "
+                between = "" if not place else language.words["and"] if place + 1 == len(names) else ", "
                 yield from (between, Literal(Scalar.symbol(name)))
         case HoldsExactlyWhere(where=where) | Conjunction(relations=where):
+            apart = "; " if language.has_comma and any(map(_has_decimals, where)) else ", "
             for place, relation in enumerate(where):
-                yield from (", ", relation) if place else (relation,)
+                yield from (apart, relation) if place else (relation,)
         case _:
             yield slot
+
+
+def _has_decimals(part: Formula | Relation) -> bool:
+    if isinstance(part, Decimals):
+        return True
+    return any(map(_has_decimals, part.members if isinstance(part, Relation) else children(part)))
 
 
 def _pair(first: str, second: str, convention: Convention) -> str:

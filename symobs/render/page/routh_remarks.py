@@ -4,26 +4,29 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from symobs.convention import STANDARD
 from symobs.derivation import Sentence
 from symobs.formula import Literal
+from symobs.phrases.languages import ENGLISH
 from symobs.render.page.prose import filled
 
 if TYPE_CHECKING:
+    from symobs.phrases.languages import Language
     from symobs.render.page.blocks import Inlines
     from symobs.stability.criteria.routh_table import RouthTable
 
 
-def remarks(table: RouthTable, variable: str) -> tuple[tuple[Inlines, ...], ...]:
+def remarks(table: RouthTable, variable: str, language: Language = ENGLISH) -> tuple[tuple[Inlines, ...], ...]:
     """Return the remarks beside each row of an array: none, or the replacement of zeros, in full and shorter."""
     found: list[tuple[Inlines, ...]] = []
     for row in table.rows:
         if row.origin == "epsilon":
             small = Literal(row.entries[0])
-            found.append((filled(Sentence("routh_row_epsilon", (("epsilon", small),))),))
+            found.append((filled(Sentence("routh_row_epsilon", (("epsilon", small),)), STANDARD, language),))
         elif row.origin == "auxiliary":
             polynomial = Literal(table.auxiliary(row, variable))
-            full = filled(Sentence("routh_row_auxiliary", (("auxiliary", polynomial),)))
-            found.append((full, filled(Sentence("routh_row_derivative"))))
+            full = filled(Sentence("routh_row_auxiliary", (("auxiliary", polynomial),)), STANDARD, language)
+            found.append((full, filled(Sentence("routh_row_derivative"), STANDARD, language)))
         else:
             found.append(())
     return tuple(found)

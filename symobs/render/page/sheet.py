@@ -11,11 +11,11 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 from symobs._dataclass import dataclass
-from symobs.phrases import PHRASES
+from symobs.phrases.languages import Language, language_named
 from symobs.result.web_page import PLAIN, WebPage
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping, Sequence
+    from collections.abc import Iterator, Sequence
     from pathlib import Path
 
 #: A sheet of more problems than this begins with a table of contents.
@@ -25,9 +25,9 @@ _COLUMNS = 10
 _PREFIX = "sheet_"
 
 
-def sheet_words() -> dict[str, str]:
+def sheet_words(language: Language) -> dict[str, str]:
     """Return the fixed words of a sheet, by the keys of their phrases without the prefix: all come from here."""
-    return {key.removeprefix(_PREFIX): words for key, words in PHRASES.items() if key.startswith(_PREFIX)}
+    return {key.removeprefix(_PREFIX): words for key, words in language.phrases.items() if key.startswith(_PREFIX)}
 
 
 def decimal_of(points: Fraction) -> str:
@@ -36,10 +36,10 @@ def decimal_of(points: Fraction) -> str:
     return f"{whole}.{rest:02}".rstrip("0").rstrip(".")
 
 
-def points_in_words(points: Sequence[Fraction], words: Mapping[str, str]) -> str:
+def points_in_words(points: Sequence[Fraction], language: Language) -> str:
     """Return the sum of some points, `1 point` or `7.5 points`; nothing where there are none."""
-    total = sum(points, Fraction(0))
-    return f"{decimal_of(total)} {words['point' if total == 1 else 'points']}" if points else ""
+    total, words = sum(points, Fraction(0)), sheet_words(language)
+    return f"{language.decimal(decimal_of(total))} {words['point' if total == 1 else 'points']}" if points else ""
 
 
 @dataclass(frozen=True)
@@ -84,6 +84,8 @@ class SheetEntry:
     hint: str = ""
     #: The answers alone, for the end of the sheet.
     answer: Any = None
+    #: The code of the language of its parts.
+    language: str = ""
 
 
 @dataclass(frozen=True)
@@ -128,6 +130,12 @@ class Sheet:
     detail: str = "full"
 
     @property
+    def language(self) -> str:
+        """The language of the sheet's own words: that of all its problems, English where they differ."""
+        found = {entry.language for entry in self.entries if entry.language}
+        return found.pop() if len(found) == 1 else "en"
+
+    @property
     def is_long(self) -> bool:
         """Whether the sheet has a table of contents."""
         return len(self.entries) > WITHOUT_CONTENTS and not self.header.is_exam
@@ -135,7 +143,11 @@ class Sheet:
     @cached_property
     def words(self) -> dict[str, str]:
         """The fixed words of the sheet."""
-        return sheet_words()
+        return sheet_words(self._language)
+
+    @property
+    def _language(self) -> Language:
+        return language_named(self.language)
 
     @property
     def heading(self) -> str:
@@ -165,9 +177,12 @@ class Sheet:
         """The tables of points, each as its rows: numbers, points, and on a sheet that is handed out empty scores."""
         if not self.has_questions or not any(entry.points for entry in self.entries):
             return ()
-        cells = [(str(entry.number), decimal_of(sum(entry.points, Fraction(0)))) for entry in self.entries]
+        cells = [
+            (str(entry.number), self._language.decimal(decimal_of(sum(entry.points, Fraction(0)))))
+            for entry in self.entries
+        ]
         total = sum((point for entry in self.entries for point in entry.points), Fraction(0))
-        cells.append((self.words["total"], decimal_of(total)))
+        cells.append((self.words["total"], self._language.decimal(decimal_of(total))))
         tables = []
         for some in (cells[start : start + _COLUMNS] for start in range(0, len(cells), _COLUMNS)):
             numbers, points = zip(*some, strict=True)
@@ -198,7 +213,7 @@ class Sheet:
         for entry in self.entries:
             part = entry.question if kind == "questions" else entry.solution
             label = f"{self.words['one_solution']} {entry.number}" if is_below else f"{entry.number}."
-            points = "" if is_below else points_in_words(entry.points, self.words)
+            points = "" if is_below else points_in_words(entry.points, self._language)
             yield Item(kind, entry, label, "" if is_below else entry.title, part, "" if part else entry.failure, points)
 
     def _hints(self) -> tuple[Item, ...]:

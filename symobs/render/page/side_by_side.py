@@ -6,7 +6,7 @@ from itertools import zip_longest
 from typing import TYPE_CHECKING, TypeGuard
 
 from symobs.derivation import Section
-from symobs.phrases import BESIDE, PHRASES
+from symobs.phrases import BESIDE, CONTINUES
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -42,4 +42,4 @@ def row_by_row(section: Section) -> list[Step]:
 
 def _begins(step: Step) -> bool:
     sentence: Sentence | None = getattr(step, "sentence", None)
-    return sentence is not None and not PHRASES[sentence.key][:1].islower()
+    return sentence is not None and sentence.key not in CONTINUES

@@ -283,7 +283,7 @@ class LatexPrinter(Printer[LatexBox]):
 
     def digits(self, run: str) -> LatexBox:
         """Return a part of a number."""
-        return LatexBox(len(run) * widths.DIGIT, Level.ATOM, run)
+        return LatexBox(len(run) * widths.DIGIT, Level.ATOM, run.replace(",", "{,}"))
 
     def continued(self) -> LatexBox:
         """Return a hooked arrow."""

@@ -37,6 +37,7 @@ from symobs.formula import (
     with_children,
 )
 from symobs.notation import FUNCTIONS, LETTERS, TIMED, is_of_time, shows_time, symbol_latex, symbol_text
+from symobs.phrases.languages import ENGLISH
 from symobs.render.printers.glyphs import B, FormulaWriter, Level
 from symobs.render.printers.rational_formula import is_leaf
 from symobs.render.printers.scalar_formula import formula_of, formula_of_matrix, is_table, is_unit, partitioned
@@ -46,6 +47,7 @@ if TYPE_CHECKING:
 
     from symobs.exact.core.generators import Function
     from symobs.notation import LetterForm
+    from symobs.phrases.languages import Language
 
 #: Letters that are functions of time; in discrete time they carry the index k.
 SIGNALS = frozenset(
@@ -89,6 +91,7 @@ class Printer(FormulaWriter[B]):
         self.variable = variable
         self.symbols = dict(symbols or {})
         self.letters: Mapping[str, LetterForm] = LETTERS
+        self.language: Language = ENGLISH
         self.discrete = discrete
         self.known: dict[Scalar, B] = {}
 
@@ -119,6 +122,8 @@ class Printer(FormulaWriter[B]):
 
     def function_latex(self, name: str) -> str:
         """Return the LaTeX of a function's name."""
+        if name == "rank":
+            return rf"\operatorname{{{self.language.words['rank']}}}"
         known = self.letters[name].latex if name in self.letters else FUNCTIONS.get(name, ("",))[0]
         return known or rf"\operatorname{{{name.replace('_', ' ')}}}"
 
@@ -196,7 +201,7 @@ class Printer(FormulaWriter[B]):
         return box
 
     def decimals(self, value: Scalar) -> B:
-        """Return a number with its digits after the point."""
+        """Return a number with its digits after the decimal mark of the language."""
         box = self.numeral(decimal_digits(value))
         is_negative = value.fraction() < 0
         return self.joined([self.sign(negative=True, leading=True), box], Level.SUM) if is_negative else box
@@ -204,6 +209,7 @@ class Printer(FormulaWriter[B]):
     def numeral(self, text: str) -> B:
         """Return decimals, 1.2346e-7 with its power of ten."""
         digits, _, power = text.partition("e")
+        digits = self.language.decimal(digits)
         if not power:
             return self.digits(digits)
         ten = self.raised(self.digits("10"), int(power))
@@ -218,7 +224,8 @@ class Printer(FormulaWriter[B]):
         if isinstance(function, RealRoot) and function.radicand is not None:
             return self.root(self.scalar(function.radicand), function.number.degree)
         if isinstance(function, RealRoot):
-            return self.named(rf"{function.number.truncated()}\ldots")
+            digits = self.language.decimal(str(function.number.truncated())).replace(",", "{,}")
+            return self.named(rf"{digits}\ldots")
         if isinstance(function, RootSum):
             q, below = (self.typeset(formula_of(part, EIGENVALUE)) for part in (function.polynomial, function.slope))
             over = self.joined([q, self.comparison("="), self.scalar(Scalar.of(0))], Level.SUM)

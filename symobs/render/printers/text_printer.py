@@ -63,7 +63,7 @@ class TextPrinter(Printer[TextBox]):
     def of(cls, other: Printer[Any], *, width: int = 96, flat: bool = False) -> Self:
         """Return a printer with the letters of another one."""
         printer = cls(other.variable, other.symbols, discrete=other.discrete, width=width, flat=flat)
-        printer.letters = other.letters
+        printer.letters, printer.language = other.letters, other.language
         return printer
 
     def inline(self, item: Formula | Relation) -> str:
@@ -172,7 +172,7 @@ class TextPrinter(Printer[TextBox]):
     def applied(self, function: str, argument: TextBox) -> TextBox:
         """Return a function's name and its argument."""
         known = self.letters[function].text if function in self.letters else FUNCTIONS.get(function, ("", ""))[1]
-        name = known or function.replace("_", " ")
+        name = self.language.words["rank"] if function == "rank" else known or function.replace("_", " ")
         if self.flat and function in {"sin", "cos", "sinh", "cosh"} and argument.line[0] not in "([":
             argument = self.grouped(argument)
         space = "" if argument.line[0] in "([" or len(argument.lines) > 1 else " "
@@ -224,7 +224,7 @@ class TextPrinter(Printer[TextBox]):
     def named(self, form: str) -> TextBox:
         """Return the letter: a Greek one by its glyph."""
         if form.endswith(r"\ldots"):
-            return text_box(form.replace(r"\ldots", "…"))
+            return text_box(form.replace(r"\ldots", "…").replace("{,}", ","))
         return text_box(symbol_text(form.lstrip("\\").replace("{", "").replace("}", "")))
 
     def evaluated(self, box: TextBox, equations: Sequence[TextBox]) -> TextBox:

@@ -43,3 +43,10 @@ EXPLAINS = (
     "routh_epsilon",
     "routh_zero_row",
 )
+
+#: Phrases that go on with the sentence before them.
+CONTINUES = (
+    "routh_row_auxiliary",
+    "routh_row_derivative",
+    "routh_where",
+)

@@ -19,6 +19,7 @@ from symobs.exact import Scalar
 from symobs.exact.core.generators import function_named
 from symobs.figures.plot import LinePicture, PoleMap, RegionPicture
 from symobs.formula import Literal, Relation
+from symobs.phrases.languages import ENGLISH
 from tests.support.independent_algebra.plain import (
     characteristic,
     coefficients_at,
@@ -149,7 +150,7 @@ def is_so(
                 stable(dict(zip(pair, other, strict=True))) for other in around
             )
         case "number_is_root":
-            return _is_root(slots["number"], slots["which"], slots["equation"])
+            return _is_root(slots["number"], ENGLISH.put(slots["which"]), slots["equation"])
     return True
 
 

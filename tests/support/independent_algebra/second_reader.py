@@ -45,6 +45,8 @@ from symobs.formula import (
     SymbolList,
     Transpose,
 )
+from symobs.phrases.languages import ENGLISH
+from symobs.phrases.spoken import SPOKEN, Counted
 from tests.support.independent_algebra.routh_by_hand import is_so, rows_of
 from tests.support.problems.problems_by_hand import compare, inverse, is_stable, is_zero, polynomial_at
 
@@ -236,6 +238,8 @@ class Reader:
                 return Reader.said(left, names), operator, Reader.said(right, names)
             case Literal(Scalar() as value):
                 return sympy_scalar(value, names)
+            case Counted():
+                return ENGLISH.put(slot)
         return slot
 
     def sentence(self, sentence: Sentence | None) -> None:
@@ -246,7 +250,7 @@ class Reader:
                 self.fact(slot)
             elif isinstance(slot, Shown):
                 self.fact(Relation((slot.formula, slot.value), ("=",)))
-            elif not isinstance(slot, (str, SymbolList)):
+            elif not isinstance(slot, (str, SymbolList, *SPOKEN)):
                 self.tally.spoken.append((f"{sentence.key}.{name}", self.value(slot)))
 
     def case(self, when: Relation | Conjunction, substitution: Mapping[str, Any], steps: tuple[Step, ...]) -> None:

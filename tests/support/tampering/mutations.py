@@ -30,6 +30,7 @@ from symobs.formula import (
     Transpose,
 )
 from symobs.phrases import slots_of
+from symobs.phrases.spoken import SPOKEN, Counted
 from symobs.stability.criteria.routh_table import ORIGINS, RouthRow, RouthTable
 from symobs.stability.regions.short_list import RegionInequality
 
@@ -87,13 +88,8 @@ _COUNTING = {
 }
 #: Sentences that say of a value only that nothing is decided where it vanishes.
 _UNDECIDED = {"undecided_case", "undecided_together", "undecided_many"}
-#: Words that count something: another of the same row says another number.
-_NUMBERS = (
-    ("none", "one", "two", "three", "four", "all"),
-    ("once", "twice"),
-    ("first", "second", "third", "only"),
-    ("nine", "twelve", "eleven"),
-)
+#: What else may be said to be counted.
+_OTHER_THINGS = {"only_real_root": "real_root", "real_root": "only_real_root"}
 #: Sentences that say more with the same slots; what says less is as true.
 _MORE_WORDS = {
     "compensator_unstable": "compensator_unstable_alone",
@@ -173,7 +169,7 @@ def changes(item: Any) -> Iterator[Change]:
     elif isinstance(item, NODES):
         yield from _of_formula(item)
         yield from _of_parts(item)
-    elif is_dataclass(item):
+    elif is_dataclass(item) and not isinstance(item, SPOKEN):
         yield from _of_parts(item)
 
 
@@ -184,15 +180,16 @@ def _of_parts(item: Any) -> Iterator[Change]:
 
 
 def _of_counts(sentence: Sentence) -> Iterator[Change]:
-    """Yield a sentence with another number in one of its words."""
+    """Yield a sentence with another number in its words: one more, one less, all, the only one."""
     for index, (name, slot) in enumerate(sentence.slots):
-        words = slot.split() if isinstance(slot, str) else []
-        for place, word in enumerate(words):
-            for numbers in _NUMBERS:
-                for other in [n for n in numbers if word in numbers and n != word][:2]:
-                    said = " ".join([*words[:place], other, *words[place + 1 :]])
-                    slots = (*sentence.slots[:index], (name, said), *sentence.slots[index + 1 :])
-                    yield Change(f".slots[{name}] {other}", "words", replace(sentence, slots=slots))
+        if not isinstance(slot, Counted):
+            continue
+        others = [replace(slot, count=count) for count in (slot.count + 1, slot.count - 1, slot.among) if count >= 0]
+        others += [replace(slot, thing=_OTHER_THINGS[slot.thing])] if slot.thing in _OTHER_THINGS else []
+        for other in others:
+            if other != slot:
+                slots = (*sentence.slots[:index], (name, other), *sentence.slots[index + 1 :])
+                yield Change(f".slots[{name}] {other}", "words", replace(sentence, slots=slots))
 
 
 def _of_drawn(item: Curve | MarkedPoint | PoleMap) -> Iterator[Change]:

@@ -21,6 +21,8 @@ from symobs.exact import Scalar
 from symobs.exact.core.generators import square_root
 from symobs.formula import Environment, Letter, Literal, Relation
 from symobs.formula.plain_text import plain_relation
+from symobs.phrases.languages import ENGLISH
+from symobs.phrases.spoken import Counted
 from symobs.stability.regions.interval_region import LineRegion
 from symobs.stability.regions.plane_region import PlaneRegion
 from tests.support.problems.steps import said
@@ -40,6 +42,8 @@ def written(slot: object) -> str:
     return (
         str(slot.value)
         if isinstance(slot, Literal)
+        else ENGLISH.put(slot)
+        if isinstance(slot, Counted)
         else plain_relation(slot, "s")
         if isinstance(slot, Relation)
         else str(slot)

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
+import symobs
 from symobs.derivation import Define, Derivation, Diagram, Equal, Note
 from symobs.exact import Scalar
 from symobs.exact.algebraic.polynomial_roots import roots_of
@@ -110,9 +111,8 @@ def test_every_letter_kept_is_typeset(faults: Callable[[str], list[str]]) -> Non
     shown = [chr(code) for code in range(0xA1, 0x2300) if escape(chr(code)) not in {"", "?"}]
     words = "\n".join(escape(character) for character in [*characters, *shown])
     for style in ("", r"\bfseries "):
-        source = fill(
-            "article.tex", {"title": "", "source": "", "conventions": "", "body": style + words, "drawings": False}
-        )
+        values = {"title": "", "source": "", "conventions": "", "body": style + words, "drawings": False, "babel": ""}
+        source = fill("article.tex", values)
         assert faults(source) == []
 
 
@@ -125,6 +125,14 @@ def test_letters_are_normal() -> None:
 
 def test_the_page_to_aim_at_is_typeset_without_a_fault(faults: Callable[[str], list[str]]) -> None:
     assert faults(LatexArticle().render(example.target_document())) == []
+
+
+def test_a_page_in_another_language_is_typeset_without_a_fault(faults: Callable[[str], list[str]]) -> None:
+    """With the hyphenation of the language or, where TeX has none, without any."""
+    plant = symobs.StateSpace("[0 1; 0 -1]", "[0; 1]", "[1 0]")
+    source = symobs.compensator(plant, control_poles=[-2, -2], observer_poles=[-10, -10]).to_latex(language="de")
+    assert "ngerman" in source
+    assert faults(source) == []
 
 
 def test_a_case_is_set_in_and_typeset(faults: Callable[[str], list[str]]) -> None:

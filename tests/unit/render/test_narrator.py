@@ -11,8 +11,9 @@ from symobs.derivation import Conclude, Define, Derivation, Equal, Given, Note, 
 from symobs.errors import DerivationRejected, ProblemErrors
 from symobs.exact import Matrix, Scalar
 from symobs.formula import Environment, HoldsExactlyWhere, Letter, Literal, Predicate, Relation, Transpose
-from symobs.phrases import PHRASES
+from symobs.phrases import CONTINUES, PHRASES, WORDS
 from symobs.problem.validation import validate
+from symobs.render.page import narrator
 from symobs.render.page.blocks import (
     Block,
     CaseBlock,
@@ -25,7 +26,7 @@ from symobs.render.page.blocks import (
     Verified,
     every,
 )
-from symobs.render.page.narrator import LABELS, narrate
+from symobs.render.page.narrator import narrate
 from symobs.render.page.prose import filled, with_reference
 from symobs.result import render
 from tests.support.problems import render_examples as example
@@ -48,6 +49,7 @@ def _phrases(monkeypatch: pytest.MonkeyPatch) -> None:
     }
     for key, phrase in phrases.items():
         monkeypatch.setitem(PHRASES, key, phrase)
+    monkeypatch.setattr(narrator, "CONTINUES", CONTINUES | {"test_small", "test_about"})
 
 
 def derivation(*steps: Step) -> Derivation:
@@ -75,7 +77,7 @@ def test_the_page_to_aim_at_block_by_block() -> None:
 
 
 def test_every_word_comes_from_a_phrase_or_a_label() -> None:
-    words = " ".join([*PHRASES.values(), *LABELS.values()])
+    words = " ".join([*PHRASES.values(), *WORDS.values()])
     for block in every(narrate(example.target_document())[1:]):
         for inline in getattr(block, "inlines", ()):
             for word in inline.split() if isinstance(inline, str) else ():
@@ -124,7 +126,7 @@ def test_what_is_given_comes_first() -> None:
     assert blocks[:3] == (
         Heading("", ("Given.",)),
         Display((A_IS_ONE,), closing=","),
-        Paragraph(("with ", A, " as it is.")),
+        Paragraph(("with ", A, " as it is."), continues=True),
     )
     assert blocks[3] == Heading("1.", ("A title.",))
 
@@ -165,7 +167,7 @@ def test_a_condition_keeps_its_place() -> None:
     condition = Relation((b, number(0)), ("!=",))
     assert told(Equal((ONE,)), Given((condition,))) == (Display((ONE, condition), closing="."),)
     said = Sentence("test_about", (("A", condition),))
-    assert told(Given((condition,), said)) == (Paragraph(("with ", condition, " as it is.")),)
+    assert told(Given((condition,), said)) == (Paragraph(("with ", condition, " as it is."), continues=True),)
 
 
 def test_sections_are_numbered_through_the_page_and_nest() -> None:
@@ -184,7 +186,7 @@ def test_sections_are_numbered_through_the_page_and_nest() -> None:
 def test_a_case_says_when_it_holds_and_keeps_its_own_data() -> None:
     block = narrate(document(example.with_a_case()))[-1]
     assert isinstance(block, CaseBlock)
-    assert block.label[0] == f"{LABELS['case']} "
+    assert block.label[0] == f"{WORDS['case']} "
     assert block.blocks == (
         Paragraph((PHRASES["test_case"],)),
         Display((equals(C, values((1, 0))),), closing="."),
@@ -212,7 +214,7 @@ def test_the_source_is_a_sentence(source: str, shown: str) -> None:
 def test_a_slot_that_is_a_predicate_shows_its_subject() -> None:
     known = Define(Relation((A, number(1)), ("=",)), silent=True)
     fact = Sentence("test_about", (("A", Predicate("never_zero", A)),))
-    assert told(known, Conclude(fact)) == (Paragraph(("with ", A, " as it is.")),)
+    assert told(known, Conclude(fact)) == (Paragraph(("with ", A, " as it is."), continues=True),)
 
 
 def test_a_slot_that_is_a_region_shows_its_inequalities() -> None:

@@ -20,6 +20,7 @@ from symobs.exact import Scalar
 from symobs.figures.plot import Curve, End, LinePicture, MarkedPoint, RegionPicture
 from symobs.formula import Environment, Letter, Relation, Roots
 from symobs.phrases import PHRASES
+from symobs.phrases.languages import ENGLISH
 from symobs.render.drawings.captions import below, words_of
 from symobs.render.drawings.clipping import chained, clipped, clipped_area, thinned
 from symobs.render.drawings.matplotlib_writer import drawn_by_matplotlib
@@ -125,7 +126,7 @@ def test_many_curves_carry_numbers() -> None:
     crowded = RegionPicture(("h1", "h2"), window, (tuple(corners),), curves)
     scene = tikz_scene(crowded, LatexPrinter())
     assert len(scene.numbered) >= 5
-    told = [part for part in below(caption(crowded), scene) if isinstance(part, str)]
+    told = [part for part in below(caption(crowded), scene, ENGLISH) if isinstance(part, str)]
     assert any(part.endswith(f"{PHRASES['picture_curves']} (1) ") for part in told)
 
 
@@ -373,6 +374,6 @@ def test_marks_and_ends_may_be_anything_that_is_allowed() -> None:
 def test_open_ends_are_drawn_from_left_to_right() -> None:
     ends = [End(Fraction(k * k, 7), Scalar.of(k)) for k in range(12)]  # a set of these is in another order
     picture = LinePicture("k", (Fraction(-1), Fraction(18)), tuple(pairwise(ends)))
-    places = [sign.place[0] for sign in plot_scene(picture, lambda _: (4.0, 4.0)).signs if sign.kind == "ring"]
+    places = [sign.place[0] for sign in plot_scene(picture, lambda _: (4.0, 4.0), ENGLISH).signs if sign.kind == "ring"]
     assert list(set(places)) != sorted(places)
     assert places == sorted(places)

@@ -12,7 +12,8 @@ from symobs.derivation import Case, Define, Derivation, Sentence, Tabulate
 from symobs.derivation.routh_check import findings_of
 from symobs.exact import Scalar, from_coefficients
 from symobs.formula import Environment, Exact, Letter, Literal, evaluate
-from symobs.phrases.english.counting import changes_sign, roots_lie
+from symobs.phrases.languages import ENGLISH
+from symobs.phrases.spoken import Counted
 from symobs.render.formats.latex import LatexArticle, LatexFragment
 from symobs.render.formats.text import Text
 from symobs.render.page.blocks import Paragraph, TableBlock
@@ -224,9 +225,9 @@ def test_the_page_says_what_the_table_says_and_names_the_theorem() -> None:
 
 
 def test_numbers_in_words() -> None:
-    assert [changes_sign(k) for k in range(len(TIMES))] == TIMES
-    assert [roots_lie(k) for k in range(len(LIE))] == LIE
-    assert roots_lie(13) == "13 roots lie"
+    assert [ENGLISH.put(Counted("sign_changes", k)) for k in range(len(TIMES))] == TIMES
+    assert [ENGLISH.put(Counted("root_lies", k)) for k in range(len(LIE))] == LIE
+    assert ENGLISH.put(Counted("root_lies", 13)) == "13 roots lie"
 
 
 def test_latex_and_terminal_choose_by_their_own_width() -> None:

@@ -20,9 +20,11 @@ from symobs.derivation import Case, Define, Derivation, Sentence, Tabulate
 from symobs.derivation.builder import Page
 from symobs.derivation.routh_check import findings_of, last_determinant
 from symobs.exact import Scalar, from_coefficients
-from symobs.formula import Environment, Letter, Relation, Sum
+from symobs.formula import Environment, Letter, Sum
 from symobs.formula.plain_text import plain_relation
 from symobs.phrases import PHRASES, RESTS_ON, THEOREMS
+from symobs.phrases.languages import ENGLISH
+from symobs.phrases.spoken import Counted
 from symobs.stability.criteria.cauchy_index import imaginary_axis_roots, right_half_plane_roots
 from symobs.stability.criteria.routh_table import RouthRow, RouthTable, is_routh_table, routh_table, sign_changes
 from symobs.stability.criteria.stability import hurwitz_matrix
@@ -437,18 +439,30 @@ def test_what_is_said_is_among_the_findings() -> None:
     lies = (
         Sentence("routh_positive"),
         Sentence("routh_criterion_positive"),
-        Sentence("routh_changes", (("changes", "changes sign once"), ("right", "one root lies"))),
+        Sentence("routh_changes", (("changes", Counted("sign_changes", 1)), ("right", Counted("root_lies", 1)))),
         Sentence(
             "routh_changes_axis",
-            (("changes", "changes sign twice"), ("right", "one root lies"), ("axis", "two roots lie")),
+            (
+                ("changes", Counted("sign_changes", 2)),
+                ("right", Counted("root_lies", 1)),
+                ("axis", Counted("root_lies", 2)),
+            ),
         ),
         Sentence(
             "routh_changes_axis",
-            (("changes", "changes sign once"), ("right", "two roots lie"), ("axis", "two roots lie")),
+            (
+                ("changes", Counted("sign_changes", 1)),
+                ("right", Counted("root_lies", 2)),
+                ("axis", Counted("root_lies", 2)),
+            ),
         ),
         Sentence(
             "routh_changes_axis",
-            (("changes", "changes sign once"), ("right", "one root lies"), ("axis", "one root lies")),
+            (
+                ("changes", Counted("sign_changes", 1)),
+                ("right", Counted("root_lies", 1)),
+                ("axis", Counted("root_lies", 1)),
+            ),
         ),
         Sentence("routh_divides", (("auxiliary", literal(2 * s**4 + 48 * s**2 + 50)),)),
         Sentence("routh_epsilon", (("epsilon", said(small, ">", 0)),)),
@@ -546,7 +560,8 @@ def test_what_is_said_of_numbers_of_roots_and_of_the_leading_coefficient() -> No
     def told(coefficients: Sequence[Any]) -> list[str]:
         numbers = whole(coefficients)
         *_, last = findings_of(routh_table(numbers), numbers, "s", {})
-        return [plain_relation(slot, "s") if isinstance(slot, Relation) else str(slot) for _, slot in last.slots]
+        slots = [slot for _, slot in last.slots]
+        return [ENGLISH.put(slot) if isinstance(slot, Counted) else plain_relation(slot, "s") for slot in slots]  # type: ignore[arg-type]
 
     assert told([1, 2, 3, 4, 5]) == ["changes sign twice", "two roots lie"]
     assert told([1, 0, 1]) == ["does not change sign", "no root lies", "two roots lie"]

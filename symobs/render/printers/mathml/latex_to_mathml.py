@@ -17,7 +17,7 @@ from symobs._dataclass import dataclass
 from symobs.notation import GREEK, symbol_text
 from symobs.render.printers.mathml.mathml_elements import APPLY, CLOSING, OPENING, THIN, row, text
 
-_PIECE = re.compile(r"\\[A-Za-z]+|\\.|\d+(?:\.\d+)?|.", re.DOTALL)
+_PIECE = re.compile(r"\\[A-Za-z]+|\\.|\d+(?:(?:\.|\{,\})\d+)?|.", re.DOTALL)
 _LETTERS = {name: symbol_text(name) for name in GREEK} | {
     "varepsilon": "ε",
     "epsilon": "\N{GREEK LUNATE EPSILON SYMBOL}",
@@ -211,6 +211,7 @@ class _Reader:
 
 
 def _plain(piece: str) -> str:
+    piece = piece.replace("{,}", ",")
     if piece[:1].isdigit():
         return f"<mn>{piece}</mn>"
     if len(piece) == 1 and piece.isalpha():
