@@ -14,19 +14,17 @@ from typing import TYPE_CHECKING, Any, ClassVar, Literal, NamedTuple, NoReturn, 
 from symobs._dataclass import dataclass
 from symobs.certificate.claims import UNREADABLE, Certificate, Claim, Statement, check_all
 from symobs.conditions import Condition, vanishing_factors
-from symobs.convention import STANDARD, Convention, convention_named
-from symobs.derivation import translated
+from symobs.convention import convention_named
 from symobs.derivation.builder import Page
 from symobs.errors import CertificateRejected, DerivationRejected
 from symobs.exact.linear_algebra.realisation import Realisation
 from symobs.result.conversions import Faces
 from symobs.result.digits_of_page import digits_asked
-from symobs.result.web_page import PLAIN, WebPage
+from symobs.result.document import Document
 from symobs.result.writers import render, writer_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
-    from pathlib import Path
 
     from symobs.derivation import Derivation
     from symobs.exact import Matrix, Scalar
@@ -395,34 +393,3 @@ def _made_of(kind: type[Result], *, compared: bool = False) -> tuple[str, ...]:
 def _denominators(values: Iterable[Any]) -> list[Scalar]:
     """Return the denominators of scalars and matrices."""
     return [value.common_denominator() for value in values if hasattr(value, "common_denominator")]
-
-
-@dataclass(frozen=True)
-class Document:
-    """What a format renders: a title, its source, results, the problem in words, and how all is told and set."""
-
-    title: str
-    source: str
-    results: tuple[Result, ...]
-    convention: Convention = STANDARD
-    text: str = ""
-    detail: str = field(default="full", kw_only=True)
-    #: The code of the language of the page.
-    language: str = field(default="en", kw_only=True)
-    templates: Path | None = field(default=None, kw_only=True)
-    #: For a format that is a program: the sampling period, and how the input is held.
-    period: object = field(default=None, kw_only=True)
-    hold: str = field(default="zoh", kw_only=True)
-    #: The answers that are printed alone, by name; none means the whole document.
-    printed: tuple[str, ...] = field(default=(), kw_only=True)
-    #: The significant digits of the numbers on a page: 0 writes them exactly, None does as the data are typed.
-    digits: int | None = field(default=None, kw_only=True)
-    #: What a sheet adds to each part of a question: its points, in words, and the room for an answer.
-    handout: tuple[Any, ...] = field(default=(), kw_only=True)
-    #: What a page of HTML offers besides its text.
-    web: WebPage = field(default=PLAIN, kw_only=True)
-
-    @cached_property
-    def derivations(self) -> tuple[Derivation, ...]:
-        """The checked derivations of the results, in the signs of the convention."""
-        return tuple(translated(result.derivation, self.convention) for result in self.results)

@@ -85,7 +85,7 @@ class Html:
     def render(self, document: Document) -> str:
         """Return the document as a page."""
         title, blocks = opened(narrate(document))
-        offered = (live_link(document.web), switch(document.web, document.detail))
+        offered = (live_link(document.web, document.language), switch(document.web, document.detail, document.language))
         pieces = (_writer(document).block(title), *offered, _told(document, blocks))
         return page(title.text, "\n".join(filter(None, pieces)), document.web, language=document.language)
 
@@ -94,12 +94,12 @@ class Html:
         title, blocks = opened(narrate(document))
         head = _writer(document, level=3).block(replace(title, text=""))
         told = _told(document, blocks, prefix=_SOMEWHERE, level=3)
-        return "\n".join(filter(None, (head, live_link(document.web), told)))
+        return "\n".join(filter(None, (head, live_link(document.web, document.language), told)))
 
     def sheet(self, sheet: Sheet) -> str:
         """Return the sheet as one page, its contents linked to questions and solutions."""
         pieces = list(_head(sheet))
-        pieces += [switch(sheet.web, sheet.detail)] if sheet.web.details and sheet.has_solutions else []
+        pieces += [switch(sheet.web, sheet.detail, sheet.language)] if sheet.web.details and sheet.has_solutions else []
         pieces += [_contents(sheet)] if sheet.is_long else []
         for chapter in sheet.chapters():
             pieces += [f'<h2 class="chapter" id="{chapter.name}">{chapter.title}</h2>'] if chapter.title else []
@@ -110,7 +110,11 @@ class Html:
                 pieces.append(f'<h3 class="{kind}" id="{item.place}">{heading}</h3>')
                 body = item.part or f"<p>{plain(item.text)}</p>"
                 told = body.replace(_SOMEWHERE, f"{item.place}-")
-                pieces.append(folded(told) if item.part and sheet.web.details and item.kind == "solutions" else told)
+                pieces.append(
+                    folded(told, sheet.language)
+                    if item.part and sheet.web.details and item.kind == "solutions"
+                    else told
+                )
         return page(
             sheet.heading,
             "\n".join(pieces),
@@ -192,7 +196,7 @@ def page(title: str, body: str, web: WebPage = PLAIN, *, language: str = "en", h
     Pictures are allowed as data alone, where there is one.
     """
     skeleton = Template((_FOLDER / "html_page.html").read_text(encoding="utf-8"))
-    script, policy = script_of(web)
+    script, policy = script_of(web, language)
     policy += "; img-src data:" if has_picture else ""
     whole = {"style": style() + style_of(web), "body": body, "script": script, "policy": policy, "language": language}
     return skeleton.substitute(title=plain(title) or "symobs", **whole)

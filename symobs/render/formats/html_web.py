@@ -12,7 +12,7 @@ from html import escape
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from symobs.phrases import PHRASES
+from symobs.phrases.languages import language_named
 from symobs.render.page.detail_level import DETAILS
 
 if TYPE_CHECKING:
@@ -28,27 +28,28 @@ def style_of(web: WebPage) -> str:
     return (_FOLDER / "html_web.css").read_text(encoding="utf-8") if web.details or web.copy or web.live else ""
 
 
-def script_of(web: WebPage) -> tuple[str, str]:
+def script_of(web: WebPage, language: str) -> tuple[str, str]:
     """Return the script with its words, as elements, and the policy that allows it and no other."""
     if not web.copy:
         return "", ""
     text = (_FOLDER / "html_copy.js").read_text(encoding="utf-8")
     mark = base64.b64encode(hashlib.sha256(text.encode()).digest()).decode()
-    words = " ".join(f'data-{word}="{escape(PHRASES[f"web_{word}"])}"' for word in ("copy", "copied", "refused"))
+    phrases = language_named(language).phrases
+    words = " ".join(f'data-{word}="{escape(phrases[f"web_{word}"])}"' for word in ("copy", "copied", "refused"))
     return f'<div hidden="" id="words" {words}></div>\n<script>{text}</script>\n', f"; script-src 'sha256-{mark}'"
 
 
-def switch(web: WebPage, chosen: str) -> str:
+def switch(web: WebPage, chosen: str, language: str) -> str:
     """Return the choice of the level of detail, if there is one."""
     if not web.details:
         return ""
-    checked = ' checked="checked"'
+    phrases, checked = language_named(language).phrases, ' checked="checked"'
     buttons = [
         f'<label><input type="radio" name="detail" value="{name}"{checked * (name == chosen)}/> '
-        f"{PHRASES[f'web_{name}']}</label>"
+        f"{phrases[f'web_{name}']}</label>"
         for name in DETAILS
     ]
-    lines = ['<fieldset class="details">', f"<legend>{PHRASES['web_detail']}</legend>", *buttons, "</fieldset>"]
+    lines = ['<fieldset class="details">', f"<legend>{phrases['web_detail']}</legend>", *buttons, "</fieldset>"]
     return "\n".join(lines)
 
 
@@ -57,13 +58,14 @@ def levels(bodies: Mapping[str, str]) -> str:
     return "\n".join(f'<div data-detail="{name}">\n{body}\n</div>' for name, body in bodies.items())
 
 
-def live_link(web: WebPage) -> str:
+def live_link(web: WebPage, language: str) -> str:
     """Return the link to the live page, if there is one."""
     if not web.live:
         return ""
-    return f'<p class="live"><a href="{escape(web.live)}">{PHRASES["web_live"]}</a></p>'
+    return f'<p class="live"><a href="{escape(web.live)}">{language_named(language).phrases["web_live"]}</a></p>'
 
 
-def folded(solution: str) -> str:
+def folded(solution: str, language: str) -> str:
     """Return a solution that is shown when it is opened."""
-    return f'<details class="solution">\n<summary>{PHRASES["web_solution"]}</summary>\n{solution}\n</details>'
+    word = language_named(language).phrases["web_solution"]
+    return f'<details class="solution">\n<summary>{word}</summary>\n{solution}\n</details>'
