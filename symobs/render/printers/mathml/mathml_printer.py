@@ -253,11 +253,10 @@ class MathmlPrinter(Printer[MathmlBox]):
         width += (columns - 1) * widths.COLUMN_GAP + widths.BRACKETS
         if self.running and width > _WIDE:
             return _list_of(rows)
-        struts = (STRUT, *("" for _ in range(columns - 1)))
         body = ""
         for below, line in enumerate(rows):
             ends = [ruled_edges(below in rules[0], after in rules[1]) for after in range(columns)]
-            body += f"<mtr>{''.join(map(self._cell, line, struts, ends))}</mtr>"
+            body += f"<mtr>{''.join(map(self._cell, line, [STRUT, *[''] * (columns - 1)], ends))}</mtr>"
         small = ' scriptlevel="+1"' if self.running and len(rows) > 1 else ""
         fences = '<mo form="prefix">[</mo>', '<mo form="postfix">]</mo>'
         element = f"<mrow{small}>{fences[0]}<mtable>{body}</mtable>{fences[1]}</mrow>"
@@ -360,9 +359,8 @@ class MathmlPrinter(Printer[MathmlBox]):
 
     def framed(self, box: MathmlBox) -> MathmlBox:
         """Return a framed row."""
-        return MathmlBox(
-            box.width + widths.FRAME, Level.ATOM, (f'<mrow class="answer">{box.source}</mrow>',), max(1, box.height)
-        )
+        element = f'<mrow class="answer">{box.source}</mrow>'
+        return MathmlBox(box.width + widths.FRAME, Level.ATOM, (element,), max(1, box.height))
 
     def stacked(self, lines: Sequence[MathmlBox]) -> MathmlBox:
         """Return lines of a table, all but the first indented."""
