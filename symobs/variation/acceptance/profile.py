@@ -6,7 +6,7 @@ from dataclasses import fields, is_dataclass
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
-from symobs.derivation.steps import Case, Define, Equal, Given, Section, Solve
+from symobs.derivation.steps import Case, Define, Equal, Given, Section, Solve, Tabulate
 from symobs.exact import Matrix, Scalar
 from symobs.formula.nodes import Literal
 
@@ -78,6 +78,8 @@ def _values(node: object) -> Iterator[object]:
     elif isinstance(node, (tuple, list)):
         for each in node:
             yield from _values(each)
+    elif isinstance(node, Tabulate):
+        yield from (entry for row in node.table.rows for entry in row.entries)
     elif is_dataclass(node) and not isinstance(node, type) and not getattr(node, "silent", False):
         for part in fields(node):
             yield from _values(getattr(node, part.name))
