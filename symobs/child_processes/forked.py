@@ -6,7 +6,7 @@ import gc
 import os
 import signal
 import sys
-from typing import TYPE_CHECKING, Any, NoReturn
+from typing import TYPE_CHECKING, NoReturn
 
 from symobs.child_processes.child import Child
 from symobs.child_processes.inside import NO_MEMORY, bound_memory, listeners, say
@@ -30,7 +30,8 @@ class _Forked:
     """A process that was forked, as `subprocess` would have it."""
 
     def __init__(self, pid: int) -> None:
-        self.pid, self.code = pid, None
+        self.pid = pid
+        self.code: int | None = None
 
     def kill(self) -> None:
         """End it now."""
@@ -39,10 +40,9 @@ class _Forked:
 
     def wait(self, timeout: float | None = None) -> int:  # noqa: ARG002 - it is ending when this is called
         """Wait for its end, and return its code."""
-        code: Any = self.code
-        if code is None:
-            code = self.code = os.waitstatus_to_exitcode(os.waitpid(self.pid, 0)[1])
-        return int(code)
+        if self.code is None:
+            self.code = os.waitstatus_to_exitcode(os.waitpid(self.pid, 0)[1])
+        return self.code
 
 
 def forked(work: Callable[[Callable[[object], None]], object], seconds: float | None, size: int | None) -> Child:

@@ -168,7 +168,11 @@ class ReportData:
             for line in data["lines"]
         ]
         return cls(
-            *(data[name] for name in ("title", "student", "variant", "convention", "show")),
+            data["title"],
+            data["student"],
+            data["variant"],
+            data["convention"],
+            data["show"],
             tuple(Part(**part) for part in parts),
             tuple(Line(**line) for line in lines),
             tuple((each["relation"], Fraction(each["points"]), each["met"]) for each in data["milestones"]),
