@@ -29,9 +29,9 @@ from symobs.formula import (
     contains,
 )
 from symobs.render.printers.glyphs import B, Level
-from symobs.render.printers.printer import factors, shifted, signed_terms
+from symobs.render.printers.printer import shifted, signed_terms
 from symobs.render.printers.rational_formula import decimal, is_leaf
-from symobs.render.printers.scalar_formula import formula_of, formula_of_matrix, partitioned
+from symobs.render.printers.scalar_formula import factors, formula_of, formula_of_matrix, partitioned
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -40,7 +40,7 @@ from symobs.notation import FUNCTIONS, LETTERS, TIMED, is_of_time, shows_time, s
 from symobs.phrases.languages import ENGLISH
 from symobs.render.printers.glyphs import B, FormulaWriter, Level
 from symobs.render.printers.rational_formula import is_leaf
-from symobs.render.printers.scalar_formula import formula_of, formula_of_matrix, is_table, is_unit, partitioned
+from symobs.render.printers.scalar_formula import factors, formula_of, formula_of_matrix, is_table, partitioned
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -386,21 +386,3 @@ def signed_terms(formula: Formula, variable: str, *, flat: bool = True) -> list[
             return [(True, Quotient(body, below))] if negative else [(False, formula)]
         case _:
             return [(False, formula)]
-
-
-def factors(formula: Formula, variable: str) -> list[Formula]:
-    """Return the factors of nested products, values spelled out."""
-    match formula:
-        case Product(parts):
-            shown = [part for part in parts if not is_unit(part)] or parts[:1]
-            return [factor for part in shown for factor in factors(part, variable)]
-        case Literal(Matrix(shape=(1, 1)) as table):
-            return factors(Literal(table[0, 0]), variable)
-        case Literal(Scalar() as value) if not is_leaf(value):
-            written = formula_of(value, variable)
-            return factors(written, variable) if isinstance(written, Product) else [formula]
-        case Literal(Matrix() as table):
-            opened = formula_of_matrix(table, variable)
-            return list(opened.factors) if isinstance(opened, Product) else [formula]
-        case _:
-            return [formula]

@@ -249,3 +249,21 @@ def _power(name: str, exponent: int) -> Formula:
         return Literal(function_of("exp", function.argument * exponent))
     base = Literal(Scalar.symbol(name))
     return base if exponent == 1 else Power(base, exponent)
+
+
+def factors(formula: Formula, variable: str) -> list[Formula]:
+    """Return the factors of nested products, values spelled out."""
+    match formula:
+        case Product(parts):
+            shown = [part for part in parts if not is_unit(part)] or parts[:1]
+            return [factor for part in shown for factor in factors(part, variable)]
+        case Literal(Matrix(shape=(1, 1)) as table):
+            return factors(Literal(table[0, 0]), variable)
+        case Literal(Scalar() as value) if not is_leaf(value):
+            written = formula_of(value, variable)
+            return factors(written, variable) if isinstance(written, Product) else [formula]
+        case Literal(Matrix() as table):
+            opened = formula_of_matrix(table, variable)
+            return list(opened.factors) if isinstance(opened, Product) else [formula]
+        case _:
+            return [formula]

@@ -379,9 +379,8 @@ class MathmlPrinter(Printer[MathmlBox]):
 
 def is_large(entry: MathmlBox) -> bool:
     """Return whether an entry of a table is set large: a fraction with more than numbers in it."""
-    return any(element.startswith("<mfrac>") for element in entry.elements[:2]) and not _FRACTION_OF_NUMBERS.fullmatch(
-        entry.elements[-1]
-    )
+    has_fraction = any(element.startswith("<mfrac>") for element in entry.elements[:2])
+    return has_fraction and not _FRACTION_OF_NUMBERS.fullmatch(entry.elements[-1])
 
 
 def _list_of(rows: Sequence[Sequence[MathmlBox]]) -> MathmlBox:
