@@ -344,14 +344,15 @@ def test_the_sketch_of_a_line() -> None:
     assert whole[1].split() == ["-1.0", "-0.5", "0", "0.5", "1.0"]
 
 
-def test_a_sentence_may_lead_to_a_picture(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_sentence_opens_the_caption_of_a_picture(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(PHRASES, "test_look", "The picture shows it.")
     derivation = page("interval")
     (step,) = derivation.steps
     assert isinstance(step, Plot)
     told = replace(derivation, steps=(replace(step, sentence=say("look")),))
     latex = LatexFragment().render(document(told))
-    assert latex.index("The picture shows it.") < latex.index("tikzpicture")
+    assert "Figure~1. The picture shows it. Thick interval" in latex
+    assert latex.index("tikzpicture") < latex.index("Figure~1.")
 
 
 def test_a_caption_holds_no_lists() -> None:
