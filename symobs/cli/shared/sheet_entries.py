@@ -125,8 +125,9 @@ def _rows(orders: Sequence[tuple[Any, ...]], wanted: Wanted, show: Show) -> list
 def run(payload: Mapping[str, Any]) -> dict[str, Any]:
     """Return the row of one problem of a sheet, as a child process works it out."""
     with warnings.catch_warnings(record=True) as warned:
+        number, asked, text, wanted = _unpacked(payload["asked"])
         try:
-            entry, code, messages = _entry(*_unpacked(payload["asked"]), lambda _: None)
+            entry, code, messages = _entry(number, asked, text, wanted, lambda _: None)
         except TypesettingError as error:
             return {"status": "done", "result": _packed(error)}
     told = [f"{each.category.__name__}: {each.message}" for each in warned]

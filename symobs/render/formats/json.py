@@ -51,7 +51,7 @@ class Json:
         """Return the sheet as indented JSON, one object a problem."""
         problems = []
         for entry in sheet.entries:
-            problem = {"file": entry.file, "title": entry.title}
+            problem: dict[str, Any] = {"file": entry.file, "title": entry.title}
             if entry.points:
                 problem["points"] = [decimal_of(points) for points in entry.points]
             if entry.hint and sheet.has_questions:
