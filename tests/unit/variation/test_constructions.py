@@ -51,7 +51,7 @@ def desired(A: Rows, poles: list[tuple[int, int]]) -> Rows:
 
 
 #: Few of each kind in a quick run, as many as a class of classes may need in the long one.
-COUNTS = [pytest.param(15, id="few"), pytest.param(250, id="many", marks=pytest.mark.slow)]
+COUNTS = [pytest.param(15, id="few"), pytest.param(100, id="many", marks=pytest.mark.slow)]
 
 
 @pytest.mark.parametrize("count", COUNTS)
