@@ -84,9 +84,9 @@ def _run_task(task: Any, options_given: dict[str, Any]) -> None:
     chosen = chosen_format(options_given["format_name"], options_given["target"], default=default)
     check_targets(options_given["target"], options_given["plot"], options_given["bibliography"])
     of_numbers = {name: options_given[name] for name in ("digits", "exact", "printed", "period", "hold")}
-    told = [options_given[name] for name in ("detail", "language", "templates")]
+    detail, language, templates = (options_given[name] for name in ("detail", "language", "templates"))
     web = WebPage(options_given["details"], options_given["copy"])
-    page = page_of(*told, chosen, web, **of_numbers)
+    page = page_of(detail, language, templates, chosen, web, **of_numbers)
     page["settings"] = options_given["settings"]
     plant = given("plant_")
     if plant.get("dt", "").lower() == "true":

@@ -143,8 +143,7 @@ class Evaluator:
 
     def _power(self, base: Number, place: int, value: Number) -> Number:
         if self.functions and isinstance(base, Scalar) and (degree := _degree_of_root(base, value)):
-            root = root_of_fraction(base.fraction(), degree)
-            return root ** int(value.fraction() * degree)  # type: ignore[union-attr]
+            return root_of_fraction(base.fraction(), degree) ** int(Complex.of(value).real.fraction() * degree)
         exponent = self._exponent(value, place)
         if isinstance(base, Complex):
             return self._complex_power(base, exponent, place)

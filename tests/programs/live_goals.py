@@ -120,7 +120,6 @@ def in_the_browser() -> None:
         page.set_default_timeout(300_000)
         begin = time.perf_counter()
         server = Server(budget=Budget(60, 1000))
-        threading.Thread(target=server.children.warm, daemon=True).start()
         thread = threading.Thread(target=server.serve_forever, kwargs={"poll_interval": 0.05})
         thread.start()
         for order in (2, 4):

@@ -88,8 +88,7 @@ def signals(
         _partitioned(known, plant, (L, first), rate, called, right)
     else:
         known.stacked("x", plant.order, rate, mentioned)
-    is_full = L is not None and L.shape == (plant.order, p)
-    if is_full:
+    if L is not None and L.shape == (plant.order, p):
         _full_order(known, m, L, called, (mentioned, right))
     if (L is not None or "K_d" in answers) and called["x_hat"] not in known.formulas:
         known.free(called["x_hat"], plant.order)  # the law needs it, its equations are not known

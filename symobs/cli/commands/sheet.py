@@ -109,7 +109,7 @@ def command(
             write_message(message if message.startswith(f"{name}, ") else f"{name}: {message}")
     progress.say("typesetting" if wanted.format.name == "pdf" else "writing")
     halves = (wanted.questions, wanted.solutions)
-    offered = {"web": wanted.web, "detail": wanted.detail}
+    offered: dict[str, Any] = {"web": wanted.web, "detail": wanted.detail}
     sheet = Sheet(title or file.title, tuple(entries), *halves, wanted.templates, header, **offered)
     whole = wanted.format.sheet(sheet)
     progress.clear()

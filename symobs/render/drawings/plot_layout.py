@@ -326,9 +326,8 @@ def _panels(picture: TimeResponse, measure: Measure) -> Scene:
         frame = _Frame(_decimal(picture.window[0]), (low - room, high + room), WIDEST, _PANEL)
         axes, written = _axes(frame, (symbol(time_axis(picture)), name_of(response)), measure)
         steps = len(response.heights) - 1
-        counted = replace(
-            frame, horizontal=(0.0, float(steps)), vertical=tuple(edge * picture.parts for edge in frame.vertical)
-        )
+        low, high = (edge * picture.parts for edge in frame.vertical)
+        counted = replace(frame, horizontal=(0.0, float(steps)), vertical=(low, high))
         runs = [Stroke(line, "zero") for line in _zero_lines(frame)] + axes
         runs += [Stroke(line, "path") for line in counted.lines(enumerate(response.heights))]
         strokes += [replace(run, points=tuple((x, y + up) for x, y in run.points)) for run in runs]

@@ -320,8 +320,8 @@ class HtmlWriter:
         printer = TextPrinter.of(self.printer)
         if isinstance(block, Drawing):
             drawn = svg(svg_scene(block, printer), printer, printer.language.phrases["block_diagram"])
-            words = f"<figcaption>{self.sentence(block.caption)}</figcaption>\n" if block.caption else ""
-            return f"<figure>\n{drawn}\n{words}</figure>"
+            below_it = f"<figcaption>{self.sentence(block.caption)}</figcaption>\n" if block.caption else ""
+            return f"<figure>\n{drawn}\n{below_it}</figure>"
         scene = svg_scene(block.picture, printer)
         words = below(block.caption, scene, printer.language)
         spoken = "".join(

@@ -139,7 +139,6 @@ class TextWriter:
             case Drawing():
                 words = wrapped(self.sentence(block.caption), width - len(INDENT))
                 return indented(f"{self._sketch(block)}\n\n{words}") if words else indented(self._sketch(block))
-                return indented(self._sketch(block))
             case AnswerSpace(is_ruled=is_ruled, lines=lines):
                 return "\n\n".join(["_" * width if is_ruled else ""] * lines)
             case TableBlock():

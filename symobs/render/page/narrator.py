@@ -181,8 +181,8 @@ class _PageBlocks:
 
     def inside(self, *, numbered: bool = True) -> _PageBlocks:
         """Return the blocks of a part set apart from the page: its data hold there only, its figures are counted on."""
-        apart = {"given": self.given, "citations": self.citations, "figures": self.figures}
-        found = _PageBlocks(self.convention, self.language, **apart)
+        known = self.given, self.citations
+        found = _PageBlocks(self.convention, self.language, given=known[0], citations=known[1], figures=self.figures)
         found.numbered = numbered
         return found
 

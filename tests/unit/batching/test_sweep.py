@@ -16,10 +16,10 @@ import pytest
 import symobs
 from symobs.batching.jobs import read_payload
 from symobs.batching.recheck import determinant, minus, pencil, times
-from symobs.batching.store import Store
+from symobs.batching.store import Store, work_folder
 from symobs.batching.sweep import block
 from symobs.batching.sweep.grid import read_grid
-from symobs.batching.sweep.plan import Plan, work_folder
+from symobs.batching.sweep.plan import Plan
 from symobs.errors import CertificateRejected, InputError, ProblemErrors
 from tests.support.problems.batches import eventually
 from tests.support.tools.command_line import environment, inside
