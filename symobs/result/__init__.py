@@ -1,6 +1,5 @@
 """Results that own their claims, and the registries of tasks, methods and formats (trusted)."""
 
-from symobs.result.document import Document
 from symobs.result.registry import (
     Method,
     Task,
@@ -12,7 +11,7 @@ from symobs.result.registry import (
     task_named,
     tasks,
 )
-from symobs.result.result import Case, Result, Stratum
+from symobs.result.result import Case, Document, Result, Stratum
 from symobs.result.writers import format_named, formats, output_format, page_of, render
 
 __all__ = [

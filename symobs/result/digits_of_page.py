@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any, TypedDict
 
+from symobs.convention import convention_named
 from symobs.errors import UsageError
 from symobs.expression.source import shown
 from symobs.system.reading import has_decimals
@@ -12,11 +13,27 @@ from symobs.system.reading import has_decimals
 DIGITS, MOST_DIGITS = 5, 40
 
 
-class Numbers(TypedDict, total=False):
-    """How `result.to` writes the numbers of a page: with so many significant digits, or exactly."""
+class PageOptions(TypedDict, total=False):
+    """How `result.to` writes a page: its numbers with so many significant digits, or exactly."""
 
+    convention: str
+    detail: str
+    language: str
     digits: int | None
     exact: bool
+
+
+def document_options(
+    *,
+    convention: str = "standard",
+    detail: str = "full",
+    language: str = "en",
+    digits: int | None = None,
+    exact: bool = False,
+) -> dict[str, Any]:
+    """Return the options of a page as those of a document; raises `UsageError` for a convention that does not exist."""
+    asked = digits_asked(digits, exact=exact)
+    return {"convention": convention_named(convention), "detail": detail, "language": language, "digits": asked}
 
 
 def digits_asked(digits: object = None, *, exact: bool = False, where: str = "digits") -> int | None:

@@ -14,23 +14,26 @@ from typing import TYPE_CHECKING, Any, ClassVar, Literal, NamedTuple, NoReturn, 
 from symobs._dataclass import dataclass
 from symobs.certificate.claims import UNREADABLE, Certificate, Claim, Statement, check_all
 from symobs.conditions import Condition, vanishing_factors
-from symobs.convention import convention_named
+from symobs.convention import STANDARD
+from symobs.derivation import translated
 from symobs.derivation.builder import Page
 from symobs.errors import CertificateRejected, DerivationRejected
 from symobs.exact.linear_algebra.realisation import Realisation
 from symobs.result.conversions import Faces
-from symobs.result.digits_of_page import digits_asked
-from symobs.result.document import Document
+from symobs.result.digits_of_page import document_options
+from symobs.result.web_page import PLAIN, WebPage
 from symobs.result.writers import render, writer_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
+    from pathlib import Path
 
+    from symobs.convention import Convention
     from symobs.derivation import Derivation
     from symobs.exact import Matrix, Scalar
     from symobs.figures.plot import Picture
     from symobs.result.control_systems import Controller
-    from symobs.result.digits_of_page import Numbers
+    from symobs.result.digits_of_page import PageOptions
     from symobs.system import StateSpace
 
 
@@ -307,53 +310,17 @@ class Result(Faces):
         return sorted({*own, "conditions", "cases", *self.fields})
 
     @overload
-    def to(
-        self,
-        format_name: Literal["pdf"],
-        *,
-        convention: str = ...,
-        detail: str = ...,
-        language: str = ...,
-        **numbers: Unpack[Numbers],
-    ) -> bytes: ...
-
+    def to(self, format_name: Literal["pdf"], **page: Unpack[PageOptions]) -> bytes: ...
     @overload
-    def to(
-        self,
-        format_name: Text,
-        *,
-        convention: str = ...,
-        detail: str = ...,
-        language: str = ...,
-        **numbers: Unpack[Numbers],
-    ) -> str: ...
-
+    def to(self, format_name: Text, **page: Unpack[PageOptions]) -> str: ...
     @overload
     def to(self, format_name: Code, *, period: object = None, hold: Literal["zoh", "tustin"] = "zoh") -> str: ...
-
     @overload
     def to(
-        self,
-        format_name: str,
-        *,
-        convention: str = "standard",
-        detail: str = "full",
-        language: str = "en",
-        period: object = None,
-        hold: str = "zoh",
-        **numbers: Unpack[Numbers],
+        self, format_name: str, *, period: object = None, hold: str = "zoh", **page: Unpack[PageOptions]
     ) -> str | bytes: ...
-
     def to(
-        self,
-        format_name: str,
-        *,
-        convention: str = "standard",
-        detail: str = "full",
-        language: str = "en",
-        period: object = None,
-        hold: str = "zoh",
-        **numbers: Unpack[Numbers],
+        self, format_name: str, *, period: object = None, hold: str = "zoh", **page: Unpack[PageOptions]
     ) -> str | bytes:
         """Return the result in a format: latex, html, text, json, pdf, …; in a convention, by name or TOML file.
 
@@ -362,14 +329,8 @@ class Result(Faces):
         and modelica are the observer or compensator as a program, sampled with a `period` such as "1/100" by a zero-order
         hold (zoh) or by the bilinear map (tustin); numpy and csv the numbers alone.
         """
-        of_page: dict[str, Any] = {
-            "detail": detail,
-            "language": language,
-            "digits": digits_asked(**numbers),
-            "period": period,
-            "hold": hold,
-        }
-        return render(Document("", "", (self,), convention_named(convention), **of_page), format_name)
+        asked = document_options(**page)
+        return render(Document("", "", (self,), period=period, hold=hold, **asked), format_name)
 
     def __repr__(self) -> str:
         """Show the answers in short; of one with many terms their number, for a display may not take seconds."""
@@ -393,3 +354,34 @@ def _made_of(kind: type[Result], *, compared: bool = False) -> tuple[str, ...]:
 def _denominators(values: Iterable[Any]) -> list[Scalar]:
     """Return the denominators of scalars and matrices."""
     return [value.common_denominator() for value in values if hasattr(value, "common_denominator")]
+
+
+@dataclass(frozen=True)
+class Document:
+    """What a format renders: a title, its source, results, the problem in words, and how all is told and set."""
+
+    title: str
+    source: str
+    results: tuple[Result, ...]
+    convention: Convention = STANDARD
+    text: str = ""
+    detail: str = field(default="full", kw_only=True)
+    #: The code of the language of the page.
+    language: str = field(default="en", kw_only=True)
+    templates: Path | None = field(default=None, kw_only=True)
+    #: For a format that is a program: the sampling period, and how the input is held.
+    period: object = field(default=None, kw_only=True)
+    hold: str = field(default="zoh", kw_only=True)
+    #: The answers that are printed alone, by name; none means the whole document.
+    printed: tuple[str, ...] = field(default=(), kw_only=True)
+    #: The significant digits of the numbers on a page: 0 writes them exactly, None does as the data are typed.
+    digits: int | None = field(default=None, kw_only=True)
+    #: What a sheet adds to each part of a question: its points, in words, and the room for an answer.
+    handout: tuple[Any, ...] = field(default=(), kw_only=True)
+    #: What a page of HTML offers besides its text.
+    web: WebPage = field(default=PLAIN, kw_only=True)
+
+    @cached_property
+    def derivations(self) -> tuple[Derivation, ...]:
+        """The checked derivations of the results, in the signs of the convention."""
+        return tuple(translated(result.derivation, self.convention) for result in self.results)

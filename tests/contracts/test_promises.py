@@ -162,8 +162,8 @@ def test_a_stratum_of_several_points_does_not_end_the_search_for_meetings() -> N
     assert len(found["cases"]) > 2
 
 
-def test_a_stratum_whose_own_cases_cannot_be_claimed_is_undecided() -> None:
-    # The claim about a case within a case was refused when the case was written, too late to leave it undecided.
+def test_the_gain_of_a_case_within_a_case_holds_modulo_its_equations() -> None:
+    # The claim about such a case was refused when the case was written, too late to leave it undecided.
     found = answered(
         {
             "task": "state_feedback",
@@ -174,7 +174,15 @@ def test_a_stratum_whose_own_cases_cannot_be_claimed_is_undecided() -> None:
     )
     assert found["verdict"] == "conditional"
     deeper = [inner for one in found["cases"] for inner in one.get("cases", [])]
-    assert "undecided" in {one["verdict"] for one in deeper}
+    assert [one["verdict"] for one in deeper] == ["yes"]
+    a, b, p, s = sympy.symbols("a b p s")
+    read = sympy.sympify  # noqa: TID251 - our own answers
+    basis = [read(equation.removesuffix("== 0")) for equation in deeper[0]["when"]]
+    K = sympy.Matrix([[read(entry) for entry in deeper[0]["K"][0]]])
+    A, B = sympy.Matrix([[-1, 0, 2], [1, 1, 0], [-1, 2, -b]]), sympy.Matrix([-a, 0, b])
+    missing = (s * sympy.eye(3) - A + B * K).det() - (s + 2) * (s + p) * (s + b)
+    left = sympy.Poly(sympy.numer(sympy.together(missing)), s).coeffs()
+    assert [sympy.reduced(part, basis, a, b, p, order="grevlex")[1] for part in left] == [0] * len(left)
 
 
 # -- [expect]: every field of the table can be held against an answer ------------------------------------------------

@@ -233,7 +233,11 @@ def _part(document: Document, wanted: Wanted) -> Any:
     """Return the part of a sheet for a question or a solution, in its format."""
     convention = wanted.convention or document.convention
     digits = document.digits if wanted.digits is None else wanted.digits
-    of_page: dict[str, Any] = {"detail": wanted.detail, "digits": digits, "language": wanted.language or document.language}
+    of_page: dict[str, Any] = {
+        "detail": wanted.detail,
+        "digits": digits,
+        "language": wanted.language or document.language,
+    }
     of_page |= {"templates": wanted.templates, "web": wanted.web}
     told = replace(document, convention=convention, **of_page)
     return wanted.format.part(told)

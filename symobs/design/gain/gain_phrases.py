@@ -128,6 +128,7 @@ SPELLS_OUT = ("coefficients",)
 
 #: Phrases that go on with the sentence before them.
 CONTINUES = (
+    "relations_again",
     "coefficients",
     "polynomial_of_unknown",
     "solution_of_system",

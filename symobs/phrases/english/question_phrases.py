@@ -104,4 +104,4 @@ UNSAID = (
 )
 
 #: Phrases that go on with the sentence before them.
-CONTINUES = ("sheet_solution",)
+CONTINUES = ("web_full", "web_outline", "web_answer", "web_copied", "web_refused", "sheet_solution")

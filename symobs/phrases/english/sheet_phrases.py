@@ -34,3 +34,6 @@ NAMING = (
     "sheet_answers",
     "sheet_one_solution",
 )
+
+#: They go on with a sentence, or stand within one.
+CONTINUES = ("sheet_point", "sheet_points")

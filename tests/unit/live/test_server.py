@@ -195,7 +195,9 @@ def test_a_child_at_work_ends_with_the_server() -> None:
     found: list[dict[str, Any]] = []
     is_asked = threading.Event()
     body = b'{"do": "sleep"}'
-    thread = threading.Thread(target=lambda: found.append(json.loads(children.answer(body, lambda: bool(is_asked.set())))))
+    thread = threading.Thread(
+        target=lambda: found.append(json.loads(children.answer(body, lambda: bool(is_asked.set()))))
+    )
     thread.start()
     assert is_asked.wait(SAFETY)
     children.close()
