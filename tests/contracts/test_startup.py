@@ -119,6 +119,7 @@ design.to_latex(), design.to_json(), design.verdict, repr(design)
     assert "sympy" in imported(f"{design}design.L\n{shown}")
 
 
+@pytest.mark.slow
 def test_only_latex_needs_its_templates() -> None:
     for form in ("json", "text", "html", "markdown"):
         assert "jinja2" not in after("solve", str(SERVO), "--format", form)

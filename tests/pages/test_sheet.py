@@ -307,6 +307,7 @@ def wide(fault: str) -> bool:
     return size is None or float(size[1]) > 1
 
 
+@pytest.mark.slow
 def test_a_sheet_is_typeset_without_a_fault(folder: Path, require_tool: RequireTool) -> None:
     hostile = r"100 % of $x_1^2$ \input{x} & #~ " * 4
     text = f"title = {json.dumps(hostile)}\nsource = {json.dumps(hostile)}\n"
@@ -344,6 +345,7 @@ def test_tex_has_more_time_for_a_longer_sheet(monkeypatch: pytest.MonkeyPatch) -
     assert limits[1] > 400
 
 
+@pytest.mark.slow
 def test_slides_are_typeset_without_a_fault(tmp_path: Path, require_tool: RequireTool) -> None:
     names = {
         "two_masses_parametric",

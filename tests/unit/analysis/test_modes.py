@@ -37,6 +37,7 @@ def by_eigenvalue(result: Any) -> dict[str, tuple[int, Any]]:
 # -- identities ----------------------------------------------------------------------------------------------------------
 
 
+@pytest.mark.slow
 @given(numeric, st.data())
 @settings(max_examples=25)
 def test_modes_do_not_depend_on_coordinates_nor_on_output_injection(sample: Sample, data: st.DataObject) -> None:
@@ -152,6 +153,7 @@ def random_pair(generator: random.Random) -> tuple[list[list[int]], list[list[in
     return A, C
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(shutil.which("gp") is None, reason="PARI is not installed")
 def test_random_plants_agree_with_pari(record_property: Any) -> None:
     generator = random.Random(20)  # noqa: S311 - the same plants in every run

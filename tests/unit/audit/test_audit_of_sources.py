@@ -87,6 +87,7 @@ def test_an_erratum_is_found_with_what_is_right_and_why(erratum: str) -> None:
         assert [each for each in found(erratum) if each.right == right and reason in each.reason]
 
 
+@pytest.mark.slow
 def test_what_is_printed_right_is_not_reported() -> None:
     assert {each.erratum for one in audited() for each in one.findings} == set(EXPECTED)
 

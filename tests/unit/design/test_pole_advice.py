@@ -41,6 +41,7 @@ def advice(transfer_function: str, **asked: Any) -> Any:
 # -- the circle --------------------------------------------------------------------------------------------------------
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("count", [1, 2, 3, 4, 5, 6, 8, 10])
 @given(radius=RADII)
 @settings(max_examples=5)

@@ -870,6 +870,7 @@ hostile = st.one_of(
 )
 
 
+@pytest.mark.slow
 @given(hostile)
 @example("(" * 99 + "a" + ")" * 99)
 @example("-" * 9_999 + "1")

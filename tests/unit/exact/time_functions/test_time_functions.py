@@ -179,6 +179,7 @@ def test_what_stays_open_about_a_covariance_is_named(A: str, C: str, asked: str)
 entry = st.integers(-3, 3)
 
 
+@pytest.mark.slow
 @settings(max_examples=40, deadline=None)
 @given(st.integers(1, 3).flatmap(lambda n: st.lists(st.lists(entry, min_size=n, max_size=n), min_size=n, max_size=n)))
 def test_exponentials_of_random_matrices(rows: list[list[int]]) -> None:
@@ -197,6 +198,7 @@ def test_a_kernel_of_several_dimensions_is_told() -> None:
             assert "N = " in result.to("text")
 
 
+@pytest.mark.slow
 @settings(max_examples=25, deadline=None)
 @given(
     st.lists(st.lists(entry, min_size=2, max_size=2), min_size=2, max_size=2),
