@@ -194,10 +194,12 @@ def test_a_child_at_work_ends_with_the_server() -> None:
     process = ask(children)["process"]
     found: list[dict[str, Any]] = []
     is_asked = threading.Event()
-    body = b'{"do": "sleep"}'
-    thread = threading.Thread(
-        target=lambda: found.append(json.loads(children.answer(body, lambda: bool(is_asked.set()))))
-    )
+
+    def has_left() -> bool:
+        is_asked.set()
+        return False
+
+    thread = threading.Thread(target=lambda: found.append(json.loads(children.answer(b'{"do": "sleep"}', has_left))))
     thread.start()
     assert is_asked.wait(SAFETY)
     children.close()
