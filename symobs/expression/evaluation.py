@@ -9,6 +9,7 @@ from symobs._dataclass import dataclass
 from symobs.errors import BudgetExceeded
 from symobs.exact import Complex, Scalar
 from symobs.exact.algebraic.conjugates import root_in_field
+from symobs.exact.algebraic.enclosure import is_number
 from symobs.exact.algebraic.real_algebraic import root_of_fraction
 from symobs.exact.core import generators
 from symobs.exact.core.generators import PI
@@ -190,7 +191,10 @@ class Evaluator:
         try:
             if name != "sqrt":
                 return generators.function(name, argument)
-            return argument if argument.is_zero else generators.square_root(self._with_one_root(place, argument))
+            if argument.is_zero:
+                return argument
+            known = root_in_field(argument) if is_number(argument) else None
+            return generators.square_root(self._with_one_root(place, argument)) if known is None else known
         except generators.NotWritten as error:
             raise self.source.error(str(error), place, "declare a symbol for it") from None
         except ZeroDivisionError:

@@ -12,6 +12,7 @@ from symobs.expect.roots import COUNTED
 from symobs.expression import declared_name, parse_polynomial, parse_scalar
 from symobs.expression.source import shown
 from symobs.problem.file_tables import came
+from symobs.system.reading import require_known
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -50,6 +51,7 @@ def _with_constant(name: str, value: Any, symbols: Symbols) -> Symbols:
     if any(function_named(part) is None for part in found.names - {PI}):
         message = f"{name} contains a symbol that is not inside a function, and a constant is a number"
         raise InputError(message, where=where, repair="write the expression where it is needed")
+    require_known([found], where)
     return replace(symbols, constants={**known, name: found})
 
 

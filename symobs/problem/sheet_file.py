@@ -100,8 +100,8 @@ def read_sheet(text: str, where: str, folder: Path, read: Callable[[str], str]) 
     data, errors = parse(text, where), Errors()
     _report_unknown(data, SHEET, "", errors)
     words = {key: _text(data.get(key, ""), key, errors) for key in _TEXTS}
-    chosen = {key: _choice(data.get(key, known[0]), known, key, errors) for key, known in _CHOICES.items()}
     language = _choice(data["language"], languages(), "language", errors) if "language" in data else ""
+    chosen = {key: _choice(data.get(key, known[0]), known, key, errors) for key, known in _CHOICES.items()}
     is_exam = chosen["style"] == "exam"
     header = Header(
         course=words["course"],

@@ -9,7 +9,7 @@ from symobs.errors import InputError, ShapeMismatch
 from symobs.exact import Matrix
 from symobs.exact.linear_algebra.realisation import Realisation, closed
 from symobs.system.matrices import as_rows
-from symobs.system.reading import read_matrix
+from symobs.system.reading import is_identity, read_matrix
 
 if TYPE_CHECKING:
     from symobs.system.symbols import Symbols
@@ -68,7 +68,7 @@ def connected(kind: str, plant: Plant, other: object) -> Plant:
 def _system(plant: Any) -> Realisation:
     """Return a plant's matrices; raises `InputError` where it cannot be connected."""
     plant.require("B", "C", task="a connection")
-    if plant.is_time_varying or plant.equations:
+    if plant.is_time_varying or not all(map(is_identity, plant.equations)):
         message = "a plant that varies in time, or that is a case of another, cannot be connected"
         raise InputError(message, where="plant", repair="connect plants with constant matrices")
     m = plant.matrices

@@ -5,12 +5,14 @@ from __future__ import annotations
 import re
 from collections.abc import Collection, Mapping, Sequence
 from decimal import Decimal
+from math import lcm, prod
 from typing import Any
 
 from symobs.conditions import sign_of
 from symobs.errors import InexactInput, InputError, ShapeMismatch
-from symobs.exact import Complex, Matrix, Scalar
-from symobs.exact.core.generators import function_named, identities
+from symobs.exact import Complex, Ideal, Matrix, Scalar
+from symobs.exact.algebraic.real_algebraic import RealRoot
+from symobs.exact.core.generators import Function, NotWritten, all_roots, function_named, functions_in, identities
 from symobs.expression import parse_matrix, parse_scalar
 from symobs.expression.parse import FLOATS
 from symobs.expression.source import shown
@@ -136,26 +138,52 @@ def read_complex(value: object, where: str) -> Complex:
 
 
 def over_a_base(
-    matrices: Mapping[str, Matrix | None], signs: Mapping[str, str], where: str = "plant"
+    matrices: Mapping[str, Matrix | None], where: str = "plant"
 ) -> tuple[dict[str, Matrix | None], tuple[Scalar, ...]]:
     """Return matrices with their functions in a common base, and the polynomials in the base that vanish.
 
-    Raises `InputError` for a function of time, and for a square root of what may be negative.
+    Raises `InputError` for a function of time, a root of what is no rational number, roots that may depend on each other,
+    and an entry that divides by 0.
     """
     given = [matrix for matrix in matrices.values() if matrix is not None]
-    functions = {f for matrix in given for name in matrix.names if (f := function_named(name)) is not None}
-    if all(f.square for f in functions):
+    if all(f.square for f in require_known(given, where)):
         return dict(matrices), ()
-    for f in sorted(functions, key=lambda f: f.text):
+    try:
+        meanings, relations = identities(given)
+        moved = {name: None if matrix is None else _in_base(matrix, meanings) for name, matrix in matrices.items()}
+        ideal, divides = Ideal.of(relations), [matrix for matrix in moved.values() if matrix is not None]
+        divided_by_zero = any(matrix.common_denominator() in ideal for matrix in divides)
+    except NotWritten as error:
+        raise InputError(str(error), where=where, repair="declare a symbol for it") from None
+    except ZeroDivisionError:
+        divided_by_zero = True
+    if divided_by_zero:
+        raise InputError("an entry divides by 0", where=where, repair="divide by what is not 0")
+    return moved, relations
+
+
+def require_known(values: Sequence[Matrix | Scalar], where: str) -> frozenset[Function]:
+    """Return the functions in values; raises `InputError` where one is not of parameters, or not told apart from others.
+
+    Roots are of rational numbers, since only these are known to be real; of several, the degrees have no common factor, so
+    that no equation ties them to each other.
+    """
+    functions = functions_in(values)
+    for f in sorted(functions | all_roots(*values), key=lambda f: f.text):
         if f.symbols & {"t", "s", "z"}:
             message = f"{f.text} is a function of {', '.join(f.symbols & {'t', 's', 'z'})}"
             raise InputError(message, where=where, repair="entries are rational in t, and have no s or z")
-        if f.kind == "sqrt" and not f.square and sign_of(f.argument, signs) not in {"positive", "nonnegative"}:
-            message = f"{f.text}: {f.argument} may be negative"
-            raise InputError(message, where=where, repair="declare the sign of its symbols, positive for example")
-    meanings, relations = identities(given)
-    moved = {name: None if matrix is None else _in_base(matrix, meanings) for name, matrix in matrices.items()}
-    return moved, relations
+        if f.kind == "sqrt" and not f.square:
+            message = f"{f.text} has no exact value here"
+            repair = "sqrt of a rational number is possible; for other roots declare a symbol"
+            raise InputError(message, where=where, repair=repair)
+    degrees = [f.number.degree for f in functions if isinstance(f, RealRoot)]
+    degrees += [2] if any(f.square for f in functions | all_roots(*values)) else []
+    if lcm(*degrees) != prod(degrees):
+        roots = ", ".join(sorted(f.text for f in functions if isinstance(f, RealRoot)))
+        message = f"roots that may depend on each other: {roots}"
+        raise InputError(message, where=where, repair="write all of them with one root, r^2 for another")
+    return functions
 
 
 def _in_base(matrix: Matrix, meanings: Mapping[str, Scalar]) -> Matrix:

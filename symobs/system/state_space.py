@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, cast
 
 from symobs.errors import InputError, SymobsError, raise_all
 from symobs.exact import Field, Ideal, Matrix, Scalar, apart_from_zero, companion, modulo
-from symobs.exact.core.generators import substitute
+from symobs.exact.core.generators import NotWritten, substitute
 from symobs.system.connections import connected
 from symobs.system.control_system import exact_of, read_control_system
 from symobs.system.findings import Findings
@@ -76,7 +76,7 @@ class StateSpace:
         if "A" in parts:
             errors += shape_errors({name: parts.get(name) for name in "ABC"} | {"D": None if errors else parts["D"]})
         raise_all(errors)
-        parts, relations = over_a_base(parts, known.signs)
+        parts, relations = over_a_base(parts)
         self.matrices = Matrices(parts["A"], parts["B"], parts["C"], parts["D"])  # type: ignore[arg-type]
         self.symbols = known
         self.time = read_time(dt, known)
@@ -236,15 +236,16 @@ class StateSpace:
         """
         m, symbols = self.matrices, self.symbols.seen(list(values.values()))
         values = read_values(values, symbols, {*m.symbols, *symbols.signs})
-        B = substitute(m.B, values) if m.has_input else None
-        C = substitute(m.C, values) if m.has_output else None
-        D = substitute(m.D, values) if m.has_input and m.has_output else None
-        plant = StateSpace(substitute(m.A, values), B, C, D, self.dt, symbols=symbols)
+        try:
+            A, B, C, D = (substitute(part, values) for part in (m.A, m.B, m.C, m.D))
+        except NotWritten as error:
+            raise InputError(str(error), where="plant", repair="give another value") from None
+        B, C, D = B if m.has_input else None, C if m.has_output else None, D if m.has_input and m.has_output else None
+        plant = StateSpace(A, B, C, D, self.dt, symbols=symbols)
         images = [substitute(equation, values).numerator for equation in self.equations]
         nonzero = [substitute(value, values).numerator for value in self.nonzero]
         if any(value.is_zero for value in nonzero) or any(i.is_constant and not i.is_zero for i in images):
-            message = "what does not vanish is 0"
-            raise ZeroDivisionError(message)
+            raise ZeroDivisionError("what does not vanish is 0")
         return plant.restricted([image for image in images if not image.is_zero], nonzero)
 
     def restricted(self, equations: Iterable[Scalar], nonzero: Iterable[Scalar] = ()) -> StateSpace:

@@ -162,6 +162,8 @@ class Dual(Result):
             page.equal(relation(left, right), say="dual_same")
         else:
             page.equal(relation(left, right @ signs if kind == "observability" else signs @ right), say="dual_signs")
+        if self.plant.equations and self.tests[kind].existence:
+            page.assume("dual_provided", *self.tests[kind].existence)
         ranks = relation(left.apply("rank"), page[names[0]].apply("rank"), self.answer[f"{kind}_rank"])
         page.conclude("dual_ranks_observing" if kind == "observability" else "dual_ranks_controlling", ranks=ranks)
 

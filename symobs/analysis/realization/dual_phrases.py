@@ -12,6 +12,7 @@ PHRASES: dict[str, str] = {
     "plant_controllability": "The controllability matrix of the plant is",
     "dual_same": "Block by block it is the transpose:",
     "dual_signs": "Its blocks equal those of the transpose up to sign, which leaves the rank unchanged:",
+    "dual_provided": "In what follows we assume {condition}.",
     "dual_ranks_observing": "Hence {ranks}, and the pair ($C$, $A$) is observable if and only if the pair ($A_dual$, $B_dual$) is controllable.",
     "dual_ranks_controlling": "Hence {ranks}, and the pair ($A$, $B$) is controllable if and only if the pair ($C_dual$, $A_dual$) is observable.",
 }

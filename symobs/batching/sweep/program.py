@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 from symobs.errors import CertificateRejected, InputError
 from symobs.exact import Matrix, Scalar
+from symobs.exact.core.generators import substitute
 from symobs.exact.linear_algebra.at_points import (
     Evaluator,
     characteristic,
@@ -215,7 +216,7 @@ class Program:
         scalars = {name: Scalar.of(value) for name, value in values.items()}
         for name in "ABCD":
             general: Matrix = getattr(self.problem.plant.matrices, name)
-            if general.substitute(scalars) != getattr(problem.plant.matrices, name):
+            if substitute(general, scalars) != getattr(problem.plant.matrices, name):
                 raise CertificateRejected(f"the plant of a point has another {name}", repair="please report this")
         (result,) = problem.solve()
         return result

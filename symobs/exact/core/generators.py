@@ -24,6 +24,8 @@ if TYPE_CHECKING:
 
 #: Integers of more bits are not split into primes under a root.
 _PRIME_BITS = 128
+#: The highest multiple of an angle whose cosine is written by that of the angle.
+_MOST_MULTIPLE = 60
 ZERO, ONE = Scalar.of(0), Scalar.of(1)
 #: The number π, a generator like a parameter: no polynomial over Q vanishes at it.
 PI = "pi"
@@ -188,7 +190,7 @@ def roots_in(value: Scalar | Matrix) -> list[Function]:
     return sorted(found, key=lambda f: (f.argument.size, f.name))
 
 
-def _functions_in(values: Iterable[Scalar | Matrix]) -> frozenset[Function]:
+def functions_in(values: Iterable[Scalar | Matrix]) -> frozenset[Function]:
     """Return the functions among the generators that occur."""
     having = [value for value in values if value.field.functions]
     return frozenset(f for value in having for name in value.names if (f := function_named(name)) is not None)
@@ -196,7 +198,7 @@ def _functions_in(values: Iterable[Scalar | Matrix]) -> frozenset[Function]:
 
 def all_roots(*values: Scalar | Matrix) -> frozenset[Function]:
     """Return the square roots that occur in values, also in the arguments of functions."""
-    found = _functions_in(values)
+    found = functions_in(values)
     inner = all_roots(*(f.argument for f in found)) if found else frozenset()
     return frozenset(f for f in found if f.kind == "sqrt") | inner
 
@@ -345,7 +347,7 @@ def identities(
     minimal polynomial of a real root.
     """
     values = tuple(values)
-    found = _functions_in(values)
+    found = functions_in(values)
     if not found:
         return {}, ()
     roots = all_roots(*values)
@@ -386,12 +388,12 @@ def _in_base(f: Function, steps: Mapping[tuple[bool, Scalar], Fraction]) -> Scal
         if not turns:
             real = real * function("exp", monomial * step) ** count
             continue
+        if abs(count) > _MOST_MULTIPLE:
+            raise NotWritten(f"{f.text} is too far from the other angles")
         c, s = function("cos", monomial * step), function("sin", monomial * step)
         s = s if count > 0 else -s
         for _ in range(abs(count)):
             real, imaginary = real * c - imaginary * s, real * s + imaginary * c
-    if turns:
-        return real if f.kind == "cos" else imaginary
-    if f.kind == "exp":
-        return real
+    if turns or f.kind == "exp":
+        return imaginary if f.kind == "sin" else real
     return (real + 1 / real if f.kind == "cosh" else real - 1 / real) / 2

@@ -169,7 +169,11 @@ WRONG = {
     "table for an entry": (problem(A="[[{ a = 1 }, 1], [0, -1]]"), "plant.A[0][0]", "a table"),
     "division by zero": (problem(A='"[0 1; 0 1/0]"'), "plant.A", "division by zero"),
     "complex entry": (problem(A='"[0 1; 0 2i]"'), "plant.A[1][1]", "a real value is expected, but 2*I came"),
-    "irrational entry": (problem(A='"[0 1; 0 exp(2)]"'), "plant.A", "exp has no exact value here … declare a symbol"),
+    "root of a negative": (
+        problem(A='"[0 1; 0 (-2)^(1/3)]"'),
+        "plant.A",
+        "the exponent 1/3 is not an integer … sqrt( )",
+    ),
     # expected answers
     "expected text unreadable": (problem(f'{POLES}\n[expect]\nL = "[19; 81"'), "expect.L", '"[" is never closed'),
     "expected field unknown": (problem(f'{POLES}\n[expect]\nK = "[1 2]"'), "expect.K", "no task here … L"),

@@ -128,7 +128,7 @@ point = 1
     assert errors_of(text, folder) == [
         "sheet.toml, corse: unknown key; did you mean course?",
         "sheet.toml, course: a text is expected, but a number came; write it in quotes",
-        'sheet.toml, language: "xx" is no choice; write one of en',
+        'sheet.toml, language: "xx" is no choice; write one of en, de',
         'sheet.toml, style: "book" is no choice; write one of exercise, exam',
         'sheet.toml, answers: "box" is no choice; write one of none, space, lines',
         'sheet.toml, number: this is no number of a sheet; write number = 3, or number = "3a"',

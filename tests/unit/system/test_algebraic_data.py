@@ -70,13 +70,10 @@ def test_a_result_reads_back() -> None:
 @pytest.mark.parametrize(
     ("entry", "reason"),
     [
-        ("sqrt(k)", "sqrt of this has no exact value here"),
-        ("sqrt(2 + sqrt(2))", "sqrt of this has no exact value here"),
-        ("sqrt(-2)", "a real value is expected"),
-        ("exp(1)", "exp has no exact value here"),
-        ("cos(k)", "cos has no exact value here"),
+        ("sqrt(k)", "has no exact value here"),
+        ("sqrt(2 + sqrt(2))", "has no exact value here"),
+        ("sqrt(-2)", "sqrt of a negative number"),
         ("cos(pi/7)", "is not written with square roots"),
-        ("(pi + 1)", "no algebraic number|reserved"),
     ],
 )
 def test_what_is_no_number_is_refused(entry: str, reason: str) -> None:
@@ -134,7 +131,7 @@ poles = "-2 + 2 r i, -2 - 2 r i"
     [
         ('k = "sqrt(3)"', "declared as a symbol, too"),
         ('r = "2 k"', "contains a symbol"),
-        ('r = "exp(1)"', "exp has no exact value here"),
+        ('r = "sqrt(-1)"', "sqrt of a negative number"),
         ("r = true", "a number is expected"),
         ('"1x" = 2', "is not a name"),
         ('h = "r"\nr = 2', 'the name "r" is not declared'),

@@ -21,7 +21,7 @@ PLANTS = {
     "pendulum": ("[0 1; -k*cos(theta) -1]", "[0; cos(2*theta)]", "[1 0]"),
     "sampled": ("[1 1-exp(-T); 0 exp(-T)]", "[T-1+exp(-T); 1-exp(-T)]", "[1 0]"),
     "slower": ("[1 1-exp(-2*T); 0 exp(-T)]", "[0; 1]", "[1 exp(-T)]"),
-    "roots": ("[0 1; -k sqrt(k)]", "[0; 2^(1/3)]", "[1 5^(2/5)]"),
+    "roots": ("[0 1; -k sqrt(2)]", "[0; 2^(1/3)]", "[1 5^(2/5)]"),
     "numbers": ("[0 pi; -1 exp(1)]", "[0; 1]", "[1 sin(1)]"),
     "hyperbolic": ("[0 1; cosh(k) sinh(k)]", "[0; 1]", "[cosh(k) 1]"),
 }
@@ -147,8 +147,15 @@ def test_expected_answers_are_read_with_functions(entry: str, missed: list[str])
     [
         ("exp(-t)", "function of t"),
         ("sin(s)", "function of s"),
-        ("sqrt(a)", "a may be negative"),
+        ("sqrt(a)", r"sqrt\(a\) has no exact value"),  # real for some a only, and sqrt(a^2) is not a
+        ("exp(sqrt(a))", r"sqrt\(a\) has no exact value"),
         ("(-2)^(1/3)", "exponent"),
+        ("2^(1/3)*4^(1/3)", "depend on each other"),
+        ("2^(1/4) + sqrt(2)", "depend on each other"),
+        ("1/(cos(a)^2 + sin(a)^2 - 1)", "divides by 0"),
+        ("1/(exp(2*a) - exp(a)^2)", "divides by 0"),
+        ("cos(a + pi/7) + cos(a)", "not written with square roots"),
+        ("cos(100000*a) + cos(a)", "too far"),
     ],
 )
 def test_what_has_no_meaning_is_refused(entry: str, reason: str) -> None:
@@ -170,3 +177,29 @@ def test_a_constant_that_is_none_is_refused(value: str, reason: str) -> None:
     )
     with pytest.raises(InputError, match=reason):
         validate(parse(text, "problem"))
+
+
+def test_roots_of_what_has_symbols_are_no_constants() -> None:
+    with pytest.raises(InputError, match="has no exact value"):
+        validate(
+            parse(
+                'task = "observability"\n[symbols]\na = "real"\n[constants]\nc = "sqrt(a)"\n[plant]\nA = "[c]"\nC = "[1]"',
+                "p",
+            )
+        )
+
+
+def test_a_square_under_a_root_of_sympy_is_refused() -> None:
+    x = sympy.Symbol("x")
+    with pytest.raises(InputError, match="has no exact value"):
+        symobs.StateSpace(sympy.Matrix([[0, 1], [0, 0]]), None, sympy.Matrix([[sympy.sqrt(x**2 + 1) - x, 0]]))
+
+
+def test_a_value_without_a_cosine_in_roots_is_refused() -> None:
+    with pytest.raises(InputError, match="not written with square roots"):
+        symobs.observability(plant("pendulum")).at(theta="pi/7")
+
+
+def test_the_dual_says_where_its_ranks_hold() -> None:
+    given = symobs.StateSpace("[0 1; -cos(a)-1 0]", None, "[1 k]", symbols={"a": "real", "k": "real"})
+    assert "we assume" in symobs.dual(given).to("text")
