@@ -36,6 +36,7 @@ from symobs.exact.time_functions.root_sum import RootSum
 from symobs.figures.block_diagram import figure_of, is_box, is_integrator, key
 from symobs.figures.plot import TimeResponse
 from symobs.formula import (
+from symobs.phrases.spoken import Counted, StateChoice
     Apply,
     At,
     Block,
@@ -610,7 +611,7 @@ class World:
                         yield from self.region(fact)
                         continue
                     yield "region", [(relation.operators, single(self.difference(relation))) for relation in where]
-                case str():
+                case str() | Counted() | StateChoice():
                     yield "word", fact
                 case SymbolList(names):
                     yield "word", names
