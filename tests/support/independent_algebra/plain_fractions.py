@@ -36,7 +36,6 @@ from symobs.exact.time_functions.root_sum import RootSum
 from symobs.figures.block_diagram import figure_of, is_box, is_integrator, key
 from symobs.figures.plot import TimeResponse
 from symobs.formula import (
-from symobs.phrases.spoken import Counted, StateChoice
     Apply,
     At,
     Block,
@@ -60,6 +59,7 @@ from symobs.phrases.spoken import Counted, StateChoice
     SymbolList,
     Transpose,
 )
+from symobs.phrases.spoken import Counted, StateChoice
 from tests.support.independent_algebra import regions_in_plain_fractions as regions
 from tests.support.independent_algebra import series
 from tests.support.independent_algebra.plain import coefficients_at, multiply, transposed
