@@ -34,7 +34,7 @@ from symobs.derivation.steps import (
     Tabulate,
     Where,
 )
-from symobs.derivation.wording_check import fits, formula_in, reject_other_map, rests, with_limit
+from symobs.derivation.wording_check import are_added, fits, formula_in, reject_other_map, rests, with_limit
 from symobs.errors import DerivationRejected
 from symobs.exact import Matrix, Scalar, product_of
 from symobs.formula import (
@@ -61,7 +61,7 @@ from symobs.formula import (
 )
 from symobs.formula.plain_text import plain, plain_relation
 from symobs.phrases import ASSERTS, NAMING
-from symobs.phrases.spoken import SPOKEN
+from symobs.phrases.spoken import SPOKEN, StateChoice
 from symobs.stability.criteria.stability import monic
 
 if TYPE_CHECKING:
@@ -211,6 +211,8 @@ def _owed(sentence: Sentence, step: Step, environment: Environment) -> None:
     roots = (slot for _, slot in sentence.slots if isinstance(slot, Roots))
     if not rests(sentence.key, (*facts, *roots), environment):
         reject(f"{sentence.key}, which rests on another fact,")
+    if not all(are_added(slot, facts) for _, slot in sentence.slots if isinstance(slot, StateChoice)):
+        reject(f"{sentence.key}, of other states,")
     reject_other_map(sentence, step.relation if isinstance(step, Define) else None, environment)
 
 

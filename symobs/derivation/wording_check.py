@@ -14,13 +14,15 @@ from typing import TYPE_CHECKING, Any
 from symobs.certificate.claims import as_scalar
 from symobs.certificate.pointwise import Pointwise
 from symobs.derivation.facts.rejection import reject
-from symobs.exact import Scalar, rank
+from symobs.exact import Matrix, Scalar, rank, unit_rows
 from symobs.exact.core.generators import PI, function
 from symobs.formula import (
     Apply,
+    Block,
     Exact,
     Formula,
     Letter,
+    Literal,
     Negative,
     Predicate,
     Product,
@@ -38,6 +40,7 @@ if TYPE_CHECKING:
 
     from symobs.derivation.steps import Sentence
     from symobs.formula import Environment, Fact
+    from symobs.phrases.spoken import StateChoice
 
 
 def _one_higher(value: Fraction) -> Fraction:
@@ -199,6 +202,23 @@ def rests(key: str, facts: Sequence[Fact], environment: Environment) -> bool:
     """Tell whether the facts of a step, which are true, are such as its sentence rests on."""
     is_held = _OF_FACTS.get(DEMANDS.get(key, ""))
     return is_held is None or is_held(facts, environment)
+
+
+def are_added(choice: StateChoice, facts: Sequence[Fact]) -> bool:
+    """Tell whether the facts are, set by set, the full rank of a test matrix with these states' unit rows below it."""
+    if len(facts) != len(choice.sets):
+        return False
+    for numbers, fact in zip(choice.sets, facts, strict=True):
+        match fact:
+            case Relation(
+                (Apply("rank", Block(((_,), (Literal(Matrix() as rows),), *_))), Literal(Scalar() as order)), ("=",)
+            ):
+                wanted = unit_rows(rows.shape[1], tuple(number - 1 for number in numbers))
+                if rows != wanted or order != Scalar.of(rows.shape[1]):
+                    return False
+            case _:
+                return False
+    return True
 
 
 def with_limit(sentence: Sentence, environment: Environment) -> Environment:

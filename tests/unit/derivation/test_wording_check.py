@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from fractions import Fraction
 from typing import Any
 
 import pytest
 
+import symobs
 from symobs.certificate.pointwise import Pointwise
 from symobs.derivation.wording_check import _one_higher, fits, rests
+from symobs.errors import DerivationRejected
 from symobs.exact import Matrix, Scalar
 from symobs.exact.core.generators import PI, function
 from symobs.formula import Apply, Environment, Letter, Literal, Predicate, Relation
 from symobs.phrases import PHRASES
+from symobs.phrases.spoken import StateChoice
 from tests.support.problems.steps import said
 
 #: Two rows of rank 1, and three rows of rank 2.
@@ -173,3 +177,22 @@ def test_a_rank_that_is_too_much_to_follow_is_not_told_for_all(monkeypatch: pyte
     monkeypatch.setattr(Pointwise, "apply", too_large)
     h = Scalar.symbol("h")
     assert fits("no_observability", rank(Literal(Matrix.of([[1, h], [2, 2 * h]])), "<", 2), HERE) is False
+
+
+@pytest.mark.parametrize("sets", [((2,),), ((1,), (2,)), ((1, 2),)])
+def test_other_states_than_those_whose_rows_were_added_are_rejected(sets: tuple[tuple[int, ...], ...]) -> None:
+    """With C = [0 1 1] and A = diag(1, 2, 3) state 1 has to be measured, and no other."""
+    derivation = symobs.observability(symobs.StateSpace("[1 0 0; 0 2 0; 0 0 3]", None, "[0 1 1]")).derivation
+    (section,) = (
+        step for step in derivation.steps if any("repair" in str(inner) for inner in getattr(step, "steps", ()))
+    )
+    changed = []
+    for step in section.steps:
+        words: Any = getattr(step, "sentence", None)
+        is_meant = words is not None and words.key.startswith("repair")
+        other: Any = replace(words, slots=(("states", StateChoice(sets)),)) if is_meant else words
+        changed.append(replace(step, sentence=other) if is_meant else step)
+    steps = tuple(replace(section, steps=tuple(changed)) if step is section else step for step in derivation.steps)
+    assert derivation.check()
+    with pytest.raises(DerivationRejected, match="of other states"):
+        replace(derivation, steps=steps).check()
