@@ -79,7 +79,7 @@ def test_shell_lines_run_on_the_problem_file(require_tool: Callable[[str], str],
     for name, text in (("problem", problem), ("servo", problem), ("lecture", lecture)):
         (tmp_path / f"{name}.toml").write_text(text, encoding="utf-8")
     lines = [line for block in blocks("sh") for line in block.splitlines() if line.startswith("symobs ")]
-    assert len(lines) == 25
+    assert len(lines) == 27
     for line in lines:
         run = fresh(*shlex.split(line, comments=True)[1:], folder=tmp_path)
         assert (run.code, run.err) == (0, ""), line
