@@ -152,12 +152,12 @@ def over_a_base(
         meanings, relations = identities(given)
         moved = {name: None if matrix is None else _in_base(matrix, meanings) for name, matrix in matrices.items()}
         ideal, divides = Ideal.of(relations), [matrix for matrix in moved.values() if matrix is not None]
-        divided_by_zero = any(matrix.common_denominator() in ideal for matrix in divides)
+        divided = any(matrix.common_denominator() in ideal for matrix in divides)
     except NotWritten as error:
         raise InputError(str(error), where=where, repair="declare a symbol for it") from None
     except ZeroDivisionError:
-        divided_by_zero = True
-    if divided_by_zero:
+        divided, moved, relations = True, {}, ()
+    if divided:
         raise InputError("an entry divides by 0", where=where, repair="divide by what is not 0")
     return moved, relations
 

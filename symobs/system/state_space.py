@@ -66,9 +66,8 @@ class StateSpace:
         parts: dict[str, Matrix | None] = {}
         for name, value in (("A", A), ("B", B), ("C", C), ("D", D)):
             try:
-                parts[name] = (
-                    None if value is None else read_matrix(value, named, f"plant.{name}", texts, functions=True)
-                )
+                place = f"plant.{name}"
+                parts[name] = None if value is None else read_matrix(value, named, place, texts, functions=True)
             except SymobsError as error:
                 errors.append(error)
         if parts.get("D") == Matrix.zeros(1, 1):
@@ -237,11 +236,12 @@ class StateSpace:
         m, symbols = self.matrices, self.symbols.seen(list(values.values()))
         values = read_values(values, symbols, {*m.symbols, *symbols.signs})
         try:
-            A, B, C, D = (substitute(part, values) for part in (m.A, m.B, m.C, m.D))
+            A, *others = (substitute(part, values) for part in (m.A, m.B, m.C, m.D))
         except NotWritten as error:
             raise InputError(str(error), where="plant", repair="give another value") from None
-        B, C, D = B if m.has_input else None, C if m.has_output else None, D if m.has_input and m.has_output else None
-        plant = StateSpace(A, B, C, D, self.dt, symbols=symbols)
+        there = m.has_input, m.has_output, m.has_input and m.has_output
+        given = (part if is_there else None for part, is_there in zip(others, there, strict=True))
+        plant = StateSpace(A, *given, self.dt, symbols=symbols)
         images = [substitute(equation, values).numerator for equation in self.equations]
         nonzero = [substitute(value, values).numerator for value in self.nonzero]
         if any(value.is_zero for value in nonzero) or any(i.is_constant and not i.is_zero for i in images):
