@@ -240,8 +240,8 @@ class StateSpace:
         except NotWritten as error:
             raise InputError(str(error), where="plant", repair="give another value") from None
         there = m.has_input, m.has_output, m.has_input and m.has_output
-        given = (part if is_there else None for part, is_there in zip(others, there, strict=True))
-        plant = StateSpace(A, *given, self.dt, symbols=symbols)
+        B, C, D = [part if is_there else None for part, is_there in zip(others, there, strict=True)]
+        plant = StateSpace(A, B, C, D, self.dt, symbols=symbols)
         images = [substitute(equation, values).numerator for equation in self.equations]
         nonzero = [substitute(value, values).numerator for value in self.nonzero]
         if any(value.is_zero for value in nonzero) or any(i.is_constant and not i.is_zero for i in images):
