@@ -120,9 +120,14 @@ def judge_lines(
     return lines, met
 
 
+def is_of_conditions(relation: str) -> bool:
+    """Return whether a line is one of conditions, and no equation."""
+    return bool(_ORDER.search(relation)) and " where " not in relation
+
+
 def _judged(state: _Derivation, step: Step, answer: Answer) -> Line:
     """Return a line with its verdict."""
-    if _ORDER.search(step.relation) and " where " not in step.relation:
+    if is_of_conditions(step.relation):
         return _of_conditions(state, step)
     try:
         entry = _entry(state, step, answer)
