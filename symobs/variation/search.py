@@ -208,6 +208,7 @@ class Variants:
                     raise ProblemErrors(tuple(InputError(line) for line in row["error"]))
                 return "it cannot be read"
         self._was_read, result = True, row["result"]
+        _raise_unknown(result)
         if result["reason"] is not None:
             return str(result["reason"])
         if self._reference is not None:
@@ -238,6 +239,8 @@ class Variants:
         order = self._job(base, Cheap())
         (chunk,) = work(iter([order]), force, Settings(_BUDGET))
         row = chunk.rows[0]
+        if row["status"] == "done":
+            _raise_unknown(row["result"])
         if row["status"] != "done" or "profile" not in row["result"]:
             lines = row.get("error") or [row["result"]["reason"]]
             raise ProblemErrors(tuple(InputError(line, where="the file's own plant") for line in lines))
@@ -258,3 +261,10 @@ class Variants:
 def _values(answers: list[Any]) -> list[Any]:
     """Return what answers say: no method or certificate makes two of them differ."""
     return [{key: each[key] for key in each if key not in {"method", "certificates"}} for each in answers]
+
+
+def _raise_unknown(result: Mapping[str, Any]) -> None:
+    """Raise `ProblemErrors` where the constraints name what no candidate has."""
+    found = result.get("unknown", ())
+    if found:
+        raise ProblemErrors(tuple(InputError(message, where=where, repair=repair) for where, message, repair in found))

@@ -14,7 +14,7 @@ from symobs.variation.drawing.constructions import CONSTRUCTIONS
 from symobs.variation.drawing.parameters import Parameter, count_of, interval, is_integer, read_parameter
 from symobs.variation.drawing.stream import VERSION
 from symobs.variation.reading.constraint_table import read_constraints
-from symobs.variation.reading.substitution import letters_in
+from symobs.variation.reading.substitution import letters_in, placeholders
 
 if TYPE_CHECKING:
     from symobs.variation.drawing.parameters import Note
@@ -67,6 +67,14 @@ def read_table(text: str, where: str = "problem") -> Table:
     like, load = _difficulty(table.get("difficulty", {}), note)
     _without_plant(base, construct, like, note)
     parameters, when = _parameters(table.get("parameters", {}), base, note)
+    given = table.get("parameters")
+    for place, name in placeholders(base):
+        if not isinstance(given, Mapping) or name not in given:
+            note(
+                f"{{{name}}} is no parameter",
+                place,
+                f"declare {name} in [variants.parameters], or leave the braces out",
+            )
     if construct is None and not parameters:
         repair = f"give construct, one of {', '.join(CONSTRUCTIONS)}, or [variants.parameters]"
         note("nothing is drawn", "variants", repair)

@@ -249,6 +249,29 @@ def test_what_nothing_meets_ends_after_the_attempts_with_the_reasons() -> None:
     assert "L has too many digits" in counts
 
 
+def test_names_that_no_candidate_has_are_refused_together() -> None:
+    text = OBSERVER.replace('integer        = ["L"]', 'integer = ["Z"]')
+    text = re.sub(r"(?m)^digits .*$", 'digits = { Q = 2, "A *" = 5 }', text).replace(
+        'answers_nonzero = ["L"]', 'answers_nonzero = ["K"]'
+    )
+    with pytest.raises(ProblemErrors) as raised:
+        found(text, 1)[0]
+    told = [(error.where, error.message.split()[-1]) for error in raised.value.errors]
+    keys = {"integer": '"Z"', "answers_nonzero": '"K"', "digits": '"Q"'}
+    assert told == [(f"variants.constraints.{key}", name) for key, name in keys.items()]
+    assert "known: A, B, C, D, L" in raised.value.errors[0].repair
+
+
+def test_a_placeholder_that_no_parameter_fills_is_refused() -> None:
+    words = 'title = "Poles at {q}"\ntext = "With {d}, and $\\\\bar{x}^{n}$"\n'
+    with pytest.raises(ProblemErrors) as raised:
+        read_table(words + re.sub(r"(?m)^(title|text).*\n", "", OBSERVER))
+    assert [(error.where, error.message) for error in raised.value.errors] == [
+        ("title", "{q} is no parameter"),
+        ("text", "{d} is no parameter"),
+    ]
+
+
 # -- constraints ------------------------------------------------------------------------------------------------------
 
 
