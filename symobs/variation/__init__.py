@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from symobs.errors import InputError, reason_of
+from symobs.phrases.languages import ENGLISH, language_named
 from symobs.variation.search import TooFew, Variants
 from symobs.variation.variant import Variant
 
@@ -36,5 +37,5 @@ def variants(problem: str | Path, count: int, seed: int = 0, *, workers: int | N
 def variant_of(text: str, where: str, number: int) -> dict[str, Any]:
     """Return the tables of the variant of this number, of seed 0; its text says so."""
     found = Variants(text, number, where=where, folder=Path(where).parent, in_process=True)[number - 1]
-    said = f"Variant {number} of seed 0."
+    said = language_named(found.data.get("language", ENGLISH.code)).phrases["variant_of_seed"].format(number=number)
     return {**found.data, "text": f"{found.data['text']} {said}" if found.data.get("text") else said}

@@ -13,6 +13,7 @@ from symobs.batching.engine import Settings, work
 from symobs.batching.executors import workforce
 from symobs.batching.jobs import Budget, Job, canonical, digest, job, own_convention
 from symobs.errors import CertificateRejected, InputError, OutOfBudget, ProblemErrors, SymobsError, UsageError
+from symobs.phrases.languages import ENGLISH, language_named
 from symobs.problem import parse
 from symobs.variation.acceptance.candidates import Candidate, base_candidate, candidate
 from symobs.variation.acceptance.cheap import Cheap, cheap, kind_of
@@ -226,7 +227,9 @@ class Variants:
         if self._reference is None:
             self._reference = kind_of(found), result["profile"]
         index = len(self._found) + 1
-        title = f"{found.data.get('title', '')}, variant {index}".removeprefix(", ")
+        phrases = language_named(found.data.get("language", ENGLISH.code)).phrases
+        own_title = str(found.data.get("title", ""))
+        title = phrases["variant_of" if own_title else "variant"].format(title=own_title, number=index)
         data = {**found.data, "title": title[:1].upper() + title[1:]}
         own = {key: value for key, value in data.items() if key != "expect"}
         return Variant(

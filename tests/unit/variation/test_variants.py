@@ -17,7 +17,7 @@ from symobs.errors import CertificateRejected, ProblemErrors, UsageError
 from symobs.expect import mismatches
 from symobs.problem import read
 from symobs.result import render
-from symobs.variation import TooFew, Variants
+from symobs.variation import TooFew, Variants, variant_of
 from symobs.variation.acceptance.candidates import candidate
 from symobs.variation.acceptance.cheap import cheap
 from symobs.variation.acceptance.distinct import coordinate_key, data_key
@@ -270,6 +270,13 @@ def test_a_placeholder_that_no_parameter_fills_is_refused() -> None:
         ("title", "{q} is no parameter"),
         ("text", "{d} is no parameter"),
     ]
+
+
+def test_the_number_of_a_variant_stands_in_the_language_of_its_file() -> None:
+    data = variant_of(f'language = "de"\n{OBSERVER}', "problem", 1)
+    assert data["title"] == "An observer of second order, Variante 1"
+    assert data["text"] == "Variante 1 mit Startwert 0."
+    assert variant_of(OBSERVER, "problem", 1)["text"] == "Variant 1 of seed 0."
 
 
 # -- constraints ------------------------------------------------------------------------------------------------------
