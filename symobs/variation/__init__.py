@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-from symobs.errors import InputError, reason_of
+from symobs.errors import InputError, UsageError, reason_of
 from symobs.phrases.languages import ENGLISH, language_named
 from symobs.variation.search import TooFew, Variants
 from symobs.variation.variant import Variant
@@ -25,6 +25,9 @@ def variants(problem: str | Path, count: int, seed: int = 0, *, workers: int | N
     """
     if isinstance(problem, str) and ("\n" in problem or problem.lstrip().startswith("{")):
         return Variants(problem, count, seed, workers=workers)
+    if not isinstance(problem, (str, Path)):
+        message = f"a problem file is expected, but a value of type {type(problem).__name__} came"
+        raise UsageError(message, where="problem", repair="give the path of a problem file, or its text")
     path = Path(problem)
     try:
         text = path.read_text(encoding="utf-8-sig")

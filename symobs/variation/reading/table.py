@@ -64,6 +64,8 @@ def read_table(text: str, where: str = "problem") -> Table:
         note("there is no such version", "variants.version", f"write version = {VERSION}")
     base = {key: value for key, value in data.items() if key != "variants"}
     construct, shape = _construct(table, note)
+    if construct is not None and not any(error.where.startswith("variants.construct") for error in errors):
+        _enough(construct, shape, note)
     like, load = _difficulty(table.get("difficulty", {}), note)
     _without_plant(base, construct, like, note)
     parameters, when = _parameters(table.get("parameters", {}), base, note)
@@ -75,7 +77,7 @@ def read_table(text: str, where: str = "problem") -> Table:
                 place,
                 f"declare {name} in [variants.parameters], or leave the braces out",
             )
-    if construct is None and not parameters:
+    if construct is None and not parameters and not errors:
         repair = f"give construct, one of {', '.join(CONSTRUCTIONS)}, or [variants.parameters]"
         note("nothing is drawn", "variants", repair)
     distinct = table.get("distinct", "both")
@@ -124,7 +126,6 @@ def _construct(table: Mapping[str, Any], note: Note) -> tuple[str | None, dict[s
             least = 0 if key in {"pairs", "steps"} else 1
             count_of(asked, key, "variants.construct", note, least, 6 if key == "order" else 20)
         shape[key] = value
-    _enough(kind, shape, note)
     return kind, shape
 
 

@@ -210,7 +210,6 @@ def test_all_errors_of_the_table_come_together_with_place_and_repair() -> None:
         "plant.A",
         "variants.attempt",
         "variants.construct.ordre",
-        "variants.construct.plant_poles",
         "variants.constraints.colour",
         "variants.constraints.digits.L",
         "variants.constraints.integer",
@@ -247,6 +246,19 @@ def test_what_nothing_meets_ends_after_the_attempts_with_the_reasons() -> None:
     counts: Any = raised.value.facts["rejected"]
     assert sum(counts.values()) == 300
     assert "L has too many digits" in counts
+
+
+def test_what_follows_from_another_error_is_left_out() -> None:
+    with pytest.raises(ProblemErrors, match=r"^variants.construct: this is no construction; write one of [^\n]*$"):
+        read_table('task = "observer"\n[variants]\nconstruct = "observr"\n')
+    with pytest.raises(ProblemErrors, match="plant_poles: there are not so many distinct poles"):
+        read_table(OBSERVER.replace("[-5, 5]", "[0, 0]"))
+
+
+def test_what_is_no_problem_file_is_refused() -> None:
+    for wrong in ({"task": "observer"}, None):
+        with pytest.raises(UsageError, match="problem: a problem file is expected"):
+            so.variants(wrong, 2)  # type: ignore[arg-type]
 
 
 def test_names_that_no_candidate_has_are_refused_together() -> None:
