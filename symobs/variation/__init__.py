@@ -26,7 +26,7 @@ def variants(problem: str | Path, count: int, seed: int = 0, *, workers: int | N
     if isinstance(problem, str) and ("\n" in problem or problem.lstrip().startswith("{")):
         return Variants(problem, count, seed, workers=workers)
     if not isinstance(problem, (str, Path)):
-        message = f"a problem file is expected, but a value of type {type(problem).__name__} came"
+        message = f"a problem file is expected, but a value of type {type(problem).__name__} came"  # type: ignore[unreachable]  # of Python without types
         raise UsageError(message, where="problem", repair="give the path of a problem file, or its text")
     path = Path(problem)
     try:
