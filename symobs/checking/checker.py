@@ -12,7 +12,8 @@ from symobs.checking.answers.answer_file import Answer, read_answer
 from symobs.checking.answers.values import plain
 from symobs.checking.derivations.lines import judge_lines
 from symobs.checking.judgement.judge import judge_task
-from symobs.checking.judgement.parts import asked_of, exists
+from symobs.checking.judgement.parts import asked_of
+from symobs.checking.marking_check import known_parts, marking_errors, part_of_name
 from symobs.checking.marks import missing, part_of
 from symobs.checking.report.data import SHOW, Part
 from symobs.checking.report.report import CheckReport
@@ -21,6 +22,7 @@ from symobs.errors import InputError, ProblemErrors, SymobsError, UsageError
 from symobs.expect import available
 from symobs.expression.source import shown
 from symobs.problem import MAX_BYTES, Problem, is_text, read, text_of
+from symobs.problem.noted_errors import Errors
 from symobs.result import Result
 from symobs.result.in_convention import Viewed
 
@@ -70,7 +72,14 @@ class Checked:
             text, folder = text_of(problem)
             problem = read(text, "problem" if folder is None else str(problem), folder)
         assert isinstance(problem, Problem)  # noqa: S101 - nothing else is left
-        return Checked(problem, problem.solve())
+        checked = Checked(problem, problem.solve())
+        errors, views = Errors(), checked.views()
+        with errors:
+            checked.asked(views)
+        errors.found += marking_errors(problem, views)
+        if errors.found:
+            raise errors.together()
+        return checked
 
     def views(self, convention: Convention | None = None) -> list[Viewed]:
         """Return the results as a convention writes them."""
@@ -81,20 +90,15 @@ class Checked:
         wanted = self.problem.marking.asked
         if not wanted:
             return [(view, name) for view in views for name in asked_of(view.result)]
-        found: list[tuple[Viewed, str]] = []
-        errors: list[SymobsError] = []
-        for i, part in enumerate(wanted):
-            task, _, letter = part.partition(".")
-            view = next((view for view in views if view.task == task), None)
-            name = view.standard(letter)[0] if view is not None else letter
-            if view is None or not exists(view.result, name):
-                known = ", ".join(f"{each.task}.{field}" for each in views for field in available(each))
-                errors.append(InputError(f"there is no {part}", where=f"marking.asked[{i}]", repair=f"known: {known}"))
-            else:
-                found.append((view, name))
+        named = [part_of_name(part, views) for part in wanted]
+        errors: list[SymobsError] = [
+            InputError(f"there is no {part}", where=f"marking.asked[{i}]", repair=known_parts(part, views))
+            for i, (part, found) in enumerate(zip(wanted, named, strict=True))
+            if found is None
+        ]
         if errors:
             raise ProblemErrors(tuple(errors))
-        return found
+        return [found for found in named if found is not None]
 
     def report(
         self, answer: object, show: str = "reason", convention: str | None = None, variant: str | None = None

@@ -256,7 +256,9 @@ class Tokeniser:
     def _unknown(self, name: str, at: int, *, called: bool) -> InputError:
         declared, nearest = self.scope.declared(), self.scope.nearest(name, called=called)
         question = f'did you mean "{nearest}"? ' if nearest else ""
-        listed = f"declared: {shown(', '.join(declared), 200)}" if declared else "no name is declared, so declare it"
+        listed = f"declared: {shown(', '.join(declared), 200)}"
+        if not self.scope.names:  # the variable alone is none that anybody declared
+            listed = f'no name is declared; add {name} = "real" to [symbols], or declare it in place'
         if {name, self.scope.variable} == {"s", "z"}:
             question, listed = "", _OF_OTHER_TIME[name]
         message = f'the name "{name}" is not declared'

@@ -105,13 +105,13 @@ def _folders() -> dict[str, Path]:
     return {_table(path)["WORDS"]["code"]: path.parent for path in _FOLDER.glob(f"*/{_WORDS}")}
 
 
-def language_named(code: str) -> Language:
+def language_named(code: str, where: str = "language") -> Language:
     """Return a language by its code; raises `UsageError` naming those that exist."""
     if code == ENGLISH.code:
         return ENGLISH
     if code not in languages():
-        message, repair = f"{code[:40]!r} is not a language of pages", f"use one of {', '.join(languages())}"
-        raise UsageError(message, where="language", repair=repair)
+        message, repair = f"{str(code)[:40]!r} is not a language of pages", f"use one of {', '.join(languages())}"
+        raise UsageError(message, where=where, repair=repair)
     return _read(_folders()[code])
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping
 from dataclasses import field
+from difflib import get_close_matches
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
@@ -29,6 +30,36 @@ CREDIT = {
     "other_half": Fraction(1, 4),
     "boundary": Fraction(3, 4),
 }
+#: The slips that a wrong part may have.
+SLIPS = (
+    *CREDIT,
+    "ambiguous",
+    "condition_missing",
+    "dual_untransposed",
+    "entry_misread",
+    "exchanged",
+    "factor",
+    "forgot_D",
+    "half_plane",
+    "inverse",
+    "margin_forgotten",
+    "mirrored",
+    "no_feedback",
+    "no_observer",
+    "not_subtracted",
+    "not_transformed",
+    "one_coefficient",
+    "only_positive_coefficients",
+    "other_matrix",
+    "pole_dropped",
+    "pole_repeated",
+    "positive_feedback",
+    "reversed",
+    "sign_entries",
+    "sign_of_one",
+    "specialised",
+    "wrong_direction",
+)
 _PART = re.compile(r"[a-z_]+\.[A-Za-z][A-Za-z0-9_]*")
 _MOST_MILESTONES = 50
 _CHOICES = {"decimals": ("exact", "accept"), "sign_of_F": ("convention", "either")}
@@ -130,6 +161,10 @@ def _by_name(key: str, value: object, where: str, tasks: Collection[str], note: 
         place = f"{where}.{shown(name, 40)}"
         if key != "credit":
             _part(name, place, tasks, note)
+        elif name not in SLIPS:
+            near = get_close_matches(str(name), SLIPS, 1)
+            question = f"did you mean {near[0]}? " if near else ""
+            note("no slip has this name", place, f"{question}known: {', '.join(SLIPS)}")
         found[name] = _number(entry, place, note, most=1 if key == "credit" else None)
     return found
 

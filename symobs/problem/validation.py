@@ -97,6 +97,7 @@ def validate(data: Mapping[str, Any], only: str | None = None, folder: Path | No
 
     `folder` is where a convention of the user's own may lie.  Raises `ProblemErrors` with every error found.
     """
+    _refuse_other_kinds(data)
     errors = Errors()
     report_unknown(data, TOP, "", errors)
     title, source, text = (text_of(data, name, errors) for name in ("title", "source", "text"))
@@ -116,9 +117,6 @@ def validate(data: Mapping[str, Any], only: str | None = None, folder: Path | No
     digits = _digits(data, errors)
     marking = read_marking(data.get("marking", {}), [task.name for task in asked], errors.note)
     check_text(data.get("variant", ""), "variant", errors)
-    if "variants" in data:
-        repair = "solve one with `symobs solve FILE --variant 1`, or write them with `symobs variants FILE -o FOLDER`"
-        errors.note("this file stands for many problems", "variants", repair)
     if not errors.found and plant is not None:
         about = title, source, ids, wanted, plant, specification, expect, convention, text, printed, values, marking
         return Problem(*about, digits, language)
@@ -131,6 +129,18 @@ def validate(data: Mapping[str, Any], only: str | None = None, folder: Path | No
         for missing in missing_poles(wanted, data.get("specification")):
             errors.note(*missing)
     raise errors.together(convention)
+
+
+def _refuse_other_kinds(data: Mapping[str, Any]) -> None:
+    """Raise `ProblemErrors` for a file of many problems, or of a sheet: what else it lacks follows from that."""
+    errors = Errors()
+    if "variants" in data:
+        repair = "solve one with `symobs solve FILE --variant 1`, or write them with `symobs variants FILE -o FOLDER`"
+        errors.note("this file stands for many problems", "variants", repair)
+    elif isinstance(data.get("problem"), list) and not {"task", "tasks", "plant"} & data.keys():
+        errors.note("this file describes a sheet", "problem", "put it on paper with `symobs sheet FILE`")
+    if errors.found:
+        raise errors.together()
 
 
 def _ids(value: object, errors: Errors) -> tuple[str, ...]:

@@ -30,8 +30,15 @@ def document_options(
     language: str = "en",
     digits: int | None = None,
     exact: bool = False,
+    **unknown: object,
 ) -> dict[str, Any]:
-    """Return the options of a page as those of a document; raises `UsageError` for a convention that does not exist."""
+    """Return the options of a page as those of a document.
+
+    Raises `UsageError` for a convention that does not exist, and for an option that no page has.
+    """
+    if unknown:
+        repair = f"known options are {', '.join(PageOptions.__annotations__)}"
+        raise UsageError("no page has this option", where=shown(next(iter(unknown)), 40), repair=repair)
     asked = digits_asked(digits, exact=exact)
     return {"convention": convention_named(convention), "detail": detail, "language": language, "digits": asked}
 

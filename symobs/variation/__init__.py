@@ -5,7 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-from symobs.errors import InputError, reason_of
+from symobs.errors import InputError, UsageError, reason_of
+from symobs.phrases.languages import ENGLISH, language_named
 from symobs.variation.search import TooFew, Variants
 from symobs.variation.variant import Variant
 
@@ -24,6 +25,9 @@ def variants(problem: str | Path, count: int, seed: int = 0, *, workers: int | N
     """
     if isinstance(problem, str) and ("\n" in problem or problem.lstrip().startswith("{")):
         return Variants(problem, count, seed, workers=workers)
+    if not isinstance(problem, (str, Path)):
+        message = f"a problem file is expected, but a value of type {type(problem).__name__} came"  # type: ignore[unreachable]  # of Python without types
+        raise UsageError(message, where="problem", repair="give the path of a problem file, or its text")
     path = Path(problem)
     try:
         text = path.read_text(encoding="utf-8-sig")
@@ -36,5 +40,5 @@ def variants(problem: str | Path, count: int, seed: int = 0, *, workers: int | N
 def variant_of(text: str, where: str, number: int) -> dict[str, Any]:
     """Return the tables of the variant of this number, of seed 0; its text says so."""
     found = Variants(text, number, where=where, folder=Path(where).parent, in_process=True)[number - 1]
-    said = f"Variant {number} of seed 0."
+    said = language_named(found.data.get("language", ENGLISH.code)).phrases["variant_of_seed"].format(number=number)
     return {**found.data, "text": f"{found.data['text']} {said}" if found.data.get("text") else said}

@@ -13,6 +13,7 @@ from symobs.batching.engine import Settings, work
 from symobs.batching.executors import workforce
 from symobs.batching.jobs import Budget, Job, canonical, digest, job, own_convention
 from symobs.errors import CertificateRejected, InputError, OutOfBudget, ProblemErrors, SymobsError, UsageError
+from symobs.phrases.languages import ENGLISH, language_named
 from symobs.problem import parse
 from symobs.variation.acceptance.candidates import Candidate, base_candidate, candidate
 from symobs.variation.acceptance.cheap import Cheap, cheap, kind_of
@@ -208,6 +209,7 @@ class Variants:
                     raise ProblemErrors(tuple(InputError(line) for line in row["error"]))
                 return "it cannot be read"
         self._was_read, result = True, row["result"]
+        _raise_unknown(result)
         if result["reason"] is not None:
             return str(result["reason"])
         if self._reference is not None:
@@ -225,7 +227,9 @@ class Variants:
         if self._reference is None:
             self._reference = kind_of(found), result["profile"]
         index = len(self._found) + 1
-        title = f"{found.data.get('title', '')}, variant {index}".removeprefix(", ")
+        phrases = language_named(found.data.get("language", ENGLISH.code)).phrases
+        own_title = str(found.data.get("title", ""))
+        title = phrases["variant_of" if own_title else "variant"].format(title=own_title, number=index)
         data = {**found.data, "title": title[:1].upper() + title[1:]}
         own = {key: value for key, value in data.items() if key != "expect"}
         return Variant(
@@ -238,6 +242,8 @@ class Variants:
         order = self._job(base, Cheap())
         (chunk,) = work(iter([order]), force, Settings(_BUDGET))
         row = chunk.rows[0]
+        if row["status"] == "done":
+            _raise_unknown(row["result"])
         if row["status"] != "done" or "profile" not in row["result"]:
             lines = row.get("error") or [row["result"]["reason"]]
             raise ProblemErrors(tuple(InputError(line, where="the file's own plant") for line in lines))
@@ -258,3 +264,10 @@ class Variants:
 def _values(answers: list[Any]) -> list[Any]:
     """Return what answers say: no method or certificate makes two of them differ."""
     return [{key: each[key] for key in each if key not in {"method", "certificates"}} for each in answers]
+
+
+def _raise_unknown(result: Mapping[str, Any]) -> None:
+    """Raise `ProblemErrors` where the constraints name what no candidate has."""
+    found = result.get("unknown", ())
+    if found:
+        raise ProblemErrors(tuple(InputError(message, where=where, repair=repair) for where, message, repair in found))

@@ -20,7 +20,7 @@ from symobs.checking.judgement.gains import from_gains, with_gain
 from symobs.checking.judgement.parts import GAINS
 from symobs.checking.judgement.regions import compare
 from symobs.checking.report.data import Line
-from symobs.errors import BudgetExceeded, CertificateRejected, NotShown, SymobsError
+from symobs.errors import BudgetExceeded, CertificateRejected, NotShown, ProblemErrors, SymobsError
 from symobs.exact import Matrix, Scalar, TooLarge
 from symobs.expect import names_of
 
@@ -120,9 +120,22 @@ def judge_lines(
     return lines, met
 
 
+def _without_place(error: SymobsError) -> str:
+    """Return what is wrong with a line; its place is that of the line."""
+    errors = error.errors if isinstance(error, ProblemErrors) else (error,)
+    for each in errors:
+        each.where = ""
+    return "\n".join(map(str, errors))
+
+
+def is_of_conditions(relation: str) -> bool:
+    """Return whether a line is one of conditions, and no equation."""
+    return bool(_ORDER.search(relation)) and " where " not in relation
+
+
 def _judged(state: _Derivation, step: Step, answer: Answer) -> Line:
     """Return a line with its verdict."""
-    if _ORDER.search(step.relation) and " where " not in step.relation:
+    if is_of_conditions(step.relation):
         return _of_conditions(state, step)
     try:
         entry = _entry(state, step, answer)
@@ -140,8 +153,7 @@ def _judged(state: _Derivation, step: Step, answer: Answer) -> Line:
     except _OPEN as error:
         return Line(step.where, step.relation, "undecided", reason=str(error))
     except SymobsError as error:
-        error.where = ""
-        return Line(step.where, step.relation, "unreadable", reason=str(error))
+        return Line(step.where, step.relation, "unreadable", reason=_without_place(error))
     except UNREADABLE:
         return Line(step.where, step.relation, "undecided", reason="this line cannot be evaluated")
 
@@ -195,8 +207,7 @@ def _of_conditions(state: _Derivation, step: Step) -> Line:
     except _OPEN as error:
         return Line(step.where, step.relation, "undecided", reason=str(error))
     except SymobsError as error:
-        error.where = ""
-        return Line(step.where, step.relation, "unreadable", reason=str(error))
+        return Line(step.where, step.relation, "unreadable", reason=_without_place(error))
     verdict = {"right": "true", "undecided": "undecided"}.get(found.verdict, "false")
     return Line(step.where, step.relation, verdict)
 

@@ -85,7 +85,11 @@ def command(
             return Outcome(((answer_file(checked, convention), target),))
         assert answer is not None  # noqa: S101 - one of the three is there
         name = None if convention is None else convention_name
-        return _outcome(checked.report_of_text(read_file(answer), place_of(answer), show, name), format_name, target)
+        return _outcome(
+            checked.report_of_text(read_file(answer, "an answer file"), place_of(answer), show, name),
+            format_name,
+            target,
+        )
 
     run_work(work, timeout, memory, place_of(problem))
 

@@ -90,4 +90,8 @@ def _tables(text: str, file: str, variant: int | None) -> dict[str, Any]:
         return tables
     from symobs.variation import variant_of  # noqa: PLC0415 - for files that have variants only
 
-    return variant_of(text, file, variant or 1)
+    try:
+        return variant_of(text, file, variant or 1)
+    except UsageError as error:
+        error.where = "--variant"
+        raise

@@ -55,17 +55,14 @@ def command(
         raise UsageError("with --list nothing is written", repair="write -o FOLDER instead")
     if profile not in PROFILES:
         raise UsageError(f"{quoted(profile)} is no profile", where="--profile", repair=f"write {' or '.join(PROFILES)}")
-    students = read_file(assign) if assign is not None else None
-    found = Variants(
-        read_file(problem),
-        count,
-        seed,
-        where=place_of(problem),
-        folder=Path(problem).parent,
-        profile=profile,
-        attempts=attempts,
-        workers=workers,
-    )
+    students = read_file(assign, "a CSV file with a column student") if assign is not None else None
+    text, folder = read_file(problem, "a problem file with [variants]"), Path(problem).parent
+    options = {"profile": profile, "attempts": attempts, "workers": workers}
+    try:
+        found = Variants(text, count, seed, where=place_of(problem), folder=folder, **options)  # type: ignore[arg-type]
+    except UsageError as error:
+        error.where = f"--{error.where}"
+        raise
     shares = None if students is None else assignment(students, seed, count, place_of(str(assign)))
     found.told = _told(count)
     if target is None:

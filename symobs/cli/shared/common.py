@@ -101,8 +101,8 @@ def place_of(file: str) -> str:
     return shown(file, 200) or "an empty name" if file != "-" else "standard input"
 
 
-def read_file(file: str) -> str:
-    """Return the text of a file or of standard input, bounded in size."""
+def read_file(file: str, kind: str = "a problem file") -> str:
+    """Return the text of a file or of standard input, bounded in size; `kind` says what it is expected to be."""
     from symobs.problem import MAX_BYTES  # noqa: PLC0415
 
     where = place_of(file)
@@ -113,7 +113,7 @@ def read_file(file: str) -> str:
             with Path(file).open("rb") as stream:
                 raw = stream.read(MAX_BYTES + 1)
     except (OSError, ValueError) as error:  # ValueError: a name with a null byte
-        repair = "give the path of a problem file, or - for standard input"
+        repair = f"give the path of {kind}, or - for standard input"
         raise InputError(reason_of(error), where=where, repair=repair) from None
     if len(raw) > MAX_BYTES:
         message = f"the file is larger than {MAX_BYTES // 1024} kB"

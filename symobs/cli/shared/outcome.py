@@ -59,14 +59,19 @@ def page_of(
     from symobs.result.digits_of_page import digits_asked  # noqa: PLC0415
 
     asked = digits_asked(digits, exact=exact, where="--digits")
-    page = {"detail": detail_named(detail), "web": web, **({} if asked is None else {"digits": asked}), **others}
+    page = {
+        "detail": detail_named(detail, "--detail"),
+        "web": web,
+        **({} if asked is None else {"digits": asked}),
+        **others,
+    }
     if web != PLAIN and format_name != "html":
         where = next(f"--{name}" for name in ("details", "copy", "live") if getattr(web, name))
         raise UsageError(f"the format {format_name} is no web page", where=where, repair="use --format html")
     if language is not None:
         from symobs.phrases.languages import language_named  # noqa: PLC0415 - only with --language
 
-        page["language"] = language_named(language).code
+        page["language"] = language_named(language, "--language").code
     if templates is None:
         return page
     from symobs.render.formats.templates import check_folder  # noqa: PLC0415 - only with --templates

@@ -12,7 +12,8 @@ from typing import TYPE_CHECKING, Any
 
 from symobs._dataclass import dataclass
 from symobs.checking import Checked
-from symobs.errors import InputError, ProblemErrors, SymobsError, reason_of
+from symobs.checking.marking_check import known_parts, marking_errors, part_of_name
+from symobs.errors import InputError, ProblemErrors, SymobsError, UsageError, reason_of
 from symobs.exporting.questions.parts import SLIPS, ExportedPart, exported_part
 from symobs.expression.source import shown
 from symobs.problem import MAX_BYTES, Problem, read
@@ -165,9 +166,13 @@ def _exercise(path: Path, asked: Sequence[str], points: Fraction | None) -> Exer
     marking = replace(marking, asked=tuple(asked) or marking.asked, total=points or marking.total)
     problem = replace(problem, marking=marking)
     checked = Checked(problem, problem.solve())
-    errors = _unheld(problem)
+    views = checked.views()
+    for part in asked:
+        if part_of_name(part, views) is None:
+            raise UsageError(f"there is no {shown(part, 60)}", where="--asked", repair=known_parts(part, views))
+    errors = [*_unheld(problem), *marking_errors(replace(problem, marking=replace(marking, milestones=())), views)]
     parts: list[ExportedPart] = []
-    wanted = checked.asked(checked.views())
+    wanted = checked.asked(views)
     letters = Counter(field for _, field in wanted)
     for view, field in wanted:
         letter = next((own for own, (standard, _) in view.names.items() if standard == field), field)

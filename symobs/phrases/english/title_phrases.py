@@ -37,6 +37,9 @@ PHRASES: dict[str, str] = {
     "observer_poles": "The desired observer poles are {poles}.",
     "observer_polynomial": "The desired observer polynomial is {polynomial}.",
     "realised_minimal": "A minimal realisation is",
+    "variant": "Variant {number}",
+    "variant_of": "{title}, variant {number}",
+    "variant_of_seed": "Variant {number} of seed 0.",
 }
 
 ASSERTS: dict[str, tuple[str, ...]] = {

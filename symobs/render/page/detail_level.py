@@ -26,11 +26,11 @@ DETAILS = ("full", "outline", "answer")
 FINAL = "final"
 
 
-def detail_named(name: str) -> str:
+def detail_named(name: str, where: str = "detail") -> str:
     """Return the name of a level of detail; raises `UsageError` naming those that exist."""
     if name not in DETAILS:
         repair = f"use one of {', '.join(DETAILS)}"
-        raise UsageError(f"{name[:40]!r} is not a level of detail", where="detail", repair=repair)
+        raise UsageError(f"{str(name)[:40]!r} is not a level of detail", where=where, repair=repair)
     return name
 
 

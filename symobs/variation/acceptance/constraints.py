@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from difflib import get_close_matches
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
 from symobs.exact import Factored, Matrix, Scalar
 from symobs.exact.algebraic.polynomial_roots import rational_sqrt
 from symobs.exact.algebraic.root_location import root_boxes
+from symobs.expression.source import shown
 from symobs.result import task_named
 from symobs.stability.criteria.stability import stability
 from symobs.variation.acceptance.profile import numbers_of
@@ -21,6 +23,8 @@ if TYPE_CHECKING:
 
 #: The verdict of these tasks says whether there is an answer at all.
 _DESIGNS = {"compensator", "feedforward", "observer", "reduced_order_observer", "state_feedback", "tracking"}
+#: The constraints that name matrices of the plant, or answers.
+_NAMING = ("integer", "answers_nonzero", "digits", "denominators")
 _OF_PLANT = ("A", "B", "C", "D")
 
 
@@ -44,6 +48,21 @@ def broken(constraints: Mapping[str, Any], results: Sequence[Result]) -> str | N
         or _other_denominators(constraints.get("denominators", {}), results)
         or _zero_entry(constraints.get("answers_nonzero", ()), results)
     )
+
+
+def unknown_names(constraints: Mapping[str, Any], results: Sequence[Result]) -> list[tuple[str, str, str]]:
+    """Return the place, the message and the repair of every name that is neither of the plant nor of an answer."""
+    known = list(dict.fromkeys([*_OF_PLANT, *(field for result in results for field in result.asked_fields)]))
+    repair = f"known: {', '.join([*known, '*'])}"
+    found = []
+    for key in _NAMING:
+        for name in constraints.get(key, ()):
+            if name not in {*known, "*"}:
+                near = get_close_matches(name, known, 1)
+                question = f"did you mean {near[0]}? " if near else ""
+                message = f'neither the plant nor an answer has the field "{shown(name, 40)}"'
+                found.append((f"variants.constraints.{key}", message, question + repair))
+    return found
 
 
 def beyond(constraints: Mapping[str, Any], profile: Mapping[str, Any]) -> str | None:

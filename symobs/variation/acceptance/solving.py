@@ -13,7 +13,7 @@ from symobs.exact import Matrix
 from symobs.expect import mismatches
 from symobs.render.formats.json import answer_object
 from symobs.result.conversions import to_json
-from symobs.variation.acceptance.constraints import beyond, broken
+from symobs.variation.acceptance.constraints import beyond, broken, unknown_names
 from symobs.variation.acceptance.profile import profile
 
 if TYPE_CHECKING:
@@ -30,6 +30,9 @@ def run(payload: Mapping[str, Any]) -> dict[str, Any]:
     results = problem.solve()
     _agree(payload["gains"], results)
     constraints = payload["constraints"]
+    unknown = unknown_names(constraints, results)
+    if unknown:
+        return {"status": "done", "result": {"reason": "a constraint names no field", "unknown": unknown}}
     reason = broken(constraints, results)
     if reason is not None:
         return {"status": "done", "result": {"reason": reason}}

@@ -22,6 +22,8 @@ _EXPRESSIONS = ("plant", "specification", "constants", "values", "marking")
 _WORDS = ("title", "text")
 #: A number, which may end in a power of ten, or a name.
 _TOKEN = re.compile(r"\d+\.?\d*(?:[eE][-+]?\d+)?|([A-Za-z][A-Za-z0-9_]*)")
+#: A name in braces that are not the argument of a command, or an exponent or index, of a formula.
+_PLACEHOLDER = re.compile(r"(?<![\w^_}])\{([A-Za-z][A-Za-z0-9_]*)\}")
 #: Where a whole number stands safely without parentheses: between these.
 _BEFORE, _AFTER = "+-([,;", "+-)],;"
 
@@ -30,6 +32,12 @@ def letters_in(base: Mapping[str, Any]) -> set[str]:
     """Return the names that the expressions of a file contain, and those in the braces of its words."""
     found = {name for table in _EXPRESSIONS for text in _texts(base.get(table)) for name in _TOKEN.findall(text)}
     return found | {name for key in _WORDS for name in re.findall(r"\{(\w+)\}", str(base.get(key, "")))}
+
+
+def placeholders(base: Mapping[str, Any]) -> list[tuple[str, str]]:
+    """Return where in the words of a file a name stands in braces, and the name; braces of formulas are none."""
+    found = [(key, name) for key in _WORDS for name in _PLACEHOLDER.findall(str(base.get(key, "")))]
+    return list(dict.fromkeys(found))
 
 
 def _texts(value: object) -> list[str]:

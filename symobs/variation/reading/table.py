@@ -14,7 +14,7 @@ from symobs.variation.drawing.constructions import CONSTRUCTIONS
 from symobs.variation.drawing.parameters import Parameter, count_of, interval, is_integer, read_parameter
 from symobs.variation.drawing.stream import VERSION
 from symobs.variation.reading.constraint_table import read_constraints
-from symobs.variation.reading.substitution import letters_in
+from symobs.variation.reading.substitution import letters_in, placeholders
 
 if TYPE_CHECKING:
     from symobs.variation.drawing.parameters import Note
@@ -64,10 +64,20 @@ def read_table(text: str, where: str = "problem") -> Table:
         note("there is no such version", "variants.version", f"write version = {VERSION}")
     base = {key: value for key, value in data.items() if key != "variants"}
     construct, shape = _construct(table, note)
+    if construct is not None and not any(error.where.startswith("variants.construct") for error in errors):
+        _enough(construct, shape, note)
     like, load = _difficulty(table.get("difficulty", {}), note)
     _without_plant(base, construct, like, note)
     parameters, when = _parameters(table.get("parameters", {}), base, note)
-    if construct is None and not parameters:
+    given = table.get("parameters")
+    for place, name in placeholders(base):
+        if not isinstance(given, Mapping) or name not in given:
+            note(
+                f"{{{name}}} is no parameter",
+                place,
+                f"declare {name} in [variants.parameters], or leave the braces out",
+            )
+    if construct is None and not parameters and not errors:
         repair = f"give construct, one of {', '.join(CONSTRUCTIONS)}, or [variants.parameters]"
         note("nothing is drawn", "variants", repair)
     distinct = table.get("distinct", "both")
@@ -116,7 +126,6 @@ def _construct(table: Mapping[str, Any], note: Note) -> tuple[str | None, dict[s
             least = 0 if key in {"pairs", "steps"} else 1
             count_of(asked, key, "variants.construct", note, least, 6 if key == "order" else 20)
         shape[key] = value
-    _enough(kind, shape, note)
     return kind, shape
 
 

@@ -155,6 +155,12 @@ def test_a_false_line_without_a_cause_is_false_all_the_same() -> None:
     assert lines("det(s I - A - + + C) = (s L 1)^3", None, checked) == [("false", ())]
 
 
+def test_a_line_that_cannot_be_read_says_nothing_of_places_in_a_file() -> None:
+    (line,) = Checked.of(SERVO).report("a =").lines
+    assert (line.verdict, "printed" in line.reason) == ("unreadable", False)
+    assert line.reason
+
+
 def test_milestones() -> None:
     problem = f'{SERVO}[[marking.milestone]]\nrelation = "rank(O) = 2"\npoints = 1\n'
     problem += '[[marking.milestone]]\nrelation = "K = [4 3]"\npoints = 2\n'

@@ -18,6 +18,8 @@ from symobs.checking.asked import answer_file
 from symobs.checking.report.schema import schema
 from symobs.errors import ProblemErrors, UsageError
 from symobs.problem import read
+from symobs.problem.marking import SLIPS
+from tests.support.paths import ROOT
 from tests.support.problems.answered import SERVO, THIRD_ORDER, TWO_OUTPUTS, F, K, L
 
 RIGHT = {"K": "[4 3]", "L": "[19; 81]", "F": "(319 s + 400)/(s^2 + 23 s + 161)"}
@@ -112,6 +114,7 @@ def test_marks_are_exact_fractions() -> None:
     [
         ("total = -1", "marking.total: -1 is negative"),
         ("credit = { sign = 2 }", "marking.credit.sign: 2 is not between 0 and 1"),
+        ('credit = { sgn = "1/2" }', "marking.credit.sgn: no slip has this name; did you mean sign"),
         ('asked = ["observer.L"]', r"marking.asked\[0\]: observer is not a task of this file"),
         ("guard = 1", "marking.guard: true or false is expected"),
         ("extra = 1", "marking.extra: unknown key"),
@@ -126,9 +129,32 @@ def test_a_wrong_marking_is_refused(marking: str, message: str) -> None:
 
 def test_a_part_that_does_not_exist_is_named() -> None:
     with pytest.raises(
-        ProblemErrors, match=r"marking.asked\[0\]: there is no compensator.Q; known: compensator.verdict"
+        ProblemErrors,
+        match=r"marking.asked\[0\]: there is no compensator.Q; did you mean compensator.L\? known: compensator.verdict",
     ):
         check(f'{SERVO}[marking]\nasked = ["compensator.Q"]\n', RIGHT)
+
+
+def test_all_of_a_marking_that_would_never_count_is_named_at_once() -> None:
+    marking = '[marking]\nasked = ["compensator.Q"]\nparts = { "compensator.X" = 2 }\n'
+    marking += '[[marking.milestone]]\nrelation = "a ="\npoints = 1\n'
+    marking += '[[marking.milestone]]\nrelation = "h >"\npoints = 1\n'
+    with pytest.raises(ProblemErrors) as raised:
+        check(SERVO + marking, RIGHT)
+    places = ["asked[0]", "parts.compensator.X", "milestone[0].relation", "milestone[1].relation"]
+    assert [error.where for error in raised.value.errors] == [f"marking.{place}" for place in places]
+    assert all(error.repair for error in raised.value.errors)
+
+
+def test_the_slips_that_have_a_credit_are_those_that_are_found() -> None:
+    folder = ROOT / "symobs" / "checking"
+    paths = [*(folder / "faults").glob("*.py"), folder / "judgement" / "regions.py"]
+    text = "".join(path.read_text(encoding="utf-8") for path in paths)
+    said = re.findall(r'(?:Fault|Explained)\(\s*f?"(\w+)"|_of\([^"]*"(\w+)"|yield "(\w+)", |slip="(\w+)"', text)
+    of_matrices = re.search(r"_SAID = (\{.*\})", text)
+    assert of_matrices is not None
+    slips = {name for found in said for name in found if name} | set(json.loads(of_matrices[1]).values())
+    assert slips | {"sign_convention", "sign"} == set(SLIPS)
 
 
 # -- the answer file --------------------------------------------------------------------------------------------------

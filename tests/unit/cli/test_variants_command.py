@@ -13,6 +13,8 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 OBSERVER = ROOT / "worked_examples" / "variants" / "observer.toml"
+PLAIN = ROOT / "worked_examples" / "servo_observer.toml"
+SHEET = ROOT / "worked_examples" / "sheets" / "observers.toml"
 FEW = """
 title = "a is {a}"
 task = "observability"
@@ -35,8 +37,8 @@ a = { set = [1, 2] }
         (["--list", "--report"], 2, "nothing is written"),
         (["--list", "--profile", "same"], 2, "is no profile"),
         (["--list", "--seed", "-1"], 2, "is no seed"),
-        (["--list", "--count", "20000"], 2, "cannot be made"),
-        (["-o", "set", "--assign", "nobody.csv"], 3, "nobody.csv"),
+        (["--list", "--count", "20000"], 2, "--count: 20000 variants cannot be made"),
+        (["-o", "set", "--assign", "nobody.csv"], 3, "give the path of a CSV file"),
         (["-o", "set", "--assign", "strangers.csv"], 3, "there is no column student"),
     ],
 )
@@ -89,7 +91,25 @@ def test_solve_takes_one_of_them(tmp_path: Path) -> None:
     assert "Variant 1 of seed 0." in first.out
     second = inside("solve", "few.toml", "--variant", "2", "--format", "text", folder=tmp_path)
     assert second.out != first.out
-    plain = ROOT / "worked_examples" / "servo_observer.toml"
-    refused = inside("solve", str(plain), "--variant", "2", folder=tmp_path)
+    refused = inside("solve", str(PLAIN), "--variant", "2", folder=tmp_path)
     assert refused.code == 2
     assert "no table [variants]" in refused.err
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (["solve", str(OBSERVER), "--variant", "20000"], "--variant: 20000 variants cannot be made; "),
+        (["solve", str(PLAIN), "--language", "xx"], "--language: 'xx' is not a language of pages; "),
+        (["solve", str(PLAIN), "--detail", "xx"], "--detail: 'xx' is not a level of detail; "),
+        (["check", str(PLAIN), "gone.toml"], "gone.toml: No such file or directory; give the path of an answer file"),
+        (["check", str(OBSERVER), "--asked"], "variants: this file stands for many problems; "),
+        (["solve", str(SHEET)], "problem: this file describes a sheet; "),
+        (["export", str(SHEET), "--to", "stack", "-o", "x.xml"], "problem: this file describes a sheet; "),
+    ],
+)
+def test_one_message_with_its_place(tmp_path: Path, arguments: list[str], message: str) -> None:
+    refused = inside(*arguments, folder=tmp_path)
+    assert refused.code in {2, 3}
+    assert refused.err.startswith(message)
+    assert len(refused.err.splitlines()) == 1

@@ -181,7 +181,9 @@ def test_usage(tmp_path: Path) -> None:
     assert "take prairielearn, stack" in run("export", example, "--to", "canvas", "-o", tmp_path / "x").err
     assert run("export", example, "--to", "stack", "-o", tmp_path / "x", "--points", "-1").code == 2
     assert run("export", tmp_path, "--to", "stack", "-o", tmp_path / "x").code == 3
-    assert run("export", example, "--to", "stack", "-o", tmp_path / "x", "--asked", "observer.Q").code == 3
+    unknown = run("export", example, "--to", "stack", "-o", tmp_path / "x", "--asked", "observer.Q")
+    assert unknown.code == 2
+    assert unknown.err.startswith("--asked: there is no observer.Q; did you mean observer.L?")
     (tmp_path / "file").write_text("")
     assert "this is a file" in run("export", example, "--to", "ipynb", "-o", tmp_path / "file").err
     assert [path.name for path in tmp_path.iterdir()] == ["file"]

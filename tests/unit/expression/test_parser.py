@@ -558,8 +558,9 @@ def test_unknown_name_among_declared_ones(text: str, repair: str) -> None:
 
 
 def test_no_name_is_declared() -> None:
-    with pytest.raises(UnknownName, match="no name is declared"):
-        parse_scalar("b", {})
+    for variable in (None, "t"):  # which nobody declares
+        with pytest.raises(UnknownName, match=r'no name is declared; add b = "real" to \[symbols\]'):
+            parse_scalar("b", {}, variable=variable)
 
 
 @pytest.mark.parametrize(

@@ -11,6 +11,7 @@ import pytest
 import sympy
 
 import symobs
+from symobs.errors import UsageError
 from symobs.exact import Scalar
 from symobs.exact.core.canonical_text import scalar_text
 from symobs.exact.sympy_bridge.conversion import scalar_to_sympy
@@ -130,3 +131,11 @@ def test_a_polynomial_alone_is_the_data() -> None:
     region = symobs.stability_region(polynomial="s^2 + k*s + 1", parameters=["k"])
     (found,) = json.loads(region.to_json())["results"]
     assert found["plant"] == {"polynomial": "s**2 + s*k + 1", "dt": 0, "symbols": {"k": "real"}}
+
+
+def test_options_that_no_page_has_are_refused_with_those_that_it_has() -> None:
+    result = symobs.observability(symobs.StateSpace("[0 1; 0 0]", C="[1 0]"))
+    with pytest.raises(UsageError, match=r"^details: no page has this option; known options are convention, detail, "):
+        result.to("html", details=True)  # type: ignore[call-overload]
+    with pytest.raises(UsageError, match=r"^language: '3' is not a language of pages; use one of en, "):
+        result.to_html(language=3)  # type: ignore[arg-type]

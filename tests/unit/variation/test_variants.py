@@ -17,7 +17,7 @@ from symobs.errors import CertificateRejected, ProblemErrors, UsageError
 from symobs.expect import mismatches
 from symobs.problem import read
 from symobs.result import render
-from symobs.variation import TooFew, Variants
+from symobs.variation import TooFew, Variants, variant_of
 from symobs.variation.acceptance.candidates import candidate
 from symobs.variation.acceptance.cheap import cheap
 from symobs.variation.acceptance.distinct import coordinate_key, data_key
@@ -210,7 +210,6 @@ def test_all_errors_of_the_table_come_together_with_place_and_repair() -> None:
         "plant.A",
         "variants.attempt",
         "variants.construct.ordre",
-        "variants.construct.plant_poles",
         "variants.constraints.colour",
         "variants.constraints.digits.L",
         "variants.constraints.integer",
@@ -247,6 +246,49 @@ def test_what_nothing_meets_ends_after_the_attempts_with_the_reasons() -> None:
     counts: Any = raised.value.facts["rejected"]
     assert sum(counts.values()) == 300
     assert "L has too many digits" in counts
+
+
+def test_what_follows_from_another_error_is_left_out() -> None:
+    with pytest.raises(ProblemErrors, match=r"^variants.construct: this is no construction; write one of [^\n]*$"):
+        read_table('task = "observer"\n[variants]\nconstruct = "observr"\n')
+    with pytest.raises(ProblemErrors, match="plant_poles: there are not so many distinct poles"):
+        read_table(OBSERVER.replace("[-5, 5]", "[0, 0]"))
+
+
+def test_what_is_no_problem_file_is_refused() -> None:
+    for wrong in ({"task": "observer"}, None):
+        with pytest.raises(UsageError, match="problem: a problem file is expected"):
+            so.variants(wrong, 2)  # type: ignore[arg-type]
+
+
+def test_names_that_no_candidate_has_are_refused_together() -> None:
+    text = OBSERVER.replace('integer        = ["L"]', 'integer = ["Z"]')
+    text = re.sub(r"(?m)^digits .*$", 'digits = { Q = 2, "A *" = 5 }', text).replace(
+        'answers_nonzero = ["L"]', 'answers_nonzero = ["K"]'
+    )
+    with pytest.raises(ProblemErrors) as raised:
+        found(text, 1)[0]
+    told = [(error.where, error.message.split()[-1]) for error in raised.value.errors]
+    keys = {"integer": '"Z"', "answers_nonzero": '"K"', "digits": '"Q"'}
+    assert told == [(f"variants.constraints.{key}", name) for key, name in keys.items()]
+    assert "known: A, B, C, D, L" in raised.value.errors[0].repair
+
+
+def test_a_placeholder_that_no_parameter_fills_is_refused() -> None:
+    words = 'title = "Poles at {q}"\ntext = "With {d}, and $\\\\bar{x}^{n}$"\n'
+    with pytest.raises(ProblemErrors) as raised:
+        read_table(words + re.sub(r"(?m)^(title|text).*\n", "", OBSERVER))
+    assert [(error.where, error.message) for error in raised.value.errors] == [
+        ("title", "{q} is no parameter"),
+        ("text", "{d} is no parameter"),
+    ]
+
+
+def test_the_number_of_a_variant_stands_in_the_language_of_its_file() -> None:
+    data = variant_of(f'language = "de"\n{OBSERVER}', "problem", 1)
+    assert data["title"] == "An observer of second order, Variante 1"
+    assert data["text"] == "Variante 1 mit Startwert 0."
+    assert variant_of(OBSERVER, "problem", 1)["text"] == "Variant 1 of seed 0."
 
 
 # -- constraints ------------------------------------------------------------------------------------------------------

@@ -1,0 +1,67 @@
+"""What `[marking]` names, held against the results: parts that exist, and relations that can be read."""
+
+from __future__ import annotations
+
+from difflib import get_close_matches
+from typing import TYPE_CHECKING
+
+from symobs.audit.printed_entries import printed_entries
+from symobs.checking.derivations.lines import is_of_conditions
+from symobs.checking.judgement.conditions import read_conditions
+from symobs.checking.judgement.parts import exists
+from symobs.errors import InputError, ProblemErrors, SymobsError
+from symobs.expect import available
+
+if TYPE_CHECKING:
+    from collections.abc import Collection, Iterator, Sequence
+
+    from symobs.problem import Problem
+    from symobs.result.in_convention import Viewed
+
+
+def marking_errors(problem: Problem, views: Sequence[Viewed]) -> list[SymobsError]:
+    """Return what in the weights and the milestones of a problem would never count."""
+    return [*_unknown_weights(problem, views), *_unreadable_milestones(problem)]
+
+
+def part_of_name(part: str, views: Sequence[Viewed]) -> tuple[Viewed, str] | None:
+    """Return the result of `task.field` and its standard name, None where there is no such part."""
+    task, _, letter = part.partition(".")
+    view = next((view for view in views if view.task == task), None)
+    name = view.standard(letter)[0] if view is not None else letter
+    return None if view is None or not exists(view.result, name) else (view, name)
+
+
+def known_parts(part: str, views: Sequence[Viewed]) -> str:
+    """Return what to write for a part that does not exist."""
+    return meant(part, [f"{each.task}.{field}" for each in views for field in available(each)])
+
+
+def meant(name: str, known: Collection[str]) -> str:
+    """Return the names there are, and before them the one that was meant."""
+    near = get_close_matches(name, known, 1)
+    return f"{f'did you mean {near[0]}? ' if near else ''}known: {', '.join(known)}"
+
+
+def _unknown_weights(problem: Problem, views: Sequence[Viewed]) -> Iterator[SymobsError]:
+    """Yield the weights of parts that no result has by this name, which is the standard one."""
+    known = [f"{view.task}.{name}" for view in views for name in available(view.result)]
+    for part in problem.marking.parts:
+        if part not in known:
+            yield InputError(f"there is no {part}", where=f"marking.parts.{part}", repair=meant(part, known))
+
+
+def _unreadable_milestones(problem: Problem) -> Iterator[SymobsError]:
+    """Yield the relations that no line of a derivation could ever be."""
+    for i, milestone in enumerate(problem.marking.milestones):
+        where = f"marking.milestone[{i}].relation"
+        try:
+            if is_of_conditions(milestone.relation):
+                read_conditions(milestone.relation, None, where)
+            else:
+                entry = {"relation": milestone.relation}
+                printed_entries([entry], problem.convention, problem.plant.symbols.signs)
+        except SymobsError as error:
+            each = error.errors[0] if isinstance(error, ProblemErrors) else error
+            repair = each.repair or 'write both sides, for example "L = [19; 81]"'
+            yield InputError(each.message, where=where, repair=repair)
