@@ -77,11 +77,13 @@ def test_an_unstable_compensator_may_lose_its_pole() -> None:
     assert case.result.fields["F_stable"] == "yes"
 
 
-def test_zeros_that_a_whole_stratum_has_are_left_undecided() -> None:
-    # P = [s − a², s − b³]/s² has the zero a² = b³ wherever these are the same, and no zero elsewhere.
+def test_zeros_that_a_whole_stratum_has_are_found() -> None:
+    # P = [s − a², s − b³]/s² has the zero a² = b³ wherever these are the same and not 0, and no zero elsewhere.
     found = symobs.transfer_function(symobs.StateSpace("[0 1; 0 0]", "[1 1; -a^2 -b^3]", "[1 0]"))
     assert found.fields["zeros"] == ()
-    assert verdicts(found, a=8, b=4) == {"undecided"}
+    assert verdicts(found, a=8, b=4) == {"yes"}
+    (same,) = (case.result for case in found.cases if len(case.when) == 1)
+    assert [str(zero) for zero in same.zeros] == ["a**2"]
     assert verdicts(found, a=8, b=5) == {"yes"}
 
 

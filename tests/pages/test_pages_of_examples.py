@@ -67,7 +67,9 @@ _UNSEEN = {"\u2061", "\u2062", "\xa0", " "}
 def glyphs_of_latex(source: str) -> str:
     """The characters that LaTeX would set, in order; no accents, no spaces, matrices as their entries in brackets."""
     lines = r"\\hline|\\rule\{0pt\}\{[\d.]+ex\}"
-    source = re.sub(rf"\\begin\{{array\}}\{{[c|]+\}}|\\end\{{array\}}|{lines}|\\(?:left|right)\.|\\\\\[\d+pt\]", "", source)
+    source = re.sub(
+        rf"\\begin\{{array\}}\{{[c|]+\}}|\\end\{{array\}}|{lines}|\\(?:left|right)\.|\\\\\[\d+pt\]", "", source
+    )
     source = re.sub(r"\\(?:begin|end)\{bmatrix\}", lambda m: "[" if "begin" in m[0] else "]", source)
     glyphs = ""
     for command, sign in re.findall(r"\\([A-Za-z]+)|(\\.|.)", source.replace(r"\\", "")):

@@ -18,7 +18,7 @@ from symobs.cli import cli
 from symobs.exact import Matrix
 from symobs.expect import mismatches
 from symobs.expression import parse_matrix, parse_scalar
-from symobs.formula import Literal
+from symobs.formula import Block, Literal
 from symobs.result import formats, render
 from tests.support.independent_algebra.second_reader import sympy_scalar
 from tests.support.paths import ROOT
@@ -302,6 +302,8 @@ def values_in_order(item: object) -> Iterator[Any]:
     elif isinstance(item, (tuple, list)):
         for part in item:
             yield from values_in_order(part)
+    elif isinstance(item, Block) and all(isinstance(part, Literal) for row in item.rows for part in row):
+        yield from values_in_order(Literal(Matrix.block([[part.value for part in row] for row in item.rows])))
     elif hasattr(item, "__dataclass_fields__"):
         # A sentence stands before the display it belongs to.
         for name in sorted(item.__dataclass_fields__, key=lambda name: name not in {"sentence", "title"}):
