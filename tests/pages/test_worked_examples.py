@@ -303,7 +303,8 @@ def values_in_order(item: object) -> Iterator[Any]:
         for part in item:
             yield from values_in_order(part)
     elif isinstance(item, Block) and all(isinstance(part, Literal) for row in item.rows for part in row):
-        yield from values_in_order(Literal(Matrix.block([[part.value for part in row] for row in item.rows])))
+        parts: Any = item.rows
+        yield from values_in_order(Literal(Matrix.block([[part.value for part in row] for row in parts])))
     elif hasattr(item, "__dataclass_fields__"):
         # A sentence stands before the display it belongs to.
         for name in sorted(item.__dataclass_fields__, key=lambda name: name not in {"sentence", "title"}):
