@@ -227,7 +227,7 @@ def test_python_and_the_shell_know_the_levels() -> None:
 def test_an_unknown_level_is_refused_before_work_starts() -> None:
     run = inside("solve", str(SERVO), "--detail", "short")
     assert (run.code, run.out) == (2, "")
-    assert run.err == "detail: 'short' is not a level of detail; use one of full, outline, answer\n"
+    assert run.err == "--detail: 'short' is not a level of detail; use one of full, outline, answer\n"
     with pytest.raises(UsageError):
         at_detail((), "short")
 

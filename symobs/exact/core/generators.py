@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 #: Integers of more bits are not split into primes under a root.
 _PRIME_BITS = 128
 #: The highest multiple of an angle whose cosine is written by that of the angle.
-_MOST_MULTIPLE = 60
+_MOST_MULTIPLE = 1000
 ZERO, ONE = Scalar.of(0), Scalar.of(1)
 #: The number π, a generator like a parameter: no polynomial over Q vanishes at it.
 PI = "pi"
