@@ -66,7 +66,7 @@ def numbers_of_page(text: str) -> Iterator[str]:
     page = re.sub(r"\\begin\{tikzpicture\}.*?\\end\{tikzpicture\}", "", str(page), flags=re.DOTALL)
     formulas = r"\$[^$]+\$|\\\[.*?\\\]|\\begin\{(align|equation|gather)\*?\}.*?\\end\{\1\*?\}"
     for formula in re.finditer(formulas, page, flags=re.DOTALL):
-        yield from re.findall(r"\d+", re.sub(r"\\\\\[\d+pt\]|penalty\d+|arraystretch\}\{[0-9.]+", "", formula[0]))
+        yield from re.findall(r"\d+", re.sub(r"\\\\\[\d+pt\]|penalty=?\d+|arraystretch\}\{[0-9.]+", "", formula[0]))
 
 
 @pytest.mark.slow
