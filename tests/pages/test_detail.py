@@ -55,6 +55,7 @@ def answers(page: Iterable[Block]) -> list[Formula]:
     return [block.relations[-1].members[-1] for block in page if isinstance(block, Display) and block.boxed]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.stem)
 def test_a_shorter_page_hides_nothing_that_conditions_an_answer(path: Path) -> None:
     full = blocks(path, "full")

@@ -78,6 +78,7 @@ def data_of(path: Path) -> dict[str, Any]:
     return tomllib.loads(path.read_text(encoding="utf-8"), parse_float=str)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("path", SMALL, ids=lambda path: path.stem)
 def test_an_answer_is_that_of_solve(path: Path) -> None:
     data = data_of(path)

@@ -267,6 +267,7 @@ PAGES: dict[str, Callable[[], Result]] = {
 every_page = pytest.mark.parametrize("page", PAGES.values(), ids=PAGES.keys())
 
 
+@pytest.mark.slow
 @every_page
 def test_no_spoiled_diagram_is_accepted(page: Callable[[], Result]) -> None:
     """The other sign, one gain in the place of another, a box left out: none of it is what the page says."""

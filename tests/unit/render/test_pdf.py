@@ -77,6 +77,7 @@ HOSTILE = [
 ]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("text", HOSTILE, ids=range(len(HOSTILE)))
 def test_hostile_text_is_shown_and_does_nothing(text: str, require_tool: RequireTool, tmp_path: Path) -> None:
     require_tool("pdflatex")

@@ -218,6 +218,7 @@ def test_curves_that_divide_only_are_left_out_where_they_are_many() -> None:
 # -- LaTeX ------------------------------------------------------------------------------------------------------------
 
 
+@pytest.mark.slow
 def test_all_pictures_are_typeset_without_a_fault(require_tool: Callable[[str], str], tmp_path: Path) -> None:
     pages = [page(name) for name in ALL]
     bodies = [LatexFragment().render(document(each)) for each in pages]

@@ -739,6 +739,7 @@ def displays(source: random.Random, printer: LatexPrinter | TextPrinter) -> Iter
     yield printer.display([equation(lit(Scalar.symbol(f"xi_{k}")), lit(polynomial(source, 1 + k))) for k in range(20)])
 
 
+@pytest.mark.slow
 def test_no_display_is_wider_than_the_page(tmp_path: Path, require_tool: Callable[[str], str]) -> None:
     pdflatex = require_tool("pdflatex")
     pages = [f"\\typeout{{display {k}}}\n{d}" for k, d in enumerate(displays(random.Random(4), LatexPrinter()))]  # noqa: S311
@@ -751,6 +752,7 @@ def test_no_display_is_wider_than_the_page(tmp_path: Path, require_tool: Callabl
     assert max(wide, default=0.0) <= 1.0
 
 
+@pytest.mark.slow
 def test_no_text_display_is_wider_than_its_lines() -> None:
     for display in displays(random.Random(5), TextPrinter(width=80)):  # noqa: S311
         assert max(map(text_width, display.split("\n"))) <= 80

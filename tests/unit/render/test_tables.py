@@ -138,6 +138,7 @@ WIDE = [
 ]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("width", [20, 40, 76])
 @pytest.mark.parametrize("value", WIDE, ids=str)
 def test_names_stand_for_what_they_name(value: Scalar, width: float) -> None:

@@ -98,6 +98,7 @@ def test_a_box() -> None:
     assert inside.sample == {"h1": Scalar.rational(1, 2)}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("conditions", "signs", "count"),
     [

@@ -215,6 +215,7 @@ entries = st.builds(
 declared = st.fixed_dictionaries({"a": st.sampled_from(["positive", "nonzero", "real", "nonnegative"])})
 
 
+@pytest.mark.slow
 @given(st.lists(entries, min_size=1, max_size=4), declared, st.booleans(), st.integers(0, 10**6))
 @settings(max_examples=60)
 def test_the_simplified_list_the_raw_lists_and_the_roots_agree(

@@ -200,6 +200,7 @@ def with_symmetric_roots(draw: st.DrawFn) -> list[int]:
     return [int(c) for c in sympy.prod(factors).all_coeffs()]
 
 
+@pytest.mark.slow
 @given(integers | positive | with_symmetric_roots())
 @example([1, 1, 2, 2, 3])
 @example([1, 0, 3, 0, 3, 0, 1])

@@ -142,6 +142,7 @@ def test_a_picture_is_left_out_where_it_would_show_nothing() -> None:
 # -- what is refused --------------------------------------------------------------------------------------------------
 
 
+@pytest.mark.slow
 @every_page
 def test_no_spoiled_course_is_accepted(page: Callable[[], Result]) -> None:
     derivation = page().derivation
