@@ -78,10 +78,11 @@ def command(
         raise UsageError("both --questions and --solutions are given", repair="leave both out for both")
     chosen = _sheet_format(format_name, target)
     web = WebPage(details, copy, live)
-    page_of(detail, language, templates, chosen.name, web, digits=digits, exact=exact)  # what is wrong is said at once
+    told = page_of(detail, language, templates, chosen.name, web, digits=digits, exact=exact)
     check_target(target)
     file = _sheet_file(files)
-    told = page_of(detail, language or file.language or None, templates, chosen.name, web, digits=digits, exact=exact)
+    if language is None and file.language:
+        told["language"] = file.language
     wanted = Wanted(
         chosen,
         not solutions,

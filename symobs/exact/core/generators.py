@@ -84,9 +84,9 @@ class Function:
         return square_root(argument) if self.kind == "sqrt" else function(self.kind, argument)
 
 
-#: The functions that move with time, beside roots.
-KINDS = frozenset(("exp", "sin", "cos", "sinh", "cosh"))
 _RATES = {"exp": (1, "exp"), "sin": (1, "cos"), "cos": (-1, "sin"), "sinh": (1, "cosh"), "cosh": (1, "sinh")}
+#: The functions that move with time, beside roots.
+KINDS = frozenset(_RATES)
 
 
 def function_named(name: str) -> Function | None:
