@@ -54,9 +54,12 @@ def work(jobs: Iterable[Job], force: Workforce, settings: Settings) -> Iterator[
     waiting: dict[Future[tuple[list[str], float]], tuple[Job, ...]] = {}
     size, end = 1.0, None if settings.deadline is None else time.monotonic() + settings.deadline
     examine = _examiner(settings.recheck)
+    is_there = True
     try:
         while True:
-            is_there = force.is_there()
+            was_there, is_there = is_there, force.is_there()
+            if is_there and not was_there:  # who is back may never answer what was under way when it went
+                again.extend(_taken_back(waiting))
             if end is not None and time.monotonic() > end:
                 break
             while is_there and len(waiting) < IN_FLIGHT * force.workers:
@@ -90,6 +93,15 @@ def work(jobs: Iterable[Job], force: Workforce, settings: Settings) -> Iterator[
             future.cancel()
     if waiting or again or next(queue, None) is not None:
         raise Unfinished(f"{settings.deadline:g} seconds are over", where="--deadline")
+
+
+def _taken_back(waiting: dict[Future[tuple[list[str], float]], tuple[Job, ...]]) -> list[tuple[Job, ...]]:
+    """Cancel what has no answer yet, and return its chunks: a job is pure, so that doing it again is harmless."""
+    unanswered = [future for future in waiting if not future.done()]
+    chunks = [waiting.pop(future) for future in unanswered]
+    for future in unanswered:
+        future.cancel()
+    return chunks
 
 
 _WORKER_DIED = ([""], -1.0)

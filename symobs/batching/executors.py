@@ -97,7 +97,8 @@ def _cluster(address: str, worker_timeout: float) -> Iterator[Workforce]:
     except ImportError:
         repair = "install it with pip install 'symobs[distributed]', or use --workers"
         raise UsageError("dask.distributed is not installed", where="--scheduler", repair=repair) from None
-    for name in ("distributed", "distributed.client"):  # what they have to say is said by who waits for them
+    # What they have to say is said by who waits for them; with the scheduler goes whatever was being fetched.
+    for name in ("distributed", "distributed.client", "tornado.application"):
         logging.getLogger(name).setLevel(logging.CRITICAL)
     try:
         client = distributed.Client(address, timeout=_CONNECT, set_as_default=False)

@@ -10,7 +10,7 @@ import signal
 import subprocess
 import sys
 import time
-from concurrent.futures import ProcessPoolExecutor
+from concurrent.futures import Future, ProcessPoolExecutor
 from functools import partial
 from multiprocessing import get_context
 from typing import TYPE_CHECKING, Any
@@ -20,8 +20,9 @@ import pytest
 import symobs
 from symobs.batching import kinds
 from symobs.batching.engine import Settings, work
-from symobs.batching.executors import Unfinished, workforce
+from symobs.batching.executors import InProcess, Unfinished, Workforce, workforce
 from symobs.batching.jobs import Budget, Job, job, key_of, solve_job
+from symobs.batching.kept import run_in_process
 from symobs.batching.run import Batch, batch, verified
 from symobs.batching.store import Store
 from symobs.errors import CertificateRejected, InputError, UsageError
@@ -30,7 +31,7 @@ from tests.support.problems.batches import Tampering, children_of, design, event
 from tests.support.tools.command_line import SAFETY, SERVO, environment, inside
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
+    from collections.abc import Callable, Iterable, Iterator
     from pathlib import Path
 from types import SimpleNamespace
 
@@ -249,6 +250,26 @@ def test_the_index_is_what_the_rows_say(hostile: Path, tmp_path: Path) -> None:
     assert len(quick.final) == 8
 
 
+def test_what_a_lost_connection_leaves_without_an_answer_is_done_again() -> None:
+    """An executor that goes away with what it was given, and answers once it is back."""
+    lost: list[Future[Any]] = []
+    seen = iter([True, True, False, False])
+
+    class Goes(InProcess):
+        def submit(self, fn: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
+            if lost:
+                return super().submit(fn, *args, **kwargs)
+            lost.append(Future())
+            return lost[0]
+
+    jobs = [solve_job(design(number), f"p{number}") for number in range(3)]
+    force = Workforce(Goes(), 1, run_in_process, lambda: next(seen, True))
+    rows = [row for chunk in work(jobs, force, Settings()) for row in chunk.rows]
+    assert sorted(row["name"] for row in rows) == ["p0", "p1", "p2"]
+    assert {row["status"] for row in rows} == {"done"}
+    assert lost[0].cancelled()
+
+
 # -- deadlines, signals and death -------------------------------------------------------------------------------------
 
 
@@ -273,6 +294,7 @@ def test_a_deadline_ends_a_run_that_goes_on_later(
 
 _CLIENT = """
 import sys
+from symobs.batching.kept import run_in_process
 from symobs.batching.jobs import Budget, job
 from symobs.batching.engine import Settings
 from symobs.batching.run import Batch
