@@ -34,7 +34,7 @@ from tests.support.independent_algebra.plain import (
 )
 from tests.support.independent_algebra.plain_fractions import World
 from tests.support.paths import ROOT
-from tests.support.sampling import FULL
+from tests.support.sampling import FULL, every
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -138,7 +138,7 @@ def scalars(point: dict[str, Fraction]) -> dict[str, Scalar]:
     return {name: Scalar.of(value) for name, value in point.items()}
 
 
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("name", every(2, NAMES))
 def test_claims_hold_wherever_the_conditions_do(name: str) -> None:
     problem, results = solved(name)
     names = names_of(problem, results)

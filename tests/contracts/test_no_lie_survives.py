@@ -23,6 +23,7 @@ from symobs.problem import read
 from tests.programs.mutation.claims import drawn
 from tests.support.independent_algebra.truth import is_true, still_true
 from tests.support.paths import ROOT
+from tests.support.sampling import every
 from tests.support.tampering.lies import Count, tampered, try_answers, try_lines, try_witnesses
 from tests.support.tampering.mutations import changes, lines_of, parts_of
 
@@ -53,7 +54,7 @@ def results(path: Path) -> tuple[Result, ...]:
 NOT_UNIQUE = {"cart_tracking", "cart_tracking_impossible"}
 
 
-@pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.stem)
+@pytest.mark.parametrize("path", every(2, EXAMPLES), ids=lambda path: path.stem)
 def test_no_lie_survives(path: Path, record_property: Callable[[str, object], None]) -> None:
     answers, lines = Count(), Count()
     for result in results(path):
@@ -70,11 +71,11 @@ def test_no_lie_survives(path: Path, record_property: Callable[[str, object], No
         of_ranks = count is lines and {result.task for result in results(path)} <= OF_RANKS
         is_free = count is answers and path.stem in NOT_UNIQUE
         is_straight = count is lines and path.stem in OF_STRAIGHT_EDGES
-        assert count.rejected > (0.7 if of_ranks else 0.6 if is_straight else 0.4 if is_free else 0.75) * count.tried
+        assert count.rejected > (0.75 if of_ranks else 0.6 if is_straight else 0.4 if is_free else 0.8) * count.tried
     assert lines.tried >= 60
 
 
-@pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.stem)
+@pytest.mark.parametrize("path", every(2, EXAMPLES, 1), ids=lambda path: path.stem)
 def test_every_line_holds_in_plain_fractions(path: Path) -> None:
     for result in results(path):
         assert is_true(result.derivation)

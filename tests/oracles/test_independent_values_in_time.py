@@ -12,6 +12,7 @@ from tests.oracles.test_independent_values import ROOTS, VERDICTS, results, same
 from tests.support.independent_algebra.second_reader import Reader, facts_in, values_of
 from tests.support.problems.problems_by_hand import s
 from tests.support.problems.problems_in_time import PROBLEMS_IN_TIME, VARYING
+from tests.support.sampling import every
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -35,7 +36,7 @@ def in_time(name: str, result: Result) -> Reader:
     return Reader(result.derivation, hand.letters(), samples, known_at=lambda values: hand.at(values).letters())
 
 
-@pytest.mark.parametrize("name", PROBLEMS_IN_TIME)
+@pytest.mark.parametrize("name", every(2, PROBLEMS_IN_TIME))
 def test_every_line_of_every_page_in_time(name: str) -> None:
     for result in results(name):
         facts, reader = list(facts_in(result.derivation.steps)), in_time(name, result)
@@ -46,7 +47,7 @@ def test_every_line_of_every_page_in_time(name: str) -> None:
         assert tally.compared >= len(facts) > 0
 
 
-@pytest.mark.parametrize("name", PROBLEMS_IN_TIME)
+@pytest.mark.parametrize("name", every(2, PROBLEMS_IN_TIME, 1))
 def test_every_answer_in_time(name: str) -> None:
     hand = PROBLEMS_IN_TIME[name]
     for result in results(name):

@@ -7,6 +7,7 @@ import re
 import subprocess
 import sys
 from functools import cache
+from itertools import product
 from typing import TYPE_CHECKING, Any
 
 import pytest
@@ -22,6 +23,7 @@ from symobs.formula import Block, Literal
 from symobs.result import formats, render
 from tests.support.independent_algebra.second_reader import sympy_scalar
 from tests.support.paths import ROOT
+from tests.support.sampling import every
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping
@@ -109,8 +111,11 @@ def test_the_command_itself() -> None:
     assert ran.stderr == b""
 
 
-@every_file
-@pytest.mark.parametrize("name", ["latex", "fragment", "text", "json"])
+@pytest.mark.parametrize(
+    ("path", "name"),
+    [(path, "latex") for path in FILES] + every(4, product(FILES, ["fragment", "text", "json"])),
+    ids=lambda each: getattr(each, "stem", each),
+)
 def test_renders(path: Path, name: str) -> None:
     found, results = solved(path)
     page = render(found.document(results), name)

@@ -25,6 +25,7 @@ from tests.support.independent_algebra.second_reader import Reader, numeric, sym
 from tests.support.independent_algebra.truth import still_true
 from tests.support.paths import ROOT
 from tests.support.problems.problems_by_hand import is_zero
+from tests.support.sampling import FULL
 from tests.support.tampering.mutations import answer_changes, changes, lines_of
 
 if TYPE_CHECKING:
@@ -323,7 +324,7 @@ def rational(above: list[int], below: list[int]) -> tuple[Scalar, Any]:
 
 
 @given(COEFFICIENTS, COEFFICIENTS)
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=150 if FULL else 25, deadline=None)
 def test_derivatives_and_antiderivatives(above: list[int], below: list[int]) -> None:
     value, image = rational(above, below)
     slope = derivative(value, "t")

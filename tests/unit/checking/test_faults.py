@@ -26,6 +26,7 @@ from tests.support.problems.answered import (
     polynomial,
     text,
 )
+from tests.support.sampling import FULL
 
 PHI, CHI = polynomial(OBSERVER), sp.Poly(A.charpoly(S).as_expr(), S)
 DELTA = sp.Poly(PHI.as_expr() - CHI.as_expr(), S).all_coeffs()
@@ -213,4 +214,4 @@ def test_no_random_gain_is_explained_falsely() -> None:
 
 @pytest.mark.slow
 def test_no_gain_of_many_is_explained_falsely() -> None:
-    assert hold(2_000, 7)[1] == 0
+    assert hold(2_000 if FULL else 800, 7)[1] == 0

@@ -34,8 +34,8 @@ from tests.support.sampling import FULL
 
 pytestmark = pytest.mark.slow
 
-PLANTS = 500 if FULL else 60
-SINGLE = 2_000 if FULL else 120
+PLANTS = 500 if FULL else 30
+SINGLE = 2_000 if FULL else 60
 
 s = sympy.Symbol("s")
 

@@ -21,7 +21,7 @@ from tests.support.regions.region_answers import Answer, Cell
 from tests.support.regions.region_points import Oracle, Points, on_boundary, stable_at
 from tests.support.regions.region_problems import OBSERVERS, PROBLEMS, by_name
 from tests.support.regions.region_texts import UnreadableError, expression, formula, polynomial
-from tests.support.sampling import FULL
+from tests.support.sampling import FULL, every
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -347,7 +347,7 @@ def test_what_contradicts_the_record_is_noticed(change: dict[str, object]) -> No
 
 
 @needs_regions
-@every_problem
+@pytest.mark.parametrize("problem", every(2, PROBLEMS), ids=lambda problem: problem.name)
 def test_symobs_agrees_with_the_roots(problem: Problem) -> None:
     answer = region_answers.ask(problem)
     assert list(region_checks.wrong_by_record(problem, answer)) == []
