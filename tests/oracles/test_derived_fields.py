@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from fractions import Fraction
+from functools import cache, partial
 from itertools import islice
 from math import prod
 from typing import TYPE_CHECKING, Any
@@ -41,8 +42,6 @@ from tests.support.tampering.mutations import parts_of
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
-    from _pytest.mark import ParameterSet
-
     from symobs.result import Result
     from tests.support.independent_algebra.plain import Point, Polynomial, Rows
 
@@ -51,13 +50,18 @@ pytestmark = pytest.mark.slow
 FOLDER = ROOT / "worked_examples"
 #: Fractions know no roots: examples with roots in their plant are held to PARI.
 WITH_ROOTS = {"coupled_masses_irrational", "sensor_at_a_node"}
-EVERY: list[tuple[str, Result]] = [
-    (f"{path.stem}: {where}", part)
-    for path in sorted(FOLDER.glob("*.toml"))
-    if path.stem not in WITH_ROOTS
-    for result in read(path.read_text(encoding="utf-8")).solve()
-    for where, part in parts_of(result)
-]
+TEXTS = {path.stem: path.read_text(encoding="utf-8") for path in sorted(FOLDER.glob("*.toml"))}
+EXAMPLES = sorted(TEXTS.keys() - WITH_ROOTS)
+
+
+def asking(*tasks: str) -> list[str]:
+    """The examples in whose files one of the tasks is named."""
+    return [name for name in EXAMPLES if any(task in TEXTS[name] for task in tasks)]
+
+
+@cache
+def every_part(name: str) -> list[Result]:
+    return [part for result in read(TEXTS[name]).solve() for _, part in parts_of(result)]
 
 
 def has_functions(part: Result) -> bool:
@@ -66,15 +70,18 @@ def has_functions(part: Result) -> bool:
     return part.in_time or any(function_named(name) for value in values for name in value.names)
 
 
-PARTS = [(name, part) for name, part in EVERY if not has_functions(part)]
-MOVING = [pytest.param(part, id=name) for name, part in EVERY if has_functions(part)]
 MODES = {"observability": "unobservable_modes", "controllability": "uncontrollable_modes"}
 #: Points where a region is compared with the roots, and those where everything else is.
 MANY, FEW = 400, 3
 
 
-def parts(*tasks: str) -> list[ParameterSet]:
-    return [pytest.param(part, id=name) for name, part in PARTS if not tasks or part.task in tasks]
+def parts(name: str, *tasks: str) -> list[Result]:
+    """The parts of an example, or those of some tasks, whose answers are without functions of time."""
+    return [p for p in every_part(name) if not has_functions(p) and (not tasks or p.task in tasks)]
+
+
+def moving(name: str) -> list[Result]:
+    return [part for part in every_part(name) if has_functions(part)]
 
 
 def points(part: Result, count: int) -> Iterator[Point]:
@@ -260,8 +267,16 @@ def loop_at(plant: tuple[Rows, Rows, Rows, Rows], F: Any, s: Fraction) -> Any:
     return found[0][0] if len(B[0]) == len(C) == 1 else found
 
 
-@pytest.mark.parametrize("part", parts())
-def test_derived_fields_are_what_plain_fractions_give(part: Result) -> None:
+@pytest.mark.parametrize("name", EXAMPLES)
+def test_derived_fields_are_what_plain_fractions_or_numbers_of_many_digits_give(name: str) -> None:
+    for part in every_part(name):
+        if has_functions(part):
+            hold_in_time(part)
+        else:
+            hold_in_fractions(part)
+
+
+def hold_in_fractions(part: Result) -> None:
     met = 0
     for point in points(part, FEW):
         try:
@@ -274,22 +289,24 @@ def test_derived_fields_are_what_plain_fractions_give(part: Result) -> None:
     assert met >= 2
 
 
-@pytest.mark.parametrize("part", parts("transfer_function"))
-def test_a_transfer_function_is_made_of_its_poles_and_zeros(part: Result) -> None:
-    P = part.answer["transfer_function"]
-    ratios = {
-        value_at(P, point) * at(part.fields["poles"], point) / at(part.fields["zeros"], point)
-        for point in points(part, FEW)
-    }
-    assert len(ratios) == 1
-    assert len(part.fields["poles"]) == P.denominator.degree(part.plant.variable)
+@pytest.mark.parametrize("name", asking("transfer_function"))
+def test_a_transfer_function_is_made_of_its_poles_and_zeros(name: str) -> None:
+    for part in parts(name, "transfer_function"):
+        P = part.answer["transfer_function"]
+        ratios = {
+            value_at(P, point) * at(part.fields["poles"], point) / at(part.fields["zeros"], point)
+            for point in points(part, FEW)
+        }
+        assert len(ratios) == 1
+        assert len(part.fields["poles"]) == P.denominator.degree(part.plant.variable)
 
 
-@pytest.mark.parametrize("part", parts("characteristic_polynomial"))
-def test_factors_multiply_to_the_polynomial(part: Result) -> None:
-    for point in points(part, FEW):
-        product = prod(value_at(factor, point) ** power for factor, power in part.fields["factors"])
-        assert product == value_at(part.fields["polynomial"], point)
+@pytest.mark.parametrize("name", asking("characteristic_polynomial"))
+def test_factors_multiply_to_the_polynomial(name: str) -> None:
+    for part in parts(name, "characteristic_polynomial"):
+        for point in points(part, FEW):
+            product = prod(value_at(factor, point) ** power for factor, power in part.fields["factors"])
+            assert product == value_at(part.fields["polynomial"], point)
 
 
 # -- functions of time -------------------------------------------------------------------------------------------------
@@ -310,34 +327,39 @@ def points_in_time(part: Result) -> Iterator[Point]:
             yield point
 
 
-@pytest.mark.parametrize("part", MOVING)
-def test_fields_in_time_are_what_numbers_of_many_digits_give(part: Result) -> None:
+def hold_in_time(part: Result) -> None:
     found = list(islice(points_in_time(part), FEW))
     assert len(found) == FEW
     for point in found:
         FUNCTIONS_OF_TIME[part.task](part, Setting.of(part.plant, {}, point))
 
 
-@pytest.mark.parametrize("part", [p for p in MOVING if "covariance" in str(p.id)])
-def test_a_variance_is_least_at_its_best_horizon(part: Any) -> None:
+def slope_of(variance: Scalar, point: Point, end: Any) -> Any:
+    """Return the derivative of a variance by the horizon T there."""
+    return World(0, "s", {}, meanings={**point, "T": Series.make([end])}).derivative(Literal(variance), "T")
+
+
+COVARIANCES = asking("initial_state_covariance")
+
+
+@pytest.mark.parametrize("name", COVARIANCES)
+def test_a_variance_is_least_at_its_best_horizon(name: str) -> None:
     """T**4 == 140*r/q: the derivative by T vanishes there, and is negative before and positive behind."""
-    covariance, point = part.fields["covariance"], next(points_in_time(part))
-    for index, text in enumerate(part.fields["best_horizon"]):
-        if text is None:
-            continue
-        power, right = re.fullmatch(r"T\*\*(\d+) == (.*)", text).groups()  # type: ignore[union-attr]
-        best = CONTEXT.root(digits(value_at(parse_scalar(right), point)), int(power))
+    for part in moving(name):
+        covariance, point = part.fields["covariance"], next(points_in_time(part))
+        for index, text in enumerate(part.fields["best_horizon"]):
+            if text is None:
+                continue
+            power, right = re.fullmatch(r"T\*\*(\d+) == (.*)", text).groups()  # type: ignore[union-attr]
+            best = CONTEXT.root(digits(value_at(parse_scalar(right), point)), int(power))
 
-        def slope(end: Any, index: int = index) -> Any:
-            world = World(0, "s", {}, meanings={**point, "T": Series.make([end])})
-            return world.derivative(Literal(covariance[index, index]), "T")
-
-        assert slope(best) == 0
-        assert slope(best * 9 / 10).parts[0] < 0 < slope(best * 10 / 9).parts[0]
+            slope = partial(slope_of, covariance[index, index], point)
+            assert slope(best) == 0
+            assert slope(best * 9 / 10).parts[0] < 0 < slope(best * 10 / 9).parts[0]
 
 
 def test_a_best_horizon_is_among_the_examples() -> None:
-    assert any(text for p in MOVING for text in p.values[0].fields.get("best_horizon", ()))  # type: ignore[union-attr]
+    assert any(any(part.fields.get("best_horizon", ())) for name in COVARIANCES for part in moving(name))
 
 
 # -- stability ---------------------------------------------------------------------------------------------------------
@@ -368,16 +390,17 @@ def holds(text: str, point: Point) -> bool:
     return difference > 0 if operator == ">" else difference < 0
 
 
-@pytest.mark.parametrize("part", parts())
-def test_what_is_called_stable_has_all_its_roots_there(part: Result) -> None:
-    variable = part.plant.variable
-    for polynomial, verdict, region in said_stable(part):
-        seen = set()
-        for point in points(part, MANY if polynomial.names - {variable} else 1):
-            coefficients: Polynomial = [value_at(c, point) for c in polynomial.coefficients(variable)]
-            stable = is_schur(coefficients) if part.plant.is_discrete else is_hurwitz(coefficients)
-            seen.add(stable)
-            if region is not None:
-                assert stable == all(holds(text, point) for text in region)
-        if verdict != "undecided":
-            assert seen == {"yes": {True}, "no": {False}, "conditional": {True, False}}[verdict]
+@pytest.mark.parametrize("name", EXAMPLES)
+def test_what_is_called_stable_has_all_its_roots_there(name: str) -> None:
+    for part in parts(name):
+        variable = part.plant.variable
+        for polynomial, verdict, region in said_stable(part):
+            seen = set()
+            for point in points(part, MANY if polynomial.names - {variable} else 1):
+                coefficients: Polynomial = [value_at(c, point) for c in polynomial.coefficients(variable)]
+                stable = is_schur(coefficients) if part.plant.is_discrete else is_hurwitz(coefficients)
+                seen.add(stable)
+                if region is not None:
+                    assert stable == all(holds(text, point) for text in region)
+            if verdict != "undecided":
+                assert seen == {"yes": {True}, "no": {False}, "conditional": {True, False}}[verdict]
