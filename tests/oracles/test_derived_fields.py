@@ -352,7 +352,6 @@ def test_a_variance_is_least_at_its_best_horizon(name: str) -> None:
                 continue
             power, right = re.fullmatch(r"T\*\*(\d+) == (.*)", text).groups()  # type: ignore[union-attr]
             best = CONTEXT.root(digits(value_at(parse_scalar(right), point)), int(power))
-
             slope = partial(slope_of, covariance[index, index], point)
             assert slope(best) == 0
             assert slope(best * 9 / 10).parts[0] < 0 < slope(best * 10 / 9).parts[0]
