@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING
 from symobs._dataclass import dataclass
 from symobs.conditions import FACTORED_UP_TO, real_consequences, sign_of, vanishing_factors
 from symobs.exact import EIGENVALUE, Ideal, Scalar, TooLarge
+from symobs.exact.ideals.ideal import FEW
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
@@ -81,8 +82,10 @@ class Locus:
         Leading coefficients are positive.
         """
         basis = ideal.generators
-        if EIGENVALUE not in ideal.field.position and ideal.triangular:
-            basis = min(basis, ideal.triangular, key=lambda equations: sum(e.size for e in equations))
+        if EIGENVALUE not in ideal.field.position and (by_coordinate := ideal.triangular):
+            if (ideal.dimension or 0) > FEW:
+                ideal = Ideal.of(by_coordinate)
+            basis = min(ideal.generators, by_coordinate, key=lambda equations: sum(e.size for e in equations))
         positive = [g if sign_of(g.factors()[0], {}) == "positive" else -g for g in basis]
         return Locus(tuple(sorted(positive, key=_simplicity)), ideal)
 
@@ -168,11 +171,15 @@ def _branches(equations: tuple[Scalar, ...], region: Region, budget: Iterator[in
         ideal = Ideal.of(simple)
         if ideal.is_whole or any(value in ideal for value in region.nonzero):
             return
-        news = _news(ideal, region)
+        parts = _parts(ideal, region)
+        news = () if parts else _news(ideal, region)
     except TooLarge:
         yield Locus(tuple(simple))
         return
-    if news:
+    if parts:
+        for part in parts:
+            yield from _branches(part, region, budget)
+    elif news:
         yield from _branches((*news, *ideal.generators), region, budget)
     elif ideal.is_finite and ideal.dimension is None:  # among so many points some may be others than the most
         yield Locus(tuple(simple))
@@ -192,6 +199,20 @@ def _news(ideal: Ideal, region: Region) -> tuple[Scalar, ...]:
             found = [stripped]
         news += found
     return tuple(news) or _coordinates(ideal, region)
+
+
+def _parts(ideal: Ideal, region: Region) -> tuple[tuple[Scalar, ...], ...]:
+    """Return systems of equations for the parts of many points that a coordinate tells apart; none where it is one part."""
+    if EIGENVALUE in ideal.field.position or (ideal.dimension or 0) <= FEW:
+        return ()
+    for name in ideal.field.names:
+        found = ideal.minimal_polynomial(name)
+        zeros = region.vanishing(found)
+        if zeros == (found,) or zeros == (-found,):
+            continue
+        systems = (ideal.by_coordinate(name, factor, found) or (factor, *ideal.generators) for factor in zeros)
+        return tuple(systems) or ((Scalar.of(1),),)
+    return ()
 
 
 def _coordinates(ideal: Ideal, region: Region) -> tuple[Scalar, ...]:

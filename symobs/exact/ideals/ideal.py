@@ -17,6 +17,7 @@ from flint import Ordering, fmpz_mat, fmpz_mpoly_vec
 
 from symobs.exact.core.field import EIGENVALUE, Field, context_of
 from symobs.exact.core.scalar import Scalar
+from symobs.exact.ideals.conjugate_points import conjugate_points
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -28,9 +29,9 @@ LIMITS = (120, 600, 4_000)
 #: The most terms that the generators may have together.
 TERMS = 1_000
 #: The most monomials among which a basis of the functions on finitely many points is looked for.
-_MONOMIALS = 60
-#: The most points that are written by the polynomial of one coordinate: beyond, its coefficients are long.
-_FEW = 6
+_MONOMIALS = 150
+#: Beyond so many conjugate points they are kept by the polynomial of one coordinate: a graded basis of them is longer still.
+FEW = 6
 
 
 #: What the names of the coordinates of a vector begin with; no parameter's name begins so.
@@ -46,11 +47,14 @@ class TooLarge(ArithmeticError):
 class Ideal:
     """The ideal that polynomials generate in Q[names]; of a rational function the numerator counts."""
 
-    def __init__(self, field: Field, basis: fmpz_mpoly_vec, home: fmpz_mpoly_ctx) -> None:
-        """Take a reduced Gröbner basis."""
+    def __init__(
+        self, field: Field, basis: fmpz_mpoly_vec, home: fmpz_mpoly_ctx, coordinate: str | None = None
+    ) -> None:
+        """Take a reduced Gröbner basis; that of points by a coordinate x holds p(x), and y − g(x) for every other name y."""
         self.field = field
         self.basis = basis
         self.home = home
+        self.coordinate = coordinate
 
     @staticmethod
     def of(generators: Iterable[Scalar]) -> Ideal:
@@ -84,9 +88,9 @@ class Ideal:
             return _ideal(self.generators, field)
         if field.roots:
             return _ideal(self.generators, field)
-        home = _home(field)
+        home = _home(field, self.coordinate)
         moved = [field.lift(g.numerator_part, g.field).project_to_context(home) for g in self.generators]
-        return Ideal(field, fmpz_mpoly_vec(moved, home), home)
+        return Ideal(field, fmpz_mpoly_vec(moved, home), home, self.coordinate)
 
     def reduced_column(self, entries: Sequence[Scalar]) -> tuple[Scalar, ...]:
         """Return the normal forms of the entries of a vector, times one common rational number.
@@ -133,17 +137,20 @@ class Ideal:
         """Whether there are finitely many complex zeros."""
         return self._bounds is not None
 
-    @cached_property
+    @property
     def dimension(self) -> int | None:
-        """How many complex zeros there are, each counted with its multiplicity; None where they are too many to be counted.
+        """How many complex zeros there are, each counted with its multiplicity; None where they are too many to be counted."""
+        return None if self._monomials is None else len(self._monomials)
 
-        As many monomials are divisible by no leading monomial of the basis.
-        """
+    @cached_property
+    def _monomials(self) -> list[Scalar] | None:
+        """The monomials that no leading monomial of the basis divides: a basis of the functions on the zeros."""
         if self._bounds is None or prod(self._bounds) > _MONOMIALS:
             return None
         leading = [polynomial.monoms()[0] for polynomial in self.basis]
-        monomials = product(*map(range, self._bounds))
-        return sum(not any(_divides(lead, powers) for lead in leading) for powers in monomials)
+        found = [p for p in product(*map(range, self._bounds)) if not any(_divides(lead, p) for lead in leading)]
+        names = [Scalar.symbol(name) for name in self.home.names()]
+        return [prod((x**k for x, k in zip(names, powers, strict=True)), start=Scalar.of(1)) for powers in found]
 
     def minimal_polynomial(self, name: str, form: Scalar | None = None) -> Scalar:
         """Return the polynomial p(name) of least degree that lies in an ideal with finitely many zeros.
@@ -153,27 +160,64 @@ class Ideal:
         variable = Scalar.symbol(name)
         powers = range((self.dimension or 0) + 1)
         values = [(variable if form is None else form) ** k for k in powers]
-        return self._dependence(values, [variable**k for k in powers])
+        found = self._dependence(values, [variable**k for k in powers])
+        assert found is not None  # noqa: S101 - more powers than the dimension are dependent
+        return found
 
     @cached_property
     def triangular(self) -> tuple[Scalar, ...] | None:
         """Other generators: a polynomial in one name, and every other name as a polynomial in it; None where there are none."""
-        for name in reversed(self.field.names) if 0 < (self.dimension or 0) <= _FEW else ():
-            powers = [Scalar.symbol(name) ** k for k in range(self.dimension or 0)]
+        if self.coordinate is not None:
+            return self.generators
+        for name in reversed(self.field.names) if self.dimension else ():
             below = self.minimal_polynomial(name)
             if below.degree(name) == self.dimension:
-                others = (Scalar.symbol(other) for other in self.field.names if other != name)
-                return (below, *(self._dependence([*powers, other]) for other in others))
+                return self.by_coordinate(name, below, below)
         return None
 
-    def _dependence(self, values: Sequence[Scalar], written: Sequence[Scalar] | None = None) -> Scalar:
-        """Return the first rational linear combination of the values that lies in the ideal, written with others if given."""
-        forms = [{part: coefficient for coefficient, part in form.each_term()} for form in self.reduced_column(values)]
+    def by_coordinate(self, name: str, factor: Scalar, minimal: Scalar) -> tuple[Scalar, ...] | None:
+        """Return generators of this ideal with a factor of the minimal polynomial of `name` added.
+
+        They are the factor and every other name as a polynomial in `name`, of lower degree; None where `name` does not tell
+        those zeros apart.  With r what of the minimal polynomial has no factor in common with it, f lies in that ideal just
+        where f r lies in this one with the factor times r added.
+        """
+        rest, power = minimal / factor, 1
+        while (quotient := rest / factor).denominator.is_constant:
+            rest, power = quotient, power + 1
+        beside = self.remainder(rest)
+        beneath = [part * factor * beside for part in self._monomials or ()] if power > 1 else []
+        powers = [Scalar.symbol(name) ** k for k in range(factor.degree(name))]
+        found = [factor]
+        for other in map(Scalar.symbol, self.field.names):
+            if name in other.names:
+                continue
+            solved = self._dependence([value * beside for value in (*powers, other)], [*powers, other], beneath)
+            if solved is None:
+                return None
+            found.append(solved)
+        return tuple(found)
+
+    def _dependence(
+        self, values: Sequence[Scalar], written: Sequence[Scalar], beneath: Sequence[Scalar] = ()
+    ) -> Scalar | None:
+        """Return the first rational linear combination of values, written with others, that lies in the ideal, if any.
+
+        It may lie there with a linear combination of those beneath added.
+        """
+        reduced_column = self.reduced_column([*beneath, *values])
+        forms = [{part: coefficient for coefficient, part in form.each_term()} for form in reduced_column]
         parts = list(dict.fromkeys(part for form in forms for part in form))
         reduced, below, rank = fmpz_mat([[int(form.get(part, 0)) for form in forms] for part in parts]).rref()
-        last = next(k for k in range(len(forms)) if k >= rank or reduced[k, k] == 0)
-        written = written or values
-        rest = (Scalar.of(int(reduced[k, last])) * written[k] for k in range(last))
+        pivots: list[int] = []
+        for row in range(rank):
+            pivots.append(next(k for k in range(pivots[-1] + 1 if pivots else 0, len(forms)) if reduced[row, k]))
+        last = next((k for k in range(len(beneath), len(forms)) if k not in pivots), None)
+        if last is None:
+            return None
+        last -= (start := len(beneath))
+        places = {column - start: row for row, column in enumerate(pivots) if start <= column < start + last}
+        rest = (Scalar.of(int(reduced[row, start + last])) * written[k] for k, row in places.items())
         found = sum((-term for term in rest), Scalar.of(int(below)) * written[last])
         return found / found.factors()[0]
 
@@ -204,15 +248,15 @@ def is_inverse(name: str) -> bool:
     return name.startswith(_INVERSE)
 
 
-def _home(field: Field) -> fmpz_mpoly_ctx:
+def _home(field: Field, coordinate: str | None = None) -> fmpz_mpoly_ctx:
     """Return the context of a basis: with an eigenvalue among the names, what does not speak of it is seen in the basis.
 
     It comes first in a lexicographic order, which eliminates it.  Roots of numbers come last in one: then the basis is
-    that over the field of the numbers, and the squares of the roots.
+    that over the field of the numbers, and the squares of the roots.  A coordinate by which points are known comes last, too.
     """
-    if EIGENVALUE not in field.position and not field.roots:
+    if EIGENVALUE not in field.position and not field.roots and coordinate is None:
         return context_of(field.names, Ordering.degrevlex)
-    numbers = field.numbers.names
+    numbers = field.numbers.names if coordinate is None else (coordinate,)
     first = (EIGENVALUE,) if EIGENVALUE in field.position else ()
     others = (name for name in field.names if name != EIGENVALUE and name not in numbers)
     return context_of((*first, *others, *numbers), Ordering.lex)
@@ -226,12 +270,32 @@ def _ideal(generators: tuple[Scalar, ...], field: Field | None = None) -> Ideal:
     moved = [field.lift(g.numerator_part, g.field).project_to_context(home) for g in generators]
     if any(polynomial.is_constant() for polynomial in moved):
         return Ideal(field, fmpz_mpoly_vec([home.constant(1)], home), home)
+    if any(_alone(generator) > FEW for generator in generators) and (points := _points(generators, field)):
+        return points
     moved += [square.project_to_context(home) for square in field.relations] if moved else []
     if len(moved) > 1 and sum(len(polynomial) for polynomial in moved) > TERMS:
         message = "the equations have too many terms"
         raise TooLarge(message)
     basis, complete = fmpz_mpoly_vec(moved, home).buchberger_naive(limits=LIMITS)
     if not complete:
+        if points := _points(generators, field):
+            return points
         message = "the equations are too long to be decided"
         raise TooLarge(message)
     return Ideal(field, basis.autoreduction(groebner=True), home)  # type: ignore[attr-defined]
+
+
+def _alone(generator: Scalar) -> int:
+    """Return the degree of a polynomial in one name, 0 of another."""
+    return generator.degree(*generator.names) if len(generator.names) == 1 else 0
+
+
+def _points(generators: tuple[Scalar, ...], field: Field) -> Ideal | None:
+    """Return the ideal of points that one of their coordinates gives, None where the generators are no such system."""
+    found = conjugate_points(generators)
+    if found is None or found[0] == EIGENVALUE:
+        return None
+    coordinate, basis = found
+    home = _home(field, coordinate)
+    moved = [field.lift(g.numerator_part, g.field).project_to_context(home) for g in basis]
+    return Ideal(field, fmpz_mpoly_vec(moved, home), home, coordinate)
