@@ -57,8 +57,9 @@ def _parts(ideal: Ideal, signs: Mapping[str, str], nonzero: tuple[Scalar, ...]) 
     Among finitely many points a polynomial of the ideal in one parameter alone tells those apart where different factors
     of it vanish, and leaves out those where none can.
     """
-    for name in ideal.field.names if EIGENVALUE not in ideal.field.position and ideal.dimension else ():
-        alone = ideal.minimal_polynomial(name)
+    quotient = ideal.quotient if EIGENVALUE not in ideal.field.position else None
+    for name in ideal.field.names if quotient is not None and quotient.dimension else ():
+        alone = quotient.minimal_polynomial(Scalar.symbol(name), name)
         factors = [factor for factor in vanishing_factors([alone], signs) if factor not in nonzero]
         if alone not in ideal or (len(factors) == 1 and factors[0] in ideal):
             continue

@@ -120,7 +120,8 @@ def test_coordinates_of_finitely_many_points(
 ) -> None:
     ideal = Ideal.of(equations)
     assert (ideal.is_finite, ideal.dimension) == (True, dimension)
-    assert (ideal.minimal_polynomial("a"), ideal.minimal_polynomial("b")) == (of_a, of_b)
+    assert ideal.quotient is not None
+    assert (ideal.quotient.minimal_polynomial(a, "a"), ideal.quotient.minimal_polynomial(b, "b")) == (of_a, of_b)
 
 
 def test_infinitely_many_points_are_not_counted() -> None:

@@ -20,6 +20,8 @@ from symobs.exact.ideals.ideal import FEW
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
 
+    from symobs.exact.ideals.quotient import Quotient
+
 #: The most systems that one question may branch into, and terms of the equations of a system that is worked on.
 _BRANCHES = 100
 _TERMS = 1_000
@@ -203,14 +205,15 @@ def _news(ideal: Ideal, region: Region) -> tuple[Scalar, ...]:
 
 def _parts(ideal: Ideal, region: Region) -> tuple[tuple[Scalar, ...], ...]:
     """Return systems of equations for the parts of many points that a coordinate tells apart; none where it is one part."""
-    if EIGENVALUE in ideal.field.position or (ideal.dimension or 0) <= FEW:
+    quotient = ideal.quotient
+    if EIGENVALUE in ideal.field.position or quotient is None or quotient.dimension <= FEW:
         return ()
     for name in ideal.field.names:
-        found = ideal.minimal_polynomial(name)
+        found = quotient.minimal_polynomial(Scalar.symbol(name), name)
         zeros = region.vanishing(found)
-        if zeros == (found,) or zeros == (-found,):
+        if zeros in {(found,), (-found,)}:
             continue
-        systems = (ideal.by_coordinate(name, factor, found) or (factor, *ideal.generators) for factor in zeros)
+        systems = (quotient.by_coordinate(name, factor, found) or (factor, *ideal.generators) for factor in zeros)
         return tuple(systems) or ((Scalar.of(1),),)
     return ()
 
@@ -221,24 +224,25 @@ def _coordinates(ideal: Ideal, region: Region) -> tuple[Scalar, ...]:
     Where such a polynomial has several factors the points branch, and a rational point is left with its coordinates.  Points
     that no coordinate tells apart a sum of multiples of two does.
     """
-    if EIGENVALUE in ideal.field.position or not ideal.dimension:
+    quotient = ideal.quotient
+    if EIGENVALUE in ideal.field.position or quotient is None or not quotient.dimension:
         return ()
     for name in ideal.field.names:
-        found = ideal.minimal_polynomial(name)
+        found = quotient.minimal_polynomial(Scalar.symbol(name), name)
         stripped = math.prod(region.vanishing(found), start=Scalar.of(1))
         if stripped not in ideal or len(region.vanishing(found)) > 1:
             return (stripped,)
         if found.degree(name) == ideal.dimension:
             return ()
-    return _apart(ideal)
+    return _apart(ideal, quotient)
 
 
-def _apart(ideal: Ideal) -> tuple[Scalar, ...]:
+def _apart(ideal: Ideal, quotient: Quotient) -> tuple[Scalar, ...]:
     """Return, of points that no coordinate tells apart, a polynomial in a linear form that has several factors, if any has."""
     names = ideal.field.names
     for multiple in range(1, _FORMS + 1):
         form = sum((multiple**k * Scalar.symbol(name) for k, name in enumerate(names)), Scalar.of(0))
-        found = ideal.minimal_polynomial(_FORM, form)
+        found = quotient.minimal_polynomial(form, _FORM)
         factors = vanishing_factors([found], {_FORM: "real"})
         if len(factors) != 1 or factors[0].degree(_FORM) < found.degree(_FORM):
             return (math.prod((factor.substitute({_FORM: form}) for factor in factors), start=Scalar.of(1)),)

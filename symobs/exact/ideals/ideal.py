@@ -13,11 +13,12 @@ from itertools import product
 from math import prod
 from typing import TYPE_CHECKING
 
-from flint import Ordering, fmpz_mat, fmpz_mpoly_vec
+from flint import Ordering, fmpz_mpoly_vec
 
 from symobs.exact.core.field import EIGENVALUE, Field, context_of
 from symobs.exact.core.scalar import Scalar
 from symobs.exact.ideals.conjugate_points import conjugate_points
+from symobs.exact.ideals.quotient import Quotient
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -140,86 +141,31 @@ class Ideal:
     @property
     def dimension(self) -> int | None:
         """How many complex zeros there are, each counted with its multiplicity; None where they are too many to be counted."""
-        return None if self._monomials is None else len(self._monomials)
+        return None if self.quotient is None else self.quotient.dimension
 
     @cached_property
-    def _monomials(self) -> list[Scalar] | None:
-        """The monomials that no leading monomial of the basis divides: a basis of the functions on the zeros."""
+    def quotient(self) -> Quotient | None:
+        """The functions on the zeros, by the monomials that no leading monomial of the basis divides."""
         if self._bounds is None or prod(self._bounds) > _MONOMIALS:
             return None
         leading = [polynomial.monoms()[0] for polynomial in self.basis]
         found = [p for p in product(*map(range, self._bounds)) if not any(_divides(lead, p) for lead in leading)]
         names = [Scalar.symbol(name) for name in self.home.names()]
-        return [prod((x**k for x, k in zip(names, powers, strict=True)), start=Scalar.of(1)) for powers in found]
-
-    def minimal_polynomial(self, name: str, form: Scalar | None = None) -> Scalar:
-        """Return the polynomial p(name) of least degree that lies in an ideal with finitely many zeros.
-
-        Where `form` is given, p(form) lies in the ideal.
-        """
-        variable = Scalar.symbol(name)
-        powers = range((self.dimension or 0) + 1)
-        values = [(variable if form is None else form) ** k for k in powers]
-        found = self._dependence(values, [variable**k for k in powers])
-        assert found is not None  # noqa: S101 - more powers than the dimension are dependent
-        return found
+        monomials = [prod((x**k for x, k in zip(names, p, strict=True)), start=Scalar.of(1)) for p in found]
+        return Quotient(monomials, self.field.names, self.reduced_column)
 
     @cached_property
     def triangular(self) -> tuple[Scalar, ...] | None:
         """Other generators: a polynomial in one name, and every other name as a polynomial in it; None where there are none."""
         if self.coordinate is not None:
             return self.generators
-        for name in reversed(self.field.names) if self.dimension else ():
-            below = self.minimal_polynomial(name)
-            if below.degree(name) == self.dimension:
-                return self.by_coordinate(name, below, below)
-        return None
-
-    def by_coordinate(self, name: str, factor: Scalar, minimal: Scalar) -> tuple[Scalar, ...] | None:
-        """Return generators of this ideal with a factor of the minimal polynomial of `name` added.
-
-        They are the factor and every other name as a polynomial in `name`, of lower degree; None where `name` does not tell
-        those zeros apart.  With r what of the minimal polynomial has no factor in common with it, f lies in that ideal just
-        where f r lies in this one with the factor times r added.
-        """
-        rest, power = minimal / factor, 1
-        while (quotient := rest / factor).denominator.is_constant:
-            rest, power = quotient, power + 1
-        beside = self.remainder(rest)
-        beneath = [part * factor * beside for part in self._monomials or ()] if power > 1 else []
-        powers = [Scalar.symbol(name) ** k for k in range(factor.degree(name))]
-        found = [factor]
-        for other in map(Scalar.symbol, self.field.names):
-            if name in other.names:
-                continue
-            solved = self._dependence([value * beside for value in (*powers, other)], [*powers, other], beneath)
-            if solved is None:
-                return None
-            found.append(solved)
-        return tuple(found)
-
-    def _dependence(
-        self, values: Sequence[Scalar], written: Sequence[Scalar], beneath: Sequence[Scalar] = ()
-    ) -> Scalar | None:
-        """Return the first rational linear combination of values, written with others, that lies in the ideal, if any.
-
-        It may lie there with a linear combination of those beneath added.
-        """
-        reduced_column = self.reduced_column([*beneath, *values])
-        forms = [{part: coefficient for coefficient, part in form.each_term()} for form in reduced_column]
-        parts = list(dict.fromkeys(part for form in forms for part in form))
-        reduced, below, rank = fmpz_mat([[int(form.get(part, 0)) for form in forms] for part in parts]).rref()
-        pivots: list[int] = []
-        for row in range(rank):
-            pivots.append(next(k for k in range(pivots[-1] + 1 if pivots else 0, len(forms)) if reduced[row, k]))
-        last = next((k for k in range(len(beneath), len(forms)) if k not in pivots), None)
-        if last is None:
+        if self.quotient is None:
             return None
-        last -= (start := len(beneath))
-        places = {column - start: row for row, column in enumerate(pivots) if start <= column < start + last}
-        rest = (Scalar.of(int(reduced[row, start + last])) * written[k] for k, row in places.items())
-        found = sum((-term for term in rest), Scalar.of(int(below)) * written[last])
-        return found / found.factors()[0]
+        for name in reversed(self.field.names) if self.dimension else ():
+            below = self.quotient.minimal_polynomial(Scalar.symbol(name), name)
+            if below.degree(name) == self.dimension:
+                return self.quotient.by_coordinate(name, below, below)
+        return None
 
     def having(self, *others: Scalar) -> Ideal:
         """Return the ideal with further generators; raises `TooLarge`."""

@@ -1,0 +1,94 @@
+"""Finitely many points: SymPy's lexicographic Gröbner bases are the independent computation."""
+
+from __future__ import annotations
+
+import pytest
+import sympy
+from hypothesis import assume, given, settings
+from hypothesis import strategies as st
+
+from symobs.exact import Ideal, Scalar, apart_from_zero
+from symobs.exact.ideals.conjugate_points import conjugate_points
+from symobs.exact.ideals.ideal import FEW
+from symobs.expression import parse_scalar
+
+a, b, c = (Scalar.symbol(name) for name in "abc")
+
+
+def in_sympy(value: Scalar) -> sympy.Expr:
+    return sympy.Poly.from_dict(
+        {tuple(dict(monomial).get(name, 0) for name in "abc"): k for k, monomial in value.each_term()},
+        *sympy.symbols("a b c"),
+    ).as_expr()
+
+
+def basis(equations: list[Scalar], *names: str) -> set[sympy.Expr]:
+    found = sympy.groebner([in_sympy(e) for e in equations], *map(sympy.Symbol, names), order="lex")
+    return {sympy.Poly(each, *map(sympy.Symbol, names)).monic().as_expr() for each in found.exprs}
+
+
+def monic(equations: tuple[Scalar, ...], *names: str) -> set[sympy.Expr]:
+    return {sympy.Poly(in_sympy(e), *map(sympy.Symbol, names)).monic().as_expr() for e in equations}
+
+
+@st.composite
+def curves(draw: st.DrawFn) -> Scalar:
+    found = Scalar.of(0)
+    for i, j in draw(st.lists(st.tuples(st.integers(0, 3), st.integers(0, 2)), min_size=2, max_size=4, unique=True)):
+        found += draw(st.sampled_from([-2, -1, 1, 2, 3])) * a**i * b**j
+    return found
+
+
+@settings(max_examples=60)
+@given(curves(), curves())
+def test_parts_of_the_points_where_two_curves_meet(one: Scalar, other: Scalar) -> None:
+    ideal = Ideal.of((one, other))
+    quotient = ideal.quotient if not ideal.is_whole and ideal.field.names == ("a", "b") else None
+    assume(quotient is not None and 1 < quotient.dimension <= 9)
+    assert quotient is not None
+    minimal = quotient.minimal_polynomial(b, "b")
+    for factor, _ in minimal.factors()[1]:
+        wanted = basis([one, other, factor], "a", "b")
+        found = quotient.by_coordinate("b", factor, minimal)
+        if found is None:
+            assert len(wanted) != 2 or max(sympy.degree(each, sympy.Symbol("a")) for each in wanted) > 1
+        else:
+            assert monic(found, "a", "b") == wanted
+
+
+@pytest.mark.parametrize(
+    "texts",
+    [
+        ["b^7 - b - 1", "2*a - 3*b^2"],
+        ["b^8 - 2", "a - b^9 + 1", "3*a*c - b*c - 1"],
+        ["b^7 - b - 1", "a*b - 1", "c - a^3"],
+        ["(b^3 - 2)*(b^4 + b + 1)", "a - b", "a^3 - 2"],
+        ["b^7 - b - 1", "a - b", "a^2 - 5"],
+        ["b^7 - b - 1", "(b^7 - b - 1)*a^2 + a - b^2"],
+    ],
+)
+def test_systems_that_one_coordinate_solves(texts: list[str]) -> None:
+    equations = [parse_scalar(text) for text in texts]
+    found = conjugate_points(equations)
+    assert found is not None
+    assert found[0] == "b"
+    names = sorted({name for equation in equations for name in equation.names} - {"b"})
+    assert monic(found[1], *names, "b") == basis(equations, *names, "b")
+
+
+@pytest.mark.parametrize("texts", [["b^8 - 2", "a^2 - b"], ["a*b - 1", "a - b"], ["b^8 - 2", "b^8*a - 2*a + c"]])
+def test_other_systems_are_left_alone(texts: list[str]) -> None:
+    assert conjugate_points([parse_scalar(text) for text in texts]) is None
+
+
+def test_an_ideal_of_many_points_is_kept_by_a_coordinate() -> None:
+    p = b**9 - 4 * b + 2
+    ideal = Ideal.of((p, a - b**3))
+    assert (ideal.coordinate, ideal.dimension) == ("b", 9)
+    assert 9 > FEW >= Ideal.of((b**2 - 2, a - b)).generators[-1].degree("b")
+    assert a**3 - 4 * b + 2 in ideal
+    assert a not in ideal
+    assert ideal.having(apart_from_zero(a - b)).coordinate == "b"
+    assert ideal.having(a - b).is_whole
+    assert c * (a - b**3) in ideal
+    assert c * a not in ideal
