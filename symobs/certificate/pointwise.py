@@ -47,7 +47,10 @@ def _within(
     ideal: Ideal, relations: Iterable[Scalar], signs: Mapping[str, str], nonzero: tuple[Scalar, ...]
 ) -> list[Ideal]:
     """Return ideals of the real points of an ideal where relations hold, none where there is none."""
-    found = _implied([*map(ideal.remainder, relations), *ideal.generators], signs, nonzero)
+    relations = tuple(relations)
+    if Ideal.of(relations).coordinate is None:  # points by a coordinate are left as they are: they reduce the others
+        relations = tuple(map(ideal.remainder, relations))
+    found = _implied([*relations, *ideal.generators], signs, nonzero)
     return [part for reduced in found for part in _parts(reduced, signs, nonzero)]
 
 
