@@ -61,13 +61,17 @@ def _parts(ideal: Ideal, signs: Mapping[str, str], nonzero: tuple[Scalar, ...]) 
     of it vanish, and leaves out those where none can.
     """
     quotient = ideal.quotient if EIGENVALUE not in ideal.field.position else None
-    for name in ideal.field.names if quotient is not None and quotient.dimension else ():
+    if quotient is None:
+        yield ideal
+        return
+    for name in ideal.field.names if quotient.dimension else ():
         alone = quotient.minimal_polynomial(Scalar.symbol(name), name)
         factors = [factor for factor in vanishing_factors([alone], signs) if factor not in nonzero]
         if alone not in ideal or (len(factors) == 1 and factors[0] in ideal):
             continue
         for factor in factors:
-            for part in _implied([*ideal.generators, factor], signs, nonzero):
+            equations = quotient.by_coordinate(name, factor, alone) or [*ideal.generators, factor]
+            for part in _implied(equations, signs, nonzero):
                 yield from _parts(part, signs, nonzero)
         return
     yield ideal
