@@ -310,7 +310,8 @@ def write_case(page: Page, case: Case, side: PlacementProblem) -> None:
     finally:
         inside, steps = page.environment, page.steps
         page.steps, page.environment = outer, environment
-    anew = [name for name in side.hidden if page.knows(name) and inside.values[name] != environment.values[name]]
+    own = (*side.hidden, side.gain)
+    anew = [name for name in own if page.knows(name) and inside.values[name] != environment.values[name]]
     page.steps.append(CaseStep(stratum_of(case), tuple(case.substitution.items()), tuple(steps), anew=tuple(anew)))
 
 
