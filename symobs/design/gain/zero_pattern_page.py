@@ -83,4 +83,4 @@ def another_gain(page: Page, case: Case, side: PlacementProblem, say: str) -> St
     for further in result.case_tree:
         page.steps.append(_case(page, further, side, say))
     steps, page.steps, page.environment = tuple(page.steps), inner, before
-    return CaseStep(stratum_of(case), tuple(case.substitution.items()), steps)
+    return CaseStep(stratum_of(case), tuple(case.substitution.items()), steps, anew=(side.gain,))
