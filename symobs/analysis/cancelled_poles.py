@@ -32,7 +32,7 @@ def state_transfer_function(page: Page) -> None:
     else:
         above, below = (factored_form(page, part) for part in (written.above, written.below))
         page.given(relation(page["P"], above / below, factored_form(page, written.value)))
-    page.environment = page.environment.having(values={"P": written.value})
+    page.environment = page.environment.extended_by(values={"P": written.value})
     apart = vanishing_factors(written.apart, plant.symbols.signs)
     if apart:
         page.assume("lowest_terms_parameters", *apart)

@@ -43,7 +43,7 @@ def case_steps(page: Page, result: Result, write: str) -> Iterator[Step]:
         found = case.result
         inner = Page(found.plant)
         matrices = {name: getattr(found.plant.matrices, name) for name in "ABCD" if name in page.environment.values}
-        inner.environment = page.environment.having(values=matrices)
+        inner.environment = page.environment.extended_by(values=matrices)
         getattr(found, write)(inner)
         inner.steps += case_steps(inner, found, write)
         anew = tuple(set_anew(page, inner))
@@ -77,7 +77,7 @@ def given(page: Page, *desired: tuple[str, DesiredPolynomial | None]) -> None:
             page.set("B", m.B)
             rate = rate + _as_given(page, m.B) @ page["u"]
         relations.append(relation(page["x"].derivative, rate))
-        page.environment = page.environment.having(dynamics={"x": rate.formula})
+        page.environment = page.environment.extended_by(dynamics={"x": rate.formula})
         if m.has_output:
             page.set("C", m.C)
             output = _as_given(page, m.C) @ page["x"]
@@ -85,7 +85,7 @@ def given(page: Page, *desired: tuple[str, DesiredPolynomial | None]) -> None:
                 page.set("D", m.D)
                 output = output + _as_given(page, m.D) @ page["u"]
             relations.append(relation(page["y"], output))
-            page.environment = page.environment.having(signals={"y": output.formula})
+            page.environment = page.environment.extended_by(signals={"y": output.formula})
         page.given(*relations)
         _hold_to_letters(page)
         if plant.is_from_floats:

@@ -90,7 +90,7 @@ def _implied(equations: Iterable[Scalar], signs: Mapping[str, str], nonzero: tup
         news = [value for value in implied if value not in ideal]
         if not news:
             return [ideal]
-        ideal = ideal.having(*news)
+        ideal = ideal.extended_by(*news)
     return []
 
 
@@ -112,7 +112,7 @@ class Pointwise(Restricted):
         """Keep the signs and the nonzero values."""
         super().__init__(environment)
         self.signs = environment.signs
-        self.nonzero = (*environment.assumed, *environment.domain)
+        self.nonzero = (*environment.nonzero, *environment.domain)
 
     def _meaningful(self, value: Scalar | Matrix) -> None:
         """Accept a denominator that vanishes nowhere, too, where the relations are too long to be taken together."""

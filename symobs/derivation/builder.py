@@ -31,6 +31,7 @@ from symobs.formula import (
     Decimals,
     Derivative,
     Environment,
+    Evaluated,
     Fact,
     Formula,
     HoldsExactlyWhere,
@@ -40,7 +41,6 @@ from symobs.formula import (
     Predicate,
     Relation,
     Roots,
-    Shown,
     SymbolList,
 )
 from symobs.formula.plain_text import plain_relation
@@ -56,7 +56,7 @@ if TYPE_CHECKING:
     from symobs.system import StateSpace
 
 #: What a slot of a sentence may hold besides formulas and words.
-FACTS = (Relation, Predicate, Roots, HoldsExactlyWhere, Conjunction, Shown, SymbolList, *SPOKEN)
+FACTS = (Relation, Predicate, Roots, HoldsExactlyWhere, Conjunction, Evaluated, SymbolList, *SPOKEN)
 
 Member: TypeAlias = Term | Scalar | Matrix | int
 Slot: TypeAlias = Term | Fact | Counted | StateChoice | str | Scalar | Matrix | int
@@ -154,7 +154,7 @@ class Page:
     def with_roots(self, *values: Scalar | Matrix) -> None:
         """Let the page speak of these square roots: that each squared is its radicand is known from the start."""
         vanishing = identities(values)[1]
-        self.start, self.environment = self.start.under(vanishing), self.environment.under(vanishing)
+        self.start, self.environment = self.start.with_relations(vanishing), self.environment.with_relations(vanishing)
 
     def in_time(self, *values: Scalar | Matrix) -> None:
         """Let the page speak of these functions of time: how they depend on each other is known from the start."""
@@ -166,8 +166,8 @@ class Page:
 
     def in_time_by(self, meanings: Mapping[str, Scalar], vanishing: tuple[Scalar, ...]) -> None:
         """Let the page speak of functions of time that depend on each other in this way."""
-        self.start = replace(self.start, coefficients=meanings).under(vanishing)
-        self.environment = replace(self.environment, coefficients=meanings).under(vanishing)
+        self.start = replace(self.start, coefficients=meanings).with_relations(vanishing)
+        self.environment = replace(self.environment, coefficients=meanings).with_relations(vanishing)
 
     def derivation(self) -> Derivation:
         """Return what was written; a parameter with the name of a letter that is used is set without serifs."""
@@ -209,9 +209,9 @@ class Page:
         """Return sI − M for a sum M, its signs turned."""
         return self.s @ self.identity(order) - matrix
 
-    def knows(self, name: str) -> bool:
+    def defines(self, name: str) -> bool:
         """Whether a letter is established."""
-        return self.environment.knows(name)
+        return self.environment.defines(name)
 
     # -- steps --------------------------------------------------------------------------------------------------------
 
@@ -222,14 +222,14 @@ class Page:
     def assume(self, key: str, *values: Scalar) -> None:
         """State that polynomials are not zero from here on."""
         factors = [factor for value in values for factor, _ in value.numerator.factors()[1]]
-        self.environment = replace(self.environment, assumed=(*self.environment.assumed, *factors))
+        self.environment = replace(self.environment, nonzero=(*self.environment.nonzero, *factors))
         conditions = tuple(relation(value, "!=", 0) for value in values)
         self.steps.append(Given(conditions, sentence(key, {"condition": Conjunction(conditions)})))
 
     def set(self, name: str, value: Scalar | Matrix) -> Term:
         """Establish a letter by its value, without a display."""
         self.steps.append(Given((relation(self[name], value),), silent=True))
-        self.environment = self.environment.having(values={name: value})
+        self.environment = self.environment.extended_by(values={name: value})
         return self[name]
 
     def define(
@@ -247,10 +247,10 @@ class Page:
         exact = [m for m in chain if isinstance(m, Term) and not isinstance(m.formula, Decimals)]
         value = exact[-1].value
         if closing and len(exact) == len(chain) and not isinstance(exact[-1].formula, Literal):
-            chain.append(exact[-1].shown)
+            chain.append(exact[-1].as_value)
         because = sentence(say, slots) if say else None
         self.steps.append(Define(relation(self[name], *chain), because, answer, silent))
-        self.environment = self.environment.having(values={name: value})
+        self.environment = self.environment.extended_by(values={name: value})
         return self[name]
 
     def in_decimals(self, name: str) -> None:
@@ -263,8 +263,8 @@ class Page:
         """Introduce a letter through its transpose: nameᵀ = …, then name itself as the answer."""
         value = members[-1].value.T
         self.steps.append(Given((relation(self[name], value),), silent=True))
-        self.environment = self.environment.having(values={name: value})
-        rows = relation(self[name].T, *members, members[-1].shown)
+        self.environment = self.environment.extended_by(values={name: value})
+        rows = relation(self[name].T, *members, members[-1].as_value)
         self.equal(rows, relation(self[name], value), say=say, answer=True, **slots)
         return self[name]
 
@@ -276,14 +276,14 @@ class Page:
         """Let a generator stand for a longer scalar from here on, without a display."""
         symbol = Scalar.symbol(name)
         self.steps.append(Define(relation(symbol, meaning), silent=True))
-        self.environment = self.environment.having(coefficients={name: meaning})
+        self.environment = self.environment.extended_by(coefficients={name: meaning})
         return symbol
 
     def signal(self, name: str, formula: Term, say: str = "", *, silent: bool = False, **slots: Slot) -> Term:
         """Define a signal by others; a free signal ceases to be free."""
         because = sentence(say, slots) if say else None
         self.steps.append(Define(relation(self[name], formula), because, silent=silent))
-        self.environment = self.environment.having(signals={name: formula.formula})
+        self.environment = self.environment.extended_by(signals={name: formula.formula})
         return self[name]
 
     def dynamics(self, name: str, formula: Term, say: str = "", *, silent: bool = False, **slots: Slot) -> None:
@@ -291,7 +291,7 @@ class Page:
         because = sentence(say, slots) if say else None
         target = self.term(Derivative(Letter(name)))
         self.steps.append(Define(relation(target, formula), because, silent=silent))
-        self.environment = self.environment.having(dynamics={name: formula.formula})
+        self.environment = self.environment.extended_by(dynamics={name: formula.formula})
 
     def equal(self, *relations: Relation, say: str = "", answer: bool = False, **slots: Slot) -> None:
         """Show relations on one display."""

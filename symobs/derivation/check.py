@@ -24,15 +24,15 @@ from symobs.derivation.steps import (
     Diagram,
     Equal,
     Given,
+    Inequalities,
     Note,
     Plot,
+    RegionSummary,
     Section,
     Sentence,
     Solve,
     Step,
-    Survey,
     Tabulate,
-    Where,
 )
 from symobs.derivation.wording_check import are_added, fits, formula_in, reject_other_map, rests, with_limit
 from symobs.errors import DerivationRejected
@@ -42,6 +42,7 @@ from symobs.formula import (
     Conjunction,
     Derivative,
     Environment,
+    Evaluated,
     Exact,
     Fact,
     Formula,
@@ -51,7 +52,6 @@ from symobs.formula import (
     Predicate,
     Relation,
     Roots,
-    Shown,
     Signal,
     SymbolList,
     children,
@@ -134,9 +134,9 @@ def _after(step: Step, environment: Environment, discrete: bool) -> Environment:
                 _fact(relation, environment, discrete)
         case Tabulate():
             environment = _tabulated(step, environment, discrete)
-        case Where(fact):
+        case Inequalities(fact):
             _fact(fact, environment, discrete)
-        case Survey(polynomial):
+        case RegionSummary(polynomial):
             _about_letters(polynomial, environment)
             value = as_scalar(evaluate(polynomial, environment, Exact(environment)))
             from symobs.derivation.region_check import is_survey  # noqa: PLC0415 - only pages of regions pay for it
@@ -174,7 +174,7 @@ def _tabulated(step: Tabulate, environment: Environment, discrete: bool) -> Envi
         reject(f"that this is the table of {plain(polynomial, environment.variable)} in {variable}")
     if step.sentence is not None and "polynomial" in dict(step.sentence.slots):
         _fact(Relation((formula_in(step.sentence, "polynomial"), polynomial), ("=",)), environment, discrete)
-    return environment.having(values=last_determinant(value, variable))
+    return environment.extended_by(values=last_determinant(value, variable))
 
 
 def _drawn(picture: Picture, subject: Formula, environment: Environment, discrete: bool) -> None:  # noqa: FBT001
@@ -194,7 +194,7 @@ def _sentence(sentence: Sentence, environment: Environment, discrete: bool) -> N
     for _, slot in sentence.slots:
         if not fits(sentence.key, slot, environment):
             reject(f"{slot}, which is not what {sentence.key} speaks of,")
-        if isinstance(slot, (Relation, Predicate, Roots, HoldsExactlyWhere, Conjunction, Shown, SymbolList)):
+        if isinstance(slot, (Relation, Predicate, Roots, HoldsExactlyWhere, Conjunction, Evaluated, SymbolList)):
             _fact(slot, environment, discrete)
         elif not isinstance(slot, (str, *SPOKEN)):
             _established(slot, environment)
@@ -242,7 +242,7 @@ def _fact(fact: Fact, environment: Environment, discrete: bool) -> None:  # noqa
         for part in fact.relations:
             _fact(part, environment, discrete)
         return
-    if isinstance(fact, Shown):
+    if isinstance(fact, Evaluated):
         _fact(Relation((fact.formula, fact.value), ("=",)), environment, discrete)
         return
     environment = replace(environment, coefficients={})
@@ -307,28 +307,28 @@ def _assume(relation: Relation, environment: Environment) -> Environment:
     left, right = (as_scalar(evaluate(member, environment, Exact(environment))) for member in relation.members)
     if left == right:
         reject(plain_relation(relation, environment.variable))
-    return replace(environment, assumed=(*environment.assumed, *(f for f, _ in (left - right).numerator.factors()[1])))
+    return replace(environment, nonzero=(*environment.nonzero, *(f for f, _ in (left - right).numerator.factors()[1])))
 
 
 def _meaning(target: Formula, rest: list[Formula], environment: Environment) -> Environment:
     match target:
         case Derivative(Letter(name)) if _is_free(name, environment):
-            return environment.having(dynamics={name: rest[0]})
+            return environment.extended_by(dynamics={name: rest[0]})
         case Literal(value) if str(value) in value.names:
             (name,) = value.names
             _new_name(name, environment)
             meaning = evaluate(rest[-1], environment, Exact(replace(environment, coefficients={})))
-            return environment.having(coefficients={name: meaning})
+            return environment.extended_by(coefficients={name: meaning})
         case Letter(name) if name not in environment.signals or _is_free(name, environment):
             last = next((member for member in reversed(rest) if isinstance(member, Literal)), rest[0])
             value = evaluate(last, environment, Exact(environment))
             if isinstance(value, Signal):
-                return environment.having(signals={name: rest[0]})
+                return environment.extended_by(signals={name: rest[0]})
             if name == "s" or name in environment.signals:
                 reject(f"{name}, which stands for something else, as a name for a value")
             if isinstance(last, Literal):
                 value = last.value
-            return environment.having(values={name: value})
+            return environment.extended_by(values={name: value})
         case _:
             return reject("only a letter, a derivative or a named coefficient can be introduced")
 
@@ -348,7 +348,7 @@ def _new_name(name: str, environment: Environment) -> None:
 def _established(formula: Formula, environment: Environment) -> None:
     """Reject letters that are not established, and roots of what may be negative: they would not be real."""
     for name in letters(formula):
-        if not environment.knows(name):
+        if not environment.defines(name):
             reject(f"{name} is used before it is established")
     for root in roots_written(formula):
         _fact(Relation((Literal(root.argument), Literal(Scalar.of(0))), (">=",)), environment, discrete=False)

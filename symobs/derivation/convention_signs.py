@@ -19,19 +19,20 @@ from symobs.derivation.steps import (
     Diagram,
     Equal,
     Given,
+    Inequalities,
     Note,
     Plot,
+    RegionSummary,
     Section,
     Sentence,
     Solve,
-    Survey,
     Tabulate,
-    Where,
 )
 from symobs.errors import UsageError
 from symobs.exact import Matrix, Scalar
 from symobs.formula import (
     Conjunction,
+    Evaluated,
     Exact,
     Formula,
     HoldsExactlyWhere,
@@ -41,7 +42,6 @@ from symobs.formula import (
     Product,
     Relation,
     Roots,
-    Shown,
     SymbolList,
     Transpose,
     Turned,
@@ -61,7 +61,7 @@ if TYPE_CHECKING:
     from symobs.formula import Environment
     from symobs.notation import LetterForm
 
-_STEPS = (Given, Define, Equal, Solve, Conclude, Note, Plot, Tabulate, Where, Survey, Case, Section)
+_STEPS = (Given, Define, Equal, Solve, Conclude, Note, Plot, Tabulate, Inequalities, RegionSummary, Case, Section)
 #: What an observer is assumed to do with the output, and the gain it turns out to be; a convention may call both H.
 _ANSATZ = {"L", "H_x"}
 _FACTS = (Sentence, Predicate, Roots, HoldsExactlyWhere, Conjunction)
@@ -129,8 +129,8 @@ def _in_signs(item: Any, turned: Turned) -> Any:
     match item:
         case Relation():
             return turned.relation(item)
-        case Shown(formula, value):
-            return Shown(*turned.relation(Relation((formula, value), ("=",))).members)
+        case Evaluated(formula, value):
+            return Evaluated(*turned.relation(Relation((formula, value), ("=",))).members)
         case Diagram(labels=labels):
             signed = tuple((name, _label_in_signs(label, turned)) for name, label in labels)
             return replace(item, labels=signed, sentence=_in_signs(item.sentence, turned))
@@ -149,7 +149,7 @@ def _rebuilt(item: Any, of_part: Callable[[Any], Any]) -> Any:
     """Return a step, a sentence, a fact or several of them over other parts; anything else as it is."""
     if isinstance(item, tuple):
         return tuple(map(of_part, item))
-    if isinstance(item, (*_STEPS, *_FACTS, Relation, Shown, Diagram)):
+    if isinstance(item, (*_STEPS, *_FACTS, Relation, Evaluated, Diagram)):
         return replace(item, **{part.name: of_part(getattr(item, part.name)) for part in fields(item)})
     return item
 
@@ -221,7 +221,7 @@ def _every(item: Any) -> Iterator[Any]:
         parts: Iterable[Any] = children(item)
     elif isinstance(item, tuple):
         parts = item
-    elif isinstance(item, (*_STEPS, *_FACTS, Relation, Shown, Diagram)):
+    elif isinstance(item, (*_STEPS, *_FACTS, Relation, Evaluated, Diagram)):
         parts = (getattr(item, field.name) for field in fields(item))
     else:
         return

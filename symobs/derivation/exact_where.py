@@ -48,7 +48,7 @@ def is_exactly(fact: HoldsExactlyWhere, polynomial: Scalar, environment: Environ
 def _with_signs(environment: Environment) -> Environment:
     """Return the environment with what is known to be above 0 as a sign, where it is a symbol or minus one."""
     signs = dict(environment.signs)
-    for value in environment.above:
+    for value in environment.positive:
         for sign, symbol in (("positive", value), ("negative", -value)):
             if str(symbol) in symbol.names:
                 signs[str(symbol)] = sign

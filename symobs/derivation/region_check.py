@@ -22,13 +22,13 @@ from symobs.stability.regions.short_list import RegionInequality, short_list
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
-    from symobs.derivation.steps import Survey
+    from symobs.derivation.steps import RegionSummary
     from symobs.exact import RealNumber
     from symobs.formula import Environment
     from symobs.stability.regions.plane_region import PlaneRegion
 
 
-def is_survey(step: Survey, value: Scalar, environment: Environment, *, discrete: bool) -> bool:
+def is_survey(step: RegionSummary, value: Scalar, environment: Environment, *, discrete: bool) -> bool:
     """Tell whether what a step says of a region is so."""
     region = region_of(value, environment, discrete=discrete, names=step.names)
     if region is None and not step.parts:

@@ -116,7 +116,7 @@ class Tabulate:
 
 
 @dataclass(frozen=True)
-class Where:
+class Inequalities:
     """A property holds exactly where some inequalities do: shown on a display of their own."""
 
     fact: HoldsExactlyWhere
@@ -125,7 +125,7 @@ class Where:
 
 
 @dataclass(frozen=True)
-class Survey:
+class RegionSummary:
     """The region of one or two parameters (`names`) in which a polynomial is stable, in words and in parts.
 
     The findings are among those of `findings_of_region`; the parts are all of its intervals, or bounds of the second
@@ -172,5 +172,17 @@ class Section:
 
 
 Step: TypeAlias = (
-    Given | Define | Equal | Solve | Conclude | Note | Diagram | Plot | Tabulate | Where | Survey | Case | Section
+    Given
+    | Define
+    | Equal
+    | Solve
+    | Conclude
+    | Note
+    | Diagram
+    | Plot
+    | Tabulate
+    | Inequalities
+    | RegionSummary
+    | Case
+    | Section
 )

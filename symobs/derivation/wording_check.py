@@ -226,7 +226,9 @@ def with_limit(sentence: Sentence, environment: Environment) -> Environment:
     name = _SETS.get(DEMANDS.get(sentence.key, ""))
     if name is None:
         return environment
-    return environment.having(values={name: evaluate(formula_in(sentence, "limit"), environment, Exact(environment))})
+    return environment.extended_by(
+        values={name: evaluate(formula_in(sentence, "limit"), environment, Exact(environment))}
+    )
 
 
 def reject_other_map(sentence: Sentence, relation: Relation | None, environment: Environment) -> None:

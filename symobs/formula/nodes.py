@@ -231,7 +231,7 @@ class Conjunction:
 
 
 @dataclass(frozen=True)
-class Shown:
+class Evaluated:
     """The value of a formula, printed without the formula."""
 
     formula: Formula
@@ -245,7 +245,7 @@ class SymbolList:
     names: tuple[str, ...]
 
 
-Fact: TypeAlias = Relation | Predicate | Roots | HoldsExactlyWhere | Conjunction | Shown | SymbolList
+Fact: TypeAlias = Relation | Predicate | Roots | HoldsExactlyWhere | Conjunction | Evaluated | SymbolList
 
 
 #: Where the formulas directly below a node stand; asked for more often than anything else of a formula.

@@ -170,7 +170,7 @@ def _slot(page: Page, task: Task, name: str, value: Any) -> Slot:
     match task.keywords[name]:
         case "Poles":
             letter = "phi_c" if name == "control_poles" or task.name == "state_feedback" else "phi_o"
-            phi = page[letter] if page.knows(letter) else page.set(letter, value.polynomial)
+            phi = page[letter] if page.defines(letter) else page.set(letter, value.polynomial)
             return Roots(phi.formula, tuple(root_of_pole(pole, page.plant.variable) for pole in value.poles))
         case "PolynomialText":
             form: Term = page.term(formula_of_factored(factored(value, page.plant.variable, monic=False)))

@@ -200,7 +200,7 @@ def _case(page: Page, letter: str, case: Case) -> Step:
     found: Any = case.result
     inner = Page(found.plant)
     values = {name: getattr(found.plant.matrices, name) for name in "ABC" if name in page.environment.values}
-    inner.environment = page.environment.having(values=values)
+    inner.environment = page.environment.extended_by(values=values)
     test = found.test.answer
     inner.conclude("case_rank", rank=relation(inner[letter].apply("rank"), test["rank"]))
     if test["kernel"].shape[1]:

@@ -98,7 +98,7 @@ def meeting_steps(page: Page, result: ModeResult) -> Iterator[Step]:
         found: Any = case.result
         inner = Page(found.plant)
         values = {name: getattr(found.plant.matrices, name) for name in "ABC" if name in page.environment.values}
-        inner.environment = page.environment.having(values=values)
+        inner.environment = page.environment.extended_by(values=values)
         at_eigenvalues(inner, found, [part for part, rank, _ in found.parts if rank < found.plant.order])
         inner.steps += meeting_steps(inner, found)
         anew = tuple(set_anew(page, inner))

@@ -99,7 +99,7 @@ def repair(page: Page, letter: str, result: RankResult, kind: str) -> list[Step]
     if result.piece is not None:  # a rank on a stratum may be beyond what the check of a page can see
         relations = result.piece.relations(c.expression for c in result.domain)
         values = {letter: result.answer["matrix"] if kind == "observability" else result.answer["matrix"].T}
-        e = page.environment.having(values=values | {"A": result.plant.matrices.A}).under(relations)
+        e = page.environment.extended_by(values=values | {"A": result.plant.matrices.A}).with_relations(relations)
         if not shows(facts, e):
             return []
     words = "one" if len(sets[0]) == 1 else "several"

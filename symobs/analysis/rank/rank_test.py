@@ -295,7 +295,7 @@ class RankResult(Result):
         if self.piece is None and N.shape[1] and self._tree is not None:
             excluded += [distance_from(locus.equations) for locus in self._tree.generic.covers]
         e = Environment(signs=self.plant.symbols.signs, relations=(self.piece or Piece()).relations(excluded))
-        e = e.under(self.plant.relations)
+        e = e.with_relations(self.plant.relations)
         sets = smallest_sets(N, X, e)
         return sets, check_all(repair_claims(sets or (), N, X, e, self.repaired_by))
 

@@ -78,7 +78,7 @@ class CanonicalForm(Result):
         values |= {"B": m.B, "B_bar": answer["B"]} if m.has_input else {}
         values |= {"C": m.C, "C_bar": answer["C"]} if m.has_output else {}
         values |= {"D": m.D, "D_bar": answer["D"]} if m.has_input and m.has_output else {}
-        e = e.having(values=values)
+        e = e.extended_by(values=values)
         T, S = letter("T", e), letter("S", e)
         yield Claim(relation(T @ S, identity(n, e)), e)
         yield Claim(relation(letter("A_bar", e), T @ letter("A", e) @ S), e)

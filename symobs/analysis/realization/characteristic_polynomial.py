@@ -58,7 +58,7 @@ class CharacteristicPolynomial(Result):
         polynomial: Scalar = self.answer["polynomial"]
         with page.section("characteristic_polynomial"):
             pencil = page.s @ page.identity(self.plant.order) - page["A"]
-            members = [pencil.apply("det"), pencil.shown.apply("det"), page.value(polynomial)]
+            members = [pencil.apply("det"), pencil.as_value.apply("det"), page.value(polynomial)]
             form: Factored = self.answer["factors"]
             if len(form.factors) > 1 or form.factors[0][1] > 1:
                 members.append(page.term(formula_of_factored(form)))

@@ -110,7 +110,7 @@ class Decomposition(Result):
         first, inputs, outputs = self.part(0), range(self.plant.inputs), range(self.plant.outputs)
         A1 = self.answer["A"].select(first, first)
         B1, C1 = self.answer["B"].select(first, inputs), self.answer["C"].select(outputs, first)
-        e = e.having(values={"P": self.answer["transfer_function"], "A_co": A1, "B_co": B1, "C_co": C1})
+        e = e.extended_by(values={"P": self.answer["transfer_function"], "A_co": A1, "B_co": B1, "C_co": C1})
         s, P = letter("s", e), letter("P", e)
         whole = (s @ identity(self.plant.order, e) - letter("A", e)).inverse
         yield Claim(relation(P, letter("C", e) @ whole @ letter("B", e) + letter("D", e)), e)

@@ -13,7 +13,7 @@ from symobs.conditions import Condition, vanishing_factors
 from symobs.derivation.builder import Page, predicate, relation
 from symobs.exact import Matrix, Scalar, independent_rows, pole_and_zero_polynomial, roots_of, transfer, transfer_matrix
 from symobs.exact.core.generators import NotWritten
-from symobs.formula import Environment, Literal, Quotient, Roots, Shown
+from symobs.formula import Environment, Evaluated, Literal, Quotient, Roots
 from symobs.formula.term import Term, block, identity, letter
 from symobs.result import Case, Result, choose, method, task
 
@@ -159,7 +159,7 @@ class TransferFunction(Result):
             one_over = page.term(Quotient(Literal(Scalar.of(1)), Literal(characteristic)))
             stages = [C @ pencil.inverse @ B]
             if is_narrow(adjugate.value):
-                stages.append(one_over @ C.shown @ adjugate @ B.shown)
+                stages.append(one_over @ C.as_value @ adjugate @ B.as_value)
             if m.has_feedthrough:
                 stages = [stage + page["D"] for stage in stages]
             if isinstance(P, Matrix):
@@ -179,7 +179,9 @@ class TransferFunction(Result):
             everything = block([[page["C"] @ A**k] for k in range(order)]) @ block(
                 [[A**k @ page["B"] for k in range(order)]]
             )
-            page.conclude("cancelled", order=Shown(everything.apply("rank").formula, page.value(self.order).formula))
+            page.conclude(
+                "cancelled", order=Evaluated(everything.apply("rank").formula, page.value(self.order).formula)
+            )
 
     def _tell_roots(self, page: Page) -> None:
         """Say the poles and the zeros."""

@@ -9,7 +9,7 @@ from symobs.analysis.stability_region.stability_region import StabilityRegion
 from symobs.analysis.stability_region.stability_region_fields import solved
 from symobs.conditions import sign_of
 from symobs.derivation import Case as CaseStep
-from symobs.derivation import Conclude, Step, Survey, Where
+from symobs.derivation import Conclude, Inequalities, RegionSummary, Step
 from symobs.derivation.builder import predicate, relation, sentence
 from symobs.derivation.region_check import findings_of_conditions, findings_of_region, interval_relations
 from symobs.exact import Scalar
@@ -42,7 +42,7 @@ def write_region(page: Page, result: StabilityRegion) -> None:
     if question.plant.polynomial is not None:
         with page.section("given"):
             page.given(relation(page["chi_p"], question.plant.polynomial))
-            page.environment = page.environment.having(values={"chi_p": question.plant.polynomial})
+            page.environment = page.environment.extended_by(values={"chi_p": question.plant.polynomial})
             if result.plant.is_from_floats:
                 page.remark("from_floats")
             state_signs(page)
@@ -81,7 +81,7 @@ def _polynomial_of_loop(page: Page, result: StabilityRegion) -> str:
     used = {name: term for name, term in moved.items() if term is not None} or {"chi": pencil}
     for name, term in used.items():
         own = chi if len(used) == 1 else term.apply("det").scalar
-        page.define(name, term.apply("det"), term.shown.apply("det"), own, say="polynomial_of_loop", closing=False)
+        page.define(name, term.apply("det"), term.as_value.apply("det"), own, say="polynomial_of_loop", closing=False)
     if len(used) == 1:
         return next(iter(used))
     page.define("chi_cl", page["chi_K"] * page["chi_L"], say="polynomial_of_loop", closing=False)
@@ -194,7 +194,7 @@ def _conditions(page: Page, result: StabilityRegion, chi: str) -> None:
         page[chi].scalar, page.environment, names, discrete=result.question.boundary.discrete
     )
     if result.empty:
-        page.steps.append(Survey(page[chi].formula, names, findings))
+        page.steps.append(RegionSummary(page[chi].formula, names, findings))
         return
     relations = tuple(relation(*solved(bound, signs, names)) for bound in result.answer["bounds"])
     raw = short.equivalence.raw
@@ -203,13 +203,13 @@ def _conditions(page: Page, result: StabilityRegion, chi: str) -> None:
     if relations and len(known) > len(relations):
         say = "shortened"
         if sum(value.size for value in raw) <= WRITTEN_UP_TO:
-            page.steps.append(Where(HoldsExactlyWhere(stable, known), sentence("criterion", {})))
+            page.steps.append(Inequalities(HoldsExactlyWhere(stable, known), sentence("criterion", {})))
         else:
             page.remark("criterion_long", count=str(len(raw)))
     if relations:
-        page.steps.append(Where(HoldsExactlyWhere(stable, relations), sentence(say, {}), answer=True))
+        page.steps.append(Inequalities(HoldsExactlyWhere(stable, relations), sentence(say, {}), answer=True))
     if findings:
-        page.steps.append(Survey(page[chi].formula, names, findings))
+        page.steps.append(RegionSummary(page[chi].formula, names, findings))
     page.steps += [_case(page, case, chi) for case in result.case_tree if case.result is not None]
     weak = {"nonnegative", "nonpositive"}.intersection(map(signs.get, names))
     if not result.question.symbols and len(names) == 2 and not weak:
@@ -232,7 +232,7 @@ def _case(page: Page, case: Case, chi: str) -> Step:
     else:
         names = found.question.parameters
         relations = tuple(relation(*solved(bound, found.signs, names)) for bound in found.answer["bounds"])
-        steps = (Where(HoldsExactlyWhere(stable, relations), sentence("case_region", {})),)
+        steps = (Inequalities(HoldsExactlyWhere(stable, relations), sentence("case_region", {})),)
     return CaseStep(when, tuple(case.substitution.items()), steps)
 
 
@@ -244,22 +244,22 @@ def _region(page: Page, result: StabilityRegion, chi: str) -> None:
     names = (region.name,) if isinstance(region, LineRegion) else region.names
     decided = tuple(finding for finding in found if finding.key in HOW)
     if decided:
-        page.steps.append(Survey(page[chi].formula, names, decided))
+        page.steps.append(RegionSummary(page[chi].formula, names, decided))
     if result.empty:
-        page.steps.append(Survey(page[chi].formula, names, found))
+        page.steps.append(RegionSummary(page[chi].formula, names, found))
         return
     relations = _inequalities(result, region)
     if relations:
         fact = HoldsExactlyWhere(predicate("stable", page[chi]), relations)
-        page.steps.append(Where(fact, sentence("region_is", {}), answer=True))
+        page.steps.append(Inequalities(fact, sentence("region_is", {}), answer=True))
     parts = _parts(result, region)
     others = tuple(finding for finding in found if finding not in decided and finding.key != "number_is_root")
     if others or parts:
         numbers = tuple(finding for finding in found if finding.key == "number_is_root") if parts else ()
         say = sentence("parts_are", {}) if parts else None
-        page.steps.append(Survey(page[chi].formula, names, others, parts, say))
+        page.steps.append(RegionSummary(page[chi].formula, names, others, parts, say))
         if numbers:
-            page.steps.append(Survey(page[chi].formula, names, numbers))
+            page.steps.append(RegionSummary(page[chi].formula, names, numbers))
 
 
 def _pictures(page: Page, result: StabilityRegion, chi: str, moved: str) -> None:

@@ -175,7 +175,7 @@ class _Search:
             for value in (entry.numerator for entry in self.matrix.select(*minor).entries):
                 if locus.ideal is None or value in locus.ideal:
                     continue
-                if not locus.ideal.having(apart_from_zero(value)).is_whole:
+                if not locus.ideal.extended_by(apart_from_zero(value)).is_whole:
                     continue
                 found = loci((*locus.equations, value), self.region)
                 if len(found) == 1 and found[0].ideal is not None:

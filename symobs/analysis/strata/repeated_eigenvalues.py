@@ -96,7 +96,7 @@ def _constancy(
     loci = maximal(Locus.of(Ideal.of(system)) for system in (*others, *own))
     found = Constancy(tuple(locus.equations for locus in loci), minors)
     claims = constancy_claims(found, X, factor, dimension, plant)
-    return found if all(verify(c.relation, c.environment.under(plant.relations))[0] for c in claims) else None
+    return found if all(verify(c.relation, c.environment.with_relations(plant.relations))[0] for c in claims) else None
 
 
 def _at_roots(factor: Scalar, plant: StateSpace) -> Region:

@@ -59,7 +59,7 @@ class Branched(Result):
             reject(f"the {self.main} of {self.task} is missing")
         signs = {**self.answer["taken"], **self.answer["chosen"]}
         above = tuple(delta if sign == "positive" else -delta for delta, sign in signs.items())
-        e = Environment(variable=self.plant.variable, signs=self.plant.symbols.signs, above=above)
+        e = Environment(variable=self.plant.variable, signs=self.plant.symbols.signs, positive=above)
         for root in sorted(all_roots(*self.matrices), key=lambda root: root.name):
             yield Claim(relation(root.argument, ">=", 0), e, f"{root.name} is real")
 
@@ -154,7 +154,7 @@ class Branched(Result):
         beyond = [c.expression for c in self.domain if c.operator == ">"]
         if beyond:
             page.start, page.environment = (
-                replace(each, above=(*each.above, *beyond)) for each in (page.start, page.environment)
+                replace(each, positive=(*each.positive, *beyond)) for each in (page.start, page.environment)
             )
             page.conclude("declared", signs=Conjunction(tuple(relation(value, ">", 0) for value in beyond)))
 

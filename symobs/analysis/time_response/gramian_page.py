@@ -44,7 +44,7 @@ def write_gramian(page: Page, result: Gramian) -> None:
     result.state(page)
     is_dual = result.answer["of"] == "controllability"
     if is_dual:
-        page.environment = page.environment.having(values={})
+        page.environment = page.environment.extended_by(values={})
     with page.section(f"gramian_{result.answer['of']}"):
         if "exponential" in result.answer or result.answer.get("factor") is not None:
             tell_polynomial(page)
@@ -117,11 +117,11 @@ def _write_branch(page: Page, result: Gramian) -> None:
     tell_exponential(page, found, shown)
     Phi = page["exp_At"]
     seen = Phi @ page["B"] if is_dual else page["C"] @ Phi
-    page.equal(relation(seen, seen.shown), say="input_through_exponential" if is_dual else "output_of_exponential")
+    page.equal(relation(seen, seen.as_value), say="input_through_exponential" if is_dual else "output_of_exponential")
     integrand = seen @ page["B"].T @ Phi.T if is_dual else Phi.T @ page["C"].T @ seen
     whole = page.term(since_start(integrand.formula, Literal(answer["function"]), answer["horizon"]))
     W: Matrix = answer["matrix"]
-    if page.knows("P_l") and not is_dual:
+    if page.defines("P_l") and not is_dual:
         over = page.set("Phi_T", substitute(shown, {"t": answer["horizon"]}))
         page.set("W", W)
         page.equal(relation(page["W"], whole, page["P_l"] - over.T @ page["P_l"] @ over), say="gramian_by_lyapunov")
@@ -197,12 +197,12 @@ def _tell_finite_sum(result: Gramian, page: Page) -> None:
     if result.answer["matrix"] is None or result.answer["of"] == "controllability":
         return
     several = kernel.shape[1] > 1
-    v = page["N"] if several and page.knows("N") else page.set("N" if several else "v", kernel)
+    v = page["N"] if several and page.defines("N") else page.set("N" if several else "v", kernel)
     zero = Matrix.zeros(page["C"].value.shape[0], kernel.shape[1])
     nothing = Matrix.zeros(*kernel.shape)
     page.equal(relation(v, v.value), say="kernel_shared")
-    if page.knows("exp_At"):
+    if page.defines("exp_At"):
         unseen = relation(page["C"] @ page["exp_At"] @ v, zero)  # what it says is shown
         page.equal(unseen, say="kernel_unseen_several" if several else "kernel_unseen")
-    shown = [relation(page["W"] @ v, nothing)] if page.knows("W") else []
+    shown = [relation(page["W"] @ v, nothing)] if page.defines("W") else []
     page.equal(*shown, relation(M @ v, nothing), say="kernel_of_gramian")

@@ -59,9 +59,9 @@ def _write_branch(page: Page, result: InitialStateCovariance) -> None:
     values = {name: _entry(value) for name, value in result.letters().items()}
     horizon = answer["horizon"]
     has_input = answer["Q"] is not None
-    given = [relation(page["R"], page.set("R", values["R"]).shown)]
+    given = [relation(page["R"], page.set("R", values["R"]).as_value)]
     if has_input:
-        given.insert(0, relation(page["Q"], page.set("Q", values["Q"]).shown))
+        given.insert(0, relation(page["Q"], page.set("Q", values["Q"]).as_value))
     page.equal(*given, say="noise" if has_input else "noise_output_only")
     Phi, C, R = page["exp_At"], page["C"], page["R"]
     gramian = since_start((Phi.T @ C.T @ C @ Phi).formula, Literal(answer["gramian"]), horizon)

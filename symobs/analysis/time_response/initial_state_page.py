@@ -19,7 +19,7 @@ from symobs.derivation.builder import relation
 from symobs.exact import Matrix, Scalar
 from symobs.exact.core.generators import substitute
 from symobs.exact.time_functions.quasipolynomial import determinant, table_of
-from symobs.formula import Literal, Shown
+from symobs.formula import Evaluated, Literal
 from symobs.formula.calculus import since_start
 from symobs.formula.term import block
 from symobs.result import page_of
@@ -75,7 +75,7 @@ def _tell_forced(result: InitialState, page: Page) -> Term:
     """Write the motion from rest and ỹ; return ỹ."""
     answer, A, C, y = result.answer, page["A"], page["C"], page["y_t"]
     if answer["input"] is None:
-        page.equal(relation(C @ page["exp_At"], (C @ page["exp_At"]).shown), say="output_of_exponential")
+        page.equal(relation(C @ page["exp_At"], (C @ page["exp_At"]).as_value), say="output_of_exponential")
         page.set("y_0", answer["output"])
         return y
     x_f = page.define("x_f", answer["forced"], say="output_forced", closing=False)
@@ -142,7 +142,7 @@ def _warn_of_short_horizons(result: InitialState, page: Page) -> None:
         det = rate_of(det)
         taylor = taylor + det.at("t", 0) * (end**k / factorial(k))
     leading = page.value(last * end**power / factorial(power))
-    page.caution("short_horizon", leading=Shown(taylor.formula, leading.formula))
+    page.caution("short_horizon", leading=Evaluated(taylor.formula, leading.formula))
 
 
 def _tell_refusal(result: InitialState, page: Page, free: Term) -> None:
@@ -161,5 +161,5 @@ def _tell_refusal(result: InitialState, page: Page, free: Term) -> None:
     at_zero = block([[rate.at("t", 0)] for rate in rates])
     zero = relation(w.T @ page["O"], Matrix.zeros(1, result.plant.order))
     page.equal(relation(start, at_zero, answer["start"]), say="initial_start")
-    rest = relation(page["v"].T @ start, (page["v"].T @ start).shown, "!==", 0)
+    rest = relation(page["v"].T @ start, (page["v"].T @ start).as_value, "!==", 0)
     page.remark("initial_inconsistent", row=relation(w, answer["row"].T), zero=zero, rest=rest)

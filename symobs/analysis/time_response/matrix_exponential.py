@@ -130,7 +130,7 @@ def _write_branch(page: Page, result: MatrixExponential) -> None:
     tell_exponential(page, found, result.answer["matrix"], answer=True)
     Phi = page["exp_At"]
     if found.is_closed and not result.plant.field.names and result.plant.order <= _SHOWN_RATE:
-        page.equal(relation(rate_of(Phi), (page["A"] @ Phi).shown, page["A"] @ Phi), say="exponential_rate")
+        page.equal(relation(rate_of(Phi), (page["A"] @ Phi).as_value, page["A"] @ Phi), say="exponential_rate")
     start = relation(Phi.at("t", 0), page.identity(result.plant.order))
     page.verified("exponential_start", relation(rate_of(Phi), page["A"] @ Phi), start=start)
 

@@ -146,7 +146,7 @@ class TimeVaryingObservability(Result):
         asked, point = self.asked_for, Term(Literal(self.answer["point"]), e)
         yield Claim(relation(point.derivative, 0), e, "the instant is one")
         if asked.interval is not None:
-            e = replace(e, above=(asked.end - asked.start,))
+            e = replace(e, positive=(asked.end - asked.start,))
             yield Claim(relation(point, ">=", asked.start), e, "the instant is not before the interval")
             yield Claim(relation(point, "<=", asked.end), e, "the instant is not after the interval")
 

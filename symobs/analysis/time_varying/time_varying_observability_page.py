@@ -21,7 +21,7 @@ from symobs.derivation import Conclude, Equal
 from symobs.derivation.builder import relation, sentence
 from symobs.exact import Matrix, Scalar, antiderivative, rank
 from symobs.exact.core.generators import substitute
-from symobs.formula import Integral, Literal, Shown
+from symobs.formula import Evaluated, Integral, Literal
 from symobs.formula.term import Term, block
 from symobs.result import page_of
 
@@ -41,7 +41,7 @@ def write(page: Page, result: TimeVaryingObservability) -> None:
     given(page)
     if asked.interval is not None:
         ends = {name: page.set(f"t_{name}", value) for name, value in (("start", asked.start), ("end", asked.end))}
-        page.conclude("on_interval", **{name: Shown(end.formula, Literal(end.value)) for name, end in ends.items()})
+        page.conclude("on_interval", **{name: Evaluated(end.formula, Literal(end.value)) for name, end in ends.items()})
     with page.section("transition"):
         _transition(page, result)
     if result.answer["transition_matrix"] is not None:
@@ -165,7 +165,7 @@ def _gramian(page: Page, result: TimeVaryingObservability) -> None:
         unit = Matrix.identity(order)
         row, column = (page.value(unit.select(range(order), [k])) for k in (i, j))
         entry = row.T @ seen.T @ seen @ column
-        page.remark("gramian_open_integral", integrand=Shown(entry.formula, Literal(product[i, j])))
+        page.remark("gramian_open_integral", integrand=Evaluated(entry.formula, Literal(product[i, j])))
     else:
         Phi = page["Phi"].at(START, asked.start)
         squared = Phi.T @ page["C"].T @ page["C"] @ Phi

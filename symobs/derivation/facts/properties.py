@@ -136,7 +136,7 @@ PREDICATES: dict[str, Callable[[Scalar, Environment, bool], bool]] = {
         environment.variable,
         environment.signs,
         discrete=discrete,
-        apart=(*environment.assumed, *environment.domain),
+        apart=(*environment.nonzero, *environment.domain),
     ),
     "beyond": lambda value, environment, discrete: is_beyond(
         value, environment.variable, environment.signs, discrete=discrete

@@ -21,7 +21,7 @@ from symobs.design.page_parts.block_diagrams import draw_compensator, draw_loop,
 from symobs.design.page_parts.time_responses import plot_estimate
 from symobs.design.pole_placement.fresh_names import fresh_names, taken_names
 from symobs.exact import Factored, Matrix, Root, Scalar, from_coefficients, root_of_pole, roots_of, transfer
-from symobs.formula import HoldsExactlyWhere, Literal, Quotient, Roots, Shown
+from symobs.formula import Evaluated, HoldsExactlyWhere, Literal, Quotient, Roots
 from symobs.formula.term import Term, block
 from symobs.phrases import PHRASES
 from symobs.result import page_of
@@ -91,21 +91,21 @@ def _state_space(page: Page, design: CompensatorDesign) -> None:
     m = design.plant.matrices
     A, B, C, K, L, x_hat = (page[name] for name in ("A", "B", "C", "K", "L", "x_hat"))
     page.signal("u", -K @ x_hat, say="separation")
-    closed, shown = A - B @ K - L @ C, A.shown - (B @ K).shown - (L @ C).shown
+    closed, shown = A - B @ K - L @ C, A.as_value - (B @ K).as_value - (L @ C).as_value
     if m.has_feedthrough:
-        closed, shown = closed + L @ page["D"] @ K, shown + (L @ page["D"] @ K).shown
+        closed, shown = closed + L @ page["D"] @ K, shown + (L @ page["D"] @ K).as_value
     own, is_written = closed @ x_hat + L @ page["y"], closed.value.size <= readability.MATRIX
     if not is_written:
         page.equal(relation(x_hat.derivative, own), say="observer_closed")
     small = page.plant.order == readability.PRODUCTS_ORDER and not m.has_feedthrough
-    apart = [A.shown - B.shown @ K.shown - L.shown @ C.shown] if small else []
+    apart = [A.as_value - B.as_value @ K.as_value - L.as_value @ C.as_value] if small else []
     page.define("A_c", closed, *apart, shown, say="observer_closed_matrix" if is_written else "compensator_matrix")
     if is_written:
-        written = page["A_c"].shown @ x_hat + L.shown @ page["y"]
+        written = page["A_c"].as_value @ x_hat + L.as_value @ page["y"]
         page.conclude_silently(relation(x_hat.derivative, own))
         page.equal(
             relation(x_hat.derivative, page["A_c"] @ x_hat + L @ page["y"], written),
-            relation(page["u"], -K.shown @ x_hat),
+            relation(page["u"], -K.as_value @ x_hat),
             say="compensator_written",
         )
     draw_compensator(page)
@@ -121,9 +121,9 @@ def _transfer_function(page: Page, design: CompensatorDesign) -> None:
     driven = (adjugate @ L.value).normal()
     one_over = page.term(Quotient(Literal(Scalar.of(1)), Literal(characteristic)))
     stages = [
-        (pencil, K.shown @ page.value(pencil).inverse @ L.shown),
-        (adjugate, one_over @ K.shown @ page.value(adjugate) @ L.shown),
-        (driven, one_over @ K.shown @ page.value(driven)),
+        (pencil, K.as_value @ page.value(pencil).inverse @ L.as_value),
+        (adjugate, one_over @ K.as_value @ page.value(adjugate) @ L.as_value),
+        (driven, one_over @ K.as_value @ page.value(driven)),
     ]
     written = [stage for matrix, stage in stages if is_narrow(matrix, K.value)]
     whole = K @ (page.s @ page.identity(order) - page["A_c"]).inverse @ L
@@ -164,7 +164,7 @@ def say_stability(page: Page, design: OutputFeedback, stem: str, proper: Fact, *
         facts, reason = [proper, predicate(word, page["F"])], _reason(page, design, word)
         key = f"{stem}_{word}_low" if reason and f"{stem}_{word}_low" in PHRASES else f"{stem}_{word}"
         told = {**slots, **(reason if key.endswith("_low") else {})}
-        if found == "no" and page.knows("phi_c") and page.knows("phi_o"):
+        if found == "no" and page.defines("phi_c") and page.defines("phi_o"):
             loop, signs = page["phi_c"] @ page["phi_o"], plant.symbols.signs
             if stability(loop.scalar, plant.variable, signs, discrete=plant.is_discrete).verdict == "yes":
                 key, facts = f"{key}_alone", [*facts, predicate("stable", loop)]
@@ -183,14 +183,14 @@ def say_stability(page: Page, design: OutputFeedback, stem: str, proper: Fact, *
 def _reason(page: Page, design: OutputFeedback, word: str) -> dict[str, Slot]:
     """Return the polynomial whose coefficients tell by their signs alone: of order 1 or 2, in continuous time."""
     F, plant = design.answer["F"], page.plant
-    if plant.is_discrete or plant.order > _DECIDED_BY_SIGNS or not isinstance(F, Scalar) or not page.knows("A_c"):
+    if plant.is_discrete or plant.order > _DECIDED_BY_SIGNS or not isinstance(F, Scalar) or not page.defines("A_c"):
         return {}
     own = (page.s @ page.identity(page["A_c"].value.shape[0]) - page["A_c"]).apply("det")
     coefficients = own.scalar.coefficients(plant.variable)
     if own.scalar != monic(F.denominator, plant.variable) or not all(c.is_constant for c in coefficients):
         return {}
     positive = all(c.fraction() > 0 for c in coefficients)
-    return {"polynomial": Shown(own.formula, Literal(own.scalar))} if positive == (word == "stable") else {}
+    return {"polynomial": Evaluated(own.formula, Literal(own.scalar))} if positive == (word == "stable") else {}
 
 
 def _error_coordinates(page: Page, design: CompensatorDesign, *, large: bool) -> None:
@@ -321,7 +321,7 @@ def _plant(page: Page, design: OutputFeedback) -> Term:
     plant = design.plant
     numerator, characteristic = design.plant_transfer
     form = factored_form(page, numerator / characteristic)
-    if not page.knows("P"):
+    if not page.defines("P"):
         page.define("P", form, say="plant_transfer", closing=False)
         response = page["C"] @ (page.s @ page.identity(plant.order) - page["A"]).inverse @ page["B"]
         if plant.matrices.has_feedthrough:

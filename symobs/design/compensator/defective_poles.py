@@ -42,7 +42,7 @@ def caution_repeated(page: Page, design: OutputFeedback) -> None:
                 "defective" if instead is None else "defective_instead",
                 held,
                 pole=Roots(single.formula, roots_of(factor, plant.variable)),
-                matrix=relation(offset, offset.shown) if plant.order == readability.OFFSET_ORDER else held,
+                matrix=relation(offset, offset.as_value) if plant.order == readability.OFFSET_ORDER else held,
                 **({} if instead is None else {"instead": instead}),
             )
             return

@@ -77,7 +77,7 @@ class MinimalOrderCompensator(OutputFeedback):
         if not have:
             return
         direct, rest = split(self.answer["K"], self.estimator)
-        e = e.having(values={"N": direct, "K_2": rest})
+        e = e.extended_by(values={"N": direct, "K_2": rest})
         K, M, N, K_2, D, F = (letter(name, e) for name in ("K", "M_z", "N", "K_2", "D", "F"))
         yield Claim(relation(K @ M, block([[N, K_2]])), e, "K*M = [N, K_2]")
         one = identity(self.plant.inputs, e)

@@ -113,7 +113,7 @@ def partitioned_gain(page: Page) -> None:
     page.set("K_1", parts.select(inputs, range(plant.outputs)))
     page.set("K_2", parts.select(inputs, range(plant.outputs, plant.order)))
     both = block([[page["K_1"], page["K_2"]]])
-    page.equal(relation(whole, both, both.shown), say="partitioned_gain")
+    page.equal(relation(whole, both, both.as_value), say="partitioned_gain")
 
 
 def _numbers(page: Page, pairs: list[tuple[Matrix | Scalar, Term]], *, large: bool) -> list[Term]:
@@ -198,7 +198,7 @@ def _transfer_function(page: Page, design: MinimalOrderCompensator, *, large: bo
             "F", formula, numbers, *_apart(page, pencil), result, say="minimal_transfer", answer=True, closing=False
         )
     remainder = predicate("strictly_proper", page["F"] - direct)
-    say_stability(page, design, "minimal", remainder, direct=relation(direct, direct.shown))
+    say_stability(page, design, "minimal", remainder, direct=relation(direct, direct.as_value))
 
 
 def _error_coordinates(page: Page, design: MinimalOrderCompensator) -> None:

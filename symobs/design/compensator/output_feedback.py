@@ -244,7 +244,7 @@ class OutputFeedback(Result):
         values = {"P": self.plant_function, "F": self.answer["F"], "G_cl": whole}
         e = Environment(variable=variable, values=values)
         P, F, G = (letter(name, e) for name in ("P", "F", "G_cl"))
-        check(Claim(relation((identity(self.plant.outputs, e) + P @ F) @ G, P), e.under(self.plant.relations)))
+        check(Claim(relation((identity(self.plant.outputs, e) + P @ F) @ G, P), e.with_relations(self.plant.relations)))
         return tuple(tuple(factored(entry, variable, monic=False) for entry in row) for row in whole.rows)
 
     @cached_property
@@ -259,7 +259,7 @@ class OutputFeedback(Result):
         form = over(numerator, own, polynomial) if kept else factored(value, self.plant.variable, monic=False)
         e = Environment(variable=self.plant.variable, values={"P": P, "F": F, "G_cl": value})
         P_, F_, one = letter("P", e), letter("F", e), Term(relation(1, 1).members[0], e)
-        check(Claim(relation(letter("G_cl", e), P_ / (one + P_ @ F_)), e.under(self.plant.relations)))
+        check(Claim(relation(letter("G_cl", e), P_ / (one + P_ @ F_)), e.with_relations(self.plant.relations)))
         return form
 
     @cached_property
@@ -272,7 +272,7 @@ class OutputFeedback(Result):
         kept = value.denominator.degree(variable) == polynomial.value.degree(variable)
         e = Environment(variable=variable, values={"P": self.plant_function, "F": self.answer["F"], "G_r": value})
         P, F, one = letter("P", e), letter("F", e), Term(relation(1, 1).members[0], e)
-        check(Claim(relation(letter("G_r", e), P @ F / (one + P @ F)), e.under(self.plant.relations)))
+        check(Claim(relation(letter("G_r", e), P @ F / (one + P @ F)), e.with_relations(self.plant.relations)))
         return cancelled(numerator, own, polynomial, variable) if kept else factored(value, variable, monic=False)
 
     @cached_property

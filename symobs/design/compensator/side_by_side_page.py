@@ -58,7 +58,7 @@ def _column(page: Page, design: GainDesign, side: PlacementProblem) -> None:
         page.define("Ctr", blocks, silent=True)
         test = page["Ctr"]
     page.equal(
-        relation(test, *([blocks] if order <= readability.COLUMN_ORDER else []), test.shown), say=f"test_{side.kind}"
+        relation(test, *([blocks] if order <= readability.COLUMN_ORDER else []), test.as_value), say=f"test_{side.kind}"
     )
     square_test(page, side.matrix, design.test, side.test)
     page.conclude(f"any_{side.kind}")

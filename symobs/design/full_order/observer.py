@@ -140,16 +140,18 @@ def write_observer(page: Page, *, drawn: bool = False, alone: bool = True) -> No
     if m.has_feedthrough:
         page.equal(relation(innovation, C @ page["e"]), say="feedthrough_cancels")
     page.equal(
-        relation(page["e"].derivative, rate - (model + L @ innovation), closed @ page["e"], closed.shown @ page["e"]),
+        relation(
+            page["e"].derivative, rate - (model + L @ innovation), closed @ page["e"], closed.as_value @ page["e"]
+        ),
         say="error_equation",
         error=relation(page["e"], page["x"] - page["x_hat"]),
     )
     _say_deadbeat(page, closed)
-    collected, numbers, driven = closed @ x_hat, closed.shown @ x_hat, None
+    collected, numbers, driven = closed @ x_hat, closed.as_value @ x_hat, None
     if m.has_input:
         driven = page["B"] - L @ page["D"] if m.has_feedthrough else page["B"]
-        collected, numbers = collected + driven @ page["u"], numbers + driven.shown @ page["u"]
-    whole = relation(x_hat.derivative, collected + L @ y, numbers + L.shown @ y)
+        collected, numbers = collected + driven @ page["u"], numbers + driven.as_value @ page["u"]
+    whole = relation(x_hat.derivative, collected + L @ y, numbers + L.as_value @ y)
     if not alone and not m.has_feedthrough:  # its matrix stands in the equation of the error
         page.conclude_silently(whole)
         return

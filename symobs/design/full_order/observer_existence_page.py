@@ -45,12 +45,12 @@ def write_found(page: Page) -> None:
     m, L = page.plant.matrices, page["L"]
     page.conclude_silently(relation(page["H_x"], L))
     closed = page["A"] - L @ page["C"]
-    collected, numbers = closed @ page["x_hat"], closed.shown @ page["x_hat"]
+    collected, numbers = closed @ page["x_hat"], closed.as_value @ page["x_hat"]
     if m.has_input:
         driven = page["B"] - L @ page["D"] if m.has_feedthrough else page["B"]
-        collected, numbers = collected + driven @ page["u"], numbers + driven.shown @ page["u"]
+        collected, numbers = collected + driven @ page["u"], numbers + driven.as_value @ page["u"]
     page.equal(
-        relation(page["x_hat"].derivative, collected + L @ page["y"], numbers + L.shown @ page["y"]),
+        relation(page["x_hat"].derivative, collected + L @ page["y"], numbers + L.as_value @ page["y"]),
         say="existence_observer",
         answer=True,
     )

@@ -47,7 +47,7 @@ def write_sylvester(page: Page, design: GainDesign, side: PlacementProblem, desi
     solution = page.set(f"X_{side.index}1", equation.solution(own))
     determinant = relation(solution.apply("det"), determinant_form(page, solution.value.determinant()))
     if solution.value.size <= readability.MEMBER_SOLUTION:
-        page.equal(relation(solution, solution.shown), determinant, say="solution_of_member")
+        page.equal(relation(solution, solution.as_value), determinant, say="solution_of_member")
     else:
         page.equal(determinant, say="solution_long")
     page.conclude_silently(_sylvester(page, side, "1", equation))
@@ -104,7 +104,7 @@ def _equation(page: Page, side: PlacementProblem, which: str, equation: Sylveste
     page.equal(_similar(page, side, which, equation), say=f"similar_{side.kind}")
     page.equal(relation(page[G], value), say=f"one_row_held_{side.kind}" if value.shape[0] > 1 else "one_gain_only")
     if solution.value.size <= readability.FAMILY_SOLUTION:
-        page.equal(relation(solution, solution.shown), say="solution_is" if value.shape[0] > 1 else "")
+        page.equal(relation(solution, solution.as_value), say="solution_is" if value.shape[0] > 1 else "")
     determinant = solution.value.determinant()
     if determinant.size <= readability.FAMILY_DETERMINANT:
         page.equal(

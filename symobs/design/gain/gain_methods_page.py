@@ -12,7 +12,7 @@ from symobs.design.pole_placement.coefficient_matching import matching
 from symobs.design.pole_placement.fresh_names import fresh_names, taken_names
 from symobs.design.pole_placement.row_reduction import Reduction, gain_of, row_reduction
 from symobs.exact import Matrix, Scalar, companion, roots_of
-from symobs.formula import Literal, Roots, Shown
+from symobs.formula import Evaluated, Literal, Roots
 from symobs.formula.term import Term, block, product
 
 if TYPE_CHECKING:
@@ -96,9 +96,9 @@ def write_companion(page: Page, _: GainDesign, side: PlacementProblem, desired: 
     wanted = [page.value(c) for c in reversed(desired.coefficients)]
     row = block([[w - page.value(a) for w, a in zip(wanted, reversed(found), strict=True)]])
     if side.gain == "L":
-        page.define_transposed("L", row @ T, row.shown @ T.shown, say="row_observer")
+        page.define_transposed("L", row @ T, row.as_value @ T.as_value, say="row_observer")
     else:
-        page.define("K", row @ T, row.shown @ T.shown, say="row_state_feedback", answer=True)
+        page.define("K", row @ T, row.as_value @ T.as_value, say="row_state_feedback", answer=True)
 
 
 def readable(design: GainDesign) -> bool:
@@ -129,7 +129,7 @@ def write_row_reduction(page: Page, design: GainDesign, side: PlacementProblem, 
     psi = page.define("Psi", Matrix.block([[part.psi for part in found]]), say="upper_parts")
     f = page.define("f_psi", Matrix.block([[part.f for part in found]]))
     page.equal(relation(psi.apply("det"), determinant_form(page, psi.value.determinant())), say="with_determinant")
-    gain, shown = f @ psi.inverse, f.shown @ psi.shown.inverse
+    gain, shown = f @ psi.inverse, f.as_value @ psi.as_value.inverse
     unique = "_unique" if (page.plant.outputs if side.gain == "L" else page.plant.inputs) == 1 else ""
     if side.gain == "L":
         page.define_transposed("L", gain, shown, say=f"row_reduced{unique}_observer")
@@ -153,7 +153,7 @@ def _rounded_too_early(page: Page, gain: Matrix) -> None:
     near = page.decimals(page["Psi"].value)
     if not near or near[1].value.determinant().is_zero:
         return
-    spoiled = page["f_psi"].shown @ near[1].inverse
+    spoiled = page["f_psi"].as_value @ near[1].inverse
     shown = page.decimals(spoiled.value)
     pairs = zip(spoiled.value.entries, gain.entries, strict=True)
     if shown and any(abs((wrong - right).fraction()) > _HARM * abs(right.fraction()) for wrong, right in pairs):
@@ -232,9 +232,9 @@ def _pair(part: Reduction) -> bool:
     return part.size == 2 and part.J[0, 0] == part.J[1, 1]
 
 
-def _named(page: Page, part: Reduction) -> Shown:
+def _named(page: Page, part: Reduction) -> Evaluated:
     """Return what a reduction is for: a pole, or a factor of φ."""
     if part.size == 1:
-        return Shown(page.value(part.J).apply("det").formula, Literal(part.J[0, 0]))
+        return Evaluated(page.value(part.J).apply("det").formula, Literal(part.J[0, 0]))
     pencil = page.s @ page.identity(part.size) - page.value(part.J)
-    return Shown(pencil.apply("det").formula, Literal(part.J.characteristic_polynomial(page.plant.variable)))
+    return Evaluated(pencil.apply("det").formula, Literal(part.J.characteristic_polynomial(page.plant.variable)))

@@ -27,7 +27,7 @@ from symobs.design.page_parts.pole_cautions import caution_poles
 from symobs.design.pole_placement.fresh_names import fresh_names, taken_names
 from symobs.exact import Factored, Matrix, Scalar, companion, from_coefficients, hankel_of, root_of_pole, roots_of
 from symobs.exact.core.generators import all_roots
-from symobs.formula import Literal, Roots, Shown
+from symobs.formula import Evaluated, Literal, Roots
 from symobs.formula.term import Term, block
 from symobs.result import choose
 from symobs.specification import DesiredPolynomial
@@ -119,7 +119,7 @@ def _test(page: Page, design: GainDesign, side: PlacementProblem, style: str) ->
     if side.gain == "K" and style == "canonical_form" and _is_canonical(page):
         _say_canonical(page)
         return
-    if not page.knows(side.matrix):
+    if not page.defines(side.matrix):
         define_test_matrix(page, side)
         square_test(page, side.matrix, design.test, side.test)
     elif not design.fixed_polynomial.is_one or design.answer[side.gain] is None:
@@ -137,7 +137,7 @@ def name_coefficients(page: Page, design: GainDesign, side: PlacementProblem) ->
     plain = page.value(desired.polynomial)
     members = [plain] if desired.is_expanded else [grouped, plain]
     if all(c.size - 1 <= readability.COEFFICIENT for c in coefficients):
-        if not desired.poles and desired.is_expanded and page.knows(side.phi):
+        if not desired.poles and desired.is_expanded and page.defines(side.phi):
             return desired
         page.define(side.phi, *members, say=f"asks_{side.kind}")
         return desired
@@ -192,15 +192,15 @@ def write_canonical(page: Page, _: GainDesign, side: PlacementProblem, desired: 
     found = chi.coefficients(variable)[1:]
     page.define("chi", (page.s @ page.identity(order) - A).apply("det"), say=f"open_{side.kind}")
     hankel = page.value(hankel_of(found))
-    V = page.define(f"V_{side.index}", matrix @ hankel, matrix.shown @ hankel, say=f"canonical_{side.kind}")
+    V = page.define(f"V_{side.index}", matrix @ hankel, matrix.as_value @ hankel, say=f"canonical_{side.kind}")
     page.equal(
-        relation(V.inverse, V.inverse.shown), relation(V.apply("det"), determinant_form(page, V.value.determinant()))
+        relation(V.inverse, V.inverse.as_value), relation(V.apply("det"), determinant_form(page, V.value.determinant()))
     )
     row = _difference(page, wanted, list(found))
     if side.gain == "L":
-        page.define_transposed("L", row @ V.inverse, row.shown @ V.inverse.shown, say="row_observer")
+        page.define_transposed("L", row @ V.inverse, row.as_value @ V.inverse.as_value, say="row_observer")
     else:
-        page.define("K", row @ V.inverse, row.shown @ V.inverse.shown, say="row_state_feedback", answer=True)
+        page.define("K", row @ V.inverse, row.as_value @ V.inverse.as_value, say="row_state_feedback", answer=True)
 
 
 def _difference(page: Page, wanted: list[Term], found: list[Scalar]) -> Term:
@@ -224,7 +224,7 @@ def _with_fixed_modes(page: Page, design: GainDesign, side: PlacementProblem) ->
     gain = page.define(side.gain, design.answer[side.gain], say=f"{of_the_others(design)}_{side.kind}", answer=True)
     free = page[side.hidden[0]] @ page.value(Matrix.column([Scalar.symbol(name) for name in family["parameters"]]))
     general = gain + (free if side is OBSERVER else free.T)
-    page.remark(f"family_{side.kind}", gain=Shown(general.formula, Literal(family[side.gain])))
+    page.remark(f"family_{side.kind}", gain=Evaluated(general.formula, Literal(family[side.gain])))
 
 
 def _impossible(page: Page, design: GainDesign, side: PlacementProblem) -> None:
@@ -237,8 +237,8 @@ def _impossible(page: Page, design: GainDesign, side: PlacementProblem) -> None:
         f"impossible_{side.kind}",
         *hidden(page, side is OBSERVER, side.hidden),
         predicate("not_polynomial", page[side.phi] / fixed),
-        fixed=Shown(fixed.formula, Literal(design.fixed_polynomial)),
-        polynomial=Shown(page[side.phi].formula, Literal(page[side.phi].value)),
+        fixed=Evaluated(fixed.formula, Literal(design.fixed_polynomial)),
+        polynomial=Evaluated(page[side.phi].formula, Literal(page[side.phi].value)),
     )
 
 
@@ -254,7 +254,7 @@ def _given_gain(page: Page, design: GainDesign, side: PlacementProblem, *, of_lo
     gain = page.set(side.gain, design.answer[side.gain])
     page.equal(relation(gain, design.answer[side.gain]), say=f"gain_given_{side.kind}")
     closed = side.closed_loop_matrix(page)
-    page.equal(relation(closed, closed.shown), say="closed_matrix")
+    page.equal(relation(closed, closed.as_value), say="closed_matrix")
     polynomial = design.answer["polynomial"]
     shown = factored_form(page, polynomial)
     members = [side.error_determinant(page), page.value(polynomial)]
@@ -310,7 +310,7 @@ def write_case(page: Page, case: Case, side: PlacementProblem) -> None:
     finally:
         inside, steps = page.environment, page.steps
         page.steps, page.environment = outer, environment
-    anew = [name for name in side.hidden if page.knows(name) and inside.values[name] != environment.values[name]]
+    anew = [name for name in side.hidden if page.defines(name) and inside.values[name] != environment.values[name]]
     page.steps.append(CaseStep(stratum_of(case), tuple(case.substitution.items()), tuple(steps), anew=tuple(anew)))
 
 
@@ -332,7 +332,7 @@ def _on_stratum(page: Page, case: Case, result: GainDesign, side: PlacementProbl
 
 def design_gain_on(case: Case, page: Page, side: PlacementProblem) -> bool:
     """Whether there is a gain in the main line that is still finite on the stratum."""
-    if not page.knows(side.gain):
+    if not page.defines(side.gain):
         return False
     try:
         moved = page[side.gain].value.substitute({**page.environment.coefficients}).substitute(dict(case.substitution))

@@ -49,7 +49,7 @@ def _algebraic(page: Page, design: GainDesign, kind: AlgebraicGain, side: Placem
     low, high = found.bounds
     at_ends = [found.polynomial.substitute({EIGENVALUE: end}) for end in (low, high)]
     inner, page.steps, before = page.steps, [], page.environment
-    page.environment = before.under((found.polynomial,))
+    page.environment = before.with_relations((found.polynomial,))
     page.define(side.gain, design.transpose_for_task(found.gain), answer=True)
     page.verified("as_required", check=relation(side.error_determinant(page), page[side.phi]))
     steps, page.steps, page.environment = tuple(page.steps), inner, before

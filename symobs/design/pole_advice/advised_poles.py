@@ -117,7 +117,7 @@ class AdvisedPoles(Result):
         values = {**{name: getattr(m, name) for name in "ABCD"}, "phi_z": zeros, "phi_r": rest}
         values["phi_o"] = answer["polynomial"].value
         e = Environment(variable=variable, values=values, signs=self.plant.symbols.signs)
-        e = e.under(identities([zeros, rest])[1])
+        e = e.with_relations(identities([zeros, rest])[1])
         z, r, s = (letter(name, e) for name in ("phi_z", "phi_r", "s"))
         yield Claim(relation(numerator_term(e, self.plant), z @ Term(Literal(self.zeros.others), e)), e)
         yield Claim(relation(letter("phi_o", e), z @ r), e)

@@ -77,8 +77,8 @@ def _cases(page: Page, advice: PoleAdvice) -> Iterator[Step]:
             continue
         found = cast("PoleAdvice", case.result)
         inner = Page(found.plant)
-        matrices = {name: getattr(found.plant.matrices, name) for name in "ABCD" if page.knows(name)}
-        inner.environment = page.environment.having(values=matrices)
+        matrices = {name: getattr(found.plant.matrices, name) for name in "ABCD" if page.defines(name)}
+        inner.environment = page.environment.extended_by(values=matrices)
         _advice(inner, found)
         inner.steps += _cases(inner, found)
         anew, steps = tuple(set_anew(page, inner)), tuple(inner.steps)
@@ -98,7 +98,7 @@ def _asked(page: Page, advice: PoleAdvice) -> None:
     assert time is not None and overshoot is not None  # noqa: S101, PT018 - one of two ways to ask
     data = [relation(page["T_s"], time), relation(page["M_p"], overshoot)]
     page.steps.append(Given(tuple(data), sentence("step_asked_for", {})))
-    page.environment = page.environment.having(values={"T_s": time, "M_p": overshoot})
+    page.environment = page.environment.extended_by(values={"T_s": time, "M_p": overshoot})
 
 
 def _product(page: Page, factors: tuple[tuple[Scalar, int], ...]) -> Term:
@@ -112,7 +112,7 @@ def _zeros(page: Page, advice: PoleAdvice) -> None:
     page.define(
         "b_P", numerator_term(page.environment, plant), factored_form(page, b), say="numerator_of_plant", closing=False
     )
-    if not page.knows("P"):
+    if not page.defines("P"):
         chi = (page.s @ page.identity(plant.order) - page["A"]).apply("det")
         P = factored_form(page, b / plant.matrices.A.characteristic_polynomial(plant.variable))
         page.define("P", page["b_P"] / chi, P, say="transfer_from_numerator", closing=False)

@@ -50,7 +50,7 @@ def write_dependent_outputs(page: Page, design: DependentOutputs) -> None:
     with page.section("reduced_order_observer"):
         w = page.set("w_0", design.answer["w"])
         zero = Matrix.zeros(1, page.plant.order)
-        page.conclude("outputs_dependent", row=relation(w, w.shown), vanishes=relation(w @ page["C"], zero))
+        page.conclude("outputs_dependent", row=relation(w, w.as_value), vanishes=relation(w @ page["C"], zero))
 
 
 def write_observer_of_rest(page: Page, design: ReducedOrderObserver) -> None:
@@ -139,7 +139,7 @@ def _parts(page: Page, design: ReducedOrderObserver) -> None:
     known = page["y"] - page["D"] @ u if feedthrough else page["y"]
     said: dict[str, Any] = {
         "measured": relation(x_1, page["C"] @ page["x"], known),
-        "unmeasured": relation(x_2, (page["R"].shown if trivial else page["R"]) @ page["x"]),
+        "unmeasured": relation(x_2, (page["R"].as_value if trivial else page["R"]) @ page["x"]),
     }
     key = "parts_with_feedthrough" if feedthrough else "parts"
     if trivial and page.plant.order > readability.BLOCKS_ORDER:
@@ -298,7 +298,7 @@ def _assembled(page: Page, design: ReducedOrderObserver, say: tuple[str, str]) -
     page.equal(relation(page["x_2_hat"], z + L @ x_1, *numbers), say=say[1])
     trivial = page["T"].value == Matrix.identity(page.plant.order)
     page.equal(
-        relation(page["x_hat"], estimate if trivial else page["T"].inverse @ estimate, page["M_z"].shown @ stacked),
+        relation(page["x_hat"], estimate if trivial else page["T"].inverse @ estimate, page["M_z"].as_value @ stacked),
         say="assembled",
         answer=True,
     )

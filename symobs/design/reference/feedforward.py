@@ -101,7 +101,7 @@ class FeedforwardDesign(Result):
         yield Claim(relation(at_rest @ F_, identity(self.plant.outputs, e)), e, "G*F = I")
         yield Claim(relation(T, (C - D @ K_) @ (s @ one - A + B @ K_).inverse @ B @ F_ + D @ F_), e)
         errors = self.loop.error_coordinates.shape[0] - order
-        zero = e.having(values={"O_e": Matrix.zeros(errors, self.plant.outputs)})
+        zero = e.extended_by(values={"O_e": Matrix.zeros(errors, self.plant.outputs)})
         A_cl, K_e, nothing = letter("A_cl", zero), letter("K_e", zero), letter("O_e", zero)
         seen = block([[C - D @ K_, D @ K_e]])
         driven = block([[B @ F_], [nothing]])

@@ -54,7 +54,7 @@ def _impossible(page: Page, design: FeedforwardDesign) -> None:
         x = page.set("x_0", design.answer["stuck"])
         moved = (page["A"] - page["B"] @ page["K"]) @ x
         there = x if page.plant.is_discrete else page.value(Matrix.zeros(page.plant.order, 1))
-        page.conclude("no_rest", state=relation(x, x.shown), still=relation(moved, there))
+        page.conclude("no_rest", state=relation(x, x.as_value), still=relation(moved, there))
         return
     page.define("G_0", _at_rest(page), say="gain_at_rest")
     m = page.plant.matrices
@@ -68,7 +68,7 @@ def _impossible(page: Page, design: FeedforwardDesign) -> None:
         page.conclude("no_feedforward_single", relation(page["G_0"], Matrix.zeros(1, 1)))
         return
     w = page.set("w_0", design.answer["w"])
-    slots = {"row": relation(w, w.shown), "vanishes": relation(w @ page["G_0"], Matrix.zeros(1, page.plant.inputs))}
+    slots = {"row": relation(w, w.as_value), "vanishes": relation(w @ page["G_0"], Matrix.zeros(1, page.plant.inputs))}
     found = relation(_response(page).apply("rank"), whole)
     if whole < page.plant.outputs:
         page.conclude("no_feedforward_low", rank=found, **slots)
@@ -130,9 +130,9 @@ def _gain(page: Page, design: FeedforwardDesign) -> None:
     page.define("G_0", _at_rest(page), say="gain_at_rest")
     G = page["G_0"]
     if plant.inputs == plant.outputs:
-        page.equal(relation(F_v, G.inverse, F_v.shown), say="feedforward_gain", answer=True)
+        page.equal(relation(F_v, G.inverse, F_v.as_value), say="feedforward_gain", answer=True)
     else:
-        page.equal(relation(F_v, G.T @ (G @ G.T).inverse, F_v.shown), say="feedforward_smallest", answer=True)
+        page.equal(relation(F_v, G.T @ (G @ G.T).inverse, F_v.as_value), say="feedforward_smallest", answer=True)
     one = page.identity(plant.outputs) if plant.outputs > 1 else page.value(1)
     page.verified("as_required", check=relation(G @ F_v, one))
     resolvent = (page.s @ page.identity(plant.order) - A + B @ K).inverse

@@ -109,7 +109,7 @@ class TrackingDesign(Result):
         rows = independent_rows(V)
         target = Matrix.block([[self.start, self.reference @ V]])
         Z = V.select(rows, range(V.shape[1])).solve(target.select(rows, range(target.shape[1])))
-        inside = e.having(values={"Z": Z, "x_d0": target})
+        inside = e.extended_by(values={"Z": Z, "x_d0": target})
         yield Claim(
             relation(letter("V_d", inside) @ letter("Z", inside), letter("x_d0", inside)),
             inside,

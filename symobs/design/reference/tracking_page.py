@@ -89,12 +89,12 @@ def _gain(page: Page, design: TrackingDesign) -> None:
         page.conclude(
             "tracking_impossible" if V is None else "tracking_impossible_one",
             relation(left, "!==", Matrix.zeros(1, columns)),
-            row=relation(w, w.shown),
+            row=relation(w, w.as_value),
             annuls=relation(w @ B, Matrix.zeros(1, page.plant.inputs)),
-            left=relation(left, left.shown),
+            left=relation(left, left.as_value),
         )
         return
-    if not page.knows("K_d"):
+    if not page.defines("K_d"):
         page.set("K_d", design.answer["K_d"])
     K_d = page["K_d"]
     zero = block([[page.value(Matrix.zeros(order, columns))]])
@@ -103,7 +103,7 @@ def _gain(page: Page, design: TrackingDesign) -> None:
         relation(condition if V is None else condition @ V, zero),
         say="tracking_condition" if V is None else "tracking_condition_then",
     )
-    page.equal(relation(K_d, K_d.shown), say="tracking_solved", answer=True)
+    page.equal(relation(K_d, K_d.as_value), say="tracking_solved", answer=True)
     if K_d.value.is_zero:
         page.conclude("tracking_no_feedforward", relation(K_d, Matrix.zeros(*K_d.value.shape)))
 

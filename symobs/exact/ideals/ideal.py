@@ -177,7 +177,7 @@ class Ideal:
         found = sum((-term for term in rest), Scalar.of(int(below)) * written[last])
         return found / found.factors()[0]
 
-    def having(self, *others: Scalar) -> Ideal:
+    def extended_by(self, *others: Scalar) -> Ideal:
         """Return the ideal with further generators; raises `TooLarge`."""
         return Ideal.of((*self.generators, *others))
 

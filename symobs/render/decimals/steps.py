@@ -17,10 +17,10 @@ from symobs.derivation import (
     Given,
     Note,
     Plot,
+    RegionSummary,
     Section,
     Sentence,
     Solve,
-    Survey,
     Tabulate,
 )
 from symobs.derivation.builder import left_out
@@ -32,6 +32,7 @@ from symobs.figures.block_diagram import letter_for
 from symobs.formula import (
     Conjunction,
     Decimals,
+    Evaluated,
     Formula,
     HoldsExactlyWhere,
     Literal,
@@ -39,7 +40,6 @@ from symobs.formula import (
     Relation,
     Roots,
     RoundedRoots,
-    Shown,
     SymbolList,
     children,
     is_rounded,
@@ -168,7 +168,7 @@ class _Writer:
                 return self._said(replace(step, relations=shown))
             case Solve(equation=equation, solution=solution):
                 return self._said(replace(step, equation=self.relation(equation), solution=self.relation(solution)))
-            case Tabulate(findings=findings) | Survey(findings=findings):
+            case Tabulate(findings=findings) | RegionSummary(findings=findings):
                 return self._said(replace(step, findings=tuple(map(self.sentence, findings))))
             case Diagram(name=name, labels=labels):
                 written = tuple((place, self.label(name, place, label)) for place, label in labels)
@@ -197,7 +197,7 @@ class _Writer:
                 return replace(slot, where=tuple(map(self.exactly, where)))
             case Predicate(subject=subject):
                 return replace(slot, subject=self.value(subject))
-            case Shown(value=value):
+            case Evaluated(value=value):
                 return replace(slot, value=self.value(value))
             case str() | SymbolList():
                 return slot

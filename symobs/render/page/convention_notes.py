@@ -11,16 +11,17 @@ from symobs.derivation import (
     Diagram,
     Equal,
     Given,
+    Inequalities,
     Note,
     Plot,
+    RegionSummary,
     Section,
     Solve,
-    Survey,
     Tabulate,
-    Where,
 )
 from symobs.formula import (
     Conjunction,
+    Evaluated,
     HoldsExactlyWhere,
     Letter,
     Negative,
@@ -28,7 +29,6 @@ from symobs.formula import (
     Product,
     Relation,
     Roots,
-    Shown,
     Sum,
     SymbolList,
     Turned,
@@ -96,9 +96,9 @@ def _formulas(step: Step) -> Iterator[Formula]:
             | Plot(sentence=sentence)
         ):
             yield from _in_sentence(sentence)
-        case Where(fact=fact, sentence=sentence):
+        case Inequalities(fact=fact, sentence=sentence):
             yield from (*_in_facts((fact,)), *_in_sentence(sentence))
-        case Survey(polynomial=polynomial):
+        case RegionSummary(polynomial=polynomial):
             yield polynomial
         case Diagram(labels=labels, sentence=sentence):
             yield from _in_sentence(sentence)
@@ -123,7 +123,7 @@ def _in_sentence(sentence: Sentence | None) -> Iterator[Formula]:
     for _, value in sentence.slots if sentence else ():
         if isinstance(value, Relation | Predicate | Roots | HoldsExactlyWhere | Conjunction):
             yield from _in_facts((value,))
-        elif isinstance(value, Shown):
+        elif isinstance(value, Evaluated):
             yield value.value
         elif not isinstance(value, (str, SymbolList, *SPOKEN)):
             yield value

@@ -10,7 +10,19 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from symobs.derivation import Case, Conclude, Define, Diagram, Equal, Note, Plot, Section, Solve, Survey, Tabulate
+from symobs.derivation import (
+    Case,
+    Conclude,
+    Define,
+    Diagram,
+    Equal,
+    Note,
+    Plot,
+    RegionSummary,
+    Section,
+    Solve,
+    Tabulate,
+)
 from symobs.errors import UsageError
 from symobs.formula import Conjunction, HoldsExactlyWhere, Predicate, Relation, Transpose, children
 from symobs.phrases import ASSERTS, CONTINUES, EXPLAINS, SPELLS_OUT
@@ -86,7 +98,7 @@ def _shortened(step: Step, detail: str) -> Iterator[Step]:
             yield step if isinstance(step, Diagram) else replace(step, sentence=None)
         case Tabulate(findings=findings) if detail == "answer":
             yield from (Note(finding) for finding in findings if finding.key not in EXPLAINS)
-        case Survey(findings=findings):
+        case RegionSummary(findings=findings):
             yield replace(step, findings=tuple(finding for finding in findings if finding.key not in EXPLAINS))
         case Plot() if detail == "outline":
             yield step

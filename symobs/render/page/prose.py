@@ -15,6 +15,7 @@ from symobs.exact import Scalar
 from symobs.formula import (
     Conjunction,
     Decimals,
+    Evaluated,
     HoldsExactlyWhere,
     Letter,
     Literal,
@@ -23,7 +24,6 @@ from symobs.formula import (
     Product,
     Relation,
     Roots,
-    Shown,
     Sum,
     SymbolList,
     Transpose,
@@ -100,7 +100,7 @@ def _shown(slot: Formula | Fact | Counted | StateChoice | str, language: Languag
     match slot:
         case Predicate(subject=subject):
             yield subject
-        case Shown(value=value):
+        case Evaluated(value=value):
             yield value
         case SymbolList(names):
             for place, name in enumerate(names):

@@ -425,9 +425,9 @@ def test_pages_of_every_kind_render() -> None:
 def test_pages_of_plants_that_are_never_controllable_or_observable(A: str, rest: str) -> None:
     """What the input never moves has a letter of its own in the rank test, and the page speaks of both."""
     result = symobs.stabilizability(symobs.StateSpace(A, rest))
-    assert result.derivation.check().knows("N")
+    assert result.derivation.check().defines("N")
     dual = symobs.detectability(symobs.StateSpace(A, None, rest.replace(";", "")))
-    assert dual.derivation.check().knows("N")
+    assert dual.derivation.check().defines("N")
     assert dual.verdict == result.verdict
 
 

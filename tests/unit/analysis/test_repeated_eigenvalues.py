@@ -250,7 +250,7 @@ def test_two_oscillators_are_marginal_only_where_they_do_not_meet() -> None:
     here = Environment(variable="s", signs=signs)
     marginal, discrete = PREDICATES["marginal"], False
     assert not marginal(both, here, discrete)
-    assert marginal(both, replace(here, assumed=apart), discrete)
+    assert marginal(both, replace(here, nonzero=apart), discrete)
 
 
 def test_a_drop_on_several_equations_is_excluded_as_one() -> None:

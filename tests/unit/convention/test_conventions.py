@@ -311,7 +311,7 @@ def test_a_letter_that_is_forgotten_is_rejected() -> None:
     (result,) = problem(DESIGN, "standard").solve()
     before = result.derivation.check()
     with pytest.raises(DerivationRejected):
-        convention_signs._hold_against(before, before.having(values={"L": before.values["K"]}), frozenset())
+        convention_signs._hold_against(before, before.extended_by(values={"L": before.values["K"]}), frozenset())
     dynamics = {name: Letter("x") for name in before.dynamics}
     with pytest.raises(DerivationRejected):
         convention_signs._hold_against(before, replace(before, dynamics=dynamics), frozenset())

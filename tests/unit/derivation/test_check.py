@@ -27,6 +27,7 @@ from symobs.formula import (
     Apply,
     Conjunction,
     Derivative,
+    Evaluated,
     Formula,
     HoldsExactlyWhere,
     Identity,
@@ -39,7 +40,6 @@ from symobs.formula import (
     Quotient,
     Relation,
     Roots,
-    Shown,
     Sum,
     Transpose,
 )
@@ -105,7 +105,7 @@ def test_a_letter_nobody_introduced_is_refused_wherever_it_stands() -> None:
         Conclude(None, (HoldsExactlyWhere(Predicate("stable", strange), ()),)),
         Conclude(None, (Conjunction((one, said(strange, 1))),)),
         Conclude(slot(strange)),
-        Note(slot(Shown(strange, literal(1)))),
+        Note(slot(Evaluated(strange, literal(1)))),
         Diagram("loop", (("P", strange), ("F", strange), ("response", strange))),
         Section(slot(strange), ()),
         Case(said(strange, 0), (), ()),
@@ -158,7 +158,7 @@ def test_what_solves_an_equation_makes_it_true() -> None:
 def test_an_assumption_holds_from_there_on() -> None:
     distinct = said(c, "!=", 1)
     refused(Equal((distinct,)))
-    assert checked(Given((distinct,)), Equal((distinct, said(2 - 2 * c, "!=", 0)))).assumed == (c - 1,)
+    assert checked(Given((distinct,)), Equal((distinct, said(2 - 2 * c, "!=", 0)))).nonzero == (c - 1,)
     refused(Equal((distinct,)), Given((distinct,)))
     refused(Given((distinct,)), Equal((said(c, "!=", 2),)))
     refused(Given((said(c, "!=", c),)), match="c != c")  # nothing is different from itself
@@ -281,7 +281,7 @@ def test_a_letter_that_means_nothing_on_the_stratum_may_not_be_used_there() -> N
 
 def test_sections_share_what_is_established() -> None:
     inner = Section(Sentence("test_plain"), (A_IS, Section(Sentence("test_plain"), (CHI,))))
-    assert checked(inner, Equal((said(Letter("chi"), s**2 + 3 * s + 2),))).knows("chi")
+    assert checked(inner, Equal((said(Letter("chi"), s**2 + 3 * s + 2),))).defines("chi")
     refused(Section(Sentence("test_plain"), (CHI,)), A_IS)
     refused(Section(slot(said(1, 2)), ()))
 

@@ -12,6 +12,7 @@ from symobs.exact import Matrix, Root, Scalar, roots_of
 from symobs.formula import (
     Apply,
     Conjunction,
+    Evaluated,
     Fact,
     Formula,
     HoldsExactlyWhere,
@@ -24,7 +25,6 @@ from symobs.formula import (
     Quotient,
     Relation,
     Roots,
-    Shown,
     Sum,
     Transpose,
 )
@@ -68,7 +68,7 @@ UNSTABLE = Given((said(A, Matrix.of([[0, 1], [2, 1]])),), silent=True)
     [
         (said(Apply("det", A), 2), said(Apply("det", A), 3)),
         (Conjunction((said(1, 1), said(a, ">", 0))), Conjunction((said(a, ">", 0), said(c, ">", 0)))),
-        (Shown(Apply("det", A), literal(2)), Shown(Apply("det", A), literal(-2))),
+        (Evaluated(Apply("det", A), literal(2)), Evaluated(Apply("det", A), literal(-2))),
         (Predicate("stable", Letter("chi")), Predicate("unstable", Letter("chi"))),
         (Predicate("stable", Power(Letter("chi"), -1)), Predicate("unstable", Power(Letter("chi"), -1))),
         (Predicate("strictly_proper", Power(Letter("chi"), -1)), Predicate("strictly_proper", Letter("chi"))),

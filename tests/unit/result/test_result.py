@@ -207,7 +207,7 @@ def test_a_page_is_checked() -> None:
         def write(self, page: Page) -> None:
             page.steps = [Define(said(Letter("y"), Letter("v")))]
 
-    assert Driven(SERVO, "m", {"number": Scalar.of(3), "square": Scalar.of(9)}).derivation.check().knows("y")
+    assert Driven(SERVO, "m", {"number": Scalar.of(3), "square": Scalar.of(9)}).derivation.check().defines("y")
 
 
 # -- conditions ---------------------------------------------------------------------------------------------------------
