@@ -42,7 +42,7 @@ class MinimalOrderCompensator(OutputFeedback):
     estimator: ReducedOrderObserver
 
     @classmethod
-    def designed(cls, plant: StateSpace, control: Asked, observer: Asked, name: str) -> Self:
+    def design(cls, plant: StateSpace, control: Asked, observer: Asked, name: str) -> Self:
         """Return the compensator for these polynomials, or with this K, in the coordinates [C; R]."""
         assert not isinstance(observer, Matrix)  # noqa: S101 - the task takes no L of a reduced-order observer
         return cls.of(half_of(StateFeedbackDesign, plant, control), reduced_observer_of(plant, observer), name)

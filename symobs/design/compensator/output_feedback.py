@@ -58,7 +58,7 @@ class OutputFeedback(Result):
     # -- what a subclass says ----------------------------------------------------------------------------------------
 
     @classmethod
-    def designed(cls, plant: StateSpace, control: Asked, observer: Asked, name: str) -> Self:
+    def design(cls, plant: StateSpace, control: Asked, observer: Asked, name: str) -> Self:
         """Return the compensator for these polynomials, or with these gains."""
         raise NotImplementedError
 
@@ -183,7 +183,7 @@ class OutputFeedback(Result):
         """Return the compensator on a stratum."""
         control, observer = (asked.substitute(values) for asked in self.asked_for[2:])
         kind, name = type(self), self.method
-        found: Self = plant.once((kind, control, observer, name), lambda: kind.designed(plant, control, observer, name))
+        found: Self = plant.once((kind, control, observer, name), lambda: kind.design(plant, control, observer, name))
         return found
 
     @property

@@ -13,7 +13,7 @@ from symobs.design.full_order.observer_existence_page import write_ansatz, write
 from symobs.design.full_order.placement_methods import register_methods
 from symobs.design.gain.gain_design import GainDesign
 from symobs.design.gain.gain_page import write_gain
-from symobs.design.gain.gain_request import designed, page_style
+from symobs.design.gain.gain_request import design_gain, page_style
 from symobs.design.gain.placement_problem import OBSERVER
 from symobs.design.page_parts.block_diagrams import draw_collected, draw_copy
 from symobs.design.page_parts.component_equations import write_components
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from symobs.analysis.rank.rank_test import RankResult
-    from symobs.design.pole_placement.single_output import Pair
+    from symobs.design.pole_placement.single_output import ObserverPair
     from symobs.formula import Environment
     from symobs.specification import Entries, GainText, Name, Poles, PolynomialText
     from symobs.system import StateSpace
@@ -44,7 +44,7 @@ class ObserverDesign(GainDesign):
     rank_test: ClassVar[type[RankResult]] = Observability
 
     @staticmethod
-    def dual_pair(plant: StateSpace) -> Pair:
+    def dual_pair(plant: StateSpace) -> ObserverPair:
         """Return (A, C)."""
         return pair_of(plant.matrices.A, plant.matrices.C, plant.variable, plant.equations)
 
@@ -200,6 +200,6 @@ def observer(
     be assigned, or where no gain has zeros as asked for.  Raises `InputError` for wrong poles, shapes or entries.
     Source: D. G. Luenberger (1964, 1971).
     """
-    return designed(
+    return design_gain(
         ObserverDesign, plant, poles=poles, polynomial=polynomial, given=L, zero=zero, member=member, method=method
     )

@@ -11,7 +11,7 @@ from symobs.analysis.rank.observability import Controllability
 from symobs.design.full_order.placement_methods import register_methods
 from symobs.design.gain.gain_design import GainDesign
 from symobs.design.gain.gain_page import write_gain
-from symobs.design.gain.gain_request import designed, page_style
+from symobs.design.gain.gain_request import design_gain, page_style
 from symobs.design.gain.placement_problem import FEEDBACK
 from symobs.design.pole_placement.multiple_outputs import pair_of
 from symobs.exact.linear_algebra.realisation import Realisation
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
     from symobs.analysis.rank.rank_test import RankResult
     from symobs.derivation.builder import Page
-    from symobs.design.pole_placement.single_output import Pair
+    from symobs.design.pole_placement.single_output import ObserverPair
     from symobs.exact import Matrix
     from symobs.formula import Environment
     from symobs.specification import Entries, GainText, Name, Poles, PolynomialText
@@ -39,7 +39,7 @@ class StateFeedbackDesign(GainDesign):
     rank_test: ClassVar[type[RankResult]] = Controllability
 
     @staticmethod
-    def dual_pair(plant: StateSpace) -> Pair:
+    def dual_pair(plant: StateSpace) -> ObserverPair:
         """Return (Aᵀ, Bᵀ)."""
         return pair_of(plant.matrices.A.T, plant.matrices.B.T, plant.variable, plant.equations)
 
@@ -122,6 +122,6 @@ def state_feedback(
     assigned, or where no gain has zeros as asked for.  Raises `InputError` for wrong poles, shapes or entries.
     Source: W. M. Wonham (1967).
     """
-    return designed(
+    return design_gain(
         StateFeedbackDesign, plant, poles=poles, polynomial=polynomial, given=K, zero=zero, member=member, method=method
     )

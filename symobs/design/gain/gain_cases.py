@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, TypeVar
 
 from symobs.analysis.strata.strata import common_places, places, places_of, solved
-from symobs.design.pole_placement.multiple_outputs import SeveralOutputs
+from symobs.design.pole_placement.multiple_outputs import MultiOutputPair
 from symobs.exact import Matrix
 
 if TYPE_CHECKING:
@@ -92,7 +92,7 @@ def cases_of_given(design: GainDesign) -> tuple[Case, ...]:
 def chosen(design: GainDesign) -> tuple[Scalar, ...]:
     """Return what the gain divides by because it is this one of many: where it vanishes another one serves."""
     pair = design.pair
-    if design.answer[design.letter] is None or (pair.is_observable and not isinstance(pair, SeveralOutputs)):
+    if design.answer[design.letter] is None or (pair.is_observable and not isinstance(pair, MultiOutputPair)):
         return ()
     lost = {
         case.when[0].expression for case in design.test.case_tree if [c.operator for c in case.when].count("==") == 1

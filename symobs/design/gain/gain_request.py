@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 MEMBERS = ("simple", "decoupled")
 
 
-def designed(
+def design_gain(
     kind: type[GainDesign],
     plant: StateSpace,
     *,

@@ -21,7 +21,7 @@ from symobs.design.pole_advice.pole_candidates import (
     poles_of,
 )
 from symobs.design.pole_advice.pole_warnings import warnings_of
-from symobs.design.pole_placement.single_output import Pair
+from symobs.design.pole_placement.single_output import ObserverPair
 from symobs.errors import CertificateRejected, InputError
 from symobs.exact import Complex, Factored, Matrix, Root, Scalar, product_of, roots_of
 from symobs.exact.core.generators import NotWritten, function, identities
@@ -185,10 +185,10 @@ class AdvisedPoles(Result):
     # -- what follows ------------------------------------------------------------------------------------------------
 
     @cached_property
-    def pair(self) -> Pair:
+    def pair(self) -> ObserverPair:
         """(A, C)."""
         m = self.plant.matrices
-        return Pair(m.A, m.C, self.plant.variable, self.plant.equations)
+        return ObserverPair(m.A, m.C, self.plant.variable, self.plant.equations)
 
     @cached_property
     def missed(self) -> Scalar:

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from symobs.design.pole_advice.pole_candidates import Zeros
-    from symobs.design.pole_placement.single_output import Pair
+    from symobs.design.pole_placement.single_output import ObserverPair
     from symobs.system import StateSpace
 
 #: Zero and pole are near each other where they differ by less than this part of the zero.
@@ -45,7 +45,7 @@ class Beware:
 
 
 def warnings_of(
-    plant: StateSpace, zeros: Zeros, polynomial: Factored, pair: Pair, missed: Scalar
+    plant: StateSpace, zeros: Zeros, polynomial: Factored, pair: ObserverPair, missed: Scalar
 ) -> tuple[Beware, ...]:
     """Return the warnings: of zeros that are no places for poles, cancellations, the compensator, the gain, fixed modes."""
     return (
@@ -90,7 +90,7 @@ def _of_compensator(plant: StateSpace) -> Iterator[Beware]:
         yield Beware("always_unstable")
 
 
-def _of_gain(plant: StateSpace, polynomial: Factored, pair: Pair) -> Iterator[Beware]:
+def _of_gain(plant: StateSpace, polynomial: Factored, pair: ObserverPair) -> Iterator[Beware]:
     """Warn of a gain with an entry far beyond those of the plant, where all are numbers."""
     A = plant.matrices.A
     if A.names or plant.matrices.C.names or not pair.is_observable:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 from symobs.exact import Matrix
 
 if TYPE_CHECKING:
-    from symobs.design.pole_placement.single_output import Pair
+    from symobs.design.pole_placement.single_output import ObserverPair
     from symobs.specification import DesiredPolynomial
 
 
@@ -23,7 +23,7 @@ class Matching(NamedTuple):
         return self.M.solve(self.r).normal()
 
 
-def matching(pair: Pair, desired: DesiredPolynomial) -> Matching:
+def matching(pair: ObserverPair, desired: DesiredPolynomial) -> Matching:
     """Return the system; its column i is what a one in row i of l adds to the polynomial of A."""
     order, variable = pair.A.shape[0], pair.variable
     own = pair.A.characteristic_polynomial(variable).coefficients(variable)[1:]
@@ -37,6 +37,6 @@ def matching(pair: Pair, desired: DesiredPolynomial) -> Matching:
     return Matching(M, r)
 
 
-def matched_gain(pair: Pair, desired: DesiredPolynomial) -> Matrix:
+def matched_gain(pair: ObserverPair, desired: DesiredPolynomial) -> Matrix:
     """Return l."""
     return matching(pair, desired).solution

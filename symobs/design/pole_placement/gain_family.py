@@ -16,7 +16,7 @@ from symobs.formula.term import Term, letter
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping
 
-    from symobs.design.pole_placement.multiple_outputs import SeveralOutputs
+    from symobs.design.pole_placement.multiple_outputs import MultiOutputPair
     from symobs.design.pole_placement.sylvester import Sylvester
     from symobs.specification import DesiredPolynomial
 
@@ -28,13 +28,13 @@ SCOPE = "every gain whose closed-loop matrix is cyclic, but for those where det 
 class Family:
     """L = S (L₀ + (G X⁻¹)ᵀ) + N H: the seen part by Sylvester's equation, anything along the kernel N of 𝒪."""
 
-    pair: SeveralOutputs
+    pair: MultiOutputPair
     equation: Sylvester
     names: tuple[str, ...]
     member: Matrix
 
     @staticmethod
-    def of(pair: SeveralOutputs, desired: DesiredPolynomial, names: tuple[str, ...], member: Matrix) -> Family:
+    def of(pair: MultiOutputPair, desired: DesiredPolynomial, names: tuple[str, ...], member: Matrix) -> Family:
         """Return the family in the first chart that contains the member; in the first one where none does."""
         factors = pair.remaining(desired)
         assert factors is not None  # noqa: S101 - a member exists

@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True)
-class Pair:
+class ObserverPair:
     """A matrix A and one output row c."""
 
     A: Matrix
@@ -128,6 +128,6 @@ class Pair:
         )
         inverse = T.inverse()
         A, c = modulo(T @ self.A @ inverse, self.ideal), modulo(self.c @ inverse, self.ideal)
-        part = Pair(A.select(range(rank), range(rank)), c.select([0], range(rank)), self.variable)
+        part = ObserverPair(A.select(range(rank), range(rank)), c.select([0], range(rank)), self.variable)
         gain = apply_polynomial([polynomial], self.variable, part.A, part.krylov.solve_last())
         return modulo((inverse @ Matrix.block([[gain], [Matrix.zeros(order - rank, 1)]])).normal(), self.ideal)

@@ -19,7 +19,7 @@ from symobs.exact.core.generators import identities
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from symobs.design.pole_placement.single_output import Pair
+    from symobs.design.pole_placement.single_output import ObserverPair
     from symobs.exact.algebraic.real_algebraic import RealNumber
     from symobs.specification import DesiredPolynomial
 
@@ -44,7 +44,7 @@ def unknown_gain(order: int, outputs: int, zero: Sequence[tuple[int, int]]) -> M
     )
 
 
-def equations_for(pair: Pair, desired: DesiredPolynomial, gain: Matrix) -> tuple[Scalar, ...]:
+def equations_for(pair: ObserverPair, desired: DesiredPolynomial, gain: Matrix) -> tuple[Scalar, ...]:
     """Return what must vanish: the coefficients of det(sI − A + LC) less those of φ."""
     found = (pair.A - gain @ pair.c).normal().characteristic_polynomial(pair.variable)
     coefficients = found.coefficients(pair.variable)[1:]
@@ -96,7 +96,9 @@ class RootGain:
             digits += 1
 
 
-def with_zeros(pair: Pair, desired: DesiredPolynomial, zero: Sequence[tuple[int, int]]) -> Matrix | RootGain | None:
+def with_zeros(
+    pair: ObserverPair, desired: DesiredPolynomial, zero: Sequence[tuple[int, int]]
+) -> Matrix | RootGain | None:
     """Return a gain with zeros in these places, None where none was found.
 
     Its entries are rational where such a gain is found, otherwise they contain a square root, or a root of higher degree.
