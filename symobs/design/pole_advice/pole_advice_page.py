@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from symobs.derivation import Step
-    from symobs.design.pole_advice.pole_warnings import Beware
+    from symobs.design.pole_advice.pole_warnings import PoleWarning
     from symobs.formula import Relation
     from symobs.formula.term import Term
 
@@ -37,7 +37,7 @@ def write_pole_advice(page: Page, advice: PoleAdvice) -> None:
     """Write the plant's zeros, φ_z, φ_r and φ, and what to beware of."""
     page.with_roots(*_written(advice))
     given(page)
-    if advice.wish.radius is None:
+    if advice.request.radius is None:
         _asked(page, advice)
     with page.section("pole_advice"):
         _advice(page, advice)
@@ -50,7 +50,7 @@ def write_pole_advice(page: Page, advice: PoleAdvice) -> None:
 def _written(advice: PoleAdvice) -> Iterator[Scalar]:
     """Yield what may hold square roots, in the cases as well."""
     yield from (advice.answer["zeros"], advice.zeros.others, advice.answer["rest"].value)
-    if advice.wish.radius is not None:
+    if advice.request.radius is not None:
         yield from (twice_cosine(Fraction(1, 2) - turns) for turns in butterworth_angles(advice.count))
     for case in advice.case_tree:
         if case.result is not None:
@@ -60,8 +60,8 @@ def _written(advice: PoleAdvice) -> Iterator[Scalar]:
 def _advice(page: Page, advice: PoleAdvice) -> None:
     """Write zeros, the other places, the polynomial, the cautions."""
     _zeros(page, advice)
-    if advice.wish.radius is not None:
-        _circle(page, advice, advice.wish.radius)
+    if advice.request.radius is not None:
+        _circle(page, advice, advice.request.radius)
     else:
         _pair(page, advice)
     _polynomial(page, advice)
@@ -94,7 +94,7 @@ def _cases(page: Page, advice: PoleAdvice) -> Iterator[Step]:
 
 def _asked(page: Page, advice: PoleAdvice) -> None:
     """State settling time and overshoot."""
-    time, overshoot = advice.wish.settling_time, advice.wish.overshoot
+    time, overshoot = advice.request.settling_time, advice.request.overshoot
     assert time is not None and overshoot is not None  # noqa: S101, PT018 - one of two ways to ask
     data = [relation(page["T_s"], time), relation(page["M_p"], overshoot)]
     page.steps.append(Given(tuple(data), sentence("step_asked_for", {})))
@@ -164,9 +164,9 @@ def _nothing(page: Page) -> None:
 
 def _pair(page: Page, advice: PoleAdvice) -> None:
     """σ from the settling time, ω from the overshoot, and φ_r."""
-    answer, wish, count = advice.answer, advice.wish, advice.count
-    assert wish.settling_time is not None and wish.overshoot is not None  # noqa: S101, PT018 - one of two ways to ask
-    sigma, omega_d, time = answer["sigma"], answer["omega_d"], wish.settling_time
+    answer, request, count = advice.answer, advice.request, advice.count
+    assert request.settling_time is not None and request.overshoot is not None  # noqa: S101, PT018 - one of two ways to ask
+    sigma, omega_d, time = answer["sigma"], answer["omega_d"], request.settling_time
     page.define("sigma_d", page.value(4) / page["T_s"], say="rate_from_settling")
     page.conclude("decayed", bound=relation(function("exp", -sigma * time), "<=", Scalar.of(1) / 50))
     if not count:
@@ -210,7 +210,7 @@ def _polynomial(page: Page, advice: PoleAdvice) -> None:
             alone = page["phi_z"] / page.value(page["phi_z"].scalar / factor)
             repeated = Roots(alone.formula, roots_of(factor, plant.variable))
             page.remark("pole_twice", predicate("polynomial", twice), repeated=repeated)
-    if advice.wish.radius is None or zeros.unused or not zeros.used or not advice.count:
+    if advice.request.radius is None or zeros.unused or not zeros.used or not advice.count:
         return
     if not plant.matrices.has_feedthrough:
         pencil = (page.s @ page.identity(plant.order) - page["A"]).apply("adj")
@@ -218,7 +218,7 @@ def _polynomial(page: Page, advice: PoleAdvice) -> None:
         page.equal(relation(page["C"] @ pencil @ page["B"], multiple), say="recovery")
 
 
-def _caution(page: Page, advice: PoleAdvice, warning: Beware) -> None:
+def _caution(page: Page, advice: PoleAdvice, warning: PoleWarning) -> None:
     """Say a warning, with what can be checked of it."""
     slots, n = dict(warning.slots), page.plant.order
     if warning.key == "always_unstable":
