@@ -23,7 +23,7 @@ from symobs.problem.noted_errors import Errors, check_text, report_unknown, tabl
 from symobs.problem.schema import PLANT, PRINTED, TOP, keys_of, kinds_of, missing_poles
 from symobs.result import Document, Result, Task, task_named, tasks
 from symobs.result.digits_of_page import digits_asked
-from symobs.result.in_convention import Viewed, names_in
+from symobs.result.in_convention import ResultInConvention, names_in
 from symobs.specification import parse_signal, read_poles
 from symobs.system import StateSpace, Symbols, read_matrix, read_scalar
 from symobs.system.time_domain import read_time
@@ -82,9 +82,9 @@ class Problem:
             raise errors.together(self.convention)
         return tuple(results)
 
-    def viewed(self, results: tuple[Result, ...]) -> tuple[Viewed, ...]:
+    def viewed(self, results: tuple[Result, ...]) -> tuple[ResultInConvention, ...]:
         """Return the results in the file's convention."""
-        return tuple(Viewed(result, self.convention) for result in results)
+        return tuple(ResultInConvention(result, self.convention) for result in results)
 
     def document(self, results: tuple[Result, ...], convention: Convention | None = None) -> Document:
         """Return what a format renders, in the file's convention or in another one."""

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 _RELATIONS = {"!=": "!=", "=": "==", "==": "==", ">": ">", ">=": ">=", "<": "<", "<=": "<="}
 
 
-class Faces:
+class OutputMethods:
     """The formats of a result under names of their own, and what a notebook shows of it."""
 
     def to(self, format_name: str, *, convention: str = "standard", language: str = "en") -> str | bytes:

@@ -19,7 +19,7 @@ from symobs.derivation import translated
 from symobs.derivation.builder import Page
 from symobs.errors import CertificateRejected, DerivationRejected
 from symobs.exact.linear_algebra.realisation import Realisation
-from symobs.result.conversions import Faces
+from symobs.result.conversions import OutputMethods
 from symobs.result.digits_of_page import document_options
 from symobs.result.web_page import PLAIN, WebPage
 from symobs.result.writers import render, writer_of
@@ -60,7 +60,7 @@ class Stratum(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False)
-class Result(Faces):
+class Result(OutputMethods):
     """An answer with its certificates.  Subclasses own the claims; tampering with an answer makes construction fail."""
 
     plant: StateSpace

@@ -11,7 +11,7 @@ from symobs.exact.floating.doubles import nearest_double
 from symobs.expression.source import shown
 from symobs.result.control_systems import require_numbers
 from symobs.result.conversions import to_json
-from symobs.result.in_convention import Viewed
+from symobs.result.in_convention import ResultInConvention
 
 if TYPE_CHECKING:
     from symobs.result import Document
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 def chosen_answers(document: Document) -> dict[str, Any]:
     """Return the answers by the names that are asked for, in the document's convention; raises `UsageError` for others."""
-    views = [Viewed(result, document.convention) for result in document.results]
+    views = [ResultInConvention(result, document.convention) for result in document.results]
     known = {name: value for view in reversed(views) for name, value in view.fields.items() if value is not None}
     for name in document.printed:
         if name not in known:
