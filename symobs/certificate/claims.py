@@ -34,8 +34,8 @@ from symobs.formula import (
     Letter,
     Literal,
     Modular,
+    ModuloIdeal,
     Relation,
-    Restricted,
     agree,
     children,
     contains,
@@ -173,7 +173,7 @@ def _in_general(relation: Relation, environment: Environment, leaves: Sequence[S
 
 def _has_meaning(relation: Relation, environment: Environment, leaves: Sequence[Scalar | Matrix]) -> bool:
     """Return whether no denominator of a value, and nothing that is divided by, vanishes where the relations hold."""
-    arithmetic = Restricted(environment)
+    arithmetic = ModuloIdeal(environment)
     below = [leaf.common_denominator() for leaf in leaves]
     for divisor in (part for member in relation.members for part in divisors(member)):
         value = evaluate(divisor, environment, arithmetic)

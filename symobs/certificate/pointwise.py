@@ -10,7 +10,7 @@ from symobs.conditions import never_zero, real_consequences, vanishing_factors
 from symobs.errors import NotShown
 from symobs.exact import EIGENVALUE, Ideal, Matrix, Scalar, TooLarge, echelon, independent_rows, is_inverse
 from symobs.exact.core.generators import all_roots
-from symobs.formula import Restricted
+from symobs.formula import ModuloIdeal
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -105,7 +105,7 @@ def _minors(matrix: Matrix, order: int) -> Iterator[tuple[tuple[int, ...], ...]]
     return itertools.product(*(itertools.combinations(range(size), order) for size in matrix.shape))
 
 
-class Pointwise(Restricted):
+class Pointwise(ModuloIdeal):
     """The exact arithmetic modulo relations, with the rank of a matrix common to all points of the variety."""
 
     def __init__(self, environment: Environment) -> None:

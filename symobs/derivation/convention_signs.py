@@ -42,9 +42,9 @@ from symobs.formula import (
     Product,
     Relation,
     Roots,
+    SignReversal,
     SymbolList,
     Transpose,
-    Turned,
     children,
     evaluate,
     with_children,
@@ -80,7 +80,7 @@ def translated(derivation: Derivation, convention: Convention) -> Derivation:
     if convention.turned:
         data = {value for name in "ABCD" if name in before.values for value in _both_ways(before.values[name])}
         written = {value for relation in _relations(steps) for value in _values(relation, convention.turned)}
-        steps = _in_signs(steps, Turned(convention.turned, written - data))
+        steps = _in_signs(steps, SignReversal(convention.turned, written - data))
     made = replace(derivation, steps=steps)
     after = made.check()
     _hold_against(before, after, convention.turned)
@@ -124,7 +124,7 @@ def _both_ways(value: Scalar | Matrix) -> tuple[Matrix, ...]:
     return (value, value.T) if isinstance(value, Matrix) else ()
 
 
-def _in_signs(item: Any, turned: Turned) -> Any:
+def _in_signs(item: Any, turned: SignReversal) -> Any:
     """Return a step, or a part of one, in the new signs."""
     match item:
         case Relation():
@@ -139,7 +139,7 @@ def _in_signs(item: Any, turned: Turned) -> Any:
     return _rebuilt(item, lambda part: _in_signs(part, turned))
 
 
-def _label_in_signs(label: Label, turned: Turned) -> Label:
+def _label_in_signs(label: Label, turned: SignReversal) -> Label:
     """Return what labels a box or a wire, a gain with its sign."""
     found: Label = _in_signs(label, turned) if isinstance(label, Conjunction) else turned.whole(label)
     return found

@@ -30,7 +30,7 @@ _SQUARED = 2_000
 _FORMS, _FORM = 6, "_form"
 
 
-class Work:
+class EliminationBudget:
     """The terms of equations that may still be worked on."""
 
     def __init__(self) -> None:
@@ -50,7 +50,7 @@ class Region:
 
     signs: Mapping[str, str]
     nonzero: frozenset[Scalar] = frozenset()
-    work: Work = field(default_factory=Work, compare=False)
+    work: EliminationBudget = field(default_factory=EliminationBudget, compare=False)
     ideal: Ideal | None = None
 
     @cached_property

@@ -32,7 +32,7 @@ System: TypeAlias = tuple[Scalar, ...]
 
 
 @dataclass(frozen=True)
-class Constancy:
+class RankConstancy:
     """Where the rank at the roots of one factor is the generic one: outside the strata of some systems.
 
     The minors of X − λI never vanish together there.
@@ -63,7 +63,7 @@ def systems_of(cases: Iterable[Case]) -> tuple[System, ...] | None:
 
 def constancy(
     X: Matrix, factor: Scalar, dimension: int, plant: StateSpace, others: tuple[System, ...]
-) -> Constancy | None:
+) -> RankConstancy | None:
     """Return where the rank is the generic one at the roots of an irreducible factor; None where that is not known.
 
     `dimension` is that of ker(X − λI) in general, and `others` are the strata on which ker 𝒪 is another.
@@ -76,7 +76,7 @@ def constancy(
 
 def _constancy(
     X: Matrix, factor: Scalar, dimension: int, plant: StateSpace, others: tuple[System, ...]
-) -> Constancy | None:
+) -> RankConstancy | None:
     own: tuple[System, ...] = ()
     minors: tuple[Minor, ...] = ()
     if X.shape[0] > dimension and X.names | factor.names > {plant.variable}:
@@ -94,7 +94,7 @@ def _constancy(
     if not all(own):
         return None
     loci = maximal(Locus.of(Ideal.of(system)) for system in (*others, *own))
-    found = Constancy(tuple(locus.equations for locus in loci), minors)
+    found = RankConstancy(tuple(locus.equations for locus in loci), minors)
     claims = constancy_claims(found, X, factor, dimension, plant)
     return found if all(verify(c.relation, c.environment.with_relations(plant.relations))[0] for c in claims) else None
 
@@ -124,12 +124,14 @@ def shifted(X: Matrix, factor: Scalar, variable: str) -> Matrix:
     return (pencil * pencil.common_denominator()).normal()
 
 
-def holds_where(where: Constancy) -> list[Condition]:
+def holds_where(where: RankConstancy) -> list[Condition]:
     """Return what must not vanish for a rank to be the generic one."""
     return [Condition("existence", distance) for distance in distances(where.systems)]
 
 
-def constancy_claims(found: Constancy, X: Matrix, factor: Scalar, dimension: int, plant: StateSpace) -> Iterator[Claim]:
+def constancy_claims(
+    found: RankConstancy, X: Matrix, factor: Scalar, dimension: int, plant: StateSpace
+) -> Iterator[Claim]:
     """Yield that outside the strata, which are not everything, the minors of X − λI never vanish together."""
     signs, region, excluded = plant.symbols.signs, region_of(plant), distances(found.systems)
     for distance in excluded:

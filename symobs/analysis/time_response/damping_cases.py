@@ -37,7 +37,7 @@ _MOST_BRANCHES = 4
 _BRANCHES = {"<": "branch_under", ">": "branch_over"}
 
 
-class Branched(Result):
+class DampingCases(Result):
     """A result whose answer holds `taken` and `chosen`, the signs of discriminants it stands on."""
 
     in_time: ClassVar[bool] = True
@@ -49,7 +49,7 @@ class Branched(Result):
         """The answers that are functions of time."""
         return tuple(v for v in self.answer.values() if isinstance(v, (Matrix, Scalar)))
 
-    def again(self, plant: StateSpace, taken: Signs) -> Self:
+    def rebuild(self, plant: StateSpace, taken: Signs) -> Self:
         """Return the result on a stratum, or with other signs."""
         raise NotImplementedError
 
@@ -121,7 +121,7 @@ class Branched(Result):
             if sign_of(delta, signs) not in {"nonpositive", "nonnegative"}:
                 other = opposite(sign)
                 when = (*before, _stated(delta, other))
-                found.append(Case(when, {}, self.again(self.plant, {**taken, delta: other})))
+                found.append(Case(when, {}, self.rebuild(self.plant, {**taken, delta: other})))
             zeros.append(delta)
             taken[delta], before = sign, (*before, _stated(delta, sign))
         zeros = list(dict.fromkeys(zeros))
@@ -137,13 +137,13 @@ class Branched(Result):
                 message = f"{moved} is not {sign}"
                 raise ZeroDivisionError(message)
             taken[moved] = sign
-        return self.again(plant, taken)
+        return self.rebuild(plant, taken)
 
     def everything(self) -> Iterator[Matrix | Scalar]:
         """Yield all functions of time on the page: those of the cases too."""
         yield from self.matrices
         for case in self.case_tree:
-            if isinstance(case.result, Branched):
+            if isinstance(case.result, DampingCases):
                 yield from case.result.everything()
 
     def state(self, page: Page) -> None:
@@ -185,7 +185,7 @@ def _distance(case: Case) -> Scalar:
 def _case(page: Page, case: Case, doubled: Signs, write_branch: Callable[[Page, Any], None]) -> Step:
     from symobs.analysis.page_parts import stratum_of, undecided  # noqa: PLC0415
 
-    if not isinstance(case.result, Branched):
+    if not isinstance(case.result, DampingCases):
         return undecided(page, case)
     condition = case.when[0]
     inner = _inside(page, case.result.plant, case.substitution)

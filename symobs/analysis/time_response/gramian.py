@@ -12,7 +12,7 @@ from symobs._dataclass import dataclass
 from symobs.analysis.rank.rank_test import minor_claim, rank_answer, rank_claims, rank_environment, rank_losses
 from symobs.analysis.strata.repeated_eigenvalues import distances, systems_of
 from symobs.analysis.time_response.damping_cases import (
-    Branched,
+    DampingCases,
     Signs,
     from_zero,
     rate_of,
@@ -65,7 +65,7 @@ def pair_of(plant: StateSpace, of: str) -> tuple[Matrix, Matrix]:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Gramian(Branched):
+class Gramian(DampingCases):
     """W with W = ∫ of its integrand (checked by differentiation), its determinant, Σ (Aᵀ)ᵏ Cᵀ C Aᵏ, and the kernel."""
 
     task: ClassVar[str] = "gramian"
@@ -98,7 +98,7 @@ class Gramian(Branched):
         }
         return cls(plant, method_name, {**shared, **answer, "chosen": chosen})
 
-    def again(self, plant: StateSpace, taken: Signs) -> Self:
+    def rebuild(self, plant: StateSpace, taken: Signs) -> Self:
         """Return the Gramian of another plant or with other signs."""
         return type(self).of(plant, self.method, self.answer, taken)
 

@@ -97,7 +97,7 @@ class InitialState(OfTheInitialState):
         }
         return cls(plant, method_name, {**answer, **_solved(test, derivatives_at_zero(free, plant.order), seen, free)})
 
-    def again(self, plant: StateSpace, taken: Signs) -> Self:
+    def rebuild(self, plant: StateSpace, taken: Signs) -> Self:
         """Return the result for another plant or with other signs."""
         return type(self).of(plant, self.method, self.answer, taken)
 

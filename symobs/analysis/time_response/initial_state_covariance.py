@@ -85,7 +85,7 @@ class InitialStateCovariance(OfTheInitialState):
             return cls(plant, method_name, {**shared, "question": question, "factor": None, "chosen": chosen})
         return cls(plant, method_name, {**shared, "chosen": chosen, **_parts(plant, found.table(), data)})
 
-    def again(self, plant: StateSpace, taken: Signs) -> Self:
+    def rebuild(self, plant: StateSpace, taken: Signs) -> Self:
         """Return the result for another plant or with other signs."""
         return type(self).of(plant, self.method, self.answer, taken)
 

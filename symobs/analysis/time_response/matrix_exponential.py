@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Self
 from symobs._dataclass import dataclass
 from symobs.analysis.factored_form import formula_of_factored
 from symobs.analysis.page_parts import given
-from symobs.analysis.time_response.damping_cases import Branched, Signs, rate_of, time_environment, with_signs
+from symobs.analysis.time_response.damping_cases import DampingCases, Signs, rate_of, time_environment, with_signs
 from symobs.certificate.claims import Claim
 from symobs.conditions import vanishing_factors
 from symobs.derivation.builder import Page, relation
@@ -67,7 +67,7 @@ def require_continuous(plant: StateSpace, task_name: str) -> None:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class MatrixExponential(Branched):
+class MatrixExponential(DampingCases):
     """Φ(t) with Φ′ = A Φ and Φ(0) = I, which has one solution."""
 
     task: ClassVar[str] = "matrix_exponential"
@@ -82,7 +82,7 @@ class MatrixExponential(Branched):
             return cls(plant, method_name, {**answer, "taken": taken, "chosen": {}})
         return cls(plant, method_name, {"matrix": found.matrix(TIME), "taken": taken, "chosen": chosen})
 
-    def again(self, plant: StateSpace, taken: Signs) -> Self:
+    def rebuild(self, plant: StateSpace, taken: Signs) -> Self:
         """Return e^{At} of another plant or with other signs."""
         return type(self).of(plant, self.method, taken)
 

@@ -97,7 +97,7 @@ class Branch:
 
 
 @dataclass(frozen=True)
-class Slab:
+class Cylinder:
     """The cylinder between two neighbouring walls (None: unbounded on that side), with the sample point `x`."""
 
     left: RealNumber | None
@@ -151,19 +151,19 @@ class Plane:
         return tuple(Wall(index, root) for index, root in enumerate(roots))
 
     @cached_property
-    def slabs(self) -> tuple[Slab, ...]:
+    def slabs(self) -> tuple[Cylinder, ...]:
         """The slabs from left to right."""
         ends = [None, *(wall.x for wall in self.walls), None]
         return tuple(self._slab(left, right) for left, right in pairwise(ends))
 
-    def _slab(self, left: RealNumber | None, right: RealNumber | None) -> Slab:
+    def _slab(self, left: RealNumber | None, right: RealNumber | None) -> Cylinder:
         x = rational_between(left, right)
         roots = sorted(
             (root, curve, number) for curve, found in enumerate(self.roots_over(x)) for number, root in enumerate(found)
         )
         ends = [None, *(root for root, _, _ in roots), None]
         samples = [rational_between(low, high) for low, high in pairwise(ends)]
-        return Slab(left, right, x, tuple(Branch(curve, number) for _, curve, number in roots), tuple(samples))
+        return Cylinder(left, right, x, tuple(Branch(curve, number) for _, curve, number in roots), tuple(samples))
 
     def roots_over(self, x: Fraction) -> list[list[RealNumber]]:
         """Return the real roots in y of every curve over a point x of a slab."""

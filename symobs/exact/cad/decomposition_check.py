@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
     from fractions import Fraction
 
-    from symobs.exact.cad.decomposition import Plane, Slab
+    from symobs.exact.cad.decomposition import Cylinder, Plane
 
 #: Points at which each determinant is compared: one of 64 bits lets a false value pass with a probability below 10⁻¹⁵.
 _POINTS = 2 * 64 // PRIME_BITS
@@ -136,7 +136,7 @@ def _walls_are_all(plane: Plane) -> bool:
     return inside and ends == list(pairwise([None, *walls, None])) and is_line(walls, plane.projection)
 
 
-def _is_stack(plane: Plane, slab: Slab) -> bool:
+def _is_stack(plane: Plane, slab: Cylinder) -> bool:
     """Return whether over the slab's point every branch lies alone between the two samples around it."""
     if list(slab.samples) != sorted(slab.samples) or len(slab.samples) != len(slab.branches) + 1:
         return False

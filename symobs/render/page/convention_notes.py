@@ -29,9 +29,9 @@ from symobs.formula import (
     Product,
     Relation,
     Roots,
+    SignReversal,
     Sum,
     SymbolList,
-    Turned,
     letters,
 )
 from symobs.phrases.spoken import SPOKEN
@@ -54,7 +54,7 @@ def stated_conventions(
     used: frozenset[str], convention: Convention, words: Mapping[str, str]
 ) -> tuple[tuple[Inline, ...], ...]:
     """Return the conventions of the letters used, each as words and a formula."""
-    turned = Turned(convention.turned)
+    turned = SignReversal(convention.turned)
     conventions: list[tuple[Inline, ...]] = []
     if "K" in used:
         estimated = "L" in used or "x_hat" in used

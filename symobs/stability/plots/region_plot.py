@@ -16,7 +16,7 @@ from symobs.formula import Literal, Relation
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
-    from symobs.exact.cad.decomposition import Slab, Wall
+    from symobs.exact.cad.decomposition import Cylinder, Wall
     from symobs.figures.plot import Interval, Place
     from symobs.stability.regions.interval_region import LineRegion
     from symobs.stability.regions.plane_region import Cell, PlaneRegion
@@ -100,7 +100,7 @@ def _window(region: PlaneRegion) -> tuple[Interval, Interval]:
     return range_around(xs), range_around(ys)
 
 
-def _near_ends(slab: Slab) -> list[Fraction]:
+def _near_ends(slab: Cylinder) -> list[Fraction]:
     """Return points of a slab close to its walls."""
     ends = [slab.left.interval()[1]] if slab.left is not None else []
     ends += [slab.right.interval()[0]] if slab.right is not None else []
@@ -162,7 +162,7 @@ def _holds_sample(cell: Cell, nodes: dict[Fraction, list[Fraction]], window: tup
 # -- branches ---------------------------------------------------------------------------------------------------------
 
 
-def _nodes(region: PlaneRegion, slab: Slab, window: tuple[Interval, Interval]) -> dict[Fraction, list[Fraction]]:
+def _nodes(region: PlaneRegion, slab: Cylinder, window: tuple[Interval, Interval]) -> dict[Fraction, list[Fraction]]:
     """Return rational points of a slab inside the window with the heights of all branches there, ascending.
 
     They are crowded towards its ends, and stand where a branch meets the border.
@@ -240,7 +240,7 @@ def _rounded(places: Iterable[Place], window: tuple[Interval, Interval]) -> tupl
 
 def _branches(
     region: PlaneRegion,
-    slab: Slab,
+    slab: Cylinder,
     number: int,
     nodes: Sequence[Fraction],
     rows: Sequence[Sequence[Fraction]],

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from fractions import Fraction
 
     from symobs.exact import RealNumber
-    from symobs.exact.cad.decomposition import Branch, Slab
+    from symobs.exact.cad.decomposition import Branch, Cylinder
     from symobs.stability.regions.plane_region import Cell, PlaneRegion
 
 
@@ -61,7 +61,7 @@ class CylindricalPart:
 def parts(region: PlaneRegion) -> tuple[CylindricalPart, ...]:
     """Return the parts of all components, from left to right."""
     component_of = {cell: k for k, component in enumerate(region.components) for cell in component.cells}
-    meetings = meetings_of(region)
+    meetings = adjacencies_of(region)
     goes_on = {m.right: m.left for m in meetings if m.left_alone and m.right_alone}
     found: dict[int, CylindricalPart] = {}
     for number, component in sorted(component_of.items()):
@@ -85,7 +85,7 @@ def parts(region: PlaneRegion) -> tuple[CylindricalPart, ...]:
 
 
 @dataclass(frozen=True)
-class Meeting:
+class Adjacency:
     """Two stable cells adjacent along a segment of a wall, and whether the segment is the whole side of a cell."""
 
     left: int
@@ -94,11 +94,11 @@ class Meeting:
     right_alone: bool
 
 
-def meetings_of(region: PlaneRegion) -> list[Meeting]:
+def adjacencies_of(region: PlaneRegion) -> list[Adjacency]:
     """Return all adjacencies, wall by wall."""
     lefts = Counter(left for left, _, _, _ in region.joins)
     rights = Counter(right for _, right, _, _ in region.joins)
-    return [Meeting(left, right, lefts[left] == 1, rights[right] == 1) for left, right, _, _ in region.joins]
+    return [Adjacency(left, right, lefts[left] == 1, rights[right] == 1) for left, right, _, _ in region.joins]
 
 
 def is_regular(part: CylindricalPart, end: RealNumber | None) -> bool:
@@ -115,7 +115,7 @@ def are_whole(region: PlaneRegion, found: Sequence[CylindricalPart]) -> bool:
         part_of[m.left] is part_of[m.right]
         or (part_of[m.left].reaches and m.left_alone)
         or (part_of[m.right].begins and m.right_alone)
-        for m in meetings_of(region)
+        for m in adjacencies_of(region)
     )
 
 
@@ -145,13 +145,13 @@ def is_written(part: CylindricalPart) -> bool:
     return all(edge is None or edge.closed is not None for edge in (part.lower, part.upper))
 
 
-def edges_of(region: PlaneRegion, cell: Cell) -> tuple[Slab, Edge | None, Edge | None]:
+def edges_of(region: PlaneRegion, cell: Cell) -> tuple[Cylinder, Edge | None, Edge | None]:
     """Return the slab of a cell, and its lower and upper bound."""
     slab, below, above = region.bounds(cell)
     return slab, _edge(region, slab, below), _edge(region, slab, above)
 
 
-def _edge(region: PlaneRegion, slab: Slab, branch: Branch | None) -> Edge | None:
+def _edge(region: PlaneRegion, slab: Cylinder, branch: Branch | None) -> Edge | None:
     if branch is None:
         return None
     polynomial = region.plane.curves[branch.curve].scalar

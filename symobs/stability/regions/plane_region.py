@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from symobs._dataclass import dataclass
 from symobs.exact import TooLarge
-from symobs.exact.cad.decomposition import Branch, Plane, Slab, Wall
+from symobs.exact.cad.decomposition import Branch, Cylinder, Plane, Wall
 from symobs.exact.cad.fiber import Fibre, curves_between, fibre, place_between, point_between
 from symobs.stability.regions.short_list import Sample
 
@@ -93,7 +93,7 @@ class PlaneRegion:
         count = len(self.plane.slabs[slab].samples)
         return tuple(self.cell_at(slab, height).stable for height in range(count))
 
-    def bounds(self, cell: Cell) -> tuple[Slab, Branch | None, Branch | None]:
+    def bounds(self, cell: Cell) -> tuple[Cylinder, Branch | None, Branch | None]:
         """Return the slab of a cell and the branches below and above it."""
         slab = self.plane.slabs[cell.slab]
         branches: tuple[Branch | None, ...] = (None, *slab.branches, None)

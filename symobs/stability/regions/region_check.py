@@ -20,14 +20,14 @@ from symobs.exact.algebraic.root_location import count_roots_by_half_plane
 from symobs.exact.cad.decomposition_check import holds, is_line
 from symobs.exact.core.generators import normal_form, substitute
 from symobs.stability.criteria.critical_polynomials import irreducible
-from symobs.stability.regions.description import is_regular, meetings_of
+from symobs.stability.regions.description import adjacencies_of, is_regular
 from symobs.stability.regions.plane_region import PlaneRegion
 from symobs.stability.regions.short_list import is_exact
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from symobs.exact.cad.decomposition import Slab
+    from symobs.exact.cad.decomposition import Cylinder
     from symobs.stability.criteria.critical_polynomials import CriticalPolynomials
     from symobs.stability.regions.description import CylindricalPart, Edge
     from symobs.stability.regions.interval_region import LineRegion
@@ -113,7 +113,7 @@ def are_parts(region: PlaneRegion, parts: Sequence[CylindricalPart]) -> bool:
     listed = [number for part in parts for number in part.cells]
     if sorted(listed) != [number for number, cell in enumerate(region.cells) if cell.stable]:
         return False
-    lefts, rights = ({k: m for m in meetings_of(region) for k in [getattr(m, side)]} for side in ("left", "right"))
+    lefts, rights = ({k: m for m in adjacencies_of(region) for k in [getattr(m, side)]} for side in ("left", "right"))
     for part in parts:
         at_end, at_start = lefts.get(part.cells[-1]), rights.get(part.cells[0])
         if part.reaches and not (at_end and at_end.left_alone and is_regular(part, part.high)):
@@ -142,7 +142,7 @@ def _is_part(region: PlaneRegion, part: CylindricalPart, number: int) -> bool:
     return True
 
 
-def _is_branch(edge: Edge, names: tuple[str, str], slab: Slab, place: int) -> bool:
+def _is_branch(edge: Edge, names: tuple[str, str], slab: Cylinder, place: int) -> bool:
     """Return whether a closed form is a root, and lies between the adjacent samples at the slab's point."""
     assert edge.closed is not None  # noqa: S101 - asked only where there is one
     left = normal_form(edge.polynomial.substitute({names[1]: edge.closed}))

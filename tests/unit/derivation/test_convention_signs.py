@@ -42,10 +42,10 @@ from symobs.formula import (
     Predicate,
     Product,
     Roots,
+    SignReversal,
     Sum,
     SymbolList,
     Transpose,
-    Turned,
 )
 from tests.support.problems.steps import START, literal, said
 
@@ -102,7 +102,7 @@ def test_data_that_are_equal_to_a_gain_keep_their_sign() -> None:
     product = Define(said(Letter("P"), Product((C, L)), written))
     found = steps_in(PLUS, plant, L_IS, product)
     assert found[2] == Define(said(Letter("P"), Negative(Product((C, L))), written))
-    (other,) = convention_signs._in_signs((product,), Turned(frozenset({"L"}), {GAIN}))
+    (other,) = convention_signs._in_signs((product,), SignReversal(frozenset({"L"}), {GAIN}))
     assert other == Define(said(Letter("P"), Negative(Product((C, L))), Negative(turned)))
     scalar = Define(said(Letter("D"), 3))
     assert steps_in(PLUS, plant, scalar, L_IS)[1] == scalar
@@ -141,11 +141,11 @@ LAW, TURNED_LAW = said(U, Negative(Product((K, ESTIMATE)))), said(U, Product((K,
     ],
 )
 def test_signs_of_what_a_page_is_made_of(before: Any, after: Any) -> None:
-    assert convention_signs._in_signs(before, Turned(frozenset({"K", "L"}), {GAIN, GAIN.T})) == after
+    assert convention_signs._in_signs(before, SignReversal(frozenset({"K", "L"}), {GAIN, GAIN.T})) == after
 
 
 def test_the_sentence_of_a_figure_is_turned_too() -> None:
-    turned = Turned(frozenset({"K", "L"}), {GAIN, GAIN.T})
+    turned = SignReversal(frozenset({"K", "L"}), {GAIN, GAIN.T})
     before, after = (plain_words("test_slot", it=relation) for relation in (LAW, TURNED_LAW))
     assert convention_signs._in_signs(Diagram("loop", (), before), turned) == Diagram("loop", (), after)
 
