@@ -109,4 +109,4 @@ class ResultInConvention:
 
 
 #: Whatever has answers to hold against others.
-Answered: TypeAlias = "Result | Viewed"
+Answered: TypeAlias = "Result | ResultInConvention"

@@ -333,7 +333,7 @@ def test_conditions_keep_from_zero_where_relations_hold_too() -> None:
     root = Scalar.symbol(EIGENVALUE)
     single, several = said(root + b, "!=", 0), said(Matrix.column([b * c, c * (b - 1)]), "!=", Matrix.zeros(2, 1))
     for relation, known, relations in ((single, root + b, (root**2 - 2,)), (several, c, (a * a - 2,))):
-        for where in ("assumed", "domain"):
+        for where in ("nonzero", "domain"):
             conditions: dict[str, Any] = {where: (known,)}
             assert verify(relation, Environment(relations=relations, **conditions)) == EXACTLY
             assert verify(relation, Environment(**conditions)) == EXACTLY
