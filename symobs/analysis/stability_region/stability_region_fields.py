@@ -117,13 +117,13 @@ def cells_of(region: PlaneRegion) -> list[dict[str, Any]]:
     for number, cell in enumerate(region.cells):
         if not cell.allowed:
             continue
-        slab, lower, upper = edges_of(region, cell)
+        cylinder, lower, upper = edges_of(region, cell)
         listed.append(
             {
                 "sample": _point(region, cell.sample),
                 "stable": cell.stable,
                 "component": component.get(number),
-                x: [end(slab.left, "-", x), end(slab.right, "+", x)],
+                x: [end(cylinder.left, "-", x), end(cylinder.right, "+", x)],
                 y: [_edge(lower, "-", y), _edge(upper, "+", y)],
             }
         )

@@ -92,9 +92,9 @@ def _pieces(region: LineRegion | PlaneRegion, union: Union) -> Iterator[tuple[di
         return
     plane = region.divided(further)
     x, y = region.names
-    for slab in plane.slabs:
-        yield from _along(region.critical, further, {x: slab.x}, y)
-    for wall in plane.walls:
+    for cylinder in plane.cylinders:
+        yield from _along(region.critical, further, {x: cylinder.x}, y)
+    for wall in plane.critical_lines:
         if wall.x.is_rational:
             yield from _along(region.critical, further, {x: wall.x.fraction}, y)
         elif plane.vertical_at(wall):

@@ -107,8 +107,8 @@ def _is_divided(region: LineRegion | PlaneRegion, further: Sequence[Scalar]) -> 
 def are_parts(region: PlaneRegion, parts: Sequence[CylindricalPart]) -> bool:
     """Return whether the parts are all stable cells, each once, and every closed form equals its branch.
 
-    A closed form solves the branch's polynomial identically, is continuous over the slab, and lies between the two samples
-    around the branch at the slab's point: no other branch does.
+    A closed form solves the branch's polynomial identically, is continuous over the cylinder, and lies between the two samples
+    around the branch at the cylinder's point: no other branch does.
     """
     listed = [number for part in parts for number in part.cells]
     if sorted(listed) != [number for number, cell in enumerate(region.cells) if cell.stable]:
@@ -125,7 +125,7 @@ def are_parts(region: PlaneRegion, parts: Sequence[CylindricalPart]) -> bool:
 
 def _is_part(region: PlaneRegion, part: CylindricalPart, number: int) -> bool:
     cell = region.cells[number]
-    slab, below, above = region.bounds(cell)
+    cylinder, below, above = region.bounds(cell)
     ends = (region.cells[part.cells[0]], region.cells[part.cells[-1]])
     if (part.low, part.high) != (region.bounds(ends[0])[0].left, region.bounds(ends[1])[0].right):
         return False
@@ -137,17 +137,17 @@ def _is_part(region: PlaneRegion, part: CylindricalPart, number: int) -> bool:
         polynomial = region.plane.curves[branch.curve].scalar
         if (edge.polynomial, edge.number) != (polynomial, branch.number):
             return False
-        if edge.closed is not None and not _is_branch(edge, region.names, slab, place):
+        if edge.closed is not None and not _is_branch(edge, region.names, cylinder, place):
             return False
     return True
 
 
-def _is_branch(edge: Edge, names: tuple[str, str], slab: Cylinder, place: int) -> bool:
-    """Return whether a closed form is a root, and lies between the adjacent samples at the slab's point."""
+def _is_branch(edge: Edge, names: tuple[str, str], cylinder: Cylinder, place: int) -> bool:
+    """Return whether a closed form is a root, and lies between the adjacent samples at the cylinder's point."""
     assert edge.closed is not None  # noqa: S101 - asked only where there is one
     left = normal_form(edge.polynomial.substitute({names[1]: edge.closed}))
-    at_point = substitute(edge.closed, {names[0]: Scalar.of(slab.x)})
-    low, high = (Scalar.of(y) for y in slab.samples[place : place + 2])
+    at_point = substitute(edge.closed, {names[0]: Scalar.of(cylinder.x)})
+    low, high = (Scalar.of(y) for y in cylinder.samples[place : place + 2])
     return (
         left.is_zero and sign_of_number(at_point - low) == "positive" and sign_of_number(high - at_point) == "positive"
     )
