@@ -53,13 +53,13 @@ def _say_cancelled(page: Page, cancelled: Scalar, below: Scalar) -> None:
     rest = page.value(below / cancelled)
     poles = Roots(c.formula, roots_of(cancelled, plant.variable))
     facts = (relation(below, c * rest),)
-    told = stability(cancelled, plant.variable, plant.symbols.signs, discrete=plant.is_discrete)
-    if told.verdict == "yes":
+    cancelled_stability = stability(cancelled, plant.variable, plant.symbols.signs, discrete=plant.is_discrete)
+    if cancelled_stability.verdict == "yes":
         page.remark("lowest_terms", *facts, poles=poles)
-    elif told.verdict == "no":
+    elif cancelled_stability.verdict == "no":
         time = "discrete" if plant.is_discrete else "continuous"
         page.caution(f"lowest_terms_unstable_{time}", predicate("unstable", c), *facts, poles=poles)
     else:
-        solved = [as_inequality(value, plant.symbols.signs) for value in told.positive]
+        solved = [as_inequality(value, plant.symbols.signs) for value in cancelled_stability.positive]
         where = HoldsExactlyWhere(predicate("stable", c), tuple(relation(*parts) for parts in solved))
         page.caution("lowest_terms_where", *facts, poles=poles, where=where)

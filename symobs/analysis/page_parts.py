@@ -92,9 +92,9 @@ def given(page: Page, *desired: tuple[str, DesiredPolynomial | None]) -> None:
             page.remark("from_floats")
         _say_decimals(page)
         state_signs(page)
-        for name, wish in desired:
-            if wish is not None:
-                _asked(page, name, wish)
+        for name, desired_polynomial in desired:
+            if desired_polynomial is not None:
+                _asked(page, name, desired_polynomial)
 
 
 def _as_given(page: Page, matrix: Matrix) -> Term:
@@ -128,14 +128,14 @@ def _hold_to_letters(page: Page) -> None:
     page.conclude_silently(*facts)
 
 
-def _asked(page: Page, name: str, wish: DesiredPolynomial) -> None:
+def _asked(page: Page, name: str, desired_polynomial: DesiredPolynomial) -> None:
     """State the poles or the polynomial asked for."""
-    phi = page.set(f"phi_{name[0]}", wish.polynomial)
-    if wish.poles:
-        roots = tuple(root_of_pole(pole, page.plant.variable) for pole in wish.poles)
+    phi = page.set(f"phi_{name[0]}", desired_polynomial.polynomial)
+    if desired_polynomial.poles:
+        roots = tuple(root_of_pole(pole, page.plant.variable) for pole in desired_polynomial.poles)
         page.conclude(f"{name}_{'pole' if len(roots) == 1 else 'poles'}", poles=Roots(phi.formula, roots))
     else:
-        page.conclude(f"{name}_polynomial", polynomial=relation(phi, wish.polynomial))
+        page.conclude(f"{name}_polynomial", polynomial=relation(phi, desired_polynomial.polynomial))
 
 
 def state_signs(page: Page) -> None:

@@ -322,11 +322,11 @@ class Page:
         self.steps.append(Diagram(name, tuple(with_signals(name, given).items()), because))
 
     def tabulate(
-        self, polynomial: Term, variable: str = "", /, say: str = "", *, tell: bool = True, **slots: Slot
+        self, polynomial: Term, variable: str = "", /, say: str = "", *, with_findings: bool = True, **slots: Slot
     ) -> RouthTable:
         """Show Routh's table of a polynomial, in another variable than the page's where one is named.
 
-        What the table says is told below it, unless `tell` is False.
+        The findings of the table are printed below it, unless `with_findings` is False.
         """
         from symobs.derivation.routh_check import findings_of  # noqa: PLC0415 - only pages of regions pay for it
         from symobs.stability.criteria.routh_table import routh_table  # noqa: PLC0415
@@ -334,7 +334,7 @@ class Page:
         variable = variable or self.environment.variable
         coefficients = polynomial.value.coefficients(variable)
         table = routh_table(coefficients, {variable, *self.environment.signs, *self.environment.coefficients})
-        findings = findings_of(table, coefficients, variable, self.environment.signs) if tell else ()
+        findings = findings_of(table, coefficients, variable, self.environment.signs) if with_findings else ()
         because = sentence(say, slots) if say else None
         self.steps.append(Tabulate(polynomial.formula, table, variable, because, findings))
         return table

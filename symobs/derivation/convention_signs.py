@@ -96,10 +96,10 @@ def set_apart(derivation: Derivation, letters: Iterable[str], forms: Mapping[str
     shared = printed_alike(letters, forms, named - {derivation.variable, *derivation.symbols})
     if not shared:
         return derivation
-    told = [Note(Sentence("without_serifs", (("parameter", Literal(Scalar.symbol(name))),))) for name in shared]
+    notes = [Note(Sentence("without_serifs", (("parameter", Literal(Scalar.symbol(name))),))) for name in shared]
     first, *rest = derivation.steps
     if isinstance(first, Section):
-        first = replace(first, steps=(*first.steps, *told))
+        first = replace(first, steps=(*first.steps, *notes))
     symbols = {**derivation.symbols, **{name: sans_serif(name) for name in shared}}
     return replace(derivation, steps=(first, *rest), symbols=symbols)
 

@@ -59,8 +59,8 @@ def _exponential(exponent: Callable[[Mapping[str, Any]], Scalar]) -> Callable[[R
     """Return the check that a relation begins with e to this power, given by the values of the letters."""
 
     def is_said(relation: Relation, environment: Environment) -> bool:
-        told = evaluate(relation.members[0], environment, Exact(environment))
-        return bool(told == function("exp", exponent(environment.values)))
+        stated = evaluate(relation.members[0], environment, Exact(environment))
+        return bool(stated == function("exp", exponent(environment.values)))
 
     return is_said
 
@@ -237,16 +237,16 @@ def reject_other_map(sentence: Sentence, relation: Relation | None, environment:
     if applied is None:
         return
     slot, limit = applied
-    told = formula_in(sentence, slot)
-    is_there = relation is not None and any(told in _within(member) for member in relation.members)
-    if not is_there or (limit and not _moves_to(limit, told, environment)):
-        reject(f"{sentence.key} by {plain(told, environment.variable)}")
+    mapping = formula_in(sentence, slot)
+    is_there = relation is not None and any(mapping in _within(member) for member in relation.members)
+    if not is_there or (limit and not _moves_to(limit, mapping, environment)):
+        reject(f"{sentence.key} by {plain(mapping, environment.variable)}")
 
 
-def _moves_to(limit: str, told: Formula, environment: Environment) -> bool:
+def _moves_to(limit: str, mapping: Formula, environment: Environment) -> bool:
     """Tell whether this is the limit remembered: a radius itself, a margin as the shift that takes it away."""
     wanted = environment.values.get(limit)
-    moved = Negative(told) if limit == "sought margin" else told
+    moved = Negative(mapping) if limit == "sought margin" else mapping
     return wanted is not None and wanted == evaluate(moved, environment, Exact(environment))
 
 

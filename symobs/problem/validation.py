@@ -88,8 +88,8 @@ class Problem:
 
     def document(self, results: tuple[Result, ...], convention: Convention | None = None) -> Document:
         """Return what a format renders, in the file's convention or in another one."""
-        told = convention or self.convention
-        return Document(self.title, self.source, results, told, self.text, digits=self.digits, language=self.language)
+        chosen = convention or self.convention
+        return Document(self.title, self.source, results, chosen, self.text, digits=self.digits, language=self.language)
 
 
 def validate(data: Mapping[str, Any], only: str | None = None, folder: Path | None = None) -> Problem:
@@ -109,7 +109,9 @@ def validate(data: Mapping[str, Any], only: str | None = None, folder: Path | No
     symbols = Symbols() if data.get("symbols") is OPEN else _symbols(table_of(data, "symbols", errors), errors)
     symbols = with_constants(table_of(data, "constants", errors), symbols, errors)
     dt = _period(data, symbols, errors)
-    plant = _plant(data, symbols, dt, errors, alone=bool(wanted) and all(task.alone for task in wanted))
+    plant = _plant(
+        data, symbols, dt, errors, optional=bool(wanted) and all(task.works_without_plant for task in wanted)
+    )
     specification = _specification(data, (*asked, *wanted), convention, symbols, errors)
     expect = table_of(data, "expect", errors)
     printed = _printed(data.get("printed", []), errors)
@@ -243,8 +245,10 @@ def _period(data: Mapping[str, Any], symbols: Symbols, errors: Errors) -> object
     return 0
 
 
-def _plant(data: Mapping[str, Any], symbols: Symbols, dt: object, errors: Errors, *, alone: bool) -> StateSpace | None:
-    """Return the plant, None where it cannot be had; with `alone` a polynomial does instead."""
+def _plant(
+    data: Mapping[str, Any], symbols: Symbols, dt: object, errors: Errors, *, optional: bool
+) -> StateSpace | None:
+    """Return the plant, None where it cannot be had; where it is `optional` a polynomial does instead."""
     table = table_of(data, "plant", errors)
     if not isinstance(data.get("plant", {}), Mapping):
         return None
@@ -255,7 +259,7 @@ def _plant(data: Mapping[str, Any], symbols: Symbols, dt: object, errors: Errors
     elif "transfer_function" in table:
         with errors:
             return StateSpace.from_transfer_function(table["transfer_function"], dt, symbols=symbols)
-    elif alone and not given and "polynomial" in (specification := table_of(data, "specification", errors)):
+    elif optional and not given and "polynomial" in (specification := table_of(data, "specification", errors)):
         with errors:
             known = symbols.naming(specification.get("parameters"), "specification.parameters")
             return StateSpace.from_polynomial(specification["polynomial"], dt, symbols=known)

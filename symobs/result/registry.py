@@ -36,13 +36,13 @@ class Method:
 
 @dataclass(frozen=True)
 class Task:
-    """A question one can ask: its function, its keywords with their kinds; `alone` where it needs no plant."""
+    """A question one can ask: its function, its keywords with their kinds; `works_without_plant` where it needs no plant."""
 
     name: str
     function: Callable[..., Result]
     keywords: Mapping[str, str]
     summary: str
-    alone: bool
+    works_without_plant: bool
 
 
 _TASKS: dict[str, Task] = {}
@@ -114,9 +114,9 @@ def _registered(function: Callback) -> Callback:
     function = _of_plants(function)
     signature = inspect.signature(function).parameters
     keywords = {n: _kind(p.annotation) for n, p in signature.items() if p.kind is inspect.Parameter.KEYWORD_ONLY}
-    alone = signature["plant"].default is None
+    works_without_plant = signature["plant"].default is None
     function.kinds = keywords  # type: ignore[attr-defined]  # a result that is asked anew reads its specification so
-    _TASKS[function.__name__] = Task(function.__name__, function, keywords, _summary(function), alone)
+    _TASKS[function.__name__] = Task(function.__name__, function, keywords, _summary(function), works_without_plant)
     return function
 
 

@@ -192,7 +192,7 @@ class Result(OutputMethods):
         return other
 
     @property
-    def told_method(self) -> str:
+    def printed_method(self) -> str:
         """The method whose page is written."""
         return self.method if self.page_method == "auto" else self.page_method
 

@@ -108,9 +108,9 @@ def repair(page: Page, letter: str, result: RankResult, kind: str) -> list[Step]
 
 def _deficient(page: Page, letter: str, result: RankResult, kind: str) -> None:
     rank = result.answer["rank"]
-    told = relation(page[letter].apply("rank"), rank, "<", page.plant.order)
-    key = "no" if not result.case_tree and fits(f"no_{kind}", told, page.environment) else "generic_low"
-    page.conclude(f"{key}_{kind}", rank=told)
+    rank_relation = relation(page[letter].apply("rank"), rank, "<", page.plant.order)
+    key = "no" if not result.case_tree and fits(f"no_{kind}", rank_relation, page.environment) else "generic_low"
+    page.conclude(f"{key}_{kind}", rank=rank_relation)
     matrix = page[letter] if kind == "observability" else page[letter].T
     for vector in result.kernel_vectors:
         zero = Matrix.zeros(matrix.value.shape[0], 1)

@@ -78,11 +78,11 @@ def command(
         raise UsageError("both --questions and --solutions are given", repair="leave both out for both")
     chosen = _sheet_format(format_name, target)
     web = WebPage(details, copy, live)
-    told = page_of(detail, language, templates, chosen.name, web, digits=digits, exact=exact)
+    page_options = page_of(detail, language, templates, chosen.name, web, digits=digits, exact=exact)
     check_target(target)
     file = _sheet_file(files)
     if language is None and file.language:
-        told["language"] = file.language
+        page_options["language"] = file.language
     wanted = Wanted(
         chosen,
         not solutions,
@@ -92,7 +92,7 @@ def command(
         memory=memory,
         final_answers=file.has_final_answers,
         is_exam=file.header.is_exam,
-        **told,
+        **page_options,
     )
     header = _header(file, target, chosen, files[0])
     texts = list(zip(file.problems, file.texts, strict=True))

@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     Text = tuple[Asked, str]
     #: The entry of a problem, its exit code and its messages.
     Found = tuple[SheetEntry, int, list[str]]
-    #: Is told how many problems are done or begun, and the name of one.
+    #: Called with how many problems are done or begun, and the name of one.
     Show = Callable[[int, str], None]
 
 _LONGEST_TITLE = 300
@@ -130,8 +130,8 @@ def run(payload: Mapping[str, Any]) -> dict[str, Any]:
             entry, code, messages = _entry(number, asked, text, wanted, lambda _: None)
         except TypesettingError as error:
             return {"status": "done", "result": _packed(error)}
-    told = [f"{each.category.__name__}: {each.message}" for each in warned]
-    return {"status": "done", "result": _packed((entry, code, [*told, *messages]))}
+    warning_lines = [f"{each.category.__name__}: {each.message}" for each in warned]
+    return {"status": "done", "result": _packed((entry, code, [*warning_lines, *messages]))}
 
 
 def recheck(_payload: Mapping[str, Any], _row: Mapping[str, Any]) -> None:
@@ -203,8 +203,8 @@ def _worked_out(entry: SheetEntry, asked: Asked, text: str, wanted: Wanted, repo
         document = problem.document(results)
         if wanted.solutions:
             is_below = wanted.is_exam and wanted.questions
-            told = replace(document, source="", text="") if is_below else document
-            entry = replace(entry, solution=_part(told, replace(wanted, web=of_problem(wanted.web, data))))
+            without_source = replace(document, source="", text="") if is_below else document
+            entry = replace(entry, solution=_part(without_source, replace(wanted, web=of_problem(wanted.web, data))))
         if wanted.questions and wanted.final_answers:
             entry = replace(entry, answer=_part(document, replace(wanted, detail=FINAL, web=wanted.web.of_question)))
     except Exception as error:  # noqa: BLE001 - as above
@@ -239,8 +239,8 @@ def _part(document: Document, wanted: Wanted) -> Any:
         "language": wanted.language or document.language,
     }
     of_page |= {"templates": wanted.templates, "web": wanted.web}
-    told = replace(document, convention=convention, **of_page)
-    return wanted.format.part(told)
+    configured = replace(document, convention=convention, **of_page)
+    return wanted.format.part(configured)
 
 
 def _failed(entry: SheetEntry, error: Exception, wanted: Wanted) -> tuple[SheetEntry, int, list[str]]:

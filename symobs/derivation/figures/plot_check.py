@@ -62,7 +62,7 @@ def faults(picture: Picture, subject: Formula, environment: Environment, *, disc
     of = polynomial, variable, discrete, dict(environment.signs), equations
     if any(seen is picture and held == of for seen, held in _FAITHFUL):
         return
-    told = False
+    is_rejected = False
     signs = tuple(environment.signs.get(name, "real") for name in axes)
     test = Stability(polynomial, variable, axes, signs, discrete)
     match picture:
@@ -73,9 +73,9 @@ def faults(picture: Picture, subject: Formula, environment: Environment, *, disc
         case _:
             found = faults_of_poles(picture, polynomial, variable, discrete=discrete)
     for fault in found:
-        told = True
+        is_rejected = True
         yield fault
-    if not told:
+    if not is_rejected:
         _FAITHFUL.append((picture, of))
 
 

@@ -163,12 +163,12 @@ def say_stability(page: Page, design: OutputFeedback, stem: str, proper: Fact, *
         word = "stable" if found == "yes" else "unstable"
         facts, reason = [proper, predicate(word, page["F"])], _reason(page, design, word)
         key = f"{stem}_{word}_low" if reason and f"{stem}_{word}_low" in PHRASES else f"{stem}_{word}"
-        told = {**slots, **(reason if key.endswith("_low") else {})}
+        filled = {**slots, **(reason if key.endswith("_low") else {})}
         if found == "no" and page.defines("phi_c") and page.defines("phi_o"):
             loop, signs = page["phi_c"] @ page["phi_o"], plant.symbols.signs
             if stability(loop.scalar, plant.variable, signs, discrete=plant.is_discrete).verdict == "yes":
                 key, facts = f"{key}_alone", [*facts, predicate("stable", loop)]
-        page.conclude(key, *facts, **told)
+        page.conclude(key, *facts, **filled)
         return
     polynomial = monic(F.common_denominator(), plant.variable)
     positive = stability(polynomial, plant.variable, plant.symbols.signs, discrete=plant.is_discrete).positive

@@ -55,8 +55,8 @@ def caution_hidden(page: Page, F: Matrix | Scalar, own_matrix: Matrix) -> None:
     if found is None or found[1].degree(plant.variable) < 1:
         return
     poles, hidden = found
-    told = stability(hidden, plant.variable, plant.symbols.signs, discrete=plant.is_discrete)
-    if told.verdict == "yes":
+    hidden_stability = stability(hidden, plant.variable, plant.symbols.signs, discrete=plant.is_discrete)
+    if hidden_stability.verdict == "yes":
         return
     own = (page.s @ page.identity(own_matrix.shape[0]) - page["A_c"]).apply("det")
     rest = page.term(Quotient(own.formula, Literal(monic(poles, plant.variable))))
@@ -64,9 +64,9 @@ def caution_hidden(page: Page, F: Matrix | Scalar, own_matrix: Matrix) -> None:
         return
     modes = Roots(rest.formula, roots_of(hidden, plant.variable))
     time = "discrete" if plant.is_discrete else "continuous"
-    if told.verdict == "no":
+    if hidden_stability.verdict == "no":
         page.caution(f"hides_{time}", predicate("unstable", rest), relation(rest, hidden), modes=modes)
         return
-    solved = [as_inequality(value, plant.symbols.signs) for value in told.positive]
+    solved = [as_inequality(value, plant.symbols.signs) for value in hidden_stability.positive]
     where = HoldsExactlyWhere(predicate("stable", rest), tuple(relation(*parts) for parts in solved))
     page.caution("some_hidden", relation(rest, hidden), modes=modes, where=where)

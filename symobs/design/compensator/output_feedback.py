@@ -360,11 +360,11 @@ class OutputFeedback(Result):
     def _found_poles(self) -> Mapping[str, Any]:
         """The poles of the loop and whether it is stable: what a given gain does."""
         plant, whole = self.plant, self.loop_polynomial.value
-        told = stability(whole, plant.variable, plant.symbols.signs, discrete=plant.is_discrete)
+        verdict_of_loop = stability(whole, plant.variable, plant.symbols.signs, discrete=plant.is_discrete)
         return {
             "poles": roots_of(whole, plant.variable),
-            "stable": told.verdict,
-            "stable_if": told.inequalities(plant.symbols.signs),
+            "stable": verdict_of_loop.verdict,
+            "stable_if": verdict_of_loop.inequalities(plant.symbols.signs),
         }
 
     @property

@@ -79,10 +79,10 @@ class ObserverDesign(GainDesign):
         }
 
     @property
-    def told_method(self) -> str:
+    def printed_method(self) -> str:
         """The method whose page is written: for small plants the most readable one unless one was asked for."""
         if self.desired is None or self.answer["L"] is None or not self.fixed_polynomial.is_one:
-            return super().told_method
+            return super().printed_method
         return page_style(self.page_method, self.plant, several=self.plant.outputs > 1)
 
     @property

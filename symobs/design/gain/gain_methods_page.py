@@ -73,7 +73,7 @@ def write_matching(page: Page, design: GainDesign, side: PlacementProblem, desir
     polynomial = determinant.scalar
     page.equal(relation(determinant, page.value(polynomial)), say="polynomial_of_unknown")
     pairs = zip(polynomial.coefficients(variable)[1:], desired.coefficients, strict=True)
-    page.equal(*(relation(found, wish) for found, wish in pairs), say="equal_coefficients")
+    page.equal(*(relation(found, target) for found, target in pairs), say="equal_coefficients")
     page.equal(relation(page.value(system.M) @ page.value(unknown), system.r), say="linear_system")
     solution = design.transpose_for_task(system.solution)
     page.equal(relation(gain, solution), say="solution_of_system", answer=True)

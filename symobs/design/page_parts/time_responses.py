@@ -80,10 +80,12 @@ def _plot(
             return
 
 
-def _is_smooth(course: Sequence[int], edges: Interval) -> bool:
+def _is_smooth(heights: Sequence[int], edges: Interval) -> bool:
     """Return whether segments from every other instant to the next pass close by the values between them."""
     allowed = 2 * _BETWEEN * (edges[1] - edges[0]) * _PARTS
-    return all(abs(a - 2 * v + b) <= allowed for a, v, b in zip(course[::2], course[1::2], course[2::2], strict=False))
+    return all(
+        abs(a - 2 * v + b) <= allowed for a, v, b in zip(heights[::2], heights[1::2], heights[2::2], strict=False)
+    )
 
 
 def _plot_samples(
@@ -127,7 +129,7 @@ def _starts(page: Page, states: tuple[str, ...]) -> tuple[tuple[Fraction, ...], 
 
 def _window(end: Fraction, responses: Sequence[Response], parts: int) -> tuple[Interval, Interval]:
     """Return a window with a little room above and below."""
-    low, high = min(min(course.heights) for course in responses), max(max(course.heights) for course in responses)
+    low, high = min(min(each.heights) for each in responses), max(max(each.heights) for each in responses)
     edge = Fraction(high - low, 20)
     return (Fraction(0), end), ((low - edge) / parts, (high + edge) / parts)
 

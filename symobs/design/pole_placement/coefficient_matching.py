@@ -33,7 +33,7 @@ def matching(pair: ObserverPair, desired: DesiredPolynomial) -> Matching:
         found = moved.coefficients(variable)[1:]
         columns.append([new - old for new, old in zip(found, own, strict=True)])
     M = Matrix.of([list(row) for row in zip(*columns, strict=True)])
-    r = Matrix.column([wish - old for wish, old in zip(desired.coefficients, own, strict=True)])
+    r = Matrix.column([coefficient - old for coefficient, old in zip(desired.coefficients, own, strict=True)])
     return Matching(M, r)
 
 

@@ -48,7 +48,9 @@ def equations_for(pair: ObserverPair, desired: DesiredPolynomial, gain: Matrix) 
     """Return what must vanish: the coefficients of det(sI − A + LC) less those of φ."""
     found = (pair.A - gain @ pair.c).normal().characteristic_polynomial(pair.variable)
     coefficients = found.coefficients(pair.variable)[1:]
-    return tuple(own - wish for own, wish in zip(coefficients, desired.coefficients, strict=True))
+    return tuple(
+        own - desired_coefficient for own, desired_coefficient in zip(coefficients, desired.coefficients, strict=True)
+    )
 
 
 def contradict(equations: Sequence[Scalar]) -> bool:

@@ -80,8 +80,10 @@ class FeedforwardDesign(Result):
         m = self.plant.matrices
         values = letters_of(self.plant) | {"D": m.D, "K": K, "F": F, "w": w, "T_v": self.answer["transfer_function"]}
         values |= {"A_cl": self.loop.error_coordinates, "K_e": self.loop.coupling, "x_0": stuck}
-        told = {name: Matrix.of(v.rows) if isinstance(v, Matrix) else v for name, v in values.items()}  # as unpickled
-        e = Environment(variable=self.plant.variable, values=told)
+        restored = {
+            name: Matrix.of(v.rows) if isinstance(v, Matrix) else v for name, v in values.items()
+        }  # as unpickled
+        e = Environment(variable=self.plant.variable, values=restored)
         A, B, C, D = (letter(name, e) for name in "ABCD")
         K_ = letter("K", e)
         order, one = self.plant.order, identity(self.plant.order, e)

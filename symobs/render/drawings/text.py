@@ -124,8 +124,8 @@ def _responses(picture: TimeResponse, printer: TextPrinter) -> str:
     for response, mark in reversed(marks):
         for place in picture.points(response):
             _put(grid, picture.window, place, mark)
-    told = "   ".join(f"{mark} {printer.inline(name_of(response))}" for response, mark in marks)
-    return f"{told}\n{_framed(grid, picture.window, [symbol(time_axis(picture))], printer)}"
+    legend = "   ".join(f"{mark} {printer.inline(name_of(response))}" for response, mark in marks)
+    return f"{legend}\n{_framed(grid, picture.window, [symbol(time_axis(picture))], printer)}"
 
 
 def _grid(window: tuple[Interval, Interval], character: Callable[[float, float], str]) -> list[list[str]]:

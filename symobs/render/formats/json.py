@@ -109,7 +109,7 @@ def result_object(result: Result, convention: Convention = STANDARD) -> dict[str
     return {
         "task": result.task,
         "method": result.method,
-        "page_method": result.told_method,
+        "page_method": result.printed_method,
         "verdict": result.verdict,
         "conditions": [to_json(condition) for condition in result.holds_where],
         "condition_kinds": [condition.kind for condition in result.holds_where],

@@ -42,10 +42,10 @@ def polynomial(*coefficients: int | str) -> Scalar:
     return from_coefficients([Scalar.symbol(c) if isinstance(c, str) else Scalar.of(c) for c in coefficients], "s")
 
 
-def derivation(value: Scalar, *, tell: bool = True, **forms: str) -> Derivation:
+def derivation(value: Scalar, *, with_findings: bool = True, **forms: str) -> Derivation:
     coefficients = value.coefficients("s")
     table = routh_table(coefficients)
-    findings = findings_of(table, coefficients, "s", {}) if tell else ()
+    findings = findings_of(table, coefficients, "s", {}) if with_findings else ()
     steps = (
         Define(said(CHI, value)),
         Tabulate(CHI, table, "s", Sentence("routh_table", (("polynomial", CHI),)), findings),
@@ -53,8 +53,8 @@ def derivation(value: Scalar, *, tell: bool = True, **forms: str) -> Derivation:
     return Derivation(steps, Environment(), forms)
 
 
-def page(*values: Scalar, tell: bool = False) -> HandWritten:
-    return document(*(derivation(value, tell=tell) for value in values))
+def page(*values: Scalar, with_findings: bool = False) -> HandWritten:
+    return document(*(derivation(value, with_findings=with_findings) for value in values))
 
 
 def text(*coefficients: int | str) -> list[str]:
@@ -215,7 +215,7 @@ def test_no_line_is_overfull(require_tool: Callable[[str], str], tmp_path: Path)
 
 
 def test_the_page_says_what_the_table_says_and_names_the_theorem() -> None:
-    *_, table, finding, sources = narrate(page(polynomial(1, 2, 3, 1), tell=True))
+    *_, table, finding, sources = narrate(page(polynomial(1, 2, 3, 1), with_findings=True))
     assert isinstance(table, TableBlock)
     assert finding == Paragraph(
         (

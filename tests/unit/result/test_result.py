@@ -342,11 +342,11 @@ def test_a_task_is_its_signature() -> None:
         """
         return Answer(plant, poles, of)
 
-    def alone(plant: Any = None, first: Any = None, *, number: Any = None) -> Any:
+    def works_without_plant(plant: Any = None, first: Any = None, *, number: Any = None) -> Any:
         return Answer(plant, first, number)
 
     weigh.__annotations__ |= {"poles": "Poles | None", "of": Annotated[str, "Of"]}
-    alone.__annotations__["number"] = Annotated[int, "Number"] | None
+    works_without_plant.__annotations__["number"] = Annotated[int, "Number"] | None
     weighed = task(weigh)(SERVO, of="x")
     assert (weighed.given, weighed.asked) == ((SERVO, None, "x"), {"of": "x"})
     found = tasks()["weigh"]
@@ -355,10 +355,10 @@ def test_a_task_is_its_signature() -> None:
         {"poles": "Poles", "of": "Of"},
         "Weigh a plant.",
     )
-    assert found.alone is False
-    assert task_in_time(alone)(number=3).given == (None, None, 3)
+    assert found.works_without_plant is False
+    assert task_in_time(works_without_plant)(number=3).given == (None, None, 3)
     found = tasks()["alone"]
-    assert (found.alone, dict(found.keywords), found.summary) == (True, {"number": "Number"}, "")
+    assert (found.works_without_plant, dict(found.keywords), found.summary) == (True, {"number": "Number"}, "")
     with pytest.raises(FrozenInstanceError):
         found.name = "other"  # type: ignore[misc]
     assert registry._kind(Annotated[str, "Of"] | None) == "Of"

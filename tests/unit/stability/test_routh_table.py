@@ -595,7 +595,7 @@ def test_a_page_shows_a_table_and_what_it_says() -> None:
     assert isinstance(step, Tabulate)
     assert (step.table, step.variable) == (table, "s")
     assert [finding.key for finding in step.findings] == ["routh_zero_row", "routh_divides", "routh_changes_axis"]
-    page.tabulate(chi, tell=False)
+    page.tabulate(chi, with_findings=False)
     silent = page.steps[-1]
     assert isinstance(silent, Tabulate)
     assert silent.findings == ()
