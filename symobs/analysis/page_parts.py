@@ -7,8 +7,7 @@ from itertools import accumulate
 from typing import TYPE_CHECKING
 
 from symobs.analysis.factored_form import formula_of_factored
-from symobs.derivation import Case as CaseStep
-from symobs.derivation import Note, Step
+from symobs.derivation import CaseStep, Note, Step
 from symobs.derivation.builder import Page, predicate, relation, sentence
 from symobs.exact import Factored, Matrix, Scalar, decimal_places, root_of_pole
 from symobs.formula import Conjunction, Decimals, HoldsExactlyWhere, Roots

@@ -3,7 +3,7 @@
 from symobs.derivation.check import Derivation
 from symobs.derivation.convention_signs import set_apart, translated
 from symobs.derivation.steps import (
-    Case,
+    CaseStep,
     Conclude,
     Define,
     Diagram,
@@ -21,7 +21,7 @@ from symobs.derivation.steps import (
 )
 
 __all__ = [
-    "Case",
+    "CaseStep",
     "Conclude",
     "Define",
     "Derivation",

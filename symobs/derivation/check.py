@@ -18,7 +18,7 @@ from symobs.derivation.facts.properties import PREDICATES, are_roots, polynomial
 from symobs.derivation.facts.rejection import BUG, reject
 from symobs.derivation.facts.restriction import on_stratum
 from symobs.derivation.steps import (
-    Case,
+    CaseStep,
     Conclude,
     Define,
     Diagram,
@@ -145,7 +145,7 @@ def _after(step: Step, environment: Environment, discrete: bool) -> Environment:
                 reject(f"that this is the region of {plain(polynomial, environment.variable)}")
         case Plot(picture, subject):
             _drawn(picture, subject, environment, discrete)
-        case Case(when, substitution, inside, anew=anew):
+        case CaseStep(when, substitution, inside, anew=anew):
             stratum = on_stratum(when, dict(substitution), environment)
             kept = {name: value for name, value in stratum.values.items() if name not in anew}
             _walk(inside, replace(stratum, values=kept), discrete)

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 from symobs.convention import OF_REDUCED_ORDER
 from symobs.derivation.facts.rejection import reject
 from symobs.derivation.steps import (
-    Case,
+    CaseStep,
     Conclude,
     Define,
     Diagram,
@@ -61,7 +61,7 @@ if TYPE_CHECKING:
     from symobs.formula import Environment
     from symobs.notation import LetterForm
 
-_STEPS = (Given, Define, Equal, Solve, Conclude, Note, Plot, Tabulate, Inequalities, RegionSummary, Case, Section)
+_STEPS = (Given, Define, Equal, Solve, Conclude, Note, Plot, Tabulate, Inequalities, RegionSummary, CaseStep, Section)
 #: What an observer is assumed to do with the output, and the gain it turns out to be; a convention may call both H.
 _ANSATZ = {"L", "H_x"}
 _FACTS = (Sentence, Predicate, Roots, HoldsExactlyWhere, Conjunction)

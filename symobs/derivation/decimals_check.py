@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 from symobs.certificate.claims import UNREADABLE, verify
 from symobs.derivation.facts.rejection import BUG, reject
-from symobs.derivation.steps import Case, Diagram, Given, Inequalities
+from symobs.derivation.steps import CaseStep, Diagram, Given, Inequalities
 from symobs.errors import DerivationRejected
 from symobs.exact import Scalar, is_correctly_written
 from symobs.exact.core.generators import identities
@@ -125,7 +125,7 @@ class _Comparison:
         elif is_dataclass(exact) and type(exact) is type(shown):
             exactly = exactly or isinstance(exact, Given | Inequalities | HoldsExactlyWhere | Evaluated)
             for part in fields(exact):
-                conditions = isinstance(exact, Case) and part.name == "when"
+                conditions = isinstance(exact, CaseStep) and part.name == "when"
                 one, other = getattr(exact, part.name), getattr(shown, part.name)
                 self.compare(one, other, exactly=exactly or conditions)
         elif exact != shown:

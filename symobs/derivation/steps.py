@@ -149,7 +149,7 @@ class Plot:
 
 
 @dataclass(frozen=True)
-class Case:
+class CaseStep:
     """What is true on a stratum: `when` holds there because of `substitution`, and the steps hold after it.
 
     Several equations and inequations stand together.  Without a substitution the steps hold modulo the equations.  The
@@ -183,6 +183,6 @@ Step: TypeAlias = (
     | Tabulate
     | Inequalities
     | RegionSummary
-    | Case
+    | CaseStep
     | Section
 )

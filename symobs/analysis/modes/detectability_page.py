@@ -30,8 +30,7 @@ from symobs.analysis.page_parts import (
 )
 from symobs.analysis.rank.rank_page import square_test
 from symobs.certificate.claims import verify
-from symobs.derivation import Case as CaseStep
-from symobs.derivation import Conclude
+from symobs.derivation import CaseStep, Conclude
 from symobs.derivation.builder import Page, predicate, relation, sentence
 from symobs.derivation.facts.restriction import on_stratum
 from symobs.exact import EIGENVALUE

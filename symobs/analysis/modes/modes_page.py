@@ -9,8 +9,7 @@ from symobs.analysis.page_parts import as_written, conditions_of, hidden, set_an
 from symobs.analysis.strata.rank_stratification import maximal_minors
 from symobs.analysis.strata.repeated_eigenvalues import holds_where
 from symobs.certificate.claims import verify
-from symobs.derivation import Case as CaseStep
-from symobs.derivation import Conclude, Equal, Step
+from symobs.derivation import CaseStep, Conclude, Equal, Step
 from symobs.derivation.builder import Page, relation, sentence, shows
 from symobs.derivation.facts.restriction import on_stratum
 from symobs.exact import EIGENVALUE, Matrix, Scalar, factored, roots_of

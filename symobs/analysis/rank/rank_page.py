@@ -14,8 +14,7 @@ from symobs.analysis.page_parts import (
     undecided,
 )
 from symobs.conditions import vanishing_factors
-from symobs.derivation import Case as CaseStep
-from symobs.derivation import Conclude, Equal, Step
+from symobs.derivation import CaseStep, Conclude, Equal, Step
 from symobs.derivation.builder import Page, relation, sentence, shows
 from symobs.derivation.wording_check import fits
 from symobs.exact import Matrix, roots_of, unit_rows

@@ -11,7 +11,7 @@ from symobs.analysis.rank.missing_measurements import repair_claims, smallest_se
 from symobs.analysis.strata.loci import Region, distance_from, maximal
 from symobs.analysis.strata.rank_cases import (
     Piece,
-    Stratum,
+    RankStratum,
     answer_on,
     answer_with,
     equations_of_locus,
@@ -259,7 +259,7 @@ class RankResult(Result):
             cases += [Case((Condition("existence", factor, "=="),), {}, None) for factor in unknown]
         return (*found, *cases), tuple(certificates)
 
-    def _case(self, stratum: Stratum) -> Case:
+    def _case(self, stratum: RankStratum) -> Case:
         """Return the case of a stratum, on a plant of its own where its equations can be solved."""
         matrix, (A, _) = self.answer["matrix"], self.pair(self.plant)
         for values in (stratum.substitution, {}):

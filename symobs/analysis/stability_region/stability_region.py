@@ -15,7 +15,7 @@ from symobs.analysis.stability_region.stability_region_fields import (
     of_conditions,
     stable_if,
 )
-from symobs.analysis.stability_region.stability_region_question import Question, read_question
+from symobs.analysis.stability_region.stability_region_question import RegionQuestion, read_question
 from symobs.certificate.claims import Claim, Statement
 from symobs.conditions import Condition
 from symobs.derivation.builder import relation
@@ -54,12 +54,12 @@ if TYPE_CHECKING:
 class StabilityRegion(Result):
     """χ, its Routh table, and inequalities that hold exactly where all roots of χ are stable."""
 
-    question: Question
+    question: RegionQuestion
 
     task: ClassVar[str] = "stability_region"
 
     @classmethod
-    def of(cls, question: Question, method_name: str) -> StabilityRegion:
+    def of(cls, question: RegionQuestion, method_name: str) -> StabilityRegion:
         """Return the region of a question."""
         bounds, proof = _bounds_of(question)
         table = routh_table(question.critical.headed, question.critical.parameters)
@@ -213,7 +213,7 @@ class StabilityRegion(Result):
             when,
             case.substitution,
             type(self).of(
-                Question(plant, None, None, names, question.boundary.substitute(case.substitution)), self.method
+                RegionQuestion(plant, None, None, names, question.boundary.substitute(case.substitution)), self.method
             ),
         )
 
@@ -236,7 +236,7 @@ class StabilityRegion(Result):
         return pole_map(self.region, self.answer["polynomial"], self.question.boundary)
 
 
-def _bounds_of(question: Question) -> tuple[tuple[RegionInequality, ...] | None, Equivalence | None]:
+def _bounds_of(question: RegionQuestion) -> tuple[tuple[RegionInequality, ...] | None, Equivalence | None]:
     """Return inequalities that hold exactly on the region, None where it is empty, and the proof where it is no region."""
     region = region_of(question)
     if region is not None:
@@ -247,7 +247,7 @@ def _bounds_of(question: Question) -> tuple[tuple[RegionInequality, ...] | None,
 
 
 @lru_cache(maxsize=16)
-def conditions_of(question: Question) -> Simplified:
+def conditions_of(question: RegionQuestion) -> Simplified:
     """Return a short list of what must be positive, with its proof."""
     return stable_where(question.polynomial, question.plant.variable, question.plant.symbols.signs, **question.limits)
 
@@ -263,13 +263,13 @@ def positive_of(bound: RegionInequality) -> Scalar:
     return bound.polynomial if bound.operator == ">" else bound.polynomial**2
 
 
-def region_of(question: Question) -> LineRegion | PlaneRegion | None:
+def region_of(question: RegionQuestion) -> LineRegion | PlaneRegion | None:
     """Return the exact region of one or two parameters, None where there are other symbols, or more than two."""
     return None if question.symbols else exact_region(question.critical, question.parameters)
 
 
 @method("stability_region/routh", source="routh1877; collins1975")
-def by_routh(question: Question) -> StabilityRegion:
+def by_routh(question: RegionQuestion) -> StabilityRegion:
     """Routh's table, the conditions, and the exact region of one or two parameters."""
     return StabilityRegion.of(question, "routh")
 

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
     from fractions import Fraction
 
-    from symobs.analysis.stability_region.stability_region_question import Question
+    from symobs.analysis.stability_region.stability_region_question import RegionQuestion
     from symobs.exact import RealNumber
     from symobs.stability.inequalities.simplify import Simplified
     from symobs.stability.regions.description import CylindricalPart, Edge
@@ -43,7 +43,7 @@ def solved(bound: RegionInequality, signs: Mapping[str, str], parameters: Sequen
     return as_inequality(bound.polynomial, signs, parameters)
 
 
-def of_conditions(found: Simplified, question: Question) -> dict[str, Any]:
+def of_conditions(found: Simplified, question: RegionQuestion) -> dict[str, Any]:
     """Return what is known of a region given by inequalities alone: whether it is empty, bounded, and a point of it."""
     empty = True if found.verdict == "no" else False if found.point is not None or found.verdict == "yes" else None
     limits = box(found.positive, question.parameters, question.plant.symbols.signs) if found.verdict != "no" else None

@@ -8,8 +8,7 @@ from symobs.analysis.page_parts import WRITTEN_UP_TO, determinant_form, given, s
 from symobs.analysis.stability_region.stability_region import StabilityRegion
 from symobs.analysis.stability_region.stability_region_fields import solved
 from symobs.conditions import sign_of
-from symobs.derivation import Case as CaseStep
-from symobs.derivation import Conclude, Inequalities, RegionSummary, Step
+from symobs.derivation import CaseStep, Conclude, Inequalities, RegionSummary, Step
 from symobs.derivation.builder import predicate, relation, sentence
 from symobs.derivation.region_check import findings_of_conditions, findings_of_region, interval_relations
 from symobs.exact import Scalar

@@ -14,7 +14,7 @@ from symobs.analysis.strata.loci import Locus
 from symobs.analysis.strata.strata import strata
 from symobs.certificate.claims import Claim
 from symobs.conditions import Condition, opposite, sign_of, vanishing_factors
-from symobs.derivation import Case as CaseStep
+from symobs.derivation import CaseStep
 from symobs.derivation.builder import Page, relation, sentence
 from symobs.errors import CertificateRejected
 from symobs.exact import Matrix, Scalar, product_of

@@ -14,8 +14,7 @@ from symobs.analysis.time_response.matrix_exponential import (
     tell_question,
 )
 from symobs.conditions import vanishing_factors
-from symobs.derivation import Case as CaseStep
-from symobs.derivation import Conclude
+from symobs.derivation import CaseStep, Conclude
 from symobs.derivation.builder import predicate, relation, sentence
 from symobs.exact import Matrix, Scalar
 from symobs.exact.core.generators import substitute

@@ -15,7 +15,7 @@ from symobs._dataclass import dataclass
 from symobs.analysis.strata.strata import strata
 from symobs.analysis.time_response.damping_cases import reject, vanishing_denominators
 from symobs.analysis.time_varying.time_interval import instant_where_not_zero, reject_poles, reject_sizes_and_names
-from symobs.analysis.time_varying.time_varying_solution import Asked, closed_form, dependences
+from symobs.analysis.time_varying.time_varying_solution import TimeVaryingRequest, closed_form, dependences
 from symobs.analysis.time_varying.transition_matrix import START, TERMS_UP_TO, TIME
 from symobs.certificate.claims import Claim
 from symobs.conditions import Condition, never_zero, sign_of, vanishing_factors
@@ -56,14 +56,14 @@ class TimeVaryingObservability(Result):
     C Φ v = 0; G' = Φᵀ Cᵀ C Φ, G(start) = 0 for the Gramian G(end); C (Φ x₀ + f) + D u = y with f' = A f + B u, f(start) = 0.
     """
 
-    asked_for: Asked
+    asked_for: TimeVaryingRequest
 
     task: ClassVar[str] = "time_varying_observability"
 
     # -- construction ------------------------------------------------------------------------------------------------
 
     @classmethod
-    def of(cls, plant: StateSpace, asked_for: Asked, method_name: str) -> Self:
+    def of(cls, plant: StateSpace, asked_for: TimeVaryingRequest, method_name: str) -> Self:
         """Return the result for a plant."""
         A, C = plant.matrices.A, plant.matrices.C
         stack = stack_of(A, C)
@@ -330,7 +330,7 @@ def _has_value(Phi: Matrix, start: Scalar) -> bool:
 
 
 @method("time_varying_observability/stack", source="silverman1967")
-def stack(plant: StateSpace, asked_for: Asked) -> TimeVaryingObservability:
+def stack(plant: StateSpace, asked_for: TimeVaryingRequest) -> TimeVaryingObservability:
     """Form N₀ = C, N_{k+1} = N_k A + N_k' and their rank over the rational functions of t."""
     return TimeVaryingObservability.of(plant, asked_for, "stack")
 
@@ -365,5 +365,5 @@ def time_varying_observability(
         plant.require("B", task="time_varying_observability with an input")
     given = None if output is None else read_signal(output, plant, "output", plant.outputs, functions=True)
     driving = None if input is None else read_signal(input, plant, "input", plant.inputs, functions=True)
-    asked_for = Asked(ends, given, driving)
+    asked_for = TimeVaryingRequest(ends, given, driving)
     return choose("time_varying_observability", method, "stack").solve(plant, asked_for)

@@ -16,8 +16,7 @@ from symobs.analysis.time_varying.transition_matrix import (
     transition,
 )
 from symobs.conditions import never_zero
-from symobs.derivation import Case as CaseStep
-from symobs.derivation import Conclude, Equal
+from symobs.derivation import CaseStep, Conclude, Equal
 from symobs.derivation.builder import relation, sentence
 from symobs.exact import Matrix, Scalar, antiderivative, rank
 from symobs.exact.core.generators import substitute

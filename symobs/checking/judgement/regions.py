@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from symobs._dataclass import dataclass
 from symobs.analysis.stability_region.stability_region import StabilityRegion
-from symobs.analysis.stability_region.stability_region_question import Question
+from symobs.analysis.stability_region.stability_region_question import RegionQuestion
 from symobs.checking.judgement.conditions import Inequality, Union, read_conditions
 from symobs.exact import Scalar, TooLarge
 from symobs.exact.algebraic.rational_points import value_at
@@ -247,7 +247,7 @@ def _slips(result: StabilityRegion, union: Union) -> Iterator[tuple[str, str]]:
     """Yield the slips that turn the right region into the given one, the simplest first."""
     boundary, question = result.question.boundary, result.question
     if not boundary.margin.is_zero:
-        usual = Question(
+        usual = RegionQuestion(
             question.plant, question.K, question.L, question.parameters, replace(boundary, margin=Scalar.of(0))
         )
         if _same(StabilityRegion.of(usual, result.method), union):

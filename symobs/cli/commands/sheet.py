@@ -29,7 +29,7 @@ from symobs.cli.shared.output import check_target, write
 from symobs.cli.shared.sheet_entries import Wanted, worked_out_all
 from symobs.errors import InputError, ProblemErrors, SymobsError, UsageError
 from symobs.expression.source import shown
-from symobs.problem.sheet_file import Asked, SheetFile, is_sheet, read_sheet
+from symobs.problem.sheet_file import SheetFile, SheetProblem, is_sheet, read_sheet
 from symobs.render.page.sheet import Header, Sheet, SheetEntry
 from symobs.result import format_named, formats, tasks
 from symobs.result.web_page import WebPage
@@ -140,7 +140,7 @@ def _sheet_file(files: Sequence[str]) -> SheetFile:
     if described:
         file, text = texts[0]
         return read_sheet(text, place_of(file), Path(file).parent, read_file)
-    problems, contents = zip(*((Asked(file), text) for file, text in texts), strict=True)
+    problems, contents = zip(*((SheetProblem(file), text) for file, text in texts), strict=True)
     return SheetFile("", Header(), problems, contents)
 
 

@@ -5,8 +5,7 @@ from __future__ import annotations
 from symobs.analysis.factored_form import formula_of_factored
 from symobs.analysis.page_parts import given, in_blocks
 from symobs.conditions import vanishing_factors
-from symobs.derivation import Case as CaseStep
-from symobs.derivation import Conclude
+from symobs.derivation import CaseStep, Conclude
 from symobs.derivation.builder import Page, predicate, relation, sentence
 from symobs.design.compensator.compensator_page import (
     Namer,

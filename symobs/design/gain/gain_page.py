@@ -14,7 +14,7 @@ from symobs.analysis.page_parts import (
     undecided,
 )
 from symobs.analysis.rank.rank_page import square_test
-from symobs.derivation import Case as CaseStep
+from symobs.derivation import CaseStep
 from symobs.derivation.builder import Page, predicate, relation
 from symobs.design.gain.gain_design import GainDesign
 from symobs.design.gain.gain_family_page import of_the_others, write_hidden_family, write_sylvester

@@ -5,8 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from symobs.analysis.page_parts import stratum_of, undecided
-from symobs.derivation import Case as CaseStep
-from symobs.derivation import Note
+from symobs.derivation import CaseStep, Note
 from symobs.derivation.builder import Page, relation, sentence
 from symobs.design.gain.gain_design import GainDesign
 from symobs.design.gain.gain_kind import AlgebraicGain

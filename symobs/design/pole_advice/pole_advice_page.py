@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING, cast
 from symobs.analysis.factored_form import factored_form, formula_of_factored
 from symobs.analysis.page_parts import given, hidden, hidden_polynomial, set_anew, stratum_of, undecided
 from symobs.conditions import sign_of
-from symobs.derivation import Case as CaseStep
-from symobs.derivation import Given
+from symobs.derivation import CaseStep, Given
 from symobs.derivation.builder import Page, predicate, relation, sentence
 from symobs.design.pole_advice.advised_poles import FURTHER_LEFT, numerator_term
 from symobs.design.pole_advice.pole_advice import PoleAdvice

@@ -9,7 +9,7 @@ from dataclasses import fields, is_dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 from symobs.derivation import (
-    Case,
+    CaseStep,
     Conclude,
     Define,
     Diagram,
@@ -80,7 +80,7 @@ def in_decimals(derivation: Derivation, steps: Sequence[Step], digits: int) -> t
 
 def _held(exact: Any, shown: Any, variable: str, digits: int) -> Any:
     """Return a step in decimals, with the exact one in place of each whose decimals fail their check."""
-    if isinstance(exact, Section | Case):
+    if isinstance(exact, Section | CaseStep):
         pairs = zip(exact.steps, shown.steps, strict=True)
         return replace(exact, steps=tuple(_held(*pair, variable, digits) for pair in pairs))
     try:
@@ -112,7 +112,7 @@ def _without_decimals(steps: Iterable[Step]) -> Iterator[Step]:
     """Yield the steps without the decimals that a page of fractions has beside an answer."""
     for step in steps:
         match step:
-            case Section(steps=inner) | Case(steps=inner):
+            case Section(steps=inner) | CaseStep(steps=inner):
                 yield replace(step, steps=tuple(_without_decimals(inner)))
             case Equal(sentence=Sentence(key=key)) if key == _NUMERICALLY:
                 pass
@@ -152,7 +152,7 @@ class _Writer:
         match step:
             case Section(title, steps):
                 return Section(self.sentence(title), tuple(map(self.step, steps)))
-            case Case(when=when, steps=steps):
+            case CaseStep(when=when, steps=steps):
                 if isinstance(when, Conjunction):
                     where: Relation | Conjunction = Conjunction(tuple(map(self.exactly, when.relations)))
                 else:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from symobs.derivation import (
-    Case,
+    CaseStep,
     Conclude,
     Define,
     Diagram,
@@ -79,7 +79,7 @@ def _formulas(step: Step) -> Iterator[Formula]:
             yield from _in_sentence(title)
             for inner in steps:
                 yield from _formulas(inner)
-        case Case(when=when, steps=steps, sentence=sentence):
+        case CaseStep(when=when, steps=steps, sentence=sentence):
             yield from (*_in_facts((when,)), *_in_sentence(sentence))
             for inner in steps:
                 yield from _formulas(inner)

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 from symobs.convention import OF_REDUCED_ORDER
 from symobs.derivation import (
-    Case,
+    CaseStep,
     Conclude,
     Define,
     Diagram,
@@ -267,7 +267,7 @@ class _PageBlocks:
 
                 title = joined((*self.figure_title(sentence), " "))
                 self.blocks.append(PictureBlock(picture, joined((*title, *caption(picture, self.language))), title))
-            case Case(when=when, steps=steps, sentence=sentence):
+            case CaseStep(when=when, steps=steps, sentence=sentence):
                 self.emit_case(when, steps, sentence)
             case Section() if _is_statement(step):
                 self.emit_given((step,))

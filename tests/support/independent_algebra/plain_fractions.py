@@ -16,7 +16,7 @@ from functools import reduce
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from symobs.derivation import (
-    Case,
+    CaseStep,
     Conclude,
     Define,
     Diagram,
@@ -419,7 +419,7 @@ class World:
                 case Plot(picture, subject):
                     yield "property stable", single(self.value(subject))
                     yield "=", Fraction(len(list(self.seen(picture, subject))))
-                case Case(when, substitution, inside):
+                case CaseStep(when, substitution, inside):
                     stratum = self.copy()
                     relations = when.relations if isinstance(when, Conjunction) else (when,)
                     if not substitution:

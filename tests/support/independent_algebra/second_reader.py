@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 import mpmath
 import sympy
 
-from symobs.derivation import Case, Conclude, Define, Diagram, Equal, Given, Note, Section, Solve, Tabulate
+from symobs.derivation import CaseStep, Conclude, Define, Diagram, Equal, Given, Note, Section, Solve, Tabulate
 from symobs.exact import Matrix, Scalar
 from symobs.exact.core.generators import function_named
 from symobs.formula import (
@@ -205,7 +205,7 @@ class Reader:
                         assert self.agree(self.value(drawn), self.letters[name]), label
             case Tabulate():
                 self.table(step)
-            case Case(when, substitution, steps):
+            case CaseStep(when, substitution, steps):
                 self.case(when, {name: sympy_scalar(value, self.names) for name, value in substitution}, steps)
             case Section(title, steps):
                 self.sentence(title)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from symobs._dataclass import dataclass
-from symobs.derivation import Case, Conclude, Define, Derivation, Diagram, Equal, Given, Note, Section, Sentence
+from symobs.derivation import CaseStep, Conclude, Define, Derivation, Diagram, Equal, Given, Note, Section, Sentence
 from symobs.exact import Matrix, Scalar
 from symobs.exact.algebraic.polynomial_roots import roots_of
 from symobs.formula import (
@@ -306,6 +306,6 @@ def with_a_case() -> Derivation:
     special = Equal((equals(C, values((1, 0))),))
     steps = (
         Given((equals(C, values((1, b))),)),
-        Case(when, (("b", Scalar.of(0)),), (special,), say("case")),
+        CaseStep(when, (("b", Scalar.of(0)),), (special,), say("case")),
     )
     return Derivation(steps, start)

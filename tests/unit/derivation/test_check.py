@@ -9,7 +9,7 @@ import pytest
 
 from symobs import StateSpace, observer
 from symobs.derivation import (
-    Case,
+    CaseStep,
     Conclude,
     Define,
     Derivation,
@@ -108,7 +108,7 @@ def test_a_letter_nobody_introduced_is_refused_wherever_it_stands() -> None:
         Note(slot(Evaluated(strange, literal(1)))),
         Diagram("loop", (("P", strange), ("F", strange), ("response", strange))),
         Section(slot(strange), ()),
-        Case(said(strange, 0), (), ()),
+        CaseStep(said(strange, 0), (), ()),
     ):
         refused(step)
 
@@ -220,8 +220,8 @@ def test_a_free_signal_ceases_to_be_free() -> None:
 # -- cases -------------------------------------------------------------------------------------------------------------
 
 
-def case(*steps: Step, when: Relation | None = None, at: int = 1) -> Case:
-    return Case(when or said(c - 1, 0), (("c", Scalar.of(at)),), steps)
+def case(*steps: Step, when: Relation | None = None, at: int = 1) -> CaseStep:
+    return CaseStep(when or said(c - 1, 0), (("c", Scalar.of(at)),), steps)
 
 
 def test_a_case_lies_on_its_stratum_and_nothing_of_it_stays() -> None:
@@ -238,24 +238,24 @@ def test_a_case_lies_on_its_stratum_and_nothing_of_it_stays() -> None:
     refused(C_IS, case(when=said((c - 1) * b, 0)))
     checked(C_IS, case(when=said(2 * a * (c - 1), 0)))
     refused(C_IS, case(when=said(b, 0)))
-    refused(C_IS, Case(said(c - 1, 0), (("c", Scalar.of(1)), ("b", Scalar.of(0))), ()))
+    refused(C_IS, CaseStep(said(c - 1, 0), (("c", Scalar.of(1)), ("b", Scalar.of(0))), ()))
     refused(C_IS, case(Equal((said(1, 2),))))
 
 
 def test_a_case_without_substitution_knows_its_equation_and_no_more() -> None:
     here = said(C, Matrix.of([[1, 1]]))
-    checked(C_IS, Case(said(c, 1), (), (Equal((here,)),)))
-    refused(C_IS, Case(said(c, 1), (), (Equal((said(C, Matrix.of([[1, 2]])),)),)))
-    refused(C_IS, Case(said(c, 1), (), ()), Equal((here,)))
-    refused(C_IS, Case(said(1, 0), (), (Equal((here,)),)))
-    refused(C_IS, Case(said(c, "!==", 1), (), (Equal((here,)),)))
+    checked(C_IS, CaseStep(said(c, 1), (), (Equal((here,)),)))
+    refused(C_IS, CaseStep(said(c, 1), (), (Equal((said(C, Matrix.of([[1, 2]])),)),)))
+    refused(C_IS, CaseStep(said(c, 1), (), ()), Equal((here,)))
+    refused(C_IS, CaseStep(said(1, 0), (), (Equal((here,)),)))
+    refused(C_IS, CaseStep(said(c, "!==", 1), (), (Equal((here,)),)))
 
 
 def test_a_letter_anew_in_a_case_has_no_meaning_before() -> None:
     other = Define(said(C, Matrix.of([[1, 5]])))
-    refused(C_IS, Case(said(c, 1), (("c", Scalar.of(1)),), (other,)))
-    checked(C_IS, Case(said(c, 1), (("c", Scalar.of(1)),), (other,), anew=("C",)))
-    refused(C_IS, Case(said(c, 1), (("c", Scalar.of(1)),), (Equal((said(C, C),)),), anew=("C",)))
+    refused(C_IS, CaseStep(said(c, 1), (("c", Scalar.of(1)),), (other,)))
+    checked(C_IS, CaseStep(said(c, 1), (("c", Scalar.of(1)),), (other,), anew=("C",)))
+    refused(C_IS, CaseStep(said(c, 1), (("c", Scalar.of(1)),), (Equal((said(C, C),)),), anew=("C",)))
 
 
 def test_values_written_out_in_a_case_are_on_its_stratum_too() -> None:

@@ -9,7 +9,7 @@ import pytest
 
 from symobs.convention import STANDARD, Convention
 from symobs.derivation import (
-    Case,
+    CaseStep,
     Conclude,
     Define,
     Derivation,
@@ -408,7 +408,7 @@ MADE_OF: list[Any] = [
     Tabulate(literal(l1), None, "s"),  # type: ignore[arg-type]
     Inequalities(HoldsExactlyWhere(Predicate("stable", P), (ENTRY,))),
     RegionSummary(literal(l1), ("l1",)),
-    Case(ENTRY, (), ()),
+    CaseStep(ENTRY, (), ()),
     Diagram("loop", (("P", literal(l1)),)),
     Evaluated(P, literal(l1)),
     Predicate("stable", literal(l1)),

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from symobs.derivation import Case, Conclude, Define, Diagram, Equal, Given, Note, Sentence
+from symobs.derivation import CaseStep, Conclude, Define, Diagram, Equal, Given, Note, Sentence
 from symobs.exact import Matrix, Root, Scalar, roots_of
 from symobs.formula import (
     Apply,
@@ -97,7 +97,7 @@ def test_a_fact_is_checked_as_such_and_in_a_sentence(fact: Fact, false: Fact) ->
     refused(A_IS, C_IS, CHI, Conclude(None, (false,)))
     for step in (Conclude(slot(false)), Note(slot(false)), Equal((), slot(false)), Given((), slot(false))):
         refused(A_IS, C_IS, CHI, step)
-    refused(A_IS, C_IS, CHI, Case(said(c, 0), (("c", Scalar.of(0)),), (), slot(false)))
+    refused(A_IS, C_IS, CHI, CaseStep(said(c, 0), (("c", Scalar.of(0)),), (), slot(false)))
 
 
 def test_a_property_belongs_to_a_letter() -> None:

@@ -8,7 +8,7 @@ from typing import Any, get_args
 import pytest
 
 from symobs.derivation import (
-    Case,
+    CaseStep,
     Conclude,
     Define,
     Derivation,
@@ -474,19 +474,19 @@ def test_a_letter_of_a_signal_is_no_value() -> None:
 
 
 def test_a_case_may_narrow_and_starts_anew() -> None:
-    distinct = Case(said(c, "!=", 1), (), (Equal((said(C, C),)),))
+    distinct = CaseStep(said(c, "!=", 1), (), (Equal((said(C, C),)),))
     checked(C_IS, distinct)
     refused(C_IS, replace(distinct, steps=(Equal((two,)),)))
     refused(C_IS, replace(distinct, sentence=slot(two)))
     refused(C_IS, replace(distinct, anew=("C",)))
-    refused(C_IS, Case(said(c, "!=", 1), (), ()), Equal((said(c, "!=", 1),)))
+    refused(C_IS, CaseStep(said(c, "!=", 1), (), ()), Equal((said(c, "!=", 1),)))
 
 
 @pytest.mark.parametrize("step", [Equal((two,)), Conclude(None, (two,)), Solve(two, said(F, 1))])
 def test_what_stands_inside_is_checked(step: Step) -> None:
     refused(Section(Sentence("test_plain"), (step,)))
     refused(Section(Sentence("test_plain"), (Equal((one,)), step)))
-    refused(C_IS, Case(said(c - 1, 0), (("c", Scalar.of(1)),), (step,)))
+    refused(C_IS, CaseStep(said(c - 1, 0), (("c", Scalar.of(1)),), (step,)))
 
 
 # -- strata -------------------------------------------------------------------------------------------------------------
@@ -498,13 +498,13 @@ def test_what_was_assumed_is_not_known_on_a_stratum() -> None:
     nonzero, used = Given((said(h, "!=", 0),)), Equal((said(h, "!=", 0),))
     checked(nonzero, used)
     for when in (said(h * (h - 1), 0), said(k * k, 2)):
-        refused(nonzero, Case(when, (), (used,)))
-        checked(nonzero, Case(when, (), ()), used)
+        refused(nonzero, CaseStep(when, (), (used,)))
+        checked(nonzero, CaseStep(when, (), ()), used)
 
 
-def case(when: Relation | Conjunction, *steps: Step, **put_in: Scalar | int) -> Case:
+def case(when: Relation | Conjunction, *steps: Step, **put_in: Scalar | int) -> CaseStep:
     values = tuple((name, v if isinstance(v, Scalar) else Scalar.of(v)) for name, v in put_in.items())
-    return Case(when, values, steps)
+    return CaseStep(when, values, steps)
 
 
 def equal(*relations: Relation) -> Equal:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from symobs.derivation import Case, Define, Derivation, Sentence, Tabulate
+from symobs.derivation import CaseStep, Define, Derivation, Sentence, Tabulate
 from symobs.derivation.routh_check import findings_of
 from symobs.exact import Scalar, from_coefficients
 from symobs.formula import Environment, Exact, Letter, Literal, evaluate
@@ -201,7 +201,7 @@ def test_no_line_is_overfull(require_tool: Callable[[str], str], tmp_path: Path)
     many = [polynomial(1, "h1", "h2", "h3", "h4"), polynomial("a", "b", "c", "d", "e", "f"), *WIDE]
     derivations = [derivation(value) for value in many]
     inside = derivation(polynomial(1, "h1", "h2", "h3", "h4", "h5", "h6", "h7"))
-    case = Case(said(Scalar.symbol("h8"), 0), (("h8", Scalar.of(0)),), inside.steps, anew=("chi",))
+    case = CaseStep(said(Scalar.symbol("h8"), 0), (("h8", Scalar.of(0)),), inside.steps, anew=("chi",))
     source = LatexArticle().render(document(*derivations, Derivation((case,), Environment())))
     (tmp_path / "page.tex").write_text(source, encoding="utf-8")
     command = [require_tool("pdflatex"), "-interaction=nonstopmode", "-no-shell-escape", "page.tex"]

@@ -16,7 +16,7 @@ import sympy
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
-from symobs.derivation import Case, Define, Derivation, Sentence, Tabulate
+from symobs.derivation import CaseStep, Define, Derivation, Sentence, Tabulate
 from symobs.derivation.builder import Page
 from symobs.derivation.routh_check import findings_of, last_determinant
 from symobs.exact import Scalar, from_coefficients
@@ -515,7 +515,7 @@ def test_nothing_is_divided_by_what_is_known_to_be_zero() -> None:
     checked(*steps)
     refused(*steps, start=Environment(relations=(h1 * h2 - 1,)))
     define, table = steps
-    case = Case(said(h1, 0), (("h1", Scalar.of(0)),), (table,))
+    case = CaseStep(said(h1, 0), (("h1", Scalar.of(0)),), (table,))
     refused(define, case)
     there = Tabulate(CHI, routh_table(whole([1, -1, 3, 2])), "s")
     checked(define, replace(case, steps=(there,)))
