@@ -15,12 +15,12 @@ from symobs.stability.inequalities.written_form import as_inequality
 from symobs.system.transfer_matrix import WrittenTransferMatrix
 
 if TYPE_CHECKING:
-    from symobs.derivation.builder import Page
+    from symobs.derivation.builder import Builder
     from symobs.exact import Scalar
     from symobs.formula.term import Term
 
 
-def state_transfer_function(page: Page) -> None:
+def state_transfer_function(page: Builder) -> None:
     """State P, as it is written where that is not in lowest terms, and what cancels in it."""
     plant, written = page.plant, page.plant.written
     assert written is not None  # noqa: S101 - the caller has looked
@@ -41,12 +41,12 @@ def state_transfer_function(page: Page) -> None:
     page.remark("realised_minimal" if isinstance(written, WrittenTransferMatrix) else "realised")
 
 
-def _written_out(page: Page, written: WrittenTransferMatrix) -> Term:
+def _written_out(page: Builder, written: WrittenTransferMatrix) -> Term:
     """Return the matrix with its entries factored."""
     return block([[factored_form(page, entry.value) for entry in row] for row in written.rows])
 
 
-def _say_cancelled(page: Page, cancelled: Scalar, below: Scalar) -> None:
+def _say_cancelled(page: Builder, cancelled: Scalar, below: Scalar) -> None:
     """Say which poles cancel, and warn where they are not surely stable."""
     plant = page.plant
     c = page.set("c_P", cancelled)

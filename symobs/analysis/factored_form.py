@@ -9,12 +9,12 @@ from symobs.exact import Factored, Scalar, factored, product_of
 from symobs.formula import Literal, Negative, Power, Product, Quotient
 
 if TYPE_CHECKING:
-    from symobs.derivation.builder import Page
+    from symobs.derivation.builder import Builder
     from symobs.formula import Formula
     from symobs.formula.term import Term
 
 
-def factored_form(page: Page, value: Scalar) -> Term:
+def factored_form(page: Builder, value: Scalar) -> Term:
     """Return a scalar written as a product or quotient of its factors in the variable."""
     return page.term(formula_of_factored(factored(value, page.plant.variable, monic=False)))
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from symobs.analysis.factored_form import formula_of_factored
 from symobs.derivation import CaseStep, Note, Step
-from symobs.derivation.builder import Page, predicate, relation, sentence
+from symobs.derivation.builder import Builder, predicate, relation, sentence
 from symobs.exact import Factored, Matrix, Scalar, decimal_places, root_of_pole
 from symobs.formula import Conjunction, Decimals, HoldsExactlyWhere, Roots
 from symobs.formula.term import block
@@ -26,21 +26,21 @@ if TYPE_CHECKING:
     from symobs.specification import DesiredPolynomial
 
 
-def set_anew(outer: Page, inner: Page) -> Iterator[str]:
+def set_anew(outer: Builder, inner: Builder) -> Iterator[str]:
     """Yield the letters, other than the data's, to which a case gives a meaning of its own."""
     for name, value in inner.environment.values.items():
         if name in outer.environment.values and name not in "ABCD" and outer.environment.values[name] != value:
             yield name
 
 
-def case_steps(page: Page, result: Result, write: str) -> Iterator[Step]:
+def case_steps(page: Builder, result: Result, write: str) -> Iterator[Step]:
     """Yield a case for each stratum of a result; the method `write` of the result there fills its page."""
     for case in result.case_tree:
         if case.result is None:
             yield undecided(page, case)
             continue
         found = case.result
-        inner = Page(found.plant)
+        inner = Builder(found.plant)
         matrices = {name: getattr(found.plant.matrices, name) for name in "ABCD" if name in page.environment.values}
         inner.environment = page.environment.extended_by(values=matrices)
         getattr(found, write)(inner)
@@ -61,7 +61,7 @@ _WIDEST = 80
 _DECIMALS = 4
 
 
-def given(page: Page, *desired: tuple[str, DesiredPolynomial | None]) -> None:
+def given(page: Builder, *desired: tuple[str, DesiredPolynomial | None]) -> None:
     """State the plant, and the poles or polynomials asked for under their names (`control`, `observer`, …)."""
     plant, m = page.plant, page.plant.matrices
     with page.section("given"):
@@ -96,14 +96,14 @@ def given(page: Page, *desired: tuple[str, DesiredPolynomial | None]) -> None:
                 _asked(page, name, desired_polynomial)
 
 
-def _as_given(page: Page, matrix: Matrix) -> Term:
+def _as_given(page: Builder, matrix: Matrix) -> Term:
     """Return a matrix of the data: in decimals where the data are, and all its entries can be."""
     if page.plant.is_in_decimals and all(decimal_places(entry) is not None for entry in matrix.entries):
         return page.term(Decimals(matrix))
     return page.value(matrix)
 
 
-def _say_decimals(page: Page) -> None:
+def _say_decimals(page: Builder) -> None:
     """Say which fractions the decimals of the data are, where they are few."""
     m, plant = page.plant.matrices, page.plant
     entries = [entry for matrix in (m.A, m.B, m.C, m.D) for entry in matrix.entries if decimal_places(entry)]
@@ -112,7 +112,7 @@ def _say_decimals(page: Page) -> None:
         page.remark("exact_decimals", numbers=Conjunction(tuple(relation(page.term(Decimals(v)), v) for v in sizes)))
 
 
-def _hold_to_letters(page: Page) -> None:
+def _hold_to_letters(page: Builder) -> None:
     """Bind what is displayed to the letters: ẋ = A x + B u, y = C x + D u, and P to its realisation."""
     m, x, u = page.plant.matrices, page["x"], page["u"]
     rate = page["A"] @ x + page["B"] @ u if m.has_input else page["A"] @ x
@@ -127,7 +127,7 @@ def _hold_to_letters(page: Page) -> None:
     page.conclude_silently(*facts)
 
 
-def _asked(page: Page, name: str, desired_polynomial: DesiredPolynomial) -> None:
+def _asked(page: Builder, name: str, desired_polynomial: DesiredPolynomial) -> None:
     """State the poles or the polynomial asked for."""
     phi = page.set(f"phi_{name[0]}", desired_polynomial.polynomial)
     if desired_polynomial.poles:
@@ -137,7 +137,7 @@ def _asked(page: Page, name: str, desired_polynomial: DesiredPolynomial) -> None
         page.conclude(f"{name}_polynomial", polynomial=relation(phi, desired_polynomial.polynomial))
 
 
-def state_signs(page: Page) -> None:
+def state_signs(page: Builder) -> None:
     """Say which parameters have a declared sign."""
     by_sign: dict[str, list[str]] = {}
     used = page.plant.field.names
@@ -150,7 +150,7 @@ def state_signs(page: Page) -> None:
         page.conclude("declared", signs=Conjunction(tuple(declared)))
 
 
-def in_blocks(page: Page, value: Matrix, heights: Sequence[int], widths: Sequence[int]) -> Term:
+def in_blocks(page: Builder, value: Matrix, heights: Sequence[int], widths: Sequence[int]) -> Term:
     """Return a matrix divided into blocks, between which pages draw lines; blocks without rows or columns are left out."""
     parts = [
         [range(end - size, end) for size, end in zip(sizes, accumulate(sizes), strict=True) if size]
@@ -164,7 +164,7 @@ def is_narrow(*matrices: Matrix) -> bool:
     return all(sum(len(str(entry)) for entry in row) <= _WIDEST for matrix in matrices for row in matrix.rows)
 
 
-def determinant_form(page: Page, value: Scalar) -> Term:
+def determinant_form(page: Builder, value: Scalar) -> Term:
     """Return a determinant as its irreducible factors where it has several, else as it is."""
     unit, factors = value.factors()
     if len(factors) < 2 and all(power == 1 for _, power in factors):
@@ -196,7 +196,7 @@ def as_written(condition: Condition) -> Relation:
     return relation(value, operator, 0)
 
 
-def undecided(page: Page, case: Case) -> Step:
+def undecided(page: Builder, case: Case) -> Step:
     """Return the remark that names a part of the parameters that the page does not decide."""
     if not case.when:
         return Note(sentence("undecided_rank", {}))
@@ -215,7 +215,7 @@ def undecided(page: Page, case: Case) -> Step:
 HIDDEN = {"observability": ("N", "X"), "controllability": ("N_K", "X_K")}
 
 
-def hidden(page: Page, is_observer: bool, letters: tuple[str, str] = ("N", "X")) -> tuple[Relation, ...]:  # noqa: FBT001
+def hidden(page: Builder, is_observer: bool, letters: tuple[str, str] = ("N", "X")) -> tuple[Relation, ...]:  # noqa: FBT001
     """Return that the columns of N are a basis of an invariant subspace never seen (never moved): CN = 0, AN = NX."""
     N, X = (page[name] for name in letters)
     A, row = (page["A"], page["C"]) if is_observer else (page["A"].T, page["B"].T)
@@ -224,12 +224,12 @@ def hidden(page: Page, is_observer: bool, letters: tuple[str, str] = ("N", "X"))
     return relation(row @ N, zero), relation(A @ N, N @ X), relation(N.apply("rank"), count)
 
 
-def hidden_polynomial(page: Page, order: int, name: str = "X") -> Term:
+def hidden_polynomial(page: Builder, order: int, name: str = "X") -> Term:
     """Return det(sI − X): the polynomial of the hidden modes."""
     return (page.s @ page.identity(order) - page[name]).apply("det")
 
 
-def say_stability(page: Page, about: Term) -> None:
+def say_stability(page: Builder, about: Term) -> None:
     """Say whether the polynomial that a term means is stable, or exactly where."""
     plant, polynomial = page.plant, about.scalar
     found = stability(polynomial, plant.variable, plant.symbols.signs, discrete=plant.is_discrete)

@@ -1,4 +1,4 @@
-"""Writing a derivation: a `Page` collects steps and hands out terms, so that code reads like the textbook's page."""
+"""Writing a derivation: a `Builder` collects steps and hands out terms, so that code reads like the textbook's page."""
 
 from __future__ import annotations
 
@@ -133,7 +133,7 @@ def _roots_of_sums(values: Iterable[Scalar | Matrix]) -> list[str]:
     return list(found)
 
 
-class Page:
+class Builder:
     """A derivation in the making: the steps so far and the environment they establish."""
 
     def __init__(self, plant: StateSpace, further: Mapping[str, int] | None = None) -> None:

@@ -15,7 +15,7 @@ from symobs.analysis.factored_form import formula_of_factored
 from symobs.analysis.page_parts import given, state_signs
 from symobs.analysis.time_response.horizons import INFINITE, read_horizon
 from symobs.derivation import Note, Section, translated
-from symobs.derivation.builder import Page, relation, sentence
+from symobs.derivation.builder import Builder, relation, sentence
 from symobs.exact import Matrix, Scalar, factored, root_of_pole
 from symobs.expression import parse_polynomial
 from symobs.formula import Roots, SymbolList
@@ -67,7 +67,7 @@ class Question(Document):
 def question_of(problem: Problem) -> Question:
     """Return the question of a problem; raises `InputError` where its specification cannot be read."""
     asked = [(task, dict(_values(task, problem))) for task in problem.tasks]
-    page = Page(problem.plant, {"x_d": problem.plant.order} if _has(asked, "reference_matrix") else None)
+    page = Builder(problem.plant, {"x_d": problem.plant.order} if _has(asked, "reference_matrix") else None)
     page.in_time(*(value for _, values in asked for value in values.values() if isinstance(value, Scalar | Matrix)))
     _state_data(page, asked)
     with page.section("tasks" if len(asked) > 1 else "task"):
@@ -94,7 +94,7 @@ def _letter_of(place: int) -> str:
 # -- what is given ----------------------------------------------------------------------------------------------------
 
 
-def _state_data(page: Page, asked: Iterable[tuple[Task, Mapping[str, Any]]]) -> None:
+def _state_data(page: Builder, asked: Iterable[tuple[Task, Mapping[str, Any]]]) -> None:
     """State the plant, or the polynomial, and the matrices of the specification."""
     polynomial = page.plant.polynomial
     if polynomial is None:
@@ -150,7 +150,7 @@ def sentences_for(task: Task, tokens: frozenset[str]) -> list[str]:
     return [" ".join(best), *dict.fromkeys(key for key in also if QUESTIONS[key])]
 
 
-def _filled(page: Page, task: Task, key: str, values: Mapping[str, Any]) -> Sentence:
+def _filled(page: Builder, task: Task, key: str, values: Mapping[str, Any]) -> Sentence:
     """Return a sentence with what its slots ask for."""
     if key == "asked":
         return sentence(key, {"summary": task.summary})
@@ -165,7 +165,7 @@ def _filled(page: Page, task: Task, key: str, values: Mapping[str, Any]) -> Sent
     return sentence(key, slots)
 
 
-def _slot(page: Page, task: Task, name: str, value: Any) -> Slot:
+def _slot(page: Builder, task: Task, name: str, value: Any) -> Slot:
     """Return a value as it stands in a sentence."""
     match task.keywords[name]:
         case "Poles":

@@ -16,7 +16,7 @@ from symobs.certificate.claims import UNREADABLE, Certificate, Claim, Statement,
 from symobs.conditions import Condition, vanishing_factors
 from symobs.convention import STANDARD
 from symobs.derivation import translated
-from symobs.derivation.builder import Page
+from symobs.derivation.builder import Builder
 from symobs.errors import CertificateRejected, DerivationRejected
 from symobs.exact.linear_algebra.realisation import Realisation
 from symobs.result.conversions import OutputMethods
@@ -109,7 +109,7 @@ class Result(OutputMethods):
         """Yield what must hold."""
         raise NotImplementedError
 
-    def write(self, page: Page) -> None:
+    def write(self, page: Builder) -> None:
         """Write the derivation: by default as the page registered for this type does."""
         writer_of(type(self))(page, self)
 
@@ -214,7 +214,7 @@ class Result(OutputMethods):
     @cached_property
     def derivation(self) -> Derivation:
         """The derivation, written and checked when first asked for."""
-        page = Page(self.plant, self.free_signals)
+        page = Builder(self.plant, self.free_signals)
         self.write(page)
         written = page.derivation()
         established = written.check()

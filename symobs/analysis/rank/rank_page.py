@@ -15,7 +15,7 @@ from symobs.analysis.page_parts import (
 )
 from symobs.conditions import vanishing_factors
 from symobs.derivation import CaseStep, Conclude, Equal, Step
-from symobs.derivation.builder import Page, relation, sentence, shows
+from symobs.derivation.builder import Builder, relation, sentence, shows
 from symobs.derivation.wording_check import fits
 from symobs.exact import Matrix, roots_of, unit_rows
 from symobs.formula import Conjunction, Roots
@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 NAMED_SETS = 6
 
 
-def square_test(page: Page, letter: str, result: RankResult, kind: str) -> None:
+def square_test(page: Builder, letter: str, result: RankResult, kind: str) -> None:
     """Decide the test of a matrix: by its determinant where it is square, by its rank otherwise.
 
     Factors of the determinant that can vanish become conditions from here on.
@@ -59,12 +59,12 @@ def square_test(page: Page, letter: str, result: RankResult, kind: str) -> None:
     page.assume(f"provided_{kind}", *open_factors)
 
 
-def rank_cases(page: Page, letter: str, result: RankResult, kind: str) -> None:
+def rank_cases(page: Builder, letter: str, result: RankResult, kind: str) -> None:
     """Say what rank and kernel are on every stratum where they are not the generic ones."""
     page.steps += [_rank_case(page, letter, case, kind) for case in result.case_tree]
 
 
-def _rank_case(page: Page, letter: str, case: Case, kind: str) -> Step:
+def _rank_case(page: Builder, letter: str, case: Case, kind: str) -> Step:
     if case.result is None:
         return undecided(page, case)
     result = cast("RankResult", case.result)
@@ -84,7 +84,7 @@ def _rank_case(page: Page, letter: str, case: Case, kind: str) -> Step:
     return CaseStep(conditions_of(case), tuple(case.substitution.items()), tuple(steps))
 
 
-def repair(page: Page, letter: str, result: RankResult, kind: str) -> list[Step]:
+def repair(page: Builder, letter: str, result: RankResult, kind: str) -> list[Step]:
     """Say which states would have to be measured (actuated) too: with their unit rows below, the rank is n."""
     sets, order = result.repaired, page.plant.order
     if not 0 < len(sets) <= NAMED_SETS:
@@ -105,7 +105,7 @@ def repair(page: Page, letter: str, result: RankResult, kind: str) -> list[Step]
     return [Conclude(sentence(f"repair_{words}_{kind}", {"states": StateChoice(sets)}), tuple(facts))]
 
 
-def _deficient(page: Page, letter: str, result: RankResult, kind: str) -> None:
+def _deficient(page: Builder, letter: str, result: RankResult, kind: str) -> None:
     rank = result.answer["rank"]
     rank_relation = relation(page[letter].apply("rank"), rank, "<", page.plant.order)
     key = "no" if not result.case_tree and fits(f"no_{kind}", rank_relation, page.environment) else "generic_low"

@@ -9,7 +9,7 @@ from symobs._dataclass import dataclass
 from symobs.analysis.factored_form import formula_of_factored
 from symobs.analysis.page_parts import given, say_stability
 from symobs.certificate.claims import Claim
-from symobs.derivation.builder import Page, relation
+from symobs.derivation.builder import Builder, relation
 from symobs.exact import Factored, Scalar, factored, roots_of
 from symobs.formula import Environment, Roots
 from symobs.formula.term import Term, identity, letter
@@ -52,7 +52,7 @@ class CharacteristicPolynomial(Result):
             "stable_if": found.inequalities(plant.symbols.signs),
         }
 
-    def write(self, page: Page) -> None:
+    def write(self, page: Builder) -> None:
         """Write the determinant, multiplied out and factored, and the roots."""
         given(page)
         polynomial: Scalar = self.answer["polynomial"]

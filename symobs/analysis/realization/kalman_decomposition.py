@@ -19,7 +19,7 @@ from symobs.analysis.realization.coordinates import BLOCKS, basis, minor_of, tra
 from symobs.analysis.strata.strata import strata
 from symobs.certificate.claims import Claim
 from symobs.conditions import Condition, vanishing_factors
-from symobs.derivation.builder import Page, relation
+from symobs.derivation.builder import Builder, relation
 from symobs.exact import Matrix, Scalar, modulo
 from symobs.formula import Environment, Literal
 from symobs.formula.term import Term, block, identity, letter
@@ -160,7 +160,7 @@ class Decomposition(Result):
             "transfer_function": P[0, 0] if single else P,
         }
 
-    def write(self, page: Page) -> None:
+    def write(self, page: Builder) -> None:
         """Write the two subspaces, the basis, the plant in it, and its minimal part."""
         given(page)
         with page.section("decomposition"):
@@ -172,14 +172,14 @@ class Decomposition(Result):
             self._minimal(page)
             page.steps += case_steps(page, self, "write_form")
 
-    def _subspaces(self, page: Page) -> None:
+    def _subspaces(self, page: Builder) -> None:
         A, B, C, n = page["A"], page["B"], page["C"], range(1, self.plant.order)
         reach = page.term(block([[B, *(A**k @ B for k in n)]]).formula)
         see = page.term(block([[C], *([C @ A**k] for k in n)]).formula)
         page.define("Ctr", reach, say="reached_and_hidden")
         page.define("O", see)
 
-    def _coordinates(self, page: Page) -> None:
+    def _coordinates(self, page: Builder) -> None:
         page.define(
             "S", page.value(self.answer["inverse"]), say="basis_blocks", sizes=", ".join(map(str, self.dimensions))
         )
@@ -199,7 +199,7 @@ class Decomposition(Result):
         page.define("C_bar", page["C"] @ S, in_blocks(page, parts["C"], outputs, sizes), answer=True, closing=False)
         page.remark("zero_pattern")
 
-    def _minimal(self, page: Page) -> None:
+    def _minimal(self, page: Builder) -> None:
         first = self.part(0)
         P: Matrix = self.answer["transfer_function"]
         value = factored_form(page, P[0, 0]) if P.shape == (1, 1) else page.value(P)
@@ -218,7 +218,7 @@ class Decomposition(Result):
         own = own + direct if direct is not None else own
         page.define("P", whole, own, value, say="minimal_part", answer=True, closing=False)
 
-    def write_form(self, page: Page) -> None:
+    def write_form(self, page: Builder) -> None:
         """Write the coordinates and the minimal part, in a case."""
         self._coordinates(page)
         self._minimal(page)

@@ -22,7 +22,7 @@ from symobs.stability.regions.interval_region import LineRegion
 from symobs.stability.regions.plane_region import PlaneRegion
 
 if TYPE_CHECKING:
-    from symobs.derivation.builder import Page
+    from symobs.derivation.builder import Builder
     from symobs.formula import Formula, Relation
     from symobs.result import Case
 
@@ -35,7 +35,7 @@ WRITTEN_ORDER = 4
 
 
 @page_of(StabilityRegion)
-def write_region(page: Page, result: StabilityRegion) -> None:
+def write_region(page: Builder, result: StabilityRegion) -> None:
     """Write the whole page."""
     question = result.question
     if question.plant.polynomial is not None:
@@ -65,7 +65,7 @@ def write_region(page: Page, result: StabilityRegion) -> None:
             _conditions(page, result, moved)
 
 
-def _polynomial_of_loop(page: Page, result: StabilityRegion) -> str:
+def _polynomial_of_loop(page: Builder, result: StabilityRegion) -> str:
     """Establish the gains and the characteristic polynomial; return its letter."""
     question, order = result.question, result.plant.order
     chi: Scalar = result.answer["polynomial"]
@@ -87,7 +87,7 @@ def _polynomial_of_loop(page: Page, result: StabilityRegion) -> str:
     return "chi_cl"
 
 
-def _sought(page: Page, result: StabilityRegion) -> None:
+def _sought(page: Builder, result: StabilityRegion) -> None:
     """Say what is asked for."""
     boundary, names = result.question.boundary, _listed(result)
     if boundary.is_usual:
@@ -102,7 +102,7 @@ def _listed(result: StabilityRegion) -> SymbolList:
     return SymbolList(result.question.parameters)
 
 
-def _moved(page: Page, result: StabilityRegion, chi: str) -> str:
+def _moved(page: Builder, result: StabilityRegion, chi: str) -> str:
     """Move the boundary to where it usually is, q(s) = χ(s − α) or q(z) = χ(ρ z); return the letter."""
     boundary = result.question.boundary
     if boundary.is_usual:
@@ -116,7 +116,7 @@ def _moved(page: Page, result: StabilityRegion, chi: str) -> str:
     return "q_s"
 
 
-def _table(page: Page, result: StabilityRegion, chi: str) -> None:
+def _table(page: Builder, result: StabilityRegion, chi: str) -> None:
     """Show Routh's table, in discrete time of the polynomial that the bilinear map makes."""
     if not result.question.boundary.discrete:
         page.tabulate(page[chi], say="routh_table", polynomial=page[chi])
@@ -152,7 +152,7 @@ def _of_power(coefficient: Scalar, w: Scalar, power: int) -> Formula:
     return parts[0] if len(parts) == 1 else Product(tuple(parts))
 
 
-def _crossing(page: Page, result: StabilityRegion, chi: str) -> None:
+def _crossing(page: Builder, result: StabilityRegion, chi: str) -> None:
     """Show the critical polynomials."""
     critical = result.critical
     vary = Counted("varies", len(result.question.parameters))
@@ -184,7 +184,7 @@ def _crossing(page: Page, result: StabilityRegion, chi: str) -> None:
         page.remark("always_critical")
 
 
-def _conditions(page: Page, result: StabilityRegion, chi: str) -> None:
+def _conditions(page: Builder, result: StabilityRegion, chi: str) -> None:
     """Show the conditions of the criterion, the short list that says the same, and what can be said of its shape."""
     short, signs, names = result.short, result.signs, result.question.parameters
     assert short is not None  # noqa: S101 - there is one where there is no region
@@ -217,7 +217,7 @@ def _conditions(page: Page, result: StabilityRegion, chi: str) -> None:
         page.plot(result.picture, page[chi])
 
 
-def _case(page: Page, case: Case, chi: str) -> Step:
+def _case(page: Builder, case: Case, chi: str) -> Step:
     """Say where all roots are stable if a coefficient has a certain sign."""
     found = cast("StabilityRegion", case.result)
     (condition,) = case.when
@@ -235,7 +235,7 @@ def _case(page: Page, case: Case, chi: str) -> Step:
     return CaseStep(when, tuple(case.substitution.items()), steps)
 
 
-def _region(page: Page, result: StabilityRegion, chi: str) -> None:
+def _region(page: Builder, result: StabilityRegion, chi: str) -> None:
     """Show the inequalities, and the region in words and parts."""
     region = result.region
     assert region is not None  # noqa: S101 - there is one here
@@ -261,7 +261,7 @@ def _region(page: Page, result: StabilityRegion, chi: str) -> None:
             page.steps.append(RegionSummary(page[chi].formula, names, numbers))
 
 
-def _pictures(page: Page, result: StabilityRegion, chi: str, moved: str) -> None:
+def _pictures(page: Builder, result: StabilityRegion, chi: str, moved: str) -> None:
     """Draw the region, and of one parameter the paths of the roots."""
     if result.empty or result.critical.never:
         return

@@ -15,7 +15,7 @@ from symobs.analysis.strata.strata import strata
 from symobs.certificate.claims import Claim
 from symobs.conditions import Condition, opposite, sign_of, vanishing_factors
 from symobs.derivation import CaseStep
-from symobs.derivation.builder import Page, relation, sentence
+from symobs.derivation.builder import Builder, relation, sentence
 from symobs.errors import CertificateRejected
 from symobs.exact import Matrix, Scalar, product_of
 from symobs.exact.core.generators import all_roots, function_named, identities, substitute, symbols_in
@@ -146,7 +146,7 @@ class DampingCases(Result):
             if isinstance(case.result, DampingCases):
                 yield from case.result.everything()
 
-    def state(self, page: Page) -> None:
+    def state(self, page: Builder) -> None:
         """State the data, and what the horizon must be."""
         from symobs.analysis.page_parts import given  # noqa: PLC0415
 
@@ -158,7 +158,7 @@ class DampingCases(Result):
             )
             page.conclude("declared", signs=Conjunction(tuple(relation(value, ">", 0) for value in beyond)))
 
-    def write_branches(self, page: Page, write_branch: Callable[[Page, Any], None]) -> None:
+    def write_branches(self, page: Builder, write_branch: Callable[[Builder, Any], None]) -> None:
         """Write this branch, as a case of its own where others stand beside it, and the others."""
         chosen = [_stated(delta, sign) for delta, sign in self.answer["chosen"].items()]
         if not self.case_tree and not chosen:
@@ -182,7 +182,7 @@ def _distance(case: Case) -> Scalar:
     return Locus(tuple(c.expression for c in case.when if c.operator == "==")).distance
 
 
-def _case(page: Page, case: Case, doubled: Signs, write_branch: Callable[[Page, Any], None]) -> Step:
+def _case(page: Builder, case: Case, doubled: Signs, write_branch: Callable[[Builder, Any], None]) -> Step:
     from symobs.analysis.page_parts import stratum_of, undecided  # noqa: PLC0415
 
     if not isinstance(case.result, DampingCases):
@@ -206,9 +206,9 @@ def _narrowed(steps: tuple[Step, ...], conditions: Sequence[Condition]) -> tuple
     return steps
 
 
-def _inside(page: Page, plant: StateSpace, substitution: Mapping[str, Scalar]) -> Page:
+def _inside(page: Builder, plant: StateSpace, substitution: Mapping[str, Scalar]) -> Builder:
     """Return a page for the steps of a case, which knows what this one knows."""
-    inner = Page(plant)
+    inner = Builder(plant)
     inner.start, inner.forms = page.start, page.forms
     inner.environment = replace(page.environment, values=_moved(page.environment.values, substitution))
     return inner

@@ -25,7 +25,7 @@ from symobs.stability.inequalities.written_form import as_inequality
 from symobs.system import StateSpace
 
 if TYPE_CHECKING:
-    from symobs.derivation.builder import Page
+    from symobs.derivation.builder import Builder
     from symobs.formula.term import Term
 
 #: Lyapunov's equation is shown beside the branches for plants of up to this order.
@@ -33,7 +33,7 @@ _LYAPUNOV_UP_TO = 3
 
 
 @page_of(Gramian)
-def write_gramian(page: Page, result: Gramian) -> None:
+def write_gramian(page: Builder, result: Gramian) -> None:
     """Write the whole page."""
     horizon = result.answer["horizon"]
     values = list(result.everything())
@@ -55,7 +55,7 @@ def write_gramian(page: Page, result: Gramian) -> None:
             _tell_finite_sum(result, page)
 
 
-def _letters(result: Gramian, page: Page) -> tuple[Term, Term]:
+def _letters(result: Gramian, page: Builder) -> tuple[Term, Term]:
     """Return the terms A and C of the pair: (Aᵀ, Bᵀ) for controllability."""
     if result.answer["of"] == "observability":
         return page["A"], page["C"]
@@ -74,7 +74,7 @@ def _transposed(term: Term) -> Term:
     return term._with(inner) if inner is not None else term.T  # noqa: SLF001
 
 
-def _tell_lyapunov(result: Gramian, page: Page) -> None:
+def _tell_lyapunov(result: Gramian, page: Builder) -> None:
     """Define P where Lyapunov's equation has one solution: it serves every branch."""
     if result.plant.order > _LYAPUNOV_UP_TO:
         return
@@ -90,7 +90,7 @@ def _tell_lyapunov(result: Gramian, page: Page) -> None:
         page.remark("lyapunov_denominator")
 
 
-def _write_branch(page: Page, result: Gramian) -> None:
+def _write_branch(page: Builder, result: Gramian) -> None:
     """Write one branch: e^{At}, what the output sees of it, the integral."""
     answer = result.answer
     A, C = _letters(result, page)
@@ -131,7 +131,7 @@ def _write_branch(page: Page, result: Gramian) -> None:
         page.equal(relation(page["W"].apply("det"), answer["determinant"]), say="gramian_determinant")
 
 
-def _tell_infinite(result: Gramian, page: Page, A: Term, C: Term) -> None:
+def _tell_infinite(result: Gramian, page: Builder, A: Term, C: Term) -> None:
     """Write the integral over all time: what decays, Lyapunov's equation, its solution."""
     answer = result.answer
     seen = define_seen(result, page)
@@ -159,7 +159,7 @@ def _tell_infinite(result: Gramian, page: Page, A: Term, C: Term) -> None:
     page.equal(relation(W.apply("det"), answer["determinant"]), say="gramian_determinant")
 
 
-def define_seen(result: Gramian, page: Page) -> Term:
+def define_seen(result: Gramian, page: Builder) -> Term:
     """Return χ, or its part that the output sees (the input moves): the quotient by the polynomial of the other modes."""
     kernel, of = result.answer["rank"]["kernel"], result.answer["of"]
     tell_polynomial(page)
@@ -175,7 +175,7 @@ def define_seen(result: Gramian, page: Page) -> Term:
     return seen
 
 
-def _tell_finite_sum(result: Gramian, page: Page) -> None:
+def _tell_finite_sum(result: Gramian, page: Builder) -> None:
     """Write Σ (Aᵀ)ᵏ Cᵀ C Aᵏ and the kernel with its vector, or that there is none."""
     A, C = _letters(result, page)
     total = _square(C)

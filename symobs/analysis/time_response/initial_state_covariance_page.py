@@ -20,7 +20,7 @@ from symobs.formula.calculus import since_start
 from symobs.result import page_of
 
 if TYPE_CHECKING:
-    from symobs.derivation.builder import Page
+    from symobs.derivation.builder import Builder
 
 #: How the output noise enters, and what stands between two inverse Gramians.
 _WITH_INPUT = ("estimate_is", "parts_of_covariance")
@@ -28,7 +28,7 @@ _OUTPUT_ONLY = ("estimate_of_output", "covariance_of_output")
 
 
 @page_of(InitialStateCovariance)
-def write_covariance(page: Page, result: InitialStateCovariance) -> None:
+def write_covariance(page: Builder, result: InitialStateCovariance) -> None:
     """Write e^{At}, the Gramian, the two integrals, the covariance and the best horizon."""
     values = list(result.everything())
     page.in_time(*values, *(substitute(value, {"t": result.answer["horizon"]}) for value in values))
@@ -42,7 +42,7 @@ def write_covariance(page: Page, result: InitialStateCovariance) -> None:
         result.write_branches(page, _write_branch)
 
 
-def _write_branch(page: Page, result: InitialStateCovariance) -> None:
+def _write_branch(page: Builder, result: InitialStateCovariance) -> None:
     """Write one branch: noise, Gramian, the two integrals, the parts, the sum."""
     answer = result.answer
     if result.verdict == "no":
@@ -101,7 +101,7 @@ def _entry(value: Matrix | Scalar) -> Matrix | Scalar:
     return value[0, 0] if isinstance(value, Matrix) and value.shape == (1, 1) else value
 
 
-def tell_unobservable(result: InitialStateCovariance, page: Page) -> None:
+def tell_unobservable(result: InitialStateCovariance, page: Builder) -> None:
     """Say that there is no estimate."""
     rank = result.answer["rank"]
     page.set("O", rank["matrix"])
@@ -109,7 +109,7 @@ def tell_unobservable(result: InitialStateCovariance, page: Page) -> None:
     page.conclude("no_observability", rank=found)
 
 
-def _tell_horizons(result: InitialStateCovariance, page: Page) -> None:
+def _tell_horizons(result: InitialStateCovariance, page: Builder) -> None:
     """Say where each variance is stationary, with the derivative that vanishes there."""
     signs = {**result.plant.symbols.signs, "T": "positive"}
     covariance: Matrix = result.answer["covariance"]

@@ -25,7 +25,7 @@ from symobs.formula.term import block
 from symobs.result import page_of
 
 if TYPE_CHECKING:
-    from symobs.derivation.builder import Page
+    from symobs.derivation.builder import Builder
     from symobs.formula.term import Term
 
 #: The order of det W(T) grows like the square of the number of states, and so does the search for it.
@@ -33,7 +33,7 @@ _WARNED_UP_TO = 3
 
 
 @page_of(InitialState)
-def write_initial_state(page: Page, result: InitialState) -> None:
+def write_initial_state(page: Builder, result: InitialState) -> None:
     """Write the document's five steps."""
     values = list(result.everything())
     if result.answer["horizon"] != INFINITE:
@@ -45,7 +45,7 @@ def write_initial_state(page: Page, result: InitialState) -> None:
         result.write_branches(page, _write_branch)
 
 
-def _write_branch(page: Page, result: InitialState) -> None:
+def _write_branch(page: Builder, result: InitialState) -> None:
     """Write one branch."""
     answer = result.answer
     if answer.get("question") is not None:
@@ -71,7 +71,7 @@ def _entry(matrix: Matrix) -> Matrix | Scalar:
     return matrix[0, 0] if matrix.shape == (1, 1) else matrix
 
 
-def _tell_forced(result: InitialState, page: Page) -> Term:
+def _tell_forced(result: InitialState, page: Builder) -> Term:
     """Write the motion from rest and ỹ; return ỹ."""
     answer, A, C, y = result.answer, page["A"], page["C"], page["y_t"]
     if answer["input"] is None:
@@ -88,7 +88,7 @@ def _tell_forced(result: InitialState, page: Page) -> Term:
     return page.define("y_0", moved, _entry(answer["free"]), say="output_solution", closing=False, equation=equation)
 
 
-def _tell_moments(result: InitialState, page: Page, free: Term) -> None:
+def _tell_moments(result: InitialState, page: Builder, free: Term) -> None:
     answer = result.answer
     C, Phi, horizon = page["C"], page["exp_At"], answer["horizon"]
     end = {"t": horizon}
@@ -117,7 +117,7 @@ def _tell_moments(result: InitialState, page: Page, free: Term) -> None:
     _warn_of_short_horizons(result, page)
 
 
-def _warn_of_short_horizons(result: InitialState, page: Page) -> None:
+def _warn_of_short_horizons(result: InitialState, page: Builder) -> None:
     """Say how fast det W(T) vanishes as T → 0, by its Taylor polynomial there; W(t) is held to its derivative and start.
 
     Of order Tⁿ it is where W itself is nearly T CᵀC with C of full rank: no reason to warn.
@@ -145,7 +145,7 @@ def _warn_of_short_horizons(result: InitialState, page: Page) -> None:
     page.caution("short_horizon", leading=Evaluated(taylor.formula, leading.formula))
 
 
-def _tell_refusal(result: InitialState, page: Page, free: Term) -> None:
+def _tell_refusal(result: InitialState, page: Builder, free: Term) -> None:
     """Show the candidate and what its output leaves, or the row that refutes the data."""
     answer, C, Phi = result.answer, page["C"], page["exp_At"]
     rates = [free]

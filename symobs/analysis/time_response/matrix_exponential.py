@@ -11,7 +11,7 @@ from symobs.analysis.page_parts import given
 from symobs.analysis.time_response.damping_cases import DampingCases, Signs, rate_of, time_environment, with_signs
 from symobs.certificate.claims import Claim
 from symobs.conditions import vanishing_factors
-from symobs.derivation.builder import Page, relation
+from symobs.derivation.builder import Builder, relation
 from symobs.errors import InputError
 from symobs.exact import Matrix, Scalar, factored
 from symobs.exact.core.generators import function_named
@@ -111,7 +111,7 @@ class MatrixExponential(DampingCases):
         asked = self.answer.get("question")
         return {"matrix": self.answer["matrix"], **({"question": asked} if asked else {})}
 
-    def write(self, page: Page) -> None:
+    def write(self, page: Builder) -> None:
         """Write the characteristic polynomial, the sum of functions and matrices, the entries, the check."""
         page.in_time(*self.everything())
         given(page)
@@ -120,7 +120,7 @@ class MatrixExponential(DampingCases):
             self.write_branches(page, _write_branch)
 
 
-def _write_branch(page: Page, result: MatrixExponential) -> None:
+def _write_branch(page: Builder, result: MatrixExponential) -> None:
     """Write one branch."""
     if result.answer["matrix"] is None:
         tell_question(page, result.answer["factor"])
@@ -135,7 +135,7 @@ def _write_branch(page: Page, result: MatrixExponential) -> None:
     page.verified("exponential_start", relation(rate_of(Phi), page["A"] @ Phi), start=start)
 
 
-def tell_polynomial(page: Page) -> None:
+def tell_polynomial(page: Builder) -> None:
     """Write the characteristic polynomial with its factors."""
     polynomial = page.plant.matrices.A.characteristic_polynomial(page.plant.variable)
     form = factored(polynomial, page.plant.variable)
@@ -146,7 +146,7 @@ def tell_polynomial(page: Page) -> None:
     page.define("chi", *members, say="exponential_modes", closing=False)
 
 
-def tell_question(page: Page, factor: Scalar | None) -> None:
+def tell_question(page: Builder, factor: Scalar | None) -> None:
     """Say what is not decided."""
     if factor is None:
         page.remark("too_many_states", order=str(page.plant.order))
@@ -154,7 +154,7 @@ def tell_question(page: Page, factor: Scalar | None) -> None:
         page.remark("no_closed_form", factor=factor, degree=str(factor.degree(page.plant.variable)))
 
 
-def tell_exponential(page: Page, found: Exponential, matrix: Matrix, *, answer: bool = False) -> None:
+def tell_exponential(page: Builder, found: Exponential, matrix: Matrix, *, answer: bool = False) -> None:
     """Define e^{At}: the sum over the modes where it is short, then the entries; then what the roots stand for."""
     count = sum(len(own) for _, _, own in found.parts)
     is_shown = not found.is_closed or 1 < count <= _SHOWN_SUM
@@ -166,7 +166,7 @@ def tell_exponential(page: Page, found: Exponential, matrix: Matrix, *, answer: 
     tell_roots(page, matrix)
 
 
-def tell_roots(page: Page, *values: Matrix) -> None:
+def tell_roots(page: Builder, *values: Matrix) -> None:
     """Say what the letters of square roots stand for."""
     for name in page.forms:
         used = any(name in v.names or any(name in f.argument.names for f in _functions(v)) for v in values)

@@ -11,7 +11,7 @@ from symobs.stability.criteria.stability import monic, stability
 from symobs.stability.inequalities.written_form import as_inequality
 
 if TYPE_CHECKING:
-    from symobs.derivation.builder import Page
+    from symobs.derivation.builder import Builder
     from symobs.system import StateSpace
 
 #: A polynomial of more terms is not decided.
@@ -48,7 +48,7 @@ def law_stability(F: Matrix | Scalar, own_matrix: Matrix, plant: StateSpace, sta
     return stability_of_poles if hidden == "yes" else hidden
 
 
-def caution_hidden(page: Page, F: Matrix | Scalar, own_matrix: Matrix) -> None:
+def caution_hidden(page: Builder, F: Matrix | Scalar, own_matrix: Matrix) -> None:
     """Warn where a mode that cancels in F is not stable, surely or for some parameters."""
     plant = page.plant
     found = hidden_modes(F, own_matrix, plant.variable)

@@ -8,11 +8,11 @@ from symobs.derivation.builder import predicate, relation
 from symobs.stability.criteria.stability import stability
 
 if TYPE_CHECKING:
-    from symobs.derivation.builder import Page
+    from symobs.derivation.builder import Builder
     from symobs.design.compensator.output_feedback import OutputFeedback
 
 
-def caution_law(page: Page, loop: OutputFeedback) -> None:
+def caution_law(page: Builder, loop: OutputFeedback) -> None:
     """Warn where the law is surely unstable by itself, which a loop with stable poles does not show."""
     plant, own = page.plant, loop.own_matrix
     chi = own.characteristic_polynomial(plant.variable)

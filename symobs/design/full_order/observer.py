@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 from symobs._dataclass import dataclass
 from symobs.analysis.page_parts import given
 from symobs.analysis.rank.observability import Observability
-from symobs.derivation.builder import Page, relation
+from symobs.derivation.builder import Builder, relation
 from symobs.design.full_order.observer_existence_page import write_ansatz, write_found
 from symobs.design.full_order.placement_methods import register_methods
 from symobs.design.gain.gain_design import GainDesign
@@ -101,7 +101,7 @@ class ObserverDesign(GainDesign):
         """(u, y) → x̂."""
         return observer_of(self)
 
-    def write(self, page: Page) -> None:
+    def write(self, page: Builder) -> None:
         """Write data, gain, and the observer with its error equation."""
         given(page, ("observer", self.desired))
         by_ansatz = self.page_method == "existence" and self.answer["L"] is not None
@@ -120,7 +120,7 @@ class ObserverDesign(GainDesign):
                 plot_error(page, "e", page["A"] - page["L"] @ page["C"])
 
 
-def write_observer(page: Page, *, drawn: bool = False, alone: bool = True) -> None:
+def write_observer(page: Builder, *, drawn: bool = False, alone: bool = True) -> None:
     """Write the observer in both forms and its error equation, each line checked on signals.
 
     `alone`, it is the answer, and its components are written out; else it is a part of a compensator.
@@ -161,7 +161,7 @@ def write_observer(page: Page, *, drawn: bool = False, alone: bool = True) -> No
         write_components(page, driven)
 
 
-def _say_deadbeat(page: Page, closed: Term) -> None:
+def _say_deadbeat(page: Builder, closed: Term) -> None:
     """In discrete time with all poles at 0: after how many steps the error is gone."""
     if not page.plant.is_discrete:
         return

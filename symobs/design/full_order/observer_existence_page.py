@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from symobs.derivation.builder import Page, relation
+from symobs.derivation.builder import Builder, relation
 from symobs.design.pole_placement.fresh_names import fresh_names, taken_names
 from symobs.exact import Matrix
 
@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from symobs.formula.term import Term
 
 
-def write_ansatz(page: Page, gain: Matrix) -> None:
+def write_ansatz(page: Builder, gain: Matrix) -> None:
     """The error of the ansatz, and the choice of F and G that frees it of x and u."""
     m = page.plant.matrices
     undetermined(page, "F_x", "f_", (m.A - gain @ m.C).normal())
@@ -40,7 +40,7 @@ def write_ansatz(page: Page, gain: Matrix) -> None:
     page.equal(relation(page["e"].derivative, (A - H @ C) @ page["e"]), say="existence_left")
 
 
-def write_found(page: Page) -> None:
+def write_found(page: Builder) -> None:
     """The observer with the matrices found."""
     m, L = page.plant.matrices, page["L"]
     page.conclude_silently(relation(page["H_x"], L))
@@ -56,7 +56,7 @@ def write_found(page: Page) -> None:
     )
 
 
-def undetermined(page: Page, name: str, stem: str, value: Matrix) -> None:
+def undetermined(page: Builder, name: str, stem: str, value: Matrix) -> None:
     """Establish a matrix of letters, which stand for what will be chosen."""
     names = iter(fresh_names(stem, len(value.entries), taken_names(page)))
     page.set(name, Matrix.of([[page.name_coefficient(next(names), entry) for entry in row] for row in value.rows]))

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from symobs.analysis.rank.rank_test import RankResult
-    from symobs.derivation.builder import Page
+    from symobs.derivation.builder import Builder
     from symobs.design.pole_placement.single_output import ObserverPair
     from symobs.exact import Matrix
     from symobs.formula import Environment
@@ -87,7 +87,7 @@ class StateFeedbackDesign(GainDesign):
         loop = Realisation((m.A - m.B @ K).normal(), m.B, (m.C - m.D @ K).normal(), m.D)
         return {**super().systems, "closed_loop": loop}
 
-    def write(self, page: Page) -> None:
+    def write(self, page: Builder) -> None:
         """Write data and gain."""
         given(page, ("control", self.desired))
         with page.section("state_feedback"):

@@ -6,7 +6,7 @@ from fractions import Fraction
 from typing import TYPE_CHECKING
 
 from symobs.analysis.page_parts import determinant_form
-from symobs.derivation.builder import Page, relation
+from symobs.derivation.builder import Builder, relation
 from symobs.design.page_parts import readability
 from symobs.design.pole_placement.coefficient_matching import matching
 from symobs.design.pole_placement.fresh_names import fresh_names, taken_names
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 _HARM = Fraction(1, 100)
 
 
-def write_ackermann_formula(page: Page, _: GainDesign, side: PlacementProblem, desired: DesiredPolynomial) -> None:
+def write_ackermann_formula(page: Builder, _: GainDesign, side: PlacementProblem, desired: DesiredPolynomial) -> None:
     """L = φ(A) 𝒪⁻¹ eₙ, and K = eₙᵀ 𝒞⁻¹ φ(A)."""
     order = page.plant.order
     unit = page.value(Matrix.unit(order, order - 1))
@@ -42,7 +42,7 @@ def write_ackermann_formula(page: Page, _: GainDesign, side: PlacementProblem, d
         page.define("K", last @ polynomial, last @ at, say="ackermann_state_feedback", answer=True)
 
 
-def _factor_at(page: Page, factor: Scalar, power: int) -> Term:
+def _factor_at(page: Builder, factor: Scalar, power: int) -> Term:
     """Return a factor of φ with A put in for the variable: (A + 10 I)²."""
     lead, *rest = factor.coefficients(page.plant.variable)
     A, degree, order = page["A"], len(rest), page.plant.order
@@ -59,7 +59,7 @@ def _factor_at(page: Page, factor: Scalar, power: int) -> Term:
     return total**power
 
 
-def write_matching(page: Page, design: GainDesign, side: PlacementProblem, desired: DesiredPolynomial) -> None:
+def write_matching(page: Builder, design: GainDesign, side: PlacementProblem, desired: DesiredPolynomial) -> None:
     """det(sI − A + LC) with unknown l₁ … lₙ, its coefficients equated to those of φ, the linear system, its solution."""
     order, variable = page.plant.order, page.plant.variable
     system = matching(design.dual_pair(page.plant), desired)
@@ -80,7 +80,7 @@ def write_matching(page: Page, design: GainDesign, side: PlacementProblem, desir
     page.set(side.gain, solution)
 
 
-def write_companion(page: Page, _: GainDesign, side: PlacementProblem, desired: DesiredPolynomial) -> None:
+def write_companion(page: Builder, _: GainDesign, side: PlacementProblem, desired: DesiredPolynomial) -> None:
     """T = [q; qAᵀ; …] carries the dual pair to companion form, where the gain is the row of differences."""
     order, variable = page.plant.order, page.plant.variable
     found = page.plant.matrices.A.characteristic_polynomial(variable).coefficients(variable)[1:]
@@ -118,7 +118,7 @@ def _reductions(design: GainDesign) -> tuple[Reduction, ...] | None:
     return row_reduction(design.dual_pair(design.plant), design.desired)
 
 
-def write_row_reduction(page: Page, design: GainDesign, side: PlacementProblem, _: DesiredPolynomial) -> None:
+def write_row_reduction(page: Builder, design: GainDesign, side: PlacementProblem, _: DesiredPolynomial) -> None:
     """For each pole the matrix [λI − Aᵀ : Cᵀ], its reduced form, the scalar relations, what is chosen, the vector."""
     found = _reductions(design)
     assert found is not None  # noqa: S101 - `readable` has said so
@@ -138,7 +138,7 @@ def write_row_reduction(page: Page, design: GainDesign, side: PlacementProblem, 
     _rounded_too_early(page, gain.value)
 
 
-def _open_eigenvalues(page: Page, side: PlacementProblem) -> None:
+def _open_eigenvalues(page: Builder, side: PlacementProblem) -> None:
     """Say where the eigenvalues are without the gain, where they can be written down."""
     own = (page.s @ page.identity(page.plant.order) - page["A"]).apply("det")
     factors = own.scalar.factors()[1]
@@ -148,7 +148,7 @@ def _open_eigenvalues(page: Page, side: PlacementProblem) -> None:
         )
 
 
-def _rounded_too_early(page: Page, gain: Matrix) -> None:
+def _rounded_too_early(page: Builder, gain: Matrix) -> None:
     """Show what becomes of the gain when the columns of Ψ are rounded before it is inverted, where that does harm."""
     near = page.decimals(page["Psi"].value)
     if not near or near[1].value.determinant().is_zero:
@@ -160,7 +160,7 @@ def _rounded_too_early(page: Page, gain: Matrix) -> None:
         page.equal(relation(spoiled, *shown), say="rounded_too_early")
 
 
-def _reduce(page: Page, side: PlacementProblem, part: Reduction, number: int) -> None:
+def _reduce(page: Builder, side: PlacementProblem, part: Reduction, number: int) -> None:
     """Write one reduction."""
     if part.before is not None:
         page.equal(relation(part.matrix, "~", part.reduced), say="generalised", pole=_named(page, part))
@@ -178,7 +178,7 @@ def _reduce(page: Page, side: PlacementProblem, part: Reduction, number: int) ->
     page.conclude_silently(relation(page.value(matrix) @ xi, right))
 
 
-def _matrix(page: Page, side: PlacementProblem, part: Reduction) -> Term:
+def _matrix(page: Builder, side: PlacementProblem, part: Reduction) -> Term:
     """Return [λI − Aᵀ : Cᵀ] (or [λI − A : B]) in letters; of a block J its blocks."""
     order, J = part.order, part.J
     A, driven = (page["A"].T, page["C"].T) if side.gain == "L" else (page["A"], page["B"])
@@ -196,7 +196,7 @@ def _matrix(page: Page, side: PlacementProblem, part: Reduction) -> Term:
     return block(rows)
 
 
-def _multiple(page: Page, factor: Scalar, order: int) -> Term | None:
+def _multiple(page: Builder, factor: Scalar, order: int) -> Term | None:
     """Return a multiple of I, None for 0."""
     identity = page.identity(order)
     if factor.is_zero:
@@ -206,7 +206,7 @@ def _multiple(page: Page, factor: Scalar, order: int) -> Term | None:
     return page.value(factor) @ identity
 
 
-def _relations(page: Page, part: Reduction, number: int) -> None:
+def _relations(page: Builder, part: Reduction, number: int) -> None:
     """Read the components off the reduced form, and choose what is free."""
     width = part.vector.shape[0]
     short = width < 10
@@ -232,7 +232,7 @@ def _pair(part: Reduction) -> bool:
     return part.size == 2 and part.J[0, 0] == part.J[1, 1]
 
 
-def _named(page: Page, part: Reduction) -> Evaluated:
+def _named(page: Builder, part: Reduction) -> Evaluated:
     """Return what a reduction is for: a pole, or a factor of φ."""
     if part.size == 1:
         return Evaluated(page.value(part.J).apply("det").formula, Literal(part.J[0, 0]))

@@ -15,7 +15,7 @@ from symobs.analysis.page_parts import (
 )
 from symobs.analysis.rank.rank_page import square_test
 from symobs.derivation import CaseStep
-from symobs.derivation.builder import Page, predicate, relation
+from symobs.derivation.builder import Builder, predicate, relation
 from symobs.design.gain.gain_design import GainDesign
 from symobs.design.gain.gain_family_page import of_the_others, write_hidden_family, write_sylvester
 from symobs.design.gain.gain_kind import GivenGain, UnassignableGain
@@ -40,7 +40,7 @@ if TYPE_CHECKING:
 _PAIR = 2
 
 
-def write_gain(page: Page, design: GainDesign, side: PlacementProblem, style: str, *, of_loop: bool = False) -> None:
+def write_gain(page: Builder, design: GainDesign, side: PlacementProblem, style: str, *, of_loop: bool = False) -> None:
     """Write how the gain is found, in the style of a method, and the check the reader is shown.
 
     Where it is given as a half of a loop, its polynomial has the letter that the page of the loop goes on with.
@@ -67,23 +67,23 @@ def write_gain(page: Page, design: GainDesign, side: PlacementProblem, style: st
         write_case(page, case, side)
 
 
-def _write_gain_alone(page: Page, design: GainDesign, side: PlacementProblem, _: DesiredPolynomial) -> None:
+def _write_gain_alone(page: Builder, design: GainDesign, side: PlacementProblem, _: DesiredPolynomial) -> None:
     """State the gain of a method without a page of its own; the check below is what shows it."""
     page.define(side.gain, design.answer[side.gain], say="gain_stated", answer=True)
 
 
-def write_reduction(page: Page, design: GainDesign, side: PlacementProblem, desired: DesiredPolynomial) -> None:
+def write_reduction(page: Builder, design: GainDesign, side: PlacementProblem, desired: DesiredPolynomial) -> None:
     """Write the row-reduced echelon method where its matrices can be read, else Ackermann's formula."""
     (write_row_reduction if readable(design) else write_ackermann)(page, design, side, desired)
 
 
-def write_ackermann(page: Page, design: GainDesign, side: PlacementProblem, desired: DesiredPolynomial) -> None:
+def write_ackermann(page: Builder, design: GainDesign, side: PlacementProblem, desired: DesiredPolynomial) -> None:
     """Write Ackermann's formula; where there is a family of gains, how the one chosen lies in it."""
     is_of_family = design.chart is not None or _roots_found(design, side)
     (write_member if is_of_family else write_ackermann_formula)(page, design, side, desired)
 
 
-def write_member(page: Page, design: GainDesign, side: PlacementProblem, desired: DesiredPolynomial) -> None:
+def write_member(page: Builder, design: GainDesign, side: PlacementProblem, desired: DesiredPolynomial) -> None:
     """Write how a gain lies in the family of all: as a solution of the Sylvester equation, unless it is a special one."""
     if _roots_found(design, side):
         page.with_roots(design.answer[side.gain])
@@ -98,7 +98,7 @@ def _roots_found(design: GainDesign, side: PlacementProblem) -> frozenset[Functi
     return all_roots(design.answer[side.gain]) - all_roots(m.A, m.B, m.C, *desired)
 
 
-def define_test_matrix(page: Page, side: PlacementProblem) -> None:
+def define_test_matrix(page: Builder, side: PlacementProblem) -> None:
     """Define 𝒪 or 𝒞 block by block."""
     A, order = page["A"], page.plant.order
     if side.gain == "L":
@@ -108,14 +108,14 @@ def define_test_matrix(page: Page, side: PlacementProblem) -> None:
     page.define(side.matrix, block(blocks), say=f"{side.test}_matrix")
 
 
-def _is_canonical(page: Page) -> bool:
+def _is_canonical(page: Builder) -> bool:
     """Whether (A, B) is in controllable canonical form."""
     m, order = page.plant.matrices, page.plant.order
     chi = m.A.characteristic_polynomial(page.plant.variable)
     return Matrix.unit(order, order - 1) == m.B and companion(chi.coefficients(page.plant.variable)[1:]) == m.A
 
 
-def _test(page: Page, design: GainDesign, side: PlacementProblem, style: str) -> None:
+def _test(page: Builder, design: GainDesign, side: PlacementProblem, style: str) -> None:
     if side.gain == "K" and style == "canonical_form" and _is_canonical(page):
         _say_canonical(page)
         return
@@ -128,7 +128,7 @@ def _test(page: Page, design: GainDesign, side: PlacementProblem, style: str) ->
         page.conclude(f"assignable_{side.kind}")
 
 
-def name_coefficients(page: Page, design: GainDesign, side: PlacementProblem) -> DesiredPolynomial:
+def name_coefficients(page: Builder, design: GainDesign, side: PlacementProblem) -> DesiredPolynomial:
     """Show φ; where its coefficients are long, give them letters and return φ in these letters."""
     desired = design.desired
     assert desired is not None  # noqa: S101 - only designs with a desired polynomial come here
@@ -152,7 +152,7 @@ def name_coefficients(page: Page, design: GainDesign, side: PlacementProblem) ->
     return DesiredPolynomial(variable, (named,))
 
 
-def _say_canonical(page: Page) -> None:
+def _say_canonical(page: Builder) -> None:
     """Say that (A, B) is in controllable canonical form already."""
     order, variable = page.plant.order, page.plant.variable
     chi = page.plant.matrices.A.characteristic_polynomial(variable)
@@ -166,7 +166,7 @@ def _say_canonical(page: Page) -> None:
     )
 
 
-def name_entries(page: Page, gain: str) -> None:
+def name_entries(page: Builder, gain: str) -> None:
     """Give the entries of a gain letters of their own, in which the page goes on."""
     value = page[gain].value
     names = fresh_names(f"{gain.lower()}_", len(value.entries), taken_names(page))
@@ -177,7 +177,7 @@ def name_entries(page: Page, gain: str) -> None:
     page.set(gain, named)
 
 
-def write_canonical(page: Page, _: GainDesign, side: PlacementProblem, desired: DesiredPolynomial) -> None:
+def write_canonical(page: Builder, _: GainDesign, side: PlacementProblem, desired: DesiredPolynomial) -> None:
     """Difference of coefficients, constant first, carried back by V⁻¹."""
     plant, order = page.plant, page.plant.order
     variable = plant.variable
@@ -203,12 +203,12 @@ def write_canonical(page: Page, _: GainDesign, side: PlacementProblem, desired: 
         page.define("K", row @ V.inverse, row.as_value @ V.inverse.as_value, say="row_state_feedback", answer=True)
 
 
-def _difference(page: Page, wanted: list[Term], found: list[Scalar]) -> Term:
+def _difference(page: Builder, wanted: list[Term], found: list[Scalar]) -> Term:
     entries = [w - page.value(a) for w, a in zip(wanted, reversed(found), strict=True)]
     return block([entries])
 
 
-def _with_fixed_modes(page: Page, design: GainDesign, side: PlacementProblem) -> None:
+def _with_fixed_modes(page: Builder, design: GainDesign, side: PlacementProblem) -> None:
     """Some modes stay; they are among those asked for, so a gain exists and is not unique."""
     variable = page.plant.variable
     polynomial, desired, family = design.fixed_polynomial, design.desired, design.gain_family
@@ -227,7 +227,7 @@ def _with_fixed_modes(page: Page, design: GainDesign, side: PlacementProblem) ->
     page.remark(f"family_{side.kind}", gain=Evaluated(general.formula, Literal(family[side.gain])))
 
 
-def _impossible(page: Page, design: GainDesign, side: PlacementProblem) -> None:
+def _impossible(page: Builder, design: GainDesign, side: PlacementProblem) -> None:
     """The fixed modes are not among the poles asked for, or no gain has its zeros where they are to be."""
     if not isinstance(design.kind, UnassignableGain):
         write_no_gain(page, design, side)
@@ -242,14 +242,14 @@ def _impossible(page: Page, design: GainDesign, side: PlacementProblem) -> None:
     )
 
 
-def _fixed(page: Page, side: PlacementProblem, kernel: Matrix, restricted: Matrix) -> Term:
+def _fixed(page: Builder, side: PlacementProblem, kernel: Matrix, restricted: Matrix) -> Term:
     """Introduce N and X, and return the polynomial of the modes that no gain moves."""
     for name, value in zip(side.hidden, (kernel, restricted), strict=True):
         page.set(name, value)
     return hidden_polynomial(page, kernel.shape[1], side.hidden[1])
 
 
-def _given_gain(page: Page, design: GainDesign, side: PlacementProblem, *, of_loop: bool) -> None:
+def _given_gain(page: Builder, design: GainDesign, side: PlacementProblem, *, of_loop: bool) -> None:
     """A gain is given: find its polynomial and say whether it is stable."""
     gain = page.set(side.gain, design.answer[side.gain])
     page.equal(relation(gain, design.answer[side.gain]), say=f"gain_given_{side.kind}")
@@ -267,7 +267,7 @@ def _given_gain(page: Page, design: GainDesign, side: PlacementProblem, *, of_lo
     say_stability(page, side.error_determinant(page))
 
 
-def _verified(page: Page, design: GainDesign, side: PlacementProblem) -> None:
+def _verified(page: Builder, design: GainDesign, side: PlacementProblem) -> None:
     desired = design.desired
     assert desired is not None  # noqa: S101 - only designs with a desired polynomial come here
     polynomial = page[side.phi].value
@@ -281,7 +281,7 @@ def _verified(page: Page, design: GainDesign, side: PlacementProblem) -> None:
         say_stability(page, side.error_determinant(page))
 
 
-def say_as_required(page: Page, desired: DesiredPolynomial, *members: Term) -> None:
+def say_as_required(page: Builder, desired: DesiredPolynomial, *members: Term) -> None:
     """Show the check of a gain; where a conjugate pair was asked for, with the poles themselves.
 
     A gain with roots in it has the polynomial only as far as their own polynomials vanish: there the check says enough.
@@ -294,7 +294,7 @@ def say_as_required(page: Page, desired: DesiredPolynomial, *members: Term) -> N
     page.verified("roots_as_required", check=relation(*members), roots=roots)
 
 
-def write_case(page: Page, case: Case, side: PlacementProblem) -> None:
+def write_case(page: Builder, case: Case, side: PlacementProblem) -> None:
     """Say what is true on a stratum."""
     if not isinstance(case.result, GainDesign):
         page.steps.append(undecided(page, case))
@@ -314,7 +314,7 @@ def write_case(page: Page, case: Case, side: PlacementProblem) -> None:
     page.steps.append(CaseStep(stratum_of(case), tuple(case.substitution.items()), tuple(steps), anew=tuple(anew)))
 
 
-def _on_stratum(page: Page, case: Case, result: GainDesign, side: PlacementProblem) -> None:
+def _on_stratum(page: Builder, case: Case, result: GainDesign, side: PlacementProblem) -> None:
     """Write whether a gain exists on a stratum, with the hidden modes that decide it."""
     own, gain = design_gain_on(case, page, side), result.answer[side.gain]
     fixed = _fixed(page, side, result.pair.kernel, result.pair.restricted)
@@ -330,7 +330,7 @@ def _on_stratum(page: Page, case: Case, result: GainDesign, side: PlacementProbl
     page.conclude_silently(relation(side.error_determinant(page), page[side.phi]))
 
 
-def design_gain_on(case: Case, page: Page, side: PlacementProblem) -> bool:
+def design_gain_on(case: Case, page: Builder, side: PlacementProblem) -> bool:
     """Whether there is a gain in the main line that is still finite on the stratum."""
     if not page.defines(side.gain):
         return False

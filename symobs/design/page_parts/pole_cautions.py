@@ -8,12 +8,12 @@ from symobs.derivation.builder import predicate
 from symobs.stability.criteria.stability import is_beyond, is_marginal, stability
 
 if TYPE_CHECKING:
-    from symobs.derivation.builder import Page
+    from symobs.derivation.builder import Builder
     from symobs.exact import Scalar
     from symobs.specification import DesiredPolynomial
 
 
-def caution_poles(page: Page, desired: DesiredPolynomial, phi: str, of: str) -> None:
+def caution_poles(page: Builder, desired: DesiredPolynomial, phi: str, of: str) -> None:
     """Warn where the polynomial asked for, which the letter `phi` means, is surely not stable; of: observer or control."""
     plant, signs = page.plant, page.plant.symbols.signs
     polynomial, discrete = desired.polynomial, page.plant.is_discrete
@@ -37,7 +37,7 @@ def caution_poles(page: Page, desired: DesiredPolynomial, phi: str, of: str) -> 
     page.caution(f"{key}_{of}_{time}", *facts)
 
 
-def _is_stable(rest: Scalar, page: Page) -> bool:
+def _is_stable(rest: Scalar, page: Builder) -> bool:
     """Tell whether what is left of a polynomial is one and surely stable."""
     plant = page.plant
     if not rest.is_polynomial_in(plant.variable):

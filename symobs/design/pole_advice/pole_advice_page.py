@@ -9,7 +9,7 @@ from symobs.analysis.factored_form import factored_form, formula_of_factored
 from symobs.analysis.page_parts import given, hidden, hidden_polynomial, set_anew, stratum_of, undecided
 from symobs.conditions import sign_of
 from symobs.derivation import CaseStep, Given
-from symobs.derivation.builder import Page, predicate, relation, sentence
+from symobs.derivation.builder import Builder, predicate, relation, sentence
 from symobs.design.pole_advice.advised_poles import FURTHER_LEFT, numerator_term
 from symobs.design.pole_advice.pole_advice import PoleAdvice
 from symobs.design.pole_advice.pole_candidates import numerator_of, overshoot_of, third_digit
@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 
 
 @page_of(PoleAdvice)
-def write_pole_advice(page: Page, advice: PoleAdvice) -> None:
+def write_pole_advice(page: Builder, advice: PoleAdvice) -> None:
     """Write the plant's zeros, φ_z, φ_r and φ, and what to beware of."""
     page.with_roots(*_written(advice))
     given(page)
@@ -56,7 +56,7 @@ def _written(advice: PoleAdvice) -> Iterator[Scalar]:
             yield from _written(cast("PoleAdvice", case.result))
 
 
-def _advice(page: Page, advice: PoleAdvice) -> None:
+def _advice(page: Builder, advice: PoleAdvice) -> None:
     """Write zeros, the other places, the polynomial, the cautions."""
     _zeros(page, advice)
     if advice.request.radius is not None:
@@ -68,14 +68,14 @@ def _advice(page: Page, advice: PoleAdvice) -> None:
         _caution(page, advice, warning)
 
 
-def _cases(page: Page, advice: PoleAdvice) -> Iterator[Step]:
+def _cases(page: Builder, advice: PoleAdvice) -> Iterator[Step]:
     """Yield the cases: of zeros that are stable under conditions, and of the strata."""
     for case in advice.case_tree:
         if case.result is None:
             yield undecided(page, case)
             continue
         found = cast("PoleAdvice", case.result)
-        inner = Page(found.plant)
+        inner = Builder(found.plant)
         matrices = {name: getattr(found.plant.matrices, name) for name in "ABCD" if page.defines(name)}
         inner.environment = page.environment.extended_by(values=matrices)
         _advice(inner, found)
@@ -91,7 +91,7 @@ def _cases(page: Page, advice: PoleAdvice) -> Iterator[Step]:
         yield steps[0]
 
 
-def _asked(page: Page, advice: PoleAdvice) -> None:
+def _asked(page: Builder, advice: PoleAdvice) -> None:
     """State settling time and overshoot."""
     time, overshoot = advice.request.settling_time, advice.request.overshoot
     assert time is not None and overshoot is not None  # noqa: S101, PT018 - one of two ways to ask
@@ -100,12 +100,12 @@ def _asked(page: Page, advice: PoleAdvice) -> None:
     page.environment = page.environment.extended_by(values={"T_s": time, "M_p": overshoot})
 
 
-def _product(page: Page, factors: tuple[tuple[Scalar, int], ...]) -> Term:
+def _product(page: Builder, factors: tuple[tuple[Scalar, int], ...]) -> Term:
     """Return a product of factors as they are."""
     return page.term(formula_of_factored(Factored(Scalar.of(1), factors)))
 
 
-def _zeros(page: Page, advice: PoleAdvice) -> None:
+def _zeros(page: Builder, advice: PoleAdvice) -> None:
     """The numerator, its roots, and those of them that are used."""
     plant, b = page.plant, numerator_of(page.plant)
     page.define(
@@ -127,7 +127,7 @@ def _zeros(page: Page, advice: PoleAdvice) -> None:
         page.conclude("no_zeros_taken", relation(page["phi_z"], 1))
 
 
-def _circle(page: Page, advice: PoleAdvice, radius: Scalar) -> None:
+def _circle(page: Builder, advice: PoleAdvice, radius: Scalar) -> None:
     """φ_r with φ_r(s) φ_r(−s), and the pairs."""
     count, variable = advice.count, page.plant.variable
     if not count:
@@ -156,12 +156,12 @@ def _circle(page: Page, advice: PoleAdvice, radius: Scalar) -> None:
     page.equal(*shown, say="circle_pairs")
 
 
-def _nothing(page: Page) -> None:
+def _nothing(page: Builder) -> None:
     page.set("phi_r", Scalar.of(1))
     page.conclude("none_remains", relation(page["phi_r"], 1))
 
 
-def _pair(page: Page, advice: PoleAdvice) -> None:
+def _pair(page: Builder, advice: PoleAdvice) -> None:
     """σ from the settling time, ω from the overshoot, and φ_r."""
     answer, request, count = advice.answer, advice.request, advice.count
     assert request.settling_time is not None and request.overshoot is not None  # noqa: S101, PT018 - one of two ways to ask
@@ -197,7 +197,7 @@ def _pair(page: Page, advice: PoleAdvice) -> None:
     )
 
 
-def _polynomial(page: Page, advice: PoleAdvice) -> None:
+def _polynomial(page: Builder, advice: PoleAdvice) -> None:
     """φ, boxed, and where the gain tends."""
     zeros, plant, whole = advice.zeros, page.plant, formula_of_factored(advice.answer["polynomial"])
     parts = [*([page["phi_z"]] if zeros.used else []), *([page["phi_r"]] if advice.count else [])]
@@ -217,7 +217,7 @@ def _polynomial(page: Page, advice: PoleAdvice) -> None:
         page.equal(relation(page["C"] @ pencil @ page["B"], multiple), say="recovery")
 
 
-def _caution(page: Page, advice: PoleAdvice, warning: PoleWarning) -> None:
+def _caution(page: Builder, advice: PoleAdvice, warning: PoleWarning) -> None:
     """Say a warning, with what can be checked of it."""
     slots, n = dict(warning.slots), page.plant.order
     if warning.key == "always_unstable":
@@ -239,7 +239,7 @@ def _caution(page: Page, advice: PoleAdvice, warning: PoleWarning) -> None:
         page.caution(warning.key, relation(page["b_P"], 0))
 
 
-def _vanishing(page: Page, advice: PoleAdvice, factor: Scalar) -> Relation:
+def _vanishing(page: Builder, advice: PoleAdvice, factor: Scalar) -> Relation:
     """Return b(z) = 0 for the root z of a linear factor, b(s) = factor · rest for another."""
     variable = page.plant.variable
     if factor.degree(variable) == 1:

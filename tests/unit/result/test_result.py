@@ -40,7 +40,7 @@ from tests.support.problems.steps import A, F, said
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
-    from symobs.derivation.builder import Page
+    from symobs.derivation.builder import Builder
 
 PLANT = StateSpace("[0 1; -k/m -2]", "[0; 1/m]", "[1 c]")
 SERVO = StateSpace("[0 1; 0 -1]", "[0; 1]", "[1 0]")
@@ -55,7 +55,7 @@ class Squared(Result):
         yield Claim(said(self.answer["square"], self.answer["number"] ** 2), Environment(), "a square")
         yield Statement("shown", lambda: "by hand")
 
-    def write(self, page: Page) -> None:
+    def write(self, page: Builder) -> None:
         page.steps = [Define(said(F, self.answer["square"]))]
 
 
@@ -175,7 +175,7 @@ class Elsewhere(Squared):
     letter: ClassVar[str] = "A"
     value: ClassVar[Any] = Matrix.identity(2)
 
-    def write(self, page: Page) -> None:
+    def write(self, page: Builder) -> None:
         page.steps = [Define(said(Letter(self.letter), self.value))]
 
 
@@ -193,7 +193,7 @@ def test_a_page_speaks_of_the_plant_s_own_data(letter: str, monkeypatch: pytest.
 
 def test_a_page_is_checked() -> None:
     class Lying(Squared):
-        def write(self, page: Page) -> None:
+        def write(self, page: Builder) -> None:
             page.steps = [Define(said(F, A))]
 
     lying = Lying(SERVO, "by hand", {"number": Scalar.of(3), "square": Scalar.of(9)})
@@ -204,7 +204,7 @@ def test_a_page_is_checked() -> None:
     class Driven(Squared):
         free_signals = {"v": 1}  # noqa: RUF012 - a property there
 
-        def write(self, page: Page) -> None:
+        def write(self, page: Builder) -> None:
             page.steps = [Define(said(Letter("y"), Letter("v")))]
 
     assert Driven(SERVO, "m", {"number": Scalar.of(3), "square": Scalar.of(9)}).derivation.check().defines("y")

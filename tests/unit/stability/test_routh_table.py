@@ -17,7 +17,7 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from symobs.derivation import CaseStep, Define, Derivation, Sentence, Tabulate
-from symobs.derivation.builder import Page
+from symobs.derivation.builder import Builder
 from symobs.derivation.routh_check import findings_of, last_determinant
 from symobs.exact import Scalar, from_coefficients
 from symobs.formula import Environment, Letter, Sum
@@ -588,7 +588,7 @@ def test_what_the_letter_of_the_last_determinant_means() -> None:
 
 def test_a_page_shows_a_table_and_what_it_says() -> None:
     plant = StateSpace("[0 1; 0 -1]", "[0; 1]", "[1 0]")
-    page = Page(plant)
+    page = Builder(plant)
     chi = page.define("chi", (s + 1) * (s**2 + 4))
     table = page.tabulate(chi, say="routh_table", polynomial=chi)
     step = page.steps[-1]
@@ -604,7 +604,7 @@ def test_a_page_shows_a_table_and_what_it_says() -> None:
 
 def test_a_page_in_discrete_time_names_the_variable() -> None:
     plant = StateSpace("[0 1; 0 -h]", "[0; 1]", "[1 0]", dt=1, symbols={"epsilon": "real", "h": "real"})
-    page = Page(plant)
+    page = Builder(plant)
     z = Scalar.symbol("z")
     chi, mapped = (
         page.define("chi", z**2 + Scalar.symbol("h")),
