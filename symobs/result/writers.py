@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from symobs.derivation.builder import Builder
 
 Kind = TypeVar("Kind", bound=type)
-Writer = TypeVar("Writer", bound="Callable[[Page, Any], None]")
+Writer = TypeVar("Writer", bound="Callable[[Builder, Any], None]")
 
 _FORMATS: dict[str, Any] = {}
 _PAGES: dict[type, Callable[[Builder, Any], None]] = {}
