@@ -99,7 +99,7 @@ def rank_claims(found: Mapping[str, Any], e: Environment, here: Environment | No
     if N.shape[1]:
         e, count = here or e, range(N.shape[1])
         yield Claim(relation(letter("O", e) @ letter("N", e), Matrix.zeros(O.shape[0], len(count))), e, "M*N = 0")
-        yield Claim(relation(_det(N.select(found["free"], count), e), "!==", 0), e, "rank N = n - rank M")
+        yield Claim(relation(determinant_term(N.select(found["free"], count), e), "!==", 0), e, "rank N = n - rank M")
         yield Claim(relation(letter("A", e) @ letter("N", e), letter("N", e) @ letter("X", e)), e, "A*N = N*X")
 
 
@@ -113,7 +113,7 @@ def minor_claim(found: Mapping[str, Any], e: Environment) -> Iterator[Claim]:
     """Yield the rank from below, in general: a minor of its order is not zero."""
     if found["rank"]:
         minor = found["matrix"].select(found["rows"], found["columns"])
-        yield Claim(relation(_det(minor, e), "!==", 0), e, f"a minor of order {found['rank']} is not zero")
+        yield Claim(relation(determinant_term(minor, e), "!==", 0), e, f"a minor of order {found['rank']} is not zero")
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -324,5 +324,6 @@ def listed(sets: tuple[tuple[int, ...], ...] | None) -> list[list[int]] | None:
     return None if sets is None else [list(numbers) for numbers in sets]
 
 
-def _det(matrix: Matrix, environment: Environment) -> Term:
+def determinant_term(matrix: Matrix, environment: Environment) -> Term:
+    """Return det of a matrix as a formula with its value."""
     return Term(Literal(matrix), environment).apply("det")

@@ -126,11 +126,6 @@ class Decomposition(Result):
         minors = [m.determinant() for m in (self._reaching, self._seeing) if m is not None]
         return (*minors, self.answer["inverse"].determinant(), self.answer["inverse"].common_denominator())
 
-    @property
-    def verdict(self) -> str:
-        """The decomposition always exists; with parameters its parts may be others somewhere."""
-        return "conditional" if self._binding_conditions else "yes"
-
     @cached_property
     def holds_where(self) -> tuple[Condition, ...]:
         """The plant's domain, and where the parts have the generic dimensions in these coordinates."""

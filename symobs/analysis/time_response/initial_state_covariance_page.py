@@ -22,10 +22,6 @@ from symobs.result import page_of
 if TYPE_CHECKING:
     from symobs.derivation.builder import Builder
 
-#: How the output noise enters, and what stands between two inverse Gramians.
-_WITH_INPUT = ("estimate_is", "parts_of_covariance")
-_OUTPUT_ONLY = ("estimate_of_output", "covariance_of_output")
-
 
 @page_of(InitialStateCovariance)
 def write_covariance(page: Builder, result: InitialStateCovariance) -> None:

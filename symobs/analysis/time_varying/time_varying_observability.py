@@ -12,6 +12,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 from symobs._dataclass import dataclass
+from symobs.analysis.rank.rank_test import determinant_term
 from symobs.analysis.strata.strata import strata
 from symobs.analysis.time_response.damping_cases import reject, vanishing_denominators
 from symobs.analysis.time_varying.time_interval import instant_where_not_zero, reject_poles, reject_sizes_and_names
@@ -129,7 +130,7 @@ class TimeVaryingObservability(Result):
         sizes = V.shape[1], len(answer["free"]), *answer["restricted"].shape
         yield Claim(relation(hidden, *sizes), e, "the hidden states have the dimension n - rank")
         if found:
-            minor = _det(self.answer["matrix"].select(answer["rows"], answer["columns"]), e)
+            minor = determinant_term(self.answer["matrix"].select(answer["rows"], answer["columns"]), e)
             yield Claim(relation(minor, "!==", 0), e, f"a minor of order {found} of the stack is not identically 0")
             if answer["point"] is not None:
                 yield from self._inside_claims(e)
@@ -139,7 +140,9 @@ class TimeVaryingObservability(Result):
             A, C, states, X = (letter(name, e) for name in ("A", "C", "V", "X"))
             yield Claim(relation(C @ states, Matrix.zeros(self.plant.outputs, hidden)), e, "C*V = 0")
             yield Claim(relation(A @ states - states.derivative, states @ X), e, "A*V - V' = V*X")
-            yield Claim(relation(_det(V.select(answer["free"], range(hidden)), e), "!==", 0), e, "rank V = n - rank")
+            yield Claim(
+                relation(determinant_term(V.select(answer["free"], range(hidden)), e), "!==", 0), e, "rank V = n - rank"
+            )
 
     def _inside_claims(self, e: Environment) -> Iterator[Claim]:
         """Yield that the instant which shows the rank is one of the interval."""
@@ -310,10 +313,6 @@ class TimeVaryingObservability(Result):
         """Also the ends of the interval."""
         ends = self.asked_for.interval
         return {**super().data, **({"t_start": ends[0], "t_end": ends[1]} if ends else {})}
-
-
-def _det(matrix: Matrix, environment: Environment) -> Term:
-    return Term(Literal(matrix), environment).apply("det")
 
 
 def _beside(vectors: tuple[Matrix, ...], order: int) -> Matrix:

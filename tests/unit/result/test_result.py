@@ -357,7 +357,7 @@ def test_a_task_is_its_signature() -> None:
     )
     assert found.works_without_plant is False
     assert task_in_time(works_without_plant)(number=3).given == (None, None, 3)
-    found = tasks()["alone"]
+    found = tasks()["works_without_plant"]
     assert (found.works_without_plant, dict(found.keywords), found.summary) == (True, {"number": "Number"}, "")
     with pytest.raises(FrozenInstanceError):
         found.name = "other"  # type: ignore[misc]
