@@ -42,7 +42,7 @@ def _power(factor: Scalar, exponent: int) -> Formula:
 
 
 def over(numerator: Scalar, own: Scalar, polynomial: Factored) -> Factored:
-    """Return numerator · own / Π factors: the denominator's factors as asked for, and no factor made monic."""
+    """Return numerator · own / Π factors with the desired factors in the denominator, none of them made monic."""
     unit, above = numerator.factors()
     sign = _sign(own)
     below = tuple((factor, -power) for factor, power in polynomial.factors)

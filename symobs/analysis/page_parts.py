@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 
 def set_anew(outer: Builder, inner: Builder) -> Iterator[str]:
-    """Yield the letters, other than the data's, to which a case gives a meaning of its own."""
+    """Yield the letters, other than the data's, that a case redefines."""
     for name, value in inner.environment.values.items():
         if name in outer.environment.values and name not in "ABCD" and outer.environment.values[name] != value:
             yield name
@@ -62,7 +62,7 @@ _DECIMALS = 4
 
 
 def given(page: Builder, *desired: tuple[str, DesiredPolynomial | None]) -> None:
-    """State the plant, and the poles or polynomials asked for under their names (`control`, `observer`, …)."""
+    """State the plant, and the desired poles or polynomials by name (`control`, `observer`, …)."""
     plant, m = page.plant, page.plant.matrices
     with page.section("given"):
         if plant.origin is not None:
@@ -128,7 +128,7 @@ def _hold_to_letters(page: Builder) -> None:
 
 
 def _asked(page: Builder, name: str, desired_polynomial: DesiredPolynomial) -> None:
-    """State the poles or the polynomial asked for."""
+    """State the desired poles or the desired polynomial."""
     phi = page.set(f"phi_{name[0]}", desired_polynomial.polynomial)
     if desired_polynomial.poles:
         roots = tuple(root_of_pole(pole, page.plant.variable) for pole in desired_polynomial.poles)
@@ -160,7 +160,7 @@ def in_blocks(page: Builder, value: Matrix, heights: Sequence[int], widths: Sequ
 
 
 def is_narrow(*matrices: Matrix) -> bool:
-    """Whether matrices can be read on a page: the widest row, with its fractions in one line."""
+    """Return whether matrices can be read on a page: the widest row, with its fractions in one line."""
     return all(sum(len(str(entry)) for entry in row) <= _WIDEST for matrix in matrices for row in matrix.rows)
 
 
@@ -179,7 +179,7 @@ def conditions_of(case: Case) -> Relation | Conjunction:
 
 
 def stratum_of(case: Case) -> Relation | Conjunction:
-    """Return what a case says of the parameters: a single equation as p = 0."""
+    """Return the conditions of a case: a single equation as p = 0."""
     return relation(case.when[0].expression, 0) if len(case.when) == 1 else conditions_of(case)
 
 

@@ -69,7 +69,7 @@ def left_out(what: str) -> None:
 
 
 def shows(facts: Iterable[Relation], environment: Environment) -> bool:
-    """Tell whether lines can be written: not beyond the reach of the check, nor, with a warning, where it fails."""
+    """Return whether lines can be written: not beyond the reach of the check, nor, with a warning, where it fails."""
     for fact in facts:
         if verify(fact, environment)[0]:
             continue
@@ -152,12 +152,12 @@ class Builder:
         self.forms: dict[str, str] = {}
 
     def with_roots(self, *values: Scalar | Matrix) -> None:
-        """Let the page speak of these square roots: that each squared is its radicand is known from the start."""
+        """Admit square roots: each squared is its radicand from the start."""
         vanishing = identities(values)[1]
         self.start, self.environment = self.start.with_relations(vanishing), self.environment.with_relations(vanishing)
 
     def in_time(self, *values: Scalar | Matrix) -> None:
-        """Let the page speak of these functions of time: how they depend on each other is known from the start."""
+        """Admit functions of time, with their algebraic dependences from the start."""
         self.in_time_by(*identities(values))
         taken = {*self.plant.symbols.signs, *self.plant.field.names}
         letters = iter([form for form in _ROOTS if form.lstrip("\\") not in taken])
@@ -165,7 +165,7 @@ class Builder:
             self.forms[root] = next(letters, rf"\sqrt{{\cdot}}_{{{len(self.forms)}}}")
 
     def in_time_by(self, meanings: Mapping[str, Scalar], vanishing: tuple[Scalar, ...]) -> None:
-        """Let the page speak of functions of time that depend on each other in this way."""
+        """Admit functions of time with given algebraic dependences."""
         self.start = replace(self.start, coefficients=meanings).with_relations(vanishing)
         self.environment = replace(self.environment, coefficients=meanings).with_relations(vanishing)
 
@@ -179,7 +179,7 @@ class Builder:
     # -- terms --------------------------------------------------------------------------------------------------------
 
     def term(self, formula: Formula) -> Term:
-        """Return a term in what is established now."""
+        """Return a term in the current environment."""
         return Term(formula, self.environment)
 
     def __getitem__(self, names: str) -> Term:
@@ -210,7 +210,7 @@ class Builder:
         return self.s @ self.identity(order) - matrix
 
     def defines(self, name: str) -> bool:
-        """Whether a letter is established."""
+        """Return whether a letter is established."""
         return self.environment.defines(name)
 
     # -- steps --------------------------------------------------------------------------------------------------------

@@ -87,7 +87,7 @@ class Derivation:
         return self.start.variable
 
     def check(self) -> Environment:
-        """Verify every line; return what is established at the end.  Raises `DerivationRejected`."""
+        """Verify every line; return the final environment.  Raises `DerivationRejected`."""
         known: Environment | None = self.__dict__.get("_checked")
         if known is None:
             known = _walk(self.steps, self.start, self.discrete)
@@ -164,7 +164,7 @@ def _after(step: Step, environment: Environment, discrete: bool) -> Environment:
 
 
 def _tabulated(step: Tabulate, environment: Environment, discrete: bool) -> Environment:  # noqa: FBT001
-    """Verify a table and whose it is said to be; let Δₙ₋₁ mean what it does beside this table."""
+    """Verify a table and its polynomial; define Δₙ₋₁ for this table."""
     polynomial, variable = step.polynomial, step.variable
     _about_letters(polynomial, environment)
     value = as_scalar(evaluate(polynomial, environment, Exact(environment)))
@@ -178,7 +178,7 @@ def _tabulated(step: Tabulate, environment: Environment, discrete: bool) -> Envi
 
 
 def _drawn(picture: Picture, subject: Formula, environment: Environment, discrete: bool) -> None:  # noqa: FBT001
-    """Reject a picture that shows what is not true of the polynomial."""
+    """Reject a plot that is false of its polynomial."""
     from symobs.derivation.figures.plot_check import faults, relations_of  # noqa: PLC0415 - only pages of regions pay for it
 
     for formula in (subject, *(member for relation in relations_of(picture) for member in relation.members)):
@@ -221,7 +221,7 @@ def _has_values(formula: Formula) -> bool:
 
 
 def _about_letters(formula: Formula, environment: Environment) -> None:
-    """Reject a property of what is written out only: it would say nothing about the problem."""
+    """Reject a property of written-out values only, which are no quantity of the problem."""
     _established(formula, environment)
     if not letters(formula) - {"s"}:
         reject(f"a property of {plain(formula, environment.variable)}, which is no letter's,")
@@ -288,7 +288,7 @@ def _introduce(relation: Relation, environment: Environment) -> Environment:
 
 
 def _with_domain(relation: Relation, environment: Environment) -> Environment:
-    """Let the denominators of data be 0 nowhere: there the data mean nothing, and nothing is said of them."""
+    """Assume the denominators of the data are nonzero; elsewhere the plant is undefined."""
     literals = [value for member in relation.members for value in _literals(member)]
     entries = [entry for value in literals for entry in (value.entries if isinstance(value, Matrix) else (value,))]
     factors = vanishing_factors([entry.denominator for entry in entries], environment.signs)
@@ -334,7 +334,7 @@ def _meaning(target: Formula, rest: list[Formula], environment: Environment) -> 
 
 
 def _is_free(name: str, environment: Environment) -> bool:
-    """Whether a signal has neither a definition nor a derivative: only such a one can be given either."""
+    """Return whether a signal has neither a definition nor a derivative: only such a one can be given either."""
     return environment.signals[name] is None and name not in environment.dynamics
 
 

@@ -243,7 +243,7 @@ def _literals(steps: Any) -> Iterator[Scalar | Matrix]:
 
 
 def _values(relation: Relation, names: frozenset[str]) -> Iterator[Matrix]:
-    """Yield the matrices, and their transposes, that a relation says one of the letters is."""
+    """Yield the matrices, and their transposes, equated with one of the letters by a relation."""
     head = relation.members[0]
     head = head.operand if isinstance(head, Transpose) else head
     if isinstance(head, Letter) and head.name in names:

@@ -84,7 +84,7 @@ _ORDER = {
 
 
 def check_decimals(exact: object, shown: object, variable: str, digits: int) -> None:
-    """Raise `DerivationRejected` unless steps in decimals say what the exact steps say, correctly rounded."""
+    """Raise `DerivationRejected` unless the steps in decimals are the exact steps, correctly rounded."""
     try:
         _Comparison(variable, digits).compare(exact, shown)
     except UNREADABLE as error:
@@ -166,7 +166,7 @@ class _Comparison:
             self._formula(one, other)
 
     def _are_equal_in_time(self, exact: Formula, shown: Formula) -> bool:
-        """Return whether functions of time are equal by what is known of them: e^{−2aT} is the square of e^{−aT}."""
+        """Return whether functions of time are equal by their dependences: e^{−2aT} is the square of e^{−aT}."""
         meanings, vanishing = identities([*_values(exact), *_values(shown)])
         start = replace(self.environment, coefficients=meanings).with_relations(vanishing)
         return bool(meanings or vanishing) and verify(Relation((exact, shown), ("=",)), start)[0] != ""

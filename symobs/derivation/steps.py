@@ -58,7 +58,7 @@ class Define:
 
 @dataclass(frozen=True)
 class Equal:
-    """Relations among what is established, shown on one display."""
+    """Relations between established values, on one display."""
 
     relations: tuple[Relation, ...]
     sentence: Sentence | None = None
@@ -85,7 +85,7 @@ class Conclude:
 
 @dataclass(frozen=True)
 class Note:
-    """A remark; `caution` where an expert would warn.  It may speak of established letters only."""
+    """A remark; `caution` marks a warning.  It contains established letters only."""
 
     sentence: Sentence
     facts: tuple[Fact, ...] = ()
@@ -106,7 +106,7 @@ class Diagram:
 
 @dataclass(frozen=True)
 class Tabulate:
-    """Routh's table of a polynomial in `variable`; the findings, told below it, are among those of `findings_of`."""
+    """Routh's table of a polynomial in `variable`; the findings printed below are among those of `findings_of`."""
 
     polynomial: Formula
     table: RouthTable
@@ -150,7 +150,7 @@ class Plot:
 
 @dataclass(frozen=True)
 class CaseStep:
-    """What is true on a stratum: `when` holds there because of `substitution`, and the steps hold after it.
+    """A case: the steps that hold on a stratum; `when` holds there because of `substitution`.
 
     Several equations and inequations stand together.  Without a substitution the steps hold modulo the equations.  The
     letters in `anew` have no meaning there until they are introduced again.

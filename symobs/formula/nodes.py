@@ -313,7 +313,7 @@ def is_rational(formula: Formula) -> bool:
 
 
 def divisors(formula: Formula) -> Iterator[Formula]:
-    """Yield what a formula divides by."""
+    """Yield the denominators of a formula."""
     match formula:
         case Quotient(_, below):
             yield below

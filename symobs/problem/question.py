@@ -1,4 +1,4 @@
-"""What a problem asks, as a page of its own: its data, and a sentence or two for every task.
+"""The question of a problem as a page: its data, and a sentence or two for every task.
 
 The sentences stand beside each task, among its phrases; which of them are said follows from what the specification
 contains.  The page is a derivation like any other: what it states is checked, and it is told by the same narrator.
@@ -54,7 +54,7 @@ _WORDS = {"Name", "Sign"}
 
 @dataclass(frozen=True)
 class Question(Document):
-    """What a problem asks: a document without results."""
+    """A question: a document without results."""
 
     page: Derivation | None = None
 
@@ -120,7 +120,7 @@ def _state_data(page: Builder, asked: Iterable[tuple[Task, Mapping[str, Any]]]) 
 
 
 def tokens_of(task: Task, values: Mapping[str, Any], problem: Problem) -> frozenset[str]:
-    """Return what the specification contains for a task, as the keys of the sentences put it."""
+    """Return the specification of a task, by the keys of its sentences."""
     tokens: set[str] = set()
     for name, value in values.items():
         kind = task.keywords[name]
@@ -136,7 +136,7 @@ def tokens_of(task: Task, values: Mapping[str, Any], problem: Problem) -> frozen
 
 
 def sentences_for(task: Task, tokens: frozenset[str]) -> list[str]:
-    """Return the keys of the sentences that together say all of this: the one that says most, then the others."""
+    """Return the keys of sentences that together cover the specification, the most comprehensive one first."""
     asks = [
         words for words in map(str.split, QUESTIONS) if words[:2] == ["ask", task.name] and tokens.issuperset(words[2:])
     ]
@@ -151,7 +151,7 @@ def sentences_for(task: Task, tokens: frozenset[str]) -> list[str]:
 
 
 def _filled(page: Builder, task: Task, key: str, values: Mapping[str, Any]) -> Sentence:
-    """Return a sentence with what its slots ask for."""
+    """Return a sentence with its slots filled."""
     if key == "asked":
         return sentence(key, {"summary": task.summary})
     slots: dict[str, Slot] = {}
@@ -202,7 +202,7 @@ def _values(task: Task, problem: Problem) -> Iterator[tuple[str, Any]]:
 
 
 def _free_parameters(problem: Problem) -> tuple[str, ...]:
-    """Return the parameters that the region is asked for where none are named."""
+    """Return the parameters of the region where none are named."""
     from symobs.analysis.stability_region.stability_region_question import read_question  # noqa: PLC0415 - only questions of regions
 
     asked = problem.specification

@@ -67,7 +67,7 @@ _IN_JSON = re.compile(rf'"(?:{_OWN})"\s*:'), re.compile(r'"(?:tasks?|plant|speci
 
 @dataclass(frozen=True)
 class SheetProblem:
-    """What a sheet says of one of its problems."""
+    """A problem of a sheet: file, points, hint, and room for the answer."""
 
     file: str
     points: tuple[Fraction, ...] = ()
@@ -242,7 +242,7 @@ def _asked(
     read: Callable[[str], str],
     errors: Errors,
 ) -> tuple[SheetProblem, str]:
-    """Return what is said of a problem, and the text of its file."""
+    """Return the entry of a problem, and the text of its file."""
     _report_unknown(entry, PROBLEM, where, errors)
     points = _points(entry["points"], f"{where}.points", errors) if "points" in entry else ()
     hint = _text(entry.get("hint", ""), f"{where}.hint", errors)

@@ -61,7 +61,7 @@ class Problem:
     language: str = ENGLISH.code
 
     def solve(self, report: Callable[[str, tuple[Result, ...]], None] | None = None) -> tuple[Result, ...]:
-        """Run every task; `report` is told which one begins and the results there are.
+        """Run every task; `report` receives the name of the next one and the results so far.
 
         All errors of all tasks are raised together.
         """
@@ -87,7 +87,7 @@ class Problem:
         return tuple(ResultInConvention(result, self.convention) for result in results)
 
     def document(self, results: tuple[Result, ...], convention: Convention | None = None) -> Document:
-        """Return what a format renders, in the file's convention or in another one."""
+        """Return the document for a format, in the file's convention or in another one."""
         chosen = convention or self.convention
         return Document(self.title, self.source, results, chosen, self.text, digits=self.digits, language=self.language)
 
@@ -155,7 +155,7 @@ def _ids(value: object, errors: Errors) -> tuple[str, ...]:
 
 
 def _digits(data: Mapping[str, Any], errors: Errors) -> int | None:
-    """Return the digits of the numbers on the page: 0 for exact ones, None where nothing is said."""
+    """Return the digits of the numbers on the page: 0 for exact ones, None by default."""
     exact = data.get("exact", False)
     if not isinstance(exact, bool):
         errors.note(f"true or false is expected, but {came(exact)} came", "exact", "write exact = true")
@@ -311,7 +311,7 @@ def _specification(
     symbols: Symbols,
     errors: Errors,
 ) -> dict[str, Any]:
-    """Return what the tasks can use of the specification, in standard letters and signs."""
+    """Return the part of the specification that the tasks use, in standard letters and signs."""
     table, kinds = table_of(data, "specification", errors), _kinds(wanted)
     named = {own: pair for own, pair in names_in(convention).items() if pair[0] in kinds}
     report_unknown(table, {**kinds, **dict.fromkeys(named, "GainText")}, "specification", errors)
@@ -338,7 +338,7 @@ def _specification(
 
 
 def _read_cells(value: object, symbols: Symbols, where: str, errors: Errors) -> None:
-    """Note every cell of a matrix in lists that cannot be read; whoever reads the whole matrix stops at the first."""
+    """Note every unreadable cell of a matrix in lists; reading the matrix as a whole stops at the first."""
     rows = value if isinstance(value, list) else []
     cells = ((i, j, cell) for i, row in enumerate(rows) if isinstance(row, list) for j, cell in enumerate(row))
     for i, j, cell in islice(cells, _MAX_CELLS):

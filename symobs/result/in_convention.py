@@ -24,7 +24,7 @@ _OF_OBSERVER = {"F": "F_z", "G": "G_z", "H": "H_z", "M": "M_z"}
 
 
 def names_in(convention: Convention, task: str = "", *, reduced: bool = False) -> dict[str, tuple[str, int]]:
-    """Return what a convention calls the fields that are letters: its name → (standard name, sign of its value)."""
+    """Return the names of letter fields in a convention: its name → (standard name, sign of its value)."""
     letters = _GAINS | (_OF_OBSERVER if task == "reduced_order_observer" else {})
     written = convention.written(reduced=reduced)
     return {

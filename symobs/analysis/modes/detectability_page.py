@@ -94,7 +94,7 @@ def _hidden_modes(page: Builder, result: HiddenStability, count: int) -> None:
 
 
 def _judge(page: Builder, result: HiddenStability, about: Term) -> None:
-    """Say whether the fixed modes, the roots of what `about` means, are stable in the meaning asked for."""
+    """State whether the fixed modes, the roots of `about`, are stable in the chosen meaning."""
     plant, time = page.plant, _time(page)
     found = stability(
         result.answer["fixed_polynomial"], plant.variable, plant.symbols.signs, discrete=plant.is_discrete
@@ -119,7 +119,7 @@ def _judge(page: Builder, result: HiddenStability, about: Term) -> None:
 
 
 def _where(page: Builder, result: HiddenStability, about: Term) -> None:
-    """Say exactly where the fixed modes are stable; under the weaker reading what is left open."""
+    """State exactly where the fixed modes are stable; in the weaker meaning also the undecided parameters."""
     signs, conditions = page.plant.symbols.signs, result.hidden.where
     if all(condition.operator == ">=" for condition in conditions):
         solved = [as_inequality(condition.expression, signs) for condition in conditions]
@@ -187,7 +187,7 @@ def _generic(page: Builder, result: HiddenStability) -> None:
 
 
 def _cases(page: Builder, letter: str, result: HiddenStability) -> None:
-    """Write on every stratum what is hidden there, and whether it is stable; where eigenvalues meet, how they are seen."""
+    """Write the hidden modes and their stability on every stratum, and the ranks at repeated eigenvalues."""
     weaker = result.meaning == "lyapunov"
     for case in (*result.rank_cases, *(result.meeting_cases if weaker else ())):
         page.steps.append(undecided(page, case) if case.result is None else _case(page, letter, case))

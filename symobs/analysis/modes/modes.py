@@ -84,7 +84,7 @@ class Eigenvalues:
 
 
 def has_open_cases(test: RankResult) -> bool:
-    """Whether the rank is another one somewhere."""
+    """Return whether the rank is another one somewhere."""
     return bool(test.case_tree) or (test.answer["rank"] == test.plant.order and test.verdict != "yes")
 
 

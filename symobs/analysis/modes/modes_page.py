@@ -83,7 +83,7 @@ def _at(page: Builder, result: ModeResult, part: Eigenvalues, rank: int, conditi
 
 
 def _are_independent(vectors: Matrix, here: Environment) -> bool:
-    """Tell whether eigenvectors are independent at every point, none of them 0."""
+    """Return whether eigenvectors are independent at every point, none of them 0."""
     minors = Matrix.column(maximal_minors(vectors)) if vectors.shape[1] else Matrix.of([[1]])
     return bool(verify(relation(minors, "!=", minors * 0), here)[0])
 

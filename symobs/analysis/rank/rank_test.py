@@ -1,4 +1,4 @@
-"""What observability and its dual have in common: the test matrix, its rank, kernel, cases, and what would repair it."""
+"""The rank test of observability and of controllability: test matrix, rank, kernel, cases, missing measurements."""
 
 from __future__ import annotations
 
@@ -260,7 +260,7 @@ class RankResult(Result):
         return (*found, *cases), tuple(certificates)
 
     def _case(self, stratum: RankStratum) -> Case:
-        """Return the case of a stratum, on a plant of its own where its equations can be solved."""
+        """Return the case of a stratum, on the restricted plant where its equations can be solved."""
         matrix, (A, _) = self.answer["matrix"], self.pair(self.plant)
         for values in (stratum.substitution, {}):
             if values is None:

@@ -82,7 +82,8 @@ def characteristic_polynomial(plant: StateSpace, *, method: Name = "auto") -> Re
     """Return χ(s) = det(sI − A), its factors and its roots with multiplicity.
 
     plant    n states; only A matters
-    Returns polynomial (monic of degree n), factors (list of [factor, multiplicity]), roots, stable.
+    Returns polynomial (monic of degree n), factors (list of [factor, multiplicity]), roots, stable.  Raises `InputError`
+    for an unknown method.
     Source: T. Kailath, Linear Systems.
     """
     return choose("characteristic_polynomial", method, "determinant").solve(plant)

@@ -132,7 +132,7 @@ class TransferFunction(Result):
         return found
 
     def _is_as_ever(self, case: Case) -> bool:
-        """Whether a case has the poles and zeros that hold in general, and no cases of its own."""
+        """Return whether a case has the poles and zeros that hold in general, and no cases of its own."""
         if not isinstance(case.result, TransferFunction) or not case.substitution or case.result.case_tree:
             return False
         try:
@@ -195,7 +195,7 @@ class TransferFunction(Result):
             page.conclude("no_zero", predicate("polynomial", page["P"].inverse))
 
     def _cases(self, page: Builder) -> None:
-        """Say where this is so, and what is true elsewhere."""
+        """State the conditions, and the cases elsewhere."""
         if not self.case_tree:
             return
         from symobs.analysis.page_parts import case_steps  # noqa: PLC0415 - only pages with cases pay for it

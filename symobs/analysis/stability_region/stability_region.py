@@ -104,7 +104,7 @@ class StabilityRegion(Result):
         return f"stable exactly where {' and '.join(self.stable_if)}" if bounds else "stable everywhere"
 
     def _is_proved(self, bounds: Sequence[RegionInequality] | None) -> bool:
-        """Tell whether the proof leads from the conditions of the criterion to these inequalities and back."""
+        """Return whether the proof leads from the conditions of the criterion to these inequalities and back."""
         said = [Scalar.of(0)] if bounds is None else [positive_of(bound) for bound in bounds]
         chi, question = self.question.polynomial, self.question
         return is_stable_where(
@@ -118,7 +118,7 @@ class StabilityRegion(Result):
 
     @cached_property
     def short(self) -> Simplified | None:
-        """The list of inequalities with what is known of it, where there are other symbols or many parameters."""
+        """The list of inequalities and its findings, with other symbols or many parameters."""
         return None if self.region is not None else conditions_of(self.question)
 
     def _claim_of_polynomial(self) -> Claim:
@@ -259,7 +259,7 @@ def bound_of(positive: Scalar) -> RegionInequality:
 
 
 def positive_of(bound: RegionInequality) -> Scalar:
-    """Return what an inequality says is positive."""
+    """Return the expression that an inequality states to be positive."""
     return bound.polynomial if bound.operator == ">" else bound.polynomial**2
 
 
@@ -288,7 +288,7 @@ def stability_region(
     radius: Quantity = None,
     method: Name = "auto",
 ) -> Result:
-    """Say for which parameters all roots are stable: exact inequalities, intervals, cells of the plane, components.
+    """Find the parameters for which all roots of χ are stable: exact inequalities, intervals, cells of the plane.
 
     plant          a plant, or a polynomial as a text: "s^2 + (b + h2) s + omega^2 (1 - h1)"
     symbols, dt    for a polynomial: the signs of its symbols, and dt as for a plant (0 continuous: s, else z)
@@ -298,7 +298,9 @@ def stability_region(
     margin         α ≥ 0: all roots in Re s < −α           radius   0 < ρ ≤ 1, discrete time: all roots in |z| < ρ
     Returns polynomial, routh_table, stable_if; for one parameter intervals, for two cells, components, excluded_points;
     empty, bounded, sample_points.  One and two parameters without other symbols: exact; otherwise equivalent conditions.
-    Raises `InputError`.
+    Raises `InputError` where there is neither a polynomial nor a plant with the matrices of its gains, for a gain of
+    another shape, a name that is no parameter, and a margin or radius out of range.
+    Source: E. J. Routh (1877); A. Hurwitz (1895); G. E. Collins (1975) for cells of the plane.
     """
     where = "specification.parameters"
     if isinstance(plant, StateSpace):

@@ -44,7 +44,7 @@ def solved(bound: RegionInequality, signs: Mapping[str, str], parameters: Sequen
 
 
 def of_conditions(found: Simplified, question: RegionQuestion) -> dict[str, Any]:
-    """Return what is known of a region given by inequalities alone: whether it is empty, bounded, and a point of it."""
+    """Return the fields of a region given by inequalities alone: empty, bounded, a sample point."""
     empty = True if found.verdict == "no" else False if found.point is not None or found.verdict == "yes" else None
     limits = box(found.positive, question.parameters, question.plant.symbols.signs) if found.verdict != "no" else None
     fields: dict[str, Any] = {"empty": empty, "irredundant": found.irredundant, "bounded": None}
@@ -61,7 +61,7 @@ def _texts(point: Mapping[str, Any] | None) -> dict[str, str]:
 
 
 def ends_of(piece: IntervalPiece, name: str, signs: Mapping[str, str]) -> list[str]:
-    """Return name > low and name < high, without what the declared sign says already."""
+    """Return name > low and name < high, without bounds implied by the declared sign."""
     found = []
     if piece.low is not None and not (
         signs.get(name) == "positive" and piece.low.is_rational and not piece.low.fraction

@@ -88,7 +88,7 @@ def _polynomial_of_loop(page: Builder, result: StabilityRegion) -> str:
 
 
 def _sought(page: Builder, result: StabilityRegion) -> None:
-    """Say what is asked for."""
+    """State the question."""
     boundary, names = result.question.boundary, _listed(result)
     if boundary.is_usual:
         page.remark("sought_discrete" if boundary.discrete else "sought_continuous", names=names)
@@ -185,7 +185,7 @@ def _crossing(page: Builder, result: StabilityRegion, chi: str) -> None:
 
 
 def _conditions(page: Builder, result: StabilityRegion, chi: str) -> None:
-    """Show the conditions of the criterion, the short list that says the same, and what can be said of its shape."""
+    """Show the conditions of the criterion, the equivalent short list, and the findings on its shape."""
     short, signs, names = result.short, result.signs, result.question.parameters
     assert short is not None  # noqa: S101 - there is one where there is no region
     stable = predicate("stable", page[chi])

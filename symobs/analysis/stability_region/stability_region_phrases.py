@@ -1,4 +1,4 @@
-"""Stability regions: what is asked, where roots can cross, and what the region looks like."""
+"""Sentences and questions of stability regions."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a stability region is asked of: a polynomial, or a plant with entries of a gain left open."""
+"""The polynomial of a stability region: given, or that of a plant whose gain has free entries."""
 
 from __future__ import annotations
 

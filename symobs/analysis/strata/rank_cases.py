@@ -43,7 +43,7 @@ class Piece:
     minors: tuple[Minor, ...] = ()
 
     def relations(self, nonzero: Iterable[Scalar]) -> tuple[Scalar, ...]:
-        """Return what vanishes on the piece; that p does not is said by 1 − w p = 0 with a new name w."""
+        """Return the relations of the piece; p ≠ 0 is written as 1 − w p = 0 with a new name w."""
         equations = tuple(c.expression for c in self.conditions if c.operator == "==")
         others = [c.expression for c in self.conditions if c.operator == "!="]
         return outside([*others, *nonzero], equations)
@@ -132,7 +132,7 @@ def answer_with(matrix: Matrix, rank: int, kernel: Kernel, minor: Minor) -> dict
 
 
 def piece_of(stratum: RankStratum, values: Mapping[str, Scalar], region: Region) -> Piece:
-    """Return what is left of the conditions of a stratum when parameters are put in."""
+    """Return the conditions of a stratum after a substitution."""
     left: dict[Condition, None] = {}
     for condition in stratum.when:
         value = condition.expression.substitute(values).numerator
@@ -180,7 +180,7 @@ def kernel_claims(N: Matrix, X: Matrix, e: Environment, where: str) -> Iterator[
 
 
 def stratum_claims(stratum: RankStratum, region: Region) -> Iterator[Claim]:
-    """Yield that what a stratum leaves out lies on the loci below, and that the parameters put in are all of it."""
+    """Yield the claims that the stratum excludes only the loci below, and that its parametrisation covers it."""
     node, equations = stratum.node, stratum.node.locus.equations
     distances = [locus.distance for locus in dict.fromkeys(node.covers)]
     excluded = [c.expression for c in stratum.when if c.operator == "!="]

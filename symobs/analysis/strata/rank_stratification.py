@@ -67,7 +67,7 @@ class Node:
 
 @dataclass(frozen=True)
 class Tree:
-    """What holds in general, the strata where something else does, and the loci about which nothing is known.
+    """The generic rank, the strata with another one, and the undecided loci.
 
     `eliminations` is how many it took.
     """
@@ -379,7 +379,7 @@ def _factors(value: Scalar, region: Region) -> tuple[Scalar, ...]:
 
 
 def cuts_out(value: Scalar, node: Node, region: Region) -> bool:
-    """Tell whether a polynomial vanishes on the locus of a node only on loci below."""
+    """Return whether a polynomial vanishes on the locus of a node only on loci below."""
     parts = loci((*node.locus.equations, value), region)
     return all(any(part.lies_in(lower) for lower in node.below) for part in parts)
 

@@ -1,4 +1,4 @@
-"""Where eigenvalues meet: the parameters at which more eigenvectors belong to a hidden eigenvalue than in general.
+"""Parameter values at which the geometric multiplicity of a hidden eigenvalue increases.
 
 The rank of [A − λI; C] at an eigenvalue is n less the dimension of ker(X − λI), X being A on ker 𝒪.  It is the generic one
 wherever ker 𝒪 is and the minors of X − λI of the generic order do not vanish together.  Where they do, is an equation in the
@@ -33,7 +33,7 @@ System: TypeAlias = tuple[Scalar, ...]
 
 @dataclass(frozen=True)
 class RankConstancy:
-    """Where the rank at the roots of one factor is the generic one: outside the strata of some systems.
+    """The domain on which the rank at the roots of a factor is the generic one: the complement of some strata.
 
     The minors of X − λI never vanish together there.
     """

@@ -1,4 +1,4 @@
-"""Branches: what a result in functions of time is where a discriminant is negative, zero or positive.
+"""Damping cases: results in functions of time for a negative, zero or positive discriminant.
 
 A factor s² − 2σs + σ² − δ oscillates where δ < 0.  Where the declared signs do not decide, the result says what holds
 for δ < 0, and every other sign is a case.  What a denominator of the answer excludes is a case too.
@@ -147,7 +147,7 @@ class DampingCases(Result):
                 yield from case.result.everything()
 
     def state(self, page: Builder) -> None:
-        """State the data, and what the horizon must be."""
+        """State the data and the condition on the horizon."""
         from symobs.analysis.page_parts import given  # noqa: PLC0415
 
         given(page)
@@ -159,7 +159,7 @@ class DampingCases(Result):
             page.conclude("declared", signs=Conjunction(tuple(relation(value, ">", 0) for value in beyond)))
 
     def write_branches(self, page: Builder, write_branch: Callable[[Builder, Any], None]) -> None:
-        """Write this branch, as a case of its own where others stand beside it, and the others."""
+        """Write this branch and the others; each is a case if there are several."""
         chosen = [_stated(delta, sign) for delta, sign in self.answer["chosen"].items()]
         if not self.case_tree and not chosen:
             write_branch(page, self)
@@ -178,7 +178,7 @@ class DampingCases(Result):
 
 
 def _distance(case: Case) -> Scalar:
-    """Return what is 0 exactly where the equations of a case hold."""
+    """Return a polynomial that vanishes exactly where the equations of a case hold."""
     return Locus(tuple(c.expression for c in case.when if c.operator == "==")).distance
 
 
@@ -207,7 +207,7 @@ def _narrowed(steps: tuple[Step, ...], conditions: Sequence[Condition]) -> tuple
 
 
 def _inside(page: Builder, plant: StateSpace, substitution: Mapping[str, Scalar]) -> Builder:
-    """Return a page for the steps of a case, which knows what this one knows."""
+    """Return a builder for the steps of a case, with the same environment."""
     inner = Builder(plant)
     inner.start, inner.forms = page.start, page.forms
     inner.environment = replace(page.environment, values=_moved(page.environment.values, substitution))

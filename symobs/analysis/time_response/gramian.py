@@ -117,19 +117,19 @@ class Gramian(DampingCases):
 
     @property
     def has_answer(self) -> bool:
-        """Whether what is seen in general decays, if it must."""
+        """Whether the generic observable part decays, if it must."""
         return self.decay.verdict != "no"
 
     @cached_property
     def _kept(self) -> tuple[Case, ...]:
-        """The cases in which there is an integral over all time, though what is seen in general does not decay."""
+        """The cases with a convergent infinite-horizon integral, where the generic observable part does not decay."""
         if self.has_answer:
             return ()
         return tuple(case for case in self.case_tree if case.result is not None and case.result.verdict != "no")
 
     @cached_property
     def decay(self) -> StabilityVerdict:
-        """Whether what the output sees decays, on which an integral over all time stands."""
+        """Whether the observable part decays, which the infinite horizon requires."""
         if "seen" not in self.answer:
             return StabilityVerdict("yes")
         plant = self.plant
@@ -191,7 +191,7 @@ class Gramian(DampingCases):
         yield from self._about_gramian(e)
 
     def _about_decay(self, e: Environment) -> Iterator[Claim]:
-        """Yield that what is seen is the plant without its hidden part; where it surely grows there is no integral."""
+        """Yield the claims on the observable part; if it surely grows the integral does not exist."""
         count, seen = self.answer["rank"]["restricted"].shape[0], Term(Literal(self.answer["seen"]), e)
 
         def polynomial(name: str, order: int) -> Term:

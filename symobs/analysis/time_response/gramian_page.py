@@ -91,7 +91,7 @@ def _tell_lyapunov(result: Gramian, page: Builder) -> None:
 
 
 def _write_branch(page: Builder, result: Gramian) -> None:
-    """Write one branch: e^{At}, what the output sees of it, the integral."""
+    """Write one branch: e^{At}, its output C e^{At}, the integral."""
     answer = result.answer
     A, C = _letters(result, page)
     if answer.get("question") is not None:
@@ -160,7 +160,7 @@ def _tell_infinite(result: Gramian, page: Builder, A: Term, C: Term) -> None:
 
 
 def define_seen(result: Gramian, page: Builder) -> Term:
-    """Return χ, or its part that the output sees (the input moves): the quotient by the polynomial of the other modes."""
+    """Return χ, or the polynomial of the observable (controllable) part: the quotient by that of the other modes."""
     kernel, of = result.answer["rank"]["kernel"], result.answer["of"]
     tell_polynomial(page)
     if not kernel.shape[1]:

@@ -147,7 +147,7 @@ def tell_polynomial(page: Builder) -> None:
 
 
 def tell_question(page: Builder, factor: Scalar | None) -> None:
-    """Say what is not decided."""
+    """State the undecided question."""
     if factor is None:
         page.remark("too_many_states", order=str(page.plant.order))
     else:
@@ -155,7 +155,7 @@ def tell_question(page: Builder, factor: Scalar | None) -> None:
 
 
 def tell_exponential(page: Builder, found: Exponential, matrix: Matrix, *, answer: bool = False) -> None:
-    """Define e^{At}: the sum over the modes where it is short, then the entries; then what the roots stand for."""
+    """Define e^{At}: the sum over the modes where it is short, then the entries, then the roots."""
     count = sum(len(own) for _, _, own in found.parts)
     is_shown = not found.is_closed or 1 < count <= _SHOWN_SUM
     members: list[Term | Matrix] = [page.term(_sum_of_modes(found))] if is_shown else []
@@ -167,7 +167,7 @@ def tell_exponential(page: Builder, found: Exponential, matrix: Matrix, *, answe
 
 
 def tell_roots(page: Builder, *values: Matrix) -> None:
-    """Say what the letters of square roots stand for."""
+    """Define the letters of square roots."""
     for name in page.forms:
         used = any(name in v.names or any(name in f.argument.names for f in _functions(v)) for v in values)
         root = function_named(name)
@@ -240,6 +240,7 @@ def matrix_exponential(plant: StateSpace, *, method: Name = "auto") -> Result:
     Returns matrix, in t.  Where the sign of a discriminant decides between oscillation and none, conditions hold the
     branch that is shown and cases the others.  An irreducible factor q of χ of degree 3 or more brings sums over its roots,
     Σ λʲ e^{λt}/q′(λ), in SymPy's syntax `RootSum`; where parameters make two of the roots equal it is undecided.
+    Raises `InputError` in discrete time, and where t is a parameter of A.
     Source: I. E. Leonard (1996).
     """
     require_continuous(plant, "matrix_exponential")

@@ -1,4 +1,4 @@
-"""What is said of the initial state from measured outputs and known inputs, and the reading of these."""
+"""Results about the initial state, and the reading of measured outputs and known inputs."""
 
 from __future__ import annotations
 

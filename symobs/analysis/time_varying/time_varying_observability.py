@@ -320,7 +320,7 @@ def _beside(vectors: tuple[Matrix, ...], order: int) -> Matrix:
 
 
 def _has_value(Phi: Matrix, start: Scalar) -> bool:
-    """Whether Φ has a value at the start: it has none where A has a pole there."""
+    """Return whether Φ has a value at the start: it has none where A has a pole there."""
     try:
         substitute(Phi, {START: start})
     except ZeroDivisionError:

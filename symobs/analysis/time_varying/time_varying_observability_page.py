@@ -316,7 +316,7 @@ def _example(page: Builder) -> None:
 
 
 def _initial_state(page: Builder, result: TimeVaryingObservability) -> None:
-    """Find x₀ from the output: x₀ = W⁻¹ ∫ Φᵀ Cᵀ ξ, ξ the output without what the input forces."""
+    """Find x₀ from the output: x₀ = W⁻¹ ∫ Φᵀ Cᵀ ξ, ξ the output without its forced part."""
     asked, answer, m = result.asked_for, result.answer, page.plant.matrices
     assert asked.output is not None  # noqa: S101 - asked by the caller
     page.define("y_t", _signal(page, asked.output), say="output_given")

@@ -1,4 +1,4 @@
-"""What has a closed form for a time-varying plant: Φ, its Gramian, the states never seen, the initial state."""
+"""Closed forms for a time-varying plant: Φ, the Gramian, the unobservable subspace, the initial state."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class TimeVaryingRequest:
-    """What is asked beside the plant: the interval, and the output and input from which x₀ is to be found."""
+    """The specification beside the plant: interval, measured output and input."""
 
     interval: tuple[Scalar, Scalar] | None = None
     output: Matrix | None = None
@@ -78,7 +78,7 @@ def _moved(value: Scalar, one: Scalar, other: Scalar) -> Scalar:
 
 
 def has_functions(value: Matrix | Scalar) -> bool:
-    """Whether exponentials, cosines or the like occur."""
+    """Return whether exponentials, cosines or the like occur."""
     return any(function_named(name) for name in value.names)
 
 

@@ -1,4 +1,4 @@
-"""What is established on a stratum, after verifying that what is put in describes it (trusted)."""
+"""Restriction of an environment to a stratum, its substitution verified first (trusted)."""
 
 from __future__ import annotations
 

@@ -181,7 +181,7 @@ def say_stability(page: Builder, design: OutputFeedback, stem: str, proper: Fact
 
 
 def _reason(page: Builder, design: OutputFeedback, word: str) -> dict[str, Slot]:
-    """Return the polynomial whose coefficients tell by their signs alone: of order 1 or 2, in continuous time."""
+    """Return the polynomial of order 1 or 2 whose stability follows from its signs, in continuous time."""
     F, plant = design.answer["F"], page.plant
     if plant.is_discrete or plant.order > _DECIDED_BY_SIGNS or not isinstance(F, Scalar) or not page.defines("A_c"):
         return {}
@@ -280,7 +280,7 @@ def caution_unstable_loop(page: Builder, design: OutputFeedback, determinant: Te
 
 
 def of_given(design: OutputFeedback) -> str:
-    """Return how sentences end that speak of polynomials which nobody asked for."""
+    """Return the suffix of sentences about polynomials that are found, not desired."""
     return "_given" if design.has_given_gain else ""
 
 
@@ -294,7 +294,7 @@ def _say_left(page: Builder, left: tuple[Root, ...], lost: Roots) -> None:
 
 
 def _has_short_roots(factor: Scalar, variable: str) -> bool:
-    """Whether the roots of a factor can be told in a sentence: those of a quadratic with parameters are too long."""
+    """Return whether the roots of a factor fit into a sentence: those of a quadratic with parameters do not."""
     return factor.degree(variable) == 1 or (factor.degree(variable) == 2 and factor.names <= {variable})
 
 
@@ -368,7 +368,7 @@ class Namer:
         return from_coefficients(named, variable)
 
     def show(self) -> None:
-        """Write out what the letters stand for."""
+        """Write out the values of the letters."""
         self.page.equal(*(relation(symbol, meaning) for symbol, meaning in self.meanings), say="with_coefficients")
 
 
@@ -384,7 +384,7 @@ def named_return_path(page: Builder, design: OutputFeedback, own: Term) -> None:
 
 
 def _poles(design: OutputFeedback, polynomial: Scalar) -> tuple[Root, ...]:
-    """Return the poles in the order they were asked for, or as the roots of the polynomial."""
+    """Return the desired poles in their given order, or the roots of the polynomial."""
     poles: list[Root] = []
     for part in (design.feedback, design.estimator):
         desired = part.desired

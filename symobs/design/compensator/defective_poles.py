@@ -49,7 +49,7 @@ def caution_repeated(page: Builder, design: OutputFeedback) -> None:
 
 
 def _with_distinct_poles(page: Builder, desired: DesiredPolynomial) -> Relation | None:
-    """Return det(sI − A + BK) = φ for the poles asked for, repeated ones moved further in, where a gain places them."""
+    """Return det(sI − A + BK) = φ for the desired poles, repeated ones moved further in, where a gain places them."""
     plant, variable = page.plant, page.plant.variable
     further_in = page.s.scalar * 2 if plant.is_discrete else page.s.scalar + 1
     factors: dict[Scalar, None] = {}

@@ -1,4 +1,4 @@
-"""What pages of laws that use the estimate begin with: both gains, and whether the law can be solved for the input."""
+"""The first part of pages with estimated-state feedback: both gains, and the law solved for the input."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ def write_both_gains(page: Builder, loop: OutputFeedback) -> None:
 
 
 def is_ill_posed(page: Builder, loop: OutputFeedback) -> bool:
-    """Write that both gains exist but the law cannot be solved for u, where that is so, and tell whether it is."""
+    """Write that the law cannot be solved for u although both gains exist; return whether this is the case."""
     if loop.exists or None in (loop.answer["K"], loop.answer["L"]) or not isinstance(loop, MinimalOrderCompensator):
         return False
     with page.section("compensator"):

@@ -1,4 +1,4 @@
-"""What compensators with either observer have in common: the two designs they are made of, and the closed loop."""
+"""Output feedback with an observer of either kind: the two gains and the closed loop."""
 
 from __future__ import annotations
 
@@ -168,7 +168,7 @@ class OutputFeedback(Result):
 
     @property
     def _may_lose_poles(self) -> bool:
-        """Whether F is said to be unstable, and is so only where none of its poles cancels."""
+        """Whether F is unstable only where none of its poles cancels."""
         return self.exists and self._own_stability == "no" and not self._is_unavoidably_unstable
 
     @cached_property
@@ -188,13 +188,13 @@ class OutputFeedback(Result):
 
     @property
     def asked_for(self) -> tuple[Any, ...]:
-        """What a compensator of a plant is asked for by: its kind and method, and the polynomial or the gain of each half."""
+        """The specification of a compensator: its kind and method, and the polynomial or the gain of each half."""
         halves = (self.feedback, self.estimator)
         return type(self), self.method, *(half.desired or half.answer[half.letter] for half in halves)
 
     @property
     def has_given_gain(self) -> bool:
-        """Whether one of the gains was given, so that its poles are found and not asked for."""
+        """Whether one of the gains is given, so that its poles are found, not desired."""
         return None in (self.feedback.desired, self.estimator.desired)
 
     @property
@@ -277,7 +277,7 @@ class OutputFeedback(Result):
 
     @cached_property
     def loop_polynomial(self) -> Factored:
-        """φ_c φ_o, with the factors that were asked for."""
+        """φ_c φ_o, with its desired factors."""
         factors: dict[Scalar, int] = {}
         for design in (self.feedback, self.estimator):
             for factor, power in _factors_of(design):
@@ -358,7 +358,7 @@ class OutputFeedback(Result):
 
     @property
     def _found_poles(self) -> Mapping[str, Any]:
-        """The poles of the loop and whether it is stable: what a given gain does."""
+        """The poles of the loop and its stability under a given gain."""
         plant, whole = self.plant, self.loop_polynomial.value
         verdict_of_loop = stability(whole, plant.variable, plant.symbols.signs, discrete=plant.is_discrete)
         return {

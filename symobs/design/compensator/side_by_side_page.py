@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 
 def can_stand_side_by_side(design: CompensatorDesign) -> bool:
-    """Whether both pairs pass their tests, if only off the zeros of a determinant: else each side tells its own story."""
+    """Return whether both pairs pass their tests, if only off the zeros of a determinant."""
     sides = (design.feedback, design.estimator)
     return design.exists and all(
         part.fixed_polynomial.is_one and part.answer[part.letter] is not None for part in sides

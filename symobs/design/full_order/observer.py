@@ -80,7 +80,7 @@ class ObserverDesign(GainDesign):
 
     @property
     def printed_method(self) -> str:
-        """The method whose page is written: for small plants the most readable one unless one was asked for."""
+        """The method of the page: by default the most readable one for small plants."""
         if self.desired is None or self.answer["L"] is None or not self.fixed_polynomial.is_one:
             return super().printed_method
         return page_style(self.page_method, self.plant, several=self.plant.outputs > 1)

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 
 class Formula(NamedTuple):
-    """What a method does on one of the dual sides, and where it is from."""
+    """A placement method on one of the dual sides, with its source."""
 
     source: str
     summary: str

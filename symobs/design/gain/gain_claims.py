@@ -70,7 +70,7 @@ def excluded_claims(
     needed: Sequence[Scalar],
     letter_of_gain: str,
 ) -> Iterator[Claim]:
-    """Yield that what is needed for such a gain lies in the ideal of the equations: 1, or polynomials in parameters.
+    """Yield the claim that necessary conditions of such a gain lie in the ideal of the equations.
 
     Where nothing is needed the answer says no more than that no gain was found: raises `CertificateRejected` if one is.
     """

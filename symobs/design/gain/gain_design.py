@@ -90,7 +90,7 @@ class GainDesign(Result):
 
     @staticmethod
     def gain_term(environment: Environment) -> Term:
-        """Return what the gain subtracts from A: LC or BK."""
+        """Return the term subtracted from A: LC or BK."""
         raise NotImplementedError
 
     @classmethod
@@ -127,7 +127,7 @@ class GainDesign(Result):
     def _with_zeros(
         cls, pair: ObserverPair, desired: DesiredPolynomial, zero: Places
     ) -> tuple[AskedGain, ObserverPair, Matrix | None]:
-        """Return what a gain with zeros in the given places is, and the gain where there is one to write."""
+        """Return the kind of a gain with zeros in the given places, and the gain if one was found."""
         match with_zeros(pair, desired, cls.places(zero)):
             case None if pair.can_assign(desired.polynomial):
                 return NoGainWithZeros(desired, zero), pair, None
@@ -248,7 +248,7 @@ class GainDesign(Result):
 
     @property
     def decoupled(self) -> bool:
-        """Whether the member of the family is asked for whose output errors (whose inputs' parts) are decoupled."""
+        """Whether the decoupled member of the family is requested: one equation for each output (input)."""
         return isinstance(self.kind, DecoupledGain)
 
     @property
@@ -288,7 +288,7 @@ class GainDesign(Result):
 
     @property
     def existence(self) -> tuple[Scalar, ...]:
-        """What decides where a gain exists: det 𝒪 (det 𝒞), or what the fixed modes leave of φ where that is 0."""
+        """The existence condition of a gain: det 𝒪 (det 𝒞), or φ modulo the fixed polynomial where that is 0."""
         match self.kind:
             case GivenGain():
                 return ()
@@ -301,7 +301,7 @@ class GainDesign(Result):
 
     @cached_property
     def _obstacles(self) -> tuple[Scalar, ...]:
-        """The coefficients of φ modulo the fixed polynomial, as far as parameters can make them vanish."""
+        """The coefficients of φ modulo the fixed polynomial, if parameters can make all of them vanish."""
         rest = self.pair.divided(self.answer["polynomial"])[1]
         found = [c.numerator for c in rest.coefficients(self.plant.variable) if not c.is_zero]
         return () if any(c.is_constant for c in found) else tuple(found)

@@ -102,7 +102,7 @@ def write_companion(page: Builder, _: GainDesign, side: PlacementProblem, desire
 
 
 def readable(design: GainDesign) -> bool:
-    """Whether the row-reduced forms belong to the gain of the answer and are short enough to be written out."""
+    """Return whether the row-reduced forms belong to the gain of the answer and are short enough to be written out."""
     found = _reductions(design)
     if (
         found is None
@@ -207,7 +207,7 @@ def _multiple(page: Builder, factor: Scalar, order: int) -> Term | None:
 
 
 def _relations(page: Builder, part: Reduction, number: int) -> None:
-    """Read the components off the reduced form, and choose what is free."""
+    """Read the components off the reduced form, and choose the free ones."""
     width = part.vector.shape[0]
     short = width < 10
     names = [f"xi_{number}{i}" if short else f"xi_{number}_{i}" for i in range(1, width + 1)]
@@ -228,12 +228,12 @@ def _relations(page: Builder, part: Reduction, number: int) -> None:
 
 
 def _pair(part: Reduction) -> bool:
-    """Whether J stands for a conjugate pair."""
+    """Return whether J stands for a conjugate pair."""
     return part.size == 2 and part.J[0, 0] == part.J[1, 1]
 
 
 def _named(page: Builder, part: Reduction) -> Evaluated:
-    """Return what a reduction is for: a pole, or a factor of φ."""
+    """Return the pole, or the factor of φ, of a reduction."""
     if part.size == 1:
         return Evaluated(page.value(part.J).apply("det").formula, Literal(part.J[0, 0]))
     pencil = page.s @ page.identity(part.size) - page.value(part.J)

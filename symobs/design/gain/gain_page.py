@@ -68,7 +68,7 @@ def write_gain(page: Builder, design: GainDesign, side: PlacementProblem, style:
 
 
 def _write_gain_alone(page: Builder, design: GainDesign, side: PlacementProblem, _: DesiredPolynomial) -> None:
-    """State the gain of a method without a page of its own; the check below is what shows it."""
+    """State the gain of a method without a page; the check below proves it."""
     page.define(side.gain, design.answer[side.gain], say="gain_stated", answer=True)
 
 
@@ -109,7 +109,7 @@ def define_test_matrix(page: Builder, side: PlacementProblem) -> None:
 
 
 def _is_canonical(page: Builder) -> bool:
-    """Whether (A, B) is in controllable canonical form."""
+    """Return whether (A, B) is in controllable canonical form."""
     m, order = page.plant.matrices, page.plant.order
     chi = m.A.characteristic_polynomial(page.plant.variable)
     return Matrix.unit(order, order - 1) == m.B and companion(chi.coefficients(page.plant.variable)[1:]) == m.A
@@ -209,7 +209,7 @@ def _difference(page: Builder, wanted: list[Term], found: list[Scalar]) -> Term:
 
 
 def _with_fixed_modes(page: Builder, design: GainDesign, side: PlacementProblem) -> None:
-    """Some modes stay; they are among those asked for, so a gain exists and is not unique."""
+    """State that the fixed modes are among the desired poles, so that a gain exists and is not unique."""
     variable = page.plant.variable
     polynomial, desired, family = design.fixed_polynomial, design.desired, design.gain_family
     assert desired is not None and family is not None  # noqa: S101, PT018 - fixed modes come with a family
@@ -228,7 +228,7 @@ def _with_fixed_modes(page: Builder, design: GainDesign, side: PlacementProblem)
 
 
 def _impossible(page: Builder, design: GainDesign, side: PlacementProblem) -> None:
-    """The fixed modes are not among the poles asked for, or no gain has its zeros where they are to be."""
+    """State that no gain exists: fixed modes that are not desired, or an impossible zero pattern."""
     if not isinstance(design.kind, UnassignableGain):
         write_no_gain(page, design, side)
         return
@@ -250,7 +250,7 @@ def _fixed(page: Builder, side: PlacementProblem, kernel: Matrix, restricted: Ma
 
 
 def _given_gain(page: Builder, design: GainDesign, side: PlacementProblem, *, of_loop: bool) -> None:
-    """A gain is given: find its polynomial and say whether it is stable."""
+    """Find the polynomial of a given gain and decide its stability."""
     gain = page.set(side.gain, design.answer[side.gain])
     page.equal(relation(gain, design.answer[side.gain]), say=f"gain_given_{side.kind}")
     closed = side.closed_loop_matrix(page)
@@ -282,7 +282,7 @@ def _verified(page: Builder, design: GainDesign, side: PlacementProblem) -> None
 
 
 def say_as_required(page: Builder, desired: DesiredPolynomial, *members: Term) -> None:
-    """Show the check of a gain; where a conjugate pair was asked for, with the poles themselves.
+    """Show the check of a gain; for a desired conjugate pair with the poles themselves.
 
     A gain with roots in it has the polynomial only as far as their own polynomials vanish: there the check says enough.
     """
@@ -295,7 +295,7 @@ def say_as_required(page: Builder, desired: DesiredPolynomial, *members: Term) -
 
 
 def write_case(page: Builder, case: Case, side: PlacementProblem) -> None:
-    """Say what is true on a stratum."""
+    """State the findings on a stratum."""
     if not isinstance(case.result, GainDesign):
         page.steps.append(undecided(page, case))
         return
@@ -331,7 +331,7 @@ def _on_stratum(page: Builder, case: Case, result: GainDesign, side: PlacementPr
 
 
 def design_gain_on(case: Case, page: Builder, side: PlacementProblem) -> bool:
-    """Whether there is a gain in the main line that is still finite on the stratum."""
+    """Return whether there is a gain in the main line that is still finite on the stratum."""
     if not page.defines(side.gain):
         return False
     try:

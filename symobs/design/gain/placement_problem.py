@@ -25,7 +25,7 @@ class PlacementProblem:
 
     @property
     def hidden(self) -> tuple[str, str]:
-        """The letters of the hidden subspace: a page may speak of both sides."""
+        """The letters of the hidden subspace, different for the two sides."""
         return HIDDEN[self.test]
 
     @property

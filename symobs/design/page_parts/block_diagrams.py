@@ -1,4 +1,4 @@
-"""The block diagrams of pages: which figure shows what, with gains and signs as the page's own formulas say."""
+"""Block diagrams of pages, with gains and signs from the formulas of the page."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What an expert would warn of beside poles that were asked for: an error that grows, or stays."""
+"""Cautions about desired poles: an estimation error that grows or does not decay."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 def caution_poles(page: Builder, desired: DesiredPolynomial, phi: str, of: str) -> None:
-    """Warn where the polynomial asked for, which the letter `phi` means, is surely not stable; of: observer or control."""
+    """Warn where the desired polynomial, the value of `phi`, is surely not stable; of: observer or control."""
     plant, signs = page.plant, page.plant.symbols.signs
     polynomial, discrete = desired.polynomial, page.plant.is_discrete
     if page[phi].value != polynomial or stability(polynomial, plant.variable, signs, discrete=discrete).verdict != "no":
@@ -38,7 +38,7 @@ def caution_poles(page: Builder, desired: DesiredPolynomial, phi: str, of: str) 
 
 
 def _is_stable(rest: Scalar, page: Builder) -> bool:
-    """Tell whether what is left of a polynomial is one and surely stable."""
+    """Return whether a quotient is a polynomial and surely stable."""
     plant = page.plant
     if not rest.is_polynomial_in(plant.variable):
         return False

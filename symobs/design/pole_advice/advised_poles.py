@@ -168,7 +168,7 @@ class AdvisedPoles(Result):
         yield Claim(relation(letter("phi_r", e), expected), e, "phi_r = (pair)(further left)")
 
     def _claims_of_fixed_modes(self) -> Iterator[Claim]:
-        """Where unobservable modes are not among the poles: that they are unobservable."""
+        """Yield the claim that the modes missing among the poles are unobservable."""
         if self.missed.is_one:
             return
         pair, variable = self.pair, self.plant.variable

@@ -1,4 +1,4 @@
-"""Where to put the poles of an observer: at the plant's stable zeros, the rest far left on a Butterworth circle."""
+"""Advice on observer poles: the stable zeros of the plant, the rest on a Butterworth circle or as a dominant pair."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ OVERSHOOTS = Fraction(1, 10**6), Fraction(99, 100)
 
 @dataclass(frozen=True, eq=False, repr=False)
 class PoleAdvice(AdvisedPoles):
-    """Advised poles, with the conditions on parameters under which they are advised, and what is advised elsewhere."""
+    """Advised poles, with their conditions on parameters and the advice elsewhere."""
 
     @property
     def verdict(self) -> str:
@@ -96,7 +96,7 @@ def pole_advice(
     overshoot: Quantity = None,
     method: Name = "auto",
 ) -> Result:
-    """Say where to put the observer's poles: at the stable zeros, the rest on a circle or as a dominant pair.
+    """Advise observer poles: at the stable zeros of the plant, the rest on a circle or as a dominant pair.
 
     plant                         n states, one input, one output, continuous time
     radius                        ω₀ > 0, a symbol or a number: φ_r(s) φ_r(−s) = ω₀^{2N} + (−1)^N s^{2N}, N poles remaining
@@ -125,7 +125,7 @@ def pole_advice(
 
 
 def _wish(plant: StateSpace, radius: object, settling_time: object, overshoot: object) -> PoleRequest:
-    """Return what is asked for: a radius, or both others; raises `InputError` for anything else."""
+    """Return the request: a radius, or settling time and overshoot; raises `InputError` for anything else."""
     where = "specification.radius"
     if radius is not None:
         if settling_time is not None or overshoot is not None:

@@ -1,4 +1,4 @@
-"""Where parameters change the advice on poles: zeros that cross the axis or are lost, modes that are not seen any more."""
+"""Parameter values at which the advice changes: zeros on the axis or lost, modes that become unobservable."""
 
 from __future__ import annotations
 

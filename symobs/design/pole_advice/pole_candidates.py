@@ -1,4 +1,4 @@
-"""Places for poles: a plant's zeros, told apart by where they lie, points on a circle, and a pair for an overshoot."""
+"""Candidate observer poles: stable plant zeros, Butterworth points, and a dominant pair for a given overshoot."""
 
 from __future__ import annotations
 
@@ -93,7 +93,7 @@ def _reason(factor: Scalar, plant: StateSpace, sigma: Scalar | None) -> str:
 
 
 def _on_both_sides(factor: Scalar, variable: str, signs: Mapping[str, str]) -> bool:
-    """Whether an irreducible factor surely has roots on both sides of the axis, and not all of them on one.
+    """Return whether an irreducible factor surely has roots on both sides of the axis, and not all of them on one.
 
     With numbers for coefficients what is neither stable, nor on the axis, nor all on the right.  With parameters this is
     seen of two roots whose product is negative.

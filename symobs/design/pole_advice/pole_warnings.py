@@ -1,4 +1,4 @@
-"""What an expert would warn of beside a choice of observer poles; each warning is a sentence of the page as well."""
+"""Warnings about observer poles; each one is also a sentence of the page."""
 
 from __future__ import annotations
 

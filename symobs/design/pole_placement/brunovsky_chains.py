@@ -93,7 +93,7 @@ class BrunovskyChains:
         return Matrix.of(rows)
 
     def shared(self, polynomials: Sequence[Sequence[Scalar]], beyond: str) -> Matrix:
-        """Return the last rows that give each chain a polynomial of its own.
+        """Return the last rows that assign each chain its polynomial.
 
         `beyond` says what leads from a chain to later ones: `nothing`, `one` entry into the next, or what there is in
         the `plant`, so that less has to be changed.
@@ -152,7 +152,7 @@ def simple_gains(
 
 
 def _of_one_output(A: Matrix, C: Matrix, factors: Sequence[Scalar], variable: str) -> Iterator[Matrix]:
-    """Yield l w by Ackermann's formula, where the combination w C of few outputs alone sees the whole state."""
+    """Yield l w by Ackermann's formula, where (w C, A) is observable for a combination of few outputs."""
     count = C.shape[0]
     singles = [[int(i == j) for j in range(count)] for i in range(count)]
     pairs = [

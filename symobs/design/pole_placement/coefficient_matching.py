@@ -1,4 +1,4 @@
-"""Matching coefficients: det(sI − A + l c) is affine in the entries of l, so φ asks for the solution of a linear system."""
+"""Matching coefficients: det(sI − A + l c) is affine in the entries of l, so l solves a linear system."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ class Matching(NamedTuple):
 
 
 def matching(pair: ObserverPair, desired: DesiredPolynomial) -> Matching:
-    """Return the system; its column i is what a one in row i of l adds to the polynomial of A."""
+    """Return the system; column i is the change of the polynomial of A by a one in row i of l."""
     order, variable = pair.A.shape[0], pair.variable
     own = pair.A.characteristic_polynomial(variable).coefficients(variable)[1:]
     columns = []

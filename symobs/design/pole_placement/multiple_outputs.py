@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 
 def pair_of(A: Matrix, C: Matrix, variable: str, equations: tuple[Scalar, ...] = ()) -> ObserverPair:
-    """Return the pair (A, C): one output has a unique gain where it sees everything, several have families."""
+    """Return the pair (A, C): unique gain for one output if observable, families for several outputs."""
     return (ObserverPair if C.shape[0] == 1 else MultiOutputPair)(A, C, variable, equations)
 
 
@@ -42,7 +42,7 @@ class MultiOutputPair(ObserverPair):
 
     @property
     def decisive(self) -> tuple[Scalar, ...]:
-        """Nothing: the rank of 𝒪 drops where several minors vanish together, which is for its own test to say."""
+        """Nothing: the rank of 𝒪 drops where several minors vanish together, which the rank test decides."""
         return ()
 
     @property

@@ -104,7 +104,7 @@ class ObserverPair:
         return quotient, rest if self.ideal is None else self.ideal.simplified(rest)
 
     def can_assign(self, polynomial: Scalar) -> bool:
-        """Whether the polynomial of the fixed modes divides φ."""
+        """Return whether the polynomial of the fixed modes divides φ."""
         return self.is_observable or self.divided(polynomial)[1].is_zero
 
     def over_field_of(self, desired: DesiredPolynomial) -> Self:

@@ -54,7 +54,7 @@ def equations_for(pair: ObserverPair, desired: DesiredPolynomial, gain: Matrix) 
 
 
 def contradict(equations: Sequence[Scalar]) -> bool:
-    """Whether 1 lies in the ideal of the equations, so that they have no common solution; False where it is not found."""
+    """Return whether 1 lies in the ideal of the equations, so that they have no common solution."""
     try:
         return Ideal.of(equations).is_whole
     except TooLarge:
@@ -192,7 +192,7 @@ class Search:
         return None
 
     def _by_roots(self, equations: Sequence[Scalar], equation: Scalar, name: str) -> dict[str, Scalar] | None:
-        """Try the rational roots of an equation in one unknown, then, as far as allowed, a real one of a factor."""
+        """Try the rational roots of an equation in one unknown, then, if allowed, a real root of a factor."""
         factors = [factor for factor, _ in equation.factors()[1] if name in factor.names]
         for factor in factors:
             if factor.degree(name) == 1:
@@ -211,7 +211,7 @@ class Search:
         return None
 
     def _allows(self, factor: Scalar, name: str, equations: Sequence[Scalar]) -> bool:
-        """Whether a factor has a real root, and all equations hold for its roots."""
+        """Return whether a factor has a real root, and all equations hold for its roots."""
         from symobs.exact.algebraic.real_algebraic import roots_of_scalar  # noqa: PLC0415 - only irrational gains pay for it
 
         field = AlgebraicExtension(factor, name)
@@ -220,7 +220,7 @@ class Search:
         )
 
     def _put(self, equations: Sequence[Scalar], values: Mapping[str, Scalar]) -> dict[str, Scalar] | None:
-        """Put values in and solve what is left; values may contain unknowns that are found then."""
+        """Substitute values and solve the rest; values may contain unknowns that are solved for later."""
         try:
             rest = self.solve([equation.substitute(values) for equation in equations])
         except ZeroDivisionError:

@@ -194,7 +194,7 @@ class FeedforwardDesign(Result):
 
     @property
     def free_signals(self) -> Mapping[str, int]:
-        """The new input, and what the loop's page starts with."""
+        """The new input, and the free signals of the loop."""
         return {"v_r": self.plant.outputs, **self.loop.free_signals}
 
 

@@ -185,7 +185,7 @@ class _Writer:
         return replace(sentence, slots=tuple((name, self.slot(slot)) for name, slot in sentence.slots))
 
     def slot(self, slot: Any) -> Any:
-        """Return a slot in decimals; a value without a sign that says it is rounded stays exact."""
+        """Return a slot in decimals; a value that no sign marks as rounded stays exact."""
         match slot:
             case Relation():
                 return self.relation(slot)
@@ -221,7 +221,7 @@ class _Writer:
         return next((shown for shown in written if not is_rounded(shown)), formula)
 
     def relation(self, relation: Relation) -> Relation:
-        """Return a relation in decimals; what tells the value of a decimal, and a condition, where nothing is rounded."""
+        """Return a relation in decimals; conditions and definitions of decimals stay exact."""
         if isinstance(relation.members[0], Decimals):
             return relation
         shown = self.decimals.relation(relation)
@@ -241,7 +241,7 @@ class _Writer:
         return next((shown for shown in written if not any(map(is_rounded, shown.members))), relation)
 
     def _is_condition(self, relation: Relation) -> bool:
-        """Return whether a relation says something of parameters alone."""
+        """Return whether a relation is one between parameters alone."""
         return not any(map(letters, relation.members)) and any(map(self._names, relation.members))
 
     def _names(self, formula: Formula) -> frozenset[str]:

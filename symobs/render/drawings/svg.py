@@ -142,7 +142,7 @@ class _Writer:
         return "\n".join([head, *named, *styled, *parts, "</svg>"])
 
     def drawn(self) -> Iterator[str]:
-        """Yield the elements, what is below first."""
+        """Yield the elements, from the lowest layer up."""
         scene = self.scene
         if scene.shades:
             areas = "".join(f"{self.path(area)}Z" for area in scene.shades)

@@ -88,7 +88,7 @@ def _region(picture: RegionPicture, printer: TextPrinter) -> str:
 
 
 def _crosses(line: Sequence[Point], a: Point, b: Point) -> bool:
-    """Whether a line that is drawn meets the segment from a to b, or touches it."""
+    """Return whether a line that is drawn meets the segment from a to b, or touches it."""
 
     def side(p: Point, q: Point, place: Point) -> float:
         return (q[0] - p[0]) * (place[1] - p[1]) - (q[1] - p[1]) * (place[0] - p[0])

@@ -159,7 +159,7 @@ def _head(sheet: Sheet) -> Iterator[str]:
 
 
 def _writer(document: Document, prefix: str = "", level: int = 1) -> HtmlWriter:
-    """Return the writer of a document; with buttons that copy, it knows LaTeX too."""
+    """Return the writer of a document; for copy buttons with LaTeX, too."""
     writer = HtmlWriter(printer_for(document, MathmlPrinter), prefix=prefix, level=level)
     if document.web.copy:
         writer.latex = printer_for(document, LatexPrinter)
@@ -191,7 +191,7 @@ def _contents(sheet: Sheet) -> str:
 
 
 def page(title: str, body: str, web: WebPage = PLAIN, *, language: str = "en", has_picture: bool = False) -> str:
-    """Return a whole page around a body, which is HTML already, in a language, with what the page offers besides.
+    """Return a complete page around an HTML body, in a language, with its interactive parts.
 
     Pictures are allowed as data alone, where there is one.
     """

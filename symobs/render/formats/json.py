@@ -125,7 +125,7 @@ def result_object(result: Result, convention: Convention = STANDARD) -> dict[str
 
 
 def answer_object(result: Result) -> dict[str, Any]:
-    """Return what was asked for and nothing that follows from it: the verdict, its conditions, the answers themselves."""
+    """Return the answer alone: verdict, conditions, and the fields of the answer."""
     return {
         "task": result.task,
         "method": result.method,

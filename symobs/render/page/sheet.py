@@ -53,7 +53,7 @@ class Logo:
 
 @dataclass(frozen=True)
 class Header:
-    """What stands at the head of a sheet."""
+    """The head of a sheet."""
 
     course: str = ""
     term: str = ""

@@ -30,7 +30,7 @@ _WHERE_MISSING = "use observer, reduced_order_observer or compensator"
 
 
 class CodeProgram(NamedTuple):
-    """What every language writes down: the sizes, the doubles, and lines about them; `period` is None in continuous time."""
+    """The language-independent program: sizes, doubles, comments; `period` is None in continuous time."""
 
     name: str
     inputs: tuple[tuple[str, int], ...]
@@ -92,7 +92,7 @@ def _of_document(document: Document) -> tuple[Result, Controller]:
 
 
 def _period(document: Document, plant: StateSpace, *, in_continuous_time: bool) -> Fraction | None:
-    """Return the period, None for a plant in discrete time, or where the language knows continuous time."""
+    """Return the period, None for a plant in discrete time, or where the language has continuous time."""
     if document.hold not in HOLDS:
         repair = f"use one of {', '.join(HOLDS)}"
         raise UsageError(f"{document.hold[:40]!r} is no way to sample", where="--hold", repair=repair)
