@@ -27,7 +27,7 @@ from symobs.stability.inequalities.proof import (
     contradiction,
     from_contradiction,
 )
-from symobs.stability.inequalities.z3_and_qepcad import is_free
+from symobs.stability.inequalities.z3_backend import is_free
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
