@@ -147,7 +147,7 @@ def test_names_stand_for_what_they_name(value: Scalar, width: float) -> None:
     found = fitted(block, printer, lambda _: width - 6, 2, width)
     meanings: dict[str, Scalar] = {}
     known = set().union(*(entry.names for row in block.table.rows for entry in row.entries))
-    for relation in found.told:
+    for relation in found.legend:
         name, meaning = relation.members
         assert isinstance(name, Literal)
         assert isinstance(name.value, Scalar)
@@ -168,14 +168,14 @@ def test_no_name_is_one_of_a_parameter() -> None:
     value = polynomial("b", "a1", "a2", "c3", "d", "f", "a6")
     letters = {
         name.value.names
-        for relation in fitted(block_of(value), TextPrinter(), lambda _: 20, 2, 20).told
+        for relation in fitted(block_of(value), TextPrinter(), lambda _: 20, 2, 20).legend
         if isinstance(name := relation.members[0], Literal)
     }
     assert letters
     assert {min(names)[0] for names in letters}.isdisjoint("abcdf")
     declared = TextPrinter(symbols={"h": "b", "kappa": r"c_{\mathrm{m}}"})
     wide = polynomial(1, "h", "kappa", "h3", "h4", "h5", "h6")
-    told = fitted(block_of(wide), declared, lambda _: 20, 2, 20).told
+    told = fitted(block_of(wide), declared, lambda _: 20, 2, 20).legend
     assert {str(r.members[0].value)[0] for r in told if isinstance(r.members[0], Literal)}.isdisjoint("bc")
 
 
@@ -234,4 +234,4 @@ def test_numbers_in_words() -> None:
 def test_latex_and_terminal_choose_by_their_own_width() -> None:
     block = block_of(polynomial(1, "h1", "h2", "h3", "h4", "h5"))
     printer = LatexPrinter()
-    assert fitted(block, printer, lambda _: printer.width - 4, 1, printer.width).told == ()
+    assert fitted(block, printer, lambda _: printer.width - 4, 1, printer.width).legend == ()
