@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 MOST_DEGREE = 40
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True)
 class RegionQuestion:
     """The polynomial's origin (gains that are given, else the plant itself), the parameters, and what stable means."""
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 import pytest
 import sympy
 
-from symobs import StateSpace, compensator, observability, observer, reduced_order_observer
+from symobs import StateSpace, compensator, observability, observer, reduced_order_observer, stability_region
 from symobs.certificate.claims import Certificate, Claim, Statement
 from symobs.convention import STANDARD, convention_named
 from symobs.derivation import Define, Derivation
@@ -110,6 +110,8 @@ def test_results_and_plants_compare_by_value() -> None:
     assert len(designs) == 1
     (found,) = designs
     assert observability(plants[0]) == observability(plants[1])
+    regions = [stability_region(polynomial="s^2 + k*s + 1", margin=margin) for margin in (None, None, 1)]
+    assert len(set(regions)) == 2
     others = [
         StateSpace("[0 1; -k/m -2]", "[0; 1/m]", "[1 c]", symbols={"k": "positive", "m": "real", "c": "real"}),
         StateSpace("[0 1; -k/m -2]", "[0; 1/m]", "[1 c]", dt=True),
