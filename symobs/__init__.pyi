@@ -339,7 +339,7 @@ def initial_state(
     method: str = "auto",
     floats: str | None = None,
 ) -> _InitialStateResult:
-    """Return the initial state x₀ that explains the output y(t) under the input u(t), exactly, or say that none does."""
+    """Return the initial state x₀ of an output y(t) under an input u(t), y = C (e^{At} x₀ + x_f) + D u, or that none exists."""
 
 class _InitialStateCovarianceResult(_InitialStateCovariance):
     """What `initial_state_covariance` returns."""
@@ -360,7 +360,7 @@ def initial_state_covariance(
     method: str = "auto",
     floats: str | None = None,
 ) -> _InitialStateCovarianceResult:
-    """Return the covariance of the reconstructed initial state under white input noise Q and output noise R."""
+    """Return the covariance Σ of the estimate x̂₀ = W⁻¹ ∫ e^{Aᵀt} Cᵀ y dt under white input noise Q and output noise R."""
 
 class _MatrixExponentialResult(_MatrixExponential):
     """What `matrix_exponential` returns."""
@@ -483,7 +483,7 @@ def pole_advice(
     method: str = "auto",
     floats: str | None = None,
 ) -> _PoleAdviceResult:
-    """Say where to put the observer's poles: at the stable zeros, the rest on a circle or as a dominant pair."""
+    """Advise observer poles: at the stable zeros of the plant, the rest on a circle or as a dominant pair."""
 
 class _ReducedOrderObserverResult(_ReducedOrderObserver):
     """What `reduced_order_observer` returns."""
@@ -560,7 +560,7 @@ def stability_region(
     method: str = "auto",
     floats: str | None = None,
 ) -> _StabilityRegionResult:
-    """Say for which parameters all roots are stable: exact inequalities, intervals, cells of the plane, components."""
+    """Find the parameters for which all roots of χ are stable: exact inequalities, intervals, cells of the plane."""
 
 class _StabilizabilityResult(_Stabilizability):
     """What `stabilizability` returns."""
@@ -678,7 +678,7 @@ def tracking(
     method: str = "auto",
     floats: str | None = None,
 ) -> _TrackingResult:
-    """Let x follow ẋ_d = A_d x_d by u = K (x_d − x̂) − K_d x_d, where A_d − A + BK_d = 0 has a solution."""
+    """Track ẋ_d = A_d x_d by u = K (x_d − x̂) − K_d x_d, where A_d − A + BK_d = 0 has a solution."""
 
 class _TransferFunctionResult(_TransferFunction):
     """What `transfer_function` returns."""

@@ -124,7 +124,7 @@ def _sum_of_terms(polynomial: Scalar, signs: Mapping[str, str]) -> str:
 
 
 def _has_both_of_an_angle(polynomial: Scalar, signs: Mapping[str, str]) -> bool:
-    """Tell whether two terms are a power of cos x and one of sin x, which do not vanish together, times what never does."""
+    """Return whether two terms are a power of cos x and one of sin x, which do not vanish together, times what never does."""
     found = set()
     for _, powers in polynomial.each_term():
         varying = [n for n, _ in powers if (signs.get(n) or _sign_of_undeclared(n, signs)) not in _NEVER_ZERO]

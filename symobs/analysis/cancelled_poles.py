@@ -15,12 +15,12 @@ from symobs.stability.inequalities.written_form import as_inequality
 from symobs.system.transfer_matrix import WrittenTransferMatrix
 
 if TYPE_CHECKING:
-    from symobs.derivation.builder import Page
+    from symobs.derivation.builder import Builder
     from symobs.exact import Scalar
     from symobs.formula.term import Term
 
 
-def state_transfer_function(page: Page) -> None:
+def state_transfer_function(page: Builder) -> None:
     """State P, as it is written where that is not in lowest terms, and what cancels in it."""
     plant, written = page.plant, page.plant.written
     assert written is not None  # noqa: S101 - the caller has looked
@@ -32,7 +32,7 @@ def state_transfer_function(page: Page) -> None:
     else:
         above, below = (factored_form(page, part) for part in (written.above, written.below))
         page.given(relation(page["P"], above / below, factored_form(page, written.value)))
-    page.environment = page.environment.having(values={"P": written.value})
+    page.environment = page.environment.extended_by(values={"P": written.value})
     apart = vanishing_factors(written.apart, plant.symbols.signs)
     if apart:
         page.assume("lowest_terms_parameters", *apart)
@@ -41,25 +41,25 @@ def state_transfer_function(page: Page) -> None:
     page.remark("realised_minimal" if isinstance(written, WrittenTransferMatrix) else "realised")
 
 
-def _written_out(page: Page, written: WrittenTransferMatrix) -> Term:
+def _written_out(page: Builder, written: WrittenTransferMatrix) -> Term:
     """Return the matrix with its entries factored."""
     return block([[factored_form(page, entry.value) for entry in row] for row in written.rows])
 
 
-def _say_cancelled(page: Page, cancelled: Scalar, below: Scalar) -> None:
+def _say_cancelled(page: Builder, cancelled: Scalar, below: Scalar) -> None:
     """Say which poles cancel, and warn where they are not surely stable."""
     plant = page.plant
     c = page.set("c_P", cancelled)
     rest = page.value(below / cancelled)
     poles = Roots(c.formula, roots_of(cancelled, plant.variable))
     facts = (relation(below, c * rest),)
-    told = stability(cancelled, plant.variable, plant.symbols.signs, discrete=plant.is_discrete)
-    if told.verdict == "yes":
+    cancelled_stability = stability(cancelled, plant.variable, plant.symbols.signs, discrete=plant.is_discrete)
+    if cancelled_stability.verdict == "yes":
         page.remark("lowest_terms", *facts, poles=poles)
-    elif told.verdict == "no":
+    elif cancelled_stability.verdict == "no":
         time = "discrete" if plant.is_discrete else "continuous"
         page.caution(f"lowest_terms_unstable_{time}", predicate("unstable", c), *facts, poles=poles)
     else:
-        solved = [as_inequality(value, plant.symbols.signs) for value in told.positive]
+        solved = [as_inequality(value, plant.symbols.signs) for value in cancelled_stability.positive]
         where = HoldsExactlyWhere(predicate("stable", c), tuple(relation(*parts) for parts in solved))
         page.caution("lowest_terms_where", *facts, poles=poles, where=where)

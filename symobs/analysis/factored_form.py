@@ -9,12 +9,12 @@ from symobs.exact import Factored, Scalar, factored, product_of
 from symobs.formula import Literal, Negative, Power, Product, Quotient
 
 if TYPE_CHECKING:
-    from symobs.derivation.builder import Page
+    from symobs.derivation.builder import Builder
     from symobs.formula import Formula
     from symobs.formula.term import Term
 
 
-def factored_form(page: Page, value: Scalar) -> Term:
+def factored_form(page: Builder, value: Scalar) -> Term:
     """Return a scalar written as a product or quotient of its factors in the variable."""
     return page.term(formula_of_factored(factored(value, page.plant.variable, monic=False)))
 
@@ -42,7 +42,7 @@ def _power(factor: Scalar, exponent: int) -> Formula:
 
 
 def over(numerator: Scalar, own: Scalar, polynomial: Factored) -> Factored:
-    """Return numerator · own / Π factors: the denominator's factors as asked for, and no factor made monic."""
+    """Return numerator · own / Π factors with the desired factors in the denominator, none of them made monic."""
     unit, above = numerator.factors()
     sign = _sign(own)
     below = tuple((factor, -power) for factor, power in polynomial.factors)

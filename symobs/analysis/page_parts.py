@@ -7,9 +7,8 @@ from itertools import accumulate
 from typing import TYPE_CHECKING
 
 from symobs.analysis.factored_form import formula_of_factored
-from symobs.derivation import Case as CaseStep
-from symobs.derivation import Note, Step
-from symobs.derivation.builder import Page, predicate, relation, sentence
+from symobs.derivation import CaseStep, Note, Step
+from symobs.derivation.builder import Builder, predicate, relation, sentence
 from symobs.exact import Factored, Matrix, Scalar, decimal_places, root_of_pole
 from symobs.formula import Conjunction, Decimals, HoldsExactlyWhere, Roots
 from symobs.formula.term import block
@@ -27,23 +26,23 @@ if TYPE_CHECKING:
     from symobs.specification import DesiredPolynomial
 
 
-def set_anew(outer: Page, inner: Page) -> Iterator[str]:
-    """Yield the letters, other than the data's, to which a case gives a meaning of its own."""
+def set_anew(outer: Builder, inner: Builder) -> Iterator[str]:
+    """Yield the letters, other than the data's, that a case redefines."""
     for name, value in inner.environment.values.items():
         if name in outer.environment.values and name not in "ABCD" and outer.environment.values[name] != value:
             yield name
 
 
-def case_steps(page: Page, result: Result, write: str) -> Iterator[Step]:
+def case_steps(page: Builder, result: Result, write: str) -> Iterator[Step]:
     """Yield a case for each stratum of a result; the method `write` of the result there fills its page."""
     for case in result.case_tree:
         if case.result is None:
             yield undecided(page, case)
             continue
         found = case.result
-        inner = Page(found.plant)
+        inner = Builder(found.plant)
         matrices = {name: getattr(found.plant.matrices, name) for name in "ABCD" if name in page.environment.values}
-        inner.environment = page.environment.having(values=matrices)
+        inner.environment = page.environment.extended_by(values=matrices)
         getattr(found, write)(inner)
         inner.steps += case_steps(inner, found, write)
         anew = tuple(set_anew(page, inner))
@@ -62,8 +61,8 @@ _WIDEST = 80
 _DECIMALS = 4
 
 
-def given(page: Page, *desired: tuple[str, DesiredPolynomial | None]) -> None:
-    """State the plant, and the poles or polynomials asked for under their names (`control`, `observer`, …)."""
+def given(page: Builder, *desired: tuple[str, DesiredPolynomial | None]) -> None:
+    """State the plant, and the desired poles or polynomials by name (`control`, `observer`, …)."""
     plant, m = page.plant, page.plant.matrices
     with page.section("given"):
         if plant.origin is not None:
@@ -77,7 +76,7 @@ def given(page: Page, *desired: tuple[str, DesiredPolynomial | None]) -> None:
             page.set("B", m.B)
             rate = rate + _as_given(page, m.B) @ page["u"]
         relations.append(relation(page["x"].derivative, rate))
-        page.environment = page.environment.having(dynamics={"x": rate.formula})
+        page.environment = page.environment.extended_by(dynamics={"x": rate.formula})
         if m.has_output:
             page.set("C", m.C)
             output = _as_given(page, m.C) @ page["x"]
@@ -85,26 +84,26 @@ def given(page: Page, *desired: tuple[str, DesiredPolynomial | None]) -> None:
                 page.set("D", m.D)
                 output = output + _as_given(page, m.D) @ page["u"]
             relations.append(relation(page["y"], output))
-            page.environment = page.environment.having(signals={"y": output.formula})
+            page.environment = page.environment.extended_by(signals={"y": output.formula})
         page.given(*relations)
         _hold_to_letters(page)
         if plant.is_from_floats:
             page.remark("from_floats")
         _say_decimals(page)
         state_signs(page)
-        for name, wish in desired:
-            if wish is not None:
-                _asked(page, name, wish)
+        for name, desired_polynomial in desired:
+            if desired_polynomial is not None:
+                _asked(page, name, desired_polynomial)
 
 
-def _as_given(page: Page, matrix: Matrix) -> Term:
+def _as_given(page: Builder, matrix: Matrix) -> Term:
     """Return a matrix of the data: in decimals where the data are, and all its entries can be."""
     if page.plant.is_in_decimals and all(decimal_places(entry) is not None for entry in matrix.entries):
         return page.term(Decimals(matrix))
     return page.value(matrix)
 
 
-def _say_decimals(page: Page) -> None:
+def _say_decimals(page: Builder) -> None:
     """Say which fractions the decimals of the data are, where they are few."""
     m, plant = page.plant.matrices, page.plant
     entries = [entry for matrix in (m.A, m.B, m.C, m.D) for entry in matrix.entries if decimal_places(entry)]
@@ -113,7 +112,7 @@ def _say_decimals(page: Page) -> None:
         page.remark("exact_decimals", numbers=Conjunction(tuple(relation(page.term(Decimals(v)), v) for v in sizes)))
 
 
-def _hold_to_letters(page: Page) -> None:
+def _hold_to_letters(page: Builder) -> None:
     """Bind what is displayed to the letters: ẋ = A x + B u, y = C x + D u, and P to its realisation."""
     m, x, u = page.plant.matrices, page["x"], page["u"]
     rate = page["A"] @ x + page["B"] @ u if m.has_input else page["A"] @ x
@@ -128,17 +127,17 @@ def _hold_to_letters(page: Page) -> None:
     page.conclude_silently(*facts)
 
 
-def _asked(page: Page, name: str, wish: DesiredPolynomial) -> None:
-    """State the poles or the polynomial asked for."""
-    phi = page.set(f"phi_{name[0]}", wish.polynomial)
-    if wish.poles:
-        roots = tuple(root_of_pole(pole, page.plant.variable) for pole in wish.poles)
+def _asked(page: Builder, name: str, desired_polynomial: DesiredPolynomial) -> None:
+    """State the desired poles or the desired polynomial."""
+    phi = page.set(f"phi_{name[0]}", desired_polynomial.polynomial)
+    if desired_polynomial.poles:
+        roots = tuple(root_of_pole(pole, page.plant.variable) for pole in desired_polynomial.poles)
         page.conclude(f"{name}_{'pole' if len(roots) == 1 else 'poles'}", poles=Roots(phi.formula, roots))
     else:
-        page.conclude(f"{name}_polynomial", polynomial=relation(phi, wish.polynomial))
+        page.conclude(f"{name}_polynomial", polynomial=relation(phi, desired_polynomial.polynomial))
 
 
-def state_signs(page: Page) -> None:
+def state_signs(page: Builder) -> None:
     """Say which parameters have a declared sign."""
     by_sign: dict[str, list[str]] = {}
     used = page.plant.field.names
@@ -151,7 +150,7 @@ def state_signs(page: Page) -> None:
         page.conclude("declared", signs=Conjunction(tuple(declared)))
 
 
-def in_blocks(page: Page, value: Matrix, heights: Sequence[int], widths: Sequence[int]) -> Term:
+def in_blocks(page: Builder, value: Matrix, heights: Sequence[int], widths: Sequence[int]) -> Term:
     """Return a matrix divided into blocks, between which pages draw lines; blocks without rows or columns are left out."""
     parts = [
         [range(end - size, end) for size, end in zip(sizes, accumulate(sizes), strict=True) if size]
@@ -161,11 +160,11 @@ def in_blocks(page: Page, value: Matrix, heights: Sequence[int], widths: Sequenc
 
 
 def is_narrow(*matrices: Matrix) -> bool:
-    """Whether matrices can be read on a page: the widest row, with its fractions in one line."""
+    """Return whether matrices can be read on a page: the widest row, with its fractions in one line."""
     return all(sum(len(str(entry)) for entry in row) <= _WIDEST for matrix in matrices for row in matrix.rows)
 
 
-def determinant_form(page: Page, value: Scalar) -> Term:
+def determinant_form(page: Builder, value: Scalar) -> Term:
     """Return a determinant as its irreducible factors where it has several, else as it is."""
     unit, factors = value.factors()
     if len(factors) < 2 and all(power == 1 for _, power in factors):
@@ -180,7 +179,7 @@ def conditions_of(case: Case) -> Relation | Conjunction:
 
 
 def stratum_of(case: Case) -> Relation | Conjunction:
-    """Return what a case says of the parameters: a single equation as p = 0."""
+    """Return the conditions of a case: a single equation as p = 0."""
     return relation(case.when[0].expression, 0) if len(case.when) == 1 else conditions_of(case)
 
 
@@ -197,7 +196,7 @@ def as_written(condition: Condition) -> Relation:
     return relation(value, operator, 0)
 
 
-def undecided(page: Page, case: Case) -> Step:
+def undecided(page: Builder, case: Case) -> Step:
     """Return the remark that names a part of the parameters that the page does not decide."""
     if not case.when:
         return Note(sentence("undecided_rank", {}))
@@ -216,7 +215,7 @@ def undecided(page: Page, case: Case) -> Step:
 HIDDEN = {"observability": ("N", "X"), "controllability": ("N_K", "X_K")}
 
 
-def hidden(page: Page, is_observer: bool, letters: tuple[str, str] = ("N", "X")) -> tuple[Relation, ...]:  # noqa: FBT001
+def hidden(page: Builder, is_observer: bool, letters: tuple[str, str] = ("N", "X")) -> tuple[Relation, ...]:  # noqa: FBT001
     """Return that the columns of N are a basis of an invariant subspace never seen (never moved): CN = 0, AN = NX."""
     N, X = (page[name] for name in letters)
     A, row = (page["A"], page["C"]) if is_observer else (page["A"].T, page["B"].T)
@@ -225,12 +224,12 @@ def hidden(page: Page, is_observer: bool, letters: tuple[str, str] = ("N", "X"))
     return relation(row @ N, zero), relation(A @ N, N @ X), relation(N.apply("rank"), count)
 
 
-def hidden_polynomial(page: Page, order: int, name: str = "X") -> Term:
+def hidden_polynomial(page: Builder, order: int, name: str = "X") -> Term:
     """Return det(sI − X): the polynomial of the hidden modes."""
     return (page.s @ page.identity(order) - page[name]).apply("det")
 
 
-def say_stability(page: Page, about: Term) -> None:
+def say_stability(page: Builder, about: Term) -> None:
     """Say whether the polynomial that a term means is stable, or exactly where."""
     plant, polynomial = page.plant, about.scalar
     found = stability(polynomial, plant.variable, plant.symbols.signs, discrete=plant.is_discrete)

@@ -128,7 +128,7 @@ class EquationAuditor:
         mentioned = (frozenset([*letters_of(left, right), *inside]) - own, frozenset(letters_of(right)) - own)
         if mentioned not in self.environments:
             made = signals(self.problem.plant, self.results, self.convention, *mentioned)
-            environment = made.having(values=dict(self.values), signs=dict(self.symbols))
+            environment = made.extended_by(values=dict(self.values), signs=dict(self.symbols))
             for name, meaning in self.let.items():
                 environment = self._with_let(environment, name, meaning)
             self.environments[mentioned] = environment
@@ -241,7 +241,7 @@ class EquationAuditor:
         if isinstance(found, Flexible):
             return environment
         if is_signal(found):
-            return environment.having(signals={name: found.formula})
+            return environment.extended_by(signals={name: found.formula})
         others = {key: formula for key, formula in environment.signals.items() if key != name}
         return replace(environment, signals=others, values={**environment.values, name: found.value})
 

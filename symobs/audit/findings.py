@@ -10,7 +10,7 @@ from symobs.audit.printed_entries import PrintedEntry, printed_entries
 from symobs.audit.slips import SearchBudget
 from symobs.errors import ProblemErrors, SymobsError
 from symobs.expect import mismatches
-from symobs.result.in_convention import Viewed
+from symobs.result.in_convention import ResultInConvention
 
 if TYPE_CHECKING:
     from symobs.problem import Problem
@@ -74,7 +74,7 @@ def audit(problem: Problem) -> Audited:
 def _read(entry: PrintedEntry, desk: EquationAuditor) -> list[Finding]:
     """Return the findings for one entry."""
     if entry.expect:
-        lines = mismatches([Viewed(result, desk.convention) for result in desk.results], entry.expect)
+        lines = mismatches([ResultInConvention(result, desk.convention) for result in desk.results], entry.expect)
         texts = [line.partition(": expected ")[2].partition(", found ") for line in lines]
         return [Finding(entry.where, entry.erratum, came, right, "") for came, _, right in texts]
     return [

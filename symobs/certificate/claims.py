@@ -34,8 +34,8 @@ from symobs.formula import (
     Letter,
     Literal,
     Modular,
+    ModuloIdeal,
     Relation,
-    Restricted,
     agree,
     children,
     contains,
@@ -112,7 +112,7 @@ def check_all(claims: Iterable[Claim | Statement], relations: tuple[Scalar, ...]
 
 
 def _under(claim: Claim, relations: tuple[Scalar, ...]) -> Claim:
-    return Claim(claim.relation, claim.environment.under(relations), claim.says)
+    return Claim(claim.relation, claim.environment.with_relations(relations), claim.says)
 
 
 def verify(relation: Relation, environment: Environment) -> tuple[str, float]:
@@ -173,7 +173,7 @@ def _in_general(relation: Relation, environment: Environment, leaves: Sequence[S
 
 def _has_meaning(relation: Relation, environment: Environment, leaves: Sequence[Scalar | Matrix]) -> bool:
     """Return whether no denominator of a value, and nothing that is divided by, vanishes where the relations hold."""
-    arithmetic = Restricted(environment)
+    arithmetic = ModuloIdeal(environment)
     below = [leaf.common_denominator() for leaf in leaves]
     for divisor in (part for member in relation.members for part in divisors(member)):
         value = evaluate(divisor, environment, arithmetic)
@@ -220,9 +220,9 @@ def _compare(left: Any, operator: str, right: Any, environment: Environment, ari
         difference = left - right
         entries = difference.entries if isinstance(difference, Matrix) else (difference,)
         sure = any(_excluded_from_zero(entry, environment) for entry in entries)
-        known = *environment.assumed, *environment.domain
+        known = *environment.nonzero, *environment.domain
         return sure or never_together_zero(entries, environment.relations, environment.signs, known)
-    sign = sign_where(as_scalar(left) - as_scalar(right), environment.signs, environment.above)
+    sign = sign_where(as_scalar(left) - as_scalar(right), environment.signs, environment.positive)
     return (
         sign
         in {
@@ -258,7 +258,7 @@ def _excluded_from_zero(value: Scalar, environment: Environment) -> bool:
 
     The factors are those over the numbers of the conditions: where k − √2 and k + √2 are not 0, k² − 2 is not.
     """
-    known = {*environment.assumed, *environment.domain}
+    known = {*environment.nonzero, *environment.domain}
     for factor in known:
         value = value.within(value.field | factor.field.numbers)
     return not value.is_zero and known.issuperset(vanishing_factors([value], environment.signs))

@@ -10,7 +10,7 @@ from symobs.conditions import never_zero, real_consequences, vanishing_factors
 from symobs.errors import NotShown
 from symobs.exact import EIGENVALUE, Ideal, Matrix, Scalar, TooLarge, echelon, independent_rows, is_inverse
 from symobs.exact.core.generators import all_roots
-from symobs.formula import Restricted
+from symobs.formula import ModuloIdeal
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -98,7 +98,7 @@ def _implied(equations: Iterable[Scalar], signs: Mapping[str, str], nonzero: tup
         news = [value for value in implied if value not in ideal]
         if not news:
             return [ideal]
-        ideal = ideal.having(*news)
+        ideal = ideal.extended_by(*news)
     return []
 
 
@@ -113,14 +113,14 @@ def _minors(matrix: Matrix, order: int) -> Iterator[tuple[tuple[int, ...], ...]]
     return itertools.product(*(itertools.combinations(range(size), order) for size in matrix.shape))
 
 
-class Pointwise(Restricted):
+class Pointwise(ModuloIdeal):
     """The exact arithmetic modulo relations, with the rank of a matrix common to all points of the variety."""
 
     def __init__(self, environment: Environment) -> None:
         """Keep the signs and the nonzero values."""
         super().__init__(environment)
         self.signs = environment.signs
-        self.nonzero = (*environment.assumed, *environment.domain)
+        self.nonzero = (*environment.nonzero, *environment.domain)
 
     def _meaningful(self, value: Scalar | Matrix) -> None:
         """Accept a denominator that vanishes nowhere, too, where the relations are too long to be taken together."""

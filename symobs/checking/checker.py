@@ -24,7 +24,7 @@ from symobs.expression.source import shown
 from symobs.problem import MAX_BYTES, Problem, is_text, read, text_of
 from symobs.problem.noted_errors import Errors
 from symobs.result import Result
-from symobs.result.in_convention import Viewed
+from symobs.result.in_convention import ResultInConvention
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -81,11 +81,11 @@ class Checked:
             raise errors.together()
         return checked
 
-    def views(self, convention: Convention | None = None) -> list[Viewed]:
+    def views(self, convention: Convention | None = None) -> list[ResultInConvention]:
         """Return the results as a convention writes them."""
-        return [Viewed(result, convention or self.problem.convention) for result in self.results]
+        return [ResultInConvention(result, convention or self.problem.convention) for result in self.results]
 
-    def asked(self, views: Sequence[Viewed]) -> list[tuple[Viewed, str]]:
+    def asked(self, views: Sequence[ResultInConvention]) -> list[tuple[ResultInConvention, str]]:
         """Return the parts that count: each with its result, named in the standard convention."""
         wanted = self.problem.marking.asked
         if not wanted:
@@ -175,7 +175,7 @@ class Checked:
         view, name = asked[0]
         return Answer(values={view.task: {name: plain(answer)}})
 
-    def _parts(self, views: Sequence[Viewed], judged: Mapping[str, TaskJudgement]) -> tuple[Part, ...]:
+    def _parts(self, views: Sequence[ResultInConvention], judged: Mapping[str, TaskJudgement]) -> tuple[Part, ...]:
         """Return the parts that are asked for, and behind them what else was given."""
         marking = self.problem.marking
         asked = self.asked(views)
@@ -193,7 +193,7 @@ class Checked:
         return tuple(parts)
 
 
-def _given(answer: Answer, views: Sequence[Viewed]) -> dict[str, dict[str, Any]]:
+def _given(answer: Answer, views: Sequence[ResultInConvention]) -> dict[str, dict[str, Any]]:
     """Return what is given for each task; raises `ProblemErrors` for what no task has."""
     found: dict[str, dict[str, Any]] = {view.task: {} for view in views}
     errors: list[SymobsError] = []
@@ -218,6 +218,6 @@ def _given(answer: Answer, views: Sequence[Viewed]) -> dict[str, dict[str, Any]]
     return found
 
 
-def _unknown(name: str, views: Sequence[Viewed]) -> InputError:
+def _unknown(name: str, views: Sequence[ResultInConvention]) -> InputError:
     known = ", ".join(dict.fromkeys(field for view in views for field in available(view)))
     return InputError("no task here has such a field", where=f"answer.{shown(name, 60)}", repair=f"known: {known}")

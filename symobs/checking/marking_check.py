@@ -16,15 +16,15 @@ if TYPE_CHECKING:
     from collections.abc import Collection, Iterator, Sequence
 
     from symobs.problem import Problem
-    from symobs.result.in_convention import Viewed
+    from symobs.result.in_convention import ResultInConvention
 
 
-def marking_errors(problem: Problem, views: Sequence[Viewed]) -> list[SymobsError]:
+def marking_errors(problem: Problem, views: Sequence[ResultInConvention]) -> list[SymobsError]:
     """Return what in the weights and the milestones of a problem would never count."""
     return [*_unknown_weights(problem, views), *_unreadable_milestones(problem)]
 
 
-def part_of_name(part: str, views: Sequence[Viewed]) -> tuple[Viewed, str] | None:
+def part_of_name(part: str, views: Sequence[ResultInConvention]) -> tuple[ResultInConvention, str] | None:
     """Return the result of `task.field` and its standard name, None where there is no such part."""
     task, _, letter = part.partition(".")
     view = next((view for view in views if view.task == task), None)
@@ -32,7 +32,7 @@ def part_of_name(part: str, views: Sequence[Viewed]) -> tuple[Viewed, str] | Non
     return None if view is None or not exists(view.result, name) else (view, name)
 
 
-def known_parts(part: str, views: Sequence[Viewed]) -> str:
+def known_parts(part: str, views: Sequence[ResultInConvention]) -> str:
     """Return what to write for a part that does not exist."""
     return meant(part, [f"{each.task}.{field}" for each in views for field in available(each)])
 
@@ -43,7 +43,7 @@ def meant(name: str, known: Collection[str]) -> str:
     return f"{f'did you mean {near[0]}? ' if near else ''}known: {', '.join(known)}"
 
 
-def _unknown_weights(problem: Problem, views: Sequence[Viewed]) -> Iterator[SymobsError]:
+def _unknown_weights(problem: Problem, views: Sequence[ResultInConvention]) -> Iterator[SymobsError]:
     """Yield the weights of parts that no result has by this name, which is the standard one."""
     known = [f"{view.task}.{name}" for view in views for name in available(view.result)]
     for part in problem.marking.parts:

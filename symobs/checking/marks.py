@@ -21,7 +21,7 @@ from symobs.expect import found_in, shown_value
 from symobs.expect.structure import factored_table
 from symobs.expect.time_functions import agrees
 from symobs.expression import parse_matrix
-from symobs.result.in_convention import Viewed
+from symobs.result.in_convention import ResultInConvention
 
 if TYPE_CHECKING:
     from symobs.checking.judgement.judge import Judged, TaskJudgement
@@ -29,7 +29,9 @@ if TYPE_CHECKING:
     from symobs.result import Result
 
 
-def part_of(view: Viewed, judgement: TaskJudgement, judged: Judged, marking: Marking, *, counts: bool) -> Part:
+def part_of(
+    view: ResultInConvention, judgement: TaskJudgement, judged: Judged, marking: Marking, *, counts: bool
+) -> Part:
     """Return a part with its credit, its slip, and the right value, which the report may not show."""
     name = f"{view.task}.{judged.name}"
     weight = marking.parts.get(name, Fraction(1)) if counts else Fraction(0)
@@ -49,7 +51,7 @@ def part_of(view: Viewed, judgement: TaskJudgement, judged: Judged, marking: Mar
     return part
 
 
-def missing(view: Viewed, name: str, marking: Marking) -> Part:
+def missing(view: ResultInConvention, name: str, marking: Marking) -> Part:
     """Return a part that the answer lacks."""
     letter = next((own for own, (standard, _) in view.names.items() if standard == name), name)
     part = f"{view.task}.{name}"
@@ -57,9 +59,9 @@ def missing(view: Viewed, name: str, marking: Marking) -> Part:
     return Part(part, letter, "missing", marking.parts.get(part, Fraction(1)), Fraction(0), right=right)
 
 
-def _right(view: Viewed, result: Result, letter: str) -> str | None:
+def _right(view: ResultInConvention, result: Result, letter: str) -> str | None:
     try:
-        return shown_value(found_in(Viewed(result, view.convention), letter))
+        return shown_value(found_in(ResultInConvention(result, view.convention), letter))
     except KeyError:
         return None
 
@@ -92,14 +94,16 @@ def _is_degenerate(judgement: TaskJudgement, name: str) -> bool:
 # -- what is wrong ----------------------------------------------------------------------------------------------------
 
 
-def _effect(view: Viewed, judgement: TaskJudgement, judged: Judged) -> dict[str, str]:
+def _effect(view: ResultInConvention, judgement: TaskJudgement, judged: Judged) -> dict[str, str]:
     if judged.name not in GAINS.get(view.task, ()):
         return {}
     design = design_with(judgement.right, judged.name)
     return {"polynomial": str(design.answer["polynomial"]), "stable": design.stability.verdict}
 
 
-def _explained(part: Part, view: Viewed, judgement: TaskJudgement, judged: Judged, marking: Marking) -> Part:
+def _explained(
+    part: Part, view: ResultInConvention, judgement: TaskJudgement, judged: Judged, marking: Marking
+) -> Part:
     """Return a part that is wrong with its slip, where one reproduces it."""
     if judged.separation is not None:
         slip, point = judged.separation.slip or None, judged.separation.point
@@ -124,7 +128,7 @@ def _explained(part: Part, view: Viewed, judgement: TaskJudgement, judged: Judge
     )
 
 
-def _explanation(view: Viewed, judgement: TaskJudgement, judged: Judged) -> Explained:
+def _explanation(view: ResultInConvention, judgement: TaskJudgement, judged: Judged) -> Explained:
     """Return why a value is wrong, as far as it is a matrix or a number."""
     if judged.value is None:
         return Explained()

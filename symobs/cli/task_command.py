@@ -96,14 +96,14 @@ def _run_task(task: Any, options_given: dict[str, Any]) -> None:
     convention = convention_of(options_given["convention_name"])
 
     def work(report_progress: Progress) -> Outcome:
-        told = progress_on_terminal(report_progress)
+        show_progress = progress_on_terminal(report_progress)
         return solved(
             validate(data),
             chosen,
             options_given["target"],
             options_given["plot"],
             convention,
-            told,
+            show_progress,
             bibliography=options_given["bibliography"],
             **page,
         )

@@ -1,4 +1,4 @@
-"""Writing a derivation: a `Page` collects steps and hands out terms, so that code reads like the textbook's page."""
+"""Writing a derivation: a `Builder` collects steps and hands out terms, so that code reads like the textbook's page."""
 
 from __future__ import annotations
 
@@ -31,6 +31,7 @@ from symobs.formula import (
     Decimals,
     Derivative,
     Environment,
+    Evaluated,
     Fact,
     Formula,
     HoldsExactlyWhere,
@@ -40,7 +41,6 @@ from symobs.formula import (
     Predicate,
     Relation,
     Roots,
-    Shown,
     SymbolList,
 )
 from symobs.formula.plain_text import plain_relation
@@ -56,7 +56,7 @@ if TYPE_CHECKING:
     from symobs.system import StateSpace
 
 #: What a slot of a sentence may hold besides formulas and words.
-FACTS = (Relation, Predicate, Roots, HoldsExactlyWhere, Conjunction, Shown, SymbolList, *SPOKEN)
+FACTS = (Relation, Predicate, Roots, HoldsExactlyWhere, Conjunction, Evaluated, SymbolList, *SPOKEN)
 
 Member: TypeAlias = Term | Scalar | Matrix | int
 Slot: TypeAlias = Term | Fact | Counted | StateChoice | str | Scalar | Matrix | int
@@ -69,7 +69,7 @@ def left_out(what: str) -> None:
 
 
 def shows(facts: Iterable[Relation], environment: Environment) -> bool:
-    """Tell whether lines can be written: not beyond the reach of the check, nor, with a warning, where it fails."""
+    """Return whether lines can be written: not beyond the reach of the check, nor, with a warning, where it fails."""
     for fact in facts:
         if verify(fact, environment)[0]:
             continue
@@ -133,7 +133,7 @@ def _roots_of_sums(values: Iterable[Scalar | Matrix]) -> list[str]:
     return list(found)
 
 
-class Page:
+class Builder:
     """A derivation in the making: the steps so far and the environment they establish."""
 
     def __init__(self, plant: StateSpace, further: Mapping[str, int] | None = None) -> None:
@@ -152,12 +152,12 @@ class Page:
         self.forms: dict[str, str] = {}
 
     def with_roots(self, *values: Scalar | Matrix) -> None:
-        """Let the page speak of these square roots: that each squared is its radicand is known from the start."""
+        """Admit square roots: each squared is its radicand from the start."""
         vanishing = identities(values)[1]
-        self.start, self.environment = self.start.under(vanishing), self.environment.under(vanishing)
+        self.start, self.environment = self.start.with_relations(vanishing), self.environment.with_relations(vanishing)
 
     def in_time(self, *values: Scalar | Matrix) -> None:
-        """Let the page speak of these functions of time: how they depend on each other is known from the start."""
+        """Admit functions of time, with their algebraic dependences from the start."""
         self.in_time_by(*identities(values))
         taken = {*self.plant.symbols.signs, *self.plant.field.names}
         letters = iter([form for form in _ROOTS if form.lstrip("\\") not in taken])
@@ -165,9 +165,9 @@ class Page:
             self.forms[root] = next(letters, rf"\sqrt{{\cdot}}_{{{len(self.forms)}}}")
 
     def in_time_by(self, meanings: Mapping[str, Scalar], vanishing: tuple[Scalar, ...]) -> None:
-        """Let the page speak of functions of time that depend on each other in this way."""
-        self.start = replace(self.start, coefficients=meanings).under(vanishing)
-        self.environment = replace(self.environment, coefficients=meanings).under(vanishing)
+        """Admit functions of time with given algebraic dependences."""
+        self.start = replace(self.start, coefficients=meanings).with_relations(vanishing)
+        self.environment = replace(self.environment, coefficients=meanings).with_relations(vanishing)
 
     def derivation(self) -> Derivation:
         """Return what was written; a parameter with the name of a letter that is used is set without serifs."""
@@ -179,7 +179,7 @@ class Page:
     # -- terms --------------------------------------------------------------------------------------------------------
 
     def term(self, formula: Formula) -> Term:
-        """Return a term in what is established now."""
+        """Return a term in the current environment."""
         return Term(formula, self.environment)
 
     def __getitem__(self, names: str) -> Term:
@@ -209,9 +209,9 @@ class Page:
         """Return sI − M for a sum M, its signs turned."""
         return self.s @ self.identity(order) - matrix
 
-    def knows(self, name: str) -> bool:
-        """Whether a letter is established."""
-        return self.environment.knows(name)
+    def defines(self, name: str) -> bool:
+        """Return whether a letter is established."""
+        return self.environment.defines(name)
 
     # -- steps --------------------------------------------------------------------------------------------------------
 
@@ -222,14 +222,14 @@ class Page:
     def assume(self, key: str, *values: Scalar) -> None:
         """State that polynomials are not zero from here on."""
         factors = [factor for value in values for factor, _ in value.numerator.factors()[1]]
-        self.environment = replace(self.environment, assumed=(*self.environment.assumed, *factors))
+        self.environment = replace(self.environment, nonzero=(*self.environment.nonzero, *factors))
         conditions = tuple(relation(value, "!=", 0) for value in values)
         self.steps.append(Given(conditions, sentence(key, {"condition": Conjunction(conditions)})))
 
     def set(self, name: str, value: Scalar | Matrix) -> Term:
         """Establish a letter by its value, without a display."""
         self.steps.append(Given((relation(self[name], value),), silent=True))
-        self.environment = self.environment.having(values={name: value})
+        self.environment = self.environment.extended_by(values={name: value})
         return self[name]
 
     def define(
@@ -247,10 +247,10 @@ class Page:
         exact = [m for m in chain if isinstance(m, Term) and not isinstance(m.formula, Decimals)]
         value = exact[-1].value
         if closing and len(exact) == len(chain) and not isinstance(exact[-1].formula, Literal):
-            chain.append(exact[-1].shown)
+            chain.append(exact[-1].as_value)
         because = sentence(say, slots) if say else None
         self.steps.append(Define(relation(self[name], *chain), because, answer, silent))
-        self.environment = self.environment.having(values={name: value})
+        self.environment = self.environment.extended_by(values={name: value})
         return self[name]
 
     def in_decimals(self, name: str) -> None:
@@ -263,8 +263,8 @@ class Page:
         """Introduce a letter through its transpose: nameᵀ = …, then name itself as the answer."""
         value = members[-1].value.T
         self.steps.append(Given((relation(self[name], value),), silent=True))
-        self.environment = self.environment.having(values={name: value})
-        rows = relation(self[name].T, *members, members[-1].shown)
+        self.environment = self.environment.extended_by(values={name: value})
+        rows = relation(self[name].T, *members, members[-1].as_value)
         self.equal(rows, relation(self[name], value), say=say, answer=True, **slots)
         return self[name]
 
@@ -276,14 +276,14 @@ class Page:
         """Let a generator stand for a longer scalar from here on, without a display."""
         symbol = Scalar.symbol(name)
         self.steps.append(Define(relation(symbol, meaning), silent=True))
-        self.environment = self.environment.having(coefficients={name: meaning})
+        self.environment = self.environment.extended_by(coefficients={name: meaning})
         return symbol
 
     def signal(self, name: str, formula: Term, say: str = "", *, silent: bool = False, **slots: Slot) -> Term:
         """Define a signal by others; a free signal ceases to be free."""
         because = sentence(say, slots) if say else None
         self.steps.append(Define(relation(self[name], formula), because, silent=silent))
-        self.environment = self.environment.having(signals={name: formula.formula})
+        self.environment = self.environment.extended_by(signals={name: formula.formula})
         return self[name]
 
     def dynamics(self, name: str, formula: Term, say: str = "", *, silent: bool = False, **slots: Slot) -> None:
@@ -291,7 +291,7 @@ class Page:
         because = sentence(say, slots) if say else None
         target = self.term(Derivative(Letter(name)))
         self.steps.append(Define(relation(target, formula), because, silent=silent))
-        self.environment = self.environment.having(dynamics={name: formula.formula})
+        self.environment = self.environment.extended_by(dynamics={name: formula.formula})
 
     def equal(self, *relations: Relation, say: str = "", answer: bool = False, **slots: Slot) -> None:
         """Show relations on one display."""
@@ -322,11 +322,11 @@ class Page:
         self.steps.append(Diagram(name, tuple(with_signals(name, given).items()), because))
 
     def tabulate(
-        self, polynomial: Term, variable: str = "", /, say: str = "", *, tell: bool = True, **slots: Slot
+        self, polynomial: Term, variable: str = "", /, say: str = "", *, with_findings: bool = True, **slots: Slot
     ) -> RouthTable:
         """Show Routh's table of a polynomial, in another variable than the page's where one is named.
 
-        What the table says is told below it, unless `tell` is False.
+        The findings of the table are printed below it, unless `with_findings` is False.
         """
         from symobs.derivation.routh_check import findings_of  # noqa: PLC0415 - only pages of regions pay for it
         from symobs.stability.criteria.routh_table import routh_table  # noqa: PLC0415
@@ -334,7 +334,7 @@ class Page:
         variable = variable or self.environment.variable
         coefficients = polynomial.value.coefficients(variable)
         table = routh_table(coefficients, {variable, *self.environment.signs, *self.environment.coefficients})
-        findings = findings_of(table, coefficients, variable, self.environment.signs) if tell else ()
+        findings = findings_of(table, coefficients, variable, self.environment.signs) if with_findings else ()
         because = sentence(say, slots) if say else None
         self.steps.append(Tabulate(polynomial.formula, table, variable, because, findings))
         return table

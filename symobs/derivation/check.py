@@ -18,21 +18,21 @@ from symobs.derivation.facts.properties import PREDICATES, are_roots, polynomial
 from symobs.derivation.facts.rejection import BUG, reject
 from symobs.derivation.facts.restriction import on_stratum
 from symobs.derivation.steps import (
-    Case,
+    CaseStep,
     Conclude,
     Define,
     Diagram,
     Equal,
     Given,
+    Inequalities,
     Note,
     Plot,
+    RegionSummary,
     Section,
     Sentence,
     Solve,
     Step,
-    Survey,
     Tabulate,
-    Where,
 )
 from symobs.derivation.wording_check import are_added, fits, formula_in, reject_other_map, rests, with_limit
 from symobs.errors import DerivationRejected
@@ -42,6 +42,7 @@ from symobs.formula import (
     Conjunction,
     Derivative,
     Environment,
+    Evaluated,
     Exact,
     Fact,
     Formula,
@@ -51,7 +52,6 @@ from symobs.formula import (
     Predicate,
     Relation,
     Roots,
-    Shown,
     Signal,
     SymbolList,
     children,
@@ -87,7 +87,7 @@ class Derivation:
         return self.start.variable
 
     def check(self) -> Environment:
-        """Verify every line; return what is established at the end.  Raises `DerivationRejected`."""
+        """Verify every line; return the final environment.  Raises `DerivationRejected`."""
         known: Environment | None = self.__dict__.get("_checked")
         if known is None:
             known = _walk(self.steps, self.start, self.discrete)
@@ -134,9 +134,9 @@ def _after(step: Step, environment: Environment, discrete: bool) -> Environment:
                 _fact(relation, environment, discrete)
         case Tabulate():
             environment = _tabulated(step, environment, discrete)
-        case Where(fact):
+        case Inequalities(fact):
             _fact(fact, environment, discrete)
-        case Survey(polynomial):
+        case RegionSummary(polynomial):
             _about_letters(polynomial, environment)
             value = as_scalar(evaluate(polynomial, environment, Exact(environment)))
             from symobs.derivation.region_check import is_survey  # noqa: PLC0415 - only pages of regions pay for it
@@ -145,7 +145,7 @@ def _after(step: Step, environment: Environment, discrete: bool) -> Environment:
                 reject(f"that this is the region of {plain(polynomial, environment.variable)}")
         case Plot(picture, subject):
             _drawn(picture, subject, environment, discrete)
-        case Case(when, substitution, inside, anew=anew):
+        case CaseStep(when, substitution, inside, anew=anew):
             stratum = on_stratum(when, dict(substitution), environment)
             kept = {name: value for name, value in stratum.values.items() if name not in anew}
             _walk(inside, replace(stratum, values=kept), discrete)
@@ -164,7 +164,7 @@ def _after(step: Step, environment: Environment, discrete: bool) -> Environment:
 
 
 def _tabulated(step: Tabulate, environment: Environment, discrete: bool) -> Environment:  # noqa: FBT001
-    """Verify a table and whose it is said to be; let Δₙ₋₁ mean what it does beside this table."""
+    """Verify a table and its polynomial; define Δₙ₋₁ for this table."""
     polynomial, variable = step.polynomial, step.variable
     _about_letters(polynomial, environment)
     value = as_scalar(evaluate(polynomial, environment, Exact(environment)))
@@ -174,11 +174,11 @@ def _tabulated(step: Tabulate, environment: Environment, discrete: bool) -> Envi
         reject(f"that this is the table of {plain(polynomial, environment.variable)} in {variable}")
     if step.sentence is not None and "polynomial" in dict(step.sentence.slots):
         _fact(Relation((formula_in(step.sentence, "polynomial"), polynomial), ("=",)), environment, discrete)
-    return environment.having(values=last_determinant(value, variable))
+    return environment.extended_by(values=last_determinant(value, variable))
 
 
 def _drawn(picture: Picture, subject: Formula, environment: Environment, discrete: bool) -> None:  # noqa: FBT001
-    """Reject a picture that shows what is not true of the polynomial."""
+    """Reject a plot that is false of its polynomial."""
     from symobs.derivation.figures.plot_check import faults, relations_of  # noqa: PLC0415 - only pages of regions pay for it
 
     for formula in (subject, *(member for relation in relations_of(picture) for member in relation.members)):
@@ -194,7 +194,7 @@ def _sentence(sentence: Sentence, environment: Environment, discrete: bool) -> N
     for _, slot in sentence.slots:
         if not fits(sentence.key, slot, environment):
             reject(f"{slot}, which is not what {sentence.key} speaks of,")
-        if isinstance(slot, (Relation, Predicate, Roots, HoldsExactlyWhere, Conjunction, Shown, SymbolList)):
+        if isinstance(slot, (Relation, Predicate, Roots, HoldsExactlyWhere, Conjunction, Evaluated, SymbolList)):
             _fact(slot, environment, discrete)
         elif not isinstance(slot, (str, *SPOKEN)):
             _established(slot, environment)
@@ -221,7 +221,7 @@ def _has_values(formula: Formula) -> bool:
 
 
 def _about_letters(formula: Formula, environment: Environment) -> None:
-    """Reject a property of what is written out only: it would say nothing about the problem."""
+    """Reject a property of written-out values only, which are no quantity of the problem."""
     _established(formula, environment)
     if not letters(formula) - {"s"}:
         reject(f"a property of {plain(formula, environment.variable)}, which is no letter's,")
@@ -242,7 +242,7 @@ def _fact(fact: Fact, environment: Environment, discrete: bool) -> None:  # noqa
         for part in fact.relations:
             _fact(part, environment, discrete)
         return
-    if isinstance(fact, Shown):
+    if isinstance(fact, Evaluated):
         _fact(Relation((fact.formula, fact.value), ("=",)), environment, discrete)
         return
     environment = replace(environment, coefficients={})
@@ -288,7 +288,7 @@ def _introduce(relation: Relation, environment: Environment) -> Environment:
 
 
 def _with_domain(relation: Relation, environment: Environment) -> Environment:
-    """Let the denominators of data be 0 nowhere: there the data mean nothing, and nothing is said of them."""
+    """Assume the denominators of the data are nonzero; elsewhere the plant is undefined."""
     literals = [value for member in relation.members for value in _literals(member)]
     entries = [entry for value in literals for entry in (value.entries if isinstance(value, Matrix) else (value,))]
     factors = vanishing_factors([entry.denominator for entry in entries], environment.signs)
@@ -307,34 +307,34 @@ def _assume(relation: Relation, environment: Environment) -> Environment:
     left, right = (as_scalar(evaluate(member, environment, Exact(environment))) for member in relation.members)
     if left == right:
         reject(plain_relation(relation, environment.variable))
-    return replace(environment, assumed=(*environment.assumed, *(f for f, _ in (left - right).numerator.factors()[1])))
+    return replace(environment, nonzero=(*environment.nonzero, *(f for f, _ in (left - right).numerator.factors()[1])))
 
 
 def _meaning(target: Formula, rest: list[Formula], environment: Environment) -> Environment:
     match target:
         case Derivative(Letter(name)) if _is_free(name, environment):
-            return environment.having(dynamics={name: rest[0]})
+            return environment.extended_by(dynamics={name: rest[0]})
         case Literal(value) if str(value) in value.names:
             (name,) = value.names
             _new_name(name, environment)
             meaning = evaluate(rest[-1], environment, Exact(replace(environment, coefficients={})))
-            return environment.having(coefficients={name: meaning})
+            return environment.extended_by(coefficients={name: meaning})
         case Letter(name) if name not in environment.signals or _is_free(name, environment):
             last = next((member for member in reversed(rest) if isinstance(member, Literal)), rest[0])
             value = evaluate(last, environment, Exact(environment))
             if isinstance(value, Signal):
-                return environment.having(signals={name: rest[0]})
+                return environment.extended_by(signals={name: rest[0]})
             if name == "s" or name in environment.signals:
                 reject(f"{name}, which stands for something else, as a name for a value")
             if isinstance(last, Literal):
                 value = last.value
-            return environment.having(values={name: value})
+            return environment.extended_by(values={name: value})
         case _:
             return reject("only a letter, a derivative or a named coefficient can be introduced")
 
 
 def _is_free(name: str, environment: Environment) -> bool:
-    """Whether a signal has neither a definition nor a derivative: only such a one can be given either."""
+    """Return whether a signal has neither a definition nor a derivative: only such a one can be given either."""
     return environment.signals[name] is None and name not in environment.dynamics
 
 
@@ -348,7 +348,7 @@ def _new_name(name: str, environment: Environment) -> None:
 def _established(formula: Formula, environment: Environment) -> None:
     """Reject letters that are not established, and roots of what may be negative: they would not be real."""
     for name in letters(formula):
-        if not environment.knows(name):
+        if not environment.defines(name):
             reject(f"{name} is used before it is established")
     for root in roots_written(formula):
         _fact(Relation((Literal(root.argument), Literal(Scalar.of(0))), (">=",)), environment, discrete=False)

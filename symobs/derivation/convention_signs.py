@@ -13,25 +13,26 @@ from typing import TYPE_CHECKING, Any
 from symobs.convention import OF_REDUCED_ORDER
 from symobs.derivation.facts.rejection import reject
 from symobs.derivation.steps import (
-    Case,
+    CaseStep,
     Conclude,
     Define,
     Diagram,
     Equal,
     Given,
+    Inequalities,
     Note,
     Plot,
+    RegionSummary,
     Section,
     Sentence,
     Solve,
-    Survey,
     Tabulate,
-    Where,
 )
 from symobs.errors import UsageError
 from symobs.exact import Matrix, Scalar
 from symobs.formula import (
     Conjunction,
+    Evaluated,
     Exact,
     Formula,
     HoldsExactlyWhere,
@@ -41,10 +42,9 @@ from symobs.formula import (
     Product,
     Relation,
     Roots,
-    Shown,
+    SignReversal,
     SymbolList,
     Transpose,
-    Turned,
     children,
     evaluate,
     with_children,
@@ -61,7 +61,7 @@ if TYPE_CHECKING:
     from symobs.formula import Environment
     from symobs.notation import LetterForm
 
-_STEPS = (Given, Define, Equal, Solve, Conclude, Note, Plot, Tabulate, Where, Survey, Case, Section)
+_STEPS = (Given, Define, Equal, Solve, Conclude, Note, Plot, Tabulate, Inequalities, RegionSummary, CaseStep, Section)
 #: What an observer is assumed to do with the output, and the gain it turns out to be; a convention may call both H.
 _ANSATZ = {"L", "H_x"}
 _FACTS = (Sentence, Predicate, Roots, HoldsExactlyWhere, Conjunction)
@@ -80,7 +80,7 @@ def translated(derivation: Derivation, convention: Convention) -> Derivation:
     if convention.turned:
         data = {value for name in "ABCD" if name in before.values for value in _both_ways(before.values[name])}
         written = {value for relation in _relations(steps) for value in _values(relation, convention.turned)}
-        steps = _in_signs(steps, Turned(convention.turned, written - data))
+        steps = _in_signs(steps, SignReversal(convention.turned, written - data))
     made = replace(derivation, steps=steps)
     after = made.check()
     _hold_against(before, after, convention.turned)
@@ -96,10 +96,10 @@ def set_apart(derivation: Derivation, letters: Iterable[str], forms: Mapping[str
     shared = printed_alike(letters, forms, named - {derivation.variable, *derivation.symbols})
     if not shared:
         return derivation
-    told = [Note(Sentence("without_serifs", (("parameter", Literal(Scalar.symbol(name))),))) for name in shared]
+    notes = [Note(Sentence("without_serifs", (("parameter", Literal(Scalar.symbol(name))),))) for name in shared]
     first, *rest = derivation.steps
     if isinstance(first, Section):
-        first = replace(first, steps=(*first.steps, *told))
+        first = replace(first, steps=(*first.steps, *notes))
     symbols = {**derivation.symbols, **{name: sans_serif(name) for name in shared}}
     return replace(derivation, steps=(first, *rest), symbols=symbols)
 
@@ -124,13 +124,13 @@ def _both_ways(value: Scalar | Matrix) -> tuple[Matrix, ...]:
     return (value, value.T) if isinstance(value, Matrix) else ()
 
 
-def _in_signs(item: Any, turned: Turned) -> Any:
+def _in_signs(item: Any, turned: SignReversal) -> Any:
     """Return a step, or a part of one, in the new signs."""
     match item:
         case Relation():
             return turned.relation(item)
-        case Shown(formula, value):
-            return Shown(*turned.relation(Relation((formula, value), ("=",))).members)
+        case Evaluated(formula, value):
+            return Evaluated(*turned.relation(Relation((formula, value), ("=",))).members)
         case Diagram(labels=labels):
             signed = tuple((name, _label_in_signs(label, turned)) for name, label in labels)
             return replace(item, labels=signed, sentence=_in_signs(item.sentence, turned))
@@ -139,7 +139,7 @@ def _in_signs(item: Any, turned: Turned) -> Any:
     return _rebuilt(item, lambda part: _in_signs(part, turned))
 
 
-def _label_in_signs(label: Label, turned: Turned) -> Label:
+def _label_in_signs(label: Label, turned: SignReversal) -> Label:
     """Return what labels a box or a wire, a gain with its sign."""
     found: Label = _in_signs(label, turned) if isinstance(label, Conjunction) else turned.whole(label)
     return found
@@ -149,7 +149,7 @@ def _rebuilt(item: Any, of_part: Callable[[Any], Any]) -> Any:
     """Return a step, a sentence, a fact or several of them over other parts; anything else as it is."""
     if isinstance(item, tuple):
         return tuple(map(of_part, item))
-    if isinstance(item, (*_STEPS, *_FACTS, Relation, Shown, Diagram)):
+    if isinstance(item, (*_STEPS, *_FACTS, Relation, Evaluated, Diagram)):
         return replace(item, **{part.name: of_part(getattr(item, part.name)) for part in fields(item)})
     return item
 
@@ -221,7 +221,7 @@ def _every(item: Any) -> Iterator[Any]:
         parts: Iterable[Any] = children(item)
     elif isinstance(item, tuple):
         parts = item
-    elif isinstance(item, (*_STEPS, *_FACTS, Relation, Shown, Diagram)):
+    elif isinstance(item, (*_STEPS, *_FACTS, Relation, Evaluated, Diagram)):
         parts = (getattr(item, field.name) for field in fields(item))
     else:
         return
@@ -243,7 +243,7 @@ def _literals(steps: Any) -> Iterator[Scalar | Matrix]:
 
 
 def _values(relation: Relation, names: frozenset[str]) -> Iterator[Matrix]:
-    """Yield the matrices, and their transposes, that a relation says one of the letters is."""
+    """Yield the matrices, and their transposes, equated with one of the letters by a relation."""
     head = relation.members[0]
     head = head.operand if isinstance(head, Transpose) else head
     if isinstance(head, Letter) and head.name in names:

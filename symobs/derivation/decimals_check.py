@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 from symobs.certificate.claims import UNREADABLE, verify
 from symobs.derivation.facts.rejection import BUG, reject
-from symobs.derivation.steps import Case, Diagram, Given, Where
+from symobs.derivation.steps import CaseStep, Diagram, Given, Inequalities
 from symobs.errors import DerivationRejected
 from symobs.exact import Scalar, is_correctly_written
 from symobs.exact.core.generators import identities
@@ -27,6 +27,7 @@ from symobs.formula import (
     Decimals,
     Derivative,
     Environment,
+    Evaluated,
     Exact,
     HoldsExactlyWhere,
     Identity,
@@ -40,7 +41,6 @@ from symobs.formula import (
     Quotient,
     Relation,
     RoundedRoots,
-    Shown,
     Sum,
     Transpose,
     children,
@@ -84,7 +84,7 @@ _ORDER = {
 
 
 def check_decimals(exact: object, shown: object, variable: str, digits: int) -> None:
-    """Raise `DerivationRejected` unless steps in decimals say what the exact steps say, correctly rounded."""
+    """Raise `DerivationRejected` unless the steps in decimals are the exact steps, correctly rounded."""
     try:
         _Comparison(variable, digits).compare(exact, shown)
     except UNREADABLE as error:
@@ -123,9 +123,9 @@ class _Comparison:
                 if other != letter_for(exact.name, place, label):  # which a format may draw for any label
                     self.compare(label, other, exactly=exactly)
         elif is_dataclass(exact) and type(exact) is type(shown):
-            exactly = exactly or isinstance(exact, Given | Where | HoldsExactlyWhere | Shown)
+            exactly = exactly or isinstance(exact, Given | Inequalities | HoldsExactlyWhere | Evaluated)
             for part in fields(exact):
-                conditions = isinstance(exact, Case) and part.name == "when"
+                conditions = isinstance(exact, CaseStep) and part.name == "when"
                 one, other = getattr(exact, part.name), getattr(shown, part.name)
                 self.compare(one, other, exactly=exactly or conditions)
         elif exact != shown:
@@ -166,9 +166,9 @@ class _Comparison:
             self._formula(one, other)
 
     def _are_equal_in_time(self, exact: Formula, shown: Formula) -> bool:
-        """Return whether functions of time are equal by what is known of them: e^{−2aT} is the square of e^{−aT}."""
+        """Return whether functions of time are equal by their dependences: e^{−2aT} is the square of e^{−aT}."""
         meanings, vanishing = identities([*_values(exact), *_values(shown)])
-        start = replace(self.environment, coefficients=meanings).under(vanishing)
+        start = replace(self.environment, coefficients=meanings).with_relations(vanishing)
         return bool(meanings or vanishing) and verify(Relation((exact, shown), ("=",)), start)[0] != ""
 
     def _digits(self, shown: Formula) -> None:

@@ -1,4 +1,4 @@
-"""Whether inequalities say exactly where a polynomial has a property (trusted)."""
+"""Check that inequalities hold exactly where a polynomial has a property (trusted)."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 def is_exactly(fact: HoldsExactlyWhere, polynomial: Scalar, environment: Environment, *, discrete: bool) -> bool:
-    """Tell whether a polynomial has a property exactly where some inequalities hold.
+    """Return whether a polynomial has a property exactly where some inequalities hold.
 
     They are those that the criterion asks for, or proved to say the same; with one or two parameters by the region itself.
     """
@@ -46,9 +46,9 @@ def is_exactly(fact: HoldsExactlyWhere, polynomial: Scalar, environment: Environ
 
 
 def _with_signs(environment: Environment) -> Environment:
-    """Return the environment with what is known to be above 0 as a sign, where it is a symbol or minus one."""
+    """Return the environment with positive symbols, and minus symbols, as declared signs."""
     signs = dict(environment.signs)
-    for value in environment.above:
+    for value in environment.positive:
         for sign, symbol in (("positive", value), ("negative", -value)):
             if str(symbol) in symbol.names:
                 signs[str(symbol)] = sign

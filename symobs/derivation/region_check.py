@@ -1,4 +1,4 @@
-"""What a page says of a stability region, held against the region of the polynomial it speaks of (trusted)."""
+"""Check of statements about a stability region against the region of the polynomial (trusted)."""
 
 from __future__ import annotations
 
@@ -22,14 +22,14 @@ from symobs.stability.regions.short_list import RegionInequality, short_list
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
-    from symobs.derivation.steps import Survey
+    from symobs.derivation.steps import RegionSummary
     from symobs.exact import RealNumber
     from symobs.formula import Environment
     from symobs.stability.regions.plane_region import PlaneRegion
 
 
-def is_survey(step: Survey, value: Scalar, environment: Environment, *, discrete: bool) -> bool:
-    """Tell whether what a step says of a region is so."""
+def is_survey(step: RegionSummary, value: Scalar, environment: Environment, *, discrete: bool) -> bool:
+    """Return whether the statement of a step about a region is true."""
     region = region_of(value, environment, discrete=discrete, names=step.names)
     if region is None and not step.parts:
         found = findings_of_conditions(value, environment, step.names, discrete=discrete)
@@ -48,7 +48,7 @@ def is_survey(step: Survey, value: Scalar, environment: Environment, *, discrete
 def findings_of_conditions(
     polynomial: Scalar, environment: Environment, names: tuple[str, ...], *, discrete: bool
 ) -> tuple[Sentence, ...]:
-    """Return what can be said of a region that is known by its inequalities: nowhere, or a product of intervals."""
+    """Return the findings on a region given by inequalities: empty, or a product of intervals."""
     signs = environment.signs
     found = stable_where(polynomial, environment.variable, signs, discrete=discrete)
     said = found.positive
@@ -63,7 +63,7 @@ def findings_of_conditions(
 
 
 def findings_of_region(region: LineRegion | PlaneRegion) -> tuple[Sentence, ...]:
-    """Return what can be said of a region: how it was found, of how many pieces it is, what it surrounds."""
+    """Return the findings on a region: its origin, its number of pieces, its holes."""
     if region.empty:
         return (Sentence("region_empty"),)
     if isinstance(region, LineRegion):
@@ -149,7 +149,7 @@ def _region_of(
 
 
 def holds_exactly(region: LineRegion | PlaneRegion, where: tuple[tuple[Scalar, str], ...]) -> bool:
-    """Tell whether a polynomial is stable exactly where these values are > 0 (or ≠ 0)."""
+    """Return whether a polynomial is stable exactly where these values are > 0 (or ≠ 0)."""
     if isinstance(region, LineRegion) and len(region.intervals) == 1:
         (piece,) = region.intervals
         symbol = Scalar.symbol(region.name)
@@ -173,7 +173,7 @@ def _declared(region: LineRegion) -> list[tuple[Scalar, str]]:
 
 
 def are_the_parts(region: PlaneRegion, said: tuple[tuple[Relation, ...], ...]) -> bool:
-    """Tell whether these are the relations of the parts of a region, one after the other."""
+    """Return whether these are the relations of the parts of a region, one after the other."""
     found = parts(region)
     return (
         are_parts(region, found)

@@ -1,4 +1,4 @@
-"""What Routh's table says, and the check of a step that shows one (trusted)."""
+"""Findings of Routh's table, and the check of a step with such a table (trusted)."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ MOST_PARAMETERS = 2
 
 
 def is_tabulated(step: Tabulate, value: Scalar, environment: Environment) -> bool:
-    """Tell whether a step shows the table of a polynomial with this value, and its findings are those of the table."""
+    """Return whether a step shows the table of a polynomial with this value, and its findings are those of the table."""
     variable, table = step.variable, step.table
     taken = {*environment.signs, *environment.coefficients}
     if variable in taken or table.epsilon in taken or table.epsilon == variable:
@@ -40,7 +40,7 @@ def is_tabulated(step: Tabulate, value: Scalar, environment: Environment) -> boo
 
 
 def _divides_by_zero(table: RouthTable, environment: Environment) -> bool:
-    """Tell whether something in the first column vanishes because of what is known to be 0 here."""
+    """Return whether an entry of the first column vanishes by the relations."""
     known = Ideal.of(environment.relations)
     return any(entry.numerator in known for entry in table.first_column)
 
@@ -48,7 +48,7 @@ def _divides_by_zero(table: RouthTable, environment: Environment) -> bool:
 def findings_of(
     table: RouthTable, coefficients: Sequence[Scalar], variable: str, signs: Mapping[str, str]
 ) -> tuple[Sentence, ...]:
-    """Return what the table of a polynomial says: which zeros were replaced, and where the roots lie.
+    """Return the findings of Routh's table: replaced zeros, and the location of the roots.
 
     Numbers of roots are stated where a count that knows nothing of the table finds the same.
     """
@@ -92,7 +92,7 @@ def _counted(table: RouthTable, coefficients: Sequence[Scalar]) -> Sentence:
 
 
 def _with_parameters(table: RouthTable, signs: Mapping[str, str]) -> Iterator[Sentence]:
-    """Yield for which parameters all roots lie on the left, as far as the table says it."""
+    """Yield the conditions of the table for all roots in the left half-plane."""
     leading, *_ = column = table.first_column
     sign = sign_of(leading, signs)
     is_certain = sign in {"positive", "negative"}
@@ -109,7 +109,7 @@ def _with_parameters(table: RouthTable, signs: Mapping[str, str]) -> Iterator[Se
 
 
 def last_determinant(polynomial: Scalar, variable: str) -> dict[str, Scalar]:
-    """Return what the letter Δₙ₋₁ means beside the table of a polynomial with one or two parameters: Hurwitz' determinant."""
+    """Return the value of Δₙ₋₁ for the table of a polynomial with one or two parameters: Hurwitz' determinant."""
     order, parameters = polynomial.degree(variable), polynomial.names - {variable}
     if order < 2 or not 1 <= len(parameters) <= MOST_PARAMETERS:
         return {}

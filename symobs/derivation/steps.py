@@ -58,7 +58,7 @@ class Define:
 
 @dataclass(frozen=True)
 class Equal:
-    """Relations among what is established, shown on one display."""
+    """Relations between established values, on one display."""
 
     relations: tuple[Relation, ...]
     sentence: Sentence | None = None
@@ -85,7 +85,7 @@ class Conclude:
 
 @dataclass(frozen=True)
 class Note:
-    """A remark; `caution` where an expert would warn.  It may speak of established letters only."""
+    """A remark; `caution` marks a warning.  It contains established letters only."""
 
     sentence: Sentence
     facts: tuple[Fact, ...] = ()
@@ -106,7 +106,7 @@ class Diagram:
 
 @dataclass(frozen=True)
 class Tabulate:
-    """Routh's table of a polynomial in `variable`; the findings, told below it, are among those of `findings_of`."""
+    """Routh's table of a polynomial in `variable`; the findings printed below are among those of `findings_of`."""
 
     polynomial: Formula
     table: RouthTable
@@ -116,7 +116,7 @@ class Tabulate:
 
 
 @dataclass(frozen=True)
-class Where:
+class Inequalities:
     """A property holds exactly where some inequalities do: shown on a display of their own."""
 
     fact: HoldsExactlyWhere
@@ -125,7 +125,7 @@ class Where:
 
 
 @dataclass(frozen=True)
-class Survey:
+class RegionSummary:
     """The region of one or two parameters (`names`) in which a polynomial is stable, in words and in parts.
 
     The findings are among those of `findings_of_region`; the parts are all of its intervals, or bounds of the second
@@ -149,8 +149,8 @@ class Plot:
 
 
 @dataclass(frozen=True)
-class Case:
-    """What is true on a stratum: `when` holds there because of `substitution`, and the steps hold after it.
+class CaseStep:
+    """A case: the steps that hold on a stratum; `when` holds there because of `substitution`.
 
     Several equations and inequations stand together.  Without a substitution the steps hold modulo the equations.  The
     letters in `anew` have no meaning there until they are introduced again.
@@ -172,5 +172,17 @@ class Section:
 
 
 Step: TypeAlias = (
-    Given | Define | Equal | Solve | Conclude | Note | Diagram | Plot | Tabulate | Where | Survey | Case | Section
+    Given
+    | Define
+    | Equal
+    | Solve
+    | Conclude
+    | Note
+    | Diagram
+    | Plot
+    | Tabulate
+    | Inequalities
+    | RegionSummary
+    | CaseStep
+    | Section
 )

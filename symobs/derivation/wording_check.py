@@ -1,4 +1,4 @@
-"""Whether the relation in a sentence is the one that its words speak of, not just any that is true (trusted).
+"""Check that the relation in a sentence is the one its words state, not just a true one (trusted).
 
 A pair of poles overshoots by exp(−π σ/ω), and by no other number below a bound; a pair is observable because the rank is
 that of a matrix of full rank, and not because of 1 = 1.  Which sentence owes what is declared beside its words, in the
@@ -59,8 +59,8 @@ def _exponential(exponent: Callable[[Mapping[str, Any]], Scalar]) -> Callable[[R
     """Return the check that a relation begins with e to this power, given by the values of the letters."""
 
     def is_said(relation: Relation, environment: Environment) -> bool:
-        told = evaluate(relation.members[0], environment, Exact(environment))
-        return bool(told == function("exp", exponent(environment.values)))
+        stated = evaluate(relation.members[0], environment, Exact(environment))
+        return bool(stated == function("exp", exponent(environment.values)))
 
     return is_said
 
@@ -85,7 +85,7 @@ def _has_rank(facts: Sequence[Fact], environment: Environment, *, is_full: bool)
 
 
 def _is_of_loop(fact: Predicate, environment: Environment) -> bool:
-    """Tell whether a predicate says that the polynomial of the loop, φ_c φ_o, is stable."""
+    """Return whether a predicate is the stability of the loop's polynomial φ_c φ_o."""
     if fact.name != "stable" or not {"phi_c", "phi_o"} <= environment.values.keys():
         return False
     exact, loop = Exact(environment), Product((Letter("phi_c"), Letter("phi_o")))
@@ -93,7 +93,7 @@ def _is_of_loop(fact: Predicate, environment: Environment) -> bool:
 
 
 def _is_defective(facts: Sequence[Fact], environment: Environment) -> bool:
-    """Tell whether a pole of φ_c is met more often than a matrix X lacks in rank, φ_c(s + pole) being det(sI − X)."""
+    """Return whether a pole of φ_c is met more often than a matrix X lacks in rank, φ_c(s + pole) being det(sI − X)."""
     ranked = [_ranked(fact) for fact in facts if isinstance(fact, Relation)]
     matrices = [formula for formula in ranked if formula is not None]
     poles = [root.centre for fact in facts if isinstance(fact, Roots) for root in fact.values]
@@ -110,13 +110,13 @@ def _is_defective(facts: Sequence[Fact], environment: Environment) -> bool:
 
 
 def _ranked(relation: Relation) -> Formula | None:
-    """Return the matrix of whose rank a relation begins to speak."""
+    """Return the matrix whose rank is the first member of a relation."""
     first = relation.members[0]
     return first.argument if isinstance(first, Apply) and first.function == "rank" else None
 
 
 def _is_everywhere(relation: Relation, environment: Environment) -> bool:
-    """Tell whether the rank that a relation begins with is seen to be the same for all parameters."""
+    """Return whether the rank that a relation begins with is seen to be the same for all parameters."""
     first = relation.members[0]
     if not isinstance(first, Apply) or not evaluate(first.argument, environment, Exact(environment)).names:
         return True
@@ -128,7 +128,7 @@ def _is_everywhere(relation: Relation, environment: Environment) -> bool:
 
 
 def _is_of_rank(relation: Relation, environment: Environment, *, is_full: bool) -> bool:
-    """Tell whether a relation is rank = r with the full r, or with a lower one, followed by nothing but the full one."""
+    """Return whether a relation is rank = r with the full r, or with a lower one, followed by nothing but the full one."""
     matrix, others = _ranked(relation), relation.members[1:]
     if matrix is None:
         return False
@@ -193,19 +193,19 @@ require_known(DEMANDS)
 
 
 def fits(key: str, relation: object, environment: Environment) -> bool:
-    """Tell whether the relation of a sentence, which is true, is one that its words speak of."""
+    """Return whether the true relation of a sentence is the one its words state."""
     is_said = _OF_SLOTS.get(DEMANDS.get(key, ""))
     return is_said is None or (isinstance(relation, Relation) and is_said(relation, environment))
 
 
 def rests(key: str, facts: Sequence[Fact], environment: Environment) -> bool:
-    """Tell whether the facts of a step, which are true, are such as its sentence rests on."""
+    """Return whether the facts of a step, which are true, are such as its sentence rests on."""
     is_held = _OF_FACTS.get(DEMANDS.get(key, ""))
     return is_held is None or is_held(facts, environment)
 
 
 def are_added(choice: StateChoice, facts: Sequence[Fact]) -> bool:
-    """Tell whether the facts are, set by set, the full rank of a test matrix with these states' unit rows below it."""
+    """Return whether the facts are, set by set, the full rank of a test matrix with these states' unit rows below it."""
     if len(facts) != len(choice.sets):
         return False
     for numbers, fact in zip(choice.sets, facts, strict=True):
@@ -226,7 +226,9 @@ def with_limit(sentence: Sentence, environment: Environment) -> Environment:
     name = _SETS.get(DEMANDS.get(sentence.key, ""))
     if name is None:
         return environment
-    return environment.having(values={name: evaluate(formula_in(sentence, "limit"), environment, Exact(environment))})
+    return environment.extended_by(
+        values={name: evaluate(formula_in(sentence, "limit"), environment, Exact(environment))}
+    )
 
 
 def reject_other_map(sentence: Sentence, relation: Relation | None, environment: Environment) -> None:
@@ -235,16 +237,16 @@ def reject_other_map(sentence: Sentence, relation: Relation | None, environment:
     if applied is None:
         return
     slot, limit = applied
-    told = formula_in(sentence, slot)
-    is_there = relation is not None and any(told in _within(member) for member in relation.members)
-    if not is_there or (limit and not _moves_to(limit, told, environment)):
-        reject(f"{sentence.key} by {plain(told, environment.variable)}")
+    mapping = formula_in(sentence, slot)
+    is_there = relation is not None and any(mapping in _within(member) for member in relation.members)
+    if not is_there or (limit and not _moves_to(limit, mapping, environment)):
+        reject(f"{sentence.key} by {plain(mapping, environment.variable)}")
 
 
-def _moves_to(limit: str, told: Formula, environment: Environment) -> bool:
-    """Tell whether this is the limit remembered: a radius itself, a margin as the shift that takes it away."""
+def _moves_to(limit: str, mapping: Formula, environment: Environment) -> bool:
+    """Return whether this is the limit remembered: a radius itself, a margin as the shift that takes it away."""
     wanted = environment.values.get(limit)
-    moved = Negative(told) if limit == "sought margin" else told
+    moved = Negative(mapping) if limit == "sought margin" else mapping
     return wanted is not None and wanted == evaluate(moved, environment, Exact(environment))
 
 

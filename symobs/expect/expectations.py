@@ -135,7 +135,7 @@ def _no_field(where: str, message: str, known: Sequence[str]) -> InputError:
 
 
 def available(result: Answered) -> list[str]:
-    """Return the names of what a result can be asked for."""
+    """Return the names of the fields of a result."""
     return ["verdict", "conditions", *result.fields]
 
 

@@ -202,7 +202,7 @@ class Evaluator:
             raise self.source.error("sqrt of a negative number", place, instead) from None
 
     def _with_one_root(self, place: int, radicand: Scalar) -> Scalar:
-        """Return the radicand; sqrt(a^2) is a or -a, which only the sign of a can tell."""
+        """Return the radicand; sqrt(a^2) is a or -a, decided by the sign of a."""
         for factor, power in radicand.factors()[1]:
             if power % 4 == 2 and self.names.get(str(factor)) not in {"positive", "nonnegative"}:
                 message = f"sqrt of a square: {shown(str(factor))} may be negative"

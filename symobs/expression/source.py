@@ -31,7 +31,7 @@ class Source:
     def error(
         self, message: str, position: int, repair: str = "", kind: type[InputError] = ExpressionError, **facts: object
     ) -> InputError:
-        """Return the error that says `message` of the character at `position`."""
+        """Return an error with `message` at the character `position`."""
         before = self.text[:position]
         line, column = before.count("\n") + 1, position - before.rfind("\n")
         start = max(0, position - _BEFORE)

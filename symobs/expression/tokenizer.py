@@ -43,7 +43,7 @@ _OPERAND_STARTS = ("NUMBER", "NAME", "OPEN")
 
 
 def sharing(scope: Scope, values: Iterable[object], variable: str | None = None) -> Scope:
-    """Return the scope with one context for all texts among the values, and for the variable of what is made of them."""
+    """Return the scope with one context for all texts among the values and for the variable."""
     context = _context_of((value for value in values if isinstance(value, str)), variable)
     return replace(scope, context=context)
 
@@ -149,7 +149,7 @@ class Tokeniser:
             self._add("MULTIPLY", "*", at)
 
     def _is_imaginary_part(self, division: int, at: int) -> bool:
-        """Whether the imaginary unit follows a number that something is divided by.
+        """Return whether the imaginary unit follows a number that something is divided by.
 
         3/2 j and 52/25 I are these fractions times i, as all read them, and never a number over 2 i or 25 i.
         """

@@ -127,7 +127,7 @@ def without_sign(label: Label) -> tuple[bool, Label]:
 
 
 def letter_for(name: str, place: str, label: Label) -> Formula | None:
-    """Return what a figure has in place of a label that is not written out, with its sign; None where it has nothing."""
+    """Return the default label of a place in a figure, with its sign; None if there is none."""
     letter = dict(figure_of(name).letters).get(place)
     if letter is None:
         return None

@@ -3,7 +3,7 @@
 from symobs.formula.arithmetic import Arithmetic, Signal
 from symobs.formula.comparison import agree, differ
 from symobs.formula.evaluate import Environment, Exact, Modular, evaluate
-from symobs.formula.modulo_ideal import Restricted
+from symobs.formula.modulo_ideal import ModuloIdeal
 from symobs.formula.nodes import (
     Apply,
     At,
@@ -11,6 +11,7 @@ from symobs.formula.nodes import (
     Conjunction,
     Decimals,
     Derivative,
+    Evaluated,
     Fact,
     Formula,
     HoldsExactlyWhere,
@@ -27,7 +28,6 @@ from symobs.formula.nodes import (
     Relation,
     Roots,
     RoundedRoots,
-    Shown,
     Sum,
     SymbolList,
     Transpose,
@@ -41,7 +41,7 @@ from symobs.formula.nodes import (
     with_children,
 )
 from symobs.formula.numerals import exact_meaning, is_rounded
-from symobs.formula.sign_changes import Turned
+from symobs.formula.sign_changes import SignReversal
 
 __all__ = [
     "Apply",
@@ -52,6 +52,7 @@ __all__ = [
     "Decimals",
     "Derivative",
     "Environment",
+    "Evaluated",
     "Exact",
     "Fact",
     "Formula",
@@ -61,6 +62,7 @@ __all__ = [
     "Letter",
     "Literal",
     "Modular",
+    "ModuloIdeal",
     "Negative",
     "Numeral",
     "Power",
@@ -68,15 +70,13 @@ __all__ = [
     "Product",
     "Quotient",
     "Relation",
-    "Restricted",
     "Roots",
     "RoundedRoots",
-    "Shown",
+    "SignReversal",
     "Signal",
     "Sum",
     "SymbolList",
     "Transpose",
-    "Turned",
     "agree",
     "children",
     "contains",

@@ -51,10 +51,10 @@ class Environment:
     dynamics    free signal → the formula of its derivative (or shift)
     coefficients   a generator that stands for a longer scalar → that scalar, in generators introduced before it
     signs       parameter → declared sign
-    assumed     polynomials in the parameters that a stated condition keeps from 0
-    domain      factors of the denominators of the data, which are 0 nowhere that anything is said of
+    nonzero     polynomials in the parameters that a stated condition keeps from 0
+    domain      factors of the denominators of the data, which vanish nowhere in the domain
     relations   polynomials that are 0 here: the equations of a stratum, the minimal polynomial of an eigenvalue
-    above       polynomials in the parameters that a stated inequality keeps above 0
+    positive    polynomials in the parameters that a stated inequality keeps above 0
     """
 
     variable: str = "s"
@@ -64,12 +64,12 @@ class Environment:
     dynamics: Mapping[str, Formula] = field(default_factory=dict)
     coefficients: Mapping[str, Scalar] = field(default_factory=dict)
     signs: Mapping[str, str] = field(default_factory=dict)
-    assumed: tuple[Scalar, ...] = ()
+    nonzero: tuple[Scalar, ...] = ()
     domain: tuple[Scalar, ...] = ()
     relations: tuple[Scalar, ...] = ()
-    above: tuple[Scalar, ...] = ()
+    positive: tuple[Scalar, ...] = ()
 
-    def knows(self, name: str) -> bool:
+    def defines(self, name: str) -> bool:
         """Return whether a letter is defined."""
         return name in self.values or name in self.signals or name == "s"
 
@@ -77,12 +77,12 @@ class Environment:
         """Return the value of a letter."""
         return Scalar.symbol(self.variable) if name == "s" else self.values[name]
 
-    def having(self, **updates: Mapping[str, Any]) -> Environment:
+    def extended_by(self, **updates: Mapping[str, Any]) -> Environment:
         """Return an environment with entries added to the named mappings."""
         changed: dict[str, Any] = {key: {**getattr(self, key), **new} for key, new in updates.items()}
         return replace(self, **changed)
 
-    def under(self, relations: tuple[Scalar, ...]) -> Environment:
+    def with_relations(self, relations: tuple[Scalar, ...]) -> Environment:
         """Return an environment in which further polynomials are 0."""
         return replace(self, relations=(*self.relations, *relations)) if relations else self
 
@@ -226,9 +226,9 @@ def evaluate(formula: Formula, environment: Environment, arithmetic: Arithmetic)
             for factor in reversed(factors[:-1]):
                 value = times(evaluate(factor, environment, arithmetic), value, arithmetic)
             return value
-        case Quotient(above, below):
+        case Quotient(positive, below):
             divisor = scalar(evaluate(below, environment, arithmetic), arithmetic)
-            return times(arithmetic.invert(divisor), evaluate(above, environment, arithmetic), arithmetic)
+            return times(arithmetic.invert(divisor), evaluate(positive, environment, arithmetic), arithmetic)
         case Power(base, exponent):
             return _power(evaluate(base, environment, arithmetic), exponent, arithmetic)
         case Transpose(operand):

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from symobs.formula.evaluate import Environment
 
 
-class Restricted(Exact):
+class ModuloIdeal(Exact):
     """The exact arithmetic modulo the ideal of the relations.
 
     Nothing may be divided by what vanishes there: cancelling would hide it.  A rank has a meaning where one irreducible

@@ -231,7 +231,7 @@ class Conjunction:
 
 
 @dataclass(frozen=True)
-class Shown:
+class Evaluated:
     """The value of a formula, printed without the formula."""
 
     formula: Formula
@@ -245,7 +245,7 @@ class SymbolList:
     names: tuple[str, ...]
 
 
-Fact: TypeAlias = Relation | Predicate | Roots | HoldsExactlyWhere | Conjunction | Shown | SymbolList
+Fact: TypeAlias = Relation | Predicate | Roots | HoldsExactlyWhere | Conjunction | Evaluated | SymbolList
 
 
 #: Where the formulas directly below a node stand; asked for more often than anything else of a formula.
@@ -313,7 +313,7 @@ def is_rational(formula: Formula) -> bool:
 
 
 def divisors(formula: Formula) -> Iterator[Formula]:
-    """Yield what a formula divides by."""
+    """Yield the denominators of a formula."""
     match formula:
         case Quotient(_, below):
             yield below

@@ -1,4 +1,4 @@
-"""What a page in decimals shows: whether a number is rounded, and what a formula in decimals stands for."""
+"""Numerals on pages in decimals: rounded or exact, and the formula that one stands for."""
 
 from __future__ import annotations
 

@@ -38,7 +38,7 @@ _TURNED_AROUND = {"<": ">", ">": "<", "<=": ">=", ">=": "<="}
 
 
 @dataclass(frozen=True)
-class Turned:
+class SignReversal:
     """The letters with reversed sign, and their values; a matrix written out that equals one of these is reversed too."""
 
     names: frozenset[str]

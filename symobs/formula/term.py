@@ -107,7 +107,7 @@ class Term:
         return self._with(Apply(function, self.formula))
 
     @property
-    def shown(self) -> Term:
+    def as_value(self) -> Term:
         """The value written out."""
         return self._with(Literal(self.value))
 

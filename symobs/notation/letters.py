@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class LetterForm:
-    """How a letter is written: in LaTeX, on a terminal, and in words.  `{v}` stands for the polynomial's variable."""
+    """The forms of a letter: LaTeX, terminal, words.  `{v}` stands for the polynomial's variable."""
 
     latex: str
     text: str
@@ -201,12 +201,12 @@ _OF_TIME = {*TIMED, "A", "B", "C", "D", "V", "W", "x_u", "C_1", "exp_At", "Y", "
 
 
 def is_of_time(name: str) -> bool:
-    """Whether a letter is no signal but a value that may contain the time: its derivative is d/dt, not a dot."""
+    """Return whether a letter is no signal but a value that may contain the time: its derivative is d/dt, not a dot."""
     return name in _OF_TIME or name.startswith(("N_", "Phi_"))
 
 
 def shows_time(name: str) -> bool:
-    """Whether the time is written in a letter: e^{At}, W(t); its value at an instant stands behind a bar."""
+    """Return whether the time is written in a letter: e^{At}, W(t); its value at an instant stands behind a bar."""
     return name in LETTERS and LETTERS[name].text.endswith("t)")
 
 

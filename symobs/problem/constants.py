@@ -25,7 +25,7 @@ _MAX_CONSTANTS = 100
 
 
 def with_constants(table: Mapping[str, Any], symbols: Symbols, errors: AbstractContextManager[Any, Any]) -> Symbols:
-    """Return the symbols with names for numbers; `errors` collects what is wrong with one of them."""
+    """Return the symbols with named constants; `errors` collects the faults."""
     for name, value in list(table.items())[: _MAX_CONSTANTS + 1]:
         with errors:
             symbols = _with_constant(name, value, symbols)

@@ -104,7 +104,7 @@ def _toml_repair(message: str, line: str, text: str) -> str:
 
 
 def came(value: object) -> str:
-    """Return what a value of a file is, in words."""
+    """Return the kind of a value of a file, in words."""
     if value is None:
         return "null"
     words = {bool: "true or false", Decimal: "a number", int: "a number", str: "a text", list: "a list"}

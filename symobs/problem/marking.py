@@ -103,7 +103,7 @@ class Milestone:
 
 @dataclass(frozen=True)
 class Marking:
-    """What counts of an answer, and how much: all numbers are exact."""
+    """The marking scheme of a problem: parts and exact points."""
 
     total: Fraction | None = None
     asked: tuple[str, ...] = ()

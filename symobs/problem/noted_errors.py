@@ -38,7 +38,7 @@ class Errors:
         return isinstance(error, SymobsError)
 
     def add_elsewhere(self, others: Errors) -> None:
-        """Add those of the others that stand at a place nothing was said of yet."""
+        """Add errors of the others at places without an error."""
         taken = {error.where for error in self.found}
         self.found += [error for error in others.found if error.where not in taken]
 
@@ -82,7 +82,7 @@ def text_of(table: Mapping[str, Any], name: str, errors: Errors) -> str:
 
 
 def check_text(value: object, where: str, errors: Errors) -> None:
-    """Note what is no text, or one that is too long or cannot be printed."""
+    """Note a value that is no text, too long, or not printable."""
     if not isinstance(value, str) or isinstance(value, Decimal):
         errors.note(f"a text is expected, but {came(value)} came", where, "write it in quotes")
         return

@@ -1,4 +1,4 @@
-"""What a problem asks, as a page of its own: its data, and a sentence or two for every task.
+"""The question of a problem as a page: its data, and a sentence or two for every task.
 
 The sentences stand beside each task, among its phrases; which of them are said follows from what the specification
 contains.  The page is a derivation like any other: what it states is checked, and it is told by the same narrator.
@@ -15,7 +15,7 @@ from symobs.analysis.factored_form import formula_of_factored
 from symobs.analysis.page_parts import given, state_signs
 from symobs.analysis.time_response.horizons import INFINITE, read_horizon
 from symobs.derivation import Note, Section, translated
-from symobs.derivation.builder import Page, relation, sentence
+from symobs.derivation.builder import Builder, relation, sentence
 from symobs.exact import Matrix, Scalar, factored, root_of_pole
 from symobs.expression import parse_polynomial
 from symobs.formula import Roots, SymbolList
@@ -54,7 +54,7 @@ _WORDS = {"Name", "Sign"}
 
 @dataclass(frozen=True)
 class Question(Document):
-    """What a problem asks: a document without results."""
+    """A question: a document without results."""
 
     page: Derivation | None = None
 
@@ -67,7 +67,7 @@ class Question(Document):
 def question_of(problem: Problem) -> Question:
     """Return the question of a problem; raises `InputError` where its specification cannot be read."""
     asked = [(task, dict(_values(task, problem))) for task in problem.tasks]
-    page = Page(problem.plant, {"x_d": problem.plant.order} if _has(asked, "reference_matrix") else None)
+    page = Builder(problem.plant, {"x_d": problem.plant.order} if _has(asked, "reference_matrix") else None)
     page.in_time(*(value for _, values in asked for value in values.values() if isinstance(value, Scalar | Matrix)))
     _state_data(page, asked)
     with page.section("tasks" if len(asked) > 1 else "task"):
@@ -94,7 +94,7 @@ def _letter_of(place: int) -> str:
 # -- what is given ----------------------------------------------------------------------------------------------------
 
 
-def _state_data(page: Page, asked: Iterable[tuple[Task, Mapping[str, Any]]]) -> None:
+def _state_data(page: Builder, asked: Iterable[tuple[Task, Mapping[str, Any]]]) -> None:
     """State the plant, or the polynomial, and the matrices of the specification."""
     polynomial = page.plant.polynomial
     if polynomial is None:
@@ -120,7 +120,7 @@ def _state_data(page: Page, asked: Iterable[tuple[Task, Mapping[str, Any]]]) -> 
 
 
 def tokens_of(task: Task, values: Mapping[str, Any], problem: Problem) -> frozenset[str]:
-    """Return what the specification contains for a task, as the keys of the sentences put it."""
+    """Return the specification of a task, by the keys of its sentences."""
     tokens: set[str] = set()
     for name, value in values.items():
         kind = task.keywords[name]
@@ -136,7 +136,7 @@ def tokens_of(task: Task, values: Mapping[str, Any], problem: Problem) -> frozen
 
 
 def sentences_for(task: Task, tokens: frozenset[str]) -> list[str]:
-    """Return the keys of the sentences that together say all of this: the one that says most, then the others."""
+    """Return the keys of sentences that together cover the specification, the most comprehensive one first."""
     asks = [
         words for words in map(str.split, QUESTIONS) if words[:2] == ["ask", task.name] and tokens.issuperset(words[2:])
     ]
@@ -150,8 +150,8 @@ def sentences_for(task: Task, tokens: frozenset[str]) -> list[str]:
     return [" ".join(best), *dict.fromkeys(key for key in also if QUESTIONS[key])]
 
 
-def _filled(page: Page, task: Task, key: str, values: Mapping[str, Any]) -> Sentence:
-    """Return a sentence with what its slots ask for."""
+def _filled(page: Builder, task: Task, key: str, values: Mapping[str, Any]) -> Sentence:
+    """Return a sentence with its slots filled."""
     if key == "asked":
         return sentence(key, {"summary": task.summary})
     slots: dict[str, Slot] = {}
@@ -165,12 +165,12 @@ def _filled(page: Page, task: Task, key: str, values: Mapping[str, Any]) -> Sent
     return sentence(key, slots)
 
 
-def _slot(page: Page, task: Task, name: str, value: Any) -> Slot:
+def _slot(page: Builder, task: Task, name: str, value: Any) -> Slot:
     """Return a value as it stands in a sentence."""
     match task.keywords[name]:
         case "Poles":
             letter = "phi_c" if name == "control_poles" or task.name == "state_feedback" else "phi_o"
-            phi = page[letter] if page.knows(letter) else page.set(letter, value.polynomial)
+            phi = page[letter] if page.defines(letter) else page.set(letter, value.polynomial)
             return Roots(phi.formula, tuple(root_of_pole(pole, page.plant.variable) for pole in value.poles))
         case "PolynomialText":
             form: Term = page.term(formula_of_factored(factored(value, page.plant.variable, monic=False)))
@@ -202,7 +202,7 @@ def _values(task: Task, problem: Problem) -> Iterator[tuple[str, Any]]:
 
 
 def _free_parameters(problem: Problem) -> tuple[str, ...]:
-    """Return the parameters that the region is asked for where none are named."""
+    """Return the parameters of the region where none are named."""
     from symobs.analysis.stability_region.stability_region_question import read_question  # noqa: PLC0415 - only questions of regions
 
     asked = problem.specification

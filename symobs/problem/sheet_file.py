@@ -66,8 +66,8 @@ _IN_JSON = re.compile(rf'"(?:{_OWN})"\s*:'), re.compile(r'"(?:tasks?|plant|speci
 
 
 @dataclass(frozen=True)
-class Asked:
-    """What a sheet says of one of its problems."""
+class SheetProblem:
+    """A problem of a sheet: file, points, hint, and room for the answer."""
 
     file: str
     points: tuple[Fraction, ...] = ()
@@ -81,7 +81,7 @@ class SheetFile:
 
     title: str
     header: Header
-    problems: tuple[Asked, ...]
+    problems: tuple[SheetProblem, ...]
     texts: tuple[str, ...]
     has_final_answers: bool = False
     convention: Convention | None = None
@@ -241,8 +241,8 @@ def _asked(
     room: str,
     read: Callable[[str], str],
     errors: Errors,
-) -> tuple[Asked, str]:
-    """Return what is said of a problem, and the text of its file."""
+) -> tuple[SheetProblem, str]:
+    """Return the entry of a problem, and the text of its file."""
     _report_unknown(entry, PROBLEM, where, errors)
     points = _points(entry["points"], f"{where}.points", errors) if "points" in entry else ()
     hint = _text(entry.get("hint", ""), f"{where}.hint", errors)
@@ -261,7 +261,7 @@ def _asked(
         if parts is not None and len(points) > 1 and len(points) != parts:
             message = f"{len(points)} values for {parts} part{'s' * (parts != 1)}"
             errors.note(message, f"{where}.points", "give one value for each task of the problem, or one for all")
-    return Asked(path, points, hint, space), text
+    return SheetProblem(path, points, hint, space), text
 
 
 def _parts(text: str) -> int | None:

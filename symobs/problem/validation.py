@@ -23,7 +23,7 @@ from symobs.problem.noted_errors import Errors, check_text, report_unknown, tabl
 from symobs.problem.schema import PLANT, PRINTED, TOP, keys_of, kinds_of, missing_poles
 from symobs.result import Document, Result, Task, task_named, tasks
 from symobs.result.digits_of_page import digits_asked
-from symobs.result.in_convention import Viewed, names_in
+from symobs.result.in_convention import ResultInConvention, names_in
 from symobs.specification import parse_signal, read_poles
 from symobs.system import StateSpace, Symbols, read_matrix, read_scalar
 from symobs.system.time_domain import read_time
@@ -61,7 +61,7 @@ class Problem:
     language: str = ENGLISH.code
 
     def solve(self, report: Callable[[str, tuple[Result, ...]], None] | None = None) -> tuple[Result, ...]:
-        """Run every task; `report` is told which one begins and the results there are.
+        """Run every task; `report` receives the name of the next one and the results so far.
 
         All errors of all tasks are raised together.
         """
@@ -82,14 +82,14 @@ class Problem:
             raise errors.together(self.convention)
         return tuple(results)
 
-    def viewed(self, results: tuple[Result, ...]) -> tuple[Viewed, ...]:
+    def viewed(self, results: tuple[Result, ...]) -> tuple[ResultInConvention, ...]:
         """Return the results in the file's convention."""
-        return tuple(Viewed(result, self.convention) for result in results)
+        return tuple(ResultInConvention(result, self.convention) for result in results)
 
     def document(self, results: tuple[Result, ...], convention: Convention | None = None) -> Document:
-        """Return what a format renders, in the file's convention or in another one."""
-        told = convention or self.convention
-        return Document(self.title, self.source, results, told, self.text, digits=self.digits, language=self.language)
+        """Return the document for a format, in the file's convention or in another one."""
+        chosen = convention or self.convention
+        return Document(self.title, self.source, results, chosen, self.text, digits=self.digits, language=self.language)
 
 
 def validate(data: Mapping[str, Any], only: str | None = None, folder: Path | None = None) -> Problem:
@@ -109,7 +109,9 @@ def validate(data: Mapping[str, Any], only: str | None = None, folder: Path | No
     symbols = Symbols() if data.get("symbols") is OPEN else _symbols(table_of(data, "symbols", errors), errors)
     symbols = with_constants(table_of(data, "constants", errors), symbols, errors)
     dt = _period(data, symbols, errors)
-    plant = _plant(data, symbols, dt, errors, alone=bool(wanted) and all(task.alone for task in wanted))
+    plant = _plant(
+        data, symbols, dt, errors, optional=bool(wanted) and all(task.works_without_plant for task in wanted)
+    )
     specification = _specification(data, (*asked, *wanted), convention, symbols, errors)
     expect = table_of(data, "expect", errors)
     printed = _printed(data.get("printed", []), errors)
@@ -153,7 +155,7 @@ def _ids(value: object, errors: Errors) -> tuple[str, ...]:
 
 
 def _digits(data: Mapping[str, Any], errors: Errors) -> int | None:
-    """Return the digits of the numbers on the page: 0 for exact ones, None where nothing is said."""
+    """Return the digits of the numbers on the page: 0 for exact ones, None by default."""
     exact = data.get("exact", False)
     if not isinstance(exact, bool):
         errors.note(f"true or false is expected, but {came(exact)} came", "exact", "write exact = true")
@@ -243,8 +245,10 @@ def _period(data: Mapping[str, Any], symbols: Symbols, errors: Errors) -> object
     return 0
 
 
-def _plant(data: Mapping[str, Any], symbols: Symbols, dt: object, errors: Errors, *, alone: bool) -> StateSpace | None:
-    """Return the plant, None where it cannot be had; with `alone` a polynomial does instead."""
+def _plant(
+    data: Mapping[str, Any], symbols: Symbols, dt: object, errors: Errors, *, optional: bool
+) -> StateSpace | None:
+    """Return the plant, None where it cannot be had; where it is `optional` a polynomial does instead."""
     table = table_of(data, "plant", errors)
     if not isinstance(data.get("plant", {}), Mapping):
         return None
@@ -255,7 +259,7 @@ def _plant(data: Mapping[str, Any], symbols: Symbols, dt: object, errors: Errors
     elif "transfer_function" in table:
         with errors:
             return StateSpace.from_transfer_function(table["transfer_function"], dt, symbols=symbols)
-    elif alone and not given and "polynomial" in (specification := table_of(data, "specification", errors)):
+    elif optional and not given and "polynomial" in (specification := table_of(data, "specification", errors)):
         with errors:
             known = symbols.naming(specification.get("parameters"), "specification.parameters")
             return StateSpace.from_polynomial(specification["polynomial"], dt, symbols=known)
@@ -307,7 +311,7 @@ def _specification(
     symbols: Symbols,
     errors: Errors,
 ) -> dict[str, Any]:
-    """Return what the tasks can use of the specification, in standard letters and signs."""
+    """Return the part of the specification that the tasks use, in standard letters and signs."""
     table, kinds = table_of(data, "specification", errors), _kinds(wanted)
     named = {own: pair for own, pair in names_in(convention).items() if pair[0] in kinds}
     report_unknown(table, {**kinds, **dict.fromkeys(named, "GainText")}, "specification", errors)
@@ -334,7 +338,7 @@ def _specification(
 
 
 def _read_cells(value: object, symbols: Symbols, where: str, errors: Errors) -> None:
-    """Note every cell of a matrix in lists that cannot be read; whoever reads the whole matrix stops at the first."""
+    """Note every unreadable cell of a matrix in lists; reading the matrix as a whole stops at the first."""
     rows = value if isinstance(value, list) else []
     cells = ((i, j, cell) for i, row in enumerate(rows) if isinstance(row, list) for j, cell in enumerate(row))
     for i, j, cell in islice(cells, _MAX_CELLS):

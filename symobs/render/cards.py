@@ -13,7 +13,7 @@ from symobs._dataclass import dataclass
 from symobs.analysis.factored_form import formula_of_factored
 from symobs.convention import STANDARD, Convention
 from symobs.exact import Factored, Matrix, Root, Scalar
-from symobs.formula import Apply, Block, Letter, Literal, Negative, Product, Relation, Roots, Sum, Turned
+from symobs.formula import Apply, Block, Letter, Literal, Negative, Product, Relation, Roots, SignReversal, Sum
 from symobs.notation import LETTERS
 from symobs.render.formats.html import HtmlWriter
 from symobs.render.printers.latex_printer import LatexPrinter
@@ -153,7 +153,7 @@ def _card(result: Result, name: str, convention: Convention) -> Card:
     gains: Mapping[str, Any] = result.fields
     known = [gains[letter] for letter in ("K", "L") if isinstance(gains.get(letter), Matrix)]
     relation = Relation((left, _written(value)), ("=",))
-    return Card(name, Turned(convention.turned, known).relation(relation), value)
+    return Card(name, SignReversal(convention.turned, known).relation(relation), value)
 
 
 def _written(value: Any) -> Formula:

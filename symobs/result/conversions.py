@@ -1,4 +1,4 @@
-"""What leaves the library: exact values as SymPy objects and as JSON, and the faces of a result."""
+"""Conversion of exact values to SymPy and JSON, and the output methods of results."""
 
 from __future__ import annotations
 
@@ -16,8 +16,8 @@ if TYPE_CHECKING:
 _RELATIONS = {"!=": "!=", "=": "==", "==": "==", ">": ">", ">=": ">=", "<": "<", "<=": "<="}
 
 
-class Faces:
-    """The formats of a result under names of their own, and what a notebook shows of it."""
+class OutputMethods:
+    """Output methods of a result, one for each format, and its display in a notebook."""
 
     def to(self, format_name: str, *, convention: str = "standard", language: str = "en") -> str | bytes:
         """Return the result in a format, in a convention and a language."""
@@ -34,7 +34,7 @@ class Faces:
         return str(self.to("latex", language=language))
 
     def to_html(self, *, language: str = "en") -> str:
-        """Return the derivation as an HTML page of its own."""
+        """Return the derivation as a complete HTML page."""
         return str(self.to("html", language=language))
 
     def to_markdown(self, *, language: str = "en") -> str:

@@ -1,4 +1,4 @@
-"""How the numbers of a page are written: exactly, or with so many significant digits."""
+"""Number format of a page: exact, or with a number of significant digits."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ DIGITS, MOST_DIGITS = 5, 40
 
 
 class PageOptions(TypedDict, total=False):
-    """How `result.to` writes a page: its numbers with so many significant digits, or exactly."""
+    """Options of `result.to`: significant digits, or exact numbers."""
 
     convention: str
     detail: str
@@ -44,7 +44,7 @@ def document_options(
 
 
 def digits_asked(digits: object = None, *, exact: bool = False, where: str = "digits") -> int | None:
-    """Return the digits of a document: 0 for exact numbers, None where nothing is said.
+    """Return the digits of a document: 0 for exact numbers, None by default.
 
     Raises `UsageError` for what is no number of digits, and where exact numbers are asked for as well.
     """

@@ -24,7 +24,7 @@ _OF_OBSERVER = {"F": "F_z", "G": "G_z", "H": "H_z", "M": "M_z"}
 
 
 def names_in(convention: Convention, task: str = "", *, reduced: bool = False) -> dict[str, tuple[str, int]]:
-    """Return what a convention calls the fields that are letters: its name → (standard name, sign of its value)."""
+    """Return the names of letter fields in a convention: its name → (standard name, sign of its value)."""
     letters = _GAINS | (_OF_OBSERVER if task == "reduced_order_observer" else {})
     written = convention.written(reduced=reduced)
     return {
@@ -33,7 +33,7 @@ def names_in(convention: Convention, task: str = "", *, reduced: bool = False) -
 
 
 @dataclass(frozen=True)
-class Viewed:
+class ResultInConvention:
     """A result in the names and signs of a convention."""
 
     result: Result
@@ -73,10 +73,10 @@ class Viewed:
     @cached_property
     def fields(self) -> Mapping[str, Any]:
         """The fields in the convention's names and signs, and in standard ones where these mean nothing else."""
-        return {**self.result.fields, **self.own}
+        return {**self.result.fields, **self.renamed_fields}
 
     @cached_property
-    def own(self) -> Mapping[str, Any]:
+    def renamed_fields(self) -> Mapping[str, Any]:
         """The fields in the convention's names and signs."""
         return self._own(self.result.fields)
 
@@ -102,11 +102,11 @@ class Viewed:
         """Return the standard name and the sign of a field; a standard name that means nothing else is its own."""
         return self.names.get(name, (name, 1))
 
-    def with_answer(self, name: str, value: Any) -> Viewed:
+    def with_answer(self, name: str, value: Any) -> ResultInConvention:
         """Return the result with another answer; raises `CertificateRejected` unless it holds too."""
         own, sign = self.standard(name)
-        return Viewed(self.result.with_answer(own, self._signed(value, sign)), self.convention)
+        return ResultInConvention(self.result.with_answer(own, self._signed(value, sign)), self.convention)
 
 
 #: Whatever has answers to hold against others.
-Answered: TypeAlias = "Result | Viewed"
+Answered: TypeAlias = "Result | ResultInConvention"

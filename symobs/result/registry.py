@@ -36,13 +36,13 @@ class Method:
 
 @dataclass(frozen=True)
 class Task:
-    """A question one can ask: its function, its keywords with their kinds; `alone` where it needs no plant."""
+    """A task: its function, its keywords with their kinds, and whether it works without a plant."""
 
     name: str
     function: Callable[..., Result]
     keywords: Mapping[str, str]
     summary: str
-    alone: bool
+    works_without_plant: bool
 
 
 _TASKS: dict[str, Task] = {}
@@ -79,7 +79,7 @@ def _of_constant_plants(function: Callback) -> Callback:
 
 
 def _of_plants(function: Callback) -> Callback:
-    """Let a task take the plants of other programs, and floats where it is told how; where it needs a plant, nothing else."""
+    """Wrap a task to accept plants of other programs, and floats on request."""
     signature = inspect.signature(function).parameters
     only = signature["plant"].default is not None
     words = [name for name, given in signature.items() if name != "plant" and _kind(given.annotation) == "Name"]
@@ -105,7 +105,7 @@ def _of_plants(function: Callback) -> Callback:
 
 
 def _asked_anew(plant: Any) -> Any:
-    """Return a plant on whose strata nothing was found: what a task finds there is freed with its result."""
+    """Return a plant with empty findings, which are freed with the result of the task."""
     return plant.asked_anew() if isinstance(plant, StateSpace) else plant
 
 
@@ -114,9 +114,9 @@ def _registered(function: Callback) -> Callback:
     function = _of_plants(function)
     signature = inspect.signature(function).parameters
     keywords = {n: _kind(p.annotation) for n, p in signature.items() if p.kind is inspect.Parameter.KEYWORD_ONLY}
-    alone = signature["plant"].default is None
+    works_without_plant = signature["plant"].default is None
     function.kinds = keywords  # type: ignore[attr-defined]  # a result that is asked anew reads its specification so
-    _TASKS[function.__name__] = Task(function.__name__, function, keywords, _summary(function), alone)
+    _TASKS[function.__name__] = Task(function.__name__, function, keywords, _summary(function), works_without_plant)
     return function
 
 
@@ -168,7 +168,7 @@ def methods(of: str | None = None) -> Mapping[str, Method]:
 
 
 def choose(of: str, name: str, automatic: str) -> Method:
-    """Return the method asked for; `auto` means `automatic`.  Raises `InputError` naming what exists."""
+    """Return the requested method; `auto` means `automatic`.  Raises `InputError` naming those that exist."""
     wanted = f"{of}/{automatic if name == 'auto' else name}"
     if wanted not in _METHODS and wanted not in methods(of):
         message = f"{name[:40]!r} is not a method of {of}"

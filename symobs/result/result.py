@@ -16,10 +16,10 @@ from symobs.certificate.claims import UNREADABLE, Certificate, Claim, Statement,
 from symobs.conditions import Condition, vanishing_factors
 from symobs.convention import STANDARD
 from symobs.derivation import translated
-from symobs.derivation.builder import Page
+from symobs.derivation.builder import Builder
 from symobs.errors import CertificateRejected, DerivationRejected
 from symobs.exact.linear_algebra.realisation import Realisation
-from symobs.result.conversions import Faces
+from symobs.result.conversions import OutputMethods
 from symobs.result.digits_of_page import document_options
 from symobs.result.web_page import PLAIN, WebPage
 from symobs.result.writers import render, writer_of
@@ -45,7 +45,7 @@ Code: TypeAlias = Literal["c", "matlab", "modelica", "python"]
 
 @dataclass(frozen=True)
 class Case:
-    """What is true on a stratum: the relations that describe it, and the full result there (None: undecided)."""
+    """A case: the relations that describe a stratum, and the complete result there (None: undecided)."""
 
     when: tuple[Condition, ...]
     substitution: Mapping[str, Scalar]
@@ -60,7 +60,7 @@ class Stratum(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False)
-class Result(Faces):
+class Result(OutputMethods):
     """An answer with its certificates.  Subclasses own the claims; tampering with an answer makes construction fail."""
 
     plant: StateSpace
@@ -86,12 +86,12 @@ class Result(Faces):
             raise CertificateRejected(message, repair="please report this: it is a bug of symobs") from error
 
     def __reduce__(self) -> tuple[Any, ...]:
-        """Pickle what the result was made of: whoever reads it back checks the claims again."""
+        """Pickle the constructor arguments; unpickling checks all claims again."""
         made = {name: getattr(self, name) for name in _made_of(type(self))}  # type: ignore[arg-type]
         return (partial(type(self), **made | {"answer": dict(self.answer)}), ())
 
     def __eq__(self, other: object) -> bool:
-        """Compare what two results were made of: plant, method, answers, and what is asked of the page."""
+        """Compare the constructor arguments: plant, method, answers, and the page's method and specification."""
         if type(other) is not type(self):
             return NotImplemented
         return all(getattr(self, name) == getattr(other, name) for name in _made_of(type(self), compared=True))  # type: ignore[arg-type]
@@ -109,7 +109,7 @@ class Result(Faces):
         """Yield what must hold."""
         raise NotImplementedError
 
-    def write(self, page: Page) -> None:
+    def write(self, page: Builder) -> None:
         """Write the derivation: by default as the page registered for this type does."""
         writer_of(type(self))(page, self)
 
@@ -170,7 +170,7 @@ class Result(Faces):
 
     @cached_property
     def holds_where(self) -> tuple[Condition, ...]:
-        """The exact conditions under which the answer holds, what the declared signs imply left out."""
+        """The exact conditions under which the answer holds, without those implied by the declared signs."""
         known = {condition.expression for condition in self.domain}
         factors = vanishing_factors(_denominators(self.answer.values()), self.plant.symbols.signs)
         new = [factor for factor in factors if factor not in known and self.plant.variable not in factor.names]
@@ -186,18 +186,18 @@ class Result(Faces):
         return replace(self, answer={**self.answer, name: value})
 
     def asked(self, method_name: str) -> Self:
-        """Return the same result with the page of a method; its claims do not speak of the page."""
+        """Return the same result with the page of a method; its claims are independent of the page."""
         other = self._copied(page_method=method_name)
         other.__dict__.pop("derivation", None)
         return other
 
     @property
-    def told_method(self) -> str:
+    def printed_method(self) -> str:
         """The method whose page is written."""
         return self.method if self.page_method == "auto" else self.page_method
 
     def specified(self, specification: Mapping[str, Any]) -> Self:
-        """Return the same result, which knows what was asked for; its claims do not speak of that either."""
+        """Return the same result with its specification; its claims are independent of it."""
         return self._copied(specification=specification)
 
     def in_place_of(self, other: Result) -> Self:
@@ -213,8 +213,8 @@ class Result(Faces):
 
     @cached_property
     def derivation(self) -> Derivation:
-        """The derivation, written and checked when first asked for."""
-        page = Page(self.plant, self.free_signals)
+        """The derivation, written and checked at first use."""
+        page = Builder(self.plant, self.free_signals)
         self.write(page)
         written = page.derivation()
         established = written.check()
@@ -257,7 +257,7 @@ class Result(Faces):
 
     @property
     def systems(self) -> Mapping[str, Realisation]:
-        """The systems of a design by name: the plant, if it has input and output, and what is built for it."""
+        """The systems of a design by name: the plant, if it has input and output, and the designed systems."""
         m = self.plant.matrices
         return {"plant": Realisation(m.A, m.B, m.C, m.D)} if m.has_input and m.has_output else {}
 
@@ -282,7 +282,7 @@ class Result(Faces):
         return to_control(self)
 
     def __getattr__(self, name: str) -> Any:
-        """Return an answer as SymPy objects; Python asks here too where a property of the class has failed."""
+        """Return an answer as SymPy objects; Python also comes here after a failed property."""
         for kind in type(self).__mro__:
             if name in vars(kind):
                 return vars(kind)[name].__get__(self)  # its own error, not that there is no such name
@@ -302,7 +302,7 @@ class Result(Faces):
 
     @cached_property
     def _objects(self) -> dict[str, Any]:
-        """The answers as SymPy objects, as far as they were asked for: large ones take seconds to make."""
+        """The answers as SymPy objects, converted at first use: large ones take seconds."""
         return {}
 
     def __dir__(self) -> Iterable[str]:
@@ -347,7 +347,7 @@ _TERMS_SHOWN = 500
 
 @cache
 def _made_of(kind: type[Result], *, compared: bool = False) -> tuple[str, ...]:
-    """Return what the constructor of a result takes; where results are compared, without what only speeds it up."""
+    """Return the constructor arguments of a result; for comparison, without those that only save time."""
     return tuple(part.name for part in parts_of(kind) if part.init and (part.compare or not compared))
 
 
@@ -358,7 +358,7 @@ def _denominators(values: Iterable[Any]) -> list[Scalar]:
 
 @dataclass(frozen=True)
 class Document:
-    """What a format renders: a title, its source, results, the problem in words, and how all is told and set."""
+    """The input of a format: title, source, results, the problem in words, and the options of the page."""
 
     title: str
     source: str

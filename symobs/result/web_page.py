@@ -1,4 +1,4 @@
-"""What a page of HTML may offer besides its text."""
+"""Interactive parts of an HTML page."""
 
 from __future__ import annotations
 

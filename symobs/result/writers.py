@@ -17,13 +17,13 @@ from symobs.errors import UsageError
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping
 
-    from symobs.derivation.builder import Page
+    from symobs.derivation.builder import Builder
 
 Kind = TypeVar("Kind", bound=type)
-Writer = TypeVar("Writer", bound="Callable[[Page, Any], None]")
+Writer = TypeVar("Writer", bound="Callable[[Builder, Any], None]")
 
 _FORMATS: dict[str, Any] = {}
-_PAGES: dict[type, Callable[[Page, Any], None]] = {}
+_PAGES: dict[type, Callable[[Builder, Any], None]] = {}
 _DISCOVERED: set[str] = set()
 
 
@@ -40,7 +40,7 @@ def page_of(kind: type) -> Callable[[Writer], Writer]:
     return register
 
 
-def writer_of(kind: type) -> Callable[[Page, Any], None]:
+def writer_of(kind: type) -> Callable[[Builder, Any], None]:
     """Return what writes the page of a result type: its own, or that of the type it is derived from."""
     for base in kind.__mro__:
         if base not in _PAGES and find_spec(f"{base.__module__}_page") is not None:

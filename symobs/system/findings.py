@@ -1,4 +1,4 @@
-"""What was found for the strata of one problem: each plant and each answer once, and how much may still be found."""
+"""Memory of one problem: the plant and the answer on every stratum, each computed once, within a budget."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ _BUDGET = 2_000
 
 
 class _Failed(NamedTuple):
-    """That there was no answer, and why."""
+    """A failure, kept with its error."""
 
     reason: Exception
 
@@ -31,7 +31,7 @@ class Findings:
 
     @property
     def are_over(self) -> bool:
-        """Whether nothing more may be found: what is left of the strata is undecided."""
+        """Whether the budget is spent; the remaining strata are undecided."""
         return self.left <= 0
 
     def spend(self, cost: int) -> None:
@@ -39,7 +39,7 @@ class Findings:
         self.left -= cost
 
     def once(self, key: Hashable, cost: int, find: Callable[[], Any]) -> Any:
-        """Return what was found under a key, or what is found now at this cost; what failed fails again in the same way."""
+        """Return the value stored under a key, or compute it at this cost; a failure is stored, too."""
         known = self._found.get(key)
         if known is None:
             self.spend(cost)
@@ -53,5 +53,5 @@ class Findings:
         return known
 
     def same(self, value: Any) -> Any:
-        """Return the value equal to this one that was seen first: what is the same is found to be so at once."""
+        """Return the first stored value equal to this one, so that later comparisons are by identity."""
         return self._found.setdefault(("value", value), value)

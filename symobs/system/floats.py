@@ -1,4 +1,4 @@
-"""Floating-point numbers read as their shortest decimals, where the caller says so."""
+"""Floating-point numbers read as their shortest decimals, on request."""
 
 from __future__ import annotations
 

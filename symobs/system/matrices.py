@@ -1,4 +1,4 @@
-"""The four exact matrices of a plant, and what is wrong with their shapes."""
+"""The four exact matrices of a plant, and the check of their shapes."""
 
 from __future__ import annotations
 
@@ -65,7 +65,7 @@ def as_rows(name: str, value: Any) -> Any:
 
 
 def shape_errors(parts: Mapping[str, Matrix | None]) -> list[SymobsError]:
-    """Return what is wrong with the shapes of A, B, C and D; None for a matrix that is not given."""
+    """Return the faults in the shapes of A, B, C and D; None stands for a matrix that is not given."""
     A, B, C, D = parts["A"], parts["B"], parts["C"], parts["D"]
     errors: list[SymobsError] = []
 

@@ -163,7 +163,7 @@ def over_a_base(
 
 
 def require_known(values: Sequence[Matrix | Scalar], where: str) -> frozenset[Function]:
-    """Return the functions in values; raises `InputError` where one is not of parameters, or not told apart from others.
+    """Return the functions in values; raises `InputError` where one is not of parameters or equals another one.
 
     Roots are of rational numbers, since only these are known to be real; of several, the degrees have no common factor, so
     that no equation ties them to each other.
@@ -192,7 +192,7 @@ def _in_base(matrix: Matrix, meanings: Mapping[str, Scalar]) -> Matrix:
 
 
 def is_identity(value: Scalar) -> bool:
-    """Tell whether a polynomial vanishes because of what its functions are, as cos² θ + sin² θ − 1 does."""
+    """Return whether a polynomial vanishes because of what its functions are, as cos² θ + sin² θ − 1 does."""
     if not any(function_named(name) for name in value.names):
         return False
     return any(value in {relation, -relation} for relation in identities([value])[1])

@@ -312,7 +312,7 @@ class StateSpace:
         return Findings()
 
     def stratum(self, there: StateSpace) -> StateSpace:
-        """Return the plant of one of the strata of this one: what is found of it is shared, and it is one object."""
+        """Return the plant on a stratum, one object for each stratum, with shared findings."""
         if there is self:
             return self
         there.is_stratum, there.findings = True, self.findings
@@ -320,7 +320,7 @@ class StateSpace:
         return found
 
     def beside(self, plant: StateSpace) -> StateSpace:
-        """Return another plant, made of this one, that shares what is found."""
+        """Return another plant derived from this one, with shared findings."""
         plant.is_stratum, plant.findings = self.is_stratum, self.findings
         return plant
 
@@ -332,7 +332,7 @@ class StateSpace:
         return self.findings.once((question, self), cost, find)
 
     def asked_anew(self) -> StateSpace:
-        """Return the same plant with nothing found on its strata: what is found for a result is freed with it."""
+        """Return the same plant with empty findings, which are freed with the result."""
         return copy(self)
 
     def __getstate__(self) -> dict[str, Any]:

@@ -16,7 +16,7 @@ from typing import Any
 import pytest
 
 import symobs
-from symobs.derivation import Section, Survey
+from symobs.derivation import RegionSummary, Section
 from symobs.errors import DerivationRejected, InputError, UsageError
 from symobs.phrases import CONTINUES, PHRASES
 from symobs.phrases import languages as module
@@ -219,7 +219,7 @@ def test_a_false_number_in_a_sentence_is_rejected_in_every_language() -> None:
     def lie(step: object) -> object:
         if isinstance(step, Section):
             return replace(step, steps=tuple(map(lie, step.steps)))  # type: ignore[arg-type]
-        if not isinstance(step, Survey):
+        if not isinstance(step, RegionSummary):
             return step
         findings = [
             replace(said, slots=tuple((name, _one_more(slot)) for name, slot in said.slots)) for said in step.findings

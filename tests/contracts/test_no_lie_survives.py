@@ -14,7 +14,7 @@ import pytest
 
 from symobs import StateSpace, compensator, observability, observer, state_feedback
 from symobs.derivation import Diagram
-from symobs.derivation.builder import Page
+from symobs.derivation.builder import Builder
 from symobs.design.compensator.output_feedback import OutputFeedback
 from symobs.design.gain.gain_design import GainDesign
 from symobs.errors import CertificateRejected, DerivationRejected
@@ -231,8 +231,8 @@ def test_a_page_cannot_speak_of_another_plant() -> None:
     other = StateSpace("[0 1; 0 -3]", "[0; 1]", "[1 0]")
     result.derivation.check()
 
-    def write(page: Page) -> None:
-        aside = Page(other)
+    def write(page: Builder) -> None:
+        aside = Builder(other)
         observability(other).write(aside)
         page.steps = aside.steps
 

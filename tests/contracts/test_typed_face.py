@@ -123,3 +123,13 @@ def test_only_public_names_are_listed_each_documented() -> None:
     for name in dir(design):
         kind = getattr(type(design), name, None)
         assert kind is None or isinstance(kind, str | tuple | bool | type) or pydoc.getdoc(kind), name
+
+
+@pytest.mark.parametrize("name", sorted(tasks()))
+def test_a_task_is_described_by_its_parts(name: str) -> None:
+    """A sentence of one line, the plant, every keyword, what is returned and raised, and the source."""
+    text = pydoc.getdoc(tasks()[name].function)
+    assert re.match(r"[A-Z][a-z]+ .*\.$", text.split("\n", 1)[0]), text
+    parts = [r"^plant .*(states|a plant)", r"\bReturns ", r"\bRaises `", r"\bSource: "]
+    parts += [rf"\b{keyword}\b" for keyword in tasks()[name].keywords if keyword != "method"]
+    assert [part for part in parts if not re.search(part, text, re.MULTILINE)] == []

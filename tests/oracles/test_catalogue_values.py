@@ -10,7 +10,7 @@ import pytest
 
 from symobs.exact import Matrix, Scalar
 from symobs.expression import parse_matrix, parse_scalar
-from symobs.formula import Exact, Formula, Literal, Relation, Shown, evaluate
+from symobs.formula import Evaluated, Exact, Formula, Literal, Relation, evaluate
 from symobs.formula.nodes import children
 from symobs.result import render
 from tests.pages.test_worked_examples import FILES, solved
@@ -58,7 +58,7 @@ def written(derivation: Derivation) -> Iterator[Matrix | Scalar]:
 def relations(item: Any) -> Iterator[Relation]:
     if isinstance(item, Relation):
         yield item
-    elif isinstance(item, Shown):
+    elif isinstance(item, Evaluated):
         yield Relation((item.formula, item.value), ("=",))
     elif isinstance(item, tuple):
         for part in item:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 import symobs
-from symobs.derivation import Case, Conclude, Define, Equal, Given, Note, Sentence
+from symobs.derivation import CaseStep, Conclude, Define, Equal, Given, Note, Sentence
 from symobs.errors import UsageError
 from symobs.formula import Conjunction, Letter, Literal, Relation
 from symobs.formula.plain_text import plain_relation
@@ -157,7 +157,7 @@ def test_every_kind_of_step_that_conditions_stays(detail: str) -> None:
         Conclude(None, (SAME,)),
         Conclude(Sentence("yes_observability")),
         Note(Sentence("horizon_tradeoff"), caution=True),
-        Case(different, (), (Conclude(Sentence("case_zero")),)),
+        CaseStep(different, (), (Conclude(Sentence("case_zero")),)),
         Equal((different,)),
     )
     assert step_of(detail, *steps) == steps

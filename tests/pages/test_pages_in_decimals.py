@@ -26,7 +26,7 @@ from symobs import (
     state_feedback,
     transfer_function,
 )
-from symobs.derivation import Case, Conclude, Define, Equal, Given, Section, Sentence
+from symobs.derivation import CaseStep, Conclude, Define, Equal, Given, Section, Sentence
 from symobs.derivation.decimals_check import check_decimals
 from symobs.errors import DerivationRejected, ProblemErrors, SymobsWarning, UsageError
 from symobs.exact import Scalar, is_correctly_written, roots_of, significant
@@ -165,7 +165,7 @@ def test_whether_a_root_is_rounded_is_part_of_the_text() -> None:
 
 def leaves(step: Any) -> Iterator[Any]:
     """Yield the steps that contain no other."""
-    if isinstance(step, (Section, Case)):
+    if isinstance(step, (Section, CaseStep)):
         for inner in step.steps:
             yield from leaves(inner)
     else:
@@ -236,8 +236,8 @@ A_THIRD = Relation((Letter("A"), Literal(number("1/3"))), ("=",))
         (Equal((A_THIRD,)), Equal((A_THIRD, A_THIRD))),
         (Given((A_THIRD,)), Given((Relation((Letter("A"), THIRD), ("≈",)),))),  # data are not rounded
         (
-            Case(A_THIRD, (), ()),
-            Case(Relation((Letter("A"), THIRD), ("≈",)), (), ()),  # nor what conditions an answer
+            CaseStep(A_THIRD, (), ()),
+            CaseStep(Relation((Letter("A"), THIRD), ("≈",)), (), ()),  # nor what conditions an answer
         ),
         (
             Conclude(Sentence("undecided_case", (("when", Literal(number("1/3"))),))),

@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 
     from symobs.problem import Problem
     from symobs.result import Result
-    from symobs.result.in_convention import Viewed
+    from symobs.result.in_convention import ResultInConvention
 
 pytestmark = pytest.mark.slow
 
@@ -246,13 +246,13 @@ def test_every_spoiled_value_is_noticed(path: Path, record_property: Callable[[s
     assert count > len(found.expect) / 2
 
 
-def is_of_family(viewed: Viewed, place: str) -> bool:
+def is_of_family(viewed: ResultInConvention, place: str) -> bool:
     """Tell whether an expected answer is a gain that is not unique."""
     letter, _ = viewed.standard(place.rpartition(".")[2])
     return letter in {"K", "L"} and viewed.result.fields.get("family") is not None
 
 
-def is_member(viewed: Viewed, place: str, expect: Mapping[str, Any]) -> bool:
+def is_member(viewed: ResultInConvention, place: str, expect: Mapping[str, Any]) -> bool:
     """Tell whether a spoiled gain meets the claim all the same, there being many: by SymPy's own determinant."""
     if not is_of_family(viewed, place):
         return False

@@ -37,7 +37,7 @@ MEANINGS = ("asymptotic", "lyapunov")
 
 
 class Hidden(NamedTuple):
-    """What is known of the fixed modes: the verdict, and what must hold where it is conditional."""
+    """The verdict on the fixed modes, and its conditions."""
 
     verdict: str
     where: tuple[Condition, ...] = ()
@@ -46,7 +46,7 @@ class Hidden(NamedTuple):
 
 @dataclass(frozen=True, eq=False, repr=False)
 class HiddenStability(ModeResult):
-    """The modes, and whether the fixed ones are stable in the meaning asked for."""
+    """The modes, and whether the fixed ones are stable in the chosen meaning."""
 
     meaning: str
 
@@ -183,7 +183,7 @@ def _is_stable(factor: Scalar, plant: StateSpace) -> bool:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Detectability(HiddenStability):
-    """Whether the unobservable modes are stable."""
+    """Detectability: stability of the unobservable modes."""
 
     task: ClassVar[str] = "detectability"
 
@@ -195,7 +195,7 @@ class Detectability(HiddenStability):
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Stabilizability(HiddenStability):
-    """Whether the uncontrollable modes are stable."""
+    """Stabilizability: stability of the uncontrollable modes."""
 
     task: ClassVar[str] = "stabilizability"
 

@@ -30,9 +30,8 @@ from symobs.analysis.page_parts import (
 )
 from symobs.analysis.rank.rank_page import square_test
 from symobs.certificate.claims import verify
-from symobs.derivation import Case as CaseStep
-from symobs.derivation import Conclude
-from symobs.derivation.builder import Page, predicate, relation, sentence
+from symobs.derivation import CaseStep, Conclude
+from symobs.derivation.builder import Builder, predicate, relation, sentence
 from symobs.derivation.facts.restriction import on_stratum
 from symobs.exact import EIGENVALUE
 from symobs.formula import Conjunction, HoldsExactlyWhere
@@ -47,7 +46,7 @@ if TYPE_CHECKING:
 
 
 @page_of(HiddenStability)
-def write_page(page: Page, result: HiddenStability) -> None:
+def write_page(page: Builder, result: HiddenStability) -> None:
     """Write the page."""
     given(page)
     with page.section(result.task):
@@ -59,11 +58,11 @@ def write_page(page: Page, result: HiddenStability) -> None:
             _at_eigenvalues(page, result)
 
 
-def _time(page: Page) -> str:
+def _time(page: Builder) -> str:
     return "discrete" if page.plant.is_discrete else "continuous"
 
 
-def _at_eigenvalues(page: Page, result: HiddenStability) -> None:
+def _at_eigenvalues(page: Builder, result: HiddenStability) -> None:
     """Look at the eigenvalues that are not stable, one by one."""
     plant = page.plant
     show_spectrum(page, result)
@@ -86,7 +85,7 @@ def _at_eigenvalues(page: Page, result: HiddenStability) -> None:
     _hidden_modes(page, result, result.test.answer["kernel"].shape[1])
 
 
-def _hidden_modes(page: Page, result: HiddenStability, count: int) -> None:
+def _hidden_modes(page: Builder, result: HiddenStability, count: int) -> None:
     """Write the polynomial of the fixed modes and judge it."""
     about = hidden_polynomial(page, count)
     page.conclude_silently(relation(page["N"], result.test.answer["kernel"]))
@@ -94,8 +93,8 @@ def _hidden_modes(page: Page, result: HiddenStability, count: int) -> None:
     _judge(page, result, about)
 
 
-def _judge(page: Page, result: HiddenStability, about: Term) -> None:
-    """Say whether the fixed modes, the roots of what `about` means, are stable in the meaning asked for."""
+def _judge(page: Builder, result: HiddenStability, about: Term) -> None:
+    """State whether the fixed modes, the roots of `about`, are stable in the chosen meaning."""
     plant, time = page.plant, _time(page)
     found = stability(
         result.answer["fixed_polynomial"], plant.variable, plant.symbols.signs, discrete=plant.is_discrete
@@ -119,8 +118,8 @@ def _judge(page: Page, result: HiddenStability, about: Term) -> None:
         page.conclude(f"grows_{result.task}")
 
 
-def _where(page: Page, result: HiddenStability, about: Term) -> None:
-    """Say exactly where the fixed modes are stable; under the weaker reading what is left open."""
+def _where(page: Builder, result: HiddenStability, about: Term) -> None:
+    """State exactly where the fixed modes are stable; in the weaker meaning also the undecided parameters."""
     signs, conditions = page.plant.symbols.signs, result.hidden.where
     if all(condition.operator == ">=" for condition in conditions):
         solved = [as_inequality(condition.expression, signs) for condition in conditions]
@@ -132,7 +131,7 @@ def _where(page: Page, result: HiddenStability, about: Term) -> None:
     page.conclude(f"exactly_there_{result.task}" if result.meaning == "asymptotic" else "boundary_undecided")
 
 
-def _beyond_or_marginal(page: Page, result: HiddenStability, about: Term) -> None:
+def _beyond_or_marginal(page: Builder, result: HiddenStability, about: Term) -> None:
     time, annuls = _time(page), result.hidden.annuls
     if annuls is None:
         if result.hidden.verdict == "no":
@@ -163,7 +162,7 @@ def _beyond_or_marginal(page: Page, result: HiddenStability, about: Term) -> Non
 # -- through the kernel ------------------------------------------------------------------------------------------------
 
 
-def _through_the_kernel(page: Page, result: HiddenStability) -> None:
+def _through_the_kernel(page: Builder, result: HiddenStability) -> None:
     """Find the hidden modes as those of A on ker 𝒪, which needs no eigenvalue."""
     page.conclude(f"means_{result.task}")
     observing = result.kind == "observability"
@@ -174,7 +173,7 @@ def _through_the_kernel(page: Page, result: HiddenStability) -> None:
     _cases(page, letter, result)
 
 
-def _generic(page: Page, result: HiddenStability) -> None:
+def _generic(page: Builder, result: HiddenStability) -> None:
     hidden_ones = result.plant.order - result.test.answer["rank"]
     if not hidden_ones:
         page.conclude(f"seen_{result.task}")
@@ -187,8 +186,8 @@ def _generic(page: Page, result: HiddenStability) -> None:
     _hidden_modes(page, result, hidden_ones)
 
 
-def _cases(page: Page, letter: str, result: HiddenStability) -> None:
-    """Write on every stratum what is hidden there, and whether it is stable; where eigenvalues meet, how they are seen."""
+def _cases(page: Builder, letter: str, result: HiddenStability) -> None:
+    """Write the hidden modes and their stability on every stratum, and the ranks at repeated eigenvalues."""
     weaker = result.meaning == "lyapunov"
     for case in (*result.rank_cases, *(result.meeting_cases if weaker else ())):
         page.steps.append(undecided(page, case) if case.result is None else _case(page, letter, case))
@@ -196,11 +195,11 @@ def _cases(page: Page, letter: str, result: HiddenStability) -> None:
         page.steps += meeting_steps(page, result)
 
 
-def _case(page: Page, letter: str, case: Case) -> Step:
+def _case(page: Builder, letter: str, case: Case) -> Step:
     found: Any = case.result
-    inner = Page(found.plant)
+    inner = Builder(found.plant)
     values = {name: getattr(found.plant.matrices, name) for name in "ABC" if name in page.environment.values}
-    inner.environment = page.environment.having(values=values)
+    inner.environment = page.environment.extended_by(values=values)
     test = found.test.answer
     inner.conclude("case_rank", rank=relation(inner[letter].apply("rank"), test["rank"]))
     if test["kernel"].shape[1]:

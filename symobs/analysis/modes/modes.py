@@ -44,7 +44,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping
 
     from symobs.analysis.rank.observability import RankResult
-    from symobs.analysis.strata.repeated_eigenvalues import Constancy, System
+    from symobs.analysis.strata.repeated_eigenvalues import RankConstancy, System
     from symobs.exact import Ideal
     from symobs.system import StateSpace
 
@@ -84,7 +84,7 @@ class Eigenvalues:
 
 
 def has_open_cases(test: RankResult) -> bool:
-    """Whether the rank is another one somewhere."""
+    """Return whether the rank is another one somewhere."""
     return bool(test.case_tree) or (test.answer["rank"] == test.plant.order and test.verdict != "yes")
 
 
@@ -247,7 +247,7 @@ class ModeResult(Result):
         return tuple(replace(part, witness=None) for part in found) if self.plant.equations else found
 
     @property
-    def parts(self) -> Iterator[tuple[Eigenvalues, int, Constancy | None]]:
+    def parts(self) -> Iterator[tuple[Eigenvalues, int, RankConstancy | None]]:
         """The eigenvalues by factors, each with its rank and where that holds."""
         return zip(self.spectrum, self.answer["ranks"], self.answer["constancy"], strict=True)
 

@@ -9,9 +9,8 @@ from symobs.analysis.page_parts import as_written, conditions_of, hidden, set_an
 from symobs.analysis.strata.rank_stratification import maximal_minors
 from symobs.analysis.strata.repeated_eigenvalues import holds_where
 from symobs.certificate.claims import verify
-from symobs.derivation import Case as CaseStep
-from symobs.derivation import Conclude, Equal, Step
-from symobs.derivation.builder import Page, relation, sentence, shows
+from symobs.derivation import CaseStep, Conclude, Equal, Step
+from symobs.derivation.builder import Builder, relation, sentence, shows
 from symobs.derivation.facts.restriction import on_stratum
 from symobs.exact import EIGENVALUE, Matrix, Scalar, factored, roots_of
 from symobs.formula import Conjunction, Roots
@@ -26,7 +25,7 @@ if TYPE_CHECKING:
     from symobs.formula.term import Term
 
 
-def show_spectrum(page: Page, result: ModeResult) -> None:
+def show_spectrum(page: Builder, result: ModeResult) -> None:
     """Write χ with its factors, and its roots."""
     plant, chi = page.plant, result.answer["polynomial"]
     pencil = page.s @ page.identity(plant.order) - page["A"]
@@ -41,7 +40,7 @@ def show_spectrum(page: Page, result: ModeResult) -> None:
         page.remark("eigenvalues_open")
 
 
-def pencil_of(page: Page, result: ModeResult, value: Scalar | None = None) -> Term:
+def pencil_of(page: Builder, result: ModeResult, value: Scalar | None = None) -> Term:
     """Return [A − λI; C], or [A − λI, B], as a formula."""
     eigenvalue = page.value(Scalar.symbol(EIGENVALUE) if value is None else value)
     shifted = page["A"] - eigenvalue @ page.identity(page.plant.order)
@@ -50,7 +49,7 @@ def pencil_of(page: Page, result: ModeResult, value: Scalar | None = None) -> Te
     return block([[shifted, page["B"]]])
 
 
-def at_eigenvalues(page: Page, result: ModeResult, parts: Iterable[Eigenvalues]) -> None:
+def at_eigenvalues(page: Builder, result: ModeResult, parts: Iterable[Eigenvalues]) -> None:
     """Write one matrix and one rank for each eigenvalue, and where the rank is too low the vectors that show it.
 
     With parameters they hold under the conditions that are told with the eigenvalue.
@@ -61,7 +60,7 @@ def at_eigenvalues(page: Page, result: ModeResult, parts: Iterable[Eigenvalues])
             page.steps += _at(page, result, part, rank, holds_where(where))
 
 
-def _at(page: Page, result: ModeResult, part: Eigenvalues, rank: int, conditions: list[Condition]) -> list[Step]:
+def _at(page: Builder, result: ModeResult, part: Eigenvalues, rank: int, conditions: list[Condition]) -> list[Step]:
     dual = result.kind == "controllability"
     unknown = page.value(Scalar.symbol(EIGENVALUE))
     pencil, matrix = pencil_of(page, result), part.matrix.T if dual else part.matrix
@@ -84,21 +83,21 @@ def _at(page: Page, result: ModeResult, part: Eigenvalues, rank: int, conditions
 
 
 def _are_independent(vectors: Matrix, here: Environment) -> bool:
-    """Tell whether eigenvectors are independent at every point, none of them 0."""
+    """Return whether eigenvectors are independent at every point, none of them 0."""
     minors = Matrix.column(maximal_minors(vectors)) if vectors.shape[1] else Matrix.of([[1]])
     return bool(verify(relation(minors, "!=", minors * 0), here)[0])
 
 
-def meeting_steps(page: Page, result: ModeResult) -> Iterator[Step]:
+def meeting_steps(page: Builder, result: ModeResult) -> Iterator[Step]:
     """Yield a case for each stratum on which only eigenvectors are others than in general, with the ranks there."""
     for case in result.meeting_cases:
         if case.result is None:
             yield undecided(page, case)
             continue
         found: Any = case.result
-        inner = Page(found.plant)
+        inner = Builder(found.plant)
         values = {name: getattr(found.plant.matrices, name) for name in "ABC" if name in page.environment.values}
-        inner.environment = page.environment.having(values=values)
+        inner.environment = page.environment.extended_by(values=values)
         at_eigenvalues(inner, found, [part for part, rank, _ in found.parts if rank < found.plant.order])
         inner.steps += meeting_steps(inner, found)
         anew = tuple(set_anew(page, inner))
@@ -107,7 +106,7 @@ def meeting_steps(page: Page, result: ModeResult) -> Iterator[Step]:
         )
 
 
-def fixed_modes(page: Page, result: ModeResult) -> None:
+def fixed_modes(page: Builder, result: ModeResult) -> None:
     """Establish N and X with A N = N X, C N = 0, and write the polynomial of the fixed modes."""
     test = result.test
     page.set("N", test.answer["kernel"])
@@ -116,7 +115,7 @@ def fixed_modes(page: Page, result: ModeResult) -> None:
     show_hidden(page, result, "fixed_modes")
 
 
-def show_hidden(page: Page, result: ModeResult, words: str) -> None:
+def show_hidden(page: Builder, result: ModeResult, words: str) -> None:
     """Show N and X, which are established, and what makes the eigenvalues of X the fixed modes."""
     test = result.test
     A = page["A"] if result.kind == "observability" else page["A"].T
@@ -128,7 +127,7 @@ def show_hidden(page: Page, result: ModeResult, words: str) -> None:
     )
 
 
-def stack_of(page: Page, kind: str) -> Term:
+def stack_of(page: Builder, kind: str) -> Term:
     """Return [C; CA; …] or [B, AB, …] as a formula."""
     powers = range(1, page.plant.order)
     if kind == "observability":

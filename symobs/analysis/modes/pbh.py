@@ -10,7 +10,7 @@ from symobs.analysis.modes.modes import TESTS, ModeResult, has_open_cases
 from symobs.analysis.modes.modes_page import at_eigenvalues, fixed_modes, meeting_steps, show_spectrum, stack_of
 from symobs.analysis.page_parts import given, hidden_polynomial
 from symobs.analysis.rank.rank_page import rank_cases, square_test
-from symobs.derivation.builder import Page, relation
+from symobs.derivation.builder import Builder, relation
 from symobs.errors import InputError
 from symobs.exact import roots_of
 from symobs.formula import Roots
@@ -77,7 +77,7 @@ class PopovBelevitchHautus(ModeResult):
             "polynomial": self.answer["polynomial"],
         }
 
-    def write(self, page: Page) -> None:
+    def write(self, page: Builder) -> None:
         """Write the eigenvalues, one matrix and one rank for each, and what follows."""
         given(page)
         with page.section("pbh"):

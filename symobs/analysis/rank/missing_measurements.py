@@ -1,4 +1,4 @@
-"""What else would have to be measured: the smallest sets of states that make a plant observable.
+"""Minimal sets of additional state measurements that make the pair observable.
 
 With N a basis of the unobservable subspace and A N = N X, measuring the states of a set too, whose unit rows are E, makes
 the pair observable exactly where (E N, X) is observable: N z is seen at no output and in no state of the set unless z = 0.

@@ -19,7 +19,7 @@ from symobs.result import Result, choose, method, task
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from symobs.derivation.builder import Page
+    from symobs.derivation.builder import Builder
     from symobs.exact import Matrix
     from symobs.specification import Name
     from symobs.system import StateSpace
@@ -59,7 +59,7 @@ class Observability(RankResult):
             "missing_measurements": listed(self._repair[0]),
         }
 
-    def write(self, page: Page) -> None:
+    def write(self, page: Builder) -> None:
         """Build 𝒪 block by block and read off the rank."""
         given(page)
         with page.section("observability"):
@@ -97,7 +97,7 @@ class Controllability(RankResult):
             "missing_inputs": listed(self._repair[0]),
         }
 
-    def write(self, page: Page) -> None:
+    def write(self, page: Builder) -> None:
         """Build 𝒞 block by block and read off the rank."""
         given(page)
         with page.section("controllability"):

@@ -14,9 +14,8 @@ from symobs.analysis.page_parts import (
     undecided,
 )
 from symobs.conditions import vanishing_factors
-from symobs.derivation import Case as CaseStep
-from symobs.derivation import Conclude, Equal, Step
-from symobs.derivation.builder import Page, relation, sentence, shows
+from symobs.derivation import CaseStep, Conclude, Equal, Step
+from symobs.derivation.builder import Builder, relation, sentence, shows
 from symobs.derivation.wording_check import fits
 from symobs.exact import Matrix, roots_of, unit_rows
 from symobs.formula import Conjunction, Roots
@@ -32,7 +31,7 @@ if TYPE_CHECKING:
 NAMED_SETS = 6
 
 
-def square_test(page: Page, letter: str, result: RankResult, kind: str) -> None:
+def square_test(page: Builder, letter: str, result: RankResult, kind: str) -> None:
     """Decide the test of a matrix: by its determinant where it is square, by its rank otherwise.
 
     Factors of the determinant that can vanish become conditions from here on.
@@ -60,12 +59,12 @@ def square_test(page: Page, letter: str, result: RankResult, kind: str) -> None:
     page.assume(f"provided_{kind}", *open_factors)
 
 
-def rank_cases(page: Page, letter: str, result: RankResult, kind: str) -> None:
+def rank_cases(page: Builder, letter: str, result: RankResult, kind: str) -> None:
     """Say what rank and kernel are on every stratum where they are not the generic ones."""
     page.steps += [_rank_case(page, letter, case, kind) for case in result.case_tree]
 
 
-def _rank_case(page: Page, letter: str, case: Case, kind: str) -> Step:
+def _rank_case(page: Builder, letter: str, case: Case, kind: str) -> Step:
     if case.result is None:
         return undecided(page, case)
     result = cast("RankResult", case.result)
@@ -85,7 +84,7 @@ def _rank_case(page: Page, letter: str, case: Case, kind: str) -> Step:
     return CaseStep(conditions_of(case), tuple(case.substitution.items()), tuple(steps))
 
 
-def repair(page: Page, letter: str, result: RankResult, kind: str) -> list[Step]:
+def repair(page: Builder, letter: str, result: RankResult, kind: str) -> list[Step]:
     """Say which states would have to be measured (actuated) too: with their unit rows below, the rank is n."""
     sets, order = result.repaired, page.plant.order
     if not 0 < len(sets) <= NAMED_SETS:
@@ -99,18 +98,18 @@ def repair(page: Page, letter: str, result: RankResult, kind: str) -> list[Step]
     if result.piece is not None:  # a rank on a stratum may be beyond what the check of a page can see
         relations = result.piece.relations(c.expression for c in result.domain)
         values = {letter: result.answer["matrix"] if kind == "observability" else result.answer["matrix"].T}
-        e = page.environment.having(values=values | {"A": result.plant.matrices.A}).under(relations)
+        e = page.environment.extended_by(values=values | {"A": result.plant.matrices.A}).with_relations(relations)
         if not shows(facts, e):
             return []
     words = "one" if len(sets[0]) == 1 else "several"
     return [Conclude(sentence(f"repair_{words}_{kind}", {"states": StateChoice(sets)}), tuple(facts))]
 
 
-def _deficient(page: Page, letter: str, result: RankResult, kind: str) -> None:
+def _deficient(page: Builder, letter: str, result: RankResult, kind: str) -> None:
     rank = result.answer["rank"]
-    told = relation(page[letter].apply("rank"), rank, "<", page.plant.order)
-    key = "no" if not result.case_tree and fits(f"no_{kind}", told, page.environment) else "generic_low"
-    page.conclude(f"{key}_{kind}", rank=told)
+    rank_relation = relation(page[letter].apply("rank"), rank, "<", page.plant.order)
+    key = "no" if not result.case_tree and fits(f"no_{kind}", rank_relation, page.environment) else "generic_low"
+    page.conclude(f"{key}_{kind}", rank=rank_relation)
     matrix = page[letter] if kind == "observability" else page[letter].T
     for vector in result.kernel_vectors:
         zero = Matrix.zeros(matrix.value.shape[0], 1)

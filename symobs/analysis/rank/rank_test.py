@@ -1,4 +1,4 @@
-"""What observability and its dual have in common: the test matrix, its rank, kernel, cases, and what would repair it."""
+"""The rank test of observability and of controllability: test matrix, rank, kernel, cases, missing measurements."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from symobs.analysis.rank.missing_measurements import repair_claims, smallest_se
 from symobs.analysis.strata.loci import Region, distance_from, maximal
 from symobs.analysis.strata.rank_cases import (
     Piece,
-    Stratum,
+    RankStratum,
     answer_on,
     answer_with,
     equations_of_locus,
@@ -99,7 +99,7 @@ def rank_claims(found: Mapping[str, Any], e: Environment, here: Environment | No
     if N.shape[1]:
         e, count = here or e, range(N.shape[1])
         yield Claim(relation(letter("O", e) @ letter("N", e), Matrix.zeros(O.shape[0], len(count))), e, "M*N = 0")
-        yield Claim(relation(_det(N.select(found["free"], count), e), "!==", 0), e, "rank N = n - rank M")
+        yield Claim(relation(determinant_term(N.select(found["free"], count), e), "!==", 0), e, "rank N = n - rank M")
         yield Claim(relation(letter("A", e) @ letter("N", e), letter("N", e) @ letter("X", e)), e, "A*N = N*X")
 
 
@@ -113,7 +113,7 @@ def minor_claim(found: Mapping[str, Any], e: Environment) -> Iterator[Claim]:
     """Yield the rank from below, in general: a minor of its order is not zero."""
     if found["rank"]:
         minor = found["matrix"].select(found["rows"], found["columns"])
-        yield Claim(relation(_det(minor, e), "!==", 0), e, f"a minor of order {found['rank']} is not zero")
+        yield Claim(relation(determinant_term(minor, e), "!==", 0), e, f"a minor of order {found['rank']} is not zero")
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -259,8 +259,8 @@ class RankResult(Result):
             cases += [Case((Condition("existence", factor, "=="),), {}, None) for factor in unknown]
         return (*found, *cases), tuple(certificates)
 
-    def _case(self, stratum: Stratum) -> Case:
-        """Return the case of a stratum, on a plant of its own where its equations can be solved."""
+    def _case(self, stratum: RankStratum) -> Case:
+        """Return the case of a stratum, on the restricted plant where its equations can be solved."""
         matrix, (A, _) = self.answer["matrix"], self.pair(self.plant)
         for values in (stratum.substitution, {}):
             if values is None:
@@ -295,7 +295,7 @@ class RankResult(Result):
         if self.piece is None and N.shape[1] and self._tree is not None:
             excluded += [distance_from(locus.equations) for locus in self._tree.generic.covers]
         e = Environment(signs=self.plant.symbols.signs, relations=(self.piece or Piece()).relations(excluded))
-        e = e.under(self.plant.relations)
+        e = e.with_relations(self.plant.relations)
         sets = smallest_sets(N, X, e)
         return sets, check_all(repair_claims(sets or (), N, X, e, self.repaired_by))
 
@@ -324,5 +324,6 @@ def listed(sets: tuple[tuple[int, ...], ...] | None) -> list[list[int]] | None:
     return None if sets is None else [list(numbers) for numbers in sets]
 
 
-def _det(matrix: Matrix, environment: Environment) -> Term:
+def determinant_term(matrix: Matrix, environment: Environment) -> Term:
+    """Return det of a matrix as a formula with its value."""
     return Term(Literal(matrix), environment).apply("det")

@@ -20,7 +20,7 @@ from symobs.analysis.realization.modal_form import modal_basis, modal_matrix
 from symobs.analysis.strata.strata import carried, strata
 from symobs.certificate.claims import Claim
 from symobs.conditions import Condition, vanishing_factors
-from symobs.derivation.builder import Page, relation
+from symobs.derivation.builder import Builder, relation
 from symobs.errors import InputError
 from symobs.exact import Matrix, Scalar, companion, factored, hankel_of
 from symobs.formula import Environment
@@ -78,7 +78,7 @@ class CanonicalForm(Result):
         values |= {"B": m.B, "B_bar": answer["B"]} if m.has_input else {}
         values |= {"C": m.C, "C_bar": answer["C"]} if m.has_output else {}
         values |= {"D": m.D, "D_bar": answer["D"]} if m.has_input and m.has_output else {}
-        e = e.having(values=values)
+        e = e.extended_by(values=values)
         T, S = letter("T", e), letter("S", e)
         yield Claim(relation(T @ S, identity(n, e)), e)
         yield Claim(relation(letter("A_bar", e), T @ letter("A", e) @ S), e)
@@ -147,7 +147,7 @@ class CanonicalForm(Result):
         matrices = {key: self.answer[key] for key in "TABCD"}
         return {"kind": self.kind, **matrices, "polynomial": self.answer["polynomial"]}
 
-    def write(self, page: Page) -> None:
+    def write(self, page: Builder) -> None:
         """Write χ, the basis, and the plant in it."""
         given(page)
         with page.section("canonical_form"):
@@ -160,7 +160,7 @@ class CanonicalForm(Result):
             self.write_form(page)
             page.steps += case_steps(page, self, "write_form")
 
-    def write_form(self, page: Page) -> None:
+    def write_form(self, page: Builder) -> None:
         """Write the coordinates and the plant in them."""
         if self.test is not None and not self._write_test(page):
             return
@@ -188,7 +188,7 @@ class CanonicalForm(Result):
     def _hankel(self) -> Matrix:
         return hankel_of(self.answer["polynomial"].coefficients(self.plant.variable)[1:])
 
-    def _write_test(self, page: Page) -> bool:
+    def _write_test(self, page: Builder) -> bool:
         """Write the test matrix and decide it; return whether the form exists."""
         A, n = page["A"], range(1, self.plant.order)
         if self.kind == "observable":

@@ -9,7 +9,7 @@ from symobs._dataclass import dataclass
 from symobs.analysis.factored_form import formula_of_factored
 from symobs.analysis.page_parts import given, say_stability
 from symobs.certificate.claims import Claim
-from symobs.derivation.builder import Page, relation
+from symobs.derivation.builder import Builder, relation
 from symobs.exact import Factored, Scalar, factored, roots_of
 from symobs.formula import Environment, Roots
 from symobs.formula.term import Term, identity, letter
@@ -52,13 +52,13 @@ class CharacteristicPolynomial(Result):
             "stable_if": found.inequalities(plant.symbols.signs),
         }
 
-    def write(self, page: Page) -> None:
+    def write(self, page: Builder) -> None:
         """Write the determinant, multiplied out and factored, and the roots."""
         given(page)
         polynomial: Scalar = self.answer["polynomial"]
         with page.section("characteristic_polynomial"):
             pencil = page.s @ page.identity(self.plant.order) - page["A"]
-            members = [pencil.apply("det"), pencil.shown.apply("det"), page.value(polynomial)]
+            members = [pencil.apply("det"), pencil.as_value.apply("det"), page.value(polynomial)]
             form: Factored = self.answer["factors"]
             if len(form.factors) > 1 or form.factors[0][1] > 1:
                 members.append(page.term(formula_of_factored(form)))
@@ -82,7 +82,8 @@ def characteristic_polynomial(plant: StateSpace, *, method: Name = "auto") -> Re
     """Return χ(s) = det(sI − A), its factors and its roots with multiplicity.
 
     plant    n states; only A matters
-    Returns polynomial (monic of degree n), factors (list of [factor, multiplicity]), roots, stable.
+    Returns polynomial (monic of degree n), factors (list of [factor, multiplicity]), roots, stable.  Raises `InputError`
+    for an unknown method.
     Source: T. Kailath, Linear Systems.
     """
     return choose("characteristic_polynomial", method, "determinant").solve(plant)

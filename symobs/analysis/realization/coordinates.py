@@ -1,4 +1,4 @@
-"""Changes of coordinates x̄ = T x: bases that separate what is reached and seen, and parts of pages about them."""
+"""Changes of coordinates x̄ = T x: bases of the controllable and unobservable subspaces, and their page parts."""
 
 from __future__ import annotations
 

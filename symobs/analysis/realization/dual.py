@@ -14,7 +14,7 @@ from symobs.analysis.modes.modes import TESTS
 from symobs.analysis.page_parts import given
 from symobs.analysis.strata.strata import carried
 from symobs.certificate.claims import Claim
-from symobs.derivation.builder import Page, relation
+from symobs.derivation.builder import Builder, relation
 from symobs.errors import InputError
 from symobs.exact import Matrix, Scalar
 from symobs.formula import Environment, Literal
@@ -123,7 +123,7 @@ class Dual(Result):
         """The four matrices and the ranks."""
         return {"sign": self.sign, **self.answer}
 
-    def write(self, page: Page) -> None:
+    def write(self, page: Builder) -> None:
         """Write the dual, its test matrices beside the plant's, and the ranks."""
         given(page)
         m = self.plant.matrices
@@ -140,7 +140,7 @@ class Dual(Result):
             for kind in self.tests:
                 self._compare(page, kind)
 
-    def _compare(self, page: Page, kind: str) -> None:
+    def _compare(self, page: Builder, kind: str) -> None:
         """Write the test matrices of plant and dual, one the transpose of the other up to signs, and their ranks."""
         A, dual, n = page["A"], page["A_dual"], range(1, self.plant.order)
         if kind == "observability":

@@ -19,7 +19,7 @@ from symobs.analysis.realization.coordinates import BLOCKS, basis, minor_of, tra
 from symobs.analysis.strata.strata import strata
 from symobs.certificate.claims import Claim
 from symobs.conditions import Condition, vanishing_factors
-from symobs.derivation.builder import Page, relation
+from symobs.derivation.builder import Builder, relation
 from symobs.exact import Matrix, Scalar, modulo
 from symobs.formula import Environment, Literal
 from symobs.formula.term import Term, block, identity, letter
@@ -110,7 +110,7 @@ class Decomposition(Result):
         first, inputs, outputs = self.part(0), range(self.plant.inputs), range(self.plant.outputs)
         A1 = self.answer["A"].select(first, first)
         B1, C1 = self.answer["B"].select(first, inputs), self.answer["C"].select(outputs, first)
-        e = e.having(values={"P": self.answer["transfer_function"], "A_co": A1, "B_co": B1, "C_co": C1})
+        e = e.extended_by(values={"P": self.answer["transfer_function"], "A_co": A1, "B_co": B1, "C_co": C1})
         s, P = letter("s", e), letter("P", e)
         whole = (s @ identity(self.plant.order, e) - letter("A", e)).inverse
         yield Claim(relation(P, letter("C", e) @ whole @ letter("B", e) + letter("D", e)), e)
@@ -125,11 +125,6 @@ class Decomposition(Result):
         """The minors of 𝒞 and 𝒪 and the determinant of S: where they do not vanish the parts are the generic ones."""
         minors = [m.determinant() for m in (self._reaching, self._seeing) if m is not None]
         return (*minors, self.answer["inverse"].determinant(), self.answer["inverse"].common_denominator())
-
-    @property
-    def verdict(self) -> str:
-        """The decomposition always exists; with parameters its parts may be others somewhere."""
-        return "conditional" if self._binding_conditions else "yes"
 
     @cached_property
     def holds_where(self) -> tuple[Condition, ...]:
@@ -160,7 +155,7 @@ class Decomposition(Result):
             "transfer_function": P[0, 0] if single else P,
         }
 
-    def write(self, page: Page) -> None:
+    def write(self, page: Builder) -> None:
         """Write the two subspaces, the basis, the plant in it, and its minimal part."""
         given(page)
         with page.section("decomposition"):
@@ -172,14 +167,14 @@ class Decomposition(Result):
             self._minimal(page)
             page.steps += case_steps(page, self, "write_form")
 
-    def _subspaces(self, page: Page) -> None:
+    def _subspaces(self, page: Builder) -> None:
         A, B, C, n = page["A"], page["B"], page["C"], range(1, self.plant.order)
         reach = page.term(block([[B, *(A**k @ B for k in n)]]).formula)
         see = page.term(block([[C], *([C @ A**k] for k in n)]).formula)
         page.define("Ctr", reach, say="reached_and_hidden")
         page.define("O", see)
 
-    def _coordinates(self, page: Page) -> None:
+    def _coordinates(self, page: Builder) -> None:
         page.define(
             "S", page.value(self.answer["inverse"]), say="basis_blocks", sizes=", ".join(map(str, self.dimensions))
         )
@@ -199,7 +194,7 @@ class Decomposition(Result):
         page.define("C_bar", page["C"] @ S, in_blocks(page, parts["C"], outputs, sizes), answer=True, closing=False)
         page.remark("zero_pattern")
 
-    def _minimal(self, page: Page) -> None:
+    def _minimal(self, page: Builder) -> None:
         first = self.part(0)
         P: Matrix = self.answer["transfer_function"]
         value = factored_form(page, P[0, 0]) if P.shape == (1, 1) else page.value(P)
@@ -218,7 +213,7 @@ class Decomposition(Result):
         own = own + direct if direct is not None else own
         page.define("P", whole, own, value, say="minimal_part", answer=True, closing=False)
 
-    def write_form(self, page: Page) -> None:
+    def write_form(self, page: Builder) -> None:
         """Write the coordinates and the minimal part, in a case."""
         self._coordinates(page)
         self._minimal(page)

@@ -1,4 +1,4 @@
-"""Where parameters change the lowest terms of a transfer function: its order, its poles, its zeros.
+"""Parameter values at which the order, the poles or the zeros of a transfer function change.
 
 C adj(sI − A) B + D det(sI − A) over det(sI − A) stays true at every parameter, but what cancels in it, and how many
 zeros there are, can change.  In general it is b/a: the poles are the roots of a wherever b and a have no root in common,

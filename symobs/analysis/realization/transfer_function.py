@@ -10,10 +10,10 @@ from symobs.analysis.factored_form import factored_form
 from symobs.analysis.page_parts import given, is_narrow
 from symobs.certificate.claims import Claim
 from symobs.conditions import Condition, vanishing_factors
-from symobs.derivation.builder import Page, predicate, relation
+from symobs.derivation.builder import Builder, predicate, relation
 from symobs.exact import Matrix, Scalar, independent_rows, pole_and_zero_polynomial, roots_of, transfer, transfer_matrix
 from symobs.exact.core.generators import NotWritten
-from symobs.formula import Environment, Literal, Quotient, Roots, Shown
+from symobs.formula import Environment, Evaluated, Literal, Quotient, Roots
 from symobs.formula.term import Term, block, identity, letter
 from symobs.result import Case, Result, choose, method, task
 
@@ -132,7 +132,7 @@ class TransferFunction(Result):
         return found
 
     def _is_as_ever(self, case: Case) -> bool:
-        """Whether a case has the poles and zeros that hold in general, and no cases of its own."""
+        """Return whether a case has the poles and zeros that hold in general, and no cases of its own."""
         if not isinstance(case.result, TransferFunction) or not case.substitution or case.result.case_tree:
             return False
         try:
@@ -146,7 +146,7 @@ class TransferFunction(Result):
 
     # -- the page ----------------------------------------------------------------------------------------------------
 
-    def write(self, page: Page) -> None:
+    def write(self, page: Builder) -> None:
         """Write adjugate over determinant, then the reduced function."""
         given(page)
         P: Scalar | Matrix = self.answer["transfer_function"]
@@ -159,7 +159,7 @@ class TransferFunction(Result):
             one_over = page.term(Quotient(Literal(Scalar.of(1)), Literal(characteristic)))
             stages = [C @ pencil.inverse @ B]
             if is_narrow(adjugate.value):
-                stages.append(one_over @ C.shown @ adjugate @ B.shown)
+                stages.append(one_over @ C.as_value @ adjugate @ B.as_value)
             if m.has_feedthrough:
                 stages = [stage + page["D"] for stage in stages]
             if isinstance(P, Matrix):
@@ -172,16 +172,18 @@ class TransferFunction(Result):
                 self._tell_roots(page)
             self._cases(page)
 
-    def _tell_order(self, page: Page) -> None:
+    def _tell_order(self, page: Builder) -> None:
         """Say whether something cancelled."""
         A, order = page["A"], self.plant.order
         if self.order < order:
             everything = block([[page["C"] @ A**k] for k in range(order)]) @ block(
                 [[A**k @ page["B"] for k in range(order)]]
             )
-            page.conclude("cancelled", order=Shown(everything.apply("rank").formula, page.value(self.order).formula))
+            page.conclude(
+                "cancelled", order=Evaluated(everything.apply("rank").formula, page.value(self.order).formula)
+            )
 
-    def _tell_roots(self, page: Page) -> None:
+    def _tell_roots(self, page: Builder) -> None:
         """Say the poles and the zeros."""
         for part, key, of in zip(
             self.polynomials, ("its_poles", "its_zeros"), (page["P"], page["P"].inverse), strict=True
@@ -192,8 +194,8 @@ class TransferFunction(Result):
         if self.order and self.polynomials[1].degree(self.plant.variable) == 0:
             page.conclude("no_zero", predicate("polynomial", page["P"].inverse))
 
-    def _cases(self, page: Page) -> None:
-        """Say where this is so, and what is true elsewhere."""
+    def _cases(self, page: Builder) -> None:
+        """State the conditions, and the cases elsewhere."""
         if not self.case_tree:
             return
         from symobs.analysis.page_parts import case_steps  # noqa: PLC0415 - only pages with cases pay for it
@@ -204,7 +206,7 @@ class TransferFunction(Result):
             page.assume("no_pole_lost" if is_matrix else "lowest_provided", *conditions)
         page.steps += case_steps(page, self, "write_form")
 
-    def write_form(self, page: Page) -> None:
+    def write_form(self, page: Builder) -> None:
         """Write the function in lowest terms, its poles and zeros, in a case."""
         P: Scalar | Matrix = self.answer["transfer_function"]
         response = page["C"] @ (page.s @ page.identity(self.plant.order) - page["A"]).inverse @ page["B"]

@@ -15,7 +15,7 @@ from symobs.analysis.stability_region.stability_region_fields import (
     of_conditions,
     stable_if,
 )
-from symobs.analysis.stability_region.stability_region_question import Question, read_question
+from symobs.analysis.stability_region.stability_region_question import RegionQuestion, read_question
 from symobs.certificate.claims import Claim, Statement
 from symobs.conditions import Condition
 from symobs.derivation.builder import relation
@@ -54,12 +54,12 @@ if TYPE_CHECKING:
 class StabilityRegion(Result):
     """χ, its Routh table, and inequalities that hold exactly where all roots of χ are stable."""
 
-    question: Question
+    question: RegionQuestion
 
     task: ClassVar[str] = "stability_region"
 
     @classmethod
-    def of(cls, question: Question, method_name: str) -> StabilityRegion:
+    def of(cls, question: RegionQuestion, method_name: str) -> StabilityRegion:
         """Return the region of a question."""
         bounds, proof = _bounds_of(question)
         table = routh_table(question.critical.headed, question.critical.parameters)
@@ -104,7 +104,7 @@ class StabilityRegion(Result):
         return f"stable exactly where {' and '.join(self.stable_if)}" if bounds else "stable everywhere"
 
     def _is_proved(self, bounds: Sequence[RegionInequality] | None) -> bool:
-        """Tell whether the proof leads from the conditions of the criterion to these inequalities and back."""
+        """Return whether the proof leads from the conditions of the criterion to these inequalities and back."""
         said = [Scalar.of(0)] if bounds is None else [positive_of(bound) for bound in bounds]
         chi, question = self.question.polynomial, self.question
         return is_stable_where(
@@ -118,7 +118,7 @@ class StabilityRegion(Result):
 
     @cached_property
     def short(self) -> Simplified | None:
-        """The list of inequalities with what is known of it, where there are other symbols or many parameters."""
+        """The list of inequalities and its findings, with other symbols or many parameters."""
         return None if self.region is not None else conditions_of(self.question)
 
     def _claim_of_polynomial(self) -> Claim:
@@ -213,7 +213,7 @@ class StabilityRegion(Result):
             when,
             case.substitution,
             type(self).of(
-                Question(plant, None, None, names, question.boundary.substitute(case.substitution)), self.method
+                RegionQuestion(plant, None, None, names, question.boundary.substitute(case.substitution)), self.method
             ),
         )
 
@@ -236,7 +236,7 @@ class StabilityRegion(Result):
         return pole_map(self.region, self.answer["polynomial"], self.question.boundary)
 
 
-def _bounds_of(question: Question) -> tuple[tuple[RegionInequality, ...] | None, Equivalence | None]:
+def _bounds_of(question: RegionQuestion) -> tuple[tuple[RegionInequality, ...] | None, Equivalence | None]:
     """Return inequalities that hold exactly on the region, None where it is empty, and the proof where it is no region."""
     region = region_of(question)
     if region is not None:
@@ -247,7 +247,7 @@ def _bounds_of(question: Question) -> tuple[tuple[RegionInequality, ...] | None,
 
 
 @lru_cache(maxsize=16)
-def conditions_of(question: Question) -> Simplified:
+def conditions_of(question: RegionQuestion) -> Simplified:
     """Return a short list of what must be positive, with its proof."""
     return stable_where(question.polynomial, question.plant.variable, question.plant.symbols.signs, **question.limits)
 
@@ -259,17 +259,17 @@ def bound_of(positive: Scalar) -> RegionInequality:
 
 
 def positive_of(bound: RegionInequality) -> Scalar:
-    """Return what an inequality says is positive."""
+    """Return the expression that an inequality states to be positive."""
     return bound.polynomial if bound.operator == ">" else bound.polynomial**2
 
 
-def region_of(question: Question) -> LineRegion | PlaneRegion | None:
+def region_of(question: RegionQuestion) -> LineRegion | PlaneRegion | None:
     """Return the exact region of one or two parameters, None where there are other symbols, or more than two."""
     return None if question.symbols else exact_region(question.critical, question.parameters)
 
 
 @method("stability_region/routh", source="routh1877; collins1975")
-def by_routh(question: Question) -> StabilityRegion:
+def by_routh(question: RegionQuestion) -> StabilityRegion:
     """Routh's table, the conditions, and the exact region of one or two parameters."""
     return StabilityRegion.of(question, "routh")
 
@@ -288,7 +288,7 @@ def stability_region(
     radius: Quantity = None,
     method: Name = "auto",
 ) -> Result:
-    """Say for which parameters all roots are stable: exact inequalities, intervals, cells of the plane, components.
+    """Find the parameters for which all roots of χ are stable: exact inequalities, intervals, cells of the plane.
 
     plant          a plant, or a polynomial as a text: "s^2 + (b + h2) s + omega^2 (1 - h1)"
     symbols, dt    for a polynomial: the signs of its symbols, and dt as for a plant (0 continuous: s, else z)
@@ -298,7 +298,9 @@ def stability_region(
     margin         α ≥ 0: all roots in Re s < −α           radius   0 < ρ ≤ 1, discrete time: all roots in |z| < ρ
     Returns polynomial, routh_table, stable_if; for one parameter intervals, for two cells, components, excluded_points;
     empty, bounded, sample_points.  One and two parameters without other symbols: exact; otherwise equivalent conditions.
-    Raises `InputError`.
+    Raises `InputError` where there is neither a polynomial nor a plant with the matrices of its gains, for a gain of
+    another shape, a name that is no parameter, and a margin or radius out of range.
+    Source: E. J. Routh (1877); A. Hurwitz (1895); G. E. Collins (1975) for cells of the plane.
     """
     where = "specification.parameters"
     if isinstance(plant, StateSpace):

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
     from fractions import Fraction
 
-    from symobs.analysis.stability_region.stability_region_question import Question
+    from symobs.analysis.stability_region.stability_region_question import RegionQuestion
     from symobs.exact import RealNumber
     from symobs.stability.inequalities.simplify import Simplified
     from symobs.stability.regions.description import CylindricalPart, Edge
@@ -43,8 +43,8 @@ def solved(bound: RegionInequality, signs: Mapping[str, str], parameters: Sequen
     return as_inequality(bound.polynomial, signs, parameters)
 
 
-def of_conditions(found: Simplified, question: Question) -> dict[str, Any]:
-    """Return what is known of a region given by inequalities alone: whether it is empty, bounded, and a point of it."""
+def of_conditions(found: Simplified, question: RegionQuestion) -> dict[str, Any]:
+    """Return the fields of a region given by inequalities alone: empty, bounded, a sample point."""
     empty = True if found.verdict == "no" else False if found.point is not None or found.verdict == "yes" else None
     limits = box(found.positive, question.parameters, question.plant.symbols.signs) if found.verdict != "no" else None
     fields: dict[str, Any] = {"empty": empty, "irredundant": found.irredundant, "bounded": None}
@@ -61,7 +61,7 @@ def _texts(point: Mapping[str, Any] | None) -> dict[str, str]:
 
 
 def ends_of(piece: IntervalPiece, name: str, signs: Mapping[str, str]) -> list[str]:
-    """Return name > low and name < high, without what the declared sign says already."""
+    """Return name > low and name < high, without bounds implied by the declared sign."""
     found = []
     if piece.low is not None and not (
         signs.get(name) == "positive" and piece.low.is_rational and not piece.low.fraction
@@ -117,13 +117,13 @@ def cells_of(region: PlaneRegion) -> list[dict[str, Any]]:
     for number, cell in enumerate(region.cells):
         if not cell.allowed:
             continue
-        slab, lower, upper = edges_of(region, cell)
+        cylinder, lower, upper = edges_of(region, cell)
         listed.append(
             {
                 "sample": _point(region, cell.sample),
                 "stable": cell.stable,
                 "component": component.get(number),
-                x: [end(slab.left, "-", x), end(slab.right, "+", x)],
+                x: [end(cylinder.left, "-", x), end(cylinder.right, "+", x)],
                 y: [_edge(lower, "-", y), _edge(upper, "+", y)],
             }
         )

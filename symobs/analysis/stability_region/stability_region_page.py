@@ -8,8 +8,7 @@ from symobs.analysis.page_parts import WRITTEN_UP_TO, determinant_form, given, s
 from symobs.analysis.stability_region.stability_region import StabilityRegion
 from symobs.analysis.stability_region.stability_region_fields import solved
 from symobs.conditions import sign_of
-from symobs.derivation import Case as CaseStep
-from symobs.derivation import Conclude, Step, Survey, Where
+from symobs.derivation import CaseStep, Conclude, Inequalities, RegionSummary, Step
 from symobs.derivation.builder import predicate, relation, sentence
 from symobs.derivation.region_check import findings_of_conditions, findings_of_region, interval_relations
 from symobs.exact import Scalar
@@ -23,7 +22,7 @@ from symobs.stability.regions.interval_region import LineRegion
 from symobs.stability.regions.plane_region import PlaneRegion
 
 if TYPE_CHECKING:
-    from symobs.derivation.builder import Page
+    from symobs.derivation.builder import Builder
     from symobs.formula import Formula, Relation
     from symobs.result import Case
 
@@ -36,13 +35,13 @@ WRITTEN_ORDER = 4
 
 
 @page_of(StabilityRegion)
-def write_region(page: Page, result: StabilityRegion) -> None:
+def write_region(page: Builder, result: StabilityRegion) -> None:
     """Write the whole page."""
     question = result.question
     if question.plant.polynomial is not None:
         with page.section("given"):
             page.given(relation(page["chi_p"], question.plant.polynomial))
-            page.environment = page.environment.having(values={"chi_p": question.plant.polynomial})
+            page.environment = page.environment.extended_by(values={"chi_p": question.plant.polynomial})
             if result.plant.is_from_floats:
                 page.remark("from_floats")
             state_signs(page)
@@ -66,7 +65,7 @@ def write_region(page: Page, result: StabilityRegion) -> None:
             _conditions(page, result, moved)
 
 
-def _polynomial_of_loop(page: Page, result: StabilityRegion) -> str:
+def _polynomial_of_loop(page: Builder, result: StabilityRegion) -> str:
     """Establish the gains and the characteristic polynomial; return its letter."""
     question, order = result.question, result.plant.order
     chi: Scalar = result.answer["polynomial"]
@@ -81,15 +80,15 @@ def _polynomial_of_loop(page: Page, result: StabilityRegion) -> str:
     used = {name: term for name, term in moved.items() if term is not None} or {"chi": pencil}
     for name, term in used.items():
         own = chi if len(used) == 1 else term.apply("det").scalar
-        page.define(name, term.apply("det"), term.shown.apply("det"), own, say="polynomial_of_loop", closing=False)
+        page.define(name, term.apply("det"), term.as_value.apply("det"), own, say="polynomial_of_loop", closing=False)
     if len(used) == 1:
         return next(iter(used))
     page.define("chi_cl", page["chi_K"] * page["chi_L"], say="polynomial_of_loop", closing=False)
     return "chi_cl"
 
 
-def _sought(page: Page, result: StabilityRegion) -> None:
-    """Say what is asked for."""
+def _sought(page: Builder, result: StabilityRegion) -> None:
+    """State the question."""
     boundary, names = result.question.boundary, _listed(result)
     if boundary.is_usual:
         page.remark("sought_discrete" if boundary.discrete else "sought_continuous", names=names)
@@ -103,7 +102,7 @@ def _listed(result: StabilityRegion) -> SymbolList:
     return SymbolList(result.question.parameters)
 
 
-def _moved(page: Page, result: StabilityRegion, chi: str) -> str:
+def _moved(page: Builder, result: StabilityRegion, chi: str) -> str:
     """Move the boundary to where it usually is, q(s) = χ(s − α) or q(z) = χ(ρ z); return the letter."""
     boundary = result.question.boundary
     if boundary.is_usual:
@@ -117,7 +116,7 @@ def _moved(page: Page, result: StabilityRegion, chi: str) -> str:
     return "q_s"
 
 
-def _table(page: Page, result: StabilityRegion, chi: str) -> None:
+def _table(page: Builder, result: StabilityRegion, chi: str) -> None:
     """Show Routh's table, in discrete time of the polynomial that the bilinear map makes."""
     if not result.question.boundary.discrete:
         page.tabulate(page[chi], say="routh_table", polynomial=page[chi])
@@ -153,7 +152,7 @@ def _of_power(coefficient: Scalar, w: Scalar, power: int) -> Formula:
     return parts[0] if len(parts) == 1 else Product(tuple(parts))
 
 
-def _crossing(page: Page, result: StabilityRegion, chi: str) -> None:
+def _crossing(page: Builder, result: StabilityRegion, chi: str) -> None:
     """Show the critical polynomials."""
     critical = result.critical
     vary = Counted("varies", len(result.question.parameters))
@@ -185,8 +184,8 @@ def _crossing(page: Page, result: StabilityRegion, chi: str) -> None:
         page.remark("always_critical")
 
 
-def _conditions(page: Page, result: StabilityRegion, chi: str) -> None:
-    """Show the conditions of the criterion, the short list that says the same, and what can be said of its shape."""
+def _conditions(page: Builder, result: StabilityRegion, chi: str) -> None:
+    """Show the conditions of the criterion, the equivalent short list, and the findings on its shape."""
     short, signs, names = result.short, result.signs, result.question.parameters
     assert short is not None  # noqa: S101 - there is one where there is no region
     stable = predicate("stable", page[chi])
@@ -194,7 +193,7 @@ def _conditions(page: Page, result: StabilityRegion, chi: str) -> None:
         page[chi].scalar, page.environment, names, discrete=result.question.boundary.discrete
     )
     if result.empty:
-        page.steps.append(Survey(page[chi].formula, names, findings))
+        page.steps.append(RegionSummary(page[chi].formula, names, findings))
         return
     relations = tuple(relation(*solved(bound, signs, names)) for bound in result.answer["bounds"])
     raw = short.equivalence.raw
@@ -203,13 +202,13 @@ def _conditions(page: Page, result: StabilityRegion, chi: str) -> None:
     if relations and len(known) > len(relations):
         say = "shortened"
         if sum(value.size for value in raw) <= WRITTEN_UP_TO:
-            page.steps.append(Where(HoldsExactlyWhere(stable, known), sentence("criterion", {})))
+            page.steps.append(Inequalities(HoldsExactlyWhere(stable, known), sentence("criterion", {})))
         else:
             page.remark("criterion_long", count=str(len(raw)))
     if relations:
-        page.steps.append(Where(HoldsExactlyWhere(stable, relations), sentence(say, {}), answer=True))
+        page.steps.append(Inequalities(HoldsExactlyWhere(stable, relations), sentence(say, {}), answer=True))
     if findings:
-        page.steps.append(Survey(page[chi].formula, names, findings))
+        page.steps.append(RegionSummary(page[chi].formula, names, findings))
     page.steps += [_case(page, case, chi) for case in result.case_tree if case.result is not None]
     weak = {"nonnegative", "nonpositive"}.intersection(map(signs.get, names))
     if not result.question.symbols and len(names) == 2 and not weak:
@@ -218,7 +217,7 @@ def _conditions(page: Page, result: StabilityRegion, chi: str) -> None:
         page.plot(result.picture, page[chi])
 
 
-def _case(page: Page, case: Case, chi: str) -> Step:
+def _case(page: Builder, case: Case, chi: str) -> Step:
     """Say where all roots are stable if a coefficient has a certain sign."""
     found = cast("StabilityRegion", case.result)
     (condition,) = case.when
@@ -232,11 +231,11 @@ def _case(page: Page, case: Case, chi: str) -> Step:
     else:
         names = found.question.parameters
         relations = tuple(relation(*solved(bound, found.signs, names)) for bound in found.answer["bounds"])
-        steps = (Where(HoldsExactlyWhere(stable, relations), sentence("case_region", {})),)
+        steps = (Inequalities(HoldsExactlyWhere(stable, relations), sentence("case_region", {})),)
     return CaseStep(when, tuple(case.substitution.items()), steps)
 
 
-def _region(page: Page, result: StabilityRegion, chi: str) -> None:
+def _region(page: Builder, result: StabilityRegion, chi: str) -> None:
     """Show the inequalities, and the region in words and parts."""
     region = result.region
     assert region is not None  # noqa: S101 - there is one here
@@ -244,25 +243,25 @@ def _region(page: Page, result: StabilityRegion, chi: str) -> None:
     names = (region.name,) if isinstance(region, LineRegion) else region.names
     decided = tuple(finding for finding in found if finding.key in HOW)
     if decided:
-        page.steps.append(Survey(page[chi].formula, names, decided))
+        page.steps.append(RegionSummary(page[chi].formula, names, decided))
     if result.empty:
-        page.steps.append(Survey(page[chi].formula, names, found))
+        page.steps.append(RegionSummary(page[chi].formula, names, found))
         return
     relations = _inequalities(result, region)
     if relations:
         fact = HoldsExactlyWhere(predicate("stable", page[chi]), relations)
-        page.steps.append(Where(fact, sentence("region_is", {}), answer=True))
+        page.steps.append(Inequalities(fact, sentence("region_is", {}), answer=True))
     parts = _parts(result, region)
     others = tuple(finding for finding in found if finding not in decided and finding.key != "number_is_root")
     if others or parts:
         numbers = tuple(finding for finding in found if finding.key == "number_is_root") if parts else ()
         say = sentence("parts_are", {}) if parts else None
-        page.steps.append(Survey(page[chi].formula, names, others, parts, say))
+        page.steps.append(RegionSummary(page[chi].formula, names, others, parts, say))
         if numbers:
-            page.steps.append(Survey(page[chi].formula, names, numbers))
+            page.steps.append(RegionSummary(page[chi].formula, names, numbers))
 
 
-def _pictures(page: Page, result: StabilityRegion, chi: str, moved: str) -> None:
+def _pictures(page: Builder, result: StabilityRegion, chi: str, moved: str) -> None:
     """Draw the region, and of one parameter the paths of the roots."""
     if result.empty or result.critical.never:
         return

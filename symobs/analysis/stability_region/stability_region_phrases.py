@@ -1,10 +1,9 @@
-"""Stability regions: what is asked, where roots can cross, and what the region looks like."""
+"""Sentences and questions of stability regions."""
 
 from __future__ import annotations
 
 PHRASES: dict[str, str] = {
     "stability_region": "Stability region.",
-    "polynomial_given": "The polynomial is",
     "gain_open": "The gain is left free,",
     "sought_continuous": "Find all values of {names} for which every root has negative real part.",
     "sought_discrete": "Find all values of {names} for which every root lies in the open unit disc.",
@@ -23,7 +22,6 @@ PHRASES: dict[str, str] = {
     "crossing_infinite": "As {names} {vary}, roots can leave the left half-plane only through the origin, in pairs through the imaginary axis, or through infinity (where the leading coefficient vanishes), that is, where one of the following vanishes. Values at which the degree drops are excluded.",
     "crossing_one_discrete": "As {names} {vary}, the root can leave the disc only at 1 or at −1, that is, where one of the following vanishes.",
     "crossing_discrete": "As {names} {vary}, roots can leave the disc only at 1, at −1 or in conjugate pairs through the unit circle, that is, where one of the following vanishes.",
-    "hurwitz_determinant": "with the Hurwitz determinant",
     "always_critical": "One of them vanishes identically: there is always a root that is not stable.",
     "region_is": "Hence all roots are stable if and only if",
     "region_empty": "The stability region is empty.",
@@ -125,5 +123,4 @@ EXPLAINS = (
 CONTINUES = (
     "left_half_plane",
     "unit_disc",
-    "hurwitz_determinant",
 )

@@ -1,4 +1,4 @@
-"""What a stability region is asked of: a polynomial, or a plant with entries of a gain left open."""
+"""The polynomial of a stability region: given, or that of a plant whose gain has free entries."""
 
 from __future__ import annotations
 
@@ -22,8 +22,8 @@ if TYPE_CHECKING:
 MOST_DEGREE = 40
 
 
-@dataclass(frozen=True, eq=False)
-class Question:
+@dataclass(frozen=True)
+class RegionQuestion:
     """The polynomial's origin (gains that are given, else the plant itself), the parameters, and what stable means."""
 
     plant: StateSpace
@@ -70,7 +70,7 @@ class Question:
 
 def read_question(
     plant: StateSpace, gains: dict[str, object], parameters: object, margin: object, radius: object
-) -> Question:
+) -> RegionQuestion:
     """Return the question; raises `InputError` where its parts do not fit together."""
     if plant.polynomial is not None and any(gain is not None for gain in gains.values()):
         name = next(name for name, gain in gains.items() if gain is not None)
@@ -87,7 +87,7 @@ def read_question(
         plant.require("C", task="the gain L")
         found["L"] = read_gain(gains["L"], plant, "L", (plant.order, plant.outputs))
     boundary = _boundary(plant, margin, radius)
-    asked = Question(plant, found["K"], found["L"], (), boundary)
+    asked = RegionQuestion(plant, found["K"], found["L"], (), boundary)
     roots = (asked.polynomial.field | boundary.margin.field | boundary.radius.field).numbers.names
     if roots:
         message = f"the data contain {roots[0]}, and regions are found for polynomials with rational coefficients"
@@ -117,7 +117,7 @@ def read_question(
         raise InputError(
             message, where=f"specification.{name}", repair="write another name, or leave it out of parameters"
         )
-    return Question(plant, found["K"], found["L"], chosen, boundary)
+    return RegionQuestion(plant, found["K"], found["L"], chosen, boundary)
 
 
 def _free(names: set[str], plant: StateSpace) -> tuple[str, ...]:

@@ -1,4 +1,4 @@
-"""Where polynomials vanish: the common zeros of some polynomials, as few and as simple systems of equations.
+"""Loci: the common zeros of polynomials as a union of few and simple systems of equations.
 
 The parameters are real, have their declared signs, and keep the denominators of the plant from 0.  What cannot vanish
 there is struck out of every equation before a Gröbner basis is computed, an equation that factors branches, a sum that
@@ -33,7 +33,7 @@ _SQUARED = 2_000
 _FORMS, _FORM = 6, "_form"
 
 
-class Work:
+class EliminationBudget:
     """The terms of equations that may still be worked on."""
 
     def __init__(self) -> None:
@@ -41,7 +41,7 @@ class Work:
         self.left = _WORK
 
     def spent(self, equations: tuple[Scalar, ...]) -> bool:
-        """Take what a system costs; return whether it is too long, or nothing is left."""
+        """Charge the size of a system; return whether it is too long or the budget is spent."""
         size = sum(equation.size for equation in equations)
         self.left -= size
         return self.left < 0 or (len(equations) > 1 and size > _TERMS)
@@ -53,7 +53,7 @@ class Region:
 
     signs: Mapping[str, str]
     nonzero: frozenset[Scalar] = frozenset()
-    work: Work = field(default_factory=Work, compare=False)
+    work: EliminationBudget = field(default_factory=EliminationBudget, compare=False)
     ideal: Ideal | None = None
 
     @cached_property
@@ -92,7 +92,7 @@ class Locus:
         return Locus(tuple(sorted(positive, key=_simplicity)), ideal)
 
     def lies_in(self, other: Locus) -> bool:
-        """Tell whether the equations of another locus are seen to follow from those of this one."""
+        """Return whether the equations of another locus are seen to follow from those of this one."""
         if self.ideal is None:
             return set(other.equations) <= set(self.equations)
         try:
@@ -219,7 +219,7 @@ def _parts(ideal: Ideal, region: Region) -> tuple[tuple[Scalar, ...], ...]:
 
 
 def _coordinates(ideal: Ideal, region: Region) -> tuple[Scalar, ...]:
-    """Return, of finitely many points, polynomials in one parameter each that tell them apart or are simpler.
+    """Return univariate polynomials that separate finitely many points or simplify them.
 
     Where such a polynomial has several factors the points branch, and a rational point is left with its coordinates.  Points
     that no coordinate tells apart a sum of multiples of two does.

@@ -43,7 +43,7 @@ class Piece:
     minors: tuple[Minor, ...] = ()
 
     def relations(self, nonzero: Iterable[Scalar]) -> tuple[Scalar, ...]:
-        """Return what vanishes on the piece; that p does not is said by 1 − w p = 0 with a new name w."""
+        """Return the relations of the piece; p ≠ 0 is written as 1 − w p = 0 with a new name w."""
         equations = tuple(c.expression for c in self.conditions if c.operator == "==")
         others = [c.expression for c in self.conditions if c.operator == "!="]
         return outside([*others, *nonzero], equations)
@@ -56,7 +56,7 @@ def outside(excluded: Iterable[Scalar], equations: Iterable[Scalar] = ()) -> tup
 
 
 @dataclass(frozen=True)
-class Stratum:
+class RankStratum:
     """A node with its conditions on the parameters, and the parameters that they are solved for, if they can be."""
 
     node: Node
@@ -64,11 +64,11 @@ class Stratum:
     substitution: Mapping[str, Scalar] | None
 
 
-def stratum_of(node: Node, region: Region) -> Stratum:
+def stratum_of(node: Node, region: Region) -> RankStratum:
     """Return equations and inequations of a node, and a parametrisation of it."""
     equations = [*equations_of_locus(node.locus)]
     others = [Condition("existence", value) for value in exclusions(node, region)]
-    return Stratum(node, (*equations, *others), parametrised(node, region))
+    return RankStratum(node, (*equations, *others), parametrised(node, region))
 
 
 def parametrised(node: Node, region: Region) -> dict[str, Scalar] | None:
@@ -104,7 +104,7 @@ def _linear(equations: list[Scalar], node: Node, region: Region) -> tuple[str, S
     return None
 
 
-def answer_on(matrix: Matrix, A: Matrix, stratum: Stratum, values: Mapping[str, Scalar]) -> dict[str, object]:
+def answer_on(matrix: Matrix, A: Matrix, stratum: RankStratum, values: Mapping[str, Scalar]) -> dict[str, object]:
     """Return the answer of a rank test on a stratum, the parameters in `values` put in."""
     node, kernel = stratum.node, stratum.node.kernel
     assert kernel is not None  # noqa: S101 - nodes of a tree have kernels
@@ -131,8 +131,8 @@ def answer_with(matrix: Matrix, rank: int, kernel: Kernel, minor: Minor) -> dict
     }
 
 
-def piece_of(stratum: Stratum, values: Mapping[str, Scalar], region: Region) -> Piece:
-    """Return what is left of the conditions of a stratum when parameters are put in."""
+def piece_of(stratum: RankStratum, values: Mapping[str, Scalar], region: Region) -> Piece:
+    """Return the conditions of a stratum after a substitution."""
     left: dict[Condition, None] = {}
     for condition in stratum.when:
         value = condition.expression.substitute(values).numerator
@@ -179,8 +179,8 @@ def kernel_claims(N: Matrix, X: Matrix, e: Environment, where: str) -> Iterator[
         yield _never_zero(Matrix.column([below]), e, f"no denominator of X vanishes {where}")
 
 
-def stratum_claims(stratum: Stratum, region: Region) -> Iterator[Claim]:
-    """Yield that what a stratum leaves out lies on the loci below, and that the parameters put in are all of it."""
+def stratum_claims(stratum: RankStratum, region: Region) -> Iterator[Claim]:
+    """Yield the claims that the stratum excludes only the loci below, and that its parametrisation covers it."""
     node, equations = stratum.node, stratum.node.locus.equations
     distances = [locus.distance for locus in dict.fromkeys(node.covers)]
     excluded = [c.expression for c in stratum.when if c.operator == "!="]

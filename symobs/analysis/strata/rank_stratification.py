@@ -67,7 +67,7 @@ class Node:
 
 @dataclass(frozen=True)
 class Tree:
-    """What holds in general, the strata where something else does, and the loci about which nothing is known.
+    """The generic rank, the strata with another one, and the undecided loci.
 
     `eliminations` is how many it took.
     """
@@ -175,7 +175,7 @@ class _Search:
             for value in (entry.numerator for entry in self.matrix.select(*minor).entries):
                 if locus.ideal is None or value in locus.ideal:
                     continue
-                if not locus.ideal.having(apart_from_zero(value)).is_whole:
+                if not locus.ideal.extended_by(apart_from_zero(value)).is_whole:
                     continue
                 found = loci((*locus.equations, value), self.region)
                 if len(found) == 1 and found[0].ideal is not None:
@@ -379,7 +379,7 @@ def _factors(value: Scalar, region: Region) -> tuple[Scalar, ...]:
 
 
 def cuts_out(value: Scalar, node: Node, region: Region) -> bool:
-    """Tell whether a polynomial vanishes on the locus of a node only on loci below."""
+    """Return whether a polynomial vanishes on the locus of a node only on loci below."""
     parts = loci((*node.locus.equations, value), region)
     return all(any(part.lies_in(lower) for lower in node.below) for part in parts)
 

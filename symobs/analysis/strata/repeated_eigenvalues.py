@@ -1,4 +1,4 @@
-"""Where eigenvalues meet: the parameters at which more eigenvectors belong to a hidden eigenvalue than in general.
+"""Parameter values at which the geometric multiplicity of a hidden eigenvalue increases.
 
 The rank of [A − λI; C] at an eigenvalue is n less the dimension of ker(X − λI), X being A on ker 𝒪.  It is the generic one
 wherever ker 𝒪 is and the minors of X − λI of the generic order do not vanish together.  Where they do, is an equation in the
@@ -32,8 +32,8 @@ System: TypeAlias = tuple[Scalar, ...]
 
 
 @dataclass(frozen=True)
-class Constancy:
-    """Where the rank at the roots of one factor is the generic one: outside the strata of some systems.
+class RankConstancy:
+    """The domain on which the rank at the roots of a factor is the generic one: the complement of some strata.
 
     The minors of X − λI never vanish together there.
     """
@@ -63,7 +63,7 @@ def systems_of(cases: Iterable[Case]) -> tuple[System, ...] | None:
 
 def constancy(
     X: Matrix, factor: Scalar, dimension: int, plant: StateSpace, others: tuple[System, ...]
-) -> Constancy | None:
+) -> RankConstancy | None:
     """Return where the rank is the generic one at the roots of an irreducible factor; None where that is not known.
 
     `dimension` is that of ker(X − λI) in general, and `others` are the strata on which ker 𝒪 is another.
@@ -76,7 +76,7 @@ def constancy(
 
 def _constancy(
     X: Matrix, factor: Scalar, dimension: int, plant: StateSpace, others: tuple[System, ...]
-) -> Constancy | None:
+) -> RankConstancy | None:
     own: tuple[System, ...] = ()
     minors: tuple[Minor, ...] = ()
     if X.shape[0] > dimension and X.names | factor.names > {plant.variable}:
@@ -94,9 +94,9 @@ def _constancy(
     if not all(own):
         return None
     loci = maximal(Locus.of(Ideal.of(system)) for system in (*others, *own))
-    found = Constancy(tuple(locus.equations for locus in loci), minors)
+    found = RankConstancy(tuple(locus.equations for locus in loci), minors)
     claims = constancy_claims(found, X, factor, dimension, plant)
-    return found if all(verify(c.relation, c.environment.under(plant.relations))[0] for c in claims) else None
+    return found if all(verify(c.relation, c.environment.with_relations(plant.relations))[0] for c in claims) else None
 
 
 def _at_roots(factor: Scalar, plant: StateSpace) -> Region:
@@ -124,12 +124,14 @@ def shifted(X: Matrix, factor: Scalar, variable: str) -> Matrix:
     return (pencil * pencil.common_denominator()).normal()
 
 
-def holds_where(where: Constancy) -> list[Condition]:
+def holds_where(where: RankConstancy) -> list[Condition]:
     """Return what must not vanish for a rank to be the generic one."""
     return [Condition("existence", distance) for distance in distances(where.systems)]
 
 
-def constancy_claims(found: Constancy, X: Matrix, factor: Scalar, dimension: int, plant: StateSpace) -> Iterator[Claim]:
+def constancy_claims(
+    found: RankConstancy, X: Matrix, factor: Scalar, dimension: int, plant: StateSpace
+) -> Iterator[Claim]:
     """Yield that outside the strata, which are not everything, the minors of X − λI never vanish together."""
     signs, region, excluded = plant.symbols.signs, region_of(plant), distances(found.systems)
     for distance in excluded:

@@ -51,7 +51,7 @@ def strata(plant: StateSpace, existence: Iterable[Scalar], solve: Solve) -> tupl
 
 
 def places(plant: StateSpace, existence: Iterable[Scalar]) -> tuple[Place, ...]:
-    """Return the strata where factors of `existence` vanish, as far as they can.
+    """Return the strata where factors of `existence` vanish under the declared signs.
 
     Where a factor is linear in a parameter whose coefficient can vanish, there are two of it.
     """
@@ -145,7 +145,7 @@ def solved(plant: StateSpace, asked: Iterable[Place], solve: Solve) -> tuple[Cas
 
 
 def _case(place: Place, plant: StateSpace, find: Callable[[], Result | None]) -> Iterator[Case]:
-    """Yield the case of a stratum with what is found there; none where there is no plant, or nothing is asked for."""
+    """Yield the case of a stratum with its result; none where the plant is undefined or the question is void."""
     when, values, _ = place
     try:
         yield Case(when, values or {}, find())

@@ -1,4 +1,4 @@
-"""Where a variance is stationary in the horizon."""
+"""Stationary points of a variance as a function of the horizon."""
 
 from __future__ import annotations
 

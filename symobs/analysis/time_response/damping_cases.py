@@ -1,4 +1,4 @@
-"""Branches: what a result in functions of time is where a discriminant is negative, zero or positive.
+"""Damping cases: results in functions of time for a negative, zero or positive discriminant.
 
 A factor s² − 2σs + σ² − δ oscillates where δ < 0.  Where the declared signs do not decide, the result says what holds
 for δ < 0, and every other sign is a case.  What a denominator of the answer excludes is a case too.
@@ -14,8 +14,8 @@ from symobs.analysis.strata.loci import Locus
 from symobs.analysis.strata.strata import strata
 from symobs.certificate.claims import Claim
 from symobs.conditions import Condition, opposite, sign_of, vanishing_factors
-from symobs.derivation import Case as CaseStep
-from symobs.derivation.builder import Page, relation, sentence
+from symobs.derivation import CaseStep
+from symobs.derivation.builder import Builder, relation, sentence
 from symobs.errors import CertificateRejected
 from symobs.exact import Matrix, Scalar, product_of
 from symobs.exact.core.generators import all_roots, function_named, identities, substitute, symbols_in
@@ -37,7 +37,7 @@ _MOST_BRANCHES = 4
 _BRANCHES = {"<": "branch_under", ">": "branch_over"}
 
 
-class Branched(Result):
+class DampingCases(Result):
     """A result whose answer holds `taken` and `chosen`, the signs of discriminants it stands on."""
 
     in_time: ClassVar[bool] = True
@@ -49,7 +49,7 @@ class Branched(Result):
         """The answers that are functions of time."""
         return tuple(v for v in self.answer.values() if isinstance(v, (Matrix, Scalar)))
 
-    def again(self, plant: StateSpace, taken: Signs) -> Self:
+    def rebuild(self, plant: StateSpace, taken: Signs) -> Self:
         """Return the result on a stratum, or with other signs."""
         raise NotImplementedError
 
@@ -59,7 +59,7 @@ class Branched(Result):
             reject(f"the {self.main} of {self.task} is missing")
         signs = {**self.answer["taken"], **self.answer["chosen"]}
         above = tuple(delta if sign == "positive" else -delta for delta, sign in signs.items())
-        e = Environment(variable=self.plant.variable, signs=self.plant.symbols.signs, above=above)
+        e = Environment(variable=self.plant.variable, signs=self.plant.symbols.signs, positive=above)
         for root in sorted(all_roots(*self.matrices), key=lambda root: root.name):
             yield Claim(relation(root.argument, ">=", 0), e, f"{root.name} is real")
 
@@ -121,7 +121,7 @@ class Branched(Result):
             if sign_of(delta, signs) not in {"nonpositive", "nonnegative"}:
                 other = opposite(sign)
                 when = (*before, _stated(delta, other))
-                found.append(Case(when, {}, self.again(self.plant, {**taken, delta: other})))
+                found.append(Case(when, {}, self.rebuild(self.plant, {**taken, delta: other})))
             zeros.append(delta)
             taken[delta], before = sign, (*before, _stated(delta, sign))
         zeros = list(dict.fromkeys(zeros))
@@ -137,29 +137,29 @@ class Branched(Result):
                 message = f"{moved} is not {sign}"
                 raise ZeroDivisionError(message)
             taken[moved] = sign
-        return self.again(plant, taken)
+        return self.rebuild(plant, taken)
 
     def everything(self) -> Iterator[Matrix | Scalar]:
         """Yield all functions of time on the page: those of the cases too."""
         yield from self.matrices
         for case in self.case_tree:
-            if isinstance(case.result, Branched):
+            if isinstance(case.result, DampingCases):
                 yield from case.result.everything()
 
-    def state(self, page: Page) -> None:
-        """State the data, and what the horizon must be."""
+    def state(self, page: Builder) -> None:
+        """State the data and the condition on the horizon."""
         from symobs.analysis.page_parts import given  # noqa: PLC0415
 
         given(page)
         beyond = [c.expression for c in self.domain if c.operator == ">"]
         if beyond:
             page.start, page.environment = (
-                replace(each, above=(*each.above, *beyond)) for each in (page.start, page.environment)
+                replace(each, positive=(*each.positive, *beyond)) for each in (page.start, page.environment)
             )
             page.conclude("declared", signs=Conjunction(tuple(relation(value, ">", 0) for value in beyond)))
 
-    def write_branches(self, page: Page, write_branch: Callable[[Page, Any], None]) -> None:
-        """Write this branch, as a case of its own where others stand beside it, and the others."""
+    def write_branches(self, page: Builder, write_branch: Callable[[Builder, Any], None]) -> None:
+        """Write this branch and the others; each is a case if there are several."""
         chosen = [_stated(delta, sign) for delta, sign in self.answer["chosen"].items()]
         if not self.case_tree and not chosen:
             write_branch(page, self)
@@ -178,14 +178,14 @@ class Branched(Result):
 
 
 def _distance(case: Case) -> Scalar:
-    """Return what is 0 exactly where the equations of a case hold."""
+    """Return a polynomial that vanishes exactly where the equations of a case hold."""
     return Locus(tuple(c.expression for c in case.when if c.operator == "==")).distance
 
 
-def _case(page: Page, case: Case, doubled: Signs, write_branch: Callable[[Page, Any], None]) -> Step:
+def _case(page: Builder, case: Case, doubled: Signs, write_branch: Callable[[Builder, Any], None]) -> Step:
     from symobs.analysis.page_parts import stratum_of, undecided  # noqa: PLC0415
 
-    if not isinstance(case.result, Branched):
+    if not isinstance(case.result, DampingCases):
         return undecided(page, case)
     condition = case.when[0]
     inner = _inside(page, case.result.plant, case.substitution)
@@ -206,9 +206,9 @@ def _narrowed(steps: tuple[Step, ...], conditions: Sequence[Condition]) -> tuple
     return steps
 
 
-def _inside(page: Page, plant: StateSpace, substitution: Mapping[str, Scalar]) -> Page:
-    """Return a page for the steps of a case, which knows what this one knows."""
-    inner = Page(plant)
+def _inside(page: Builder, plant: StateSpace, substitution: Mapping[str, Scalar]) -> Builder:
+    """Return a builder for the steps of a case, with the same environment."""
+    inner = Builder(plant)
     inner.start, inner.forms = page.start, page.forms
     inner.environment = replace(page.environment, values=_moved(page.environment.values, substitution))
     return inner

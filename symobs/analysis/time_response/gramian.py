@@ -12,7 +12,7 @@ from symobs._dataclass import dataclass
 from symobs.analysis.rank.rank_test import minor_claim, rank_answer, rank_claims, rank_environment, rank_losses
 from symobs.analysis.strata.repeated_eigenvalues import distances, systems_of
 from symobs.analysis.time_response.damping_cases import (
-    Branched,
+    DampingCases,
     Signs,
     from_zero,
     rate_of,
@@ -65,7 +65,7 @@ def pair_of(plant: StateSpace, of: str) -> tuple[Matrix, Matrix]:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Gramian(Branched):
+class Gramian(DampingCases):
     """W with W = ∫ of its integrand (checked by differentiation), its determinant, Σ (Aᵀ)ᵏ Cᵀ C Aᵏ, and the kernel."""
 
     task: ClassVar[str] = "gramian"
@@ -98,7 +98,7 @@ class Gramian(Branched):
         }
         return cls(plant, method_name, {**shared, **answer, "chosen": chosen})
 
-    def again(self, plant: StateSpace, taken: Signs) -> Self:
+    def rebuild(self, plant: StateSpace, taken: Signs) -> Self:
         """Return the Gramian of another plant or with other signs."""
         return type(self).of(plant, self.method, self.answer, taken)
 
@@ -117,19 +117,19 @@ class Gramian(Branched):
 
     @property
     def has_answer(self) -> bool:
-        """Whether what is seen in general decays, if it must."""
+        """Whether the generic observable part decays, if it must."""
         return self.decay.verdict != "no"
 
     @cached_property
     def _kept(self) -> tuple[Case, ...]:
-        """The cases in which there is an integral over all time, though what is seen in general does not decay."""
+        """The cases with a convergent infinite-horizon integral, where the generic observable part does not decay."""
         if self.has_answer:
             return ()
         return tuple(case for case in self.case_tree if case.result is not None and case.result.verdict != "no")
 
     @cached_property
     def decay(self) -> StabilityVerdict:
-        """Whether what the output sees decays, on which an integral over all time stands."""
+        """Whether the observable part decays, which the infinite horizon requires."""
         if "seen" not in self.answer:
             return StabilityVerdict("yes")
         plant = self.plant
@@ -191,7 +191,7 @@ class Gramian(Branched):
         yield from self._about_gramian(e)
 
     def _about_decay(self, e: Environment) -> Iterator[Claim]:
-        """Yield that what is seen is the plant without its hidden part; where it surely grows there is no integral."""
+        """Yield the claims on the observable part; if it surely grows the integral does not exist."""
         count, seen = self.answer["rank"]["restricted"].shape[0], Term(Literal(self.answer["seen"]), e)
 
         def polynomial(name: str, order: int) -> Term:

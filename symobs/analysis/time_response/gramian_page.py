@@ -14,8 +14,7 @@ from symobs.analysis.time_response.matrix_exponential import (
     tell_question,
 )
 from symobs.conditions import vanishing_factors
-from symobs.derivation import Case as CaseStep
-from symobs.derivation import Conclude
+from symobs.derivation import CaseStep, Conclude
 from symobs.derivation.builder import predicate, relation, sentence
 from symobs.exact import Matrix, Scalar
 from symobs.exact.core.generators import substitute
@@ -26,7 +25,7 @@ from symobs.stability.inequalities.written_form import as_inequality
 from symobs.system import StateSpace
 
 if TYPE_CHECKING:
-    from symobs.derivation.builder import Page
+    from symobs.derivation.builder import Builder
     from symobs.formula.term import Term
 
 #: Lyapunov's equation is shown beside the branches for plants of up to this order.
@@ -34,7 +33,7 @@ _LYAPUNOV_UP_TO = 3
 
 
 @page_of(Gramian)
-def write_gramian(page: Page, result: Gramian) -> None:
+def write_gramian(page: Builder, result: Gramian) -> None:
     """Write the whole page."""
     horizon = result.answer["horizon"]
     values = list(result.everything())
@@ -44,7 +43,7 @@ def write_gramian(page: Page, result: Gramian) -> None:
     result.state(page)
     is_dual = result.answer["of"] == "controllability"
     if is_dual:
-        page.environment = page.environment.having(values={})
+        page.environment = page.environment.extended_by(values={})
     with page.section(f"gramian_{result.answer['of']}"):
         if "exponential" in result.answer or result.answer.get("factor") is not None:
             tell_polynomial(page)
@@ -56,7 +55,7 @@ def write_gramian(page: Page, result: Gramian) -> None:
             _tell_finite_sum(result, page)
 
 
-def _letters(result: Gramian, page: Page) -> tuple[Term, Term]:
+def _letters(result: Gramian, page: Builder) -> tuple[Term, Term]:
     """Return the terms A and C of the pair: (Aᵀ, Bᵀ) for controllability."""
     if result.answer["of"] == "observability":
         return page["A"], page["C"]
@@ -75,7 +74,7 @@ def _transposed(term: Term) -> Term:
     return term._with(inner) if inner is not None else term.T  # noqa: SLF001
 
 
-def _tell_lyapunov(result: Gramian, page: Page) -> None:
+def _tell_lyapunov(result: Gramian, page: Builder) -> None:
     """Define P where Lyapunov's equation has one solution: it serves every branch."""
     if result.plant.order > _LYAPUNOV_UP_TO:
         return
@@ -91,8 +90,8 @@ def _tell_lyapunov(result: Gramian, page: Page) -> None:
         page.remark("lyapunov_denominator")
 
 
-def _write_branch(page: Page, result: Gramian) -> None:
-    """Write one branch: e^{At}, what the output sees of it, the integral."""
+def _write_branch(page: Builder, result: Gramian) -> None:
+    """Write one branch: e^{At}, its output C e^{At}, the integral."""
     answer = result.answer
     A, C = _letters(result, page)
     if answer.get("question") is not None:
@@ -117,11 +116,11 @@ def _write_branch(page: Page, result: Gramian) -> None:
     tell_exponential(page, found, shown)
     Phi = page["exp_At"]
     seen = Phi @ page["B"] if is_dual else page["C"] @ Phi
-    page.equal(relation(seen, seen.shown), say="input_through_exponential" if is_dual else "output_of_exponential")
+    page.equal(relation(seen, seen.as_value), say="input_through_exponential" if is_dual else "output_of_exponential")
     integrand = seen @ page["B"].T @ Phi.T if is_dual else Phi.T @ page["C"].T @ seen
     whole = page.term(since_start(integrand.formula, Literal(answer["function"]), answer["horizon"]))
     W: Matrix = answer["matrix"]
-    if page.knows("P_l") and not is_dual:
+    if page.defines("P_l") and not is_dual:
         over = page.set("Phi_T", substitute(shown, {"t": answer["horizon"]}))
         page.set("W", W)
         page.equal(relation(page["W"], whole, page["P_l"] - over.T @ page["P_l"] @ over), say="gramian_by_lyapunov")
@@ -132,7 +131,7 @@ def _write_branch(page: Page, result: Gramian) -> None:
         page.equal(relation(page["W"].apply("det"), answer["determinant"]), say="gramian_determinant")
 
 
-def _tell_infinite(result: Gramian, page: Page, A: Term, C: Term) -> None:
+def _tell_infinite(result: Gramian, page: Builder, A: Term, C: Term) -> None:
     """Write the integral over all time: what decays, Lyapunov's equation, its solution."""
     answer = result.answer
     seen = define_seen(result, page)
@@ -160,8 +159,8 @@ def _tell_infinite(result: Gramian, page: Page, A: Term, C: Term) -> None:
     page.equal(relation(W.apply("det"), answer["determinant"]), say="gramian_determinant")
 
 
-def define_seen(result: Gramian, page: Page) -> Term:
-    """Return χ, or its part that the output sees (the input moves): the quotient by the polynomial of the other modes."""
+def define_seen(result: Gramian, page: Builder) -> Term:
+    """Return χ, or the polynomial of the observable (controllable) part: the quotient by that of the other modes."""
     kernel, of = result.answer["rank"]["kernel"], result.answer["of"]
     tell_polynomial(page)
     if not kernel.shape[1]:
@@ -176,7 +175,7 @@ def define_seen(result: Gramian, page: Page) -> Term:
     return seen
 
 
-def _tell_finite_sum(result: Gramian, page: Page) -> None:
+def _tell_finite_sum(result: Gramian, page: Builder) -> None:
     """Write Σ (Aᵀ)ᵏ Cᵀ C Aᵏ and the kernel with its vector, or that there is none."""
     A, C = _letters(result, page)
     total = _square(C)
@@ -197,12 +196,12 @@ def _tell_finite_sum(result: Gramian, page: Page) -> None:
     if result.answer["matrix"] is None or result.answer["of"] == "controllability":
         return
     several = kernel.shape[1] > 1
-    v = page["N"] if several and page.knows("N") else page.set("N" if several else "v", kernel)
+    v = page["N"] if several and page.defines("N") else page.set("N" if several else "v", kernel)
     zero = Matrix.zeros(page["C"].value.shape[0], kernel.shape[1])
     nothing = Matrix.zeros(*kernel.shape)
     page.equal(relation(v, v.value), say="kernel_shared")
-    if page.knows("exp_At"):
+    if page.defines("exp_At"):
         unseen = relation(page["C"] @ page["exp_At"] @ v, zero)  # what it says is shown
         page.equal(unseen, say="kernel_unseen_several" if several else "kernel_unseen")
-    shown = [relation(page["W"] @ v, nothing)] if page.knows("W") else []
+    shown = [relation(page["W"] @ v, nothing)] if page.defines("W") else []
     page.equal(*shown, relation(M @ v, nothing), say="kernel_of_gramian")

@@ -68,7 +68,7 @@ def steps_gramian(A: Matrix, C: Matrix, steps: Scalar) -> dict[str, Any]:
 
 
 def infinite_gramian(plant: StateSpace, A: Matrix, C: Matrix, test: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the polynomial of what the output sees, and the Gramian over all time where that decays."""
+    """Return the polynomial of the observable part, and the infinite-horizon Gramian if that decays."""
     variable, hidden = plant.variable, test["restricted"]
     seen = A.characteristic_polynomial(variable)
     if hidden.shape[0]:  # on a stratum the factor divides modulo its equations only

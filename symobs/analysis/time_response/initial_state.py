@@ -97,7 +97,7 @@ class InitialState(OfTheInitialState):
         }
         return cls(plant, method_name, {**answer, **_solved(test, derivatives_at_zero(free, plant.order), seen, free)})
 
-    def again(self, plant: StateSpace, taken: Signs) -> Self:
+    def rebuild(self, plant: StateSpace, taken: Signs) -> Self:
         """Return the result for another plant or with other signs."""
         return type(self).of(plant, self.method, self.answer, taken)
 
@@ -236,13 +236,14 @@ def initial_state(
     horizon: Horizon = None,
     method: Name = "auto",
 ) -> Result:
-    """Return the initial state x₀ that explains the output y(t) under the input u(t), exactly, or say that none does.
+    """Return the initial state x₀ of an output y(t) under an input u(t), y = C (e^{At} x₀ + x_f) + D u, or that none exists.
 
     plant    n states, p outputs; B where an input is given; continuous time
     output   y(t): sums of exponentials, sines and cosines times powers of t, one for each output
     input    u(t), likewise; 0 where it is left out
     horizon  the end of the interval of measurement, "T" if left out
-    Returns x0, kernel.  Verdict no where no state explains the data, and where more than one does.
+    Returns x0, kernel.  Verdict no where no state explains the data, and where more than one does.  Raises `InputError`
+    where C (or B) is missing, in discrete time, for other functions of t and for an infinite horizon; `ShapeMismatch`.
     Source: R. E. Kalman, Y. C. Ho and K. S. Narendra (1963).
     """
     plant.require("C", task="initial_state")

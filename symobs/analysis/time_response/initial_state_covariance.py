@@ -85,7 +85,7 @@ class InitialStateCovariance(OfTheInitialState):
             return cls(plant, method_name, {**shared, "question": question, "factor": None, "chosen": chosen})
         return cls(plant, method_name, {**shared, "chosen": chosen, **_parts(plant, found.table(), data)})
 
-    def again(self, plant: StateSpace, taken: Signs) -> Self:
+    def rebuild(self, plant: StateSpace, taken: Signs) -> Self:
         """Return the result for another plant or with other signs."""
         return type(self).of(plant, self.method, self.answer, taken)
 
@@ -120,7 +120,7 @@ class InitialStateCovariance(OfTheInitialState):
         yield from self._about_parts(time_environment(self.plant, self.letters()))
 
     def letters(self) -> dict[str, Any]:
-        """Return what the letters of claims and page mean."""
+        """Return the values of the letters of claims and page."""
         m, answer = self.plant.matrices, self.answer
         names = {"exp_At": "exponential", "Phi_m": "backwards", "W_t": "gramian", "W": "W", "S_R": "S_R", "S_Q": "S_Q"}
         names |= {"Cov": "covariance", "Cov_R": "output_part", "Cov_Q": "input_part", "V_t": "V"}
@@ -193,7 +193,7 @@ def _too_long(plant: StateSpace, found: Exponential) -> str:
 
 
 def roots_of_frequencies(value: Quasipolynomial) -> bool:
-    """Whether a root stands in a rate or a frequency."""
+    """Return whether a root stands in a rate or a frequency."""
     return any(roots_in(key.rate) or roots_in(key.frequency) for key in value.terms)
 
 
@@ -317,14 +317,14 @@ def gramian_estimate(plant: StateSpace, asked: Mapping[str, Any]) -> InitialStat
 def initial_state_covariance(
     plant: StateSpace, *, Q: Intensity = None, R: Intensity = None, horizon: Horizon = None, method: Name = "auto"
 ) -> Result:
-    """Return the covariance of the reconstructed initial state under white input noise Q and output noise R.
+    """Return the covariance Σ of the estimate x̂₀ = W⁻¹ ∫ e^{Aᵀt} Cᵀ y dt under white input noise Q and output noise R.
 
     plant    n ≤ 3 states, p outputs; B where Q is given; continuous time
     Q, R     intensities: symmetric m×m and p×p, or one value for a multiple of I; Q left out: no input noise
     horizon  T > 0, a symbol or a number, "T" if left out; called t, it stands so in the answers, and as T in the derivation
     Returns covariance, input_part, output_part, best_horizon (for each component the equation of its least variance).
-    Verdict no where the pair (C, A) is not observable.
-
+    Verdict no where the pair (C, A) is not observable.  Raises `InputError` where C, R (or B) is missing, in discrete
+    time, for an intensity that is not symmetric and for an infinite horizon; `ShapeMismatch`.
     Source: derived on the page; R. E. Kalman and R. S. Bucy (1961) for the optimal estimate.
     """
     plant.require("C", task="initial_state_covariance")

@@ -20,15 +20,11 @@ from symobs.formula.calculus import since_start
 from symobs.result import page_of
 
 if TYPE_CHECKING:
-    from symobs.derivation.builder import Page
-
-#: How the output noise enters, and what stands between two inverse Gramians.
-_WITH_INPUT = ("estimate_is", "parts_of_covariance")
-_OUTPUT_ONLY = ("estimate_of_output", "covariance_of_output")
+    from symobs.derivation.builder import Builder
 
 
 @page_of(InitialStateCovariance)
-def write_covariance(page: Page, result: InitialStateCovariance) -> None:
+def write_covariance(page: Builder, result: InitialStateCovariance) -> None:
     """Write e^{At}, the Gramian, the two integrals, the covariance and the best horizon."""
     values = list(result.everything())
     page.in_time(*values, *(substitute(value, {"t": result.answer["horizon"]}) for value in values))
@@ -42,7 +38,7 @@ def write_covariance(page: Page, result: InitialStateCovariance) -> None:
         result.write_branches(page, _write_branch)
 
 
-def _write_branch(page: Page, result: InitialStateCovariance) -> None:
+def _write_branch(page: Builder, result: InitialStateCovariance) -> None:
     """Write one branch: noise, Gramian, the two integrals, the parts, the sum."""
     answer = result.answer
     if result.verdict == "no":
@@ -59,9 +55,9 @@ def _write_branch(page: Page, result: InitialStateCovariance) -> None:
     values = {name: _entry(value) for name, value in result.letters().items()}
     horizon = answer["horizon"]
     has_input = answer["Q"] is not None
-    given = [relation(page["R"], page.set("R", values["R"]).shown)]
+    given = [relation(page["R"], page.set("R", values["R"]).as_value)]
     if has_input:
-        given.insert(0, relation(page["Q"], page.set("Q", values["Q"]).shown))
+        given.insert(0, relation(page["Q"], page.set("Q", values["Q"]).as_value))
     page.equal(*given, say="noise" if has_input else "noise_output_only")
     Phi, C, R = page["exp_At"], page["C"], page["R"]
     gramian = since_start((Phi.T @ C.T @ C @ Phi).formula, Literal(answer["gramian"]), horizon)
@@ -101,7 +97,7 @@ def _entry(value: Matrix | Scalar) -> Matrix | Scalar:
     return value[0, 0] if isinstance(value, Matrix) and value.shape == (1, 1) else value
 
 
-def tell_unobservable(result: InitialStateCovariance, page: Page) -> None:
+def tell_unobservable(result: InitialStateCovariance, page: Builder) -> None:
     """Say that there is no estimate."""
     rank = result.answer["rank"]
     page.set("O", rank["matrix"])
@@ -109,7 +105,7 @@ def tell_unobservable(result: InitialStateCovariance, page: Page) -> None:
     page.conclude("no_observability", rank=found)
 
 
-def _tell_horizons(result: InitialStateCovariance, page: Page) -> None:
+def _tell_horizons(result: InitialStateCovariance, page: Builder) -> None:
     """Say where each variance is stationary, with the derivative that vanishes there."""
     signs = {**result.plant.symbols.signs, "T": "positive"}
     covariance: Matrix = result.answer["covariance"]

@@ -19,13 +19,13 @@ from symobs.derivation.builder import relation
 from symobs.exact import Matrix, Scalar
 from symobs.exact.core.generators import substitute
 from symobs.exact.time_functions.quasipolynomial import determinant, table_of
-from symobs.formula import Literal, Shown
+from symobs.formula import Evaluated, Literal
 from symobs.formula.calculus import since_start
 from symobs.formula.term import block
 from symobs.result import page_of
 
 if TYPE_CHECKING:
-    from symobs.derivation.builder import Page
+    from symobs.derivation.builder import Builder
     from symobs.formula.term import Term
 
 #: The order of det W(T) grows like the square of the number of states, and so does the search for it.
@@ -33,7 +33,7 @@ _WARNED_UP_TO = 3
 
 
 @page_of(InitialState)
-def write_initial_state(page: Page, result: InitialState) -> None:
+def write_initial_state(page: Builder, result: InitialState) -> None:
     """Write the document's five steps."""
     values = list(result.everything())
     if result.answer["horizon"] != INFINITE:
@@ -45,7 +45,7 @@ def write_initial_state(page: Page, result: InitialState) -> None:
         result.write_branches(page, _write_branch)
 
 
-def _write_branch(page: Page, result: InitialState) -> None:
+def _write_branch(page: Builder, result: InitialState) -> None:
     """Write one branch."""
     answer = result.answer
     if answer.get("question") is not None:
@@ -71,11 +71,11 @@ def _entry(matrix: Matrix) -> Matrix | Scalar:
     return matrix[0, 0] if matrix.shape == (1, 1) else matrix
 
 
-def _tell_forced(result: InitialState, page: Page) -> Term:
+def _tell_forced(result: InitialState, page: Builder) -> Term:
     """Write the motion from rest and ỹ; return ỹ."""
     answer, A, C, y = result.answer, page["A"], page["C"], page["y_t"]
     if answer["input"] is None:
-        page.equal(relation(C @ page["exp_At"], (C @ page["exp_At"]).shown), say="output_of_exponential")
+        page.equal(relation(C @ page["exp_At"], (C @ page["exp_At"]).as_value), say="output_of_exponential")
         page.set("y_0", answer["output"])
         return y
     x_f = page.define("x_f", answer["forced"], say="output_forced", closing=False)
@@ -88,7 +88,7 @@ def _tell_forced(result: InitialState, page: Page) -> Term:
     return page.define("y_0", moved, _entry(answer["free"]), say="output_solution", closing=False, equation=equation)
 
 
-def _tell_moments(result: InitialState, page: Page, free: Term) -> None:
+def _tell_moments(result: InitialState, page: Builder, free: Term) -> None:
     answer = result.answer
     C, Phi, horizon = page["C"], page["exp_At"], answer["horizon"]
     end = {"t": horizon}
@@ -117,7 +117,7 @@ def _tell_moments(result: InitialState, page: Page, free: Term) -> None:
     _warn_of_short_horizons(result, page)
 
 
-def _warn_of_short_horizons(result: InitialState, page: Page) -> None:
+def _warn_of_short_horizons(result: InitialState, page: Builder) -> None:
     """Say how fast det W(T) vanishes as T → 0, by its Taylor polynomial there; W(t) is held to its derivative and start.
 
     Of order Tⁿ it is where W itself is nearly T CᵀC with C of full rank: no reason to warn.
@@ -142,10 +142,10 @@ def _warn_of_short_horizons(result: InitialState, page: Page) -> None:
         det = rate_of(det)
         taylor = taylor + det.at("t", 0) * (end**k / factorial(k))
     leading = page.value(last * end**power / factorial(power))
-    page.caution("short_horizon", leading=Shown(taylor.formula, leading.formula))
+    page.caution("short_horizon", leading=Evaluated(taylor.formula, leading.formula))
 
 
-def _tell_refusal(result: InitialState, page: Page, free: Term) -> None:
+def _tell_refusal(result: InitialState, page: Builder, free: Term) -> None:
     """Show the candidate and what its output leaves, or the row that refutes the data."""
     answer, C, Phi = result.answer, page["C"], page["exp_At"]
     rates = [free]
@@ -161,5 +161,5 @@ def _tell_refusal(result: InitialState, page: Page, free: Term) -> None:
     at_zero = block([[rate.at("t", 0)] for rate in rates])
     zero = relation(w.T @ page["O"], Matrix.zeros(1, result.plant.order))
     page.equal(relation(start, at_zero, answer["start"]), say="initial_start")
-    rest = relation(page["v"].T @ start, (page["v"].T @ start).shown, "!==", 0)
+    rest = relation(page["v"].T @ start, (page["v"].T @ start).as_value, "!==", 0)
     page.remark("initial_inconsistent", row=relation(w, answer["row"].T), zero=zero, rest=rest)

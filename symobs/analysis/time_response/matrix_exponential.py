@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, Any, ClassVar, Self
 from symobs._dataclass import dataclass
 from symobs.analysis.factored_form import formula_of_factored
 from symobs.analysis.page_parts import given
-from symobs.analysis.time_response.damping_cases import Branched, Signs, rate_of, time_environment, with_signs
+from symobs.analysis.time_response.damping_cases import DampingCases, Signs, rate_of, time_environment, with_signs
 from symobs.certificate.claims import Claim
 from symobs.conditions import vanishing_factors
-from symobs.derivation.builder import Page, relation
+from symobs.derivation.builder import Builder, relation
 from symobs.errors import InputError
 from symobs.exact import Matrix, Scalar, factored
 from symobs.exact.core.generators import function_named
@@ -67,7 +67,7 @@ def require_continuous(plant: StateSpace, task_name: str) -> None:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class MatrixExponential(Branched):
+class MatrixExponential(DampingCases):
     """Φ(t) with Φ′ = A Φ and Φ(0) = I, which has one solution."""
 
     task: ClassVar[str] = "matrix_exponential"
@@ -82,7 +82,7 @@ class MatrixExponential(Branched):
             return cls(plant, method_name, {**answer, "taken": taken, "chosen": {}})
         return cls(plant, method_name, {"matrix": found.matrix(TIME), "taken": taken, "chosen": chosen})
 
-    def again(self, plant: StateSpace, taken: Signs) -> Self:
+    def rebuild(self, plant: StateSpace, taken: Signs) -> Self:
         """Return e^{At} of another plant or with other signs."""
         return type(self).of(plant, self.method, taken)
 
@@ -111,7 +111,7 @@ class MatrixExponential(Branched):
         asked = self.answer.get("question")
         return {"matrix": self.answer["matrix"], **({"question": asked} if asked else {})}
 
-    def write(self, page: Page) -> None:
+    def write(self, page: Builder) -> None:
         """Write the characteristic polynomial, the sum of functions and matrices, the entries, the check."""
         page.in_time(*self.everything())
         given(page)
@@ -120,7 +120,7 @@ class MatrixExponential(Branched):
             self.write_branches(page, _write_branch)
 
 
-def _write_branch(page: Page, result: MatrixExponential) -> None:
+def _write_branch(page: Builder, result: MatrixExponential) -> None:
     """Write one branch."""
     if result.answer["matrix"] is None:
         tell_question(page, result.answer["factor"])
@@ -130,12 +130,12 @@ def _write_branch(page: Page, result: MatrixExponential) -> None:
     tell_exponential(page, found, result.answer["matrix"], answer=True)
     Phi = page["exp_At"]
     if found.is_closed and not result.plant.field.names and result.plant.order <= _SHOWN_RATE:
-        page.equal(relation(rate_of(Phi), (page["A"] @ Phi).shown, page["A"] @ Phi), say="exponential_rate")
+        page.equal(relation(rate_of(Phi), (page["A"] @ Phi).as_value, page["A"] @ Phi), say="exponential_rate")
     start = relation(Phi.at("t", 0), page.identity(result.plant.order))
     page.verified("exponential_start", relation(rate_of(Phi), page["A"] @ Phi), start=start)
 
 
-def tell_polynomial(page: Page) -> None:
+def tell_polynomial(page: Builder) -> None:
     """Write the characteristic polynomial with its factors."""
     polynomial = page.plant.matrices.A.characteristic_polynomial(page.plant.variable)
     form = factored(polynomial, page.plant.variable)
@@ -146,16 +146,16 @@ def tell_polynomial(page: Page) -> None:
     page.define("chi", *members, say="exponential_modes", closing=False)
 
 
-def tell_question(page: Page, factor: Scalar | None) -> None:
-    """Say what is not decided."""
+def tell_question(page: Builder, factor: Scalar | None) -> None:
+    """State the undecided question."""
     if factor is None:
         page.remark("too_many_states", order=str(page.plant.order))
     else:
         page.remark("no_closed_form", factor=factor, degree=str(factor.degree(page.plant.variable)))
 
 
-def tell_exponential(page: Page, found: Exponential, matrix: Matrix, *, answer: bool = False) -> None:
-    """Define e^{At}: the sum over the modes where it is short, then the entries; then what the roots stand for."""
+def tell_exponential(page: Builder, found: Exponential, matrix: Matrix, *, answer: bool = False) -> None:
+    """Define e^{At}: the sum over the modes where it is short, then the entries, then the roots."""
     count = sum(len(own) for _, _, own in found.parts)
     is_shown = not found.is_closed or 1 < count <= _SHOWN_SUM
     members: list[Term | Matrix] = [page.term(_sum_of_modes(found))] if is_shown else []
@@ -166,8 +166,8 @@ def tell_exponential(page: Page, found: Exponential, matrix: Matrix, *, answer: 
     tell_roots(page, matrix)
 
 
-def tell_roots(page: Page, *values: Matrix) -> None:
-    """Say what the letters of square roots stand for."""
+def tell_roots(page: Builder, *values: Matrix) -> None:
+    """Define the letters of square roots."""
     for name in page.forms:
         used = any(name in v.names or any(name in f.argument.names for f in _functions(v)) for v in values)
         root = function_named(name)
@@ -240,6 +240,7 @@ def matrix_exponential(plant: StateSpace, *, method: Name = "auto") -> Result:
     Returns matrix, in t.  Where the sign of a discriminant decides between oscillation and none, conditions hold the
     branch that is shown and cases the others.  An irreducible factor q of χ of degree 3 or more brings sums over its roots,
     Σ λʲ e^{λt}/q′(λ), in SymPy's syntax `RootSum`; where parameters make two of the roots equal it is undecided.
+    Raises `InputError` in discrete time, and where t is a parameter of A.
     Source: I. E. Leonard (1996).
     """
     require_continuous(plant, "matrix_exponential")

@@ -1,4 +1,4 @@
-"""What is said of the initial state from measured outputs and known inputs, and the reading of these."""
+"""Results about the initial state, and the reading of measured outputs and known inputs."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 from symobs.analysis.rank.rank_test import minor_claim, rank_claims, rank_environment, rank_losses
-from symobs.analysis.time_response.damping_cases import Branched
+from symobs.analysis.time_response.damping_cases import DampingCases
 from symobs.conditions import Condition
 from symobs.errors import InputError
 from symobs.exact.time_functions.quasipolynomial import Table, table_of
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 _MOST_TERMS = 60
 
 
-class OfTheInitialState(Branched):
+class OfTheInitialState(DampingCases):
     """A result about x(0), which the output determines where the pair (C, A) is observable."""
 
     @property

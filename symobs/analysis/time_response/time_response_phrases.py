@@ -48,7 +48,6 @@ PHRASES: dict[str, str] = {
     "kernel_of_gramian": "and it is annihilated by the Gramian and by the finite sum,",
     "initial_state": "Initial state.",
     "measured": "The data are",
-    "output_free": "Without input, $y = Y x_0$.",
     "output_forced": "The forced response of the state, from zero initial state, is",
     "output_solution": "which solves {equation} from 0. The output is $y = Y x_0$ plus the forced response; subtracting the latter gives",
     "moments": "Multiplying by $exp_Atᵀ Cᵀ$ and integrating over the interval gives $W x_0 = r_0$ with the Gramian",

@@ -46,7 +46,7 @@ def reject_poles(plant: StateSpace, ends: tuple[Scalar, Scalar]) -> None:
 
 
 def _vanishes_between(factor: Scalar, first: Scalar, last: Scalar, halvings: int = _HALVINGS) -> bool:
-    """Tell whether an irreducible polynomial in t with numbers for coefficients has a root in (first, last).
+    """Return whether an irreducible polynomial in t with numbers for coefficients has a root in (first, last).
 
     By Descartes' rule for t = (first + last u)/(1 + u), u > 0: no change of sign, no root; one, one root; else halve.
     """

@@ -12,10 +12,11 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 from symobs._dataclass import dataclass
+from symobs.analysis.rank.rank_test import determinant_term
 from symobs.analysis.strata.strata import strata
 from symobs.analysis.time_response.damping_cases import reject, vanishing_denominators
 from symobs.analysis.time_varying.time_interval import instant_where_not_zero, reject_poles, reject_sizes_and_names
-from symobs.analysis.time_varying.time_varying_solution import Asked, closed_form, dependences
+from symobs.analysis.time_varying.time_varying_solution import TimeVaryingRequest, closed_form, dependences
 from symobs.analysis.time_varying.transition_matrix import START, TERMS_UP_TO, TIME
 from symobs.certificate.claims import Claim
 from symobs.conditions import Condition, never_zero, sign_of, vanishing_factors
@@ -56,14 +57,14 @@ class TimeVaryingObservability(Result):
     C Φ v = 0; G' = Φᵀ Cᵀ C Φ, G(start) = 0 for the Gramian G(end); C (Φ x₀ + f) + D u = y with f' = A f + B u, f(start) = 0.
     """
 
-    asked_for: Asked
+    asked_for: TimeVaryingRequest
 
     task: ClassVar[str] = "time_varying_observability"
 
     # -- construction ------------------------------------------------------------------------------------------------
 
     @classmethod
-    def of(cls, plant: StateSpace, asked_for: Asked, method_name: str) -> Self:
+    def of(cls, plant: StateSpace, asked_for: TimeVaryingRequest, method_name: str) -> Self:
         """Return the result for a plant."""
         A, C = plant.matrices.A, plant.matrices.C
         stack = stack_of(A, C)
@@ -129,7 +130,7 @@ class TimeVaryingObservability(Result):
         sizes = V.shape[1], len(answer["free"]), *answer["restricted"].shape
         yield Claim(relation(hidden, *sizes), e, "the hidden states have the dimension n - rank")
         if found:
-            minor = _det(self.answer["matrix"].select(answer["rows"], answer["columns"]), e)
+            minor = determinant_term(self.answer["matrix"].select(answer["rows"], answer["columns"]), e)
             yield Claim(relation(minor, "!==", 0), e, f"a minor of order {found} of the stack is not identically 0")
             if answer["point"] is not None:
                 yield from self._inside_claims(e)
@@ -139,14 +140,16 @@ class TimeVaryingObservability(Result):
             A, C, states, X = (letter(name, e) for name in ("A", "C", "V", "X"))
             yield Claim(relation(C @ states, Matrix.zeros(self.plant.outputs, hidden)), e, "C*V = 0")
             yield Claim(relation(A @ states - states.derivative, states @ X), e, "A*V - V' = V*X")
-            yield Claim(relation(_det(V.select(answer["free"], range(hidden)), e), "!==", 0), e, "rank V = n - rank")
+            yield Claim(
+                relation(determinant_term(V.select(answer["free"], range(hidden)), e), "!==", 0), e, "rank V = n - rank"
+            )
 
     def _inside_claims(self, e: Environment) -> Iterator[Claim]:
         """Yield that the instant which shows the rank is one of the interval."""
         asked, point = self.asked_for, Term(Literal(self.answer["point"]), e)
         yield Claim(relation(point.derivative, 0), e, "the instant is one")
         if asked.interval is not None:
-            e = replace(e, above=(asked.end - asked.start,))
+            e = replace(e, positive=(asked.end - asked.start,))
             yield Claim(relation(point, ">=", asked.start), e, "the instant is not before the interval")
             yield Claim(relation(point, "<=", asked.end), e, "the instant is not after the interval")
 
@@ -312,16 +315,12 @@ class TimeVaryingObservability(Result):
         return {**super().data, **({"t_start": ends[0], "t_end": ends[1]} if ends else {})}
 
 
-def _det(matrix: Matrix, environment: Environment) -> Term:
-    return Term(Literal(matrix), environment).apply("det")
-
-
 def _beside(vectors: tuple[Matrix, ...], order: int) -> Matrix:
     return Matrix.of([[v[i, 0] for v in vectors] for i in range(order)], len(vectors))
 
 
 def _has_value(Phi: Matrix, start: Scalar) -> bool:
-    """Whether Φ has a value at the start: it has none where A has a pole there."""
+    """Return whether Φ has a value at the start: it has none where A has a pole there."""
     try:
         substitute(Phi, {START: start})
     except ZeroDivisionError:
@@ -330,7 +329,7 @@ def _has_value(Phi: Matrix, start: Scalar) -> bool:
 
 
 @method("time_varying_observability/stack", source="silverman1967")
-def stack(plant: StateSpace, asked_for: Asked) -> TimeVaryingObservability:
+def stack(plant: StateSpace, asked_for: TimeVaryingRequest) -> TimeVaryingObservability:
     """Form N₀ = C, N_{k+1} = N_k A + N_k' and their rank over the rational functions of t."""
     return TimeVaryingObservability.of(plant, asked_for, "stack")
 
@@ -365,5 +364,5 @@ def time_varying_observability(
         plant.require("B", task="time_varying_observability with an input")
     given = None if output is None else read_signal(output, plant, "output", plant.outputs, functions=True)
     driving = None if input is None else read_signal(input, plant, "input", plant.inputs, functions=True)
-    asked_for = Asked(ends, given, driving)
+    asked_for = TimeVaryingRequest(ends, given, driving)
     return choose("time_varying_observability", method, "stack").solve(plant, asked_for)

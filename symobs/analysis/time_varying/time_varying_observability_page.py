@@ -16,32 +16,31 @@ from symobs.analysis.time_varying.transition_matrix import (
     transition,
 )
 from symobs.conditions import never_zero
-from symobs.derivation import Case as CaseStep
-from symobs.derivation import Conclude, Equal
+from symobs.derivation import CaseStep, Conclude, Equal
 from symobs.derivation.builder import relation, sentence
 from symobs.exact import Matrix, Scalar, antiderivative, rank
 from symobs.exact.core.generators import substitute
-from symobs.formula import Integral, Literal, Shown
+from symobs.formula import Evaluated, Integral, Literal
 from symobs.formula.term import Term, block
 from symobs.result import page_of
 
 if TYPE_CHECKING:
     from symobs.derivation import Step
-    from symobs.derivation.builder import Page
+    from symobs.derivation.builder import Builder
     from symobs.result import Case
 
 _DUMMIES = ("sigma", "tau", "rho", "nu")
 
 
 @page_of(TimeVaryingObservability)
-def write(page: Page, result: TimeVaryingObservability) -> None:
+def write(page: Builder, result: TimeVaryingObservability) -> None:
     """Write the page in the order of the theory."""
     asked = result.asked_for
     page.in_time_by(*dependences((*result.closed_forms, *_squares(result)), asked, _dummy(page)))
     given(page)
     if asked.interval is not None:
         ends = {name: page.set(f"t_{name}", value) for name, value in (("start", asked.start), ("end", asked.end))}
-        page.conclude("on_interval", **{name: Shown(end.formula, Literal(end.value)) for name, end in ends.items()})
+        page.conclude("on_interval", **{name: Evaluated(end.formula, Literal(end.value)) for name, end in ends.items()})
     with page.section("transition"):
         _transition(page, result)
     if result.answer["transition_matrix"] is not None:
@@ -55,12 +54,12 @@ def write(page: Page, result: TimeVaryingObservability) -> None:
             _initial_state(page, result)
 
 
-def integral(page: Page, integrand: Term, name: str, lower: Scalar, upper: Scalar, primitive: Matrix) -> Term:
+def integral(page: Builder, integrand: Term, name: str, lower: Scalar, upper: Scalar, primitive: Matrix) -> Term:
     """Return an integral with its witness."""
     return page.term(Integral(integrand.formula, Literal(primitive), name, lower, upper))
 
 
-def _dummy(page: Page) -> str:
+def _dummy(page: Builder) -> str:
     """Return a letter for the variable of integration that means nothing yet."""
     return next(name for name in _DUMMIES if name not in page.plant.field.position)
 
@@ -68,7 +67,7 @@ def _dummy(page: Page) -> str:
 # -- transition matrix ------------------------------------------------------------------------------------------------
 
 
-def _transition(page: Page, result: TimeVaryingObservability) -> None:
+def _transition(page: Builder, result: TimeVaryingObservability) -> None:
     """Say how Φ is found, and check it."""
     Phi: Matrix | None = result.answer["transition_matrix"]
     try:
@@ -98,7 +97,7 @@ def _transition(page: Page, result: TimeVaryingObservability) -> None:
         page.assume("closed_form_if", *result.denominators)
 
 
-def _integral_of_A(page: Page, factor: Term | None, value: Matrix) -> Term:
+def _integral_of_A(page: Builder, factor: Term | None, value: Matrix) -> Term:
     """Return ∫ A(σ) X(σ) dσ from t₀ to t, whose value is known."""
     name = _dummy(page)
     new = Scalar.symbol(name)
@@ -109,7 +108,7 @@ def _integral_of_A(page: Page, factor: Term | None, value: Matrix) -> Term:
     return integral(page, integrand, name, Scalar.symbol(START), Scalar.symbol(TIME), primitive)
 
 
-def _exponential(page: Page, terms: tuple[Matrix, ...]) -> None:
+def _exponential(page: Builder, terms: tuple[Matrix, ...]) -> None:
     M, A, order, last = terms[0], page["A"], page.plant.order, len(terms)
     page.set("M", M)
     commutes = relation(A @ page["M"], page["M"] @ A)
@@ -123,7 +122,7 @@ def _exponential(page: Page, terms: tuple[Matrix, ...]) -> None:
     page.define("Phi", total, say="transition_exponential", power=power, answer=True)
 
 
-def _series(page: Page, terms: tuple[Matrix, ...]) -> None:
+def _series(page: Builder, terms: tuple[Matrix, ...]) -> None:
     order = page.plant.order
     before = None
     for k, term in enumerate(terms, 1):
@@ -140,7 +139,7 @@ def _series(page: Page, terms: tuple[Matrix, ...]) -> None:
 # -- Gramian ----------------------------------------------------------------------------------------------------------
 
 
-def _seen(page: Page, result: TimeVaryingObservability) -> Term:
+def _seen(page: Builder, result: TimeVaryingObservability) -> Term:
     """Return C Φ(t, start)."""
     return page["C"] @ page["Phi"].at(START, result.asked_for.start)
 
@@ -154,7 +153,7 @@ def _squares(result: TimeVaryingObservability) -> tuple[Matrix, ...]:
     return (tidied(seen.T @ seen),)
 
 
-def _gramian(page: Page, result: TimeVaryingObservability) -> None:
+def _gramian(page: Builder, result: TimeVaryingObservability) -> None:
     """Give W with its determinant, and the initial states in its kernel."""
     asked, answer = result.asked_for, result.answer
     if answer["gramian"] is None:
@@ -165,7 +164,7 @@ def _gramian(page: Page, result: TimeVaryingObservability) -> None:
         unit = Matrix.identity(order)
         row, column = (page.value(unit.select(range(order), [k])) for k in (i, j))
         entry = row.T @ seen.T @ seen @ column
-        page.remark("gramian_open_integral", integrand=Shown(entry.formula, Literal(product[i, j])))
+        page.remark("gramian_open_integral", integrand=Evaluated(entry.formula, Literal(product[i, j])))
     else:
         Phi = page["Phi"].at(START, asked.start)
         squared = Phi.T @ page["C"].T @ page["C"] @ Phi
@@ -184,7 +183,7 @@ def _gramian(page: Page, result: TimeVaryingObservability) -> None:
     page.equal(relation(page["v"], answer["kernel"]), *facts, say=key)
 
 
-def _determinant(page: Page, value: Scalar) -> None:
+def _determinant(page: Builder, value: Scalar) -> None:
     det = page["W"].apply("det")
     shown = page.value(value) if has_functions(value) else determinant_form(page, value)
     if not has_functions(value) and never_zero(value, page.plant.symbols.signs):
@@ -198,7 +197,7 @@ def _determinant(page: Page, value: Scalar) -> None:
 # -- rank test --------------------------------------------------------------------------------------------------------
 
 
-def _rank_test(page: Page, result: TimeVaryingObservability) -> None:
+def _rank_test(page: Builder, result: TimeVaryingObservability) -> None:
     """Build N₀, N₁, … and read off the rank over the functions of t."""
     order, answer = page.plant.order, result.answer
     page.define("N_0", page["C"], say="stack_rule")
@@ -243,7 +242,7 @@ def _instant_of_drop(result: TimeVaryingObservability) -> Scalar | None:
     return None
 
 
-def _hidden(page: Page, result: TimeVaryingObservability) -> None:
+def _hidden(page: Builder, result: TimeVaryingObservability) -> None:
     """Give the hidden states, which move with t, and why they stay hidden."""
     answer, order = result.answer, page.plant.order
     page.conclude("stack_no", rank=relation(page["O"].apply("rank"), answer["rank"], "<", order))
@@ -255,7 +254,7 @@ def _hidden(page: Page, result: TimeVaryingObservability) -> None:
     page.equal(stays, say="stack_invariant", unseen=unseen)
 
 
-def _case(page: Page, case: Case) -> Step:
+def _case(page: Builder, case: Case) -> Step:
     if case.result is None:
         return undecided(page, case)
     found = relation(page["O"].apply("rank"), case.result.answer["rank"])
@@ -269,7 +268,7 @@ def _case(page: Page, case: Case) -> Step:
     return CaseStep(stratum_of(case), tuple(case.substitution.items()), tuple(steps))
 
 
-def _frozen(page: Page, result: TimeVaryingObservability) -> None:
+def _frozen(page: Builder, result: TimeVaryingObservability) -> None:
     """Warn of the test at a frozen instant, by this plant where it misleads here, else by another one."""
     A, C, order, found = page["A"], page["C"], page.plant.order, result.answer["rank"]
     frozen = _frozen_test(A, C, order)
@@ -296,7 +295,7 @@ def _frozen_test(A: Term, C: Term, order: int) -> Term:
     return block([[C], *([C @ A**k] for k in range(1, order))])
 
 
-def _example(page: Page) -> None:
+def _example(page: Builder) -> None:
     """Warn by x₁' = x₂, x₂' = 0, y = x₁ − t x₂: observable at every frozen instant, and its output is constant."""
     t = Scalar.symbol(TIME)
     A, C = Matrix.of([[0, 1], [0, 0]]), Matrix.of([[Scalar.of(1), -t]])
@@ -316,8 +315,8 @@ def _example(page: Page) -> None:
 # -- initial state ----------------------------------------------------------------------------------------------------
 
 
-def _initial_state(page: Page, result: TimeVaryingObservability) -> None:
-    """Find x₀ from the output: x₀ = W⁻¹ ∫ Φᵀ Cᵀ ξ, ξ the output without what the input forces."""
+def _initial_state(page: Builder, result: TimeVaryingObservability) -> None:
+    """Find x₀ from the output: x₀ = W⁻¹ ∫ Φᵀ Cᵀ ξ, ξ the output without its forced part."""
     asked, answer, m = result.asked_for, result.answer, page.plant.matrices
     assert asked.output is not None  # noqa: S101 - asked by the caller
     page.define("y_t", _signal(page, asked.output), say="output_given")
@@ -356,7 +355,7 @@ def _initial_state(page: Page, result: TimeVaryingObservability) -> None:
     page.verified("x0_checked", output=relation(output, page["y_t"]))
 
 
-def _refuse(page: Page, result: TimeVaryingObservability) -> None:
+def _refuse(page: Builder, result: TimeVaryingObservability) -> None:
     """Give the only state that could explain the output, and what its own output leaves."""
     asked, answer = result.asked_for, result.answer
     Phi = page["Phi"].at(START, asked.start)
@@ -367,12 +366,12 @@ def _refuse(page: Page, result: TimeVaryingObservability) -> None:
     page.conclude("x0_none", rest=relation(rest, shown, "!==", shown * 0))
 
 
-def _signal(page: Page, value: Matrix) -> Term:
+def _signal(page: Builder, value: Matrix) -> Term:
     """Return a signal written out, without brackets where it has one component."""
     return page.value(value[0, 0] if value.shape == (1, 1) else value)
 
 
-def _forced(page: Page, result: TimeVaryingObservability) -> None:
+def _forced(page: Builder, result: TimeVaryingObservability) -> None:
     """Give the state that the input alone leads to, as the integral to the present time, and check it."""
     start, forced = result.asked_for.start, result.answer["forced"]
     name = _dummy(page)

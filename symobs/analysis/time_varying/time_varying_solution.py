@@ -1,4 +1,4 @@
-"""What has a closed form for a time-varying plant: Φ, its Gramian, the states never seen, the initial state."""
+"""Closed forms for a time-varying plant: Φ, the Gramian, the unobservable subspace, the initial state."""
 
 from __future__ import annotations
 
@@ -25,8 +25,8 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True)
-class Asked:
-    """What is asked beside the plant: the interval, and the output and input from which x₀ is to be found."""
+class TimeVaryingRequest:
+    """The specification beside the plant: interval, measured output and input."""
 
     interval: tuple[Scalar, Scalar] | None = None
     output: Matrix | None = None
@@ -42,15 +42,15 @@ class Asked:
         """The last instant; t₁ where no interval is given."""
         return self.interval[1] if self.interval else Scalar.symbol(END)
 
-    def substitute(self, values: Mapping[str, Scalar]) -> Asked:
+    def substitute(self, values: Mapping[str, Scalar]) -> TimeVaryingRequest:
         """Return the same with parameters replaced."""
         interval = (self.start.substitute(values), self.end.substitute(values)) if self.interval else None
         output = None if self.output is None else substitute(self.output, values)
-        return Asked(interval, output, None if self.input is None else substitute(self.input, values))
+        return TimeVaryingRequest(interval, output, None if self.input is None else substitute(self.input, values))
 
 
 def dependences(
-    values: Iterable[Matrix | Scalar], asked: Asked, dummy: str = ""
+    values: Iterable[Matrix | Scalar], asked: TimeVaryingRequest, dummy: str = ""
 ) -> tuple[dict[str, Scalar], tuple[Scalar, ...]]:
     """Return how the functions in values, also at the instants that are put in for t and t₀, depend on each other."""
     new = Scalar.symbol(dummy) if dummy else asked.start
@@ -78,11 +78,11 @@ def _moved(value: Scalar, one: Scalar, other: Scalar) -> Scalar:
 
 
 def has_functions(value: Matrix | Scalar) -> bool:
-    """Whether exponentials, cosines or the like occur."""
+    """Return whether exponentials, cosines or the like occur."""
     return any(function_named(name) for name in value.names)
 
 
-def closed_form(plant: StateSpace, asked: Asked, test: Mapping[str, Any]) -> dict[str, Any]:
+def closed_form(plant: StateSpace, asked: TimeVaryingRequest, test: Mapping[str, Any]) -> dict[str, Any]:
     """Return Φ with what follows from it and the rank test, None for each that has no closed form here."""
     names = ("transition_matrix", "kernel", "gramian", "gramian_in_time", "forced", "x0", "candidate", "moment")
     answer: dict[str, Any] = dict.fromkeys(names)
@@ -109,7 +109,7 @@ def closed_form(plant: StateSpace, asked: Asked, test: Mapping[str, Any]) -> dic
     return answer
 
 
-def _moving_kernel(hidden: Matrix, asked: Asked) -> Matrix | None:
+def _moving_kernel(hidden: Matrix, asked: TimeVaryingRequest) -> Matrix | None:
     """Return the hidden states at the start, None where their basis has none or is dependent there."""
     for basis in (hidden, hidden * hidden.common_denominator()):
         try:
@@ -133,7 +133,11 @@ def _constant_kernel(seen: Matrix) -> Matrix:
 
 
 def _initial_state(
-    plant: StateSpace, asked: Asked, motion: tuple[Matrix, Matrix, Matrix], gramian: Matrix | None, stack: Matrix
+    plant: StateSpace,
+    asked: TimeVaryingRequest,
+    motion: tuple[Matrix, Matrix, Matrix],
+    gramian: Matrix | None,
+    stack: Matrix,
 ) -> dict[str, Matrix | None]:
     """Return the forced part f of the state and x₀ = W⁻¹ ∫ Φᵀ Cᵀ ξ with ξ = y − C f − D u; where y is not its output, why.
 
@@ -164,7 +168,7 @@ def _initial_state(
     return {"forced": forced, "candidate": x0, "moment": moment}
 
 
-def _from_derivatives(xi: Matrix, stack: Matrix, asked: Asked) -> Matrix | None:
+def _from_derivatives(xi: Matrix, stack: Matrix, asked: TimeVaryingRequest) -> Matrix | None:
     """Return x₀ with N_k(start) x₀ = ξ⁽ᵏ⁾(start), None where the stack loses rank there."""
     rates = [xi]
     for _ in range(stack.shape[1] - 1):

@@ -88,7 +88,7 @@ def _letter(name: str, reading: Reading) -> Printed:
     environment = reading.environment
     if name in environment.signs:
         return Term(Literal(Scalar.symbol(name)), environment)
-    if environment.knows(name) and name != "s":
+    if environment.defines(name) and name != "s":
         return Term(Letter(name), environment)
     if name in {environment.variable, *INSTANTS}:
         return Term(Literal(Scalar.symbol(name)), environment)

@@ -15,7 +15,7 @@ from symobs.errors import CertificateRejected, InputError
 from symobs.exact import Matrix, Scalar
 from symobs.exact.core.generators import substitute
 from symobs.exact.linear_algebra.at_points import (
-    Evaluator,
+    PointEvaluator,
     characteristic,
     numbers,
     polynomial,
@@ -99,7 +99,7 @@ class Program:
         for name, entries in parts.items():
             self.places[name] = slice(len(values), len(values) + len(entries))
             values += entries
-        self.evaluator = Evaluator(values, self.names)
+        self.evaluator = PointEvaluator(values, self.names)
 
     def _scalar(self, text: str) -> Scalar:
         return parse_scalar(text, self.problem.plant.symbols.names, where="a formula")

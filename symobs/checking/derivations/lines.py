@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from symobs.problem import Problem
     from symobs.problem.marking import Milestone
     from symobs.result import Result
-    from symobs.result.in_convention import Viewed
+    from symobs.result.in_convention import ResultInConvention
 
 #: What a line may raise that is too large to be decided, or that the correction of a false one could not confirm.
 _OPEN = (NotShown, TooLarge, BudgetExceeded)
@@ -46,7 +46,7 @@ class _Derivation:
     """What the lines so far have defined: right gains, and the values of letters that are not right."""
 
     problem: Problem
-    views: Sequence[Viewed]
+    views: Sequence[ResultInConvention]
     symbols: Mapping[str, Scalar]
     right: dict[str, Result]
     budget: SearchBudget = field(default_factory=SearchBudget)
@@ -99,7 +99,7 @@ class _Derivation:
 
 def judge_lines(
     problem: Problem,
-    views: Sequence[Viewed],
+    views: Sequence[ResultInConvention],
     judged: Mapping[str, TaskJudgement],
     answer: Answer,
     milestones: Sequence[Milestone],

@@ -18,7 +18,7 @@ from symobs.errors import CertificateRejected, ExpressionError, InputError, NotS
 from symobs.exact import Matrix, TooLarge
 from symobs.expect import found_in, met, names_of
 from symobs.expression import parse_matrix
-from symobs.result.in_convention import Viewed
+from symobs.result.in_convention import ResultInConvention
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -77,7 +77,7 @@ class TaskJudgement:
 class _Task:
     """The judgement of one task as it is made."""
 
-    view: Viewed
+    view: ResultInConvention
     names: Any
     marking: Marking
     right: Result
@@ -86,7 +86,9 @@ class _Task:
     own: Result | None = None
 
 
-def judge_task(view: Viewed, given: Mapping[str, Any], symbols: tuple[str, ...], marking: Marking) -> TaskJudgement:
+def judge_task(
+    view: ResultInConvention, given: Mapping[str, Any], symbols: tuple[str, ...], marking: Marking
+) -> TaskJudgement:
     """Return the verdict on each given part, by its name in the student's convention."""
     declared = names_of(view)
     names = declared if declared is None else {**declared, **dict.fromkeys(symbols, "real")}
@@ -231,7 +233,7 @@ def _met(task: _Task, result: Result, part: Judged, given: Any) -> bool:
     letter = part.letter if task.view.standard(part.letter)[0] == part.name else part.name
     if isinstance(given, str) and part.name == "verdict":
         given = given.strip().strip('"').lower()
-    return met(Viewed(result, task.view.convention), letter, given, part.letter)
+    return met(ResultInConvention(result, task.view.convention), letter, given, part.letter)
 
 
 def _same_rows(task: _Task, result: Result, value: Matrix) -> bool:

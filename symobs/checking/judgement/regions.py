@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from symobs._dataclass import dataclass
 from symobs.analysis.stability_region.stability_region import StabilityRegion
-from symobs.analysis.stability_region.stability_region_question import Question
+from symobs.analysis.stability_region.stability_region_question import RegionQuestion
 from symobs.checking.judgement.conditions import Inequality, Union, read_conditions
 from symobs.exact import Scalar, TooLarge
 from symobs.exact.algebraic.rational_points import value_at
@@ -92,9 +92,9 @@ def _pieces(region: LineRegion | PlaneRegion, union: Union) -> Iterator[tuple[di
         return
     plane = region.divided(further)
     x, y = region.names
-    for slab in plane.slabs:
-        yield from _along(region.critical, further, {x: slab.x}, y)
-    for wall in plane.walls:
+    for cylinder in plane.cylinders:
+        yield from _along(region.critical, further, {x: cylinder.x}, y)
+    for wall in plane.critical_lines:
         if wall.x.is_rational:
             yield from _along(region.critical, further, {x: wall.x.fraction}, y)
         elif plane.vertical_at(wall):
@@ -247,7 +247,7 @@ def _slips(result: StabilityRegion, union: Union) -> Iterator[tuple[str, str]]:
     """Yield the slips that turn the right region into the given one, the simplest first."""
     boundary, question = result.question.boundary, result.question
     if not boundary.margin.is_zero:
-        usual = Question(
+        usual = RegionQuestion(
             question.plant, question.K, question.L, question.parameters, replace(boundary, margin=Scalar.of(0))
         )
         if _same(StabilityRegion.of(usual, result.method), union):

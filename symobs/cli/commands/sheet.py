@@ -29,7 +29,7 @@ from symobs.cli.shared.output import check_target, write
 from symobs.cli.shared.sheet_entries import Wanted, worked_out_all
 from symobs.errors import InputError, ProblemErrors, SymobsError, UsageError
 from symobs.expression.source import shown
-from symobs.problem.sheet_file import Asked, SheetFile, is_sheet, read_sheet
+from symobs.problem.sheet_file import SheetFile, SheetProblem, is_sheet, read_sheet
 from symobs.render.page.sheet import Header, Sheet, SheetEntry
 from symobs.result import format_named, formats, tasks
 from symobs.result.web_page import WebPage
@@ -78,11 +78,11 @@ def command(
         raise UsageError("both --questions and --solutions are given", repair="leave both out for both")
     chosen = _sheet_format(format_name, target)
     web = WebPage(details, copy, live)
-    told = page_of(detail, language, templates, chosen.name, web, digits=digits, exact=exact)
+    page_options = page_of(detail, language, templates, chosen.name, web, digits=digits, exact=exact)
     check_target(target)
     file = _sheet_file(files)
     if language is None and file.language:
-        told["language"] = file.language
+        page_options["language"] = file.language
     wanted = Wanted(
         chosen,
         not solutions,
@@ -92,7 +92,7 @@ def command(
         memory=memory,
         final_answers=file.has_final_answers,
         is_exam=file.header.is_exam,
-        **told,
+        **page_options,
     )
     header = _header(file, target, chosen, files[0])
     texts = list(zip(file.problems, file.texts, strict=True))
@@ -140,7 +140,7 @@ def _sheet_file(files: Sequence[str]) -> SheetFile:
     if described:
         file, text = texts[0]
         return read_sheet(text, place_of(file), Path(file).parent, read_file)
-    problems, contents = zip(*((Asked(file), text) for file, text in texts), strict=True)
+    problems, contents = zip(*((SheetProblem(file), text) for file, text in texts), strict=True)
     return SheetFile("", Header(), problems, contents)
 
 

@@ -26,14 +26,14 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping, Sequence
 
     from symobs.cli.shared.time_and_memory import Progress
-    from symobs.problem.sheet_file import Asked
+    from symobs.problem.sheet_file import SheetProblem
     from symobs.result import Document
 
     #: What is said of a problem, and the text of its file.
-    Text = tuple[Asked, str]
+    Text = tuple[SheetProblem, str]
     #: The entry of a problem, its exit code and its messages.
     Found = tuple[SheetEntry, int, list[str]]
-    #: Is told how many problems are done or begun, and the name of one.
+    #: Called with how many problems are done or begun, and the name of one.
     Show = Callable[[int, str], None]
 
 _LONGEST_TITLE = 300
@@ -130,8 +130,8 @@ def run(payload: Mapping[str, Any]) -> dict[str, Any]:
             entry, code, messages = _entry(number, asked, text, wanted, lambda _: None)
         except TypesettingError as error:
             return {"status": "done", "result": _packed(error)}
-    told = [f"{each.category.__name__}: {each.message}" for each in warned]
-    return {"status": "done", "result": _packed((entry, code, [*told, *messages]))}
+    warning_lines = [f"{each.category.__name__}: {each.message}" for each in warned]
+    return {"status": "done", "result": _packed((entry, code, [*warning_lines, *messages]))}
 
 
 def recheck(_payload: Mapping[str, Any], _row: Mapping[str, Any]) -> None:
@@ -149,7 +149,7 @@ def _unpacked(text: str) -> Any:
 # -- one problem ------------------------------------------------------------------------------------------------------
 
 
-def _bounded_entry(number: int, asked: Asked, text: str, wanted: Wanted) -> Found:
+def _bounded_entry(number: int, asked: SheetProblem, text: str, wanted: Wanted) -> Found:
     """Return the value of `_entry`, or the partial entry if its budget is exhausted."""
     if wanted.timeout is None and wanted.memory is None:
         return _entry(number, asked, text, wanted, lambda _: None)
@@ -169,12 +169,12 @@ def _said_failed(entry: SheetEntry, phrase: str, wanted: Wanted) -> SheetEntry:
     return replace(entry, failure=language_named(code or ENGLISH.code).phrases[phrase], language=code)
 
 
-def _empty(number: int, asked: Asked) -> SheetEntry:
+def _empty(number: int, asked: SheetProblem) -> SheetEntry:
     title = Path(asked.file).stem if asked.file != "-" else ""
     return SheetEntry(number, asked.file, title, points=asked.points, hint=asked.hint)
 
 
-def _entry(number: int, asked: Asked, text: str, wanted: Wanted, report_progress: Progress) -> Found:
+def _entry(number: int, asked: SheetProblem, text: str, wanted: Wanted, report_progress: Progress) -> Found:
     """Return the entry of a problem, its exit code, and its messages."""
     entry = _empty(number, asked)
     try:
@@ -183,7 +183,7 @@ def _entry(number: int, asked: Asked, text: str, wanted: Wanted, report_progress
         return _failed(entry, error, wanted)
 
 
-def _worked_out(entry: SheetEntry, asked: Asked, text: str, wanted: Wanted, report_progress: Progress) -> Found:
+def _worked_out(entry: SheetEntry, asked: SheetProblem, text: str, wanted: Wanted, report_progress: Progress) -> Found:
     """Return the entry with its parts; if the solution fails, with the question alone."""
     data = parse(text, entry.file)
     entry = replace(entry, title=str(data.get("title") or entry.title)[:_LONGEST_TITLE])
@@ -203,8 +203,8 @@ def _worked_out(entry: SheetEntry, asked: Asked, text: str, wanted: Wanted, repo
         document = problem.document(results)
         if wanted.solutions:
             is_below = wanted.is_exam and wanted.questions
-            told = replace(document, source="", text="") if is_below else document
-            entry = replace(entry, solution=_part(told, replace(wanted, web=of_problem(wanted.web, data))))
+            without_source = replace(document, source="", text="") if is_below else document
+            entry = replace(entry, solution=_part(without_source, replace(wanted, web=of_problem(wanted.web, data))))
         if wanted.questions and wanted.final_answers:
             entry = replace(entry, answer=_part(document, replace(wanted, detail=FINAL, web=wanted.web.of_question)))
     except Exception as error:  # noqa: BLE001 - as above
@@ -221,7 +221,7 @@ def _worked_out(entry: SheetEntry, asked: Asked, text: str, wanted: Wanted, repo
     return entry, min(codes, default=0), messages
 
 
-def _handout(asked: Asked, parts: int, wanted: Wanted, language: Language) -> tuple[Any, ...]:
+def _handout(asked: SheetProblem, parts: int, wanted: Wanted, language: Language) -> tuple[Any, ...]:
     """Return what a sheet adds to each part of a question: its points, and room for answers where none are given."""
     each = asked.points if len(asked.points) == parts > 1 else ()
     words = [points_in_words((points,), language) for points in each] or [""] * parts
@@ -239,8 +239,8 @@ def _part(document: Document, wanted: Wanted) -> Any:
         "language": wanted.language or document.language,
     }
     of_page |= {"templates": wanted.templates, "web": wanted.web}
-    told = replace(document, convention=convention, **of_page)
-    return wanted.format.part(told)
+    configured = replace(document, convention=convention, **of_page)
+    return wanted.format.part(configured)
 
 
 def _failed(entry: SheetEntry, error: Exception, wanted: Wanted) -> tuple[SheetEntry, int, list[str]]:

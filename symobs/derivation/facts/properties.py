@@ -55,7 +55,7 @@ def _divided(value: Scalar, environment: Environment) -> tuple[Scalar, Scalar] |
 
 
 def _divides(value: Scalar, environment: Environment) -> bool | None:
-    """Tell whether a rational function is a polynomial, None if that is not known."""
+    """Return whether a rational function is a polynomial, None if that is not known."""
     found = _divided(value, environment)
     return None if found is None else found[1].is_zero
 
@@ -70,7 +70,7 @@ def _degrees(value: Scalar, environment: Environment) -> tuple[int, int]:
 
 
 def are_roots(values: tuple[Root, ...], polynomial: Scalar, environment: Environment) -> bool:
-    """Tell whether these are the roots of a monic polynomial where the relations hold."""
+    """Return whether these are the roots of a monic polynomial where the relations hold."""
     product = polynomial_of_roots(environment.variable, values)
     if product is None or product == polynomial:
         return product is not None
@@ -83,7 +83,7 @@ def are_roots(values: tuple[Root, ...], polynomial: Scalar, environment: Environ
 
 
 def subjects(name: str, value: Any, variable: str) -> tuple[Scalar, ...]:
-    """Return what a property is asked of: a scalar, all entries of a matrix, or what holds the poles of all.
+    """Return the subject of a property: a scalar, the entries of a matrix, or their common denominator.
 
     Raises TypeError for a matrix without poles: a constant matrix would be stable whatever its eigenvalues.
     """
@@ -113,7 +113,7 @@ def is_criterion(
     environment: Environment,
     discrete: bool,  # noqa: FBT001
 ) -> bool:
-    """Tell whether what is said is what the criterion asks for, each up to a factor positive by the declared signs."""
+    """Return whether the stated inequalities are those of the criterion, each up to a positive factor."""
     signs, bounds = environment.signs, needed(name, polynomial, environment, discrete)
     if not said:
         return False
@@ -136,7 +136,7 @@ PREDICATES: dict[str, Callable[[Scalar, Environment, bool], bool]] = {
         environment.variable,
         environment.signs,
         discrete=discrete,
-        apart=(*environment.assumed, *environment.domain),
+        apart=(*environment.nonzero, *environment.domain),
     ),
     "beyond": lambda value, environment, discrete: is_beyond(
         value, environment.variable, environment.signs, discrete=discrete

@@ -1,4 +1,4 @@
-"""How a line of a derivation is refused."""
+"""Rejection of a line of a derivation."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What is established on a stratum, after verifying that what is put in describes it (trusted)."""
+"""Restriction of an environment to a stratum, its substitution verified first (trusted)."""
 
 from __future__ import annotations
 
@@ -32,11 +32,11 @@ def on_stratum(when: Relation | Conjunction, substitution: dict[str, Scalar], en
         if when.operators == ("!=",):
             return environment  # it narrows, and nothing is put in: all stays true
         return replace(
-            environment, above=(*environment.above, left - right if when.operators == (">",) else right - left)
+            environment, positive=(*environment.positive, left - right if when.operators == (">",) else right - left)
         )
     if not substitution and isinstance(when, Relation) and when.operators == ("=",):
         left, right = (as_scalar(evaluate(member, environment, Exact(environment))) for member in when.members)
-        inside = replace(environment, relations=(*environment.relations, left - right), assumed=())
+        inside = replace(environment, relations=(*environment.relations, left - right), nonzero=())
         return inside if not Ideal.of(inside.relations).is_whole else reject(plain_relation(when, environment.variable))
     named, lost = dict(substitution), set[str]()
     for name, value in environment.coefficients.items():
@@ -48,7 +48,7 @@ def on_stratum(when: Relation | Conjunction, substitution: dict[str, Scalar], en
     for name, known in environment.values.items():
         with suppress(ZeroDivisionError):  # the letter means nothing on this stratum
             replaced[name] = _there(known, substitution, lost)
-    above = tuple(value.substitute(substitution) for value in environment.above)
+    positive = tuple(value.substitute(substitution) for value in environment.positive)
     moved = (value.substitute(substitution).numerator for value in environment.relations)
     relations = tuple(value for value in moved if value)
     domain = vanishing_factors((value.substitute(substitution) for value in environment.domain), environment.signs)
@@ -56,13 +56,13 @@ def on_stratum(when: Relation | Conjunction, substitution: dict[str, Scalar], en
         environment,
         values=replaced,
         coefficients=named,
-        assumed=(),
+        nonzero=(),
         domain=domain,
-        above=above,
+        positive=positive,
         relations=relations,
     )
     if isinstance(when, Conjunction):
-        return inside.under(_left_of(when, substitution, environment))
+        return inside.with_relations(_left_of(when, substitution, environment))
     left, right = (as_scalar(evaluate(member, environment, Exact(environment))) for member in when.members)
     factors = [f for f, _ in (left - right).numerator.factors()[1] if not never_zero(f, environment.signs)]
     says_no_more = [f.degree(name) for f in factors for name in substitution] == [1] and when.operators == ("=",)

@@ -1,4 +1,4 @@
-"""What a block diagram says (trusted): at every node an equation, and each is held against what is established.
+"""Check of block diagrams (trusted): the equation at every node is compared with the established ones.
 
 What leaves a node is the label there, or else the sum of what comes in; a box multiplies it by its gain.  So a labelled
 point says that its label is this sum, an integrator that the derivative of its output is, and a box of a whole system
@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 
 
 def equations_of(name: str, labels: Mapping[str, Label], environment: Environment) -> Iterator[Relation]:
-    """Yield what a diagram says.  Raises `ValueError` where nothing can be read."""
+    """Yield the equations of a diagram.  Raises `ValueError` where nothing can be read."""
     figure = figure_of(name).without_missing(labels)
     unused = {*labels} - {key(node) for node in figure.place} - {wire.gain for wire in figure.wires} - {"response"}
     is_named = {signal for signal, _ in figure_of(name).signals}
@@ -98,7 +98,7 @@ class _Flow:
         return arriving[0] if len(arriving) == 1 else Sum(arriving)
 
     def through(self, wire: Wire) -> Formula:
-        """Return what arrives on a wire; a gain of its own is a sign."""
+        """Return the signal on a wire; a gain ±1 is a sign."""
         arriving = self.leaving(wire.begin)
         if not wire.gain:
             return arriving
@@ -108,11 +108,11 @@ class _Flow:
         return Product((gain, arriving))
 
     def is_from_system(self, wires: list[Wire]) -> bool:
-        """Whether wires come from the box of a whole system, which says itself what leaves it."""
+        """Return whether wires come from the box of a whole system, whose equations define its outputs."""
         return any(isinstance(self.labels.get(wire.begin), Conjunction) for wire in wires)
 
     def hold_to_its_signals(self, node: str, equations: Conjunction) -> None:
-        """Reject a system whose equations speak of other signals than those at its box and its own state."""
+        """Reject a system with signals other than those at its box and its own state."""
         members = [member for relation in equations.relations for member in relation.members]
         spoken = {name for member in members for name in letters(member)} & self.environment.signals.keys()
         states = {name for member in members for name in _differentiated(member)}

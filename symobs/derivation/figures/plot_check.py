@@ -1,4 +1,4 @@
-"""Whether a picture shows what is true, as far as an eye can tell (trusted).
+"""Check of plots against the polynomial they are drawn for, to within visible accuracy (trusted).
 
 The points of a picture are rational and lie near what they stand for; how near is a fixed part of the window.
 """
@@ -38,7 +38,7 @@ def relations_of(picture: Picture) -> tuple[Relation, ...]:
 
 
 def faults(picture: Picture, subject: Formula, environment: Environment, *, discrete: bool) -> Iterator[str]:
-    """Yield what a picture shows that is not so."""
+    """Yield the faults of a plot."""
     if isinstance(picture, TimeResponse):
         from symobs.derivation.figures.time_response_check import faults_of_response  # noqa: PLC0415 - only pages with one pay for it
 
@@ -62,7 +62,7 @@ def faults(picture: Picture, subject: Formula, environment: Environment, *, disc
     of = polynomial, variable, discrete, dict(environment.signs), equations
     if any(seen is picture and held == of for seen, held in _FAITHFUL):
         return
-    told = False
+    is_rejected = False
     signs = tuple(environment.signs.get(name, "real") for name in axes)
     test = Stability(polynomial, variable, axes, signs, discrete)
     match picture:
@@ -73,14 +73,14 @@ def faults(picture: Picture, subject: Formula, environment: Environment, *, disc
         case _:
             found = faults_of_poles(picture, polynomial, variable, discrete=discrete)
     for fault in found:
-        told = True
+        is_rejected = True
         yield fault
-    if not told:
+    if not is_rejected:
         _FAITHFUL.append((picture, of))
 
 
 def is_faithful(picture: Picture, subject: Formula, environment: Environment, *, discrete: bool) -> bool:
-    """Tell whether nothing that a picture shows is false."""
+    """Return whether nothing that a picture shows is false."""
     try:
         return next(faults(picture, subject, environment, discrete=discrete), None) is None
     except EVALUATION_ERRORS:
@@ -146,7 +146,7 @@ def _between(a: Fraction, b: Fraction) -> Iterator[Fraction]:
 
 
 def _is_labelled(end: End, near: Fraction, numbers: dict[str, Scalar]) -> bool:
-    """Whether what is written at an end is its place, as near as can be seen."""
+    """Return whether the label at an end is its place, to visible accuracy."""
     if isinstance(end.label, str):
         try:
             value = Scalar.of(Fraction(end.label.strip("≈… ").replace("−", "-")))

@@ -32,7 +32,7 @@ ALLOWS: dict[str, Callable[[Fraction], bool]] = {
 
 
 def within(place: Place, window: tuple[Interval, Interval], near: Place = _NOWHERE) -> bool:
-    """Whether a place lies in the window, or as near to it as cannot be told apart."""
+    """Return whether a place lies in the window, to visible accuracy."""
     return all(low - step <= part <= high + step for part, (low, high), step in zip(place, window, near, strict=True))
 
 
@@ -43,7 +43,7 @@ def written(place: Place) -> str:
 
 @dataclass(frozen=True)
 class Stability:
-    """Where in a picture a polynomial is stable: its axes are parameters of these declared signs."""
+    """Stability of a polynomial over the axes of a plot, which are parameters with declared signs."""
 
     polynomial: Scalar
     variable: str
@@ -52,7 +52,7 @@ class Stability:
     discrete: bool
 
     def is_stable(self, *place: Fraction) -> bool:
-        """Whether all roots are stable where the signs allow it; where the degree drops a root has gone to infinity."""
+        """Return whether all roots are stable where the signs allow it; where the degree drops a root has gone to infinity."""
         if not all(ALLOWS[sign](part) for sign, part in zip(self.signs, place, strict=True)):
             return False
         point = dict(zip(self.axes, place, strict=True))
@@ -68,7 +68,7 @@ class Stability:
         return self.polynomial.denominator, found[0], tuple(bilinear(found)) if self.discrete else found
 
     def is_excluded(self, place: tuple[Fraction, ...], around: Sequence[tuple[Fraction, ...]]) -> bool:
-        """Whether a point is not stable, or one that is not lies near: there a condition all but vanishes."""
+        """Return whether a point is not stable, or one that is not lies near: there a condition all but vanishes."""
         if not self.is_stable(*place):
             return True
         conditions = stability(self.polynomial, self.variable, {}, discrete=self.discrete).positive

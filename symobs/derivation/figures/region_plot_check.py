@@ -1,4 +1,4 @@
-"""Whether a picture of a region shows what is true, as far as an eye can tell (trusted).
+"""Check of a region plot against the exact region, to within visible accuracy (trusted).
 
 Curves, areas, marks and the grid are each held by themselves against where the polynomial is stable.  That a curve
 passes by is seen from a change of sign.
@@ -33,7 +33,7 @@ _ALONG = (Fraction(1, 10), Fraction(1, 2), Fraction(9, 10))
 
 
 def faults_of_region(picture: RegionPicture, equations: dict[Relation, Scalar], test: Stability) -> Iterator[str]:
-    """Yield what a picture of a region shows that is not so."""
+    """Yield the faults of a region plot."""
     window = picture.window
     if any(low >= high for low, high in window):
         yield "the window is empty"
@@ -52,7 +52,7 @@ def faults_of_region(picture: RegionPicture, equations: dict[Relation, Scalar], 
 
 
 def faults_of_curve(curve: Curve, value: Scalar, window: tuple[Interval, Interval], test: Stability) -> Iterator[str]:
-    """Yield what is wrong with a curve along which a value is said to vanish."""
+    """Yield the faults of a curve value = 0."""
     equation = plain_relation(curve.equation, test.variable)
     if not _is_of_curve(value, test):
         yield f"{equation} is the equation of a curve"
@@ -69,7 +69,7 @@ def faults_of_curve(curve: Curve, value: Scalar, window: tuple[Interval, Interva
 
 
 def _is_of_curve(value: Scalar, test: Stability) -> bool:
-    """Whether a value vanishes on a curve in the plane of the axes."""
+    """Return whether a value vanishes on a curve in the plane of the axes."""
     return not value.is_constant and value.names <= set(test.axes)
 
 
@@ -80,7 +80,7 @@ def faults_of_area(
     window: tuple[Interval, Interval],
     test: Stability,
 ) -> Iterator[str]:
-    """Yield what is wrong with an area: its edges lie on what is drawn or on the border, and all inside is stable."""
+    """Yield the faults of an area: its edges lie on drawn curves or the border, and all inside is stable."""
     near, between = _part(window, _NEAR), _part(window, _BETWEEN)
     curved = list(_sloping(area, near))
     ends = {place for edge in curved for place in edge}
@@ -102,7 +102,7 @@ def faults_of_mark(
     window: tuple[Interval, Interval],
     test: Stability,
 ) -> Iterator[str]:
-    """Yield what is wrong with a mark: it says what is so at its place, and so does the shade there."""
+    """Yield the faults of a mark: it and the shade agree with the stability at its place."""
     (x, y), (dx, dy) = mark.place, _part(window, _NEAR)
     around = [(x - dx, y), (x + dx, y), (x, y - dy), (x, y + dy)]
     is_stable = test.is_stable(x, y)
@@ -137,7 +137,7 @@ def _part(window: tuple[Interval, Interval], part: Fraction) -> Place:
 
 
 def _is_drawn(drawn: Sequence[Scalar], axes: Sequence[str], place: Place, step: Place) -> bool:
-    """Whether one of the curves that are drawn passes by."""
+    """Return whether one of the curves that are drawn passes by."""
     return any(passes(value, axes, place, step) for value in drawn)
 
 
@@ -147,7 +147,7 @@ def _filled(areas: Sequence[tuple[Place, ...]], places: tuple[Place, ...]) -> fr
 
 
 def passes(value: Scalar, axes: Sequence[str], place: Place, step: Place) -> bool:
-    """Whether the curve value = 0 has a point on the cross of half-width `step` at a place."""
+    """Return whether the curve value = 0 has a point on the cross of half-width `step` at a place."""
     (x, y), (dx, dy), curve = place, step, _curve(value, *axes)
     return vanishes_near(curve.on_vertical(x), y, dy) or vanishes_near(curve.on_horizontal(y), x, dx)
 
@@ -205,7 +205,7 @@ def _along(a: Place, b: Place) -> tuple[Place, ...]:
 
 
 def _on_border(place: Place, window: tuple[Interval, Interval], near: Place) -> bool:
-    """Whether a place lies on the border of the window."""
+    """Return whether a place lies on the border of the window."""
     return any(
         part <= low + step or part >= high - step for part, (low, high), step in zip(place, window, near, strict=True)
     )

@@ -1,4 +1,4 @@
-"""Whether the paths of the poles in a picture are those of a polynomial, as far as an eye can tell (trusted).
+"""Check of a root locus against its polynomial, to within visible accuracy (trusted).
 
 That a root z₀ lies near z follows from p(z + w) = Σ cₖ wᵏ, of degree n: ±cₖ/c₀ is a sum of C(n, k) products of k
 reciprocals of z₀ − z, so one root has |z₀ − z|ᵏ ≤ C(n, k) |c₀/cₖ|.
@@ -26,7 +26,7 @@ _NEAR_POLE = Fraction(1, 200)
 
 
 def faults_of_poles(picture: PoleMap, polynomial: Scalar, variable: str, *, discrete: bool) -> Iterator[str]:
-    """Yield what the paths of poles show that is not so."""
+    """Yield the faults of a root locus."""
     if (picture.variable, picture.discrete) != (variable, discrete):
         yield f"the poles are those in {picture.variable}"
     degree = polynomial.degree(variable)
@@ -50,7 +50,7 @@ def faults_of_poles(picture: PoleMap, polynomial: Scalar, variable: str, *, disc
 
 
 def is_pole(polynomial: Scalar, moved: str, value: Fraction, place: Place, variable: str, near: Fraction) -> bool:
-    """Whether a root of a polynomial surely lies near a place where the parameter that is moved has this value."""
+    """Return whether a root of a polynomial surely lies near a place where the parameter that is moved has this value."""
     return _has_root_near(_shifted(polynomial, moved, value, place, variable), near)
 
 
@@ -70,7 +70,7 @@ def _parts(polynomial: Scalar, variable: str) -> tuple[Scalar, tuple[Scalar, ...
 
 
 def _has_root_near(around: Sequence[Place], distance: Fraction) -> bool:
-    """Whether some root surely has |w| ≤ distance."""
+    """Return whether some root surely has |w| ≤ distance."""
     degree = len(around) - 1
     constant = _square(around[0])
     return any(
@@ -95,7 +95,7 @@ def _common(picture: PoleMap) -> Iterator[int]:
 
 
 def _are_all(picture: PoleMap, polynomial: Scalar, variable: str, index: int) -> bool:
-    """Whether discs that hold a root each lie apart from one another, as many as there are different roots."""
+    """Return whether discs that hold a root each lie apart from one another, as many as there are different roots."""
     different = sum(factor.degree(variable) for factor, _ in polynomial.numerator.factors()[1])
     apart: list[tuple[Place, Fraction]] = []
     for path, along in zip(picture.paths, picture.along, strict=True):

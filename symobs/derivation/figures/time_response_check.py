@@ -1,4 +1,4 @@
-"""Whether responses over time are those of the equations of the page (trusted).
+"""Check of time responses against the equations of the page (trusted).
 
 The values are found anew, in whole numbers with an error that is counted: e^{Mh} from the power series of a small part
 of Mh and by squaring, and then twice as many instants with each power e^{Mh}, e^{2Mh}, e^{4Mh}, ….  In discrete time
@@ -35,7 +35,7 @@ _TURN, _SQUARINGS = 3, 6
 
 
 def faults_of_response(picture: TimeResponse, subject: Formula, environment: Environment) -> Iterator[str]:
-    """Yield what a picture of responses shows that is not so."""
+    """Yield the faults of plotted responses."""
     state = Block(tuple((Letter(name),) for name in picture.states))
     for relation in ((Derivative(state), Product((subject, state))), *_signals(picture, state, environment)):
         if verify(Relation(relation, ("=",)), environment)[0] == "":
@@ -65,7 +65,7 @@ def faults_of_response(picture: TimeResponse, subject: Formula, environment: Env
 
 
 def _faults_of_samples(picture: TimeResponse, matrix: Matrix, state: tuple[Fraction, ...]) -> Iterator[str]:
-    """Yield where a response of discrete time is not what it is said to be: exactly row · Mᵏ · start."""
+    """Yield the instants at which a discrete-time response differs from row · Mᵏ · start."""
     count = len(picture.responses[0].heights)
     if picture.window[0][1] != count - 1:
         yield "instants other than 0, 1, 2, ..."
@@ -104,7 +104,7 @@ def _size(name: str, environment: Environment) -> int:
 def _faults_of_component(
     response: Response, parts: int, values: list[list[int]], edges: tuple[Fraction, Fraction]
 ) -> Iterator[str]:
-    """Yield where a response is not what it is said to be; `values` are those at all instants and between them."""
+    """Yield the instants at which a response is wrong; `values` are those at all instants and between them."""
     common = lcm(*(part.denominator for part in response.row))
     row = [int(part * common) for part in response.row]
     true = [sum(map(mul, row, value)) // common for value in values]
@@ -120,7 +120,7 @@ def _faults_of_component(
 
 
 def is_slow(matrix: Matrix, step: Fraction) -> bool:
-    """Whether |λ| h ≤ 3 for all eigenvalues λ of M: no |λ|ᵏ is larger than ‖Mᵏ‖, here for k = 64."""
+    """Return whether |λ| h ≤ 3 for all eigenvalues λ of M: no |λ|ᵏ is larger than ‖Mᵏ‖, here for k = 64."""
     power = matrix * Scalar.of(step / _TURN)
     for _ in range(_SQUARINGS):
         power = power @ power

@@ -36,7 +36,7 @@ class CompensatorDesign(OutputFeedback):
     estimator: ObserverDesign
 
     @classmethod
-    def designed(cls, plant: StateSpace, control: Asked, observer: Asked, name: str) -> Self:
+    def design(cls, plant: StateSpace, control: Asked, observer: Asked, name: str) -> Self:
         """Return the compensator for these polynomials, or with these gains."""
         feedback = half_of(StateFeedbackDesign, plant, control)
         estimator = half_of(ObserverDesign, plant, observer)
@@ -135,7 +135,7 @@ def own_transfer(feedback: StateFeedbackDesign, estimator: ObserverDesign) -> tu
 @method("compensator/separation", source="luenberger1964; luenberger1971")
 def separation(plant: StateSpace, control: Asked, observer: Asked) -> CompensatorDesign:
     """Design K as if x were known, design the observer of order n, use x̂ for x."""
-    return CompensatorDesign.designed(plant, control, observer, "separation")
+    return CompensatorDesign.design(plant, control, observer, "separation")
 
 
 @method("compensator/duality", source="kalman1960")
@@ -144,15 +144,15 @@ def duality(plant: StateSpace, control: Asked, observer: Asked) -> CompensatorDe
     if not plant.inputs == plant.outputs == 1:
         message = f"the method duality needs one input and one output, the plant has {plant.inputs} and {plant.outputs}"
         raise InputError(message, where="specification.method", repair="leave the method out, or write separation")
-    return CompensatorDesign.designed(plant, control, observer, "duality")
+    return CompensatorDesign.design(plant, control, observer, "duality")
 
 
 @method("compensator/minimal_order", source="luenberger1971; kailath1980, ch. 4")
 def minimal_order(plant: StateSpace, control: Asked, observer: Asked) -> MinimalOrderCompensator:
-    """Design K as if x were known, estimate only what the outputs do not show, use x̂ for x."""
+    """Design K as if x were known, estimate the unmeasured states only, use x̂ for x."""
     from symobs.design.compensator.minimal_order_compensator import MinimalOrderCompensator  # noqa: PLC0415 - paid for where used
 
-    return MinimalOrderCompensator.designed(plant, control, observer, "minimal_order")
+    return MinimalOrderCompensator.design(plant, control, observer, "minimal_order")
 
 
 #: The method of each kind of observer.
@@ -212,7 +212,7 @@ def observer_based(
     method_name: str = "auto",
     gains: tuple[object, object] = (None, None),
 ) -> OutputFeedback:
-    """Return the compensator for what a task was given as poles or polynomial of each loop, or as its gain."""
+    """Return the compensator for the poles, polynomial or gain of each loop."""
     plant = plant.knowing(*control, *estimate, *gains)
     plant.require("B", "C", task=task)
 
@@ -249,7 +249,7 @@ def observer_based(
 
 
 def _require_kind(observer: str, plant: StateSpace, method_name: str) -> None:
-    """Raise `InputError` where there is no such kind of observer, another one was asked for, or it has nothing to do."""
+    """Raise `InputError` for an unknown kind of observer, one that contradicts the method, or one of order 0."""
     if observer not in _METHODS:
         message = f"{observer[:40]!r} is not a kind of observer"
         raise InputError(message, where="specification.observer", repair='write "full" or "minimal"')

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from symobs.analysis.factored_form import factored_form, formula_of_factored
 from symobs.analysis.page_parts import given, in_blocks, is_narrow
-from symobs.derivation.builder import Page, predicate, relation
+from symobs.derivation.builder import Builder, predicate, relation
 from symobs.design.compensator.compensator import CompensatorDesign
 from symobs.design.compensator.defective_poles import caution_repeated
 from symobs.design.compensator.hidden_modes import caution_hidden
@@ -21,7 +21,7 @@ from symobs.design.page_parts.block_diagrams import draw_compensator, draw_loop,
 from symobs.design.page_parts.time_responses import plot_estimate
 from symobs.design.pole_placement.fresh_names import fresh_names, taken_names
 from symobs.exact import Factored, Matrix, Root, Scalar, from_coefficients, root_of_pole, roots_of, transfer
-from symobs.formula import HoldsExactlyWhere, Literal, Quotient, Roots, Shown
+from symobs.formula import Evaluated, HoldsExactlyWhere, Literal, Quotient, Roots
 from symobs.formula.term import Term, block
 from symobs.phrases import PHRASES
 from symobs.result import page_of
@@ -40,7 +40,7 @@ _DECIDED_BY_SIGNS = 2
 
 
 @page_of(CompensatorDesign)
-def write_compensator(page: Page, design: CompensatorDesign) -> None:
+def write_compensator(page: Builder, design: CompensatorDesign) -> None:
     """Write the whole page."""
     given(page, ("control", design.feedback.desired), ("observer", design.estimator.desired))
     plant = design.plant
@@ -86,32 +86,32 @@ def write_compensator(page: Page, design: CompensatorDesign) -> None:
             return_path(page, design)
 
 
-def _state_space(page: Page, design: CompensatorDesign) -> None:
+def _state_space(page: Builder, design: CompensatorDesign) -> None:
     """U = −K x̂ put into the observer: (4.23), (4.24)."""
     m = design.plant.matrices
     A, B, C, K, L, x_hat = (page[name] for name in ("A", "B", "C", "K", "L", "x_hat"))
     page.signal("u", -K @ x_hat, say="separation")
-    closed, shown = A - B @ K - L @ C, A.shown - (B @ K).shown - (L @ C).shown
+    closed, shown = A - B @ K - L @ C, A.as_value - (B @ K).as_value - (L @ C).as_value
     if m.has_feedthrough:
-        closed, shown = closed + L @ page["D"] @ K, shown + (L @ page["D"] @ K).shown
+        closed, shown = closed + L @ page["D"] @ K, shown + (L @ page["D"] @ K).as_value
     own, is_written = closed @ x_hat + L @ page["y"], closed.value.size <= readability.MATRIX
     if not is_written:
         page.equal(relation(x_hat.derivative, own), say="observer_closed")
     small = page.plant.order == readability.PRODUCTS_ORDER and not m.has_feedthrough
-    apart = [A.shown - B.shown @ K.shown - L.shown @ C.shown] if small else []
+    apart = [A.as_value - B.as_value @ K.as_value - L.as_value @ C.as_value] if small else []
     page.define("A_c", closed, *apart, shown, say="observer_closed_matrix" if is_written else "compensator_matrix")
     if is_written:
-        written = page["A_c"].shown @ x_hat + L.shown @ page["y"]
+        written = page["A_c"].as_value @ x_hat + L.as_value @ page["y"]
         page.conclude_silently(relation(x_hat.derivative, own))
         page.equal(
             relation(x_hat.derivative, page["A_c"] @ x_hat + L @ page["y"], written),
-            relation(page["u"], -K.shown @ x_hat),
+            relation(page["u"], -K.as_value @ x_hat),
             say="compensator_written",
         )
     draw_compensator(page)
 
 
-def _transfer_function(page: Page, design: CompensatorDesign) -> None:
+def _transfer_function(page: Builder, design: CompensatorDesign) -> None:
     """(4.25) in four stages: inverse, adjugate over determinant, adjugate times L, scalar; those that can be read."""
     K, L, F = page["K"], page["L"], design.answer["F"]
     order = design.plant.order
@@ -121,9 +121,9 @@ def _transfer_function(page: Page, design: CompensatorDesign) -> None:
     driven = (adjugate @ L.value).normal()
     one_over = page.term(Quotient(Literal(Scalar.of(1)), Literal(characteristic)))
     stages = [
-        (pencil, K.shown @ page.value(pencil).inverse @ L.shown),
-        (adjugate, one_over @ K.shown @ page.value(adjugate) @ L.shown),
-        (driven, one_over @ K.shown @ page.value(driven)),
+        (pencil, K.as_value @ page.value(pencil).inverse @ L.as_value),
+        (adjugate, one_over @ K.as_value @ page.value(adjugate) @ L.as_value),
+        (driven, one_over @ K.as_value @ page.value(driven)),
     ]
     written = [stage for matrix, stage in stages if is_narrow(matrix, K.value)]
     whole = K @ (page.s @ page.identity(order) - page["A_c"]).inverse @ L
@@ -131,7 +131,7 @@ def _transfer_function(page: Page, design: CompensatorDesign) -> None:
     say_stability(page, design, "compensator", predicate("strictly_proper", page["F"]))
 
 
-def _transfer_matrix(page: Page, design: CompensatorDesign) -> None:
+def _transfer_matrix(page: Builder, design: CompensatorDesign) -> None:
     """(4.25) for several inputs or outputs: the resolvent, then the entries."""
     K, L, F = page["K"], page["L"], design.answer["F"]
     formula = K @ (page.s @ page.identity(design.plant.order) - page["A_c"]).inverse @ L
@@ -139,7 +139,7 @@ def _transfer_matrix(page: Page, design: CompensatorDesign) -> None:
     say_stability(page, design, "compensator", predicate("strictly_proper", page["F"]))
 
 
-def define_or_hold(page: Page, name: str, formula: Term, value: Matrix, say: str) -> None:
+def define_or_hold(page: Builder, name: str, formula: Term, value: Matrix, say: str) -> None:
     """Introduce a transfer matrix, with its entries where they can be read."""
     page.define(
         name,
@@ -152,7 +152,7 @@ def define_or_hold(page: Page, name: str, formula: Term, value: Matrix, say: str
     page.conclude_silently(relation(page[name], value))
 
 
-def say_stability(page: Page, design: OutputFeedback, stem: str, proper: Fact, **slots: Slot) -> None:
+def say_stability(page: Builder, design: OutputFeedback, stem: str, proper: Fact, **slots: Slot) -> None:
     """Say that F is proper and, where the conditions are few, whether or where it is stable by itself."""
     plant, F = page.plant, design.answer["F"]
     found = design.own_stability
@@ -163,12 +163,12 @@ def say_stability(page: Page, design: OutputFeedback, stem: str, proper: Fact, *
         word = "stable" if found == "yes" else "unstable"
         facts, reason = [proper, predicate(word, page["F"])], _reason(page, design, word)
         key = f"{stem}_{word}_low" if reason and f"{stem}_{word}_low" in PHRASES else f"{stem}_{word}"
-        told = {**slots, **(reason if key.endswith("_low") else {})}
-        if found == "no" and page.knows("phi_c") and page.knows("phi_o"):
+        filled = {**slots, **(reason if key.endswith("_low") else {})}
+        if found == "no" and page.defines("phi_c") and page.defines("phi_o"):
             loop, signs = page["phi_c"] @ page["phi_o"], plant.symbols.signs
             if stability(loop.scalar, plant.variable, signs, discrete=plant.is_discrete).verdict == "yes":
                 key, facts = f"{key}_alone", [*facts, predicate("stable", loop)]
-        page.conclude(key, *facts, **told)
+        page.conclude(key, *facts, **filled)
         return
     polynomial = monic(F.common_denominator(), plant.variable)
     positive = stability(polynomial, plant.variable, plant.symbols.signs, discrete=plant.is_discrete).positive
@@ -180,20 +180,20 @@ def say_stability(page: Page, design: OutputFeedback, stem: str, proper: Fact, *
     page.conclude(f"{stem}_stable_if", proper, where=HoldsExactlyWhere(predicate("stable", page["F"]), where), **slots)
 
 
-def _reason(page: Page, design: OutputFeedback, word: str) -> dict[str, Slot]:
-    """Return the polynomial whose coefficients tell by their signs alone: of order 1 or 2, in continuous time."""
+def _reason(page: Builder, design: OutputFeedback, word: str) -> dict[str, Slot]:
+    """Return the polynomial of order 1 or 2 whose stability follows from its signs, in continuous time."""
     F, plant = design.answer["F"], page.plant
-    if plant.is_discrete or plant.order > _DECIDED_BY_SIGNS or not isinstance(F, Scalar) or not page.knows("A_c"):
+    if plant.is_discrete or plant.order > _DECIDED_BY_SIGNS or not isinstance(F, Scalar) or not page.defines("A_c"):
         return {}
     own = (page.s @ page.identity(page["A_c"].value.shape[0]) - page["A_c"]).apply("det")
     coefficients = own.scalar.coefficients(plant.variable)
     if own.scalar != monic(F.denominator, plant.variable) or not all(c.is_constant for c in coefficients):
         return {}
     positive = all(c.fraction() > 0 for c in coefficients)
-    return {"polynomial": Shown(own.formula, Literal(own.scalar))} if positive == (word == "stable") else {}
+    return {"polynomial": Evaluated(own.formula, Literal(own.scalar))} if positive == (word == "stable") else {}
 
 
-def _error_coordinates(page: Page, design: CompensatorDesign, *, large: bool) -> None:
+def _error_coordinates(page: Builder, design: CompensatorDesign, *, large: bool) -> None:
     """(4.26)-(4.29): u = −Kx + Ke, ẋ = (A − BK) x + BKe, block triangular."""
     A, B, C, K, L = (page[name] for name in "ABCKL")
     x, e, order = page["x"], page["e"], design.plant.order
@@ -227,7 +227,7 @@ def _error_coordinates(page: Page, design: CompensatorDesign, *, large: bool) ->
     plot_estimate(page, "e", page["A_cl"], Matrix.identity(order))
 
 
-def return_path(page: Page, design: OutputFeedback) -> None:
+def return_path(page: Builder, design: OutputFeedback) -> None:
     """P/(1 + PF), multiplied out and factored."""
     plant_form = _plant(page, design)
     form = design.single_loop
@@ -251,7 +251,7 @@ def return_path(page: Page, design: OutputFeedback) -> None:
     draw_unity_loop(page, plant_form, page.value(design.answer["F"]))
 
 
-def _say_poles(page: Page, design: OutputFeedback, loop: Scalar) -> None:
+def _say_poles(page: Builder, design: OutputFeedback, loop: Scalar) -> None:
     """Say whose poles those of G_cl are, and which of them cancel in it."""
     variable, whole = design.plant.variable, design.loop_polynomial
     poles, denominator = _poles(design, whole.value), monic(loop.denominator, variable)
@@ -272,7 +272,7 @@ def _say_poles(page: Page, design: OutputFeedback, loop: Scalar) -> None:
         )
 
 
-def caution_unstable_loop(page: Page, design: OutputFeedback, determinant: Term) -> None:
+def caution_unstable_loop(page: Builder, design: OutputFeedback, determinant: Term) -> None:
     """Warn where gains that were given surely leave the loop unstable."""
     if design.has_given_gain and design.fields["stable"] == "no":
         time = "discrete" if page.plant.is_discrete else "continuous"
@@ -280,11 +280,11 @@ def caution_unstable_loop(page: Page, design: OutputFeedback, determinant: Term)
 
 
 def of_given(design: OutputFeedback) -> str:
-    """Return how sentences end that speak of polynomials which nobody asked for."""
+    """Return the suffix of sentences about polynomials that are found, not desired."""
     return "_given" if design.has_given_gain else ""
 
 
-def _say_left(page: Page, left: tuple[Root, ...], lost: Roots) -> None:
+def _say_left(page: Builder, left: tuple[Root, ...], lost: Roots) -> None:
     """Say which poles are left where others cancel."""
     if not left:
         page.conclude("loop_no_poles", predicate("polynomial", page["G_cl"]), lost=lost)
@@ -294,11 +294,11 @@ def _say_left(page: Page, left: tuple[Root, ...], lost: Roots) -> None:
 
 
 def _has_short_roots(factor: Scalar, variable: str) -> bool:
-    """Whether the roots of a factor can be told in a sentence: those of a quadratic with parameters are too long."""
+    """Return whether the roots of a factor fit into a sentence: those of a quadratic with parameters do not."""
     return factor.degree(variable) == 1 or (factor.degree(variable) == 2 and factor.names <= {variable})
 
 
-def return_path_of_several(page: Page, design: OutputFeedback) -> None:
+def return_path_of_several(page: Builder, design: OutputFeedback) -> None:
     """(I + PF)⁻¹ P for several inputs or outputs."""
     plant = design.plant
     response = page["C"] @ (page.s @ page.identity(plant.order) - page["A"]).inverse @ page["B"]
@@ -316,12 +316,12 @@ def return_path_of_several(page: Page, design: OutputFeedback) -> None:
     draw_loop(page, page["P"], page["F"])
 
 
-def _plant(page: Page, design: OutputFeedback) -> Term:
+def _plant(page: Builder, design: OutputFeedback) -> Term:
     """Show the plant's transfer function, unless the problem gave it."""
     plant = design.plant
     numerator, characteristic = design.plant_transfer
     form = factored_form(page, numerator / characteristic)
-    if not page.knows("P"):
+    if not page.defines("P"):
         page.define("P", form, say="plant_transfer", closing=False)
         response = page["C"] @ (page.s @ page.identity(plant.order) - page["A"]).inverse @ page["B"]
         if plant.matrices.has_feedthrough:
@@ -332,7 +332,7 @@ def _plant(page: Page, design: OutputFeedback) -> Term:
     return form
 
 
-def _named_transfer_function(page: Page, design: CompensatorDesign) -> None:
+def _named_transfer_function(page: Builder, design: CompensatorDesign) -> None:
     """F(s) with letters for its coefficients, which are written out below it."""
     K, L, variable = page["K"], page["L"], design.plant.variable
     resolvent = (page.s @ page.identity(design.plant.order) - page["A_c"]).inverse
@@ -349,7 +349,7 @@ def _named_transfer_function(page: Page, design: CompensatorDesign) -> None:
 class Namer:
     """Letters for the coefficients of polynomials, and the list of what they stand for."""
 
-    def __init__(self, page: Page) -> None:
+    def __init__(self, page: Builder) -> None:
         self.page = page
         self.meanings: list[tuple[Scalar, Scalar]] = []
 
@@ -368,11 +368,11 @@ class Namer:
         return from_coefficients(named, variable)
 
     def show(self) -> None:
-        """Write out what the letters stand for."""
+        """Write out the values of the letters."""
         self.page.equal(*(relation(symbol, meaning) for symbol, meaning in self.meanings), say="with_coefficients")
 
 
-def named_return_path(page: Page, design: OutputFeedback, own: Term) -> None:
+def named_return_path(page: Builder, design: OutputFeedback, own: Term) -> None:
     """P/(1 + PF) over the product of the two polynomials, `own` being the denominator of F."""
     _plant(page, design)
     numerator, _ = design.plant_transfer
@@ -384,7 +384,7 @@ def named_return_path(page: Page, design: OutputFeedback, own: Term) -> None:
 
 
 def _poles(design: OutputFeedback, polynomial: Scalar) -> tuple[Root, ...]:
-    """Return the poles in the order they were asked for, or as the roots of the polynomial."""
+    """Return the desired poles in their given order, or the roots of the polynomial."""
     poles: list[Root] = []
     for part in (design.feedback, design.estimator):
         desired = part.desired

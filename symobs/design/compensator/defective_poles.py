@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from symobs.analysis.factored_form import formula_of_factored
-from symobs.derivation.builder import Page, relation
+from symobs.derivation.builder import Builder, relation
 from symobs.design.full_order.state_feedback import StateFeedbackDesign
 from symobs.design.gain.placement_problem import FEEDBACK
 from symobs.design.page_parts import readability
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from symobs.formula import Relation
 
 
-def caution_repeated(page: Page, design: OutputFeedback) -> None:
+def caution_repeated(page: Builder, design: OutputFeedback) -> None:
     """Warn of a repeated control pole that is defective: its exponential alone does not bound x."""
     plant = design.plant
     desired = design.feedback.desired
@@ -42,14 +42,14 @@ def caution_repeated(page: Page, design: OutputFeedback) -> None:
                 "defective" if instead is None else "defective_instead",
                 held,
                 pole=Roots(single.formula, roots_of(factor, plant.variable)),
-                matrix=relation(offset, offset.shown) if plant.order == readability.OFFSET_ORDER else held,
+                matrix=relation(offset, offset.as_value) if plant.order == readability.OFFSET_ORDER else held,
                 **({} if instead is None else {"instead": instead}),
             )
             return
 
 
-def _with_distinct_poles(page: Page, desired: DesiredPolynomial) -> Relation | None:
-    """Return det(sI − A + BK) = φ for the poles asked for, repeated ones moved further in, where a gain places them."""
+def _with_distinct_poles(page: Builder, desired: DesiredPolynomial) -> Relation | None:
+    """Return det(sI − A + BK) = φ for the desired poles, repeated ones moved further in, where a gain places them."""
     plant, variable = page.plant, page.plant.variable
     further_in = page.s.scalar * 2 if plant.is_discrete else page.s.scalar + 1
     factors: dict[Scalar, None] = {}

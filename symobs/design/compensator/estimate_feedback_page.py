@@ -1,4 +1,4 @@
-"""What pages of laws that use the estimate begin with: both gains, and whether the law can be solved for the input."""
+"""The first part of pages with estimated-state feedback: both gains, and the law solved for the input."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ from symobs.design.reduced_order.reduced_order_observer import ReducedOrderObser
 from symobs.design.reduced_order.reduced_order_observer_page import write_observer_of_rest
 
 if TYPE_CHECKING:
-    from symobs.derivation.builder import Page
+    from symobs.derivation.builder import Builder
     from symobs.design.compensator.output_feedback import OutputFeedback
 
 
-def write_both_gains(page: Page, loop: OutputFeedback) -> None:
+def write_both_gains(page: Builder, loop: OutputFeedback) -> None:
     """Write the data, the feedback and the observer."""
     plant = page.plant
     given(page, ("control", loop.feedback.desired), ("observer", loop.estimator.desired))
@@ -34,8 +34,8 @@ def write_both_gains(page: Page, loop: OutputFeedback) -> None:
             write_observer(page)
 
 
-def is_ill_posed(page: Page, loop: OutputFeedback) -> bool:
-    """Write that both gains exist but the law cannot be solved for u, where that is so, and tell whether it is."""
+def is_ill_posed(page: Builder, loop: OutputFeedback) -> bool:
+    """Write that the law cannot be solved for u although both gains exist; return whether this is the case."""
     if loop.exists or None in (loop.answer["K"], loop.answer["L"]) or not isinstance(loop, MinimalOrderCompensator):
         return False
     with page.section("compensator"):

@@ -11,7 +11,7 @@ from symobs.stability.criteria.stability import monic, stability
 from symobs.stability.inequalities.written_form import as_inequality
 
 if TYPE_CHECKING:
-    from symobs.derivation.builder import Page
+    from symobs.derivation.builder import Builder
     from symobs.system import StateSpace
 
 #: A polynomial of more terms is not decided.
@@ -48,15 +48,15 @@ def law_stability(F: Matrix | Scalar, own_matrix: Matrix, plant: StateSpace, sta
     return stability_of_poles if hidden == "yes" else hidden
 
 
-def caution_hidden(page: Page, F: Matrix | Scalar, own_matrix: Matrix) -> None:
+def caution_hidden(page: Builder, F: Matrix | Scalar, own_matrix: Matrix) -> None:
     """Warn where a mode that cancels in F is not stable, surely or for some parameters."""
     plant = page.plant
     found = hidden_modes(F, own_matrix, plant.variable)
     if found is None or found[1].degree(plant.variable) < 1:
         return
     poles, hidden = found
-    told = stability(hidden, plant.variable, plant.symbols.signs, discrete=plant.is_discrete)
-    if told.verdict == "yes":
+    hidden_stability = stability(hidden, plant.variable, plant.symbols.signs, discrete=plant.is_discrete)
+    if hidden_stability.verdict == "yes":
         return
     own = (page.s @ page.identity(own_matrix.shape[0]) - page["A_c"]).apply("det")
     rest = page.term(Quotient(own.formula, Literal(monic(poles, plant.variable))))
@@ -64,9 +64,9 @@ def caution_hidden(page: Page, F: Matrix | Scalar, own_matrix: Matrix) -> None:
         return
     modes = Roots(rest.formula, roots_of(hidden, plant.variable))
     time = "discrete" if plant.is_discrete else "continuous"
-    if told.verdict == "no":
+    if hidden_stability.verdict == "no":
         page.caution(f"hides_{time}", predicate("unstable", rest), relation(rest, hidden), modes=modes)
         return
-    solved = [as_inequality(value, plant.symbols.signs) for value in told.positive]
+    solved = [as_inequality(value, plant.symbols.signs) for value in hidden_stability.positive]
     where = HoldsExactlyWhere(predicate("stable", rest), tuple(relation(*parts) for parts in solved))
     page.caution("some_hidden", relation(rest, hidden), modes=modes, where=where)

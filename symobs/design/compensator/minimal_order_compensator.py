@@ -42,7 +42,7 @@ class MinimalOrderCompensator(OutputFeedback):
     estimator: ReducedOrderObserver
 
     @classmethod
-    def designed(cls, plant: StateSpace, control: Asked, observer: Asked, name: str) -> Self:
+    def design(cls, plant: StateSpace, control: Asked, observer: Asked, name: str) -> Self:
         """Return the compensator for these polynomials, or with this K, in the coordinates [C; R]."""
         assert not isinstance(observer, Matrix)  # noqa: S101 - the task takes no L of a reduced-order observer
         return cls.of(half_of(StateFeedbackDesign, plant, control), reduced_observer_of(plant, observer), name)
@@ -77,7 +77,7 @@ class MinimalOrderCompensator(OutputFeedback):
         if not have:
             return
         direct, rest = split(self.answer["K"], self.estimator)
-        e = e.having(values={"N": direct, "K_2": rest})
+        e = e.extended_by(values={"N": direct, "K_2": rest})
         K, M, N, K_2, D, F = (letter(name, e) for name in ("K", "M_z", "N", "K_2", "D", "F"))
         yield Claim(relation(K @ M, block([[N, K_2]])), e, "K*M = [N, K_2]")
         one = identity(self.plant.inputs, e)

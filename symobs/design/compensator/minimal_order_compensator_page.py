@@ -5,9 +5,8 @@ from __future__ import annotations
 from symobs.analysis.factored_form import formula_of_factored
 from symobs.analysis.page_parts import given, in_blocks
 from symobs.conditions import vanishing_factors
-from symobs.derivation import Case as CaseStep
-from symobs.derivation import Conclude
-from symobs.derivation.builder import Page, predicate, relation, sentence
+from symobs.derivation import CaseStep, Conclude
+from symobs.derivation.builder import Builder, predicate, relation, sentence
 from symobs.design.compensator.compensator_page import (
     Namer,
     caution_unstable_loop,
@@ -35,7 +34,7 @@ from symobs.result import page_of
 
 
 @page_of(MinimalOrderCompensator)
-def write_minimal_order(page: Page, design: MinimalOrderCompensator) -> None:
+def write_minimal_order(page: Builder, design: MinimalOrderCompensator) -> None:
     """Write the whole page."""
     given(page, ("control", design.feedback.desired), ("observer", design.estimator.desired))
     large = design.exists and design.answer["F"].size > readability.COMPENSATOR
@@ -65,12 +64,12 @@ def write_minimal_order(page: Page, design: MinimalOrderCompensator) -> None:
             return_path(page, design)
 
 
-def _one(page: Page) -> Term:
+def _one(page: Builder) -> Term:
     """I, or 1 for one input."""
     return page.identity(page.plant.inputs) if page.plant.inputs > 1 else page.value(1)
 
 
-def write_control_law(page: Page, design: MinimalOrderCompensator, *, large: bool) -> None:
+def write_control_law(page: Builder, design: MinimalOrderCompensator, *, large: bool) -> None:
     """U = −K x̂ in terms of the output and of the observer's state."""
     plant = page.plant
     partitioned_gain(page)
@@ -105,7 +104,7 @@ def write_control_law(page: Page, design: MinimalOrderCompensator, *, large: boo
     page.equal(relation(u, -(W @ K_y) @ y - W @ K_2 @ z, *_numbers(page, pairs, large=large)))
 
 
-def partitioned_gain(page: Page) -> None:
+def partitioned_gain(page: Builder) -> None:
     """[K₁ K₂] = K T⁻¹."""
     plant, K, T = page.plant, page["K"], page["T"]
     whole = K if T.value == Matrix.identity(plant.order) else K @ T.inverse
@@ -113,10 +112,10 @@ def partitioned_gain(page: Page) -> None:
     page.set("K_1", parts.select(inputs, range(plant.outputs)))
     page.set("K_2", parts.select(inputs, range(plant.outputs, plant.order)))
     both = block([[page["K_1"], page["K_2"]]])
-    page.equal(relation(whole, both, both.shown), say="partitioned_gain")
+    page.equal(relation(whole, both, both.as_value), say="partitioned_gain")
 
 
-def _numbers(page: Page, pairs: list[tuple[Matrix | Scalar, Term]], *, large: bool) -> list[Term]:
+def _numbers(page: Builder, pairs: list[tuple[Matrix | Scalar, Term]], *, large: bool) -> list[Term]:
     """Return the combination with numbers, where it is short enough to be read."""
     if large:
         return []
@@ -124,7 +123,7 @@ def _numbers(page: Page, pairs: list[tuple[Matrix | Scalar, Term]], *, large: bo
     return [combination(page, [(page.value(value.normal()), signal) for value, signal in tables])]
 
 
-def _closed(page: Page, *, large: bool) -> None:
+def _closed(page: Builder, *, large: bool) -> None:
     """The compensator in state space."""
     F, G, H, K_y, K_2 = (page[name] for name in ("F_z", "G_z", "H_z", "K_y", "K_2"))
     y, z = page["y"], page[observer_state(page)]
@@ -141,14 +140,14 @@ def _closed(page: Page, *, large: bool) -> None:
     )
 
 
-def _own_denominator(page: Page) -> Term:
+def _own_denominator(page: Builder) -> Term:
     """Return det(sI − A_c), over W where the output contains the input."""
     order = page.plant.order - page.plant.outputs
     own = (page.s @ page.identity(order) - page["A_c"]).apply("det")
     return own / page["W_u"] if page.plant.matrices.has_feedthrough else own
 
 
-def _apart(page: Page, pencil: Term) -> list[Term]:
+def _apart(page: Builder, pencil: Term) -> list[Term]:
     """K₂ · Z/Y + K_y and the direct term with what decays: for an observer of first order, nothing solved for."""
     K_2, K_y, B_c = (page[name].value for name in ("K_2", "K_y", "B_c"))
     if page.plant.matrices.has_feedthrough or K_2.shape != (1, 1) or page["F_z"].value.shape != (1, 1):
@@ -162,7 +161,7 @@ def _apart(page: Page, pencil: Term) -> list[Term]:
     return [page.value(K_2[0, 0]) * page.value(state) + page.value(K_y[0, 0]), parts]
 
 
-def _transfer_function(page: Page, design: MinimalOrderCompensator, *, large: bool) -> None:
+def _transfer_function(page: Builder, design: MinimalOrderCompensator, *, large: bool) -> None:
     """F(s) = K₂ (sI − A_c)⁻¹ B_c + K_y, times W where the output contains the input."""
     K_y, K_2, B_c = (page[name] for name in ("K_y", "K_2", "B_c"))
     pencil = page.s @ page.identity(page.plant.order - page.plant.outputs) - page["A_c"]
@@ -198,10 +197,10 @@ def _transfer_function(page: Page, design: MinimalOrderCompensator, *, large: bo
             "F", formula, numbers, *_apart(page, pencil), result, say="minimal_transfer", answer=True, closing=False
         )
     remainder = predicate("strictly_proper", page["F"] - direct)
-    say_stability(page, design, "minimal", remainder, direct=relation(direct, direct.shown))
+    say_stability(page, design, "minimal", remainder, direct=relation(direct, direct.as_value))
 
 
-def _error_coordinates(page: Page, design: MinimalOrderCompensator) -> None:
+def _error_coordinates(page: Builder, design: MinimalOrderCompensator) -> None:
     """U = −Kx + K₂e₂, ẋ = (A − BK) x + BK₂e₂, block triangular; and the same in (x, z)."""
     A, B, C, K, F, K_2, K_y = (page[name] for name in ("A", "B", "C", "K", "F_z", "K_2", "K_y"))
     x, e, z, order = page["x"], page["e_2"], page[observer_state(page)], page.plant.order
@@ -234,7 +233,7 @@ def _error_coordinates(page: Page, design: MinimalOrderCompensator) -> None:
     )
 
 
-def _plain(page: Page, term: Term) -> Term:
+def _plain(page: Builder, term: Term) -> Term:
     """Return a value written out, a 1×1 matrix as a number."""
     value = term.value
     return page.value(value[0, 0] if isinstance(value, Matrix) and value.shape == (1, 1) else value)

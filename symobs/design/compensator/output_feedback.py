@@ -1,4 +1,4 @@
-"""What compensators with either observer have in common: the two designs they are made of, and the closed loop."""
+"""Output feedback with an observer of either kind: the two gains and the closed loop."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ class OutputFeedback(Result):
     # -- what a subclass says ----------------------------------------------------------------------------------------
 
     @classmethod
-    def designed(cls, plant: StateSpace, control: Asked, observer: Asked, name: str) -> Self:
+    def design(cls, plant: StateSpace, control: Asked, observer: Asked, name: str) -> Self:
         """Return the compensator for these polynomials, or with these gains."""
         raise NotImplementedError
 
@@ -168,7 +168,7 @@ class OutputFeedback(Result):
 
     @property
     def _may_lose_poles(self) -> bool:
-        """Whether F is said to be unstable, and is so only where none of its poles cancels."""
+        """Whether F is unstable only where none of its poles cancels."""
         return self.exists and self._own_stability == "no" and not self._is_unavoidably_unstable
 
     @cached_property
@@ -183,18 +183,18 @@ class OutputFeedback(Result):
         """Return the compensator on a stratum."""
         control, observer = (asked.substitute(values) for asked in self.asked_for[2:])
         kind, name = type(self), self.method
-        found: Self = plant.once((kind, control, observer, name), lambda: kind.designed(plant, control, observer, name))
+        found: Self = plant.once((kind, control, observer, name), lambda: kind.design(plant, control, observer, name))
         return found
 
     @property
     def asked_for(self) -> tuple[Any, ...]:
-        """What a compensator of a plant is asked for by: its kind and method, and the polynomial or the gain of each half."""
+        """The specification of a compensator: its kind and method, and the polynomial or the gain of each half."""
         halves = (self.feedback, self.estimator)
         return type(self), self.method, *(half.desired or half.answer[half.letter] for half in halves)
 
     @property
     def has_given_gain(self) -> bool:
-        """Whether one of the gains was given, so that its poles are found and not asked for."""
+        """Whether one of the gains is given, so that its poles are found, not desired."""
         return None in (self.feedback.desired, self.estimator.desired)
 
     @property
@@ -244,7 +244,7 @@ class OutputFeedback(Result):
         values = {"P": self.plant_function, "F": self.answer["F"], "G_cl": whole}
         e = Environment(variable=variable, values=values)
         P, F, G = (letter(name, e) for name in ("P", "F", "G_cl"))
-        check(Claim(relation((identity(self.plant.outputs, e) + P @ F) @ G, P), e.under(self.plant.relations)))
+        check(Claim(relation((identity(self.plant.outputs, e) + P @ F) @ G, P), e.with_relations(self.plant.relations)))
         return tuple(tuple(factored(entry, variable, monic=False) for entry in row) for row in whole.rows)
 
     @cached_property
@@ -259,7 +259,7 @@ class OutputFeedback(Result):
         form = over(numerator, own, polynomial) if kept else factored(value, self.plant.variable, monic=False)
         e = Environment(variable=self.plant.variable, values={"P": P, "F": F, "G_cl": value})
         P_, F_, one = letter("P", e), letter("F", e), Term(relation(1, 1).members[0], e)
-        check(Claim(relation(letter("G_cl", e), P_ / (one + P_ @ F_)), e.under(self.plant.relations)))
+        check(Claim(relation(letter("G_cl", e), P_ / (one + P_ @ F_)), e.with_relations(self.plant.relations)))
         return form
 
     @cached_property
@@ -272,12 +272,12 @@ class OutputFeedback(Result):
         kept = value.denominator.degree(variable) == polynomial.value.degree(variable)
         e = Environment(variable=variable, values={"P": self.plant_function, "F": self.answer["F"], "G_r": value})
         P, F, one = letter("P", e), letter("F", e), Term(relation(1, 1).members[0], e)
-        check(Claim(relation(letter("G_r", e), P @ F / (one + P @ F)), e.under(self.plant.relations)))
+        check(Claim(relation(letter("G_r", e), P @ F / (one + P @ F)), e.with_relations(self.plant.relations)))
         return cancelled(numerator, own, polynomial, variable) if kept else factored(value, variable, monic=False)
 
     @cached_property
     def loop_polynomial(self) -> Factored:
-        """φ_c φ_o, with the factors that were asked for."""
+        """φ_c φ_o, with its desired factors."""
         factors: dict[Scalar, int] = {}
         for design in (self.feedback, self.estimator):
             for factor, power in _factors_of(design):
@@ -358,13 +358,13 @@ class OutputFeedback(Result):
 
     @property
     def _found_poles(self) -> Mapping[str, Any]:
-        """The poles of the loop and whether it is stable: what a given gain does."""
+        """The poles of the loop and its stability under a given gain."""
         plant, whole = self.plant, self.loop_polynomial.value
-        told = stability(whole, plant.variable, plant.symbols.signs, discrete=plant.is_discrete)
+        verdict_of_loop = stability(whole, plant.variable, plant.symbols.signs, discrete=plant.is_discrete)
         return {
             "poles": roots_of(whole, plant.variable),
-            "stable": told.verdict,
-            "stable_if": told.inequalities(plant.symbols.signs),
+            "stable": verdict_of_loop.verdict,
+            "stable_if": verdict_of_loop.inequalities(plant.symbols.signs),
         }
 
     @property

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from symobs.analysis.factored_form import formula_of_factored
 from symobs.analysis.rank.rank_page import square_test
-from symobs.derivation.builder import Page, relation
+from symobs.derivation.builder import Builder, relation
 from symobs.design.gain.gain_page import name_coefficients, say_as_required, write_case
 from symobs.design.gain.placement_problem import FEEDBACK, OBSERVER, PlacementProblem
 from symobs.design.page_parts import readability
@@ -20,14 +20,14 @@ if TYPE_CHECKING:
 
 
 def can_stand_side_by_side(design: CompensatorDesign) -> bool:
-    """Whether both pairs pass their tests, if only off the zeros of a determinant: else each side tells its own story."""
+    """Return whether both pairs pass their tests, if only off the zeros of a determinant."""
     sides = (design.feedback, design.estimator)
     return design.exists and all(
         part.fixed_polynomial.is_one and part.answer[part.letter] is not None for part in sides
     )
 
 
-def write_side_by_side(page: Page, design: CompensatorDesign) -> None:
+def write_side_by_side(page: Builder, design: CompensatorDesign) -> None:
     """Write the two columns, what transposition makes of the left one, and the exceptions of both."""
     with page.section("side_by_side"):
         with page.section("left_observer"):
@@ -44,7 +44,7 @@ def write_side_by_side(page: Page, design: CompensatorDesign) -> None:
                 write_case(page, case, side)
 
 
-def _column(page: Page, design: GainDesign, side: PlacementProblem) -> None:
+def _column(page: Builder, design: GainDesign, side: PlacementProblem) -> None:
     """Write the test, the polynomial, the gain and its check for one of the pairs."""
     A, order, value = _matrix(page, side), page.plant.order, design.answer[side.gain]
     if side is OBSERVER:
@@ -58,7 +58,7 @@ def _column(page: Page, design: GainDesign, side: PlacementProblem) -> None:
         page.define("Ctr", blocks, silent=True)
         test = page["Ctr"]
     page.equal(
-        relation(test, *([blocks] if order <= readability.COLUMN_ORDER else []), test.shown), say=f"test_{side.kind}"
+        relation(test, *([blocks] if order <= readability.COLUMN_ORDER else []), test.as_value), say=f"test_{side.kind}"
     )
     square_test(page, side.matrix, design.test, side.test)
     page.conclude(f"any_{side.kind}")
@@ -74,12 +74,12 @@ def _column(page: Page, design: GainDesign, side: PlacementProblem) -> None:
     say_as_required(page, desired, _determinant(page, side), page.value(desired.polynomial), *grouped)
 
 
-def _matrix(page: Page, side: PlacementProblem) -> Term:
+def _matrix(page: Builder, side: PlacementProblem) -> Term:
     """Return Aᵀ on the left, A on the right."""
     return page["A"].T if side is OBSERVER else page["A"]
 
 
-def _determinant(page: Page, side: PlacementProblem) -> Term:
+def _determinant(page: Builder, side: PlacementProblem) -> Term:
     """Return det(sI − Aᵀ + CᵀLᵀ) on the left, det(sI − A + BK) on the right."""
     if side is FEEDBACK:
         return side.error_determinant(page)

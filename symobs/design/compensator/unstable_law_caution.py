@@ -8,15 +8,15 @@ from symobs.derivation.builder import predicate, relation
 from symobs.stability.criteria.stability import stability
 
 if TYPE_CHECKING:
-    from symobs.derivation.builder import Page
+    from symobs.derivation.builder import Builder
     from symobs.design.compensator.output_feedback import OutputFeedback
 
 
-def caution_law(page: Page, loop: OutputFeedback) -> None:
+def caution_law(page: Builder, loop: OutputFeedback) -> None:
     """Warn where the law is surely unstable by itself, which a loop with stable poles does not show."""
     plant, own = page.plant, loop.own_matrix
     chi = own.characteristic_polynomial(plant.variable)
-    minimal = page.knows("F_z")
+    minimal = page.defines("F_z")
     if chi.names - {plant.variable} or (minimal and plant.matrices.has_feedthrough):
         return
     if stability(chi, plant.variable, {}, discrete=plant.is_discrete).verdict != "no":
@@ -31,4 +31,4 @@ def caution_law(page: Page, loop: OutputFeedback) -> None:
     determinant = (page.s @ page.identity(own.shape[0]) - page["A_c"]).apply("det")
     time = "discrete" if plant.is_discrete else "continuous"
     unstable = predicate("unstable", determinant)
-    page.caution(f"law_unstable_{time}", unstable, matrix=relation(page["A_c"], matrix, page["A_c"].shown))
+    page.caution(f"law_unstable_{time}", unstable, matrix=relation(page["A_c"], matrix, page["A_c"].as_value))

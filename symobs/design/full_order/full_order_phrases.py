@@ -1,4 +1,4 @@
-"""Observers of full order, and what is asked of them and of state feedback."""
+"""Sentences and questions of full-order observers and state feedback."""
 
 from __future__ import annotations
 

@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING, Any, ClassVar
 from symobs._dataclass import dataclass
 from symobs.analysis.page_parts import given
 from symobs.analysis.rank.observability import Observability
-from symobs.derivation.builder import Page, relation
+from symobs.derivation.builder import Builder, relation
 from symobs.design.full_order.observer_existence_page import write_ansatz, write_found
 from symobs.design.full_order.placement_methods import register_methods
 from symobs.design.gain.gain_design import GainDesign
 from symobs.design.gain.gain_page import write_gain
-from symobs.design.gain.gain_request import designed, page_style
+from symobs.design.gain.gain_request import design_gain, page_style
 from symobs.design.gain.placement_problem import OBSERVER
 from symobs.design.page_parts.block_diagrams import draw_collected, draw_copy
 from symobs.design.page_parts.component_equations import write_components
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from symobs.analysis.rank.rank_test import RankResult
-    from symobs.design.pole_placement.single_output import Pair
+    from symobs.design.pole_placement.single_output import ObserverPair
     from symobs.formula import Environment
     from symobs.specification import Entries, GainText, Name, Poles, PolynomialText
     from symobs.system import StateSpace
@@ -44,7 +44,7 @@ class ObserverDesign(GainDesign):
     rank_test: ClassVar[type[RankResult]] = Observability
 
     @staticmethod
-    def dual_pair(plant: StateSpace) -> Pair:
+    def dual_pair(plant: StateSpace) -> ObserverPair:
         """Return (A, C)."""
         return pair_of(plant.matrices.A, plant.matrices.C, plant.variable, plant.equations)
 
@@ -79,10 +79,10 @@ class ObserverDesign(GainDesign):
         }
 
     @property
-    def told_method(self) -> str:
-        """The method whose page is written: for small plants the most readable one unless one was asked for."""
+    def printed_method(self) -> str:
+        """The method of the page: by default the most readable one for small plants."""
         if self.desired is None or self.answer["L"] is None or not self.fixed_polynomial.is_one:
-            return super().told_method
+            return super().printed_method
         return page_style(self.page_method, self.plant, several=self.plant.outputs > 1)
 
     @property
@@ -101,7 +101,7 @@ class ObserverDesign(GainDesign):
         """(u, y) → x̂."""
         return observer_of(self)
 
-    def write(self, page: Page) -> None:
+    def write(self, page: Builder) -> None:
         """Write data, gain, and the observer with its error equation."""
         given(page, ("observer", self.desired))
         by_ansatz = self.page_method == "existence" and self.answer["L"] is not None
@@ -120,7 +120,7 @@ class ObserverDesign(GainDesign):
                 plot_error(page, "e", page["A"] - page["L"] @ page["C"])
 
 
-def write_observer(page: Page, *, drawn: bool = False, alone: bool = True) -> None:
+def write_observer(page: Builder, *, drawn: bool = False, alone: bool = True) -> None:
     """Write the observer in both forms and its error equation, each line checked on signals.
 
     `alone`, it is the answer, and its components are written out; else it is a part of a compensator.
@@ -140,16 +140,18 @@ def write_observer(page: Page, *, drawn: bool = False, alone: bool = True) -> No
     if m.has_feedthrough:
         page.equal(relation(innovation, C @ page["e"]), say="feedthrough_cancels")
     page.equal(
-        relation(page["e"].derivative, rate - (model + L @ innovation), closed @ page["e"], closed.shown @ page["e"]),
+        relation(
+            page["e"].derivative, rate - (model + L @ innovation), closed @ page["e"], closed.as_value @ page["e"]
+        ),
         say="error_equation",
         error=relation(page["e"], page["x"] - page["x_hat"]),
     )
     _say_deadbeat(page, closed)
-    collected, numbers, driven = closed @ x_hat, closed.shown @ x_hat, None
+    collected, numbers, driven = closed @ x_hat, closed.as_value @ x_hat, None
     if m.has_input:
         driven = page["B"] - L @ page["D"] if m.has_feedthrough else page["B"]
-        collected, numbers = collected + driven @ page["u"], numbers + driven.shown @ page["u"]
-    whole = relation(x_hat.derivative, collected + L @ y, numbers + L.shown @ y)
+        collected, numbers = collected + driven @ page["u"], numbers + driven.as_value @ page["u"]
+    whole = relation(x_hat.derivative, collected + L @ y, numbers + L.as_value @ y)
     if not alone and not m.has_feedthrough:  # its matrix stands in the equation of the error
         page.conclude_silently(whole)
         return
@@ -159,7 +161,7 @@ def write_observer(page: Page, *, drawn: bool = False, alone: bool = True) -> No
         write_components(page, driven)
 
 
-def _say_deadbeat(page: Page, closed: Term) -> None:
+def _say_deadbeat(page: Builder, closed: Term) -> None:
     """In discrete time with all poles at 0: after how many steps the error is gone."""
     if not page.plant.is_discrete:
         return
@@ -198,6 +200,6 @@ def observer(
     be assigned, or where no gain has zeros as asked for.  Raises `InputError` for wrong poles, shapes or entries.
     Source: D. G. Luenberger (1964, 1971).
     """
-    return designed(
+    return design_gain(
         ObserverDesign, plant, poles=poles, polynomial=polynomial, given=L, zero=zero, member=member, method=method
     )

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from symobs.derivation.builder import Page, relation
+from symobs.derivation.builder import Builder, relation
 from symobs.design.pole_placement.fresh_names import fresh_names, taken_names
 from symobs.exact import Matrix
 
@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from symobs.formula.term import Term
 
 
-def write_ansatz(page: Page, gain: Matrix) -> None:
+def write_ansatz(page: Builder, gain: Matrix) -> None:
     """The error of the ansatz, and the choice of F and G that frees it of x and u."""
     m = page.plant.matrices
     undetermined(page, "F_x", "f_", (m.A - gain @ m.C).normal())
@@ -40,23 +40,23 @@ def write_ansatz(page: Page, gain: Matrix) -> None:
     page.equal(relation(page["e"].derivative, (A - H @ C) @ page["e"]), say="existence_left")
 
 
-def write_found(page: Page) -> None:
+def write_found(page: Builder) -> None:
     """The observer with the matrices found."""
     m, L = page.plant.matrices, page["L"]
     page.conclude_silently(relation(page["H_x"], L))
     closed = page["A"] - L @ page["C"]
-    collected, numbers = closed @ page["x_hat"], closed.shown @ page["x_hat"]
+    collected, numbers = closed @ page["x_hat"], closed.as_value @ page["x_hat"]
     if m.has_input:
         driven = page["B"] - L @ page["D"] if m.has_feedthrough else page["B"]
-        collected, numbers = collected + driven @ page["u"], numbers + driven.shown @ page["u"]
+        collected, numbers = collected + driven @ page["u"], numbers + driven.as_value @ page["u"]
     page.equal(
-        relation(page["x_hat"].derivative, collected + L @ page["y"], numbers + L.shown @ page["y"]),
+        relation(page["x_hat"].derivative, collected + L @ page["y"], numbers + L.as_value @ page["y"]),
         say="existence_observer",
         answer=True,
     )
 
 
-def undetermined(page: Page, name: str, stem: str, value: Matrix) -> None:
+def undetermined(page: Builder, name: str, stem: str, value: Matrix) -> None:
     """Establish a matrix of letters, which stand for what will be chosen."""
     names = iter(fresh_names(stem, len(value.entries), taken_names(page)))
     page.set(name, Matrix.of([[page.name_coefficient(next(names), entry) for entry in row] for row in value.rows]))

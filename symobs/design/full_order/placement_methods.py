@@ -18,14 +18,14 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from symobs.design.gain.gain_design import GainDesign
-    from symobs.design.pole_placement.single_output import Pair
+    from symobs.design.pole_placement.single_output import ObserverPair
     from symobs.exact import Matrix
     from symobs.specification import DesiredPolynomial
     from symobs.system import StateSpace
 
 
 class Formula(NamedTuple):
-    """What a method does on one of the dual sides, and where it is from."""
+    """A placement method on one of the dual sides, with its source."""
 
     source: str
     summary: str
@@ -41,7 +41,7 @@ class PlacementMethod:
     name: str
     observer: Formula
     state_feedback: Formula | None
-    find: Callable[[Pair, DesiredPolynomial], Matrix | None] | None = None
+    find: Callable[[ObserverPair, DesiredPolynomial], Matrix | None] | None = None
     page: Callable[..., None] | None = None
     #: Whether the method is one for a single output (input).
     single: bool = False

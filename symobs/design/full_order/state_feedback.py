@@ -11,7 +11,7 @@ from symobs.analysis.rank.observability import Controllability
 from symobs.design.full_order.placement_methods import register_methods
 from symobs.design.gain.gain_design import GainDesign
 from symobs.design.gain.gain_page import write_gain
-from symobs.design.gain.gain_request import designed, page_style
+from symobs.design.gain.gain_request import design_gain, page_style
 from symobs.design.gain.placement_problem import FEEDBACK
 from symobs.design.pole_placement.multiple_outputs import pair_of
 from symobs.exact.linear_algebra.realisation import Realisation
@@ -22,8 +22,8 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from symobs.analysis.rank.rank_test import RankResult
-    from symobs.derivation.builder import Page
-    from symobs.design.pole_placement.single_output import Pair
+    from symobs.derivation.builder import Builder
+    from symobs.design.pole_placement.single_output import ObserverPair
     from symobs.exact import Matrix
     from symobs.formula import Environment
     from symobs.specification import Entries, GainText, Name, Poles, PolynomialText
@@ -39,7 +39,7 @@ class StateFeedbackDesign(GainDesign):
     rank_test: ClassVar[type[RankResult]] = Controllability
 
     @staticmethod
-    def dual_pair(plant: StateSpace) -> Pair:
+    def dual_pair(plant: StateSpace) -> ObserverPair:
         """Return (Aᵀ, Bᵀ)."""
         return pair_of(plant.matrices.A.T, plant.matrices.B.T, plant.variable, plant.equations)
 
@@ -72,10 +72,10 @@ class StateFeedbackDesign(GainDesign):
         }
 
     @property
-    def told_method(self) -> str:
-        """The method whose page is written: for small plants the most readable one unless one was asked for."""
+    def printed_method(self) -> str:
+        """The method of the page: by default the most readable one for small plants."""
         if self.desired is None or self.answer["K"] is None or not self.fixed_polynomial.is_one:
-            return super().told_method
+            return super().printed_method
         return page_style(self.page_method, self.plant, several=self.plant.inputs > 1)
 
     @property
@@ -87,7 +87,7 @@ class StateFeedbackDesign(GainDesign):
         loop = Realisation((m.A - m.B @ K).normal(), m.B, (m.C - m.D @ K).normal(), m.D)
         return {**super().systems, "closed_loop": loop}
 
-    def write(self, page: Page) -> None:
+    def write(self, page: Builder) -> None:
         """Write data and gain."""
         given(page, ("control", self.desired))
         with page.section("state_feedback"):
@@ -122,6 +122,6 @@ def state_feedback(
     assigned, or where no gain has zeros as asked for.  Raises `InputError` for wrong poles, shapes or entries.
     Source: W. M. Wonham (1967).
     """
-    return designed(
+    return design_gain(
         StateFeedbackDesign, plant, poles=poles, polynomial=polynomial, given=K, zero=zero, member=member, method=method
     )

@@ -1,11 +1,11 @@
-"""What is true of a gain where the rank of its test drops, where no gain exists in general, or where it divides by 0."""
+"""Cases of a gain: strata on which the rank drops, a gain exists exceptionally, or a denominator vanishes."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING, TypeVar
 
 from symobs.analysis.strata.strata import common_places, places, places_of, solved
-from symobs.design.pole_placement.multiple_outputs import SeveralOutputs
+from symobs.design.pole_placement.multiple_outputs import MultiOutputPair
 from symobs.exact import Matrix
 
 if TYPE_CHECKING:
@@ -41,7 +41,7 @@ def half_of(kind: type[Design], plant: StateSpace, asked: DesiredPolynomial | Ma
 
 
 def cases_of_gain(design: GainDesign) -> tuple[Case, ...]:
-    """Return what is true of a given gain, or of one that was asked for, where it is not true in general."""
+    """Return the cases of a given or designed gain on strata where it differs from the generic one."""
     return cases_of_given(design) if design.desired is None else cases_of(design, design.desired)
 
 
@@ -81,7 +81,7 @@ def places_where(design: GainDesign) -> tuple[Place, ...]:
 
 
 def cases_of_given(design: GainDesign) -> tuple[Case, ...]:
-    """Return what a given gain does on the strata where other modes than in general are beyond any gain."""
+    """Return the cases of a given gain on strata with other fixed modes than the generic ones."""
 
     def solve(there: StateSpace, values: dict[str, Scalar]) -> GainDesign:
         return type(design).of_given(there, design.answer[design.letter].substitute(values))
@@ -90,9 +90,9 @@ def cases_of_given(design: GainDesign) -> tuple[Case, ...]:
 
 
 def chosen(design: GainDesign) -> tuple[Scalar, ...]:
-    """Return what the gain divides by because it is this one of many: where it vanishes another one serves."""
+    """Return the denominators due to the choice of one gain of a family: where they vanish another one exists."""
     pair = design.pair
-    if design.answer[design.letter] is None or (pair.is_observable and not isinstance(pair, SeveralOutputs)):
+    if design.answer[design.letter] is None or (pair.is_observable and not isinstance(pair, MultiOutputPair)):
         return ()
     lost = {
         case.when[0].expression for case in design.test.case_tree if [c.operator for c in case.when].count("==") == 1

@@ -16,12 +16,12 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
 
     from symobs.design.gain.gain_kind import Places
-    from symobs.design.pole_placement.single_output import Pair
+    from symobs.design.pole_placement.single_output import ObserverPair
     from symobs.design.pole_placement.zero_pattern import RootGain
     from symobs.specification import DesiredPolynomial
 
 
-def unassignable_claims(pair: Pair, polynomial: Scalar) -> Iterator[Claim]:
+def unassignable_claims(pair: ObserverPair, polynomial: Scalar) -> Iterator[Claim]:
     """Yield C N = 0 and A N = N X, which make det(sI − X) a factor of every det(sI − A + LC), and that it does not divide φ."""
     quotient, rest = pair.divided(polynomial)
     N, X = pair.kernel, pair.restricted
@@ -40,7 +40,7 @@ def unassignable_claims(pair: Pair, polynomial: Scalar) -> Iterator[Claim]:
 
 
 def claims_of_kernel_family(
-    pair: Pair,
+    pair: ObserverPair,
     gain: Matrix,
     general: Matrix,
     names: Sequence[str],
@@ -55,7 +55,7 @@ def claims_of_kernel_family(
     yield _of_full_rank(pair, e)
 
 
-def _of_full_rank(pair: Pair, e: Environment) -> Claim:
+def _of_full_rank(pair: ObserverPair, e: Environment) -> Claim:
     """Return the claim that the columns of N, the kernel of 𝒪, are independent."""
     N = pair.kernel
     minor = N.select(independent_rows(N, pair.ideal), range(N.shape[1]))
@@ -63,14 +63,14 @@ def _of_full_rank(pair: Pair, e: Environment) -> Claim:
 
 
 def excluded_claims(
-    pair: Pair,
+    pair: ObserverPair,
     desired: DesiredPolynomial,
     places: Places,
     equations: Sequence[Scalar],
     needed: Sequence[Scalar],
     letter_of_gain: str,
 ) -> Iterator[Claim]:
-    """Yield that what is needed for such a gain lies in the ideal of the equations: 1, or polynomials in parameters.
+    """Yield the claim that necessary conditions of such a gain lie in the ideal of the equations.
 
     Where nothing is needed the answer says no more than that no gain was found: raises `CertificateRejected` if one is.
     """

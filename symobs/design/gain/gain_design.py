@@ -31,7 +31,7 @@ from symobs.design.gain.gain_kind import (
 from symobs.design.pole_placement.decoupled import decoupled_claim, decoupled_gain
 from symobs.design.pole_placement.fresh_names import fresh_names
 from symobs.design.pole_placement.gain_family import Family
-from symobs.design.pole_placement.multiple_outputs import SeveralOutputs
+from symobs.design.pole_placement.multiple_outputs import MultiOutputPair
 from symobs.design.pole_placement.zero_pattern import (
     RootGain,
     contradict,
@@ -53,7 +53,7 @@ if TYPE_CHECKING:
 
     from symobs.analysis.rank.rank_test import RankResult
     from symobs.design.gain.gain_kind import AskedGain, GainKind, Places
-    from symobs.design.pole_placement.single_output import Pair
+    from symobs.design.pole_placement.single_output import ObserverPair
     from symobs.specification import DesiredPolynomial
     from symobs.system import StateSpace
 
@@ -71,7 +71,7 @@ class GainDesign(Result):
     #: What the gain is: by it the claims, the verdict and the page are told apart.
     kind: GainKind
     #: (A, C) of the observer problem that this is or is dual to, over one field with the desired polynomial.
-    pair: Pair = field(compare=False)
+    pair: ObserverPair = field(compare=False)
 
     letter: ClassVar[str]
     rank_test: ClassVar[type[RankResult]]
@@ -79,7 +79,7 @@ class GainDesign(Result):
     # -- the dual sides ----------------------------------------------------------------------------------------------
 
     @staticmethod
-    def dual_pair(plant: StateSpace) -> Pair:
+    def dual_pair(plant: StateSpace) -> ObserverPair:
         """Return (A, C) of the observer problem that this task is or is dual to."""
         raise NotImplementedError
 
@@ -90,7 +90,7 @@ class GainDesign(Result):
 
     @staticmethod
     def gain_term(environment: Environment) -> Term:
-        """Return what the gain subtracts from A: LC or BK."""
+        """Return the term subtracted from A: LC or BK."""
         raise NotImplementedError
 
     @classmethod
@@ -124,8 +124,10 @@ class GainDesign(Result):
         return cls._of_kind(plant, method_name, kind, pair, gain)
 
     @classmethod
-    def _with_zeros(cls, pair: Pair, desired: DesiredPolynomial, zero: Places) -> tuple[AskedGain, Pair, Matrix | None]:
-        """Return what a gain with zeros in the given places is, and the gain where there is one to write."""
+    def _with_zeros(
+        cls, pair: ObserverPair, desired: DesiredPolynomial, zero: Places
+    ) -> tuple[AskedGain, ObserverPair, Matrix | None]:
+        """Return the kind of a gain with zeros in the given places, and the gain if one was found."""
         match with_zeros(pair, desired, cls.places(zero)):
             case None if pair.can_assign(desired.polynomial):
                 return NoGainWithZeros(desired, zero), pair, None
@@ -137,7 +139,9 @@ class GainDesign(Result):
                 return GainWithZeros(desired, zero), pair, gain
 
     @classmethod
-    def _of_kind(cls, plant: StateSpace, method_name: str, kind: AskedGain, pair: Pair, gain: Matrix | None) -> Self:
+    def _of_kind(
+        cls, plant: StateSpace, method_name: str, kind: AskedGain, pair: ObserverPair, gain: Matrix | None
+    ) -> Self:
         """Return the design with a gain of the observer problem, or none."""
         own = None if gain is None else cls.transpose_for_task(gain)
         answer = {cls.letter: own, "polynomial": kind.desired.polynomial}
@@ -154,7 +158,7 @@ class GainDesign(Result):
         plant: StateSpace,
         desired: DesiredPolynomial,
         method_name: str,
-        gain: Callable[[Pair, DesiredPolynomial], Matrix | None],
+        gain: Callable[[ObserverPair, DesiredPolynomial], Matrix | None],
     ) -> Self:
         """Return the design whose gain a method finds where all is seen; the common way where it is not, or finds none."""
         pair = cls.dual_pair(plant)
@@ -244,7 +248,7 @@ class GainDesign(Result):
 
     @property
     def decoupled(self) -> bool:
-        """Whether the member of the family is asked for whose output errors (whose inputs' parts) are decoupled."""
+        """Whether the decoupled member of the family is requested: one equation for each output (input)."""
         return isinstance(self.kind, DecoupledGain)
 
     @property
@@ -284,7 +288,7 @@ class GainDesign(Result):
 
     @property
     def existence(self) -> tuple[Scalar, ...]:
-        """What decides where a gain exists: det 𝒪 (det 𝒞), or what the fixed modes leave of φ where that is 0."""
+        """The existence condition of a gain: det 𝒪 (det 𝒞), or φ modulo the fixed polynomial where that is 0."""
         match self.kind:
             case GivenGain():
                 return ()
@@ -297,7 +301,7 @@ class GainDesign(Result):
 
     @cached_property
     def _obstacles(self) -> tuple[Scalar, ...]:
-        """The coefficients of φ modulo the fixed polynomial, as far as parameters can make them vanish."""
+        """The coefficients of φ modulo the fixed polynomial, if parameters can make all of them vanish."""
         rest = self.pair.divided(self.answer["polynomial"])[1]
         found = [c.numerator for c in rest.coefficients(self.plant.variable) if not c.is_zero]
         return () if any(c.is_constant for c in found) else tuple(found)
@@ -335,7 +339,7 @@ class GainDesign(Result):
     def chart(self) -> Family | None:
         """The family of gains for several outputs (inputs), the gain of the answer in it; None for one."""
         gain, pair = self.answer[self.letter], self.pair
-        if gain is None or self.desired is None or not isinstance(pair, SeveralOutputs) or identities([gain])[1]:
+        if gain is None or self.desired is None or not isinstance(pair, MultiOutputPair) or identities([gain])[1]:
             return None
         names = fresh_names("g", pair.freedom, self._taken)
         return Family.of(pair, self.desired, names, self.transpose_for_task(gain))

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from symobs.analysis.page_parts import determinant_form
 from symobs.conditions import vanishing_factors
-from symobs.derivation.builder import Page, relation
+from symobs.derivation.builder import Builder, relation
 from symobs.design.page_parts import readability
 from symobs.design.pole_placement.sylvester import Sylvester, charts_of
 from symobs.exact import Matrix, companion
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from symobs.specification import DesiredPolynomial
 
 
-def write_sylvester(page: Page, design: GainDesign, side: PlacementProblem, desired: DesiredPolynomial) -> None:
+def write_sylvester(page: Builder, design: GainDesign, side: PlacementProblem, desired: DesiredPolynomial) -> None:
     """Write the equation, its solution, and for several outputs (inputs) the family and one member of it."""
     page.define(f"F_{side.index}", companion(desired.coefficients), say="companion_of_wish")
     chart = design.chart
@@ -47,14 +47,14 @@ def write_sylvester(page: Page, design: GainDesign, side: PlacementProblem, desi
     solution = page.set(f"X_{side.index}1", equation.solution(own))
     determinant = relation(solution.apply("det"), determinant_form(page, solution.value.determinant()))
     if solution.value.size <= readability.MEMBER_SOLUTION:
-        page.equal(relation(solution, solution.shown), determinant, say="solution_of_member")
+        page.equal(relation(solution, solution.as_value), determinant, say="solution_of_member")
     else:
         page.equal(determinant, say="solution_long")
     page.conclude_silently(_sylvester(page, side, "1", equation))
     page.define(side.gain, _gain(page, side, "1", equation), say="gain_follows", answer=True)
 
 
-def write_hidden_family(page: Page, design: GainDesign, side: PlacementProblem) -> None:
+def write_hidden_family(page: Builder, design: GainDesign, side: PlacementProblem) -> None:
     """Write one gain and the dimension of the family where some modes are fixed."""
     assert design.chart is not None  # noqa: S101 - several outputs have a chart wherever there is a gain
     key = of_the_others(design)
@@ -68,7 +68,7 @@ def of_the_others(design: GainDesign) -> str:
     return "no_others" if design.fixed_polynomial.degree(design.plant.variable) == design.plant.order else "one_gain"
 
 
-def _only_gain(page: Page, design: GainDesign, side: PlacementProblem, desired: DesiredPolynomial) -> None:
+def _only_gain(page: Builder, design: GainDesign, side: PlacementProblem, desired: DesiredPolynomial) -> None:
     """One output (input): G = e₁ᵀ, and X is unique."""
     pair = design.dual_pair(page.plant)
     (equation,) = charts_of(pair.A, pair.c, desired.factors, pair.variable, ())
@@ -77,7 +77,7 @@ def _only_gain(page: Page, design: GainDesign, side: PlacementProblem, desired: 
     page.define(side.gain, _gain(page, side, "", equation), say="gain_follows", answer=True)
 
 
-def _shift(page: Page, equation: Sylvester, side: PlacementProblem, design: GainDesign) -> None:
+def _shift(page: Builder, equation: Sylvester, side: PlacementProblem, design: GainDesign) -> None:
     """Part the spectra where they meet."""
     if equation.shift is None:
         return
@@ -86,11 +86,11 @@ def _shift(page: Page, equation: Sylvester, side: PlacementProblem, design: Gain
     page.define(f"A_{side.index}0", page["A"] - moved)
 
 
-def _state_matrix(page: Page, side: PlacementProblem, equation: Sylvester) -> Term:
+def _state_matrix(page: Builder, side: PlacementProblem, equation: Sylvester) -> Term:
     return page["A"] if equation.shift is None else page[f"A_{side.index}0"]
 
 
-def _equation(page: Page, side: PlacementProblem, which: str, equation: Sylvester, value: Matrix) -> None:
+def _equation(page: Builder, side: PlacementProblem, which: str, equation: Sylvester, value: Matrix) -> None:
     """Write G, the equation, and X with its determinant."""
     G, X = (f"{letter}_{side.index}{which}" for letter in "GX")
     page.set(G, value)
@@ -104,7 +104,7 @@ def _equation(page: Page, side: PlacementProblem, which: str, equation: Sylveste
     page.equal(_similar(page, side, which, equation), say=f"similar_{side.kind}")
     page.equal(relation(page[G], value), say=f"one_row_held_{side.kind}" if value.shape[0] > 1 else "one_gain_only")
     if solution.value.size <= readability.FAMILY_SOLUTION:
-        page.equal(relation(solution, solution.shown), say="solution_is" if value.shape[0] > 1 else "")
+        page.equal(relation(solution, solution.as_value), say="solution_is" if value.shape[0] > 1 else "")
     determinant = solution.value.determinant()
     if determinant.size <= readability.FAMILY_DETERMINANT:
         page.equal(
@@ -113,7 +113,7 @@ def _equation(page: Page, side: PlacementProblem, which: str, equation: Sylveste
         )
 
 
-def _sylvester(page: Page, side: PlacementProblem, which: str, equation: Sylvester) -> Relation:
+def _sylvester(page: Builder, side: PlacementProblem, which: str, equation: Sylvester) -> Relation:
     """AᵀX − XF = CᵀG, or AX − XF = BG."""
     A, F = _state_matrix(page, side, equation), page[f"F_{side.index}"]
     G, X = (f"{letter}_{side.index}{which}" for letter in "GX")
@@ -122,7 +122,7 @@ def _sylvester(page: Page, side: PlacementProblem, which: str, equation: Sylvest
     return relation(A @ page[X] - page[X] @ F, page["B"] @ page[G])
 
 
-def _gain(page: Page, side: PlacementProblem, which: str, equation: Sylvester) -> Term:
+def _gain(page: Builder, side: PlacementProblem, which: str, equation: Sylvester) -> Term:
     """L₀ + (G X⁻¹)ᵀ, or K₀ + G X⁻¹."""
     G, X = (f"{letter}_{side.index}{which}" for letter in "GX")
     found = page[G] @ page[X].inverse
@@ -130,7 +130,7 @@ def _gain(page: Page, side: PlacementProblem, which: str, equation: Sylvester) -
     return found if equation.shift is None else page[f"{side.gain}_0"] + found
 
 
-def _similar(page: Page, side: PlacementProblem, which: str, equation: Sylvester) -> Relation:
+def _similar(page: Builder, side: PlacementProblem, which: str, equation: Sylvester) -> Relation:
     """(A − LC)ᵀ = Aᵀ − CᵀGX⁻¹ = XFX⁻¹, or A − BK = A − BGX⁻¹ = XFX⁻¹."""
     G, X = (f"{letter}_{side.index}{which}" for letter in "GX")
     A, moved = _state_matrix(page, side, equation), page[G] @ page[X].inverse

@@ -1,4 +1,4 @@
-"""What the gain of a design is: given, assigned, a member of the family, with zeros, algebraic; or that there is none."""
+"""Kinds of gains: given, assigned, decoupled, with zeros, algebraic, or nonexistent."""
 
 from __future__ import annotations
 

@@ -6,13 +6,13 @@ from fractions import Fraction
 from typing import TYPE_CHECKING
 
 from symobs.analysis.page_parts import determinant_form
-from symobs.derivation.builder import Page, relation
+from symobs.derivation.builder import Builder, relation
 from symobs.design.page_parts import readability
 from symobs.design.pole_placement.coefficient_matching import matching
 from symobs.design.pole_placement.fresh_names import fresh_names, taken_names
 from symobs.design.pole_placement.row_reduction import Reduction, gain_of, row_reduction
 from symobs.exact import Matrix, Scalar, companion, roots_of
-from symobs.formula import Literal, Roots, Shown
+from symobs.formula import Evaluated, Literal, Roots
 from symobs.formula.term import Term, block, product
 
 if TYPE_CHECKING:
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 _HARM = Fraction(1, 100)
 
 
-def write_ackermann_formula(page: Page, _: GainDesign, side: PlacementProblem, desired: DesiredPolynomial) -> None:
+def write_ackermann_formula(page: Builder, _: GainDesign, side: PlacementProblem, desired: DesiredPolynomial) -> None:
     """L = φ(A) 𝒪⁻¹ eₙ, and K = eₙᵀ 𝒞⁻¹ φ(A)."""
     order = page.plant.order
     unit = page.value(Matrix.unit(order, order - 1))
@@ -42,7 +42,7 @@ def write_ackermann_formula(page: Page, _: GainDesign, side: PlacementProblem, d
         page.define("K", last @ polynomial, last @ at, say="ackermann_state_feedback", answer=True)
 
 
-def _factor_at(page: Page, factor: Scalar, power: int) -> Term:
+def _factor_at(page: Builder, factor: Scalar, power: int) -> Term:
     """Return a factor of φ with A put in for the variable: (A + 10 I)²."""
     lead, *rest = factor.coefficients(page.plant.variable)
     A, degree, order = page["A"], len(rest), page.plant.order
@@ -59,7 +59,7 @@ def _factor_at(page: Page, factor: Scalar, power: int) -> Term:
     return total**power
 
 
-def write_matching(page: Page, design: GainDesign, side: PlacementProblem, desired: DesiredPolynomial) -> None:
+def write_matching(page: Builder, design: GainDesign, side: PlacementProblem, desired: DesiredPolynomial) -> None:
     """det(sI − A + LC) with unknown l₁ … lₙ, its coefficients equated to those of φ, the linear system, its solution."""
     order, variable = page.plant.order, page.plant.variable
     system = matching(design.dual_pair(page.plant), desired)
@@ -73,14 +73,14 @@ def write_matching(page: Page, design: GainDesign, side: PlacementProblem, desir
     polynomial = determinant.scalar
     page.equal(relation(determinant, page.value(polynomial)), say="polynomial_of_unknown")
     pairs = zip(polynomial.coefficients(variable)[1:], desired.coefficients, strict=True)
-    page.equal(*(relation(found, wish) for found, wish in pairs), say="equal_coefficients")
+    page.equal(*(relation(found, target) for found, target in pairs), say="equal_coefficients")
     page.equal(relation(page.value(system.M) @ page.value(unknown), system.r), say="linear_system")
     solution = design.transpose_for_task(system.solution)
     page.equal(relation(gain, solution), say="solution_of_system", answer=True)
     page.set(side.gain, solution)
 
 
-def write_companion(page: Page, _: GainDesign, side: PlacementProblem, desired: DesiredPolynomial) -> None:
+def write_companion(page: Builder, _: GainDesign, side: PlacementProblem, desired: DesiredPolynomial) -> None:
     """T = [q; qAᵀ; …] carries the dual pair to companion form, where the gain is the row of differences."""
     order, variable = page.plant.order, page.plant.variable
     found = page.plant.matrices.A.characteristic_polynomial(variable).coefficients(variable)[1:]
@@ -96,13 +96,13 @@ def write_companion(page: Page, _: GainDesign, side: PlacementProblem, desired: 
     wanted = [page.value(c) for c in reversed(desired.coefficients)]
     row = block([[w - page.value(a) for w, a in zip(wanted, reversed(found), strict=True)]])
     if side.gain == "L":
-        page.define_transposed("L", row @ T, row.shown @ T.shown, say="row_observer")
+        page.define_transposed("L", row @ T, row.as_value @ T.as_value, say="row_observer")
     else:
-        page.define("K", row @ T, row.shown @ T.shown, say="row_state_feedback", answer=True)
+        page.define("K", row @ T, row.as_value @ T.as_value, say="row_state_feedback", answer=True)
 
 
 def readable(design: GainDesign) -> bool:
-    """Whether the row-reduced forms belong to the gain of the answer and are short enough to be written out."""
+    """Return whether the row-reduced forms belong to the gain of the answer and are short enough to be written out."""
     found = _reductions(design)
     if (
         found is None
@@ -118,7 +118,7 @@ def _reductions(design: GainDesign) -> tuple[Reduction, ...] | None:
     return row_reduction(design.dual_pair(design.plant), design.desired)
 
 
-def write_row_reduction(page: Page, design: GainDesign, side: PlacementProblem, _: DesiredPolynomial) -> None:
+def write_row_reduction(page: Builder, design: GainDesign, side: PlacementProblem, _: DesiredPolynomial) -> None:
     """For each pole the matrix [λI − Aᵀ : Cᵀ], its reduced form, the scalar relations, what is chosen, the vector."""
     found = _reductions(design)
     assert found is not None  # noqa: S101 - `readable` has said so
@@ -129,7 +129,7 @@ def write_row_reduction(page: Page, design: GainDesign, side: PlacementProblem, 
     psi = page.define("Psi", Matrix.block([[part.psi for part in found]]), say="upper_parts")
     f = page.define("f_psi", Matrix.block([[part.f for part in found]]))
     page.equal(relation(psi.apply("det"), determinant_form(page, psi.value.determinant())), say="with_determinant")
-    gain, shown = f @ psi.inverse, f.shown @ psi.shown.inverse
+    gain, shown = f @ psi.inverse, f.as_value @ psi.as_value.inverse
     unique = "_unique" if (page.plant.outputs if side.gain == "L" else page.plant.inputs) == 1 else ""
     if side.gain == "L":
         page.define_transposed("L", gain, shown, say=f"row_reduced{unique}_observer")
@@ -138,7 +138,7 @@ def write_row_reduction(page: Page, design: GainDesign, side: PlacementProblem, 
     _rounded_too_early(page, gain.value)
 
 
-def _open_eigenvalues(page: Page, side: PlacementProblem) -> None:
+def _open_eigenvalues(page: Builder, side: PlacementProblem) -> None:
     """Say where the eigenvalues are without the gain, where they can be written down."""
     own = (page.s @ page.identity(page.plant.order) - page["A"]).apply("det")
     factors = own.scalar.factors()[1]
@@ -148,19 +148,19 @@ def _open_eigenvalues(page: Page, side: PlacementProblem) -> None:
         )
 
 
-def _rounded_too_early(page: Page, gain: Matrix) -> None:
+def _rounded_too_early(page: Builder, gain: Matrix) -> None:
     """Show what becomes of the gain when the columns of Ψ are rounded before it is inverted, where that does harm."""
     near = page.decimals(page["Psi"].value)
     if not near or near[1].value.determinant().is_zero:
         return
-    spoiled = page["f_psi"].shown @ near[1].inverse
+    spoiled = page["f_psi"].as_value @ near[1].inverse
     shown = page.decimals(spoiled.value)
     pairs = zip(spoiled.value.entries, gain.entries, strict=True)
     if shown and any(abs((wrong - right).fraction()) > _HARM * abs(right.fraction()) for wrong, right in pairs):
         page.equal(relation(spoiled, *shown), say="rounded_too_early")
 
 
-def _reduce(page: Page, side: PlacementProblem, part: Reduction, number: int) -> None:
+def _reduce(page: Builder, side: PlacementProblem, part: Reduction, number: int) -> None:
     """Write one reduction."""
     if part.before is not None:
         page.equal(relation(part.matrix, "~", part.reduced), say="generalised", pole=_named(page, part))
@@ -178,7 +178,7 @@ def _reduce(page: Page, side: PlacementProblem, part: Reduction, number: int) ->
     page.conclude_silently(relation(page.value(matrix) @ xi, right))
 
 
-def _matrix(page: Page, side: PlacementProblem, part: Reduction) -> Term:
+def _matrix(page: Builder, side: PlacementProblem, part: Reduction) -> Term:
     """Return [λI − Aᵀ : Cᵀ] (or [λI − A : B]) in letters; of a block J its blocks."""
     order, J = part.order, part.J
     A, driven = (page["A"].T, page["C"].T) if side.gain == "L" else (page["A"], page["B"])
@@ -196,7 +196,7 @@ def _matrix(page: Page, side: PlacementProblem, part: Reduction) -> Term:
     return block(rows)
 
 
-def _multiple(page: Page, factor: Scalar, order: int) -> Term | None:
+def _multiple(page: Builder, factor: Scalar, order: int) -> Term | None:
     """Return a multiple of I, None for 0."""
     identity = page.identity(order)
     if factor.is_zero:
@@ -206,8 +206,8 @@ def _multiple(page: Page, factor: Scalar, order: int) -> Term | None:
     return page.value(factor) @ identity
 
 
-def _relations(page: Page, part: Reduction, number: int) -> None:
-    """Read the components off the reduced form, and choose what is free."""
+def _relations(page: Builder, part: Reduction, number: int) -> None:
+    """Read the components off the reduced form, and choose the free ones."""
     width = part.vector.shape[0]
     short = width < 10
     names = [f"xi_{number}{i}" if short else f"xi_{number}_{i}" for i in range(1, width + 1)]
@@ -228,13 +228,13 @@ def _relations(page: Page, part: Reduction, number: int) -> None:
 
 
 def _pair(part: Reduction) -> bool:
-    """Whether J stands for a conjugate pair."""
+    """Return whether J stands for a conjugate pair."""
     return part.size == 2 and part.J[0, 0] == part.J[1, 1]
 
 
-def _named(page: Page, part: Reduction) -> Shown:
-    """Return what a reduction is for: a pole, or a factor of φ."""
+def _named(page: Builder, part: Reduction) -> Evaluated:
+    """Return the pole, or the factor of φ, of a reduction."""
     if part.size == 1:
-        return Shown(page.value(part.J).apply("det").formula, Literal(part.J[0, 0]))
+        return Evaluated(page.value(part.J).apply("det").formula, Literal(part.J[0, 0]))
     pencil = page.s @ page.identity(part.size) - page.value(part.J)
-    return Shown(pencil.apply("det").formula, Literal(part.J.characteristic_polynomial(page.plant.variable)))
+    return Evaluated(pencil.apply("det").formula, Literal(part.J.characteristic_polynomial(page.plant.variable)))

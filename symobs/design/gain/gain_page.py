@@ -14,8 +14,8 @@ from symobs.analysis.page_parts import (
     undecided,
 )
 from symobs.analysis.rank.rank_page import square_test
-from symobs.derivation import Case as CaseStep
-from symobs.derivation.builder import Page, predicate, relation
+from symobs.derivation import CaseStep
+from symobs.derivation.builder import Builder, predicate, relation
 from symobs.design.gain.gain_design import GainDesign
 from symobs.design.gain.gain_family_page import of_the_others, write_hidden_family, write_sylvester
 from symobs.design.gain.gain_kind import GivenGain, UnassignableGain
@@ -27,7 +27,7 @@ from symobs.design.page_parts.pole_cautions import caution_poles
 from symobs.design.pole_placement.fresh_names import fresh_names, taken_names
 from symobs.exact import Factored, Matrix, Scalar, companion, from_coefficients, hankel_of, root_of_pole, roots_of
 from symobs.exact.core.generators import all_roots
-from symobs.formula import Literal, Roots, Shown
+from symobs.formula import Evaluated, Literal, Roots
 from symobs.formula.term import Term, block
 from symobs.result import choose
 from symobs.specification import DesiredPolynomial
@@ -40,7 +40,7 @@ if TYPE_CHECKING:
 _PAIR = 2
 
 
-def write_gain(page: Page, design: GainDesign, side: PlacementProblem, style: str, *, of_loop: bool = False) -> None:
+def write_gain(page: Builder, design: GainDesign, side: PlacementProblem, style: str, *, of_loop: bool = False) -> None:
     """Write how the gain is found, in the style of a method, and the check the reader is shown.
 
     Where it is given as a half of a loop, its polynomial has the letter that the page of the loop goes on with.
@@ -67,23 +67,23 @@ def write_gain(page: Page, design: GainDesign, side: PlacementProblem, style: st
         write_case(page, case, side)
 
 
-def _write_gain_alone(page: Page, design: GainDesign, side: PlacementProblem, _: DesiredPolynomial) -> None:
-    """State the gain of a method without a page of its own; the check below is what shows it."""
+def _write_gain_alone(page: Builder, design: GainDesign, side: PlacementProblem, _: DesiredPolynomial) -> None:
+    """State the gain of a method without a page; the check below proves it."""
     page.define(side.gain, design.answer[side.gain], say="gain_stated", answer=True)
 
 
-def write_reduction(page: Page, design: GainDesign, side: PlacementProblem, desired: DesiredPolynomial) -> None:
+def write_reduction(page: Builder, design: GainDesign, side: PlacementProblem, desired: DesiredPolynomial) -> None:
     """Write the row-reduced echelon method where its matrices can be read, else Ackermann's formula."""
     (write_row_reduction if readable(design) else write_ackermann)(page, design, side, desired)
 
 
-def write_ackermann(page: Page, design: GainDesign, side: PlacementProblem, desired: DesiredPolynomial) -> None:
+def write_ackermann(page: Builder, design: GainDesign, side: PlacementProblem, desired: DesiredPolynomial) -> None:
     """Write Ackermann's formula; where there is a family of gains, how the one chosen lies in it."""
     is_of_family = design.chart is not None or _roots_found(design, side)
     (write_member if is_of_family else write_ackermann_formula)(page, design, side, desired)
 
 
-def write_member(page: Page, design: GainDesign, side: PlacementProblem, desired: DesiredPolynomial) -> None:
+def write_member(page: Builder, design: GainDesign, side: PlacementProblem, desired: DesiredPolynomial) -> None:
     """Write how a gain lies in the family of all: as a solution of the Sylvester equation, unless it is a special one."""
     if _roots_found(design, side):
         page.with_roots(design.answer[side.gain])
@@ -98,7 +98,7 @@ def _roots_found(design: GainDesign, side: PlacementProblem) -> frozenset[Functi
     return all_roots(design.answer[side.gain]) - all_roots(m.A, m.B, m.C, *desired)
 
 
-def define_test_matrix(page: Page, side: PlacementProblem) -> None:
+def define_test_matrix(page: Builder, side: PlacementProblem) -> None:
     """Define 𝒪 or 𝒞 block by block."""
     A, order = page["A"], page.plant.order
     if side.gain == "L":
@@ -108,18 +108,18 @@ def define_test_matrix(page: Page, side: PlacementProblem) -> None:
     page.define(side.matrix, block(blocks), say=f"{side.test}_matrix")
 
 
-def _is_canonical(page: Page) -> bool:
-    """Whether (A, B) is in controllable canonical form."""
+def _is_canonical(page: Builder) -> bool:
+    """Return whether (A, B) is in controllable canonical form."""
     m, order = page.plant.matrices, page.plant.order
     chi = m.A.characteristic_polynomial(page.plant.variable)
     return Matrix.unit(order, order - 1) == m.B and companion(chi.coefficients(page.plant.variable)[1:]) == m.A
 
 
-def _test(page: Page, design: GainDesign, side: PlacementProblem, style: str) -> None:
+def _test(page: Builder, design: GainDesign, side: PlacementProblem, style: str) -> None:
     if side.gain == "K" and style == "canonical_form" and _is_canonical(page):
         _say_canonical(page)
         return
-    if not page.knows(side.matrix):
+    if not page.defines(side.matrix):
         define_test_matrix(page, side)
         square_test(page, side.matrix, design.test, side.test)
     elif not design.fixed_polynomial.is_one or design.answer[side.gain] is None:
@@ -128,7 +128,7 @@ def _test(page: Page, design: GainDesign, side: PlacementProblem, style: str) ->
         page.conclude(f"assignable_{side.kind}")
 
 
-def name_coefficients(page: Page, design: GainDesign, side: PlacementProblem) -> DesiredPolynomial:
+def name_coefficients(page: Builder, design: GainDesign, side: PlacementProblem) -> DesiredPolynomial:
     """Show φ; where its coefficients are long, give them letters and return φ in these letters."""
     desired = design.desired
     assert desired is not None  # noqa: S101 - only designs with a desired polynomial come here
@@ -137,7 +137,7 @@ def name_coefficients(page: Page, design: GainDesign, side: PlacementProblem) ->
     plain = page.value(desired.polynomial)
     members = [plain] if desired.is_expanded else [grouped, plain]
     if all(c.size - 1 <= readability.COEFFICIENT for c in coefficients):
-        if not desired.poles and desired.is_expanded and page.knows(side.phi):
+        if not desired.poles and desired.is_expanded and page.defines(side.phi):
             return desired
         page.define(side.phi, *members, say=f"asks_{side.kind}")
         return desired
@@ -152,7 +152,7 @@ def name_coefficients(page: Page, design: GainDesign, side: PlacementProblem) ->
     return DesiredPolynomial(variable, (named,))
 
 
-def _say_canonical(page: Page) -> None:
+def _say_canonical(page: Builder) -> None:
     """Say that (A, B) is in controllable canonical form already."""
     order, variable = page.plant.order, page.plant.variable
     chi = page.plant.matrices.A.characteristic_polynomial(variable)
@@ -166,7 +166,7 @@ def _say_canonical(page: Page) -> None:
     )
 
 
-def name_entries(page: Page, gain: str) -> None:
+def name_entries(page: Builder, gain: str) -> None:
     """Give the entries of a gain letters of their own, in which the page goes on."""
     value = page[gain].value
     names = fresh_names(f"{gain.lower()}_", len(value.entries), taken_names(page))
@@ -177,7 +177,7 @@ def name_entries(page: Page, gain: str) -> None:
     page.set(gain, named)
 
 
-def write_canonical(page: Page, _: GainDesign, side: PlacementProblem, desired: DesiredPolynomial) -> None:
+def write_canonical(page: Builder, _: GainDesign, side: PlacementProblem, desired: DesiredPolynomial) -> None:
     """Difference of coefficients, constant first, carried back by V⁻¹."""
     plant, order = page.plant, page.plant.order
     variable = plant.variable
@@ -192,24 +192,24 @@ def write_canonical(page: Page, _: GainDesign, side: PlacementProblem, desired: 
     found = chi.coefficients(variable)[1:]
     page.define("chi", (page.s @ page.identity(order) - A).apply("det"), say=f"open_{side.kind}")
     hankel = page.value(hankel_of(found))
-    V = page.define(f"V_{side.index}", matrix @ hankel, matrix.shown @ hankel, say=f"canonical_{side.kind}")
+    V = page.define(f"V_{side.index}", matrix @ hankel, matrix.as_value @ hankel, say=f"canonical_{side.kind}")
     page.equal(
-        relation(V.inverse, V.inverse.shown), relation(V.apply("det"), determinant_form(page, V.value.determinant()))
+        relation(V.inverse, V.inverse.as_value), relation(V.apply("det"), determinant_form(page, V.value.determinant()))
     )
     row = _difference(page, wanted, list(found))
     if side.gain == "L":
-        page.define_transposed("L", row @ V.inverse, row.shown @ V.inverse.shown, say="row_observer")
+        page.define_transposed("L", row @ V.inverse, row.as_value @ V.inverse.as_value, say="row_observer")
     else:
-        page.define("K", row @ V.inverse, row.shown @ V.inverse.shown, say="row_state_feedback", answer=True)
+        page.define("K", row @ V.inverse, row.as_value @ V.inverse.as_value, say="row_state_feedback", answer=True)
 
 
-def _difference(page: Page, wanted: list[Term], found: list[Scalar]) -> Term:
+def _difference(page: Builder, wanted: list[Term], found: list[Scalar]) -> Term:
     entries = [w - page.value(a) for w, a in zip(wanted, reversed(found), strict=True)]
     return block([entries])
 
 
-def _with_fixed_modes(page: Page, design: GainDesign, side: PlacementProblem) -> None:
-    """Some modes stay; they are among those asked for, so a gain exists and is not unique."""
+def _with_fixed_modes(page: Builder, design: GainDesign, side: PlacementProblem) -> None:
+    """State that the fixed modes are among the desired poles, so that a gain exists and is not unique."""
     variable = page.plant.variable
     polynomial, desired, family = design.fixed_polynomial, design.desired, design.gain_family
     assert desired is not None and family is not None  # noqa: S101, PT018 - fixed modes come with a family
@@ -224,11 +224,11 @@ def _with_fixed_modes(page: Page, design: GainDesign, side: PlacementProblem) ->
     gain = page.define(side.gain, design.answer[side.gain], say=f"{of_the_others(design)}_{side.kind}", answer=True)
     free = page[side.hidden[0]] @ page.value(Matrix.column([Scalar.symbol(name) for name in family["parameters"]]))
     general = gain + (free if side is OBSERVER else free.T)
-    page.remark(f"family_{side.kind}", gain=Shown(general.formula, Literal(family[side.gain])))
+    page.remark(f"family_{side.kind}", gain=Evaluated(general.formula, Literal(family[side.gain])))
 
 
-def _impossible(page: Page, design: GainDesign, side: PlacementProblem) -> None:
-    """The fixed modes are not among the poles asked for, or no gain has its zeros where they are to be."""
+def _impossible(page: Builder, design: GainDesign, side: PlacementProblem) -> None:
+    """State that no gain exists: fixed modes that are not desired, or an impossible zero pattern."""
     if not isinstance(design.kind, UnassignableGain):
         write_no_gain(page, design, side)
         return
@@ -237,24 +237,24 @@ def _impossible(page: Page, design: GainDesign, side: PlacementProblem) -> None:
         f"impossible_{side.kind}",
         *hidden(page, side is OBSERVER, side.hidden),
         predicate("not_polynomial", page[side.phi] / fixed),
-        fixed=Shown(fixed.formula, Literal(design.fixed_polynomial)),
-        polynomial=Shown(page[side.phi].formula, Literal(page[side.phi].value)),
+        fixed=Evaluated(fixed.formula, Literal(design.fixed_polynomial)),
+        polynomial=Evaluated(page[side.phi].formula, Literal(page[side.phi].value)),
     )
 
 
-def _fixed(page: Page, side: PlacementProblem, kernel: Matrix, restricted: Matrix) -> Term:
+def _fixed(page: Builder, side: PlacementProblem, kernel: Matrix, restricted: Matrix) -> Term:
     """Introduce N and X, and return the polynomial of the modes that no gain moves."""
     for name, value in zip(side.hidden, (kernel, restricted), strict=True):
         page.set(name, value)
     return hidden_polynomial(page, kernel.shape[1], side.hidden[1])
 
 
-def _given_gain(page: Page, design: GainDesign, side: PlacementProblem, *, of_loop: bool) -> None:
-    """A gain is given: find its polynomial and say whether it is stable."""
+def _given_gain(page: Builder, design: GainDesign, side: PlacementProblem, *, of_loop: bool) -> None:
+    """Find the polynomial of a given gain and decide its stability."""
     gain = page.set(side.gain, design.answer[side.gain])
     page.equal(relation(gain, design.answer[side.gain]), say=f"gain_given_{side.kind}")
     closed = side.closed_loop_matrix(page)
-    page.equal(relation(closed, closed.shown), say="closed_matrix")
+    page.equal(relation(closed, closed.as_value), say="closed_matrix")
     polynomial = design.answer["polynomial"]
     shown = factored_form(page, polynomial)
     members = [side.error_determinant(page), page.value(polynomial)]
@@ -267,7 +267,7 @@ def _given_gain(page: Page, design: GainDesign, side: PlacementProblem, *, of_lo
     say_stability(page, side.error_determinant(page))
 
 
-def _verified(page: Page, design: GainDesign, side: PlacementProblem) -> None:
+def _verified(page: Builder, design: GainDesign, side: PlacementProblem) -> None:
     desired = design.desired
     assert desired is not None  # noqa: S101 - only designs with a desired polynomial come here
     polynomial = page[side.phi].value
@@ -281,8 +281,8 @@ def _verified(page: Page, design: GainDesign, side: PlacementProblem) -> None:
         say_stability(page, side.error_determinant(page))
 
 
-def say_as_required(page: Page, desired: DesiredPolynomial, *members: Term) -> None:
-    """Show the check of a gain; where a conjugate pair was asked for, with the poles themselves.
+def say_as_required(page: Builder, desired: DesiredPolynomial, *members: Term) -> None:
+    """Show the check of a gain; for a desired conjugate pair with the poles themselves.
 
     A gain with roots in it has the polynomial only as far as their own polynomials vanish: there the check says enough.
     """
@@ -294,8 +294,8 @@ def say_as_required(page: Page, desired: DesiredPolynomial, *members: Term) -> N
     page.verified("roots_as_required", check=relation(*members), roots=roots)
 
 
-def write_case(page: Page, case: Case, side: PlacementProblem) -> None:
-    """Say what is true on a stratum."""
+def write_case(page: Builder, case: Case, side: PlacementProblem) -> None:
+    """State the findings on a stratum."""
     if not isinstance(case.result, GainDesign):
         page.steps.append(undecided(page, case))
         return
@@ -311,11 +311,11 @@ def write_case(page: Page, case: Case, side: PlacementProblem) -> None:
         inside, steps = page.environment, page.steps
         page.steps, page.environment = outer, environment
     own = (*side.hidden, side.gain)
-    anew = [name for name in own if page.knows(name) and inside.values[name] != environment.values[name]]
+    anew = [name for name in own if page.defines(name) and inside.values[name] != environment.values[name]]
     page.steps.append(CaseStep(stratum_of(case), tuple(case.substitution.items()), tuple(steps), anew=tuple(anew)))
 
 
-def _on_stratum(page: Page, case: Case, result: GainDesign, side: PlacementProblem) -> None:
+def _on_stratum(page: Builder, case: Case, result: GainDesign, side: PlacementProblem) -> None:
     """Write whether a gain exists on a stratum, with the hidden modes that decide it."""
     own, gain = design_gain_on(case, page, side), result.answer[side.gain]
     fixed = _fixed(page, side, result.pair.kernel, result.pair.restricted)
@@ -331,9 +331,9 @@ def _on_stratum(page: Page, case: Case, result: GainDesign, side: PlacementProbl
     page.conclude_silently(relation(side.error_determinant(page), page[side.phi]))
 
 
-def design_gain_on(case: Case, page: Page, side: PlacementProblem) -> bool:
-    """Whether there is a gain in the main line that is still finite on the stratum."""
-    if not page.knows(side.gain):
+def design_gain_on(case: Case, page: Builder, side: PlacementProblem) -> bool:
+    """Return whether there is a gain in the main line that is still finite on the stratum."""
+    if not page.defines(side.gain):
         return False
     try:
         moved = page[side.gain].value.substitute({**page.environment.coefficients}).substitute(dict(case.substitution))

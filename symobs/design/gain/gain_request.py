@@ -1,4 +1,4 @@
-"""What the tasks of both gains have in common: reading what is asked for, the choice of the method and of its page."""
+"""The common part of both gain tasks: reading the specification, choosing the method and its page."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 MEMBERS = ("simple", "decoupled")
 
 
-def designed(
+def design_gain(
     kind: type[GainDesign],
     plant: StateSpace,
     *,
@@ -30,7 +30,7 @@ def designed(
     member: Name,
     method: Name,
 ) -> Result:
-    """Return the design of a kind: with a given gain, with zeros, the member of the family asked for, or by a method."""
+    """Return the design: with a given gain, with zeros, the requested member of the family, or by a method."""
     if member not in MEMBERS:
         message = f"{member[:40]!r} is no member of the family that has a name"
         raise InputError(message, where="specification.member", repair=f"write one of {', '.join(MEMBERS)}")
@@ -56,7 +56,7 @@ def designed(
 
 
 def page_style(method_name: str, plant: StateSpace, *, several: bool = False) -> str:
-    """Return the method whose page is printed: canonical form for small plants unless one was asked for."""
+    """Return the method of the page: by default canonical form for small plants."""
     if method_name != "auto":
         return method_name
     if several:

@@ -8,7 +8,7 @@ from symobs._dataclass import dataclass
 from symobs.analysis.page_parts import HIDDEN
 
 if TYPE_CHECKING:
-    from symobs.derivation.builder import Page
+    from symobs.derivation.builder import Builder
     from symobs.formula.term import Term
 
 
@@ -25,7 +25,7 @@ class PlacementProblem:
 
     @property
     def hidden(self) -> tuple[str, str]:
-        """The letters of the hidden subspace: a page may speak of both sides."""
+        """The letters of the hidden subspace, different for the two sides."""
         return HIDDEN[self.test]
 
     @property
@@ -33,15 +33,15 @@ class PlacementProblem:
         """The letter of the desired polynomial."""
         return f"phi_{self.index}"
 
-    def closed_loop_matrix(self, page: Page) -> Term:
+    def closed_loop_matrix(self, page: Builder) -> Term:
         """Return A − LC or A − BK."""
         return page["A"] - self._gain_term(page)
 
-    def error_determinant(self, page: Page) -> Term:
+    def error_determinant(self, page: Builder) -> Term:
         """Return det(sI − A + LC) or det(sI − A + BK)."""
         return (page.s @ page.identity(page.plant.order) - page["A"] + self._gain_term(page)).apply("det")
 
-    def _gain_term(self, page: Page) -> Term:
+    def _gain_term(self, page: Builder) -> Term:
         return page["L"] @ page["C"] if self.gain == "L" else page["B"] @ page["K"]
 
 

@@ -5,9 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from symobs.analysis.page_parts import stratum_of, undecided
-from symobs.derivation import Case as CaseStep
-from symobs.derivation import Note
-from symobs.derivation.builder import Page, relation, sentence
+from symobs.derivation import CaseStep, Note
+from symobs.derivation.builder import Builder, relation, sentence
 from symobs.design.gain.gain_design import GainDesign
 from symobs.design.gain.gain_kind import AlgebraicGain
 from symobs.design.page_parts import readability
@@ -20,7 +19,7 @@ if TYPE_CHECKING:
     from symobs.result import Case
 
 
-def write_no_gain(page: Page, design: GainDesign, side: PlacementProblem) -> None:
+def write_no_gain(page: Builder, design: GainDesign, side: PlacementProblem) -> None:
     """Write why no gain has its zeros there, where one has, or one in a root."""
     listed = _listed(design.zero)
     if isinstance(design.kind, AlgebraicGain):
@@ -43,13 +42,13 @@ def _listed(zero: Places) -> str:
     return ", ".join(f"({i + 1}, {j + 1})" for i, j in zero)
 
 
-def _algebraic(page: Page, design: GainDesign, kind: AlgebraicGain, side: PlacementProblem) -> None:
+def _algebraic(page: Builder, design: GainDesign, kind: AlgebraicGain, side: PlacementProblem) -> None:
     """A gain whose entries are polynomials in a real root λ."""
     found = kind.found
     low, high = found.bounds
     at_ends = [found.polynomial.substitute({EIGENVALUE: end}) for end in (low, high)]
     inner, page.steps, before = page.steps, [], page.environment
-    page.environment = before.under((found.polynomial,))
+    page.environment = before.with_relations((found.polynomial,))
     page.define(side.gain, design.transpose_for_task(found.gain), answer=True)
     page.verified("as_required", check=relation(side.error_determinant(page), page[side.phi]))
     steps, page.steps, page.environment = tuple(page.steps), inner, before
@@ -58,7 +57,7 @@ def _algebraic(page: Page, design: GainDesign, kind: AlgebraicGain, side: Placem
     page.steps.append(CaseStep(relation(found.polynomial, 0), (), steps))
 
 
-def _case(page: Page, case: Case, side: PlacementProblem, say: str = "case_zero_gain") -> Step:
+def _case(page: Builder, case: Case, side: PlacementProblem, say: str = "case_zero_gain") -> Step:
     """Write the gain on a stratum where there is one."""
     result = case.result
     if not isinstance(result, GainDesign) or (result.answer[side.gain] is None and result.verdict != "no"):
@@ -69,7 +68,7 @@ def _case(page: Page, case: Case, side: PlacementProblem, say: str = "case_zero_
     return another_gain(page, case, side, say)
 
 
-def another_gain(page: Page, case: Case, side: PlacementProblem, say: str) -> Step:
+def another_gain(page: Builder, case: Case, side: PlacementProblem, say: str) -> Step:
     """Write the gain on a stratum that is not the one of the main line."""
     result = case.result
     assert isinstance(result, GainDesign)  # noqa: S101 - the case is decided

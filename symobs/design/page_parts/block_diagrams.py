@@ -1,10 +1,10 @@
-"""The block diagrams of pages: which figure shows what, with gains and signs as the page's own formulas say."""
+"""Block diagrams of pages, with gains and signs from the formulas of the page."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from symobs.derivation.builder import Page, relation
+from symobs.derivation.builder import Builder, relation
 from symobs.formula import Conjunction, Negative, Quotient
 from symobs.formula.term import Term, block
 
@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from symobs.derivation.builder import Member
 
 
-def draw_copy(page: Page) -> None:
+def draw_copy(page: Builder) -> None:
     """The observer as a copy of the plant: y − ŷ through L."""
     m = page.plant.matrices
     page.signal("y_hat", page["C"] @ page["x_hat"], silent=True)
@@ -24,7 +24,7 @@ def draw_copy(page: Page) -> None:
     page.diagram("observer_copy", say="drawn_copy", **gains)
 
 
-def draw_collected(page: Page) -> None:
+def draw_collected(page: Builder) -> None:
     """The observer as one loop around A − LC."""
     gains: dict[str, Member] = {"A": page["A"] - page["L"] @ page["C"], "L": page["L"]}
     if page.plant.matrices.has_input:
@@ -33,7 +33,7 @@ def draw_collected(page: Page) -> None:
     page.diagram("observer_closed", say=say, **gains)
 
 
-def draw_compensator(page: Page) -> None:
+def draw_compensator(page: Builder) -> None:
     """Plant, observer and feedback: in full with one input, one output and no feedthrough, else the plant as one box."""
     A, C, K, L = (page[name] for name in "ACKL")
     plant = page.plant
@@ -45,7 +45,7 @@ def draw_compensator(page: Page) -> None:
     page.diagram("observer_controller", say="drawn_compensator", Plant=_plant(page), **gains)
 
 
-def _whole(page: Page, label: Member) -> Member:
+def _whole(page: Builder, label: Member) -> Member:
     """Return what stands in a box with its own minus inside: one in front of it would be read as a sign of the figure."""
     match label:
         case Term(Negative(Quotient(above, below))):
@@ -55,17 +55,17 @@ def _whole(page: Page, label: Member) -> Member:
     return label
 
 
-def draw_loop(page: Page, plant: Member, compensator: Term) -> None:
+def draw_loop(page: Builder, plant: Member, compensator: Term) -> None:
     """The compensator in the return path."""
     page.diagram("loop", say="drawn_loop", P=_whole(page, plant), F=-compensator, response=page["G_cl"])
 
 
-def draw_unity_loop(page: Page, plant: Member, compensator: Member) -> None:
+def draw_unity_loop(page: Builder, plant: Member, compensator: Member) -> None:
     """The compensator before the plant, unity feedback."""
     page.diagram("unity_loop", say="drawn_unity_loop", P=_whole(page, plant), F=compensator, response=page["G_r"])
 
 
-def draw_feedforward(page: Page, *, minimal: bool) -> None:
+def draw_feedforward(page: Builder, *, minimal: bool) -> None:
     """Feedback from the estimate, and the feedforward."""
     observer = _minimal_order_observer(page) if minimal else _observer(page)
     gains = {"K": -page["K"], "F": page["F_v"]}
@@ -73,7 +73,7 @@ def draw_feedforward(page: Page, *, minimal: bool) -> None:
     page.diagram("estimated_state_feedback", say=say, Plant=_plant(page), Observer=observer, **gains)
 
 
-def draw_tracking(page: Page, *, minimal: bool) -> None:
+def draw_tracking(page: Builder, *, minimal: bool) -> None:
     """The generator of the reference, K and K_d, plant and observer."""
     observer = _minimal_order_observer(page) if minimal else _observer(page)
     gains = {"K": page["K"], "Kd": -page["K_d"], "Ad": page["A_ref"]}
@@ -81,7 +81,7 @@ def draw_tracking(page: Page, *, minimal: bool) -> None:
     page.diagram("tracking_loop", say=say, Plant=_plant(page), Observer=observer, **gains)
 
 
-def draw_minimal_order(page: Page) -> None:
+def draw_minimal_order(page: Builder) -> None:
     """The observer of what is not measured, and the estimate put together; a feedthrough is taken off the output."""
     gains: dict[str, Member] = {name[0]: page[name] for name in ("F_z", "H_z", "M_z")}
     if page.plant.matrices.has_input:
@@ -93,11 +93,11 @@ def draw_minimal_order(page: Page) -> None:
     page.diagram(figure, say="drawn_minimal_order", z=_state(page), **gains)
 
 
-def _driven(page: Page) -> Term:
+def _driven(page: Builder) -> Term:
     return page["B"] - page["L"] @ page["D"] if page.plant.matrices.has_feedthrough else page["B"]
 
 
-def _plant(page: Page) -> Conjunction:
+def _plant(page: Builder) -> Conjunction:
     x, u = page["x"], page["u"]
     output = page["C"] @ x
     if page.plant.matrices.has_feedthrough:
@@ -105,13 +105,13 @@ def _plant(page: Page) -> Conjunction:
     return Conjunction((relation(x.derivative, page["A"] @ x + page["B"] @ u), relation(page["y"], output)))
 
 
-def _observer(page: Page) -> Conjunction:
+def _observer(page: Builder) -> Conjunction:
     x_hat, L = page["x_hat"], page["L"]
     rate = (page["A"] - L @ page["C"]) @ x_hat + _driven(page) @ page["u"] + L @ page["y"]
     return Conjunction((relation(x_hat.derivative, rate),))
 
 
-def _minimal_order_observer(page: Page) -> Conjunction:
+def _minimal_order_observer(page: Builder) -> Conjunction:
     z, u, y = _state(page), page["u"], page["y"]
     rate = page["F_z"] @ z + page["G_z"] @ u + page["H_z"] @ y
     known = y - page["D"] @ u if page.plant.matrices.has_feedthrough else y
@@ -119,6 +119,6 @@ def _minimal_order_observer(page: Page) -> Conjunction:
     return Conjunction((relation(z.derivative, rate), relation(page["x_hat"], estimate)))
 
 
-def _state(page: Page) -> Term:
+def _state(page: Builder) -> Term:
     """In discrete time z is the variable."""
     return page["w_o" if page.plant.is_discrete else "z_o"]

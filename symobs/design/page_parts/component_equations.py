@@ -9,7 +9,7 @@ from symobs.design.page_parts import readability
 from symobs.exact import Matrix
 
 if TYPE_CHECKING:
-    from symobs.derivation.builder import Page
+    from symobs.derivation.builder import Builder
     from symobs.formula.term import Term
 
 
@@ -21,7 +21,7 @@ def summed(pairs: list[tuple[Term, Term]]) -> Term:
     return total
 
 
-def combination(page: Page, pairs: list[tuple[Term, Term]]) -> Term:
+def combination(page: Builder, pairs: list[tuple[Term, Term]]) -> Term:
     """Return the sum with numbers: what is zero is left out, and a 1×1 matrix is a number."""
     total: Term | None = None
     for matrix, signal in pairs:
@@ -40,7 +40,7 @@ def combination(page: Page, pairs: list[tuple[Term, Term]]) -> Term:
     return summed(pairs) if total is None else total
 
 
-def write_components(page: Page, driven: Term | None) -> None:
+def write_components(page: Builder, driven: Term | None) -> None:
     """Write x̂' = (A − LC) x̂ + (B − LD) u + L y row by row, and check that x̂ = x is a solution."""
     A, C, L = (page[name] for name in "ACL")
     closed = A - L @ C

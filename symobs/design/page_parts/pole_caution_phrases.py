@@ -1,4 +1,4 @@
-"""Cautions beside poles that were asked for and are not stable."""
+"""Cautions about desired poles that are not stable."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What an expert would warn of beside poles that were asked for: an error that grows, or stays."""
+"""Cautions about desired poles: an estimation error that grows or does not decay."""
 
 from __future__ import annotations
 
@@ -8,13 +8,13 @@ from symobs.derivation.builder import predicate
 from symobs.stability.criteria.stability import is_beyond, is_marginal, stability
 
 if TYPE_CHECKING:
-    from symobs.derivation.builder import Page
+    from symobs.derivation.builder import Builder
     from symobs.exact import Scalar
     from symobs.specification import DesiredPolynomial
 
 
-def caution_poles(page: Page, desired: DesiredPolynomial, phi: str, of: str) -> None:
-    """Warn where the polynomial asked for, which the letter `phi` means, is surely not stable; of: observer or control."""
+def caution_poles(page: Builder, desired: DesiredPolynomial, phi: str, of: str) -> None:
+    """Warn where the desired polynomial, the value of `phi`, is surely not stable; of: observer or control."""
     plant, signs = page.plant, page.plant.symbols.signs
     polynomial, discrete = desired.polynomial, page.plant.is_discrete
     if page[phi].value != polynomial or stability(polynomial, plant.variable, signs, discrete=discrete).verdict != "no":
@@ -37,8 +37,8 @@ def caution_poles(page: Page, desired: DesiredPolynomial, phi: str, of: str) -> 
     page.caution(f"{key}_{of}_{time}", *facts)
 
 
-def _is_stable(rest: Scalar, page: Page) -> bool:
-    """Tell whether what is left of a polynomial is one and surely stable."""
+def _is_stable(rest: Scalar, page: Builder) -> bool:
+    """Return whether a quotient is a polynomial and surely stable."""
     plant = page.plant
     if not rest.is_polynomial_in(plant.variable):
         return False

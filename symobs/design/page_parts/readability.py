@@ -1,4 +1,4 @@
-"""How long a thing may be for a design page to write it out; what is longer gets letters, or is left to the JSON.
+"""Limits of readability on design pages: larger matrices and polynomials are named by letters, or left to JSON.
 
 Sizes are numbers of terms, orders those of the plant, unless it is said otherwise.
 """

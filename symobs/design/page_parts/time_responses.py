@@ -14,7 +14,7 @@ from symobs.formula import Letter
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from symobs.derivation.builder import Page
+    from symobs.derivation.builder import Builder
     from symobs.figures.plot import Interval
     from symobs.formula.term import Term
 
@@ -30,13 +30,13 @@ _STEPS, _BETWEEN, _PARTS = (400, 800, 1600), Fraction(1, 110), 10**6
 _ROUND = (Fraction(1), Fraction(3, 2), Fraction(2), Fraction(3), Fraction(4), Fraction(5), Fraction(6), Fraction(8))
 
 
-def plot_error(page: Page, name: str, matrix: Term) -> None:
+def plot_error(page: Builder, name: str, matrix: Term) -> None:
     """The estimation error from the start x = (1, …, 1), x̂ = 0, for ė = matrix e."""
     size = matrix.value.shape[0]
     _plot(page, (name,), matrix, [(name, Matrix.identity(size), False)], "plot_error")
 
 
-def plot_estimate(page: Page, error: str, matrix: Term, unseen: Matrix) -> None:
+def plot_estimate(page: Builder, error: str, matrix: Term, unseen: Matrix) -> None:
     """State and estimate of the closed loop from that start: x̂ = x − (unseen) · error."""
     order = page.plant.order
     state = Matrix.block([[Matrix.identity(order), Matrix.zeros(order, unseen.shape[1])]])
@@ -45,7 +45,7 @@ def plot_estimate(page: Page, error: str, matrix: Term, unseen: Matrix) -> None:
 
 
 def _plot(
-    page: Page, states: tuple[str, ...], matrix: Term, signals: Sequence[tuple[str, Matrix, bool]], say: str
+    page: Builder, states: tuple[str, ...], matrix: Term, signals: Sequence[tuple[str, Matrix, bool]], say: str
 ) -> None:
     """Plot, unless the page has parameters or a picture would show nothing."""
     value = matrix.value
@@ -80,14 +80,16 @@ def _plot(
             return
 
 
-def _is_smooth(course: Sequence[int], edges: Interval) -> bool:
+def _is_smooth(heights: Sequence[int], edges: Interval) -> bool:
     """Return whether segments from every other instant to the next pass close by the values between them."""
     allowed = 2 * _BETWEEN * (edges[1] - edges[0]) * _PARTS
-    return all(abs(a - 2 * v + b) <= allowed for a, v, b in zip(course[::2], course[1::2], course[2::2], strict=False))
+    return all(
+        abs(a - 2 * v + b) <= allowed for a, v, b in zip(heights[::2], heights[1::2], heights[2::2], strict=False)
+    )
 
 
 def _plot_samples(
-    page: Page, states: tuple[str, ...], matrix: Term, signals: Sequence[tuple[str, Matrix, bool]], say: str
+    page: Builder, states: tuple[str, ...], matrix: Term, signals: Sequence[tuple[str, Matrix, bool]], say: str
 ) -> None:
     """Plot the exact values at 0, 1, 2, …, until they are small, unless that takes too many."""
     from symobs.exact.time_functions.state_response import spectral_radius  # noqa: PLC0415 - only pages with responses pay for it
@@ -121,13 +123,13 @@ def _plot_samples(
     page.plot(TimeResponse(states, _starts(page, states), made, window, parts, discrete=True), matrix, say=say)
 
 
-def _starts(page: Page, states: tuple[str, ...]) -> tuple[tuple[Fraction, ...], ...]:
+def _starts(page: Builder, states: tuple[str, ...]) -> tuple[tuple[Fraction, ...], ...]:
     return tuple((Fraction(1),) * page.term(Letter(name)).value.size for name in states)
 
 
 def _window(end: Fraction, responses: Sequence[Response], parts: int) -> tuple[Interval, Interval]:
     """Return a window with a little room above and below."""
-    low, high = min(min(course.heights) for course in responses), max(max(course.heights) for course in responses)
+    low, high = min(min(each.heights) for each in responses), max(max(each.heights) for each in responses)
     edge = Fraction(high - low, 20)
     return (Fraction(0), end), ((low - edge) / parts, (high + edge) / parts)
 

@@ -10,7 +10,7 @@ from symobs._dataclass import dataclass
 from symobs.certificate.claims import Claim
 from symobs.derivation.builder import relation
 from symobs.design.pole_advice.pole_candidates import (
-    Zeros,
+    PlantZeros,
     as_number,
     needed_of,
     normalised,
@@ -21,7 +21,7 @@ from symobs.design.pole_advice.pole_candidates import (
     poles_of,
 )
 from symobs.design.pole_advice.pole_warnings import warnings_of
-from symobs.design.pole_placement.single_output import Pair
+from symobs.design.pole_placement.single_output import ObserverPair
 from symobs.errors import CertificateRejected, InputError
 from symobs.exact import Complex, Factored, Matrix, Root, Scalar, product_of, roots_of
 from symobs.exact.core.generators import NotWritten, function, identities
@@ -34,7 +34,7 @@ from symobs.stability.criteria.stability import stability
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
-    from symobs.design.pole_advice.pole_warnings import Beware
+    from symobs.design.pole_advice.pole_warnings import PoleWarning
     from symobs.system import StateSpace
 
 #: The poles besides a dominant pair begin at this many times its distance from the imaginary axis.
@@ -42,7 +42,7 @@ FURTHER_LEFT = 5
 
 
 @dataclass(frozen=True)
-class Wish:
+class PoleRequest:
     """A radius, or a settling time and an overshoot."""
 
     radius: Scalar | None = None
@@ -58,24 +58,24 @@ class AdvisedPoles(Result):
     pair −σ ± iω, σ = 4/T, exp(−πσ/ω) ≤ M.
     """
 
-    wish: Wish
+    request: PoleRequest
     #: Factors of the numerator whose roots are places for poles under conditions: here these hold.
     taken: tuple[Scalar, ...] = ()
 
     task: ClassVar[str] = "pole_advice"
 
     @classmethod
-    def of(cls, plant: StateSpace, wish: Wish, method_name: str, taken: tuple[Scalar, ...] = ()) -> Self:
+    def of(cls, plant: StateSpace, request: PoleRequest, method_name: str, taken: tuple[Scalar, ...] = ()) -> Self:
         """Return the advice; raises `InputError` where a circle's poles have no square roots."""
-        sigma = None if wish.settling_time is None else 4 / wish.settling_time
-        zeros = Zeros.of(numerator_of(plant), plant, sigma, taken)
+        sigma = None if request.settling_time is None else 4 / request.settling_time
+        zeros = PlantZeros.of(numerator_of(plant), plant, sigma, taken)
         count = plant.order - zeros.polynomial.degree(plant.variable)
         omega_d = None
-        if wish.radius is not None:
-            rest = on_circle(count, wish.radius, plant.variable)
+        if request.radius is not None:
+            rest = on_circle(count, request.radius, plant.variable)
         else:
-            assert sigma is not None and wish.overshoot is not None  # noqa: S101, PT018 - one of two ways to ask
-            omega_d = sigma * pair_ratio(wish.overshoot) if count > 1 else None
+            assert sigma is not None and request.overshoot is not None  # noqa: S101, PT018 - one of two ways to ask
+            omega_d = sigma * pair_ratio(request.overshoot) if count > 1 else None
             rest = dominated(count, sigma, omega_d, plant.variable)
         one = Scalar.of(1)
         answer: dict[str, Any] = {"zeros": zeros.polynomial, "sigma": sigma, "omega_d": omega_d}
@@ -84,12 +84,12 @@ class AdvisedPoles(Result):
         for factor in rest:
             together[factor] = together.get(factor, 0) + 1
         answer["polynomial"] = Factored(one, tuple(together.items()))
-        return cls(plant, method_name, answer, wish, taken)
+        return cls(plant, method_name, answer, request, taken)
 
     @cached_property
-    def zeros(self) -> Zeros:
+    def zeros(self) -> PlantZeros:
         """The plant's zeros: those that are used, and why the others are not."""
-        return Zeros.of(self.numerator, self.plant, self.answer["sigma"], self.taken)
+        return PlantZeros.of(self.numerator, self.plant, self.answer["sigma"], self.taken)
 
     @cached_property
     def numerator(self) -> Scalar:
@@ -117,13 +117,13 @@ class AdvisedPoles(Result):
         values = {**{name: getattr(m, name) for name in "ABCD"}, "phi_z": zeros, "phi_r": rest}
         values["phi_o"] = answer["polynomial"].value
         e = Environment(variable=variable, values=values, signs=self.plant.symbols.signs)
-        e = e.under(identities([zeros, rest])[1])
+        e = e.with_relations(identities([zeros, rest])[1])
         z, r, s = (letter(name, e) for name in ("phi_z", "phi_r", "s"))
         yield Claim(relation(numerator_term(e, self.plant), z @ Term(Literal(self.zeros.others), e)), e)
         yield Claim(relation(letter("phi_o", e), z @ r), e)
         if not self.count:
             yield Claim(relation(r, 1), e)
-        elif self.wish.radius is not None:
+        elif self.request.radius is not None:
             yield Claim(relation(r @ (-s).apply("phi_r_at"), self.circle), e, "phi_r(s) phi_r(-s) is Butterworth's")
         else:
             yield from self._claims_of_pair(e)
@@ -132,7 +132,7 @@ class AdvisedPoles(Result):
     @property
     def circle(self) -> Scalar:
         """ω₀^{2N} + (−1)^N s^{2N}."""
-        radius, count = self.wish.radius, self.count
+        radius, count = self.request.radius, self.count
         assert radius is not None  # noqa: S101 - asked only where there is one
         power = Scalar.symbol(self.plant.variable) ** (2 * count)
         return radius ** (2 * count) + (power if count % 2 == 0 else -power)
@@ -141,8 +141,8 @@ class AdvisedPoles(Result):
         """Reject poles in the right half-plane: of zeros, and of φ_r in units of the radius."""
         signs, variable = self.plant.symbols.signs, self.plant.variable
         factors = [factor for factor, _ in self.answer["rest"].factors]
-        if self.wish.radius is not None:
-            factors = [normalised(factor, self.wish.radius, variable) for factor in factors]
+        if self.request.radius is not None:
+            factors = [normalised(factor, self.request.radius, variable) for factor in factors]
         used = [factor for factor, _ in self.zeros.used]
         held = [f for f in (*used, *factors) if f not in self.taken]
         stable = all(stability(f, variable, signs, discrete=False).verdict == "yes" for f in held)
@@ -154,21 +154,21 @@ class AdvisedPoles(Result):
 
     def _claims_of_pair(self, e: Environment) -> Iterator[Claim]:
         """Yield σT = 4, e^{−σT} ≤ 1/50, exp(−πσ/ω) ≤ M, and φ_r as the pair and what lies further left."""
-        sigma, omega_d, wish = self.answer["sigma"], self.answer["omega_d"], self.wish
-        assert wish.settling_time is not None and wish.overshoot is not None  # noqa: S101, PT018
-        product = sigma * wish.settling_time
+        sigma, omega_d, request = self.answer["sigma"], self.answer["omega_d"], self.request
+        assert request.settling_time is not None and request.overshoot is not None  # noqa: S101, PT018
+        product = sigma * request.settling_time
         yield Claim(relation(product, 4), e, "sigma*T = 4")
         yield Claim(relation(function("exp", -product), "<=", Scalar.of(Fraction(1, 50))), e)
         if (omega_d is None) != (self.count < 2):
             message = "two poles and more begin with a pair"
             raise CertificateRejected(message, repair="please report this: it is a bug of symobs")
         if omega_d is not None:
-            yield Claim(relation(overshoot_of(omega_d / sigma), "<=", wish.overshoot), e)
+            yield Claim(relation(overshoot_of(omega_d / sigma), "<=", request.overshoot), e)
         expected = product_of(dominated(self.count, sigma, omega_d, self.plant.variable))
         yield Claim(relation(letter("phi_r", e), expected), e, "phi_r = (pair)(further left)")
 
     def _claims_of_fixed_modes(self) -> Iterator[Claim]:
-        """Where unobservable modes are not among the poles: that they are unobservable."""
+        """Yield the claim that the modes missing among the poles are unobservable."""
         if self.missed.is_one:
             return
         pair, variable = self.pair, self.plant.variable
@@ -185,10 +185,10 @@ class AdvisedPoles(Result):
     # -- what follows ------------------------------------------------------------------------------------------------
 
     @cached_property
-    def pair(self) -> Pair:
+    def pair(self) -> ObserverPair:
         """(A, C)."""
         m = self.plant.matrices
-        return Pair(m.A, m.C, self.plant.variable, self.plant.equations)
+        return ObserverPair(m.A, m.C, self.plant.variable, self.plant.equations)
 
     @cached_property
     def missed(self) -> Scalar:
@@ -200,7 +200,7 @@ class AdvisedPoles(Result):
     @cached_property
     def places(self) -> tuple[Complex | Root, ...]:
         """All n poles, with multiplicity: the zeros first."""
-        radius, sigma = self.wish.radius, self.answer["sigma"]
+        radius, sigma = self.request.radius, self.answer["sigma"]
         if radius is not None:
             return (*self.places_used, *poles_of(self.count, radius))
         pair = pair_poles(self.count, sigma, self.answer["omega_d"])
@@ -217,7 +217,7 @@ class AdvisedPoles(Result):
         )
 
     @cached_property
-    def cautions(self) -> tuple[Beware, ...]:
+    def cautions(self) -> tuple[PoleWarning, ...]:
         """What an expert would warn of."""
         return warnings_of(self.plant, self.zeros, self.answer["polynomial"], self.pair, self.missed)
 
@@ -226,7 +226,7 @@ class AdvisedPoles(Result):
         """The fields of the contract; σ and ω of the pair where there is one."""
         found = {"poles": list(self.places), "polynomial": self.answer["polynomial"]}
         found |= {"zeros_used": list(self.places_used), "warnings": [str(warning) for warning in self.cautions]}
-        if self.wish.radius is None:
+        if self.request.radius is None:
             found |= {"sigma": self.answer["sigma"], "omega_d": self.answer["omega_d"]}
         return found
 

@@ -1,4 +1,4 @@
-"""Where to put the poles of an observer: at the plant's stable zeros, the rest far left on a Butterworth circle."""
+"""Advice on observer poles: the stable zeros of the plant, the rest on a Butterworth circle or as a dominant pair."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from symobs._dataclass import dataclass
 from symobs.conditions import Condition, sign_of
-from symobs.design.pole_advice.advised_poles import AdvisedPoles, Wish
+from symobs.design.pole_advice.advised_poles import AdvisedPoles, PoleRequest
 from symobs.design.pole_advice.pole_candidates import (
     needed_of,
 )
@@ -26,7 +26,7 @@ OVERSHOOTS = Fraction(1, 10**6), Fraction(99, 100)
 
 @dataclass(frozen=True, eq=False, repr=False)
 class PoleAdvice(AdvisedPoles):
-    """Advised poles, with the conditions on parameters under which they are advised, and what is advised elsewhere."""
+    """Advised poles, with their conditions on parameters and the advice elsewhere."""
 
     @property
     def verdict(self) -> str:
@@ -38,7 +38,7 @@ class PoleAdvice(AdvisedPoles):
     @cached_property
     def holds_where(self) -> tuple[Condition, ...]:
         """The conditions of the plant and the zeros, that the radius is positive, and that zeros and modes are all there."""
-        signs, radius = self.plant.symbols.signs, self.wish.radius
+        signs, radius = self.plant.symbols.signs, self.request.radius
         own = [*super().holds_where]
         if radius is not None and self.count and sign_of(radius, signs) != "positive":
             own.append(Condition("claim", radius.numerator * radius.denominator, ">"))
@@ -68,23 +68,23 @@ class PoleAdvice(AdvisedPoles):
 
 
 @method("pole_advice/butterworth", source="doyle1979; butterworth1930; brogan1991, pp. 532–533")
-def on_a_circle(plant: StateSpace, wish: Wish) -> PoleAdvice:
+def on_a_circle(plant: StateSpace, request: PoleRequest) -> PoleAdvice:
     """Stable zeros, then a Butterworth circle of the radius given."""
-    if wish.radius is None:
+    if request.radius is None:
         raise InputError("butterworth needs a radius", where="specification.radius", repair='give radius = "omega_0"')
-    return PoleAdvice.of(plant, wish, "butterworth")
+    return PoleAdvice.of(plant, request, "butterworth")
 
 
 @method("pole_advice/dominant_pair", source="second-order step response, 2 % settling time 4/σ")
-def with_a_pair(plant: StateSpace, wish: Wish) -> PoleAdvice:
+def with_a_pair(plant: StateSpace, request: PoleRequest) -> PoleAdvice:
     """Stable zeros that are fast enough, a pair for settling time and overshoot, the others further left."""
-    if wish.settling_time is None:
+    if request.settling_time is None:
         message, repair = (
             "dominant_pair needs settling_time and overshoot",
             'give settling_time = 2, overshoot = "0.05"',
         )
         raise InputError(message, where="specification.settling_time", repair=repair)
-    return PoleAdvice.of(plant, wish, "dominant_pair")
+    return PoleAdvice.of(plant, request, "dominant_pair")
 
 
 @task
@@ -96,7 +96,7 @@ def pole_advice(
     overshoot: Quantity = None,
     method: Name = "auto",
 ) -> Result:
-    """Say where to put the observer's poles: at the stable zeros, the rest on a circle or as a dominant pair.
+    """Advise observer poles: at the stable zeros of the plant, the rest on a circle or as a dominant pair.
 
     plant                         n states, one input, one output, continuous time
     radius                        ω₀ > 0, a symbol or a number: φ_r(s) φ_r(−s) = ω₀^{2N} + (−1)^N s^{2N}, N poles remaining
@@ -116,23 +116,23 @@ def pole_advice(
         raise InputError(
             message, where="plant.dt", repair="leave dt out, or take observer with all poles at 0 (deadbeat)"
         )
-    wish = _wish(plant, radius, settling_time, overshoot)
+    request = _wish(plant, radius, settling_time, overshoot)
     plant = plant.knowing(radius)
-    found: Result = choose("pole_advice", method, "dominant_pair" if wish.radius is None else "butterworth").solve(
-        plant, wish
+    found: Result = choose("pole_advice", method, "dominant_pair" if request.radius is None else "butterworth").solve(
+        plant, request
     )
     return found.asked(method)
 
 
-def _wish(plant: StateSpace, radius: object, settling_time: object, overshoot: object) -> Wish:
-    """Return what is asked for: a radius, or both others; raises `InputError` for anything else."""
+def _wish(plant: StateSpace, radius: object, settling_time: object, overshoot: object) -> PoleRequest:
+    """Return the request: a radius, or settling time and overshoot; raises `InputError` for anything else."""
     where = "specification.radius"
     if radius is not None:
         if settling_time is not None or overshoot is not None:
             raise InputError(
                 "a radius is given beside settling_time or overshoot", where=where, repair="keep one of them"
             )
-        return Wish(read_quantity(radius, plant, "radius"))
+        return PoleRequest(read_quantity(radius, plant, "radius"))
     if settling_time is None or overshoot is None:
         message = "radius is missing" if settling_time is overshoot else "settling_time and overshoot belong together"
         repair = 'give radius = "omega_0", or settling_time = 2 and overshoot = "0.05"'
@@ -146,4 +146,4 @@ def _wish(plant: StateSpace, radius: object, settling_time: object, overshoot: o
     if not least <= found[1].fraction() <= most:
         message = f"the overshoot is {found[1]}, which is not between {least} and {most}"
         raise InputError(message, where="specification.overshoot", repair='write 5 % as "0.05"')
-    return Wish(None, found[0], found[1])
+    return PoleRequest(None, found[0], found[1])

@@ -1,4 +1,4 @@
-"""Where parameters change the advice on poles: zeros that cross the axis or are lost, modes that are not seen any more."""
+"""Parameter values at which the advice changes: zeros on the axis or lost, modes that become unobservable."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ def _of_open_zeros(advice: AdvisedPoles) -> Iterator[Case]:
             for value in needed_of(factor, advice.plant.symbols.signs, advice.answer["sigma"], advice.plant.variable)
         )
         try:
-            there = type(advice).of(advice.plant, advice.wish, advice.method, (*taken, factor))
+            there = type(advice).of(advice.plant, advice.request, advice.method, (*taken, factor))
         except InputError:  # a circle that square roots do not write
             yield Case(conditions, {}, None)
         else:
@@ -67,8 +67,8 @@ def _of_strata(advice: AdvisedPoles) -> tuple[Case, ...]:
     plant = advice.plant
 
     def solve(there: StateSpace, values: Mapping[str, Scalar]) -> AdvisedPoles:
-        wish, radius = advice.wish, advice.wish.radius
-        moved = wish if radius is None else replace(wish, radius=radius.substitute(values))
+        request, radius = advice.request, advice.request.radius
+        moved = request if radius is None else replace(request, radius=radius.substitute(values))
         try:
             return type(advice).of(there, moved, advice.method)
         except InputError as error:

@@ -8,9 +8,8 @@ from typing import TYPE_CHECKING, cast
 from symobs.analysis.factored_form import factored_form, formula_of_factored
 from symobs.analysis.page_parts import given, hidden, hidden_polynomial, set_anew, stratum_of, undecided
 from symobs.conditions import sign_of
-from symobs.derivation import Case as CaseStep
-from symobs.derivation import Given
-from symobs.derivation.builder import Page, predicate, relation, sentence
+from symobs.derivation import CaseStep, Given
+from symobs.derivation.builder import Builder, predicate, relation, sentence
 from symobs.design.pole_advice.advised_poles import FURTHER_LEFT, numerator_term
 from symobs.design.pole_advice.pole_advice import PoleAdvice
 from symobs.design.pole_advice.pole_candidates import numerator_of, overshoot_of, third_digit
@@ -27,17 +26,17 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from symobs.derivation import Step
-    from symobs.design.pole_advice.pole_warnings import Beware
+    from symobs.design.pole_advice.pole_warnings import PoleWarning
     from symobs.formula import Relation
     from symobs.formula.term import Term
 
 
 @page_of(PoleAdvice)
-def write_pole_advice(page: Page, advice: PoleAdvice) -> None:
+def write_pole_advice(page: Builder, advice: PoleAdvice) -> None:
     """Write the plant's zeros, φ_z, φ_r and φ, and what to beware of."""
     page.with_roots(*_written(advice))
     given(page)
-    if advice.wish.radius is None:
+    if advice.request.radius is None:
         _asked(page, advice)
     with page.section("pole_advice"):
         _advice(page, advice)
@@ -50,18 +49,18 @@ def write_pole_advice(page: Page, advice: PoleAdvice) -> None:
 def _written(advice: PoleAdvice) -> Iterator[Scalar]:
     """Yield what may hold square roots, in the cases as well."""
     yield from (advice.answer["zeros"], advice.zeros.others, advice.answer["rest"].value)
-    if advice.wish.radius is not None:
+    if advice.request.radius is not None:
         yield from (twice_cosine(Fraction(1, 2) - turns) for turns in butterworth_angles(advice.count))
     for case in advice.case_tree:
         if case.result is not None:
             yield from _written(cast("PoleAdvice", case.result))
 
 
-def _advice(page: Page, advice: PoleAdvice) -> None:
+def _advice(page: Builder, advice: PoleAdvice) -> None:
     """Write zeros, the other places, the polynomial, the cautions."""
     _zeros(page, advice)
-    if advice.wish.radius is not None:
-        _circle(page, advice, advice.wish.radius)
+    if advice.request.radius is not None:
+        _circle(page, advice, advice.request.radius)
     else:
         _pair(page, advice)
     _polynomial(page, advice)
@@ -69,16 +68,16 @@ def _advice(page: Page, advice: PoleAdvice) -> None:
         _caution(page, advice, warning)
 
 
-def _cases(page: Page, advice: PoleAdvice) -> Iterator[Step]:
+def _cases(page: Builder, advice: PoleAdvice) -> Iterator[Step]:
     """Yield the cases: of zeros that are stable under conditions, and of the strata."""
     for case in advice.case_tree:
         if case.result is None:
             yield undecided(page, case)
             continue
         found = cast("PoleAdvice", case.result)
-        inner = Page(found.plant)
-        matrices = {name: getattr(found.plant.matrices, name) for name in "ABCD" if page.knows(name)}
-        inner.environment = page.environment.having(values=matrices)
+        inner = Builder(found.plant)
+        matrices = {name: getattr(found.plant.matrices, name) for name in "ABCD" if page.defines(name)}
+        inner.environment = page.environment.extended_by(values=matrices)
         _advice(inner, found)
         inner.steps += _cases(inner, found)
         anew, steps = tuple(set_anew(page, inner)), tuple(inner.steps)
@@ -92,27 +91,27 @@ def _cases(page: Page, advice: PoleAdvice) -> Iterator[Step]:
         yield steps[0]
 
 
-def _asked(page: Page, advice: PoleAdvice) -> None:
+def _asked(page: Builder, advice: PoleAdvice) -> None:
     """State settling time and overshoot."""
-    time, overshoot = advice.wish.settling_time, advice.wish.overshoot
+    time, overshoot = advice.request.settling_time, advice.request.overshoot
     assert time is not None and overshoot is not None  # noqa: S101, PT018 - one of two ways to ask
     data = [relation(page["T_s"], time), relation(page["M_p"], overshoot)]
     page.steps.append(Given(tuple(data), sentence("step_asked_for", {})))
-    page.environment = page.environment.having(values={"T_s": time, "M_p": overshoot})
+    page.environment = page.environment.extended_by(values={"T_s": time, "M_p": overshoot})
 
 
-def _product(page: Page, factors: tuple[tuple[Scalar, int], ...]) -> Term:
+def _product(page: Builder, factors: tuple[tuple[Scalar, int], ...]) -> Term:
     """Return a product of factors as they are."""
     return page.term(formula_of_factored(Factored(Scalar.of(1), factors)))
 
 
-def _zeros(page: Page, advice: PoleAdvice) -> None:
+def _zeros(page: Builder, advice: PoleAdvice) -> None:
     """The numerator, its roots, and those of them that are used."""
     plant, b = page.plant, numerator_of(page.plant)
     page.define(
         "b_P", numerator_term(page.environment, plant), factored_form(page, b), say="numerator_of_plant", closing=False
     )
-    if not page.knows("P"):
+    if not page.defines("P"):
         chi = (page.s @ page.identity(plant.order) - page["A"]).apply("det")
         P = factored_form(page, b / plant.matrices.A.characteristic_polynomial(plant.variable))
         page.define("P", page["b_P"] / chi, P, say="transfer_from_numerator", closing=False)
@@ -128,7 +127,7 @@ def _zeros(page: Page, advice: PoleAdvice) -> None:
         page.conclude("no_zeros_taken", relation(page["phi_z"], 1))
 
 
-def _circle(page: Page, advice: PoleAdvice, radius: Scalar) -> None:
+def _circle(page: Builder, advice: PoleAdvice, radius: Scalar) -> None:
     """φ_r with φ_r(s) φ_r(−s), and the pairs."""
     count, variable = advice.count, page.plant.variable
     if not count:
@@ -157,16 +156,16 @@ def _circle(page: Page, advice: PoleAdvice, radius: Scalar) -> None:
     page.equal(*shown, say="circle_pairs")
 
 
-def _nothing(page: Page) -> None:
+def _nothing(page: Builder) -> None:
     page.set("phi_r", Scalar.of(1))
     page.conclude("none_remains", relation(page["phi_r"], 1))
 
 
-def _pair(page: Page, advice: PoleAdvice) -> None:
+def _pair(page: Builder, advice: PoleAdvice) -> None:
     """σ from the settling time, ω from the overshoot, and φ_r."""
-    answer, wish, count = advice.answer, advice.wish, advice.count
-    assert wish.settling_time is not None and wish.overshoot is not None  # noqa: S101, PT018 - one of two ways to ask
-    sigma, omega_d, time = answer["sigma"], answer["omega_d"], wish.settling_time
+    answer, request, count = advice.answer, advice.request, advice.count
+    assert request.settling_time is not None and request.overshoot is not None  # noqa: S101, PT018 - one of two ways to ask
+    sigma, omega_d, time = answer["sigma"], answer["omega_d"], request.settling_time
     page.define("sigma_d", page.value(4) / page["T_s"], say="rate_from_settling")
     page.conclude("decayed", bound=relation(function("exp", -sigma * time), "<=", Scalar.of(1) / 50))
     if not count:
@@ -198,7 +197,7 @@ def _pair(page: Page, advice: PoleAdvice) -> None:
     )
 
 
-def _polynomial(page: Page, advice: PoleAdvice) -> None:
+def _polynomial(page: Builder, advice: PoleAdvice) -> None:
     """φ, boxed, and where the gain tends."""
     zeros, plant, whole = advice.zeros, page.plant, formula_of_factored(advice.answer["polynomial"])
     parts = [*([page["phi_z"]] if zeros.used else []), *([page["phi_r"]] if advice.count else [])]
@@ -210,7 +209,7 @@ def _polynomial(page: Page, advice: PoleAdvice) -> None:
             alone = page["phi_z"] / page.value(page["phi_z"].scalar / factor)
             repeated = Roots(alone.formula, roots_of(factor, plant.variable))
             page.remark("pole_twice", predicate("polynomial", twice), repeated=repeated)
-    if advice.wish.radius is None or zeros.unused or not zeros.used or not advice.count:
+    if advice.request.radius is None or zeros.unused or not zeros.used or not advice.count:
         return
     if not plant.matrices.has_feedthrough:
         pencil = (page.s @ page.identity(plant.order) - page["A"]).apply("adj")
@@ -218,7 +217,7 @@ def _polynomial(page: Page, advice: PoleAdvice) -> None:
         page.equal(relation(page["C"] @ pencil @ page["B"], multiple), say="recovery")
 
 
-def _caution(page: Page, advice: PoleAdvice, warning: Beware) -> None:
+def _caution(page: Builder, advice: PoleAdvice, warning: PoleWarning) -> None:
     """Say a warning, with what can be checked of it."""
     slots, n = dict(warning.slots), page.plant.order
     if warning.key == "always_unstable":
@@ -240,7 +239,7 @@ def _caution(page: Page, advice: PoleAdvice, warning: Beware) -> None:
         page.caution(warning.key, relation(page["b_P"], 0))
 
 
-def _vanishing(page: Page, advice: PoleAdvice, factor: Scalar) -> Relation:
+def _vanishing(page: Builder, advice: PoleAdvice, factor: Scalar) -> Relation:
     """Return b(z) = 0 for the root z of a linear factor, b(s) = factor · rest for another."""
     variable = page.plant.variable
     if factor.degree(variable) == 1:

@@ -1,4 +1,4 @@
-"""Where to put the poles of an observer, and what to beware of."""
+"""Sentences of the advice on observer poles."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Places for poles: a plant's zeros, told apart by where they lie, points on a circle, and a pair for an overshoot."""
+"""Candidate observer poles: stable plant zeros, Butterworth points, and a dominant pair for a given overshoot."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ OPEN = frozenset({"zero_open", "zero_slow_open"})
 
 
 @dataclass(frozen=True)
-class Zeros:
+class PlantZeros:
     """A plant's numerator as a unit and monic factors: those with stable roots, and the others, each with the reason."""
 
     unit: Scalar
@@ -31,12 +31,12 @@ class Zeros:
     unused: tuple[tuple[Scalar, int, str], ...]
 
     @staticmethod
-    def of(numerator: Scalar, plant: StateSpace, sigma: Scalar | None, taken: tuple[Scalar, ...] = ()) -> Zeros:
+    def of(numerator: Scalar, plant: StateSpace, sigma: Scalar | None, taken: tuple[Scalar, ...] = ()) -> PlantZeros:
         """Sort the zeros: those in Re s < 0, with σ in Re s < −σ, are used, and those `taken` for being there."""
         used: list[tuple[Scalar, int]] = []
         unused: list[tuple[Scalar, int, str]] = []
         if numerator.is_zero:
-            return Zeros(numerator, (), ())
+            return PlantZeros(numerator, (), ())
         form = factored(numerator, plant.variable)
         for factor, power in form.factors:
             for part in _parts(factor, plant.variable):
@@ -45,7 +45,7 @@ class Zeros:
                     unused.append((part, power, reason))
                 else:
                     used.append((part, power))
-        return Zeros(form.unit, tuple(used), tuple(unused))
+        return PlantZeros(form.unit, tuple(used), tuple(unused))
 
     @property
     def polynomial(self) -> Scalar:
@@ -93,7 +93,7 @@ def _reason(factor: Scalar, plant: StateSpace, sigma: Scalar | None) -> str:
 
 
 def _on_both_sides(factor: Scalar, variable: str, signs: Mapping[str, str]) -> bool:
-    """Whether an irreducible factor surely has roots on both sides of the axis, and not all of them on one.
+    """Return whether an irreducible factor surely has roots on both sides of the axis, and not all of them on one.
 
     With numbers for coefficients what is neither stable, nor on the axis, nor all on the right.  With parameters this is
     seen of two roots whose product is negative.

@@ -1,4 +1,4 @@
-"""What an expert would warn of beside a choice of observer poles; each warning is a sentence of the page as well."""
+"""Warnings about observer poles; each one is also a sentence of the page."""
 
 from __future__ import annotations
 
@@ -15,8 +15,8 @@ from symobs.stability.criteria.stability import no_stable_compensator
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from symobs.design.pole_advice.pole_candidates import Zeros
-    from symobs.design.pole_placement.single_output import Pair
+    from symobs.design.pole_advice.pole_candidates import PlantZeros
+    from symobs.design.pole_placement.single_output import ObserverPair
     from symobs.system import StateSpace
 
 #: Zero and pole are near each other where they differ by less than this part of the zero.
@@ -26,7 +26,7 @@ _HUGE = 100
 
 
 @dataclass(frozen=True)
-class Beware:
+class PoleWarning:
     """A phrase with what stands in its slots: a factor of the numerator, a pole of the plant, a number."""
 
     key: str
@@ -45,27 +45,27 @@ class Beware:
 
 
 def warnings_of(
-    plant: StateSpace, zeros: Zeros, polynomial: Factored, pair: Pair, missed: Scalar
-) -> tuple[Beware, ...]:
+    plant: StateSpace, zeros: PlantZeros, polynomial: Factored, pair: ObserverPair, missed: Scalar
+) -> tuple[PoleWarning, ...]:
     """Return the warnings: of zeros that are no places for poles, cancellations, the compensator, the gain, fixed modes."""
     return (
         *_of_zeros(zeros, plant.variable),
         *_of_cancellations(plant, zeros),
         *_of_compensator(plant),
         *_of_gain(plant, polynomial, pair),
-        *([] if missed.is_one else [Beware("modes_missed", (("polynomial", missed),))]),
+        *([] if missed.is_one else [PoleWarning("modes_missed", (("polynomial", missed),))]),
     )
 
 
-def _of_zeros(zeros: Zeros, variable: str) -> Iterator[Beware]:
+def _of_zeros(zeros: PlantZeros, variable: str) -> Iterator[PoleWarning]:
     if zeros.unit.is_zero:
-        yield Beware("no_response")
+        yield PoleWarning("no_response")
     for factor, _, reason in zeros.unused:
         alone = reason == "zero_at_origin" or factor.degree(variable) == 1
-        yield Beware(reason if alone else f"{reason}s", (("zero", factor),), variable)
+        yield PoleWarning(reason if alone else f"{reason}s", (("zero", factor),), variable)
 
 
-def _of_cancellations(plant: StateSpace, zeros: Zeros) -> Iterator[Beware]:
+def _of_cancellations(plant: StateSpace, zeros: PlantZeros) -> Iterator[PoleWarning]:
     """Compare the rational zeros with the rational poles."""
     chi = plant.matrices.A.characteristic_polynomial(plant.variable)
     if zeros.unit.is_zero or chi.names != {plant.variable}:
@@ -80,17 +80,17 @@ def _of_cancellations(plant: StateSpace, zeros: Zeros) -> Iterator[Beware]:
             distance = abs(zero.fraction() - pole.fraction())
             if _NEAR * distance < abs(zero.fraction()) or not distance:
                 key = "nearly_cancels" if distance else "cancels"
-                yield Beware(key, (("zero", factor), ("pole", pole)), plant.variable)
+                yield PoleWarning(key, (("zero", factor), ("pole", pole)), plant.variable)
 
 
-def _of_compensator(plant: StateSpace) -> Iterator[Beware]:
+def _of_compensator(plant: StateSpace) -> Iterator[PoleWarning]:
     """Warn where no compensator that is stable itself can stabilise the plant."""
     P = numerator_of(plant) / plant.matrices.A.characteristic_polynomial(plant.variable)
     if P and no_stable_compensator(P, plant.variable, plant.symbols.signs):
-        yield Beware("always_unstable")
+        yield PoleWarning("always_unstable")
 
 
-def _of_gain(plant: StateSpace, polynomial: Factored, pair: Pair) -> Iterator[Beware]:
+def _of_gain(plant: StateSpace, polynomial: Factored, pair: ObserverPair) -> Iterator[PoleWarning]:
     """Warn of a gain with an entry far beyond those of the plant, where all are numbers."""
     A = plant.matrices.A
     if A.names or plant.matrices.C.names or not pair.is_observable:
@@ -102,5 +102,5 @@ def _of_gain(plant: StateSpace, polynomial: Factored, pair: Pair) -> Iterator[Be
     limit = _HUGE * max(Fraction(1), *(abs(entry.fraction()) for entry in A.entries))
     for entry in gain.entries:
         if "positive" in (sign_of_number(entry - limit), sign_of_number(-entry - limit)):
-            yield Beware("huge_gain", (("limit", Scalar.of(limit)),))
+            yield PoleWarning("huge_gain", (("limit", Scalar.of(limit)),))
             return

@@ -26,7 +26,7 @@ ORDERS, LINKS, SHARES = 6, 6, 8
 
 
 @dataclass(frozen=True)
-class Chains:
+class BrunovskyChains:
     """The dual pair in Brunovsky's coordinates: T rows, the end of each chain, the outputs they belong to."""
 
     T: Matrix
@@ -38,7 +38,7 @@ class Chains:
     driven: Matrix
 
     @staticmethod
-    def of(A: Matrix, C: Matrix, order: Sequence[int], ideal: Ideal | None = None) -> Chains:
+    def of(A: Matrix, C: Matrix, order: Sequence[int], ideal: Ideal | None = None) -> BrunovskyChains:
         """Return the chains for an order of the outputs; (C, A) must be observable.  What lies in `ideal` is 0."""
         states = A.shape[0]
         lengths = _lengths(A, C, order, ideal)
@@ -59,7 +59,7 @@ class Chains:
         back = T.inverse()
         last_rows = (T.select(ends, range(states)) @ A.T @ back).normal()
         driven = T.select(ends, range(states)) @ C.select(outputs, range(states)).T
-        return Chains(T, back, tuple(lengths[i] for i in outputs), outputs, tuple(ends), last_rows, driven)
+        return BrunovskyChains(T, back, tuple(lengths[i] for i in outputs), outputs, tuple(ends), last_rows, driven)
 
     def gain(self, wanted: Matrix, count: int) -> Matrix:
         """Return L for which the ends of the chains of (A − LC)ᵀ have these rows."""
@@ -93,7 +93,7 @@ class Chains:
         return Matrix.of(rows)
 
     def shared(self, polynomials: Sequence[Sequence[Scalar]], beyond: str) -> Matrix:
-        """Return the last rows that give each chain a polynomial of its own.
+        """Return the last rows that assign each chain its polynomial.
 
         `beyond` says what leads from a chain to later ones: `nothing`, `one` entry into the next, or what there is in
         the `plant`, so that less has to be changed.
@@ -143,16 +143,16 @@ def simple_gains(
     coefficients = _coefficients(factors, variable)
     count = C.shape[0]
     for order in islice(permutations(range(count)), ORDERS if not (A.names or C.names) else 2):
-        chains = Chains.of(A, C, order, ideal)
+        chains = BrunovskyChains.of(A, C, order, ideal)
         for link in islice(permutations(range(len(chains.outputs))), LINKS):
             yield chains.gain(chains.linked(link, coefficients), count)
-        for share in islice(shares(factors, chains.lengths, variable), SHARES):
+        for share in islice(split_polynomial(factors, chains.lengths, variable), SHARES):
             for beyond in ("nothing", "one", "plant"):
                 yield chains.gain(chains.shared(share, beyond), count)
 
 
 def _of_one_output(A: Matrix, C: Matrix, factors: Sequence[Scalar], variable: str) -> Iterator[Matrix]:
-    """Yield l w by Ackermann's formula, where the combination w C of few outputs alone sees the whole state."""
+    """Yield l w by Ackermann's formula, where (w C, A) is observable for a combination of few outputs."""
     count = C.shape[0]
     singles = [[int(i == j) for j in range(count)] for i in range(count)]
     pairs = [
@@ -172,7 +172,9 @@ def _of_one_output(A: Matrix, C: Matrix, factors: Sequence[Scalar], variable: st
             return
 
 
-def shares(factors: Sequence[Scalar], lengths: Sequence[int], variable: str) -> Iterator[list[tuple[Scalar, ...]]]:
+def split_polynomial(
+    factors: Sequence[Scalar], lengths: Sequence[int], variable: str
+) -> Iterator[list[tuple[Scalar, ...]]]:
     """Yield the ways to share the factors of φ among chains of these lengths, as coefficients."""
     if not lengths:
         yield []
@@ -183,7 +185,7 @@ def shares(factors: Sequence[Scalar], lengths: Sequence[int], variable: str) -> 
             own = [factors[k] for k in chosen]
             rest = [f for k, f in enumerate(factors) if k not in chosen]
             coefficients = _coefficients(own, variable)
-            for others in shares(rest, lengths[1:], variable):
+            for others in split_polynomial(rest, lengths[1:], variable):
                 yield [coefficients, *others]
 
 

@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING
 from symobs.exact import Matrix, hankel_of
 
 if TYPE_CHECKING:
-    from symobs.design.pole_placement.single_output import Pair
+    from symobs.design.pole_placement.single_output import ObserverPair
     from symobs.specification import DesiredPolynomial
 
 
-def canonical_gain(pair: Pair, desired: DesiredPolynomial) -> Matrix:
+def canonical_gain(pair: ObserverPair, desired: DesiredPolynomial) -> Matrix:
     """Return l with lᵀ = [αₙ − aₙ, …, α₁ − a₁] V⁻¹, V = 𝒪ᵀ · Hankel(a); needs det 𝒪 ≠ 0."""
     found = pair.A.characteristic_polynomial(pair.variable).coefficients(pair.variable)[1:]
     V = pair.krylov.matrix.T @ hankel_of(found)
@@ -19,7 +19,7 @@ def canonical_gain(pair: Pair, desired: DesiredPolynomial) -> Matrix:
     return V.T.solve(Matrix.column(list(reversed(differences)))).normal()
 
 
-def companion_rows(pair: Pair) -> Matrix:
+def companion_rows(pair: ObserverPair) -> Matrix:
     """Return T with rows q, qAᵀ, …, q the last row of 𝒞(Aᵀ, Cᵀ)⁻¹: T Aᵀ T⁻¹ is a companion matrix and T Cᵀ = eₙ."""
     rows = [pair.krylov.solve_last().normal().T]
     for _ in range(pair.A.shape[0] - 1):
@@ -27,7 +27,7 @@ def companion_rows(pair: Pair) -> Matrix:
     return Matrix.block([[row] for row in rows])
 
 
-def companion_gain(pair: Pair, desired: DesiredPolynomial) -> Matrix:
+def companion_gain(pair: ObserverPair, desired: DesiredPolynomial) -> Matrix:
     """Return l with lᵀ = [αₙ − aₙ, …, α₁ − a₁] T; needs det 𝒪 ≠ 0."""
     found = pair.A.characteristic_polynomial(pair.variable).coefficients(pair.variable)[1:]
     row = Matrix.row([alpha - a for alpha, a in zip(desired.coefficients, found, strict=True)][::-1])

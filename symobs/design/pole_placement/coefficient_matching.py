@@ -1,4 +1,4 @@
-"""Matching coefficients: det(sI − A + l c) is affine in the entries of l, so φ asks for the solution of a linear system."""
+"""Matching coefficients: det(sI − A + l c) is affine in the entries of l, so l solves a linear system."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 from symobs.exact import Matrix
 
 if TYPE_CHECKING:
-    from symobs.design.pole_placement.single_output import Pair
+    from symobs.design.pole_placement.single_output import ObserverPair
     from symobs.specification import DesiredPolynomial
 
 
@@ -23,8 +23,8 @@ class Matching(NamedTuple):
         return self.M.solve(self.r).normal()
 
 
-def matching(pair: Pair, desired: DesiredPolynomial) -> Matching:
-    """Return the system; its column i is what a one in row i of l adds to the polynomial of A."""
+def matching(pair: ObserverPair, desired: DesiredPolynomial) -> Matching:
+    """Return the system; column i is the change of the polynomial of A by a one in row i of l."""
     order, variable = pair.A.shape[0], pair.variable
     own = pair.A.characteristic_polynomial(variable).coefficients(variable)[1:]
     columns = []
@@ -33,10 +33,10 @@ def matching(pair: Pair, desired: DesiredPolynomial) -> Matching:
         found = moved.coefficients(variable)[1:]
         columns.append([new - old for new, old in zip(found, own, strict=True)])
     M = Matrix.of([list(row) for row in zip(*columns, strict=True)])
-    r = Matrix.column([wish - old for wish, old in zip(desired.coefficients, own, strict=True)])
+    r = Matrix.column([coefficient - old for coefficient, old in zip(desired.coefficients, own, strict=True)])
     return Matching(M, r)
 
 
-def matched_gain(pair: Pair, desired: DesiredPolynomial) -> Matrix:
+def matched_gain(pair: ObserverPair, desired: DesiredPolynomial) -> Matrix:
     """Return l."""
     return matching(pair, desired).solution

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 from symobs.analysis.rank.rank_test import power_rows
 from symobs.certificate.claims import Claim
 from symobs.derivation.builder import relation
-from symobs.design.pole_placement.brunovsky_chains import Chains, cost, shares
+from symobs.design.pole_placement.brunovsky_chains import BrunovskyChains, cost, split_polynomial
 from symobs.errors import InputError
 from symobs.exact import Matrix, rank
 from symobs.exact.core.generators import NotWritten
@@ -21,7 +21,7 @@ from symobs.formula.term import Term
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from symobs.design.pole_placement.single_output import Pair
+    from symobs.design.pole_placement.single_output import ObserverPair
     from symobs.specification import DesiredPolynomial
 
 
@@ -29,7 +29,7 @@ class NotDecoupled(InputError, NotWritten):
     """No gain found decouples; a case of a result is undecided there."""
 
 
-def decoupled_gain(pair: Pair, desired: DesiredPolynomial) -> Matrix:
+def decoupled_gain(pair: ObserverPair, desired: DesiredPolynomial) -> Matrix:
     """Return the simplest gain that gives each chain factors of φ of its own and decouples the outputs.
 
     Raises `NotDecoupled` where a mode is fixed or no chains decouple.
@@ -40,11 +40,11 @@ def decoupled_gain(pair: Pair, desired: DesiredPolynomial) -> Matrix:
         raise NotDecoupled(message, where=where, repair="leave member out, or give zero")
     found, tried = [], set()
     for order in permutations(range(pair.c.shape[0])):
-        chains = Chains.of(pair.A, pair.c, order)
+        chains = BrunovskyChains.of(pair.A, pair.c, order)
         if chains.by_output in tried:
             continue  # in another order the same chains share the same factors
         tried.add(chains.by_output)
-        for share in shares(desired.factors, chains.lengths, pair.variable):
+        for share in split_polynomial(desired.factors, chains.lengths, pair.variable):
             gain = chains.gain(chains.shared(share, "nothing"), pair.c.shape[0])
             if sum(rank(rows) for rows in _own_rows(pair, gain)) == pair.A.shape[0]:
                 found.append(gain)
@@ -54,7 +54,7 @@ def decoupled_gain(pair: Pair, desired: DesiredPolynomial) -> Matrix:
     return min(found, key=cost)
 
 
-def decoupled_claim(pair: Pair, gain: Matrix) -> Claim:
+def decoupled_claim(pair: ObserverPair, gain: Matrix) -> Claim:
     """Return the claim that the orders of the output errors add up to n."""
     e = Environment(variable=pair.variable)
     first, *others = (Term(Literal(rows), e).apply("rank") for rows in _own_rows(pair, gain))
@@ -62,7 +62,7 @@ def decoupled_claim(pair: Pair, gain: Matrix) -> Claim:
     return Claim(added, e, "the orders of the output errors add up to n")
 
 
-def _own_rows(pair: Pair, gain: Matrix) -> Iterator[Matrix]:
+def _own_rows(pair: ObserverPair, gain: Matrix) -> Iterator[Matrix]:
     """Yield 𝒪(A − LC, cᵢ) for each output."""
     closed = (pair.A - gain @ pair.c).normal()
     for i in range(pair.c.shape[0]):

@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from symobs.derivation.builder import Page
+    from symobs.derivation.builder import Builder
 
 
-def taken_names(page: Page) -> set[str]:
+def taken_names(page: Builder) -> set[str]:
     """Return the names of parameters and coefficients that stand on the page."""
     named = page.environment.coefficients
     inside = {name for meaning in named.values() for name in meaning.field.names}

@@ -16,7 +16,7 @@ from symobs.formula.term import Term, letter
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping
 
-    from symobs.design.pole_placement.multiple_outputs import SeveralOutputs
+    from symobs.design.pole_placement.multiple_outputs import MultiOutputPair
     from symobs.design.pole_placement.sylvester import Sylvester
     from symobs.specification import DesiredPolynomial
 
@@ -28,13 +28,13 @@ SCOPE = "every gain whose closed-loop matrix is cyclic, but for those where det 
 class Family:
     """L = S (L₀ + (G X⁻¹)ᵀ) + N H: the seen part by Sylvester's equation, anything along the kernel N of 𝒪."""
 
-    pair: SeveralOutputs
+    pair: MultiOutputPair
     equation: Sylvester
     names: tuple[str, ...]
     member: Matrix
 
     @staticmethod
-    def of(pair: SeveralOutputs, desired: DesiredPolynomial, names: tuple[str, ...], member: Matrix) -> Family:
+    def of(pair: MultiOutputPair, desired: DesiredPolynomial, names: tuple[str, ...], member: Matrix) -> Family:
         """Return the family in the first chart that contains the member; in the first one where none does."""
         factors = pair.remaining(desired)
         assert factors is not None  # noqa: S101 - a member exists
@@ -77,30 +77,32 @@ class Family:
         """The solution of Sylvester's equation, with its parameters."""
         return self.equation.solution(self.equation.G)
 
-    def fields(self, name: str, oriented: Callable[[Matrix], Matrix]) -> dict[str, Any]:
-        """Return what is told of the family: contract fields, then what they come from."""
-        general = None if self.general is None else oriented(self.general)
+    def fields(self, name: str, transposed_for_task: Callable[[Matrix], Matrix]) -> dict[str, Any]:
+        """Return the fields of the family in results: those of the contract, then what they come from."""
+        general = None if self.general is None else transposed_for_task(self.general)
         found: dict[str, Any] = {"parameters": self.names, name: general, "dimension": len(self.names)}
         if self.is_empty:
             return found
         shift = self.equation.shift
-        told = {"F": self.equation.F, "G": self.equation.G, "X": self.X, "scope": SCOPE}
-        return found | told | {"shift": None if shift is None else oriented(shift)}
+        sources = {"F": self.equation.F, "G": self.equation.G, "X": self.X, "scope": SCOPE}
+        return found | sources | {"shift": None if shift is None else transposed_for_task(shift)}
 
-    def claims(self, oriented: Callable[[Matrix], Matrix], told: Mapping[str, Any] | None) -> Iterator[Claim]:
+    def claims(
+        self, transposed_for_task: Callable[[Matrix], Matrix], answer: Mapping[str, Any] | None
+    ) -> Iterator[Claim]:
         """Yield (A − L₀C)ᵀX − XF = CᵀG and (L − L₀)ᵀX = G for the seen part: L determines G, so no parameter is idle.
 
         w G = e₁ᵀ, and e₁ᵀ, e₁ᵀF, … are the rows of I: with both equations r = w Lᵀ has [r; rM; …] X = I, M = (A − LC)ᵀ.
         """
-        if self.is_empty or told is None:
+        if self.is_empty or answer is None:
             return
         A, C, _ = self.pair.seen
-        values = {"A": A, "C": C, "F": told["F"], "G": told["G"], "X": told["X"]}
-        if told["shift"] is not None:
-            values |= {"A": A - oriented(told["shift"]) @ C}
+        values = {"A": A, "C": C, "F": answer["F"], "G": answer["G"], "X": answer["X"]}
+        if answer["shift"] is not None:
+            values |= {"A": A - transposed_for_task(answer["shift"]) @ C}
         if self.general is not None:
             part = self.pair.part_of(self.general)
-            values["L"] = part if told["shift"] is None else part - oriented(told["shift"])
+            values["L"] = part if answer["shift"] is None else part - transposed_for_task(answer["shift"])
         e = Environment(variable=self.pair.variable, values=values)
         A_, C_, F, G, X = (letter(name, e) for name in ("A", "C", "F", "G", "X"))
         yield Claim(relation(A_.T @ X - X @ F, C_.T @ G), e, "A.T*X - X*F = C.T*G")
@@ -109,5 +111,5 @@ class Family:
         weights, first = Matrix.row(self.equation.weights), Matrix.unit(A.shape[0], 0).T
         yield Claim(relation(Term(Literal(weights), e) @ G, first), e, "w*G = [1, 0, ..., 0]")
         yield Claim(relation(X.apply("det"), "!==", 0), e, "det(X) is not zero identically")
-        rows = len(told["parameters"]) - self.H.shape[0] * self.H.shape[1]
+        rows = len(answer["parameters"]) - self.H.shape[0] * self.H.shape[1]
         yield Claim(relation(rows, A.shape[0] * (C.shape[0] - 1)), e, "G has n*(p - 1) parameters")

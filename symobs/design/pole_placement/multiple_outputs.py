@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 from symobs._dataclass import dataclass
 from symobs.analysis.rank.rank_test import power_rows
 from symobs.design.pole_placement.brunovsky_chains import cost, simple_gains
-from symobs.design.pole_placement.single_output import Pair
+from symobs.design.pole_placement.single_output import ObserverPair
 from symobs.design.pole_placement.sylvester import charts_of, has_meaning
 from symobs.exact import Matrix, factored, independent_rows, kernel, unit_rows
 
@@ -21,13 +21,13 @@ if TYPE_CHECKING:
     from symobs.specification import DesiredPolynomial
 
 
-def pair_of(A: Matrix, C: Matrix, variable: str, equations: tuple[Scalar, ...] = ()) -> Pair:
-    """Return the pair (A, C): one output has a unique gain where it sees everything, several have families."""
-    return (Pair if C.shape[0] == 1 else SeveralOutputs)(A, C, variable, equations)
+def pair_of(A: Matrix, C: Matrix, variable: str, equations: tuple[Scalar, ...] = ()) -> ObserverPair:
+    """Return the pair (A, C): unique gain for one output if observable, families for several outputs."""
+    return (ObserverPair if C.shape[0] == 1 else MultiOutputPair)(A, C, variable, equations)
 
 
 @dataclass(frozen=True)
-class SeveralOutputs(Pair):
+class MultiOutputPair(ObserverPair):
     """A matrix A and several output rows c."""
 
     @cached_property
@@ -42,7 +42,7 @@ class SeveralOutputs(Pair):
 
     @property
     def decisive(self) -> tuple[Scalar, ...]:
-        """Nothing: the rank of 𝒪 drops where several minors vanish together, which is for its own test to say."""
+        """Nothing: the rank of 𝒪 drops where several minors vanish together, which the rank test decides."""
         return ()
 
     @property

@@ -18,7 +18,7 @@ from symobs.exact.core.generators import roots_in
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
-    from symobs.design.pole_placement.single_output import Pair
+    from symobs.design.pole_placement.single_output import ObserverPair
     from symobs.specification import DesiredPolynomial
 
 
@@ -60,7 +60,7 @@ class Reduction:
         )
 
 
-def row_reduction(pair: Pair, desired: DesiredPolynomial) -> tuple[Reduction, ...] | None:
+def row_reduction(pair: ObserverPair, desired: DesiredPolynomial) -> tuple[Reduction, ...] | None:
     """Return one reduction for each factor of φ with independent columns Ψ; the pair must be observable."""
     blocks = [J for factor, power in desired.grouped() for J in [_block(factor, desired)] * power]
     return _search(pair, blocks, ())
@@ -89,7 +89,7 @@ def _block(factor: Scalar, desired: DesiredPolynomial) -> Matrix:
     return Matrix.of([[pair.real, pair.imaginary], [-pair.imaginary, pair.real]])
 
 
-def _search(pair: Pair, blocks: Sequence[Matrix], found: tuple[Reduction, ...]) -> tuple[Reduction, ...] | None:
+def _search(pair: ObserverPair, blocks: Sequence[Matrix], found: tuple[Reduction, ...]) -> tuple[Reduction, ...] | None:
     """Take the first vectors that are independent of those before; go back where that leads nowhere."""
     if len(found) == len(blocks):
         return found
@@ -102,7 +102,7 @@ def _search(pair: Pair, blocks: Sequence[Matrix], found: tuple[Reduction, ...]) 
     return None
 
 
-def _candidates(pair: Pair, J: Matrix, found: tuple[Reduction, ...]) -> Iterator[Reduction]:
+def _candidates(pair: ObserverPair, J: Matrix, found: tuple[Reduction, ...]) -> Iterator[Reduction]:
     """Yield null vectors, sums of two of them, then generalised vectors; the free component is 1 and −1 in turn."""
     order, sign = pair.A.shape[0], -1 if len(found) % 2 else 1
     matrix = _matrix(pair, J)
@@ -124,7 +124,7 @@ def _candidates(pair: Pair, J: Matrix, found: tuple[Reduction, ...]) -> Iterator
             yield Reduction(J, wide, echelon, places, vector, before.psi, order)
 
 
-def _matrix(pair: Pair, J: Matrix) -> Matrix:
+def _matrix(pair: ObserverPair, J: Matrix) -> Matrix:
     """Return [λI − Aᵀ : Cᵀ], of a block J the matrix of ΨJ − AᵀΨ + Cᵀf in the columns of Ψ and f."""
     order, outputs, size = pair.A.shape[0], pair.c.shape[0], J.shape[0]
     empty, identity = Matrix.zeros(order, outputs), Matrix.identity(order)
@@ -143,7 +143,7 @@ def _null_vector(free: int, pivots: tuple[int, ...], reduced: Matrix) -> Matrix:
     return Matrix.column(entries)
 
 
-def reduced_gain(pair: Pair, desired: DesiredPolynomial) -> Matrix | None:
+def reduced_gain(pair: ObserverPair, desired: DesiredPolynomial) -> Matrix | None:
     """Return L of Lᵀ = f Ψ⁻¹, None where no vectors were found."""
     found = row_reduction(pair, desired)
     return None if found is None else gain_of(found)

@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True)
-class Pair:
+class ObserverPair:
     """A matrix A and one output row c."""
 
     A: Matrix
@@ -104,7 +104,7 @@ class Pair:
         return quotient, rest if self.ideal is None else self.ideal.simplified(rest)
 
     def can_assign(self, polynomial: Scalar) -> bool:
-        """Whether the polynomial of the fixed modes divides φ."""
+        """Return whether the polynomial of the fixed modes divides φ."""
         return self.is_observable or self.divided(polynomial)[1].is_zero
 
     def over_field_of(self, desired: DesiredPolynomial) -> Self:
@@ -128,6 +128,6 @@ class Pair:
         )
         inverse = T.inverse()
         A, c = modulo(T @ self.A @ inverse, self.ideal), modulo(self.c @ inverse, self.ideal)
-        part = Pair(A.select(range(rank), range(rank)), c.select([0], range(rank)), self.variable)
+        part = ObserverPair(A.select(range(rank), range(rank)), c.select([0], range(rank)), self.variable)
         gain = apply_polynomial([polynomial], self.variable, part.A, part.krylov.solve_last())
         return modulo((inverse @ Matrix.block([[gain], [Matrix.zeros(order - rank, 1)]])).normal(), self.ideal)

@@ -138,7 +138,7 @@ class Sylvester:
 
 
 def has_meaning(value: Matrix | None, ideal: Ideal | None) -> bool:
-    """Tell whether there is a value where an ideal vanishes: whether it divides by nothing that does."""
+    """Return whether there is a value where an ideal vanishes: whether it divides by nothing that does."""
     return value is not None and (ideal is None or value.common_denominator() not in ideal)
 
 

@@ -19,7 +19,7 @@ from symobs.exact.core.generators import identities
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from symobs.design.pole_placement.single_output import Pair
+    from symobs.design.pole_placement.single_output import ObserverPair
     from symobs.exact.algebraic.real_algebraic import RealNumber
     from symobs.specification import DesiredPolynomial
 
@@ -44,15 +44,17 @@ def unknown_gain(order: int, outputs: int, zero: Sequence[tuple[int, int]]) -> M
     )
 
 
-def equations_for(pair: Pair, desired: DesiredPolynomial, gain: Matrix) -> tuple[Scalar, ...]:
+def equations_for(pair: ObserverPair, desired: DesiredPolynomial, gain: Matrix) -> tuple[Scalar, ...]:
     """Return what must vanish: the coefficients of det(sI − A + LC) less those of φ."""
     found = (pair.A - gain @ pair.c).normal().characteristic_polynomial(pair.variable)
     coefficients = found.coefficients(pair.variable)[1:]
-    return tuple(own - wish for own, wish in zip(coefficients, desired.coefficients, strict=True))
+    return tuple(
+        own - desired_coefficient for own, desired_coefficient in zip(coefficients, desired.coefficients, strict=True)
+    )
 
 
 def contradict(equations: Sequence[Scalar]) -> bool:
-    """Whether 1 lies in the ideal of the equations, so that they have no common solution; False where it is not found."""
+    """Return whether 1 lies in the ideal of the equations, so that they have no common solution."""
     try:
         return Ideal.of(equations).is_whole
     except TooLarge:
@@ -96,7 +98,9 @@ class RootGain:
             digits += 1
 
 
-def with_zeros(pair: Pair, desired: DesiredPolynomial, zero: Sequence[tuple[int, int]]) -> Matrix | RootGain | None:
+def with_zeros(
+    pair: ObserverPair, desired: DesiredPolynomial, zero: Sequence[tuple[int, int]]
+) -> Matrix | RootGain | None:
     """Return a gain with zeros in these places, None where none was found.
 
     Its entries are rational where such a gain is found, otherwise they contain a square root, or a root of higher degree.
@@ -188,7 +192,7 @@ class Search:
         return None
 
     def _by_roots(self, equations: Sequence[Scalar], equation: Scalar, name: str) -> dict[str, Scalar] | None:
-        """Try the rational roots of an equation in one unknown, then, as far as allowed, a real one of a factor."""
+        """Try the rational roots of an equation in one unknown, then, if allowed, a real root of a factor."""
         factors = [factor for factor, _ in equation.factors()[1] if name in factor.names]
         for factor in factors:
             if factor.degree(name) == 1:
@@ -207,7 +211,7 @@ class Search:
         return None
 
     def _allows(self, factor: Scalar, name: str, equations: Sequence[Scalar]) -> bool:
-        """Whether a factor has a real root, and all equations hold for its roots."""
+        """Return whether a factor has a real root, and all equations hold for its roots."""
         from symobs.exact.algebraic.real_algebraic import roots_of_scalar  # noqa: PLC0415 - only irrational gains pay for it
 
         field = AlgebraicExtension(factor, name)
@@ -216,7 +220,7 @@ class Search:
         )
 
     def _put(self, equations: Sequence[Scalar], values: Mapping[str, Scalar]) -> dict[str, Scalar] | None:
-        """Put values in and solve what is left; values may contain unknowns that are found then."""
+        """Substitute values and solve the rest; values may contain unknowns that are solved for later."""
         try:
             rest = self.solve([equation.substitute(values) for equation in equations])
         except ZeroDivisionError:

@@ -1,4 +1,4 @@
-"""The reduced-order observer  ż = F z + G u + H y,  x̂ = M [y − D u; z]: what the outputs show is not estimated again.
+"""The reduced-order observer  ż = F z + G u + H y,  x̂ = M [y − D u; z].
 
 In the coordinates T = [C; R], x₁ = C x is measured and x₂ = R x is not.  With P = R − L C the estimate of P x is z.
 """
@@ -213,7 +213,7 @@ class ReducedOrderObserver(Result):
 
     @property
     def _inner_places(self) -> tuple[Place, ...]:
-        """The strata of the inner gain, apart from where there is no pair (A₁₂, A₂₂) that they speak of."""
+        """The strata of the inner gain on which the pair (A₁₂, A₂₂) is defined."""
         known = {condition.expression for condition in self.domain}
         apart = [Condition("domain", c.expression) for c in self.inner.domain if c.expression not in known]
         return tuple(
@@ -234,7 +234,7 @@ class ReducedOrderObserver(Result):
 
 
 def _meets(place: Place, value: Scalar) -> bool:
-    """Tell whether a value may vanish where the equations of a stratum hold."""
+    """Return whether a value may vanish where the equations of a stratum hold."""
     try:
         return not Ideal.of((*equations_of(place), value)).is_whole
     except TooLarge:

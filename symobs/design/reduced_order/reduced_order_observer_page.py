@@ -9,7 +9,7 @@ from symobs.analysis.page_parts import given, in_blocks
 from symobs.analysis.rank.observability import Observability
 from symobs.analysis.rank.rank_page import rank_cases, square_test
 from symobs.conditions import vanishing_factors
-from symobs.derivation.builder import Page, predicate, relation
+from symobs.derivation.builder import Builder, predicate, relation
 from symobs.design.gain.gain_page import define_test_matrix, say_as_required
 from symobs.design.gain.placement_problem import OBSERVER
 from symobs.design.page_parts import readability
@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 
 
 @page_of(ReducedOrderObserver)
-def write_reduced_order(page: Page, design: ReducedOrderObserver) -> None:
+def write_reduced_order(page: Builder, design: ReducedOrderObserver) -> None:
     """Write data, test, gain, and the observer without the derivative of the output."""
     given(page, ("observer", design.desired))
     write_observer_of_rest(page, design)
@@ -44,16 +44,16 @@ def write_reduced_order(page: Page, design: ReducedOrderObserver) -> None:
 
 
 @page_of(DependentOutputs)
-def write_dependent_outputs(page: Page, design: DependentOutputs) -> None:
+def write_dependent_outputs(page: Builder, design: DependentOutputs) -> None:
     """Write data, and the combination of outputs that vanishes."""
     given(page, ("observer", design.desired))
     with page.section("reduced_order_observer"):
         w = page.set("w_0", design.answer["w"])
         zero = Matrix.zeros(1, page.plant.order)
-        page.conclude("outputs_dependent", row=relation(w, w.shown), vanishes=relation(w @ page["C"], zero))
+        page.conclude("outputs_dependent", row=relation(w, w.as_value), vanishes=relation(w @ page["C"], zero))
 
 
-def write_observer_of_rest(page: Page, design: ReducedOrderObserver) -> None:
+def write_observer_of_rest(page: Builder, design: ReducedOrderObserver) -> None:
     """Write the test, the gain, and the observer without the derivative of the output."""
     parts = partition(page.plant, design.answer["T"])
     with page.section("observability"):
@@ -78,7 +78,7 @@ def write_observer_of_rest(page: Page, design: ReducedOrderObserver) -> None:
             _assembled(page, design, ("reduced_matrices", "rest_estimated"))
 
 
-def _coordinates(page: Page, parts: Partition) -> None:
+def _coordinates(page: Builder, parts: Partition) -> None:
     """T = [C; R] and the blocks of T A T⁻¹ and T B."""
     plant = page.plant
     order, measured = plant.order, plant.outputs
@@ -112,7 +112,7 @@ def _coordinates(page: Page, parts: Partition) -> None:
         page.equal(*shown, say="measured_are_first" if exceptions else "measured_first")
 
 
-def _in_parts(page: Page, whole: Sequence[Term], driven: Sequence[Term]) -> list[Relation]:
+def _in_parts(page: Builder, whole: Sequence[Term], driven: Sequence[Term]) -> list[Relation]:
     """Return the blocks of A and B, those of measured and of other states divided by lines; what equals them before."""
     plant = page.plant
     sizes = [plant.outputs, plant.order - plant.outputs]
@@ -124,7 +124,7 @@ def _in_parts(page: Page, whole: Sequence[Term], driven: Sequence[Term]) -> list
     return shown
 
 
-def _parts(page: Page, design: ReducedOrderObserver) -> None:
+def _parts(page: Builder, design: ReducedOrderObserver) -> None:
     """x₁ = C x and x₂ = R x with their equations, and Lemma 4.1."""
     trivial = page["T"].value == Matrix.identity(page.plant.order)
     page.signal("x_1", page["C"] @ page["x"], silent=True)
@@ -139,7 +139,7 @@ def _parts(page: Page, design: ReducedOrderObserver) -> None:
     known = page["y"] - page["D"] @ u if feedthrough else page["y"]
     said: dict[str, Any] = {
         "measured": relation(x_1, page["C"] @ page["x"], known),
-        "unmeasured": relation(x_2, (page["R"].shown if trivial else page["R"]) @ page["x"]),
+        "unmeasured": relation(x_2, (page["R"].as_value if trivial else page["R"]) @ page["x"]),
     }
     key = "parts_with_feedthrough" if feedthrough else "parts"
     if trivial and page.plant.order > readability.BLOCKS_ORDER:
@@ -158,7 +158,7 @@ def _parts(page: Page, design: ReducedOrderObserver) -> None:
         page.conclude("first_part_measures", rank=relation(test.apply("rank"), order))
 
 
-def _observer(page: Page, design: ReducedOrderObserver) -> None:
+def _observer(page: Builder, design: ReducedOrderObserver) -> None:
     """(4.37) and (4.38), the gain a matrix of unknowns."""
     gain: Matrix = design.answer["L"]
     names = iter(fresh_names("l_", len(gain.entries), taken_names(page)))
@@ -182,7 +182,7 @@ def _observer(page: Page, design: ReducedOrderObserver) -> None:
     )
 
 
-def _mere_copy(page: Page) -> None:
+def _mere_copy(page: Builder) -> None:
     """A first attempt: the estimate takes x₁ from the measurement, so its output error is 0 and corrects nothing."""
     if not any(page["A_12"].value.entries):  # then no observer does better
         return
@@ -201,16 +201,16 @@ def _mere_copy(page: Page) -> None:
             page.remark("mere_copy_grows", unstable, roots=Roots(own.formula, roots_of(own.scalar, plant.variable)))
 
 
-def _error_matrix(page: Page) -> Term:
+def _error_matrix(page: Builder) -> Term:
     return page["A_22"] - page["L"] @ page["A_12"]
 
 
-def _determinant(page: Page) -> Term:
+def _determinant(page: Builder) -> Term:
     order = page.plant.order - page.plant.outputs
     return (page.s @ page.identity(order) - page["A_22"] + page["L"] @ page["A_12"]).apply("det")
 
 
-def write_inner_gain(page: Page, design: ReducedOrderObserver) -> None:
+def write_inner_gain(page: Builder, design: ReducedOrderObserver) -> None:
     """Compare the coefficients of det(sI − A₂₂ + L A₁₂), linear in L for one output, with those of φ."""
     desired, variable = design.desired, page.plant.variable
     unknown, several = page["L"].value, page.plant.outputs > 1
@@ -243,12 +243,12 @@ def write_inner_gain(page: Page, design: ReducedOrderObserver) -> None:
     caution_poles(page, desired, "phi_o", "observer")
 
 
-def observer_state(page: Page) -> str:
+def observer_state(page: Builder) -> str:
     """Return the letter of the observer's state: in discrete time z is the variable."""
     return "w_o" if page.plant.is_discrete else "z_o"
 
 
-def _collected(page: Page) -> list[tuple[Term, Term]]:
+def _collected(page: Builder) -> list[tuple[Term, Term]]:
     """(4.39): the signals of the right-hand side with their matrices, the derivative of x₁ among them."""
     L, x_1 = page["L"], page["x_1"]
     pairs = [(_error_matrix(page), page["x_2_hat"]), (page["A_21"] - L @ page["A_11"], x_1)]
@@ -257,7 +257,7 @@ def _collected(page: Page) -> list[tuple[Term, Term]]:
     return [*pairs, (L, x_1.derivative)]
 
 
-def _without_derivative(page: Page) -> None:
+def _without_derivative(page: Builder) -> None:
     """(4.39) and (4.40): z = x̂₂ − L x₁ in place of x̂₂."""
     m, L, u, x_1, x_2_hat = page.plant.matrices, page["L"], page["u"], page["x_1"], page["x_2_hat"]
     name = observer_state(page)
@@ -276,7 +276,7 @@ def _without_derivative(page: Page) -> None:
     )
 
 
-def _assembled(page: Page, design: ReducedOrderObserver, say: tuple[str, str]) -> None:
+def _assembled(page: Builder, design: ReducedOrderObserver, say: tuple[str, str]) -> None:
     """F, G, H and the observer, and (4.41): the estimate put together again."""
     m, L, u, x_1, z = page.plant.matrices, page["L"], page["u"], page["x_1"], page[observer_state(page)]
     _matrices(page, design, say[0])
@@ -298,7 +298,7 @@ def _assembled(page: Page, design: ReducedOrderObserver, say: tuple[str, str]) -
     page.equal(relation(page["x_2_hat"], z + L @ x_1, *numbers), say=say[1])
     trivial = page["T"].value == Matrix.identity(page.plant.order)
     page.equal(
-        relation(page["x_hat"], estimate if trivial else page["T"].inverse @ estimate, page["M_z"].shown @ stacked),
+        relation(page["x_hat"], estimate if trivial else page["T"].inverse @ estimate, page["M_z"].as_value @ stacked),
         say="assembled",
         answer=True,
     )
@@ -306,7 +306,7 @@ def _assembled(page: Page, design: ReducedOrderObserver, say: tuple[str, str]) -
     page.conclude_silently(relation(page["x"] - page["x_hat"], page["T"].inverse @ unseen))
 
 
-def _matrices(page: Page, design: ReducedOrderObserver, say: str) -> None:
+def _matrices(page: Builder, design: ReducedOrderObserver, say: str) -> None:
     """F = A₂₂ − L A₁₂, H = F L + A₂₁ − L A₁₁, G = B₂ − L B₁, which a feedthrough changes by −H D."""
     L, m = page["L"], page.plant.matrices
     page.define("F_z", _error_matrix(page), say=say)
@@ -320,7 +320,7 @@ def _matrices(page: Page, design: ReducedOrderObserver, say: str) -> None:
     )
 
 
-def _fixed_modes(page: Page, design: ReducedOrderObserver) -> tuple[Term, tuple[Relation, ...]]:
+def _fixed_modes(page: Builder, design: ReducedOrderObserver) -> tuple[Term, tuple[Relation, ...]]:
     """Introduce the part of x₂ that A₁₂ does not show; return its polynomial and what makes it that part."""
     pair = design.inner.pair
     N, X = page.set("N_2", pair.kernel), page.set("X_2", pair.restricted)
@@ -330,7 +330,7 @@ def _fixed_modes(page: Page, design: ReducedOrderObserver) -> tuple[Term, tuple[
     return (page.s @ page.identity(count) - X).apply("det"), facts
 
 
-def _impossible(page: Page, design: ReducedOrderObserver) -> None:
+def _impossible(page: Builder, design: ReducedOrderObserver) -> None:
     """No gain moves the modes that A₁₂ does not show, and they are not wanted."""
     fixed, facts = _fixed_modes(page, design)
     modes = Roots(fixed.formula, roots_of(design.inner.fixed_polynomial, page.plant.variable))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from symobs.derivation.builder import Page, relation
+from symobs.derivation.builder import Builder, relation
 from symobs.design.full_order.observer_existence_page import undetermined
 from symobs.design.pole_placement.fresh_names import fresh_names, taken_names
 from symobs.exact import Matrix
@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from symobs.design.reduced_order.reduced_order_observer import ReducedOrderObserver
 
 
-def write_undetermined(page: Page, design: ReducedOrderObserver) -> None:
+def write_undetermined(page: Builder, design: ReducedOrderObserver) -> None:
     """The error of the ansatz, collected by signals, and the choice of F, G and H that frees it of x and u."""
     m, name = page.plant.matrices, "w_o" if page.plant.is_discrete else "z_o"
     letters = iter(fresh_names("l_", len(design.answer["L"].entries), taken_names(page)))

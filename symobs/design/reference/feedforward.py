@@ -80,8 +80,10 @@ class FeedforwardDesign(Result):
         m = self.plant.matrices
         values = letters_of(self.plant) | {"D": m.D, "K": K, "F": F, "w": w, "T_v": self.answer["transfer_function"]}
         values |= {"A_cl": self.loop.error_coordinates, "K_e": self.loop.coupling, "x_0": stuck}
-        told = {name: Matrix.of(v.rows) if isinstance(v, Matrix) else v for name, v in values.items()}  # as unpickled
-        e = Environment(variable=self.plant.variable, values=told)
+        restored = {
+            name: Matrix.of(v.rows) if isinstance(v, Matrix) else v for name, v in values.items()
+        }  # as unpickled
+        e = Environment(variable=self.plant.variable, values=restored)
         A, B, C, D = (letter(name, e) for name in "ABCD")
         K_ = letter("K", e)
         order, one = self.plant.order, identity(self.plant.order, e)
@@ -101,7 +103,7 @@ class FeedforwardDesign(Result):
         yield Claim(relation(at_rest @ F_, identity(self.plant.outputs, e)), e, "G*F = I")
         yield Claim(relation(T, (C - D @ K_) @ (s @ one - A + B @ K_).inverse @ B @ F_ + D @ F_), e)
         errors = self.loop.error_coordinates.shape[0] - order
-        zero = e.having(values={"O_e": Matrix.zeros(errors, self.plant.outputs)})
+        zero = e.extended_by(values={"O_e": Matrix.zeros(errors, self.plant.outputs)})
         A_cl, K_e, nothing = letter("A_cl", zero), letter("K_e", zero), letter("O_e", zero)
         seen = block([[C - D @ K_, D @ K_e]])
         driven = block([[B @ F_], [nothing]])
@@ -192,7 +194,7 @@ class FeedforwardDesign(Result):
 
     @property
     def free_signals(self) -> Mapping[str, int]:
-        """The new input, and what the loop's page starts with."""
+        """The new input, and the free signals of the loop."""
         return {"v_r": self.plant.outputs, **self.loop.free_signals}
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from symobs.analysis.factored_form import factored_form, formula_of_factored
-from symobs.derivation.builder import Page, relation
+from symobs.derivation.builder import Builder, relation
 from symobs.design.compensator.estimate_feedback_page import is_ill_posed, write_both_gains
 from symobs.design.compensator.minimal_order_compensator import MinimalOrderCompensator
 from symobs.design.compensator.minimal_order_compensator_page import partitioned_gain
@@ -18,7 +18,7 @@ from symobs.result import page_of
 
 
 @page_of(FeedforwardDesign)
-def write_feedforward(page: Page, design: FeedforwardDesign) -> None:
+def write_feedforward(page: Builder, design: FeedforwardDesign) -> None:
     """Write the gains, the loop with its new input, and F."""
     loop = design.loop
     minimal = isinstance(loop, MinimalOrderCompensator)
@@ -37,7 +37,7 @@ def write_feedforward(page: Page, design: FeedforwardDesign) -> None:
         draw_feedforward(page, minimal=minimal)
 
 
-def _at_rest(page: Page) -> Term:
+def _at_rest(page: Builder) -> Term:
     """(C − DK)(−A + BK)⁻¹B + D, in discrete time (C − DK)(I − A + BK)⁻¹B + D."""
     A, B, C, K = (page[name] for name in "ABCK")
     closed = B @ K - A
@@ -48,13 +48,13 @@ def _at_rest(page: Page) -> Term:
     return (C - page["D"] @ K) @ closed.inverse @ B + page["D"]
 
 
-def _impossible(page: Page, design: FeedforwardDesign) -> None:
+def _impossible(page: Builder, design: FeedforwardDesign) -> None:
     """The loop never comes to rest, or the gain at rest has dependent rows, whatever K is."""
     if design.answer["stuck"] is not None:
         x = page.set("x_0", design.answer["stuck"])
         moved = (page["A"] - page["B"] @ page["K"]) @ x
         there = x if page.plant.is_discrete else page.value(Matrix.zeros(page.plant.order, 1))
-        page.conclude("no_rest", state=relation(x, x.shown), still=relation(moved, there))
+        page.conclude("no_rest", state=relation(x, x.as_value), still=relation(moved, there))
         return
     page.define("G_0", _at_rest(page), say="gain_at_rest")
     m = page.plant.matrices
@@ -68,7 +68,7 @@ def _impossible(page: Page, design: FeedforwardDesign) -> None:
         page.conclude("no_feedforward_single", relation(page["G_0"], Matrix.zeros(1, 1)))
         return
     w = page.set("w_0", design.answer["w"])
-    slots = {"row": relation(w, w.shown), "vanishes": relation(w @ page["G_0"], Matrix.zeros(1, page.plant.inputs))}
+    slots = {"row": relation(w, w.as_value), "vanishes": relation(w @ page["G_0"], Matrix.zeros(1, page.plant.inputs))}
     found = relation(_response(page).apply("rank"), whole)
     if whole < page.plant.outputs:
         page.conclude("no_feedforward_low", rank=found, **slots)
@@ -76,14 +76,14 @@ def _impossible(page: Page, design: FeedforwardDesign) -> None:
         page.conclude("no_feedforward_zero", found, **slots)
 
 
-def _response(page: Page) -> Term:
+def _response(page: Builder) -> Term:
     """C(sI − A)⁻¹B + D."""
     resolvent = (page.s @ page.identity(page.plant.order) - page["A"]).inverse
     response = page["C"] @ resolvent @ page["B"]
     return response + page["D"] if page.plant.matrices.has_feedthrough else response
 
 
-def _loop(page: Page, design: FeedforwardDesign, *, minimal: bool) -> None:
+def _loop(page: Builder, design: FeedforwardDesign, *, minimal: bool) -> None:
     """U = −K x̂ + F v, and what becomes of state, error and output."""
     plant, m = page.plant, page.plant.matrices
     F = design.answer["F"]
@@ -123,16 +123,16 @@ def _loop(page: Page, design: FeedforwardDesign, *, minimal: bool) -> None:
     page.equal(relation(determinant, parts_of, product), say="feedforward_polynomial")
 
 
-def _gain(page: Page, design: FeedforwardDesign) -> None:
+def _gain(page: Builder, design: FeedforwardDesign) -> None:
     """F from the gain at rest, and the transfer function from v to y."""
     plant, m = page.plant, page.plant.matrices
     A, B, C, K, F_v = (page[name] for name in ("A", "B", "C", "K", "F_v"))
     page.define("G_0", _at_rest(page), say="gain_at_rest")
     G = page["G_0"]
     if plant.inputs == plant.outputs:
-        page.equal(relation(F_v, G.inverse, F_v.shown), say="feedforward_gain", answer=True)
+        page.equal(relation(F_v, G.inverse, F_v.as_value), say="feedforward_gain", answer=True)
     else:
-        page.equal(relation(F_v, G.T @ (G @ G.T).inverse, F_v.shown), say="feedforward_smallest", answer=True)
+        page.equal(relation(F_v, G.T @ (G @ G.T).inverse, F_v.as_value), say="feedforward_smallest", answer=True)
     one = page.identity(plant.outputs) if plant.outputs > 1 else page.value(1)
     page.verified("as_required", check=relation(G @ F_v, one))
     resolvent = (page.s @ page.identity(plant.order) - A + B @ K).inverse

@@ -109,7 +109,7 @@ class TrackingDesign(Result):
         rows = independent_rows(V)
         target = Matrix.block([[self.start, self.reference @ V]])
         Z = V.select(rows, range(V.shape[1])).solve(target.select(rows, range(target.shape[1])))
-        inside = e.having(values={"Z": Z, "x_d0": target})
+        inside = e.extended_by(values={"Z": Z, "x_d0": target})
         yield Claim(
             relation(letter("V_d", inside) @ letter("Z", inside), letter("x_d0", inside)),
             inside,
@@ -118,7 +118,7 @@ class TrackingDesign(Result):
 
     @cached_property
     def passed(self) -> Matrix:
-        """V: what the trajectory passes through; I for every trajectory."""
+        """V: a basis of the space spanned by the trajectory; I for every trajectory."""
         return trajectory(self.reference, self.start)
 
     @property
@@ -199,7 +199,7 @@ class TrackingDesign(Result):
 
     @property
     def free_signals(self) -> Mapping[str, int]:
-        """The reference, and what the loop's page starts with."""
+        """The reference, and the free signals of the loop."""
         return {"x_d": self.plant.order, **self.loop.free_signals}
 
 
@@ -241,7 +241,7 @@ def tracking(
     observer: Name = "minimal",
     method: Name = "auto",
 ) -> Result:
-    """Let x follow ẋ_d = A_d x_d by u = K (x_d − x̂) − K_d x_d, where A_d − A + BK_d = 0 has a solution.
+    """Track ẋ_d = A_d x_d by u = K (x_d − x̂) − K_d x_d, where A_d − A + BK_d = 0 has a solution.
 
     plant                                   n states, m inputs, p outputs, D allowed
     control_poles or control_polynomial     the n poles of A − BK

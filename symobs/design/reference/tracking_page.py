@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from symobs.analysis.factored_form import formula_of_factored
 from symobs.analysis.page_parts import in_blocks
-from symobs.derivation.builder import Page, relation
+from symobs.derivation.builder import Builder, relation
 from symobs.design.compensator.estimate_feedback_page import is_ill_posed, write_both_gains
 from symobs.design.compensator.minimal_order_compensator_page import partitioned_gain
 from symobs.design.compensator.unstable_law_caution import caution_law
@@ -17,7 +17,7 @@ from symobs.result import page_of
 
 
 @page_of(TrackingDesign)
-def write_tracking(page: Page, design: TrackingDesign) -> None:
+def write_tracking(page: Builder, design: TrackingDesign) -> None:
     """Write the reference, the gains, K_d and the errors."""
     loop = design.loop
     write_both_gains(page, loop)
@@ -34,7 +34,7 @@ def write_tracking(page: Page, design: TrackingDesign) -> None:
             _errors(page, design)
 
 
-def _reference(page: Page, design: TrackingDesign) -> None:
+def _reference(page: Builder, design: TrackingDesign) -> None:
     """ẋ_d = A_d x_d."""
     page.set("A_ref", design.reference)
     page.dynamics("x_d", page["A_ref"] @ page["x_d"], silent=True)
@@ -45,7 +45,7 @@ def _reference(page: Page, design: TrackingDesign) -> None:
     )
 
 
-def _law(page: Page, design: TrackingDesign) -> None:
+def _law(page: Builder, design: TrackingDesign) -> None:
     """U = K (x_d − x̂) − K_d x_d, and the equation of the error."""
     page.set("K_d", design.answer["K_d"])
     minimal = isinstance(design.loop.estimator, ReducedOrderObserver)
@@ -73,7 +73,7 @@ def _law(page: Page, design: TrackingDesign) -> None:
     )
 
 
-def _gain(page: Page, design: TrackingDesign) -> None:
+def _gain(page: Builder, design: TrackingDesign) -> None:
     """A_d − A + BK_d = 0, for every reference or for what one trajectory passes through."""
     A, B = page["A"], page["B"]
     order, columns = design.passed.shape
@@ -89,12 +89,12 @@ def _gain(page: Page, design: TrackingDesign) -> None:
         page.conclude(
             "tracking_impossible" if V is None else "tracking_impossible_one",
             relation(left, "!==", Matrix.zeros(1, columns)),
-            row=relation(w, w.shown),
+            row=relation(w, w.as_value),
             annuls=relation(w @ B, Matrix.zeros(1, page.plant.inputs)),
-            left=relation(left, left.shown),
+            left=relation(left, left.as_value),
         )
         return
-    if not page.knows("K_d"):
+    if not page.defines("K_d"):
         page.set("K_d", design.answer["K_d"])
     K_d = page["K_d"]
     zero = block([[page.value(Matrix.zeros(order, columns))]])
@@ -103,12 +103,12 @@ def _gain(page: Page, design: TrackingDesign) -> None:
         relation(condition if V is None else condition @ V, zero),
         say="tracking_condition" if V is None else "tracking_condition_then",
     )
-    page.equal(relation(K_d, K_d.shown), say="tracking_solved", answer=True)
+    page.equal(relation(K_d, K_d.as_value), say="tracking_solved", answer=True)
     if K_d.value.is_zero:
         page.conclude("tracking_no_feedforward", relation(K_d, Matrix.zeros(*K_d.value.shape)))
 
 
-def _errors(page: Page, design: TrackingDesign) -> None:
+def _errors(page: Builder, design: TrackingDesign) -> None:
     """The block triangular matrix of both errors, and its polynomial."""
     minimal = isinstance(design.loop.estimator, ReducedOrderObserver)
     A, B, C, K, L = (page[name] for name in "ABCKL")

@@ -47,7 +47,7 @@ def product_of_linear(variable: str, roots: Sequence[Complex]) -> Scalar | None:
 
 
 def is_in_kernel(value: Scalar) -> bool:
-    """Return whether a value has no functions but roots of primes, whose arithmetic the field knows."""
+    """Return whether the only functions of a value are roots of primes."""
     functions = (function_named(name) for name in value.names)
     return all(function is None or function.square for function in functions)
 

@@ -1,6 +1,6 @@
-"""The plane divided by algebraic curves: slabs between vertical lines, the stacks of cells over them, and adjacency.
+"""The plane divided by algebraic curves: cylinders between vertical lines, the stacks of cells over them, and adjacency.
 
-A cylindrical decomposition after Collins (1975) of the open cells alone.  Over a slab no curve meets another, turns back
+A cylindrical decomposition after Collins (1975) of the open cells alone.  Over a cylinder no curve meets another, turns back
 or runs off to infinity, so the branches keep their number and their order, and one rational point stands for a cell.
 """
 
@@ -90,15 +90,15 @@ class Event:
 
 @dataclass(frozen=True)
 class Branch:
-    """The root number `number` (from 0, ascending) of one curve over a slab."""
+    """The root number `number` (from 0, ascending) of one curve over a cylinder."""
 
     curve: int
     number: int
 
 
 @dataclass(frozen=True)
-class Slab:
-    """The cylinder between two neighbouring walls (None: unbounded on that side), with the sample point `x`."""
+class Cylinder:
+    """The cylinder between two neighbouring critical lines (None: unbounded on that side), with the sample point `x`."""
 
     left: RealNumber | None
     right: RealNumber | None
@@ -108,8 +108,8 @@ class Slab:
 
 
 @dataclass(frozen=True)
-class Wall:
-    """A vertical line at a root of the projection, between slab `index` and the next one."""
+class CriticalLine:
+    """A vertical line at a root of the projection, between cylinder `index` and the next one."""
 
     index: int
     x: RealNumber
@@ -145,41 +145,41 @@ class Plane:
         return tuple({_key(f): f for f in factors}.values())
 
     @cached_property
-    def walls(self) -> tuple[Wall, ...]:
+    def critical_lines(self) -> tuple[CriticalLine, ...]:
         """The real roots of the projection, ascending."""
         roots = sorted(root for factor in self.projection for root in real_roots(factor))
-        return tuple(Wall(index, root) for index, root in enumerate(roots))
+        return tuple(CriticalLine(index, root) for index, root in enumerate(roots))
 
     @cached_property
-    def slabs(self) -> tuple[Slab, ...]:
-        """The slabs from left to right."""
-        ends = [None, *(wall.x for wall in self.walls), None]
-        return tuple(self._slab(left, right) for left, right in pairwise(ends))
+    def cylinders(self) -> tuple[Cylinder, ...]:
+        """The cylinders from left to right."""
+        ends = [None, *(line.x for line in self.critical_lines), None]
+        return tuple(self._cylinder(left, right) for left, right in pairwise(ends))
 
-    def _slab(self, left: RealNumber | None, right: RealNumber | None) -> Slab:
+    def _cylinder(self, left: RealNumber | None, right: RealNumber | None) -> Cylinder:
         x = rational_between(left, right)
         roots = sorted(
             (root, curve, number) for curve, found in enumerate(self.roots_over(x)) for number, root in enumerate(found)
         )
         ends = [None, *(root for root, _, _ in roots), None]
         samples = [rational_between(low, high) for low, high in pairwise(ends)]
-        return Slab(left, right, x, tuple(Branch(curve, number) for _, curve, number in roots), tuple(samples))
+        return Cylinder(left, right, x, tuple(Branch(curve, number) for _, curve, number in roots), tuple(samples))
 
     def roots_over(self, x: Fraction) -> list[list[RealNumber]]:
-        """Return the real roots in y of every curve over a point x of a slab."""
+        """Return the real roots in y of every curve over a point x of a cylinder."""
         return [real_roots(curve.on_vertical(x)) if curve.degree else [] for curve in self.curves]
 
-    def vertical_at(self, wall: Wall) -> tuple[int, ...]:
-        """Return the curves that contain the wall."""
+    def vertical_at(self, line: CriticalLine) -> tuple[int, ...]:
+        """Return the curves that contain the critical line."""
         return tuple(
             index
             for index, curve in enumerate(self.curves)
-            if not curve.degree and wall.x.sign_of(curve.by_second[0]) == 0
+            if not curve.degree and line.x.sign_of(curve.by_second[0]) == 0
         )
 
-    def runs_off(self, wall: Wall) -> bool:
-        """Return whether a branch may be unbounded at a wall: a leading coefficient vanishes there."""
-        return any(curve.degree and wall.x.sign_of(curve.by_second[-1]) == 0 for curve in self.curves)
+    def runs_off(self, line: CriticalLine) -> bool:
+        """Return whether a branch may be unbounded at a critical line: a leading coefficient vanishes there."""
+        return any(curve.degree and line.x.sign_of(curve.by_second[-1]) == 0 for curve in self.curves)
 
 
 def in_first(polynomial: fmpz_mpoly, names: tuple[str, str]) -> fmpz_poly:

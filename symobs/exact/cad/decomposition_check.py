@@ -1,8 +1,8 @@
 """Check of a cylindrical decomposition by independent means (trusted).
 
 Discriminants and resultants are held against Sylvester's determinants at random points modulo random primes of one word, the
-numbers of walls and of branches against Sturm's theorem.  Where these hold, no curve turns back, runs off to infinity or
-meets another between two walls, so that every stack stands over its whole slab.
+numbers of critical lines and of branches against Sturm's theorem.  Where these hold, no curve turns back, runs off to infinity
+or meets another between two critical lines, so that every stack stands over its whole cylinder.
 """
 
 from __future__ import annotations
@@ -22,15 +22,15 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
     from fractions import Fraction
 
-    from symobs.exact.cad.decomposition import Plane, Slab
+    from symobs.exact.cad.decomposition import Cylinder, Plane
 
 #: Points at which each determinant is compared: one of 64 bits lets a false value pass with a probability below 10⁻¹⁵.
 _POINTS = 2 * 64 // PRIME_BITS
 
 
 def holds(plane: Plane) -> bool:
-    """Return whether the projection is complete and every wall and branch correctly isolated."""
-    return _projection_is_whole(plane) and _walls_are_all(plane) and all(_is_stack(plane, s) for s in plane.slabs)
+    """Return whether the projection is complete and every critical line and branch correctly isolated."""
+    return _projection_is_whole(plane) and _walls_are_all(plane) and all(_is_stack(plane, s) for s in plane.cylinders)
 
 
 def is_line(points: Sequence[RealNumber], factors: Iterable[fmpz_poly]) -> bool:
@@ -125,24 +125,26 @@ def _sylvester(one: Sequence[int], other: Sequence[int]) -> tuple[int, int, list
 
 
 def _walls_are_all(plane: Plane) -> bool:
-    """Return whether the walls are all real roots of the projection, and each sample point lies between its walls."""
+    """Return whether the critical lines are the real roots of the projection, each sample point between its two."""
     inside = all(
-        (slab.left is None or _before(slab.left, RealNumber.of(slab.x)))
-        and (slab.right is None or _before(RealNumber.of(slab.x), slab.right))
-        for slab in plane.slabs
+        (cylinder.left is None or _before(cylinder.left, RealNumber.of(cylinder.x)))
+        and (cylinder.right is None or _before(RealNumber.of(cylinder.x), cylinder.right))
+        for cylinder in plane.cylinders
     )
-    ends = [(slab.left, slab.right) for slab in plane.slabs]
-    walls = [wall.x for wall in plane.walls]
-    return inside and ends == list(pairwise([None, *walls, None])) and is_line(walls, plane.projection)
+    ends = [(cylinder.left, cylinder.right) for cylinder in plane.cylinders]
+    critical_lines = [line.x for line in plane.critical_lines]
+    return (
+        inside and ends == list(pairwise([None, *critical_lines, None])) and is_line(critical_lines, plane.projection)
+    )
 
 
-def _is_stack(plane: Plane, slab: Slab) -> bool:
-    """Return whether over the slab's point every branch lies alone between the two samples around it."""
-    if list(slab.samples) != sorted(slab.samples) or len(slab.samples) != len(slab.branches) + 1:
+def _is_stack(plane: Plane, cylinder: Cylinder) -> bool:
+    """Return whether over the cylinder's point every branch lies alone between the two samples around it."""
+    if list(cylinder.samples) != sorted(cylinder.samples) or len(cylinder.samples) != len(cylinder.branches) + 1:
         return False
-    cuts = [curve.on_vertical(slab.x) if curve.degree else None for curve in plane.curves]
+    cuts = [curve.on_vertical(cylinder.x) if curve.degree else None for curve in plane.curves]
     numbers = [0] * len(cuts)
-    for branch, (low, high) in zip(slab.branches, pairwise(slab.samples), strict=True):
+    for branch, (low, high) in zip(cylinder.branches, pairwise(cylinder.samples), strict=True):
         cut = cuts[branch.curve]
         if cut is None or branch.number != numbers[branch.curve] or _count(cut, low, high) != 1:
             return False

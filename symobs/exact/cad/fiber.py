@@ -1,6 +1,6 @@
-"""The fibre over a wall of a decomposition, and the adjacency of the cells on its two sides.
+"""The fibre over a critical line of a decomposition, and the adjacency of the cells on its two sides.
 
-Over an irrational wall x = α the curves have coefficients in Q(α).  Their common square-free part is found there
+Over an irrational critical line x = α the curves have coefficients in Q(α).  Their common square-free part is found there
 exactly, by Euclid's algorithm modulo the minimal polynomial of α; its roots are then isolated in balls.
 """
 
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from fractions import Fraction
 
-    from symobs.exact.cad.decomposition import Event, Plane, PlaneCurve, Wall
+    from symobs.exact.cad.decomposition import CriticalLine, Event, Plane, PlaneCurve
 
 #: A polynomial in y with coefficients in Q(α), lowest first, each reduced modulo the minimal polynomial.
 Upright: TypeAlias = "list[fmpq_poly]"
@@ -38,9 +38,9 @@ LARGEST_DEGREE = 16
 
 @dataclass(frozen=True)
 class Fibre:
-    """A wall: rational separators σ₀ < … < σ_N around the N points of all curves on it, and the cells at each σ.
+    """A critical line: rational separators σ₀ < … < σ_N around the N points of all curves on it, and the cells at each σ.
 
-    `left[j]` and `right[j]` are the places in their stacks of the cells that meet the wall at height σⱼ.
+    `left[j]` and `right[j]` are the places in their stacks of the cells that meet the critical line at height σⱼ.
     """
 
     separators: tuple[Fraction, ...]
@@ -49,7 +49,7 @@ class Fibre:
 
     @property
     def alone(self) -> tuple[int, ...]:
-        """The indices of the isolated points of the curves on the wall."""
+        """The indices of the isolated points of the curves on the critical line."""
         return tuple(
             j
             for j in range(len(self.separators) - 1)
@@ -57,55 +57,55 @@ class Fibre:
         )
 
     def unbounded(self, side: tuple[int, ...], count: int) -> frozenset[int]:
-        """Return the cells of a stack of `count` that are unbounded at this wall."""
+        """Return the cells of a stack of `count` that are unbounded at this critical line."""
         return frozenset(range(side[-1], count)) | frozenset(range(side[0] + 1))
 
 
-def fibre(plane: Plane, wall: Wall) -> Fibre:
-    """Return the fibre over a wall."""
-    separators = _separators(plane, wall.x)
-    before, after = plane.slabs[wall.index], plane.slabs[wall.index + 1]
+def fibre(plane: Plane, line: CriticalLine) -> Fibre:
+    """Return the fibre over a critical line."""
+    separators = _separators(plane, line.x)
+    before, after = plane.cylinders[line.index], plane.cylinders[line.index + 1]
     left_end, right_end = before.left, after.right
     for height in separators:
         for curve in plane.curves:
             if not curve.degree:
                 continue
             for root in real_roots(curve.on_horizontal(height)):
-                if root < wall.x and (left_end is None or left_end < root):
+                if root < line.x and (left_end is None or left_end < root):
                     left_end = root
-                if wall.x < root and (right_end is None or root < right_end):
+                if line.x < root and (right_end is None or root < right_end):
                     right_end = root
-    left = _places(plane, rational_between(left_end, wall.x), separators)
-    right = _places(plane, rational_between(wall.x, right_end), separators)
+    left = _places(plane, rational_between(left_end, line.x), separators)
+    right = _places(plane, rational_between(line.x, right_end), separators)
     return Fibre(separators, left, right)
 
 
-def point_between(plane: Plane, wall: Wall, low: Fraction, high: Fraction) -> RealNumber | None:
-    """Return the height of the one point of the curves on a wall between two separators, where the wall is rational."""
-    if not wall.x.is_rational:
+def point_between(plane: Plane, line: CriticalLine, low: Fraction, high: Fraction) -> RealNumber | None:
+    """Return the height of the one point of the curves on a rational critical line between two separators."""
+    if not line.x.is_rational:
         return None
     inside = {
         root
         for curve in plane.curves
         if curve.degree
-        for root in real_roots(curve.on_vertical(wall.x.fraction))
+        for root in real_roots(curve.on_vertical(line.x.fraction))
         if RealNumber.of(low) < root < RealNumber.of(high)
     }
     return inside.pop() if len(inside) == 1 else None
 
 
-def curves_between(plane: Plane, wall: Wall, low: Fraction, high: Fraction) -> tuple[int, ...]:
-    """Return the curves that have a point on a wall between two separators."""
+def curves_between(plane: Plane, line: CriticalLine, low: Fraction, high: Fraction) -> tuple[int, ...]:
+    """Return the curves that have a point on a critical line between two separators."""
     return tuple(
         index
         for index, curve in enumerate(plane.curves)
-        if curve.degree and any(low < end < high for end, _ in _points_of(curve, wall.x))
+        if curve.degree and any(low < end < high for end, _ in _points_of(curve, line.x))
     )
 
 
-def place_between(plane: Plane, wall: Wall, low: Fraction, high: Fraction) -> tuple[Fraction, Fraction]:
-    """Return an interval around the one point of the curves on a wall between two separators."""
-    places = [ends for curve in plane.curves if curve.degree for ends in _points_of(curve, wall.x)]
+def place_between(plane: Plane, line: CriticalLine, low: Fraction, high: Fraction) -> tuple[Fraction, Fraction]:
+    """Return an interval around the one point of the curves on a critical line between two separators."""
+    places = [ends for curve in plane.curves if curve.degree for ends in _points_of(curve, line.x)]
     return next(ends for ends in places if low < ends[0] and ends[1] < high)
 
 
@@ -144,7 +144,7 @@ def _separators(plane: Plane, x: RealNumber) -> tuple[Fraction, ...]:
 def _by_euclid(curves: Sequence[PlaneCurve], x: RealNumber) -> list[tuple[Fraction, Fraction]]:
     """Return intervals around the points on a line: the square-free part of the product is found over Q(α)."""
     if x.degree > LARGEST_DEGREE:
-        message = f"a wall of degree {x.degree} on which several things happen"
+        message = f"a critical line of degree {x.degree} on which several things happen"
         raise TooLarge(message)
     together: Upright = [fmpq_poly([1])]
     tower = _Tower(x)

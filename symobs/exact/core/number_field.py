@@ -35,7 +35,7 @@ def scaled(field: Field, polynomial: fmpz_mpoly) -> fmpz_mpoly:
 
 
 def _rank(powers: tuple[int, ...], places: list[int]) -> tuple[int, ...]:
-    """Return what a monomial without its roots is sorted by, the leading one first."""
+    """Return the sort key of a monomial without its roots, the leading one first."""
     return tuple(-power for k, power in enumerate(powers) if k not in places)
 
 

@@ -213,7 +213,7 @@ class Scalar:
 
     @property
     def names(self) -> frozenset[str]:
-        """The generators that really occur; kept, since they are asked for again and again."""
+        """The generators that really occur; cached, since they are used often."""
         if not hasattr(self, "known_names"):
             parts = (part for part in (self.numerator_part, self.denominator_part) if not part.is_one())
             self.known_names: frozenset[str] = frozenset().union(*(occurring(part, self.field.names) for part in parts))

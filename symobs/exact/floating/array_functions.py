@@ -120,7 +120,7 @@ def evaluated(polynomial: Polynomial, points: Mapping[str, Any]) -> Any:
 
 
 def sizes(polynomial: Polynomial, points: Mapping[str, Any]) -> Any:
-    """Return Σ |c| Π |x|^k: what the rounding errors of the values are small beside."""
+    """Return Σ |c| Π |x|^k, the scale of the rounding errors."""
     if not isinstance(polynomial, Nested):
         return abs(polynomial)
     high, name, power, low = polynomial

@@ -1,4 +1,4 @@
-"""How far a program in double precision stays from the exact difference equation (trusted).
+"""Bound on the deviation of a double-precision program from the exact difference equation (trusted).
 
 x⁺ = Φx + Γw exactly, x̃⁺ = fl(Φ̃x̃ + Γ̃w) with doubles Φ̃, Γ̃.  Each product of n + m terms, in any order, with or without
 fused operations, has an error of at most γ(|Φ̃||x̃| + |Γ̃||w|), γ = Nu/(1 − Nu), u = 2⁻⁵³ (Higham, Accuracy and Stability of

@@ -113,7 +113,7 @@ def _double(ball: arb) -> float | None:
 
 
 def _doubles(matrix: arb_mat) -> Matrix:
-    """Return doubles of the entries; between two doubles, as near as the last enclosure tells."""
+    """Return doubles of the entries; between two doubles, to the accuracy of the last enclosure."""
     rows = [[_double(entry) for entry in row] for row in matrix.tolist()]
     exact = [
         [Scalar.of(Fraction(float(sum(_ends(entry)) / 2) if number is None else number)) for entry, number in line]

@@ -82,7 +82,7 @@ def _decided(polynomial: Callable[[int], Sequence[arb]]) -> bool:
 
 
 def _in_disc(coefficients: Sequence[arb]) -> bool | None:
-    """Return whether all roots lie in the open unit disc, leading coefficient first; None where it cannot be told."""
+    """Return whether all roots lie in the open unit disc, leading coefficient first; None if undecided."""
     rest = list(coefficients)
     while len(rest) > 1:
         if rest[0].contains(0):

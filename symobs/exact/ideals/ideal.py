@@ -167,7 +167,7 @@ class Ideal:
                 return self.quotient.by_coordinate(name, below, below)
         return None
 
-    def having(self, *others: Scalar) -> Ideal:
+    def extended_by(self, *others: Scalar) -> Ideal:
         """Return the ideal with further generators; raises `TooLarge`."""
         return Ideal.of((*self.generators, *others))
 
@@ -190,12 +190,12 @@ def apart_from_zero(value: Scalar) -> Scalar:
 
 
 def is_inverse(name: str) -> bool:
-    """Tell whether a generator stands for the inverse of a polynomial."""
+    """Return whether a generator stands for the inverse of a polynomial."""
     return name.startswith(_INVERSE)
 
 
 def _home(field: Field, coordinate: str | None = None) -> fmpz_mpoly_ctx:
-    """Return the context of a basis: with an eigenvalue among the names, what does not speak of it is seen in the basis.
+    """Return the context of a basis; an eigenvalue among the names is eliminated first.
 
     It comes first in a lexicographic order, which eliminates it.  Roots of numbers come last in one: then the basis is
     that over the field of the numbers, and the squares of the roots.  A coordinate by which points are known comes last, too.

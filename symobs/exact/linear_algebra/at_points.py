@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 Sliced = dict[int, list[tuple[int, tuple[tuple[int, int], ...]]]]
 
 
-class Evaluator:
+class PointEvaluator:
     """The values of some rational functions of the same names; `on_line` fixes all names but the last one."""
 
     def __init__(self, values: Sequence[Scalar], names: Sequence[str]) -> None:

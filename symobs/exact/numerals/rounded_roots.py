@@ -32,7 +32,7 @@ _MORE_PLACES = 40
 
 
 def rounded_roots(roots: Sequence[Root], digits: int) -> tuple[RootText, ...] | None:
-    """Return the texts of roots, None where one has parameters or cannot be told from its neighbours."""
+    """Return the texts of roots, None where one has parameters or cannot be separated from its neighbours."""
     parts = _parts(roots, digits)
     if parts is None:
         return None

@@ -77,7 +77,7 @@ def _roundings(value: Scalar, digits: int) -> Iterator[str]:
 
 
 def _is_short(number: Fraction, digits: int) -> bool:
-    """Return whether a number has no more significant digits than are asked for."""
+    """Return whether a number has at most the given significant digits."""
     units = _units(number)
     return units is not None and len(str(units).rstrip("0")) <= digits
 

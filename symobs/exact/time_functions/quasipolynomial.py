@@ -206,7 +206,7 @@ def rate_parts(rate: Scalar) -> tuple[Scalar, Scalar]:
 
 def quasi_of(value: Scalar, time: str = "t") -> Quasipolynomial:
     """Return the quasipolynomial of a scalar; raises ValueError if it is none, such as exp(t²) or 1/t."""
-    waves, found = waves_of(value, time), list[tuple[Key, Scalar]]()
+    waves, found = to_quasipolynomial(value, time), list[tuple[Key, Scalar]]()
     for key, c in waves.terms.items() if waves else ():
         rate, frequency = (part / Scalar.symbol(time) for part in (key.rate, key.frequency))
         if time in symbols_in(rate) | symbols_in(frequency) | symbols_in(c.denominator):
@@ -226,7 +226,7 @@ def depends_on_time(name: str, by: str) -> bool:
     return found is not None and found.kind != "sqrt" and by in found.symbols
 
 
-def waves_of(value: Scalar, by: str = "") -> Quasipolynomial | None:
+def to_quasipolynomial(value: Scalar, by: str = "") -> Quasipolynomial | None:
     """Return a value as a sum of functions of the generator `by`, of all generators where none is named.
 
     Rates and frequencies are the exponents and arguments themselves, and powers are 0.  None where a denominator, or

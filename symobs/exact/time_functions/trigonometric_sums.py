@@ -1,6 +1,6 @@
 """Sums of c e^p cos q and c e^p sin q, with rational c and polynomials p and q of one generator: form and antiderivatives.
 
-A sum is held as `waves_of` gives it.  An antiderivative of c e^p, if there is an elementary one, is r e^p with
+A sum is held as `to_quasipolynomial` gives it.  An antiderivative of c e^p, if there is an elementary one, is r e^p with
 r' + p' r = c (Liouville), and where c is a polynomial so is r: its coefficients follow from the highest down.
 """
 
@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from symobs.exact.core.generators import ZERO, derivative, function, function_named, symbols_in
 from symobs.exact.core.scalar import Scalar
-from symobs.exact.time_functions.quasipolynomial import Key, Quasipolynomial, waves_of
+from symobs.exact.time_functions.quasipolynomial import Key, Quasipolynomial, to_quasipolynomial
 
 
 def value_of(waves: Quasipolynomial) -> Scalar:
@@ -24,7 +24,7 @@ def collected(value: Scalar) -> Scalar:
     """Return a value with one exponential and at most one cosine or sine in each term, if possible."""
     if not any(function_named(name) for name in value.names):
         return value
-    waves = waves_of(value)
+    waves = to_quasipolynomial(value)
     return value if waves is None else value_of(waves)
 
 
@@ -33,7 +33,7 @@ def antiderivative_of_waves(value: Scalar, name: str) -> tuple[Scalar, Scalar] |
 
     None where a term has no elementary antiderivative, or is not treated here: exponents and coefficients are polynomials.
     """
-    waves = waves_of(value, name)
+    waves = to_quasipolynomial(value, name)
     if waves is None:
         return None
     groups: dict[tuple[Scalar, Scalar], dict[str, Scalar]] = {}

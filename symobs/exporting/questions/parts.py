@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
     from symobs.design.gain.gain_design import GainDesign
-    from symobs.result.in_convention import Viewed
+    from symobs.result.in_convention import ResultInConvention
 
 #: Fields of which one value is right, and nothing else of the task bears on it.
 VALUES = {
@@ -75,7 +75,7 @@ class ExportedPart:
         return self.right if plain and not self.is_function else None  # type: ignore[return-value]
 
 
-def exported_part(view: Viewed, field: str, name: str, weight: str) -> ExportedPart:
+def exported_part(view: ResultInConvention, field: str, name: str, weight: str) -> ExportedPart:
     """Return a part of a question; raises `InputError` where no grader outside symobs can hold it."""
     letter = next((own for own, (standard, _) in view.names.items() if standard == field), field)
     made: dict[str, Any] = {
@@ -111,7 +111,7 @@ def _refused(part: str, why: str) -> InputError:
 # -- gains ------------------------------------------------------------------------------------------------------------
 
 
-def _gain(view: Viewed, field: str, made: dict[str, Any]) -> ExportedPart:
+def _gain(view: ResultInConvention, field: str, made: dict[str, Any]) -> ExportedPart:
     """Return a gain: right where det(sI − A + LC) of its observer problem is the polynomial."""
     design = design_with(view.result, field)
     gain = design.answer[design.letter]
@@ -141,7 +141,7 @@ def _parameters(design: GainDesign) -> int:
     return 0 if family is None else len(family["parameters"])
 
 
-def _compensator(view: Viewed, made: dict[str, Any]) -> ExportedPart:
+def _compensator(view: ResultInConvention, made: dict[str, Any]) -> ExportedPart:
     """Return F(s) of one input and output with a full-order observer: it follows from the gains."""
     result = view.result
     F, m, s = result.fields["F"], result.plant.matrices, result.plant.variable
@@ -166,7 +166,7 @@ def _compensator(view: Viewed, made: dict[str, Any]) -> ExportedPart:
 # -- other values -----------------------------------------------------------------------------------------------------
 
 
-def _value(view: Viewed, field: str, made: dict[str, Any]) -> ExportedPart:
+def _value(view: ResultInConvention, field: str, made: dict[str, Any]) -> ExportedPart:
     """Return a value that is the only right one."""
     found = view.result.fields[field]
     table = factored_table(found)
@@ -193,7 +193,9 @@ def _has_symbols(values: Iterable[Scalar], variable: str) -> bool:
     return any(value.names - {variable} for value in values)
 
 
-def _require_rational(view: Viewed, part: str, values: Iterable[Scalar], variable: str | None = None) -> None:
+def _require_rational(
+    view: ResultInConvention, part: str, values: Iterable[Scalar], variable: str | None = None
+) -> None:
     """Raise `InputError` where a value holds a root, an exponential or another number that is not rational."""
     declared = view.plant.symbols.names
     known = {*(declared or ()), variable or view.plant.variable}

@@ -9,7 +9,7 @@ from dataclasses import fields, is_dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 from symobs.derivation import (
-    Case,
+    CaseStep,
     Conclude,
     Define,
     Diagram,
@@ -17,10 +17,10 @@ from symobs.derivation import (
     Given,
     Note,
     Plot,
+    RegionSummary,
     Section,
     Sentence,
     Solve,
-    Survey,
     Tabulate,
 )
 from symobs.derivation.builder import left_out
@@ -32,6 +32,7 @@ from symobs.figures.block_diagram import letter_for
 from symobs.formula import (
     Conjunction,
     Decimals,
+    Evaluated,
     Formula,
     HoldsExactlyWhere,
     Literal,
@@ -39,7 +40,6 @@ from symobs.formula import (
     Relation,
     Roots,
     RoundedRoots,
-    Shown,
     SymbolList,
     children,
     is_rounded,
@@ -80,7 +80,7 @@ def in_decimals(derivation: Derivation, steps: Sequence[Step], digits: int) -> t
 
 def _held(exact: Any, shown: Any, variable: str, digits: int) -> Any:
     """Return a step in decimals, with the exact one in place of each whose decimals fail their check."""
-    if isinstance(exact, Section | Case):
+    if isinstance(exact, Section | CaseStep):
         pairs = zip(exact.steps, shown.steps, strict=True)
         return replace(exact, steps=tuple(_held(*pair, variable, digits) for pair in pairs))
     try:
@@ -112,7 +112,7 @@ def _without_decimals(steps: Iterable[Step]) -> Iterator[Step]:
     """Yield the steps without the decimals that a page of fractions has beside an answer."""
     for step in steps:
         match step:
-            case Section(steps=inner) | Case(steps=inner):
+            case Section(steps=inner) | CaseStep(steps=inner):
                 yield replace(step, steps=tuple(_without_decimals(inner)))
             case Equal(sentence=Sentence(key=key)) if key == _NUMERICALLY:
                 pass
@@ -152,7 +152,7 @@ class _Writer:
         match step:
             case Section(title, steps):
                 return Section(self.sentence(title), tuple(map(self.step, steps)))
-            case Case(when=when, steps=steps):
+            case CaseStep(when=when, steps=steps):
                 if isinstance(when, Conjunction):
                     where: Relation | Conjunction = Conjunction(tuple(map(self.exactly, when.relations)))
                 else:
@@ -168,7 +168,7 @@ class _Writer:
                 return self._said(replace(step, relations=shown))
             case Solve(equation=equation, solution=solution):
                 return self._said(replace(step, equation=self.relation(equation), solution=self.relation(solution)))
-            case Tabulate(findings=findings) | Survey(findings=findings):
+            case Tabulate(findings=findings) | RegionSummary(findings=findings):
                 return self._said(replace(step, findings=tuple(map(self.sentence, findings))))
             case Diagram(name=name, labels=labels):
                 written = tuple((place, self.label(name, place, label)) for place, label in labels)
@@ -185,7 +185,7 @@ class _Writer:
         return replace(sentence, slots=tuple((name, self.slot(slot)) for name, slot in sentence.slots))
 
     def slot(self, slot: Any) -> Any:
-        """Return a slot in decimals; a value without a sign that says it is rounded stays exact."""
+        """Return a slot in decimals; a value that no sign marks as rounded stays exact."""
         match slot:
             case Relation():
                 return self.relation(slot)
@@ -197,7 +197,7 @@ class _Writer:
                 return replace(slot, where=tuple(map(self.exactly, where)))
             case Predicate(subject=subject):
                 return replace(slot, subject=self.value(subject))
-            case Shown(value=value):
+            case Evaluated(value=value):
                 return replace(slot, value=self.value(value))
             case str() | SymbolList():
                 return slot
@@ -221,7 +221,7 @@ class _Writer:
         return next((shown for shown in written if not is_rounded(shown)), formula)
 
     def relation(self, relation: Relation) -> Relation:
-        """Return a relation in decimals; what tells the value of a decimal, and a condition, where nothing is rounded."""
+        """Return a relation in decimals; conditions and definitions of decimals stay exact."""
         if isinstance(relation.members[0], Decimals):
             return relation
         shown = self.decimals.relation(relation)
@@ -241,7 +241,7 @@ class _Writer:
         return next((shown for shown in written if not any(map(is_rounded, shown.members))), relation)
 
     def _is_condition(self, relation: Relation) -> bool:
-        """Return whether a relation says something of parameters alone."""
+        """Return whether a relation is one between parameters alone."""
         return not any(map(letters, relation.members)) and any(map(self._names, relation.members))
 
     def _names(self, formula: Formula) -> frozenset[str]:

@@ -15,7 +15,7 @@ from symobs.render.drawings.captions import NARROWEST, caption_below, spaced
 from symobs.render.drawings.diagram_layout import Metrics, diagram_scene
 from symobs.render.drawings.plot_layout import plot_scene
 from symobs.render.drawings.scene import FONT_SIZE, RADIUS, STYLES, Rectangle, arrow_head, coordinate, head_of
-from symobs.render.drawings.svg_text import FONTS, Letters, Row, TextRun, rows_of, spans, text_of, width_of
+from symobs.render.drawings.svg_text import FONTS, Letters, TextRow, TextRun, rows_of, spans, text_of, width_of
 from symobs.render.page.blocks import Drawing
 
 if TYPE_CHECKING:
@@ -142,7 +142,7 @@ class _Writer:
         return "\n".join([head, *named, *styled, *parts, "</svg>"])
 
     def drawn(self) -> Iterator[str]:
-        """Yield the elements, what is below first."""
+        """Yield the elements, from the lowest layer up."""
         scene = self.scene
         if scene.shades:
             areas = "".join(f"{self.path(area)}Z" for area in scene.shades)
@@ -218,7 +218,7 @@ class _Writer:
         rows = rows_of(text.content, self.letters, stacked=self.scene.is_diagram)
         yield from self.rows(rows, place, _ANCHORS.get(text.anchor, "middle"))
 
-    def rows(self, rows: Sequence[Row], centre: Point, anchor: str = "middle") -> Iterator[str]:
+    def rows(self, rows: Sequence[TextRow], centre: Point, anchor: str = "middle") -> Iterator[str]:
         """Yield rows, one below another, centred at a place."""
         (x, y), size = centre, self.size
         y -= self.down * size * sum(row.height for row in rows) / 2
@@ -227,7 +227,7 @@ class _Writer:
             yield from self.row(row, (x, y), anchor)
             y += self.down * size * row.height / 2
 
-    def row(self, row: Row, centre: Point, anchor: str) -> Iterator[str]:
+    def row(self, row: TextRow, centre: Point, anchor: str) -> Iterator[str]:
         """Yield a row, a fraction with its rule."""
         if not row.below:
             yield self.written([row.text], centre, anchor)

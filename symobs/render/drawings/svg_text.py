@@ -51,7 +51,7 @@ class TextRun(NamedTuple):
     is_math: bool = False
 
 
-class Row(NamedTuple):
+class TextRow(NamedTuple):
     """A line of text, and below a rule another one where it is a fraction, with its sign before it."""
 
     text: TextRun
@@ -81,21 +81,23 @@ class Letters(TextPrinter):
         return super().letter(name, mark)
 
 
-def rows_of(content: Content, printer: TextPrinter, *, stacked: bool = False) -> list[Row]:
+def rows_of(content: Content, printer: TextPrinter, *, stacked: bool = False) -> list[TextRow]:
     """Return what is written in rows; with `stacked` a fraction has a rule and thin spaces stand between factors."""
     if isinstance(content, str):
-        return [Row(TextRun(content.replace("-", "−")))]
+        return [TextRow(TextRun(content.replace("-", "−")))]
     if isinstance(content, Conjunction):
-        return [Row(_run(relation, printer)) for relation in content.relations]
+        return [TextRow(_run(relation, printer)) for relation in content.relations]
     if not stacked:
-        return [Row(TextRun(text_of(content, printer), is_math=True))]
+        return [TextRow(TextRun(text_of(content, printer), is_math=True))]
     negative, body = without_sign(content)  # type: ignore[arg-type]
     if isinstance(body, Literal) and isinstance(body.value, Scalar):
         is_written_negative, body = without_sign(formula_of(body.value, printer.variable))
         negative = negative != is_written_negative
     if isinstance(body, Quotient):
-        return [Row(_run(body.numerator, printer), _run(body.denominator, printer), TextRun("−" if negative else ""))]
-    return [Row(_run(content, printer))]
+        return [
+            TextRow(_run(body.numerator, printer), _run(body.denominator, printer), TextRun("−" if negative else ""))
+        ]
+    return [TextRow(_run(content, printer))]
 
 
 def _run(item: Formula | Relation, printer: TextPrinter) -> TextRun:

@@ -88,7 +88,7 @@ def _region(picture: RegionPicture, printer: TextPrinter) -> str:
 
 
 def _crosses(line: Sequence[Point], a: Point, b: Point) -> bool:
-    """Whether a line that is drawn meets the segment from a to b, or touches it."""
+    """Return whether a line that is drawn meets the segment from a to b, or touches it."""
 
     def side(p: Point, q: Point, place: Point) -> float:
         return (q[0] - p[0]) * (place[1] - p[1]) - (q[1] - p[1]) * (place[0] - p[0])
@@ -124,8 +124,8 @@ def _responses(picture: TimeResponse, printer: TextPrinter) -> str:
     for response, mark in reversed(marks):
         for place in picture.points(response):
             _put(grid, picture.window, place, mark)
-    told = "   ".join(f"{mark} {printer.inline(name_of(response))}" for response, mark in marks)
-    return f"{told}\n{_framed(grid, picture.window, [symbol(time_axis(picture))], printer)}"
+    legend = "   ".join(f"{mark} {printer.inline(name_of(response))}" for response, mark in marks)
+    return f"{legend}\n{_framed(grid, picture.window, [symbol(time_axis(picture))], printer)}"
 
 
 def _grid(window: tuple[Interval, Interval], character: Callable[[float, float], str]) -> list[list[str]]:

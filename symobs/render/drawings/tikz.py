@@ -70,8 +70,8 @@ def figure(scene: Scene, printer: LatexPrinter, words: str = "") -> str:
     size = "\\small\n" if scene.is_diagram and abs(scene.whole.top - scene.whole.bottom) > _TALL else ""
     if not words:
         return centred(f"\n{size}{tikz(scene, printer)}\n")
-    told = f"{size}{tikz(scene, printer)}\n\\par\\smallskip{{\\small {words}\\par}}\n"
-    return centred(f"\\begin{{minipage}}{{.92\\linewidth}}\\centering\n{told}\\end{{minipage}}")
+    content = f"{size}{tikz(scene, printer)}\n\\par\\smallskip{{\\small {words}\\par}}\n"
+    return centred(f"\\begin{{minipage}}{{.92\\linewidth}}\\centering\n{content}\\end{{minipage}}")
 
 
 def tikz_file(picture: Picture, printer: LatexPrinter) -> str:

@@ -65,9 +65,9 @@ class Beamer:
             decks += [_title(chapter.title)] if chapter.title else []
             for item in chapter.items:
                 points = f" ({item.points.replace(' ', '~')})" if item.points else ""
-                told = {**_title(""), "source": escape(item.text), **(item.part or {})}
-                told["title"] = f"{item.label} {escape(item.title)}{points}".strip()
-                decks.append(_on_one_slide(told) if item.part and item.kind == "questions" else told)
+                slides = {**_title(""), "source": escape(item.text), **(item.part or {})}
+                slides["title"] = f"{item.label} {escape(item.title)}{points}".strip()
+                decks.append(_on_one_slide(slides) if item.part and item.kind == "questions" else slides)
         return _slides(decks, language_named(sheet.language), sheet.templates)
 
 
@@ -86,8 +86,8 @@ def _on_one_slide(deck: dict[str, Any]) -> dict[str, Any]:
 
 def _title(text: str) -> dict[str, Any]:
     """Return slides with a title only."""
-    told = {"title": escape(text).strip(), "source": "", "conventions": "", "head": None}
-    return {**told, "frames": [], "drawings": False}
+    slides = {"title": escape(text).strip(), "source": "", "conventions": "", "head": None}
+    return {**slides, "frames": [], "drawings": False}
 
 
 def _frames(blocks: Sequence[Block]) -> Iterator[tuple[Inlines, tuple[Block, ...]]]:

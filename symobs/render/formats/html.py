@@ -86,15 +86,15 @@ class Html:
         """Return the document as a page."""
         title, blocks = opened(narrate(document))
         offered = (live_link(document.web, document.language), switch(document.web, document.detail, document.language))
-        pieces = (_writer(document).block(title), *offered, _told(document, blocks))
+        pieces = (_writer(document).block(title), *offered, _body_of(document, blocks))
         return page(title.text, "\n".join(filter(None, pieces)), document.web, language=document.language)
 
     def part(self, document: Document) -> str:
         """Return a question or a solution below its title, independent of its place."""
         title, blocks = opened(narrate(document))
         head = _writer(document, level=3).block(replace(title, text=""))
-        told = _told(document, blocks, prefix=_SOMEWHERE, level=3)
-        return "\n".join(filter(None, (head, live_link(document.web, document.language), told)))
+        body = _body_of(document, blocks, prefix=_SOMEWHERE, level=3)
+        return "\n".join(filter(None, (head, live_link(document.web, document.language), body)))
 
     def sheet(self, sheet: Sheet) -> str:
         """Return the sheet as one page, its contents linked to questions and solutions."""
@@ -109,11 +109,11 @@ class Html:
                 heading = f"{item.label} {plain(item.title)}{points}" if item.title else f"{item.label}{points}"
                 pieces.append(f'<h3 class="{kind}" id="{item.place}">{heading}</h3>')
                 body = item.part or f"<p>{plain(item.text)}</p>"
-                told = body.replace(_SOMEWHERE, f"{item.place}-")
+                placed = body.replace(_SOMEWHERE, f"{item.place}-")
                 pieces.append(
-                    folded(told, sheet.language)
+                    folded(placed, sheet.language)
                     if item.part and sheet.web.details and item.kind == "solutions"
-                    else told
+                    else placed
                 )
         return page(
             sheet.heading,
@@ -148,8 +148,8 @@ def _head(sheet: Sheet) -> Iterator[str]:
     if sheet.heading:
         yield f"<h1>{plain(sheet.heading)}</h1>"
     if sheet.facts:
-        told = (f"<span>{word}: {plain(value)}</span>" for word, value in sheet.facts)
-        yield f'<p class="facts">{" ".join(told)}</p>'
+        spans = (f"<span>{word}: {plain(value)}</span>" for word, value in sheet.facts)
+        yield f'<p class="facts">{" ".join(spans)}</p>'
     if sheet.fields:
         yield f'<p class="fields">{" ".join(f"<span>{word}</span>" for word in sheet.fields)}</p>'
     for rows in sheet.totals:
@@ -159,7 +159,7 @@ def _head(sheet: Sheet) -> Iterator[str]:
 
 
 def _writer(document: Document, prefix: str = "", level: int = 1) -> HtmlWriter:
-    """Return the writer of a document; with buttons that copy, it knows LaTeX too."""
+    """Return the writer of a document; for copy buttons with LaTeX, too."""
     writer = HtmlWriter(printer_for(document, MathmlPrinter), prefix=prefix, level=level)
     if document.web.copy:
         writer.latex = printer_for(document, LatexPrinter)
@@ -167,7 +167,7 @@ def _writer(document: Document, prefix: str = "", level: int = 1) -> HtmlWriter:
     return writer
 
 
-def _told(document: Document, blocks: Sequence[Block], prefix: str = "", level: int = 1) -> str:
+def _body_of(document: Document, blocks: Sequence[Block], prefix: str = "", level: int = 1) -> str:
     """Return what stands below the title, at each level of detail where there is a choice; ids differ between levels."""
     if not document.web.details:
         return _writer(document, prefix, level).body(blocks)
@@ -191,7 +191,7 @@ def _contents(sheet: Sheet) -> str:
 
 
 def page(title: str, body: str, web: WebPage = PLAIN, *, language: str = "en", has_picture: bool = False) -> str:
-    """Return a whole page around a body, which is HTML already, in a language, with what the page offers besides.
+    """Return a complete page around an HTML body, in a language, with its interactive parts.
 
     Pictures are allowed as data alone, where there is one.
     """
@@ -259,8 +259,8 @@ class HtmlWriter:
                 listed = "\n".join(f"<li>{plain(entry)}</li>" for entry in entries)
                 return f'<p class="references"><strong>{plain(label)}</strong></p>\n<ol class="references">\n{listed}\n</ol>'
             case TableBlock():
-                table, told = html_table(block, self.printer, self.sentence)
-                below = f"\n<p>{self.sentence(block.where)}</p>\n{self._display(told)}" if told else ""
+                table, legend = html_table(block, self.printer, self.sentence)
+                below = f"\n<p>{self.sentence(block.where)}</p>\n{self._display(legend)}" if legend else ""
                 return f'<div class="table">{table}</div>{below}'
             case Drawing() | PictureBlock():
                 return self._picture(block)

@@ -1,4 +1,4 @@
-"""What a page of HTML may offer besides its text: levels of detail, buttons that copy LaTeX, a link to a live page.
+"""Interactive parts of an HTML page: levels of detail, buttons that copy LaTeX, a link to a live page.
 
 Levels are radio buttons and a rule of style.  The buttons are made by the one script, which the policy of the page names by
 its hash: where scripts do not run, there is no button and nothing is missing.
@@ -24,7 +24,7 @@ _FOLDER = Path(__file__).parent
 
 
 def style_of(web: WebPage) -> str:
-    """Return the style of what is offered."""
+    """Return the style sheet of the interactive parts."""
     return (_FOLDER / "html_web.css").read_text(encoding="utf-8") if web.details or web.copy or web.live else ""
 
 

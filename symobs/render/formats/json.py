@@ -13,7 +13,7 @@ from symobs.exact.floating.doubles import nearest_double
 from symobs.render.page.sheet import decimal_of
 from symobs.result import Case, Result, output_format
 from symobs.result.conversions import signs, to_json
-from symobs.result.in_convention import Viewed
+from symobs.result.in_convention import ResultInConvention
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -102,14 +102,14 @@ _encoded = json.JSONEncoder(ensure_ascii=False).encode
 
 def result_object(result: Result, convention: Convention = STANDARD) -> dict[str, Any]:
     """Return the object of one result: common fields, its own fields, and its forms in a convention."""
-    own = Viewed(result, convention).own
+    own = ResultInConvention(result, convention).renamed_fields
     answers = {name: to_json(value) for name, value in result.fields.items()}
     differing = {name: to_json(value) for name, value in own.items() if value is not result.fields.get(name)}
     in_convention = {name: value for name, value in differing.items() if name not in answers or answers[name] != value}
     return {
         "task": result.task,
         "method": result.method,
-        "page_method": result.told_method,
+        "page_method": result.printed_method,
         "verdict": result.verdict,
         "conditions": [to_json(condition) for condition in result.holds_where],
         "condition_kinds": [condition.kind for condition in result.holds_where],
@@ -125,7 +125,7 @@ def result_object(result: Result, convention: Convention = STANDARD) -> dict[str
 
 
 def answer_object(result: Result) -> dict[str, Any]:
-    """Return what was asked for and nothing that follows from it: the verdict, its conditions, the answers themselves."""
+    """Return the answer alone: verdict, conditions, and the fields of the answer."""
     return {
         "task": result.task,
         "method": result.method,

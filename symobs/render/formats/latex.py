@@ -109,10 +109,10 @@ def typeset_sheet(sheet: Sheet, template: str) -> str:
     for chapter in sheet.chapters():
         problems: list[dict[str, Any]] = []
         for item in chapter.items:
-            told = {"label": item.label, "title": escape(item.title).strip(), "points": item.points}
-            told |= {"failure": escape(item.text)}
+            slots = {"label": item.label, "title": escape(item.title).strip(), "points": item.points}
+            slots |= {"failure": escape(item.text)}
             place = {"number": item.entry.number, "kind": item.kind, "place": item.place}
-            problems.append({"source": "", "conventions": "", "body": "", **(item.part or {}), **told, **place})
+            problems.append({"source": "", "conventions": "", "body": "", **(item.part or {}), **slots, **place})
         chapters.append({"name": chapter.name, "title": chapter.title, "problems": problems})
     values = {
         "title": escape(sheet.heading).strip(),

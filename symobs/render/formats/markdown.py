@@ -175,8 +175,8 @@ class MarkdownWriter:
             case Drawing(caption=words):
                 return f"{self._sketch(block)}\n\n{self.sentence(words)}" if words else self._sketch(block)
             case TableBlock():
-                table, told = markdown_table(block, self.printer, self.sentence, self.mathematics)
-                return "\n\n".join([table, self.sentence(block.where), self.display(told)]) if told else table
+                table, legend = markdown_table(block, self.printer, self.sentence, self.mathematics)
+                return "\n\n".join([table, self.sentence(block.where), self.display(legend)]) if legend else table
             case PictureBlock(picture, _, title):
                 from symobs.render.page.plot_captions import caption  # noqa: PLC0415 - only pages with pictures
 

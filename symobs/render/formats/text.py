@@ -144,8 +144,8 @@ class TextWriter:
             case TableBlock():
                 from symobs.render.tables.text_and_latex import text_table  # noqa: PLC0415 - only pages with tables
 
-                table, told = text_table(block, self.printer, self.remark)
-                below = f"\n\n{wrapped(self.sentence(block.where), width)}\n\n{indented(told)}" if told else ""
+                table, legend = text_table(block, self.printer, self.remark)
+                below = f"\n\n{wrapped(self.sentence(block.where), width)}\n\n{indented(legend)}" if legend else ""
                 return f"{indented(table)}{below}"
             case PictureBlock(picture, _, title):
                 from symobs.render.page.plot_captions import caption  # noqa: PLC0415 - only pages with pictures

@@ -5,22 +5,23 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from symobs.derivation import (
-    Case,
+    CaseStep,
     Conclude,
     Define,
     Diagram,
     Equal,
     Given,
+    Inequalities,
     Note,
     Plot,
+    RegionSummary,
     Section,
     Solve,
-    Survey,
     Tabulate,
-    Where,
 )
 from symobs.formula import (
     Conjunction,
+    Evaluated,
     HoldsExactlyWhere,
     Letter,
     Negative,
@@ -28,10 +29,9 @@ from symobs.formula import (
     Product,
     Relation,
     Roots,
-    Shown,
+    SignReversal,
     Sum,
     SymbolList,
-    Turned,
     letters,
 )
 from symobs.phrases.spoken import SPOKEN
@@ -54,7 +54,7 @@ def stated_conventions(
     used: frozenset[str], convention: Convention, words: Mapping[str, str]
 ) -> tuple[tuple[Inline, ...], ...]:
     """Return the conventions of the letters used, each as words and a formula."""
-    turned = Turned(convention.turned)
+    turned = SignReversal(convention.turned)
     conventions: list[tuple[Inline, ...]] = []
     if "K" in used:
         estimated = "L" in used or "x_hat" in used
@@ -79,7 +79,7 @@ def _formulas(step: Step) -> Iterator[Formula]:
             yield from _in_sentence(title)
             for inner in steps:
                 yield from _formulas(inner)
-        case Case(when=when, steps=steps, sentence=sentence):
+        case CaseStep(when=when, steps=steps, sentence=sentence):
             yield from (*_in_facts((when,)), *_in_sentence(sentence))
             for inner in steps:
                 yield from _formulas(inner)
@@ -96,9 +96,9 @@ def _formulas(step: Step) -> Iterator[Formula]:
             | Plot(sentence=sentence)
         ):
             yield from _in_sentence(sentence)
-        case Where(fact=fact, sentence=sentence):
+        case Inequalities(fact=fact, sentence=sentence):
             yield from (*_in_facts((fact,)), *_in_sentence(sentence))
-        case Survey(polynomial=polynomial):
+        case RegionSummary(polynomial=polynomial):
             yield polynomial
         case Diagram(labels=labels, sentence=sentence):
             yield from _in_sentence(sentence)
@@ -123,7 +123,7 @@ def _in_sentence(sentence: Sentence | None) -> Iterator[Formula]:
     for _, value in sentence.slots if sentence else ():
         if isinstance(value, Relation | Predicate | Roots | HoldsExactlyWhere | Conjunction):
             yield from _in_facts((value,))
-        elif isinstance(value, Shown):
+        elif isinstance(value, Evaluated):
             yield value.value
         elif not isinstance(value, (str, SymbolList, *SPOKEN)):
             yield value

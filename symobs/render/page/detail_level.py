@@ -10,7 +10,19 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from symobs.derivation import Case, Conclude, Define, Diagram, Equal, Note, Plot, Section, Solve, Survey, Tabulate
+from symobs.derivation import (
+    CaseStep,
+    Conclude,
+    Define,
+    Diagram,
+    Equal,
+    Note,
+    Plot,
+    RegionSummary,
+    Section,
+    Solve,
+    Tabulate,
+)
 from symobs.errors import UsageError
 from symobs.formula import Conjunction, HoldsExactlyWhere, Predicate, Relation, Transpose, children
 from symobs.phrases import ASSERTS, CONTINUES, EXPLAINS, SPELLS_OUT
@@ -60,7 +72,7 @@ def _unproved(steps: Sequence[Step]) -> Iterator[Step]:
         if isinstance(step, Section):
             if inner := tuple(_unproved(step.steps)):
                 yield replace(step, steps=inner)
-        elif isinstance(step, Case):
+        elif isinstance(step, CaseStep):
             yield replace(step, steps=tuple(_unproved(step.steps)))
         elif not (isinstance(step, Conclude) and step.verified):
             yield step
@@ -72,7 +84,7 @@ def _shortened(step: Step, detail: str) -> Iterator[Step]:
         case Section(steps=steps):
             if inner := at_detail(steps, detail):
                 yield replace(step, steps=inner)
-        case Case(steps=steps):
+        case CaseStep(steps=steps):
             inner = at_detail(steps, detail)
             yield replace(step, steps=inner) if any(_is_seen(left) for left in inner) else step
         case Define(silent=True):
@@ -86,7 +98,7 @@ def _shortened(step: Step, detail: str) -> Iterator[Step]:
             yield step if isinstance(step, Diagram) else replace(step, sentence=None)
         case Tabulate(findings=findings) if detail == "answer":
             yield from (Note(finding) for finding in findings if finding.key not in EXPLAINS)
-        case Survey(findings=findings):
+        case RegionSummary(findings=findings):
             yield replace(step, findings=tuple(finding for finding in findings if finding.key not in EXPLAINS))
         case Plot() if detail == "outline":
             yield step
@@ -162,4 +174,4 @@ def _speaks_of_before(step: Step) -> bool:
     """Return whether a step refers to the one before it: a finding, a condition, or a definition of short names."""
     if isinstance(step, Define | Equal):
         return _spells_out(step)
-    return getattr(step, "sentence", None) is not None and not isinstance(step, Case)
+    return getattr(step, "sentence", None) is not None and not isinstance(step, CaseStep)

@@ -1,4 +1,4 @@
-"""What a sheet adds to the parts of a question: their points, and room for the answers."""
+"""Points and room for answers, added to the parts of a question on a sheet."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 def handed_out(blocks: Sequence[Block], parts: Sequence[Part]) -> tuple[Block, ...]:
-    """Return a question with what a sheet adds to each of its parts; these are its last paragraphs, one each."""
+    """Return a question with points and room for each of its parts, its last paragraphs."""
     paragraphs = [place for place, block in enumerate(blocks) if isinstance(block, Paragraph)]
     added = dict(zip(paragraphs[-len(parts) :], parts, strict=True)) if parts else {}
     written: list[Block] = []

@@ -12,20 +12,20 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 from symobs.convention import OF_REDUCED_ORDER
 from symobs.derivation import (
-    Case,
+    CaseStep,
     Conclude,
     Define,
     Diagram,
     Equal,
     Given,
+    Inequalities,
     Note,
     Plot,
+    RegionSummary,
     Section,
     Sentence,
     Solve,
-    Survey,
     Tabulate,
-    Where,
 )
 from symobs.formula import Conjunction
 from symobs.phrases import BESIDE, CONTINUES, OPENS, RESTS_ON
@@ -133,7 +133,10 @@ def _given_relations(step: Step) -> Iterator[Relation]:
 def _inside(steps: Sequence[Step]) -> set[Step]:
     """Return the steps of the sections, which later derivations need not repeat."""
     printed = [inner for step in steps if isinstance(step, Section) for inner in step.steps]
-    return {*printed, *(replace(step, answer=False) for step in printed if isinstance(step, (Define, Equal, Where)))}
+    return {
+        *printed,
+        *(replace(step, answer=False) for step in printed if isinstance(step, (Define, Equal, Inequalities))),
+    }
 
 
 def printer_for(document: Document, kind: type[P]) -> P:
@@ -254,17 +257,17 @@ class _PageBlocks:
                 )
                 for finding in findings:
                     self.emit_sentence(finding)
-            case Where(fact=fact, sentence=sentence, answer=answer):
+            case Inequalities(fact=fact, sentence=sentence, answer=answer):
                 self.emit_sentence(sentence)
                 self.emit_display(fact.where, boxed=answer)
-            case Survey():
+            case RegionSummary():
                 self.emit_survey(step)
             case Plot(picture=picture, sentence=sentence):
                 from symobs.render.page.plot_captions import caption  # noqa: PLC0415 - only pages with pictures
 
                 title = joined((*self.figure_title(sentence), " "))
                 self.blocks.append(PictureBlock(picture, joined((*title, *caption(picture, self.language))), title))
-            case Case(when=when, steps=steps, sentence=sentence):
+            case CaseStep(when=when, steps=steps, sentence=sentence):
                 self.emit_case(when, steps, sentence)
             case Section() if _is_statement(step):
                 self.emit_given((step,))
@@ -307,7 +310,7 @@ class _PageBlocks:
         numbered = f"{self.language.phrases['figure']}\N{NO-BREAK SPACE}{next(self.figures)}."
         return (numbered,) if sentence is None else joined((f"{numbered} ", *self.filled(sentence)))
 
-    def emit_survey(self, step: Survey) -> None:
+    def emit_survey(self, step: RegionSummary) -> None:
         """Emit the summary of a region, its parts one below the other."""
         for finding in step.findings:
             self.emit_sentence(finding)

@@ -90,7 +90,7 @@ def _sentences(picture: Picture) -> Iterator[Sentence]:
         case TimeResponse(states=states, starts=starts):
             begun = tuple(_beginning(*state) for state in zip(states, starts, strict=True))
             yield caption_sentence("response", start=Conjunction(begun))
-            if any(course.dashed for course in picture.responses):
+            if any(response.dashed for response in picture.responses):
                 yield caption_sentence("estimates")
             if picture.discrete:
                 yield caption_sentence("samples_only")

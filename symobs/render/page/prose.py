@@ -15,6 +15,7 @@ from symobs.exact import Scalar
 from symobs.formula import (
     Conjunction,
     Decimals,
+    Evaluated,
     HoldsExactlyWhere,
     Letter,
     Literal,
@@ -23,11 +24,10 @@ from symobs.formula import (
     Product,
     Relation,
     Roots,
-    Shown,
+    SignReversal,
     Sum,
     SymbolList,
     Transpose,
-    Turned,
     children,
 )
 from symobs.notation import LETTERS
@@ -54,7 +54,7 @@ _OUTPUTS = {"$C$", "$A_12$", "$C_dual$"}
 
 def filled(sentence: Sentence, convention: Convention = STANDARD, language: Language = ENGLISH) -> Inlines:
     """Return the phrase of a sentence in a language, its slots filled, in the letters and signs of a convention."""
-    slots, turned = dict(sentence.slots), Turned(convention.turned)
+    slots, turned = dict(sentence.slots), SignReversal(convention.turned)
     several = any(isinstance(slot, Roots) and len(slot.values) > 1 for slot in slots.values())
     phrase = COUNTED.sub(lambda words: words[2 if several else 1], language.phrases[sentence.key])
     if not convention.is_standard:
@@ -100,7 +100,7 @@ def _shown(slot: Formula | Fact | Counted | StateChoice | str, language: Languag
     match slot:
         case Predicate(subject=subject):
             yield subject
-        case Shown(value=value):
+        case Evaluated(value=value):
             yield value
         case SymbolList(names):
             for place, name in enumerate(names):
@@ -134,7 +134,7 @@ def _once(relation: Relation, letters: Mapping[str, str]) -> Relation | Formula:
     return relation.members[-1] if len(written) == 1 and "" not in written else relation
 
 
-def _prose(text: str, turned: Turned, letters: Mapping[str, str]) -> Iterator[Inline]:
+def _prose(text: str, turned: SignReversal, letters: Mapping[str, str]) -> Iterator[Inline]:
     for place, part in enumerate(text.split("$")):
         if place % 2:
             named = _named(part)

@@ -53,7 +53,7 @@ class Logo:
 
 @dataclass(frozen=True)
 class Header:
-    """What stands at the head of a sheet."""
+    """The head of a sheet."""
 
     course: str = ""
     term: str = ""
@@ -163,8 +163,8 @@ class Sheet:
     @property
     def facts(self) -> tuple[tuple[str, str], ...]:
         """Who gives the sheet out and when it is due, each after its word."""
-        told = ((self.words["instructor"], self.header.instructor), (self.words["due"], self.header.due))
-        return tuple((word, value) for word, value in told if value)
+        pairs = ((self.words["instructor"], self.header.instructor), (self.words["due"], self.header.due))
+        return tuple((word, value) for word, value in pairs if value)
 
     @property
     def fields(self) -> tuple[str, ...]:

@@ -106,7 +106,7 @@ class Layout(Generic[B]):
 
     def _aligned(self, relation: Relation, margin: float, *, is_last: bool) -> list[DisplayRow[B]]:
         """Return the rows of one relation, then the definitions of the entries left out."""
-        printer, told = self.printer, len(self.breaker.named)
+        printer, defined = self.printer, len(self.breaker.named)
         framed = self.boxed and is_last
         left = printer.typeset(relation.members[0])
         head = left if left.width <= _WIDEST_HEAD else None
@@ -123,7 +123,7 @@ class Layout(Generic[B]):
             rights, _ = self._links(links, space, head, framed=framed)
             followers = [printer.joined([indent, line], Level.SUM) for line in [*lines[1:], *rights]]
             rows = [DisplayRow(None, line) for line in [lines[0], *followers]]
-        return self._told(rows, told, room, is_last=is_last)
+        return self._with_definitions(rows, defined, room, is_last=is_last)
 
     def _frame(self) -> float:
         """Return the width a frame adds."""
@@ -167,15 +167,17 @@ class Layout(Generic[B]):
         first, *rest = lines
         return [printer.joined(pair, Level.SUM) for pair in [(sign, first), *((indent, line) for line in rest)]]
 
-    def _told(self, rows: list[DisplayRow[B]], told: int, room: float, *, is_last: bool) -> list[DisplayRow[B]]:
+    def _with_definitions(
+        self, rows: list[DisplayRow[B]], defined: int, room: float, *, is_last: bool
+    ) -> list[DisplayRow[B]]:
         """Add the definitions of the new names, short ones side by side, and the punctuation."""
         is_framed = self.boxed and is_last
         mark = self.end if is_last else ","
-        if told == len(self.breaker.named):
+        if defined == len(self.breaker.named):
             return [*rows[:-1], rows[-1] if is_framed else self._marked(rows[-1], mark)]
         groups: list[list[B]] = []
-        while told + len(groups) < len(self.breaker.named):
-            entry, name = list(self.breaker.named.items())[told + len(groups)]
+        while defined + len(groups) < len(self.breaker.named):
+            entry, name = list(self.breaker.named.items())[defined + len(groups)]
             groups.append(self._definition(name, entry, room))
         comma, closing = (self.printer.punctuation(sign) if sign else None for sign in (",", mark))
         for index, group in enumerate(groups):

@@ -77,7 +77,7 @@ class FormulaWriter(ABC, Generic[B]):
 
     @abstractmethod
     def between(self, left: B, right: B) -> B | None:
-        """What separates two factors, such as the dot before a number."""
+        """Return the separator of two factors, such as the dot before a number."""
 
     @abstractmethod
     def grouped(self, box: B) -> B:

@@ -111,7 +111,7 @@ def _time_function(value: Scalar) -> Formula:
 
 
 def separate_formula(value: Scalar) -> Formula:
-    """Return a value that contains functions of time, each term with a coefficient of its own."""
+    """Return a value that contains functions of time, term by term with coefficients."""
     if any(is_time_function(name) for name in value.denominator.names):
         return _time_function(value)
     return _grouped(_parts(value.numerator), value.denominator)

@@ -39,7 +39,7 @@ class Fitted(Generic[B]):
     heads: list[B]
     rows: list[list[B]]
     remarks: list[Inlines]
-    told: tuple[Relation, ...]
+    legend: tuple[Relation, ...]
     fits: bool
 
 
@@ -70,8 +70,8 @@ def fitted(
     if any(_is_wide(value, name, printer, line) for value, name in names.items()):
         names = _named(block.table, bound, printer, below=True)
     rows = _written(block.table, names, printer)
-    told = tuple(_definition(value, name, block.table, names, printer, line) for value, name in names.items())
-    return Fitted(heads, rows, shortest, told, fits=width(rows) <= room(shortest))
+    legend = tuple(_definition(value, name, block.table, names, printer, line) for value, name in names.items())
+    return Fitted(heads, rows, shortest, legend, fits=width(rows) <= room(shortest))
 
 
 def _written(table: RouthTable, names: Names, printer: Printer[B]) -> list[list[B]]:

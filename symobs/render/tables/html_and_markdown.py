@@ -33,7 +33,7 @@ def html_table(block: TableBlock, printer: MathmlPrinter, words: Words) -> tuple
         cells = "".join(f"<td>{cell}</td>" for cell in [*entries, *[""] * (columns - len(row))])
         lines.append(f'<tr><th scope="row"><math>{head.source}</math></th>{cells}{beside}</tr>')
     table = "\n".join(["<table>", *lines, "</table>"])
-    return table, printer.display(found.told) if found.told else ""
+    return table, printer.display(found.legend) if found.legend else ""
 
 
 def markdown_table(
@@ -46,4 +46,4 @@ def markdown_table(
     for head, row, remark in zip(found.heads, found.rows, found.remarks, strict=True):
         cells = [mathematics(head.source), *(mathematics(entry.source) for entry in row), *[""] * (columns - len(row))]
         lines.append([*cells, *[words(remark)] * has_remarks])
-    return "\n".join(f"| {' | '.join(cells)} |" for cells in lines), found.told
+    return "\n".join(f"| {' | '.join(cells)} |" for cells in lines), found.legend

@@ -47,7 +47,7 @@ def latex_table(block: TableBlock, printer: LatexPrinter, words: Words) -> str:
     last = r"@{\quad}l" if has_remarks else ""
     array = f"\\begin{{array}}{{c|{'c' * columns}{last}}}\n{body}\n\\end{{array}}"
     table = f"\\[{_OPEN}\n{array}\n\\]" if found.fits else f"{{{_TIGHT}\n\\[\n{array}\n\\]}}"
-    return f"{table}\n{words(block.where)}\n{printer.display(found.told)}" if found.told else table
+    return f"{table}\n{words(block.where)}\n{printer.display(found.legend)}" if found.legend else table
 
 
 def room_for(printer: LatexPrinter | MathmlPrinter) -> Callable[[Sequence[Inlines]], float]:
@@ -90,7 +90,7 @@ def text_table(block: TableBlock, printer: TextPrinter, words: Words) -> tuple[s
         f"{head}{_RULE}{(' ' * _GAP).join(row)}{' ' * 2 * _GAP}{remark}".rstrip()
         for head, row, remark in zip(first, zip(*others, strict=True), remarks, strict=True)
     ]
-    return "\n".join(lines), printer.display(found.told) if found.told else ""
+    return "\n".join(lines), printer.display(found.legend) if found.legend else ""
 
 
 def _padded(column: Sequence[str]) -> list[str]:

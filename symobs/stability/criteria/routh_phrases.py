@@ -1,4 +1,4 @@
-"""Routh's table: what stands beside its rows, and what it says."""
+"""Sentences on Routh's table: remarks beside its rows, and its findings."""
 
 from __future__ import annotations
 

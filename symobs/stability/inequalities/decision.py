@@ -12,7 +12,7 @@ from symobs._dataclass import dataclass
 from symobs.stability.inequalities.factors import InequalitySystem, cleared, split_into_factors, split_products
 from symobs.stability.inequalities.proof import Equivalence, Step
 from symobs.stability.inequalities.simplify import failing_alone, nonempty_or_not, prove_value
-from symobs.stability.inequalities.z3_and_qepcad import Resources, names_of
+from symobs.stability.inequalities.z3_backend import Resources, names_of
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence

@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, TypeAlias, assert_never
 from symobs._dataclass import dataclass
 from symobs.conditions import never_zero, sign_of
 from symobs.exact import Scalar, product_of
-from symobs.stability.inequalities.z3_and_qepcad import none_by_z3
+from symobs.stability.inequalities.z3_backend import none_by_z3
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence

@@ -27,7 +27,7 @@ from symobs.stability.inequalities.proof import (
     contradiction,
     from_contradiction,
 )
-from symobs.stability.inequalities.z3_and_qepcad import is_free
+from symobs.stability.inequalities.z3_backend import is_free
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -58,7 +58,7 @@ class _SearchBudget:
 
 
 @dataclass(frozen=True)
-class View:
+class SubstitutedProblem:
     """The problem after some substitutions: new names stand for known values."""
 
     signs: Mapping[str, str]
@@ -116,12 +116,12 @@ def _is_manageable(value: Scalar) -> bool:
     return value.size <= _TERMS and all(map(is_free, value.names)) and value.denominator.is_constant
 
 
-def _first_view(known: Sequence[Scalar], signs: Mapping[str, str]) -> View:
+def _first_view(known: Sequence[Scalar], signs: Mapping[str, str]) -> SubstitutedProblem:
     ordered = sorted((v for v in known if v.size <= _SOLVED and _is_manageable(v)), key=lambda v: (v.size, str(v)))
-    return View(dict(signs), open=tuple(Open(value, value) for value in ordered))
+    return SubstitutedProblem(dict(signs), open=tuple(Open(value, value) for value in ordered))
 
 
-def _prove_in(goal: Scalar, image: Scalar, view: View, budget: _SearchBudget) -> tuple[Step, ...] | None:
+def _prove_in(goal: Scalar, image: Scalar, view: SubstitutedProblem, budget: _SearchBudget) -> tuple[Step, ...] | None:
     """Return the steps to a goal whose form in the view is `image`."""
     budget.views -= 1
     if not goal.is_zero and sign_of(image, view.signs) == "positive":
@@ -148,7 +148,7 @@ def _prove_in(goal: Scalar, image: Scalar, view: View, budget: _SearchBudget) ->
     return _by_combination(goal, image, view)
 
 
-def _ways_on(image: Scalar, view: View) -> Iterator[tuple[View, Mapping[str, Scalar]]]:
+def _ways_on(image: Scalar, view: SubstitutedProblem) -> Iterator[tuple[SubstitutedProblem, Mapping[str, Scalar]]]:
     """Yield the views in which one more parameter is replaced by a known value."""
     found = []
     for place, known in enumerate(view.open):
@@ -167,7 +167,9 @@ def _ways_on(image: Scalar, view: View) -> Iterator[tuple[View, Mapping[str, Sca
             yield way
 
 
-def _replaced(view: View, place: int, name: str) -> tuple[View, Mapping[str, Scalar]] | None:
+def _replaced(
+    view: SubstitutedProblem, place: int, name: str
+) -> tuple[SubstitutedProblem, Mapping[str, Scalar]] | None:
     """Return the view in which a new name stands for the known value at `place`, and what `name` becomes."""
     known = view.open[place]
     new = f"_{len(view.stands_for) + 1}"
@@ -181,7 +183,7 @@ def _replaced(view: View, place: int, name: str) -> tuple[View, Mapping[str, Sca
         own = Scalar.symbol(name) if sign == "positive" else -Scalar.symbol(name)
         steps = (*steps, by_signs(own))
         waiting.append(Open(own.substitute(put), own))
-    moved = View(signs, {**view.stands_for, new: known.value}, (), steps)
+    moved = SubstitutedProblem(signs, {**view.stands_for, new: known.value}, (), steps)
     for item in waiting:
         if item.polynomial.size > _TERMS:
             continue
@@ -191,7 +193,7 @@ def _replaced(view: View, place: int, name: str) -> tuple[View, Mapping[str, Sca
     return moved, put
 
 
-def _stripped(item: Open, view: View) -> View | None:
+def _stripped(item: Open, view: SubstitutedProblem) -> SubstitutedProblem | None:
     """Add a known value without factors of certain sign; return None if it becomes constant."""
     if sign_of(item.polynomial, view.signs) == "positive":
         return None
@@ -219,7 +221,7 @@ def _stripped(item: Open, view: View) -> View | None:
     return replace(view, open=(*view.open, Open(kept, value)), steps=(*view.steps, step))
 
 
-def _read_back(goal: Scalar, image: Scalar, view: View) -> tuple[Step, ...] | None:
+def _read_back(goal: Scalar, image: Scalar, view: SubstitutedProblem) -> tuple[Step, ...] | None:
     """Return the steps to a goal whose image is positive: each factor is a sum of products of known values."""
     unit, factors = image.factors()
     steps, above, below, sign = list(view.steps), list[Scalar](), list[Scalar](), unit
@@ -237,7 +239,7 @@ def _read_back(goal: Scalar, image: Scalar, view: View) -> tuple[Step, ...] | No
     return (*steps, Combined(goal, ((ONE, tuple(below)),), ((sign, tuple(above)),)))
 
 
-def _over_positive(value: Scalar, view: View) -> tuple[Scalar, Scalar] | None:
+def _over_positive(value: Scalar, view: SubstitutedProblem) -> tuple[Scalar, Scalar] | None:
     """Return numerator and denominator with a denominator that is positive in the view."""
     sign = sign_of(value.denominator, view.signs)
     if sign == "positive":
@@ -245,7 +247,7 @@ def _over_positive(value: Scalar, view: View) -> tuple[Scalar, Scalar] | None:
     return (-value.numerator, -value.denominator) if sign == "negative" else None
 
 
-def _from_impossible(goal: Scalar, known: Open, view: View) -> tuple[Step, ...] | None:
+def _from_impossible(goal: Scalar, known: Open, view: SubstitutedProblem) -> tuple[Step, ...] | None:
     """Return the steps from a known value v that is never positive: v = −N/D gives D v + N = 0."""
     parts = _over_positive(-known.polynomial, view)
     if parts is None:
@@ -260,7 +262,7 @@ def _finished(goal: Scalar, steps: tuple[Step, ...]) -> tuple[Step, ...]:
     return steps if goal.is_zero else (*steps, from_contradiction(goal))
 
 
-def _by_combination(goal: Scalar, image: Scalar, view: View) -> tuple[Step, ...] | None:
+def _by_combination(goal: Scalar, image: Scalar, view: SubstitutedProblem) -> tuple[Step, ...] | None:
     """Return the steps by a positive combination of the known values."""
     parts = _over_positive(image, view)
     if parts is None:

@@ -14,7 +14,7 @@ from math import isfinite, sqrt
 from typing import TYPE_CHECKING, TypeAlias
 
 from symobs.exact.algebraic.rational_points import value_at as value_at  # noqa: PLC0414 - handed on to `simplify`
-from symobs.stability.inequalities.z3_and_qepcad import is_free, names_of
+from symobs.stability.inequalities.z3_backend import is_free, names_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence

@@ -32,7 +32,7 @@ from symobs.stability.inequalities.sample_points import (
     value_at,
 )
 from symobs.stability.inequalities.written_form import root_of_square
-from symobs.stability.inequalities.z3_and_qepcad import Resources, point_by_z3
+from symobs.stability.inequalities.z3_backend import Resources, point_by_z3
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence

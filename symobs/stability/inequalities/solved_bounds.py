@@ -120,7 +120,7 @@ def _bound(value: Scalar, name: str, signs: Mapping[str, str]) -> tuple[str, Sca
 
 
 def _between(lower: Sequence[Scalar], upper: Sequence[Scalar], signs: Mapping[str, str]) -> Scalar | None:
-    """Return a value above all lower and below all upper bounds, where the signs tell which of them is the sharpest."""
+    """Return a value above all lower and below all upper bounds, if the signs order them."""
     below, above = _greatest(lower, signs), _greatest([-value for value in upper], signs)
     if (lower and below is None) or (upper and above is None):
         return None

@@ -16,14 +16,14 @@ from symobs.formula import Literal, Relation
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
-    from symobs.exact.cad.decomposition import Slab, Wall
+    from symobs.exact.cad.decomposition import CriticalLine, Cylinder
     from symobs.figures.plot import Interval, Place
     from symobs.stability.regions.interval_region import LineRegion
     from symobs.stability.regions.plane_region import Cell, PlaneRegion
 
-#: Nodes in every slab; they crowd towards the walls, where branches turn.
+#: Nodes in every cylinder; they crowd towards the critical lines, where branches turn.
 NODES = 48
-#: This part of the way from a wall to the middle of a slab is close to the wall.
+#: This part of the way from a critical line to the middle of a cylinder is close to the critical line.
 _CLOSE = 64
 #: Beyond this many samples only the stable ones are marked.
 MOST_MARKS = 16
@@ -45,15 +45,15 @@ def picture_of_plane(region: PlaneRegion) -> RegionPicture:
     """Return the plot of a region of two parameters."""
     window = _window(region)
     areas, curves, seen = [], [], []
-    for number, slab in enumerate(region.plane.slabs):
-        found = _nodes(region, slab, window)
+    for number, cylinder in enumerate(region.plane.cylinders):
+        found = _nodes(region, cylinder, window)
         if len(found) < 2:
             continue
-        allowed = [cell for cell in region.cells if cell.slab == number and cell.allowed]
+        allowed = [cell for cell in region.cells if cell.cylinder == number and cell.allowed]
         seen += [cell for cell in allowed if _inside(cell.sample, window) and _holds_sample(cell, found, window)]
         nodes, rows = list(found), list(found.values())
         areas += [a for cell in allowed if cell.stable and (a := _area(cell, nodes, rows, window))]
-        curves += _branches(region, slab, number, nodes, rows, window)
+        curves += _branches(region, cylinder, number, nodes, rows, window)
     curves += _verticals(region, window)
     shown = [cell for cell in seen if cell.stable or len(seen) <= MOST_MARKS]
     marks = [MarkedPoint(cell.sample, "stable" if cell.stable else "unstable") for cell in shown]
@@ -88,25 +88,25 @@ def _window(region: PlaneRegion) -> tuple[Interval, Interval]:
     for cell in region.cells:
         if not cell.stable:
             continue
-        slab = region.plane.slabs[cell.slab]
-        xs += [cell.sample[0], *(_middle(end) for end in (slab.left, slab.right) if end is not None)]
+        cylinder = region.plane.cylinders[cell.cylinder]
+        xs += [cell.sample[0], *(_middle(end) for end in (cylinder.left, cylinder.right) if end is not None)]
         ys.append(cell.sample[1])
-        for x in (slab.x, *_near_ends(slab)):
+        for x in (cylinder.x, *_near_ends(cylinder)):
             heights = _heights(region, x)
             ys += [heights[k] for k in (cell.height - 1, cell.height) if 0 <= k < len(heights)]
     if not xs:
-        xs = [_middle(wall.x) for wall in region.plane.walls]
+        xs = [_middle(line.x) for line in region.plane.critical_lines]
         ys = [cell.sample[1] for cell in region.cells]
     return range_around(xs), range_around(ys)
 
 
-def _near_ends(slab: Slab) -> list[Fraction]:
-    """Return points of a slab close to its walls."""
-    ends = [slab.left.interval()[1]] if slab.left is not None else []
-    ends += [slab.right.interval()[0]] if slab.right is not None else []
-    near = [(end + (slab.x - end) / _CLOSE).limit_denominator(1 << 20) for end in ends]
-    inside = [x for x in near if slab.left is None or slab.left < RealNumber.of(x)]
-    return [x for x in inside if slab.right is None or RealNumber.of(x) < slab.right]
+def _near_ends(cylinder: Cylinder) -> list[Fraction]:
+    """Return points of a cylinder close to its critical lines."""
+    ends = [cylinder.left.interval()[1]] if cylinder.left is not None else []
+    ends += [cylinder.right.interval()[0]] if cylinder.right is not None else []
+    near = [(end + (cylinder.x - end) / _CLOSE).limit_denominator(1 << 20) for end in ends]
+    inside = [x for x in near if cylinder.left is None or cylinder.left < RealNumber.of(x)]
+    return [x for x in inside if cylinder.right is None or RealNumber.of(x) < cylinder.right]
 
 
 def range_around(values: Iterable[Fraction], *, spread: bool = False) -> Interval:
@@ -162,14 +162,16 @@ def _holds_sample(cell: Cell, nodes: dict[Fraction, list[Fraction]], window: tup
 # -- branches ---------------------------------------------------------------------------------------------------------
 
 
-def _nodes(region: PlaneRegion, slab: Slab, window: tuple[Interval, Interval]) -> dict[Fraction, list[Fraction]]:
-    """Return rational points of a slab inside the window with the heights of all branches there, ascending.
+def _nodes(
+    region: PlaneRegion, cylinder: Cylinder, window: tuple[Interval, Interval]
+) -> dict[Fraction, list[Fraction]]:
+    """Return rational points of a cylinder inside the window with the heights of all branches there, ascending.
 
     They are crowded towards its ends, and stand where a branch meets the border.
     """
     (left, right), (bottom, top) = window
-    low = left if slab.left is None else max(left, slab.left.interval(FIRST_BITS)[1])
-    high = right if slab.right is None else min(right, slab.right.interval(FIRST_BITS)[0])
+    low = left if cylinder.left is None else max(left, cylinder.left.interval(FIRST_BITS)[1])
+    high = right if cylinder.right is None else min(right, cylinder.right.interval(FIRST_BITS)[0])
     if low >= high:
         return {}
     found = {
@@ -181,11 +183,11 @@ def _nodes(region: PlaneRegion, slab: Slab, window: tuple[Interval, Interval]) -
                 found |= {x for root in real_roots(curve.on_horizontal(height)) if low < (x := _middle(root)) < high}
     grid = (right - left) / _NODE_GRID
     rounded = {round(x / grid) * grid for x in found}
-    inside = [x for x in rounded if (slab.left is None or slab.left < RealNumber.of(x))]
-    within = sorted(x for x in inside if slab.right is None or RealNumber.of(x) < slab.right)
-    if within and left < slab.x < right:  # its samples stand there, in the area that is drawn
-        within += [] if within[0] < slab.x else [(low + slab.x) / 2]
-        within += [] if slab.x < within[-1] else [(slab.x + high) / 2]
+    inside = [x for x in rounded if (cylinder.left is None or cylinder.left < RealNumber.of(x))]
+    within = sorted(x for x in inside if cylinder.right is None or RealNumber.of(x) < cylinder.right)
+    if within and left < cylinder.x < right:  # its samples stand there, in the area that is drawn
+        within += [] if within[0] < cylinder.x else [(low + cylinder.x) / 2]
+        within += [] if cylinder.x < within[-1] else [(cylinder.x + high) / 2]
         within.sort()
     nodes = {x: _heights(region, x) for x in within}
     for _ in range(_PASSES):
@@ -240,7 +242,7 @@ def _rounded(places: Iterable[Place], window: tuple[Interval, Interval]) -> tupl
 
 def _branches(
     region: PlaneRegion,
-    slab: Slab,
+    cylinder: Cylinder,
     number: int,
     nodes: Sequence[Fraction],
     rows: Sequence[Sequence[Fraction]],
@@ -250,7 +252,7 @@ def _branches(
     stable = region.stable_in(number)
     bottom, top = window[1]
     found = []
-    for place, branch in enumerate(slab.branches):
+    for place, branch in enumerate(cylinder.branches):
         equation = equation_of(region.plane.curves[branch.curve].scalar)
         piece: list[Place] = []
         slack = (top - bottom) / _GRID
@@ -300,13 +302,13 @@ def _verticals(region: PlaneRegion, window: tuple[Interval, Interval]) -> list[C
     """Return the vertical lines among the critical curves in pieces: a boundary where something stable stands beside."""
     found = []
     (left, right), (bottom, top) = window
-    for wall in region.plane.walls:
-        for curve in region.plane.vertical_at(wall):
-            x = _middle(wall.x)
+    for line in region.plane.critical_lines:
+        for curve in region.plane.vertical_at(line):
+            x = _middle(line.x)
             if not left <= x <= right:
                 continue
             equation = equation_of(region.plane.curves[curve].scalar)
-            beside = _beside(region, wall, (right - left) / _GRID)
+            beside = _beside(region, line, (right - left) / _GRID)
             heights = {y for place in beside for y in _heights(region, place) if bottom < y < top}
             for low, high in _pieces(sorted({bottom, top, *heights}), (top - bottom) / 100):
                 points = ({region.names[0]: place, region.names[1]: (low + high) / 2} for place in beside)
@@ -315,11 +317,11 @@ def _verticals(region: PlaneRegion, window: tuple[Interval, Interval]) -> list[C
     return [seen for curve in found if (seen := _seen_apart(region, curve, window))]
 
 
-def _beside(region: PlaneRegion, wall: Wall, step: Fraction) -> list[Fraction]:
-    """Return a point close to a wall on either side, inside the slabs there."""
+def _beside(region: PlaneRegion, line: CriticalLine, step: Fraction) -> list[Fraction]:
+    """Return a point close to a critical line on either side, inside the cylinders there."""
     found = []
-    for end, slab in zip(wall.x.interval(), region.plane.slabs[wall.index : wall.index + 2], strict=True):
-        place = end + (slab.x - end) * min(Fraction(1, _CLOSE), step / abs(slab.x - end))
+    for end, cylinder in zip(line.x.interval(), region.plane.cylinders[line.index : line.index + 2], strict=True):
+        place = end + (cylinder.x - end) * min(Fraction(1, _CLOSE), step / abs(cylinder.x - end))
         found.append(place.limit_denominator(1 << 40))
     return found
 

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from fractions import Fraction
 
     from symobs.exact import RealNumber
-    from symobs.exact.cad.decomposition import Branch, Slab
+    from symobs.exact.cad.decomposition import Branch, Cylinder
     from symobs.stability.regions.plane_region import Cell, PlaneRegion
 
 
@@ -61,14 +61,14 @@ class CylindricalPart:
 def parts(region: PlaneRegion) -> tuple[CylindricalPart, ...]:
     """Return the parts of all components, from left to right."""
     component_of = {cell: k for k, component in enumerate(region.components) for cell in component.cells}
-    meetings = meetings_of(region)
+    meetings = adjacencies_of(region)
     goes_on = {m.right: m.left for m in meetings if m.left_alone and m.right_alone}
     found: dict[int, CylindricalPart] = {}
     for number, component in sorted(component_of.items()):
-        slab, lower, upper = edges_of(region, region.cells[number])
-        part = CylindricalPart(component, slab.left, slab.right, lower, upper, (number,))
+        cylinder, lower, upper = edges_of(region, region.cells[number])
+        part = CylindricalPart(component, cylinder.left, cylinder.right, lower, upper, (number,))
         before = found.get(goes_on.get(number, -1))
-        if before and (before.lower, before.upper) == (lower, upper) and is_regular(part, slab.left):
+        if before and (before.lower, before.upper) == (lower, upper) and is_regular(part, cylinder.left):
             del found[before.cells[-1]]
             part = replace(part, low=before.low, cells=(*before.cells, number))
         found[number] = part
@@ -85,8 +85,8 @@ def parts(region: PlaneRegion) -> tuple[CylindricalPart, ...]:
 
 
 @dataclass(frozen=True)
-class Meeting:
-    """Two stable cells adjacent along a segment of a wall, and whether the segment is the whole side of a cell."""
+class Adjacency:
+    """Two stable cells adjacent along a segment of a critical line, and whether the segment is the whole side of a cell."""
 
     left: int
     right: int
@@ -94,17 +94,17 @@ class Meeting:
     right_alone: bool
 
 
-def meetings_of(region: PlaneRegion) -> list[Meeting]:
-    """Return all adjacencies, wall by wall."""
+def adjacencies_of(region: PlaneRegion) -> list[Adjacency]:
+    """Return all adjacencies, critical line by critical line."""
     lefts = Counter(left for left, _, _, _ in region.joins)
     rights = Counter(right for _, right, _, _ in region.joins)
-    return [Meeting(left, right, lefts[left] == 1, rights[right] == 1) for left, right, _, _ in region.joins]
+    return [Adjacency(left, right, lefts[left] == 1, rights[right] == 1) for left, right, _, _ in region.joins]
 
 
 def is_regular(part: CylindricalPart, end: RealNumber | None) -> bool:
     """Return whether the bounds of a part are defined at one of its ends."""
     edges = [edge for edge in (part.lower, part.upper) if edge is not None]
-    # the number of a root may be another one on the wall itself
+    # the number of a root may be another one on the critical line itself
     return end is not None and all(edge.closed is not None and edge.is_finite_at(end) for edge in edges)
 
 
@@ -115,7 +115,7 @@ def are_whole(region: PlaneRegion, found: Sequence[CylindricalPart]) -> bool:
         part_of[m.left] is part_of[m.right]
         or (part_of[m.left].reaches and m.left_alone)
         or (part_of[m.right].begins and m.right_alone)
-        for m in meetings_of(region)
+        for m in adjacencies_of(region)
     )
 
 
@@ -145,22 +145,22 @@ def is_written(part: CylindricalPart) -> bool:
     return all(edge is None or edge.closed is not None for edge in (part.lower, part.upper))
 
 
-def edges_of(region: PlaneRegion, cell: Cell) -> tuple[Slab, Edge | None, Edge | None]:
-    """Return the slab of a cell, and its lower and upper bound."""
-    slab, below, above = region.bounds(cell)
-    return slab, _edge(region, slab, below), _edge(region, slab, above)
+def edges_of(region: PlaneRegion, cell: Cell) -> tuple[Cylinder, Edge | None, Edge | None]:
+    """Return the cylinder of a cell, and its lower and upper bound."""
+    cylinder, below, above = region.bounds(cell)
+    return cylinder, _edge(region, cylinder, below), _edge(region, cylinder, above)
 
 
-def _edge(region: PlaneRegion, slab: Slab, branch: Branch | None) -> Edge | None:
+def _edge(region: PlaneRegion, cylinder: Cylinder, branch: Branch | None) -> Edge | None:
     if branch is None:
         return None
     polynomial = region.plane.curves[branch.curve].scalar
-    closed = _closed(polynomial, region.names, branch.number, slab.x)
+    closed = _closed(polynomial, region.names, branch.number, cylinder.x)
     return Edge(polynomial, branch.number, closed, region.names[1])
 
 
 def _closed(polynomial: Scalar, names: tuple[str, str], number: int, x: Fraction) -> Scalar | None:
-    """Return the closed form of the root in y of this index over the slab, for degree 1 or 2."""
+    """Return the closed form of the root in y of this index over the cylinder, for degree 1 or 2."""
     coefficients = polynomial.coefficients(names[1])
     if len(coefficients) == 2:
         return -coefficients[1] / coefficients[0]

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from symobs._dataclass import dataclass
 from symobs.exact import TooLarge
-from symobs.exact.cad.decomposition import Branch, Plane, Slab, Wall
+from symobs.exact.cad.decomposition import Branch, CriticalLine, Cylinder, Plane
 from symobs.exact.cad.fiber import Fibre, curves_between, fibre, place_between, point_between
 from symobs.stability.regions.short_list import Sample
 
@@ -27,12 +27,12 @@ _LARGER = 3
 
 @dataclass(frozen=True)
 class Cell:
-    """An open cell: its place (slab, height in the stack), a rational point in it, and whether it is stable there.
+    """An open cell: its place (cylinder, height in the stack), a rational point in it, and whether it is stable there.
 
     What the declared signs do not allow is not `allowed`, and not stable.
     """
 
-    slab: int
+    cylinder: int
     height: int
     sample: tuple[Fraction, Fraction]
     stable: bool
@@ -70,53 +70,53 @@ class PlaneRegion:
 
     @cached_property
     def cells(self) -> tuple[Cell, ...]:
-        """All cells, slab by slab from left to right, each stack from below."""
+        """All cells, cylinder by cylinder from left to right, each stack from below."""
         found = []
-        for index, slab in enumerate(self.plane.slabs):
-            for height, y in enumerate(slab.samples):
-                point = self._point(slab.x, y)
+        for index, cylinder in enumerate(self.plane.cylinders):
+            for height, y in enumerate(cylinder.samples):
+                point = self._point(cylinder.x, y)
                 allowed = self.critical.allows(point)
                 stable = allowed and self.critical.is_stable(point)
-                found.append(Cell(index, height, (slab.x, y), stable, allowed))
+                found.append(Cell(index, height, (cylinder.x, y), stable, allowed))
         return tuple(found)
 
     @cached_property
     def _numbers(self) -> dict[tuple[int, int], int]:
-        return {(cell.slab, cell.height): number for number, cell in enumerate(self.cells)}
+        return {(cell.cylinder, cell.height): number for number, cell in enumerate(self.cells)}
 
-    def cell_at(self, slab: int, height: int) -> Cell:
+    def cell_at(self, cylinder: int, height: int) -> Cell:
         """Return the cell at a place."""
-        return self.cells[self._numbers[slab, height]]
+        return self.cells[self._numbers[cylinder, height]]
 
-    def stable_in(self, slab: int) -> tuple[bool, ...]:
+    def stable_in(self, cylinder: int) -> tuple[bool, ...]:
         """Return which cells of a stack are stable."""
-        count = len(self.plane.slabs[slab].samples)
-        return tuple(self.cell_at(slab, height).stable for height in range(count))
+        count = len(self.plane.cylinders[cylinder].samples)
+        return tuple(self.cell_at(cylinder, height).stable for height in range(count))
 
-    def bounds(self, cell: Cell) -> tuple[Slab, Branch | None, Branch | None]:
-        """Return the slab of a cell and the branches below and above it."""
-        slab = self.plane.slabs[cell.slab]
-        branches: tuple[Branch | None, ...] = (None, *slab.branches, None)
-        return slab, branches[cell.height], branches[cell.height + 1]
+    def bounds(self, cell: Cell) -> tuple[Cylinder, Branch | None, Branch | None]:
+        """Return the cylinder of a cell and the branches below and above it."""
+        cylinder = self.plane.cylinders[cell.cylinder]
+        branches: tuple[Branch | None, ...] = (None, *cylinder.branches, None)
+        return cylinder, branches[cell.height], branches[cell.height + 1]
 
     @cached_property
     def fibres(self) -> dict[int, Fibre]:
-        """The fibres over walls with stable cells on both sides, or where a stable cell may be unbounded."""
+        """The fibres over critical lines with stable cells on both sides, or where a stable cell may be unbounded."""
         found: dict[int, Fibre] = {}
-        for wall in self.plane.walls:
-            left, right = any(self.stable_in(wall.index)), any(self.stable_in(wall.index + 1))
-            if (left and right) or ((left or right) and self.plane.runs_off(wall)):
-                found[wall.index] = fibre(self.plane, wall)
+        for line in self.plane.critical_lines:
+            left, right = any(self.stable_in(line.index)), any(self.stable_in(line.index + 1))
+            if (left and right) or ((left or right) and self.plane.runs_off(line)):
+                found[line.index] = fibre(self.plane, line)
         return found
 
     @cached_property
     def joins(self) -> tuple[tuple[int, int, int, int], ...]:
-        """Stable cells that meet at a wall: (number on the left, on the right, wall, number of the separator)."""
+        """Stable cells that meet at a critical line: (number on the left, on the right, line, number of the separator)."""
         return tuple(self._joins())
 
     def _joins(self) -> Iterator[tuple[int, int, int, int]]:
         for index, found in self.fibres.items():
-            if self.plane.vertical_at(self.plane.walls[index]):
+            if self.plane.vertical_at(self.plane.critical_lines[index]):
                 continue
             for gap, (low, high) in enumerate(zip(found.left, found.right, strict=True)):
                 left, right = self._numbers[index, low], self._numbers[index + 1, high]
@@ -149,11 +149,11 @@ class PlaneRegion:
 
     def _is_unbounded(self, number: int) -> bool:
         cell = self.cells[number]
-        slab, below, above = self.bounds(cell)
-        if below is None or above is None or slab.left is None or slab.right is None:
+        cylinder, below, above = self.bounds(cell)
+        if below is None or above is None or cylinder.left is None or cylinder.right is None:
             return True
-        count = len(slab.samples)
-        for index, side in ((cell.slab - 1, "right"), (cell.slab, "left")):
+        count = len(cylinder.samples)
+        for index, side in ((cell.cylinder - 1, "right"), (cell.cylinder, "left")):
             found = self.fibres.get(index)
             if found and cell.height in found.unbounded(getattr(found, side), count):
                 return True
@@ -161,11 +161,11 @@ class PlaneRegion:
 
     @cached_property
     def _places_of_holes(self) -> tuple[tuple[int, int], ...]:
-        """The holes by wall and number on it."""
+        """The holes by critical line and number on it."""
         return tuple(
             (index, number)
             for index, found in self.fibres.items()
-            if not self.plane.vertical_at(self.plane.walls[index])
+            if not self.plane.vertical_at(self.plane.critical_lines[index])
             for number in found.alone
             if self.cell_at(index, found.left[number]).stable
         )
@@ -176,31 +176,31 @@ class PlaneRegion:
         found = []
         for index, number in self._places_of_holes:
             low, high = self.fibres[index].separators[number : number + 2]
-            found.append(self._hole(self.plane.walls[index], low, high))
+            found.append(self._hole(self.plane.critical_lines[index], low, high))
         return tuple(found)
 
-    def _hole(self, wall: Wall, low: Fraction, high: Fraction) -> Hole:
-        y = point_between(self.plane, wall, low, high)
-        bottom, top = place_between(self.plane, wall, low, high)
-        return Hole(wall.x, y, (wall.x.interval()[0], (bottom + top) / 2))
+    def _hole(self, line: CriticalLine, low: Fraction, high: Fraction) -> Hole:
+        y = point_between(self.plane, line, low, high)
+        bottom, top = place_between(self.plane, line, low, high)
+        return Hole(line.x, y, (line.x.interval()[0], (bottom + top) / 2))
 
     @cached_property
     def cuts(self) -> tuple[tuple[int, int], ...]:
-        """The excluded branches (slab, number in the stack) with stable cells on both sides."""
+        """The excluded branches (cylinder, number in the stack) with stable cells on both sides."""
         return tuple(
-            (slab, place)
-            for slab in range(len(self.plane.slabs))
-            for place, pair in enumerate(_pairs(self.stable_in(slab)))
+            (cylinder, place)
+            for cylinder in range(len(self.plane.cylinders))
+            for place, pair in enumerate(_pairs(self.stable_in(cylinder)))
             if all(pair)
         )
 
     @cached_property
     def walls_cut(self) -> tuple[tuple[int, int], ...]:
-        """The excluded segments (wall, separator) of vertical lines with stable cells on both sides."""
+        """The excluded segments (critical line, separator) of vertical lines with stable cells on both sides."""
         return tuple(
             (index, gap)
             for index, found in self.fibres.items()
-            if self.plane.vertical_at(self.plane.walls[index])
+            if self.plane.vertical_at(self.plane.critical_lines[index])
             for gap, (low, high) in enumerate(zip(found.left, found.right, strict=True))
             if self.cell_at(index, low).stable and self.cell_at(index + 1, high).stable
         )
@@ -213,7 +213,7 @@ class PlaneRegion:
         if plane is self.plane:
             return [Sample(self._point(*cell.sample), cell.stable) for cell in self.cells if cell.allowed]
         if plane not in self._sampled:
-            points = [self._point(slab.x, y) for slab in plane.slabs for y in slab.samples]
+            points = [self._point(cylinder.x, y) for cylinder in plane.cylinders for y in cylinder.samples]
             allowed = [point for point in points if self.critical.allows(point)]
             self._sampled[plane] = [Sample(point, self.critical.is_stable(point)) for point in allowed]
         return self._sampled[plane]
@@ -244,9 +244,9 @@ class PlaneRegion:
 
     def surrounded(self) -> tuple[Scalar, ...]:
         """Return critical factors that vanish on every curve with the region on both sides."""
-        curves = [self.plane.slabs[slab].branches[place].curve for slab, place in self.cuts]
+        curves = [self.plane.cylinders[cylinder].branches[place].curve for cylinder, place in self.cuts]
         for index, _ in self.walls_cut:
-            curves += self.plane.vertical_at(self.plane.walls[index])
+            curves += self.plane.vertical_at(self.plane.critical_lines[index])
         factors = dict.fromkeys(self.critical.factors[curve] for curve in curves)
         return tuple(factor for factor in factors if factor in self.critical.proper)
 
@@ -255,7 +255,7 @@ class PlaneRegion:
         found = []
         for index, number in self._places_of_holes:
             separators = self.fibres[index].separators
-            curves = curves_between(self.plane, self.plane.walls[index], *separators[number : number + 2])
+            curves = curves_between(self.plane, self.plane.critical_lines[index], *separators[number : number + 2])
             found.append(tuple(self.critical.factors[curve] for curve in curves))
         return tuple(found)
 

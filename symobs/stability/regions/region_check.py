@@ -20,14 +20,14 @@ from symobs.exact.algebraic.root_location import count_roots_by_half_plane
 from symobs.exact.cad.decomposition_check import holds, is_line
 from symobs.exact.core.generators import normal_form, substitute
 from symobs.stability.criteria.critical_polynomials import irreducible
-from symobs.stability.regions.description import is_regular, meetings_of
+from symobs.stability.regions.description import adjacencies_of, is_regular
 from symobs.stability.regions.plane_region import PlaneRegion
 from symobs.stability.regions.short_list import is_exact
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from symobs.exact.cad.decomposition import Slab
+    from symobs.exact.cad.decomposition import Cylinder
     from symobs.stability.criteria.critical_polynomials import CriticalPolynomials
     from symobs.stability.regions.description import CylindricalPart, Edge
     from symobs.stability.regions.interval_region import LineRegion
@@ -107,13 +107,13 @@ def _is_divided(region: LineRegion | PlaneRegion, further: Sequence[Scalar]) -> 
 def are_parts(region: PlaneRegion, parts: Sequence[CylindricalPart]) -> bool:
     """Return whether the parts are all stable cells, each once, and every closed form equals its branch.
 
-    A closed form solves the branch's polynomial identically, is continuous over the slab, and lies between the two samples
-    around the branch at the slab's point: no other branch does.
+    A closed form solves the branch's polynomial identically, is continuous over the cylinder, and lies between the two samples
+    around the branch at the cylinder's point: no other branch does.
     """
     listed = [number for part in parts for number in part.cells]
     if sorted(listed) != [number for number, cell in enumerate(region.cells) if cell.stable]:
         return False
-    lefts, rights = ({k: m for m in meetings_of(region) for k in [getattr(m, side)]} for side in ("left", "right"))
+    lefts, rights = ({k: m for m in adjacencies_of(region) for k in [getattr(m, side)]} for side in ("left", "right"))
     for part in parts:
         at_end, at_start = lefts.get(part.cells[-1]), rights.get(part.cells[0])
         if part.reaches and not (at_end and at_end.left_alone and is_regular(part, part.high)):
@@ -125,7 +125,7 @@ def are_parts(region: PlaneRegion, parts: Sequence[CylindricalPart]) -> bool:
 
 def _is_part(region: PlaneRegion, part: CylindricalPart, number: int) -> bool:
     cell = region.cells[number]
-    slab, below, above = region.bounds(cell)
+    cylinder, below, above = region.bounds(cell)
     ends = (region.cells[part.cells[0]], region.cells[part.cells[-1]])
     if (part.low, part.high) != (region.bounds(ends[0])[0].left, region.bounds(ends[1])[0].right):
         return False
@@ -137,17 +137,17 @@ def _is_part(region: PlaneRegion, part: CylindricalPart, number: int) -> bool:
         polynomial = region.plane.curves[branch.curve].scalar
         if (edge.polynomial, edge.number) != (polynomial, branch.number):
             return False
-        if edge.closed is not None and not _is_branch(edge, region.names, slab, place):
+        if edge.closed is not None and not _is_branch(edge, region.names, cylinder, place):
             return False
     return True
 
 
-def _is_branch(edge: Edge, names: tuple[str, str], slab: Slab, place: int) -> bool:
-    """Return whether a closed form is a root, and lies between the adjacent samples at the slab's point."""
+def _is_branch(edge: Edge, names: tuple[str, str], cylinder: Cylinder, place: int) -> bool:
+    """Return whether a closed form is a root, and lies between the adjacent samples at the cylinder's point."""
     assert edge.closed is not None  # noqa: S101 - asked only where there is one
     left = normal_form(edge.polynomial.substitute({names[1]: edge.closed}))
-    at_point = substitute(edge.closed, {names[0]: Scalar.of(slab.x)})
-    low, high = (Scalar.of(y) for y in slab.samples[place : place + 2])
+    at_point = substitute(edge.closed, {names[0]: Scalar.of(cylinder.x)})
+    low, high = (Scalar.of(y) for y in cylinder.samples[place : place + 2])
     return (
         left.is_zero and sign_of_number(at_point - low) == "positive" and sign_of_number(high - at_point) == "positive"
     )

@@ -6,7 +6,7 @@ from dataclasses import fields, is_dataclass
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
-from symobs.derivation.steps import Case, Define, Equal, Given, Section, Solve, Tabulate
+from symobs.derivation.steps import CaseStep, Define, Equal, Given, Section, Solve, Tabulate
 from symobs.exact import Matrix, Scalar
 from symobs.formula.nodes import Literal
 
@@ -88,7 +88,7 @@ def _values(node: object) -> Iterator[object]:
 def _each_step(steps: Iterable[Any]) -> Iterator[Any]:
     for step in steps:
         yield step
-        if isinstance(step, (Section, Case)):
+        if isinstance(step, (Section, CaseStep)):
             yield from _each_step(step.steps)
 
 

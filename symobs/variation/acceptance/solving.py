@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
     from symobs.problem import Problem
     from symobs.result import Result
-    from symobs.result.in_convention import Viewed
+    from symobs.result.in_convention import ResultInConvention
 
 
 def run(payload: Mapping[str, Any]) -> dict[str, Any]:
@@ -69,7 +69,7 @@ def expected(problem: Problem, results: Sequence[Result]) -> dict[str, Any]:
     return tables if len(tables) > 1 else next(iter(tables.values()))
 
 
-def _value_of(view: Viewed, name: str) -> Any:
+def _value_of(view: ResultInConvention, name: str) -> Any:
     return view.verdict if name == "verdict" else _written(view.fields[name])
 
 

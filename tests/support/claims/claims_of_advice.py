@@ -97,9 +97,9 @@ def advice_holds(result: Any, at: Setting) -> None:
         assert zero.real < 0
         assert abs(value_of(above, zero)) <= _NEAR * sum(abs(c) * (1 + abs(zero)) ** len(above) for c in above)
     others = poles[len(zeros) :]
-    if result.wish.radius is not None:
+    if result.request.radius is not None:
         assert_all_are_used(result.fields["warnings"], above, len(zeros))
-        radius, count = number(world.scalar(result.wish.radius)), len(others)
+        radius, count = number(world.scalar(result.request.radius)), len(others)
         wanted = [(-1) ** count, *[0] * (2 * count - 1), radius ** (2 * count)] if count else [CONTEXT.mpf(2)]
         mirrored = [CONTEXT.mpf((-1) ** count)]  # p(-s) = (-1)^N prod (s + pole)
         for pole in others:
@@ -107,11 +107,13 @@ def advice_holds(result: Any, at: Setting) -> None:
         assert not count or near(mirrored, wanted)
         assert radius <= 0 or all(pole.real < 0 for pole in others)
         return
-    sigma = 4 / number(world.scalar(result.wish.settling_time))
+    sigma = 4 / number(world.scalar(result.request.settling_time))
     assert all(pole.real <= -sigma for pole in poles)
     for pole in others:
         if pole.imag:
-            assert CONTEXT.exp(CONTEXT.pi * pole.real / abs(pole.imag)) <= number(world.scalar(result.wish.overshoot))
+            assert CONTEXT.exp(CONTEXT.pi * pole.real / abs(pole.imag)) <= number(
+                world.scalar(result.request.overshoot)
+            )
             assert pole.real == -sigma
         else:
             assert pole.real <= -5 * sigma or len(others) == 1

@@ -16,19 +16,19 @@ from functools import reduce
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from symobs.derivation import (
-    Case,
+    CaseStep,
     Conclude,
     Define,
     Diagram,
     Equal,
     Given,
+    Inequalities,
     Note,
     Plot,
+    RegionSummary,
     Section,
     Solve,
-    Survey,
     Tabulate,
-    Where,
 )
 from symobs.exact import EIGENVALUE, Matrix, Root, Scalar
 from symobs.exact.core.generators import PI, function_named, symbols_in
@@ -42,6 +42,7 @@ from symobs.formula import (
     Conjunction,
     Decimals,
     Derivative,
+    Evaluated,
     HoldsExactlyWhere,
     Identity,
     Integral,
@@ -54,7 +55,6 @@ from symobs.formula import (
     Quotient,
     Relation,
     Roots,
-    Shown,
     Sum,
     SymbolList,
     Transpose,
@@ -410,16 +410,16 @@ class World:
                             yield f"label {name}", self.value(label)
                 case Tabulate():
                     yield from self.table(step)
-                case Where(fact):
+                case Inequalities(fact):
                     yield from self.facts((fact,))
-                case Survey():
+                case RegionSummary():
                     yield from self.survey(step)
                 case Plot(TimeResponse() as responses, subject):
                     yield "=", Fraction(len(untrue_responses(responses, self.value(subject))))
                 case Plot(picture, subject):
                     yield "property stable", single(self.value(subject))
                     yield "=", Fraction(len(list(self.seen(picture, subject))))
-                case Case(when, substitution, inside):
+                case CaseStep(when, substitution, inside):
                     stratum = self.copy()
                     relations = when.relations if isinstance(when, Conjunction) else (when,)
                     if not substitution:
@@ -481,7 +481,7 @@ class World:
         yield "shape", [(power, origin, len(entries)) for power, entries, origin in rows]
         yield "words", [(finding.key, repr(finding.slots)) for finding in step.findings]
 
-    def survey(self, step: Survey) -> Iterator[tuple[str, Any]]:
+    def survey(self, step: RegionSummary) -> Iterator[tuple[str, Any]]:
         """Yield of which polynomial it is, whether the parts are where it is stable, and the findings."""
         yield "property stable", single(self.value(step.polynomial))
         signs = {name: self.signs.get(name, "real") for name in self.names_of(step.polynomial)}
@@ -597,7 +597,7 @@ class World:
                         )
                 case Conjunction(relations):
                     yield from self.facts(relations)
-                case Shown(formula, value):
+                case Evaluated(formula, value):
                     yield from self.facts((Relation((formula, value), ("=",)),))
                 case Predicate(name, subject):
                     value = self.value(subject)

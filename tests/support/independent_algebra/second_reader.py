@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 import mpmath
 import sympy
 
-from symobs.derivation import Case, Conclude, Define, Diagram, Equal, Given, Note, Section, Solve, Tabulate
+from symobs.derivation import CaseStep, Conclude, Define, Diagram, Equal, Given, Note, Section, Solve, Tabulate
 from symobs.exact import Matrix, Scalar
 from symobs.exact.core.generators import function_named
 from symobs.formula import (
@@ -28,6 +28,7 @@ from symobs.formula import (
     Conjunction,
     Decimals,
     Derivative,
+    Evaluated,
     HoldsExactlyWhere,
     Identity,
     Integral,
@@ -40,7 +41,6 @@ from symobs.formula import (
     Quotient,
     Relation,
     Roots,
-    Shown,
     Sum,
     SymbolList,
     Transpose,
@@ -68,7 +68,7 @@ def facts_in(item: object) -> Iterator[Fact | Tabulate]:
     if isinstance(item, Tabulate):
         yield item
         yield from facts_in(item.sentence)
-    elif isinstance(item, (Relation, Predicate, Roots, HoldsExactlyWhere, Shown)):
+    elif isinstance(item, (Relation, Predicate, Roots, HoldsExactlyWhere, Evaluated)):
         yield item
     elif isinstance(item, (tuple, list)):
         for part in item:
@@ -205,7 +205,7 @@ class Reader:
                         assert self.agree(self.value(drawn), self.letters[name]), label
             case Tabulate():
                 self.table(step)
-            case Case(when, substitution, steps):
+            case CaseStep(when, substitution, steps):
                 self.case(when, {name: sympy_scalar(value, self.names) for name, value in substitution}, steps)
             case Section(title, steps):
                 self.sentence(title)
@@ -248,7 +248,7 @@ class Reader:
         for name, slot in sentence.slots:
             if isinstance(slot, (Relation, Conjunction, Predicate, Roots, HoldsExactlyWhere)):
                 self.fact(slot)
-            elif isinstance(slot, Shown):
+            elif isinstance(slot, Evaluated):
                 self.fact(Relation((slot.formula, slot.value), ("=",)))
             elif not isinstance(slot, (str, SymbolList, *SPOKEN)):
                 self.tally.spoken.append((f"{sentence.key}.{name}", self.value(slot)))

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from symobs._dataclass import dataclass
-from symobs.derivation import Case, Conclude, Define, Derivation, Diagram, Equal, Given, Note, Section, Sentence
+from symobs.derivation import CaseStep, Conclude, Define, Derivation, Diagram, Equal, Given, Note, Section, Sentence
 from symobs.exact import Matrix, Scalar
 from symobs.exact.algebraic.polynomial_roots import roots_of
 from symobs.formula import (
@@ -13,6 +13,7 @@ from symobs.formula import (
     Block,
     Derivative,
     Environment,
+    Evaluated,
     Formula,
     Identity,
     Letter,
@@ -24,7 +25,6 @@ from symobs.formula import (
     Quotient,
     Relation,
     Roots,
-    Shown,
     Sum,
     Transpose,
 )
@@ -104,9 +104,9 @@ def number(value: Scalar | int) -> Literal:
     return Literal(Scalar.of(value))
 
 
-def alone(value: Scalar | int) -> Shown:
+def alone(value: Scalar | int) -> Evaluated:
     """A value that a sentence only names."""
-    return Shown(number(value), number(value))
+    return Evaluated(number(value), number(value))
 
 
 def equals(*members: Formula) -> Relation:
@@ -212,8 +212,8 @@ def observer() -> Section:
                 say(
                     "differences",
                     phi=equals(Letter("phi_o"), squared(s + 10), Literal(phi)),
-                    first=Shown(number(100), plus(number(100), minus(number(0)))),
-                    second=Shown(number(19), plus(number(20), minus(number(1)))),
+                    first=Evaluated(number(100), plus(number(100), minus(number(0)))),
+                    second=Evaluated(number(19), plus(number(20), minus(number(1)))),
                 ),
                 answer=True,
             ),
@@ -254,7 +254,7 @@ def compensator() -> Section:
                 answer=True,
             ),
             Conclude(
-                say("proper", polynomial=Shown(determinant, Literal(pole_polynomial))),
+                say("proper", polynomial=Evaluated(determinant, Literal(pole_polynomial))),
                 (Predicate("strictly_proper", Letter("F")), Predicate("stable", Letter("F"))),
             ),
         ),
@@ -306,6 +306,6 @@ def with_a_case() -> Derivation:
     special = Equal((equals(C, values((1, 0))),))
     steps = (
         Given((equals(C, values((1, b))),)),
-        Case(when, (("b", Scalar.of(0)),), (special,), say("case")),
+        CaseStep(when, (("b", Scalar.of(0)),), (special,), say("case")),
     )
     return Derivation(steps, start)

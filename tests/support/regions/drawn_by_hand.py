@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     Branch = tuple[list[Place], int]
 
 s, z, h1, h2, k, b, omega = (Scalar.symbol(name) for name in ("s", "z", "h1", "h2", "k", "b", "omega"))
-#: Nodes in a slab.
+#: Nodes in a cylinder.
 _NODES = 48
 
 
@@ -94,7 +94,7 @@ def region(
     excluded: Sequence[Place] = (),
     marked: bool = True,
 ) -> RegionPicture:
-    """Cells between the branches of the curves, slab by slab."""
+    """Cells between the branches of the curves, cylinder by cylinder."""
     (_, _), (bottom, top) = window
     areas: list[tuple[Place, ...]] = []
     drawn: list[Curve] = []

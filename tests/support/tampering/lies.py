@@ -51,7 +51,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
     from symobs.derivation import Derivation
-    from symobs.design.pole_placement.single_output import Pair
+    from symobs.design.pole_placement.single_output import ObserverPair
     from symobs.result import Result
     from tests.support.independent_algebra.plain import Rows
 
@@ -330,7 +330,7 @@ def _is_family(part: GainDesign, family: Mapping[str, Any]) -> bool:
     return rank_of(directions) == len(names) and holds(part, {**part.answer, part.letter: gain})
 
 
-def _is_hidden(part: GainDesign, pair: Pair) -> bool:
+def _is_hidden(part: GainDesign, pair: ObserverPair) -> bool:
     """Tell whether N is a basis of an unseen invariant subspace whose polynomial is the one stated."""
     world = World(0, part.plant.variable, part.plant.symbols.signs)
     A, C, N, X = (world.value(matrix) for matrix in (pair.A, pair.c, pair.kernel, pair.restricted))

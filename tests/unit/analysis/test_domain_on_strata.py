@@ -11,7 +11,7 @@ from symobs import StateSpace, compensator, controllability, state_feedback
 from symobs.certificate.claims import verify
 from symobs.certificate.pointwise import never_together_zero
 from symobs.derivation import Derivation
-from symobs.derivation.steps import Case, Conclude, Define, Given
+from symobs.derivation.steps import CaseStep, Conclude, Define, Given
 from symobs.errors import DerivationRejected
 from symobs.exact import Matrix, Scalar
 from symobs.exact.core.generators import square_root
@@ -38,7 +38,7 @@ def rank_on_the_curve(given: Matrix, says: int) -> None:
     rank = Relation((Apply("rank", Letter("N")), Literal(Scalar.of(says))), ("=",))
     inside = (Define(Relation((Letter("N"), Literal(kernel)), ("=",))), Conclude(None, facts=(rank,)))
     data = Given((Relation((Letter("B"), Literal(given)), ("=",)),))
-    Derivation((data, Case(here, (), inside)), Environment()).check()
+    Derivation((data, CaseStep(here, (), inside)), Environment()).check()
 
 
 def test_denominators_of_data_do_not_vanish_on_a_stratum() -> None:

@@ -370,12 +370,12 @@ def test_a_wrong_rank_at_an_eigenvalue_is_rejected() -> None:
 def test_a_page_cannot_give_a_wrong_rank_at_an_eigenvalue() -> None:
     from dataclasses import replace  # noqa: PLC0415
 
-    from symobs.derivation import Case  # noqa: PLC0415
+    from symobs.derivation import CaseStep  # noqa: PLC0415
     from symobs.derivation.builder import relation  # noqa: PLC0415
 
     derivation: Any = symobs.pbh(symobs.StateSpace("[0 -1 0; 1 0 1; 0 0 0]", None, "[1 0 0]")).derivation
     *before, section = derivation.steps
-    at = [k for k, step in enumerate(section.steps) if isinstance(step, Case)]
+    at = [k for k, step in enumerate(section.steps) if isinstance(step, CaseStep)]
     assert len(at) == 2
     for k in at:
         case = section.steps[k]
@@ -425,9 +425,9 @@ def test_pages_of_every_kind_render() -> None:
 def test_pages_of_plants_that_are_never_controllable_or_observable(A: str, rest: str) -> None:
     """What the input never moves has a letter of its own in the rank test, and the page speaks of both."""
     result = symobs.stabilizability(symobs.StateSpace(A, rest))
-    assert result.derivation.check().knows("N")
+    assert result.derivation.check().defines("N")
     dual = symobs.detectability(symobs.StateSpace(A, None, rest.replace(";", "")))
-    assert dual.derivation.check().knows("N")
+    assert dual.derivation.check().defines("N")
     assert dual.verdict == result.verdict
 
 

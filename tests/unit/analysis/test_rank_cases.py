@@ -18,7 +18,7 @@ import symobs
 from symobs.analysis.rank.rank_test import RankResult
 from symobs.analysis.strata.loci import Region, loci
 from symobs.conditions import real_consequences
-from symobs.derivation import Case, Given
+from symobs.derivation import CaseStep, Given
 from symobs.errors import CertificateRejected, DerivationRejected
 from symobs.exact import Ideal, Matrix, Scalar
 from symobs.expression import parse_scalar
@@ -408,7 +408,7 @@ def test_a_case_says_no_more_than_its_equations() -> None:
 
     def told(when: tuple[Relation, ...], substitution: dict[str, Scalar]) -> None:
         given = Given((Relation((Letter("A"), Literal(Matrix.of([[a, 0], [0, b]]))), ("=",)),), silent=True)
-        replace(page, steps=(given, Case(Conjunction(when), tuple(substitution.items()), ()))).check()
+        replace(page, steps=(given, CaseStep(Conjunction(when), tuple(substitution.items()), ()))).check()
 
     equal, zero = Relation((Literal(a), Literal(b)), ("=",)), Relation((Literal(b), Literal(Scalar.of(0))), ("=",))
     told((equal, zero), {"a": Scalar.of(0), "b": Scalar.of(0)})

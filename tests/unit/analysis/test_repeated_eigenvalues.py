@@ -21,7 +21,7 @@ from hypothesis import strategies as st
 import symobs
 from symobs.analysis.strata.repeated_eigenvalues import distances
 from symobs.certificate.claims import Claim, verify
-from symobs.derivation import Case, Derivation, Equal, Section
+from symobs.derivation import CaseStep, Derivation, Equal, Section
 from symobs.derivation.builder import relation
 from symobs.derivation.facts.properties import PREDICATES
 from symobs.errors import CertificateRejected, DerivationRejected
@@ -250,7 +250,7 @@ def test_two_oscillators_are_marginal_only_where_they_do_not_meet() -> None:
     here = Environment(variable="s", signs=signs)
     marginal, discrete = PREDICATES["marginal"], False
     assert not marginal(both, here, discrete)
-    assert marginal(both, replace(here, assumed=apart), discrete)
+    assert marginal(both, replace(here, nonzero=apart), discrete)
 
 
 def test_a_drop_on_several_equations_is_excluded_as_one() -> None:
@@ -341,7 +341,7 @@ def _with_cases(steps: tuple[Any, ...], change: Any) -> tuple[Any, ...]:
     for step in steps:
         if isinstance(step, Section):
             found.append(replace(step, steps=_with_cases(step.steps, change)))
-        elif isinstance(step, Case):
+        elif isinstance(step, CaseStep):
             found.append(replace(step, when=change(step.when)))
         else:
             found.append(step)
@@ -376,7 +376,7 @@ def test_a_vector_that_vanishes_somewhere_is_not_called_an_eigenvector() -> None
     # [λ; b] is zero where λ = b = 0 and a ≠ 0.
     page = symobs.pbh(symobs.StateSpace("[0 a; b 0]", None, "[0 0]")).derivation
     section = next(step for step in page.steps if isinstance(step, Section) and step.title.key == "pbh")
-    first, second = (step for step in section.steps if isinstance(step, Case))
+    first, second = (step for step in section.steps if isinstance(step, CaseStep))
     assert len([step for step in first.steps if isinstance(step, Equal)]) == 1
-    (inner,) = (step for step in second.steps if isinstance(step, Case))
+    (inner,) = (step for step in second.steps if isinstance(step, CaseStep))
     assert len([step for step in inner.steps if isinstance(step, Equal)]) == 3

@@ -158,7 +158,7 @@ def test_signals_agree_in_every_free_signal() -> None:
 
 # -- different, and different everywhere --------------------------------------------------------------------------------
 
-SIGNED = Environment(signs={"a": "positive", "b": "nonnegative", "c": "real"}, assumed=(c - 1,))
+SIGNED = Environment(signs={"a": "positive", "b": "nonnegative", "c": "real"}, nonzero=(c - 1,))
 
 
 @pytest.mark.parametrize(
@@ -194,7 +194,7 @@ SIGNED = Environment(signs={"a": "positive", "b": "nonnegative", "c": "real"}, a
     ],
 )
 def test_inequalities_follow_from_signs_and_assumptions(relation: Relation, expected: bool) -> None:  # noqa: FBT001
-    environment = Environment(signs=SIGNED.signs, assumed=SIGNED.assumed, signals={"x": None}, sizes={"x": 1})
+    environment = Environment(signs=SIGNED.signs, nonzero=SIGNED.nonzero, signals={"x": None}, sizes={"x": 1})
     assert (verify(relation, environment)[0] == "exact") == expected
 
 

@@ -269,7 +269,7 @@ def test_decimals_are_rounded(exact: Any, shown: Any, *, is_so: bool) -> None:
     assert verify(said(exact, "≈", shown), Environment()) == (EXACTLY if is_so else FALSE)
 
 
-SIGNED = Environment(signs={"a": "positive", "b": "real", "c": "nonnegative"}, assumed=(b - 1,))
+SIGNED = Environment(signs={"a": "positive", "b": "real", "c": "nonnegative"}, nonzero=(b - 1,))
 
 
 @pytest.mark.parametrize(
@@ -316,7 +316,7 @@ def test_signs_decide(relation: Relation, *, is_so: bool) -> None:
 
 
 def test_a_stated_inequality_keeps_above_zero() -> None:
-    above = Environment(signs={"b": "real"}, above=(b - 1,))
+    above = Environment(signs={"b": "real"}, positive=(b - 1,))
     assert verify(said(b, ">", 1), above) == EXACTLY
     assert verify(said(b, ">", 2), above) == FALSE
 
@@ -333,15 +333,15 @@ def test_conditions_keep_from_zero_where_relations_hold_too() -> None:
     root = Scalar.symbol(EIGENVALUE)
     single, several = said(root + b, "!=", 0), said(Matrix.column([b * c, c * (b - 1)]), "!=", Matrix.zeros(2, 1))
     for relation, known, relations in ((single, root + b, (root**2 - 2,)), (several, c, (a * a - 2,))):
-        for where in ("assumed", "domain"):
+        for where in ("nonzero", "domain"):
             conditions: dict[str, Any] = {where: (known,)}
             assert verify(relation, Environment(relations=relations, **conditions)) == EXACTLY
             assert verify(relation, Environment(**conditions)) == EXACTLY
         assert verify(relation, Environment(relations=relations)) == FALSE
-        assert verify(relation, Environment(relations=relations, assumed=(c - 7,))) == FALSE
+        assert verify(relation, Environment(relations=relations, nonzero=(c - 7,))) == FALSE
     both = said((root + b) * (root + c), "!=", 0)
-    assert verify(both, Environment(assumed=(root + b,), domain=(root + c,))) == EXACTLY
-    assert verify(both, Environment(assumed=(root + b,))) == FALSE
+    assert verify(both, Environment(nonzero=(root + b,), domain=(root + c,))) == EXACTLY
+    assert verify(both, Environment(nonzero=(root + b,))) == FALSE
 
 
 def test_what_keeps_a_single_value_from_zero() -> None:
@@ -349,8 +349,8 @@ def test_what_keeps_a_single_value_from_zero() -> None:
         return claims._excluded_from_zero(value, Environment(signs={"a": "positive"}, **known))
 
     value = a * (b - 1) ** 2 * c
-    assert is_kept(value, assumed=(b - 1,), domain=(c,))
-    assert not is_kept(value, assumed=(b - 1,))
+    assert is_kept(value, nonzero=(b - 1,), domain=(c,))
+    assert not is_kept(value, nonzero=(b - 1,))
     assert not is_kept(value, domain=(c,))
     assert is_kept(a + 1)
     assert not is_kept(b)

@@ -165,9 +165,9 @@ class _Timer:
 
     last: Any = None
 
-    def __init__(self, seconds: float, tell: object) -> None:
+    def __init__(self, seconds: float, with_findings: object) -> None:
         assert seconds == 2.0
-        self.tell, self.waits, _Timer.last = tell, True, self
+        self.with_findings, self.waits, _Timer.last = with_findings, True, self
 
     def start(self) -> None:
         pass
@@ -189,7 +189,7 @@ def test_progress_is_told_after_two_seconds_on_a_terminal(
     assert capsys.readouterr().err == ""
     if is_terminal:
         _Timer.last.waits = False
-        _Timer.last.tell()
+        _Timer.last.with_findings()
         told("the page")
         assert capsys.readouterr().err == "observer …\nthe page …\n"
     assert reached[:2] == ["observability", "observer"]

@@ -106,8 +106,8 @@ def test_without_child_processes_a_budget_is_refused(monkeypatch: pytest.MonkeyP
 def test_the_whole_answer_comes_back() -> None:
     large = b"x" * 3_000_000  # more than a pipe holds
 
-    def work(tell: Callable[[object], None]) -> bytes:
-        tell("something")
+    def work(with_findings: Callable[[object], None]) -> bytes:
+        with_findings("something")
         return large
 
     assert within(Budget(LONG), work) == large
@@ -121,9 +121,9 @@ def test_the_whole_answer_comes_back() -> None:
     assert str(caught.value) == str(errors) == "a: one; b\ntwo"
 
 
-def deaf(tell: Callable[[object], None]) -> None:
+def deaf(with_findings: Callable[[object], None]) -> None:
     """Work that hears no signal, as a call into the kernel."""
-    tell("observer")
+    with_findings("observer")
     signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGALRM, signal.SIGINT})
     time.sleep(LONG)
 
@@ -166,8 +166,8 @@ def test_a_kernel_that_aborts_has_no_memory_where_that_is_bounded(number: int) -
 
 
 def test_memory_that_is_refused_is_told_as_such() -> None:
-    def work(tell: Callable[[object], None]) -> int:
-        tell("it")
+    def work(with_findings: Callable[[object], None]) -> int:
+        with_findings("it")
         return len(bytearray(1 << 30))
 
     with pytest.raises(OutOfBudget, match="300 MB of memory were not enough, at work on it"):

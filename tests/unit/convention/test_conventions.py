@@ -30,9 +30,9 @@ from symobs.formula import (
     Power,
     Product,
     Relation,
+    SignReversal,
     Sum,
     Transpose,
-    Turned,
     evaluate,
 )
 from symobs.problem import parse, read, validate
@@ -263,7 +263,7 @@ def test_a_formula_is_worth_the_same_in_other_signs(formula: Formula, A: Matrix,
     before = Environment(values={"A": A, "K": K, "L": L})
     for names in (frozenset({"L"}), frozenset({"K", "L"})):
         after = Environment(values={"A": A, "K": -K if "K" in names else K, "L": -L})
-        turned = Turned(names, (L, L.T, K)).whole(formula)
+        turned = SignReversal(names, (L, L.T, K)).whole(formula)
         assert evaluate(turned, after, Exact(after)) == evaluate(formula, before, Exact(before))
 
 
@@ -276,14 +276,14 @@ def test_a_true_relation_stays_true(formula: Formula, A: Matrix, L: Matrix) -> N
         (formula, value),
         (Letter("L"), Literal(L), Sum((Literal(L), Block(((Literal(Matrix.zeros(2, 2)),),))))),
     ):
-        turned = Turned(frozenset({"L"}), (L,)).relation(Relation(chain, ("=",) * (len(chain) - 1)))
+        turned = SignReversal(frozenset({"L"}), (L,)).relation(Relation(chain, ("=",) * (len(chain) - 1)))
         values = {evaluate(member, after, Exact(after)) for member in turned.members}
         assert len(values) == 1
 
 
 def test_signs_are_set_as_a_book_sets_them() -> None:
     A, C, L, M = Letter("A"), Letter("C"), Letter("L"), Matrix.column([3, 2])
-    turned = Turned(frozenset({"L"}), (M,))
+    turned = SignReversal(frozenset({"L"}), (M,))
     assert turned.whole(Sum((A, Negative(Product((L, C)))))) == Sum((A, Product((L, C))))
     assert turned.relation(Relation((L, Literal(M)), ("=",))) == Relation((L, Literal(-M)), ("=",))
     assert turned.formula(L) == L
@@ -301,9 +301,9 @@ def test_signs_are_set_as_a_book_sets_them() -> None:
 
 def test_a_translation_that_changes_a_meaning_is_rejected(monkeypatch: pytest.MonkeyPatch) -> None:
     (result,) = problem(DESIGN, "standard").solve()
-    monkeypatch.setattr(Turned, "relation", lambda _, relation: relation)
-    monkeypatch.setattr(Turned, "formula", lambda _, formula: formula)
-    monkeypatch.setattr(Turned, "whole", lambda _, formula: formula)
+    monkeypatch.setattr(SignReversal, "relation", lambda _, relation: relation)
+    monkeypatch.setattr(SignReversal, "formula", lambda _, formula: formula)
+    monkeypatch.setattr(SignReversal, "whole", lambda _, formula: formula)
     with pytest.raises(DerivationRejected, match="in another convention"):
         translated(result.derivation, convention_named("S1"))
 
@@ -312,7 +312,7 @@ def test_a_letter_that_is_forgotten_is_rejected() -> None:
     (result,) = problem(DESIGN, "standard").solve()
     before = result.derivation.check()
     with pytest.raises(DerivationRejected):
-        convention_signs._hold_against(before, before.having(values={"L": before.values["K"]}), frozenset())
+        convention_signs._hold_against(before, before.extended_by(values={"L": before.values["K"]}), frozenset())
     dynamics = {name: Letter("x") for name in before.dynamics}
     with pytest.raises(DerivationRejected):
         convention_signs._hold_against(before, replace(before, dynamics=dynamics), frozenset())

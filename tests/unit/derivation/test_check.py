@@ -9,7 +9,7 @@ import pytest
 
 from symobs import StateSpace, observer
 from symobs.derivation import (
-    Case,
+    CaseStep,
     Conclude,
     Define,
     Derivation,
@@ -27,6 +27,7 @@ from symobs.formula import (
     Apply,
     Conjunction,
     Derivative,
+    Evaluated,
     Formula,
     HoldsExactlyWhere,
     Identity,
@@ -39,7 +40,6 @@ from symobs.formula import (
     Quotient,
     Relation,
     Roots,
-    Shown,
     Sum,
     Transpose,
 )
@@ -105,10 +105,10 @@ def test_a_letter_nobody_introduced_is_refused_wherever_it_stands() -> None:
         Conclude(None, (HoldsExactlyWhere(Predicate("stable", strange), ()),)),
         Conclude(None, (Conjunction((one, said(strange, 1))),)),
         Conclude(slot(strange)),
-        Note(slot(Shown(strange, literal(1)))),
+        Note(slot(Evaluated(strange, literal(1)))),
         Diagram("loop", (("P", strange), ("F", strange), ("response", strange))),
         Section(slot(strange), ()),
-        Case(said(strange, 0), (), ()),
+        CaseStep(said(strange, 0), (), ()),
     ):
         refused(step)
 
@@ -158,7 +158,7 @@ def test_what_solves_an_equation_makes_it_true() -> None:
 def test_an_assumption_holds_from_there_on() -> None:
     distinct = said(c, "!=", 1)
     refused(Equal((distinct,)))
-    assert checked(Given((distinct,)), Equal((distinct, said(2 - 2 * c, "!=", 0)))).assumed == (c - 1,)
+    assert checked(Given((distinct,)), Equal((distinct, said(2 - 2 * c, "!=", 0)))).nonzero == (c - 1,)
     refused(Equal((distinct,)), Given((distinct,)))
     refused(Given((distinct,)), Equal((said(c, "!=", 2),)))
     refused(Given((said(c, "!=", c),)), match="c != c")  # nothing is different from itself
@@ -220,8 +220,8 @@ def test_a_free_signal_ceases_to_be_free() -> None:
 # -- cases -------------------------------------------------------------------------------------------------------------
 
 
-def case(*steps: Step, when: Relation | None = None, at: int = 1) -> Case:
-    return Case(when or said(c - 1, 0), (("c", Scalar.of(at)),), steps)
+def case(*steps: Step, when: Relation | None = None, at: int = 1) -> CaseStep:
+    return CaseStep(when or said(c - 1, 0), (("c", Scalar.of(at)),), steps)
 
 
 def test_a_case_lies_on_its_stratum_and_nothing_of_it_stays() -> None:
@@ -238,24 +238,24 @@ def test_a_case_lies_on_its_stratum_and_nothing_of_it_stays() -> None:
     refused(C_IS, case(when=said((c - 1) * b, 0)))
     checked(C_IS, case(when=said(2 * a * (c - 1), 0)))
     refused(C_IS, case(when=said(b, 0)))
-    refused(C_IS, Case(said(c - 1, 0), (("c", Scalar.of(1)), ("b", Scalar.of(0))), ()))
+    refused(C_IS, CaseStep(said(c - 1, 0), (("c", Scalar.of(1)), ("b", Scalar.of(0))), ()))
     refused(C_IS, case(Equal((said(1, 2),))))
 
 
 def test_a_case_without_substitution_knows_its_equation_and_no_more() -> None:
     here = said(C, Matrix.of([[1, 1]]))
-    checked(C_IS, Case(said(c, 1), (), (Equal((here,)),)))
-    refused(C_IS, Case(said(c, 1), (), (Equal((said(C, Matrix.of([[1, 2]])),)),)))
-    refused(C_IS, Case(said(c, 1), (), ()), Equal((here,)))
-    refused(C_IS, Case(said(1, 0), (), (Equal((here,)),)))
-    refused(C_IS, Case(said(c, "!==", 1), (), (Equal((here,)),)))
+    checked(C_IS, CaseStep(said(c, 1), (), (Equal((here,)),)))
+    refused(C_IS, CaseStep(said(c, 1), (), (Equal((said(C, Matrix.of([[1, 2]])),)),)))
+    refused(C_IS, CaseStep(said(c, 1), (), ()), Equal((here,)))
+    refused(C_IS, CaseStep(said(1, 0), (), (Equal((here,)),)))
+    refused(C_IS, CaseStep(said(c, "!==", 1), (), (Equal((here,)),)))
 
 
 def test_a_letter_anew_in_a_case_has_no_meaning_before() -> None:
     other = Define(said(C, Matrix.of([[1, 5]])))
-    refused(C_IS, Case(said(c, 1), (("c", Scalar.of(1)),), (other,)))
-    checked(C_IS, Case(said(c, 1), (("c", Scalar.of(1)),), (other,), anew=("C",)))
-    refused(C_IS, Case(said(c, 1), (("c", Scalar.of(1)),), (Equal((said(C, C),)),), anew=("C",)))
+    refused(C_IS, CaseStep(said(c, 1), (("c", Scalar.of(1)),), (other,)))
+    checked(C_IS, CaseStep(said(c, 1), (("c", Scalar.of(1)),), (other,), anew=("C",)))
+    refused(C_IS, CaseStep(said(c, 1), (("c", Scalar.of(1)),), (Equal((said(C, C),)),), anew=("C",)))
 
 
 def test_values_written_out_in_a_case_are_on_its_stratum_too() -> None:
@@ -281,7 +281,7 @@ def test_a_letter_that_means_nothing_on_the_stratum_may_not_be_used_there() -> N
 
 def test_sections_share_what_is_established() -> None:
     inner = Section(Sentence("test_plain"), (A_IS, Section(Sentence("test_plain"), (CHI,))))
-    assert checked(inner, Equal((said(Letter("chi"), s**2 + 3 * s + 2),))).knows("chi")
+    assert checked(inner, Equal((said(Letter("chi"), s**2 + 3 * s + 2),))).defines("chi")
     refused(Section(Sentence("test_plain"), (CHI,)), A_IS)
     refused(Section(slot(said(1, 2)), ()))
 

@@ -9,21 +9,21 @@ import pytest
 
 from symobs.convention import STANDARD, Convention
 from symobs.derivation import (
-    Case,
+    CaseStep,
     Conclude,
     Define,
     Derivation,
     Diagram,
     Equal,
     Given,
+    Inequalities,
     Note,
     Plot,
+    RegionSummary,
     Section,
     Sentence,
     Solve,
-    Survey,
     Tabulate,
-    Where,
     convention_signs,
     translated,
 )
@@ -33,6 +33,7 @@ from symobs.exact import Matrix, Scalar
 from symobs.formula import (
     Conjunction,
     Environment,
+    Evaluated,
     Formula,
     HoldsExactlyWhere,
     Letter,
@@ -41,11 +42,10 @@ from symobs.formula import (
     Predicate,
     Product,
     Roots,
-    Shown,
+    SignReversal,
     Sum,
     SymbolList,
     Transpose,
-    Turned,
 )
 from tests.support.problems.steps import START, literal, said
 
@@ -102,7 +102,7 @@ def test_data_that_are_equal_to_a_gain_keep_their_sign() -> None:
     product = Define(said(Letter("P"), Product((C, L)), written))
     found = steps_in(PLUS, plant, L_IS, product)
     assert found[2] == Define(said(Letter("P"), Negative(Product((C, L))), written))
-    (other,) = convention_signs._in_signs((product,), Turned(frozenset({"L"}), {GAIN}))
+    (other,) = convention_signs._in_signs((product,), SignReversal(frozenset({"L"}), {GAIN}))
     assert other == Define(said(Letter("P"), Negative(Product((C, L))), Negative(turned)))
     scalar = Define(said(Letter("D"), 3))
     assert steps_in(PLUS, plant, scalar, L_IS)[1] == scalar
@@ -127,7 +127,7 @@ LAW, TURNED_LAW = said(U, Negative(Product((K, ESTIMATE)))), said(U, Product((K,
     ("before", "after"),
     [
         (LAW, TURNED_LAW),
-        (Shown(*LEFT.members), Shown(*TURNED_LEFT.members)),
+        (Evaluated(*LEFT.members), Evaluated(*TURNED_LEFT.members)),
         ("L", "L"),
         (7, 7),
         (L, L),
@@ -141,11 +141,11 @@ LAW, TURNED_LAW = said(U, Negative(Product((K, ESTIMATE)))), said(U, Product((K,
     ],
 )
 def test_signs_of_what_a_page_is_made_of(before: Any, after: Any) -> None:
-    assert convention_signs._in_signs(before, Turned(frozenset({"K", "L"}), {GAIN, GAIN.T})) == after
+    assert convention_signs._in_signs(before, SignReversal(frozenset({"K", "L"}), {GAIN, GAIN.T})) == after
 
 
 def test_the_sentence_of_a_figure_is_turned_too() -> None:
-    turned = Turned(frozenset({"K", "L"}), {GAIN, GAIN.T})
+    turned = SignReversal(frozenset({"K", "L"}), {GAIN, GAIN.T})
     before, after = (plain_words("test_slot", it=relation) for relation in (LAW, TURNED_LAW))
     assert convention_signs._in_signs(Diagram("loop", (), before), turned) == Diagram("loop", (), after)
 
@@ -406,11 +406,11 @@ MADE_OF: list[Any] = [
     Conclude(None, (ENTRY,)),
     Plot(None, literal(l1)),  # type: ignore[arg-type]
     Tabulate(literal(l1), None, "s"),  # type: ignore[arg-type]
-    Where(HoldsExactlyWhere(Predicate("stable", P), (ENTRY,))),
-    Survey(literal(l1), ("l1",)),
-    Case(ENTRY, (), ()),
+    Inequalities(HoldsExactlyWhere(Predicate("stable", P), (ENTRY,))),
+    RegionSummary(literal(l1), ("l1",)),
+    CaseStep(ENTRY, (), ()),
     Diagram("loop", (("P", literal(l1)),)),
-    Shown(P, literal(l1)),
+    Evaluated(P, literal(l1)),
     Predicate("stable", literal(l1)),
     Roots(literal(l1), ()),
     HoldsExactlyWhere(Predicate("stable", literal(l1)), ()),

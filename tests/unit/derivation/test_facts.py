@@ -7,11 +7,12 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from symobs.derivation import Case, Conclude, Define, Diagram, Equal, Given, Note, Sentence
+from symobs.derivation import CaseStep, Conclude, Define, Diagram, Equal, Given, Note, Sentence
 from symobs.exact import Matrix, Root, Scalar, roots_of
 from symobs.formula import (
     Apply,
     Conjunction,
+    Evaluated,
     Fact,
     Formula,
     HoldsExactlyWhere,
@@ -24,7 +25,6 @@ from symobs.formula import (
     Quotient,
     Relation,
     Roots,
-    Shown,
     Sum,
     Transpose,
 )
@@ -68,7 +68,7 @@ UNSTABLE = Given((said(A, Matrix.of([[0, 1], [2, 1]])),), silent=True)
     [
         (said(Apply("det", A), 2), said(Apply("det", A), 3)),
         (Conjunction((said(1, 1), said(a, ">", 0))), Conjunction((said(a, ">", 0), said(c, ">", 0)))),
-        (Shown(Apply("det", A), literal(2)), Shown(Apply("det", A), literal(-2))),
+        (Evaluated(Apply("det", A), literal(2)), Evaluated(Apply("det", A), literal(-2))),
         (Predicate("stable", Letter("chi")), Predicate("unstable", Letter("chi"))),
         (Predicate("stable", Power(Letter("chi"), -1)), Predicate("unstable", Power(Letter("chi"), -1))),
         (Predicate("strictly_proper", Power(Letter("chi"), -1)), Predicate("strictly_proper", Letter("chi"))),
@@ -97,7 +97,7 @@ def test_a_fact_is_checked_as_such_and_in_a_sentence(fact: Fact, false: Fact) ->
     refused(A_IS, C_IS, CHI, Conclude(None, (false,)))
     for step in (Conclude(slot(false)), Note(slot(false)), Equal((), slot(false)), Given((), slot(false))):
         refused(A_IS, C_IS, CHI, step)
-    refused(A_IS, C_IS, CHI, Case(said(c, 0), (("c", Scalar.of(0)),), (), slot(false)))
+    refused(A_IS, C_IS, CHI, CaseStep(said(c, 0), (("c", Scalar.of(0)),), (), slot(false)))
 
 
 def test_a_property_belongs_to_a_letter() -> None:

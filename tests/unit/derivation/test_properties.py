@@ -261,12 +261,12 @@ def test_in_discrete_time_the_disc_decides() -> None:
 def test_what_is_above_zero_here_has_a_sign() -> None:
     """Where h > 0, s² + h s + k is stable exactly where k > 0; and so where −h < 0."""
     polynomial = s**2 + h * s + k
-    for above in ((h,), (c, h)):
-        assert exactly(polynomial, said(k, ">", 0), known=replace(IN_S, above=above))
-    assert exactly(s**2 - h * s + k, said(k, ">", 0), known=replace(IN_S, above=(-h,)))
-    assert not exactly(polynomial, said(k, ">", 0), known=replace(IN_S, above=(-h,)))
-    assert not exactly(polynomial, said(k, ">", 0), known=replace(IN_S, above=(h + 1,)))
-    assert not exactly(polynomial, said(k, ">", 0), known=replace(IN_S, above=(2 * h + c,)))
+    for positive in ((h,), (c, h)):
+        assert exactly(polynomial, said(k, ">", 0), known=replace(IN_S, positive=positive))
+    assert exactly(s**2 - h * s + k, said(k, ">", 0), known=replace(IN_S, positive=(-h,)))
+    assert not exactly(polynomial, said(k, ">", 0), known=replace(IN_S, positive=(-h,)))
+    assert not exactly(polynomial, said(k, ">", 0), known=replace(IN_S, positive=(h + 1,)))
+    assert not exactly(polynomial, said(k, ">", 0), known=replace(IN_S, positive=(2 * h + c,)))
 
 
 def test_members_are_numbers() -> None:
@@ -281,6 +281,6 @@ def test_roots_on_the_axis_may_not_meet() -> None:
     pairs = (s**2 + a) * (s**2 + d)
     is_marginal = PREDICATES["marginal"]
     assert is_marginal(pairs, known, False) is False  # noqa: FBT003 - positional there
-    for where in ("assumed", "domain"):
+    for where in ("nonzero", "domain"):
         conditions: dict[str, Any] = {where: (a - d,)}
         assert is_marginal(pairs, replace(known, **conditions), False) is True  # noqa: FBT003 - positional there

@@ -16,7 +16,7 @@ from symobs.derivation.region_check import (
     is_survey,
     region_of,
 )
-from symobs.derivation.steps import Sentence, Survey
+from symobs.derivation.steps import RegionSummary, Sentence
 from symobs.exact import Scalar
 from symobs.exact.core.generators import square_root
 from symobs.formula import Environment, Letter, Literal, Relation
@@ -103,7 +103,7 @@ def test_what_is_said_of_intervals(polynomial: Scalar, findings: list[tuple[str,
     assert isinstance(region, LineRegion)
     parts = interval_relations(region)
     assert [", ".join(plain_relation(relation, "s") for relation in part) for part in parts] == intervals
-    step = Survey(CHI, ("h",), findings_of_region(region), tuple(parts))
+    step = RegionSummary(CHI, ("h",), findings_of_region(region), tuple(parts))
     assert is_survey(step, polynomial, IN_S, discrete=False)
     assert is_survey(replace(step, parts=()), polynomial, IN_S, discrete=False)
     assert is_survey(replace(step, findings=()), polynomial, IN_S, discrete=False)
@@ -152,7 +152,7 @@ def test_parts_of_a_plane_are_its_own() -> None:
     assert isinstance(region, PlaneRegion)
     right = ((said(h, ">", 0), said(k, ">", 0)),)
     assert are_the_parts(region, right)
-    step = Survey(CHI, ("h", "k"), (), right)
+    step = RegionSummary(CHI, ("h", "k"), (), right)
     assert is_survey(step, polynomial, IN_S, discrete=False)
     wrong: tuple[tuple[tuple[Relation, ...], ...], ...] = (
         ((said(h, ">", 0),),),
@@ -176,7 +176,7 @@ def test_a_region_is_of_its_own_parameters_and_kind_of_time() -> None:
     others: tuple[tuple[str, ...], ...] = (("k",), ("h", "s"))
     for names in others:
         assert region_of(s + h, IN_S, discrete=False, names=names) is None
-        assert not is_survey(Survey(CHI, names, (), ((said(h, ">", 0),),)), s + h, IN_S, discrete=False)
+        assert not is_survey(RegionSummary(CHI, names, (), ((said(h, ">", 0),),)), s + h, IN_S, discrete=False)
     both = region_of(s**2 + h * s + k, IN_S, discrete=False, names=("k", "h"))
     assert isinstance(both, PlaneRegion)
     assert both.names == ("k", "h")
@@ -185,7 +185,7 @@ def test_a_region_is_of_its_own_parameters_and_kind_of_time() -> None:
 
 
 def test_a_region_that_is_not_proved_is_not_told(monkeypatch: pytest.MonkeyPatch) -> None:
-    step = Survey(CHI, ("h",), (), ((said(h, ">", 0),),))
+    step = RegionSummary(CHI, ("h",), (), ((said(h, ">", 0),),))
     monkeypatch.setattr(region_check, "is_region", lambda *_: False)
     assert not is_survey(step, s + h, IN_S, discrete=False)
     assert not is_survey(replace(step, parts=()), s + h, IN_S, discrete=False)
@@ -208,7 +208,7 @@ def test_what_is_known_by_inequalities_only() -> None:
     assert said_of((s + h) * (s + bound - h) * (s + k) * (s + m)) == []  # there is such an h only where b > 0
     assert said_of((s + h) * (s + k) * (s + m), Environment(signs=dict.fromkeys(names, "positive"))) == []
     assert said_of((z + h) * (z + k) * (z + m), Environment(variable="z")) == ["box_bounded"]
-    step = Survey(CHI, names, (Sentence("box_unbounded"),))
+    step = RegionSummary(CHI, names, (Sentence("box_unbounded"),))
     assert is_survey(replace(step, findings=()), open_box, IN_S, discrete=False) is False
     assert is_survey(step, open_box, IN_S, discrete=False)
     for findings in (

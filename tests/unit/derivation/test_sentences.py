@@ -58,7 +58,7 @@ def test_a_pair_overshoots_by_its_own_ratio() -> None:
 )
 def test_a_third_digit_is_one_higher(ratio: str, higher: str) -> None:
     """One unit in the third digit of 1.04 is 0.01, of 10 it is 0.1, of 0.999 it is 0.001 and of 12345 it is 100."""
-    e = E.having(values={"omega_d": 2 * Scalar.of(Fraction(ratio))})
+    e = E.extended_by(values={"omega_d": 2 * Scalar.of(Fraction(ratio))})
     assert fits("overshoot_close", compared(exp(-1 / Fraction(higher)), ">", 0), e)
     assert not fits("overshoot_close", compared(exp(-1 / Fraction(ratio)), ">", 0), e)
 
@@ -66,7 +66,7 @@ def test_a_third_digit_is_one_higher(ratio: str, higher: str) -> None:
 @pytest.mark.parametrize("ratio", [0, -1])
 def test_only_a_positive_number_has_a_third_digit(ratio: int) -> None:
     with pytest.raises(ValueError, match=str(ratio)):
-        fits("overshoot_close", compared(exp(-1), ">", 0), E.having(values={"omega_d": Scalar.of(2 * ratio)}))
+        fits("overshoot_close", compared(exp(-1), ">", 0), E.extended_by(values={"omega_d": Scalar.of(2 * ratio)}))
 
 
 FULL = compared("O", "=", 2)

@@ -8,22 +8,22 @@ from typing import Any, get_args
 import pytest
 
 from symobs.derivation import (
-    Case,
+    CaseStep,
     Conclude,
     Define,
     Derivation,
     Diagram,
     Equal,
     Given,
+    Inequalities,
     Note,
     Plot,
+    RegionSummary,
     Section,
     Sentence,
     Solve,
     Step,
-    Survey,
     Tabulate,
-    Where,
 )
 from symobs.errors import DerivationRejected
 from symobs.exact import Matrix, Scalar, roots_of
@@ -32,6 +32,7 @@ from symobs.formula import (
     Apply,
     Conjunction,
     Environment,
+    Evaluated,
     HoldsExactlyWhere,
     Letter,
     Literal,
@@ -41,7 +42,6 @@ from symobs.formula import (
     Quotient,
     Relation,
     Roots,
-    Shown,
     Sum,
     SymbolList,
 )
@@ -139,14 +139,14 @@ def test_every_relation_given_is_introduced() -> None:
     known = checked(Given((said(A, 1), said(F, 2), said(C, 3))))
     assert [known.values[name] for name in "AFC"] == [Scalar.of(1), Scalar.of(2), Scalar.of(3)]
     known = checked(Given((said(c, "!=", 1), said(F, 2))), Given((said(c, "!=", 2),)))
-    assert (known.assumed, known.values["F"]) == ((c - 1, c - 2), Scalar.of(2))
+    assert (known.nonzero, known.values["F"]) == ((c - 1, c - 2), Scalar.of(2))
 
 
 def test_every_slot_of_every_sentence_is_read() -> None:
     false: tuple[Any, ...] = (
         two,
         Conjunction((one, two)),
-        Shown(literal(1), literal(2)),
+        Evaluated(literal(1), literal(2)),
         Predicate("stable", chi),
         Roots(chi, ()),
         HoldsExactlyWhere(Predicate("stable", chi), ()),
@@ -178,10 +178,10 @@ def test_every_slot_of_every_sentence_is_read() -> None:
 def test_what_is_shown_is_so() -> None:
     start = replace(START, values={"chi": s - 1, "phi": s, "F": Scalar.of(1)})
     determinant = Apply("det", A)
-    for told in (Shown(determinant, literal(2)), said(determinant, 2), A, Sum((A, A)), Quotient(A, F)):
+    for told in (Evaluated(determinant, literal(2)), said(determinant, 2), A, Sum((A, A)), Quotient(A, F)):
         for step in (Note(slot(told)), Section(slot(told), ()), Equal((one,), slot(told))):
             checked(A_IS, step, start=start)
-    refused(A_IS, Note(slot(Shown(determinant, literal(3)))), start=start)
+    refused(A_IS, Note(slot(Evaluated(determinant, literal(3)))), start=start)
 
 
 def test_no_root_of_what_may_be_negative_is_written_anywhere() -> None:
@@ -328,7 +328,7 @@ def test_inequalities_say_where_a_letter_s_polynomial_is_stable() -> None:
     start = replace(START, values={"chi": s**2 + h * s + k, "phi": s + 1})
     stable = Predicate("stable", chi)
     where = (said(h, ">", 0), said(k, ">", 0))
-    checked(Where(HoldsExactlyWhere(stable, where)), start=start)
+    checked(Inequalities(HoldsExactlyWhere(stable, where)), start=start)
     checked(Conclude(None, (HoldsExactlyWhere(stable, where),)), start=start)
     for other in (
         where[:1],
@@ -338,34 +338,34 @@ def test_inequalities_say_where_a_letter_s_polynomial_is_stable() -> None:
         (said(h, "<", 0), where[1]),
         (said(h, ">=", 0), where[1]),
     ):
-        refused(Where(HoldsExactlyWhere(stable, other)), start=start)
+        refused(Inequalities(HoldsExactlyWhere(stable, other)), start=start)
         refused(Conclude(None, (HoldsExactlyWhere(stable, other),)), start=start)
         refused(Note(slot(HoldsExactlyWhere(stable, other))), start=start)
     refused(
-        Where(HoldsExactlyWhere(Predicate("stable", Literal(s**2 + h * s + k)), where)),
+        Inequalities(HoldsExactlyWhere(Predicate("stable", Literal(s**2 + h * s + k)), where)),
         start=start,
         match="no letter's",
     )
-    refused(Where(HoldsExactlyWhere(stable, where), slot(two)), start=start)
-    refused(Where(HoldsExactlyWhere(stable, (*where, said(phi, "=", s + 1)))), start=start)
+    refused(Inequalities(HoldsExactlyWhere(stable, where), slot(two)), start=start)
+    refused(Inequalities(HoldsExactlyWhere(stable, (*where, said(phi, "=", s + 1)))), start=start)
 
 
 def test_a_region_is_that_of_its_letter() -> None:
     start = replace(START, values={"chi": s + h})
     right = (said(h, ">", 0),)
-    checked(Survey(chi, ("h",), (), (right,)), start=start)
+    checked(RegionSummary(chi, ("h",), (), (right,)), start=start)
     for parts in (((said(h, ">", 1),),), ((said(h, "<", 0),),), (right, right)):
-        refused(Survey(chi, ("h",), (), parts), start=start, match="the region of chi")
-    refused(Survey(chi, ("h",), (Sentence("region_empty"),), ()), start=start, match="the region of chi")
-    refused(Survey(Literal(s + h), ("h",), (), (right,)), start=start, match="no letter's")
-    refused(Survey(phi, ("h",), (), (right,)), start=start, match="before it is established")
-    refused(Survey(chi, ("h",), (), (right,), slot(two)), start=start)
-    checked(Survey(chi, ("h",), (), (right,)), start=replace(start, values={"chi": Matrix.of([[s + h]])}))
+        refused(RegionSummary(chi, ("h",), (), parts), start=start, match="the region of chi")
+    refused(RegionSummary(chi, ("h",), (Sentence("region_empty"),), ()), start=start, match="the region of chi")
+    refused(RegionSummary(Literal(s + h), ("h",), (), (right,)), start=start, match="no letter's")
+    refused(RegionSummary(phi, ("h",), (), (right,)), start=start, match="before it is established")
+    refused(RegionSummary(chi, ("h",), (), (right,), slot(two)), start=start)
+    checked(RegionSummary(chi, ("h",), (), (right,)), start=replace(start, values={"chi": Matrix.of([[s + h]])}))
     discrete = Environment(variable="z", values={"chi": Scalar.symbol("z") + h})
     inside = (said(-1, "<", h, "<", 1),)
-    checked(Survey(chi, ("h",), (), (inside,)), start=discrete, discrete=True)
-    refused(Survey(chi, ("h",), (), (right,)), start=discrete, discrete=True)
-    refused(Survey(chi, ("h",), (), (inside,)), start=start)
+    checked(RegionSummary(chi, ("h",), (), (inside,)), start=discrete, discrete=True)
+    refused(RegionSummary(chi, ("h",), (), (right,)), start=discrete, discrete=True)
+    refused(RegionSummary(chi, ("h",), (), (inside,)), start=start)
 
 
 def test_a_picture_is_looked_at() -> None:
@@ -463,7 +463,7 @@ def test_a_written_value_stands_as_it_is_written() -> None:
 
 def test_a_condition_is_of_one_number() -> None:
     start = replace(START, values={"F": Matrix.of([[c]]), "C": Matrix.of([[c, c]])})
-    assert checked(Given((said(F, "!=", 0),)), start=start).assumed == (c,)
+    assert checked(Given((said(F, "!=", 0),)), start=start).nonzero == (c,)
     refused(Given((said(C, "!=", 0),)), start=start)
 
 
@@ -474,19 +474,19 @@ def test_a_letter_of_a_signal_is_no_value() -> None:
 
 
 def test_a_case_may_narrow_and_starts_anew() -> None:
-    distinct = Case(said(c, "!=", 1), (), (Equal((said(C, C),)),))
+    distinct = CaseStep(said(c, "!=", 1), (), (Equal((said(C, C),)),))
     checked(C_IS, distinct)
     refused(C_IS, replace(distinct, steps=(Equal((two,)),)))
     refused(C_IS, replace(distinct, sentence=slot(two)))
     refused(C_IS, replace(distinct, anew=("C",)))
-    refused(C_IS, Case(said(c, "!=", 1), (), ()), Equal((said(c, "!=", 1),)))
+    refused(C_IS, CaseStep(said(c, "!=", 1), (), ()), Equal((said(c, "!=", 1),)))
 
 
 @pytest.mark.parametrize("step", [Equal((two,)), Conclude(None, (two,)), Solve(two, said(F, 1))])
 def test_what_stands_inside_is_checked(step: Step) -> None:
     refused(Section(Sentence("test_plain"), (step,)))
     refused(Section(Sentence("test_plain"), (Equal((one,)), step)))
-    refused(C_IS, Case(said(c - 1, 0), (("c", Scalar.of(1)),), (step,)))
+    refused(C_IS, CaseStep(said(c - 1, 0), (("c", Scalar.of(1)),), (step,)))
 
 
 # -- strata -------------------------------------------------------------------------------------------------------------
@@ -495,16 +495,16 @@ ON = Environment(signs={"a": "positive", "b": "real", "c": "real", "h": "real", 
 
 
 def test_what_was_assumed_is_not_known_on_a_stratum() -> None:
-    assumed, used = Given((said(h, "!=", 0),)), Equal((said(h, "!=", 0),))
-    checked(assumed, used)
+    nonzero, used = Given((said(h, "!=", 0),)), Equal((said(h, "!=", 0),))
+    checked(nonzero, used)
     for when in (said(h * (h - 1), 0), said(k * k, 2)):
-        refused(assumed, Case(when, (), (used,)))
-        checked(assumed, Case(when, (), ()), used)
+        refused(nonzero, CaseStep(when, (), (used,)))
+        checked(nonzero, CaseStep(when, (), ()), used)
 
 
-def case(when: Relation | Conjunction, *steps: Step, **put_in: Scalar | int) -> Case:
+def case(when: Relation | Conjunction, *steps: Step, **put_in: Scalar | int) -> CaseStep:
     values = tuple((name, v if isinstance(v, Scalar) else Scalar.of(v)) for name, v in put_in.items())
-    return Case(when, values, steps)
+    return CaseStep(when, values, steps)
 
 
 def equal(*relations: Relation) -> Equal:
@@ -576,9 +576,9 @@ def test_equations_of_cases_within_cases_hold_together() -> None:
     different = (Given((said(b, "!=", 0),)), equal(said(b, "!=", 0)))
     checked(case(said(c, 1), case(said(c, 1), *different, c=1)), start=ON)
     checked(case(Conjunction((said(c, 1),)), *different, c=1), start=ON)
-    assumed = Given((said(b * c, "!=", 1),))
+    nonzero = Given((said(b * c, "!=", 1),))
     for where in (case(said(b, 2), *different[1:]), case(Conjunction((said(b, 2),)), equal(said(b * c, "!=", 1)), b=2)):
-        refused(assumed, replace(where, steps=(equal(said(b * c, "!=", 1)),)), start=ON)
+        refused(nonzero, replace(where, steps=(equal(said(b * c, "!=", 1)),)), start=ON)
 
 
 def test_both_sides_of_a_case_are_read() -> None:

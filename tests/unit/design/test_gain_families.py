@@ -18,7 +18,7 @@ from sympy import Matrix, Rational
 
 import symobs
 from symobs.design.pole_placement import decoupled
-from symobs.design.pole_placement.brunovsky_chains import shares
+from symobs.design.pole_placement.brunovsky_chains import split_polynomial
 from symobs.errors import CertificateRejected, InputError
 from symobs.exact import Scalar
 from symobs.result import methods
@@ -396,7 +396,7 @@ def test_factors_are_shared_in_every_way_once(roots: str, lengths: tuple[int, ..
         for ways in wanted
         for part in ways
     }
-    found = [tuple(map(tuple, share)) for share in shares(factors, lengths, "s")]
+    found = [tuple(map(tuple, share)) for share in split_polynomial(factors, lengths, "s")]
     assert len(set(found)) == len(found) or roots == "abcabc"  # equal factors that do not stand together
     assert set(found) == {tuple(polynomials[part] for part in ways) for ways in wanted}
     assert all(not coefficient.field.names for share in found for part in share for coefficient in part)

@@ -17,7 +17,7 @@ from tests.support.tools.command_line import inside
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from symobs.derivation.builder import Page
+    from symobs.derivation.builder import Builder
     from symobs.figures.plot import Picture
 
 PLANT = '[plant]\nA = "[0 1; 0 -1]"\nB = "[0; 1]"\nC = "[1 0]"\n'
@@ -30,7 +30,7 @@ def a_task_with_a_picture(monkeypatch: pytest.MonkeyPatch) -> Picture:
     picture = hand.interval()
     write = Observability.write
 
-    def with_picture(result: Observability, page: Page) -> None:
+    def with_picture(result: Observability, page: Builder) -> None:
         write(result, page)
         page.plot(picture, page.set("chi", hand.INTERVAL))
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from symobs.derivation import Case, Define, Derivation, Sentence, Tabulate
+from symobs.derivation import CaseStep, Define, Derivation, Sentence, Tabulate
 from symobs.derivation.routh_check import findings_of
 from symobs.exact import Scalar, from_coefficients
 from symobs.formula import Environment, Exact, Letter, Literal, evaluate
@@ -42,10 +42,10 @@ def polynomial(*coefficients: int | str) -> Scalar:
     return from_coefficients([Scalar.symbol(c) if isinstance(c, str) else Scalar.of(c) for c in coefficients], "s")
 
 
-def derivation(value: Scalar, *, tell: bool = True, **forms: str) -> Derivation:
+def derivation(value: Scalar, *, with_findings: bool = True, **forms: str) -> Derivation:
     coefficients = value.coefficients("s")
     table = routh_table(coefficients)
-    findings = findings_of(table, coefficients, "s", {}) if tell else ()
+    findings = findings_of(table, coefficients, "s", {}) if with_findings else ()
     steps = (
         Define(said(CHI, value)),
         Tabulate(CHI, table, "s", Sentence("routh_table", (("polynomial", CHI),)), findings),
@@ -53,8 +53,8 @@ def derivation(value: Scalar, *, tell: bool = True, **forms: str) -> Derivation:
     return Derivation(steps, Environment(), forms)
 
 
-def page(*values: Scalar, tell: bool = False) -> HandWritten:
-    return document(*(derivation(value, tell=tell) for value in values))
+def page(*values: Scalar, with_findings: bool = False) -> HandWritten:
+    return document(*(derivation(value, with_findings=with_findings) for value in values))
 
 
 def text(*coefficients: int | str) -> list[str]:
@@ -147,7 +147,7 @@ def test_names_stand_for_what_they_name(value: Scalar, width: float) -> None:
     found = fitted(block, printer, lambda _: width - 6, 2, width)
     meanings: dict[str, Scalar] = {}
     known = set().union(*(entry.names for row in block.table.rows for entry in row.entries))
-    for relation in found.told:
+    for relation in found.legend:
         name, meaning = relation.members
         assert isinstance(name, Literal)
         assert isinstance(name.value, Scalar)
@@ -168,14 +168,14 @@ def test_no_name_is_one_of_a_parameter() -> None:
     value = polynomial("b", "a1", "a2", "c3", "d", "f", "a6")
     letters = {
         name.value.names
-        for relation in fitted(block_of(value), TextPrinter(), lambda _: 20, 2, 20).told
+        for relation in fitted(block_of(value), TextPrinter(), lambda _: 20, 2, 20).legend
         if isinstance(name := relation.members[0], Literal)
     }
     assert letters
     assert {min(names)[0] for names in letters}.isdisjoint("abcdf")
     declared = TextPrinter(symbols={"h": "b", "kappa": r"c_{\mathrm{m}}"})
     wide = polynomial(1, "h", "kappa", "h3", "h4", "h5", "h6")
-    told = fitted(block_of(wide), declared, lambda _: 20, 2, 20).told
+    told = fitted(block_of(wide), declared, lambda _: 20, 2, 20).legend
     assert {str(r.members[0].value)[0] for r in told if isinstance(r.members[0], Literal)}.isdisjoint("bc")
 
 
@@ -201,7 +201,7 @@ def test_no_line_is_overfull(require_tool: Callable[[str], str], tmp_path: Path)
     many = [polynomial(1, "h1", "h2", "h3", "h4"), polynomial("a", "b", "c", "d", "e", "f"), *WIDE]
     derivations = [derivation(value) for value in many]
     inside = derivation(polynomial(1, "h1", "h2", "h3", "h4", "h5", "h6", "h7"))
-    case = Case(said(Scalar.symbol("h8"), 0), (("h8", Scalar.of(0)),), inside.steps, anew=("chi",))
+    case = CaseStep(said(Scalar.symbol("h8"), 0), (("h8", Scalar.of(0)),), inside.steps, anew=("chi",))
     source = LatexArticle().render(document(*derivations, Derivation((case,), Environment())))
     (tmp_path / "page.tex").write_text(source, encoding="utf-8")
     command = [require_tool("pdflatex"), "-interaction=nonstopmode", "-no-shell-escape", "page.tex"]
@@ -215,7 +215,7 @@ def test_no_line_is_overfull(require_tool: Callable[[str], str], tmp_path: Path)
 
 
 def test_the_page_says_what_the_table_says_and_names_the_theorem() -> None:
-    *_, table, finding, sources = narrate(page(polynomial(1, 2, 3, 1), tell=True))
+    *_, table, finding, sources = narrate(page(polynomial(1, 2, 3, 1), with_findings=True))
     assert isinstance(table, TableBlock)
     assert finding == Paragraph(
         (
@@ -234,4 +234,4 @@ def test_numbers_in_words() -> None:
 def test_latex_and_terminal_choose_by_their_own_width() -> None:
     block = block_of(polynomial(1, "h1", "h2", "h3", "h4", "h5"))
     printer = LatexPrinter()
-    assert fitted(block, printer, lambda _: printer.width - 4, 1, printer.width).told == ()
+    assert fitted(block, printer, lambda _: printer.width - 4, 1, printer.width).legend == ()

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 import pytest
 import sympy
 
-from symobs import StateSpace, compensator, observability, observer, reduced_order_observer
+from symobs import StateSpace, compensator, observability, observer, reduced_order_observer, stability_region
 from symobs.certificate.claims import Certificate, Claim, Statement
 from symobs.convention import STANDARD, convention_named
 from symobs.derivation import Define, Derivation
@@ -40,7 +40,7 @@ from tests.support.problems.steps import A, F, said
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
-    from symobs.derivation.builder import Page
+    from symobs.derivation.builder import Builder
 
 PLANT = StateSpace("[0 1; -k/m -2]", "[0; 1/m]", "[1 c]")
 SERVO = StateSpace("[0 1; 0 -1]", "[0; 1]", "[1 0]")
@@ -55,7 +55,7 @@ class Squared(Result):
         yield Claim(said(self.answer["square"], self.answer["number"] ** 2), Environment(), "a square")
         yield Statement("shown", lambda: "by hand")
 
-    def write(self, page: Page) -> None:
+    def write(self, page: Builder) -> None:
         page.steps = [Define(said(F, self.answer["square"]))]
 
 
@@ -110,6 +110,8 @@ def test_results_and_plants_compare_by_value() -> None:
     assert len(designs) == 1
     (found,) = designs
     assert observability(plants[0]) == observability(plants[1])
+    regions = [stability_region(polynomial="s^2 + k*s + 1", margin=margin) for margin in (None, None, 1)]
+    assert len(set(regions)) == 2
     others = [
         StateSpace("[0 1; -k/m -2]", "[0; 1/m]", "[1 c]", symbols={"k": "positive", "m": "real", "c": "real"}),
         StateSpace("[0 1; -k/m -2]", "[0; 1/m]", "[1 c]", dt=True),
@@ -175,7 +177,7 @@ class Elsewhere(Squared):
     letter: ClassVar[str] = "A"
     value: ClassVar[Any] = Matrix.identity(2)
 
-    def write(self, page: Page) -> None:
+    def write(self, page: Builder) -> None:
         page.steps = [Define(said(Letter(self.letter), self.value))]
 
 
@@ -193,7 +195,7 @@ def test_a_page_speaks_of_the_plant_s_own_data(letter: str, monkeypatch: pytest.
 
 def test_a_page_is_checked() -> None:
     class Lying(Squared):
-        def write(self, page: Page) -> None:
+        def write(self, page: Builder) -> None:
             page.steps = [Define(said(F, A))]
 
     lying = Lying(SERVO, "by hand", {"number": Scalar.of(3), "square": Scalar.of(9)})
@@ -204,10 +206,10 @@ def test_a_page_is_checked() -> None:
     class Driven(Squared):
         free_signals = {"v": 1}  # noqa: RUF012 - a property there
 
-        def write(self, page: Page) -> None:
+        def write(self, page: Builder) -> None:
             page.steps = [Define(said(Letter("y"), Letter("v")))]
 
-    assert Driven(SERVO, "m", {"number": Scalar.of(3), "square": Scalar.of(9)}).derivation.check().knows("y")
+    assert Driven(SERVO, "m", {"number": Scalar.of(3), "square": Scalar.of(9)}).derivation.check().defines("y")
 
 
 # -- conditions ---------------------------------------------------------------------------------------------------------
@@ -342,11 +344,11 @@ def test_a_task_is_its_signature() -> None:
         """
         return Answer(plant, poles, of)
 
-    def alone(plant: Any = None, first: Any = None, *, number: Any = None) -> Any:
+    def works_without_plant(plant: Any = None, first: Any = None, *, number: Any = None) -> Any:
         return Answer(plant, first, number)
 
     weigh.__annotations__ |= {"poles": "Poles | None", "of": Annotated[str, "Of"]}
-    alone.__annotations__["number"] = Annotated[int, "Number"] | None
+    works_without_plant.__annotations__["number"] = Annotated[int, "Number"] | None
     weighed = task(weigh)(SERVO, of="x")
     assert (weighed.given, weighed.asked) == ((SERVO, None, "x"), {"of": "x"})
     found = tasks()["weigh"]
@@ -355,10 +357,10 @@ def test_a_task_is_its_signature() -> None:
         {"poles": "Poles", "of": "Of"},
         "Weigh a plant.",
     )
-    assert found.alone is False
-    assert task_in_time(alone)(number=3).given == (None, None, 3)
-    found = tasks()["alone"]
-    assert (found.alone, dict(found.keywords), found.summary) == (True, {"number": "Number"}, "")
+    assert found.works_without_plant is False
+    assert task_in_time(works_without_plant)(number=3).given == (None, None, 3)
+    found = tasks()["works_without_plant"]
+    assert (found.works_without_plant, dict(found.keywords), found.summary) == (True, {"number": "Number"}, "")
     with pytest.raises(FrozenInstanceError):
         found.name = "other"  # type: ignore[misc]
     assert registry._kind(Annotated[str, "Of"] | None) == "Of"

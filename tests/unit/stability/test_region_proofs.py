@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 
 from symobs.exact import Scalar, from_coefficients
 from symobs.stability.criteria.stability_conditions import stable_where
-from symobs.stability.inequalities import z3_and_qepcad
+from symobs.stability.inequalities import z3_backend
 from symobs.stability.inequalities.decision import decide_empty, equivalence_of, implies
 from symobs.stability.inequalities.proof import (
     UNIT,
@@ -30,7 +30,7 @@ from symobs.stability.inequalities.proof import (
 from symobs.stability.inequalities.prover import prove, prove_by_opposite, refute
 from symobs.stability.inequalities.sample_points import find_point, point_where_zero
 from symobs.stability.inequalities.simplify import simplify
-from symobs.stability.inequalities.z3_and_qepcad import QUESTION, Resources, none_by_z3, point_by_z3
+from symobs.stability.inequalities.z3_backend import QUESTION, Resources, none_by_z3, point_by_z3
 from tests.support.independent_algebra.plain import has_sign, random_fraction, seeded, value_at
 
 if TYPE_CHECKING:
@@ -395,7 +395,7 @@ def test_z3_is_bounded_by_its_own_count_and_by_no_clock(monkeypatch: pytest.Monk
     answers = [point_by_z3([-HARD, x - 1], {}, resources=spent) for spent in (first, second)]
     assert answers[0] == answers[1] == ("maybe", {})
     assert first.left == second.left
-    assert first.left == pytest.approx(z3_and_qepcad.TOGETHER - QUESTION, rel=0.01)
+    assert first.left == pytest.approx(z3_backend.TOGETHER - QUESTION, rel=0.01)
     easy = [x, -x - 1]
     assert point_by_z3(easy, {})[0] == "no"
     assert point_by_z3(easy, {}, resources=Resources(0)) == ("maybe", {})
@@ -404,7 +404,7 @@ def test_z3_is_bounded_by_its_own_count_and_by_no_clock(monkeypatch: pytest.Monk
 @pytest.mark.parametrize("folder", ["region", "exact", "analysis", "design", "derivation", "conditions.py"])
 def test_no_clock_and_no_program_decides_an_answer(folder: str) -> None:
     """The clock, other programs and PATH are for the border: budgets of the command line, and PDF."""
-    home = Path(z3_and_qepcad.__file__).parents[1] / folder
+    home = Path(z3_backend.__file__).parents[1] / folder
     for path in [home] if home.is_file() else home.rglob("*.py"):
         imported = {
             alias.name.partition(".")[0] if isinstance(node, ast.Import) else (node.module or "").partition(".")[0]

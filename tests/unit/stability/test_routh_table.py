@@ -16,8 +16,8 @@ import sympy
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
-from symobs.derivation import Case, Define, Derivation, Sentence, Tabulate
-from symobs.derivation.builder import Page
+from symobs.derivation import CaseStep, Define, Derivation, Sentence, Tabulate
+from symobs.derivation.builder import Builder
 from symobs.derivation.routh_check import findings_of, last_determinant
 from symobs.exact import Scalar, from_coefficients
 from symobs.formula import Environment, Letter, Sum
@@ -515,7 +515,7 @@ def test_nothing_is_divided_by_what_is_known_to_be_zero() -> None:
     checked(*steps)
     refused(*steps, start=Environment(relations=(h1 * h2 - 1,)))
     define, table = steps
-    case = Case(said(h1, 0), (("h1", Scalar.of(0)),), (table,))
+    case = CaseStep(said(h1, 0), (("h1", Scalar.of(0)),), (table,))
     refused(define, case)
     there = Tabulate(CHI, routh_table(whole([1, -1, 3, 2])), "s")
     checked(define, replace(case, steps=(there,)))
@@ -588,14 +588,14 @@ def test_what_the_letter_of_the_last_determinant_means() -> None:
 
 def test_a_page_shows_a_table_and_what_it_says() -> None:
     plant = StateSpace("[0 1; 0 -1]", "[0; 1]", "[1 0]")
-    page = Page(plant)
+    page = Builder(plant)
     chi = page.define("chi", (s + 1) * (s**2 + 4))
     table = page.tabulate(chi, say="routh_table", polynomial=chi)
     step = page.steps[-1]
     assert isinstance(step, Tabulate)
     assert (step.table, step.variable) == (table, "s")
     assert [finding.key for finding in step.findings] == ["routh_zero_row", "routh_divides", "routh_changes_axis"]
-    page.tabulate(chi, tell=False)
+    page.tabulate(chi, with_findings=False)
     silent = page.steps[-1]
     assert isinstance(silent, Tabulate)
     assert silent.findings == ()
@@ -604,7 +604,7 @@ def test_a_page_shows_a_table_and_what_it_says() -> None:
 
 def test_a_page_in_discrete_time_names_the_variable() -> None:
     plant = StateSpace("[0 1; 0 -h]", "[0; 1]", "[1 0]", dt=1, symbols={"epsilon": "real", "h": "real"})
-    page = Page(plant)
+    page = Builder(plant)
     z = Scalar.symbol("z")
     chi, mapped = (
         page.define("chi", z**2 + Scalar.symbol("h")),

@@ -25,5 +25,5 @@ class Csv:
         return "".join(heads[name] + "".join(",".join(row) + "\n" for row in table) for name, table in rows.items())
 
     def answers(self, document: Document) -> str:
-        """Return those that are asked for."""
+        """Return the requested answers."""
         return self.render(document)

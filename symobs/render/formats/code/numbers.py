@@ -11,15 +11,15 @@ from symobs.exact.floating.doubles import nearest_double
 from symobs.expression.source import shown
 from symobs.result.control_systems import require_numbers
 from symobs.result.conversions import to_json
-from symobs.result.in_convention import Viewed
+from symobs.result.in_convention import ResultInConvention
 
 if TYPE_CHECKING:
     from symobs.result import Document
 
 
 def chosen_answers(document: Document) -> dict[str, Any]:
-    """Return the answers by the names that are asked for, in the document's convention; raises `UsageError` for others."""
-    views = [Viewed(result, document.convention) for result in document.results]
+    """Return the requested answers by name, in the document's convention; raises `UsageError` for unknown names."""
+    views = [ResultInConvention(result, document.convention) for result in document.results]
     known = {name: value for view in reversed(views) for name, value in view.fields.items() if value is not None}
     for name in document.printed:
         if name not in known:
@@ -43,7 +43,7 @@ def _text(value: Any) -> str:
 
 
 def number_rows(document: Document, wanted: str) -> dict[str, list[list[str]]]:
-    """Return the rows of answers that are numbers, in the shortest decimals of their doubles: those asked for, or all.
+    """Return the rows of the requested numeric answers, in the shortest decimals of their doubles.
 
     Raises `InputError` where one that is asked for has letters without a value, `UsageError` where it is no number.
     """

@@ -25,7 +25,7 @@ class Numpy:
         return "import numpy as np\n\n" + "".join(arrays)
 
     def answers(self, document: Document) -> str:
-        """Return those that are asked for."""
+        """Return the requested answers."""
         return self.render(document)
 
 

@@ -29,8 +29,8 @@ _HOLD_NAMES = {"zoh": "zero-order hold", "tustin": "the bilinear map"}
 _WHERE_MISSING = "use observer, reduced_order_observer or compensator"
 
 
-class Program(NamedTuple):
-    """What every language writes down: the sizes, the doubles, and lines about them; `period` is None in continuous time."""
+class CodeProgram(NamedTuple):
+    """The language-independent program: sizes, doubles, comments; `period` is None in continuous time."""
 
     name: str
     inputs: tuple[tuple[str, int], ...]
@@ -50,7 +50,7 @@ class Program(NamedTuple):
         return self.numbers.B.shape[1]
 
 
-def program_of(document: Document, *, in_continuous_time: bool = False) -> Program:
+def program_of(document: Document, *, in_continuous_time: bool = False) -> CodeProgram:
     """Return the program of the one result of a document that has one.
 
     Raises `UsageError` where none or several have, or the period does not fit, and `InputError` for letters without a
@@ -72,7 +72,7 @@ def program_of(document: Document, *, in_continuous_time: bool = False) -> Progr
         _proof(plant, controller, numbers, period),
         *_deviation(controller, sampled, numbers, plant, period),
     ]
-    return Program(controller.name, controller.inputs, controller.output, numbers, period, tuple(lines))
+    return CodeProgram(controller.name, controller.inputs, controller.output, numbers, period, tuple(lines))
 
 
 def _of_document(document: Document) -> tuple[Result, Controller]:
@@ -92,7 +92,7 @@ def _of_document(document: Document) -> tuple[Result, Controller]:
 
 
 def _period(document: Document, plant: StateSpace, *, in_continuous_time: bool) -> Fraction | None:
-    """Return the period, None for a plant in discrete time, or where the language knows continuous time."""
+    """Return the period, None for a plant in discrete time, or where the language has continuous time."""
     if document.hold not in HOLDS:
         repair = f"use one of {', '.join(HOLDS)}"
         raise UsageError(f"{document.hold[:40]!r} is no way to sample", where="--hold", repair=repair)

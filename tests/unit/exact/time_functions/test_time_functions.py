@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 
 import symobs
 from symobs import problem
-from symobs.derivation import Case, Section
+from symobs.derivation import CaseStep, Section
 from symobs.errors import CertificateRejected, DerivationRejected, InputError, ShapeMismatch
 from symobs.exact import Matrix, Scalar
 from symobs.exact.core.generators import derivative, function, identities, normal_form, square_root, substitute
@@ -302,7 +302,7 @@ def test_roots_are_of_what_is_known_not_to_be_negative() -> None:
 
 
 def _cases(steps: Any) -> list[Any]:
-    found = [step for step in steps if isinstance(step, Case)]
+    found = [step for step in steps if isinstance(step, CaseStep)]
     return found + [case for step in steps if isinstance(step, Section) for case in _cases(step.steps)]
 
 
