@@ -79,13 +79,18 @@ def columns_of(table: Swept, first: int, result: dict[str, Any], *, decimals: bo
     for name, column in {**exact, **result["columns"]}.items():
         found[name] = column
         if decimals and name != MARGINS_STATUS:
-            known = result.get("nearest", {}).get(name, {})
-            found[f"{name}.d"] = [
-                known[str(place)] if str(place) in known else None if entry is None else nearest(entry)
-                for place, entry in enumerate(column)
-            ]
+            found[f"{name}.d"] = nearest_of(name, {**result, "columns": {name: column}})
     checked = [status == "done" for status in result["status"]]
     return {**found, "status": result["status"], "case": result["case"], "checked": checked}
+
+
+def nearest_of(name: str, result: dict[str, Any]) -> list[float | None]:
+    """Return the binary numbers nearest to the entries of a column of a block."""
+    known = result.get("nearest", {}).get(name, {})
+    return [
+        known[str(place)] if str(place) in known else None if entry is None else nearest(entry)
+        for place, entry in enumerate(result["columns"][name])
+    ]
 
 
 def nearest(text: str) -> float | None:
