@@ -163,6 +163,20 @@ def test_margins_are_columns_of_the_table(tmp_path: Path) -> None:
     assert all(line["phase_deg.d"] == str(float(line["phase_deg"])) for line in lines)
 
 
+def test_of_several_intervals_it_is_the_one_around_the_design() -> None:
+    """P + kN = s³ + (1 + k)s² + (1 + k)s + 7/8 + 11/4 k is stable where (k − 1/4)(k − 1/2) > 0."""
+    text = problem(
+        "state_feedback",
+        "",
+        'A = "[0 1 0; 0 0 1; -7/8 -1 -1]"\nB = "[0; 0; 1]"',
+        'polynomial = "s^3 + 2 s^2 + 2 s + 29/8"',
+    )
+    program = Program(parse(text), (), None)
+    entries = dict(zip(program.columns(), map(str, program.alone((), None).values), strict=True))
+    cells, _ = margins.cells_at(program, (), entries)
+    assert (cells["gain_down"], cells["gain_up"]) == ("1/2", "oo")
+
+
 def test_what_is_not_stable_has_no_margins_and_what_takes_long_is_undecided(monkeypatch: pytest.MonkeyPatch) -> None:
     program = Program(parse(SPRING.replace("-1, -2", "1, -2")), ("c",), None)
     entries = dict(zip(program.columns(), map(str, program.alone((Fraction(1),), None).values), strict=True))

@@ -38,7 +38,8 @@ def test_lines_of_equal_values_are_where_the_values_are() -> None:
     assert all(abs(hypot(*place) - 1.01) < 1e-3 for place in circle)
     assert abs(sum(map(dist, circle, circle[1:])) - 2 * pi * 1.01) < 0.01
     saddle: list[list[float | None]] = [[x * y for y in (-1.0, 1.0)] for x in (-1.0, 1.0)]
-    assert sorted(len(each) for each in _level([-1.0, 1.0], [-1.0, 1.0], saddle, 0.0)) == [2, 2]
+    corners = [{x + y for x, y in run} for run in _level([-1.0, 1.0], [-1.0, 1.0], saddle, 0.0)]
+    assert sorted(corners, key=min) == [{-1.0}, {1.0}]  # round the corners that lie above
     torn = [[None if abs(x) < 0.1 else value for value in row] for x, row in zip(fine, cone, strict=True)]
     assert len(list(_level(fine, fine, torn, 1.01))) == 2
     assert _round_levels([k / 100 for k in range(801)]) == [Fraction(k) for k in range(1, 8)]
