@@ -79,7 +79,7 @@ def by_dask(count: int) -> None:
         client.gather(client.map(solved, range(count)))
 
 
-def exponent(measured: list[tuple[int, float]]) -> float:
+def exponent(measured: list[tuple[float, float]]) -> float:
     """The p of time ~ sizeᵖ that fits best."""
     logs = [(math.log(size), math.log(seconds)) for size, seconds in measured]
     mean = [sum(values) / len(logs) for values in zip(*logs, strict=True)]
@@ -109,7 +109,7 @@ def one(kind: str, number: int, workers: int) -> None:
             work = lambda: by_batch(number, Path(folder), workers=workers)  # noqa: E731
         else:
             plan = Plan(CART, f"l=1:1:{number // 100}, m=1:1:100", "K, L")
-            work = lambda: Batch(plan.jobs, Path(folder), workers=workers).finish()  # type: ignore[assignment,return-value]  # noqa: E731
+            work = lambda: Batch(plan.jobs, Path(folder), workers=workers).finish()  # type: ignore[assignment]  # noqa: E731
         used = timed(work)[1]
     memory = [resource.getrusage(who).ru_maxrss / 1024 for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN)]
     print(used, *memory)

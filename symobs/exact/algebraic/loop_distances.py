@@ -8,7 +8,7 @@ N/P to −1 is 2 arcsin(√r/2).  Where these x are is decided exactly; values t
 from __future__ import annotations
 
 from functools import reduce
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from flint import arb, fmpz_poly
 
@@ -156,7 +156,8 @@ def _slowest(factor: fmpz_poly, *, discrete: bool) -> RealNumber:
     bits = FIRST_BITS
     while True:
         with Precision(bits):
-            sizes = [abs(root) if discrete else root.real for root, _ in factor.complex_roots()]
+            found: Any = factor.complex_roots()
+            sizes = [abs(root) if discrete else root.real for root, _ in found]
             largest = reduce(arb.max, sizes)
             near = [number for number in candidates if number.ball(bits).overlaps(largest)]
         if len(near) == 1:
