@@ -50,7 +50,7 @@ def work(name: str, examples: list[Path], folder: Path) -> None:
     else:
         if name == "sheet alone":
             sheet_entries._WORTH_CHILDREN = sys.maxsize
-        sys.argv = ["symobs", "sheet", *map(str, examples), "--out", str(folder / "sheet.html")]
+        sys.argv = ["symobs", "sheet", *map(str, examples), "-o", str(folder / "sheet.html")]
         command_line()
 
 
