@@ -138,10 +138,7 @@ def killing_workers(plain: tuple[Path, list[str]], tmp_path: Path, seed: int) ->
     """Kill every worker once, at some time, another one coming in its place."""
     folder, wanted = plain
     drawn, out = random.Random(seed), tmp_path / f"out{seed}"  # noqa: S311
-    with (
-        cluster(tmp_path / f"cluster{seed}", 2 + seed % 2) as found,
-        client(folder, out, "--scheduler", found.address) as process,
-    ):
+    with cluster(tmp_path / f"cluster{seed}", 2) as found, client(folder, out, "--scheduler", found.address) as process:
         for worker in tuple(found.workers):
             least = min(stored(out) + drawn.randint(1, 40), len(wanted))
             assert eventually(partial(_has_rows, out, least))
