@@ -36,7 +36,7 @@ COMMANDS = {
     "serve": "Move poles, parameters and entries in a browser, every answer checked; FILE is the problem to begin with.",
     "sheet": "Put several problem FILEs on one sheet: all questions first, then all solutions.",
     "solve": "Solve a problem FILE (TOML or JSON; - is standard input) and print its derivation.",
-    "sweep": "Design at every point of a grid, each exact and checked, into a table.",
+    "sweep": "Design at every point of a grid, each exact and checked, into a table or a picture.",
     "templates": "List the built-in LaTeX templates, or copy them.",
     "variants": "Make many problems of the same kind from a PROBLEM file with a table [variants].",
 }

@@ -9,7 +9,7 @@ from symobs._dataclass import dataclass
 
 if TYPE_CHECKING:
     from symobs.exact import Scalar
-    from symobs.formula import Relation
+    from symobs.formula import Formula, Relation
 
 #: A point of a picture.  Coordinates are rational: what is drawn can be held against what is exact.
 Place: TypeAlias = "tuple[Fraction, Fraction]"
@@ -124,4 +124,35 @@ class TimeResponse:
         return [(begin + k * step, Fraction(height, self.parts)) for k, height in enumerate(response.heights)]
 
 
+#: What stands on a page, and is checked with it.
 Picture: TypeAlias = RegionPicture | LinePicture | PoleMap | TimeResponse
+
+
+#: A line through values that were rounded to binary numbers; values of a sweep are exact, what joins them is not.
+Run: TypeAlias = "tuple[tuple[float, float], ...]"
+
+
+@dataclass(frozen=True)
+class SweepCurves:
+    """Columns of a sweep over one name: of each the lines through its values; in the `gaps` there are none."""
+
+    axis: str
+    columns: tuple[tuple[Formula, tuple[Run, ...]], ...]
+    window: tuple[float, float]
+    points: int
+    gaps: tuple[tuple[float, float], ...] = ()
+
+
+@dataclass(frozen=True)
+class SweepMap:
+    """A column of a sweep over two names: lines of equal values; in the rectangles `gaps` there are none."""
+
+    axes: tuple[str, str]
+    column: Formula
+    window: tuple[tuple[float, float], tuple[float, float]]
+    levels: tuple[tuple[Fraction, tuple[Run, ...]], ...]
+    points: int
+    gaps: tuple[Run, ...] = ()
+
+
+Drawn: TypeAlias = Picture | SweepCurves | SweepMap

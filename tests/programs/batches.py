@@ -11,6 +11,8 @@ import argparse
 import math
 import resource
 import shutil
+import subprocess
+import sys
 import tempfile
 import time
 from pathlib import Path
@@ -25,10 +27,14 @@ from symobs.batching.sweep.plan import BLOCK, Plan
 from symobs.problem import read
 from symobs.render.formats.json import result_object
 from tests.support.problems.batches import design
+from tests.support.tools.command_line import environment
 from tests.unit.batching.test_sweep import CART
 
 if TYPE_CHECKING:
     from collections.abc import Callable
+
+#: Seconds of the machine that stores, a row of a sweep: 9 µs to take it, 28 µs to write it into the table.
+STORED = 37e-6
 
 
 def solved(number: int) -> list[Any]:
@@ -76,7 +82,7 @@ def by_dask(count: int) -> None:
         client.gather(client.map(solved, range(count)))
 
 
-def exponent(measured: list[tuple[int, float]]) -> float:
+def exponent(measured: list[tuple[float, float]]) -> float:
     """The p of time ~ sizeᵖ that fits best."""
     logs = [(math.log(size), math.log(seconds)) for size, seconds in measured]
     mean = [sum(values) / len(logs) for values in zip(*logs, strict=True)]
@@ -84,12 +90,44 @@ def exponent(measured: list[tuple[int, float]]) -> float:
     return slope
 
 
+def grown(kind: str, sizes: list[tuple[int, int]]) -> None:
+    """Print how processor time and memory grow with jobs or points, or with workers; each run is a process of its own."""
+    seen = []
+    for number, workers in sizes:
+        words = [sys.executable, "-m", __spec__.name, "--one", kind, str(number), str(workers)]
+        found = subprocess.run(words, env=environment(), check=True, capture_output=True, text=True)
+        seen.append((number, workers, *map(float, found.stdout.split())))
+        print("{} {}, {} workers: processor {:.1f} s, {:.0f} MB, its largest child {:.0f} MB".format(kind, *seen[-1]))
+    by = 0 if sizes[0][0] != sizes[-1][0] else 1
+    powers = [exponent([(each[by], each[k]) for each in seen]) for k in (2, 3, 4)]
+    what = ("processor time", "memory", "memory of a child")
+    told = ", ".join(f"{name} {power:.2f}" for name, power in zip(what, powers, strict=True))
+    print(f"powers of the number of {kind if by == 0 else 'workers'}: {told}")
+
+
+def one(kind: str, number: int, workers: int) -> None:
+    """Do one run, and print its processor time, the memory of this process, and that of the largest child."""
+    with tempfile.TemporaryDirectory() as folder:
+        if kind == "jobs":
+            work = lambda: by_batch(number, Path(folder), workers=workers)  # noqa: E731
+        else:
+            plan = Plan(CART, f"l=1:1:{number // 100}, m=1:1:100", "K, L")
+            work = lambda: Batch(plan.jobs, Path(folder), workers=workers).finish()  # type: ignore[assignment]  # noqa: E731
+        used = timed(work)[1]
+    memory = [resource.getrusage(who).ru_maxrss / 1024 for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN)]
+    print(used, *memory)
+
+
 def main() -> None:
     """Print what was measured."""
     asked = argparse.ArgumentParser(description=__doc__)
+    asked.add_argument("--one", nargs=3)
     asked.add_argument("--jobs", type=int, default=400)
     asked.add_argument("--points", type=int, default=40_000)
     options = asked.parse_args()
+    if options.one:
+        one(options.one[0], int(options.one[1]), int(options.one[2]))
+        return
     folder = Path(tempfile.mkdtemp()) / "out"
     count = options.jobs
     solved(0)
@@ -109,23 +147,20 @@ def main() -> None:
     (folder / "keys.bin").unlink()
     store.load()
     print(f"reading {len(store.final)} rows again: {time.process_time() - began:.3f} s")
-    growth = [(n, timed(lambda n=n: by_batch(n, folder, workers=2))[1]) for n in (count // 4, count // 2, count)]  # type: ignore[misc]
-    print(f"processor time grows with jobs as their number to the power {exponent(growth):.2f}: {growth}")
-    points = []
-    for number in (options.points // 4, options.points // 2, options.points):
-        jobs = list(Plan(CART, f"l=1:1:{number // 100}, m=1:1:100", "K, L").jobs())
-        began = time.process_time()
-        for job in jobs:
-            block.run(read_payload(job.payload))
-        points.append((number, time.process_time() - began))
-    each = points[-1][1] / points[-1][0]
-    print(f"points: {each * 1e3:.3f} ms each, growing to the power {exponent(points):.2f}")
-    print(f"largest memory of this process: {resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024:.0f} MB")
+    grown("jobs", [(n, 2) for n in (count // 4, count // 2, count)])
+    grown("points", [(n, 2) for n in (options.points // 4, options.points // 2, options.points)])
+    grown("jobs", [(count, workers) for workers in (1, 2, 4)])
+    jobs = list(Plan(CART, f"l=1:1:{options.points // 400}, m=1:1:100", "K, L").jobs())
+    began = time.process_time()
+    for job in jobs:
+        block.run(read_payload(job.payload))
+    each = (time.process_time() - began) / (options.points // 400 * 100)
+    print(f"a point of a block: {each * 1e3:.3f} ms")
     design_seconds = rows["batch, 1 worker"][1] / count
+    points, designs = (max(10**8 * each / 100, 10**8 * STORED) / 60, 10**6 * design_seconds / 100 / 60)
     print(
-        "by this model (no measurement), 100 processors as fast as this one, blocks of "
-        f"{BLOCK} points, 15 µs a row on one: 10^6 designs {10**6 * design_seconds / 100 / 60:.1f} min, "
-        f"10^8 points {max(10**8 * each / 100, 10**8 * 15e-6) / 60:.0f} min"
+        f"by this model (no measurement), 100 processors as fast as this one, blocks of {BLOCK} points, {STORED * 1e6:.0f} µs "
+        f"a row on the machine that stores: 10^6 designs {designs:.0f} min, 10^8 points {points:.0f} min"
     )
 
 

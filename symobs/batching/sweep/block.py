@@ -11,7 +11,7 @@ from symobs.batching.jobs import canonical, read_payload
 from symobs.batching.recheck import Beyond, fault_at
 from symobs.batching.solving import given_for
 from symobs.batching.sweep.grid import Axis, Grid
-from symobs.batching.sweep.program import Program
+from symobs.batching.sweep.program import MARGINS, MARGINS_STATUS, Program
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -24,7 +24,6 @@ _LOOKED_AT = 3
 def run(payload: Mapping[str, Any]) -> dict[str, Any]:
     """Return the row of a block: how each point went, its case, and the columns as exact texts."""
     grid, program = grid_of(payload), _program(canonical(payload["program"]))
-    chosen = [place for place, name in enumerate(program.columns()) if name in set(payload["columns"])]
     outer: tuple[Fraction, ...] | None = None
     rows = []
     for index in range(payload["first"], payload["first"] + payload["count"]):
@@ -33,13 +32,37 @@ def run(payload: Mapping[str, Any]) -> dict[str, Any]:
             outer = point[:-1]
             program.line(outer)
         rows.append(program.at(point))
-    columns = {name: [row.values[k] for row in rows] for name, k in zip(payload["columns"], chosen, strict=True)}
+    whole = {name: [row.values[k] for row in rows] for k, name in enumerate(program.columns())}
+    columns = {name: whole[name] for name in payload["columns"] if name in whole}
     result: dict[str, Any] = {
         "status": [row.status for row in rows],
         "case": [row.case for row in rows],
         "columns": columns,
     }
+    if MARGINS_STATUS in payload["columns"]:
+        result["nearest"] = _add_margins(columns, whole, program, grid, payload)
     return {"status": "undecided" if "undecided" in result["status"] else "done", "result": result}
+
+
+def _add_margins(
+    columns: dict[str, Any], whole: Mapping[str, list[Any]], program: Program, grid: Grid, payload: Mapping[str, Any]
+) -> dict[str, dict[str, float]]:
+    """Add the margins to the columns; return by column and place the binary numbers nearest to what is no fraction."""
+    from symobs.batching.sweep.margins import cells_at  # noqa: PLC0415 - only where they are asked for
+
+    names = [name for name in (*MARGINS, MARGINS_STATUS) if name in payload["columns"]]
+    columns |= {name: [None] * payload["count"] for name in names}
+    nearest: dict[str, dict[str, float]] = {}
+    for place in range(payload["count"]):
+        entries = {name: column[place] for name, column in whole.items()}
+        if None in entries.values():
+            continue
+        cells, doubles = cells_at(program, grid.point(payload["first"] + place), entries)
+        for name in names:
+            columns[name][place] = cells.get(name)
+            if name in doubles:
+                nearest.setdefault(name, {})[str(place)] = doubles[name]
+    return nearest
 
 
 def grid_of(payload: Mapping[str, Any]) -> Grid:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 import shutil
 from fractions import Fraction
 from pathlib import Path
@@ -14,7 +15,7 @@ from symobs.batching.kept import CHILD
 from symobs.batching.run import Batch, texts_of
 from symobs.batching.store import work_folder
 from symobs.batching.sweep.grid import Grid, read_grid
-from symobs.batching.sweep.program import GAINS, Program
+from symobs.batching.sweep.program import GAINS, MARGINS, MARGINS_STATUS, Program
 from symobs.batching.sweep.table import check_target, write_table
 from symobs.child_processes.child import Died, started
 from symobs.errors import InputError, SymobsError, UsageError
@@ -27,6 +28,8 @@ if TYPE_CHECKING:
 
 #: Consecutive points of one job.
 BLOCK = 1024
+#: Columns of rounded decimals and of words.
+_TEXTS = {"phase_deg", "modulus", MARGINS_STATUS}
 #: What the one solution with symbols may take.
 _ONCE = Budget(60.0, 2000.0)
 
@@ -61,6 +64,10 @@ class Plan:
         self.grid: Grid = read_grid(over, bare.problem.plant.symbols.signs, unbounded=unbounded)
         self.answer = self._once() if way != "each" else None
         self.columns = _chosen(bare.columns(), columns)
+        if MARGINS_STATUS in self.columns:
+            from symobs.batching.sweep.margins import require_one_loop  # noqa: PLC0415 - only where they are asked for
+
+            require_one_loop(bare)
         self.name = name
 
     @property
@@ -112,14 +119,24 @@ def _chosen(there: list[str], wanted: str | None) -> list[str]:
     """Return the columns asked for: names of columns, or of what they are entries of."""
     if wanted is None:
         return there
-    names = [name.strip() for name in wanted.replace(";", ",").split(",") if name.strip()]
-    chosen = [column for column in there if column in names or column.partition("[")[0].partition(".")[0] in names]
-    strange = [name for name in names if not any(name in {c, c.partition("[")[0].partition(".")[0]} for c in there)]
+    parts = re.split(r"[;,](?![^\[]*\])", wanted)  # commas in brackets part no names
+    names = [part.replace(" ", "") for part in parts if part.strip()]
+    group = {column: column.partition("[")[0].partition(".")[0] for column in there} | dict.fromkeys(MARGINS, "margins")
+    chosen = [column for column in group if column in names or group[column] in names]
+    strange = [name for name in names if not any(name in pair for pair in group.items())]
     if strange or not chosen:
-        known = ", ".join(dict.fromkeys(column.partition("[")[0].partition(".")[0] for column in there))
+        known = ", ".join(dict.fromkeys(group.values()))
         message = f"{', '.join(strange) or 'nothing'} is no column"
         raise UsageError(message, where="--columns", repair=f"name some of {known}")
-    return chosen
+    return [*chosen, MARGINS_STATUS] if set(chosen) & set(MARGINS) else chosen
+
+
+def exact(text: str) -> Fraction | str:
+    """Return a number as a fraction where it is one, else its text: `sqrt(2)`, `CRootOf(...)`, `oo`."""
+    try:
+        return Fraction(text)
+    except ValueError:
+        return text
 
 
 class SweepTable:
@@ -141,13 +158,14 @@ class SweepTable:
         yield from store.in_order(self.plan.jobs())
 
     def __iter__(self) -> Iterator[dict[str, Any]]:
-        """Yield the rows: the names and the columns as fractions, `status` and `case`."""
+        """Yield the rows: the names and the columns as fractions, other numbers as texts, `status` and `case`."""
         for first, result in self.blocks():
             columns = result["columns"]
             for place, (status, case) in enumerate(zip(result["status"], result["case"], strict=True)):
                 point = dict(zip(self.grid.names, self.grid.point(first + place), strict=True))
                 cells = {
-                    name: None if column[place] is None else Fraction(column[place]) for name, column in columns.items()
+                    name: column[place] if column[place] is None or name in _TEXTS else exact(column[place])
+                    for name, column in columns.items()
                 }
                 yield {
                     "index": first + place,
@@ -188,7 +206,7 @@ def sweep(
     problem    the path or the text of a problem of state_feedback, observer or compensator
     over       `"l=0.1:0.1:10, m=[1,2,5]"` (start:step:stop, lists, a:b/N, decade(a:b)), or names with their values; the
                last name runs fastest
-    columns    `"K, L"`: those wanted, all without it
+    columns    `"K, L"`: those wanted, all of K, L, F without it; `margins`: how far the loop is from instability
     out        a .csv or .parquet file, or a folder of Parquet files; a run that was ended goes on
     decimals   for every exact column a second one of the nearest binary numbers
     way        `each` solves every point by itself; else the problem is solved once with symbols where that succeeds

@@ -34,6 +34,9 @@ if TYPE_CHECKING:
 
 #: The gains that each task has, and the polynomial of each: what is asked for under these names.
 GAINS = {"state_feedback": ("K",), "observer": ("L",), "compensator": ("K", "L")}
+#: The columns that say how far a loop is from instability; how each point went: done, unstable, undecided.
+MARGINS = ("gain_down", "gain_up", "phase_deg", "modulus", "slowest")
+MARGINS_STATUS = "margins_status"
 _HALF = {"K": "control", "L": "observer"}
 _RELATION = re.compile(r"(.+) (!=|==|>=|<=|>|<) 0")
 _HOLDS = {

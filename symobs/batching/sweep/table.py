@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, Protocol
 
 from symobs.batching.jobs import fingerprint
 from symobs.batching.store import write_whole
+from symobs.batching.sweep.program import MARGINS_STATUS
 from symobs.errors import InputError, UsageError, reason_of
 
 if TYPE_CHECKING:
@@ -77,16 +78,27 @@ def columns_of(table: Swept, first: int, result: dict[str, Any], *, decimals: bo
     exact = {name: [str(point[k]) for point in points] for k, name in enumerate(table.grid.names)}
     for name, column in {**exact, **result["columns"]}.items():
         found[name] = column
-        if decimals:
-            found[f"{name}.d"] = [None if entry is None else nearest(entry) for entry in column]
+        if decimals and name != MARGINS_STATUS:
+            found[f"{name}.d"] = nearest_of(name, {**result, "columns": {name: column}})
     checked = [status == "done" for status in result["status"]]
     return {**found, "status": result["status"], "case": result["case"], "checked": checked}
+
+
+def nearest_of(name: str, result: dict[str, Any]) -> list[float | None]:
+    """Return the binary numbers nearest to the entries of a column of a block."""
+    known = result.get("nearest", {}).get(name, {})
+    return [
+        known[str(place)] if str(place) in known else None if entry is None else nearest(entry)
+        for place, entry in enumerate(result["columns"][name])
+    ]
 
 
 def nearest(text: str) -> float | None:
     """Return the binary number nearest to an exact one, None beyond their range."""
     above, _, below = text.partition("/")
     try:
+        if "." in text or text == "oo":
+            return float(text.replace("oo", "inf"))
         return int(above) / int(below or 1)  # Python rounds the quotient of integers correctly
     except OverflowError:
         return None
@@ -94,7 +106,9 @@ def nearest(text: str) -> float | None:
 
 def _header(table: Swept, *, decimals: bool) -> list[str]:
     exact = [*table.grid.names, *table.plan.columns]
-    named = [each for name in exact for each in ((name, f"{name}.d") if decimals else (name,))]
+    named = [
+        each for name in exact for each in ((name, f"{name}.d") if decimals and name != MARGINS_STATUS else (name,))
+    ]
     return ["index", *named, *_LAST_COLUMNS]
 
 
@@ -134,7 +148,7 @@ def _schema(table: Swept, *, decimals: bool) -> Any:
     fields = [pa.field("index", pa.int64())]
     for name in exact:
         fields.append(pa.field(name, pa.string()))
-        if decimals:
+        if decimals and name != MARGINS_STATUS:
             fields.append(pa.field(f"{name}.d", pa.float64()))
     fields += [pa.field("status", pa.string()), pa.field("case", pa.int32()), pa.field("checked", pa.bool_())]
     told = {"schema": SCHEMA, "fingerprint": fingerprint(), "way": table.plan.way}

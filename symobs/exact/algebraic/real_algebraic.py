@@ -138,11 +138,11 @@ class RealNumber:
     def decimal(self, digits: int = 6) -> str:
         """Return the number rounded to this many digits after the point, every digit certified."""
         if self.is_rational:
-            return _rounded(self.fraction, digits)
+            return rounded_to(self.fraction, digits)
         bits = FIRST_BITS
         while True:  # an irrational number is never half-way between two decimals
             low, high = self.interval(bits)
-            shown = {_rounded(low, digits), _rounded(high, digits)}
+            shown = {rounded_to(low, digits), rounded_to(high, digits)}
             if len(shown) == 1:
                 return shown.pop()
             bits *= 2
@@ -223,7 +223,8 @@ def _fraction(exact: arb) -> Fraction:
     return Fraction(int(found.p), int(found.q))
 
 
-def _rounded(value: Fraction, digits: int) -> str:
+def rounded_to(value: Fraction, digits: int) -> str:
+    """Return a number rounded to so many digits after the point, without zeros at the end."""
     scaled = floor(abs(value) * 10**digits + Fraction(1, 2))
     whole, rest = divmod(scaled, 10**digits)
     text = f"{whole}.{rest:0{digits}d}".rstrip("0").rstrip(".") if digits else str(whole)

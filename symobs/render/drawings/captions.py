@@ -14,7 +14,7 @@ from symobs.render.page.prose import filled, joined
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from symobs.figures.plot import Picture
+    from symobs.figures.plot import Drawn
     from symobs.formula import Formula, Relation
     from symobs.phrases.languages import Language
     from symobs.render.drawings.scene import Point, Scene
@@ -44,7 +44,7 @@ def below(words: Inlines, scene: Scene, language: Language) -> Inlines:
 
 
 def caption_below(
-    picture: Picture,
+    picture: Drawn,
     scene: Scene,
     language: Language,
     plain: Callable[[str], Piece],

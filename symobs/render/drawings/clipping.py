@@ -1,4 +1,4 @@
-"""Lines and polygons clipped to a rectangle, joined and thinned."""
+"""Lines and polygons clipped to a rectangle, joined and thinned; the frame of a plot."""
 
 from __future__ import annotations
 
@@ -6,10 +6,43 @@ from itertools import pairwise
 from math import hypot
 from typing import TYPE_CHECKING
 
-if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+from symobs._dataclass import dataclass
+from symobs.render.drawings.scene import Rectangle
 
-    from symobs.render.drawings.scene import Point, Rectangle
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Sequence
+    from fractions import Fraction
+
+    from symobs.render.drawings.scene import Point
+
+
+@dataclass(frozen=True)
+class Frame:
+    """A window of the plane and its rectangle on paper."""
+
+    horizontal: tuple[float, float]
+    vertical: tuple[float, float]
+    width: float
+    height: float
+
+    @property
+    def box(self) -> Rectangle:
+        """The rectangle."""
+        return Rectangle(0.0, 0.0, self.width, self.height)
+
+    def at(self, x: float | Fraction, y: float | Fraction) -> Point:
+        """Return the point on paper of a place in the plane."""
+        (left, right), (bottom, top) = self.horizontal, self.vertical
+        return (float(x) - left) / (right - left) * self.width, (float(y) - bottom) / (top - bottom) * self.height
+
+    def lines(self, places: Iterable[tuple[float | Fraction, float | Fraction]]) -> list[tuple[Point, ...]]:
+        """Return the parts of a line in the plane inside the frame."""
+        return [thinned(run) for run in clipped([self.at(x, y) for x, y in places], self.box)]
+
+    def areas(self, places: Iterable[tuple[float | Fraction, float | Fraction]]) -> list[tuple[Point, ...]]:
+        """Return the part of a polygon inside the frame."""
+        area = clipped_area([self.at(x, y) for x, y in places], self.box)
+        return [thinned((*area, area[0]))[:-1]] if area else []
 
 
 def clipped(points: Sequence[Point], frame: Rectangle) -> Iterator[tuple[Point, ...]]:

@@ -14,7 +14,7 @@ from symobs.render.drawings.scene import FONT_SIZE, RADIUS, STYLES, arrow_head, 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from symobs.figures.plot import Picture
+    from symobs.figures.plot import Drawn
     from symobs.formula import Formula, Relation
     from symobs.render.drawings.scene import Content, Point, Scene, Sign, Stroke
     from symobs.render.printers.latex_printer import LatexPrinter
@@ -42,7 +42,7 @@ def require_matplotlib() -> None:
         raise UsageError(message, repair="pip install matplotlib, or name a file that ends in .svg or .tex") from None
 
 
-def drawn_by_matplotlib(picture: Picture, kind: str, latex: LatexPrinter, text: TextPrinter) -> bytes:
+def drawn_by_matplotlib(picture: Drawn, kind: str, latex: LatexPrinter, text: TextPrinter) -> bytes:
     """Return a plot with its caption as `png` or `pdf`."""
     require_matplotlib()
     from matplotlib.figure import Figure

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
     from symobs.derivation import Step
-    from symobs.figures.plot import Picture
+    from symobs.figures.plot import Drawn, Picture, SweepCurves, SweepMap
     from symobs.result import Result
 
 SUFFIXES = (".svg", ".png", ".pdf", ".tex")
@@ -46,11 +46,16 @@ def picture_file(results: Sequence[Result], path: str, language: str = "en") -> 
             message, where="--plot", repair="leave --plot out, or ask for a task whose page shows a picture"
         )
     _require_checked(result.picture, result)
-    return _written(result.picture, result, Path(path).suffix.lower(), language)
-
-
-def _written(picture: Picture, result: Result, suffix: str, language: str) -> bytes:
     document = Document("", "", (result,), language=language)
+    return _written(result.picture, document, Path(path).suffix.lower())
+
+
+def sweep_file(picture: SweepCurves | SweepMap, path: str) -> bytes:
+    """Return the plot of a sweep in the format of the suffix of `path`."""
+    return _written(picture, Document("", "", ()), Path(path).suffix.lower())
+
+
+def _written(picture: Drawn, document: Document, suffix: str) -> bytes:
     latex, text = printer_for(document, LatexPrinter), printer_for(document, TextPrinter)
     match suffix:
         case ".svg":

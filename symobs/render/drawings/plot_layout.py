@@ -4,25 +4,28 @@ from __future__ import annotations
 
 from dataclasses import replace
 from itertools import pairwise
-from math import ceil, cos, floor, hypot, log10, pi, sin
+from math import ceil, cos, dist, floor, hypot, log10, pi, sin
 from typing import TYPE_CHECKING, assert_never
 
-from symobs._dataclass import dataclass
-from symobs.figures.plot import LinePicture, PoleMap, RegionPicture, TimeResponse
-from symobs.formula import Letter, Literal, Relation
-from symobs.render.drawings.clipping import chained, clipped, clipped_area, segment_in, thinned
+from symobs.exact import Scalar
+from symobs.figures.plot import LinePicture, PoleMap, RegionPicture, SweepCurves, SweepMap, TimeResponse
+from symobs.formula import Decimals, Literal, Relation
+from symobs.render.drawings.clipping import Frame, chained, segment_in
 from symobs.render.drawings.curve_labels import Surroundings, labelled, walk
 from symobs.render.drawings.scene import RADIUS, Rectangle, Scene, Sign, Stroke, TextLabel, whole_of
-from symobs.render.page.plot_captions import drawn, part, radius_of, symbol
+from symobs.render.page.plot_captions import drawn, name_of, part, radius_of, symbol, time_axis
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Sequence
+    from collections.abc import Callable, Iterable, Iterator, Sequence
     from fractions import Fraction
 
-    from symobs.figures.plot import End, Interval, Picture, Response
+    from symobs.figures.plot import Drawn, End, Interval, Response, Run
     from symobs.formula import Formula
     from symobs.phrases.languages import Language
     from symobs.render.drawings.scene import Content, Measure, Point
+
+    #: The name of a curve, its range, and its lines in a frame.
+    _Panel = tuple[Content, tuple[float, float], Callable[[Frame], list[tuple[Point, ...]]]]
 
 WIDEST, HIGHEST = 270.0, 160.0  # points
 _LINE, _LONGEST_END = 290.0, 0.3
@@ -30,6 +33,8 @@ _TIME_HEIGHT = 80.0
 _SMALLEST_SIDE = 100.0
 #: Windows that are not much longer than high are drawn with equal scales.
 _EQUAL_UP_TO = 2.0
+#: A line of a map that is shorter is a corner of what has no values.
+_SHORTEST = 2.0
 _TICK, _BEYOND, _LETTER = 3.0, 11.0, 4.0
 _TICKS = 5
 _CURVES = {True: "boundary", False: "divider"}
@@ -41,7 +46,7 @@ _ONE_AXIS, _PANEL, _BETWEEN_PANELS = 4, 48.0, 26.0
 _SIGNS = {"stable": "dot", "unstable": "cross", "excluded": "ring"}
 
 
-def plot_scene(picture: Picture, measure: Measure, language: Language) -> Scene:
+def plot_scene(picture: Drawn, measure: Measure, language: Language) -> Scene:
     """Return the scene of a plot on paper, its decimals in a language; `measure` gives the size of text in a format."""
     scene = _scene(picture, measure)
     texts = [
@@ -51,7 +56,7 @@ def plot_scene(picture: Picture, measure: Measure, language: Language) -> Scene:
     return replace(scene, texts=tuple(texts))
 
 
-def _scene(picture: Picture, measure: Measure) -> Scene:
+def _scene(picture: Drawn, measure: Measure) -> Scene:
     match picture:
         case RegionPicture():
             return _region(picture, measure)
@@ -61,36 +66,12 @@ def _scene(picture: Picture, measure: Measure) -> Scene:
             return _poles(picture, measure)
         case TimeResponse():
             return _responses(picture, measure)
+        case SweepCurves():
+            return _curves(picture, measure)
+        case SweepMap():
+            return _map(picture, measure)
         case _:
             assert_never(picture)
-
-
-@dataclass(frozen=True)
-class _Frame:
-    """A window of the plane and its rectangle on paper."""
-
-    horizontal: tuple[float, float]
-    vertical: tuple[float, float]
-    width: float
-    height: float
-
-    @property
-    def box(self) -> Rectangle:
-        return Rectangle(0.0, 0.0, self.width, self.height)
-
-    def at(self, x: float | Fraction, y: float | Fraction) -> Point:
-        """Return the point on paper of a place in the plane."""
-        (left, right), (bottom, top) = self.horizontal, self.vertical
-        return (float(x) - left) / (right - left) * self.width, (float(y) - bottom) / (top - bottom) * self.height
-
-    def lines(self, places: Iterable[tuple[float | Fraction, float | Fraction]]) -> list[tuple[Point, ...]]:
-        """Return the parts of a line in the plane inside the frame."""
-        return [thinned(run) for run in clipped([self.at(x, y) for x, y in places], self.box)]
-
-    def areas(self, places: Iterable[tuple[float | Fraction, float | Fraction]]) -> list[tuple[Point, ...]]:
-        """Return the part of a polygon inside the frame."""
-        area = clipped_area([self.at(x, y) for x, y in places], self.box)
-        return [thinned((*area, area[0]))[:-1]] if area else []
 
 
 def _decimal(interval: Interval) -> tuple[float, float]:
@@ -133,14 +114,14 @@ def _between(line: tuple[Point, Point], boxes: Iterable[Rectangle]) -> list[tupl
     return [(a, b) for a, b in pieces if a != b]
 
 
-def _frame_of(window: tuple[Interval, Interval]) -> _Frame:
+def _frame_of(window: tuple[Interval, Interval]) -> Frame:
     """Return the frame of a window, with equal scales unless that makes it a strip."""
     horizontal, vertical = map(_decimal, window)
     ratio = (horizontal[1] - horizontal[0]) / (vertical[1] - vertical[0])
     if not 1 / _EQUAL_UP_TO <= ratio <= _EQUAL_UP_TO:
         ratio = WIDEST / HIGHEST
     width = min(WIDEST, ratio * HIGHEST)
-    return _Frame(horizontal, vertical, width, width / ratio)
+    return Frame(horizontal, vertical, width, width / ratio)
 
 
 def _box(sign: Sign) -> Rectangle:
@@ -151,7 +132,7 @@ def _box(sign: Sign) -> Rectangle:
 # -- axes -------------------------------------------------------------------------------------------------------------
 
 
-def _axes(frame: _Frame, names: tuple[Content, ...], measure: Measure) -> tuple[list[Stroke], list[TextLabel]]:
+def _axes(frame: Frame, names: tuple[Content, ...], measure: Measure) -> tuple[list[Stroke], list[TextLabel]]:
     """Return axes on the left and below, with ticks and names."""
     width, height = frame.width, frame.height
     strokes = [Stroke(((0, 0), (width + _BEYOND, 0)), "axis"), Stroke(((0, 0), (0, height + _BEYOND)), "axis")]
@@ -173,7 +154,7 @@ def _fitting(height: float, measure: Measure) -> int:
     return max(3, min(_TICKS, int(height / (2 * measure("0")[1]))))
 
 
-def _zero_lines(frame: _Frame) -> Iterator[tuple[Point, Point]]:
+def _zero_lines(frame: Frame) -> Iterator[tuple[Point, Point]]:
     """Yield the lines through zero inside the frame."""
     x, y = frame.at(0, 0)
     if 0 < x < frame.width:
@@ -198,7 +179,7 @@ def ticks(low: float, high: float, most: int = _TICKS) -> list[tuple[float, str]
 def _line(picture: LinePicture, measure: Measure) -> Scene:
     """Return a line with thick pieces; labels of ends that would overlap stand on further rows."""
     low, high = _decimal(picture.window)
-    frame = _Frame((low, high), (0.0, 1.0), _LINE, 1.0)
+    frame = Frame((low, high), (0.0, 1.0), _LINE, 1.0)
 
     def at(value: float | Fraction) -> float:
         return frame.at(value, 0)[0]
@@ -215,9 +196,9 @@ def _line(picture: LinePicture, measure: Measure) -> Scene:
     texts = [TextLabel(symbol(picture.axis), (_LINE + _BEYOND + _LETTER, 0), "west"), *_rows(ends, measure)]
     strokes += [Stroke((text.place, (text.place[0], 0)), "zero") for text in texts[1:] if text.place[1] < -3 * _TICK]
     covered = [text.box(measure(text.content)) for text in texts]
-    for value, number in ticks(low, high):
-        text = TextLabel(number, (at(value), -_TICK - 2), "north")
-        box = text.box(measure(number))
+    for value, label in ticks(low, high):
+        text = TextLabel(label, (at(value), -_TICK - 2), "north")
+        box = text.box(measure(label))
         if all(abs(at(value) - x) > RADIUS["ring"] for x in ends):
             strokes.append(Stroke(((at(value), 1.5), (at(value), -1.5)), "tick"))
         if not any(box.grown(_LETTER).meets(other) for other in covered):
@@ -283,7 +264,7 @@ def _responses(picture: TimeResponse, measure: Measure) -> Scene:
     alone = not picture.discrete and not any(response.dashed for response in picture.responses)
     if alone and 0 < _ONE_AXIS * min(peaks) < max(peaks):
         return _panels(picture, measure)
-    frame = _Frame(_decimal(picture.window[0]), _decimal(picture.window[1]), WIDEST, _TIME_HEIGHT)
+    frame = Frame(_decimal(picture.window[0]), _decimal(picture.window[1]), WIDEST, _TIME_HEIGHT)
     counted = replace(frame, vertical=(frame.vertical[0] * picture.parts, frame.vertical[1] * picture.parts))
     lines = [
         tuple(replace(counted, horizontal=(0.0, len(response.heights) - 1.0)).lines(enumerate(response.heights)))
@@ -317,44 +298,48 @@ def _style_of(response: Response, picture: TimeResponse) -> str:
 
 def _panels(picture: TimeResponse, measure: Measure) -> Scene:
     """Return signals over time one below the other, each on an axis of its own with its name."""
+
+    def drawn_in(response: Response) -> Callable[[Frame], list[tuple[Point, ...]]]:
+        def lines(frame: Frame) -> list[tuple[Point, ...]]:
+            low, high = (edge * picture.parts for edge in frame.vertical)
+            counted = replace(frame, horizontal=(0.0, len(response.heights) - 1.0), vertical=(low, high))
+            return counted.lines(enumerate(response.heights))
+
+        return lines
+
+    panels: list[_Panel] = []
+    for response in picture.responses:
+        low, high = (bound(0, bound(response.heights)) / picture.parts for bound in (min, max))
+        panels.append((name_of(response), (low, high), drawn_in(response)))
+    return _stacked(_decimal(picture.window[0]), time_axis(picture), panels, measure)
+
+
+def _stacked(window: tuple[float, float], axis: str, panels: Sequence[_Panel], measure: Measure) -> Scene:
+    """Return panels one below the other over one horizontal axis."""
     strokes: list[Stroke] = []
     texts: list[TextLabel] = []
-    for row, response in enumerate(reversed(picture.responses)):
+    for row, (name, (low, high), lines) in enumerate(reversed(panels)):
         up = row * (_PANEL + _BETWEEN_PANELS)
-        low, high = (bound(0, bound(response.heights)) / picture.parts for bound in (min, max))
         room = (high - low) / 20
-        frame = _Frame(_decimal(picture.window[0]), (low - room, high + room), WIDEST, _PANEL)
-        axes, written = _axes(frame, (symbol(time_axis(picture)), name_of(response)), measure)
-        steps = len(response.heights) - 1
-        low, high = (edge * picture.parts for edge in frame.vertical)
-        counted = replace(frame, horizontal=(0.0, float(steps)), vertical=(low, high))
+        frame = Frame(window, (low - room, high + room), WIDEST, _PANEL)
+        axes, written = _axes(frame, (symbol(axis), name), measure)
         runs = [Stroke(line, "zero") for line in _zero_lines(frame)] + axes
-        runs += [Stroke(line, "path") for line in counted.lines(enumerate(response.heights))]
+        runs += [Stroke(line, "path") for line in lines(frame)]
         strokes += [replace(run, points=tuple((x, y + up) for x, y in run.points)) for run in runs]
         shown = written if not row else [text for text in written if text.anchor != "north" and text is not written[0]]
         texts += [replace(text, place=(text.place[0], text.place[1] + up)) for text in shown]
-    height = len(picture.responses) * (_PANEL + _BETWEEN_PANELS) - _BETWEEN_PANELS
+    height = len(panels) * (_PANEL + _BETWEEN_PANELS) - _BETWEEN_PANELS
     whole = whole_of(strokes, texts, measure)
     return Scene(Rectangle(0.0, 0.0, WIDEST, height), whole, (), tuple(strokes), (), (), tuple(texts))
 
 
-def name_of(response: Response) -> Formula:
-    """Return the name of a response: the letter of its signal, with the index of its component."""
-    return Letter(f"{response.signal}[{response.component}" if response.component else response.signal)
-
-
-def time_axis(picture: TimeResponse) -> str:
-    """Return the name of the time axis."""
-    return "k" if picture.discrete else "t"
-
-
-def _square_frame(window: tuple[Interval, Interval]) -> _Frame:
+def _square_frame(window: tuple[Interval, Interval]) -> Frame:
     """Return a frame with equal scales, a strip widened on both sides."""
     horizontal, vertical = map(_decimal, window)
     scale = min(WIDEST / (horizontal[1] - horizontal[0]), HIGHEST / (vertical[1] - vertical[0]))
     horizontal, vertical = (_widened(interval, _SMALLEST_SIDE / scale) for interval in (horizontal, vertical))
     width, height = ((high - low) * scale for low, high in (horizontal, vertical))
-    return _Frame(horizontal, vertical, width, height)
+    return Frame(horizontal, vertical, width, height)
 
 
 def _widened(interval: tuple[float, float], least: float) -> tuple[float, float]:
@@ -370,3 +355,41 @@ def _arrows(run: Sequence[Point]) -> Iterator[Sign]:
         return
     for place, direction, _ in walk(run, length / 2 if length > WIDEST / 2 else length):
         yield Sign("arrow", (place[0] + 2 * direction[0], place[1] + 2 * direction[1]), direction)
+
+
+# -- sweeps -----------------------------------------------------------------------------------------------------------
+
+
+def _curves(picture: SweepCurves, measure: Measure) -> Scene:
+    """Return columns over one name, one below the other; where there are no values the ground is shaded."""
+
+    def drawn_in(runs: Sequence[Run]) -> Callable[[Frame], list[tuple[Point, ...]]]:
+        return lambda frame: [line for run in runs for line in frame.lines(run)]
+
+    panels: list[_Panel] = []
+    for name, runs in picture.columns:
+        heights = [y for run in runs for _, y in run] or [0.0]
+        low, high = min(heights), max(heights)
+        room = 0.0 if low < high else abs(low) / 10 or 1.0
+        panels.append((name, (low - room, high + room), drawn_in(runs)))
+    scene = _stacked(picture.window, picture.axis, panels, measure)
+    frame = Frame(picture.window, (0.0, 1.0), WIDEST, scene.frame.top)
+    shades = [area for a, b in picture.gaps for area in frame.areas([(a, 0), (b, 0), (b, 1), (a, 1)])]
+    return replace(scene, shades=tuple(shades))
+
+
+def _map(picture: SweepMap, measure: Measure) -> Scene:
+    """Return lines of equal values, each with its value beside it; where there are no values the ground is shaded."""
+    frame = Frame(*picture.window, WIDEST, HIGHEST)
+    curves: dict[Formula, tuple[tuple[Point, ...], ...]] = {}
+    for level, runs in picture.levels:
+        seen = (line for run in runs for line in frame.lines(run) if sum(map(dist, line, line[1:])) > _SHORTEST)
+        if found := tuple(seen):
+            curves[Decimals(Scalar.of(level))] = found
+    lines = tuple(line for parts in curves.values() for line in parts)
+    shades = tuple(area for gap in picture.gaps for area in frame.areas(gap))
+    labels, numbered = labelled(curves, Surroundings(frame.box, lines, (), (), shades), measure)
+    axes, written = _axes(frame, (symbol(picture.axes[0]), symbol(picture.axes[1])), measure)
+    texts = (*written, *labels)
+    strokes = (*axes, *(Stroke(line, "path") for line in lines))
+    return Scene(frame.box, whole_of(axes, texts, measure), shades, strokes, (), (), texts, tuple(numbered))

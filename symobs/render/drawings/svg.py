@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
 
     from symobs.figures.block_diagram import Label
-    from symobs.figures.plot import Picture
+    from symobs.figures.plot import Drawn
     from symobs.formula import Formula, Relation
     from symobs.render.drawings.scene import Box, Content, Measure, Point, Scene, Sign, Stroke, TextLabel
     from symobs.render.printers.text_printer import TextPrinter
@@ -45,7 +45,7 @@ _MARGIN, _JUNCTION, _BRANCH, _HEAD = 0.7, 0.475, 0.16, 0.62
 _ALONG, _RIGHT, _OVER, _SIGN = 0.6, 0.66, 0.6, 0.85
 
 
-def svg_scene(item: Drawing | Picture, printer: TextPrinter) -> Scene:
+def svg_scene(item: Drawing | Drawn, printer: TextPrinter) -> Scene:
     """Return the scene of a plot or a diagram in the measures of SVG."""
     if isinstance(item, Drawing):
         return diagram_scene(item, metrics_of(printer), _WIDEST, discrete=printer.discrete)
@@ -59,7 +59,7 @@ def svg(scene: Scene, printer: TextPrinter, title: str = "") -> str:
     return writer.element(whole, writer.drawn(), title, "" if scene.is_diagram else _STYLE)
 
 
-def svg_file(picture: Picture, printer: TextPrinter) -> str:
+def svg_file(picture: Drawn, printer: TextPrinter) -> str:
     """Return a plot with its caption as an SVG file."""
     scene = svg_scene(picture, printer)
     letters, space = Letters.of(printer, flat=True), TextRun(" ")

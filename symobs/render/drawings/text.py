@@ -11,10 +11,10 @@ from symobs.figures.plot import LinePicture, PoleMap, RegionPicture, TimeRespons
 from symobs.formula import Conjunction, Formula, Literal
 from symobs.render.drawings.curve_labels import contains
 from symobs.render.drawings.diagram_layout import Metrics, diagram_scene
-from symobs.render.drawings.plot_layout import name_of, ticks, time_axis
+from symobs.render.drawings.plot_layout import ticks
 from symobs.render.drawings.scene import STYLES
 from symobs.render.page.blocks import Drawing
-from symobs.render.page.plot_captions import part, radius_of, symbol
+from symobs.render.page.plot_captions import name_of, part, radius_of, symbol, time_axis
 from symobs.render.printers.text_printer import text_width
 
 if TYPE_CHECKING:

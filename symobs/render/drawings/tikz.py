@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
     from symobs.figures.block_diagram import Label
-    from symobs.figures.plot import Picture
+    from symobs.figures.plot import Drawn
     from symobs.render.drawings.scene import Box, Content, Measure, Point, Scene, Sign, Stroke, TextLabel
     from symobs.render.page.blocks import Inline
     from symobs.render.printers.latex_printer import LatexPrinter
@@ -38,7 +38,7 @@ _LINE, _FRACTION, _ROW = 1.1, 2.4, 1.3
 _ALONG, _BESIDE = 0.5, 0.45
 
 
-def tikz_scene(item: Drawing | Picture, printer: LatexPrinter) -> Scene:
+def tikz_scene(item: Drawing | Drawn, printer: LatexPrinter) -> Scene:
     """Return the scene of a plot or a diagram in the measures of LaTeX."""
     if isinstance(item, Drawing):
         return diagram_scene(item, metrics_for(printer), printer.width, discrete=printer.discrete)
@@ -74,7 +74,7 @@ def figure(scene: Scene, printer: LatexPrinter, words: str = "") -> str:
     return centred(f"\\begin{{minipage}}{{.92\\linewidth}}\\centering\n{content}\\end{{minipage}}")
 
 
-def tikz_file(picture: Picture, printer: LatexPrinter) -> str:
+def tikz_file(picture: Drawn, printer: LatexPrinter) -> str:
     r"""Return a plot with its caption for `\input` or the class `standalone`."""
     scene = tikz_scene(picture, printer)
     place = _point((scene.whole.left, scene.whole.bottom - ABOVE))

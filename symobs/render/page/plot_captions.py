@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from symobs.convention import STANDARD
 from symobs.derivation import Sentence
 from symobs.exact import Matrix, Scalar
-from symobs.figures.plot import LinePicture, PoleMap, RegionPicture, TimeResponse
+from symobs.figures.plot import LinePicture, PoleMap, RegionPicture, SweepCurves, SweepMap, TimeResponse
 from symobs.formula import Apply, At, Conjunction, Letter, Literal, Relation
 from symobs.phrases.languages import ENGLISH
 from symobs.render.page.prose import filled, joined
@@ -16,7 +16,7 @@ from symobs.render.page.prose import filled, joined
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
-    from symobs.figures.plot import Curve, Picture
+    from symobs.figures.plot import Curve, Drawn, Response
     from symobs.formula import Fact, Formula
     from symobs.phrases.languages import Language
     from symobs.render.page.blocks import Inline, Inlines
@@ -26,11 +26,11 @@ _MOST_DIVIDERS = 4
 _UNSKETCHED = {"picture_samples", "picture_stable", "picture_unstable", "picture_dashed"}
 
 
-def caption(picture: Picture, language: Language = ENGLISH, *, sketched: bool = False) -> Inlines:
+def caption(picture: Drawn, language: Language = ENGLISH, *, sketched: bool = False) -> Inlines:
     """Return the caption of a plot; plots in characters have neither samples nor dashes."""
     sentences = [said for said in _sentences(picture) if not (sketched and said.key in _UNSKETCHED)]
-    if picture.drawn_for:
-        values = tuple(_equation(name, value) for name, value in picture.drawn_for)
+    if drawn_for := getattr(picture, "drawn_for", ()):
+        values = tuple(_equation(name, value) for name, value in drawn_for)
         sentences.append(caption_sentence("drawn_for", values=Conjunction(values)))
     words: list[Inline] = []
     for sentence in sentences:
@@ -60,6 +60,16 @@ def part(name: str) -> Formula:
     return Apply(name, Letter("s"))
 
 
+def name_of(response: Response) -> Formula:
+    """Return the name of a response: the letter of its signal, with the index of its component."""
+    return Letter(f"{response.signal}[{response.component}" if response.component else response.signal)
+
+
+def time_axis(picture: TimeResponse) -> str:
+    """Return the name of the time axis."""
+    return "k" if picture.discrete else "t"
+
+
 def _equation(name: str, value: Scalar) -> Relation:
     return Relation((symbol(name), number(value)), ("=",))
 
@@ -69,7 +79,7 @@ def caption_sentence(key: str, **slots: Formula | Fact) -> Sentence:
     return Sentence(f"picture_{key}", tuple(slots.items()))
 
 
-def _sentences(picture: Picture) -> Iterator[Sentence]:
+def _sentences(picture: Drawn) -> Iterator[Sentence]:
     match picture:
         case RegionPicture(axes=(first, second)):
             yield caption_sentence(f"region{_extent(picture)}", first=symbol(first), second=symbol(second))
@@ -94,6 +104,14 @@ def _sentences(picture: Picture) -> Iterator[Sentence]:
                 yield caption_sentence("estimates")
             if picture.discrete:
                 yield caption_sentence("samples_only")
+        case SweepCurves(points=count, gaps=gaps):
+            yield caption_sentence("sweep", count=number(count))
+            if gaps:
+                yield caption_sentence("gaps")
+        case SweepMap(column=column, points=count, gaps=gaps):
+            yield caption_sentence("map", column=column, count=number(count))
+            if gaps:
+                yield caption_sentence("gaps")
 
 
 def _beginning(name: str, start: Sequence[Fraction]) -> Relation:

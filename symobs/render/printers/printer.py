@@ -78,7 +78,9 @@ _BELOW = str.maketrans("0123456789", "₀₁₂₃₄₅₆₇₈₉")
 
 def _with_index(latex: str, index: str) -> str:
     stem, below, own = latex.partition("_")
-    return f"{stem}_{{{own.strip('{}')},{index}}}" if below else f"{stem}_{index}"
+    if below:
+        return f"{stem}_{{{own.strip('{}')},{index}}}"
+    return f"{stem}_{index}" if len(index) == 1 else f"{stem}_{{{index}}}"
 
 
 class Printer(FormulaWriter[B]):
