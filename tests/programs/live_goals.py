@@ -88,7 +88,7 @@ def over_http() -> list[float]:
     return found[20:]
 
 
-_PAINTED = """async ([x, y, steps]) => {
+PAINTED = """async ([x, y, steps]) => {
   const svg = document.querySelector('.plane svg'), list = document.querySelector('.cards .list'), found = [];
   const at = (kind, k) => new PointerEvent(kind,
     { bubbles: true, pointerId: 1, clientX: x - 3 * k, clientY: y - k, button: 0 });
@@ -144,7 +144,7 @@ def in_the_browser() -> None:
             handle = page.locator(".handle.ring").first.get_attribute("data-handle")
             box = page.locator(".handle.ring .hit").first.bounding_box()
             assert box is not None
-            script = _PAINTED.replace("observer_poles.0", str(handle))
+            script = PAINTED.replace("observer_poles.0", str(handle))
             times = page.evaluate(script, [box["x"] + box["width"] / 2, box["y"] + box["height"] / 2, 60])
             row(f"pointer to painted, n = {order}, ms", times[5:], 100)
         browser.close()

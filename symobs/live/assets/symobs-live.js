@@ -822,3 +822,17 @@ export function mount(element, transport, options = {}) {
     set(link) { s = begun(link); frame = null; build(); ask(); },
   };
 }
+
+/** Show a page whose state is that of its address: a drag is one step of its history, which Back undoes. */
+export function atAddress(transport) {
+  let moving = false;
+  const live = mount(/** @type {HTMLElement} */ (document.querySelector("main")), transport, {
+    state: location.hash,
+    link: (state) => `${location.origin}${location.pathname}#${state}`,
+    changed(state, final) {
+      history[moving ? "replaceState" : "pushState"](null, "", `#${state}`);
+      moving = !final;
+    },
+  });
+  addEventListener("popstate", () => live.set(location.hash));
+}
