@@ -2,7 +2,7 @@
 
 SITE is a folder that `python -m symobs.live.site` wrote.  It is served with its policy as a header, and opened in the Chromium
 of the machine as a reader would: time to the first answer, times of a drag, an answer without a network, the page opened
-without one.  Then every worked example is asked for its view, its answer with curves, its JSON and its page, each of which
+without one.  Then every worked example is asked for its view, its answer with curves, its JSON, its LaTeX and its page, each of which
 has to be what this process says; where names are given, these alone.  Needs playwright.
 """
 
@@ -29,6 +29,7 @@ QUESTIONS: tuple[dict[str, Any], ...] = (
     {"want": "view"},
     {"want": "answer", "courses": {"count": 33}, "cases": True},
     {"want": "export", "as": "json"},
+    {"want": "export", "as": "latex"},
     {"want": "page"},
 )
 #: Asks a worker of its own, which stays for the next question; one that ended is replaced.

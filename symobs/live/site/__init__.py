@@ -10,12 +10,15 @@ import hashlib
 import json
 import shutil
 import zipfile
+from importlib.util import find_spec
 from pathlib import Path
 
 _HERE = Path(__file__).parent
 _PACKAGE = _HERE.parents[1]
 _ASSETS = _HERE.parent / "assets"
-_EXAMPLES = (_PACKAGE / "worked_examples", _PACKAGE.parent / "worked_examples")
+#: Folders of the repository which an installed package holds itself; packages of pure Python that fill templates.
+_DATA, _TEMPLATES = ("worked_examples", "latex_templates"), ("jinja2", "markupsafe")
+_KINDS = {".py", ".css", ".toml", ".tex"}
 _RUNTIME = ("pyodide.mjs", "pyodide.asm.mjs", "pyodide.asm.wasm", "python_stdlib.zip", "pyodide-lock.json")
 #: What answers need: not the command line, nor what runs many problems or checks what others wrote.
 _NEEDLESS = {"cli", "batching", "checking", "exporting", "variation", "audit", "site", "assets", "__pycache__"}
@@ -26,6 +29,8 @@ POLICY = (
 )
 _THIRD = """\
 This site carries, as their makers publish them:
+
+Jinja and MarkupSafe, in symobs.zip, BSD-3-Clause.
 
 Pyodide {pyodide}, in pyodide/, MPL-2.0: CPython (PSF-2.0) compiled to WebAssembly.
 python-flint, in {wheel}, MIT; the wheel holds FLINT (LGPL-3.0-or-later), GMP (LGPL-3.0-or-later or
@@ -85,16 +90,20 @@ def _page(text: str) -> str:
 
 
 def _pack(path: Path) -> None:
-    """Write what answers need of the package, and its worked examples; the same bytes every time."""
-    kept = [
-        file
-        for file in sorted(_PACKAGE.rglob("*"))
-        if file.suffix in {".py", ".css", ".toml"} and not _NEEDLESS.intersection(file.relative_to(_PACKAGE).parts)
-    ]
-    examples = next((folder for folder in _EXAMPLES if folder.is_dir()), None)
-    names = {file: f"symobs/{file.relative_to(_PACKAGE).as_posix()}" for file in kept}
-    if examples is not None:
-        names |= {file: f"symobs/worked_examples/{file.name}" for file in sorted(examples.glob("*.toml"))}
+    """Write what answers need of the package, its data, and what its documents are made with; the same bytes every time."""
+    folders = {_PACKAGE: "symobs"}
+    for name in _DATA:
+        places = (_PACKAGE / name, _PACKAGE.parent / name)
+        folders[next(place for place in places if place.is_dir())] = f"symobs/{name}"
+    for name in _TEMPLATES:
+        found = find_spec(name)
+        if found is None or found.origin is None:
+            raise ValueError(f"{name} is not installed, and pages in LaTeX are written with it")
+        folders[Path(found.origin).parent] = name
     with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
-        for file, name in names.items():
-            archive.writestr(zipfile.ZipInfo(name), file.read_bytes(), zipfile.ZIP_DEFLATED)
+        for folder, name in folders.items():
+            for file in sorted(folder.rglob("*")):
+                parts = file.relative_to(folder).parts
+                if file.suffix in _KINDS and not _NEEDLESS.intersection(parts):
+                    entry = zipfile.ZipInfo("/".join((name, *parts)))
+                    archive.writestr(entry, file.read_bytes(), zipfile.ZIP_DEFLATED)
