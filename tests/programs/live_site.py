@@ -2,8 +2,8 @@
 
 SITE is a folder that `python -m symobs.live.site` wrote.  It is served with its policy as a header, and opened in the Chromium
 of the machine as a reader would: time to the first answer, times of a drag, an answer without a network, the page opened
-without one.  Then every worked example is asked for its view, its answer with curves, its JSON, its LaTeX and its page, each of which
-has to be what this process says; where names are given, these alone.  Needs playwright.
+without one.  Then every worked example is asked for its view, its answer with curves, its JSON, its LaTeX and its page, each
+of which has to be what this process says; where names are given, these alone.  Needs playwright.
 """
 
 from __future__ import annotations
