@@ -10,14 +10,13 @@ import hashlib
 import json
 import shutil
 import zipfile
-from importlib.util import find_spec
 from pathlib import Path
 
 _HERE = Path(__file__).parent
 _PACKAGE = _HERE.parents[1]
 _ASSETS = _HERE.parent / "assets"
-#: Folders of the repository which an installed package holds itself; packages of pure Python that fill templates.
-_DATA, _TEMPLATES = ("worked_examples", "latex_templates"), ("jinja2", "markupsafe")
+#: Folders of the repository which an installed package holds itself.
+_DATA = ("worked_examples", "latex_templates")
 _KINDS = {".py", ".css", ".toml", ".tex"}
 _RUNTIME = ("pyodide.mjs", "pyodide.asm.mjs", "pyodide.asm.wasm", "python_stdlib.zip", "pyodide-lock.json")
 #: What answers need: not the command line, nor what runs many problems or checks what others wrote.
@@ -91,15 +90,15 @@ def _page(text: str) -> str:
 
 def _pack(path: Path) -> None:
     """Write what answers need of the package, its data, and what its documents are made with; the same bytes every time."""
+    import jinja2  # noqa: PLC0415 - only what is packed
+    import markupsafe  # noqa: PLC0415
+
     folders = {_PACKAGE: "symobs"}
     for name in _DATA:
         places = (_PACKAGE / name, _PACKAGE.parent / name)
         folders[next(place for place in places if place.is_dir())] = f"symobs/{name}"
-    for name in _TEMPLATES:
-        found = find_spec(name)
-        if found is None or found.origin is None:
-            raise ValueError(f"{name} is not installed, and pages in LaTeX are written with it")
-        folders[Path(found.origin).parent] = name
+    for module in (jinja2, markupsafe):
+        folders[Path(module.__file__).parent] = module.__name__
     with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
         for folder, name in folders.items():
             for file in sorted(folder.rglob("*")):

@@ -26,4 +26,5 @@ def main() -> None:
     print(f"{asked.out}: {size / 1e6:.1f} MB, {asked.out / 'index.html'}")  # noqa: T201 - a command
 
 
-main()
+if __name__ == "__main__":
+    main()
