@@ -36,13 +36,14 @@ QUESTIONS: tuple[dict[str, Any], ...] = (
 #: What differs by nature: a certificate of random points says the size of the machine's words.
 OF_WORDS = re.compile(r"at \d+ random points? modulo \d+-bit primes\",\s*\"bound\": \"[^\"]*")
 #: Asks a worker of its own, which stays for the next question; one that ended is replaced.
-ASK = """(question) => new Promise((answered) => {
+ASK = """(question) => new Promise((done) => {
   window.asked ??= new Worker("worker.js", { type: "module" });
+  const timer = setTimeout(() => end("longer than five minutes"), 300000);
+  const answered = (found) => { clearTimeout(timer); done(found); };
   const end = (message) => { window.asked.terminate(); window.asked = null; answered({ ended: message }); };
   window.asked.onerror = (event) => end(event.message);
   window.asked.onmessage = ({ data }) => { if (data.ended) end(data.ended); else if (data.answer) answered(data.answer); };
   window.asked.postMessage(question);
-  setTimeout(() => end("longer than five minutes"), 300000);
 })"""
 
 
