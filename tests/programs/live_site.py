@@ -130,6 +130,7 @@ def looked_at(context: Any, address: str) -> None:
 
 def wait_for(page: Any, place: str, text: str) -> str:
     """Wait until the LaTeX of a card contains a text, and return it; the policy forbids waiting by evaluation."""
+    found = ""
     for _ in range(600):
         found = str(page.get_attribute(place, "data-latex"))
         if text in found:

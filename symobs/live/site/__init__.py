@@ -98,7 +98,7 @@ def _pack(path: Path) -> None:
         places = (_PACKAGE / name, _PACKAGE.parent / name)
         folders[next(place for place in places if place.is_dir())] = f"symobs/{name}"
     for module in (jinja2, markupsafe):
-        folders[Path(module.__file__).parent] = module.__name__
+        folders[Path(str(module.__file__)).parent] = module.__name__
     with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
         for folder, name in folders.items():
             for file in sorted(folder.rglob("*")):

@@ -181,7 +181,7 @@ def test_a_margin_moves_with_its_symbol() -> None:
     ("dt", "limit", "said"),
     [(0, {"margin": "1/2"}, "real part less than -1/2"), (True, {"radius": "1/2"}, "modulus less than 1/2")],
 )
-def test_a_moved_boundary_is_told_where_nothing_is_open(dt: Any, limit: dict[str, str], said: str) -> None:
+def test_a_moved_boundary_is_told_where_nothing_is_open(dt: Any, limit: Any, said: str) -> None:
     plant = symobs.StateSpace("[0 1; -1/8 1/2]" if dt else "[0 1; -2 -3]", dt=dt)
     found = symobs.stability_region(plant, **limit)
     assert found.verdict == "yes"
