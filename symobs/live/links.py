@@ -27,8 +27,7 @@ def link_of(data: Mapping[str, Any]) -> str:
     }
     if signs:
         parts["symbols"] = ",".join(f"{name}:{sign}" for name, sign in signs.items())
-    if "convention" in data:
-        parts["convention"] = str(data["convention"])
+    parts |= {name: str(data[name]) for name in ("convention", "language") if name in data}
     return "&".join(f"{quote(name, safe='')}={quote(text, safe=',;:/-*^()[]')}" for name, text in parts.items())
 
 

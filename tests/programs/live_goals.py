@@ -88,7 +88,7 @@ def over_http() -> list[float]:
     return found[20:]
 
 
-_PAINTED = """async ([x, y, steps]) => {
+PAINTED = """async ([x, y, steps]) => {
   const svg = document.querySelector('.plane svg'), list = document.querySelector('.cards .list'), found = [];
   const at = (kind, k) => new PointerEvent(kind,
     { bubbles: true, pointerId: 1, clientX: x - 3 * k, clientY: y - k, button: 0 });
@@ -144,7 +144,7 @@ def in_the_browser() -> None:
             handle = page.locator(".handle.ring").first.get_attribute("data-handle")
             box = page.locator(".handle.ring .hit").first.bounding_box()
             assert box is not None
-            script = _PAINTED.replace("observer_poles.0", str(handle))
+            script = PAINTED.replace("observer_poles.0", str(handle))
             times = page.evaluate(script, [box["x"] + box["width"] / 2, box["y"] + box["height"] / 2, 60])
             row(f"pointer to painted, n = {order}, ms", times[5:], 100)
         browser.close()
@@ -157,8 +157,9 @@ def main() -> None:
     """Measure everything and print the table."""
     spent([question(2) for _ in range(10)])
     print("| what | median | 95 % | goal |\n|---|---:|---:|---:|")
+    answers = {order: spent([question(order) for _ in range(100)]) for order in ANSWER_GOALS}
     for order, goal in ANSWER_GOALS.items():
-        row(f"answer, n = {order}, CPU ms", spent([question(order) for _ in range(100)]), goal)
+        row(f"answer, n = {order}, CPU ms", answers[order], goal)
     region = {
         "task": "stability_region",
         "plant": {"A": "[0 1; 9 0]", "C": "[0 1]"},
@@ -172,7 +173,10 @@ def main() -> None:
     spent(points[:2])
     row("point of a region, CPU ms", spent(points), 40)
     pages = [question(GENERATOR.choice((2, 3, 4)), "page") for _ in range(200)]
-    row("page, 200 compensators of order 2 to 4, CPU ms", spent(pages), 1000)
+    times = spent(pages)
+    row("page, 200 compensators of order 2 to 4, CPU ms", times, 1000)
+    ratio = statistics.median(times) / statistics.median(answers[2] + answers[3] + answers[4])
+    print(f"| a page costs as much as so many answers | {ratio:.0f} | | |")
     row("HTTP above the answer, n = 2, ms", over_http(), 5)
     try:
         in_the_browser()

@@ -52,8 +52,7 @@ def write_region(page: Builder, result: StabilityRegion) -> None:
     with page.section("stability_region"):
         if not chi:
             chi = _polynomial_of_loop(page, result)
-        if result.question.parameters:
-            _sought(page, result)
+        _sought(page, result)
         moved = _moved(page, result, chi)
         _table(page, result, moved)
         if result.region is not None:
@@ -90,7 +89,11 @@ def _polynomial_of_loop(page: Builder, result: StabilityRegion) -> str:
 def _sought(page: Builder, result: StabilityRegion) -> None:
     """State the question."""
     boundary, names = result.question.boundary, _listed(result)
-    if boundary.is_usual:
+    if not result.question.parameters:
+        if not boundary.is_usual:
+            name, limit = ("radius", boundary.radius) if boundary.discrete else ("margin", -boundary.margin)
+            page.remark(f"wanted_{name}", limit=limit)
+    elif boundary.is_usual:
         page.remark("sought_discrete" if boundary.discrete else "sought_continuous", names=names)
     elif boundary.discrete:
         page.remark("sought_radius", names=names, limit=boundary.radius)
@@ -276,7 +279,8 @@ def _pictures(page: Builder, result: StabilityRegion, chi: str, moved: str) -> N
 
 def _inequalities(result: StabilityRegion, region: object) -> tuple[Relation, ...]:
     if isinstance(region, LineRegion) and len(region.intervals) == 1 and not region.cuts:
-        return tuple(r for found in interval_relations(region) for r in found)
+        is_bounded_by_sign = region.name not in region.critical.parameters
+        return () if is_bounded_by_sign else tuple(r for found in interval_relations(region) for r in found)
     names = result.question.parameters
     return tuple(relation(*solved(bound, result.signs, names)) for bound in result.answer["bounds"])
 

@@ -9,6 +9,8 @@ PHRASES: dict[str, str] = {
     "sought_discrete": "Find all values of {names} for which every root lies in the open unit disc.",
     "sought_margin": "Find all values of {names} for which every root has real part less than {limit}; such roots are called stable here.",
     "sought_radius": "Find all values of {names} for which every root has modulus less than {limit}; such roots are called stable here.",
+    "wanted_margin": "Every root shall have real part less than {limit}; such roots are called stable here.",
+    "wanted_radius": "Every root shall have modulus less than {limit}; such roots are called stable here.",
     "polynomial_of_loop": "The characteristic polynomial is",
     "moved_right": "Shifting the roots to the right by {by} gives the polynomial",
     "enlarged": "Dividing the roots by {by} gives the polynomial",
@@ -71,6 +73,8 @@ ASSERTS: dict[str, tuple[str, ...]] = {
 DEMANDS: dict[str, str] = {
     "sought_margin": "sets_margin",
     "sought_radius": "sets_radius",
+    "wanted_margin": "sets_margin",
+    "wanted_radius": "sets_radius",
     "moved_right": "moves_by_margin",
     "enlarged": "scales_by_radius",
     "mapped": "applies_image",
@@ -103,6 +107,8 @@ NAMING = (
     "enlarged",
     "sought_margin",
     "sought_radius",
+    "wanted_margin",
+    "wanted_radius",
     "mapped",
     "mapped_from_v",
 )

@@ -172,7 +172,7 @@ def say_stability(page: Builder, design: OutputFeedback, stem: str, proper: Fact
         return
     polynomial = monic(F.common_denominator(), plant.variable)
     positive = stability(polynomial, plant.variable, plant.symbols.signs, discrete=plant.is_discrete).positive
-    if sum(value.size for value in positive) > readability.STABILITY_CONDITIONS:
+    if not positive or sum(value.size for value in positive) > readability.STABILITY_CONDITIONS:  # none: undecided
         page.conclude(f"{stem}_proper", proper, **slots)
         return
     inequalities = [as_inequality(value, plant.symbols.signs) for value in positive]

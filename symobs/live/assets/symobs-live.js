@@ -7,7 +7,7 @@ const SVG = "http://www.w3.org/2000/svg";
 const SNAPS = { "1/20": 1, "1/10": 2, "1/4": 5, "1/2": 10, 1: 20 };
 const SHORT = { control: "control_poles", observer: "observer_poles", kind: "observer" };
 const PLANT = ["A", "B", "C", "D", "transfer_function", "dt"];
-const OWN = ["v", "task", "symbols", "convention", "at", "snap", "closed", "x0", "xh0"];
+const OWN = ["v", "task", "symbols", "convention", "language", "at", "snap", "closed", "x0", "xh0"];
 const TITLES = { plane: "Poles", responses: "Responses", cards: "Answers", cases: "Cases", region: "Region", page: "Derivation" };
 
 /** Post questions to the server of `symobs serve`. @param {string} token */
@@ -108,7 +108,7 @@ const matrix = (rows) => `[${rows.map((row) => row.map((c) => c.trim() || "0").j
 /** @param {string} link */
 function decoded(link) {
   const given = Object.fromEntries(new URLSearchParams(link.replace(/^#/, "").replace(/\+/g, "%2B")));
-  const state = { task: given.task ?? "", plant: {}, spec: {}, symbols: {}, at: {}, convention: given.convention ?? "" };
+  const state = { task: given.task ?? "", plant: {}, spec: {}, symbols: {}, at: {}, convention: given.convention ?? "", language: given.language ?? "" };
   const listed = (source) => Object.fromEntries((source ?? "").split(",").filter(Boolean).map((e) => e.split(/:(.*)/s).slice(0, 2)));
   Object.assign(state, { symbols: listed(given.symbols), at: listed(given.at) });
   Object.assign(state, { snap: given.snap in SNAPS ? given.snap : "1/2", closed: (given.closed ?? "").split(",").filter(Boolean) });
@@ -125,7 +125,7 @@ function encoded(state) {
   const paired = (table) => Object.entries(table).map(([name, entry]) => `${name}:${entry}`).join(",");
   const spec = Object.fromEntries(Object.entries(state.spec).map(([key, entry]) => [long[key] ?? key, entry]));
   const all = { v: 1, task: state.task, ...state.plant, ...spec, symbols: paired(state.symbols), at: paired(state.at) };
-  Object.assign(all, { convention: state.convention, snap: state.snap === "1/2" ? "" : state.snap });
+  Object.assign(all, { convention: state.convention, language: state.language, snap: state.snap === "1/2" ? "" : state.snap });
   Object.assign(all, { closed: state.closed.join(","), x0: state.x0, xh0: state.xh0 });
   const plain = (t) => encodeURIComponent(t).replace(/%(2C|3B|3A|2F|5B|5D|5E)/g, decodeURIComponent);
   return Object.entries(all).filter(([, entry]) => entry !== "" && entry !== undefined).map(([key, entry]) => `${key}=${plain(String(entry))}`).join("&");
@@ -136,7 +136,7 @@ function stateOf(problem, task, before) {
   const flat = (entry) => (Array.isArray(entry) ? (Array.isArray(entry[0]) ? matrix(entry.map((r) => r.map((c) => (/\s/.test(c) ? `(${c})` : `${c}`)))) : entry.join(", ")) : String(entry));
   const table = (entries) => Object.fromEntries(Object.entries(entries ?? {}).map(([key, entry]) => [key, flat(entry)]));
   const symbols = Object.fromEntries(Object.entries(problem.symbols ?? {}).map(([name, sign]) => [name, sign.sign ?? (typeof sign === "string" ? sign : "real")]));
-  return { ...before, task, plant: table(problem.plant), spec: table(problem.specification), symbols, at: {}, convention: problem.convention ?? "", x0: "", xh0: "" };
+  return { ...before, task, plant: table(problem.plant), spec: table(problem.specification), symbols, at: {}, convention: problem.convention ?? "", language: problem.language ?? "", x0: "", xh0: "" };
 }
 
 // -- elements ---------------------------------------------------------------------------------------------------------
@@ -239,7 +239,7 @@ export function mount(element, transport, options = {}) {
     if (s.plant.dt === "true") told.plant.dt = true;
     if (!Object.keys(told.plant).length) delete told.plant;
     if (told.specification.parameters) told.specification.parameters = parts(told.specification.parameters);
-    if (s.convention) told.convention = s.convention;
+    for (const key of ["convention", "language"]) if (s[key]) told[key] = s[key];
     return told;
   };
   const signature = () => JSON.stringify([s.task, s.plant, s.symbols, s.convention, s.task === "stability_region" ? s.spec : Object.keys(s.spec)]);
@@ -310,6 +310,7 @@ export function mount(element, transport, options = {}) {
       try {
         const got = await transport(asking("page", { detail: el.detail.value, at, cards_at: Object.keys(at).length > 0 }), signal);
         if (signal.aborted) return;
+        el.html.lang = s.language || "en";
         if (got.html) el.html.innerHTML = got.html;
         else el.html.replaceChildren(h("p", { class: "pale" }, got.message ?? got.errors?.map((e) => e.message).join("; ") ?? "no derivation"), got.status === "undecided" ? h("button", { onclick: () => rest(0) }, "Try again") : null);
         el.page.setAttribute("aria-busy", "false");
@@ -821,4 +822,18 @@ export function mount(element, transport, options = {}) {
     state: () => encoded(s),
     set(link) { s = begun(link); frame = null; build(); ask(); },
   };
+}
+
+/** Show a page whose state is that of its address: a drag is one step of its history, which Back undoes. */
+export function atAddress(transport) {
+  let moving = false;
+  const live = mount(/** @type {HTMLElement} */ (document.querySelector("main")), transport, {
+    state: location.hash,
+    link: (state) => `${location.origin}${location.pathname}#${state}`,
+    changed(state, final) {
+      history[moving ? "replaceState" : "pushState"](null, "", `#${state}`);
+      moving = !final;
+    },
+  });
+  addEventListener("popstate", () => live.set(location.hash));
 }

@@ -58,11 +58,15 @@ class StabilityBoundary:
 
 @dataclass(frozen=True)
 class CriticalPolynomials:
-    """The polynomial a₀ wⁿ + … + aₙ without denominators, and its critical polynomials."""
+    """The polynomial a₀ wⁿ + … + aₙ without denominators, and its critical polynomials.
+
+    asked   the names of a region, whose signs bound it also where they do not stand in the polynomial
+    """
 
     polynomial: Scalar
     boundary: StabilityBoundary
     signs: Mapping[str, str] = field(default_factory=dict, hash=False)
+    asked: tuple[str, ...] = ()
 
     @cached_property
     def parameters(self) -> tuple[str, ...]:
@@ -124,7 +128,8 @@ class CriticalPolynomials:
     @cached_property
     def factors(self) -> tuple[Scalar, ...]:
         """The proper factors, and the parameters of declared sign."""
-        signed = [Scalar.symbol(name) for name in self.parameters if self.signs.get(name, "real") != "real"]
+        names = sorted({*self.parameters, *self.asked})
+        signed = [Scalar.symbol(name) for name in names if self.signs.get(name, "real") != "real"]
         return tuple(dict.fromkeys([*self.proper, *signed]))
 
     def allows(self, point: Mapping[str, Fraction]) -> bool:

@@ -83,12 +83,20 @@ def is_region(region: LineRegion | PlaneRegion, bounds: tuple[RegionInequality, 
     critical = region.critical
     if critical.never:
         return bounds is None
-    if not are_critical(critical) or not all(critical.allows(s.point) for s in region.samples(())):
+    if not are_critical(critical) or not _is_bounded_by_signs(region):
+        return False
+    if not all(critical.allows(sample.point) for sample in region.samples(())):
         return False
     if bounds is None:
         return _is_divided(region, ()) and region.empty
     further = [f for f in irreducible(bound.polynomial for bound in bounds) if f not in critical.factors]
     return _is_divided(region, ()) and (not further or _is_divided(region, further)) and is_exact(region, bounds)
+
+
+def _is_bounded_by_signs(region: LineRegion | PlaneRegion) -> bool:
+    """Return whether no cell holds allowed and forbidden values: its sample would speak for both."""
+    names, signs = region.names if isinstance(region, PlaneRegion) else (region.name,), region.critical.signs
+    return all(Scalar.symbol(name) in region.critical.factors for name in names if signs.get(name, "real") != "real")
 
 
 def _is_divided(region: LineRegion | PlaneRegion, further: Sequence[Scalar]) -> bool:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import lru_cache
 from typing import TYPE_CHECKING
 
@@ -22,6 +23,7 @@ def exact_region(critical: CriticalPolynomials, names: tuple[str, ...]) -> LineR
     """
     if any(critical.signs.get(name) in {"nonnegative", "nonpositive"} for name in names):
         return None
+    critical = replace(critical, asked=names)
     if len(names) == 1:
         return LineRegion(critical, names[0])
     if len(names) != 2:

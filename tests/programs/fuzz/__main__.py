@@ -1,8 +1,8 @@
 """Hostile and random inputs: `python -m tests.programs.fuzz --inputs 1000000` runs them and prints what became of them.
 
 Run it in the top folder of the checkout.  `--only grammar` (or problem_toml, problem_json, command_line, printing, audit,
-check, convention) runs one target with all the inputs; `--input 4711` one input of it, in this process; `--figures FILE` keeps
-the table as it grows.  Every input is made from its target's name and its number alone, so all runs are the same.
+check, convention, live) runs one target with all the inputs; `--input 4711` one input of it, in this process; `--figures
+FILE` keeps the table as it grows.  Every input is made from its target's name and its number alone, so all runs are the same.
 
 An input must end in a value or in one of symobs's own errors (the command line: never with exit code 1), within its
 budget of processor time and memory, and must reach no code, file, module or program.  What hangs is ended with its

@@ -27,7 +27,7 @@ from symobs.problem.question import question_of
 from symobs.result import formats, tasks
 from symobs.result.in_convention import names_in
 from symobs.specification import read_entries, read_names
-from tests.programs.fuzz import answers, corpus, mutate, printing, problems, texts
+from tests.programs.fuzz import answers, corpus, live_requests, mutate, printing, problems, texts
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -309,7 +309,8 @@ TARGETS = {
         Target("printing", 34, lambda source: source, printing.roundtrip),
         Target("audit", 90, _relation, _read_printed, seconds=5.0),
         Target("check", 10, answers.submission, answers.checked, seconds=5.0, megabytes=400),
-        Target("convention", 60, problems.convention, _read_convention, writes=True),
+        Target("live", 10, live_requests.request, live_requests.answered, seconds=20.0, megabytes=500),
+        Target("convention", 50, problems.convention, _read_convention, writes=True),
     )
 }
 

@@ -38,7 +38,7 @@ _CODE = ("exec", "compile", "code.__new__", "cpython.run_string", "cpython.run_c
 _HARMLESS = {"os.listdir", "os.scandir", "os.fwalk", "os.walk", "signal.setitimer"}
 _WRITING = os.O_WRONLY | os.O_RDWR | os.O_CREAT | os.O_TRUNC | os.O_APPEND
 #: What may be imported late: our own modules, what they are built on, and the standard library.
-_KNOWN = {"symobs", "sympy", "mpmath", "flint", "jinja2", "markupsafe", "click", "numpy", "encodings"}
+_KNOWN = {"symobs", "sympy", "mpmath", "flint", "jinja2", "markupsafe", "click", "numpy", "encodings", "z3"}
 _KNOWN |= {"gmpy2", "gmpy", "org"}  # mpmath and SymPy ask for the first two, `copy` for the last, which Jython has
 _KNOWN |= set(sys.stdlib_module_names)
 

@@ -68,8 +68,8 @@ def prepared() -> Watch:
 def allow(watch: Watch, target: Target) -> None:
     """Let the watch allow what the target is for: the files of the project, and those a user names."""
     root = str(ROOT)
-    watch.works = target.name == "command_line"
-    watch.reads = ("/",) if watch.works else (root, sys.prefix, sys.base_prefix)
+    watch.works = target.name in {"command_line", "live"}  # both write whole documents, by templates
+    watch.reads = ("/",) if target.name == "command_line" else (root, sys.prefix, sys.base_prefix)
     watch.writes = str(targets.FOLDER) if target.writes else ""
 
 

@@ -177,6 +177,36 @@ def test_a_margin_moves_with_its_symbol() -> None:
     assert list(found.stable_if) == ["h > alpha"]
 
 
+@pytest.mark.parametrize(
+    ("dt", "limit", "said"),
+    [(0, {"margin": "1/2"}, "real part less than -1/2"), (True, {"radius": "1/2"}, "modulus less than 1/2")],
+)
+def test_a_moved_boundary_is_told_where_nothing_is_open(dt: Any, limit: Any, said: str) -> None:
+    plant = symobs.StateSpace("[0 1; -1/8 1/2]" if dt else "[0 1; -2 -3]", dt=dt)
+    found = symobs.stability_region(plant, **limit)
+    assert found.verdict == "yes"
+    assert said in " ".join(found.to("text").split())
+
+
+@pytest.mark.parametrize("sign", ["positive", "negative", "nonzero"])
+@pytest.mark.parametrize("parameters", [["h"], ["h", "k"]])
+def test_the_sign_of_a_parameter_outside_of_the_polynomial_empties_nothing(sign: str, parameters: list[str]) -> None:
+    signs = dict.fromkeys(parameters, "real") | {"h": sign}
+    assert region("s + 1", parameters=parameters, symbols=signs).verdict == "yes"
+    assert region("s - 1", parameters=parameters, symbols=signs).verdict == "no"
+    found = region("s^2 + k s + 1", parameters=["h", "k"], symbols=signs | {"k": "real"})
+    assert (found.verdict, list(found.stable_if)) == ("conditional", ["k > 0"])
+    assert all(point["h"] != "0" for point in found.sample_points)
+
+
+def test_a_region_whose_cells_hold_allowed_and_forbidden_values_is_none() -> None:
+    critical = CriticalPolynomials(Scalar.symbol("s") + 1, StabilityBoundary("s"), {"h": "positive"})
+    blind = LineRegion(critical, "h")
+    assert blind.empty
+    assert not is_region(blind, None)
+    assert is_region(LineRegion(replace(critical, asked=("h",)), "h"), ())
+
+
 def test_control_and_observer_gains_together_give_the_product() -> None:
     plant = symobs.StateSpace("[0 1; -1 -1]", "[0; 1]", "[1 0]")
     found = region(plant, K="[k 0]", L="[l; 0]")

@@ -247,6 +247,18 @@ def test_a_pole_three_times_in_discrete_time_has_a_page() -> None:
     assert "Remark." in found.to("text")
 
 
+@pytest.mark.slow
+def test_a_compensator_whose_stability_is_undecided_has_a_page_that_is_silent_about_it() -> None:
+    plant = symobs.StateSpace(
+        "[1 -1 0; 0 0 1/2; -1 1/2 1]", "[2; 0; 0]", "[1 2 -1; 0 -1 1]", dt="1/10", symbols={"p": "nonzero"}
+    )
+    design = symobs.compensator(plant, control_poles="-p, -p, -p", observer_poles="-10, -6, -8")
+    assert design.F_stable == "undecided"
+    text = " ".join(design.to("text").split())
+    assert "It is strictly proper. 4." in text
+    assert "if and only if ." not in text
+
+
 def test_outputs_that_see_nothing_leave_the_modes_where_they_are() -> None:
     assert symobs.observer(StateSpace("3", C="[0; 0]"), poles=[3]).verdict == "yes"
     hidden = StateSpace("[1 0 0; 0 2 0; 0 0 3]", C="[1 1 0; 0 1 0]")

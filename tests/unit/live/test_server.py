@@ -270,6 +270,7 @@ def test_a_link_holds_a_problem() -> None:
         "specification": {"poles": ["-p", "-1/2"]},
         "symbols": {"omega": "positive", "p": {"sign": "positive", "latex": "p"}},
         "convention": "S1",
+        "language": "de",
     }
     assert dict(parse_qsl(link_of(data))) == {
         "v": "1",
@@ -280,6 +281,7 @@ def test_a_link_holds_a_problem() -> None:
         "poles": "-p, -1/2",
         "symbols": "omega:positive,p:positive",
         "convention": "S1",
+        "language": "de",
     }
 
 

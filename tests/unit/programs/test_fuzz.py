@@ -39,6 +39,7 @@ SLICE = {
     "printing": 120,
     "audit": 400,
     "check": 150,
+    "live": 60,
     "convention": 300,
 }
 #: The slice runs apart from the tests: the hook that watches it stays for the life of its process.

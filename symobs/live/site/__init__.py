@@ -1,0 +1,108 @@
+"""The static site: the live page with Python in the browser, packed from files that were fetched before.
+
+The folder it writes can be served by any static server; nothing else is asked for, and what it answers is computed by the
+same code as on a server, in WebAssembly.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import shutil
+import zipfile
+from pathlib import Path
+
+_HERE = Path(__file__).parent
+_PACKAGE = _HERE.parents[1]
+_ASSETS = _HERE.parent / "assets"
+#: Folders of the repository which an installed package holds itself.
+_DATA = ("worked_examples", "latex_templates")
+_KINDS = {".py", ".css", ".toml", ".tex"}
+_RUNTIME = ("pyodide.mjs", "pyodide.asm.mjs", "pyodide.asm.wasm", "python_stdlib.zip", "pyodide-lock.json")
+#: What answers need: not the command line, nor what runs many problems or checks what others wrote.
+_NEEDLESS = {"cli", "batching", "checking", "exporting", "variation", "audit", "site", "assets", "__pycache__"}
+#: Scripts come from here alone, and WebAssembly is compiled; nothing else is run, and nobody else is asked.
+POLICY = (
+    "default-src 'none'; script-src 'self' 'wasm-unsafe-eval'; worker-src 'self'; connect-src 'self'; "
+    "style-src 'self' 'unsafe-inline'; img-src data:; base-uri 'none'; form-action 'none'"
+)
+_THIRD = """\
+This site carries, as their makers publish them:
+
+Jinja and MarkupSafe, in symobs.zip, BSD-3-Clause.
+
+Pyodide {pyodide}, in pyodide/, MPL-2.0: CPython (PSF-2.0) compiled to WebAssembly.
+python-flint, in {wheel}, MIT; the wheel holds FLINT (LGPL-3.0-or-later), GMP (LGPL-3.0-or-later or
+GPL-2.0-or-later) and MPFR (LGPL-3.0-or-later) as separate shared libraries, unmodified, with their
+licences; a wheel with other builds of them may take its place, named in contents.js.
+"""
+
+
+def build(out: Path, pyodide: Path, flint: Path) -> int:
+    """Write the site into a folder and return its size in bytes.
+
+    pyodide   the folder of the npm package of that name
+    flint     the wheel of python-flint for the same Pyodide
+    Raises `ValueError` for what is not that, before anything is written.
+    """
+    absent = [name for name in (*_RUNTIME, "package.json") if not (pyodide / name).is_file()]
+    if absent:
+        raise ValueError(f"{pyodide}: {', '.join(absent)} missing; give the folder of the npm package pyodide")
+    if not zipfile.is_zipfile(flint) or not flint.name.endswith("wasm32.whl"):
+        raise ValueError(f"{flint}: not a wheel for WebAssembly; give python_flint-…_wasm32.whl")
+    if out.exists() and any(out.iterdir()) and not (out / "contents.js").is_file():
+        raise ValueError(f"{out}: there is something else in this folder; give a new one")
+    shutil.rmtree(out, ignore_errors=True)
+    (out / "pyodide").mkdir(parents=True)
+    for name in _RUNTIME:
+        shutil.copyfile(pyodide / name, out / "pyodide" / name)
+    shutil.copyfile(flint, out / flint.name)
+    for path in (_ASSETS / "symobs-live.js", *_HERE.glob("*.js")):
+        shutil.copyfile(path, out / path.name)
+    style = (_ASSETS / "live.css", _PACKAGE / "render" / "formats" / "html_body.css")
+    (out / "live.css").write_text("\n".join(path.read_text(encoding="utf-8") for path in style), encoding="utf-8")
+    (out / "index.html").write_text(_page((_ASSETS / "http.html").read_text(encoding="utf-8")), encoding="utf-8")
+    version = json.loads((pyodide / "package.json").read_text(encoding="utf-8"))["version"]
+    (out / "THIRD-PARTY.txt").write_text(_THIRD.format(pyodide=version, wheel=flint.name), encoding="utf-8")
+    _pack(out / "symobs.zip")
+    files = sorted(path for path in out.rglob("*") if path.is_file())
+    told = hashlib.sha256(b"".join(hashlib.sha256(path.read_bytes()).digest() for path in files)).hexdigest()[:16]
+    names = ["./", "contents.js", *(path.relative_to(out).as_posix() for path in files if path.suffix != ".txt")]
+    contents = {"version": f"symobs-live-{told}", "wheel": flint.name, "files": names}
+    (out / "contents.js").write_text(f"self.CONTENTS = {json.dumps(contents, indent=1)};\n", encoding="utf-8")
+    return sum(path.stat().st_size for path in out.rglob("*") if path.is_file())
+
+
+def _page(text: str) -> str:
+    """Return the page of the server with the site's policy, its script, and a line that says what is being loaded."""
+    policy = f'<meta http-equiv="Content-Security-Policy" content="{POLICY}">'
+    changes = (
+        ('<meta charset="utf-8">', f'<meta charset="utf-8">\n{policy}'),
+        ("start-http.js", "start-wasm.js"),
+        ("<main></main>", '<p role="status" class="loading">Loading …</p>\n<main></main>'),
+    )
+    for before, after in changes:
+        if text.count(before) != 1:
+            raise ValueError(f"http.html: {before} is expected once")
+        text = text.replace(before, after)
+    return text
+
+
+def _pack(path: Path) -> None:
+    """Write what answers need of the package, its data, and what its documents are made with; the same bytes every time."""
+    import jinja2  # noqa: PLC0415 - only what is packed
+    import markupsafe  # noqa: PLC0415
+
+    folders = {_PACKAGE: "symobs"}
+    for name in _DATA:
+        places = (_PACKAGE / name, _PACKAGE.parent / name)
+        folders[next(place for place in places if place.is_dir())] = f"symobs/{name}"
+    for module in (jinja2, markupsafe):
+        folders[Path(str(module.__file__)).parent] = module.__name__
+    with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
+        for folder, name in folders.items():
+            for file in sorted(folder.rglob("*")):
+                parts = file.relative_to(folder).parts
+                if file.suffix in _KINDS and not _NEEDLESS.intersection(parts):
+                    entry = zipfile.ZipInfo("/".join((name, *parts)))
+                    archive.writestr(entry, file.read_bytes(), zipfile.ZIP_DEFLATED)

@@ -1,0 +1,164 @@
+"""Hold the static site against the engine: `python -m tests.programs.live_site SITE [NAME …]`.
+
+SITE is a folder that `python -m symobs.live.site` wrote.  It is served with its policy as a header, and opened in the Chromium
+of the machine as a reader would: time to the first answer, times of a drag, an answer without a network, the page opened
+without one.  Then every worked example is asked for its view, its answer with curves, its JSON, its LaTeX and its page, each
+of which has to be what this process says; where names are given, these alone.  Needs playwright.
+"""
+
+from __future__ import annotations
+
+import functools
+import json
+import re
+import shutil
+import sys
+import threading
+import time
+import tomllib
+from http.server import SimpleHTTPRequestHandler, ThreadingHTTPServer
+from pathlib import Path
+from typing import Any
+
+from symobs.live.child import respond
+from symobs.live.site import POLICY
+from tests.programs.live_goals import PAINTED, row
+
+EXAMPLES = Path(__file__).parents[2] / "worked_examples"
+SERVO = "v=1&task=compensator&A=[0 1; 0 -1]&B=[0; 1]&C=[1 0]&control=-2, -2&observer=-5+3i, -5-3i&snap=1/20"
+QUESTIONS: tuple[dict[str, Any], ...] = (
+    {"want": "view"},
+    {"want": "answer", "courses": {"count": 33}, "cases": True},
+    {"want": "export", "as": "json"},
+    {"want": "export", "as": "latex"},
+    {"want": "page"},
+)
+#: What differs by nature: a certificate of random points says the size of the machine's words.
+OF_WORDS = re.compile(r"at \d+ random points? modulo \d+-bit primes\",\s*\"bound\": \"[^\"]*")
+#: Asks a worker of its own, which stays for the next question; one that ended is replaced.
+ASK = """(question) => new Promise((done) => {
+  window.asked ??= new Worker("worker.js", { type: "module" });
+  const timer = setTimeout(() => end("longer than five minutes"), 300000);
+  const answered = (found) => { clearTimeout(timer); done(found); };
+  const end = (message) => { window.asked.terminate(); window.asked = null; answered({ ended: message }); };
+  window.asked.onerror = (event) => end(event.message);
+  window.asked.onmessage = ({ data }) => { if (data.ended) end(data.ended); else if (data.answer) answered(data.answer); };
+  window.asked.postMessage(question);
+})"""
+
+
+class Files(SimpleHTTPRequestHandler):
+    """A static server that adds the policy of the page to every file, so that it holds in workers too."""
+
+    def end_headers(self) -> None:
+        """Add it."""
+        self.send_header("Content-Security-Policy", POLICY)
+        super().end_headers()
+
+    def log_message(self, *_: object) -> None:
+        """Say nothing."""
+
+
+def differences(page: Any, names: list[str]) -> list[str]:
+    """Return what the site answers otherwise; one line a question."""
+    found, asked, by_words = [], 0, 0
+    for name in names:
+        data = tomllib.loads((EXAMPLES / f"{name}.toml").read_text(encoding="utf-8"), parse_float=str)
+        kept = {key: data[key] for key in data if key not in {"expect", "printed", "title", "source", "id"}}
+        for task in data.get("tasks") or [data["task"]]:
+            for question in QUESTIONS:
+                request = {"schema": "symobs-live/1", "id": 1, "problem": kept, "task": task, **question}
+                native = json.loads(respond(json.dumps(request).encode()))
+                there = page.evaluate(ASK, request)
+                asked += 1
+                for answer in (native, there):
+                    answer.pop("ms", None)
+                if native != there and _of_words(native) == _of_words(there):
+                    by_words += 1
+                elif native != there:
+                    keys = [key for key in {**native, **there} if native.get(key) != there.get(key)]
+                    told = there.get("ended") or there.get("message") or there.get("errors") or ""
+                    found.append(f"{name}, {task}, {question['want']}: {', '.join(sorted(keys))} differ {told}")
+                    print(found[-1], flush=True)
+        print(f"\r{name:40}", end="", file=sys.stderr, flush=True)
+    print(f"\r{asked} questions about {len(names)} worked examples, {len(found)} answered otherwise")
+    print(f"({by_words} more name primes of 32 bits in place of 64, with their bound)")
+    return found
+
+
+def _of_words(answer: dict[str, Any]) -> dict[str, Any]:
+    """Return an answer without what depends on the size of words."""
+    return {key: OF_WORDS.sub("", entry) if isinstance(entry, str) else entry for key, entry in answer.items()}
+
+
+def looked_at(context: Any, address: str) -> None:
+    """Open the page as a reader does, and print how long it takes."""
+    page = context.new_page()
+    page.set_default_timeout(300_000)
+    complaints, others = [], []
+    page.on("console", lambda said: complaints.append(said.text) if said.type == "error" else None)
+    page.on("pageerror", lambda error: complaints.append(str(error)))
+    page.on("request", lambda asked: None if asked.url.startswith((address, "data:")) else others.append(asked.url))
+    begin = time.perf_counter()
+    page.goto(f"{address}#{SERVO}&closed=page")
+    page.wait_for_selector(".card math")
+    row("site: first answer, ms", [1000 * (time.perf_counter() - begin)], 10_000)
+    page.wait_for_timeout(2000)
+    box = page.locator('[data-handle="observer_poles.0"] .hit').first.bounding_box()
+    times = page.evaluate(PAINTED, [box["x"] + box["width"] / 2, box["y"] + box["height"] / 2, 60])
+    row("site: pointer to painted, n = 2, ms", times[5:], 150)
+    page.evaluate("() => navigator.serviceWorker.ready.then(() => true)")
+    context.set_offline(True)
+    page.fill('[data-set="observer_poles"]', "-7, -8")
+    page.keyboard.press("Enter")
+    gain = wait_for(page, '.card[data-name="L"] .display', "14")
+    print(f"without a network: L is {gain}")
+    page.goto("about:blank")
+    begin = time.perf_counter()
+    page.goto(f"{address}#{SERVO}")
+    page.wait_for_selector(".html math")
+    print(f"opened without a network: derivation after {time.perf_counter() - begin:.1f} s")
+    assert complaints == [], complaints
+    assert others == [], others
+    page.evaluate("""() => { setTimeout("window.evaluated = true", 0); }""")
+    page.wait_for_timeout(200)
+    assert page.evaluate("window.evaluated") is None
+    assert "unsafe-eval" in complaints[0], complaints
+    context.set_offline(False)
+    page.close()
+
+
+def wait_for(page: Any, place: str, text: str) -> str:
+    """Wait until the LaTeX of a card contains a text, and return it; the policy forbids waiting by evaluation."""
+    found = ""
+    for _ in range(600):
+        found = str(page.get_attribute(place, "data-latex"))
+        if text in found:
+            return found
+        page.wait_for_timeout(50)
+    raise AssertionError(f"{text} did not come: {found}")
+
+
+def main(folder: Path, names: list[str]) -> int:
+    """Print everything; 1 where an answer differs."""
+    from playwright.sync_api import sync_playwright  # noqa: PLC0415 - only where it is
+
+    server = ThreadingHTTPServer(("127.0.0.1", 0), functools.partial(Files, directory=folder))
+    threading.Thread(target=server.serve_forever, daemon=True).start()
+    address = f"http://127.0.0.1:{server.server_address[1]}/"
+    with sync_playwright() as driver:
+        flags = ["--headless", "--no-sandbox", "--disable-gpu", "--disable-background-networking"]
+        browser = driver.chromium.launch(executable_path=shutil.which("chromium"), args=flags)
+        if not names:
+            print("| what | median | 95 % | goal |\n|---|---:|---:|---:|")
+            looked_at(browser.new_context(viewport={"width": 1180, "height": 900}), address)
+        page = browser.new_page()
+        page.goto(f"{address}THIRD-PARTY.txt")
+        found = differences(page, names or sorted(path.stem for path in EXAMPLES.glob("*.toml")))
+        browser.close()
+    server.shutdown()
+    return 1 if found else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(Path(sys.argv[1]), sys.argv[2:]))
