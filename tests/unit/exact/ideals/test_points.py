@@ -88,7 +88,7 @@ def test_an_ideal_of_many_points_is_kept_by_a_coordinate() -> None:
     assert 9 > FEW >= Ideal.of((b**2 - 2, a - b)).generators[-1].degree("b")
     assert a**3 - 4 * b + 2 in ideal
     assert a not in ideal
-    assert ideal.having(apart_from_zero(a - b)).coordinate == "b"
-    assert ideal.having(a - b).is_whole
+    assert ideal.extended_by(apart_from_zero(a - b)).coordinate == "b"
+    assert ideal.extended_by(a - b).is_whole
     assert c * (a - b**3) in ideal
     assert c * a not in ideal
