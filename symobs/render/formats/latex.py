@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from copy import copy
 from itertools import pairwise, zip_longest
 from typing import TYPE_CHECKING, Any, ClassVar
@@ -161,8 +162,10 @@ class LatexWriter:
                 return rf"\textbf{{{f'{number} ' * bool(number)}{self.sentence(inlines)}}}"
             case Paragraph(inlines):
                 return self.sentence(inlines)
-            case Display(relations, boxed, closing):
+            case Display(relations, boxed, closing, number):
                 written = self.printer.display(relations, boxed=boxed, end=closing)
+                if number:
+                    written = re.sub(r"(?= \\\]$|\n\\end\{(?:align|gather)\*\}$)", rf"\\tag{{{number}}}", written)
                 return _kept_with_next(written) if closing == "," else written
             case Verified(inlines):
                 return rf"\verified{{{self.sentence(inlines)}}}"
