@@ -205,14 +205,11 @@ class LatexWriter:
         count = len(block.heads)
         part = round((1 - _GUTTER * (count - 1)) / count, 4)
         writer = LatexWriter(self.printer, inset=(1 - part) * self.printer.width)
-        opening, closing = (
-            rf"\begin{{minipage}}[t]{{{part}\linewidth}}\raggedright\rule{{0pt}}{{2.6ex}}",
-            r"\par\kern5pt\end{minipage}",
-        )
-        cells = [[rf"\textbf{{{self.sentence(head)}}}" for head in block.heads]]
-        cells += [[writer.body(cell) for cell in row] for row in block.rows]
-        between = f"{closing}\\hfill\\vrule\\hfill\n{opening}"
-        head, *rows = [rf"\noindent{opening}{between.join(row)}{closing}\par\nointerlineskip" for row in cells]
+        heads: list[tuple[str, tuple[Block, ...]]] = [(rf"\textbf{{{self.sentence(head)}}}", ()) for head in block.heads]
+        cells = [heads, *([(writer.body(cell), cell) for cell in row] for row in block.rows)]
+        boxes = [[_in_column(text, inside, part) for text, inside in row] for row in cells]
+        between = "\\hfill\\vrule\\hfill\n"
+        head, *rows = [rf"\noindent{between.join(row)}\par\nointerlineskip" for row in boxes]
         body = "\n".join([head, r"\nobreak\hrule\nobreak\vskip0pt", *rows])
         return f"\\par\\medskip{{\\parskip=0pt\n{body}\n}}\\medskip"
 
@@ -226,6 +223,16 @@ class LatexWriter:
         if isinstance(part, Roots):
             return ", ".join(f"${root}$" for root in listed(part, self.printer, LATEX))
         return f"${self.printer.inline(part)}$"
+
+
+def _in_column(text: str, blocks: Sequence[Block], part: float) -> str:
+    """Return a cell as a box; a check in it breaks before a sign of equality, and a display at its end has its own space."""
+    before, after = r"\rule{0pt}{2.6ex}", "5pt"
+    if blocks and isinstance(blocks[0], Verified):
+        before, text = r"\relpenalty=10000 ", text.replace("=", r"\allowbreak=")
+    if blocks and isinstance(blocks[-1], Display):
+        after = "1pt"
+    return rf"\begin{{minipage}}[t]{{{part}\linewidth}}\raggedright{before}{text}\par\kern{after}\end{{minipage}}"
 
 
 def _kept_with_next(display: str) -> str:
