@@ -42,6 +42,11 @@ if TYPE_CHECKING:
     from symobs.result import Document
 
 _INSET = 1.5  # em, as in the templates
+_LETTER = 0.5  # em, a letter of running text and a little more
+_SPACE = 2.0  # em, a `\qquad`
+#: Words of no more letters stand on the line of the display that they introduce.
+_FEW_LETTERS = 30
+_OPENING = r"\[ "
 _GUTTER = 0.06  # between columns, of the line
 
 
@@ -152,8 +157,22 @@ class LatexWriter:
     def body(self, blocks: Sequence[Block]) -> str:
         """Return all blocks, each continuing its paragraph or beginning a new one."""
         pieces = [self.block(block) for block in blocks]
+        for place in range(1, len(blocks) - 1):
+            if led := self._led_in(*blocks[place - 1 : place + 2]):
+                pieces[place : place + 2] = "", led
         gaps = [_gap(before, after) for before, after in pairwise(blocks)]
         return "".join(text for pair in zip_longest(pieces, gaps, fillvalue="") for text in pair)
+
+    def _led_in(self, before: Block, words: Block, display: Block) -> str:
+        """Return a display with the few words between it and the one before it on its line, if there is room for them."""
+        match before, words, display:
+            case Display(), Paragraph((str(text),), continues), Display():
+                if len(text) > _FEW_LETTERS or not (continues or text.endswith(",")):
+                    return ""
+                written = LatexWriter(self.printer, inset=_LETTER * len(text) + _SPACE).block(display)
+                if written.startswith(_OPENING) and not display.number:
+                    return rf"{_OPENING}\text{{{escape(text)}}}\qquad {written.removeprefix(_OPENING)}"
+        return ""
 
     def block(self, block: Block) -> str:
         """Return one block."""
@@ -205,7 +224,9 @@ class LatexWriter:
         count = len(block.heads)
         part = round((1 - _GUTTER * (count - 1)) / count, 4)
         writer = LatexWriter(self.printer, inset=(1 - part) * self.printer.width)
-        heads: list[tuple[str, tuple[Block, ...]]] = [(rf"\textbf{{{self.sentence(head)}}}", ()) for head in block.heads]
+        heads: list[tuple[str, tuple[Block, ...]]] = [
+            (rf"\textbf{{{self.sentence(head)}}}", ()) for head in block.heads
+        ]
         cells = [heads, *([(writer.body(cell), cell) for cell in row] for row in block.rows)]
         boxes = [[_in_column(text, inside, part) for text, inside in row] for row in cells]
         between = "\\hfill\\vrule\\hfill\n"
