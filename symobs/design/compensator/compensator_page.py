@@ -93,7 +93,7 @@ def _state_space(page: Page, design: CompensatorDesign) -> None:
     model, innovation = model_and_innovation(page)
     law = relation(page["u"], -K @ x_hat)
     page.signal("u", -K @ x_hat, say="separation")
-    both = {"law": law, "observer": relation(x_hat.derivative, model + L @ innovation)}
+    both = {"law": law, "rate": relation(x_hat.derivative, model + L @ innovation)}
     closed, shown = A - B @ K - L @ C, A.shown - (B @ K).shown - (L @ C).shown
     if m.has_feedthrough:
         closed, shown = closed + L @ page["D"] @ K, shown + (L @ page["D"] @ K).shown

@@ -187,15 +187,11 @@ def _pair(page: Page, advice: PoleAdvice) -> None:
     whole = first
     for other in others:
         whole = whole @ other
-    page.define(
-        "phi_r",
-        whole,
-        _product(page, factors),
-        say="pair_dominates",
-        closing=False,
-        count=Counted("number", count),
-        factor=Counted("number", FURTHER_LEFT),
-    )
+    told = {"count": Counted("number", count)}
+    if others:
+        told["factor"] = Counted("number", FURTHER_LEFT)
+    say = "pair_dominates" if others else "pair_remains"
+    page.define("phi_r", whole, _product(page, factors), say=say, closing=False, **told)
 
 
 def _polynomial(page: Page, advice: PoleAdvice) -> None:
