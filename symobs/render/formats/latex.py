@@ -157,10 +157,10 @@ class LatexWriter:
     def body(self, blocks: Sequence[Block]) -> str:
         """Return all blocks, each continuing its paragraph or beginning a new one."""
         pieces = [self.block(block) for block in blocks]
+        gaps = [_gap(before, after) for before, after in pairwise(blocks)]
         for place in range(1, len(blocks) - 1):
             if led := self._led_in(*blocks[place - 1 : place + 2]):
-                pieces[place : place + 2] = "", led
-        gaps = [_gap(before, after) for before, after in pairwise(blocks)]
+                pieces[place : place + 2], gaps[place] = ("", led), ""
         return "".join(text for pair in zip_longest(pieces, gaps, fillvalue="") for text in pair)
 
     def _led_in(self, before: Block, words: Block, display: Block) -> str:
