@@ -192,7 +192,8 @@ def _counts_dominant(slots: _Slots, relation: Relation | None, environment: Envi
     if not _counts_degree(slots, relation, environment) or relation is None or not isinstance(factor, Counted):
         return False
     whole = as_scalar(evaluate(relation.members[0], environment, Exact(environment)))
-    s, sigma, omega = Scalar.symbol(environment.variable), environment.values["sigma_d"], environment.values["omega_d"]
+    sigma, omega = (as_scalar(environment.values[name]) for name in ("sigma_d", "omega_d"))
+    s = Scalar.symbol(environment.variable)
     others = whole / ((s + sigma) * (s + sigma) + omega * omega)
     moved = others.substitute({environment.variable: s - sigma * factor.count}).coefficients(environment.variable)
     left = tuple(reversed([*dropwhile(lambda c: c.is_zero, reversed(moved))]))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from symobs.analysis.factored_form import factored_form, formula_of_factored
 from symobs.analysis.page_parts import given, in_blocks, is_narrow
@@ -93,7 +93,7 @@ def _state_space(page: Page, design: CompensatorDesign) -> None:
     model, innovation = model_and_innovation(page)
     law = relation(page["u"], -K @ x_hat)
     page.signal("u", -K @ x_hat, say="separation")
-    both = {"law": law, "rate": relation(x_hat.derivative, model + L @ innovation)}
+    both: dict[str, Any] = {"law": law, "rate": relation(x_hat.derivative, model + L @ innovation)}
     closed, shown = A - B @ K - L @ C, A.shown - (B @ K).shown - (L @ C).shown
     if m.has_feedthrough:
         closed, shown = closed + L @ page["D"] @ K, shown + (L @ page["D"] @ K).shown

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from fractions import Fraction
-from typing import TYPE_CHECKING, cast
+from typing import TYPE_CHECKING, Any, cast
 
 from symobs.analysis.factored_form import factored_form, formula_of_factored
 from symobs.analysis.page_parts import given, hidden, hidden_polynomial, set_anew, stratum_of, undecided
@@ -187,11 +187,10 @@ def _pair(page: Page, advice: PoleAdvice) -> None:
     whole = first
     for other in others:
         whole = whole @ other
-    told = {"count": Counted("number", count)}
+    told: dict[str, Any] = {"say": "pair_remains", "count": Counted("number", count)}
     if others:
-        told["factor"] = Counted("number", FURTHER_LEFT)
-    say = "pair_dominates" if others else "pair_remains"
-    page.define("phi_r", whole, _product(page, factors), say=say, closing=False, **told)
+        told |= {"say": "pair_dominates", "factor": Counted("number", FURTHER_LEFT)}
+    page.define("phi_r", whole, _product(page, factors), closing=False, **told)
 
 
 def _polynomial(page: Page, advice: PoleAdvice) -> None:

@@ -23,7 +23,7 @@ PHRASES: dict[str, str] = {
     "overshoot_held": "The step response of a complex pair with real part $-sigma_d$ and imaginary part $omega_d$ has the overshoot exp(−π $sigma_d$/$omega_d$). It satisfies {bound} for",
     "overshoot_close": "Increasing the ratio of $omega_d$ to $sigma_d$ by one unit in its third digit would give {more}.",
     "pair_remains": "The remaining {count} observer poles are this pair:",
-    "pair_dominates": "Among the remaining {count} observer poles this pair is dominant; the others lie at least {factor} times as far to the left:",
+    "pair_dominates": "Among the remaining {count} observer poles this pair is dominant; every other pole lies at least {factor} times as far to the left:",
     "advised_polynomial": "The recommended observer polynomial is therefore",
     "pole_twice": "A zero used here coincides with one of the further poles: the observer has a repeated pole, {repeated}.",
     "recovery": "All zeros are used. For a large radius the observer polynomial approaches the zero polynomial times a power of the radius, and the gain approaches a multiple of $B$, since",

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from fractions import Fraction
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import pytest
 
@@ -19,6 +19,9 @@ from symobs.phrases import PHRASES
 from symobs.phrases.spoken import Counted, StateChoice
 from tests.support.problems.steps import said
 from tests.support.tampering.mutations import lines_of
+
+if TYPE_CHECKING:
+    from symobs.derivation import Derivation
 
 #: Two rows of rank 1, and three rows of rank 2.
 LOW, HIGH = Literal(Matrix.of([[1, 2, 3], [2, 4, 6]])), Literal(Matrix.of([[1, 0], [0, 1], [1, 1]]))
@@ -199,7 +202,7 @@ def test_other_states_than_those_whose_rows_were_added_are_rejected(sets: tuple[
 
 
 CHAIN = "[0 1 0 0 0; 0 0 1 0 0; 0 0 0 1 0; 0 0 0 0 1; 0 0 -12 -4 -3]", "[0; 0; 0; 0; 1]"
-ADVICE = {"settling_time": 2, "overshoot": "1/20"}
+ADVICE: dict[str, Any] = {"settling_time": 2, "overshoot": "1/20"}
 COUNTING: dict[str, tuple[Any, set[str]]] = {
     "some_on_circle": (lambda: symobs.pole_advice(symobs.StateSpace(*CHAIN, "[2 1 0 0 0]"), radius=10), {"count"}),
     "one_on_circle": (lambda: symobs.pole_advice(symobs.StateSpace("[0 1; 0 0]", "[0; 1]", "[2 1]"), radius=10), set()),
@@ -221,18 +224,25 @@ COUNTING: dict[str, tuple[Any, set[str]]] = {
 }
 
 
+def line_saying(key: str, derivation: Derivation) -> tuple[Any, Any]:
+    """Return the line with a sentence, and its step."""
+    lines = lines_of(derivation)
+    (line,) = [each for each in lines if getattr(getattr(each.step, "sentence", None), "key", "") == key]
+    line.told(line.step).check()
+    return line, line.step
+
+
 @pytest.mark.parametrize("key", COUNTING)
 def test_what_is_counted_in_words_is_counted_in_the_step(key: str) -> None:
     asked, counting = COUNTING[key]
-    (line,) = [each for each in lines_of(asked().derivation) if getattr(each.step.sentence, "key", "") == key]
-    line.told(line.step).check()
-    slots = dict(line.step.sentence.slots)
+    line, step = line_saying(key, asked().derivation)
+    slots = dict(step.sentence.slots)
     assert {name for name, slot in slots.items() if isinstance(slot, Counted)} == counting
     for name in counting:
         for other in (slots[name].count - 1, slots[name].count + 1):
             told = tuple({**slots, name: replace(slots[name], count=other)}.items())
             with pytest.raises(DerivationRejected, match="of another number"):
-                line.told(replace(line.step, sentence=replace(line.step.sentence, slots=told))).check()
+                line.told(replace(step, sentence=replace(step.sentence, slots=told))).check()
 
 
 @pytest.mark.parametrize(
@@ -240,19 +250,16 @@ def test_what_is_counted_in_words_is_counted_in_the_step(key: str) -> None:
 )
 def test_several_poles_are_not_told_as_one(said: str, instead: str) -> None:
     asked, _ = COUNTING[said]
-    (line,) = [each for each in lines_of(asked().derivation) if getattr(each.step.sentence, "key", "") == said]
+    line, step = line_saying(said, asked().derivation)
     with pytest.raises(DerivationRejected, match="of another number"):
-        line.told(replace(line.step, sentence=replace(line.step.sentence, key=instead, slots=()))).check()
+        line.told(replace(step, sentence=replace(step.sentence, key=instead, slots=()))).check()
 
 
 def test_the_equations_that_are_substituted_are_those_of_the_input_and_of_the_observer() -> None:
     plant = symobs.StateSpace("[0 1; 0 -1]", "[0; 1]", "[1 0]")
     derivation = symobs.compensator(plant, control_poles=[-2, -2], observer_poles=[-10, -10]).derivation
-    (line,) = [
-        each for each in lines_of(derivation) if getattr(each.step.sentence, "key", "") == "observer_closed_matrix"
-    ]
-    slots = dict(line.step.sentence.slots)
-    line.told(line.step).check()
+    line, step = line_saying("observer_closed_matrix", derivation)
+    slots = dict(step.sentence.slots)
     told = {"law": slots["rate"], "rate": slots["law"]}
     with pytest.raises(DerivationRejected, match="or equation"):
-        line.told(replace(line.step, sentence=replace(line.step.sentence, slots=tuple(told.items())))).check()
+        line.told(replace(step, sentence=replace(step.sentence, slots=tuple(told.items())))).check()

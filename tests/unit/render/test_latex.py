@@ -284,7 +284,11 @@ def test_the_fractions_of_a_matrix_are_of_one_size() -> None:
 def test_a_few_words_between_two_displays_stand_on_the_line_of_the_second() -> None:
     one = equals(number(1), number(1))
     writer = LatexWriter(LatexPrinter())
-    blocks = [Display((one,), closing=","), Paragraph(("hence",), continues=True), Display((one,), closing=".")]
+    blocks: list[Display | Paragraph] = [
+        Display((one,), closing=","),
+        Paragraph(("hence",), continues=True),
+        Display((one,), closing="."),
+    ]
     assert writer.body(blocks) == "\\[ 1=1, \\postdisplaypenalty=5000 \\]\n\\[ \\text{hence}\\qquad 1=1. \\]"
     blocks[1] = Paragraph(("and, for every value of the gain, we have",), continues=True)
     assert "\n\\[ 1=1. \\]" in writer.body(blocks)

@@ -295,7 +295,14 @@ def test_words_that_are_no_text_are_refused() -> None:
 
 def test_an_equation_has_a_number_where_a_later_sentence_refers_to_it() -> None:
     refers = Sentence("test_refers", (("law", A_IS_TWO),))
-    steps = [Given((A_IS_TWO,)), Equal((ONE,)), Equal((A_IS_TWO,)), Note(refers), Equal((A_IS_TWO,)), Equal((TWO,))]
+    steps: list[Step] = [
+        Given((A_IS_TWO,)),
+        Equal((ONE,)),
+        Equal((A_IS_TWO,)),
+        Note(refers),
+        Equal((A_IS_TWO,)),
+        Equal((TWO,)),
+    ]
     blocks = narrate(document(Derivation(tuple(steps), Environment())))
     displays = [block for block in every(blocks) if isinstance(block, Display)]
     assert [(shown.relations, shown.number) for shown in displays] == [
@@ -311,7 +318,7 @@ def test_an_equation_has_a_number_where_a_later_sentence_refers_to_it() -> None:
 
 
 def test_every_format_writes_the_number_beside_the_equation() -> None:
-    told = [Given((A_IS_TWO,)), Note(Sentence("test_refers", (("law", A_IS_TWO),)))]
+    told: list[Step] = [Given((A_IS_TWO,)), Note(Sentence("test_refers", (("law", A_IS_TWO),)))]
     page = document(Derivation(tuple(told), Environment()))
     beside = {"latex": r"\tag{1} \]", "markdown": r"\tag{1} $$", "text": "A = 2    (1)", "html": ">(1)</span></div>"}
     for name, number_there in beside.items():
