@@ -34,7 +34,15 @@ from symobs.derivation.steps import (
     Step,
     Tabulate,
 )
-from symobs.derivation.wording_check import are_added, fits, formula_in, reject_other_map, rests, with_limit
+from symobs.derivation.wording_check import (
+    are_added,
+    fits,
+    formula_in,
+    reject_other_map,
+    reject_other_slots,
+    rests,
+    with_limit,
+)
 from symobs.errors import DerivationRejected
 from symobs.exact import Matrix, Scalar, product_of
 from symobs.formula import (
@@ -213,7 +221,9 @@ def _owed(sentence: Sentence, step: Step, environment: Environment) -> None:
         reject(f"{sentence.key}, which rests on another fact,")
     if not all(are_added(slot, facts) for _, slot in sentence.slots if isinstance(slot, StateChoice)):
         reject(f"{sentence.key}, of other states,")
-    reject_other_map(sentence, step.relation if isinstance(step, Define) else None, environment)
+    introduced = step.relation if isinstance(step, Define) else None
+    reject_other_map(sentence, introduced, environment)
+    reject_other_slots(sentence, introduced, environment)
 
 
 def _has_values(formula: Formula) -> bool:

@@ -8,17 +8,19 @@ that of a matrix of full rank, and not because of 1 = 1.  Which sentence owes wh
 from __future__ import annotations
 
 from fractions import Fraction
-from itertools import takewhile
-from typing import TYPE_CHECKING, Any
+from itertools import dropwhile, takewhile
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 from symobs.certificate.claims import as_scalar
 from symobs.certificate.pointwise import Pointwise
+from symobs.derivation.facts.properties import PREDICATES
 from symobs.derivation.facts.rejection import reject
-from symobs.exact import Matrix, Scalar, rank, unit_rows
+from symobs.exact import Matrix, Scalar, from_coefficients, rank, unit_rows
 from symobs.exact.core.generators import PI, function
 from symobs.formula import (
     Apply,
     Block,
+    Derivative,
     Exact,
     Formula,
     Letter,
@@ -28,12 +30,14 @@ from symobs.formula import (
     Product,
     Relation,
     Roots,
+    SymbolList,
     agree,
     children,
     evaluate,
 )
 from symobs.formula.plain_text import plain
 from symobs.phrases import DEMANDS
+from symobs.phrases.spoken import Counted
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -41,6 +45,8 @@ if TYPE_CHECKING:
     from symobs.derivation.steps import Sentence
     from symobs.formula import Environment, Fact
     from symobs.phrases.spoken import StateChoice
+
+_Slots: TypeAlias = "Mapping[str, Formula | Fact | Counted | StateChoice | str]"
 
 
 def _one_higher(value: Fraction) -> Fraction:
@@ -167,6 +173,55 @@ _OF_FACTS: dict[str, Callable[[Sequence[Fact], Environment], bool]] = {
     "needs_pole_defective": _is_defective,
 }
 
+
+def _degree(relation: Relation | None, environment: Environment) -> int | None:
+    """Return the degree of the polynomial that a definition introduces, None where there is no such."""
+    if relation is None:
+        return None
+    value = as_scalar(evaluate(relation.members[0], environment, Exact(environment)))
+    return len(value.coefficients(environment.variable)) - 1
+
+
+def _counts_degree(slots: _Slots, relation: Relation | None, environment: Environment) -> bool:
+    return slots["count"] == Counted("number", _degree(relation, environment) or 0)
+
+
+def _counts_dominant(slots: _Slots, relation: Relation | None, environment: Environment) -> bool:
+    """Tell whether beside the pair −σ ± iω the nearest root has the real part −factor σ."""
+    factor = slots["factor"]
+    if not _counts_degree(slots, relation, environment) or relation is None or not isinstance(factor, Counted):
+        return False
+    whole = as_scalar(evaluate(relation.members[0], environment, Exact(environment)))
+    sigma, omega = (as_scalar(environment.values[name]) for name in ("sigma_d", "omega_d"))
+    s = Scalar.symbol(environment.variable)
+    others = whole / ((s + sigma) * (s + sigma) + omega * omega)
+    moved = others.substitute({environment.variable: s - sigma * factor.count}).coefficients(environment.variable)
+    left = tuple(reversed([*dropwhile(lambda c: c.is_zero, reversed(moved))]))
+    is_stable = PREDICATES["stable"](from_coefficients(left, environment.variable), environment, False)  # noqa: FBT003
+    return factor == Counted("number", factor.count) and len(left) < len(moved) and is_stable
+
+
+def _counts_names(slots: _Slots, _: Relation | None, __: Environment) -> bool:
+    names = slots["names"]
+    return isinstance(names, SymbolList) and slots["vary"] == Counted("varies", len(names.names))
+
+
+def _substitutes_law(slots: _Slots, _: Relation | None, __: Environment) -> bool:
+    """Tell whether the slots are equations for the input and for the rate of the estimate."""
+    law, rate = slots["law"], slots["rate"]
+    firsts = [slot.members[0] for slot in (law, rate) if isinstance(slot, Relation)]
+    return firsts == [Letter("u"), Derivative(Letter("x_hat"))]
+
+
+#: What the slots of a sentence must be together, some of them by the definition in which it stands.
+_OF_STEP: dict[str, Callable[[_Slots, Relation | None, Environment], bool]] = {
+    "counts_degree": _counts_degree,
+    "counts_dominant": _counts_dominant,
+    "counts_names": _counts_names,
+    "substitutes_law": _substitutes_law,
+    "introduces_degree_one": lambda _, relation, environment: _degree(relation, environment) == 1,
+}
+
 #: Sentences that set the limit to which a boundary is moved, and the name under which it is remembered.
 _SETS = {"sets_margin": "sought margin", "sets_radius": "sought radius"}
 
@@ -178,7 +233,7 @@ _APPLIES: dict[str, tuple[str, str]] = {
 }
 
 #: Every obligation that a phrase may declare in its `DEMANDS`.
-OBLIGATIONS = frozenset({*_OF_SLOTS, *_OF_FACTS, *_SETS, *_APPLIES})
+OBLIGATIONS = frozenset({*_OF_SLOTS, *_OF_FACTS, *_OF_STEP, *_SETS, *_APPLIES})
 
 
 def require_known(demands: Mapping[str, str]) -> None:
@@ -219,6 +274,13 @@ def are_added(choice: StateChoice, facts: Sequence[Fact]) -> bool:
             case _:
                 return False
     return True
+
+
+def reject_other_slots(sentence: Sentence, relation: Relation | None, environment: Environment) -> None:
+    """Reject a sentence that counts otherwise than its slots or the definition around it, or names other equations."""
+    is_said = _OF_STEP.get(DEMANDS.get(sentence.key, ""))
+    if is_said is not None and not is_said(dict(sentence.slots), relation, environment):
+        reject(f"{sentence.key}, of another number or equation,")
 
 
 def with_limit(sentence: Sentence, environment: Environment) -> Environment:

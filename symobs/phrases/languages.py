@@ -10,6 +10,7 @@ from __future__ import annotations
 import re
 import string
 import sys
+from datetime import date, datetime
 from functools import cache, cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -81,6 +82,14 @@ class Language:
     def decimal(self, text: str) -> str:
         """Return a decimal number with the mark of the language."""
         return text.replace(".", self.words["decimal_mark"])
+
+    def day(self, value: date) -> str:
+        """Return a date, and the time of day where it has one: `8 December 2026, 12:00`."""
+        months = self.words["months"].split()
+        told = self.words["date"].format(day=value.day, month=months[value.month - 1], year=value.year)
+        if not isinstance(value, datetime):
+            return told
+        return self.words["date_and_time"].format(date=told, time=f"{value:%H:%M}")
 
     def reference(self, key: str) -> str:
         """Return one entry of the literature in standard form."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Collection, Mapping
-from datetime import date, datetime
+from datetime import date
 from difflib import get_close_matches
 from fractions import Fraction
 from os.path import normpath
@@ -63,6 +63,41 @@ _OWN = "|".join(key for key in SHEET if key not in {"title", "text", "language",
 _SHEET_KEY = re.compile(rf"""^\s*(?:\[\[\s*"?problem"?\s*\]\]|"?(?:{_OWN})"?\s*=)""", re.MULTILINE)
 _PROBLEM_KEY = re.compile(r"""^\s*(?:"?tasks?"?\s*=|\[\s*"?(?:plant|specification|symbols)"?\s*\])""", re.MULTILINE)
 _IN_JSON = re.compile(rf'"(?:{_OWN})"\s*:'), re.compile(r'"(?:tasks?|plant|specification)"\s*:')
+
+
+def schema() -> dict[str, Any]:
+    """Return the JSON schema of the file of a sheet."""
+    text: dict[str, Any] = {"type": "string"}
+    points = {"anyOf": [{"type": "number", "minimum": 0, "maximum": _MOST_POINTS}, text]}
+    space = {"type": "integer", "minimum": 1, "maximum": _SPACE[1]}
+    entry: dict[str, Any] = {
+        "file": {**text, "minLength": 1},
+        "points": {"anyOf": [*points["anyOf"], {"type": "array", "minItems": 1, "items": points}]},
+        "hint": text,
+        "space": space,
+    }
+    own: dict[str, Any] = {
+        **dict.fromkeys((*_TEXTS, "due", "logo", "convention"), text),
+        "number": {"anyOf": [{"type": "integer", "minimum": 0, "maximum": _MOST_POINTS}, text]},
+        "language": {"enum": list(languages())},
+        **{key: {"enum": list(known)} for key, known in _CHOICES.items()},
+        **{key: {"type": "boolean"} for key in ("name", "final_answers")},
+        "space": space,
+        "problem": {
+            "type": "array",
+            "minItems": 1,
+            "maxItems": _MOST_PROBLEMS,
+            "items": _table(PROBLEM, entry, "file"),
+        },
+    }
+    whole = _table(SHEET, own, "problem")
+    return {"$schema": "https://json-schema.org/draft/2020-12/schema", "title": "symobs sheet", **whole}
+
+
+def _table(about: Mapping[str, str], kinds: Mapping[str, Any], required: str) -> dict[str, Any]:
+    """Return the schema of a table, each key with what it is for."""
+    properties = {key: {"description": words, **kinds[key]} for key, words in about.items()}
+    return {"type": "object", "properties": properties, "required": [required], "additionalProperties": False}
 
 
 @dataclass(frozen=True)
@@ -176,11 +211,9 @@ def _number(value: object, errors: Errors) -> str:
     return _text(value, "number", errors)
 
 
-def _date(value: object, errors: Errors) -> str:
-    """Return when the answers are due: words as they are, a date of the file as it is written there."""
-    if isinstance(value, datetime):
-        return value.strftime("%Y-%m-%d, %H:%M")
-    return value.isoformat() if isinstance(value, date) else _text(value, "due", errors)
+def _date(value: object, errors: Errors) -> str | date:
+    """Return when the answers are due: words, or a date, which the language of the sheet writes."""
+    return value if isinstance(value, date) else _text(value, "due", errors)
 
 
 def _space(value: object, room: str, where: str, errors: Errors) -> AnswerSpace | None:

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Continuous:
-    """Continuous time: ẋ, the variable s, stability in the open left half plane."""
+    """Continuous time: ẋ, the variable s, stability in the open left half-plane."""
 
     variable = "s"
 

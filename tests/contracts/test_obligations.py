@@ -22,6 +22,10 @@ if TYPE_CHECKING:
 #: Obligation, and the sentences that owe it.
 DEMANDED = {
     "applies_image": "mapped mapped_from_v",
+    "counts_degree": "pair_remains some_on_circle",
+    "counts_dominant": "pair_dominates",
+    "counts_names": "crossing crossing_discrete crossing_infinite crossing_one crossing_one_discrete",
+    "introduces_degree_one": "one_from_settling one_on_circle",
     "moves_by_margin": "moved_right",
     "needs_loop_stable": "compensator_unstable_alone compensator_unstable_low_alone minimal_unstable_alone",
     "needs_modes_stable": "yes_detectability yes_stabilizability",
@@ -42,6 +46,7 @@ DEMANDED = {
     "says_rank_low": "case_stack generic_low_controllability generic_low_observability stack_no",
     "says_rank_low_everywhere": "no_controllability no_observability",
     "scales_by_radius": "enlarged",
+    "substitutes_law": "observer_closed observer_closed_matrix",
     "sets_margin": "sought_margin",
     "sets_radius": "sought_radius",
 }

@@ -94,6 +94,22 @@ def test_nothing_in_a_sheet_is_interpreted(name: str, folder: Path) -> None:
         assert not re.search(r"<script|(?<!\\)\[a\]|(?<!\\)`c", run.out)
 
 
+@pytest.mark.parametrize(
+    ("language", "due", "said"),
+    [
+        ("en", "2026-12-08", "Due: 8 December 2026"),
+        ("en", "2026-12-08T09:05:00", "Due: 8 December 2026, 09:05"),
+        ("de", "2026-03-01", "Abgabe: 1. März 2026"),
+        ("de", "2026-12-08T12:00:00", "Abgabe: 8. Dezember 2026, 12:00 Uhr"),
+    ],
+)
+def test_a_date_is_written_in_the_language_of_the_sheet(language: str, due: str, said: str, folder: Path) -> None:
+    (folder / "sheet.toml").write_text(f'due = {due}\nlanguage = "{language}"\n{PROBLEMS}', encoding="utf-8")
+    assert f"{said}\n" in inside("sheet", "sheet.toml", "--questions", "--format", "text", folder=folder).out
+    whole = json.loads(inside("sheet", "sheet.toml", "--questions", "--format", "json", folder=folder).out)
+    assert whole["due"] == due
+
+
 def test_points_add_up(folder: Path) -> None:
     page = written(folder, "", "--questions", "--format", "text")
     rows = [line.split() for line in page.splitlines() if line.startswith(("Problem  ", "Points", "Score"))]

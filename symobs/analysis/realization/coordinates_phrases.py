@@ -1,4 +1,4 @@
-"""Changes of coordinates: Kalman's decomposition and the canonical forms."""
+"""Changes of coordinates: the Kalman decomposition and the canonical forms."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Kalman's decomposition in four parts: reached and seen (co), reached and hidden (c_no), and the same not reached.
+"""Kalman decomposition in four parts: reached and seen (co), reached and hidden (c_no), and the same not reached.
 
 With R the reachable subspace, the image of 𝒞, and N = ker 𝒪, the columns of S = T⁻¹ are bases of a complement of R ∩ N in
 R, of R ∩ N, of a complement of R + N, and of a complement of R ∩ N in N, in the order co, c_no, nc_o, nc_no.  Then

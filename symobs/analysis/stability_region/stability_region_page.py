@@ -58,8 +58,7 @@ def write_region(page: Builder, result: StabilityRegion) -> None:
         if result.region is not None:
             if result.critical.proper:
                 _crossing(page, result, moved)
-            _region(page, result, moved)
-            _pictures(page, result, chi, moved)
+            _region(page, result, chi, moved)
         elif result.question.parameters:
             _conditions(page, result, moved)
 
@@ -238,8 +237,8 @@ def _case(page: Builder, case: Case, chi: str) -> Step:
     return CaseStep(when, tuple(case.substitution.items()), steps)
 
 
-def _region(page: Builder, result: StabilityRegion, chi: str) -> None:
-    """Show the inequalities, and the region in words and parts."""
+def _region(page: Builder, result: StabilityRegion, written: str, chi: str) -> None:
+    """Show the inequalities, the region in words and parts, and the pictures, below the inequalities where there are any."""
     region = result.region
     assert region is not None  # noqa: S101 - there is one here
     found = findings_of_region(region)
@@ -254,6 +253,7 @@ def _region(page: Builder, result: StabilityRegion, chi: str) -> None:
     if relations:
         fact = HoldsExactlyWhere(predicate("stable", page[chi]), relations)
         page.steps.append(Inequalities(fact, sentence("region_is", {}), answer=True))
+        _pictures(page, result, written, chi)
     parts = _parts(result, region)
     others = tuple(finding for finding in found if finding not in decided and finding.key != "number_is_root")
     if others or parts:
@@ -262,6 +262,8 @@ def _region(page: Builder, result: StabilityRegion, chi: str) -> None:
         page.steps.append(RegionSummary(page[chi].formula, names, others, parts, say))
         if numbers:
             page.steps.append(RegionSummary(page[chi].formula, names, numbers))
+    if not relations:
+        _pictures(page, result, written, chi)
 
 
 def _pictures(page: Builder, result: StabilityRegion, chi: str, moved: str) -> None:

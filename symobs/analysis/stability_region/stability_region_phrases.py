@@ -79,6 +79,11 @@ DEMANDS: dict[str, str] = {
     "enlarged": "scales_by_radius",
     "mapped": "applies_image",
     "mapped_from_v": "applies_image",
+    "crossing": "counts_names",
+    "crossing_one": "counts_names",
+    "crossing_infinite": "counts_names",
+    "crossing_discrete": "counts_names",
+    "crossing_one_discrete": "counts_names",
 }
 
 RESTS_ON: dict[str, str] = {

@@ -1,4 +1,4 @@
-"""The command `schema`: the JSON schemas of problem files and of results."""
+"""The command `schema`: the JSON schemas of problem files, of sheets and of results."""
 
 from __future__ import annotations
 
@@ -10,18 +10,19 @@ from symobs.checking.report.schema import schema as of_check
 from symobs.cli.shared.output import write
 from symobs.errors import UsageError
 from symobs.problem import schema as of_problem
+from symobs.problem.sheet_file import schema as of_sheet
 from symobs.variation.schema import schema as of_variants
 
 #: What has a schema, by the name that the command takes.
-SCHEMAS = {"problem": of_problem, "check": of_check, "variants": of_variants}
+SCHEMAS = {"problem": of_problem, "sheet": of_sheet, "check": of_check, "variants": of_variants}
 
 
 @click.command("schema")
 @click.argument("name", default="problem")
 def command(name: str) -> None:
-    """Print the JSON schema of problem files, or that of the results of the command NAME.
+    """Print the JSON schema of problem files, of the file of a sheet, or of the results of the command NAME.
 
-    NAME is problem (default), check or variants (their manifest).
+    NAME is problem (default), sheet, check or variants (their manifest).
     """
     if name not in SCHEMAS:
         raise UsageError(f"{name[:40]!r} has no schema", repair=f"take {', '.join(SCHEMAS)}")

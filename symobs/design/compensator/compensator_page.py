@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from symobs.analysis.factored_form import factored_form, formula_of_factored
 from symobs.analysis.page_parts import given, in_blocks, is_narrow
@@ -12,7 +12,7 @@ from symobs.design.compensator.compensator import CompensatorDesign
 from symobs.design.compensator.defective_poles import caution_repeated
 from symobs.design.compensator.hidden_modes import caution_hidden
 from symobs.design.compensator.side_by_side_page import can_stand_side_by_side, write_side_by_side
-from symobs.design.full_order.observer import write_observer
+from symobs.design.full_order.observer import model_and_innovation, write_observer
 from symobs.design.gain.gain_page import name_entries, write_gain
 from symobs.design.gain.gain_request import page_style
 from symobs.design.gain.placement_problem import FEEDBACK, OBSERVER
@@ -90,17 +90,21 @@ def _state_space(page: Builder, design: CompensatorDesign) -> None:
     """U = −K x̂ put into the observer: (4.23), (4.24)."""
     m = design.plant.matrices
     A, B, C, K, L, x_hat = (page[name] for name in ("A", "B", "C", "K", "L", "x_hat"))
+    model, innovation = model_and_innovation(page)
+    law = relation(page["u"], -K @ x_hat)
     page.signal("u", -K @ x_hat, say="separation")
+    both: dict[str, Any] = {"law": law, "rate": relation(x_hat.derivative, model + L @ innovation)}
     closed, shown = A - B @ K - L @ C, A.as_value - (B @ K).as_value - (L @ C).as_value
     if m.has_feedthrough:
         closed, shown = closed + L @ page["D"] @ K, shown + (L @ page["D"] @ K).as_value
     own, is_written = closed @ x_hat + L @ page["y"], closed.value.size <= readability.MATRIX
-    if not is_written:
-        page.equal(relation(x_hat.derivative, own), say="observer_closed")
     small = page.plant.order == readability.PRODUCTS_ORDER and not m.has_feedthrough
     apart = [A.as_value - B.as_value @ K.as_value - L.as_value @ C.as_value] if small else []
-    page.define("A_c", closed, *apart, shown, say="observer_closed_matrix" if is_written else "compensator_matrix")
-    if is_written:
+    if not is_written:
+        page.equal(relation(x_hat.derivative, own), say="observer_closed", **both)
+        page.define("A_c", closed, *apart, shown, say="compensator_matrix")
+    else:
+        page.define("A_c", closed, *apart, shown, say="observer_closed_matrix", **both)
         written = page["A_c"].as_value @ x_hat + L.as_value @ page["y"]
         page.conclude_silently(relation(x_hat.derivative, own))
         page.equal(

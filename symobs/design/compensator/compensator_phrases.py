@@ -6,8 +6,8 @@ PHRASES: dict[str, str] = {
     "in_components": "Componentwise,",
     "right_estimate_stays": "If the estimate is exact at one instant, it remains exact: {consistent}.",
     "separation": "By the separation principle§, the state in the control law is replaced by its estimate:",
-    "observer_closed": "Substituting this into the observer gives a system of the same order as the plant, driven by $y$ alone,",
-    "observer_closed_matrix": "Substituting this into the observer gives a system of the same order as the plant, driven by $y$ alone, with the matrix",
+    "observer_closed": "Substituting {law:number} into {rate:number} gives a system of the same order as the plant, driven by $y$ alone,",
+    "observer_closed_matrix": "Substituting {law:number} into {rate:number} gives a system of the same order as the plant, driven by $y$ alone, with the matrix",
     "compensator_matrix": "with the matrix",
     "compensator_written": "Explicitly, the compensator is",
     "transfer_function_of_compensator": "Its transfer function from $y$ to $-u$ is",
@@ -87,6 +87,8 @@ DEMANDS: dict[str, str] = {
     "compensator_unstable_low_alone": "needs_loop_stable",
     "defective": "needs_pole_defective",
     "defective_instead": "needs_pole_defective",
+    "observer_closed": "substitutes_law",
+    "observer_closed_matrix": "substitutes_law",
 }
 
 RESTS_ON: dict[str, str] = {

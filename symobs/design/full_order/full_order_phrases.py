@@ -13,7 +13,7 @@ PHRASES: dict[str, str] = {
     "existence_error": "The error {error} then satisfies",
     "existence_choice": "For the error to be independent of state and input, the coefficients of both must vanish, which requires",
     "existence_left": "and the error dynamics reduce to",
-    "existence_observer": "With $H_x = L$ the observer is",
+    "existence_observer": "With the gain $H_x = L$ the observer is",
 }
 
 QUESTIONS: dict[str, str] = {

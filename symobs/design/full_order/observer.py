@@ -120,6 +120,16 @@ class ObserverDesign(GainDesign):
                 plot_error(page, "e", page["A"] - page["L"] @ page["C"])
 
 
+def model_and_innovation(page: Builder) -> tuple[Term, Term]:
+    """Return A x̂ + B u and y − C x̂ − D u: the observer is the first and L times the second."""
+    m = page.plant.matrices
+    A, C, x_hat, y = (page[name] for name in ("A", "C", "x_hat", "y"))
+    model, predicted = A @ x_hat, C @ x_hat
+    if m.has_input:
+        model = model + page["B"] @ page["u"]
+    return model, y - predicted - page["D"] @ page["u"] if m.has_feedthrough else y - predicted
+
+
 def write_observer(page: Builder, *, drawn: bool = False, alone: bool = True) -> None:
     """Write the observer in both forms and its error equation, each line checked on signals.
 
@@ -127,10 +137,7 @@ def write_observer(page: Builder, *, drawn: bool = False, alone: bool = True) ->
     """
     m = page.plant.matrices
     A, C, L, x_hat, y = (page[name] for name in ("A", "C", "L", "x_hat", "y"))
-    model, predicted = A @ x_hat, C @ x_hat
-    if m.has_input:
-        model = model + page["B"] @ page["u"]
-    innovation = y - predicted - page["D"] @ page["u"] if m.has_feedthrough else y - predicted
+    model, innovation = model_and_innovation(page)
     page.dynamics("x_hat", model + L @ innovation, say="observer_equation")
     if drawn:
         draw_copy(page)

@@ -95,16 +95,26 @@ def _equation(page: Builder, side: PlacementProblem, which: str, equation: Sylve
     G, X = (f"{letter}_{side.index}{which}" for letter in "GX")
     page.set(G, value)
     solution = page.set(X, equation.solution(value))
-    page.equal(_sylvester(page, side, which, equation), say=f"sylvester_{side.kind}")
+    conditional = _sylvester(page, side, which, equation)
+    page.equal(conditional, say=f"sylvester_{side.kind}")
     apart = vanishing_factors([equation.resultant], page.plant.symbols.signs)
     if apart and all(factor.size <= readability.FAMILY_SOLUTION for factor in apart):
         page.assume("spectra_provided", *apart)
     elif apart:
         page.remark("spectra_apart")
     page.equal(_similar(page, side, which, equation), say=f"similar_{side.kind}")
-    page.equal(relation(page[G], value), say=f"one_row_held_{side.kind}" if value.shape[0] > 1 else "one_gain_only")
+    has_choice = value.shape[0] > 1
+    row = relation(page[G], value)
+    if has_choice:
+        page.equal(row, say=f"one_row_held_{side.kind}")
+    else:
+        page.equal(row, say=f"one_gain_only_{side.kind}", equation=conditional)
     if solution.value.size <= readability.FAMILY_SOLUTION:
-        page.equal(relation(solution, solution.as_value), say="solution_is" if value.shape[0] > 1 else "")
+        shown = relation(solution, solution.as_value)
+        if has_choice:
+            page.equal(shown, say="solution_is", equation=conditional)
+        else:
+            page.equal(shown)
     determinant = solution.value.determinant()
     if determinant.size <= readability.FAMILY_DETERMINANT:
         page.equal(

@@ -165,10 +165,10 @@ def _reduce(page: Builder, side: PlacementProblem, part: Reduction, number: int)
     if part.before is not None:
         page.equal(relation(part.matrix, "~", part.reduced), say="generalised", pole=_named(page, part))
     else:
-        words = "pole" if part.size == 1 else "pair" if _pair(part) else "factor"
+        words = ("pole" if number == 1 else "next_pole") if part.size == 1 else "pair" if _pair(part) else "factor"
         chain = relation(_matrix(page, side, part), part.matrix, "~", part.reduced)
         page.equal(chain, say=f"{words}_reduced", pole=_named(page, part))
-    if part.size == 1:
+    if part.size == 1 and number == 1:
         _relations(page, part, number)
     near = page.decimals(part.vector)
     xi = page.define(f"xi_{number}", part.vector, *near, say="" if part.size == 1 else "vectors_chosen")
@@ -207,7 +207,7 @@ def _multiple(page: Builder, factor: Scalar, order: int) -> Term | None:
 
 
 def _relations(page: Builder, part: Reduction, number: int) -> None:
-    """Read the components off the reduced form, and choose the free ones."""
+    """Read the components off the reduced form, and choose what is free: for the first pole, which stands for all."""
     width = part.vector.shape[0]
     short = width < 10
     names = [f"xi_{number}{i}" if short else f"xi_{number}_{i}" for i in range(1, width + 1)]
@@ -220,9 +220,6 @@ def _relations(page: Builder, part: Reduction, number: int) -> None:
         right = part.reduced[row, width] if part.before is not None else Scalar.of(0)
         lines.append(relation(xi[pivot], sum((xi[j] * -part.reduced[row, j] for j in free), start=right)))
     chosen = [relation(xi[j], part.vector[j, 0]) for j in free]
-    if number > 1:  # as for the first pole
-        page.equal(*lines, *chosen, say="relations_again")
-        return
     page.equal(*lines, say="relations_read_off")
     page.equal(*chosen, say="free_chosen")
 

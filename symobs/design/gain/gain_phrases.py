@@ -29,11 +29,11 @@ PHRASES: dict[str, str] = {
     "null_vectors_observer": "For each desired pole we compute a null vector of the following matrix§: its upper part is an eigenvector of the transpose of $A - L C$ if the transposed gain maps it to the lower part.",
     "null_vectors_state_feedback": "For each desired pole we compute a null vector of the following matrix§: its upper part is an eigenvector of $A - B K$ if the gain maps it to the lower part.",
     "pole_reduced": "For the pole {pole} the matrix and its row-reduced echelon form are",
+    "next_pole_reduced": "For the pole {pole} the same steps give",
     "pair_reduced": "For the complex-conjugate pair of the factor {pole} the real matrix and its row-reduced echelon form are",
     "factor_reduced": "For the factor {pole}, whose companion matrix represents its roots, the matrix and its row-reduced echelon form are",
     "generalised": "The repeated pole {pole} has no further independent null vector; a generalised eigenvector is found by placing the preceding vector, with opposite sign, on the right-hand side. The row-reduced echelon form is",
     "relations_read_off": "The components of a null vector therefore satisfy",
-    "relations_again": "so that, with a choice of the free components,",
     "free_chosen": "Choosing the free components, we obtain",
     "vectors_chosen": "Choosing the free components, with the upper parts placed before the lower ones, gives",
     "upper_parts": "The upper and the lower parts of these vectors form the columns of",
@@ -128,7 +128,6 @@ SPELLS_OUT = ("coefficients",)
 
 #: Phrases that go on with the sentence before them.
 CONTINUES = (
-    "relations_again",
     "coefficients",
     "polynomial_of_unknown",
     "solution_of_system",

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from fractions import Fraction
-from typing import TYPE_CHECKING, cast
+from typing import TYPE_CHECKING, Any, cast
 
 from symobs.analysis.factored_form import factored_form, formula_of_factored
 from symobs.analysis.page_parts import given, hidden, hidden_polynomial, set_anew, stratum_of, undecided
@@ -186,15 +186,10 @@ def _pair(page: Builder, advice: PoleAdvice) -> None:
     whole = first
     for other in others:
         whole = whole @ other
-    page.define(
-        "phi_r",
-        whole,
-        _product(page, factors),
-        say="pair_dominates",
-        closing=False,
-        count=Counted("number", count),
-        factor=Counted("number", FURTHER_LEFT),
-    )
+    told: dict[str, Any] = {"say": "pair_remains", "count": Counted("number", count)}
+    if others:
+        told |= {"say": "pair_dominates", "factor": Counted("number", FURTHER_LEFT)}
+    page.define("phi_r", whole, _product(page, factors), closing=False, **told)
 
 
 def _polynomial(page: Builder, advice: PoleAdvice) -> None:

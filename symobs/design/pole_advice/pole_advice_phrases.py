@@ -22,7 +22,8 @@ PHRASES: dict[str, str] = {
     "one_from_settling": "One observer pole remains; a real pole gives no overshoot:",
     "overshoot_held": "The step response of a complex pair with real part $-sigma_d$ and imaginary part $omega_d$ has the overshoot exp(−π $sigma_d$/$omega_d$). It satisfies {bound} for",
     "overshoot_close": "Increasing the ratio of $omega_d$ to $sigma_d$ by one unit in its third digit would give {more}.",
-    "pair_dominates": "Among the remaining {count} observer poles this pair is dominant; any others lie at least {factor} times farther to the left:",
+    "pair_remains": "The remaining {count} observer poles are this pair:",
+    "pair_dominates": "Among the remaining {count} observer poles this pair is dominant; every other pole lies at least {factor} times as far to the left:",
     "advised_polynomial": "The recommended observer polynomial is therefore",
     "pole_twice": "A zero used here coincides with one of the further poles: the observer has a repeated pole, {repeated}.",
     "recovery": "All zeros are used. For a large radius the observer polynomial approaches the zero polynomial times a power of the radius, and the gain approaches a multiple of $B$, since",
@@ -64,6 +65,11 @@ DEMANDS: dict[str, str] = {
     "decayed": "says_decay",
     "overshoot_held": "says_overshoot",
     "overshoot_close": "says_overshoot_above",
+    "one_on_circle": "introduces_degree_one",
+    "one_from_settling": "introduces_degree_one",
+    "some_on_circle": "counts_degree",
+    "pair_remains": "counts_degree",
+    "pair_dominates": "counts_dominant",
 }
 
 RESTS_ON: dict[str, str] = {

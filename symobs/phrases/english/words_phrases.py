@@ -1,8 +1,8 @@
 """The words of a page that belong to no phrase, and how things are counted.
 
 `WORDS` has the code of the language (that of HTML), its name for LaTeX's babel where it needs one, the decimal mark,
-numbers in words from 0, the parts of a list, what the page calls its own parts, and the words of references (`{ordinal}` of an edition is `3rd`, `{number}` 3).  Each table
-of `COUNTS` says how many of a thing there are: under the number itself, `all` where it is all of them, or `other`.
+numbers in words from 0, the parts of a list, what the page calls its own parts, the words of references (`{ordinal}` of
+an edition is `3rd`, `{number}` 3), and dates: the months from January, and how a day is written.  Each table of `COUNTS` says how many of a thing there are: under the number itself, `all` where it is all of them, or `other`.
 `{word}` is the number in words, `{digits}` in digits.
 """
 
@@ -30,6 +30,9 @@ WORDS: dict[str, str] = {
     "edition": "{ordinal} ed.",
     "chapter": "ch.",
     "section": "sec.",
+    "months": "January February March April May June July August September October November December",
+    "date": "{day} {month} {year}",
+    "date_and_time": "{date}, {time}",
 }
 
 COUNTS: dict[str, dict[str, str]] = {

@@ -70,8 +70,10 @@ def figure(scene: Scene, printer: LatexPrinter, words: str = "") -> str:
     size = "\\small\n" if scene.is_diagram and abs(scene.whole.top - scene.whole.bottom) > _TALL else ""
     if not words:
         return centred(f"\n{size}{tikz(scene, printer)}\n")
-    content = f"{size}{tikz(scene, printer)}\n\\par\\smallskip{{\\small {words}\\par}}\n"
-    return centred(f"\\begin{{minipage}}{{.92\\linewidth}}\\centering\n{content}\\end{{minipage}}")
+    below = f"\\par\\smallskip\\parbox{{.92\\linewidth}}{{\\centering\\small {words}}}"
+    return centred(
+        f"\\begin{{minipage}}{{\\linewidth}}\\centering\n{size}{tikz(scene, printer)}\n{below}\n\\end{{minipage}}"
+    )
 
 
 def tikz_file(picture: Drawn, printer: LatexPrinter) -> str:

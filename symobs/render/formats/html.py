@@ -246,8 +246,8 @@ class HtmlWriter:
                 return self._heading(number, self.sentence(inlines))
             case Paragraph(inlines):
                 return f"<p>{self.sentence(inlines)}</p>"
-            case Display(relations, boxed, closing):
-                shown = self._display(self.printer.display(relations, boxed=boxed, end=closing))
+            case Display(relations, boxed, closing, number):
+                shown = self._display(self.printer.display(relations, boxed=boxed, end=closing), number)
                 if self.latex is None:
                     return shown
                 return f'<div data-latex="{escape(self.latex.display(relations, end=""))}">{shown}</div>'
@@ -310,8 +310,9 @@ class HtmlWriter:
         body = "\n".join(f"<tr>{row}</tr>" for row in rows)
         return f'<div class="table">\n<table class="columns">\n<tr>{heads}</tr>\n{body}\n</table>\n</div>'
 
-    def _display(self, mathematics: str) -> str:
-        return f'<div class="display">{mathematics}</div>'
+    def _display(self, mathematics: str, number: int = 0) -> str:
+        label = f'<span class="number">({number})</span>' if number else ""
+        return f'<div class="display">{mathematics}{label}</div>'
 
     def _picture(self, block: Drawing | PictureBlock) -> str:
         from symobs.render.drawings.captions import below  # noqa: PLC0415 - only pages with pictures

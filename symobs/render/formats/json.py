@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
+from datetime import date
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from symobs.convention import STANDARD, Convention
@@ -63,7 +64,9 @@ class Json:
             if sheet.has_solutions:
                 problem["results"] = entry.solution
             problems.append(problem | ({"failure": entry.failure} if entry.failure else {}))
-        head = {name: getattr(sheet.header, name) for name in _HEAD if getattr(sheet.header, name)}
+        head = {name: told for name in _HEAD if (told := getattr(sheet.header, name))}
+        if isinstance(due := sheet.header.due, date):
+            head["due"] = due.isoformat()
         return _written({"schema": SCHEMA, "title": sheet.title, **head, "problems": problems})
 
 

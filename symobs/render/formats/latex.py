@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from copy import copy
 from itertools import pairwise, zip_longest
 from typing import TYPE_CHECKING, Any, ClassVar
@@ -41,6 +42,11 @@ if TYPE_CHECKING:
     from symobs.result import Document
 
 _INSET = 1.5  # em, as in the templates
+_LETTER = 0.5  # em, a letter of running text and a little more
+_SPACE = 2.0  # em, a `\qquad`
+#: Words of no more letters stand on the line of the display that they introduce.
+_FEW_LETTERS = 30
+_OPENING = r"\[ "
 _GUTTER = 0.06  # between columns, of the line
 
 
@@ -152,7 +158,21 @@ class LatexWriter:
         """Return all blocks, each continuing its paragraph or beginning a new one."""
         pieces = [self.block(block) for block in blocks]
         gaps = [_gap(before, after) for before, after in pairwise(blocks)]
+        for place in range(1, len(blocks) - 1):
+            if led := self._led_in(*blocks[place - 1 : place + 2]):
+                pieces[place : place + 2], gaps[place] = ("", led), ""
         return "".join(text for pair in zip_longest(pieces, gaps, fillvalue="") for text in pair)
+
+    def _led_in(self, before: Block, words: Block, display: Block) -> str:
+        """Return a display with the few words between it and the one before it on its line, if there is room for them."""
+        match before, words, display:
+            case Display(), Paragraph((str(text),), continues), Display():
+                if len(text) > _FEW_LETTERS or not (continues or text.endswith(",")):
+                    return ""
+                written = LatexWriter(self.printer, inset=_LETTER * len(text) + _SPACE).block(display)
+                if written.startswith(_OPENING) and not display.number:
+                    return rf"{_OPENING}\text{{{escape(text)}}}\qquad {written.removeprefix(_OPENING)}"
+        return ""
 
     def block(self, block: Block) -> str:
         """Return one block."""
@@ -161,8 +181,10 @@ class LatexWriter:
                 return rf"\textbf{{{f'{number} ' * bool(number)}{self.sentence(inlines)}}}"
             case Paragraph(inlines):
                 return self.sentence(inlines)
-            case Display(relations, boxed, closing):
+            case Display(relations, boxed, closing, number):
                 written = self.printer.display(relations, boxed=boxed, end=closing)
+                if number:
+                    written = re.sub(r"(?= \\\]$|\n\\end\{(?:align|gather)\*\}$)", rf"\\tag{{{number}}}", written)
                 return _kept_with_next(written) if closing == "," else written
             case Verified(inlines):
                 return rf"\verified{{{self.sentence(inlines)}}}"
@@ -202,14 +224,13 @@ class LatexWriter:
         count = len(block.heads)
         part = round((1 - _GUTTER * (count - 1)) / count, 4)
         writer = LatexWriter(self.printer, inset=(1 - part) * self.printer.width)
-        opening, closing = (
-            rf"\begin{{minipage}}[t]{{{part}\linewidth}}\raggedright\rule{{0pt}}{{2.6ex}}",
-            r"\par\kern5pt\end{minipage}",
-        )
-        cells = [[rf"\textbf{{{self.sentence(head)}}}" for head in block.heads]]
-        cells += [[writer.body(cell) for cell in row] for row in block.rows]
-        between = f"{closing}\\hfill\\vrule\\hfill\n{opening}"
-        head, *rows = [rf"\noindent{opening}{between.join(row)}{closing}\par\nointerlineskip" for row in cells]
+        heads: list[tuple[str, tuple[Block, ...]]] = [
+            (rf"\textbf{{{self.sentence(head)}}}", ()) for head in block.heads
+        ]
+        cells = [heads, *([(writer.body(cell), cell) for cell in row] for row in block.rows)]
+        boxes = [[_in_column(text, inside, part) for text, inside in row] for row in cells]
+        between = "\\hfill\\vrule\\hfill\n"
+        head, *rows = [rf"\noindent{between.join(row)}\par\nointerlineskip" for row in boxes]
         body = "\n".join([head, r"\nobreak\hrule\nobreak\vskip0pt", *rows])
         return f"\\par\\medskip{{\\parskip=0pt\n{body}\n}}\\medskip"
 
@@ -223,6 +244,16 @@ class LatexWriter:
         if isinstance(part, Roots):
             return ", ".join(f"${root}$" for root in listed(part, self.printer, LATEX))
         return f"${self.printer.inline(part)}$"
+
+
+def _in_column(text: str, blocks: Sequence[Block], part: float) -> str:
+    """Return a cell as a box; a check in it breaks before a sign of equality, and a display at its end has its own space."""
+    before, after = r"\rule{0pt}{2.6ex}", "5pt"
+    if blocks and isinstance(blocks[0], Verified):
+        before, text = r"\relpenalty=10000 ", text.replace("=", r"\allowbreak=")
+    if blocks and isinstance(blocks[-1], Display):
+        after = "1pt"
+    return rf"\begin{{minipage}}[t]{{{part}\linewidth}}\raggedright{before}{text}\par\kern{after}\end{{minipage}}"
 
 
 def _kept_with_next(display: str) -> str:

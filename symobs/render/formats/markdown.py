@@ -163,8 +163,9 @@ class MarkdownWriter:
                 return f"{'#' * depth} {f'{number} {self.sentence(inlines)}'.strip().removesuffix('.')}"
             case Paragraph(inlines):
                 return paragraph(self.sentence(inlines))
-            case Display(relations, boxed, closing):
-                return self.display(relations, boxed=boxed, end=closing)
+            case Display(relations, boxed, closing, number):
+                shown = self.display(relations, boxed=boxed, end=closing)
+                return rf"{shown.removesuffix(' $$')} \tag{{{number}}} $$" if number else shown
             case Verified(inlines):
                 return f"✓ {self.sentence(inlines)}"
             case Caution(label, inlines):

@@ -127,8 +127,9 @@ class TextWriter:
                 return underlined(wrapped(title, width), "-", width)
             case Paragraph(inlines):
                 return wrapped(self.sentence(inlines), width)
-            case Display(relations, boxed, _):
-                return indented(self.printer.display(relations, boxed=boxed))
+            case Display(relations, boxed, _, number):
+                shown = indented(self.printer.display(relations, boxed=boxed))
+                return f"{shown}    ({number})" if number else shown
             case Verified(inlines):
                 return wrapped(self.sentence(inlines), width, first="✓ ")
             case Caution(label, inlines):

@@ -51,12 +51,14 @@ class Paragraph:
 class Display:
     """Relations set apart from the text; boxed, the last member of the last one is an answer.
 
-    `closing` is the punctuation mark that the sentence around it asks for after it.
+    `closing` is the punctuation mark that the sentence around it asks for after it; `number` is that of an equation to
+    which a later sentence refers, 0 for others.
     """
 
     relations: tuple[Relation, ...]
     boxed: bool = False
     closing: str = ""
+    number: int = 0
 
 
 @dataclass(frozen=True)
@@ -193,7 +195,7 @@ def with_few_boxes(blocks: Sequence[Block]) -> list[Block]:
     for place, block in enumerate(blocks):
         if not isinstance(block, Display) or place >= result:
             kept.append(block)
-        elif kept and isinstance(before := kept[-1], Display) and not before.boxed:
+        elif kept and isinstance(before := kept[-1], Display) and not (before.boxed or before.number):
             kept[-1] = Display((*before.relations, *block.relations))
         else:
             kept.append(replace(block, boxed=False))

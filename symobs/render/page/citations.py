@@ -1,13 +1,16 @@
-"""The literature that the sentences of a page rest on, numbered in the order of the page."""
+"""What the sentences of a page refer to: the literature, numbered in the order of the page, and equations before them."""
 
 from __future__ import annotations
 
+import string
 from typing import TYPE_CHECKING
 
-from symobs.phrases import RESTS_ON, THEOREMS
+from symobs.formula import Relation
+from symobs.phrases import PHRASES, RESTS_ON, THEOREMS
 from symobs.phrases.languages import ENGLISH
 from symobs.phrases.literature import bibliography, cited
 from symobs.render.page.detail_level import at_detail
+from symobs.render.page.prose import NUMBER
 from symobs.render.page.side_by_side import is_beside, row_by_row
 
 if TYPE_CHECKING:
@@ -29,6 +32,15 @@ def cited_literature(steps: Iterable[Step], language: Language = ENGLISH) -> tup
         ]
         citations[theorem] = f"[{'; '.join(places)}]"
     return tuple(works), citations
+
+
+def referred_to(steps: Iterable[Step]) -> Iterator[Relation]:
+    """Yield the equations to which sentences refer by a number."""
+    for said in _sentences(steps):
+        slots = dict(said.slots)
+        for _, name, form, _ in string.Formatter().parse(PHRASES[said.key]):
+            if form == NUMBER and isinstance(slot := slots[str(name)], Relation):
+                yield slot
 
 
 def bibliography_of(document: Document) -> str:

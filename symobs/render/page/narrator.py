@@ -48,7 +48,7 @@ from symobs.render.page.blocks import (
     Verified,
     with_few_boxes,
 )
-from symobs.render.page.citations import cited_literature
+from symobs.render.page.citations import cited_literature, referred_to
 from symobs.render.page.convention_notes import letters_used, stated_conventions
 from symobs.render.page.detail_level import FINAL, at_detail
 from symobs.render.page.handout import handed_out
@@ -86,6 +86,7 @@ def narrate(document: Document) -> tuple[Block, ...]:
     language = language_named(document.language)
     works, citations = cited_literature(() if is_final else (step for steps in parts for step in steps), language)
     page = _PageBlocks(document.convention, language, citations=citations)
+    page.referred = dict.fromkeys((each for steps in parts for each in referred_to(steps)), 0)
     page.blocks.append(_title(document, language))
     page.blocks += [Paragraph((" ".join(part.split()),)) for part in document.text.split("\n\n") if part.strip()]
     together, apart = _statements(parts)
@@ -176,6 +177,8 @@ class _PageBlocks:
         self.language = language
         self.blocks: list[Block] = []
         self.citations = dict(citations or {})
+        #: The equations to which sentences refer, with their numbers once they are displayed.
+        self.referred: dict[Relation, int] = {}
         self.given = dict(given or {})
         self.stated: set[Sentence] = set()
         self.printed: set[Step] = set()
@@ -186,7 +189,7 @@ class _PageBlocks:
         """Return the blocks of a part set apart from the page: its data hold there only, its figures are counted on."""
         known = self.given, self.citations
         found = _PageBlocks(self.convention, self.language, given=known[0], citations=known[1], figures=self.figures)
-        found.numbered = numbered
+        found.numbered, found.referred = numbered, self.referred
         return found
 
     def emit(self, steps: Sequence[Step]) -> None:
@@ -341,13 +344,17 @@ class _PageBlocks:
 
     def filled(self, sentence: Sentence) -> Inlines:
         """Return a sentence in the language and the convention of the page."""
-        return filled(sentence, self.convention, self.language)
+        numbers = {relation: number for relation, number in self.referred.items() if number}
+        return filled(sentence, self.convention, self.language, numbers)
 
     def emit_display(self, relations: tuple[Relation, ...], *, boxed: bool = False) -> None:
         """Emit a display, appended to an unfinished display before it; a box ends a display."""
         if not relations:
             return
-        if self.blocks and isinstance(last := self.blocks[-1], Display) and not last.boxed:
+        if len(relations) == 1 and self.referred.get(relations[0]) == 0:
+            self.referred[relations[0]] = number = max(self.referred.values()) + 1
+            self.blocks.append(Display(relations, boxed, number=number))
+        elif self.blocks and isinstance(last := self.blocks[-1], Display) and not (last.boxed or last.number):
             self.blocks[-1] = Display((*last.relations, *relations), boxed)
         else:
             self.blocks.append(Display(relations, boxed))

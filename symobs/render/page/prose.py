@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import re
 import string
+from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 from symobs.convention import STANDARD, Convention
@@ -47,23 +48,36 @@ if TYPE_CHECKING:
 #: Where in a phrase the number of what it rests on stands, if not at its end.
 MARK = "§"
 
+#: How a slot is written whose equation is referred to by its number.
+NUMBER = "number"
+
 #: A pair of matrices in a phrase, `($C$, $A$)`, and the first members of those that are observable.
 _PAIR = re.compile(r"\((\$[^$]*\$), (\$[^$]*\$)\)")
 _OUTPUTS = {"$C$", "$A_12$", "$C_dual$"}
 
 
-def filled(sentence: Sentence, convention: Convention = STANDARD, language: Language = ENGLISH) -> Inlines:
-    """Return the phrase of a sentence in a language, its slots filled, in the letters and signs of a convention."""
+def filled(
+    sentence: Sentence,
+    convention: Convention = STANDARD,
+    language: Language = ENGLISH,
+    numbers: Mapping[Relation, int] = MappingProxyType({}),
+) -> Inlines:
+    """Return the phrase of a sentence in a language, its slots filled, in the letters and signs of a convention.
+
+    A slot `{law:number}` holds an equation; of one that stands on the page under a number this number is given.
+    """
     slots, turned = dict(sentence.slots), SignReversal(convention.turned)
     several = any(isinstance(slot, Roots) and len(slot.values) > 1 for slot in slots.values())
     phrase = COUNTED.sub(lambda words: words[2 if several else 1], language.phrases[sentence.key])
     if not convention.is_standard:
         phrase = _PAIR.sub(lambda pair: _pair(pair[1], pair[2], convention), phrase)
     inlines: list[Inline] = []
-    for text, name, _, _ in string.Formatter().parse(phrase):
+    for text, name, form, _ in string.Formatter().parse(phrase):
         inlines += _prose(text, turned, convention.letters)
         if name is not None:
-            inlines += _shown(slots[name], language)
+            slot = slots[name]
+            number = numbers.get(slot) if form == NUMBER and isinstance(slot, Relation) else None
+            inlines += _shown(slot, language) if number is None else (f"({number})",)
     return joined(inlines)
 
 

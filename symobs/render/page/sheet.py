@@ -6,6 +6,7 @@ question or solution, and `sheet(sheet)` returns the whole.  Parts are made one 
 
 from __future__ import annotations
 
+from datetime import date
 from fractions import Fraction
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
@@ -58,7 +59,7 @@ class Header:
     course: str = ""
     term: str = ""
     number: str = ""
-    due: str = ""
+    due: str | date = ""
     instructor: str = ""
     text: str = ""
     logo: Logo | None = None
@@ -163,8 +164,9 @@ class Sheet:
     @property
     def facts(self) -> tuple[tuple[str, str], ...]:
         """Who gives the sheet out and when it is due, each after its word."""
-        pairs = ((self.words["instructor"], self.header.instructor), (self.words["due"], self.header.due))
-        return tuple((word, value) for word, value in pairs if value)
+        due = self._language.day(self.header.due) if isinstance(self.header.due, date) else self.header.due
+        told = ((self.words["instructor"], self.header.instructor), (self.words["due"], due))
+        return tuple((word, value) for word, value in told if value)
 
     @property
     def fields(self) -> tuple[str, ...]:

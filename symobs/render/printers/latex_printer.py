@@ -195,7 +195,7 @@ class LatexPrinter(Printer[LatexBox]):
     def matrix(self, rows: Sequence[Sequence[LatexBox]], rules: Rules = NO_RULES) -> LatexBox:
         """Return a table in brackets; in running text small, or a list where it is wide."""
         if not self.running:
-            rows = [[opened(entry) for entry in row] for row in rows]
+            rows = in_one_style(rows)
         columns = len(rows[0])
         width = sum(max(row[j].width for row in rows) for j in range(columns))
         width += (columns - 1) * widths.COLUMN_GAP + widths.BRACKETS
@@ -346,8 +346,17 @@ def under_one_another(rows: Sequence[str], heights: Sequence[int], ruled: Sequen
     return body
 
 
-def opened(entry: LatexBox) -> LatexBox:
-    """Return an entry of a matrix; a fraction with more than numbers in it is set large."""
-    if not _FRACTION_OF_LETTERS.match(entry.source):
-        return entry
-    return replace(entry, source=entry.source.replace(r"\frac", r"\dfrac", 1), height=2)
+def in_one_style(rows: Sequence[Sequence[LatexBox]]) -> Sequence[Sequence[LatexBox]]:
+    """Return the entries of a table, their fractions all set large where one has more than numbers in it."""
+    if not any(_FRACTION_OF_LETTERS.match(entry.source) for row in rows for entry in row):
+        return rows
+    return [[_opened(entry) for entry in row] for row in rows]
+
+
+def _opened(entry: LatexBox) -> LatexBox:
+    """Return an entry, the fractions that stand in no other set large."""
+    outer, depth = "", 0
+    for part in re.split(r"(\\frac\b|[{}])", entry.source):
+        depth += {"{": 1, "}": -1}.get(part, 0)
+        outer += r"\dfrac" if part == r"\frac" and not depth else part
+    return entry if outer == entry.source else replace(entry, source=outer, height=2)

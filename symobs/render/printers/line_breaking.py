@@ -248,7 +248,7 @@ class Breaker(Generic[B]):
         """Return the matrix with its widest entries named, or listed row by row if it still does not fit."""
         if isinstance(formula, Block):
             table = partitioned(formula.rows)
-            rows = formula.rows if table is None else tuple(tuple(map(Literal, row)) for row in table[0])
+            rows = formula.rows if table is None else tuple(map(tuple, table[0]))
         elif isinstance(formula, Literal) and isinstance(formula.value, Matrix):
             rows = tuple(tuple(Literal(entry) for entry in row) for row in formula.value.rows)
         else:

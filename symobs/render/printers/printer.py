@@ -174,7 +174,7 @@ class Printer(FormulaWriter[B]):
                 return self.application(function, argument)
             case Block(rows) if table := partitioned(rows):
                 entries, rules = table
-                return self.matrix([[self.typeset(Literal(entry)) for entry in row] for row in entries], rules)
+                return self.matrix([[self.typeset(entry) for entry in row] for row in entries], rules)
             case Block(((entry,),)) if (
                 isinstance(entry, Literal) and isinstance(entry.value, Matrix) and entry.value.is_zero
             ):

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 from symobs.exact import Matrix, Scalar
 from symobs.exact.core.generators import function as function_of
 from symobs.exact.core.generators import function_named
-from symobs.formula import Formula, Literal, Negative, Power, Product, Quotient, Sum
+from symobs.formula import Block, Formula, Literal, Negative, Numeral, Power, Product, Quotient, Sum
 from symobs.render.printers.rational_formula import common_divisor, is_leaf, product, rational_formula, size, sum_of
 
 if TYPE_CHECKING:
@@ -58,19 +58,31 @@ def formula_of_matrix(matrix: Matrix, variable: str) -> Formula:
     return Product((front, Literal(cleared))) if size(front) + inside < kept else Literal(matrix)
 
 
-def partitioned(rows: Sequence[Sequence[Formula]]) -> tuple[list[list[Scalar]], Rules] | None:
+def partitioned(rows: Sequence[Sequence[Formula]]) -> tuple[list[list[Formula]], Rules] | None:
     """Return the entries of blocks that are all matrices of values, and the rows and columns that end a block."""
-    blocks = [[block.value for block in row if isinstance(block, Literal)] for row in rows]
-    if len(rows) == len(rows[0]) == 1 or [len(row) for row in blocks] != [len(row) for row in rows]:
+    if len(rows) == len(rows[0]) == 1:
         return None
-    if not all(isinstance(block, Matrix) and 0 not in block.shape for row in blocks for block in row):
+    tables = [[found for block in row if (found := _entries_of(block))] for row in rows]
+    if [len(row) for row in tables] != [len(row) for row in rows]:
         return None
-    tables = [[block for block in row if isinstance(block, Matrix)] for row in blocks]
-    entries = [
-        [entry for block in row for entry in block.rows[line]] for row in tables for line in range(row[0].shape[0])
-    ]
-    heights, widths = [row[0].shape[0] for row in tables], [block.shape[1] for block in tables[0]]
+    entries = [[entry for block in row for entry in block[line]] for row in tables for line in range(len(row[0]))]
+    heights, widths = [len(row[0]) for row in tables], [len(block[0]) for block in tables[0]]
     return entries, (tuple(accumulate(heights))[:-1], tuple(accumulate(widths))[:-1])
+
+
+def _entries_of(block: Formula) -> Sequence[Sequence[Formula]]:
+    """Return the entries of a matrix of values, exact or in decimals; nothing for other blocks."""
+    match block:
+        case Literal(Matrix() as value) if 0 not in value.shape:
+            return [[Literal(entry) for entry in row] for row in value.rows]
+        case Block(rows) if all(_is_number(entry) for row in rows for entry in row):
+            return rows
+    return ()
+
+
+def _is_number(formula: Formula) -> bool:
+    inner = formula.operand if isinstance(formula, Negative) else formula
+    return isinstance(inner, Numeral) or (isinstance(inner, Literal) and isinstance(inner.value, Scalar))
 
 
 def is_table(formula: Formula) -> bool:

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from symobs.formula import Relation, Roots
 from symobs.render.printers import widths
-from symobs.render.printers.latex_printer import opened, under_one_another
+from symobs.render.printers.latex_printer import in_one_style, under_one_another
 from symobs.render.printers.text_printer import text_width
 from symobs.render.tables.fitted_table import fitted
 
@@ -36,7 +36,7 @@ def latex_table(block: TableBlock, printer: LatexPrinter, words: Words) -> str:
     A table that is too wide even with names is set small, without remarks.
     """
     found = fitted(block, printer, room_for(printer), widths.COLUMN_GAP, printer.width)
-    rows = [[opened(entry) for entry in row] for row in found.rows]
+    rows = in_one_style(found.rows)
     columns, has_remarks = len(rows[0]), found.fits and any(found.remarks)
     lines: list[str] = []
     for head, row, remark in zip(found.heads, rows, found.remarks, strict=True):

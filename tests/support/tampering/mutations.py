@@ -76,16 +76,6 @@ _OTHER_WORDS = [
     ("stack_yes", "stack_no"),
     ("case_stack", "case_stack_yes"),
 ]
-#: Sentences whose counting words are made, and checked, by what they count.
-_COUNTING = {
-    "points_decide",
-    "point_decides",
-    "cells_decide",
-    "pieces",
-    "number_is_root",
-    "routh_changes",
-    "routh_changes_axis",
-}
 #: Sentences that say of a value only that nothing is decided where it vanishes.
 _UNDECIDED = {"undecided_case", "undecided_together", "undecided_many"}
 #: What else may be said to be counted.
@@ -145,8 +135,7 @@ def changes(item: Any) -> Iterator[Change]:
     elif isinstance(item, Sentence):
         if item.key in OTHER_WORDS:
             yield Change(".words", "words", replace(item, key=OTHER_WORDS[item.key]))
-        if item.key in _COUNTING:
-            yield from _of_counts(item)
+        yield from _of_counts(item)
         if item.key not in _UNDECIDED:
             yield from _of_parts(item)
     elif isinstance(item, RouthRow):

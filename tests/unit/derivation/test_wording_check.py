@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from fractions import Fraction
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import pytest
 
@@ -16,8 +16,12 @@ from symobs.exact import Matrix, Scalar
 from symobs.exact.core.generators import PI, function
 from symobs.formula import Apply, Environment, Letter, Literal, Predicate, Relation
 from symobs.phrases import PHRASES
-from symobs.phrases.spoken import StateChoice
+from symobs.phrases.spoken import Counted, StateChoice
 from tests.support.problems.steps import said
+from tests.support.tampering.mutations import lines_of
+
+if TYPE_CHECKING:
+    from symobs.derivation import Derivation
 
 #: Two rows of rank 1, and three rows of rank 2.
 LOW, HIGH = Literal(Matrix.of([[1, 2, 3], [2, 4, 6]])), Literal(Matrix.of([[1, 0], [0, 1], [1, 1]]))
@@ -195,3 +199,67 @@ def test_other_states_than_those_whose_rows_were_added_are_rejected(sets: tuple[
     result.derivation.check()
     with pytest.raises(DerivationRejected, match="of other states"):
         replace(result.derivation, steps=tuple(map(changed, result.derivation.steps))).check()
+
+
+CHAIN = "[0 1 0 0 0; 0 0 1 0 0; 0 0 0 1 0; 0 0 0 0 1; 0 0 -12 -4 -3]", "[0; 0; 0; 0; 1]"
+ADVICE: dict[str, Any] = {"settling_time": 2, "overshoot": "1/20"}
+COUNTING: dict[str, tuple[Any, set[str]]] = {
+    "some_on_circle": (lambda: symobs.pole_advice(symobs.StateSpace(*CHAIN, "[2 1 0 0 0]"), radius=10), {"count"}),
+    "one_on_circle": (lambda: symobs.pole_advice(symobs.StateSpace("[0 1; 0 0]", "[0; 1]", "[2 1]"), radius=10), set()),
+    "one_from_settling": (lambda: symobs.pole_advice(symobs.StateSpace("[1]", "[1]", "[1]"), **ADVICE), set()),
+    "pair_remains": (
+        lambda: symobs.pole_advice(symobs.StateSpace("[0 1; 0 0]", "[0; 1]", "[1 0]"), **ADVICE),
+        {"count"},
+    ),
+    "pair_dominates": (
+        lambda: symobs.pole_advice(symobs.StateSpace(*CHAIN, "[10 11 1 0 0]"), **ADVICE),
+        {"count", "factor"},
+    ),
+    "crossing": (
+        lambda: symobs.stability_region(
+            symobs.StateSpace("[0 1; -2 -3]", C="[1 0]"), L="[h1; h2]", parameters="h1, h2"
+        ),
+        {"vary"},
+    ),
+}
+
+
+def line_saying(key: str, derivation: Derivation) -> tuple[Any, Any]:
+    """Return the line with a sentence, and its step."""
+    lines = lines_of(derivation)
+    (line,) = [each for each in lines if getattr(getattr(each.step, "sentence", None), "key", "") == key]
+    line.told(line.step).check()
+    return line, line.step
+
+
+@pytest.mark.parametrize("key", COUNTING)
+def test_what_is_counted_in_words_is_counted_in_the_step(key: str) -> None:
+    asked, counting = COUNTING[key]
+    line, step = line_saying(key, asked().derivation)
+    slots = dict(step.sentence.slots)
+    assert {name for name, slot in slots.items() if isinstance(slot, Counted)} == counting
+    for name in counting:
+        for other in (slots[name].count - 1, slots[name].count + 1):
+            told = tuple({**slots, name: replace(slots[name], count=other)}.items())
+            with pytest.raises(DerivationRejected, match="of another number"):
+                line.told(replace(step, sentence=replace(step.sentence, slots=told))).check()
+
+
+@pytest.mark.parametrize(
+    ("said", "instead"), [("some_on_circle", "one_on_circle"), ("pair_remains", "one_from_settling")]
+)
+def test_several_poles_are_not_told_as_one(said: str, instead: str) -> None:
+    asked, _ = COUNTING[said]
+    line, step = line_saying(said, asked().derivation)
+    with pytest.raises(DerivationRejected, match="of another number"):
+        line.told(replace(step, sentence=replace(step.sentence, key=instead, slots=()))).check()
+
+
+def test_the_equations_that_are_substituted_are_those_of_the_input_and_of_the_observer() -> None:
+    plant = symobs.StateSpace("[0 1; 0 -1]", "[0; 1]", "[1 0]")
+    derivation = symobs.compensator(plant, control_poles=[-2, -2], observer_poles=[-10, -10]).derivation
+    line, step = line_saying("observer_closed_matrix", derivation)
+    slots = dict(step.sentence.slots)
+    told = {"law": slots["rate"], "rate": slots["law"]}
+    with pytest.raises(DerivationRejected, match="or equation"):
+        line.told(replace(step, sentence=replace(step.sentence, slots=tuple(told.items())))).check()

@@ -2,13 +2,20 @@
 
 from __future__ import annotations
 
+import json
+import re
+import tomllib
+from datetime import date
 from fractions import Fraction
 from pathlib import Path
+from typing import Any
 
 import pytest
+from jsonschema import Draft202012Validator  # type: ignore[import-untyped]
 
 from symobs.errors import InputError, ProblemErrors
 from symobs.problem.sheet_file import PROBLEM, SHEET, is_sheet, read_sheet
+from symobs.problem.sheet_file import schema as sheet_schema
 from symobs.render.page.blocks import AnswerSpace
 from tests.support.paths import ROOT
 
@@ -71,7 +78,7 @@ space = 2
 """
     sheet = read_sheet(text, "sheet.toml", folder, lambda path: Path(path).read_text(encoding="utf-8"))
     head = sheet.header
-    assert (sheet.title, head.course, head.term, head.number, head.due) == ("T", "C", "S", "3", "2026-12-08")
+    assert (sheet.title, head.course, head.term, head.number, head.due) == ("T", "C", "S", "3", date(2026, 12, 8))
     assert (head.instructor, head.text, head.is_exam, head.has_name) == ("I", "W", True, True)
     assert head.logo is not None
     assert (head.logo.kind, head.logo.content) == ("png", PNG)
@@ -221,3 +228,37 @@ def test_no_worked_example_is_a_sheet_and_every_worked_sheet_is_one() -> None:
 def test_the_guide_names_every_key() -> None:
     guide = (ROOT / "docs" / "sheets.md").read_text(encoding="utf-8")
     assert [key for key in (*SHEET, *PROBLEM) if f"`{key}`" not in guide] == []
+
+
+# -- its schema -------------------------------------------------------------------------------------------------------
+
+
+def test_the_schema_fits_a_sheet_and_refuses_what_the_reader_refuses(folder: Path) -> None:
+    schema = sheet_schema()
+    Draft202012Validator.check_schema(schema)
+    validator = Draft202012Validator(schema)
+    tables = tomllib.loads((ROOT / "worked_examples" / "sheets" / "observers.toml").read_text(encoding="utf-8"))
+    assert set(tables) <= set(schema["properties"]) == set(SHEET)
+    assert list(validator.iter_errors(tables)) == []
+    entry = {"file": "one.toml"}
+    wrong: tuple[dict[str, Any], ...] = (
+        {"titel": "x"},
+        {"number": -1},
+        {"number": 2.5},
+        {"language": "xx"},
+        {"style": "test"},
+        {"answers": "room"},
+        {"space": 26},
+        {"name": "yes"},
+        {"problem": []},
+        {"problem": [{}]},
+        {"problem": [{**entry, "points": []}]},
+        {"problem": [{**entry, "points": -1}]},
+        {"problem": [{**entry, "spaces": 3}]},
+    )
+    for change in wrong:
+        assert list(validator.iter_errors({"title": "T", "problem": [entry], **change})), change
+        text = "".join(f"{key} = {json.dumps(value)}\n" for key, value in ({"problem": [entry]} | change).items())
+        text = re.sub(r'"(\w+)": ', r"\1 = ", text)
+        with pytest.raises(ProblemErrors):
+            read_sheet(text, "sheet.toml", folder, lambda path: Path(path).read_text(encoding="utf-8"))

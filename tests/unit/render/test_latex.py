@@ -11,14 +11,16 @@ import pytest
 
 import symobs
 from symobs.derivation import Define, Derivation, Diagram, Equal, Note
-from symobs.exact import Scalar
+from symobs.exact import Matrix, Scalar
 from symobs.exact.algebraic.polynomial_roots import roots_of
-from symobs.formula import Environment, Formula, Letter, Literal, Negative, Roots
+from symobs.formula import Block, Environment, Formula, Letter, Literal, Negative, Numeral, Roots
 from symobs.phrases import PHRASES
-from symobs.render.formats.latex import LatexArticle, LatexFragment, typeset
+from symobs.render.formats.latex import LatexArticle, LatexFragment, LatexWriter, typeset
 from symobs.render.formats.templates import fill, template_folder
 from symobs.render.formats.text import WIDTH, Text
+from symobs.render.page.blocks import Display, Paragraph
 from symobs.render.printers.latex_escape import LETTERS, escape
+from symobs.render.printers.latex_printer import LatexPrinter
 from tests.support.problems import render_examples as example
 from tests.support.problems.render_examples import document, equals, number, say
 
@@ -128,11 +130,12 @@ def test_the_page_to_aim_at_is_typeset_without_a_fault(faults: Callable[[str], l
 
 
 def test_a_page_in_another_language_is_typeset_without_a_fault(faults: Callable[[str], list[str]]) -> None:
-    """With the hyphenation of the language or, where TeX has none, without any."""
+    """With the hyphenation of the language or, where TeX has none, without any: never with the English one, its first."""
     plant = symobs.StateSpace("[0 1; 0 -1]", "[0; 1]", "[1 0]")
     source = symobs.compensator(plant, control_poles=[-2, -2], observer_poles=[-10, -10]).to_latex(language="de")
     assert "ngerman" in source
-    assert faults(source) == []
+    english = r"\ifnum\language=0 \ifnum\hyphenpenalty<10000 \errmessage{hyphenated as English}\fi\fi"
+    assert faults(source.replace(r"\end{document}", f"{english}\n\\end{{document}}")) == []
 
 
 def test_a_case_is_set_in_and_typeset(faults: Callable[[str], list[str]]) -> None:
@@ -250,3 +253,44 @@ def test_a_wide_drawing_falls_back_to_letters() -> None:
 
 def test_relations_are_shown() -> None:
     assert "1 = 1" in Text().render(page_with(Equal((equals(number(1), number(1)),))))
+
+
+# -- matrices and the words between displays --------------------------------------------------------------------------
+
+
+def test_blocks_of_numbers_in_decimals_are_one_matrix_with_lines_between_them() -> None:
+    third = Numeral(Scalar.of(1) / 3, "0.33333")
+    rows = (
+        (Literal(Matrix.of([[1, 2]])), Block(((third,),))),
+        (Literal(Matrix.of([[3, 4]])), Block(((Negative(third),),))),
+    )
+    assert LatexPrinter().typeset(Block(rows)).source == (
+        r"\left[\begin{array}{cc|c}1&2&0.33333\\\hline\rule{0pt}{2.4ex}3&4&-0.33333\end{array}\right]"
+    )
+    names = (Block(((Letter("A"),),)), Block(((Letter("B"),),)))
+    assert r"\hline" not in LatexPrinter().typeset(Block((names, names))).source
+
+
+def test_the_fractions_of_a_matrix_are_of_one_size() -> None:
+    half, a = Scalar.of(1) / 2, Scalar.symbol("a")
+    numbers = LatexPrinter().typeset(Literal(Matrix.of([[half, -half]]))).source
+    assert r"\frac{1}{2}" in numbers
+    assert r"\dfrac" not in numbers
+    mixed = LatexPrinter().typeset(Literal(Matrix.of([[half, 1 / a + 1], [1 / a, -half]]))).source
+    assert r"\frac" not in mixed.replace(r"\dfrac", "")
+    assert mixed.count(r"\dfrac") >= 4
+
+
+def test_a_few_words_between_two_displays_stand_on_the_line_of_the_second() -> None:
+    one = equals(number(1), number(1))
+    writer = LatexWriter(LatexPrinter())
+    blocks: list[Display | Paragraph] = [
+        Display((one,), closing=","),
+        Paragraph(("hence",), continues=True),
+        Display((one,), closing="."),
+    ]
+    assert writer.body(blocks) == "\\[ 1=1, \\postdisplaypenalty=5000 \\]\n\\[ \\text{hence}\\qquad 1=1. \\]"
+    blocks[1] = Paragraph(("and, for every value of the gain, we have",), continues=True)
+    assert "\n\\[ 1=1. \\]" in writer.body(blocks)
+    blocks[1] = Paragraph(("The gain is",))
+    assert "\nThe gain is\n" in writer.body(blocks)

@@ -46,6 +46,7 @@ def _phrases(monkeypatch: pytest.MonkeyPatch) -> None:
         "test_large": "Now",
         "test_about": "with {A} as it is.",
         "test_title": "A title.",
+        "test_refers": "By {law:number} this is {law}.",
     }
     for key, phrase in phrases.items():
         monkeypatch.setitem(PHRASES, key, phrase)
@@ -287,3 +288,40 @@ def test_the_problem_in_words_stands_under_the_title() -> None:
 def test_words_that_are_no_text_are_refused() -> None:
     with pytest.raises(ProblemErrors, match="text: a text is expected"):
         validate({"text": 3, "task": "observability", "plant": {"A": "[-1]", "C": "[1]"}})
+
+
+# -- numbers of equations ---------------------------------------------------------------------------------------------
+
+
+def test_an_equation_has_a_number_where_a_later_sentence_refers_to_it() -> None:
+    refers = Sentence("test_refers", (("law", A_IS_TWO),))
+    steps: list[Step] = [
+        Given((A_IS_TWO,)),
+        Equal((ONE,)),
+        Equal((A_IS_TWO,)),
+        Note(refers),
+        Equal((A_IS_TWO,)),
+        Equal((TWO,)),
+    ]
+    blocks = narrate(document(Derivation(tuple(steps), Environment())))
+    displays = [block for block in every(blocks) if isinstance(block, Display)]
+    assert [(shown.relations, shown.number) for shown in displays] == [
+        ((A_IS_TWO,), 1),
+        ((ONE, A_IS_TWO), 0),
+        ((A_IS_TWO, TWO), 0),
+    ]
+    (said,) = [block for block in blocks if isinstance(block, Paragraph)]
+    assert said.inlines == ("By (1) this is ", A_IS_TWO, ".")
+    (whole,) = [narrate(document(Derivation((Given((A_IS_TWO, C_IS_ONE)), Note(refers)), Environment())))]
+    assert not any(shown.number for shown in every(whole) if isinstance(shown, Display))
+    assert Paragraph(("By ", A_IS_TWO, " this is ", A_IS_TWO, ".")) in whole
+
+
+def test_every_format_writes_the_number_beside_the_equation() -> None:
+    told: list[Step] = [Given((A_IS_TWO,)), Note(Sentence("test_refers", (("law", A_IS_TWO),)))]
+    page = document(Derivation(tuple(told), Environment()))
+    beside = {"latex": r"\tag{1} \]", "markdown": r"\tag{1} $$", "text": "A = 2    (1)", "html": ">(1)</span></div>"}
+    for name, number_there in beside.items():
+        written = str(render(page, name))
+        assert written.count(number_there) == 1, name
+        assert written.count("By (1)") == 1, name

@@ -253,18 +253,14 @@ class MathmlPrinter(Printer[MathmlBox]):
         width += (columns - 1) * widths.COLUMN_GAP + widths.BRACKETS
         if self.running and width > _WIDE:
             return _list_of(rows)
-        body = ""
+        body, size = "", LARGE * (not self.running and any(is_large(entry) for line in rows for entry in line))
         for below, line in enumerate(rows):
-            ends = [ruled_edges(below in rules[0], after in rules[1]) for after in range(columns)]
-            body += f"<mtr>{''.join(map(self._cell, line, [STRUT, *[''] * (columns - 1)], ends))}</mtr>"
+            ends = [size + ruled_edges(below in rules[0], after in rules[1]) for after in range(columns)]
+            body += f"<mtr>{''.join(map(_cell, line, [STRUT, *[''] * (columns - 1)], ends))}</mtr>"
         small = ' scriptlevel="+1"' if self.running and len(rows) > 1 else ""
         fences = '<mo form="prefix">[</mo>', '<mo form="postfix">]</mo>'
         element = f"<mrow{small}>{fences[0]}<mtable>{body}</mtable>{fences[1]}</mrow>"
         return MathmlBox(width, Level.ATOM, (element,), max(2, len(rows)))
-
-    def _cell(self, entry: MathmlBox, strut: str, ruled: str = "") -> str:
-        size = LARGE if not self.running and is_large(entry) else ""
-        return f"<mtd{size}{ruled}>{strut}{entry.source}</mtd>"
 
     def rate(self, box: MathmlBox, name: str = "t") -> MathmlBox:
         """Return d/dt before a stack."""
@@ -375,6 +371,10 @@ class MathmlPrinter(Printer[MathmlBox]):
     def gap(self) -> MathmlBox:
         """Return a wide space."""
         return MathmlBox(2.0, Level.SUM, ('<mspace width="2em"/>',))
+
+
+def _cell(entry: MathmlBox, strut: str, attributes: str) -> str:
+    return f"<mtd{attributes}>{strut}{entry.source}</mtd>"
 
 
 def is_large(entry: MathmlBox) -> bool:
