@@ -136,6 +136,10 @@ def _asked(page: Page, name: str, wish: DesiredPolynomial) -> None:
         page.conclude(f"{name}_{'pole' if len(roots) == 1 else 'poles'}", poles=Roots(phi.formula, roots))
     else:
         page.conclude(f"{name}_polynomial", polynomial=relation(phi, wish.polynomial))
+    if wish.pattern is not None:
+        from symobs.analysis.pole_pattern_page import say_pattern  # noqa: PLC0415 - only such poles pay for it
+
+        say_pattern(page, phi, wish)
 
 
 def state_signs(page: Page) -> None:
