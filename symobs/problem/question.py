@@ -233,7 +233,7 @@ def _read(value: object, kind: str, name: str, plant: StateSpace, task: str) -> 
             poles = read_poles(value, plant.symbols, where)
             return desired_polynomial(plant, value, None, names=(name, name), degree=len(poles))
         case "PolynomialText":
-            return parse_polynomial(value, plant.variable, plant.symbols.names, where=where)
+            return parse_polynomial(value, plant.variable, plant.symbols.names, where=where, functions=True)
         case "GainText" | "MatrixText":
             return read_matrix(value, plant.symbols.seen(value), where)
         case "IntervalText":

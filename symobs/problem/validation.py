@@ -372,7 +372,7 @@ def _read_alone(
                             (read_poles if isinstance(pole, str) else read_scalar)(pole, symbols, f"{where}[{i}]")
                     read_poles(value, symbols, where)
                 case "PolynomialText":
-                    parse_polynomial(value, variable, symbols.names, where=where)
+                    parse_polynomial(value, variable, symbols.names, where=where, functions=True)
                 case "IntervalText":
                     read_poles(value, symbols, where)
                 case "GainText" | "MatrixText":

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import symobs
 from symobs.errors import CertificateRejected, InputError, ProblemErrors, together
 from symobs.exact import Complex, Matrix, Scalar
-from symobs.exact.core.generators import substitute
+from symobs.exact.core.generators import substitute, symbols_in
 from symobs.expression import parse_matrix, parse_polynomial
 from symobs.expression.source import shown
 from symobs.specification import is_pattern, parse_signal, read_names, read_pattern, read_poles
@@ -109,8 +109,8 @@ def _entries(value: object, plant: StateSpace, where: str) -> Matrix:
 
 def _polynomial(value: object, plant: StateSpace, where: str) -> Scalar:
     if isinstance(value, str):
-        return parse_polynomial(value, plant.variable, plant.symbols.names, where=where)
-    return read_scalar(value, plant.symbols.seen(value, plant.variable), where)
+        return parse_polynomial(value, plant.variable, plant.symbols.names, where=where, functions=True)
+    return read_scalar(value, plant.symbols.seen(value, plant.variable), where, functions=True)
 
 
 def _poles(value: object, plant: StateSpace, where: str) -> tuple[Complex, ...] | dict[str, Any]:
@@ -162,8 +162,8 @@ def _names(value: Any) -> set[str]:
     if isinstance(value, dict):
         return {name for part in value.values() for name in _names(part)}
     if isinstance(value, tuple):
-        return {name for pole in value for part in (pole.real, pole.imaginary) for name in part.names}
-    return {str(name) for name in getattr(value, "names", ())}
+        return {name for pole in value for part in (pole.real, pole.imaginary) for name in symbols_in(part)}
+    return {*symbols_in(value)} if isinstance(value, Scalar | Matrix) else set()
 
 
 def _moved(value: Any, values: dict[str, Scalar]) -> Any:

@@ -1,6 +1,7 @@
 """What the keywords of a task may contain, and the desired polynomial of a design."""
 
 from symobs.specification.entries import read_entries
+from symobs.specification.functions_of_parameters import over_common_data
 from symobs.specification.keywords import (
     CHOICES,
     KINDS,
@@ -20,17 +21,16 @@ from symobs.specification.keywords import (
     SignalText,
     TimeFunctions,
     desired_polynomial,
-    parse_signal,
     read_gain,
     read_interval,
     read_names,
     read_pattern,
     read_poles,
     read_quantity,
-    read_signal,
     reject_both,
 )
 from symobs.specification.pole_patterns import PolePattern, is_pattern
+from symobs.specification.signals import parse_signal, read_signal
 
 __all__ = [
     "CHOICES",
@@ -53,6 +53,7 @@ __all__ = [
     "TimeFunctions",
     "desired_polynomial",
     "is_pattern",
+    "over_common_data",
     "parse_signal",
     "read_entries",
     "read_gain",

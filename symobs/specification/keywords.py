@@ -16,7 +16,7 @@ from symobs.conditions import sign_of
 from symobs.errors import InputError, ShapeMismatch
 from symobs.exact import Complex, Field, Matrix, Scalar, product_of
 from symobs.exact.algebraic.conjugates import conjugates, is_in_kernel, product_of_linear, tidied
-from symobs.expression import declared_name, parse_matrix, parse_poles, parse_polynomial
+from symobs.expression import declared_name, parse_poles, parse_polynomial
 from symobs.specification.pole_patterns import (
     KEYS,
     OTHERS,
@@ -27,6 +27,7 @@ from symobs.specification.pole_patterns import (
 )
 from symobs.system import StateSpace, Symbols, is_sympy, read_complex, read_matrix, read_scalar
 from symobs.system.matrices import as_rows
+from symobs.system.reading import require_known
 
 #: The kinds of keyword a task may have.  Their names in signatures are the schema, as text or as annotations.
 Poles: TypeAlias = Annotated[Any, "Poles"]
@@ -178,16 +179,21 @@ def desired_polynomial(
         message = f"both {names[0]} and {names[1]} are given"
         raise InputError(message, where=first, repair="keep one of them")
     if is_pattern(poles):
-        return _from_pattern(poles, plant, degree, first)
-    if poles is not None:
-        return _from_poles(read_poles(poles, plant.symbols, first, plant.variable), plant.variable, degree, first)
-    return _from_polynomial(polynomial, plant, degree, second)
+        found = _from_pattern(poles, plant, degree, first)
+    elif poles is not None:
+        found = _from_poles(read_poles(poles, plant.symbols, first, plant.variable), plant.variable, degree, first)
+    else:
+        found = _from_polynomial(polynomial, plant, degree, second)
+    require_known(found.factors, second if poles is None else first)
+    return found
 
 
-def read_poles(value: Any, symbols: Symbols, where: str, variable: str | None = None) -> tuple[Complex, ...]:
+def read_poles(
+    value: Any, symbols: Symbols, where: str, variable: str | None = None, *, functions: bool = True
+) -> tuple[Complex, ...]:
     """Return exact poles from a text or a list of numbers, texts and SymPy expressions; `variable` is that of φ."""
     if isinstance(value, str):
-        return parse_poles(value, symbols.names, variable=variable, where=where, roots=True)
+        return parse_poles(value, symbols.names, variable=variable, where=where, roots=True, functions=functions)
     if is_sympy(value) and (hasattr(value, "tolist") or type(value).__name__ == "Tuple"):
         value = list(value)  # a Matrix, or a Tuple
     listed = value.tolist() if hasattr(value, "tolist") else value  # a NumPy array
@@ -195,7 +201,7 @@ def read_poles(value: Any, symbols: Symbols, where: str, variable: str | None = 
     read = [
         read_complex(entry, f"{where}[{index}]") if is_sympy(entry) else entry for index, entry in enumerate(entries)
     ]
-    return parse_poles(read, symbols.names, variable=variable, where=where, roots=True)
+    return parse_poles(read, symbols.names, variable=variable, where=where, roots=True, functions=functions)
 
 
 def _from_poles(poles: tuple[Complex, ...], variable: str, degree: int, where: str) -> DesiredPolynomial:
@@ -236,7 +242,7 @@ def read_pattern(value: object, plant: StateSpace, where: str) -> tuple[dict[str
     """Return what is given by name, exact, and the poles beside it."""
     parts = named_parts(value, where)
     others = parts.pop(OTHERS, ())
-    named = {name: read_quantity(part, plant, name, f"{where}.{name}") for name, part in parts.items()}
+    named = {name: read_quantity(part, plant, name, f"{where}.{name}", functions=True) for name, part in parts.items()}
     return named, read_poles(others, plant.symbols, f"{where}.{OTHERS}", plant.variable) if others else ()
 
 
@@ -276,9 +282,9 @@ def _factors_of_pairs(poles: tuple[Complex, ...], variable: str, where: str) -> 
 def _from_polynomial(value: object, plant: StateSpace, degree: int, where: str) -> DesiredPolynomial:
     variable = plant.variable
     if is_sympy(value):
-        polynomial = read_scalar(value, plant.symbols, where)
+        polynomial = read_scalar(value, plant.symbols, where, functions=True)
     else:
-        polynomial = parse_polynomial(value, variable, plant.symbols.names, where=where)
+        polynomial = parse_polynomial(value, variable, plant.symbols.names, where=where, functions=True)
     found = polynomial.degree(variable)
     if not polynomial.is_polynomial_in(variable) or found < 1:
         message = f"{polynomial} is not a polynomial in {variable}"
@@ -312,10 +318,10 @@ def read_gain(value: object, plant: StateSpace, name: str, shape: tuple[int, int
     return gain
 
 
-def read_quantity(value: object, plant: StateSpace, name: str, where: str = "") -> Scalar:
+def read_quantity(value: object, plant: StateSpace, name: str, where: str = "", *, functions: bool = False) -> Scalar:
     """Return a real quantity free of the variable; raises `InputError` if it is certainly not positive."""
     where = where or f"specification.{name}"
-    quantity = read_scalar(value, plant.symbols.seen(value), where)
+    quantity = read_scalar(value, plant.symbols.seen(value), where, functions=functions)
     if plant.variable in quantity.names:
         message = f"{name} contains {plant.variable}, the variable of the polynomials"
         raise InputError(message, where=where, repair="write another name")
@@ -340,7 +346,7 @@ def read_names(value: object, name: str) -> tuple[str, ...]:
 def read_interval(value: object, plant: StateSpace) -> tuple[Scalar, Scalar]:
     """Return the two ends of a time interval; raises `InputError` unless they are real, free of t and in order."""
     where = "specification.interval"
-    ends = read_poles(value, plant.symbols, where)
+    ends = read_poles(value, plant.symbols, where, functions=False)
     if len(ends) != 2 or not all(end.is_real for end in ends):
         message = f"an interval has two real ends, but {len(ends)} came"
         raise InputError(message, where=where, repair='write for example interval = "0, T"')
@@ -352,38 +358,6 @@ def read_interval(value: object, plant: StateSpace) -> tuple[Scalar, Scalar]:
         message = f"the interval from {start} to {end} has no length"
         raise InputError(message, where=where, repair="give the earlier end first")
     return start, end
-
-
-def read_signal(value: object, plant: StateSpace, name: str, size: int, *, functions: bool = False) -> Matrix:
-    """Return a signal of `size` components: rational in t, or with `functions` also in exp, sin, …; raises `ShapeMismatch`."""
-    where = f"specification.{name}"
-    signal = parse_signal(value, plant.symbols, where, functions=functions)
-    signal = signal.T if signal.shape == (1, size) else signal
-    if signal.shape != (size, 1):
-        message = f"{name} has {signal.shape[0]}×{signal.shape[1]} entries, expected a column of {size}"
-        raise ShapeMismatch(message, where=where, repair=f"write {size} entries, set apart by semicolons")
-    return signal
-
-
-def parse_signal(value: object, symbols: Symbols, where: str, *, functions: bool = False) -> Matrix:
-    """Return the entries of a signal, of any number."""
-    listed = value if isinstance(value, (str, list, tuple)) or hasattr(value, "shape") else [[value]]
-    known = symbols.seen(value, "t").with_time()
-    if not functions:
-        return read_matrix(listed, known, where)
-    rows: Any = listed.tolist() if hasattr(listed, "tolist") else listed
-    if not isinstance(rows, str):
-        rows = [[_text(entry) for entry in (row if isinstance(row, (list, tuple)) else [row])] for row in rows]
-    return parse_matrix(rows, known.names, where=where, functions=True)
-
-
-def _text(entry: object) -> object:
-    """Return a SymPy expression as text: the grammar reads its functions."""
-    if not is_sympy(entry):
-        return entry
-    from symobs.exact.sympy_bridge.conversion import with_plain_symbols  # noqa: PLC0415 - SymPy is there already
-
-    return str(with_plain_symbols(entry))
 
 
 def reject_both(name: str, gain: object, poles: object, polynomial: object, other: str = "poles") -> None:

@@ -16,8 +16,9 @@ from symobs.conditions import sign_of
 from symobs.errors import InputError
 from symobs.exact import Scalar, product_of
 from symobs.exact.algebraic.conjugates import is_in_kernel
+from symobs.exact.algebraic.real_algebraic import roots_of_scalar
 from symobs.exact.core.generators import PI, NotWritten, function
-from symobs.exact.time_functions.butterworth import butterworth
+from symobs.exact.time_functions.butterworth import butterworth, butterworth_angles
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -27,6 +28,8 @@ OTHERS = "others"
 PAIRS = (("damping", "natural_frequency"), ("damping", "settling_time"), ("settling_time", "overshoot"))
 FILTERS = ("butterworth", "bessel", "itae")
 KEYS = (*dict.fromkeys(name for pair in PAIRS for name in pair), *FILTERS, OTHERS)
+#: The highest degree of a Butterworth polynomial whose coefficients are written with one root.
+MOST_OF_ONE_ROOT = 12
 #: After 4/σ a mode with the real part −σ has decayed to exp(−4), less than 2 %.
 TIME_CONSTANTS = 4
 #: A pair for less overshoot is real in practice, for more it hardly decays.
@@ -178,12 +181,31 @@ def bessel(count: int, frequency: Scalar, variable: str) -> Scalar:
 def _butterworth(count: int, radius: Scalar, variable: str, where: str) -> tuple[Scalar, ...]:
     try:
         found = butterworth(count, radius, variable)
+        if all(map(is_in_kernel, found)):
+            return found
     except NotWritten:
-        found = ()
-    if not found or not all(map(is_in_kernel, found)):
-        message = f"the {count} poles of a Butterworth filter are not written with square roots"
+        pass
+    if count > MOST_OF_ONE_ROOT:
+        message = (
+            f"Butterworth polynomials have degree {MOST_OF_ONE_ROOT} or less here, and {count} poles are to be placed"
+        )
         raise InputError(message, where=where, repair="take bessel, or fewer poles and others beside them")
-    return found
+    return _in_one_root(count, radius, variable)
+
+
+def _in_one_root(count: int, radius: Scalar, variable: str) -> tuple[Scalar, ...]:
+    """Return Butterworth's polynomial with r = 2 cos θ, θ = π/2n, the largest zero of 2 Tₙ(x/2).
+
+    2 cos (k+1)θ = 2r cos kθ − 2 cos (k−1)θ writes the other cosines by it.
+    """
+    cosines = [Scalar.of(2), Scalar.symbol("x")]
+    while len(cosines) <= count:
+        cosines.append(cosines[1] * cosines[-1] - cosines[-2])
+    root = {"x": roots_of_scalar(cosines[count], "x")[-1].scalar()}
+    s = Scalar.symbol(variable)
+    half_turns = (int(turns * 2 * count) for turns in butterworth_angles(count))
+    pairs = [s**2 + cosines[k].substitute(root) * radius * s + radius**2 for k in half_turns]
+    return (product_of([*([s + radius] if count % 2 else []), *pairs]),)
 
 
 def _bessel(count: int, frequency: Scalar, variable: str, _: str) -> tuple[Scalar, ...]:
