@@ -67,6 +67,16 @@ _article(
     "536–541",
 )
 _article(
+    "davison1976",
+    "E. J. Davison",
+    "The robust control of a servomechanism problem for linear time-invariant multivariable systems",
+    _TAC,
+    "21",
+    "1976",
+    "25–34",
+)
+_book("ogata2010", "K. Ogata", "Modern Control Engineering", "Prentice Hall", "2010", "5th")
+_article(
     "graham1953",
     "D. Graham and R. C. Lathrop",
     "The synthesis of “optimum” transient response: criteria and standard forms",
