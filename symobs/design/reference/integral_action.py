@@ -51,7 +51,9 @@ class IntegralAction(Result):
     @classmethod
     def of(cls, plant: StateSpace, desired: DesiredPolynomial, method_name: str) -> Self:
         """Return the design, or the negative result."""
-        loop = design_of(StateFeedbackDesign, extended(plant), desired, "ackermann" if plant.inputs == 1 else "sylvester")
+        loop = design_of(
+            StateFeedbackDesign, extended(plant), desired, "ackermann" if plant.inputs == 1 else "sylvester"
+        )
         return cls.of_loop(plant, loop, method_name)
 
     @classmethod
@@ -81,7 +83,9 @@ class IntegralAction(Result):
         if w is None:
             yield Claim(relation(whole.apply("rank"), size), e, "rank [A B; C D] = n + p")
         else:
-            yield Claim(relation(letter("w", e) @ whole, Matrix.zeros(1, plant.order + plant.inputs)), e, "w*[A B; C D] = 0")
+            yield Claim(
+                relation(letter("w", e) @ whole, Matrix.zeros(1, plant.order + plant.inputs)), e, "w*[A B; C D] = 0"
+            )
             yield Claim(relation(letter("w", e), "!==", Matrix.zeros(1, size)), e, "w is not 0")
         if K is not None:
             closed = block(closed_loop(e, plant))
@@ -139,7 +143,7 @@ class IntegralAction(Result):
         seen = (Matrix.block([[m.C, Matrix.zeros(p, p)]]) - m.D @ gain).normal()
         enters = Matrix.block([[Matrix.zeros(plant.order, p)], [Matrix.identity(p)]])
         loop = Realisation(self.fields["closed_loop_matrix"].normal(), enters, seen, Matrix.zeros(p, p))
-        return {**super().systems, "closed_loop": loop}
+        return {**super().systems, "servo": loop}
 
 
 def extended(plant: StateSpace) -> StateSpace:

@@ -31,7 +31,9 @@ def write_integral_action(page: Page, design: IntegralAction) -> None:
         _design(page, design)
         if design.answer["K"] is not None:
             state = block([[page["x"]], [page["xi_I"]]])
-            page.equal(relation(state.derivative, page["A_cl"] @ state + _enters(page) @ page["r_in"]), say="integral_closed")
+            page.equal(
+                relation(state.derivative, page["A_cl"] @ state + _enters(page) @ page["r_in"]), say="integral_closed"
+            )
             _at_rest(page, design)
         page.steps += _cases(page, design)
 
@@ -81,9 +83,7 @@ def _name_extended(page: Page) -> None:
 
 def _enters(page: Page) -> Term:
     plant = page.plant
-    return page.value(
-        Matrix.block([[Matrix.zeros(plant.order, plant.outputs)], [Matrix.identity(plant.outputs)]])
-    )
+    return page.value(Matrix.block([[Matrix.zeros(plant.order, plant.outputs)], [Matrix.identity(plant.outputs)]]))
 
 
 def _design(page: Page, design: IntegralAction, *, is_case: bool = False) -> None:
@@ -98,7 +98,7 @@ def _design(page: Page, design: IntegralAction, *, is_case: bool = False) -> Non
     _gains(page, design)
     if not is_case:
         page.signal("u", -page["K"] @ page["x"] + page["k_I"] @ page["xi_I"], say="integral_law")
-    _closed_loop(page, design)
+    _closed_loop(page)
     if design.fields["family"] is not None:
         page.remark("integral_family", count=Counted("number", design.fields["family"]["dimension"]))
 
@@ -166,7 +166,7 @@ def _gains(page: Page, design: IntegralAction) -> None:
         say_stability(page, pencil.apply("det"))
 
 
-def _closed_loop(page: Page, design: IntegralAction) -> None:
+def _closed_loop(page: Page) -> None:
     """The matrix of the closed loop in (x, ξ)."""
     plant = page.plant
     page.define("A_cl", block(closed_loop(page.environment, plant)), say="integral_loop")

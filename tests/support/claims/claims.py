@@ -352,7 +352,10 @@ def integral_holds(result: Any, at: Setting) -> None:
     moving = subtract(identity(n + p), closed) if at.discrete else [[-entry for entry in row] for row in closed]
     if determinant(moving):
         state = multiply(inverse(moving), [[Fraction(int(i == n + j)) for j in range(p)] for i in range(n + p)])
-        u = [[b - a for a, b in zip(*rows, strict=True)] for rows in zip(multiply(K, state[:n]), multiply(k_I, state[n:]), strict=True)]
+        u = [
+            [b - a for a, b in zip(*rows, strict=True)]
+            for rows in zip(multiply(K, state[:n]), multiply(k_I, state[n:]), strict=True)
+        ]
         assert plus(multiply(at.C, state[:n]), multiply(at.D, u)) == identity(p)
 
 

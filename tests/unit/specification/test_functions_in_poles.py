@@ -54,6 +54,7 @@ ASKED: dict[str, tuple[symobs.StateSpace, dict[str, str], Wanted]] = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ASKED)
 def test_both_gains_place_the_poles_at_values_of_the_parameters(name: str) -> None:
     system, asked, wanted = ASKED[name]
