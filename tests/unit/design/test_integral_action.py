@@ -5,7 +5,7 @@ from __future__ import annotations
 from random import Random
 from typing import TYPE_CHECKING
 
-import control
+import control  # type: ignore[import-untyped]
 import numpy as np
 import pytest
 import sympy
@@ -79,7 +79,7 @@ def test_functions_of_parameters_and_poles_by_what_they_do() -> None:
 def test_a_wrong_answer_is_rejected(name: str, value: Matrix) -> None:
     design: IntegralAction = symobs.integral_action(
         symobs.StateSpace("[0 1; 0 -1]", "[0; 1]", "[1 0]"), poles="-1, -2, -3"
-    )  # type: ignore[assignment]
+    )
     with pytest.raises((CertificateRejected, DerivationRejected)):
         design.with_answer(name, value)
 

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-import scipy.signal
+import scipy.signal  # type: ignore[import-untyped]
 import sympy
 
 import symobs
