@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from copy import copy
 from dataclasses import replace
-from typing import TYPE_CHECKING, TypeVar
+from typing import TYPE_CHECKING, Any
 
 from symobs.errors import InputError
 from symobs.exact import Complex, Matrix, Scalar
@@ -17,10 +17,8 @@ if TYPE_CHECKING:
 
     from symobs.system import StateSpace
 
-Asked = TypeVar("Asked")
 
-
-def over_common_data(plant: StateSpace, *asked: Asked) -> tuple[StateSpace, tuple[Asked, ...]]:
+def over_common_data(plant: StateSpace, *asked: Any) -> tuple[StateSpace, tuple[Any, ...]]:
     """Return a plant and what is asked for, the functions in desired polynomials among its data.
 
     cos θ and e⁻ᵀ are letters of their own, as in the entries of a plant; on the plant that is returned cos² θ + sin² θ = 1
