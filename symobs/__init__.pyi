@@ -34,6 +34,7 @@ from symobs.design.full_order.state_feedback import StateFeedbackDesign as _Stat
 from symobs.design.pole_advice.pole_advice import PoleAdvice as _PoleAdvice
 from symobs.design.reduced_order.reduced_order_observer import ReducedOrderObserver as _ReducedOrderObserver
 from symobs.design.reference.feedforward import FeedforwardDesign as _FeedforwardDesign
+from symobs.design.reference.integral_action import IntegralAction as _IntegralAction
 from symobs.design.reference.tracking import TrackingDesign as _TrackingDesign
 from symobs.errors import BudgetExceeded as BudgetExceeded
 from symobs.errors import CertificateRejected as CertificateRejected
@@ -151,9 +152,9 @@ class _CompensatorResult(_OutputFeedback):
 def compensator(
     plant: _Plant,
     *,
-    control_poles: str | Sequence[_Number] | MatrixBase | None = None,
+    control_poles: str | Sequence[_Number] | Mapping[str, Any] | MatrixBase | None = None,
     control_polynomial: str | Expr | None = None,
-    observer_poles: str | Sequence[_Number] | MatrixBase | None = None,
+    observer_poles: str | Sequence[_Number] | Mapping[str, Any] | MatrixBase | None = None,
     observer_polynomial: str | Expr | None = None,
     K: _Matrix | None = None,
     L: _Matrix | None = None,
@@ -288,9 +289,9 @@ class _FeedforwardResult(_FeedforwardDesign):
 def feedforward(
     plant: _Plant,
     *,
-    control_poles: str | Sequence[_Number] | MatrixBase | None = None,
+    control_poles: str | Sequence[_Number] | Mapping[str, Any] | MatrixBase | None = None,
     control_polynomial: str | Expr | None = None,
-    observer_poles: str | Sequence[_Number] | MatrixBase | None = None,
+    observer_poles: str | Sequence[_Number] | Mapping[str, Any] | MatrixBase | None = None,
     observer_polynomial: str | Expr | None = None,
     observer: str = "full",
     method: str = "auto",
@@ -362,6 +363,40 @@ def initial_state_covariance(
 ) -> _InitialStateCovarianceResult:
     """Return the covariance Σ of the estimate x̂₀ = W⁻¹ ∫ e^{Aᵀt} Cᵀ y dt under white input noise Q and output noise R."""
 
+class _IntegralActionResult(_IntegralAction):
+    """What `integral_action` returns."""
+
+    @property
+    def K(self) -> ImmutableMatrix: ...
+    @property
+    def k_I(self) -> ImmutableMatrix: ...
+    @property
+    def solvable(self) -> bool: ...
+    @property
+    def polynomial(self) -> Expr: ...
+    @property
+    def closed_loop_matrix(self) -> ImmutableMatrix: ...
+    @property
+    def poles(self) -> tuple[Any, ...]: ...
+    @property
+    def stable(self) -> str: ...
+    @property
+    def stable_if(self) -> tuple[Any, ...]: ...
+    @property
+    def fixed_modes(self) -> tuple[Any, ...]: ...
+    @property
+    def family(self) -> Any: ...
+
+def integral_action(
+    plant: _Plant,
+    *,
+    poles: str | Sequence[_Number] | Mapping[str, Any] | MatrixBase | None = None,
+    polynomial: str | Expr | None = None,
+    method: str = "auto",
+    floats: str | None = None,
+) -> _IntegralActionResult:
+    """Let y follow constant references by u = −K x + k_I ξ, ξ' = r − y, with n + p given poles."""
+
 class _MatrixExponentialResult(_MatrixExponential):
     """What `matrix_exponential` returns."""
 
@@ -427,7 +462,7 @@ class _ObserverResult(_ObserverDesign):
 def observer(
     plant: _Plant,
     *,
-    poles: str | Sequence[_Number] | MatrixBase | None = None,
+    poles: str | Sequence[_Number] | Mapping[str, Any] | MatrixBase | None = None,
     polynomial: str | Expr | None = None,
     L: _Matrix | None = None,
     zero: str | Sequence[object] | None = None,
@@ -512,7 +547,7 @@ class _ReducedOrderObserverResult(_ReducedOrderObserver):
 def reduced_order_observer(
     plant: _Plant,
     *,
-    poles: str | Sequence[_Number] | MatrixBase | None = None,
+    poles: str | Sequence[_Number] | Mapping[str, Any] | MatrixBase | None = None,
     polynomial: str | Expr | None = None,
     T: _Matrix | None = None,
     method: str = "auto",
@@ -608,7 +643,7 @@ class _StateFeedbackResult(_StateFeedbackDesign):
 def state_feedback(
     plant: _Plant,
     *,
-    poles: str | Sequence[_Number] | MatrixBase | None = None,
+    poles: str | Sequence[_Number] | Mapping[str, Any] | MatrixBase | None = None,
     polynomial: str | Expr | None = None,
     K: _Matrix | None = None,
     zero: str | Sequence[object] | None = None,
@@ -668,9 +703,9 @@ class _TrackingResult(_TrackingDesign):
 def tracking(
     plant: _Plant,
     *,
-    control_poles: str | Sequence[_Number] | MatrixBase | None = None,
+    control_poles: str | Sequence[_Number] | Mapping[str, Any] | MatrixBase | None = None,
     control_polynomial: str | Expr | None = None,
-    observer_poles: str | Sequence[_Number] | MatrixBase | None = None,
+    observer_poles: str | Sequence[_Number] | Mapping[str, Any] | MatrixBase | None = None,
     observer_polynomial: str | Expr | None = None,
     reference_matrix: _Matrix | None = None,
     reference_start: _Matrix | None = None,

@@ -135,6 +135,10 @@ def _asked(page: Builder, name: str, desired_polynomial: DesiredPolynomial) -> N
         page.conclude(f"{name}_{'pole' if len(roots) == 1 else 'poles'}", poles=Roots(phi.formula, roots))
     else:
         page.conclude(f"{name}_polynomial", polynomial=relation(phi, desired_polynomial.polynomial))
+    if desired_polynomial.pattern is not None:
+        from symobs.analysis.pole_pattern_page import say_pattern  # noqa: PLC0415 - only such poles pay for it
+
+        say_pattern(page, phi, desired_polynomial)
 
 
 def state_signs(page: Builder) -> None:

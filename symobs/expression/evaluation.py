@@ -159,10 +159,10 @@ class Evaluator:
         Where functions of time are asked for, a function of a real argument is a generator of its own.
         """
         function, place = call.text, call.places[0]
+        if function == "sqrt" and (self.roots or not self.functions):
+            return self._root(place, number)
         if self.functions:
             return self._function(function, place, number)
-        if function == "sqrt":
-            return self._root(place, number)
         turns = isinstance(number, Scalar) and (number.is_zero or number.names == {PI})
         if function in {"cos", "sin"} and turns and (number / Scalar.symbol(PI)).is_constant:  # type: ignore[operator]
             return self._function(function, place, number)

@@ -124,12 +124,14 @@ def parse_poles(
     return tuple(Complex.of(_entry(pole, scope, f"{where}[{index}]")) for index, pole in enumerate(listed))
 
 
-def parse_polynomial(value: object, variable: str, names: Names = None, *, where: str = "") -> Scalar:
+def parse_polynomial(
+    value: object, variable: str, names: Names = None, *, where: str = "", functions: bool = False
+) -> Scalar:
     """Return a real polynomial of degree at least 1 in `variable` (s, or z in discrete time).
 
-    Raises as `parse_scalar` does.
+    `functions` and what is raised are as for `parse_scalar`.
     """
-    polynomial = _entry(value, Scope.of(names, variable, where), where)
+    polynomial = _entry(value, Scope.of(names, variable, where, functions=functions), where)
     if isinstance(polynomial, Complex):
         message, repair = f"the polynomial in {variable} has complex coefficients", "write the conjugate factors too"
     elif not polynomial.is_polynomial_in(variable):

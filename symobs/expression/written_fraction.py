@@ -39,7 +39,7 @@ def parse_fraction(text: str, names: Names, *, variable: str, where: str) -> tup
 
 def parse_fractions(text: str, names: Names, *, variable: str, where: str) -> list[list[tuple[Scalar, Scalar] | None]]:
     """Return the same of every entry of a matrix; of a text without brackets that of its one entry."""
-    scope = Scope.of(names, variable, where)
+    scope = Scope.of(names, variable, where, functions=True)
     source, (tree,) = trees_of(text, scope, where)
     found: Any = _Written(source, scope).entry(tree)
     rows = found.rows if isinstance(found, Grid) else [[found]]

@@ -29,7 +29,7 @@ from symobs.live.views import view_object, view_of
 from symobs.render.cards import Card, CardPrinter, cards
 from symobs.result import tasks
 from symobs.result.conversions import to_json
-from symobs.specification import read_poles
+from symobs.specification import is_pattern, read_poles
 from symobs.system import Symbols, read_scalar
 
 if TYPE_CHECKING:
@@ -281,7 +281,7 @@ def _readouts(solved: Solved) -> list[dict[str, str]]:
     for group in view_of(solved.result.task).sets:
         for key in (group.key, *(f"{half}_{group.key}" for half in ("control", "observer"))):
             given = solved.problem.specification.get(key)
-            if given is None:
+            if given is None or is_pattern(given):
                 continue
             poles = read_poles(given, plant.symbols, f"specification.{key}")
             upper = [pole for pole in poles if pole.imaginary.names or pole.imaginary.fraction() >= 0]

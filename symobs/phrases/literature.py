@@ -66,6 +66,34 @@ _article(
     "1930",
     "536–541",
 )
+_article(
+    "davison1976",
+    "E. J. Davison",
+    "The robust control of a servomechanism problem for linear time-invariant multivariable systems",
+    _TAC,
+    "21",
+    "1976",
+    "25–34",
+)
+_book("ogata2010", "K. Ogata", "Modern Control Engineering", "Prentice Hall", "2010", "5th")
+_article(
+    "graham1953",
+    "D. Graham and R. C. Lathrop",
+    "The synthesis of “optimum” transient response: criteria and standard forms",
+    "Trans. Amer. Inst. Electr. Eng., Part II",
+    "72",
+    "1953",
+    "273–288",
+)
+_article(
+    "thomson1949",
+    "W. E. Thomson",
+    "Delay networks having maximally flat frequency characteristics",
+    "Proc. Inst. Electr. Eng., Part III",
+    "96",
+    "1949",
+    "487–490",
+)
 _article("doyle1979", "J. C. Doyle and G. Stein", "Robustness with observers", _TAC, "24", "1979", "607–611")
 _article(
     "francis1976",

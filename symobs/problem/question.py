@@ -26,6 +26,7 @@ from symobs.result import Document
 from symobs.result.digits_of_page import DIGITS
 from symobs.specification import (
     desired_polynomial,
+    is_pattern,
     parse_signal,
     read_entries,
     read_interval,
@@ -191,7 +192,9 @@ def _values(task: Task, problem: Problem) -> Iterator[tuple[str, Any]]:
     """Yield what the specification contains for a task, read."""
     keys = keys_of(task, problem.specification)
     for name, kind in task.keywords.items():
-        if name in keys:
+        if name in keys and is_pattern(problem.specification[keys[name]]):
+            yield name.replace("poles", "polynomial"), _read_pattern(problem, task, name, keys[name])
+        elif name in keys:
             yield name, _read(problem.specification[keys[name]], kind, name, problem.plant, task.name)
         elif kind == "Horizon":
             yield name, read_horizon(problem.plant, None)
@@ -199,6 +202,18 @@ def _values(task: Task, problem: Problem) -> Iterator[tuple[str, Any]]:
         parameters = _free_parameters(problem)
         if parameters:
             yield "parameters", parameters
+
+
+def _read_pattern(problem: Problem, task: Task, name: str, key: str) -> Scalar:
+    """Return the polynomial of poles that are given by what they are to do."""
+    plant, asked = problem.plant, problem.specification
+    is_minimal = task.name == "reduced_order_observer" or (
+        name == "observer_poles" and asked.get("observer") == "minimal"
+    )
+    degree = plant.order - (plant.outputs if is_minimal else 0)
+    found = desired_polynomial(plant, asked[key], None, names=(key, key), degree=degree)
+    assert found is not None  # noqa: S101 - they are given
+    return found.polynomial
 
 
 def _free_parameters(problem: Problem) -> tuple[str, ...]:
@@ -218,7 +233,7 @@ def _read(value: object, kind: str, name: str, plant: StateSpace, task: str) -> 
             poles = read_poles(value, plant.symbols, where)
             return desired_polynomial(plant, value, None, names=(name, name), degree=len(poles))
         case "PolynomialText":
-            return parse_polynomial(value, plant.variable, plant.symbols.names, where=where)
+            return parse_polynomial(value, plant.variable, plant.symbols.names, where=where, functions=True)
         case "GainText" | "MatrixText":
             return read_matrix(value, plant.symbols.seen(value), where)
         case "IntervalText":

@@ -24,7 +24,8 @@ from symobs.problem.schema import PLANT, PRINTED, TOP, keys_of, kinds_of, missin
 from symobs.result import Document, Result, Task, task_named, tasks
 from symobs.result.digits_of_page import digits_asked
 from symobs.result.in_convention import ResultInConvention, names_in
-from symobs.specification import parse_signal, read_poles
+from symobs.specification import is_pattern, parse_signal, read_poles
+from symobs.specification.pole_patterns import OTHERS, named_parts
 from symobs.system import StateSpace, Symbols, read_matrix, read_scalar
 from symobs.system.time_domain import read_time
 
@@ -365,13 +366,17 @@ def _read_alone(
         where = f"specification.{name}"
         with others:
             match kinds.get(name):
+                case "Poles" if is_pattern(value):
+                    for part, given in named_parts(value, where).items():
+                        with others:
+                            (read_poles if part == OTHERS else read_scalar)(given, symbols, f"{where}.{part}")
                 case "Poles":
                     for i, pole in enumerate(value[:_MAX_CELLS] if isinstance(value, list) else ()):
                         with others:
                             (read_poles if isinstance(pole, str) else read_scalar)(pole, symbols, f"{where}[{i}]")
                     read_poles(value, symbols, where)
                 case "PolynomialText":
-                    parse_polynomial(value, variable, symbols.names, where=where)
+                    parse_polynomial(value, variable, symbols.names, where=where, functions=True)
                 case "IntervalText":
                     read_poles(value, symbols, where)
                 case "GainText" | "MatrixText":

@@ -12,10 +12,11 @@ from typing import TYPE_CHECKING, Any
 import symobs
 from symobs.errors import CertificateRejected, InputError, ProblemErrors, together
 from symobs.exact import Complex, Matrix, Scalar
-from symobs.exact.core.generators import substitute
+from symobs.exact.core.generators import substitute, symbols_in
 from symobs.expression import parse_matrix, parse_polynomial
 from symobs.expression.source import shown
-from symobs.specification import parse_signal, read_names, read_poles
+from symobs.specification import is_pattern, parse_signal, read_names, read_pattern, read_poles
+from symobs.specification.pole_patterns import OTHERS
 from symobs.system import StateSpace, read_matrix, read_scalar
 from symobs.system.reading import has_decimals, read_values
 
@@ -108,11 +109,14 @@ def _entries(value: object, plant: StateSpace, where: str) -> Matrix:
 
 def _polynomial(value: object, plant: StateSpace, where: str) -> Scalar:
     if isinstance(value, str):
-        return parse_polynomial(value, plant.variable, plant.symbols.names, where=where)
-    return read_scalar(value, plant.symbols.seen(value, plant.variable), where)
+        return parse_polynomial(value, plant.variable, plant.symbols.names, where=where, functions=True)
+    return read_scalar(value, plant.symbols.seen(value, plant.variable), where, functions=True)
 
 
-def _poles(value: object, plant: StateSpace, where: str) -> tuple[Complex, ...]:
+def _poles(value: object, plant: StateSpace, where: str) -> tuple[Complex, ...] | dict[str, Any]:
+    if is_pattern(value):
+        named, others = read_pattern(value, plant, where)
+        return {**named, **({OTHERS: others} if others else {})}
     return read_poles(value, plant.symbols.seen(value), where, plant.variable)
 
 
@@ -155,15 +159,19 @@ def _names(value: Any) -> set[str]:
     """Return the symbols in a part of a specification."""
     if isinstance(value, frozenset):
         return set(value)
+    if isinstance(value, dict):
+        return {name for part in value.values() for name in _names(part)}
     if isinstance(value, tuple):
-        return {name for pole in value for part in (pole.real, pole.imaginary) for name in part.names}
-    return {str(name) for name in getattr(value, "names", ())}
+        return {name for pole in value for part in (pole.real, pole.imaginary) for name in symbols_in(part)}
+    return {*symbols_in(value)} if isinstance(value, Scalar | Matrix) else set()
 
 
 def _moved(value: Any, values: dict[str, Scalar]) -> Any:
     """Return a part of a specification at these values, as a task reads it."""
     if isinstance(value, frozenset):
         return sorted(value - values.keys())
+    if isinstance(value, dict):
+        return {name: _moved(part, values) for name, part in value.items()}
     if isinstance(value, tuple):
         return [str(Complex(substitute(p.real, values), substitute(p.imaginary, values))) for p in value]
     if isinstance(value, Matrix):

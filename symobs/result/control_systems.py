@@ -89,6 +89,7 @@ def _signals(name: str, plant: StateSpace) -> tuple[list[str], list[str]]:
         "observer": ([*u, *y], x_hat),
         "compensator": (y, _labels("w", m)),
         "closed_loop": (_labels("v", m), y),
+        "servo": (_labels("r", p), y),
     }[name]
 
 

@@ -273,6 +273,7 @@ class Result(OutputMethods):
         observer      (u, y) → x_hat
         compensator   y → w = F y, so that u = v − w closes the loop
         closed_loop   v → y
+        servo         r → y, the closed loop with integral action
 
         Entries are the nearest doubles; `StateSpace.from_control` reads each system back exactly.  Raises `InputError`
         where a parameter has no value, naming it, and `UsageError` where python-control is not installed.

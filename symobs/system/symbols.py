@@ -195,8 +195,8 @@ def sympy_symbols(values: object) -> dict[str, Any]:
 def _symbols_in(values: object) -> Iterator[Any]:
     if is_sympy(values):
         yield from sorted(getattr(values, "free_symbols", ()), key=str)
-    elif isinstance(values, (list, tuple)):
-        for value in values:
+    elif isinstance(values, (list, tuple, Mapping)):
+        for value in values.values() if isinstance(values, Mapping) else values:
             yield from _symbols_in(value)
     elif getattr(getattr(values, "dtype", None), "kind", "") == "O":
         yield from _symbols_in(values.tolist())  # type: ignore[attr-defined]  # an array of objects has it

@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING, Any
 
 from symobs._dataclass import dataclass
 from symobs.errors import BudgetExceeded, InputError
-from symobs.exact import Matrix, Scalar, companion, product_of
+from symobs.exact import Ideal, Matrix, Scalar, companion, product_of, resultant
 from symobs.expression import parse_polynomial, parse_scalar
 from symobs.expression.written_fraction import parse_fraction
-from symobs.system.reading import read_scalar
+from symobs.system.reading import over_a_base, read_scalar, require_known
 from symobs.system.symbols import is_sympy
 
 if TYPE_CHECKING:
@@ -56,10 +56,10 @@ def read_transfer_function(value: object, symbols: Symbols, variable: str, where
     """Return the transfer function of a text, a SymPy expression, a number or two lists of coefficients."""
     written: Any
     if isinstance(value, str):
-        found = parse_scalar(value, symbols.names, variable=variable, where=where)
+        found = parse_scalar(value, symbols.names, variable=variable, where=where, functions=True)
         written = parse_fraction(value, symbols.names, variable=variable, where=where)
     elif is_sympy(value):
-        found, written = read_scalar(value, symbols, where), _of_sympy(value, where)
+        found, written = read_scalar(value, symbols, where, functions=True), _of_sympy(value, where)
     elif isinstance(value, (list, tuple)):
         value = [part.tolist() if hasattr(part, "tolist") else part for part in value]  # NumPy arrays
         written = _of_coefficients(value, symbols, variable, where)
@@ -67,7 +67,28 @@ def read_transfer_function(value: object, symbols: Symbols, variable: str, where
     else:
         found, written = read_scalar(value, symbols, where), None
     above, below = written or (found.numerator, found.denominator)
-    return written_over(above, below, variable)
+    return written_over(*over_data(above, below, variable, where), variable)
+
+
+def over_data(above: Scalar, below: Scalar, variable: str, where: str) -> tuple[Scalar, Scalar]:
+    """Return numerator and denominator over a common base of their functions, simplified by what vanishes there.
+
+    Raises `InputError` for a function of the variable, and where what vanishes makes the two have a common factor.
+    """
+    if not require_known([above, below], where):
+        return above, below
+    row, relations = over_a_base({"P": Matrix.row([above, below])}, where)
+    assert row["P"] is not None  # noqa: S101 - it is given
+    common = row["P"].common_denominator()
+    above, below = (part * common for part in row["P"].entries)
+    if relations:
+        ideal = Ideal.of(relations)
+        above, below = ideal.simplified(above), ideal.simplified(below)
+        least = above / below
+        if resultant(least.numerator, least.denominator, variable) in ideal:
+            message = "numerator and denominator have a common factor, for all values of their functions"
+            raise InputError(message, where=where, repair="cancel it")
+    return above, below
 
 
 def written_over(above: Scalar, below: Scalar, variable: str) -> WrittenTransferFunction:
@@ -105,9 +126,9 @@ def _of_coefficients(value: list[Any] | tuple[Any, ...], symbols: Symbols, varia
 def read_characteristic(value: object, symbols: Symbols, variable: str, where: str) -> Scalar:
     """Return a polynomial of degree 1 or more, and of no more than a plant may have states."""
     if isinstance(value, str):
-        found = parse_polynomial(value, variable, symbols.names, where=where)
+        found = parse_polynomial(value, variable, symbols.names, where=where, functions=True)
     else:
-        found = read_scalar(value, symbols, where)
+        found = read_scalar(value, symbols, where, functions=True)
     degree = found.degree(variable)
     if degree < 1 or not found.is_polynomial_in(variable):
         message = f"{found} is not a polynomial in {variable} of degree 1 or more"

@@ -8,11 +8,14 @@ from typing import TYPE_CHECKING, Any
 from symobs._dataclass import dataclass
 from symobs.errors import BudgetExceeded, CertificateRejected, InputError, ShapeMismatch
 from symobs.exact import Matrix, Scalar, companion, product_of, rank, reduced_echelon, transfer_matrix
+from symobs.exact.core.generators import identities
 from symobs.expression import parse_matrix
 from symobs.expression.written_fraction import parse_fractions
+from symobs.system.reading import require_known
 from symobs.system.transfer_function_text import (
     MOST_STATES,
     WrittenTransferFunction,
+    over_data,
     read_transfer_function,
     written_over,
 )
@@ -54,7 +57,15 @@ class WrittenTransferMatrix:
         return tuple(dict.fromkeys(factor for entry in self._entries for factor in entry.apart))
 
     def realised(self, where: str) -> tuple[Matrix, Matrix, Matrix, Matrix]:
-        """Return a minimal realisation."""
+        """Return a minimal realisation; raises `InputError` where functions in it depend on each other."""
+        functions = require_known([self.value], where)
+        meanings, relations = identities([self.value])
+        if not {*meanings}.isdisjoint(self.value.names) or any(
+            relation.names <= self.value.names for relation in relations
+        ):
+            listed = ", ".join(sorted(function.text for function in functions))
+            message = f"the functions of the transfer matrix depend on each other: {listed}"
+            raise InputError(message, where=where, repair="give A, B and C, or write all of them with one function")
         return minimal_realisation(self.value, next(self._entries).variable, where)
 
 
@@ -63,11 +74,17 @@ def read_written(
 ) -> WrittenTransferFunction | WrittenTransferMatrix:
     """Return a transfer function, or the matrix of several that a text in brackets, nested lists or SymPy give."""
     if isinstance(value, str) and value.lstrip().startswith("["):
-        found = parse_matrix(value, symbols.names, variable=variable, where=where).rows
+        found = parse_matrix(value, symbols.names, variable=variable, where=where, functions=True).rows
         written = parse_fractions(value, symbols.names, variable=variable, where=where)
         pairs = [list(zip(*rows, strict=True)) for rows in zip(written, found, strict=True)]
         return _of_rows(
-            [[written_over(*(w or (f.numerator, f.denominator)), variable) for w, f in row] for row in pairs]
+            [
+                [
+                    written_over(*over_data(*(w or (f.numerator, f.denominator)), variable, where), variable)
+                    for w, f in row
+                ]
+                for row in pairs
+            ]
         )
     rows = _rows_of(value, variable)
     if rows is None:

@@ -51,6 +51,8 @@ symobs.reduced_order_observer(plant, poles=[-10])
 symobs.feedforward(plant, control_poles=[-2, -2], observer_poles=[-10, -10])
 symobs.tracking(plant, control_poles=[-2, -2], observer_poles=[-9, -9], reference_matrix="[0 1; -1 0]")
 symobs.pole_advice(plant, radius="omega_0")
+symobs.observer(plant, poles={"damping": "0.7", "natural_frequency": 4})
+integral: object = symobs.integral_action(plant, poles=[-1, -2, -3]).k_I
 region = symobs.stability_region(polynomial="s^2 + h s + 1", parameters=["h"])
 page: str = design.to_latex()
 verdict: str = design.verdict

@@ -19,7 +19,7 @@ from tests.support.paths import ROOT
 STUB = ROOT / "symobs" / "__init__.pyi"
 #: What a keyword of each kind takes.
 KINDS = {
-    "Poles": "str | Sequence[_Number] | MatrixBase",
+    "Poles": "str | Sequence[_Number] | Mapping[str, Any] | MatrixBase",
     "PolynomialText": "str | Expr",
     "GainText": "_Matrix",
     "MatrixText": "_Matrix",

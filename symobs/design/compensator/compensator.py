@@ -19,7 +19,16 @@ from symobs.exact.linear_algebra.realisation import Realisation
 from symobs.formula import Environment
 from symobs.formula.term import identity, letter
 from symobs.result import Result, choose, method, task
-from symobs.specification import GainText, Name, Poles, PolynomialText, desired_polynomial, read_gain, reject_both
+from symobs.specification import (
+    GainText,
+    Name,
+    Poles,
+    PolynomialText,
+    desired_polynomial,
+    over_common_data,
+    read_gain,
+    reject_both,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -244,6 +253,7 @@ def observer_based(
         lambda: wanted("control", control, plant.order),
         of_observer,
     )
+    plant, (control_wish, observer_wish) = over_common_data(plant, control_wish, observer_wish)
     found: OutputFeedback = chosen.solve(plant, control_wish, observer_wish)
     return found
 

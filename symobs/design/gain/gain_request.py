@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from symobs.design.page_parts import readability
 from symobs.errors import InputError
 from symobs.result import choose
-from symobs.specification import desired_polynomial, read_entries, read_gain, reject_both
+from symobs.specification import desired_polynomial, over_common_data, read_entries, read_gain, reject_both
 
 if TYPE_CHECKING:
     from symobs.design.gain.gain_design import GainDesign
@@ -46,6 +46,7 @@ def design_gain(
         return kind.of_given(plant, read_gain(given, plant, gain, shape))
     desired = desired_polynomial(plant, poles, polynomial)
     assert desired is not None  # noqa: S101 - required
+    plant, (desired,) = over_common_data(plant, desired)
     chosen = choose(kind.task, method, "ackermann" if several == 1 else "sylvester")
     if member != "simple":
         reject_both("member", member, zero, None, other="zero")

@@ -15,9 +15,7 @@ from symobs.design.pole_advice.pole_candidates import (
     needed_of,
     normalised,
     numerator_of,
-    overshoot_of,
     pair_poles,
-    pair_ratio,
     poles_of,
 )
 from symobs.design.pole_advice.pole_warnings import warnings_of
@@ -29,6 +27,7 @@ from symobs.exact.time_functions.butterworth import butterworth
 from symobs.formula import Environment, Literal
 from symobs.formula.term import Term, identity, letter
 from symobs.result import Result
+from symobs.specification.pole_patterns import overshoot_of, pair_ratio
 from symobs.stability.criteria.stability import stability
 
 if TYPE_CHECKING:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from fractions import Fraction
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -15,13 +14,11 @@ from symobs.design.pole_advice.pole_candidates import (
 from symobs.errors import InputError
 from symobs.result import Case, Result, choose, method, task
 from symobs.specification import read_quantity
+from symobs.specification.pole_patterns import overshoot_within
 
 if TYPE_CHECKING:
     from symobs.specification import Name, Quantity
     from symobs.system import StateSpace
-
-#: A pair for less overshoot is real in practice, for more it hardly decays.
-OVERSHOOTS = Fraction(1, 10**6), Fraction(99, 100)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -142,8 +139,4 @@ def _wish(plant: StateSpace, radius: object, settling_time: object, overshoot: o
         if not value.is_constant:
             message = f"{name} is {value}, not a number"
             raise InputError(message, where=f"specification.{name}", repair="give a number, or a radius as a symbol")
-    least, most = OVERSHOOTS
-    if not least <= found[1].fraction() <= most:
-        message = f"the overshoot is {found[1]}, which is not between {least} and {most}"
-        raise InputError(message, where="specification.overshoot", repair='write 5 % as "0.05"')
-    return PoleRequest(None, found[0], found[1])
+    return PoleRequest(None, found[0], overshoot_within(found[1], "specification.overshoot"))

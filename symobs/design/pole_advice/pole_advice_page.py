@@ -12,7 +12,7 @@ from symobs.derivation import CaseStep, Given
 from symobs.derivation.builder import Builder, predicate, relation, sentence
 from symobs.design.pole_advice.advised_poles import FURTHER_LEFT, numerator_term
 from symobs.design.pole_advice.pole_advice import PoleAdvice
-from symobs.design.pole_advice.pole_candidates import numerator_of, overshoot_of, third_digit
+from symobs.design.pole_advice.pole_candidates import numerator_of
 from symobs.exact import Factored, Scalar, roots_of
 from symobs.exact.core.generators import function
 from symobs.exact.time_functions.butterworth import butterworth_angles, twice_cosine
@@ -20,6 +20,7 @@ from symobs.formula import Literal, Power, Roots, Sum
 from symobs.formula.term import product
 from symobs.phrases.spoken import Counted
 from symobs.result import page_of
+from symobs.specification.pole_patterns import overshoot_of, third_digit
 from symobs.stability.inequalities.written_form import as_inequality
 
 if TYPE_CHECKING:

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 from fractions import Fraction
-from math import floor, log, log10, pi
 from typing import TYPE_CHECKING
 
 from symobs._dataclass import dataclass
 from symobs.conditions import sign_of
 from symobs.exact import Complex, Root, Scalar, factored, from_coefficients, product_of, transfer
-from symobs.exact.core.generators import PI, function, square_root
+from symobs.exact.core.generators import square_root
 from symobs.exact.time_functions.butterworth import butterworth_angles, twice_cosine
 from symobs.stability.criteria.stability import is_beyond, on_boundary, stability
 
@@ -135,28 +134,6 @@ def pair_poles(count: int, sigma: Scalar, omega_d: Scalar | None) -> tuple[Compl
         return (Complex.of(-sigma),) if count else ()
     pole = Complex(-sigma, omega_d)
     return pole, pole.conjugate()
-
-
-def pair_ratio(overshoot: Scalar) -> Scalar:
-    """Return the largest q of three digits with exp(−π/q) ≤ M, found by decimals and proved by an enclosure.
-
-    With ω = qσ the overshoot exp(−πσ/ω) is at most M.
-    """
-    unit = third_digit(pi / -log(overshoot.fraction()))
-    steps = floor(pi / -log(overshoot.fraction()) / unit)
-    while sign_of(overshoot - overshoot_of(Scalar.of(steps * unit)), {}) != "positive":
-        steps -= 1
-    return Scalar.of(steps * unit)
-
-
-def third_digit(value: float | Fraction) -> Fraction:
-    """Return what one unit in the third digit of a positive number is worth."""
-    return Fraction(10) ** (floor(log10(value)) - 2)
-
-
-def overshoot_of(ratio: Scalar) -> Scalar:
-    """Return exp(−π/q), how far the step response of a pair −σ ± iqσ goes beyond its end."""
-    return function("exp", -Scalar.symbol(PI) / ratio)
 
 
 def as_number(root: Root) -> Complex | Root:

@@ -32,6 +32,7 @@ from symobs.specification import (
     Poles,
     PolynomialText,
     desired_polynomial,
+    over_common_data,
     read_gain,
 )
 from symobs.system import StateSpace
@@ -342,6 +343,7 @@ def reduced_order_observer(
         raise InputError(message, where="plant.C", repair="use x = C⁻¹ (y − D u)")
     desired = desired_polynomial(plant, poles, polynomial, degree=plant.order - plant.outputs)
     assert desired is not None  # noqa: S101 - required
+    plant, (desired,) = over_common_data(plant, desired)
     coordinates = completed(plant.matrices.C) if T is None else _read_coordinates(T, plant)
     return choose("reduced_order_observer", method, "partition").solve(plant, desired, coordinates).asked(method)
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from symobs.exact.algebraic.complex import Complex
 from symobs.exact.algebraic.enclosure import is_number, sign_of_number
 from symobs.exact.algebraic.polynomial_roots import rational_sqrt
-from symobs.exact.core.generators import Function, function_named, normal_form, roots_in, square_root
+from symobs.exact.core.generators import Function, all_roots, function_named, normal_form, roots_in, square_root
 from symobs.exact.core.scalar import Scalar
 
 if TYPE_CHECKING:
@@ -38,12 +38,12 @@ def _with_sign_changed(value: Complex, root: Function) -> Complex:
 
 
 def product_of_linear(variable: str, roots: Sequence[Complex]) -> Scalar | None:
-    """Return Π (s − root), multiplied out; None unless its coefficients are real and have roots of primes only."""
+    """Return Π (s − root), multiplied out; None unless its coefficients are real, and have no roots but of primes."""
     product = Complex.of(1)
     for root in roots:
         product = product * (Complex.of(Scalar.symbol(variable)) - root)
     product = tidied(product)
-    return product.real if product.is_real and is_in_kernel(product.real) else None
+    return product.real if product.is_real and all(root.square for root in all_roots(product.real)) else None
 
 
 def is_in_kernel(value: Scalar) -> bool:

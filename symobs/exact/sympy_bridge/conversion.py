@@ -270,7 +270,7 @@ def fraction_from_sympy(expression: Any, where: str) -> tuple[Complex, Complex]:
     if isinstance(expression, sympy.Pow) and expression.exp.is_Integer:
         above, below = (part ** abs(int(expression.exp)) for part in fraction_from_sympy(expression.base, where))
         return (above, below) if expression.exp > 0 else (below, above)
-    return complex_from_sympy(expression, where), Complex.of(1)
+    return complex_from_sympy(expression, where, roots=True), Complex.of(1)
 
 
 def scalar_from_sympy(expression: Any, where: str, *, roots: bool = False) -> Scalar:

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from fractions import Fraction
 
+from symobs.exact.algebraic.conjugates import root_in_field
+from symobs.exact.algebraic.enclosure import is_number
 from symobs.exact.core.generators import NotWritten, square_root
 from symobs.exact.core.scalar import Scalar
 
@@ -18,7 +20,9 @@ def twice_cosine(turns: Fraction) -> Scalar:
     if turns == Fraction(1, 2):
         return Scalar.of(0)
     if turns.denominator % 2 == 0:
-        return square_root(twice_cosine(2 * turns) + 2)
+        square = twice_cosine(2 * turns) + 2
+        root = root_in_field(square) if is_number(square) else None
+        return square_root(square) if root is None else root
     if turns == 0:
         return Scalar.of(2)
     if turns.denominator == 3:

@@ -86,6 +86,7 @@ UNSAID = (
     "derivatives",
     "determinant",
     "eigenvalues",
+    "extended_state",
     "fixed_modes",
     "gramian",
     "integral",

@@ -69,6 +69,7 @@ SIGNALS = frozenset(
         "v_r",
         "x_d",
         "e_d",
+        "xi_I",
     }
 )
 

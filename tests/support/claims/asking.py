@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+import sympy
+
 from symobs.result import tasks
 
 if TYPE_CHECKING:
@@ -17,6 +19,8 @@ FEWER = {
     "compensator/minimal_order": ("observer_",),
     "tracking": ("observer_",),
 }
+#: Tasks whose polynomial has as many roots more as the plant has outputs; they are asked about plants with one.
+MORE = {"integral_action"}
 #: Tasks whose gain is not one of x̄ = T x: they choose coordinates themselves.
 OWN_COORDINATES = {"reduced_order_observer", "compensator/minimal_order", "tracking"}
 #: Methods that answer another question than the other methods of their task.
@@ -43,11 +47,16 @@ def specification(asked: str, poles: Any) -> dict[str, Any]:
 
 def factors(asked: str, keyword: str, listed: Sequence[Any]) -> Sequence[Any]:
     """Return as many poles, or factors of a desired polynomial, as a keyword needs."""
+    if asked.partition("/")[0] in MORE:
+        in_s = any("s" in map(str, getattr(entry, "free_symbols", ())) for entry in listed)
+        return [*listed, sympy.Symbol("s") + 7 if in_s else "-7"]
     return listed[: len(listed) - fewer(asked, keyword)]
 
 
 def is_for(asked: str, plant: StateSpace, poles: Sequence[str]) -> bool:
     """Whether a task can be asked about a plant at all: there is something left to estimate, and pairs stay whole."""
+    if asked.partition("/")[0] in MORE:
+        return plant.outputs == 1
     if not {asked, asked.partition("/")[0]} & FEWER.keys():
         return True
     return plant.order > 1 and not plant.matrices.C.is_zero and "i" not in poles[-1]

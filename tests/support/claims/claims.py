@@ -332,6 +332,33 @@ def tracking_holds(result: Any, at: Setting) -> None:
         assert characteristic(matrix_at(result.fields["error_matrix"], at.point)) == whole
 
 
+def integral_holds(result: Any, at: Setting) -> None:
+    """Hold the closed loop to φ and, at rest, to y = r; and what is solvable to the rank of [A B; C D]."""
+    n, p = len(at.A), len(at.C)
+    first = subtract(at.A, identity(n)) if at.discrete else at.A
+    whole = [[*a, *b] for a, b in zip([*first, *at.C], [*at.B, *at.D], strict=True)]
+    assert result.fields["solvable"] == (rank_of(whole) == n + p)
+    own = identity(p) if at.discrete else [[Fraction(0)] * p for _ in range(p)]
+    below = [[*(-c for c in row), *right] for row, right in zip(at.C, own, strict=True)]
+    A = [*([*row, *([Fraction(0)] * p)] for row in at.A), *below]
+    B = [*at.B, *([-d for d in row] for row in at.D)]
+    if result.fields["K"] is None:
+        assert not assignable(transposed(A), transposed(B), at.wanted[""])
+        return
+    K, k_I = (matrix_at(result.fields[name], at.point) for name in ("K", "k_I"))
+    closed = subtract(A, multiply(B, [[*row, *(-g for g in right)] for row, right in zip(K, k_I, strict=True)]))
+    assert characteristic(closed) == at.wanted[""]
+    assert matrix_at(result.fields["closed_loop_matrix"], at.point) == closed
+    moving = subtract(identity(n + p), closed) if at.discrete else [[-entry for entry in row] for row in closed]
+    if determinant(moving):
+        state = multiply(inverse(moving), [[Fraction(int(i == n + j)) for j in range(p)] for i in range(n + p)])
+        u = [
+            [b - a for a, b in zip(*rows, strict=True)]
+            for rows in zip(multiply(K, state[:n]), multiply(k_I, state[n:]), strict=True)
+        ]
+        assert plus(multiply(at.C, state[:n]), multiply(at.D, u)) == identity(p)
+
+
 def rank_holds(result: Result, at: Setting) -> None:
     dual = result.task == "controllability"
     A, C = at.pair(dual=dual)
@@ -433,6 +460,7 @@ HOLDS: dict[str, Callable[[Any, Setting], None]] = {
     "compensator": compensator_holds,
     "feedforward": feedforward_holds,
     "tracking": tracking_holds,
+    "integral_action": integral_holds,
     "observability": rank_holds,
     "controllability": rank_holds,
     "characteristic_polynomial": polynomial_holds,

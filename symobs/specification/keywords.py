@@ -16,9 +16,18 @@ from symobs.conditions import sign_of
 from symobs.errors import InputError, ShapeMismatch
 from symobs.exact import Complex, Field, Matrix, Scalar, product_of
 from symobs.exact.algebraic.conjugates import conjugates, is_in_kernel, product_of_linear, tidied
-from symobs.expression import declared_name, parse_matrix, parse_poles, parse_polynomial
+from symobs.expression import declared_name, parse_poles, parse_polynomial
+from symobs.specification.pole_patterns import (
+    KEYS,
+    OTHERS,
+    PolePattern,
+    is_pattern,
+    named_parts,
+    pattern_of,
+)
 from symobs.system import StateSpace, Symbols, is_sympy, read_complex, read_matrix, read_scalar
 from symobs.system.matrices import as_rows
+from symobs.system.reading import require_known
 
 #: The kinds of keyword a task may have.  Their names in signatures are the schema, as text or as annotations.
 Poles: TypeAlias = Annotated[Any, "Poles"]
@@ -38,8 +47,13 @@ Names: TypeAlias = Annotated[Any, "Names"]
 
 KINDS: dict[str, dict[str, Any]] = {
     "Poles": {
-        "description": 'poles: a list or a comma-separated text, "-20+20i, -20-20i", "-p", "-1/2"',
-        "oneOf": [{"type": "string"}, {"type": "array", "items": {"type": ["number", "string"]}}],
+        "description": 'poles: a list or a comma-separated text, "-20+20i, -20-20i", "-p"; or what they are to do, '
+        '"damping = 1/2, natural_frequency = 3", "butterworth = omega_0"',
+        "oneOf": [
+            {"type": "string"},
+            {"type": "array", "items": {"type": ["number", "string"]}},
+            {"type": "object", "propertyNames": {"enum": list(KEYS)}},
+        ],
     },
     "PolynomialText": {"description": 'a monic polynomial, "(s + 10)^2"', "type": "string"},
     "GainText": {
@@ -92,11 +106,13 @@ CHOICES: dict[str, tuple[str, ...]] = {
 
 @dataclass(frozen=True)
 class DesiredPolynomial:
-    """A monic polynomial φ of degree n with real coefficients: its factors, and its poles if given."""
+    """A monic polynomial φ of degree n with real coefficients: its factors, and its poles, or their pattern, if given."""
 
     variable: str
     factors: tuple[Scalar, ...]
     poles: tuple[Complex, ...] = ()
+    #: What the poles are to do, where they are given so.
+    pattern: PolePattern | None = None
 
     @cached_property
     def polynomial(self) -> Scalar:
@@ -162,15 +178,22 @@ def desired_polynomial(
     if poles is not None and polynomial is not None:
         message = f"both {names[0]} and {names[1]} are given"
         raise InputError(message, where=first, repair="keep one of them")
-    if poles is not None:
-        return _from_poles(read_poles(poles, plant.symbols, first, plant.variable), plant.variable, degree, first)
-    return _from_polynomial(polynomial, plant, degree, second)
+    if is_pattern(poles):
+        found = _from_pattern(poles, plant, degree, first)
+    elif poles is not None:
+        found = _from_poles(read_poles(poles, plant.symbols, first, plant.variable), plant.variable, degree, first)
+    else:
+        found = _from_polynomial(polynomial, plant, degree, second)
+    require_known(found.factors, second if poles is None else first)
+    return found
 
 
-def read_poles(value: Any, symbols: Symbols, where: str, variable: str | None = None) -> tuple[Complex, ...]:
+def read_poles(
+    value: Any, symbols: Symbols, where: str, variable: str | None = None, *, functions: bool = True
+) -> tuple[Complex, ...]:
     """Return exact poles from a text or a list of numbers, texts and SymPy expressions; `variable` is that of φ."""
     if isinstance(value, str):
-        return parse_poles(value, symbols.names, variable=variable, where=where, roots=True)
+        return parse_poles(value, symbols.names, variable=variable, where=where, roots=True, functions=functions)
     if is_sympy(value) and (hasattr(value, "tolist") or type(value).__name__ == "Tuple"):
         value = list(value)  # a Matrix, or a Tuple
     listed = value.tolist() if hasattr(value, "tolist") else value  # a NumPy array
@@ -178,7 +201,7 @@ def read_poles(value: Any, symbols: Symbols, where: str, variable: str | None = 
     read = [
         read_complex(entry, f"{where}[{index}]") if is_sympy(entry) else entry for index, entry in enumerate(entries)
     ]
-    return parse_poles(read, symbols.names, variable=variable, where=where, roots=True)
+    return parse_poles(read, symbols.names, variable=variable, where=where, roots=True, functions=functions)
 
 
 def _from_poles(poles: tuple[Complex, ...], variable: str, degree: int, where: str) -> DesiredPolynomial:
@@ -203,6 +226,24 @@ def _from_poles(poles: tuple[Complex, ...], variable: str, degree: int, where: s
             waiting.remove(pole)
         factors.append(factor)
     return DesiredPolynomial(variable, tuple(factors), poles)
+
+
+def _from_pattern(value: object, plant: StateSpace, degree: int, where: str) -> DesiredPolynomial:
+    if plant.is_discrete:
+        message = "damping, settling time and filters are of continuous time"
+        raise InputError(message, where=where, repair="give the poles themselves, z = exp(s T)")
+    named, others = read_pattern(value, plant, where)
+    pattern = pattern_of(named, degree - len(others), plant.variable, where)
+    beside = _from_poles(others, plant.variable, len(others), where).factors
+    return DesiredPolynomial(plant.variable, (*pattern.factors, *beside), pattern=pattern)
+
+
+def read_pattern(value: object, plant: StateSpace, where: str) -> tuple[dict[str, Scalar], tuple[Complex, ...]]:
+    """Return what is given by name, exact, and the poles beside it."""
+    parts = named_parts(value, where)
+    others = parts.pop(OTHERS, ())
+    named = {name: read_quantity(part, plant, name, f"{where}.{name}", functions=True) for name, part in parts.items()}
+    return named, read_poles(others, plant.symbols, f"{where}.{OTHERS}", plant.variable) if others else ()
 
 
 def _not_closed(waiting: Sequence[Complex], where: str) -> InputError:
@@ -241,9 +282,9 @@ def _factors_of_pairs(poles: tuple[Complex, ...], variable: str, where: str) -> 
 def _from_polynomial(value: object, plant: StateSpace, degree: int, where: str) -> DesiredPolynomial:
     variable = plant.variable
     if is_sympy(value):
-        polynomial = read_scalar(value, plant.symbols, where)
+        polynomial = read_scalar(value, plant.symbols, where, functions=True)
     else:
-        polynomial = parse_polynomial(value, variable, plant.symbols.names, where=where)
+        polynomial = parse_polynomial(value, variable, plant.symbols.names, where=where, functions=True)
     found = polynomial.degree(variable)
     if not polynomial.is_polynomial_in(variable) or found < 1:
         message = f"{polynomial} is not a polynomial in {variable}"
@@ -277,10 +318,10 @@ def read_gain(value: object, plant: StateSpace, name: str, shape: tuple[int, int
     return gain
 
 
-def read_quantity(value: object, plant: StateSpace, name: str) -> Scalar:
+def read_quantity(value: object, plant: StateSpace, name: str, where: str = "", *, functions: bool = False) -> Scalar:
     """Return a real quantity free of the variable; raises `InputError` if it is certainly not positive."""
-    where = f"specification.{name}"
-    quantity = read_scalar(value, plant.symbols.seen(value), where)
+    where = where or f"specification.{name}"
+    quantity = read_scalar(value, plant.symbols.seen(value), where, functions=functions)
     if plant.variable in quantity.names:
         message = f"{name} contains {plant.variable}, the variable of the polynomials"
         raise InputError(message, where=where, repair="write another name")
@@ -302,43 +343,10 @@ def read_names(value: object, name: str) -> tuple[str, ...]:
     return tuple(found)
 
 
-def read_entries(value: object, name: str, shape: tuple[int, int]) -> tuple[tuple[int, int], ...]:
-    """Return entries, counted from 0, from pairs (row, column) counted from 1 or from a pattern of 0 and *."""
-    where = f"specification.{name}"
-    rows = value if isinstance(value, (list, tuple)) else [value]
-    text = "; ".join(" ".join(map(str, row)) if isinstance(row, (list, tuple)) else str(row) for row in rows)
-    if "*" in text or set(re.findall(r"[0-9]+", text)) == {"0"}:
-        return _read_pattern(text, where, shape)
-    numbers = [int(digits) for digits in re.findall(r"[0-9]{1,4}", text)]
-    if not numbers or len(numbers) % 2 or re.search(r"[^0-9,;\s()\[\]]", text):
-        message = f"{text[:40]!r} is no list of entries"
-        raise InputError(message, where=where, repair='write (row, column) counted from 1: "(1, 2), (3, 1)"')
-    found = tuple(dict.fromkeys((i - 1, j - 1) for i, j in zip(numbers[::2], numbers[1::2], strict=True)))
-    for i, j in found:
-        if not (0 <= i < shape[0] and 0 <= j < shape[1]):
-            message = f"there is no entry ({i + 1}, {j + 1}) in a {shape[0]}×{shape[1]} gain"
-            raise InputError(
-                message, where=where, repair='count rows and columns from 1, or write a pattern, "[* 0; * *]"'
-            )
-    return found
-
-
-def _read_pattern(text: str, where: str, shape: tuple[int, int]) -> tuple[tuple[int, int], ...]:
-    """Return the places of the zeros of a pattern."""
-    rows = [row.replace(",", " ").split() for row in text.strip(" []").replace("\n", ";").split(";")]
-    if any(sign not in {"0", "*"} for row in rows for sign in row):
-        message = f"the pattern {text[:40]!r} has other signs than 0 and *"
-        raise InputError(message, where=where, repair='write for example "[* 0; * *]"')
-    if (len(rows), *{len(row) for row in rows}) != shape:
-        message = f"the pattern {text[:40]!r} is not {shape[0]}×{shape[1]}"
-        raise ShapeMismatch(message, where=where, repair=f"write {shape[0]} rows of {shape[1]} signs 0 or *")
-    return tuple((i, j) for i, row in enumerate(rows) for j, sign in enumerate(row) if sign == "0")
-
-
 def read_interval(value: object, plant: StateSpace) -> tuple[Scalar, Scalar]:
     """Return the two ends of a time interval; raises `InputError` unless they are real, free of t and in order."""
     where = "specification.interval"
-    ends = read_poles(value, plant.symbols, where)
+    ends = read_poles(value, plant.symbols, where, functions=False)
     if len(ends) != 2 or not all(end.is_real for end in ends):
         message = f"an interval has two real ends, but {len(ends)} came"
         raise InputError(message, where=where, repair='write for example interval = "0, T"')
@@ -350,38 +358,6 @@ def read_interval(value: object, plant: StateSpace) -> tuple[Scalar, Scalar]:
         message = f"the interval from {start} to {end} has no length"
         raise InputError(message, where=where, repair="give the earlier end first")
     return start, end
-
-
-def read_signal(value: object, plant: StateSpace, name: str, size: int, *, functions: bool = False) -> Matrix:
-    """Return a signal of `size` components: rational in t, or with `functions` also in exp, sin, …; raises `ShapeMismatch`."""
-    where = f"specification.{name}"
-    signal = parse_signal(value, plant.symbols, where, functions=functions)
-    signal = signal.T if signal.shape == (1, size) else signal
-    if signal.shape != (size, 1):
-        message = f"{name} has {signal.shape[0]}×{signal.shape[1]} entries, expected a column of {size}"
-        raise ShapeMismatch(message, where=where, repair=f"write {size} entries, set apart by semicolons")
-    return signal
-
-
-def parse_signal(value: object, symbols: Symbols, where: str, *, functions: bool = False) -> Matrix:
-    """Return the entries of a signal, of any number."""
-    listed = value if isinstance(value, (str, list, tuple)) or hasattr(value, "shape") else [[value]]
-    known = symbols.seen(value, "t").with_time()
-    if not functions:
-        return read_matrix(listed, known, where)
-    rows: Any = listed.tolist() if hasattr(listed, "tolist") else listed
-    if not isinstance(rows, str):
-        rows = [[_text(entry) for entry in (row if isinstance(row, (list, tuple)) else [row])] for row in rows]
-    return parse_matrix(rows, known.names, where=where, functions=True)
-
-
-def _text(entry: object) -> object:
-    """Return a SymPy expression as text: the grammar reads its functions."""
-    if not is_sympy(entry):
-        return entry
-    from symobs.exact.sympy_bridge.conversion import with_plain_symbols  # noqa: PLC0415 - SymPy is there already
-
-    return str(with_plain_symbols(entry))
 
 
 def reject_both(name: str, gain: object, poles: object, polynomial: object, other: str = "poles") -> None:

@@ -1,0 +1,42 @@
+"""Integral action."""
+
+from __future__ import annotations
+
+PHRASES: dict[str, str] = {
+    "integral_action": "Integral action.",
+    "integral_state_continuous": "The integral of the control error is added to the plant as a further state§:",
+    "integral_state_discrete": "The sum of the control errors is added to the plant as a further state§:",
+    "integral_extended": "With the matrices",
+    "integral_together": "plant and integrator together satisfy",
+    "integral_possible_origin": "The poles of this system can be assigned arbitrarily, since ($A$, $B$) is controllable, {controllable}, and the plant has no zero at the origin, {rank}.",
+    "integral_possible_one": "The poles of this system can be assigned arbitrarily, since ($A$, $B$) is controllable, {controllable}, and the plant has no zero at 1, {rank}.",
+    "integral_blocked": "The outputs cannot follow arbitrary constant references, since with {row} we obtain {annuls}: a pole of the integrators cannot be moved.",
+    "integral_uncontrollable": "The pair ($A$, $B$) is not controllable, {rank}.",
+    "integral_impossible": "The roots of {fixed} are uncontrollable modes of plant and integrator, and not all of them are among the desired poles: no gains exist.",
+    "integral_provided": "In what follows we assume {condition}.",
+    "integral_gains": "State feedback of plant and integrator has the gain",
+    "integral_parts": "so that the gains of state and integral are",
+    "integral_law": "The control law is",
+    "integral_family": "The gain is not unique: the gains with this polynomial have {count} free parameters.",
+    "integral_loop": "The closed loop in the coordinates ($x$, $xi_I$) has the matrix",
+    "integral_closed": "The closed loop is therefore",
+    "integral_rest": "At equilibrium the control error vanishes: from $r_in$ to $y$ the closed loop, if it is stable, has the DC gain {gain}.",
+}
+
+QUESTIONS: dict[str, str] = {
+    "ask integral_action": "Design state feedback with integral action, such that the output follows constant references.",
+    "ask integral_action poles": "Design state feedback with integral action, such that the output follows constant references and the closed loop has the poles {poles}.",
+    "ask integral_action polynomial": "Design state feedback with integral action, such that the output follows constant references and the closed loop has the characteristic polynomial {polynomial}.",
+}
+
+RESTS_ON: dict[str, str] = {
+    "integral_state_continuous": "integral_action",
+    "integral_state_discrete": "integral_action",
+}
+
+THEOREMS: dict[str, str] = {
+    "integral_action": "davison1976; ogata2010, ch. 10",
+}
+
+#: Phrases that go on with the sentence before them.
+CONTINUES = ("integral_parts", "integral_together")

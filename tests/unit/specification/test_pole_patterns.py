@@ -1,0 +1,160 @@
+"""Poles by what they are to do: the polynomials of SciPy and of the tables, and what is refused."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from fractions import Fraction
+from typing import Any
+
+import numpy as np
+import pytest
+import scipy.signal  # type: ignore[import-untyped]
+import sympy
+
+import symobs
+from symobs.errors import DerivationRejected, InputError, ProblemErrors
+from symobs.exact import Scalar
+from symobs.problem import validate
+from symobs.problem.file_tables import parse
+from symobs.problem.question import question_of
+from symobs.result import render
+
+
+def integrators(order: int) -> symobs.StateSpace:
+    """A chain of integrators: the gain is the row of the coefficients, constant first."""
+    A = [[int(column == row + 1) for column in range(order)] for row in range(order)]
+    return symobs.StateSpace(A, [[0]] * (order - 1) + [[1]], [[1] + [0] * (order - 1)])
+
+
+def polynomial(order: int, poles: object) -> list[float]:
+    """The coefficients of the polynomial that is assigned, as floats."""
+    K = symobs.state_feedback(integrators(order), poles=poles).K
+    return [1.0, *(float(entry) for entry in reversed(list(K)))]
+
+
+@pytest.mark.parametrize("order", [1, 2, 3, 4, 5, 6, 7, 8])
+def test_a_butterworth_polynomial_is_that_of_scipy(order: int) -> None:
+    denominator = scipy.signal.butter(order, 1.7, analog=True)[1]
+    assert polynomial(order, {"butterworth": "1.7"}) == pytest.approx(denominator.tolist(), rel=1e-9)
+
+
+@pytest.mark.parametrize("order", [1, 2, 3, 4, 7])
+def test_a_bessel_polynomial_is_that_of_scipy_for_a_delay(order: int) -> None:
+    denominator = scipy.signal.bessel(order, 3, analog=True, norm="delay")[1]
+    assert polynomial(order, "bessel = 3") == pytest.approx(denominator.tolist(), rel=1e-9)
+
+
+#: Poles for ω₀ = 1 as Franklin, Powell and Emami-Naeini tabulate them, with the accuracy of their four digits.
+ITAE = {2: [-0.7071 + 0.7071j], 3: [-0.7081, -0.5210 + 1.068j], 4: [-0.4240 + 1.2630j, -0.6260 + 0.4141j]}
+
+
+@pytest.mark.parametrize("order", ITAE)
+def test_an_itae_polynomial_has_the_tabulated_poles(order: int) -> None:
+    poles = [root for pole in ITAE[order] for root in ({pole, complex(pole).conjugate()} if pole.imag else {pole})]
+    assert polynomial(order, {"itae": 1}) == pytest.approx(np.poly(poles).real.tolist(), abs=0.015)
+
+
+def test_a_pair_by_damping_and_frequency_beside_another_pole() -> None:
+    s = sympy.Symbol("s")
+    zeta, omega = sympy.symbols("zeta omega", positive=True)
+    poles = {"damping": zeta, "natural_frequency": omega, "others": ["-5"]}
+    found = symobs.state_feedback(integrators(3), poles=poles)
+    assert sympy.expand(found.polynomial - (s**2 + 2 * zeta * omega * s + omega**2) * (s + 5)) == 0
+    assert found.verdict == "yes"
+
+
+@pytest.mark.parametrize("overshoot", ["0.05", "0.163", "1e-4"])
+def test_a_pair_by_settling_time_and_overshoot_has_both_and_hardly_less(overshoot: str) -> None:
+    _, twice, square = polynomial(2, f"settling_time = 2, overshoot = {overshoot}")
+    sigma, omega = twice / 2, math.sqrt(square - twice**2 / 4)
+    assert sigma == 4 / 2
+    assert 0.97 * float(overshoot) < math.exp(-math.pi * sigma / omega) <= float(overshoot)
+
+
+def test_damping_and_settling_time_leave_no_choice() -> None:
+    assert polynomial(2, "damping = 1/2, settling_time = 2") == [1, 4, 16]
+
+
+def test_values_move_what_poles_are_to_do_and_their_page_is_checked() -> None:
+    observer = "damping = 0.8, settling_time = T"
+    design = symobs.compensator(integrators(2), control_poles={"bessel": "w"}, observer_poles=observer)
+    there = design.at(w=3, T="1/2")
+    assert (list(there.K), list(there.L)) == ([27, 9], [16, 100])
+    assert "Bessel" in there.to("text")
+
+
+FILE = """
+task = "compensator"
+plant = { A = "[0 1 0; 0 0 1; 0 0 0]", B = "[0; 0; 1]", C = "[1 0 0]" }
+[symbols]
+w = "positive"
+[specification]
+observer = "minimal"
+control_poles = { damping = 0.5, natural_frequency = "w", others = [-4] }
+observer_poles = "butterworth = 2 w"
+"""
+
+
+def test_a_file_asks_in_the_same_words_and_its_question_names_the_polynomials() -> None:
+    problem = validate(parse(FILE))
+    (found,) = problem.solve()
+    assert str(found.closed_loop_polynomial) == "(s + 4)*(s**2 + s*w + w**2)*(s**2 + 2*sqrt(2)*s*w + 4*w**2)"
+    page = str(render(question_of(problem), "text"))
+    assert "s² + 2√2 w s + 4w²" in page
+
+
+WRONG = FILE.replace("damping", "dampness").replace("2 w", "2 v")
+
+
+def test_all_errors_of_a_file_are_told_at_once() -> None:
+    with pytest.raises(ProblemErrors) as raised:
+        validate(parse(WRONG)).solve()
+    places = [error.where for error in raised.value.errors]
+    assert places == ["specification.control_poles", "specification.observer_poles.butterworth"]
+
+
+def test_a_page_with_another_pattern_is_rejected() -> None:
+    found = symobs.observer(integrators(2), poles={"itae": 2})
+    desired: Any = found.desired
+    lie = replace(desired.pattern, factors=(desired.pattern.factors[0] + Scalar.of(Fraction(1, 10)),))
+    false = replace(found.kind, desired=replace(desired, pattern=lie))
+    with pytest.raises(DerivationRejected, match="is not true"):
+        replace(found, kind=false).to("text")
+
+
+REFUSED = [
+    ({"damping": "1/2"}, "damping given, which does not say where the poles are"),
+    ("damping = 1/2, overshoot = 0.1", "which does not say where the poles are"),
+    ({"damping": "1/2", "frequency": 3}, "poles have no 'frequency'"),
+    ("damping = -1/2, natural_frequency = 3", "damping is -1/2, which is not positive"),
+    ("-1, butterworth = 2", "'-1' has no name"),
+    ("itae = 1, itae = 2", "'itae' is given twice"),
+    ("damping = 1/2, natural_frequency = 3, others = -1, -2", "a pair of poles given, but 1 are to be placed so"),
+    ("bessel = 1, others = -1, -2, -3", "no pole is left for bessel"),
+    ("settling_time = 1, overshoot = m, others = -9", "the overshoot is m, which is not a number between"),
+    ("settling_time = 1, overshoot = 5, others = -9", "the overshoot is 5, which is not between"),
+    ("bessel = s", "contains s, the variable of the polynomials"),
+    ({}, "nothing given"),
+]
+
+
+@pytest.mark.parametrize(("poles", "reason"), REFUSED)
+def test_what_does_not_say_where_poles_are_is_refused_with_the_reason(poles: object, reason: str) -> None:
+    with pytest.raises(InputError) as raised:
+        symobs.observer(integrators(3), poles=poles)
+    assert reason in str(raised.value)
+    assert raised.value.where.startswith("specification.poles")
+
+
+@pytest.mark.parametrize(
+    ("order", "poles", "reason"), [(7, "itae = 1", "up to degree 6"), (13, "butterworth = 1", "have degree 12 or less")]
+)
+def test_filters_that_are_not_tabulated_are_refused(order: int, poles: str, reason: str) -> None:
+    with pytest.raises(InputError, match=reason):
+        symobs.state_feedback(integrators(order), poles=poles)
+
+
+def test_in_discrete_time_they_are_refused() -> None:
+    with pytest.raises(InputError, match="continuous time"):
+        symobs.observer(symobs.StateSpace("[0 1; 0 1]", None, "[1 0]", dt=True), poles={"itae": 1})
