@@ -1,4 +1,4 @@
-"""Mutation testing of the trusted floors: `python -m tests.programs.mutation [--only FILE] [--every N] [--log PATH]`.
+"""Mutation testing of the trusted floors and of what marks answers: `python -m tests.programs.mutation [--only FILE] [--every N] [--log PATH]`.
 
 Every mutant must be found by a test, or stand in `equivalent.toml` with the reason why it says the same.
 """
@@ -37,8 +37,23 @@ TRUSTED = [
     ROOT / "symobs" / "result" / "result.py",
     ROOT / "symobs" / "result" / "writers.py",
 ]
-#: The tests that stand for each of their files, by its name; small and direct ones, so that all mutants can be tried.
+#: What decides whether an answer is right: the claims of the check, and the grader that goes with an exported question.
+MARKING = [
+    *sorted((ROOT / "symobs" / "checking" / "judgement").glob("[a-z]*.py")),
+    *sorted((ROOT / "symobs" / "exporting" / "grader").glob("[a-z]*.py")),
+]
+#: The tests that stand for each of their files, by the end of its path; small and direct ones, so that all mutants can be
+#: tried.
 TESTS = {
+    "judgement/conditions.py": "regions",
+    "judgement/coordinates.py": "judgement",
+    "judgement/gains.py": "judgement",
+    "judgement/judge.py": "judgement",
+    "judgement/other_compensators.py": "judgement",
+    "judgement/parts.py": "judgement",
+    "judgement/regions.py": "regions",
+    "grader/claims.py": "prairielearn",
+    "grader/values.py": "prairielearn",
     "claims.py": "claims refusals",
     "check.py": "check steps_refused refusals",
     "steps.py": "plot_check steps_refused",
@@ -74,21 +89,27 @@ def main(arguments: Sequence[str]) -> int:
     parser.add_argument("--log", type=Path, help="a file to which each mutant is written as it was tried")
     parser.add_argument("--map", type=Path, help="where to keep which tests touch which lines, for the next run")
     chosen = parser.parse_args(arguments)
-    paths = [path for path in TRUSTED if not chosen.only or any(part in str(path) for part in chosen.only)]
+    paths = [path for path in (*TRUSTED, *MARKING) if not chosen.only or any(part in str(path) for part in chosen.only)]
     mutants = [m for path in paths for m in mutants_of(path) if chosen.match in m.key][:: chosen.every]
     if chosen.again:
         lines = [line.split("\t") for line in chosen.again.read_text(encoding="utf-8").splitlines()]
         found = {(where.split(":")[0], key) for outcome, where, key, _ in lines if outcome == KILLED}
         mutants = [m for m in mutants if (m.file, m.key) not in found]
     report = Report(chosen.log)
-    names = sorted({name for path in paths for name in TESTS.get(path.name, "").split()})
+    names = sorted({name for path in paths for name in tests_of(path)})
     tests = [str(next((ROOT / "tests" / "unit").rglob(f"test_{name}.py"))) for name in names]
     with tempfile.TemporaryDirectory() as folder:
-        trial = Trial(TRUSTED, mutants, report, chosen.map or Path(folder) / "map.json", report.known)
+        trial = Trial(paths, mutants, report, chosen.map or Path(folder) / "map.json", report.known)
         os.environ.pop("PYTEST_ADDOPTS", None)  # what runs these tests may itself be run by several workers
         code = pytest.main([*OPTIONS, *tests], plugins=[Short(), trial])
     report.close()
     return int(code) or int(report.is_bad)
+
+
+def tests_of(path: Path) -> list[str]:
+    """Return the names of the tests that stand for a file: those of the longest end of its path that is listed."""
+    ends = [end for end in TESTS if path.as_posix().endswith(f"/{end}")]
+    return TESTS[max(ends, key=len)].split() if ends else []
 
 
 class Report:
