@@ -149,7 +149,7 @@ def corrected(part: Part, value: Rows, mine: Poly) -> Iterator[tuple[int, int, F
             other = [list(line) for line in value]
             other[i][j] = entry + 1
             change = plus(closed(part, other), scaled(mine, -1))
-            if len(change) == len(wanted) and change:
+            if change and wanted:
                 other[i][j] = entry + wanted[-1] / change[-1]
                 if is_right(part, other):
                     yield i, j, other[i][j]
@@ -172,15 +172,14 @@ def rounds(texts: Texts, value: Rows, right: Rows) -> bool:
 
 
 def written(p: Poly, variable: str) -> str:
-    """Return a polynomial as text."""
+    """Return a monic polynomial as text."""
     terms = []
     for power in range(len(p) - 1, -1, -1):
         name = "" if not power else variable if power == 1 else f"{variable}^{power}"
         if p[power]:
             factor = "" if name and abs(p[power]) == 1 else f"{abs(p[power])} " if name else str(abs(p[power]))
             terms.append(("- " if p[power] < 0 else "+ ") + factor + name)
-    text = " ".join(terms) or "0"
-    return text.removeprefix("+ ").replace("- ", "-", 1) if text.startswith("- ") else text.removeprefix("+ ")
+    return " ".join(terms).removeprefix("+ ")
 
 
 # -- the compensator -----------------------------------------------------------------------------------------------------
