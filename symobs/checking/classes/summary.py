@@ -140,7 +140,7 @@ def as_markdown(found: Mapping[str, Any]) -> str:
     for part, verdicts in found["parts"].items():
         said = ", ".join(f"{count} {verdict}" for verdict, count in verdicts.items())
         lines += ["", f"## {plain(part)}", "", f"{said}.", ""]
-        lines += [f"- {entry['count']} × {entry['slip']}" for entry in found["slips"][part]]
+        lines += [f"- {entry['count']} × {entry['slip'].replace('_', ' ')}" for entry in found["slips"][part]]
         lines += [
             f"- {each['count']} × {plain(each['given'])}, which no slip explains" for each in found["agreement"][part]
         ]
