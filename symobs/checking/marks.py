@@ -113,6 +113,8 @@ def _explained(part: Part, view: Viewed, judgement: TaskJudgement, judged: Judge
     said = found.reason or part.reason
     if not said and "polynomial" in found.effect:
         said = f"with your {judged.letter} the polynomial is {found.effect['polynomial']}, not the one asked for"
+    if not said and (view.task, judged.name) == ("compensator", "F") and judgement.has_gains:
+        said = f"this is not the {judged.letter} of your gains"
     return replace(
         part,
         slip=found.slip,

@@ -77,7 +77,8 @@ def compare(result: StabilityRegion, union: Union) -> Separation:
         else:
             boundary, inside = True, mine
     if off:
-        point, inside = min(off, key=lambda entry: _length(entry[0]))
+        found, inside = min(off, key=lambda entry: _length(entry[0]))
+        point = {name: found[name] for name in sorted(found)}
         return Separation("wrong", point, inside, polynomial=_at(result, point))
     if boundary:
         return Separation("wrong", inside=inside, boundary=True)

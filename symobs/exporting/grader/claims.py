@@ -225,7 +225,7 @@ def judge_compensator(
         return "right", "", "another compensator with the same closed loop", Fraction(1)
     if opposite == exact:
         return "wrong", "sign_convention", "-F is right with positive feedback", Fraction(1)
-    return "wrong", "", "this is not the compensator of your gains" if gains else "", Fraction(1)
+    return "wrong", "", f"this is not the {part['letter']} of your gains" if gains else "", Fraction(1)
 
 
 def is_degenerate(mine: Rows, right: Rows) -> bool:

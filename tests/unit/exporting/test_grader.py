@@ -245,7 +245,7 @@ def another() -> str:
 MORE = {
     "all right": ({}, ("right", "", "", 1)),
     "the sign": ({"F": [[f"-({RIGHT['F'][0][0]})"]]}, ("wrong", "sign_convention", "-F is right with positive feedback", Fraction(1, 5))),
-    "not of these gains": ({"F": [["1/s"]]}, ("wrong", "", "this is not the compensator of your gains", 0)),
+    "not of these gains": ({"F": [["1/s"]]}, ("wrong", "", "this is not the F of your gains", 0)),
     "from a wrong L": (
         {"L": rows("19; 80"), "F": [[function(("4", "3"), ("19", "80"))]]},
         ("follows", "", "it follows from your earlier result", Fraction(3, 4)),
@@ -261,7 +261,7 @@ MORE = {
     "right in spite of a wrong L": ({"L": rows("19; 80")}, ("right", "", "", 1)),
     "from nothing of both": (
         {"L": rows("19; 80"), "F": [[function(("4", "5"), ("19", "80"))]]},
-        ("wrong", "", "this is not the compensator of your gains", 0),
+        ("wrong", "", "this is not the F of your gains", 0),
     ),
     "from zero": (
         {"L": rows("0; 0"), "F": [["0"]]},
@@ -271,10 +271,10 @@ MORE = {
         {"L": rows("0; 7"), "F": [[function(("4", "3"), ("0", "7"))]]},
         ("follows", "", "it follows from your earlier result, which makes this part too easy to count", 0),
     ),
-    "of a gain that does not fit": ({"L": rows("19 81 0"), "F": [["1/s"]]}, ("wrong", "", "this is not the compensator of your gains", 0)),
+    "of a gain that does not fit": ({"L": rows("19 81 0"), "F": [["1/s"]]}, ("wrong", "", "this is not the F of your gains", 0)),
     "alone": ({"K": [], "L": []}, ("right", "", "", 1)),
     "another one alone": ({"K": [], "L": [], "F": [[another()]]}, ("right", "", "another compensator with the same closed loop", 1)),
-    "another one with gains": ({"F": [[another()]]}, ("wrong", "", "this is not the compensator of your gains", 0)),
+    "another one with gains": ({"F": [[another()]]}, ("wrong", "", "this is not the F of your gains", 0)),
     "wrong alone": ({"K": [], "L": [], "F": [["1/(s + 1)"]]}, ("wrong", "", "", 0)),
     "improper alone": ({"K": [], "L": [], "F": [["s^3/(s^2 + 1)"]]}, ("wrong", "", "", 0)),
     "opposite alone": (
