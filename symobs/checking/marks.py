@@ -144,7 +144,7 @@ def _explanation(view: Viewed, judgement: TaskJudgement, judged: Judged) -> Expl
     if isinstance(right, Scalar) and isinstance(value, Matrix) and value.shape == (1, 1):
         value = value[0, 0]
     variable = "t" if view.in_time else view.plant.variable
-    others = other_values(judgement.right) if judged.name == "F" else {}
+    others = other_values(judgement.right) if judged.name == "F" else []
     return explain_value(value, right, judged.letter, variable, others, rounded=judged.rounded)
 
 

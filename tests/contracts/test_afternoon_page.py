@@ -54,7 +54,12 @@ def test_the_afternoon(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     summary = json.loads((tmp_path / "RESULTS" / "summary.json").read_text(encoding="utf-8"))
     slips = {part: {each["slip"]: each["count"] for each in found} for part, found in summary["slips"].items()}
     tenth = STUDENTS // 10
-    assert slips["compensator.K"]["transposed"] == slips["compensator.L"]["sign"] == slips["compensator.L"]["entry"] == tenth
+    assert (
+        slips["compensator.K"]["transposed"]
+        == slips["compensator.L"]["sign"]
+        == slips["compensator.L"]["entry"]
+        == tenth
+    )
     assert summary["parts"]["compensator.F"]["missing"] == summary["parts"]["compensator.K"]["unreadable"] == tenth
     assert summary["parts"]["compensator.F"]["follows"] >= 2 * tenth
     with (tmp_path / "RESULTS" / "marks.csv").open(encoding="utf-8") as file:

@@ -208,7 +208,7 @@ def test_functions_too_far_apart_to_be_compared_are_undecided(entry: str) -> Non
     part = check(problem, {"matrix": f"[({entry}) 0; 0 1]"}).parts[0]
     assert (part.verdict, part.credit, "too far from the other" in part.reason) == ("undecided", None, True)
     expected = read(f'{problem}[expect]\nmatrix = "[({entry}) 0; 0 1]"\n')
-    with pytest.raises(ProblemErrors, match="expect.matrix: .* is too far from the other"):
+    with pytest.raises(ProblemErrors, match=r"expect\.matrix: .* is too far from the other"):
         mismatches(expected.viewed(expected.solve()), expected.expect)
 
 
