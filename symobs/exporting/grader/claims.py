@@ -42,15 +42,13 @@ if TYPE_CHECKING:
 
 def product(X: Rows, Y: Rows) -> Rows:
     """Return X Y."""
-    return [
-        [sum((a * b for a, b in zip(row, column, strict=True)), Fraction(0)) for column in zip(*Y, strict=False)]
-        for row in X
-    ]
+    columns = list(zip(*Y, strict=True))
+    return [[sum((a * b for a, b in zip(row, column, strict=True)), Fraction(0)) for column in columns] for row in X]
 
 
 def minus(X: Rows, Y: Rows) -> Rows:
     """Return X - Y."""
-    return [[a - b for a, b in zip(*rows, strict=True)] for rows in zip(X, Y, strict=False)]
+    return [[a - b for a, b in zip(*rows, strict=True)] for rows in zip(X, Y, strict=True)]
 
 
 def negative(X: Rows) -> Rows:
@@ -117,7 +115,7 @@ def judge_gain(part: Part, value: Rows, texts: Texts, *, exact: bool) -> Verdict
         return "right", "", ""
     if is_right(part, negative(value)):
         return "wrong", "sign", f"the sign of {letter}"
-    if len(value) == len(value[0]) and is_right(part, transpose(value)):
+    if is_right(part, transpose(value)):
         return "wrong", "transposed", f"the transpose of {letter} is right"
     if rounds(texts, negative(value) if part["turned"] else value, negative(right) if part["turned"] else right):
         return "wrong", "rounded", f"{letter} is rounded, and its exact value is asked for"

@@ -1,6 +1,7 @@
-"""Mutation testing of the trusted floors and of what marks answers: `python -m tests.programs.mutation [--only FILE] [--every N] [--log PATH]`.
+"""Mutation testing: `python -m tests.programs.mutation [--only FILE] [--every N] [--log PATH]`.
 
-Every mutant must be found by a test, or stand in `equivalent.toml` with the reason why it says the same.
+Of the trusted floors, and of what decides about the answers of students.  Every mutant must be found by a test, or stand in
+`equivalent.toml` with the reason why it says the same.
 """
 
 from __future__ import annotations

@@ -95,9 +95,11 @@ def main(count: int, only: str) -> bool:
             )
             clock, used = time.perf_counter() - clock, _used() - before
             summary = json.loads((folder / "RESULTS" / "summary.json").read_text(encoding="utf-8"))
+        distinct = len({tuple(value for key, value in row.items() if key != "student") for row in rows})
         print(
-            f"{students} students, {name}: {clock:.1f} s by the clock, {used:.1f} s of the processor on two workers, load "
-            f"{os.getloadavg()[0]:.1f}, exit {done.returncode}; {summary['verdicts']}, slips of L "
+            f"{students} students, {distinct} distinct answers, {name}: {clock:.1f} s by the clock, "
+            f"{used:.1f} s of the processor on two workers, load {os.getloadavg()[0]:.1f}, exit {done.returncode}; "
+            f"{summary['verdicts']}, slips of L "
             f"{[(each['slip'], each['count']) for each in summary['slips']['compensator.L']]}, "
             f"first false lines {[(each['relation'][:24], each['count']) for each in summary['first_false'][:4]]}",
             flush=True,

@@ -116,7 +116,7 @@ def _whole_corners(found: Made) -> bool:
 
 
 def distinct_ones(kind: str, count: int) -> tuple[list[Candidate], int]:
-    """The first so many candidates that the cheap tests and the keys of data and coordinates accept, and how many were tried."""
+    """The first candidates that the cheap tests and the keys of data and coordinates accept, and how many were tried."""
     task = _TASKS.get(kind, kind)
     shape = f'construct = {{ kind = "{kind}"{_WIDER.get(kind, "")} }}'
     form = {"canonical_form": "controllable", "modal": "modal"}.get(kind)

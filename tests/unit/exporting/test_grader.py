@@ -144,6 +144,16 @@ def test_of_several_entries_that_may_be_mended_none_is_named() -> None:
     assert found == ("wrong", "entry", "one of several slips in a single entry", HALF)
 
 
+def test_what_does_not_tell_is_not_told() -> None:
+    """One coefficient alone is no other half, and an entry without any effect is no slip."""
+    near = {**OBSERVER, "other": ["1", "21", "100"]}
+    assert outcome(question(near), "L", {"L": rows("20; 80")}) == other_polynomial("L", "s^2 + 21 s + 100")
+    far = {**OBSERVER, "other": ["1", "21", "90"]}
+    assert outcome(question(far), "L", {"L": rows("20; 70")})[1] == "other_half"
+    harmless = gain("L", [["0", "1"], ["0", "0"]], [["1", "0"], ["0", "0"]], "1 3 2", [["3", "0"], ["2", "0"]])
+    assert outcome(question(harmless), "L", {"L": rows("4 5; 9 7")}) == other_polynomial("L", "s^2 + 4 s + 9")
+
+
 def test_zeros_that_are_asked_for_must_be_there() -> None:
     twins = gain(
         "L", [["0", "1"], ["0", "0"]], [["1", "0"], ["1", "0"]], "1 3 2", [["0", "3"], ["2", "0"]], zero=[[0, 0]]
@@ -347,6 +357,21 @@ def test_a_compensator_alone_is_held_to_the_closed_loop_and_its_order() -> None:
     assert outcome(improper, "F", {"F": [["s + 1"]]})[0] == "wrong"
 
 
+def test_F_belongs_to_the_right_gains_that_were_given() -> None:
+    """A mode that no input reaches and no output shows leaves an entry of K and of L free: F is that of the ones given."""
+    A, B, C = sp.diag(-1, -2), sp.Matrix([1, 0]), sp.Matrix([[1, 0]])
+    plant = {"A": rows("-1 0; 0 -2"), "B": rows("1; 0"), "C": rows("1 0"), "D": rows("0")}
+    first = gain("K", plant["A"], plant["C"], "1 5 6", rows("2 0"))
+    second = gain("L", plant["A"], plant["C"], "1 7 10", rows("4; 0"))
+    asked = question(first, second, {**F, **plant, "right_K": rows("2 0"), "right_L": rows("4; 0")})
+    K, L = sp.Matrix([[2, 5]]), sp.Matrix([4, 7])
+    found = str(sp.cancel((K * (S * sp.eye(2) - A + B * K + L * C).inv() * L)[0]))
+    given = {"K": rows("2 5"), "L": rows("4; 7"), "F": [[found]]}
+    assert [told["verdict"] for told in judge(asked, given).values()] == ["right"] * 3
+    assert outcome(asked, "F", {**given, "K": rows("2 6")})[0] == "wrong"
+    assert outcome(asked, "F", {**given, "K": rows("2 0"), "L": rows("4; 0"), "F": [["8/(s + 7)"]]})[0] == "right"
+
+
 @pytest.mark.parametrize(
     ("mine", "right", "easy"),
     [
@@ -405,7 +430,8 @@ def test_a_rounded_value_is_right_where_decimals_are_accepted_and_no_count_is_ro
         1,
     )
     assert outcome(question(value("1/3"), decimals="accept"), "M", {"M": [["0.4"]]})[0] == "wrong"
-    assert outcome(question(value("2", exact=True)), "M", {"M": [["2.4"]]})[1] == ""
+    assert outcome(question(value("12", exact=True)), "M", {"M": [["1e1"]]})[1] == ""
+    assert outcome(question(value("12")), "M", {"M": [["1e1"]]})[1] == "rounded"
     assert outcome(question(value("2", exact=True)), "M", {"M": [["2.0"]]})[0] == "right"
 
 
