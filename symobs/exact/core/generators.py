@@ -24,10 +24,8 @@ if TYPE_CHECKING:
 
 #: Integers of more bits are not split into primes under a root.
 _PRIME_BITS = 128
-#: The highest multiple of an angle whose cosine is written by that of the angle.
-_MOST_MULTIPLE = 1000
-#: The highest power of an exponential that others are written by: it is a degree of polynomials that are computed with.
-_MOST_POWER = 100_000
+#: The highest multiple of an angle whose cosine is written by that of the angle, and power of an exponential: degrees.
+_MOST_MULTIPLE, _MOST_POWER = 1000, 100_000
 ZERO, ONE = Scalar.of(0), Scalar.of(1)
 #: The number π, a generator like a parameter: no polynomial over Q vanishes at it.
 PI = "pi"
