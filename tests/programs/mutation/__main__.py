@@ -46,15 +46,15 @@ MARKING = [
 #: The tests that stand for each of their files, by the end of its path; small and direct ones, so that all mutants can be
 #: tried.
 TESTS = {
-    "judgement/conditions.py": "regions",
-    "judgement/coordinates.py": "judgement",
-    "judgement/gains.py": "judgement",
-    "judgement/judge.py": "judgement",
-    "judgement/other_compensators.py": "judgement",
+    "judgement/conditions.py": "claims_decide regions",
+    "judgement/coordinates.py": "claims_decide judgement",
+    "judgement/gains.py": "claims_decide judgement faults",
+    "judgement/judge.py": "claims_decide judgement faults",
+    "judgement/other_compensators.py": "claims_decide judgement",
     "judgement/parts.py": "judgement",
     "judgement/regions.py": "regions",
-    "grader/claims.py": "grader",
-    "grader/values.py": "grader",
+    "grader/claims.py": "grader prairielearn",
+    "grader/values.py": "grader_values grader",
     "claims.py": "claims refusals",
     "check.py": "check steps_refused refusals",
     "steps.py": "plot_check steps_refused",

@@ -120,3 +120,57 @@ REGION = (
 )
 def test_what_conditions_say_at_their_boundary(conditions: str, verdict: str) -> None:
     assert verdicts(REGION, {"stable_if": conditions})["stable_if"] == verdict
+
+
+@pytest.mark.parametrize(
+    ("conditions", "verdict"),
+    [
+        ("h < 3", "right"),
+        ("h >= 0 and h < 3", "right"),
+        ("h > 0 and h < 3", "right"),
+        ("h <= 3", "wrong"),
+        ("h < 4", "wrong"),
+    ],
+)
+def test_a_declared_sign_leaves_out_its_boundary(conditions: str, verdict: str) -> None:
+    positive = REGION.replace("[specification]", '[symbols]\nh = "positive"\n[specification]')
+    assert verdicts(positive, {"stable_if": conditions})["stable_if"] == verdict
+
+
+def test_columns_of_a_block_may_be_permuted_and_others_not() -> None:
+    problem = 'task = "controllability"\n[plant]\nA = "[0 1; 0 0]"\nB = "[0 1; 1 2]"\n'
+    problem += '[marking]\nasked = ["controllability.matrix"]\n'
+    # [B AB] = [0 1 1 2; 1 2 0 0]
+    for matrix, verdict in (
+        ("[0 1 1 2; 1 2 0 0]", "right"),
+        ("[1 0 2 1; 2 1 0 0]", "right"),
+        ("[1 2 0 1; 0 0 1 2]", "wrong"),
+        ("[1 0 2 1; 2 1 0 1]", "wrong"),
+    ):
+        assert verdicts(problem, {"matrix": matrix}) == {"matrix": verdict}
+
+
+@pytest.mark.parametrize(
+    ("given", "verdict"), [("yes", "right"), (' "Yes" ', "right"), ("no", "wrong"), ("yes!", "wrong")]
+)
+def test_a_verdict_is_a_word(given: str, verdict: str) -> None:
+    problem = 'task = "detectability"\n[plant]\nA = "[0 1; 0 0]"\nC = "[1 0]"\n'
+    assert verdicts(problem, {"verdict": given}) == {"verdict": verdict}
+
+
+def test_a_closed_loop_is_right_in_either_coordinates() -> None:
+    """(x, x − x̂) and (x, x̂) of the servo with K = [4 3] and L = [19; 81]."""
+    A, B, C = sp.Matrix([[0, 1], [0, -1]]), sp.Matrix([0, 1]), sp.Matrix([[1, 0]])
+    K, L = sp.Matrix([[4, 3]]), sp.Matrix([19, 81])
+    error = sp.Matrix(sp.BlockMatrix([[A - B * K, B * K], [sp.zeros(2), A - L * C]]))
+    estimate = sp.Matrix(sp.BlockMatrix([[A, -B * K], [L * C, A - B * K - L * C]]))
+    asked = SERVO + '[marking]\nasked = ["compensator.closed_loop_matrix"]\n'
+    for matrix, verdict in ((error, "right"), (estimate, "right"), (error.T, "wrong"), (2 * error, "wrong")):
+        assert verdicts(asked, {"closed_loop_matrix": text(matrix)}) == {"closed_loop_matrix": verdict}
+
+
+def test_sizes_are_four_numbers_in_order() -> None:
+    for sizes, verdict in (([1, 0, 1, 0], "right"), ([1, 1, 0, 0], "wrong"), ([1, 0, 1], "wrong")):
+        assert verdicts(PARTS, {"T": "[1 0; 0 1]", "sizes": sizes})["sizes"] in {verdict, "unreadable"} - {"right"} | {
+            verdict
+        }
