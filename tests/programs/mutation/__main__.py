@@ -56,6 +56,7 @@ TESTS = {
     "grader/claims.py": "grader prairielearn",
     "grader/values.py": "grader_values grader",
     "claims.py": "claims refusals",
+    "decimals_check.py": "pages_in_decimals",
     "check.py": "check steps_refused refusals",
     "steps.py": "plot_check steps_refused",
     "restriction.py": "check steps_refused",
@@ -97,8 +98,8 @@ def main(arguments: Sequence[str]) -> int:
         found = {(where.split(":")[0], key) for outcome, where, key, _ in lines if outcome == KILLED}
         mutants = [m for m in mutants if (m.file, m.key) not in found]
     report = Report(chosen.log)
-    names = sorted({name for path in paths for name in tests_of(path)})
-    tests = [str(next((ROOT / "tests" / "unit").rglob(f"test_{name}.py"))) for name in names]
+    names = sorted({name for path in paths for name in standing_for(path)})
+    tests = [str(next((ROOT / "tests").rglob(f"test_{name}.py"))) for name in names]
     with tempfile.TemporaryDirectory() as folder:
         trial = Trial(paths, mutants, report, chosen.map or Path(folder) / "map.json", report.known)
         os.environ.pop("PYTEST_ADDOPTS", None)  # what runs these tests may itself be run by several workers
@@ -107,7 +108,7 @@ def main(arguments: Sequence[str]) -> int:
     return int(code) or int(report.is_bad)
 
 
-def tests_of(path: Path) -> list[str]:
+def standing_for(path: Path) -> list[str]:
     """Return the names of the tests that stand for a file: those of the longest end of its path that is listed."""
     ends = [end for end in TESTS if path.as_posix().endswith(f"/{end}")]
     return TESTS[max(ends, key=len)].split() if ends else []

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from tests.programs.mutation.__main__ import MARKING, TRUSTED, known_equivalent, tests_of
+from tests.programs.mutation.__main__ import MARKING, TRUSTED, known_equivalent, standing_for
 from tests.programs.mutation.claims import ASKED, KINDS, drawn, tried
 from tests.programs.mutation.mutants import mutants_of
 from tests.support.paths import ROOT
@@ -77,8 +77,8 @@ def test_equivalent_mutants_are_still_there_and_have_reasons() -> None:
 
 def test_every_trusted_file_has_its_tests() -> None:
     for path in (*TRUSTED, *MARKING):
-        assert tests_of(path) or not mutants_of(path)
-        assert all(any((ROOT / "tests" / "unit").rglob(f"test_{name}.py")) for name in tests_of(path))
+        assert standing_for(path) or not mutants_of(path)
+        assert all(any((ROOT / "tests").rglob(f"test_{name}.py")) for name in standing_for(path))
 
 
 @pytest.mark.parametrize(("name", "every"), [("certificate.py", 25), ("strata.py", 10)])
