@@ -215,7 +215,7 @@ def test_a_polynomial_is_asked_for_and_not_a_gain() -> None:
     texts = [[list(map(str, M.row(i))) for i in range(M.rows)] for M in (A, C)]
     asked = question(gain("L", *texts, "1 3 3 1", rows("0 1; 0 2; 0 6")))
     draw, right = random.Random(3), 0  # noqa: S311 - repeatable by design
-    for _ in range(60):
+    for _ in range(30):
         # l₁, l₂, l₃ of the first output at random; the second column then solves three linear equations, if it can.
         L = sp.Matrix(3, 2, lambda _i, _j: draw.randrange(-2, 3))
         unknown = sp.symbols("u v w")
@@ -231,7 +231,7 @@ def test_a_polynomial_is_asked_for_and_not_a_gain() -> None:
         right += true
         given = [[str(entry) for entry in L.row(i)] for i in range(3)]
         assert (outcome(asked, "L", {"L": given})[0] == "right") is true
-    assert right > 15
+    assert right > 7
 
 
 # -- the compensator --------------------------------------------------------------------------------------------------

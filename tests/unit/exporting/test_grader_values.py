@@ -101,7 +101,7 @@ def test_a_random_expression_has_the_value_that_python_finds() -> None:
     """Trees of sums, products, quotients and powers with their text; both evaluated at points, and in lowest terms."""
     reasons: set[str] = set()
     draw, read_ones = random.Random(11), 0  # noqa: S311 - repeatable by design
-    for _ in range(400):
+    for _ in range(200):
         text = _expression(draw, 4)
         try:
             above, below = read(text, {"s": (poly([0, 1]), ONE)})
@@ -121,7 +121,7 @@ def test_a_random_expression_has_the_value_that_python_finds() -> None:
             except ZeroDivisionError:
                 continue
             assert sum(c * at**k for k, c in enumerate(above)) == expected * sum(c * at**k for k, c in enumerate(below))
-    assert read_ones > 250
+    assert read_ones > 120
     assert reasons <= {"a division by zero", "this is too large"}
 
 
