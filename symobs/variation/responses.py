@@ -51,6 +51,7 @@ def responses_of(text: str, where: str) -> tuple[Response, ...]:
 
 def _read(text: str, where: str) -> dict[str, tuple[int, Fraction, Fraction]]:
     """Return of each variant its marks: how many, their mean, and the sum of the squared differences from it."""
+    found: dict[str, tuple[int, Fraction, Fraction]] = {}
     try:
         data = json.loads(text)
         found = {

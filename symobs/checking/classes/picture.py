@@ -19,7 +19,7 @@ class Bar(NamedTuple):
     """A row: a part with how many were right, or what became of some of the others."""
 
     text: str
-    count: int
+    number: int
     is_part: bool = False
 
 
@@ -33,10 +33,10 @@ def picture(found: Mapping[str, Any]) -> str:
     for place, bar in enumerate(bars):
         y = -_ROW * (place + 0.5)
         texts.append(TextLabel(bar.text, (0.0 if bar.is_part else beside, y), "west" if bar.is_part else "east"))
-        length = beside + _GAP + scale * bar.count
+        length = beside + _GAP + scale * bar.number
         low, high = y - _BAR / 2, y + _BAR / 2
         shades.append(((beside + _GAP, low), (length, low), (length, high), (beside + _GAP, high)))
-        texts.append(TextLabel(str(bar.count), (length + _GAP, y), "west"))
+        texts.append(TextLabel(str(bar.number), (length + _GAP, y), "west"))
     height = _ROW * len(bars)
     frame = Rectangle(0.0, -height, beside + 2 * _GAP + _LONGEST + 4 * FONT_SIZE, 0.0)
     axis = Stroke(((beside + _GAP, 0.0), (beside + _GAP, -height)), "tick")

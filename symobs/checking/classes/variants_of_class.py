@@ -69,10 +69,11 @@ def class_variants(problem: str, where: str, path: Path) -> ClassProblems:
     The manifest has to be one of this problem file.  Raises `ProblemErrors` where it cannot be used.
     """
     path = path / _MANIFEST if path.is_dir() else path
+    entries: list[tuple[str, str, Any]] = []
     try:
         data = json.loads(text_of_file(path, _MADE))
         entries = [(str(entry["file"]), str(entry["id"]), entry["data"]) for entry in data["variants"]]
-        usable = data["schema"] == SCHEMA and entries and all(isinstance(entry[2], dict) for entry in entries)
+        usable = data["schema"] == SCHEMA and bool(entries) and all(isinstance(entry[2], dict) for entry in entries)
     except (ValueError, RecursionError, LookupError, TypeError) as error:
         if isinstance(error, InputError):
             raise

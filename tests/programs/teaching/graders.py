@@ -6,7 +6,9 @@ import io
 import random
 from contextlib import redirect_stdout
 from typing import TYPE_CHECKING, Any
+from xml.etree.ElementTree import fromstring
 
+from symobs.exporting import export
 from symobs.exporting.grader.claims import judge
 from tests.support.tools.exported import BY_HAND, HELD, checked, held, random_answer
 from tests.unit.exporting import test_other_platforms as others
@@ -19,7 +21,14 @@ if TYPE_CHECKING:
 
     Given = dict[str, list[list[str]]]
 
-STACK = ("output_feedback_servo", "other signs", "either sign", "zeros", "square", "two_inputs_feedback")
+STACK: tuple[str, ...] = (
+    "output_feedback_servo",
+    "other signs",
+    "either sign",
+    "zeros",
+    "square",
+    "two_inputs_feedback",
+)
 STACK += ("tanks_observer_parametric", "third_order_plant", "triple_pole_two_outputs", "detectable")
 NOTEBOOK = ("output_feedback_servo", "triple_pole_two_outputs", "zeros", "two_inputs_feedback", "servo_observer")
 
@@ -80,7 +89,8 @@ def _by_qti(each: ExerciseSet, given: list[Given]) -> int:
     """Full marks where `check` says right, and else those of the slips that QTI knows, or none."""
     item, off = others.item_of(each), 0
     for answer in given:
-        told, responses = checked(each.first, answer), {}
+        told = checked(each.first, answer)
+        responses: dict[str, Any] = {}
         for k, part in enumerate(each.first.parts, 1):
             cells = [cell for row in answer[part.name] for cell in row]
             if part.kind == "word":
@@ -96,7 +106,7 @@ def _by_qti(each: ExerciseSet, given: list[Given]) -> int:
 
 def _by_moodle(each: ExerciseSet, given: list[Given]) -> int:
     """All gaps of a part are taken where `check` says right."""
-    quiz = others.fromstring(str(others.export("moodle", [each])[""]))
+    quiz = fromstring(str(export("moodle", [each])[""]))  # noqa: S314 - our own export
     gaps, off = others.gaps_of(quiz[1].findtext("questiontext/text", "")), 0
     for answer in given:
         told, left = checked(each.first, answer), iter(gaps)

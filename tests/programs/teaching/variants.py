@@ -95,14 +95,14 @@ def _whole_member(A: Any, C: Any, found: Made, number: int) -> bool:
     L = sp.Matrix(n, p, lambda _i, _j: draw.below(5) - 2)
     phi = sp.prod(s - pole for pole, _ in found.specification["observer_poles"].pairs)
     closed = (sp.Matrix(A) - L * sp.Matrix(C)).charpoly(s).as_expr()
-    return eliminate(C, n)[0] == p and sp.expand(closed - phi) == 0
+    return bool(eliminate(C, n)[0] == p and sp.expand(closed - phi) == 0)
 
 
 def _whole_vectors(A: sp.Matrix, roots: list[sp.Integer]) -> bool:
     vectors = [(A - root * sp.eye(A.rows)).nullspace()[0] for root in roots]
     scaled = [vector * sp.ilcm(*(entry.q for entry in vector)) for vector in vectors]
     primitive = [vector / sp.igcd(*vector) for vector in scaled]
-    return len(roots) == A.rows and abs(sp.Matrix.hstack(*primitive).det()) == 1
+    return bool(len(roots) == A.rows and abs(sp.Matrix.hstack(*primitive).det()) == 1)
 
 
 def _whole_corners(found: Made) -> bool:
@@ -122,7 +122,9 @@ def distinct_ones(kind: str, count: int) -> tuple[list[Candidate], int]:
     form = {"canonical_form": "controllable", "modal": "modal"}.get(kind)
     asked_form = f'[specification]\nkind = "{form}"\n' if form else ""
     text = f'title = "t"\ntask = "{task}"\n{asked_form}[variants]\n{shape}\n[variants.constraints]\n'
-    found, keys, number = [], set(), 0
+    found: list[Candidate] = []
+    keys: set[str] = set()
+    number = 0
     asked = read_table(text)
     while len(found) < count and number < 100 * count:
         each = candidate(asked, 7, number)
@@ -164,7 +166,7 @@ def _invariant(each: Candidate) -> str:
 
 def _one(first: Candidate, second: Candidate) -> bool:
     if "A" not in first.matrices:
-        return first.data["specification"] == second.data["specification"]
+        return bool(first.data["specification"] == second.data["specification"])
     n = len(first.matrices["A"])
     wanted = second.matrices
     for order in itertools.permutations(range(n)):
