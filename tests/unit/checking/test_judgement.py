@@ -212,6 +212,12 @@ def test_functions_too_far_apart_to_be_compared_are_undecided(entry: str) -> Non
         mismatches(expected.viewed(expected.solve()), expected.expect)
 
 
+def test_the_root_of_a_fraction_of_pi_is_read() -> None:
+    problem = 'task = "canonical_form"\n[plant]\nA = "[0 1; -2 -3]"\nB = "[0; 1]"\n[specification]\nkind = "modal"\n'
+    for entry in ("sqrt(1/pi)", "sqrt(2/pi)", "sqrt(pi)", "sqrt(4/pi^2)"):
+        assert one(check(problem, {"A": f"[{entry} 0; 0 1]"}), "A").verdict == "wrong"
+
+
 # -- coordinates ------------------------------------------------------------------------------------------------------
 
 
