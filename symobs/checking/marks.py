@@ -117,6 +117,8 @@ def _explained(
     said = found.reason or part.reason
     if not said and "polynomial" in found.effect:
         said = f"with your {judged.letter} the polynomial is {found.effect['polynomial']}, not the one asked for"
+    if not said and (view.task, judged.name) == ("compensator", "F") and judgement.has_gains:
+        said = f"this is not the {judged.letter} of your gains"
     return replace(
         part,
         slip=found.slip,
@@ -146,7 +148,7 @@ def _explanation(view: ResultInConvention, judgement: TaskJudgement, judged: Jud
     if isinstance(right, Scalar) and isinstance(value, Matrix) and value.shape == (1, 1):
         value = value[0, 0]
     variable = "t" if view.in_time else view.plant.variable
-    others = other_values(judgement.right) if judged.name == "F" else {}
+    others = other_values(judgement.right) if judged.name == "F" else []
     return explain_value(value, right, judged.letter, variable, others, rounded=judged.rounded)
 
 

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from symobs.conditions import Condition
 from symobs.errors import CertificateRejected, InputError, ProblemErrors, SymobsError
-from symobs.exact import Complex, Factored, Matrix, Root, Scalar, rank
+from symobs.exact import Complex, Factored, Matrix, Root, Scalar, TooLarge, rank
 from symobs.exact.core.generators import roots_in, symbols_in
 from symobs.expect.conditions import conditions_agree
 from symobs.expect.roots import (
@@ -86,6 +86,8 @@ def _held_against(result: Answered, expected: Mapping[str, tuple[Any, str]], err
                 )
         except SymobsError as error:
             errors.append(error)
+        except TooLarge as error:
+            errors.append(InputError(str(error), where=where, repair="write it by the functions of the answer"))
     return lines
 
 

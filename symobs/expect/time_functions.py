@@ -5,9 +5,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from symobs.certificate.claims import verify
-from symobs.exact import Matrix
+from symobs.exact import Matrix, TooLarge
 from symobs.exact.algebraic.rounded_decimals import decimals_in, rounds_to
-from symobs.exact.core.generators import identities
+from symobs.exact.core.generators import NotWritten, identities
 from symobs.formula import Environment, Literal, Relation
 
 if TYPE_CHECKING:
@@ -29,10 +29,13 @@ def agrees(expected: Scalar | Matrix, found: Scalar | Matrix) -> bool:
 def functions_agree(left: Scalar | Matrix, right: Scalar | Matrix) -> bool:
     """Return whether two values are equal as functions, by common exponentials, sines and cosines.
 
-    Decimals of the one on the left may be rounded.
+    Decimals of the one on the left may be rounded.  Raises `TooLarge` where their exponents or angles are too far apart.
     """
     if decimals_in(left):
         return agrees(left, right)
-    meanings, relations = identities([left, right])
+    try:
+        meanings, relations = identities([left, right])
+    except NotWritten as error:
+        raise TooLarge(str(error)) from error
     environment = Environment(coefficients=meanings, relations=relations)
     return bool(verify(Relation((Literal(left), Literal(right)), ("=",)), environment)[0])

@@ -104,10 +104,16 @@ def _version() -> str:
 def files_of(about: About, listed: Sequence[Variant], *, report: bool) -> dict[str, str]:
     """Return the files by name, the manifest last."""
     files = {f"variants/{each.name}.toml": each.text for each in listed}
+    files["sheet.toml"] = sheet_of(listed)
     if report:
         files["report.md"] = report_of(about, listed)
     text = json.dumps(manifest(about, listed), indent=1, ensure_ascii=False)
     return {**files, "manifest.json": f"{text}\n"}
+
+
+def sheet_of(listed: Sequence[Variant]) -> str:
+    """Return the file by which `symobs sheet` sets all variants, each on pages of its own."""
+    return "\n".join(['style = "exam"', *(f'\n[[problem]]\nfile = "variants/{each.name}.toml"' for each in listed), ""])
 
 
 def report_of(about: About, listed: Sequence[Variant]) -> str:

@@ -10,23 +10,27 @@ from typing import TYPE_CHECKING
 from symobs.batching.engine import Settings
 from symobs.batching.jobs import Budget
 from symobs.batching.run import Batch
+from symobs.checking.classes.picture import picture
 from symobs.checking.classes.row import job_of, report_of_row, solved
 from symobs.checking.classes.submissions import read_submissions
 from symobs.checking.classes.summary import as_markdown, marks, summary
+from symobs.errors import InputError
 from symobs.expect import available
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Callable, Mapping, Sequence
     from pathlib import Path
 
     from symobs.checking.checker import Checked
+    from symobs.checking.classes.submissions import Submission
+    from symobs.checking.classes.variants_of_class import ClassProblems
 
 #: So many submissions are worth starting processes for.
 _WORTH_CHILDREN = 24
 
 
 def check_class(
-    problem: str,
+    problems: ClassProblems,
     folder: Path,
     path: Path,
     *,
@@ -43,30 +47,60 @@ def check_class(
     Reports are kept in the folder `work` until the files are there: a run that was ended goes on from it.
     Raises `ProblemErrors` where the problem or the table as a whole cannot be used.
     """
-    checked = solved(problem, str(folder))
+    checked = solved(problems.first, str(folder))
     submissions = read_submissions(path, _parts(checked), columns)
-    jobs = [job_of(problem, str(folder), submission, show) for submission in submissions.entries]
+    entries, unknown = _with_variants(problems, submissions.entries)
+    known = [submission for i, submission in enumerate(entries) if i not in unknown]
+    jobs = {id(each): job_of(problems.text_of(each.variant), str(folder), each, show) for each in known}
     few = workers is None and budget == Budget(None, None) and len(jobs) < _WORTH_CHILDREN
     allowed = Budget(*(given or usual for given, usual in zip(budget, Budget(), strict=True)))
     settings = Settings(allowed, chunk_seconds=0.5, recheck=0)
-    run = Batch(lambda: jobs, work, workers=workers, in_process=few, settings=settings)
+    # Those of one variant follow each other: a process keeps the problems that it has solved last.
+    in_turn = [jobs[id(each)] for each in sorted(known, key=lambda each: each.variant or "")]
+    run = Batch(lambda: in_turn, work, workers=workers, in_process=few, settings=settings)
     for _ in run:
         progress(sum(run.counts.values()), len(jobs))
-    done = {row["key"]: report_of_row(row, problem, str(folder), show) for row in run.rows()}
+    rows = {row["key"]: row for row in run.rows()}
+    texts = {job.key: problems.text_of(each.variant) for each in known for job in [jobs[id(each)]]}
+    done = {key: report_of_row(rows[key], text, str(folder), show) for key, text in texts.items()}
     reports = [
-        replace(done[job.key], student=submission.student, variant=submission.variant)
-        for job, submission in zip(jobs, submissions.entries, strict=True)
+        replace(
+            checked.without_answer("", None, "unreadable", unknown[i], show)
+            if i in unknown
+            else done[jobs[id(each)].key],
+            student=each.student,
+            variant=each.variant,
+        )
+        for i, each in enumerate(entries)
     ]
-    found = summary(checked.problem.title, reports, submissions.superseded)
+    found = summary(problems.title or checked.problem.title, reports, submissions.superseded)
     files = {
         "results.jsonl": "".join(json.dumps(report.as_data(), ensure_ascii=False) + "\n" for report in reports),
         "marks.csv": marks(reports),
         "summary.md": as_markdown(found),
+        "summary.svg": picture(found),
         "summary.json": json.dumps(found, indent=2, ensure_ascii=False) + "\n",
     }
     if feedback:
         files |= {f"feedback/{name_of(report.student)}.html": report.to_html() for report in reports}
     return files, 5 if any(report.verdict == "undecided" for report in reports) else 0
+
+
+def _with_variants(problems: ClassProblems, entries: Sequence[Submission]) -> tuple[list[Submission], dict[int, str]]:
+    """Return the submissions with the names of their variants, and by place what is wrong with those that have none.
+
+    Raises `InputError` where nobody has one: then it is the table that lacks them.
+    """
+    found, unknown = list(entries), {}
+    for i, submission in enumerate(entries):
+        try:
+            found[i] = replace(submission, variant=problems.variant_of(submission))
+        except InputError as error:
+            unknown[i] = str(error)
+    if entries and len(unknown) == len(entries):
+        repair = "give it a column variant, or lay the assignment.csv of `symobs variants --assign` beside the manifest"
+        raise InputError("no submission says which variant it answers", where="--submissions", repair=repair)
+    return found, unknown
 
 
 def name_of(student: str) -> str:

@@ -51,7 +51,7 @@ def read_submissions(path: Path, known: Collection[str], columns: Mapping[str, s
         if not found:
             raise _wrong(str(path), "there is no answer file in this folder", f"its files end in {', '.join(_FILES)}")
         return _last(found)
-    text = _text(path)
+    text = text_of_file(path)
     return _last(_of_json_lines(text, path) if path.suffix == ".jsonl" else _of_csv(text, path, known, columns))
 
 
@@ -59,7 +59,8 @@ def _wrong(where: str, message: str, repair: str) -> ProblemErrors:
     return ProblemErrors((InputError(message, where=shown(where, 200), repair=repair),))
 
 
-def _text(path: Path) -> str:
+def text_of_file(path: Path, repair: str = "give a CSV or JSON Lines file in UTF-8, or a folder") -> str:
+    """Return the text of a table; raises `ProblemErrors` where it cannot be read."""
     try:
         with path.open("rb") as stream:
             raw = stream.read(MAX_BYTES + 1)
@@ -69,7 +70,7 @@ def _text(path: Path) -> str:
     except (OSError, ValueError) as error:
         if isinstance(error, SymobsError):
             raise
-        raise _wrong(str(path), reason_of(error), "give a CSV or JSON Lines file in UTF-8, or a folder") from None
+        raise _wrong(str(path), reason_of(error), repair) from None
 
 
 def _of_file(path: Path) -> Submission:

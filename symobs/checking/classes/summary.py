@@ -62,6 +62,7 @@ def summary(title: str, reports: Sequence[CheckReport], superseded: Sequence[tup
         "parts": {name: _counted(part.verdict for _, part in found) for name, found in parts.items()},
         "slips": {name: _slips(found) for name, found in parts.items()},
         "first_false": _first_false(reports),
+        "variants": _by_variant(reports),
         "agreement": {name: _agreement(found) for name, found in parts.items()},
         "superseded": [{"student": student, "place": place} for student, place in superseded],
         "unreadable": [
@@ -71,6 +72,25 @@ def summary(title: str, reports: Sequence[CheckReport], superseded: Sequence[tup
             if report.verdict == "unreadable"
         ],
     }
+
+
+def _by_variant(reports: Sequence[CheckReport]) -> dict[str, Any]:
+    """Return of each variant how many have marks, their mean, and the sum of the squared differences from it."""
+    scores: dict[str, list[Fraction]] = {}
+    for report in reports:
+        if report.variant is not None and report.score is not None:
+            scores.setdefault(report.variant, []).append(report.score)
+    found = {}
+    for name, own in sorted(scores.items()):
+        mean = sum(own, Fraction(0)) / len(own)
+        squares = sum(((score - mean) ** 2 for score in own), Fraction(0))
+        found[name] = {
+            "students": len(own),
+            "mean": str(mean),
+            "mean_decimal": decimal(mean),
+            "squares": str(squares),
+        }
+    return found
 
 
 def _counted(values: Any) -> dict[str, int]:
@@ -116,16 +136,23 @@ def as_markdown(found: Mapping[str, Any]) -> str:
     mean = f", {found['mean_decimal']} of {found['total']} marks on average" if found["mean_decimal"] else ""
     lines += [f"{found['students']} students{mean}.", "", "| verdict | students |", "|---|---:|"]
     lines += [f"| {verdict} | {count} |" for verdict, count in found["verdicts"].items()]
+    lines += ["", "![What became of each part](summary.svg)"] if found["parts"] else []
     for part, verdicts in found["parts"].items():
         said = ", ".join(f"{count} {verdict}" for verdict, count in verdicts.items())
         lines += ["", f"## {plain(part)}", "", f"{said}.", ""]
-        lines += [f"- {entry['count']} × {entry['slip']}" for entry in found["slips"][part]]
+        lines += [f"- {entry['count']} × {entry['slip'].replace('_', ' ')}" for entry in found["slips"][part]]
         lines += [
             f"- {each['count']} × {plain(each['given'])}, which no slip explains" for each in found["agreement"][part]
         ]
     if found["first_false"]:
         lines += ["", "## First false lines", ""]
         lines += [f"- {entry['count']} × {plain(entry['relation'])}" for entry in found["first_false"]]
+    if found["variants"]:
+        lines += ["", "## Variants", "", "| variant | students | marks on average |", "|---|---:|---:|"]
+        lines += [
+            f"| {plain(name)} | {each['students']} | {each['mean_decimal']} |"
+            for name, each in found["variants"].items()
+        ]
     if found["superseded"]:
         lines += ["", f"{len(found['superseded'])} submissions were replaced by later ones of the same student."]
     return "\n".join([*lines, ""])

@@ -13,11 +13,11 @@ if TYPE_CHECKING:
     from symobs.result import Result
 
 
-def other_values(result: Result) -> dict[str, tuple[Matrix | Scalar, str]]:
-    """Return what F is with each of the known slips, by slip, with the reason."""
+def other_values(result: Result) -> list[tuple[str, Matrix | Scalar, str]]:
+    """Return what F is with each of the known slips: the slip, F, and the reason."""
     if not isinstance(result, CompensatorDesign) or not result.exists:
-        return {}
-    return {slip: (_function(result, matrix), reason) for slip, matrix, reason in _matrices(result)}
+        return []
+    return [(slip, _function(result, matrix), reason) for slip, matrix, reason in _matrices(result)]
 
 
 def _matrices(result: CompensatorDesign) -> Iterator[tuple[str, Matrix, str]]:
@@ -28,6 +28,10 @@ def _matrices(result: CompensatorDesign) -> Iterator[tuple[str, Matrix, str]]:
     yield "no_feedback", m.A - LC, "the term B K of the feedback is missing"
     yield "positive_feedback", m.A + BK - LC + LDK, "the feedback stands with the other sign"
     yield "sign_of_one", m.A - BK + LC + LDK, "the sign of L C is wrong"
+    if K.shape == m.B.shape:
+        yield "order_of_products", m.A - K @ m.B - LC + LDK, "K B stands for B K"
+    if L.shape == m.C.shape:
+        yield "order_of_products", m.A - BK - m.C @ L + LDK, "C L stands for L C"
     if m.has_feedthrough:
         yield "forgot_D", m.A - BK - LC, "D is taken as 0"
 

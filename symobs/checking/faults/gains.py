@@ -32,8 +32,8 @@ def explain_gain(
     `turned` says that the letter denotes the negative gain in the student's convention.
     """
     right = design.answer[design.letter]
-    shape = right.shape if right is not None else None
-    if shape is not None and value.shape != shape:
+    pair = design.dual_pair(design.plant)
+    if design.transpose_for_task(value).shape != (pair.A.shape[0], pair.c.shape[0]):
         return first_kind([partial(_transposed, design, value, letter)])
     search = _Search(design, value, letter, other, turned=turned)
     kinds: list[Kind] = [search.sign]

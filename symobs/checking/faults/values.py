@@ -10,7 +10,7 @@ from symobs.checking.faults.fault import Explained, Fault, first_kind
 from symobs.exact import Matrix, Scalar
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
+    from collections.abc import Iterable, Iterator
 
 #: The slips that a comparison of matrices names, by what it says of them.
 _SAID = {"every entry is multiplied": "factor", "exchanged": "exchanged", "the inverse is printed": "inverse"}
@@ -21,11 +21,11 @@ def explain_value(
     right: Matrix | Scalar,
     letter: str,
     variable: str,
-    others: Mapping[str, tuple[Matrix | Scalar, str]],
+    others: Iterable[tuple[str, Matrix | Scalar, str]],
     *,
     rounded: bool,
 ) -> Explained:
-    """Return why a value is wrong; `others` are the values of known slips in the way to it, by slip, with their reason."""
+    """Return why a value is wrong; `others` are known slips in the way to it, each with its value and reason."""
     mine, exact = differences.as_matrix(value), differences.as_matrix(right)
     if mine.shape != exact.shape:
         if exact == mine.T:
@@ -107,8 +107,8 @@ def _at(polynomial: Scalar, power: int, variable: str) -> Scalar:
     return coefficients[len(coefficients) - 1 - power] if power < len(coefficients) else Scalar.of(0)
 
 
-def _known(value: Matrix | Scalar, others: Mapping[str, tuple[Matrix | Scalar, str]]) -> Iterator[Fault]:
-    for slip, (wrong, reason) in others.items():
+def _known(value: Matrix | Scalar, others: Iterable[tuple[str, Matrix | Scalar, str]]) -> Iterator[Fault]:
+    for slip, wrong, reason in others:
         if type(wrong) is type(value) and wrong == value:
             yield Fault(slip, reason)
 

@@ -16,7 +16,8 @@ if TYPE_CHECKING:
     from symobs.exact import Scalar
 
 _OPERATOR = re.compile(r"(!=|>=|<=|>|<|==|=)")
-_MOST = 40
+_BETWEEN = re.compile(r"[()]|\band\b|&&?|,")
+_MOST, _DEEPEST = 40, 10
 #: A union of conjunctions.
 Union = tuple[tuple["Inequality", ...], ...]
 
@@ -63,12 +64,29 @@ def _conjunction(parts: Sequence[Any], names: Any, where: str) -> tuple[Inequali
     for part in parts:
         if not isinstance(part, str):
             raise InputError("a condition is a text", where=where, repair='write "h1 > 3"')
-        for text in re.split(r"\band\b|&&?|,", _without_brackets(part)):
-            if text.strip() == "False":
+        for text in _conjuncts(part, where):
+            if text == "False":
                 return None
-            if text.strip() not in {"", "True"}:
-                found += _chain(text.strip(), names, where)
+            if text not in {"", "True"}:
+                found += _chain(text, names, where)
     return tuple(found)
+
+
+def _conjuncts(text: str, where: str, depth: int = 0) -> list[str]:
+    """Return the parts of a conjunction, each without the brackets around it, however these are nested."""
+    if depth > _DEEPEST:
+        raise InputError("brackets are nested too deeply", where=where, repair="write the conditions as a list")
+    inner = _without_brackets(text)
+    pieces, level, start = [], 0, 0
+    for found in _BETWEEN.finditer(inner):
+        level += (found[0] == "(") - (found[0] == ")")
+        if level == 0 and found[0] not in "()":
+            pieces.append(inner[start : found.start()])
+            start = found.end()
+    pieces.append(inner[start:])
+    if len(pieces) == 1 and inner == text.strip():
+        return [inner]
+    return [part for piece in pieces for part in _conjuncts(piece, where, depth + 1)]
 
 
 def _without_brackets(text: str) -> str:

@@ -72,6 +72,11 @@ class TaskJudgement:
     right: Result
     own: Result | None
 
+    @property
+    def has_gains(self) -> bool:
+        """Whether a gain is given from which others follow."""
+        return any(part.name in GAINS.get(self.right.task, ()) and part.value is not None for part in self.parts)
+
 
 @dataclass()
 class _Task:

@@ -24,7 +24,7 @@ from symobs.stability.regions.plane_region import PlaneRegion
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping, Sequence
 
-    from symobs.stability.criteria.critical_polynomials import CriticalPolynomials
+    from symobs.stability.criteria.critical_polynomials import CriticalPolynomials, StabilityBoundary
     from symobs.stability.regions.interval_region import LineRegion
 
     Height = Fraction | RealNumber
@@ -77,7 +77,8 @@ def compare(result: StabilityRegion, union: Union) -> Separation:
         else:
             boundary, inside = True, mine
     if off:
-        point, inside = min(off, key=lambda entry: _length(entry[0]))
+        found, inside = min(off, key=lambda entry: _length(entry[0]))
+        point = {name: found[name] for name in sorted(found)}
         return Separation("wrong", point, inside, polynomial=_at(result, point))
     if boundary:
         return Separation("wrong", inside=inside, boundary=True)
@@ -245,15 +246,28 @@ def _negative(margin: Scalar) -> str:
 
 def _slips(result: StabilityRegion, union: Union) -> Iterator[tuple[str, str]]:
     """Yield the slips that turn the right region into the given one, the simplest first."""
-    boundary, question = result.question.boundary, result.question
-    if not boundary.margin.is_zero:
-        usual = RegionQuestion(
-            question.plant, question.K, question.L, question.parameters, replace(boundary, margin=Scalar.of(0))
-        )
-        if _same(StabilityRegion.of(usual, result.method), union):
-            yield "margin_forgotten", f"these are the conditions without the margin {boundary.margin}"
-    if len(union) != 1:
-        return
+    boundary = result.question.boundary
+    if not boundary.margin.is_zero and _same(_within(result, replace(boundary, margin=Scalar.of(0))), union):
+        yield "margin_forgotten", f"these are the conditions without the margin {boundary.margin}"
+    if len(union) == 1:
+        yield from _slips_of_one(result, union)
+    if (
+        union
+        and boundary.margin.is_zero
+        and _same(_within(result, replace(boundary, discrete=not boundary.discrete)), union)
+    ):
+        stable = "all real parts < 0" if boundary.discrete else "all |z| < 1"
+        yield "discrete", f"these are the conditions for {stable}, which is stability in the other kind of time"
+
+
+def _within(result: StabilityRegion, boundary: StabilityBoundary) -> StabilityRegion:
+    """Return the region of the same question with another boundary."""
+    asked = result.question
+    return StabilityRegion.of(RegionQuestion(asked.plant, asked.K, asked.L, asked.parameters, boundary), result.method)
+
+
+def _slips_of_one(result: StabilityRegion, union: Union) -> Iterator[tuple[str, str]]:
+    """Yield the slips of a single list of conditions."""
     (part,) = union
     positive = [Inequality(c, ">", str(c)) for c in _oriented(result.critical.coefficients) if not c.is_constant]
     if _equal(result, union, (tuple(positive),)):

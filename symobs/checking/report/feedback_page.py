@@ -62,8 +62,8 @@ def _part(part: Part) -> Iterator[str]:
     for said in sentences(part, effect=False):
         yield f"<p>{plain(_sentence(said))}</p>"
     if part.effect and part.verdict == "wrong":
-        stable = {"no": ", which is not stable", "yes": ""}.get(part.effect.get("stable", ""), "")
-        polynomial = _math(part.effect["polynomial"])
+        stable = {"no": ", and not stable", "yes": ""}.get(part.effect.get("stable", ""), "")
+        polynomial = _math(part.effect["polynomial"]) + (", not the one asked for" if part.slip is None else "")
         yield f"<p>With your {plain(part.letter)} the characteristic polynomial is {polynomial}{stable}.</p>"
     if part.right is not None and part.verdict != "right":
         yield f"<p>Right is {_math(part.right)}</p>"

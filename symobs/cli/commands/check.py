@@ -21,35 +21,43 @@ if TYPE_CHECKING:
     from symobs.checking import CheckReport
     from symobs.cli.shared.time_and_memory import Progress
 
-FORMATS = ("text", "markdown", "html", "json")
+#: The formats of a report, with the suffixes of their files.
+FORMATS = {"text": ".txt", "markdown": ".md", "html": ".html", "json": ".json"}
 
 
 @click.command("check")
 @click.argument("problem")
 @click.argument("answer", required=False)
-@click.option("--format", "format_name", default="text", metavar="NAME", help="text (default), markdown, html or json.")
+@click.option("--format", "format_name", metavar="NAME", help="text (default), markdown, html or json.")
 @click.option(
     "--show",
     default="reason",
     metavar="LEVEL",
     help="What is given away: verdict, place, reason (default) or solution.",
 )
-@click.option("-o", "target", metavar="PATH", help="Write to PATH; for a class the folder of the results.")
+@click.option(
+    "-o",
+    "target",
+    metavar="PATH",
+    help="Write to PATH, whose suffix names the format; for a class the folder of the results.",
+)
 @click.option("--asked", is_flag=True, help="Print an empty answer file: what an answer may hold.")
 @click.option("--submissions", metavar="PATH", help="Check a class: a CSV or JSON Lines file, or a folder of answers.")
 @click.option("--map", "mapped", multiple=True, metavar="COLUMN=FIELD", help="Read a column of the CSV as a field.")
+@click.option("--variants", metavar="MANIFEST", help="The class has variants of PROBLEM: those of this manifest.")
 @click.option("--feedback", is_flag=True, help="Write a page of feedback for each student of a class.")
 @options("convention", *LIMITS)
 @WORKERS
 def command(
     problem: str,
     answer: str | None,
-    format_name: str,
+    format_name: str | None,
     show: str,
     target: str | None,
     asked: bool,  # noqa: FBT001 - click's signature
     submissions: str | None,
     mapped: tuple[str, ...],
+    variants: str | None,
     feedback: bool,  # noqa: FBT001 - click's signature
     convention_name: str | None,
     timeout: float | None,
@@ -62,7 +70,7 @@ def command(
     that was ended goes on.
     Exit code 0: right; 4: wrong or incomplete; 3: unreadable; 5: undecided. For a class 0 where all have a verdict.
     """
-    if format_name not in FORMATS:
+    if format_name is not None and format_name not in FORMATS:
         raise UsageError(f"{quoted(format_name)} is not a format of this command", repair=f"take {', '.join(FORMATS)}")
     if show not in SHOW:
         raise UsageError(f"{quoted(show)} is nothing to show", where="--show", repair=f"take {', '.join(SHOW)}")
@@ -74,9 +82,12 @@ def command(
     convention = convention_of(convention_name)
     if submissions is not None:
         limits = (timeout, memory)
-        _class(problem, submissions, target, mapped, show, feedback=feedback, workers=workers, limits=limits)
+        _class(problem, submissions, variants, target, mapped, show, feedback=feedback, workers=workers, limits=limits)
         return
+    if variants is not None:
+        raise UsageError("one answer is to one problem", where="--variants", repair="name the file of the variant")
     check_target(target)
+    chosen = _format(format_name, None if asked else target)
 
     def work(report_progress: Progress) -> Outcome:
         report_progress("the problem")
@@ -87,11 +98,26 @@ def command(
         name = None if convention is None else convention_name
         return _outcome(
             checked.report_of_text(read_file(answer, "an answer file"), place_of(answer), show, name),
-            format_name,
+            chosen,
             target,
         )
 
     run_work(work, timeout, memory, place_of(problem))
+
+
+def _format(format_name: str | None, target: str | None) -> str:
+    """Return the format: that of --format, else that of the suffix, which is not to contradict it."""
+    suffix = Path(target).suffix if target is not None else ""
+    named = next((name for name, each in FORMATS.items() if each == suffix), None)
+    if suffix and format_name is None and named is None:
+        repair = f"end it in {', '.join(FORMATS.values())}, or give --format"
+        raise UsageError(f"the suffix {quoted(suffix)} names no format of this command", where="-o", repair=repair)
+    if None not in {format_name, named} and format_name != named:
+        repair = f"end it in {FORMATS[str(format_name)]}, or leave --format out"
+        raise UsageError(
+            f"the suffix {quoted(suffix)} is that of {named}, not of {format_name}", where="-o", repair=repair
+        )
+    return format_name or named or "text"
 
 
 def _outcome(report: CheckReport, format_name: str, target: str | None) -> Outcome:
@@ -107,6 +133,7 @@ def _outcome(report: CheckReport, format_name: str, target: str | None) -> Outco
 def _class(
     problem: str,
     submissions: str,
+    variants: str | None,
     target: str | None,
     mapped: tuple[str, ...],
     show: str,
@@ -119,6 +146,7 @@ def _class(
     from symobs.batching.jobs import Budget  # noqa: PLC0415 - a single answer does not pay for it
     from symobs.batching.store import discard_work, work_folder  # noqa: PLC0415
     from symobs.checking.classes.classroom import check_class  # noqa: PLC0415
+    from symobs.checking.classes.variants_of_class import class_variants, one_problem  # noqa: PLC0415
 
     if target is None:
         raise UsageError("the results of a class need a folder", where="-o", repair="write -o RESULTS/")
@@ -137,8 +165,10 @@ def _class(
         if shown and (done == total or done % 25 == 0):
             write_message(f"{done}/{total} …")
 
+    text = read_file(problem)
+    problems = one_problem(text) if variants is None else class_variants(text, place_of(problem), Path(variants))
     files, code = check_class(
-        read_file(problem),
+        problems,
         Path(problem).parent,
         Path(submissions),
         columns=columns,

@@ -20,7 +20,7 @@ _REASONS_SHOWN = 12
 
 
 @click.command("variants")
-@click.argument("problem")
+@click.argument("problem", required=False)
 @click.option("--count", type=click.IntRange(1), default=30, metavar="N", help="How many variants (30).")
 @click.option("--seed", type=int, default=0, metavar="N", help="The seed, a whole number from 0 (0).")
 @click.option("-o", "target", metavar="FOLDER", help="The folder of the variants, their manifest and the report.")
@@ -30,9 +30,10 @@ _REASONS_SHOWN = 12
 @click.option("--attempts", type=click.IntRange(1), metavar="N", help="Try so many candidates for each variant.")
 @click.option("--partial", is_flag=True, help="Write those there are, where there are not so many.")
 @click.option("--assign", metavar="CSV", help="Write assignment.csv: a variant for each student of a table.")
+@click.option("--responses", metavar="SUMMARY", help="From summary.json of a class: was a variant harder than others?")
 @click.option("--workers", type=click.IntRange(1, 1024), metavar="N", help="Processes of this machine; default: all.")
 def command(
-    problem: str,
+    problem: str | None,
     count: int,
     seed: int,
     target: str | None,
@@ -42,6 +43,7 @@ def command(
     attempts: int | None,
     partial: bool,  # noqa: FBT001
     assign: str | None,
+    responses: str | None,
     workers: int | None,
 ) -> None:
     """Make many problems of the same kind from a PROBLEM file with a table [variants].
@@ -49,6 +51,12 @@ def command(
     Each is solved and checked, and like the first one in what it takes to work it out.  The same seed gives the same
     variants on every machine.  Exit code 4: there are not so many; nothing is written then.
     """
+    if (problem is None) == (responses is None):
+        raise UsageError("one thing is to be done at a time", repair="give the PROBLEM, or --responses SUMMARY")
+    if responses is not None:
+        _responses(responses)
+        return
+    assert problem is not None  # noqa: S101 - one of the two is there
     if listed == (target is not None):
         raise UsageError("a folder or a list is expected", repair="write -o FOLDER, or --list")
     if listed and (report or assign or partial):
@@ -91,6 +99,13 @@ def command(
         for reason, times in list(found.rejected.items())[:_REASONS_SHOWN]:
             write_message(f"{times:8}  {reason}")
     sys.exit(code)
+
+
+def _responses(summary: str) -> None:
+    """Print how the variants were answered."""
+    from symobs.variation.responses import as_text, responses_of  # noqa: PLC0415 - a question of its own
+
+    write(as_text(responses_of(read_file(summary, "the summary.json of a class"), place_of(summary))))
 
 
 def _told(count: int):  # type: ignore[no-untyped-def]  # noqa: ANN202 - a closure

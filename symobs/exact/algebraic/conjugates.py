@@ -66,6 +66,8 @@ def root_in_field(number: Scalar) -> Scalar | None:
     found = (Scalar.symbol(variable) ** 2 - number).factors()[1]
     if len(found) == 1:
         return _sum_of_two_roots(number)
+    if found[0][0].degree(variable) != 1:  # as of 1/pi
+        return None
     lead, constant = found[0][0].coefficients(variable)
     root = constant / lead
     return root if sign_of_number(root) == "positive" else -root

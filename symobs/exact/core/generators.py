@@ -24,8 +24,8 @@ if TYPE_CHECKING:
 
 #: Integers of more bits are not split into primes under a root.
 _PRIME_BITS = 128
-#: The highest multiple of an angle whose cosine is written by that of the angle.
-_MOST_MULTIPLE = 1000
+#: The highest multiple of an angle whose cosine is written by that of the angle, and power of an exponential: degrees.
+_MOST_MULTIPLE, _MOST_POWER = 1000, 100_000
 ZERO, ONE = Scalar.of(0), Scalar.of(1)
 #: The number π, a generator like a parameter: no polynomial over Q vanishes at it.
 PI = "pi"
@@ -385,11 +385,11 @@ def _in_base(f: Function, steps: Mapping[tuple[bool, Scalar], Fraction]) -> Scal
     for monomial, coefficient in _coordinates(f.argument).items():
         step = steps[turns, monomial]
         count = int(coefficient / step)
+        if abs(count) > (_MOST_MULTIPLE if turns else _MOST_POWER):
+            raise NotWritten(f"{f.text} is too far from the other {'angles' if turns else 'exponents'}")
         if not turns:
             real = real * function("exp", monomial * step) ** count
             continue
-        if abs(count) > _MOST_MULTIPLE:
-            raise NotWritten(f"{f.text} is too far from the other angles")
         c, s = function("cos", monomial * step), function("sin", monomial * step)
         s = s if count > 0 else -s
         for _ in range(abs(count)):

@@ -42,15 +42,13 @@ if TYPE_CHECKING:
 
 def product(X: Rows, Y: Rows) -> Rows:
     """Return X Y."""
-    return [
-        [sum((a * b for a, b in zip(row, column, strict=True)), Fraction(0)) for column in zip(*Y, strict=False)]
-        for row in X
-    ]
+    columns = list(zip(*Y, strict=True))
+    return [[sum((a * b for a, b in zip(row, column, strict=True)), Fraction(0)) for column in columns] for row in X]
 
 
 def minus(X: Rows, Y: Rows) -> Rows:
     """Return X - Y."""
-    return [[a - b for a, b in zip(*rows, strict=True)] for rows in zip(X, Y, strict=False)]
+    return [[a - b for a, b in zip(*rows, strict=True)] for rows in zip(X, Y, strict=True)]
 
 
 def negative(X: Rows) -> Rows:
@@ -117,7 +115,7 @@ def judge_gain(part: Part, value: Rows, texts: Texts, *, exact: bool) -> Verdict
         return "right", "", ""
     if is_right(part, negative(value)):
         return "wrong", "sign", f"the sign of {letter}"
-    if len(value) == len(value[0]) and is_right(part, transpose(value)):
+    if is_right(part, transpose(value)):
         return "wrong", "transposed", f"the transpose of {letter} is right"
     if rounds(texts, negative(value) if part["turned"] else value, negative(right) if part["turned"] else right):
         return "wrong", "rounded", f"{letter} is rounded, and its exact value is asked for"
@@ -149,7 +147,7 @@ def corrected(part: Part, value: Rows, mine: Poly) -> Iterator[tuple[int, int, F
             other = [list(line) for line in value]
             other[i][j] = entry + 1
             change = plus(closed(part, other), scaled(mine, -1))
-            if len(change) == len(wanted) and change:
+            if change and wanted:
                 other[i][j] = entry + wanted[-1] / change[-1]
                 if is_right(part, other):
                     yield i, j, other[i][j]
@@ -172,15 +170,14 @@ def rounds(texts: Texts, value: Rows, right: Rows) -> bool:
 
 
 def written(p: Poly, variable: str) -> str:
-    """Return a polynomial as text."""
+    """Return a monic polynomial as text."""
     terms = []
     for power in range(len(p) - 1, -1, -1):
         name = "" if not power else variable if power == 1 else f"{variable}^{power}"
         if p[power]:
             factor = "" if name and abs(p[power]) == 1 else f"{abs(p[power])} " if name else str(abs(p[power]))
             terms.append(("- " if p[power] < 0 else "+ ") + factor + name)
-    text = " ".join(terms) or "0"
-    return text.removeprefix("+ ").replace("- ", "-", 1) if text.startswith("- ") else text.removeprefix("+ ")
+    return " ".join(terms).removeprefix("+ ")
 
 
 # -- the compensator -----------------------------------------------------------------------------------------------------
@@ -226,7 +223,7 @@ def judge_compensator(
         return "right", "", "another compensator with the same closed loop", Fraction(1)
     if opposite == exact:
         return "wrong", "sign_convention", "-F is right with positive feedback", Fraction(1)
-    return "wrong", "", "this is not the compensator of your gains" if gains else "", Fraction(1)
+    return "wrong", "", f"this is not the {part['letter']} of your gains" if gains else "", Fraction(1)
 
 
 def is_degenerate(mine: Rows, right: Rows) -> bool:

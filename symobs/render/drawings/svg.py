@@ -52,11 +52,13 @@ def svg_scene(item: Drawing | Drawn, printer: TextPrinter) -> Scene:
     return plot_scene(item, measure_for(printer), printer.language)
 
 
-def svg(scene: Scene, printer: TextPrinter, title: str = "") -> str:
-    """Return a scene as an `svg` element of a page; `title` is its text alternative."""
+def svg(scene: Scene, printer: TextPrinter, title: str = "", *, alone: bool = False) -> str:
+    """Return a scene as an `svg` element of a page, or of a file where it is `alone`; `title` is its text alternative."""
     writer = _Writer(scene, printer)
     whole = scene.whole.grown(_MARGIN * _EM) if scene.is_diagram else scene.whole
-    return writer.element(whole, writer.drawn(), title, "" if scene.is_diagram else _STYLE)
+    return writer.element(
+        whole, writer.drawn(), title, "" if scene.is_diagram else (_OWN_FILE if alone else "") + _STYLE
+    )
 
 
 def svg_file(picture: Drawn, printer: TextPrinter) -> str:

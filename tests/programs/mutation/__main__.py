@@ -1,6 +1,7 @@
-"""Mutation testing of the trusted floors: `python -m tests.programs.mutation [--only FILE] [--every N] [--log PATH]`.
+"""Mutation testing: `python -m tests.programs.mutation [--only FILE] [--every N] [--log PATH]`.
 
-Every mutant must be found by a test, or stand in `equivalent.toml` with the reason why it says the same.
+Of the trusted floors, and of what decides about the answers of students.  Every mutant must be found by a test, or stand in
+`equivalent.toml` with the reason why it says the same.
 """
 
 from __future__ import annotations
@@ -37,9 +38,25 @@ TRUSTED = [
     ROOT / "symobs" / "result" / "result.py",
     ROOT / "symobs" / "result" / "writers.py",
 ]
-#: The tests that stand for each of their files, by its name; small and direct ones, so that all mutants can be tried.
+#: What decides whether an answer is right: the claims of the check, and the grader that goes with an exported question.
+MARKING = [
+    *sorted((ROOT / "symobs" / "checking" / "judgement").glob("[a-z]*.py")),
+    *sorted((ROOT / "symobs" / "exporting" / "grader").glob("[a-z]*.py")),
+]
+#: The tests that stand for each of their files, by the end of its path; small and direct ones, so that all mutants can be
+#: tried.
 TESTS = {
+    "judgement/conditions.py": "claims_decide regions",
+    "judgement/coordinates.py": "claims_decide judgement",
+    "judgement/gains.py": "claims_decide judgement faults",
+    "judgement/judge.py": "claims_decide judgement faults",
+    "judgement/other_compensators.py": "claims_decide judgement",
+    "judgement/parts.py": "judgement",
+    "judgement/regions.py": "regions",
+    "grader/claims.py": "grader prairielearn",
+    "grader/values.py": "grader_values grader",
     "claims.py": "claims refusals",
+    "decimals_check.py": "pages_in_decimals",
     "check.py": "check steps_refused refusals",
     "steps.py": "plot_check steps_refused",
     "restriction.py": "check steps_refused",
@@ -74,21 +91,27 @@ def main(arguments: Sequence[str]) -> int:
     parser.add_argument("--log", type=Path, help="a file to which each mutant is written as it was tried")
     parser.add_argument("--map", type=Path, help="where to keep which tests touch which lines, for the next run")
     chosen = parser.parse_args(arguments)
-    paths = [path for path in TRUSTED if not chosen.only or any(part in str(path) for part in chosen.only)]
+    paths = [path for path in (*TRUSTED, *MARKING) if not chosen.only or any(part in str(path) for part in chosen.only)]
     mutants = [m for path in paths for m in mutants_of(path) if chosen.match in m.key][:: chosen.every]
     if chosen.again:
         lines = [line.split("\t") for line in chosen.again.read_text(encoding="utf-8").splitlines()]
         found = {(where.split(":")[0], key) for outcome, where, key, _ in lines if outcome == KILLED}
         mutants = [m for m in mutants if (m.file, m.key) not in found]
     report = Report(chosen.log)
-    names = sorted({name for path in paths for name in TESTS.get(path.name, "").split()})
-    tests = [str(next((ROOT / "tests" / "unit").rglob(f"test_{name}.py"))) for name in names]
+    names = sorted({name for path in paths for name in standing_for(path)})
+    tests = [str(next((ROOT / "tests").rglob(f"test_{name}.py"))) for name in names]
     with tempfile.TemporaryDirectory() as folder:
-        trial = Trial(TRUSTED, mutants, report, chosen.map or Path(folder) / "map.json", report.known)
+        trial = Trial(paths, mutants, report, chosen.map or Path(folder) / "map.json", report.known)
         os.environ.pop("PYTEST_ADDOPTS", None)  # what runs these tests may itself be run by several workers
         code = pytest.main([*OPTIONS, *tests], plugins=[Short(), trial])
     report.close()
     return int(code) or int(report.is_bad)
+
+
+def standing_for(path: Path) -> list[str]:
+    """Return the names of the tests that stand for a file: those of the longest end of its path that is listed."""
+    ends = [end for end in TESTS if path.as_posix().endswith(f"/{end}")]
+    return TESTS[max(ends, key=len)].split() if ends else []
 
 
 class Report:

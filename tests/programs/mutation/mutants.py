@@ -147,7 +147,9 @@ class _Finder:
                     if isinstance(decorator, ast.Call):
                         self.children(decorator, "keywords", f"{where}.{name}".lstrip("."))
                 self.statements(node, "body", f"{where}.{name}".lstrip("."))
-            case ast.If(test=ast.Name(id="TYPE_CHECKING")) | ast.Import() | ast.ImportFrom() | ast.Pass():
+            case (
+                ast.If(test=ast.Name(id="TYPE_CHECKING")) | ast.Import() | ast.ImportFrom() | ast.Pass() | ast.Assert()
+            ):
                 pass
             case ast.If() | ast.While():
                 self.condition(node, "test", where)

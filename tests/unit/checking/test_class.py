@@ -196,6 +196,15 @@ def test_the_exit_code_of_one_answer(folder: Path, answer: str, code: int) -> No
     assert found.out or found.err
 
 
+@pytest.mark.parametrize(
+    ("target", "begins"),
+    [("r.html", "<!DOCTYPE"), ("r.json", "{"), ("r.md", "**A servo**"), ("r.txt", "K  right"), ("r", "K  right")],
+)
+def test_the_suffix_of_a_report_names_its_format(folder: Path, target: str, begins: str) -> None:
+    assert inside("check", "problem.toml", "-", "-o", target, folder=folder, stdin=b"K = [4 3]").code == 4
+    assert (folder / target).read_text(encoding="utf-8").lstrip().startswith(begins)
+
+
 def test_how_the_command_is_used(folder: Path) -> None:
     for arguments, message in (
         (["problem.toml"], "one thing is to be done at a time"),
@@ -203,6 +212,11 @@ def test_how_the_command_is_used(folder: Path) -> None:
         (["problem.toml", "-", "--show", "all"], "is nothing to show"),
         (["problem.toml", "-", "--format", "pdf"], "is not a format of this command"),
         (["problem.toml", "--submissions", "class.csv"], "the results of a class need a folder"),
+        (
+            ["problem.toml", "-", "-o", "report.pdf"],
+            'the suffix ".pdf" names no format of this command; end it in .txt, .md,',
+        ),
+        (["problem.toml", "-", "--format", "json", "-o", "a.html"], 'the suffix ".html" is that of html, not of json'),
     ):
         found = inside("check", *arguments, folder=folder)
         assert (found.code, message in found.err) == (2, True), found.err

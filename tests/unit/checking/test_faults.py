@@ -126,6 +126,21 @@ def test_a_forgotten_feedthrough_is_found() -> None:
     assert part.slip == "forgot_D"
 
 
+@pytest.mark.parametrize(("left", "reason"), [(True, "K B stands for B K"), (False, "C L stands for L C")])
+def test_products_in_the_wrong_order_are_found(left: bool, reason: str) -> None:  # noqa: FBT001 - a table
+    """With as many inputs and outputs as states, K B and C L have the sizes of B K and L C."""
+    A, B, C = sp.Matrix([[0, 1], [2, 3]]), sp.Matrix([[1, 2], [0, 1]]), sp.Matrix([[1, 0], [3, 1]])
+    K = B.inv() * (A - sp.Matrix([[-1, 1], [0, -2]]))
+    L = (A - sp.Matrix([[-5, 0], [2, -6]])) * C.inv()
+    problem = f'task = "compensator"\n[plant]\nA = "{text(A)}"\nB = "{text(B)}"\nC = "{text(C)}"\n'
+    problem += '[specification]\ncontrol_poles = "-1, -2"\nobserver_poles = "-5, -6"\n'
+    BK, LC = (K * B, L * C) if left else (B * K, C * L)
+    wrong = (K * (S * sp.eye(2) - A + BK + LC).inv() * L).applyfunc(sp.cancel)
+    rows = [[str(entry) for entry in wrong.row(i)] for i in range(2)]
+    part = check(problem, {"K": text(K), "L": text(L), "F": rows}).parts[2]
+    assert (part.verdict, part.slip, part.reason) == ("wrong", "order_of_products", reason)
+
+
 def test_a_gain_rounded_is_named_so() -> None:
     problem = 'task = "observer"\n[plant]\nA = "[0 1; 0 -1]"\nC = "[3 0]"\n[specification]\npoles = "-10, -10"\n'
     part = check(problem, {"L": "[6.333; 27]"}).parts[0]

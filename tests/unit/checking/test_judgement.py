@@ -10,7 +10,7 @@ import sympy as sp
 
 from symobs.checking import Checked, CheckReport, check
 from symobs.errors import InputError, ProblemErrors
-from symobs.expect import found_in
+from symobs.expect import found_in, mismatches
 from symobs.problem import read
 from symobs.result.conversions import to_json
 from tests.support.paths import ROOT
@@ -200,6 +200,22 @@ def test_another_compensator_with_the_same_closed_loop_is_right() -> None:
     proper = f"(5 s^2 + {found[b]} s + {found[c]})/(s^2 + {found[d]} s + {found[e]})"
     part = one(check(SERVO, {"F": proper}), "F")
     assert (part.verdict, part.hints) == ("right", ("another compensator with the same closed loop",))
+
+
+@pytest.mark.parametrize("entry", ["exp(-t/100000000)", "cos(1001 t) + cos(t)", "sinh(3) + sinh(796.14 - 936680)"])
+def test_functions_too_far_apart_to_be_compared_are_undecided(entry: str) -> None:
+    problem = 'task = "matrix_exponential"\n[plant]\nA = "[0 1; -2 -3]"\n'
+    part = check(problem, {"matrix": f"[({entry}) 0; 0 1]"}).parts[0]
+    assert (part.verdict, part.credit, "too far from the other" in part.reason) == ("undecided", None, True)
+    expected = read(f'{problem}[expect]\nmatrix = "[({entry}) 0; 0 1]"\n')
+    with pytest.raises(ProblemErrors, match=r"expect\.matrix: .* is too far from the other"):
+        mismatches(expected.viewed(expected.solve()), expected.expect)
+
+
+def test_the_root_of_a_fraction_of_pi_is_read() -> None:
+    problem = 'task = "canonical_form"\n[plant]\nA = "[0 1; -2 -3]"\nB = "[0; 1]"\n[specification]\nkind = "modal"\n'
+    for entry in ("sqrt(1/pi)", "sqrt(2/pi)", "sqrt(pi)", "sqrt(4/pi^2)"):
+        assert one(check(problem, {"A": f"[{entry} 0; 0 1]"}), "A").verdict == "wrong"
 
 
 # -- coordinates ------------------------------------------------------------------------------------------------------

@@ -95,6 +95,23 @@ def test_a_margin_that_was_forgotten() -> None:
 
 
 @pytest.mark.parametrize(
+    ("dt", "conditions", "reason"),
+    [
+        # s² + a s + b: a > 0 and b > 0 by Hurwitz; |b| < 1 and |a| < 1 + b by Jury
+        ("false", "b < 1 and 1 + a + b > 0 and 1 - a + b > 0", "these are the conditions for all |z| < 1"),
+        ("true", "a > 0 and b > 0", "these are the conditions for all real parts < 0"),
+    ],
+)
+def test_the_other_kind_of_time(dt: str, conditions: str, reason: str) -> None:
+    checked = Checked.of(
+        f'task = "stability_region"\n[plant]\ndt = {dt}\n[specification]\npolynomial = "{"z" if dt == "true" else "s"}^2 + '
+        f'a {"z" if dt == "true" else "s"} + b"\nparameters = "a, b"\n'
+    )
+    found = part(checked, conditions)
+    assert (found.slip, found.reason.partition(",")[0]) == ("discrete", reason)
+
+
+@pytest.mark.parametrize(
     ("conditions", "verdict", "slip"),
     [
         ("h > 3/2", "right", None),

@@ -92,8 +92,8 @@ def test_the_grader_gives_the_verdicts_of_check(name: str) -> None:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", [*HELD, *BY_HAND])
-def test_the_grader_gives_the_verdicts_of_check_on_a_thousand_answers(name: str) -> None:
-    agree(name, 65)
+def test_the_grader_gives_the_verdicts_of_check_on_many_answers(name: str) -> None:
+    agree(name, 20)
 
 
 @pytest.mark.parametrize("name", ["output_feedback_servo", "triple_pole_two_outputs"])

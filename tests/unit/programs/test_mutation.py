@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from tests.programs.mutation.__main__ import TESTS, TRUSTED, known_equivalent
+from tests.programs.mutation.__main__ import MARKING, TRUSTED, known_equivalent, standing_for
 from tests.programs.mutation.claims import ASKED, KINDS, drawn, tried
 from tests.programs.mutation.mutants import mutants_of
 from tests.support.paths import ROOT
@@ -68,7 +68,7 @@ def test_a_mutant_is_code_that_differs_in_one_place(found: list[Mutant]) -> None
 
 
 def test_equivalent_mutants_are_still_there_and_have_reasons() -> None:
-    files = {path.relative_to(ROOT).as_posix(): path for path in TRUSTED}
+    files = {path.relative_to(ROOT).as_posix(): path for path in (*TRUSTED, *MARKING)}
     for name, reasons in known_equivalent().items():
         keys = {mutant.key for mutant in mutants_of(files[name])}
         assert reasons.keys() <= keys
@@ -76,9 +76,9 @@ def test_equivalent_mutants_are_still_there_and_have_reasons() -> None:
 
 
 def test_every_trusted_file_has_its_tests() -> None:
-    for path in TRUSTED:
-        assert path.name in TESTS or not mutants_of(path)
-        assert all(any((ROOT / "tests" / "unit").rglob(f"test_{name}.py")) for name in TESTS.get(path.name, "").split())
+    for path in (*TRUSTED, *MARKING):
+        assert standing_for(path) or not mutants_of(path)
+        assert all(any((ROOT / "tests").rglob(f"test_{name}.py")) for name in standing_for(path))
 
 
 @pytest.mark.parametrize(("name", "every"), [("certificate.py", 25), ("strata.py", 10)])

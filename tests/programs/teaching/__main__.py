@@ -1,0 +1,31 @@
+"""Measure what lecturers need: `python -m tests.programs.teaching variants|graders|class|peers [--count N] [--only NAME]`.
+
+variants  500 candidates of each construction before any is left out, held to what it promises; 1,000 accepted ones of each
+          compared pairwise for being the same plant in other coordinates
+graders   answers to exported questions, judged by the grader of the platform and by `check`
+class     a class of 300 with K, L and F of a plant of order 3, and the same with derivations of 12 lines: time of the command
+peers     the same answers by a tolerance of 1 %, by equality with the printed gain, and by the claim
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+
+from tests.programs.teaching import classes, graders, peers, variants
+
+PARTS = {"variants": variants.main, "graders": graders.main, "class": classes.main, "peers": peers.main}
+
+
+def main() -> int:
+    """Run the part asked for; 1 where something does not hold."""
+    parser = argparse.ArgumentParser(prog="python -m tests.programs.teaching", description=__doc__)
+    parser.add_argument("part", choices=list(PARTS))
+    parser.add_argument("--count", type=int, default=1000, help="how many variants or answers")
+    parser.add_argument("--only", default="", help="a construction, or a platform")
+    asked = parser.parse_args()
+    return int(not PARTS[asked.part](asked.count, asked.only))
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,176 @@
+"""What a claim leaves open and what it does not: each test here fails if one comparison of the judgement is left out."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+import sympy as sp
+
+from symobs.checking import Checked, check
+from tests.support.problems.answered import SERVO, S, text
+
+CANONICAL = (
+    'task = "canonical_form"\n[plant]\nA = "[1 2; 3 4]"\nB = "[1; 1]"\nC = "[1 0]"\n[specification]\nkind = "{}"\n'
+)
+REDUCED = 'task = "reduced_order_observer"\n'
+REDUCED += '[plant]\nA = "[0 1; 0 -1]"\nB = "[0; 1]"\nC = "[1 0]"\n[specification]\npoles = "-10"\n'
+PARTS = 'task = "decomposition"\n[plant]\nA = "[-1 0; 0 -2]"\nB = "[1; 0]"\nC = "[1 1]"\n'
+HIDDEN = 'task = "observer"\n[plant]\nA = "[1 0; 0 2]"\nC = "[1 0]"\n[specification]\npoles = "-1, -2"\n'
+
+
+def verdicts(problem: str, answer: dict[str, Any]) -> dict[str, str]:
+    return {part.letter: part.verdict for part in check(problem, answer).parts if part.letter in answer}
+
+
+def observable_layouts() -> list[sp.Matrix]:
+    """T of the dual four layouts: the columns of 𝒪⁻¹ and its last column with A, and both reversed."""
+    A, C = sp.Matrix([[1, 2], [3, 4]]), sp.Matrix([[1, 0]])
+    seen = C.col_join(C * A)
+    q = seen.inv()[:, 1]
+    turn = sp.Matrix([[0, 1], [1, 0]])
+    column = sp.Matrix.hstack(q, A * q).inv()
+    return [column, turn * column, seen, turn * seen]
+
+
+@pytest.mark.parametrize("number", range(4))
+def test_the_observable_form_in_any_layout_is_right_and_T_belongs_to_it(number: int) -> None:
+    A, B, C = sp.Matrix([[1, 2], [3, 4]]), sp.Matrix([1, 1]), sp.Matrix([[1, 0]])
+    T = observable_layouts()[number]
+    answer = dict(zip("TABC", map(text, (T, T * A * T.inv(), T * B, C * T.inv())), strict=True))
+    problem = CANONICAL.format("observable")
+    assert set(verdicts(problem, answer).values()) == {"right"}
+    assert set(verdicts(problem, answer | {"T": text(T.inv())}).values()) == {"right"}
+    for wrong in (sp.eye(2), 2 * T, sp.Matrix([[1, 1], [1, 1]])):
+        assert verdicts(problem, answer | {"T": text(wrong)}) == {
+            "T": "wrong",
+            "A": "right",
+            "B": "right",
+            "C": "right",
+        }
+
+
+def test_T_of_a_controllable_form_is_not_any_matrix() -> None:
+    problem = CANONICAL.format("controllable")
+    right = Checked.of(problem).results[0].fields
+    answer = {name: str(right[name]) for name in "ABC"}
+    for wrong in ("[1 0; 0 1]", "[1 1; 1 1]", "[1 0]"):
+        assert verdicts(problem, answer | {"T": wrong})["T"] == "wrong"
+
+
+@pytest.mark.parametrize("T", ["[1 1; 1 1]", "[1 0]", "[1 0; 0 1; 1 1]", "[0 0; 0 0]"])
+def test_coordinates_that_are_none_are_wrong(T: str) -> None:
+    assert verdicts(PARTS, {"T": T, "A": "[-1 0; 0 -2]"})["T"] == "wrong"
+
+
+def test_M_alone_says_which_estimate_it_is() -> None:
+    assert verdicts(REDUCED, {"M": "[1 0; 9 1/2]"}) == {"M": "right"}  # P = [-18 2], twice the usual one
+    for wrong in ("[1 0; 1 0]", "[1 0]", "[1 0; 9 0]", "[2 0; 9 1]"):
+        assert verdicts(REDUCED, {"M": wrong}) == {"M": "wrong"}
+    given = {"F": "[-10]", "G": "[2]", "H": "[-180]", "M": "[1 0]"}
+    assert verdicts(REDUCED, given) == {"F": "right", "G": "right", "H": "right", "M": "wrong"}
+
+
+def test_a_gain_where_there_is_none_is_wrong() -> None:
+    for given, reason in (("[3; 0]", ""), ("[1 2]", "L is 2x1 here, yours is 1x2")):
+        part = check(HIDDEN + '[marking]\nasked = ["observer.verdict"]\n', {"L": given, "verdict": "no"}).parts
+        assert [(each.letter, each.verdict) for each in part] == [("verdict", "right"), ("L", "wrong")]
+        assert reason in part[1].reason
+
+
+def test_another_compensator_is_right_only_where_no_gain_is_given() -> None:
+    a, b, c, d, e = sp.symbols("a b c d e")
+    loop = sp.Poly(S * (S + 1) * (S**2 + d * S + e) + a * S**2 + b * S + c - (S + 2) ** 2 * (S + 10) ** 2, S)
+    found = sp.solve([equation.subs(a, 5) for equation in loop.all_coeffs()], [b, c, d, e])
+    F = f"(5 s^2 + {found[b]} s + {found[c]})/(s^2 + {found[d]} s + {found[e]})"
+    assert verdicts(SERVO, {"F": F}) == {"F": "right"}
+    assert verdicts(SERVO, {"F": F, "K": "[4 3]"})["F"] == "wrong"
+    assert verdicts(SERVO, {"F": F, "L": "[19; 80]"})["F"] == "wrong"
+    assert verdicts(SERVO, {"F": F, "L": "[19 81]"})["F"] == "wrong"
+    for wrong in ("(5 s^3 + 1)/(s^2 + 1)", f"({F})*(s + 1)/(s + 1) + 1"):
+        assert verdicts(SERVO, {"F": wrong})["F"] == "wrong"
+    # one more pole and zero: (s + 3) in both loops, of order 3
+    assert verdicts(SERVO, {"F": "(638 s + 800)/(2 s^2 + 46 s + 322)"})["F"] == "right"
+
+
+def test_minus_F_is_right_only_where_the_file_says_so() -> None:
+    opposite = {"F": "-(319 s + 400)/(s^2 + 23 s + 161)", "K": "[4 3]", "L": "[19; 81]"}
+    assert verdicts(SERVO, opposite)["F"] == "wrong"
+    assert verdicts(SERVO + '[marking]\nsign_of_F = "either"\n', opposite)["F"] == "right"
+    either = SERVO + '[marking]\nsign_of_F = "either"\n'
+    assert verdicts(either, {"K": "[-4 -3]", "L": "[19; 81]"})["K"] == "wrong"
+
+
+REGION = (
+    'task = "stability_region"\n[specification]\npolynomial = "s^3 + s^2 + 3 s + h"\nparameters = "h"\n'  # 0 < h < 3
+)
+
+
+@pytest.mark.parametrize(
+    ("conditions", "verdict"),
+    [
+        ("(h > 0) and (h < 3)", "right"),
+        ("((h > 0) and (3 - h > 0))", "right"),
+        ("(0 < h < 3)", "right"),
+        ("1/h >= 0 and h < 3", "right"),
+        ("h >= 0 and h < 3", "wrong"),
+        ("h/(3 - h) > 0", "right"),
+        ("h (3 - h) >= 0 and h != 0 and 3 != h", "right"),
+    ],
+)
+def test_what_conditions_say_at_their_boundary(conditions: str, verdict: str) -> None:
+    assert verdicts(REGION, {"stable_if": conditions})["stable_if"] == verdict
+
+
+@pytest.mark.parametrize(
+    ("conditions", "verdict"),
+    [
+        ("h < 3", "right"),
+        ("h >= 0 and h < 3", "right"),
+        ("h > 0 and h < 3", "right"),
+        ("h <= 3", "wrong"),
+        ("h < 4", "wrong"),
+    ],
+)
+def test_a_declared_sign_leaves_out_its_boundary(conditions: str, verdict: str) -> None:
+    positive = REGION.replace("[specification]", '[symbols]\nh = "positive"\n[specification]')
+    assert verdicts(positive, {"stable_if": conditions})["stable_if"] == verdict
+
+
+def test_columns_of_a_block_may_be_permuted_and_others_not() -> None:
+    problem = 'task = "controllability"\n[plant]\nA = "[0 1; 0 0]"\nB = "[0 1; 1 2]"\n'
+    problem += '[marking]\nasked = ["controllability.matrix"]\n'
+    # [B AB] = [0 1 1 2; 1 2 0 0]
+    for matrix, verdict in (
+        ("[0 1 1 2; 1 2 0 0]", "right"),
+        ("[1 0 2 1; 2 1 0 0]", "right"),
+        ("[1 2 0 1; 0 0 1 2]", "wrong"),
+        ("[1 0 2 1; 2 1 0 1]", "wrong"),
+    ):
+        assert verdicts(problem, {"matrix": matrix}) == {"matrix": verdict}
+
+
+@pytest.mark.parametrize(
+    ("given", "verdict"), [("yes", "right"), (' "Yes" ', "right"), ("no", "wrong"), ("yes!", "wrong")]
+)
+def test_a_verdict_is_a_word(given: str, verdict: str) -> None:
+    problem = 'task = "detectability"\n[plant]\nA = "[0 1; 0 0]"\nC = "[1 0]"\n'
+    assert verdicts(problem, {"verdict": given}) == {"verdict": verdict}
+
+
+def test_a_closed_loop_is_right_in_either_coordinates() -> None:
+    """(x, x − x̂) and (x, x̂) of the servo with K = [4 3] and L = [19; 81]."""
+    A, B, C = sp.Matrix([[0, 1], [0, -1]]), sp.Matrix([0, 1]), sp.Matrix([[1, 0]])
+    K, L = sp.Matrix([[4, 3]]), sp.Matrix([19, 81])
+    error = sp.Matrix(sp.BlockMatrix([[A - B * K, B * K], [sp.zeros(2), A - L * C]]))
+    estimate = sp.Matrix(sp.BlockMatrix([[A, -B * K], [L * C, A - B * K - L * C]]))
+    asked = SERVO + '[marking]\nasked = ["compensator.closed_loop_matrix"]\n'
+    for matrix, verdict in ((error, "right"), (estimate, "right"), (error.T, "wrong"), (2 * error, "wrong")):
+        assert verdicts(asked, {"closed_loop_matrix": text(matrix)}) == {"closed_loop_matrix": verdict}
+
+
+def test_sizes_are_four_numbers_in_order() -> None:
+    for sizes, verdict in (([1, 0, 1, 0], "right"), ([1, 1, 0, 0], "wrong"), ([1, 0, 1], "wrong")):
+        assert verdicts(PARTS, {"T": "[1 0; 0 1]", "sizes": sizes})["sizes"] in {verdict, "unreadable"} - {"right"} | {
+            verdict
+        }
