@@ -13,13 +13,13 @@ from symobs.specification.pole_patterns import TIME_CONSTANTS, bessel, overshoot
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from symobs.derivation.builder import Page
+    from symobs.derivation.builder import Builder
     from symobs.formula import Relation
     from symobs.formula.term import Term
     from symobs.specification import DesiredPolynomial, PolePattern
 
 
-def say_pattern(page: Page, phi: Term, desired: DesiredPolynomial) -> None:
+def say_pattern(page: Builder, phi: Term, desired: DesiredPolynomial) -> None:
     """Say why φ is the polynomial that is meant."""
     pattern = desired.pattern
     assert pattern is not None  # noqa: S101 - asked only where there is one
@@ -40,7 +40,9 @@ def say_pattern(page: Page, phi: Term, desired: DesiredPolynomial) -> None:
             _say_pair(page, pattern, values, written)
 
 
-def _say_pair(page: Page, pattern: PolePattern, values: dict[str, Scalar], written: Callable[[Term], Relation]) -> None:
+def _say_pair(
+    page: Builder, pattern: PolePattern, values: dict[str, Scalar], written: Callable[[Term], Relation]
+) -> None:
     """s² + 2 ζ ω₀ s + ω₀² where ζ is given, (s + σ)² + ω² where σ follows from the settling time."""
     _, twice, square = pattern.polynomial.coefficients(pattern.variable)
     sigma, s = twice / 2, page.s
@@ -58,7 +60,7 @@ def _say_pair(page: Page, pattern: PolePattern, values: dict[str, Scalar], writt
         page.conclude("pattern_overshoot", bound=bound)
 
 
-def _mirrored(page: Page, pattern: PolePattern) -> Relation:
+def _mirrored(page: Builder, pattern: PolePattern) -> Relation:
     """p(s) p(−s) = ω₀²ⁿ + (−1)ⁿ s²ⁿ, with its factors."""
     ((_, radius),), variable = pattern.values, pattern.variable
     degree, away = pattern.polynomial.degree(variable), {variable: -Scalar.symbol(variable)}
@@ -68,7 +70,7 @@ def _mirrored(page: Page, pattern: PolePattern) -> Relation:
     return relation(product([page.value(factor) for factor in factors]), circle)
 
 
-def _recursion(page: Page, pattern: PolePattern) -> Term:
+def _recursion(page: Builder, pattern: PolePattern) -> Term:
     """Return Θₙ as (2n − 1) ω₀ Θₙ₋₁ + s² Θₙ₋₂; s + ω₀ where n = 1."""
     ((_, frequency),), variable = pattern.values, pattern.variable
     degree = pattern.polynomial.degree(variable)

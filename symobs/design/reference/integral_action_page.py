@@ -5,11 +5,11 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, cast
 
 from symobs.analysis.page_parts import given, say_stability, set_anew, stratum_of, undecided
-from symobs.derivation import Case as CaseStep
-from symobs.derivation.builder import Page, predicate, relation
+from symobs.derivation import CaseStep
+from symobs.derivation.builder import Builder, predicate, relation
 from symobs.design.reference.integral_action import IntegralAction, closed_loop, extended
 from symobs.exact import Matrix, Scalar, rank
-from symobs.formula import Literal, Shown
+from symobs.formula import Evaluated, Literal
 from symobs.formula.term import block
 from symobs.phrases.spoken import Counted
 from symobs.result import page_of
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 
 @page_of(IntegralAction)
-def write_integral_action(page: Page, design: IntegralAction) -> None:
+def write_integral_action(page: Builder, design: IntegralAction) -> None:
     """Write the data, the extended plant, the gains and the closed loop."""
     given(page, ("control", design.desired))
     with page.section("integral_action"):
@@ -38,16 +38,16 @@ def write_integral_action(page: Page, design: IntegralAction) -> None:
         page.steps += _cases(page, design)
 
 
-def _cases(page: Page, design: IntegralAction) -> Iterator[Step]:
+def _cases(page: Builder, design: IntegralAction) -> Iterator[Step]:
     """Yield a case for each stratum."""
     for case in design.case_tree:
         if case.result is None:
             yield undecided(page, case)
             continue
         found = cast("IntegralAction", case.result)
-        inner = Page(found.plant, found.free_signals)
-        matrices = {name: getattr(found.plant.matrices, name) for name in "ABCD" if page.knows(name)}
-        inner.environment = page.environment.having(values=matrices)
+        inner = Builder(found.plant, found.free_signals)
+        matrices = {name: getattr(found.plant.matrices, name) for name in "ABCD" if page.defines(name)}
+        inner.environment = page.environment.extended_by(values=matrices)
         inner.set("phi_c", found.desired.polynomial)
         _name_extended(inner)
         _design(inner, found, is_case=True)
@@ -57,7 +57,7 @@ def _cases(page: Page, design: IntegralAction) -> Iterator[Step]:
         )
 
 
-def _extended(page: Page) -> None:
+def _extended(page: Builder) -> None:
     """ξ' = r − y, and both equations together."""
     kind = "discrete" if page.plant.is_discrete else "continuous"
     xi, error = page["xi_I"], page["r_in"] - page["y"]
@@ -74,19 +74,19 @@ def _extended(page: Page) -> None:
     page.equal(relation(state.derivative, page["A_hat"] @ state + driven), say="integral_together")
 
 
-def _name_extended(page: Page) -> None:
+def _name_extended(page: Builder) -> None:
     """Let the letters of the extended plant stand for its matrices."""
     m = extended(page.plant).matrices
     page.set("A_hat", m.A)
     page.set("B_hat", m.B)
 
 
-def _enters(page: Page) -> Term:
+def _enters(page: Builder) -> Term:
     plant = page.plant
     return page.value(Matrix.block([[Matrix.zeros(plant.order, plant.outputs)], [Matrix.identity(plant.outputs)]]))
 
 
-def _design(page: Page, design: IntegralAction, *, is_case: bool = False) -> None:
+def _design(page: Builder, design: IntegralAction, *, is_case: bool = False) -> None:
     """The rank condition, and the gains or the reason why there are none."""
     _say_condition(page, design)
     if design.answer["K"] is None:
@@ -103,13 +103,13 @@ def _design(page: Page, design: IntegralAction, *, is_case: bool = False) -> Non
         page.remark("integral_family", count=Counted("number", design.fields["family"]["dimension"]))
 
 
-def _system(page: Page) -> Term:
+def _system(page: Builder) -> Term:
     A, plant = page["A"], page.plant
     D = page["D"] if plant.matrices.has_feedthrough else page.value(plant.matrices.D)
     return block([[A - page.identity(plant.order) if plant.is_discrete else A, page["B"]], [page["C"], D]])
 
 
-def _controllability(page: Page) -> Relation:
+def _controllability(page: Builder) -> Relation:
     """Return rank [B, AB, …] = n, or by how much it is less."""
     A, B, order = page["A"], page["B"], page.plant.order
     tested = block([[A**k @ B if k else B for k in range(order)]])
@@ -118,7 +118,7 @@ def _controllability(page: Page) -> Relation:
     return relation(whole, order) if found == order else relation(whole, found, "<", order)
 
 
-def _say_condition(page: Page, design: IntegralAction) -> None:
+def _say_condition(page: Builder, design: IntegralAction) -> None:
     """Say whether plant and integrator are controllable, and by which rank."""
     plant = page.plant
     size, place = plant.order + plant.outputs, "one" if plant.is_discrete else "origin"
@@ -126,7 +126,7 @@ def _say_condition(page: Page, design: IntegralAction) -> None:
     if design.answer["w"] is not None:
         row = page.set("w_0", design.answer["w"])
         annuls = relation(row @ whole, Matrix.zeros(1, plant.order + plant.inputs))
-        page.conclude("integral_blocked", row=relation(row, row.shown), annuls=annuls)
+        page.conclude("integral_blocked", row=relation(row, row.as_value), annuls=annuls)
     elif len(controllable.operators) > 1:
         page.conclude("integral_uncontrollable", rank=controllable)
     else:
@@ -134,7 +134,7 @@ def _say_condition(page: Page, design: IntegralAction) -> None:
         page.conclude(f"integral_possible_{place}", controllable=controllable, rank=found)
 
 
-def _impossible(page: Page, design: IntegralAction) -> None:
+def _impossible(page: Builder, design: IntegralAction) -> None:
     """The modes of plant and integrator that no gain moves are not among the desired poles."""
     pair, size = design.loop.pair, page.plant.order + page.plant.outputs
     N, X = page.set("N_K", pair.kernel), page.set("X_K", pair.restricted)
@@ -147,32 +147,32 @@ def _impossible(page: Page, design: IntegralAction) -> None:
         relation(page["A_hat"].T @ N, N @ X),
         relation(N.apply("rank"), count, "<=", size),
         predicate("not_polynomial", page["phi_c"] / fixed),
-        fixed=Shown(fixed.formula, Literal(design.loop.fixed_polynomial)),
+        fixed=Evaluated(fixed.formula, Literal(design.loop.fixed_polynomial)),
     )
 
 
-def _gains(page: Page, design: IntegralAction) -> None:
+def _gains(page: Builder, design: IntegralAction) -> None:
     """[K, −k_I] of the extended plant, and its parts."""
     plant, gain = page.plant, design.loop.answer["K"]
     K, k_I = page.set("K", design.answer["K"]), page.set("k_I", design.answer["k_I"])
     both = block([[K, -k_I]])
     A_hat, B_hat = page["A_hat"], page["B_hat"]
     page.equal(relation(both, gain), say="integral_gains")
-    page.equal(relation(K, K.shown), say="integral_parts", answer=True)
-    page.equal(relation(k_I, k_I.shown), answer=True)
+    page.equal(relation(K, K.as_value), say="integral_parts", answer=True)
+    page.equal(relation(k_I, k_I.as_value), answer=True)
     pencil = page.s @ page.identity(plant.order + plant.outputs) - A_hat + B_hat @ both
     page.verified("as_required", check=relation(pencil.apply("det"), page.value(design.desired.polynomial)))
     if not design.desired.is_numeric:
         say_stability(page, pencil.apply("det"))
 
 
-def _closed_loop(page: Page) -> None:
+def _closed_loop(page: Builder) -> None:
     """The matrix of the closed loop in (x, ξ)."""
     plant = page.plant
     page.define("A_cl", block(closed_loop(page.environment, plant)), say="integral_loop")
 
 
-def _at_rest(page: Page, design: IntegralAction) -> None:
+def _at_rest(page: Builder, design: IntegralAction) -> None:
     """The gain at rest, which is one: the last rows of the closed loop are r − y."""
     plant, A_cl = page.plant, page["A_cl"]
     zero = design.desired.polynomial.substitute({plant.variable: Scalar.of(int(plant.is_discrete))})
