@@ -32,7 +32,7 @@ COMMANDS = {
     "examples": "List the worked examples, or print the one called NAME.",
     "export": "Export problems as questions of a learning platform, which accept what `symobs check` accepts.",
     "methods": "List every task and its methods.",
-    "schema": "Print the JSON schema of problem files, or that of the results of the command NAME.",
+    "schema": "Print the JSON schema of problem files, of the file of a sheet, or of the results of the command NAME.",
     "serve": "Move poles, parameters and entries in a browser, every answer checked; FILE is the problem to begin with.",
     "sheet": "Put several problem FILEs on one sheet: all questions first, then all solutions.",
     "solve": "Solve a problem FILE (TOML or JSON; - is standard input) and print its derivation.",

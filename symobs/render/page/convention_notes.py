@@ -1,4 +1,4 @@
-"""Conventions stated on a page: those of its letters."""
+"""Conventions stated on a page, those of its letters, below its title."""
 
 from __future__ import annotations
 
@@ -35,6 +35,8 @@ from symobs.formula import (
     letters,
 )
 from symobs.phrases.spoken import SPOKEN
+from symobs.render.page.blocks import Title
+from symobs.render.page.prose import joined
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
@@ -42,7 +44,9 @@ if TYPE_CHECKING:
     from symobs.convention import Convention
     from symobs.derivation import Sentence, Step
     from symobs.formula import Fact, Formula
+    from symobs.phrases.languages import Language
     from symobs.render.page.blocks import Inline
+    from symobs.result import Document
 
 
 def letters_used(steps: Iterable[Step]) -> frozenset[str]:
@@ -127,3 +131,20 @@ def _in_sentence(sentence: Sentence | None) -> Iterator[Formula]:
             yield value.value
         elif not isinstance(value, (str, SymbolList, *SPOKEN)):
             yield value
+
+
+def title_of(document: Document, language: Language) -> Title:
+    """Return the title of a page, with its source and the conventions that it states."""
+    steps = [step for derivation in document.derivations for step in derivation.steps]
+    conventions = stated_conventions(letters_used(steps), document.convention, language.words)
+    if not conventions:
+        return Title(document.title, _as_sentence(document.source), ())
+    listed: list[Inline] = [f"{language.words['conventions']} "]
+    for convention in conventions:
+        listed += [*convention, ", "]
+    return Title(document.title, _as_sentence(document.source), joined((*listed[:-1], ".")))
+
+
+def _as_sentence(text: str) -> str:
+    text = text.strip()
+    return f"{text}." if text and text[-1] not in ".!?" else text

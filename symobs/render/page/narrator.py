@@ -44,12 +44,11 @@ from symobs.render.page.blocks import (
     PictureBlock,
     References,
     TableBlock,
-    Title,
     Verified,
     with_few_boxes,
 )
 from symobs.render.page.citations import cited_literature, referred_to
-from symobs.render.page.convention_notes import letters_used, stated_conventions
+from symobs.render.page.convention_notes import letters_used, title_of
 from symobs.render.page.detail_level import FINAL, at_detail
 from symobs.render.page.handout import handed_out
 from symobs.render.page.prose import filled, joined, with_reference
@@ -87,12 +86,12 @@ def narrate(document: Document) -> tuple[Block, ...]:
     works, citations = cited_literature(() if is_final else (step for steps in parts for step in steps), language)
     page = _PageBlocks(document.convention, language, citations=citations)
     page.referred = dict.fromkeys((each for steps in parts for each in referred_to(steps)), 0)
-    page.blocks.append(_title(document, language))
+    page.blocks.append(title_of(document, language))
     page.blocks += [Paragraph((" ".join(part.split()),)) for part in document.text.split("\n\n") if part.strip()]
     together, apart = _statements(parts)
     page.emit_given(together)
     if is_final:  # the question has said what is given, and where it comes from
-        page.blocks[:] = [replace(_title(document, language), source="")]
+        page.blocks[:] = [replace(title_of(document, language), source="")]
     for index, steps in enumerate(parts):
         if index in apart:
             page.printed.clear()
@@ -369,22 +368,6 @@ def _is_statement(step: Step) -> bool:
 
 def _is_condition(step: Given) -> bool:
     return all(relation.operators[0] == "!=" for relation in step.relations)
-
-
-def _title(document: Document, language: Language) -> Title:
-    steps = [step for derivation in document.derivations for step in derivation.steps]
-    conventions = stated_conventions(letters_used(steps), document.convention, language.words)
-    if not conventions:
-        return Title(document.title, _as_sentence(document.source), ())
-    listed: list[Inline] = [f"{language.words['conventions']} "]
-    for convention in conventions:
-        listed += [*convention, ", "]
-    return Title(document.title, _as_sentence(document.source), joined((*listed[:-1], ".")))
-
-
-def _as_sentence(text: str) -> str:
-    text = text.strip()
-    return f"{text}." if text and text[-1] not in ".!?" else text
 
 
 def _punctuated(blocks: Sequence[Block]) -> tuple[Block, ...]:
