@@ -110,7 +110,8 @@ def schema() -> dict[str, Any]:
     """Return the JSON schema of a problem file, read from the registry."""
     known = sorted(tasks())
     number_or_text: dict[str, Any] = {"type": ["number", "string"]}
-    matrix = {"type": ["string", "array"], "items": {"type": "array", "items": number_or_text}}
+    row = {"type": "array", "items": number_or_text}  # a column or a row may be written as a single list
+    matrix = {"type": ["string", "array"], "items": {"anyOf": [row, number_or_text]}}
     sign = {"enum": list(SIGNS)}
     details = {"sign": sign, "latex": {"type": "string"}}
     symbol = {"type": "object", "properties": details, "additionalProperties": False}
