@@ -110,15 +110,23 @@ def schema() -> dict[str, Any]:
     """Return the JSON schema of a problem file, read from the registry."""
     known = sorted(tasks())
     number_or_text: dict[str, Any] = {"type": ["number", "string"]}
-    row = {"type": "array", "items": number_or_text}  # a column or a row may be written as a single list
-    matrix = {"type": ["string", "array"], "items": {"anyOf": [row, number_or_text]}}
+    row = {"type": "array", "items": number_or_text}
+    matrix = {"type": ["string", "array"], "items": row}
+    column_or_row = {"type": ["string", "array"], "items": {"anyOf": [row, number_or_text]}}  # one list may be either
     sign = {"enum": list(SIGNS)}
     details = {"sign": sign, "latex": {"type": "string"}}
     symbol = {"type": "object", "properties": details, "additionalProperties": False}
-    plant = dict.fromkeys("ABCD", matrix) | {
-        "transfer_function": {"description": 'instead of A, B, C, D: "1/(s*(s + 1))"', **number_or_text},
-        "dt": {"description": "0: continuous; true, or the period: discrete", "type": ["number", "boolean", "string"]},
-    }
+    plant = (
+        {"A": matrix}
+        | dict.fromkeys("BCD", column_or_row)
+        | {
+            "transfer_function": {"description": 'instead of A, B, C, D: "1/(s*(s + 1))"', **number_or_text},
+            "dt": {
+                "description": "0: continuous; true, or the period: discrete",
+                "type": ["number", "boolean", "string"],
+            },
+        }
+    )
     keywords: dict[str, Any] = {}
     for name in known:
         for keyword, kind in kinds_of(tasks()[name]).items():
