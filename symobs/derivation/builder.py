@@ -240,12 +240,17 @@ class Builder:
         answer: bool = False,
         silent: bool = False,
         closing: bool = True,
+        value: Scalar | Matrix | None = None,
         **slots: Slot,
     ) -> Term:
-        """Introduce a letter by a formula; its value is shown last unless `closing` is False, decimals behind it."""
+        """Introduce a letter by a formula; its value is shown last unless `closing` is False, decimals behind it.
+
+        A `value` that is known already is not evaluated here; the check evaluates it.
+        """
         chain = [self.value(m) if not isinstance(m, (Term, str)) else m for m in members]
         exact = [m for m in chain if isinstance(m, Term) and not isinstance(m.formula, Decimals)]
-        value = exact[-1].value
+        if value is None:
+            value = exact[-1].value
         if closing and len(exact) == len(chain) and not isinstance(exact[-1].formula, Literal):
             chain.append(exact[-1].as_value)
         because = sentence(say, slots) if say else None

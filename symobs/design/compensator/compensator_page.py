@@ -152,6 +152,7 @@ def define_or_hold(page: Builder, name: str, formula: Term, value: Matrix, say: 
         say=say,
         answer=True,
         closing=False,
+        value=value,
     )
     page.conclude_silently(relation(page[name], value))
 
@@ -314,7 +315,7 @@ def return_path_of_several(page: Builder, design: OutputFeedback) -> None:
     entries = [[page.term(formula_of_factored(entry)) for entry in row] for row in design.loop_of_several]
     loop = Matrix.of([[entry.value for entry in row] for row in design.loop_of_several])
     shown = [block(entries)] if loop.size <= readability.MATRIX else []
-    page.define("G_cl", formula, *shown, say="return_path", answer=True, closing=False)
+    page.define("G_cl", formula, *shown, say="return_path", answer=True, closing=False, value=loop)
     page.conclude_silently(relation(page["G_cl"], loop))
     page.conclude("loop_matrix_poles")
     draw_loop(page, page["P"], page["F"])
