@@ -10,9 +10,13 @@ import pytest
 
 import symobs
 from symobs.exact import Ideal, Scalar
+from symobs.problem import validate
+from symobs.problem.file_tables import parse
 from tests.programs.strata_oracle.__main__ import Found, drawn, examine
 from tests.programs.strata_oracle.answers import Branch, Contradiction, branches, hold, relations
 from tests.programs.strata_oracle.points import points_on
+from tests.programs.strata_oracle.times import drawn as of_times
+from tests.programs.strata_oracle.times import strata
 
 pytestmark = pytest.mark.slow
 
@@ -170,3 +174,13 @@ def test_a_sample_of_plants_is_right_at_points_of_its_strata() -> None:
     assert not found.wrong, found.table()
     assert sum(found.counted[task, "points"] for task, _ in [*found.counted]) > 0
     assert {drawn(seed)["task"] for seed in SAMPLE} >= {"gramian", "observability", "controllability", "pbh"}
+
+
+@pytest.mark.parametrize("seed", [0, 17, 18])
+def test_plants_of_several_inputs_and_outputs_are_decided_on_all_strata_and_have_pages(seed: int) -> None:
+    """Curves of degree five and nine meet on them, and gains have poles on some of the curves."""
+    (result,) = validate(parse(of_times(seed)[1], "problem")).solve()
+    decided = list(strata(told(result)))
+    assert len(decided) >= 15
+    assert all(decided)
+    assert result.derivation.steps
