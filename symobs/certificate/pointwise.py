@@ -10,6 +10,7 @@ from symobs.conditions import never_zero, real_consequences, vanishing_factors
 from symobs.errors import NotShown
 from symobs.exact import EIGENVALUE, Ideal, Matrix, Scalar, TooLarge, echelon, independent_rows, is_inverse
 from symobs.exact.core.generators import all_roots
+from symobs.exact.ideals.conjugate_points import conjugate_points
 from symobs.formula import ModuloIdeal
 
 if TYPE_CHECKING:
@@ -48,7 +49,8 @@ def _within(
 ) -> list[Ideal]:
     """Return ideals of the real points of an ideal where relations hold, none where there is none."""
     relations = tuple(relations)
-    if Ideal.of(relations).coordinate is None:  # points by a coordinate are left as they are: they reduce the others
+    # Points by a coordinate are left as they are: they reduce the others.
+    if conjugate_points(relations) is None or Ideal.of(relations).coordinate is None:
         relations = tuple(map(ideal.remainder, relations))
     found = _implied([*relations, *ideal.generators], signs, nonzero)
     return [part for reduced in found for part in _parts(reduced, signs, nonzero)]

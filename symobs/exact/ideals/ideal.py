@@ -219,14 +219,12 @@ def _ideal(generators: tuple[Scalar, ...], field: Field | None = None) -> Ideal:
     if any(_alone(generator) > FEW for generator in generators) and (points := _points(generators, field)):
         return points
     moved += [square.project_to_context(home) for square in field.relations] if moved else []
-    if len(moved) > 1 and sum(len(polynomial) for polynomial in moved) > TERMS:
-        message = "the equations have too many terms"
-        raise TooLarge(message)
-    basis, complete = fmpz_mpoly_vec(moved, home).buchberger_naive(limits=LIMITS)
-    if not complete:
+    has_few = len(moved) <= 1 or sum(len(polynomial) for polynomial in moved) <= TERMS
+    basis, complete = fmpz_mpoly_vec(moved, home).buchberger_naive(limits=LIMITS) if has_few else (None, False)
+    if basis is None or not complete:
         if points := _points(generators, field):
             return points
-        message = "the equations are too long to be decided"
+        message = f"the equations {'are too long to be decided' if has_few else 'have too many terms'}"
         raise TooLarge(message)
     return Ideal(field, basis.autoreduction(groebner=True), home)  # type: ignore[attr-defined]
 

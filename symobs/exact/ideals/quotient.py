@@ -27,7 +27,7 @@ class Quotient:
         self.names = names
         self._normal_forms = normal_forms
         self._place = {monomial.terms()[0][1]: place for place, monomial in enumerate(monomials)}
-        self.one = fmpq_mat(self.dimension, 1, [1] + [0] * (self.dimension - 1))
+        self.one = fmpq_mat(self.dimension, 1, [int(not place) for place in range(self.dimension)])
         self._identity = fmpq_mat([[int(i == j) for j in range(self.dimension)] for i in range(self.dimension)])
         self.multiplication = cache(self._multiplication)
 

@@ -81,6 +81,11 @@ def test_other_systems_are_left_alone(texts: list[str]) -> None:
     assert conjugate_points([parse_scalar(text) for text in texts]) is None
 
 
+def test_no_point_is_no_function() -> None:
+    assert Ideal.of((a * b - 1, a)).dimension == 0
+    assert Ideal.of((b**9 - 2, a - b, a**2 + 1)).is_whole
+
+
 def test_an_ideal_of_many_points_is_kept_by_a_coordinate() -> None:
     p = b**9 - 4 * b + 2
     ideal = Ideal.of((p, a - b**3))
