@@ -177,6 +177,17 @@ def computed(part: Result, point: Point) -> dict[str, Any]:
         closed = subtract(A, multiply(B, answer["K"])) if "K" in answer else None
         fixed = hidden_at(transposed(A), transposed(B), s)
         return {"closed_loop_matrix": closed, "poles": answer["polynomial"], "fixed_modes": fixed}
+    if part.task == "integral_action":
+        rows, inputs = [[-value for value in row] for row in C], [[-value for value in row] for row in D]
+        wide, tall = (
+            blocks((A, [[Fraction(0)] * len(C)] * len(A)), (rows, [[Fraction(0)] * len(C)] * len(C))),
+            B + inputs,
+        )
+        expected = {"poles": answer["polynomial"], "fixed_modes": hidden_at(transposed(wide), transposed(tall), s)}
+        if "K" not in answer:
+            return expected
+        gain = [own + [-value for value in held] for own, held in zip(answer["K"], answer["k_I"], strict=True)]
+        return expected | {"closed_loop_matrix": subtract(wide, multiply(tall, gain))}
     if part.task == "time_varying_observability":
         return {"determinant": determinant(answer["gramian"])} if "gramian" in answer else {}
     if part.task == "reduced_order_observer":
