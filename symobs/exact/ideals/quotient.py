@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from functools import cache
 from typing import TYPE_CHECKING
 
 from flint import fmpq, fmpq_mat
@@ -29,15 +28,20 @@ class Quotient:
         self._place = {monomial.terms()[0][1]: place for place, monomial in enumerate(monomials)}
         self.one = fmpq_mat(self.dimension, 1, [int(not place) for place in range(self.dimension)])
         self._identity = fmpq_mat([[int(i == j) for j in range(self.dimension)] for i in range(self.dimension)])
-        self.multiplication = cache(self._multiplication)
+        self._known: dict[Scalar, fmpq_mat] = {}
 
     @property
     def dimension(self) -> int:
         """How many zeros there are, each counted with its multiplicity."""
         return len(self.monomials)
 
-    def _multiplication(self, value: Scalar) -> fmpq_mat:
+    def multiplication(self, value: Scalar) -> fmpq_mat:
         """Return the matrix of the multiplication by a polynomial."""
+        if value not in self._known:
+            self._known[value] = self._multiplication(value)
+        return self._known[value]
+
+    def _multiplication(self, value: Scalar) -> fmpq_mat:
         *columns, one = self._normal_forms([*(value * each for each in self.monomials), self.monomials[0]])
         scale, found = one.terms()[0][0], fmpq_mat(self.dimension, self.dimension)
         for column, image in enumerate(columns):
