@@ -7,11 +7,15 @@ and rank [A B; C D] = n + p (rank [A − I, B; C D] in discrete time).
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 from symobs._dataclass import dataclass
-from symobs.analysis.strata.strata import solved
+from symobs.analysis.strata.loci import distance_from, loci
+from symobs.analysis.strata.rank_cases import outside
+from symobs.analysis.strata.rank_stratification import maximal_minors
+from symobs.analysis.strata.strata import region_of, solved
 from symobs.certificate.claims import Certificate, Claim
 from symobs.derivation.builder import relation
 from symobs.design.full_order.state_feedback import StateFeedbackDesign
@@ -81,7 +85,8 @@ class IntegralAction(Result):
         e = Environment(variable=plant.variable, values=known, relations=relations)
         whole, size = _system(e, plant), plant.order + plant.outputs
         if w is None:
-            yield Claim(relation(whole.apply("rank"), size), e, "rank [A B; C D] = n + p")
+            beside = replace(e, relations=(*relations, *outside(self.distances)), signs=plant.symbols.signs)
+            yield Claim(relation(whole.apply("rank"), size), beside, "rank [A B; C D] = n + p")
         else:
             yield Claim(
                 relation(letter("w", e) @ whole, Matrix.zeros(1, plant.order + plant.inputs)), e, "w*[A B; C D] = 0"
@@ -91,6 +96,27 @@ class IntegralAction(Result):
             closed = block(closed_loop(e, plant))
             pencil = letter("s", e) @ identity(size, e) - closed
             yield Claim(relation(pencil.apply("det"), self.answer["polynomial"]), e, "det(s*I - closed loop) = phi")
+
+    @cached_property
+    def blocked(self) -> tuple[tuple[Scalar, ...], ...]:
+        """Systems of equations where [A B; C D] loses rank that it has in general; none where it always has it."""
+        if self.answer["w"] is not None or not self.plant.field.names:
+            return ()
+        region = region_of(self.plant)
+        minors = [minor.numerator for minor in maximal_minors(system_matrix(self.plant).T)]
+        found = loci(region.simplest_first(minor for minor in minors if not minor.is_zero), region)
+        return tuple(locus.equations for locus in found)
+
+    @cached_property
+    def distances(self) -> tuple[Scalar, ...]:
+        """Polynomials that are 0 exactly where [A B; C D] loses rank."""
+        return tuple(distance_from(equations) for equations in self.blocked)
+
+    @cached_property
+    def assumed(self) -> tuple[Scalar, ...]:
+        """What must not vanish for plant and integrator to be controllable."""
+        known = self.loop.test.holds_where if self.loop.test.answer["rank"] == self.loop.plant.order else ()
+        return tuple(condition.expression for condition in known if condition.kind == "existence")
 
     @property
     def all_certificates(self) -> tuple[Certificate, ...]:
@@ -123,8 +149,9 @@ class IntegralAction(Result):
 
     @cached_property
     def fields(self) -> Mapping[str, Any]:
-        """K, k_I, whether the rank condition holds, the closed loop in (x, ξ), and what the feedback reports."""
+        """K, k_I, whether (and where) the rank condition holds, the closed loop in (x, ξ), and what the feedback reports."""
         own = {"K": self.answer["K"], "k_I": self.answer["k_I"], "solvable": self.answer["w"] is None}
+        own["solvable_if"] = [" or ".join(f"{e} != 0" for e in equations) for equations in self.blocked] or None
         own |= {"polynomial": self.answer["polynomial"], "closed_loop_matrix": self.loop.fields["closed_loop_matrix"]}
         return own | {name: self.loop.report[name] for name in _REPORTED}
 
@@ -191,7 +218,8 @@ def integral_action(
     plant         n states, m inputs, p outputs, D allowed; in discrete time ξ(k + 1) = ξ(k) + r − y(k)
     poles         the n + p poles of plant and integrator, closed under conjugation; or
     polynomial    φ, monic of degree n + p
-    Returns K (m×n), k_I (m×p), solvable (rank [A B; C D] = n + p, in discrete time rank [A − I, B; C D]), polynomial,
+    Returns K (m×n), k_I (m×p), solvable (rank [A B; C D] = n + p, in discrete time rank [A − I, B; C D]; with parameters
+    exactly where all of solvable_if holds), polynomial,
     closed_loop_matrix in (x, ξ), poles, stable; `family` where the gains [K, −k_I] are not unique.  The verdict is `no`
     where φ cannot be assigned.  Raises `InputError` for wrong poles.
     Source: E. J. Davison (1976); K. Ogata, Modern Control Engineering, 5th ed., ch. 10.

@@ -88,11 +88,14 @@ def _enters(page: Builder) -> Term:
 
 def _design(page: Builder, design: IntegralAction, *, is_case: bool = False) -> None:
     """The rank condition, and the gains or the reason why there are none."""
+    assumed = design.assumed
+    if assumed:
+        page.assume("integral_provided", *assumed)
     _say_condition(page, design)
     if design.answer["K"] is None:
         _impossible(page, design)
         return
-    conditions = [c.expression for c in design.holds_where if c.kind != "domain"]
+    conditions = [c.expression for c in design.holds_where if c.kind != "domain" and c.expression not in assumed]
     if conditions:
         page.assume("integral_provided", *conditions)
     _gains(page, design)
@@ -113,7 +116,7 @@ def _controllability(page: Builder) -> Relation:
     """Return rank [B, AB, …] = n, or by how much it is less."""
     A, B, order = page["A"], page["B"], page.plant.order
     tested = block([[A**k @ B if k else B for k in range(order)]])
-    found = rank(tested.value)
+    found = rank(tested.value, page.plant.ideal)
     whole = tested.apply("rank")
     return relation(whole, order) if found == order else relation(whole, found, "<", order)
 
