@@ -86,6 +86,25 @@ def test_values_move_what_poles_are_to_do_and_their_page_is_checked() -> None:
     assert "Bessel" in there.to("text")
 
 
+#: The filters of order two for ω₀ = e⁻ᵀ: s² + c ω₀ s + d ω₀².
+OF_AN_EXPONENTIAL = [
+    ("damping = exp(-T), natural_frequency = 2", 2 * math.exp(-1) * 2, 4),
+    ("damping = 1/2, natural_frequency = exp(-T)", math.exp(-1), math.exp(-2)),
+    ("butterworth = exp(-T)", math.sqrt(2) * math.exp(-1), math.exp(-2)),
+    ("bessel = exp(-T)", 3 * math.exp(-1), 3 * math.exp(-2)),
+    ("settling_time = 4 exp(T), overshoot = 0.05", 2 * math.exp(-1), None),
+]
+
+
+@pytest.mark.parametrize(("poles", "twice", "square"), OF_AN_EXPONENTIAL)
+def test_a_pattern_of_an_exponential_has_its_page(poles: str, twice: float, square: float | None) -> None:
+    found = symobs.state_feedback(integrators(2, T="positive"), poles=poles)
+    assert "u = -K x" in found.to("text")
+    constant, linear = map(float, found.K.subs(dict.fromkeys(found.K.free_symbols, 1)))
+    assert linear == pytest.approx(twice)
+    assert square is None or constant == pytest.approx(square)
+
+
 FILE = """
 task = "compensator"
 plant = { A = "[0 1 0; 0 0 1; 0 0 0]", B = "[0; 0; 1]", C = "[1 0 0]" }
