@@ -54,7 +54,8 @@ def _say_pair(
     if "settling_time" in values:
         pair = (s + page.value(sigma)) ** 2 + page.value(square - sigma**2)
         decayed = relation(function("exp", Scalar.of(-TIME_CONSTANTS)), "<=", Scalar.of(1) / 50)
-        page.conclude("pattern_settling", pair=written(pair), bound=decayed)
+        complex_and_stable = relation(sigma, ">", Scalar.of(0)), relation(square - sigma**2, ">", Scalar.of(0))
+        page.conclude("pattern_settling", *complex_and_stable, pair=written(pair), bound=decayed)
     if "overshoot" in values:
         bound = relation(overshoot_of(pair_ratio(values["overshoot"])), "<=", values["overshoot"])
         page.conclude("pattern_overshoot", bound=bound)

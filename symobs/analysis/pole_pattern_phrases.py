@@ -4,7 +4,7 @@ from __future__ import annotations
 
 PHRASES: dict[str, str] = {
     "pattern_damping": "It has a pair of roots with the specified damping ratio and natural frequency: {pair}.",
-    "pattern_settling": "The mode of its pair of roots decays to less than 2 % of its initial value within the settling time: {pair}, and {bound}.",
+    "pattern_settling": "The amplitude of the mode of its pair of roots decays to less than 2 % of its initial value within the settling time: {pair}, and {bound}.",
     "pattern_overshoot": "The imaginary part of this pair is as large as the specified overshoot of the step response allows: {bound}.",
     "pattern_butterworth": "It is a Butterworth polynomial§: {identity}.",
     "pattern_butterworth_beside": "It has a Butterworth polynomial§ as a factor: {identity}.",

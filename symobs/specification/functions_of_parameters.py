@@ -55,12 +55,15 @@ def _over(desired: DesiredPolynomial, meanings: Mapping[str, Scalar], there: Sta
     for factor in desired.factors:
         moved = _moved(factor, meanings)
         if not there.admits(moved):
-            raise InputError("a coefficient divides by 0", where="specification", repair="divide by what is not 0")
+            raise _divides_by_zero()
         short = there.simplified(moved)
         factors.append(short if short.coefficients(desired.variable)[0].is_one else moved)
     poles = tuple(Complex(_moved(pole.real, meanings), _moved(pole.imaginary, meanings)) for pole in desired.poles)
     own = desired.pattern
-    pattern = None if own is None else replace(own, factors=tuple(factors[: len(own.factors)]))
+    pattern = None
+    if own is not None:
+        values = tuple((name, _moved(value, meanings)) for name, value in own.values)
+        pattern = replace(own, values=values, factors=tuple(factors[: len(own.factors)]))
     return replace(desired, factors=tuple(factors), poles=poles, pattern=pattern)
 
 
@@ -70,7 +73,14 @@ def _moved(value: Scalar, meanings: Mapping[str, Scalar]) -> Scalar:
     for root in roots_in(value):
         if not root.argument.is_constant:
             images[root.name] = square_root(_moved(root.argument, meanings))
-    return value.substitute(images) if images else value
+    try:
+        return value.substitute(images) if images else value
+    except ZeroDivisionError:
+        raise _divides_by_zero() from None
+
+
+def _divides_by_zero() -> InputError:
+    return InputError("a coefficient divides by 0", where="specification", repair="divide by what is not 0")
 
 
 def _moved_matrix(matrix: Matrix, meanings: Mapping[str, Scalar]) -> Matrix:

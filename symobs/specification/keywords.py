@@ -233,7 +233,8 @@ def _from_pattern(value: object, plant: StateSpace, degree: int, where: str) -> 
         message = "damping, settling time and filters are of continuous time"
         raise InputError(message, where=where, repair="give the poles themselves, z = exp(s T)")
     named, others = read_pattern(value, plant, where)
-    pattern = pattern_of(named, degree - len(others), plant.variable, where)
+    signs = plant.symbols.seen(value).signs
+    pattern = pattern_of(named, degree - len(others), plant.variable, where, signs)
     beside = _from_poles(others, plant.variable, len(others), where).factors
     return DesiredPolynomial(plant.variable, (*pattern.factors, *beside), pattern=pattern)
 

@@ -17,7 +17,7 @@ from symobs.errors import InputError
 from symobs.exact import Scalar, product_of
 from symobs.exact.algebraic.conjugates import is_in_kernel
 from symobs.exact.algebraic.real_algebraic import roots_of_scalar
-from symobs.exact.core.generators import PI, NotWritten, function
+from symobs.exact.core.generators import PI, NotWritten, function, symbols_in
 from symobs.exact.time_functions.butterworth import butterworth, butterworth_angles
 
 if TYPE_CHECKING:
@@ -100,8 +100,14 @@ def _parts_of_text(text: str, where: str) -> dict[str, Any]:
     return found
 
 
-def pattern_of(values: Mapping[str, Scalar], count: int, variable: str, where: str) -> PolePattern:
-    """Return the pattern of `count` poles for positive values; raises `InputError` where there is none."""
+def pattern_of(
+    values: Mapping[str, Scalar], count: int, variable: str, where: str, signs: Mapping[str, str]
+) -> PolePattern:
+    """Return the pattern of `count` poles; raises `InputError` where there is none, or for some values of symbols only."""
+    for asked, given in values.items():
+        _require_positive(asked, given, signs, f"{where}.{asked}")
+    if {*values} == {"damping", "settling_time"}:
+        _require_less_than_one(values["damping"], signs, f"{where}.damping")
     ordered = tuple((name, values[name]) for name in KEYS if name in values)
     name, value = ordered[0]
     if name in FILTERS:
@@ -116,6 +122,33 @@ def pattern_of(values: Mapping[str, Scalar], count: int, variable: str, where: s
     sigma, square = rate_and_square(values, where)
     s = Scalar.symbol(variable)
     return PolePattern(variable, ordered, (s**2 + 2 * sigma * s + square,))
+
+
+def _require_positive(name: str, value: Scalar, signs: Mapping[str, str], where: str) -> None:
+    """Raise `InputError` unless the declared signs make a value positive: where it is not, poles are on the right.
+
+    An overshoot is a number within bounds of its own.
+    """
+    if name == "overshoot" or sign_of(value, signs) == "positive":
+        return
+    undeclared = sorted(symbol for symbol in symbols_in(value) if signs.get(symbol) != "positive")
+    repair = f"give a positive {name}"
+    if sign_of(value, {**signs, **dict.fromkeys(undeclared, "positive")}) == "positive":
+        repair = f"declare {' and '.join(undeclared)} positive in symbols"
+    raise InputError(f"{name} is {value}, which need not be positive", where=where, repair=repair)
+
+
+def _require_less_than_one(damping: Scalar, signs: Mapping[str, str], where: str) -> None:
+    """Raise `InputError` unless a pair is complex: only then is σ = 4/T the rate at which it decays."""
+    below = sign_of(1 - damping, signs)
+    if below == "positive":
+        return
+    which = "is" if below in {"zero", "negative", "nonpositive"} else "may be"
+    message = (
+        f"damping is {damping}, which {which} 1 or more, and such a pair does not decay like exp(-4 t/settling_time)"
+    )
+    repair = "give a number less than 1, or natural_frequency instead of settling_time"
+    raise InputError(message, where=where, repair=repair)
 
 
 def rate_and_square(values: Mapping[str, Scalar], where: str) -> tuple[Scalar, Scalar]:

@@ -73,17 +73,24 @@ def read_transfer_function(value: object, symbols: Symbols, variable: str, where
 def over_data(above: Scalar, below: Scalar, variable: str, where: str) -> tuple[Scalar, Scalar]:
     """Return numerator and denominator over a common base of their functions, simplified by what vanishes there.
 
-    Raises `InputError` for a function of the variable, and where what vanishes makes the two have a common factor.
+    Raises `InputError` for a function of the variable, and where what vanishes is divided by, is the numerator, or makes the
+    two have a common factor.
     """
     if not require_known([above, below], where):
         return above, below
     row, relations = over_a_base({"P": Matrix.row([above, below])}, where)
     assert row["P"] is not None  # noqa: S101 - it is given
-    common = row["P"].common_denominator()
+    given, common = above, row["P"].common_denominator()
     above, below = (part * common for part in row["P"].entries)
+    ideal = Ideal.of(relations)
     if relations:
-        ideal = Ideal.of(relations)
         above, below = ideal.simplified(above), ideal.simplified(below)
+    if below.is_zero or (above.is_zero and not given.is_zero):
+        message, repair = "a coefficient divides by 0", "divide by what is not 0"
+        if above.is_zero:  # h / (h s² + s + h) may have been written so, or be 1 / (s² + s/h + 1)
+            message, repair = f"{message}, or the numerator is 0", f"{repair}, and write 0 for what is"
+        raise InputError(f"{message}, for all values of the functions", where=where, repair=repair)
+    if relations:
         least = above / below
         if resultant(least.numerator, least.denominator, variable) in ideal:
             message = "numerator and denominator have a common factor, for all values of their functions"

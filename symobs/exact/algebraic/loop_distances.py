@@ -58,11 +58,7 @@ class Loop:
     def modulus(self, digits: int) -> str | None:
         """Return min |1 + N/P| with so many digits after the point."""
         slope = self.closed.derivative() * self.opened - self.closed * self.opened.derivative()
-        places = [
-            *self._inside(slope),
-            *([RealNumber.of(-1), RealNumber.of(1)] if self.discrete else [RealNumber.of(0)]),
-        ]
-        met = [x for x in places if x.sign_of(self.opened)]
+        met = [*self._inside(slope), *(x for x in self._ends if x.sign_of(self.opened))]
 
         def least(bits: int) -> arb:
             at_infinity = [] if self.discrete else [arb(1)]  # N/P vanishes there
@@ -72,13 +68,18 @@ class Loop:
 
     def phase(self, digits: int) -> str | None:
         """Return the least angle in degrees by which N/P can be turned until it meets −1, `oo` where it never does."""
-        met = self._inside(self.crossing)
+        met = [*self._inside(self.crossing), *(x for x in self._ends if not x.sign_of(self.crossing))]
 
         def least(bits: int) -> arb:
             found = reduce(arb.min, [self._ratio(x, bits) for x in met])
             return 2 * arb.atan2(found.sqrt(), (4 - found).nonnegative_part().sqrt()) * 180 / arb.pi()
 
         return certain(least, digits) if met else INFINITE
+
+    @property
+    def _ends(self) -> list[RealNumber]:
+        """The finite ends of the range of x."""
+        return [RealNumber.of(-1), RealNumber.of(1)] if self.discrete else [RealNumber.of(0)]
 
     def _inside(self, polynomial: fmpz_poly) -> list[RealNumber]:
         """Return the roots inside the range of x where N/P is finite."""

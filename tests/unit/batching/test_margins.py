@@ -15,7 +15,7 @@ from symobs.batching.sweep import margins
 from symobs.batching.sweep.plan import Plan
 from symobs.batching.sweep.program import MARGINS, Program
 from symobs.errors import UsageError
-from symobs.exact.algebraic.loop_distances import slowest_root
+from symobs.exact.algebraic.loop_distances import Loop, slowest_root
 from symobs.problem import parse
 from tests.support.tools.command_line import inside
 from tests.unit.batching.test_sweep import problem
@@ -175,6 +175,23 @@ def test_of_several_intervals_it_is_the_one_around_the_design() -> None:
     entries = dict(zip(program.columns(), map(str, program.alone((), None).values), strict=True))
     cells, _ = margins.cells_at(program, (), entries)
     assert (cells["gain_down"], cells["gain_up"]) == ("1/2", "oo")
+
+
+#: P + N and P of loops whose |N/P| reaches 1 at an end of the boundary alone, where N/P = 1: half a turn from −1.
+AT_AN_END = {
+    "s = 0": ("1, 2", "1, 1", False),
+    "z = 1": ("1, -1/2", "1, -3/4", True),
+    "z = -1": ("1, 1/2", "1, 3/4", True),
+}
+
+
+@pytest.mark.parametrize("end", AT_AN_END)
+def test_a_loop_that_reaches_one_at_an_end_is_half_a_turn_away(end: str) -> None:
+    closed, opened, discrete = AT_AN_END[end]
+    p, q = ([Fraction(part) for part in text.split(",")] for text in (closed, opened))
+    x = Fraction(end[4:])
+    assert (p[0] * x + p[1]) / (q[0] * x + q[1]) - 1 == 1
+    assert Loop.of(p, q, discrete=discrete).phase(6) == "180"
 
 
 def test_what_is_not_stable_has_no_margins_and_what_takes_long_is_undecided(monkeypatch: pytest.MonkeyPatch) -> None:

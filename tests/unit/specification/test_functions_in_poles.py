@@ -138,3 +138,18 @@ def test_a_question_names_poles_with_functions() -> None:
     text = 'task = "observer"\nplant = { A = "[0 1; 0 -1]", C = "[1 0]" }\n[symbols]\ntheta = "real"\n'
     problem = validate(parse(text + '[specification]\npoles = ["-cosh(theta)", "-2"]\n'))
     assert "Design an observer with the poles" in str(render(question_of(problem), "text"))
+
+
+#: Divisors that vanish for all values of T and θ.
+ZEROS = ["exp(-2*T) - exp(-T)^2", "sin(2*theta) - 2*sin(theta)*cos(theta)", "cos(theta)^2 + sin(theta)^2 - 1"]
+
+
+@pytest.mark.parametrize("zero", ZEROS)
+def test_a_coefficient_that_divides_by_what_vanishes_is_refused(zero: str) -> None:
+    for asked in ({"poles": f"-exp(-T)/({zero}), -1"}, {"polynomial": f"s^2 + s/({zero}) + 1"}):
+        with pytest.raises(InputError, match="a coefficient divides by 0") as raised:
+            symobs.state_feedback(symobs.StateSpace(*SERVO), **asked)
+        assert raised.value.where == "specification"
+    for function in (f"1/(s^2 + s/({zero}) + 1)", f"(s + 1/({zero}))/(s^2 + 1)", f"[1/(s + 1/({zero})) 1/s]"):
+        with pytest.raises(InputError, match="a coefficient divides by 0"):
+            symobs.StateSpace.from_transfer_function(function)

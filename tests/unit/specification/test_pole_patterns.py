@@ -19,12 +19,13 @@ from symobs.problem import validate
 from symobs.problem.file_tables import parse
 from symobs.problem.question import question_of
 from symobs.result import render
+from symobs.specification import PolePattern
 
 
-def integrators(order: int) -> symobs.StateSpace:
+def integrators(order: int, **symbols: str) -> symobs.StateSpace:
     """A chain of integrators: the gain is the row of the coefficients, constant first."""
     A = [[int(column == row + 1) for column in range(order)] for row in range(order)]
-    return symobs.StateSpace(A, [[0]] * (order - 1) + [[1]], [[1] + [0] * (order - 1)])
+    return symobs.StateSpace(A, [[0]] * (order - 1) + [[1]], [[1] + [0] * (order - 1)], symbols=symbols or None)
 
 
 def polynomial(order: int, poles: object) -> list[float]:
@@ -78,10 +79,30 @@ def test_damping_and_settling_time_leave_no_choice() -> None:
 
 def test_values_move_what_poles_are_to_do_and_their_page_is_checked() -> None:
     observer = "damping = 0.8, settling_time = T"
-    design = symobs.compensator(integrators(2), control_poles={"bessel": "w"}, observer_poles=observer)
+    plant = integrators(2, w="positive", T="positive")
+    design = symobs.compensator(plant, control_poles={"bessel": "w"}, observer_poles=observer)
     there = design.at(w=3, T="1/2")
     assert (list(there.K), list(there.L)) == ([27, 9], [16, 100])
     assert "Bessel" in there.to("text")
+
+
+#: The filters of order two for ω₀ = e⁻ᵀ: s² + c ω₀ s + d ω₀².
+OF_AN_EXPONENTIAL = [
+    ("damping = exp(-T), natural_frequency = 2", 2 * math.exp(-1) * 2, 4),
+    ("damping = 1/2, natural_frequency = exp(-T)", math.exp(-1), math.exp(-2)),
+    ("butterworth = exp(-T)", math.sqrt(2) * math.exp(-1), math.exp(-2)),
+    ("bessel = exp(-T)", 3 * math.exp(-1), 3 * math.exp(-2)),
+    ("settling_time = 4 exp(T), overshoot = 0.05", 2 * math.exp(-1), None),
+]
+
+
+@pytest.mark.parametrize(("poles", "twice", "square"), OF_AN_EXPONENTIAL)
+def test_a_pattern_of_an_exponential_has_its_page(poles: str, twice: float, square: float | None) -> None:
+    found = symobs.state_feedback(integrators(2, T="positive"), poles=poles)
+    assert "u = -K x" in found.to("text")
+    constant, linear = map(float, found.K.subs(dict.fromkeys(found.K.free_symbols, 1)))
+    assert linear == pytest.approx(twice)
+    assert square is None or constant == pytest.approx(square)
 
 
 FILE = """
@@ -121,6 +142,53 @@ def test_a_page_with_another_pattern_is_rejected() -> None:
     false = replace(found.kind, desired=replace(desired, pattern=lie))
     with pytest.raises(DerivationRejected, match="is not true"):
         replace(found, kind=false).to("text")
+
+
+@pytest.mark.parametrize("damping", ["1/100", "1/2", "0.999"])
+def test_the_amplitude_of_a_pair_is_below_two_percent_at_the_settling_time(damping: str) -> None:
+    rates = -np.roots(polynomial(2, {"damping": damping, "settling_time": "3"})).real
+    assert rates.tolist() == pytest.approx([4 / 3] * 2)
+    assert max(np.exp(-rates * 3)) < 0.02
+
+
+def test_a_damping_that_signs_keep_below_one_has_its_page() -> None:
+    plant = integrators(2, a="positive")
+    found = symobs.state_feedback(plant, poles={"damping": "1/(1 + a)", "settling_time": "a"})
+    assert list(found.at(a=1).K) == [64, 8]  # ζ = 1/2, σ = 4
+    assert "less than 2 %" in found.to("text")
+
+
+def test_a_page_that_says_a_real_pair_settles_is_rejected() -> None:
+    """Poles −2 ± √3: at 2 s the slower mode is still at 58.5 %."""
+    found = symobs.state_feedback(integrators(2), polynomial="s^2 + 4 s + 1")
+    (factor,) = found.desired.factors
+    lie = PolePattern("s", (("damping", Scalar.of(2)), ("settling_time", Scalar.of(2))), (factor,))
+    false = replace(found.kind, desired=replace(found.desired, pattern=lie))
+    with pytest.raises(DerivationRejected, match="is not true"):
+        replace(found, kind=false).to("text")
+
+
+LATE = "does not decay like"
+UNSIGNED = [
+    ("damping = 2, settling_time = 2", f"damping is 2, which is 1 or more, and such a pair {LATE}"),
+    ("damping = 1, settling_time = 2", f"damping is 1, which is 1 or more, and such a pair {LATE}"),
+    ("damping = p, settling_time = 2", f"damping is p, which may be 1 or more, and such a pair {LATE}"),
+    ("damping = exp(-p), settling_time = 2", "which may be 1 or more"),
+    ("damping = 1/2, settling_time = a", "settling_time is a, which need not be positive; declare a positive"),
+    ("damping = a, natural_frequency = p", "damping is a, which need not be positive; declare a positive"),
+    ("damping = 1/2, natural_frequency = a*p", "which need not be positive; declare a positive in symbols"),
+    ("damping = cos(a), natural_frequency = 1", "damping is cos(a), which need not be positive; give a positive"),
+    ("butterworth = a", "butterworth is a, which need not be positive"),
+    ("bessel = p - 1", "which need not be positive; give a positive bessel"),
+    ("itae = sin(p)", "which need not be positive; give a positive itae"),
+]
+
+
+@pytest.mark.parametrize(("poles", "reason"), UNSIGNED)
+def test_what_need_not_be_positive_or_less_than_one_is_refused(poles: str, reason: str) -> None:
+    with pytest.raises(InputError) as raised:
+        symobs.state_feedback(integrators(2, a="real", p="positive"), poles=poles)
+    assert reason in str(raised.value)
 
 
 REFUSED = [
