@@ -210,7 +210,8 @@ def _read_pattern(problem: Problem, task: Task, name: str, key: str) -> Scalar:
     is_minimal = task.name == "reduced_order_observer" or (
         name == "observer_poles" and asked.get("observer") == "minimal"
     )
-    degree = plant.order - (plant.outputs if is_minimal else 0)
+    integrators = plant.outputs if task.name == "integral_action" else 0
+    degree = plant.order + integrators - (plant.outputs if is_minimal else 0)
     found = desired_polynomial(plant, asked[key], None, names=(key, key), degree=degree)
     assert found is not None  # noqa: S101 - they are given
     return found.polynomial
