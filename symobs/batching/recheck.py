@@ -255,7 +255,10 @@ def _placed(read: _Read, closed: Matrix, half: str, says: str) -> Iterator[tuple
         yield says, read.same(wanted, lambda at: determinant(pencil(closed, at)), len(closed))
     if isinstance(read.answer.get("polynomial"), str):
         own = read.answer["polynomial"]
-        yield f"the polynomial is that of {says}", read.same(own, lambda at: determinant(pencil(closed, at)), len(closed))
+        yield (
+            f"the polynomial is that of {says}",
+            read.same(own, lambda at: determinant(pencil(closed, at)), len(closed)),
+        )
 
 
 def _state_feedback(read: _Read) -> Iterator[tuple[str, bool]]:

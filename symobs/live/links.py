@@ -47,7 +47,7 @@ def _text(value: Any, *, matrix: bool) -> str:
         if matrix and value and all(isinstance(row, (list, tuple)) for row in value):
             return f"[{'; '.join(' '.join(map(_cell, row)) for row in value)}]"
         return ", ".join(str(entry) for entry in value) if not matrix else f"[{' '.join(map(str, value))}]"
-    return str(value) if isinstance(value, (str, int)) and not isinstance(value, bool) else json.dumps(value)
+    return json.dumps(value) if value is None or isinstance(value, bool) else str(value)
 
 
 def _cell(entry: Any) -> str:
