@@ -70,6 +70,7 @@ def question_of(problem: Problem) -> Question:
     asked = [(task, dict(_values(task, problem))) for task in problem.tasks]
     page = Builder(problem.plant, {"x_d": problem.plant.order} if _has(asked, "reference_matrix") else None)
     page.in_time(*(value for _, values in asked for value in values.values() if isinstance(value, Scalar | Matrix)))
+    page.asked_for(problem.specification)
     _state_data(page, asked)
     with page.section("tasks" if len(asked) > 1 else "task"):
         for place, (task, values) in enumerate(asked):
