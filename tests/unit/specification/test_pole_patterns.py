@@ -15,10 +15,12 @@ import sympy
 import symobs
 from symobs.errors import DerivationRejected, InputError, ProblemErrors
 from symobs.exact import Scalar
+from symobs.phrases.languages import ENGLISH, language_named
+from symobs.phrases.spoken import Counted
 from symobs.problem import validate
 from symobs.problem.file_tables import parse
 from symobs.problem.question import question_of
-from symobs.result import render
+from symobs.result import Document, render
 
 
 def integrators(order: int) -> symobs.StateSpace:
@@ -158,3 +160,45 @@ def test_filters_that_are_not_tabulated_are_refused(order: int, poles: str, reas
 def test_in_discrete_time_they_are_refused() -> None:
     with pytest.raises(InputError, match="continuous time"):
         symobs.observer(symobs.StateSpace("[0 1; 0 1]", None, "[1 0]", dt=True), poles={"itae": 1})
+
+
+def test_floats_in_a_table_are_read_as_decimals_on_request() -> None:
+    poles = {"damping": 0.7, "natural_frequency": 4, "others": [-2.5]}
+    found = symobs.state_feedback(integrators(3), poles=poles, floats="decimal")
+    s = sympy.Symbol("s")
+    asked = (s**2 + sympy.Rational(28, 5) * s + 16) * (s + sympy.Rational(5, 2))
+    assert sympy.expand(found.polynomial - asked) == 0
+    assert "K = [40 30 8.1]" in " ".join(found.to("text").replace("[40  30", "[40 30").split())
+    with pytest.raises(InputError, match="0.7"):
+        symobs.state_feedback(integrators(3), poles=poles)
+
+
+def test_decimals_in_a_table_make_a_page_of_decimals() -> None:
+    plant = 'task = "state_feedback"\nplant = { A = "[0 1; 0 0]", B = "[0; 1]" }\n'
+    problem = validate(parse(f"{plant}specification.poles = {{ damping = 0.7, natural_frequency = 1.3 }}\n"))
+    document = Document("", "", problem.solve())
+    assert "s² + 1.82 s + 1.69" in str(render(document, "text"))
+
+
+@pytest.mark.parametrize(
+    ("poles", "says", "is_silent_of"),
+    [
+        ({"damping": "1/2", "settling_time": 2}, "within the specified settling time 2:", "natural frequency"),
+        ({"settling_time": 2, "overshoot": "1/20"}, "≤ 1/20", "damping ratio"),
+        ({"itae": 1}, "tabulated ITAE polynomial [1] of its degree.", "degree: "),
+    ],
+)
+def test_a_page_says_what_was_specified_and_nothing_else(
+    poles: dict[str, str | int], says: str, is_silent_of: str
+) -> None:
+    text = " ".join(symobs.state_feedback(integrators(2), poles=poles).to("text").split())
+    assert says in text
+    assert is_silent_of not in text
+
+
+def test_one_free_parameter_is_in_the_singular() -> None:
+    plant = symobs.StateSpace("[0]", "[1 1]", "[1]")
+    text = " ".join(symobs.integral_action(plant, poles="-1, -2").to("text").split())
+    assert "have two free parameters." in text
+    assert ENGLISH.put(Counted("free_parameter", 1)) == "one free parameter"
+    assert language_named("de").put(Counted("free_parameter", 1)) == "einen freien Parameter"
