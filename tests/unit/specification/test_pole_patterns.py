@@ -132,7 +132,7 @@ REFUSED = [
     ("damping = -1/2, natural_frequency = 3", "damping is -1/2, which is not positive"),
     ("-1, butterworth = 2", "'-1' has no name"),
     ("itae = 1, itae = 2", "'itae' is given twice"),
-    ("damping = 1/2, natural_frequency = 3, others = -1, -2", "a pair of poles given, but 1 are to be placed so"),
+    ("damping = 1/2, natural_frequency = 3, others = -1, -2", "a pair of poles given, but 1 is to be placed so"),
     ("bessel = 1, others = -1, -2, -3", "no pole is left for bessel"),
     ("settling_time = 1, overshoot = m, others = -9", "the overshoot is m, which is not a number between"),
     ("settling_time = 1, overshoot = 5, others = -9", "the overshoot is 5, which is not between"),
@@ -202,3 +202,25 @@ def test_one_free_parameter_is_in_the_singular() -> None:
     assert "have two free parameters." in text
     assert ENGLISH.put(Counted("free_parameter", 1)) == "one free parameter"
     assert language_named("de").put(Counted("free_parameter", 1)) == "einen freien Parameter"
+
+
+@pytest.mark.parametrize(
+    ("order", "asked", "said"),
+    [
+        (2, {"poles": "damping 0.7, natural_frequency 4"}, "damping is no letter of a pole; write what the poles are"),
+        (2, {"poles": "bessel = 3, others = -1, -2"}, "no pole is left for bessel; leave 1 of the others out"),
+        (2, {"poles": "damping = 0.7, natural_frequency = 4, others = -1, -2"}, "placed so; leave the others out"),
+        (3, {"poles": "damping = 0.7, natural_frequency = 4, others = -1, -2"}, "but 1 is to be placed so; leave 1 of"),
+        (2, {"polynomial": "bessel = 3"}, "what poles are to do came; give it as poles"),
+        (2, {"poles": "butterworth = -3"}, "give a positive natural frequency ω₀"),
+    ],
+)
+def test_what_is_wrong_with_a_pattern_is_said_with_its_repair(order: int, asked: dict[str, str], said: str) -> None:
+    with pytest.raises(InputError) as refused:
+        symobs.state_feedback(integrators(order), **asked)
+    assert said in str(refused.value)
+
+
+def test_a_table_of_a_file_is_read_as_a_text_too() -> None:
+    table = '{ damping = "1/2", natural_frequency = 2, others = ["-5", "-3"] }'
+    assert polynomial(4, table) == [1, 10, 35, 62, 60]  # (s² + 2s + 4)(s + 5)(s + 3)
