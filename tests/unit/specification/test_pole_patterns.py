@@ -169,7 +169,7 @@ def test_floats_in_a_table_are_read_as_decimals_on_request() -> None:
     asked = (s**2 + sympy.Rational(28, 5) * s + 16) * (s + sympy.Rational(5, 2))
     assert sympy.expand(found.polynomial - asked) == 0
     assert "K = [40 30 8.1]" in " ".join(found.to("text").replace("[40  30", "[40 30").split())
-    with pytest.raises(InputError, match="0.7"):
+    with pytest.raises(InputError, match=r"0\.7"):
         symobs.state_feedback(integrators(3), poles=poles)
 
 
