@@ -144,7 +144,7 @@ def _asked(page: Builder, name: str, desired_polynomial: DesiredPolynomial) -> N
 def state_signs(page: Builder) -> None:
     """Say which parameters have a declared sign."""
     by_sign: dict[str, list[str]] = {}
-    used = page.plant.field.names
+    used = {*page.plant.field.names, *page.asked}
     for name, sign in page.plant.symbols.signs.items():
         if name in used and sign != "real":
             by_sign.setdefault(sign, []).append(name)

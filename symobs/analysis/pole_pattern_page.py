@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 from symobs.derivation.builder import relation
 from symobs.exact import Scalar
 from symobs.exact.core.generators import function
+from symobs.formula import Evaluated, Literal
 from symobs.formula.term import product
 from symobs.specification.pole_patterns import TIME_CONSTANTS, bessel, overshoot_of, pair_ratio
 
@@ -35,7 +36,11 @@ def say_pattern(page: Builder, phi: Term, desired: DesiredPolynomial) -> None:
         case "bessel":
             page.conclude(f"pattern_bessel{beside}", recursion=written(_recursion(page, pattern)))
         case "itae":
-            page.conclude(f"pattern_itae{beside}", polynomial=written(page.value(pattern.polynomial)))
+            stated = written(page.value(pattern.polynomial))
+            if others:
+                page.conclude("pattern_itae_beside", polynomial=stated)
+            else:
+                page.conclude("pattern_itae", stated)
         case _:
             _say_pair(page, pattern, values, written)
 
@@ -50,12 +55,13 @@ def _say_pair(
         damping = page.value(values["damping"])
         frequency = page.value(values.get("natural_frequency", sigma / values["damping"]))
         pair = s**2 + page.value(2) @ damping @ frequency @ s + frequency**2
-        page.conclude("pattern_damping", pair=written(pair))
+        page.conclude("pattern_damping" if "natural_frequency" in values else "pattern_damped", pair=written(pair))
     if "settling_time" in values:
         pair = (s + page.value(sigma)) ** 2 + page.value(square - sigma**2)
         decayed = relation(function("exp", Scalar.of(-TIME_CONSTANTS)), "<=", Scalar.of(1) / 50)
         complex_and_stable = relation(sigma, ">", Scalar.of(0)), relation(square - sigma**2, ">", Scalar.of(0))
-        page.conclude("pattern_settling", *complex_and_stable, pair=written(pair), bound=decayed)
+        time = Evaluated((page.value(TIME_CONSTANTS) / page.value(sigma)).formula, Literal(values["settling_time"]))
+        page.conclude("pattern_settling", *complex_and_stable, time=time, pair=written(pair), bound=decayed)
     if "overshoot" in values:
         bound = relation(overshoot_of(pair_ratio(values["overshoot"])), "<=", values["overshoot"])
         page.conclude("pattern_overshoot", bound=bound)

@@ -252,10 +252,13 @@ def _placed(read: _Read, closed: Matrix, half: str, says: str) -> Iterator[tuple
     """Yield that the polynomial of a closed loop is the one asked for."""
     wanted = read.wanted(half)
     if wanted is not None:
-        yield says, read.same(wanted, lambda at: determinant(pencil(closed, at)), read.n)
+        yield says, read.same(wanted, lambda at: determinant(pencil(closed, at)), len(closed))
     if isinstance(read.answer.get("polynomial"), str):
         own = read.answer["polynomial"]
-        yield f"the polynomial is that of {says}", read.same(own, lambda at: determinant(pencil(closed, at)), read.n)
+        yield (
+            f"the polynomial is that of {says}",
+            read.same(own, lambda at: determinant(pencil(closed, at)), len(closed)),
+        )
 
 
 def _state_feedback(read: _Read) -> Iterator[tuple[str, bool]]:
@@ -266,6 +269,23 @@ def _state_feedback(read: _Read) -> Iterator[tuple[str, bool]]:
     yield from _placed(read, closed, "control", "det(s*I - A + B*K) = phi(s)")
     if read.answer.get("closed_loop_matrix") is not None:
         yield "A - B*K", read.answered("closed_loop_matrix") == closed
+
+
+def _integral_action(read: _Read) -> Iterator[tuple[str, bool]]:
+    """[K, -k_I] places the poles of A_hat = [A 0; -C 0], B_hat = [B; -D], with I for 0 in discrete time."""
+    K, k_I = read.answered("K"), read.answered("k_I")
+    if K is None or k_I is None:
+        return
+    C, p = read.data("C"), len(k_I[0])
+    own = pencil(zeros(p, p), Fraction(1)) if read.given["discrete"] else zeros(p, p)
+    A = [[*row, *zeros(1, p)[0]] for row in read.A]
+    A += [[*left, *right] for left, right in zip(minus(zeros(p, read.n), C), own, strict=True)]
+    B = [*read.data("B"), *minus(zeros(p, len(K)), read.data("D"))]
+    gain = [[*left, *right] for left, right in zip(K, minus(zeros(len(K), p), k_I), strict=True)]
+    closed = minus(A, times(B, gain))
+    yield from _placed(read, closed, "control", "det(s*I - A_hat + B_hat*[K, -k_I]) = phi(s)")
+    if read.answer.get("closed_loop_matrix") is not None:
+        yield "A_hat - B_hat*[K, -k_I]", read.answered("closed_loop_matrix") == closed
 
 
 def _observer(read: _Read) -> Iterator[tuple[str, bool]]:
@@ -350,6 +370,7 @@ CLAIMS: dict[str, Callable[[_Read], Iterator[tuple[str, bool]]]] = {
     "compensator": _compensator,
     "controllability": _ranks("B"),
     "decomposition": _coordinates,
+    "integral_action": _integral_action,
     "observability": _ranks("C"),
     "observer": _observer,
     "state_feedback": _state_feedback,

@@ -64,7 +64,12 @@ def _how_it_went(problem: Problem, results: tuple[Result, ...]) -> dict[str, Any
     return {"status": "no" if "no" in verdicts else "undecided" if "undecided" in verdicts else "done"}
 
 
-_HALVES = {"state_feedback": ("control",), "observer": ("observer",), "compensator": ("control", "observer")}
+_HALVES = {
+    "state_feedback": ("control",),
+    "integral_action": ("control",),
+    "observer": ("observer",),
+    "compensator": ("control", "observer"),
+}
 
 
 # -- checking again ---------------------------------------------------------------------------------------------------
@@ -96,10 +101,12 @@ def given_for(problem: Problem, task: str) -> dict[str, Any]:
     }
     given |= {"variable": plant.variable, "signs": dict(plant.symbols.signs), "polynomials": {}}
     given["observer"] = asked.get("observer", "full")
+    given["discrete"] = plant.is_discrete
+    degree = plant.order + (plant.outputs if task == "integral_action" else 0)
     for half in _HALVES.get(task, ()):
         own = {"poles", "polynomial"} & asked.keys() and len(_HALVES[task]) == 1
         poles, polynomial = (name if own else f"{half}_{name}" for name in ("poles", "polynomial"))
         if {poles, polynomial} & asked.keys() and not (half == "observer" and given["observer"] == "minimal"):
-            found = desired_polynomial(plant, asked.get(poles), asked.get(polynomial), required=False)
+            found = desired_polynomial(plant, asked.get(poles), asked.get(polynomial), degree=degree, required=False)
             given["polynomials"][half] = None if found is None else str(found.polynomial)
     return given

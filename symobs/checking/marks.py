@@ -15,6 +15,7 @@ from symobs.checking.judgement.gains import design_with
 from symobs.checking.judgement.parts import GAINS, IN_COORDINATES
 from symobs.checking.report.data import Part
 from symobs.design.compensator.output_feedback import OutputFeedback
+from symobs.design.reference.integral_action import IntegralAction
 from symobs.errors import SymobsError
 from symobs.exact import Factored, Matrix, Scalar
 from symobs.expect import found_in, shown_value
@@ -134,7 +135,10 @@ def _explanation(view: ResultInConvention, judgement: TaskJudgement, judged: Jud
     """Return why a value is wrong, as far as it is a matrix or a number."""
     if judged.value is None:
         return Explained()
-    if judged.name in GAINS.get(view.task, ()) and isinstance(judged.value, Matrix):
+    is_part = isinstance(judgement.right, IntegralAction)
+    if is_part and view.standard(judged.letter)[1] < 0:
+        return Explained()  # what is said of a value has its standard sign
+    if judged.name in GAINS.get(view.task, ()) and isinstance(judged.value, Matrix) and not is_part:
         design = design_with(judgement.right, judged.name)
         turned = view.standard(judged.letter)[1] < 0
         right = design.answer[design.letter]

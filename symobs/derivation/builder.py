@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import warnings
 from contextlib import contextmanager
 from dataclasses import replace
@@ -150,6 +151,11 @@ class Builder:
         self.environment = self.start
         self.steps: list[Step] = []
         self.forms: dict[str, str] = {}
+        self.asked: frozenset[str] = frozenset()
+
+    def asked_for(self, specification: Mapping[str, object]) -> None:
+        """Take note of the names in a specification: the signs declared of them are assumptions, too."""
+        self.asked = frozenset(re.findall(r"[^\W\d]\w*", str([*specification.values()])))
 
     def with_roots(self, *values: Scalar | Matrix) -> None:
         """Admit square roots: each squared is its radicand from the start."""

@@ -218,7 +218,9 @@ class Evaluator:
     def _exponent(self, value: Number, place: int) -> int:
         if isinstance(value, Complex) or not value.is_constant or value.fraction().denominator != 1:
             message = f"the exponent {shown(str(value))} is not an integer"
-            raise self.source.error(message, place, "exponents are integers; write sqrt( ) for a root")
+            is_half = not isinstance(value, Complex) and value.is_constant and value.fraction().denominator == 2
+            instead = "write sqrt( ) for a root" if is_half else "declare a symbol for it"
+            raise self.source.error(message, place, f"exponents are integers; {instead}")
         exponent = int(value.fraction())
         if abs(exponent) > MOST_EXPONENT:
             message = f"the exponent is beyond {MOST_EXPONENT}"

@@ -245,6 +245,9 @@ class Tokeniser:
         return self.symbols.setdefault(name, Scalar.generator(self.field, name) if shared else Scalar.symbol(name))
 
     def _require_admitted(self, name: str, at: int, *, called: bool) -> None:
+        if called and name == "CRootOf":
+            repair = 'name it in the table [constants] of a file: r = "CRootOf(x^3 - x - 1, 0)"'
+            raise self.source.error("a root of a polynomial stands inside an expression", at, repair)
         if self.scope.names is not None:
             self.unknown.append(self._unknown(name, at, called=called))
             if len(self.unknown) == _MOST_UNKNOWN:

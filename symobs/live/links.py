@@ -7,6 +7,8 @@ from collections.abc import Mapping
 from typing import Any
 from urllib.parse import quote
 
+from symobs.specification.pole_patterns import OTHERS
+
 #: Keys of a specification that a link calls by shorter names.
 SHORT = {"control_poles": "control", "observer_poles": "observer", "observer": "kind"}
 
@@ -38,11 +40,14 @@ def _table(data: Mapping[str, Any], name: str) -> Mapping[str, Any]:
 
 def _text(value: Any, *, matrix: bool) -> str:
     """Return a value as it is typed: a matrix in brackets, a list with commas."""
+    if isinstance(value, Mapping):
+        named = sorted(value.items(), key=lambda item: item[0] == OTHERS)  # commas go on in what stands last
+        return ", ".join(f"{name} = {_text(part, matrix=False)}" for name, part in named)
     if isinstance(value, (list, tuple)):
         if matrix and value and all(isinstance(row, (list, tuple)) for row in value):
             return f"[{'; '.join(' '.join(map(_cell, row)) for row in value)}]"
         return ", ".join(str(entry) for entry in value) if not matrix else f"[{' '.join(map(str, value))}]"
-    return str(value) if isinstance(value, (str, int)) and not isinstance(value, bool) else json.dumps(value)
+    return json.dumps(value) if value is None or isinstance(value, bool) else str(value)
 
 
 def _cell(entry: Any) -> str:

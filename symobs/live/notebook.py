@@ -115,4 +115,6 @@ def _text(value: Any) -> Any:
     """Return a value as a problem file has it: exact text, and lists of it."""
     if isinstance(value, (list, tuple)):
         return [_text(entry) for entry in value]
+    if isinstance(value, Mapping):
+        return {name: _text(part) for name, part in value.items()}
     return value if isinstance(value, (bool, int, float)) else str(value)

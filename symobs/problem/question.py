@@ -70,6 +70,7 @@ def question_of(problem: Problem) -> Question:
     asked = [(task, dict(_values(task, problem))) for task in problem.tasks]
     page = Builder(problem.plant, {"x_d": problem.plant.order} if _has(asked, "reference_matrix") else None)
     page.in_time(*(value for _, values in asked for value in values.values() if isinstance(value, Scalar | Matrix)))
+    page.asked_for(problem.specification)
     _state_data(page, asked)
     with page.section("tasks" if len(asked) > 1 else "task"):
         for place, (task, values) in enumerate(asked):
@@ -210,7 +211,8 @@ def _read_pattern(problem: Problem, task: Task, name: str, key: str) -> Scalar:
     is_minimal = task.name == "reduced_order_observer" or (
         name == "observer_poles" and asked.get("observer") == "minimal"
     )
-    degree = plant.order - (plant.outputs if is_minimal else 0)
+    integrators = plant.outputs if task.name == "integral_action" else 0
+    degree = plant.order + integrators - (plant.outputs if is_minimal else 0)
     found = desired_polynomial(plant, asked[key], None, names=(key, key), degree=degree)
     assert found is not None  # noqa: S101 - they are given
     return found.polynomial

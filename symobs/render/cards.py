@@ -62,6 +62,7 @@ NAMES: dict[str, dict[str, str | Formula]] = {
         "F": "F_v", "transfer_function": "T_v", "K": "K", "L": "L", "polynomial": "chi_cl", "closed_loop_matrix": "A_cl",
     },
     "tracking": {"K": "K", "K_d": "K_d", "L": "L", "error_matrix": "A_e", "polynomial": "chi_cl"},
+    "integral_action": {"K": "K", "k_I": "k_I", "polynomial": "chi_cl", "closed_loop_matrix": "A_cl"},
     "pole_advice": {"polynomial": "phi", "sigma": "sigma_d", "omega_d": "omega_d"},
     "stability_region": {"polynomial": "chi_p"},
 }  # fmt: skip

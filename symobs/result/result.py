@@ -215,6 +215,7 @@ class Result(OutputMethods):
     def derivation(self) -> Derivation:
         """The derivation, written and checked at first use."""
         page = Builder(self.plant, self.free_signals)
+        page.asked_for(self.specification)
         self.write(page)
         written = page.derivation()
         established = written.check()

@@ -18,12 +18,14 @@ from symobs.exact import Complex, Field, Matrix, Scalar, product_of
 from symobs.exact.algebraic.conjugates import conjugates, is_in_kernel, product_of_linear, tidied
 from symobs.expression import declared_name, parse_poles, parse_polynomial
 from symobs.specification.pole_patterns import (
+    FILTERS,
     KEYS,
     OTHERS,
     PolePattern,
     is_pattern,
     named_parts,
     pattern_of,
+    refuse_names_of_patterns,
 )
 from symobs.system import StateSpace, Symbols, is_sympy, read_complex, read_matrix, read_scalar
 from symobs.system.matrices import as_rows
@@ -192,6 +194,8 @@ def read_poles(
     value: Any, symbols: Symbols, where: str, variable: str | None = None, *, functions: bool = True
 ) -> tuple[Complex, ...]:
     """Return exact poles from a text or a list of numbers, texts and SymPy expressions; `variable` is that of φ."""
+    if functions:
+        refuse_names_of_patterns(value, symbols.signs, where)
     if isinstance(value, str):
         return parse_poles(value, symbols.names, variable=variable, where=where, roots=True, functions=functions)
     if is_sympy(value) and (hasattr(value, "tolist") or type(value).__name__ == "Tuple"):
@@ -234,7 +238,7 @@ def _from_pattern(value: object, plant: StateSpace, degree: int, where: str) -> 
         raise InputError(message, where=where, repair="give the poles themselves, z = exp(s T)")
     named, others = read_pattern(value, plant, where)
     signs = plant.symbols.seen(value).signs
-    pattern = pattern_of(named, degree - len(others), plant.variable, where, signs)
+    pattern = pattern_of(named, degree - len(others), plant.variable, where, signs, len(others))
     beside = _from_poles(others, plant.variable, len(others), where).factors
     return DesiredPolynomial(plant.variable, (*pattern.factors, *beside), pattern=pattern)
 
@@ -243,7 +247,12 @@ def read_pattern(value: object, plant: StateSpace, where: str) -> tuple[dict[str
     """Return what is given by name, exact, and the poles beside it."""
     parts = named_parts(value, where)
     others = parts.pop(OTHERS, ())
-    named = {name: read_quantity(part, plant, name, f"{where}.{name}", functions=True) for name, part in parts.items()}
+    named = {
+        name: read_quantity(
+            part, plant, "natural frequency ω₀" if name in FILTERS else name, f"{where}.{name}", functions=True
+        )
+        for name, part in parts.items()
+    }
     return named, read_poles(others, plant.symbols, f"{where}.{OTHERS}", plant.variable) if others else ()
 
 
@@ -282,6 +291,10 @@ def _factors_of_pairs(poles: tuple[Complex, ...], variable: str, where: str) -> 
 
 def _from_polynomial(value: object, plant: StateSpace, degree: int, where: str) -> DesiredPolynomial:
     variable = plant.variable
+    if is_pattern(value):
+        key = where.rpartition(".")[2].replace("polynomial", "poles")
+        message = f"an expression in {variable} is expected, but what poles are to do came"
+        raise InputError(message, where=where, repair=f"give it as {key}")
     if is_sympy(value):
         polynomial = read_scalar(value, plant.symbols, where, functions=True)
     else:

@@ -6,6 +6,7 @@ Beside a pair, and beside a filter of lower order, stand `others`, poles as they
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from fractions import Fraction
 from math import factorial, floor, log, log10, pi
@@ -21,7 +22,7 @@ from symobs.exact.core.generators import PI, NotWritten, function, symbols_in
 from symobs.exact.time_functions.butterworth import butterworth, butterworth_angles
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterable
 
 OTHERS = "others"
 #: What may be given together.
@@ -87,6 +88,8 @@ def named_parts(value: Any, where: str) -> dict[str, Any]:
 def _parts_of_text(text: str, where: str) -> dict[str, Any]:
     """Return the values of a text by their names; commas set apart the values, and poles among the others."""
     found: dict[str, Any] = {}
+    if text.strip()[:1] == "{":  # a table of a problem file
+        text = re.sub(r"[][{}\"']", "", text)
     for piece in text.split(","):
         name, sign, value = (part.strip() for part in piece.partition("="))
         if not sign and OTHERS in found and list(found)[-1] == OTHERS:
@@ -101,9 +104,11 @@ def _parts_of_text(text: str, where: str) -> dict[str, Any]:
 
 
 def pattern_of(
-    values: Mapping[str, Scalar], count: int, variable: str, where: str, signs: Mapping[str, str]
+    values: Mapping[str, Scalar], count: int, variable: str, where: str, signs: Mapping[str, str], others: int = 0
 ) -> PolePattern:
-    """Return the pattern of `count` poles; raises `InputError` where there is none, or for some values of symbols only."""
+    """Return the pattern of `count` poles, beside others; raises `InputError` where there is none, or for some values of
+    symbols only.
+    """
     for asked, given in values.items():
         _require_positive(asked, given, signs, f"{where}.{asked}")
     if {*values} == {"damping", "settling_time"}:
@@ -112,12 +117,12 @@ def pattern_of(
     name, value = ordered[0]
     if name in FILTERS:
         if count < 1:
-            raise InputError(f"no pole is left for {name}", where=where, repair="leave some of the others out")
+            raise InputError(f"no pole is left for {name}", where=where, repair=_without(others, 1 - count))
         return PolePattern(variable, ordered, _POLYNOMIALS[name](count, value, variable, where))
     if count != 2:
         poles = ", ".join(str(-10 - number) for number in range(count - 2))
-        message = f"a pair of poles given, but {count} are to be placed so"
-        repair = f'name {count - 2} more: others = "{poles}"' if poles else "name the pole itself"
+        message = f"a pair of poles given, but {max(count, 0)} {'is' if count == 1 else 'are'} to be placed so"
+        repair = f'name {count - 2} more: others = "{poles}"' if poles else _without(others, 2 - count)
         raise InputError(message, where=where, repair=repair, given=2)
     sigma, square = rate_and_square(values, where)
     s = Scalar.symbol(variable)
@@ -149,6 +154,21 @@ def _require_less_than_one(damping: Scalar, signs: Mapping[str, str], where: str
     )
     repair = "give a number less than 1, or natural_frequency instead of settling_time"
     raise InputError(message, where=where, repair=repair)
+def _without(others: int, too_many: int) -> str:
+    """Return the repair where there are more poles than the order."""
+    if others < too_many:
+        return "name the pole itself"
+    return "leave the others out" if others == too_many else f"leave {too_many} of the others out"
+
+
+def refuse_names_of_patterns(value: object, declared: Iterable[str], where: str) -> None:
+    """Raise `InputError` where a pole is a letter with a name that says what poles are to do: an = is missing."""
+    texts = [part for part in (value if isinstance(value, (list, tuple)) else [value]) if isinstance(part, str)]
+    named = [name for text in texts for name in re.findall(r"[A-Za-z_]\w*", text) if name in KEYS]
+    for name in named:
+        if name not in declared:
+            message = f"{name} is no letter of a pole"
+            raise InputError(message, where=where, repair=f'write what the poles are to do: "{name} = …"')
 
 
 def rate_and_square(values: Mapping[str, Scalar], where: str) -> tuple[Scalar, Scalar]:

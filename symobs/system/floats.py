@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numbers
+from collections.abc import Mapping
 from fractions import Fraction
 from math import isfinite
 from typing import Any
@@ -15,7 +16,7 @@ from symobs.system.symbols import is_sympy
 def read_floats(value: Any, floats: object, where: str) -> Any:
     """Return a value in which each float is the text of its shortest decimal; the value itself where there is none.
 
-    Lists, arrays, SymPy expressions and their floats are looked into.  `floats` is None, by which floats stay as they
+    Lists, tables, arrays, SymPy expressions and their floats are looked into.  `floats` is None, by which floats stay as they
     are and are refused by whoever reads them, or "decimal".  Raises `InputError` for another word, and where a number
     is not finite.
     """
@@ -30,6 +31,9 @@ def read_floats(value: Any, floats: object, where: str) -> Any:
 def _in_decimals(value: Any, where: str) -> Any:
     if is_sympy(value):
         return _without_sympy_floats(value)
+    if isinstance(value, Mapping):
+        named = {name: _in_decimals(part, f"{where}.{name}") for name, part in value.items()}
+        return value if all(named[name] is part for name, part in value.items()) else named
     is_array = type(value).__name__ in {"ndarray", "matrix"} and hasattr(value, "tolist")
     if is_array and value.shape == ():
         return _in_decimals(value[()], where)

@@ -30,9 +30,11 @@ _DECIMAL = re.compile(r"\.\d|(?<![A-Za-z_\d])\d+[eE]-\d")
 
 
 def has_decimals(value: object) -> bool:
-    """Return whether a text, or nested lists of texts and numbers, contain a decimal number."""
+    """Return whether a text, or nested lists and tables of texts and numbers, contain a decimal number."""
     if isinstance(value, Decimal):
         return value.is_finite() and value != value.to_integral_value()
+    if isinstance(value, Mapping):
+        value = list(value.values())
     if isinstance(value, (list, tuple)):
         return any(has_decimals(entry) for entry in value)
     return _DECIMAL.search(str(value)) is not None if isinstance(value, str) else False

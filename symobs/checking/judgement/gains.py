@@ -14,13 +14,14 @@ from symobs.design.full_order.observer import ObserverDesign
 from symobs.design.gain.gain_design import GainDesign
 from symobs.design.reduced_order.reduced_order_observer import ReducedOrderObserver
 from symobs.design.reference.feedforward import FeedforwardDesign, response
+from symobs.design.reference.integral_action import IntegralAction
 from symobs.design.reference.tracking import TrackingDesign
+from symobs.exact import Matrix
 from symobs.specification import DesiredPolynomial
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from symobs.exact import Matrix
     from symobs.result import Result
 
 
@@ -28,7 +29,20 @@ def with_gain(result: Result, name: str, gain: Matrix) -> Result:
     """Return the result with another gain; raises `CertificateRejected` where its claim does not hold."""
     if isinstance(result, (FeedforwardDesign, TrackingDesign)):
         return _remade(result, result.loop.with_answer(name, gain))
+    if isinstance(result, IntegralAction):
+        return with_gains(result, {name: gain})
     return result.with_answer(name, gain)
+
+
+def with_gains(result: IntegralAction, gains: Mapping[str, Matrix]) -> IntegralAction:
+    """Return integral action with other gains; raises `CertificateRejected` where the claim does not hold for both."""
+    return result.of_loop(result.plant, result.loop.with_answer("K", _whole(result, gains)), result.method)
+
+
+def _whole(result: IntegralAction, gains: Mapping[str, Matrix]) -> Matrix:
+    """Return [K, −k_I]; a gain that is not given is that of the result."""
+    K, k_I = (gains.get(name, result.answer[name]) for name in ("K", "k_I"))
+    return Matrix.block([[K, -k_I]])
 
 
 def with_claimed(result: Result, name: str, value: Matrix) -> Result:
@@ -56,6 +70,9 @@ def from_gains(result: Result, gains: Mapping[str, Matrix]) -> Result:
         inner = ObserverDesign.of_given(result.inner.plant, gains["L"])
         placed = DesiredPolynomial(result.plant.variable, (inner.answer["polynomial"],))
         return type(result).assembled(result.plant, inner, placed, result.answer["T"], result.method)
+    if isinstance(result, IntegralAction):
+        loop = type(result.loop).of_given(result.loop.plant, _whole(result, gains))
+        return result.of_loop(result.plant, loop, result.method)
     assert isinstance(result, GainDesign)  # noqa: S101 - there is no other result with gains
     return type(result).of_given(result.plant, gains[result.letter]) if result.letter in gains else result
 
@@ -68,6 +85,8 @@ def design_with(result: Result, name: str) -> GainDesign:
         return design_with(result.feedback if name == "K" else result.estimator, name)
     if isinstance(result, ReducedOrderObserver):
         return result.inner
+    if isinstance(result, IntegralAction):
+        return result.loop
     assert isinstance(result, GainDesign)  # noqa: S101 - there is no other result with gains
     return result
 

@@ -10,10 +10,11 @@ from symobs._dataclass import dataclass
 from symobs.analysis.realization.coordinates import BLOCKS
 from symobs.checking.answers.values import decimal_comma, exact, has_decimals, read_like
 from symobs.checking.judgement.coordinates import in_coordinates
-from symobs.checking.judgement.gains import from_gains, with_claimed, with_gain
+from symobs.checking.judgement.gains import from_gains, with_claimed, with_gain, with_gains
 from symobs.checking.judgement.other_compensators import closes_the_loop
 from symobs.checking.judgement.parts import CLAIMED, GAINS, IN_COORDINATES, exists, in_order
 from symobs.checking.judgement.regions import region_verdict
+from symobs.design.reference.integral_action import IntegralAction
 from symobs.errors import CertificateRejected, ExpressionError, InputError, NotShown, SymobsError
 from symobs.exact import Matrix, TooLarge
 from symobs.expect import found_in, met, names_of
@@ -89,6 +90,8 @@ class _Task:
     gains: dict[str, Matrix] = field(default_factory=dict)
     wrong: tuple[str, ...] = ()
     own: Result | None = None
+    #: Whether one of two gains is given that are not unique, and right or wrong together.
+    is_half: bool = False
 
 
 def judge_task(
@@ -100,6 +103,9 @@ def judge_task(
     task = _Task(view, names, marking, view.result)
     standard = {view.standard(letter)[0]: letter for letter in given}
     parts: dict[str, Judged] = {}
+    if isinstance(task.right, IntegralAction):
+        task.is_half = view.fields["family"] is not None and not standard.keys() >= {*GAINS[view.task]}
+        task.right = _together(task, task.right, {name: (standard[name], given[standard[name]]) for name in standard})
     for name in in_order(list(standard)):
         if name in GAINS.get(view.task, ()):
             parts[name] = _gain(task, name, standard[name], given[standard[name]])
@@ -144,6 +150,8 @@ def _gain(task: _Task, name: str, letter: str, given: Any) -> Judged:
         own = task.right.fields.get(name)
         other = task.right if value == own else with_gain(task.right, name, value)
     except CertificateRejected as rejected:
+        if task.is_half:
+            return Judged(name, letter, "undecided", given, value, reason="K and k_I are right together: give both")
         task.wrong = (*task.wrong, name)
         claim = str(rejected.facts.get("claim", ""))
         return Judged(name, letter, "wrong", given, value, claims=((claim, False, "exact"),) if claim else ())
@@ -157,12 +165,31 @@ def _gain(task: _Task, name: str, letter: str, given: Any) -> Judged:
     return Judged(name, letter, "right", given, value, hints, claims=claims)
 
 
+def _together(task: _Task, right: IntegralAction, given: Mapping[str, tuple[str, Any]]) -> IntegralAction:
+    """Return integral action with the student's K and k_I where their claim holds for both, else what is right."""
+    gains: dict[str, Matrix] = {}
+    for name in GAINS[right.task]:
+        if name not in given or right.answer[name] is None:
+            return right
+        letter, written = given[name]
+        with suppress(SymobsError):
+            read = parse_matrix(exact(written), task.names, where=letter)
+            gains[name] = -read if task.view.standard(letter)[1] < 0 else read
+    if any(gains.get(name) is None or gains[name].shape != shape_of(right, name) for name in GAINS[right.task]):
+        return right
+    with suppress(CertificateRejected, *UNDECIDED):
+        return with_gains(right, gains)
+    return right
+
+
 def shape_of(result: Result, name: str) -> tuple[int, int]:
     """Return the size of a gain."""
     right = result.fields.get(name)
     if isinstance(right, Matrix):
         return right.shape
     n, m, p = result.plant.order, result.plant.inputs, result.plant.outputs
+    if name == "k_I":
+        return m, p
     return (m, n) if name == "K" else (n - p, p) if result.has_reduced_observer else (n, p)
 
 

@@ -20,6 +20,7 @@ ASKED: dict[str, tuple[str, ...]] = {
     "gramian": ("matrix",),
     "initial_state": ("x0",),
     "initial_state_covariance": ("covariance",),
+    "integral_action": ("K", "k_I"),
     "matrix_exponential": ("matrix",),
     "observability": ("rank",),
     "observer": ("L",),
@@ -37,6 +38,7 @@ ASKED: dict[str, tuple[str, ...]] = {
 GAINS: dict[str, tuple[str, ...]] = {
     "compensator": ("K", "L"),
     "feedforward": ("K", "L"),
+    "integral_action": ("K", "k_I"),
     "observer": ("L",),
     "reduced_order_observer": ("L",),
     "state_feedback": ("K",),
@@ -51,7 +53,7 @@ IN_COORDINATES: dict[str, tuple[str, ...]] = {
     "reduced_order_observer": ("F", "G", "H", "M"),
 }
 #: The order in which parts are judged where one follows from the other.
-_FIRST = ("K", "L", "T")
+_FIRST = ("K", "L", "k_I", "T")
 
 
 def asked_of(result: Result) -> tuple[str, ...]:

@@ -103,7 +103,7 @@ def _design(page: Builder, design: IntegralAction, *, is_case: bool = False) -> 
         page.signal("u", -page["K"] @ page["x"] + page["k_I"] @ page["xi_I"], say="integral_law")
     _closed_loop(page)
     if design.fields["family"] is not None:
-        page.remark("integral_family", count=Counted("number", design.fields["family"]["dimension"]))
+        page.remark("integral_family", count=Counted("free_parameter", design.fields["family"]["dimension"]))
 
 
 def _system(page: Builder) -> Term:

@@ -17,7 +17,7 @@ PHRASES: dict[str, str] = {
     "integral_gains": "State feedback of plant and integrator has the gain",
     "integral_parts": "so that the gains of state and integral are",
     "integral_law": "The control law is",
-    "integral_family": "The gain is not unique: the gains with this polynomial have {count} free parameters.",
+    "integral_family": "The gain is not unique: the gains with this polynomial have {count}.",
     "integral_loop": "The closed loop in the coordinates ($x$, $xi_I$) has the matrix",
     "integral_closed": "The closed loop is therefore",
     "integral_rest": "At equilibrium the control error vanishes: from $r_in$ to $y$ the closed loop, if it is stable, has the DC gain {gain}.",

@@ -91,6 +91,8 @@ def exported_part(view: ResultInConvention, field: str, name: str, weight: str) 
         if word == "undecided":
             raise _refused(made["part"], "what is right is undecided")
         return _part(made | {"kind": "word", "symbolic": False, "right": word}, ((word,),))
+    if view.task == "integral_action" and field in GAINS[view.task]:
+        raise _refused(made["part"], "an exported grader does not hold K and k_I, which are right together")
     if field in GAINS.get(view.task, ()):
         return _gain(view, field, made)
     if isinstance(view.result, CompensatorDesign) and field == "F":

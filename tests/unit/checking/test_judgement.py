@@ -280,3 +280,32 @@ def test_rows_of_a_block_may_be_permuted_and_kernels_have_any_basis() -> None:
     assert report.verdict == "right"
     assert "another order" in report.parts[0].hints[0]
     assert check(problem, {"kernel": ["[0; 1; 0]"]}).parts[1].verdict == "wrong"
+
+
+SERVO_WITH_INTEGRAL = """
+task = "integral_action"
+plant = { A = "[0 1; 0 -1]", B = "[0; 1]", C = "[1 0]" }
+specification = { poles = "-1, -2, -3" }
+"""
+TWO_INTEGRATORS = """
+task = "integral_action"
+plant = { A = "[0 0; 0 0]", B = "[1 0; 0 1]", C = "[1 0; 0 1]" }
+specification = { poles = "-1, -1, -2, -2" }
+"""
+
+
+@pytest.mark.parametrize(
+    ("problem", "answer", "verdicts"),
+    [  # s³ + (1 + K₂) s² + K₁ s + k_I = (s + 1)(s + 2)(s + 3); s² + 3s + 2 for each of the two outputs
+        (SERVO_WITH_INTEGRAL, {"K": "[11 5]", "k_I": "6"}, "right right"),
+        (SERVO_WITH_INTEGRAL, {"K": "[11 5]", "k_I": "-6"}, "right wrong"),
+        (SERVO_WITH_INTEGRAL, {"K": "[11 6]", "k_I": "6"}, "wrong right"),
+        (SERVO_WITH_INTEGRAL, {"K": "[11 5]"}, "right missing"),
+        (TWO_INTEGRATORS, {"K": "[3 1; 0 3]", "k_I": "[2 0; 0 2]"}, "right right"),
+        (TWO_INTEGRATORS, {"K": "[3 1; 1 3]", "k_I": "[2 0; 0 2]"}, "wrong wrong"),
+        (TWO_INTEGRATORS, {"K": "[3 1; 0 3]"}, "undecided missing"),
+    ],
+)
+def test_the_gains_of_integral_action_are_judged_together(problem: str, answer: dict[str, str], verdicts: str) -> None:
+    report = check(read(problem), answer)
+    assert " ".join(one(report, name).verdict for name in ("K", "k_I")) == verdicts

@@ -97,3 +97,11 @@ def test_a_polynomial_that_vanishes_at_the_origin_has_no_steady_state_to_speak_o
     assert (found.verdict, found.solvable) == ("yes", False)
     assert "DC gain" not in found.to("text")
     assert Scalar.of(0) == found.answer["polynomial"].substitute({"s": Scalar.of(0)})
+
+
+def test_signs_of_the_letters_of_the_specification_are_stated() -> None:
+    signs = {"a": "positive", "b": "negative", "c": "real", "w": "positive", "k": "negative"}
+    plant = symobs.StateSpace("[0 1; 0 -a]", "[0; 1]", "[1 c]", symbols=signs)
+    by_pattern = symobs.integral_action(plant, poles={"bessel": "w"}).to("text")
+    assert "Throughout, we assume a > 0, w > 0." in by_pattern
+    assert "Throughout, we assume a > 0, k < 0." in symobs.state_feedback(plant, K="[1 k]").to("text")

@@ -333,3 +333,12 @@ def test_the_start_names_tasks_and_examples() -> None:
     assert "output_feedback_servo" in names
     for example in found["examples"][::12]:
         assert asked(example["problem"], task=example["task"])["status"] in {"done", "no"}
+
+
+def test_integral_action_shows_both_gains() -> None:
+    plant = {"A": "[0 1; 0 -1]", "B": "[0; 1]", "C": "[1 0]"}
+    found = asked({"task": "integral_action", "plant": plant, "specification": {"poles": "-1, -2, -3"}})
+    assert {card["name"]: card["says"] for card in found["cards"][:2]} == {
+        "K": "K equals [11 5]",
+        "k_I": "k_I equals 6",
+    }

@@ -9,7 +9,9 @@ import socket
 import subprocess
 import sys
 import threading
+import tomllib
 from contextlib import closing
+from decimal import Decimal
 from typing import TYPE_CHECKING, Any
 from urllib.parse import parse_qsl
 
@@ -283,6 +285,14 @@ def test_a_link_holds_a_problem() -> None:
         "convention": "S1",
         "language": "de",
     }
+
+
+def test_a_link_holds_poles_by_what_they_are_to_do() -> None:
+    poles = tomllib.loads(
+        'poles = { others = ["-5", "-w"], damping = 0.7, natural_frequency = "w" }', parse_float=Decimal
+    )
+    found = dict(parse_qsl(link_of({"task": "observer", "specification": poles})))
+    assert found["poles"] == "damping = 0.7, natural_frequency = w, others = -5, -w"
 
 
 def test_the_page_holds_nothing_of_others() -> None:

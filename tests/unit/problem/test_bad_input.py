@@ -172,7 +172,17 @@ WRONG = {
     "root of a negative": (
         problem(A='"[0 1; 0 (-2)^(1/3)]"'),
         "plant.A",
-        "the exponent 1/3 is not an integer … sqrt( )",
+        "the exponent 1/3 is not an integer … declare a symbol",
+    ),
+    "root of a parameter": (
+        problem(A='"[0 1; 0 a^(1/3)]"', symbols='a = "positive"'),
+        "plant.A",
+        "declare a symbol for it",
+    ),
+    "root of a polynomial": (
+        problem(A='"[0 1; 0 CRootOf(x^3 - x - 1, 0)]"'),
+        "plant.A",
+        "stands inside an expression … the table [constants]",
     ),
     # expected answers
     "expected text unreadable": (problem(f'{POLES}\n[expect]\nL = "[19; 81"'), "expect.L", '"[" is never closed'),

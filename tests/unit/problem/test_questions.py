@@ -131,3 +131,14 @@ def test_several_tasks_have_letters_and_given_gains_stand_among_the_data() -> No
 def test_a_specification_that_cannot_be_read_is_an_error() -> None:
     with pytest.raises(InputError, match="closed under conjugation"):
         asked('poles = ["-1 + i", "-2"]')
+
+
+@pytest.mark.parametrize(
+    ("poles", "polynomial"),
+    [
+        ('bessel = "p"', "s³ + 6p s² + 15p² s + 15p³"),  # the third reverse Bessel polynomial
+        ('damping = 0.5, natural_frequency = 2, others = "-5"', "(s + 5)(s² + 2s + 4)"),
+    ],
+)
+def test_integral_action_asks_for_a_pole_of_each_integrator_too(poles: str, polynomial: str) -> None:
+    assert f"the characteristic polynomial {polynomial}." in asked(f"poles = {{ {poles} }}", "integral_action")

@@ -15,10 +15,12 @@ import sympy
 import symobs
 from symobs.errors import DerivationRejected, InputError, ProblemErrors
 from symobs.exact import Scalar
+from symobs.phrases.languages import ENGLISH, language_named
+from symobs.phrases.spoken import Counted
 from symobs.problem import validate
 from symobs.problem.file_tables import parse
 from symobs.problem.question import question_of
-from symobs.result import render
+from symobs.result import Document, render
 from symobs.specification import PolePattern
 
 
@@ -198,7 +200,7 @@ REFUSED = [
     ("damping = -1/2, natural_frequency = 3", "damping is -1/2, which is not positive"),
     ("-1, butterworth = 2", "'-1' has no name"),
     ("itae = 1, itae = 2", "'itae' is given twice"),
-    ("damping = 1/2, natural_frequency = 3, others = -1, -2", "a pair of poles given, but 1 are to be placed so"),
+    ("damping = 1/2, natural_frequency = 3, others = -1, -2", "a pair of poles given, but 1 is to be placed so"),
     ("bessel = 1, others = -1, -2, -3", "no pole is left for bessel"),
     ("settling_time = 1, overshoot = m, others = -9", "the overshoot is m, which is not a number between"),
     ("settling_time = 1, overshoot = 5, others = -9", "the overshoot is 5, which is not between"),
@@ -226,3 +228,67 @@ def test_filters_that_are_not_tabulated_are_refused(order: int, poles: str, reas
 def test_in_discrete_time_they_are_refused() -> None:
     with pytest.raises(InputError, match="continuous time"):
         symobs.observer(symobs.StateSpace("[0 1; 0 1]", None, "[1 0]", dt=True), poles={"itae": 1})
+
+
+def test_floats_in_a_table_are_read_as_decimals_on_request() -> None:
+    poles = {"damping": 0.7, "natural_frequency": 4, "others": [-2.5]}
+    found = symobs.state_feedback(integrators(3), poles=poles, floats="decimal")
+    s = sympy.Symbol("s")
+    asked = (s**2 + sympy.Rational(28, 5) * s + 16) * (s + sympy.Rational(5, 2))
+    assert sympy.expand(found.polynomial - asked) == 0
+    assert "K = [40 30 8.1]" in " ".join(found.to("text").replace("[40  30", "[40 30").split())
+    with pytest.raises(InputError, match=r"0\.7"):
+        symobs.state_feedback(integrators(3), poles=poles)
+
+
+def test_decimals_in_a_table_make_a_page_of_decimals() -> None:
+    plant = 'task = "state_feedback"\nplant = { A = "[0 1; 0 0]", B = "[0; 1]" }\n'
+    problem = validate(parse(f"{plant}specification.poles = {{ damping = 0.7, natural_frequency = 1.3 }}\n"))
+    document = Document("", "", problem.solve())
+    assert "s² + 1.82 s + 1.69" in str(render(document, "text"))
+
+
+@pytest.mark.parametrize(
+    ("poles", "says", "is_silent_of"),
+    [
+        ({"damping": "1/2", "settling_time": 2}, "within the specified settling time 2:", "natural frequency"),
+        ({"settling_time": 2, "overshoot": "1/20"}, "≤ 1/20", "damping ratio"),
+        ({"itae": 1}, "tabulated ITAE polynomial [1] of its degree.", "degree: "),
+    ],
+)
+def test_a_page_says_what_was_specified_and_nothing_else(
+    poles: dict[str, str | int], says: str, is_silent_of: str
+) -> None:
+    text = " ".join(symobs.state_feedback(integrators(2), poles=poles).to("text").split())
+    assert says in text
+    assert is_silent_of not in text
+
+
+def test_one_free_parameter_is_in_the_singular() -> None:
+    plant = symobs.StateSpace("[0]", "[1 1]", "[1]")
+    text = " ".join(symobs.integral_action(plant, poles="-1, -2").to("text").split())
+    assert "have two free parameters." in text
+    assert ENGLISH.put(Counted("free_parameter", 1)) == "one free parameter"
+    assert language_named("de").put(Counted("free_parameter", 1)) == "einen freien Parameter"
+
+
+@pytest.mark.parametrize(
+    ("order", "asked", "said"),
+    [
+        (2, {"poles": "damping 0.7, natural_frequency 4"}, "damping is no letter of a pole; write what the poles are"),
+        (2, {"poles": "bessel = 3, others = -1, -2"}, "no pole is left for bessel; leave 1 of the others out"),
+        (2, {"poles": "damping = 0.7, natural_frequency = 4, others = -1, -2"}, "placed so; leave the others out"),
+        (3, {"poles": "damping = 0.7, natural_frequency = 4, others = -1, -2"}, "but 1 is to be placed so; leave 1 of"),
+        (2, {"polynomial": "bessel = 3"}, "what poles are to do came; give it as poles"),
+        (2, {"poles": "butterworth = -3"}, "give a positive natural frequency ω₀"),
+    ],
+)
+def test_what_is_wrong_with_a_pattern_is_said_with_its_repair(order: int, asked: dict[str, str], said: str) -> None:
+    with pytest.raises(InputError) as refused:
+        symobs.state_feedback(integrators(order), **asked)
+    assert said in str(refused.value)
+
+
+def test_a_table_of_a_file_is_read_as_a_text_too() -> None:
+    table = '{ damping = "1/2", natural_frequency = 2, others = ["-5", "-3"] }'
+    assert polynomial(4, table) == [1, 10, 35, 62, 60]  # (s² + 2s + 4)(s + 5)(s + 3)
