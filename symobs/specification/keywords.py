@@ -8,18 +8,19 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
-from functools import cached_property
+from functools import cached_property, partial
 from typing import Annotated, Any, TypeAlias
 
 from symobs._dataclass import dataclass
 from symobs.conditions import sign_of
-from symobs.errors import InputError, ShapeMismatch
+from symobs.errors import InputError, ShapeMismatch, together
 from symobs.exact import Complex, Field, Matrix, Scalar, product_of
 from symobs.exact.algebraic.conjugates import conjugates, is_in_kernel, product_of_linear, tidied
 from symobs.expression import declared_name, parse_poles, parse_polynomial
 from symobs.specification.pole_patterns import (
     KEYS,
     OTHERS,
+    OVERSHOOT,
     PolePattern,
     is_pattern,
     named_parts,
@@ -242,8 +243,21 @@ def read_pattern(value: object, plant: StateSpace, where: str) -> tuple[dict[str
     """Return what is given by name, exact, and the poles beside it."""
     parts = named_parts(value, where)
     others = parts.pop(OTHERS, ())
-    named = {name: read_quantity(part, plant, name, f"{where}.{name}", functions=True) for name, part in parts.items()}
+    given = together(*(partial(_read_positive, part, plant, name, f"{where}.{name}") for name, part in parts.items()))
+    named = dict(zip(parts, given, strict=True))
     return named, read_poles(others, plant.symbols, f"{where}.{OTHERS}", plant.variable) if others else ()
+
+
+def _read_positive(value: object, plant: StateSpace, name: str, where: str) -> Scalar:
+    """Return a quantity of a pattern; raises `InputError` where it is not certainly positive."""
+    quantity = read_quantity(value, plant, name, where, functions=True)
+    if name == OVERSHOOT or sign_of(quantity, plant.symbols.seen(value).signs) == "positive":
+        return quantity
+    if str(quantity).isidentifier():
+        repair = f'declare it: {quantity} = "positive"'
+        raise InputError(f"{name} is {quantity}, which is not declared positive", where=where, repair=repair)
+    repair = f"write a letter that is declared positive for {name}, or declare the signs that make it so"
+    raise InputError(f"{name} is {quantity}, which need not be positive", where=where, repair=repair)
 
 
 def _not_closed(waiting: Sequence[Complex], where: str) -> InputError:

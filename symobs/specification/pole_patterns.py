@@ -23,7 +23,7 @@ from symobs.exact.time_functions.butterworth import butterworth, butterworth_ang
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-OTHERS = "others"
+OTHERS, OVERSHOOT = "others", "overshoot"
 #: What may be given together.
 PAIRS = (("damping", "natural_frequency"), ("damping", "settling_time"), ("settling_time", "overshoot"))
 FILTERS = ("butterworth", "bessel", "itae")

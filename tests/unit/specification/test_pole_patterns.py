@@ -78,7 +78,9 @@ def test_damping_and_settling_time_leave_no_choice() -> None:
 
 def test_values_move_what_poles_are_to_do_and_their_page_is_checked() -> None:
     observer = "damping = 0.8, settling_time = T"
-    design = symobs.compensator(integrators(2), control_poles={"bessel": "w"}, observer_poles=observer)
+    m = integrators(2).matrices
+    plant = symobs.StateSpace(m.A, m.B, m.C, symbols={"w": "positive", "T": "positive"})
+    design = symobs.compensator(plant, control_poles={"bessel": "w"}, observer_poles=observer)
     there = design.at(w=3, T="1/2")
     assert (list(there.K), list(there.L)) == ([27, 9], [16, 100])
     assert "Bessel" in there.to("text")
@@ -123,7 +125,21 @@ def test_a_page_with_another_pattern_is_rejected() -> None:
         replace(found, kind=false).to("text")
 
 
+def test_what_need_not_be_positive_is_refused_whatever_value_it_is_to_have_later() -> None:
+    """A damping of -1 would give an unstable loop: its letter is declared positive, or there is no formula for all values."""
+    undeclared = FILE.replace("damping = 0.5", 'damping = "z"').replace('"positive"', '"real"\nz = "nonnegative"')
+    with pytest.raises(ProblemErrors) as raised:
+        validate(parse(undeclared)).solve()
+    told = [error.message for error in raised.value.errors]
+    assert told[:2] == [
+        "damping is z, which is not declared positive",
+        "natural_frequency is w, which is not declared positive",
+    ]
+
+
 REFUSED = [
+    ("bessel = w", 'bessel is w, which is not declared positive; declare it: w = "positive"'),
+    ("bessel = cos(w)", "bessel is cos(w), which need not be positive"),
     ({"damping": "1/2"}, "damping given, which does not say where the poles are"),
     ("damping = 1/2, overshoot = 0.1", "which does not say where the poles are"),
     ({"damping": "1/2", "frequency": 3}, "poles have no 'frequency'"),
