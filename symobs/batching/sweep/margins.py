@@ -94,9 +94,13 @@ def cells_at(
     program: Program, point: Sequence[Fraction], texts: Mapping[str, str]
 ) -> tuple[dict[str, str], dict[str, float]]:
     """Return the cells of a point, given those of its gains, and the binary numbers nearest to what is no fraction."""
+    try:
+        entries = {name: Fraction(text) for name, text in texts.items()}
+    except ValueError:  # margins are those of loops with rational numbers
+        return {MARGINS_STATUS: "undecided"}, {}
     shapes = {"K": (program.m, program.n), "L": (program.n, program.p)}
     gains = {
-        gain: Matrix.of([[Fraction(texts[f"{gain}[{i + 1},{j + 1}]"]) for j in range(width)] for i in range(height)])
+        gain: Matrix.of([[entries[f"{gain}[{i + 1},{j + 1}]"] for j in range(width)] for i in range(height)])
         for gain, (height, width) in shapes.items()
         if gain in program.gains
     }
