@@ -17,7 +17,7 @@ from symobs.batching.kept import CHILD
 from symobs.batching.run import Batch, texts_of
 from symobs.batching.store import work_folder
 from symobs.batching.sweep.grid import Grid, read_grid
-from symobs.batching.sweep.program import GAINS, MARGINS, MARGINS_STATUS, Program, names_used
+from symobs.batching.sweep.program import GAINS, MARGINS, MARGINS_STATUS, Program, names_used, with_values
 from symobs.batching.sweep.table import check_target, write_table
 from symobs.child_processes.child import Died, started
 from symobs.errors import InputError, SymobsError, UsageError, raise_all
@@ -67,6 +67,8 @@ class Plan:
         errors = Errors()
         with errors:
             self.grid: Grid = read_grid(over, bare.problem.plant.symbols.signs, unbounded=unbounded)
+            self.tables = _with_values_of_file(self.tables, self.grid)
+            bare = Program(self.tables, (), None)
             _require_values(bare, self.grid)
         with errors:
             self.columns = _chosen(bare.columns(), columns)
@@ -127,11 +129,16 @@ class Plan:
         return -(-self.grid.size // BLOCK)
 
 
+def _with_values_of_file(tables: dict[str, Any], grid: Grid) -> dict[str, Any]:
+    """Return the problem at its [values], but for the names that run."""
+    values = {name: value for name, value in tables.get("values", {}).items() if name not in grid.names}
+    return {key: value for key, value in with_values(tables, values).items() if key != "values"}
+
+
 def _require_values(bare: Program, grid: Grid) -> None:
     """Raise an error for names of the problem that have no values: no point would have a number."""
-    known = {*grid.names, *bare.problem.values}
     errors = Errors()
-    for name in sorted(names_used(bare.tables) & bare.problem.plant.symbols.signs.keys() - known):
+    for name in sorted(names_used(bare.tables) & bare.problem.plant.symbols.signs.keys() - {*grid.names}):
         errors.note(f"{name} has no values", "over", f"add {name}=… or write {name} in [values]")
     raise_all(errors.found)
 

@@ -225,7 +225,7 @@ class Program:
         return result
 
 
-def with_values(tables: Mapping[str, Any], values: Mapping[str, Fraction]) -> dict[str, Any]:
+def with_values(tables: Mapping[str, Any], values: Mapping[str, Any]) -> dict[str, Any]:
     """Return the tables of a problem with numbers in place of names, which are declared no more."""
     left = {name: sign for name, sign in tables.get("symbols", {}).items() if name not in values}
     data = {key: value for key, value in tables.items() if key not in {"symbols", "expect", "printed"}}
@@ -252,7 +252,7 @@ def _texts(value: Any) -> Iterator[str]:
         yield value
 
 
-def _put_in(value: Any, values: Mapping[str, Fraction]) -> Any:
+def _put_in(value: Any, values: Mapping[str, Any]) -> Any:
     """Return a value with numbers in place of names in its texts."""
     if isinstance(value, Mapping):
         return {key: _put_in(entry, values) for key, entry in value.items()}

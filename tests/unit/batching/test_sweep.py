@@ -290,6 +290,19 @@ def test_functions_of_swept_names_are_solved_point_by_point_and_points_are_count
     assert float(rows[2]["K[1,2].d"]) == pytest.approx(math.exp(-1) + 1, rel=1e-15)
 
 
+def test_the_values_of_the_file_are_those_of_all_points() -> None:
+    """K = [w² + w, 2 z w] for A = [0 1; w 0]: at w = 2 and z = 3/5 the poles have the real part -6/5."""
+    pair = 'poles = { damping = "z", natural_frequency = "w" }'
+    text = problem("state_feedback", "z:positive w:positive", 'A = "[0 1; w 0]"\nB = "[0; 1]"', pair)
+    for w, K, slowest in (("2", [6, Fraction(12, 5)], Fraction(-6, 5)), ("sqrt(2)", ["sqrt(2) + 2", None], None)):
+        (row,) = symobs.sweep(f'{text}[values]\nw = "{w}"\n', "z=3/5", columns="K, margins", workers=1)
+        assert row["K[1,1]"] == K[0]
+        assert row["slowest"] == slowest
+        assert row["margins_status"] == ("done" if slowest else "undecided")
+    (row,) = symobs.sweep(f'{text}[values]\nw = "2"\nz = "9"\n', "z=3/5", columns="K", workers=1)
+    assert row["K[1,2]"] == Fraction(12, 5)
+
+
 def test_a_point_without_a_plant_is_undefined_and_loses_no_other() -> None:
     text = problem("observer", "l:real", 'A = "[0 1; 1/l -3]"\nC = "[1 0]"', 'poles = "-1, -5"')
     (job,) = Plan(text, "l=-1:1:1").jobs()
