@@ -111,7 +111,7 @@ def _nearest_irrational(text: str) -> float | None:
     from symobs.expression import parse_scalar  # noqa: PLC0415
 
     try:
-        return nearest_double(parse_scalar(text, (), functions=True))
+        return nearest_double(parse_scalar(text, {}, functions=True))
     except (InputError, ValueError):
         return None
 

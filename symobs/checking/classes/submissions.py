@@ -56,7 +56,8 @@ def read_submissions(path: Path, known: Collection[str], columns: Mapping[str, s
         if not found:
             raise _wrong(str(path), "there is no answer file in this folder", f"its files end in {', '.join(_FILES)}")
         return _last(found)
-    text, names = text_of_file(path), ()
+    names: tuple[str, ...] = ()
+    text = text_of_file(path)
     if path.suffix == ".jsonl":
         found = _of_json_lines(text, path)
     else:
