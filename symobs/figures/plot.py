@@ -134,13 +134,16 @@ Run: TypeAlias = "tuple[tuple[float, float], ...]"
 
 @dataclass(frozen=True)
 class SweepCurves:
-    """Columns of a sweep over one name: of each the lines through its values; in the `gaps` there are none."""
+    """Columns of a sweep over one name: of each its name, the lines through its values, and the gaps without any.
+
+    Columns that are `infinite` at all points are only named.
+    """
 
     axis: str
-    columns: tuple[tuple[Formula, tuple[Run, ...]], ...]
+    columns: tuple[tuple[Formula | str, tuple[Run, ...], tuple[tuple[float, float], ...]], ...]
     window: tuple[float, float]
     points: int
-    gaps: tuple[tuple[float, float], ...] = ()
+    infinite: tuple[Formula | str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -148,7 +151,7 @@ class SweepMap:
     """A column of a sweep over two names: lines of equal values; in the rectangles `gaps` there are none."""
 
     axes: tuple[str, str]
-    column: Formula
+    column: Formula | str
     window: tuple[tuple[float, float], tuple[float, float]]
     levels: tuple[tuple[Fraction, tuple[Run, ...]], ...]
     points: int

@@ -213,7 +213,14 @@ def _number(value: object, errors: Errors) -> str:
 
 def _date(value: object, errors: Errors) -> str | date:
     """Return when the answers are due: words, or a date, which the language of the sheet writes."""
-    return value if isinstance(value, date) else _text(value, "due", errors)
+    if isinstance(value, date):
+        return value
+    if isinstance(value, str) and not isinstance(value, Decimal):
+        return _text(value, "due", errors)
+    errors.note(
+        f"a date or a text is expected, but {came(value)} came", "due", 'write due = 2026-12-08 or due = "Monday"'
+    )
+    return ""
 
 
 def _space(value: object, room: str, where: str, errors: Errors) -> AnswerSpace | None:

@@ -24,7 +24,7 @@ from symobs.exact.time_functions.butterworth import butterworth, butterworth_ang
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
 
-OTHERS = "others"
+OTHERS, OVERSHOOT = "others", "overshoot"
 #: What may be given together.
 PAIRS = (("damping", "natural_frequency"), ("damping", "settling_time"), ("settling_time", "overshoot"))
 FILTERS = ("butterworth", "bessel", "itae")
@@ -106,9 +106,7 @@ def _parts_of_text(text: str, where: str) -> dict[str, Any]:
 def pattern_of(
     values: Mapping[str, Scalar], count: int, variable: str, where: str, signs: Mapping[str, str], others: int = 0
 ) -> PolePattern:
-    """Return the pattern of `count` poles, beside others; raises `InputError` where there is none, or for some values of
-    symbols only.
-    """
+    """Return the pattern of `count` poles, beside others; raises `InputError` where some values of symbols have none."""
     for asked, given in values.items():
         _require_positive(asked, given, signs, f"{where}.{asked}")
     if {*values} == {"damping", "settling_time"}:
@@ -154,6 +152,8 @@ def _require_less_than_one(damping: Scalar, signs: Mapping[str, str], where: str
     )
     repair = "give a number less than 1, or natural_frequency instead of settling_time"
     raise InputError(message, where=where, repair=repair)
+
+
 def _without(others: int, too_many: int) -> str:
     """Return the repair where there are more poles than the order."""
     if others < too_many:

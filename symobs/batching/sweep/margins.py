@@ -70,7 +70,10 @@ def _polynomials(program: Program, values: Mapping[str, Scalar], gains: Mapping[
 
 
 def _numbers(polynomial: Scalar, variable: str) -> list[Fraction]:
-    return [entry.fraction() for entry in polynomial.coefficients(variable)]
+    found = polynomial.coefficients(variable)
+    if not all(entry.is_constant for entry in found):
+        raise _NotRational(str(polynomial))
+    return [entry.fraction() for entry in found]
 
 
 def _gains(closed: Scalar, opened: Scalar, dt: object) -> tuple[RealNumber | str, RealNumber | str]:
@@ -94,20 +97,28 @@ def cells_at(
     program: Program, point: Sequence[Fraction], texts: Mapping[str, str]
 ) -> tuple[dict[str, str], dict[str, float]]:
     """Return the cells of a point, given those of its gains, and the binary numbers nearest to what is no fraction."""
+    try:
+        entries = {name: Fraction(text) for name, text in texts.items()}
+    except ValueError:  # margins are those of loops with rational numbers
+        return {MARGINS_STATUS: "undecided"}, {}
     shapes = {"K": (program.m, program.n), "L": (program.n, program.p)}
     gains = {
-        gain: Matrix.of([[Fraction(texts[f"{gain}[{i + 1},{j + 1}]"]) for j in range(width)] for i in range(height)])
+        gain: Matrix.of([[entries[f"{gain}[{i + 1},{j + 1}]"] for j in range(width)] for i in range(height)])
         for gain, (height, width) in shapes.items()
         if gain in program.gains
     }
     found: dict[str, Any] = {}
-    with suppress(_TimeOver, BudgetExceeded), _within(_SECONDS):
+    with suppress(_TimeOver, _NotRational, BudgetExceeded), _within(_SECONDS):
         found = margins_at(program, point, gains)
     if not found or None in found.values():
         return {MARGINS_STATUS: "undecided"}, {}
     numbers = {name: value for name, value in found.items() if isinstance(value, RealNumber)}
     doubles = {name: nearest_double(value) for name, value in numbers.items() if not value.is_rational}
     return {name: value.text() if name in numbers else value for name, value in found.items()}, doubles
+
+
+class _NotRational(ValueError):
+    """Raised for a loop with other than rational numbers."""
 
 
 class _TimeOver(BaseException):

@@ -30,6 +30,13 @@ if TYPE_CHECKING:
     #: The side of a cell of the grid that a line crosses: the place of its first point, and whether it goes up.
     Side = tuple[int, int, bool]
 
+_WORDS = {
+    "gain_down": "gain margin, lower",
+    "gain_up": "gain margin, upper",
+    "phase_deg": "phase margin in degrees",
+    "modulus": "modulus margin",
+    "slowest": "slowest pole",
+}
 MOST_POINTS, MOST_CURVES, _LEVELS = 250_000, 6, 7
 
 
@@ -53,20 +60,25 @@ def picture_of(table: SweepTable) -> SweepCurves | SweepMap:
     """Return the picture of a sweep over one or two names."""
     columns, grid = drawn_columns(table.plan), table.grid
     values: dict[str, list[float | None]] = {name: [] for name in columns}
+    finite: set[str] = set()
     for _, result in table.blocks():
         for name in columns:
-            found = zip(nearest_of(name, result), result["case"], strict=True)
+            numbers = nearest_of(name, result)
+            finite |= set() if all(number == math.inf for number in numbers) else {name}
+            found = zip(numbers, result["case"], strict=True)
             values[name] += [None if v is None or math.isinf(v) or case is not None else v for v, case in found]
+    infinite = [name for name in columns if name not in finite]
     places = [sorted(float(axis.at(k)) for k in range(axis.count)) for axis in grid.axes]
     orders = [sorted(range(axis.count), key=axis.at) for axis in grid.axes]
     window = [(each[0], each[-1]) for each in places]
     if len(places) == 1:
         sorted_values = [[values[name][k] for k in orders[0]] for name in columns]
         curves = tuple(
-            (_name(n), tuple(_runs(places[0], column))) for n, column in zip(columns, sorted_values, strict=True)
+            (_name(n), tuple(_runs(places[0], column)), tuple(_gaps(places[0], column)))
+            for n, column in zip(columns, sorted_values, strict=True)
+            if n not in infinite or len(infinite) == len(columns)
         )
-        gaps = _gaps(places[0], [None if None in row else 0.0 for row in zip(*sorted_values, strict=True)])
-        return SweepCurves(grid.names[0], curves, window[0], grid.size, tuple(gaps))
+        return SweepCurves(grid.names[0], curves, window[0], grid.size, tuple(map(_name, infinite)))
     (name,), (xs, ys) = columns, places
     rows = [[values[name][i * len(ys) + j] for j in orders[1]] for i in orders[0]]
     gaps_of_map = tuple(_rectangle(xs, ys, i, j) for i in range(len(xs)) for j in range(len(ys)) if rows[i][j] is None)
@@ -84,8 +96,10 @@ def write_picture(table: SweepTable, out: Path) -> None:
     write_whole(out, sweep_file(picture_of(table), str(out)))
 
 
-def _name(column: str) -> Formula:
-    """Return the name of a column: an entry of a gain or a coefficient as a letter with its index."""
+def _name(column: str) -> Formula | str:
+    """Return the name of a column: an entry of a gain or a coefficient as a letter with its index, a margin in words."""
+    if column in _WORDS:
+        return _WORDS[column]
     letter, _, index = column.removesuffix("]").partition("[")
     numbers = index.split(",")
     if len(numbers) == 2 and all(len(number) == 1 for number in numbers):

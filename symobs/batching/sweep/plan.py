@@ -5,7 +5,9 @@ from __future__ import annotations
 import json
 import re
 import shutil
+from collections import Counter
 from fractions import Fraction
+from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -15,10 +17,11 @@ from symobs.batching.kept import CHILD
 from symobs.batching.run import Batch, texts_of
 from symobs.batching.store import work_folder
 from symobs.batching.sweep.grid import Grid, read_grid
-from symobs.batching.sweep.program import GAINS, MARGINS, MARGINS_STATUS, Program
+from symobs.batching.sweep.program import GAINS, MARGINS, MARGINS_STATUS, Program, names_used, with_values
 from symobs.batching.sweep.table import check_target, write_table
 from symobs.child_processes.child import Died, started
-from symobs.errors import InputError, SymobsError, UsageError
+from symobs.errors import InputError, SymobsError, UsageError, raise_all
+from symobs.problem.noted_errors import Errors
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -46,7 +49,7 @@ class Plan:
         way: str = "auto",
         unbounded: bool = False,
     ) -> None:
-        """Read problem and grid, and solve the problem with the names as symbols.
+        """Read problem, grid and columns.
 
         Raises `ProblemErrors` with all that is wrong with either, and `InputError` for a task that is no design of gains.
         """
@@ -61,14 +64,25 @@ class Plan:
         if bare.task.name not in GAINS or bare.problem.specification.get("observer") == "minimal":
             message = f"a sweep is of {', '.join(sorted(GAINS))} with an observer of full order"
             raise InputError(message, where="task", repair="name one of these tasks")
-        self.grid: Grid = read_grid(over, bare.problem.plant.symbols.signs, unbounded=unbounded)
-        self.answer = self._once() if way != "each" else None
-        self.columns = _chosen(bare.columns(), columns)
-        if MARGINS_STATUS in self.columns:
-            from symobs.batching.sweep.margins import require_one_loop  # noqa: PLC0415 - only where they are asked for
+        errors = Errors()
+        with errors:
+            self.grid: Grid = read_grid(over, bare.problem.plant.symbols.signs, unbounded=unbounded)
+            self.tables = _with_values_of_file(self.tables, self.grid)
+            bare = Program(self.tables, (), None)
+            _require_values(bare, self.grid)
+        with errors:
+            self.columns = _chosen(bare.columns(), columns)
+            if MARGINS_STATUS in self.columns:
+                from symobs.batching.sweep.margins import require_one_loop  # noqa: PLC0415 - only where asked for
 
-            require_one_loop(bare)
-        self.name = name
+                require_one_loop(bare)
+        raise_all(errors.found)
+        self.name, self._asked_way = name, way
+
+    @cached_property
+    def answer(self) -> dict[str, Any] | None:
+        """The solution with the swept names as symbols, None where every point is solved by itself."""
+        return self._once() if self._asked_way != "each" else None
 
     @property
     def way(self) -> str:
@@ -115,6 +129,20 @@ class Plan:
         return -(-self.grid.size // BLOCK)
 
 
+def _with_values_of_file(tables: dict[str, Any], grid: Grid) -> dict[str, Any]:
+    """Return the problem at its [values], but for the names that run."""
+    values = {name: value for name, value in tables.get("values", {}).items() if name not in grid.names}
+    return {key: value for key, value in with_values(tables, values).items() if key != "values"}
+
+
+def _require_values(bare: Program, grid: Grid) -> None:
+    """Raise an error for names of the problem that have no values: no point would have a number."""
+    errors = Errors()
+    for name in sorted(names_used(bare.tables) & bare.problem.plant.symbols.signs.keys() - {*grid.names}):
+        errors.note(f"{name} has no values", "over", f"add {name}=… or write {name} in [values]")
+    raise_all(errors.found)
+
+
 def _chosen(there: list[str], wanted: str | None) -> list[str]:
     """Return the columns asked for: names of columns, or of what they are entries of."""
     if wanted is None:
@@ -145,6 +173,7 @@ class SweepTable:
     def __init__(self, plan: Plan, run: Batch) -> None:
         """Take the plan and the run whose store holds the blocks, or gives them as they come."""
         self.plan, self.run = plan, run
+        self._counts: Counter[str] = Counter()
 
     @property
     def grid(self) -> Grid:
@@ -155,7 +184,15 @@ class SweepTable:
         """Yield the first index and the result of every block, in the order of the points."""
         store = self.run.store
         assert store is not None  # noqa: S101 - `sweep` gives it one
-        yield from store.in_order(self.plan.jobs())
+        self._counts.clear()
+        for first, result in store.in_order(self.plan.jobs()):
+            self._counts.update(result["status"])
+            yield first, result
+
+    def told(self) -> str:
+        """Return how the points went that were read last: `3 points: 2 done, 1 no`."""
+        parts = ", ".join(f"{count} {status}" for status, count in sorted(self._counts.items()))
+        return f"{self._counts.total()} points: {parts}"
 
     def __iter__(self) -> Iterator[dict[str, Any]]:
         """Yield the rows: the names and the columns as fractions, other numbers as texts, `status` and `case`."""
@@ -219,6 +256,7 @@ def sweep(
     plan = Plan(problem, over, columns, way=way)
     if out is not None:
         check_target(Path(out))
+    plan.answer  # noqa: B018 - what cannot be solved is said before a folder is made
     folder = Path(tempfile.mkdtemp(prefix="symobs-sweep-")) if out is None else work_folder(Path(out))
     who = {"workers": workers, "scheduler": scheduler, "executor": executor}
     run = Batch(plan.jobs, folder, settings=Settings(Budget(timeout, memory)), **who).finish()  # type: ignore[arg-type]

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 from symobs.errors import CertificateRejected, InputError
 from symobs.exact import Matrix, Scalar
-from symobs.exact.core.generators import substitute
+from symobs.exact.core.generators import substitute, symbols_in
 from symobs.exact.linear_algebra.at_points import (
     PointEvaluator,
     characteristic,
@@ -27,7 +27,7 @@ from symobs.problem import validate
 from symobs.specification import desired_polynomial
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterator, Sequence
     from fractions import Fraction
 
     from symobs.result import Result
@@ -201,13 +201,13 @@ class Program:
         status = {"no": "no", "undecided": "undecided"}.get(verdict, "done")
         if status != "done" or any(result.answer.get(gain) is None for gain in self.gains):
             return Row("no" if status == "done" else status, [None] * count, case)
-        if any(entry.names for gain in self.gains for entry in result.answer[gain].entries):
+        if any(symbols_in(result.answer[gain]) for gain in self.gains):
             return Row("undecided", [None] * count, case)  # other names are left in the answer
         found = [str(entry) for gain in self.gains for entry in result.answer[gain].entries]
         if self.with_F:
             F = result.answer["F"]
-            below = [c.fraction() for c in F.denominator.coefficients(self.variable)]
-            above = [c.fraction() / below[0] for c in F.numerator.coefficients(self.variable)]
+            below = F.denominator.coefficients(self.variable)
+            above = [c / below[0] for c in F.numerator.coefficients(self.variable)]
             for part in (above, [entry / below[0] for entry in below]):
                 found += [str(part[-1 - k] if k < len(part) else 0) for k in range(self.n + 1)]
         return Row("done", found, case)
@@ -225,7 +225,7 @@ class Program:
         return result
 
 
-def with_values(tables: Mapping[str, Any], values: Mapping[str, Fraction]) -> dict[str, Any]:
+def with_values(tables: Mapping[str, Any], values: Mapping[str, Any]) -> dict[str, Any]:
     """Return the tables of a problem with numbers in place of names, which are declared no more."""
     left = {name: sign for name, sign in tables.get("symbols", {}).items() if name not in values}
     data = {key: value for key, value in tables.items() if key not in {"symbols", "expect", "printed"}}
@@ -235,7 +235,24 @@ def with_values(tables: Mapping[str, Any], values: Mapping[str, Fraction]) -> di
     return {**data, "symbols": left}
 
 
-def _put_in(value: Any, values: Mapping[str, Fraction]) -> Any:
+def names_used(tables: Mapping[str, Any]) -> set[str]:
+    """Return the words of the texts of plant and specification."""
+    return {
+        word for name in ("plant", "specification") for text in _texts(tables.get(name)) for word in _NAME.findall(text)
+    }
+
+
+def _texts(value: Any) -> Iterator[str]:
+    if isinstance(value, Mapping):
+        value = list(value.values())
+    if isinstance(value, list):
+        for entry in value:
+            yield from _texts(entry)
+    elif isinstance(value, str):
+        yield value
+
+
+def _put_in(value: Any, values: Mapping[str, Any]) -> Any:
     """Return a value with numbers in place of names in its texts."""
     if isinstance(value, Mapping):
         return {key: _put_in(entry, values) for key, entry in value.items()}

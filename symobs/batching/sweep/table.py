@@ -102,6 +102,18 @@ def nearest(text: str) -> float | None:
         return int(above) / int(below or 1)  # Python rounds the quotient of integers correctly
     except OverflowError:
         return None
+    except ValueError:
+        return _nearest_irrational(text)
+
+
+def _nearest_irrational(text: str) -> float | None:
+    from symobs.exact.floating.doubles import nearest_double  # noqa: PLC0415 - few tables have such numbers
+    from symobs.expression import parse_scalar  # noqa: PLC0415
+
+    try:
+        return nearest_double(parse_scalar(text, {}, functions=True))
+    except (InputError, ValueError):
+        return None
 
 
 def _header(table: Swept, *, decimals: bool) -> list[str]:

@@ -23,6 +23,8 @@ _STEP = ("relation", "where", "let")
 _TABLES = re.compile(r"(?m)^[ \t]*(\[\[?[ \t]*(answer|step)\b|(student|convention|symbols|let)[ \t]*=[ \t]*[\"'\[{])")
 _DEFINITION = re.compile(r"[ \t]*([A-Za-z][A-Za-z0-9_.]*)[ \t]*=([^=<>!]*)")
 _RELATION = re.compile(r"[=<>]|!=")
+#: A verdict is an answer and no relation of a derivation.
+_VERDICTS = {"yes", "no", "conditional"}
 _MINUS = str.maketrans({"\u2212": "-", "\u2013": "-", "\u00a0": " "})
 
 
@@ -85,7 +87,7 @@ def _of_lines(text: str, where: str) -> Answer:
         if not _RELATION.search(line):
             message = f'"{shown(line, 60)}" is no relation'
             errors.append(InputError(message, where=place, repair="write for example L = [19; 81]"))
-        elif not defined or "." not in defined[1]:
+        elif not defined or ("." not in defined[1] and defined[2].strip().lower() not in _VERDICTS):
             steps.append(Step(line, place))
     if errors:
         raise ProblemErrors(tuple(errors))

@@ -12,10 +12,11 @@ from symobs.batching.jobs import Budget
 from symobs.batching.run import Batch
 from symobs.checking.classes.picture import picture
 from symobs.checking.classes.row import job_of, report_of_row, solved
-from symobs.checking.classes.submissions import read_submissions
+from symobs.checking.classes.submissions import not_held, read_submissions
 from symobs.checking.classes.summary import as_markdown, marks, summary
 from symobs.errors import InputError
 from symobs.expect import available
+from symobs.expression.source import shown
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -41,15 +42,21 @@ def check_class(
     workers: int | None,
     budget: Budget,
     progress: Callable[[int, int], None],
+    tell: Callable[[str], None],
 ) -> tuple[dict[str, str], int]:
     """Return the files of the results by name, and the exit code: 5 where some are undecided.
 
+    `tell` is given what the teacher should know of the table as a whole.
     Reports are kept in the folder `work` until the files are there: a run that was ended goes on from it.
     Raises `ProblemErrors` where the problem or the table as a whole cannot be used.
     """
     checked = solved(problems.first, str(folder))
     submissions = read_submissions(path, _parts(checked), columns)
+    for line in filter(None, [not_held(submissions.columns, _asked(checked), _parts(checked))]):
+        tell(line)
     entries, unknown = _with_variants(problems, submissions.entries)
+    for i, reason in unknown.items():
+        tell(f"{shown(entries[i].student, 60)} is not counted in the mean: {reason}")
     known = [submission for i, submission in enumerate(entries) if i not in unknown]
     jobs = {id(each): job_of(problems.text_of(each.variant), str(folder), each, show) for each in known}
     few = workers is None and budget == Budget(None, None) and len(jobs) < _WORTH_CHILDREN
@@ -73,7 +80,8 @@ def check_class(
         )
         for i, each in enumerate(entries)
     ]
-    found = summary(problems.title or checked.problem.title, reports, submissions.superseded)
+    apart = {entries[i].student for i in unknown}
+    found = summary(problems.title or checked.problem.title, reports, submissions.superseded, apart)
     files = {
         "results.jsonl": "".join(json.dumps(report.as_data(), ensure_ascii=False) + "\n" for report in reports),
         "marks.csv": marks(reports),
@@ -106,6 +114,15 @@ def _with_variants(problems: ClassProblems, entries: Sequence[Submission]) -> tu
 def name_of(student: str) -> str:
     """Return the name of a student's page: no path is made of what somebody handed in."""
     return hashlib.sha256(student.encode(errors="surrogatepass")).hexdigest()[:16]
+
+
+def _asked(checked: Checked) -> list[list[str]]:
+    """Return the names of each part that counts: its letter, and with its task."""
+    found = []
+    for view, field in checked.asked(checked.views()):
+        letter = next((own for own, (standard, _) in view.names.items() if standard == field), field)
+        found.append([letter, f"{view.task}.{letter}", f"{view.task}.{field}"])
+    return found
 
 
 def _parts(checked: Checked) -> list[str]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import io
 import json
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from symobs._dataclass import dataclass
@@ -35,10 +36,14 @@ class Submission:
 
 @dataclass(frozen=True)
 class Submissions:
-    """The submissions that count, in the order of the input, and the places of those that a later one replaced."""
+    """The submissions that count, in the order of the input, and the places of those that a later one replaced.
+
+    columns   the names of the columns of a table, as they were mapped
+    """
 
     entries: tuple[Submission, ...]
     superseded: tuple[tuple[str, str], ...] = ()
+    columns: tuple[str, ...] = ()
 
 
 def read_submissions(path: Path, known: Collection[str], columns: Mapping[str, str]) -> Submissions:
@@ -51,8 +56,26 @@ def read_submissions(path: Path, known: Collection[str], columns: Mapping[str, s
         if not found:
             raise _wrong(str(path), "there is no answer file in this folder", f"its files end in {', '.join(_FILES)}")
         return _last(found)
+    names: tuple[str, ...] = ()
     text = text_of_file(path)
-    return _last(_of_json_lines(text, path) if path.suffix == ".jsonl" else _of_csv(text, path, known, columns))
+    if path.suffix == ".jsonl":
+        found = _of_json_lines(text, path)
+    else:
+        names, found = _of_csv(text, path, known, columns)
+    if not found:
+        raise _wrong(str(path), f"no student in {shown(path.name, 60)}", "write a line for each below the header")
+    return replace(_last(found), columns=names)
+
+
+def not_held(columns: Sequence[str], asked: Collection[Collection[str]], known: Collection[str]) -> str:
+    """Return a line on the parts that no column of a table holds, each by the names it may have; none: an empty one."""
+    lacking = [next(iter(names)) for names in asked if columns and not {*names} & {*columns}]
+    unused = [name for name in columns if name and name not in known and name not in OWN]
+    if not lacking:
+        return ""
+    meant = f" (did you mean {lacking[0]}?)" if len(lacking) == len(unused) == 1 else ""
+    other = f"; unused: {shown(', '.join(unused), 200)}{meant}" if unused else ""
+    return f"no column holds {', '.join(lacking)}{other}"
 
 
 def _wrong(where: str, message: str, repair: str) -> ProblemErrors:
@@ -93,8 +116,10 @@ def _last(found: Sequence[tuple[str, Submission]]) -> Submissions:
 # -- CSV --------------------------------------------------------------------------------------------------------------
 
 
-def _of_csv(text: str, path: Path, known: Collection[str], columns: Mapping[str, str]) -> list[tuple[str, Submission]]:
-    """Return the rows of a table whose header names students and parts; its delimiter is that of the header."""
+def _of_csv(
+    text: str, path: Path, known: Collection[str], columns: Mapping[str, str]
+) -> tuple[tuple[str, ...], list[tuple[str, Submission]]]:
+    """Return header and rows of a table whose header names students and parts; its delimiter is that of the header."""
     header = text.split("\n", 1)[0]
     delimiter = max(";\t,", key=header.count)
     csv.field_size_limit(MAX_BYTES)
@@ -123,7 +148,7 @@ def _of_csv(text: str, path: Path, known: Collection[str], columns: Mapping[str,
         if any(cell.strip() for cell in row):
             cells = {name: cell for name, cell in zip(names, row, strict=True) if name in used}
             found.append((f"line {number}", _of_cells(cells)))
-    return found
+    return tuple(names), found
 
 
 def _of_header(

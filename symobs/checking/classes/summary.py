@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 from symobs.checking.report.data import decimal
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Collection, Mapping, Sequence
 
     from symobs.checking.report.data import Part
     from symobs.checking.report.report import CheckReport
@@ -42,9 +42,15 @@ def marks(reports: Sequence[CheckReport]) -> str:
     return stream.getvalue()
 
 
-def summary(title: str, reports: Sequence[CheckReport], superseded: Sequence[tuple[str, str]]) -> dict[str, Any]:
-    """Return the summary of a class as data."""
-    scores = [report.score for report in reports if report.score is not None]
+def summary(
+    title: str,
+    reports: Sequence[CheckReport],
+    superseded: Sequence[tuple[str, str]],
+    without_variant: Collection[str] = (),
+) -> dict[str, Any]:
+    """Return the summary of a class as data; students without a known variant are not in the mean."""
+    marked = [report for report in reports if report.student not in without_variant]
+    scores = [report.score for report in marked if report.score is not None]
     mean = sum(scores, Fraction(0)) / len(scores) if scores else None
     parts: dict[str, list[tuple[str, Part]]] = {}
     for report in reports:
@@ -62,8 +68,9 @@ def summary(title: str, reports: Sequence[CheckReport], superseded: Sequence[tup
         "parts": {name: _counted(part.verdict for _, part in found) for name, found in parts.items()},
         "slips": {name: _slips(found) for name, found in parts.items()},
         "first_false": _first_false(reports),
-        "variants": _by_variant(reports),
+        "variants": _by_variant(marked),
         "agreement": {name: _agreement(found) for name, found in parts.items()},
+        "without_variant": sorted(without_variant),
         "superseded": [{"student": student, "place": place} for student, place in superseded],
         "unreadable": [
             {"student": report.student, "message": part.reason}
@@ -153,6 +160,8 @@ def as_markdown(found: Mapping[str, Any]) -> str:
             f"| {plain(name)} | {each['students']} | {each['mean_decimal']} |"
             for name, each in found["variants"].items()
         ]
+    if found["without_variant"]:
+        lines += ["", f"Without a known variant, not in the average: {plain(', '.join(found['without_variant']))}."]
     if found["superseded"]:
         lines += ["", f"{len(found['superseded'])} submissions were replaced by later ones of the same student."]
     return "\n".join([*lines, ""])

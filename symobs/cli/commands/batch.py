@@ -20,7 +20,7 @@ from symobs.errors import UsageError
 from symobs.result.digits_of_page import digits_asked
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Callable, Iterator, Mapping
 
     from symobs.batching.jobs import Job
 
@@ -144,8 +144,13 @@ def batch_of(jobs: Callable[[], Iterator[Job]], out: Path, budget: Budget, run: 
     return Batch(jobs, out, settings=settings, **who, **more)
 
 
-def finish(work: Batch, total: int, *, quiet: bool, done: Callable[[], None] = lambda: None) -> NoReturn:
-    """Do the work of a run, tell how far it has come, and end with its exit code; `done` is called when all is done."""
+def finish(
+    work: Batch, total: int, *, quiet: bool, done: Callable[[], str] | None = None, unit: str = "problems"
+) -> NoReturn:
+    """Do the work of a run, tell how far it has come, and end with its exit code.
+
+    `done` is called when all is done, and returns what is said of it in place of the counts.
+    """
     usual = signal.signal(signal.SIGTERM, _interrupt)
     progress = _Progress(total, quiet=quiet)
     try:
@@ -154,20 +159,22 @@ def finish(work: Batch, total: int, *, quiet: bool, done: Callable[[], None] = l
     except Unfinished as error:
         progress.clear()
         count = sum(work.counts.values())
-        write_message(f"{error}; {count} of {total} done, run the same command again to go on")
+        write_message(f"{error}; {count} of {total} {unit} done, run the same command again to go on")
         sys.exit(EXIT_UNDECIDED)
     finally:
         signal.signal(signal.SIGTERM, usual)
         progress.clear()
-    done()
+    told = done() if done is not None else _told(work.counts)
     for place in work.store.torn if work.store else ():
         write_message(f"{place} was torn and has been done again")
     if not quiet:
-        write_message(
-            ", ".join(f"{count} {status}" for status, count in work.counts.items() if count) or "nothing to do"
-        )
+        write_message(told or "nothing to do")
     failed = work.counts["failed"] + work.counts["unreadable"]
     sys.exit(EXIT_NO if failed else EXIT_UNDECIDED if work.counts["undecided"] else 0)
+
+
+def _told(counts: Mapping[str, int]) -> str:
+    return ", ".join(f"{count} {status}" for status, count in counts.items() if count)
 
 
 def _interrupt(_: int, __: object) -> NoReturn:

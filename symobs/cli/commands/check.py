@@ -178,6 +178,7 @@ def _class(
         workers=workers,
         budget=Budget(*limits),
         progress=progress,
+        tell=write_message,
     )
     for made in (folder, folder / "feedback") if feedback else (folder,):
         make_folder(made)

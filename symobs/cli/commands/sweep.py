@@ -16,7 +16,8 @@ from symobs.cli.commands.batch import batch_of, finish, of_a_run
 from symobs.cli.shared.common import write_message
 from symobs.cli.shared.options import options
 from symobs.cli.shared.outcome import check_targets
-from symobs.errors import UsageError
+from symobs.errors import UsageError, raise_all
+from symobs.problem.noted_errors import Errors
 
 #: What a block of points is allowed where nothing else is said.
 _SECONDS, _MEGABYTES = 600.0, 2000.0
@@ -56,25 +57,34 @@ def command(
     claims are checked again.  --timeout and --memory are for 1024 points.  Run the same command again after a run that
     was ended: it goes on.  The picture shows columns over one name, or lines of equal values of one column over two.
     """
-    if out is None and plot is None:
-        raise UsageError("no table is named", where="--out", repair="write --out table.csv or --out table.parquet")
-    if out is not None:
-        check_target(Path(out))
-    check_targets(None, plot)
-    plan = Plan(Path(problem), over, columns, way="each" if each else "auto", unbounded=yes)
-    if plot is not None:
-        drawn_columns(plan)
+    errors = Errors()
+    with errors:
+        if out is None and plot is None:
+            repair = "write --out table.csv or --out table.parquet, or --plot picture.svg"
+            raise UsageError("no table and no picture is named", where="--out", repair=repair)
+    with errors:
+        if out is not None:
+            check_target(Path(out))
+    with errors:
+        check_targets(None, plot)
+    with errors:
+        plan = Plan(Path(problem), over, columns, way="each" if each else "auto", unbounded=yes)
+        if plot is not None:
+            drawn_columns(plan)
+    raise_all(errors.found)
+    way = plan.way
     target = Path(out or plot or "")
     if not run["quiet"]:
-        write_message(f"{plan.grid.told()}; solved {plan.way}")
+        write_message(f"{plan.grid.told()}; solved {way}")
     work = batch_of(plan.jobs, work_folder(target), Budget(timeout or _SECONDS, memory or _MEGABYTES), run)
 
-    def write() -> None:
+    def write() -> str:
         table = SweepTable(plan, work)
         if out is not None:
             write_table(table, Path(out), decimals=decimals)
         if plot is not None:
             write_picture(table, Path(plot))
         discard_work(target)
+        return table.told()
 
-    finish(work, plan.blocks, quiet=run["quiet"], done=write)
+    finish(work, plan.blocks, quiet=run["quiet"], done=write, unit="blocks of points")

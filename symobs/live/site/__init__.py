@@ -11,6 +11,10 @@ import json
 import shutil
 import zipfile
 from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
 
 _HERE = Path(__file__).parent
 _PACKAGE = _HERE.parents[1]
@@ -26,6 +30,11 @@ POLICY = (
     "default-src 'none'; script-src 'self' 'wasm-unsafe-eval'; worker-src 'self'; connect-src 'self'; "
     "style-src 'self' 'unsafe-inline'; img-src data:; base-uri 'none'; form-action 'none'"
 )
+#: Where the parts come from, as docs/live.md says it.
+_FETCHED = """\
+fetch them with
+  npm install --ignore-scripts pyodide@314.0.7
+  pip download --no-deps --only-binary=:all: --platform pyemscripten_2026_0_wasm32 --python-version 314 python-flint"""
 _THIRD = """\
 This site carries, as their makers publish them:
 
@@ -43,15 +52,15 @@ def build(out: Path, pyodide: Path, flint: Path) -> int:
 
     pyodide   the folder of the npm package of that name
     flint     the wheel of python-flint for the same Pyodide
-    Raises `ValueError` for what is not that, before anything is written.
+    Raises `ValueError` with all that is wrong with them, before anything is written.
     """
-    absent = [name for name in (*_RUNTIME, "package.json") if not (pyodide / name).is_file()]
-    if absent:
-        raise ValueError(f"{pyodide}: {', '.join(absent)} missing; give the folder of the npm package pyodide")
-    if not zipfile.is_zipfile(flint) or not flint.name.endswith("wasm32.whl"):
-        raise ValueError(f"{flint}: not a wheel for WebAssembly; give python_flint-…_wasm32.whl")
+    wrong = [*_wrong_runtime(pyodide), *_wrong_wheel(flint)]
+    if wrong:
+        wrong.append(_FETCHED)
     if out.exists() and any(out.iterdir()) and not (out / "contents.js").is_file():
-        raise ValueError(f"{out}: there is something else in this folder; give a new one")
+        wrong.append(f"{out}: there is something else in this folder; give a new one")
+    if wrong:
+        raise ValueError("\n".join(wrong))
     shutil.rmtree(out, ignore_errors=True)
     (out / "pyodide").mkdir(parents=True)
     for name in _RUNTIME:
@@ -71,6 +80,23 @@ def build(out: Path, pyodide: Path, flint: Path) -> int:
     contents = {"version": f"symobs-live-{told}", "wheel": flint.name, "files": names}
     (out / "contents.js").write_text(f"self.CONTENTS = {json.dumps(contents, indent=1)};\n", encoding="utf-8")
     return sum(path.stat().st_size for path in out.rglob("*") if path.is_file())
+
+
+def _wrong_runtime(folder: Path) -> Iterator[str]:
+    """Yield what is wrong with the folder of the npm package."""
+    absent = [name for name in (*_RUNTIME, "package.json") if not (folder / name).is_file()]
+    if not folder.is_dir():
+        yield f"--pyodide: there is no folder {folder}"
+    elif absent:
+        yield f"--pyodide: {folder}: {', '.join(absent)} missing; give the folder of the npm package pyodide"
+
+
+def _wrong_wheel(wheel: Path) -> Iterator[str]:
+    """Yield what is wrong with the wheel."""
+    if not wheel.is_file():
+        yield f"--flint: there is no file {wheel}"
+    elif not zipfile.is_zipfile(wheel) or not wheel.name.endswith("wasm32.whl"):
+        yield f"--flint: {wheel}: not a wheel for WebAssembly; give python_flint-…_wasm32.whl"
 
 
 def _page(text: str) -> str:

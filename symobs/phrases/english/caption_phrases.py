@@ -25,6 +25,7 @@ PHRASES: dict[str, str] = {
     "picture_samples_only": "The signals are defined at the sampling instants 0, 1, 2, … only.",
     "picture_sweep": "Checked values at {count} points, joined by straight lines.",
     "picture_map": "Lines of equal {column}, between checked values at {count} points.",
-    "picture_gaps": "Shaded: no value, or a case of its own.",
+    "picture_infinite": "Infinite at all points: {column}.",
+    "picture_gaps": "Shaded: no finite value, or a case of its own.",
     "picture_drawn_for": "Plotted for {values}.",
 }

@@ -367,15 +367,16 @@ def _curves(picture: SweepCurves, measure: Measure) -> Scene:
         return lambda frame: [line for run in runs for line in frame.lines(run)]
 
     panels: list[_Panel] = []
-    for name, runs in picture.columns:
+    shades: list[tuple[Point, ...]] = []
+    for row, (name, runs, gaps) in enumerate(picture.columns, 1):
         heights = [y for run in runs for _, y in run] or [0.0]
         low, high = min(heights), max(heights)
         room = 0.0 if low < high else abs(low) / 10 or 1.0
         panels.append((name, (low - room, high + room), drawn_in(runs)))
-    scene = _stacked(picture.window, picture.axis, panels, measure)
-    frame = Frame(picture.window, (0.0, 1.0), WIDEST, scene.frame.top)
-    shades = [area for a, b in picture.gaps for area in frame.areas([(a, 0), (b, 0), (b, 1), (a, 1)])]
-    return replace(scene, shades=tuple(shades))
+        frame, up = Frame(picture.window, (0.0, 1.0), WIDEST, _PANEL), len(picture.columns) - row
+        areas = (area for a, b in gaps for area in frame.areas([(a, 0), (b, 0), (b, 1), (a, 1)]))
+        shades += [tuple((x, y + up * (_PANEL + _BETWEEN_PANELS)) for x, y in area) for area in areas]
+    return replace(_stacked(picture.window, picture.axis, panels, measure), shades=tuple(shades))
 
 
 def _map(picture: SweepMap, measure: Measure) -> Scene:

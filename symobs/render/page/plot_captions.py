@@ -74,7 +74,7 @@ def _equation(name: str, value: Scalar) -> Relation:
     return Relation((symbol(name), number(value)), ("=",))
 
 
-def caption_sentence(key: str, **slots: Formula | Fact) -> Sentence:
+def caption_sentence(key: str, **slots: Formula | Fact | str) -> Sentence:
     """Return the sentence of a caption, its slots filled."""
     return Sentence(f"picture_{key}", tuple(slots.items()))
 
@@ -104,9 +104,11 @@ def _sentences(picture: Drawn) -> Iterator[Sentence]:
                 yield caption_sentence("estimates")
             if picture.discrete:
                 yield caption_sentence("samples_only")
-        case SweepCurves(points=count, gaps=gaps):
+        case SweepCurves(points=count, columns=columns, infinite=infinite):
             yield caption_sentence("sweep", count=number(count))
-            if gaps:
+            for column in infinite:
+                yield caption_sentence("infinite", column=column)
+            if any(gaps for _, _, gaps in columns):
                 yield caption_sentence("gaps")
         case SweepMap(column=column, points=count, gaps=gaps):
             yield caption_sentence("map", column=column, count=number(count))

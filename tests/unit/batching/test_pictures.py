@@ -52,11 +52,36 @@ def test_a_picture_is_the_table() -> None:
     picture = picture_of(table)
     assert isinstance(picture, SweepCurves)
     rows = {float(row["c"]): row for row in table}
-    for (_, runs), name in zip(picture.columns, ("L[1,1]", "L[2,1]"), strict=True):
+    for (_, runs, gaps), name in zip(picture.columns, ("L[1,1]", "L[2,1]"), strict=True):
         drawn = {x: y for run in runs for x, y in run}
         assert drawn == {x: float(row[name]) for x, row in rows.items() if x not in {0.5, 1.0}}
         assert [len(run) for run in runs] == [4, 3, 8]
-    assert picture.gaps == ((0.4375, 0.5625), (0.9375, 1.0625))
+        assert gaps == ((0.4375, 0.5625), (0.9375, 1.0625))
+
+
+@pytest.mark.slow
+def test_each_panel_is_shaded_for_itself_and_what_is_infinite_everywhere_is_only_named(tmp_path: Path) -> None:
+    """The state feedback of a double integrator has no upper gain margin; an unstable loop has no phase margin at all."""
+    data = 'A = "[0 1; 0 0]"\nB = "[0; 1]"'
+    (tmp_path / "m.toml").write_text(problem("state_feedback", "c:real", data, 'poles = "-1, -c"'), encoding="utf-8")
+    words = ["--over", "c=-1:1/2:2", "--columns", "margins", "--plot", "m.svg", "--in-process", "--quiet"]
+    assert inside("sweep", "m.toml", *words, folder=tmp_path).code == 0
+    shown = re.sub("<[^>]*>", "", (tmp_path / "m.svg").read_text(encoding="utf-8"))
+    assert "phase margin in degrees" in shown
+    table = symobs.sweep((tmp_path / "m.toml").read_text(encoding="utf-8"), "c=1/2:1/2:2", columns="margins", workers=1)
+    picture = picture_of(table)
+    assert isinstance(picture, SweepCurves)
+    assert picture.infinite == ("gain margin, upper",)
+    assert [(name, len(runs), gaps) for name, runs, gaps in picture.columns] == [
+        (name, 1, ()) for name in ("gain margin, lower", "phase margin in degrees", "modulus margin", "slowest pole")
+    ]
+    unstable = picture_of(
+        symobs.sweep((tmp_path / "m.toml").read_text(encoding="utf-8"), "c=-1/2:1/2:2", columns="margins", workers=1)
+    )
+    assert isinstance(unstable, SweepCurves)
+    shaded = {name: gaps for name, _, gaps in unstable.columns}
+    assert shaded["slowest pole"] == ()
+    assert shaded["modulus margin"] == ((-0.5, -0.25), (-0.25, 0.25))
 
 
 @pytest.mark.slow
@@ -69,7 +94,7 @@ def test_pictures_are_written_beside_tables_and_instead_of_them(tmp_path: Path) 
     assert len((tmp_path / "h.csv").read_text(encoding="utf-8").splitlines()) == 18
     shown = re.sub("<[^>]*>", "", (tmp_path / "h.svg").read_text(encoding="utf-8"))
     assert "Checked values at 17 points" in shown
-    assert "Shaded: no value, or a case of its own." in shown
+    assert "Shaded: no finite value, or a case of its own." in shown
     over = ["--over", "c=1:1/8:3, d=1:1/8:3", "--columns", "L[2,1]"]
     assert inside("sweep", "p.toml", *over, "--plot", "p.tex", *run, folder=tmp_path).code == 0
     assert "Lines of equal $L_{21}$" in (tmp_path / "p.tex").read_text(encoding="utf-8")
@@ -87,7 +112,7 @@ def test_pictures_are_written_beside_tables_and_instead_of_them(tmp_path: Path) 
         (["--over", "c=1, d=1", "--plot", "p.svg"], "over one or two names with two values each"),
         (["--over", "c=1:1:3, d=1:1:3", "--plot", "p.svg"], "shows 1 columns, and there are 2; name fewer"),
         (["--over", "c=1:1:600, d=1:1:600", "--columns", "L[1,1]", "--plot", "p.svg"], "shows 250000 points"),
-        (["--over", "c=1:1:3", "--plot", "p.doc"], "names no format of pictures"),
+        (["--over", "c=1:1:3, d=1", "--plot", "p.doc"], "names no format of pictures"),
     ],
 )
 def test_what_no_picture_shows_is_said_before_any_work(words: list[str], says: str, tmp_path: Path) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import json
+import math
 import random
 import subprocess
 import sys
@@ -254,7 +255,7 @@ def test_what_is_no_grid_is_said(over: str, where: str, says: str) -> None:
     ("arguments", "code", "says"),
     [
         (["--out", "t.xlsx"], 2, '".xlsx" names no kind of table'),
-        ([], 2, "no table is named"),
+        ([], 2, "--out table.parquet, or --plot picture.svg"),
         (["--out", "t.csv", "--columns", "Q"], 2, "Q is no column; name some of K, L, F"),
         (["--out", "no/t.csv"], 3, "there is no folder"),
     ],
@@ -264,6 +265,42 @@ def test_what_cannot_be_swept_is_said(arguments: list[str], code: int, says: str
     left = inside("sweep", "cart.toml", "--over", "l=1:1:3, m=1", *arguments, folder=tmp_path)
     assert left.code == code
     assert says in left.err
+
+
+def test_all_that_is_wrong_with_a_sweep_is_said_at_once(tmp_path: Path) -> None:
+    (tmp_path / "cart.toml").write_text(CART, encoding="utf-8")
+    left = inside("sweep", "cart.toml", "--over", "q=1:1:3", "--columns", "Q", folder=tmp_path)
+    assert left.code == 3
+    assert [line.split(":")[0] for line in left.err.splitlines()] == ["--out", "over.q", "--columns"]
+    left = inside("sweep", "cart.toml", "--over", "m=1:1:3", "--out", "t.csv", folder=tmp_path)
+    assert left.code == 3
+    assert left.err.strip() == "over: l has no values; add l=… or write l in [values]"
+
+
+def test_functions_of_swept_names_are_solved_point_by_point_and_points_are_counted(tmp_path: Path) -> None:
+    text = problem("state_feedback", "w:real", 'A = "[0 1; 0 0]"\nB = "[0; w]"', 'poles = "-exp(-w), -1"')
+    (tmp_path / "e.toml").write_text(text, encoding="utf-8")
+    words = ["--over", "w=[1/10, 0, 1]", "--out", "e.csv", "--decimals", "--in-process"]
+    left = inside("sweep", "e.toml", *words, folder=tmp_path)
+    assert left.err.splitlines()[-1] == "3 points: 2 done, 1 no"
+    with (tmp_path / "e.csv").open(encoding="utf-8", newline="") as stream:
+        rows = list(csv.DictReader(stream))
+    assert [row["status"] for row in rows] == ["done", "no", "done"]
+    assert float(rows[0]["K[1,1].d"]) == pytest.approx(math.exp(-0.1) / 0.1, rel=1e-15)
+    assert float(rows[2]["K[1,2].d"]) == pytest.approx(math.exp(-1) + 1, rel=1e-15)
+
+
+def test_the_values_of_the_file_are_those_of_all_points() -> None:
+    """K = [w² + w, 2 z w] for A = [0 1; w 0]: at w = 2 and z = 3/5 the poles have the real part -6/5."""
+    pair = 'poles = { damping = "z", natural_frequency = "w" }'
+    text = problem("state_feedback", "z:positive w:positive", 'A = "[0 1; w 0]"\nB = "[0; 1]"', pair)
+    for w, K, slowest in (("2", [6, Fraction(12, 5)], Fraction(-6, 5)), ("sqrt(2)", ["sqrt(2) + 2", None], None)):
+        (row,) = symobs.sweep(f'{text}[values]\nw = "{w}"\n', "z=3/5", columns="K, margins", workers=1)
+        assert row["K[1,1]"] == K[0]
+        assert row["slowest"] == slowest
+        assert row["margins_status"] == ("done" if slowest else "undecided")
+    (row,) = symobs.sweep(f'{text}[values]\nw = "2"\nz = "9"\n', "z=3/5", columns="K", workers=1)
+    assert row["K[1,2]"] == Fraction(12, 5)
 
 
 def test_a_point_without_a_plant_is_undefined_and_loses_no_other() -> None:

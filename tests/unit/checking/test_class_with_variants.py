@@ -75,7 +75,11 @@ g,v9,[3; 2]
 h,,[3; 2]
 """
     found = run(folder, table, "--feedback", manifest="SET/manifest.json")
-    assert (found.code, found.err) == (0, "")
+    assert found.code == 0
+    assert found.err.splitlines() == [
+        "g is not counted in the mean: variant: there is no variant v9; write v001 to v003",
+        "h is not counted in the mean: variant: it is not said which variant this is; write v001 to v003",
+    ]
     assert marks(folder) == {
         "a": ("v001", "right", "4.00"),
         "b": ("v002", "right", "4.00"),
@@ -96,6 +100,8 @@ h,,[3; 2]
     assert len(list((folder / "OUT" / "feedback").iterdir())) == 8
     summary = json.loads((folder / "OUT" / "summary.json").read_text(encoding="utf-8"))
     assert summary["title"] == "Gains"
+    assert (summary["mean"], summary["without_variant"]) == ("8/3", ["g", "h"])  # (4 + 4 + 4 + 4 + 0 + 0)/6
+    assert list(summary["variants"]) == ["v001", "v002", "v003"]
     assert summary["variants"]["v002"] == {"students": 3, "mean": "8/3", "mean_decimal": "2.67", "squares": "32/3"}
     assert "| v003 | 1 | 4.00 |" in (folder / "OUT" / "summary.md").read_text(encoding="utf-8")
 

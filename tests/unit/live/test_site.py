@@ -7,6 +7,7 @@ import re
 import subprocess
 import sys
 import zipfile
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pytest
@@ -17,7 +18,6 @@ from tests.support.tools.command_line import SAFETY, environment
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
-    from pathlib import Path
 
 RUNTIME = ("pyodide.mjs", "pyodide.asm.mjs", "pyodide.asm.wasm", "python_stdlib.zip", "pyodide-lock.json")
 
@@ -121,3 +121,13 @@ def test_what_is_something_else_is_refused_before_anything_is_written(
     assert left.value.code == 2
     assert "something else in this folder; give a new one" in capsys.readouterr().err
     assert [path.name for path in out.iterdir()] == ["mine.txt"]
+
+
+def test_all_that_is_missing_is_said_with_the_commands_of_the_page(tmp_path: Path) -> None:
+    with pytest.raises(ValueError, match="there is no folder") as raised:
+        build(tmp_path / "out", tmp_path / "pyodide", tmp_path / "no.whl")
+    lines = str(raised.value).splitlines()
+    assert lines[1] == f"--flint: there is no file {tmp_path / 'no.whl'}"
+    page = (Path(__file__).parents[3] / "docs" / "live.md").read_text(encoding="utf-8")
+    assert [line.strip() in page for line in lines[3:]] == [True, True]
+    assert not (tmp_path / "out").exists()

@@ -139,7 +139,7 @@ point = 1
         'sheet.toml, style: "book" is no choice; write one of exercise, exam',
         'sheet.toml, answers: "box" is no choice; write one of none, space, lines',
         'sheet.toml, number: this is no number of a sheet; write number = 3, or number = "3a"',
-        "sheet.toml, due: a text is expected, but true or false came; write it in quotes",
+        'sheet.toml, due: a date or a text is expected, but true or false came; write due = 2026-12-08 or due = "Monday"',
         'sheet.toml, logo: "logo.svg" is no picture that pages can show; give a png, jpg or pdf',
         "sheet.toml, name: true or false is expected, but a text came; write name = true",
         "sheet.toml, space: a whole number of centimetres from 1 to 25 is expected; write space = 4",

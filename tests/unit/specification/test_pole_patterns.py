@@ -194,6 +194,8 @@ def test_what_need_not_be_positive_or_less_than_one_is_refused(poles: str, reaso
 
 
 REFUSED = [
+    ("bessel = w", 'bessel is w, which is not declared positive; declare it: w = "positive"'),
+    ("bessel = cos(w)", "bessel is cos(w), which need not be positive"),
     ({"damping": "1/2"}, "damping given, which does not say where the poles are"),
     ("damping = 1/2, overshoot = 0.1", "which does not say where the poles are"),
     ({"damping": "1/2", "frequency": 3}, "poles have no 'frequency'"),
