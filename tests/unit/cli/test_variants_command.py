@@ -70,7 +70,7 @@ def test_too_few_leave_nothing_behind_and_partial_ones_what_there_is(tmp_path: P
     assert not (tmp_path / "set").exists()
     assert inside(*call, "--partial", folder=tmp_path).code == 4
     files = sorted(path.name for path in (tmp_path / "set").rglob("*.*"))
-    assert files == ["manifest.json", "v001.toml", "v002.toml"]
+    assert files == ["manifest.json", "sheet.toml", "v001.toml", "v002.toml"]
     texts = [path.read_text(encoding="utf-8") for path in sorted((tmp_path / "set" / "variants").iterdir())]
     assert {text.splitlines()[0] for text in texts} in (
         {'title = "A is 1, variant 1"', 'title = "A is 2, variant 2"'},

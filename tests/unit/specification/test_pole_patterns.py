@@ -162,7 +162,7 @@ def test_a_damping_that_signs_keep_below_one_has_its_page() -> None:
 
 def test_a_page_that_says_a_real_pair_settles_is_rejected() -> None:
     """Poles −2 ± √3: at 2 s the slower mode is still at 58.5 %."""
-    found = symobs.state_feedback(integrators(2), polynomial="s^2 + 4 s + 1")
+    found: Any = symobs.state_feedback(integrators(2), polynomial="s^2 + 4 s + 1")
     (factor,) = found.desired.factors
     lie = PolePattern("s", (("damping", Scalar.of(2)), ("settling_time", Scalar.of(2))), (factor,))
     false = replace(found.kind, desired=replace(found.desired, pattern=lie))
@@ -194,7 +194,7 @@ def test_what_need_not_be_positive_or_less_than_one_is_refused(poles: str, reaso
 
 
 REFUSED = [
-    ("bessel = w", 'bessel is w, which is not declared positive; declare it: w = "positive"'),
+    ("bessel = w", "bessel is w, which need not be positive; declare w positive in symbols"),
     ("bessel = cos(w)", "bessel is cos(w), which need not be positive"),
     ({"damping": "1/2"}, "damping given, which does not say where the poles are"),
     ("damping = 1/2, overshoot = 0.1", "which does not say where the poles are"),
