@@ -121,7 +121,9 @@ def test_of_many_rows_the_first_and_one_in_a_hundred_are_looked_at_again(monkeyp
 @pytest.mark.parametrize("dt", ["", "dt = 1\n"])
 def test_the_gains_of_integral_action_are_looked_at(dt: str) -> None:
     plant = f'[plant]\nA = "[0 1; 0 -a]"\nB = "[0; 1]"\nC = "[1 0]"\nD = "1"\n{dt}[symbols]\na = "real"\n'
-    ((task, given, answer),) = answered(f'task = "integral_action"\n{plant}[specification]\npoles = "-1/2, -1/3, -1/5"\n')
+    ((task, given, answer),) = answered(
+        f'task = "integral_action"\n{plant}[specification]\npoles = "-1/2, -1/3, -1/5"\n'
+    )
     assert fault(task, given, answer, "p") is None
     for field in ("K", "k_I", "closed_loop_matrix"):
         assert fault(task, given, {**answer, field: spoilt(answer[field])}, "p") is not None
