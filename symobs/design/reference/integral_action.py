@@ -151,7 +151,7 @@ class IntegralAction(Result):
     def fields(self) -> Mapping[str, Any]:
         """K, k_I, whether (and where) the rank condition holds, the closed loop in (x, ξ), and what the feedback reports."""
         own = {"K": self.answer["K"], "k_I": self.answer["k_I"], "solvable": self.answer["w"] is None}
-        own["solvable_if"] = [" or ".join(f"{e} != 0" for e in equations) for equations in self.blocked] or None
+        own["solvable_if"] = [" or ".join(f"{e} != 0" for e in equations) for equations in self.blocked]
         own |= {"polynomial": self.answer["polynomial"], "closed_loop_matrix": self.loop.fields["closed_loop_matrix"]}
         return own | {name: self.loop.report[name] for name in _REPORTED}
 
