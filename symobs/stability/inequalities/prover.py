@@ -26,6 +26,8 @@ from symobs.stability.inequalities.proof import (
     by_signs,
     contradiction,
     from_contradiction,
+    proves,
+    refutes,
 )
 from symobs.stability.inequalities.z3_backend import is_free
 
@@ -90,7 +92,8 @@ def prove(goal: Scalar, known: Sequence[Scalar], signs: Mapping[str, str]) -> tu
     if not _is_manageable(goal):
         return None
     budget = _SearchBudget(_VIEWS, _PROGRAMS)
-    return _prove_in(goal, goal, _first_view(known, signs), budget)
+    steps = _prove_in(goal, goal, _first_view(known, signs), budget)
+    return steps if steps is not None and proves(steps, known, (goal,), signs) else None
 
 
 def refute(known: Sequence[Scalar], signs: Mapping[str, str]) -> tuple[Step, ...] | None:
@@ -99,7 +102,8 @@ def refute(known: Sequence[Scalar], signs: Mapping[str, str]) -> tuple[Step, ...
         if sign_of(value, signs) in _DOWN:
             return (contradiction(value),)
     budget = _SearchBudget(_VIEWS, _PROGRAMS)
-    return _prove_in(ZERO, ZERO, _first_view(known, signs), budget)
+    steps = _prove_in(ZERO, ZERO, _first_view(known, signs), budget)
+    return steps if steps is not None and refutes(steps, known, signs) else None
 
 
 def prove_by_opposite(
@@ -130,7 +134,9 @@ def _prove_in(goal: Scalar, image: Scalar, view: SubstitutedProblem, budget: _Se
             return steps
     for known in view.open:
         if sign_of(known.polynomial, view.signs) in _DOWN:
-            return _from_impossible(goal, known, view)
+            steps = _from_impossible(goal, known, view)
+            if steps is not None:
+                return steps
     tried = False
     for moved, put in _ways_on(image, view):
         if budget.views <= 0:
@@ -213,7 +219,8 @@ def _stripped(item: Open, view: SubstitutedProblem) -> SubstitutedProblem | None
             below = below * oriented**-power
     if not kept.denominator.is_constant:
         return None
-    if kept.is_constant or (certain * below).is_one:
+    seen = _is_seen_positive([*view.products(certain), *view.products(below)], view)
+    if kept.is_constant or (certain * below).is_one or not seen:
         return replace(view, open=(*view.open, Open(item.polynomial, item.value)))
     value = kept.substitute(view.stands_for)
     given = tuple((c, (item.value, *factors)) for c, factors in view.products(below))
@@ -231,8 +238,10 @@ def _read_back(goal: Scalar, image: Scalar, view: SubstitutedProblem) -> tuple[S
             return None
         oriented = factor if found == "positive" else -factor
         sign = sign if found == "positive" or power % 2 == 0 else -sign
-        value = oriented.substitute(view.stands_for)
-        steps.append(Combined(value, UNIT, view.products(oriented)))
+        value, total = oriented.substitute(view.stands_for), view.products(oriented)
+        if not _is_seen_positive(total, view):
+            return None
+        steps.append(Combined(value, UNIT, total))
         (above if power > 0 else below).extend([value] * abs(power))
     if sign_of(sign, {}) == "negative":
         return None
@@ -253,8 +262,15 @@ def _from_impossible(goal: Scalar, known: Open, view: SubstitutedProblem) -> tup
     if parts is None:
         return None
     above, below = parts
-    total = [(c, (known.value, *factors)) for c, factors in view.products(below)]
-    return _finished(goal, (*view.steps, Combined(ZERO, (), (*total, *view.products(above)))))
+    total = [(c, (known.value, *factors)) for c, factors in view.products(below)] + [*view.products(above)]
+    if not _is_seen_positive(total, view):
+        return None
+    return _finished(goal, (*view.steps, Combined(ZERO, (), tuple(total))))
+
+
+def _is_seen_positive(products: Sequence[Product], view: SubstitutedProblem) -> bool:
+    """Return whether no coefficient is negative: where a sign is known from roots alone, the terms do not say it."""
+    return all(sign_of(c, view.signs) in {"positive", "nonnegative", "zero"} for c, _ in products)
 
 
 def _finished(goal: Scalar, steps: tuple[Step, ...]) -> tuple[Step, ...]:

@@ -162,10 +162,12 @@ def test_a_damping_that_signs_keep_below_one_has_its_page() -> None:
 
 def test_a_page_that_says_a_real_pair_settles_is_rejected() -> None:
     """Poles −2 ± √3: at 2 s the slower mode is still at 58.5 %."""
-    found: Any = symobs.state_feedback(integrators(2), polynomial="s^2 + 4 s + 1")
-    (factor,) = found.desired.factors
+    found = symobs.state_feedback(integrators(2), polynomial="s^2 + 4 s + 1")
+    desired: Any = found.desired
+    (factor,) = desired.factors
     lie = PolePattern("s", (("damping", Scalar.of(2)), ("settling_time", Scalar.of(2))), (factor,))
-    false = replace(found.kind, desired=replace(found.desired, pattern=lie))
+    kind: Any = found.kind
+    false = replace(kind, desired=replace(desired, pattern=lie))
     with pytest.raises(DerivationRejected, match="is not true"):
         replace(found, kind=false).to("text")
 

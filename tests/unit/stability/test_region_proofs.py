@@ -8,10 +8,12 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+import symobs
 from symobs.exact import Scalar, from_coefficients
 from symobs.stability.criteria.stability_conditions import stable_where
 from symobs.stability.inequalities import z3_backend
@@ -140,6 +142,29 @@ def test_whatever_is_proved_is_true(known: list[Scalar], goal: Scalar) -> None:
         assert refutes(impossible, known, AB)
         assert not any(positive_at(known, point) for point in points(AB, 60))
         assert find_point(known, AB) is None
+
+
+#: With u = 1 − a the cubic is −(u³ − 7u² + 12u + 3): negative for u > 0 by its roots, not by its terms.
+CUBIC = a**3 + 4 * a**2 + a - 9
+
+
+def test_a_sign_known_from_roots_alone_makes_no_false_step() -> None:
+    known = [-a - 2, 1 - a, a**2 + a - 2, CUBIC]
+    steps = refute(known, {"a": "real"})
+    assert steps is None or refutes(steps, known, {"a": "real"})
+
+
+@pytest.mark.parametrize("more", ["", "*(s + b)"])
+def test_a_region_beside_another_symbol_is_that_of_the_roots(more: str) -> None:
+    """By Hurwitz s³ + (a² + a − 2) s² + (a + 3) s + 3 is stable where the cubic is positive: where a > 1.18."""
+    symbols = {"a": "real", "b": "real"}
+    text = f"(s^3 + (a^2 + a - 2)*s^2 + (a + 3)*s + 3){more}"
+    found = symobs.stability_region(text, symbols=symbols, parameters="b")
+    assert found.stable_if == [*(["b > 0"] if more else []), "a**3 + 4*a**2 + a - 9 > 0"]
+    for k in range(-60, 61):
+        at = k / 10 + 0.05
+        stable = max(np.roots([1, at**2 + at - 2, at + 3, 3]).real) < 0
+        assert stable == (at**3 + 4 * at**2 + at - 9 > 0)
 
 
 def test_a_factor_of_which_only_one_sign_is_possible() -> None:
