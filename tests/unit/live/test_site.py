@@ -14,6 +14,7 @@ import pytest
 
 from symobs.live.site import build
 from symobs.live.site.__main__ import main
+from tests.support.paths import ROOT
 from tests.support.tools.command_line import SAFETY, environment
 
 if TYPE_CHECKING:
@@ -128,6 +129,6 @@ def test_all_that_is_missing_is_said_with_the_commands_of_the_page(tmp_path: Pat
         build(tmp_path / "out", tmp_path / "pyodide", tmp_path / "no.whl")
     lines = str(raised.value).splitlines()
     assert lines[1] == f"--flint: there is no file {tmp_path / 'no.whl'}"
-    page = (Path(__file__).parents[3] / "docs" / "live.md").read_text(encoding="utf-8")
+    page = (ROOT / "docs").joinpath("live.md").read_text(encoding="utf-8")
     assert [line.strip() in page for line in lines[3:]] == [True, True]
     assert not (tmp_path / "out").exists()
