@@ -154,8 +154,12 @@ class Builder:
         self.asked: frozenset[str] = frozenset()
 
     def asked_for(self, specification: Mapping[str, object]) -> None:
-        """Take note of the names in a specification: the signs declared of them are assumptions, too."""
-        self.asked = frozenset(re.findall(r"[^\W\d]\w*", str([*specification.values()])))
+        """Take note of the names in a specification: the signs declared of them are assumptions, too.
+
+        That a horizon is positive needs no words.
+        """
+        asked = [value for name, value in specification.items() if name != "horizon"]
+        self.asked = frozenset(re.findall(r"[^\W\d]\w*", str(asked)))
 
     def with_roots(self, *values: Scalar | Matrix) -> None:
         """Admit square roots: each squared is its radicand from the start."""
