@@ -187,7 +187,7 @@ def _counts_degree(slots: _Slots, relation: Relation | None, environment: Enviro
 
 
 def _counts_dominant(slots: _Slots, relation: Relation | None, environment: Environment) -> bool:
-    """Tell whether beside the pair −σ ± iω the nearest root has the real part −factor σ."""
+    """Return whether beside the pair −σ ± iω the nearest root has the real part −factor σ."""
     factor = slots["factor"]
     if not _counts_degree(slots, relation, environment) or relation is None or not isinstance(factor, Counted):
         return False
@@ -207,7 +207,7 @@ def _counts_names(slots: _Slots, _: Relation | None, __: Environment) -> bool:
 
 
 def _substitutes_law(slots: _Slots, _: Relation | None, __: Environment) -> bool:
-    """Tell whether the slots are equations for the input and for the rate of the estimate."""
+    """Return whether the slots are equations for the input and for the rate of the estimate."""
     law, rate = slots["law"], slots["rate"]
     firsts = [slot.members[0] for slot in (law, rate) if isinstance(slot, Relation)]
     return firsts == [Letter("u"), Derivative(Letter("x_hat"))]
