@@ -169,7 +169,7 @@ def test_a_killed_scheduler_ends_the_run_which_goes_on(plain: tuple[Path, list[s
         assert process.returncode == 5
         last = said.splitlines()[-1]
         count = re.fullmatch(
-            r"--scheduler: the scheduler is gone; (\d+) of 160 done, run the same command again to go on", last
+            r"--scheduler: the scheduler is gone; (\d+) of 160 problems done, run the same command again to go on", last
         )
         assert count is not None, said
         assert "Traceback" not in said
