@@ -14,6 +14,10 @@ if TYPE_CHECKING:
     from symobs.exact.core.field import Field
 
 
+#: From so many terms on the kernel's own text is taken, but for its powers: it is fast, and its binding never frees it.
+_LONG = 40
+
+
 class RationalFunction(Protocol):
     """A reduced fraction of polynomials with integer coefficients, of which a scalar is one."""
 
@@ -55,7 +59,7 @@ def _monomial(coefficient: int, divisor: int, powers: tuple[tuple[str, int], ...
 
 
 def _sum(value: RationalFunction, divisor: int) -> str:
-    if divisor == 1 and all(map(str.isidentifier, value.field.names)):  # the kernel's own text, but for its powers
+    if divisor == 1 and len(value.numerator_part) > _LONG and all(map(str.isidentifier, value.field.names)):
         return str(value.numerator_part.str()).replace("^", "**")
     pieces: list[str] = []
     for coefficient, powers in value.terms():

@@ -12,7 +12,7 @@ from __future__ import annotations
 from functools import reduce
 from typing import TYPE_CHECKING
 
-from symobs.exact.core.ring import factors_of
+from symobs.exact.core.ring import factors_of, in_order
 
 if TYPE_CHECKING:
     from flint import fmpz_mpoly
@@ -120,7 +120,7 @@ def factors_over(field: Field, polynomial: fmpz_mpoly) -> list[tuple[fmpz_mpoly,
         for factor in _irreducible(field, part):
             _, before = found.get(str(factor), (factor, 0))
             found[str(factor)] = (factor, before + power)
-    return sorted(found.values(), key=lambda item: (item[0].total_degree(), len(item[0]), str(item[0])))
+    return in_order(list(found.values()))
 
 
 def _irreducible(field: Field, polynomial: fmpz_mpoly) -> list[fmpz_mpoly]:

@@ -317,8 +317,15 @@ def factors_of(field: Field, polynomial: fmpz_mpoly) -> tuple[int, list[tuple[fm
         if part.leading_coefficient() < 0:
             positive, whole = -part, whole * (-1) ** (power % 2)
         found.append((positive, int(power)))
-    found.sort(key=lambda item: (item[0].total_degree(), len(item[0]), str(item[0])))
-    return whole, found
+    return whole, in_order(found)
+
+
+def in_order(factors: Sequence[tuple[fmpz_mpoly, int]]) -> list[tuple[fmpz_mpoly, int]]:
+    """Return factors with their powers by degree and length; their texts, which FLINT's binding never frees, settle ties."""
+    sized = [(int(factor.total_degree()), len(factor)) for factor, _ in factors]
+    tied = len(set(sized)) < len(sized)
+    keys = [(size, str(factor) if tied else "") for size, (factor, _) in zip(sized, factors, strict=True)]
+    return [factors[k] for k in sorted(range(len(factors)), key=keys.__getitem__)]
 
 
 def _factor_over_rationals(field: Field, polynomial: fmpz_mpoly) -> tuple[fmpz, list[tuple[fmpz_mpoly, int]]]:
