@@ -497,10 +497,10 @@ REFUSED: list[Case] = [
 
 @pytest.mark.parametrize(("text", "kind", "message"), REFUSED, ids=[ascii(case[0][:30]) for case in REFUSED])
 def test_refused_with_place_and_reason_soon(text: str, kind: type[SymobsError], message: str) -> None:
-    start = time.perf_counter()
+    start = time.process_time()
     with pytest.raises(kind) as caught:
         parse_scalar(text, where="plant.A")
-    assert time.perf_counter() - start < SOON
+    assert time.process_time() - start < SOON
     assert type(caught.value) is kind
     assert message in str(caught.value)
     assert str(caught.value).startswith("plant.A: ")
@@ -881,7 +881,7 @@ hostile = st.one_of(
 @example("," * 9_999)
 @example("[" + ";" * 9_000 + "]")
 def test_any_text_ends_soon_in_a_value_or_in_an_error_of_symobs(text: str) -> None:
-    start = time.perf_counter()
+    start = time.process_time()
     readers: tuple[Callable[[str], object], ...] = (
         parse_scalar,
         parse_matrix,
@@ -895,7 +895,7 @@ def test_any_text_ends_soon_in_a_value_or_in_an_error_of_symobs(text: str) -> No
             read(text)
         except SymobsError as error:
             assert_safe(error)
-    assert time.perf_counter() - start < SOON
+    assert time.process_time() - start < SOON
 
 
 # -- cost ---------------------------------------------------------------------------------------------------------
