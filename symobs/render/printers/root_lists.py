@@ -140,7 +140,7 @@ def _size_of_imaginary(radicand: Scalar) -> Scalar | None:
     size = Scalar.of(outside)
     for factor, power in factors:
         size = size * factor ** (power // 2) if power > 0 else Scalar.of(0)
-    return size if size.numerator.size == 1 and size**2 == -radicand else None
+    return size if size**2 == -radicand and len(tuple(size.terms())) == 1 else None
 
 
 def _distance(root: Root, printer: Printer[Any], glyphs: RootGlyphs) -> str:
