@@ -68,5 +68,10 @@ def test_no_command_prints_one(arguments: tuple[str, ...]) -> None:
 
 
 def test_no_document_contains_one() -> None:
-    pages = [ROOT / "README.md", ROOT / "CHANGELOG.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").rglob("*.md"))]
+    pages = [
+        ROOT / "README.md",
+        ROOT / "CHANGELOG.md",
+        ROOT / "CONTRIBUTING.md",
+        *sorted((ROOT / "docs").rglob("*.md")),
+    ]
     assert [path.name for path in pages if CODE.search(path.read_text(encoding="utf-8"))] == []
