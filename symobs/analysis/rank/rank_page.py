@@ -111,9 +111,9 @@ def _deficient(page: Builder, letter: str, result: RankResult, kind: str) -> Non
     key = "no" if not result.case_tree and fits(f"no_{kind}", rank_relation, page.environment) else "generic_low"
     page.conclude(f"{key}_{kind}", rank=rank_relation)
     matrix = page[letter] if kind == "observability" else page[letter].T
-    for vector in result.kernel_vectors:
-        zero = Matrix.zeros(matrix.value.shape[0], 1)
-        page.equal(relation(matrix @ page.value(vector), zero), say=f"kernel_{kind}")
+    zero = Matrix.zeros(matrix.value.shape[0], 1)
+    unseen = [relation(matrix @ page.value(vector), zero) for vector in result.kernel_vectors]
+    page.equal(*unseen, say=f"kernel_{kind}" if len(unseen) == 1 else f"kernel_several_{kind}")
     page.steps += _outside_cases(result, repair(page, letter, result, kind))
     letters = HIDDEN[kind]
     page.set(letters[0], result.answer["kernel"])

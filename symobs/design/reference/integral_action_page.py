@@ -99,11 +99,11 @@ def _design(page: Builder, design: IntegralAction, *, is_case: bool = False) -> 
     if conditions:
         page.assume("integral_provided", *conditions)
     _gains(page, design)
+    if design.fields["family"] is not None:
+        page.remark("integral_family", count=Counted("free_parameter", design.fields["family"]["dimension"]))
     if not is_case:
         page.signal("u", -page["K"] @ page["x"] + page["k_I"] @ page["xi_I"], say="integral_law")
     _closed_loop(page)
-    if design.fields["family"] is not None:
-        page.remark("integral_family", count=Counted("free_parameter", design.fields["family"]["dimension"]))
 
 
 def _system(page: Builder) -> Term:

@@ -14,13 +14,13 @@ PHRASES: dict[str, str] = {
     "integral_uncontrollable": "The pair ($A$, $B$) is not controllable, {rank}.",
     "integral_impossible": "The roots of {fixed} are uncontrollable modes of plant and integrator, and not all of them are among the desired poles: no gains exist.",
     "integral_provided": "In what follows we assume {condition}.",
-    "integral_gains": "State feedback of plant and integrator has the gain",
-    "integral_parts": "so that the gains of state and integral are",
+    "integral_gains": "The design of state feedback for plant and integrator together gives",
+    "integral_parts": "so that the gains of the state and of the integral are",
     "integral_law": "The control law is",
-    "integral_family": "The gain is not unique: the gains with this polynomial have {count}.",
-    "integral_loop": "The closed loop in the coordinates ($x$, $xi_I$) has the matrix",
+    "integral_family": "The gain is not unique: the gains that assign this polynomial have {count}.",
+    "integral_loop": "In the coordinates ($x$, $xi_I$) the closed loop has the system matrix",
     "integral_closed": "The closed loop is therefore",
-    "integral_rest": "At equilibrium the control error vanishes: from $r_in$ to $y$ the closed loop, if it is stable, has the DC gain {gain}.",
+    "integral_rest": "If the closed loop is stable, the control error vanishes in the steady state, since the DC gain from $r_in$ to $y$ is {gain}.",
 }
 
 QUESTIONS: dict[str, str] = {

@@ -17,7 +17,7 @@ WORDS: dict[str, str] = {
     "and": " and ",
     "state": "state {number}",
     "or": " or ",
-    "one_of_states": "one of the states {numbers}",
+    "one_of_states": "any one of the states {numbers}",
     "states": "states {choices}",
     "or_states": ", or ",
     "conventions": "Notation:",

@@ -328,7 +328,7 @@ class _PageBlocks:
         label: list[Inline] = [f"{self.language.words['case']} "]
         for place, relation in enumerate(when.relations if isinstance(when, Conjunction) else (when,)):
             label += [", ", relation] if place else [relation]
-        self.blocks.append(CaseBlock((*label, "."), _punctuated(inner.blocks)))
+        self.blocks.append(CaseBlock((*label, "."), _punctuated(with_few_boxes(inner.blocks))))
 
     def emit_sentence(self, sentence: Sentence | None) -> None:
         """Emit a sentence, appended to a paragraph before it."""

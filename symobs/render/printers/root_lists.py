@@ -132,9 +132,23 @@ def _written(root: Root, paired: bool, printer: Printer[Any], glyphs: RootGlyphs
     return f"{centre}{sign}{distance}"
 
 
+def _size_of_imaginary(radicand: Scalar) -> Scalar | None:
+    """Return a product r of symbols and a whole number with r² = −radicand, so that ±√radicand is ±r i; else nothing."""
+    unit, factors = (-radicand).factors()
+    number = unit.fraction()
+    outside = isqrt(number.numerator) if number > 0 else 0
+    size = Scalar.of(outside)
+    for factor, power in factors:
+        size = size * factor ** (power // 2) if power > 0 else Scalar.of(0)
+    return size if size**2 == -radicand and len(tuple(size.terms())) == 1 else None
+
+
 def _distance(root: Root, printer: Printer[Any], glyphs: RootGlyphs) -> str:
     """Return √radicand, its square factors before the root, i behind it."""
     if not root.radicand.is_constant:
+        size = _size_of_imaginary(root.radicand)
+        if size is not None:
+            return glyphs.written(printer, Literal(size)) + glyphs.imaginary
         whole, below = root.radicand, root.radicand.denominator
         half = isqrt(below.fraction().numerator) if below.is_constant else 0
         if half > 1 and half**2 == below.fraction():

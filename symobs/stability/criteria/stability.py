@@ -108,7 +108,28 @@ def _decide(conditions: Sequence[Scalar], signs: Mapping[str, str]) -> Stability
         if sign in {"negative", "nonpositive", "zero"}:
             return StabilityVerdict("no")
         needed[essential(condition, signs)] = None
-    return StabilityVerdict("conditional", tuple(needed)) if needed else StabilityVerdict("yes")
+    return StabilityVerdict("conditional", _independent(needed, signs)) if needed else StabilityVerdict("yes")
+
+
+def _independent(conditions: Iterable[Scalar], signs: Mapping[str, str]) -> tuple[Scalar, ...]:
+    """Return the conditions without those that another one implies: a < 2 says nothing beside a < 0."""
+    kept = list(conditions)
+    for condition in tuple(kept):
+        others = [other for other in kept if other is not condition]
+        if any(_implies(other, condition, signs) for other in others):
+            kept = others
+    return tuple(kept)
+
+
+def _implies(given: Scalar, condition: Scalar, signs: Mapping[str, str]) -> bool:
+    """Return whether condition = k given + something never negative, for a number k > 0: `given` > 0 is then enough."""
+    names = sorted(given.names & condition.names)
+    if not names or not (given.denominator.is_constant and condition.denominator.is_constant):
+        return False
+    ratio = condition.coefficients(names[0])[0] / given.coefficients(names[0])[0]
+    if not ratio.is_constant or sign_of(ratio, {}) != "positive":
+        return False
+    return sign_of(condition - ratio * given, signs) in {"positive", "nonnegative", "zero"}
 
 
 def essential(condition: Scalar, signs: Mapping[str, str]) -> Scalar:

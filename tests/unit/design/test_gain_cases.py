@@ -130,7 +130,7 @@ def test_a_rank_that_drops_somewhere_is_told_in_general() -> None:
     found = symobs.observability(plant)
     page = " ".join(found.to("text").split())
     assert "For generic parameter values rank 𝒪 = 1 < 2, and for no values is it larger" in page
-    assert "Case a ≠ 0. It becomes observable if state 2 is also measured." in page
+    assert "Case a ≠ 0. The pair becomes observable if state 2 is also measured." in page
     everywhere = symobs.observability(symobs.StateSpace("[-1 0; 0 -2]", None, "[a^2+1 0]"))
     assert "Here rank 𝒪 = 1 < 2" in everywhere.to("text")
 

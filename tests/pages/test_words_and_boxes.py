@@ -1,0 +1,63 @@
+"""What a lecturer would mark on a page: a sentence said twice, an integral in discrete time, a condition that says nothing."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+
+from symobs import StateSpace, characteristic_polynomial, decomposition, detectability, gramian, observability
+
+
+def text_of(result: Any) -> str:
+    return " ".join(str(result.to("text")).split())
+
+
+def test_two_vectors_of_a_kernel_are_told_in_one_display() -> None:
+    page = text_of(observability(StateSpace(A="[-1 0 0; 0 -2 0; 0 0 -3]", C="[1 0 0]")))
+    assert page.count("The following vectors lie in the unobservable subspace:") == 1
+    assert "The following vector lies" not in page
+    assert "The pair becomes observable if states 2 and 3 are also measured." in page
+
+
+@pytest.mark.parametrize(("A", "says"), [("[1/2 1; 0 1/3]", "exists, since"), ("[2 1; 0 1/3]", "does not exist")])
+def test_a_gramian_of_discrete_time_is_no_integral(A: str, says: str) -> None:
+    page = text_of(gramian(StateSpace(A=A, C="[1 0]", dt=True), horizon="inf"))
+    assert says in page
+    assert "integral" not in page
+
+
+@pytest.mark.parametrize(
+    ("A", "conditions"),
+    [
+        ("[a 0 0; 0 -2 0; 0 0 -3]", "if and only if a < 0. The"),
+        ("[a 0 0; 0 -1 0; 0 0 b]", "if and only if a < 0."),
+    ],
+)
+def test_no_condition_beside_one_that_implies_it(A: str, conditions: str) -> None:
+    plant = StateSpace(A=A, C="[0 0 1]", symbols={"a": "real", "b": "negative"})
+    page = text_of(detectability(plant))
+    assert conditions in page
+
+
+@pytest.mark.parametrize(
+    ("A", "roots"),
+    [
+        ("[0 w; -w 0]", "± wi."),
+        ("[0 1; -4*w^2 0]", "± 2wi."),
+        ("[0 1; -w 0]", "± √(-w)."),
+        ("[-1 w; -w -1]", "-1 ± wi."),
+    ],
+)
+def test_roots_on_a_vertical_line_are_written_with_i(A: str, roots: str) -> None:
+    page = text_of(characteristic_polynomial(StateSpace(A=A, C="[1 0]", symbols={"w": "positive"})))
+    assert f"roots are {roots}" in page
+
+
+def test_the_boxes_of_a_case_are_as_few_as_those_of_a_section() -> None:
+    plant = StateSpace(
+        A="[-1 0 0 0; 1 -2 0 0; 0 0 -3 a; 0 0 0 -4]", B="[1; 0; 1; 0]", C="[0 1 1 0]", symbols={"a": "real"}
+    )
+    generic, case = decomposition(plant).to_latex().split("Case ", 1)
+    assert generic.count(r"\answer{") == 1
+    assert case.count(r"\answer{") == 1
