@@ -43,7 +43,7 @@ class Store:
 
     def __init__(self, folder: Path) -> None:
         self.folder = folder
-        self.final: set[bytes] = set()
+        self.final: dict[bytes, str] = {}
         self.others: dict[bytes, tuple[str, Budget]] = {}
         self.counts = dict.fromkeys(STATUSES, 0)
         self.torn: list[str] = []
@@ -149,19 +149,19 @@ class Store:
             self.counts[self.others.pop(key)[0]] -= 1
         self.counts[status] += 1
         if status in FINAL:
-            self.final.add(key)
+            self.final[key] = status
         else:
             self.others[key] = status, budget
 
-    def has(self, key: str, budget: Budget, retry: Sequence[str] = ()) -> bool:
-        """Return whether a job is done, or has met as large a budget as this one without an end."""
+    def outcome(self, key: str, budget: Budget, retry: Sequence[str] = ()) -> str | None:
+        """Return what a job came to, None where it is to be done: it has no row, or met a smaller budget than this one."""
         short = bytes.fromhex(key[:32])
         if short in self.final:
-            return True
+            return self.final[short]
         if short not in self.others:
-            return False
+            return None
         status, allowed = self.others[short]
-        return status not in retry and not (status == "undecided" and budget.exceeds(allowed))
+        return None if status in retry or (status == "undecided" and budget.exceeds(allowed)) else status
 
     # -- writing -----------------------------------------------------------------------------------------------------
 
@@ -218,7 +218,7 @@ class Store:
 
     def close(self, kinds: Sequence[str], aliases: dict[str, list[str]]) -> None:
         """Write what the folder holds: the index of keys, and the manifest last."""
-        records = [_RECORD.pack(key, STATUSES.index("done"), 0, 0) for key in sorted(self.final)]
+        records = [_RECORD.pack(key, STATUSES.index(status), 0, 0) for key, status in sorted(self.final.items())]
         for key, (status, budget) in sorted(self.others.items()):
             records.append(_RECORD.pack(key, STATUSES.index(status), budget.seconds or 0, budget.megabytes or 0))
         chunks = self.chunks()
