@@ -9,6 +9,9 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 import symobs
+from symobs.batching.engine import Settings, work
+from symobs.batching.executors import InProcess, Workforce
+from symobs.batching.jobs import job, row_text
 from symobs.batching.run import batch, verified
 from symobs.batching.store import Store
 from symobs.errors import UsageError
@@ -82,6 +85,23 @@ def test_names_are_what_they_are(tmp_path: Path) -> None:
     assert (left.code, left.err) == (0, "7 done\n")
     assert {row["name"] for row in Store(out).rows()} == {*names, "link.toml"}
     assert json.loads((out / "manifest.json").read_text(encoding="utf-8"))["counts"]["done"] == 7
+
+
+@pytest.mark.parametrize("count", [1, 5, 118, 1000])
+def test_the_last_chunks_are_small(count: int) -> None:
+    """A tenth of a second a job, so that chunks of two seconds have twenty: but no worker has more than its share left."""
+    sizes: list[int] = []
+
+    def rows(orders: Any, *_: object) -> tuple[list[str], float]:
+        sizes.append(len(orders))
+        return [row_text(key, kind, {"status": "done"}) for key, kind, _ in orders], len(orders) / 10
+
+    jobs = [job("solve", {"number": number}, str(number)) for number in range(count)]
+    chunks = work(jobs, Workforce(InProcess(), 8, rows), Settings(recheck=0))
+    assert [row["name"] for chunk in chunks for row in chunk.rows] == [str(number) for number in range(count)]
+    left = [count - sum(sizes[:k]) for k in range(len(sizes))]
+    assert all(size <= max(1, here / 16) for size, here in zip(sizes, left, strict=True))
+    assert max(sizes) == {1: 1, 5: 1, 118: 5, 1000: 20}[count]
 
 
 @pytest.mark.parametrize(
