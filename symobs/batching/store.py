@@ -47,6 +47,7 @@ class Store:
         self.others: dict[bytes, tuple[str, Budget]] = {}
         self.counts = dict.fromkeys(STATUSES, 0)
         self.torn: list[str] = []
+        self._is_indexed = False
 
     # -- reading -----------------------------------------------------------------------------------------------------
 
@@ -123,6 +124,7 @@ class Store:
             if head == _name(chunk.stem for chunk in chunks).encode():
                 for key, status, seconds, megabytes in _RECORD.iter_unpack(records):
                     self._note(key, STATUSES[status], Budget(seconds or None, megabytes or None))
+                self._is_indexed = True
                 return
         for path in chunks:
             data = path.read_bytes()
@@ -190,6 +192,7 @@ class Store:
 
     def add(self, rows: Sequence[dict[str, Any]], seconds: float) -> None:
         """Write a chunk of rows, and the pages that came with them: whole or not at all."""
+        self._is_indexed = False
         try:
             for row in rows:
                 for name, content in row.pop("files", {}).items():
@@ -217,11 +220,7 @@ class Store:
         return place
 
     def close(self, kinds: Sequence[str], aliases: dict[str, list[str]]) -> None:
-        """Write what the folder holds: the index of keys, and the manifest last."""
-        records = [_RECORD.pack(key, STATUSES.index(status), 0, 0) for key, status in sorted(self.final.items())]
-        for key, (status, budget) in sorted(self.others.items()):
-            records.append(_RECORD.pack(key, STATUSES.index(status), budget.seconds or 0, budget.megabytes or 0))
-        chunks = self.chunks()
+        """Write what the folder holds: the index of keys where it is not there, and the manifest last."""
         manifest = {
             "schema": SCHEMA,
             "fingerprint": fingerprint(),
@@ -231,12 +230,20 @@ class Store:
             "index": "keys.bin",
         }
         try:
-            head = _name(chunk.stem for chunk in chunks).encode() + b"\n"
-            write_whole(self.folder / "keys.bin", head + b"".join(records))
+            if not self._is_indexed:
+                write_whole(self.folder / "keys.bin", self._index())
             text = json.dumps(manifest, indent=2, sort_keys=True, ensure_ascii=False) + "\n"
             write_whole(self.folder / "manifest.json", text.encode())
         except OSError as error:
             raise _refused(error, self.folder) from None
+
+    def _index(self) -> bytes:
+        """Return the index of keys: what says which chunks it is of, and a record of each key."""
+        head = _name(chunk.stem for chunk in self.chunks()).encode() + b"\n"
+        records = [_RECORD.pack(key, STATUSES.index(status), 0, 0) for key, status in sorted(self.final.items())]
+        for key, (status, budget) in sorted(self.others.items()):
+            records.append(_RECORD.pack(key, STATUSES.index(status), budget.seconds or 0, budget.megabytes or 0))
+        return head + b"".join(records)
 
 
 def work_folder(out: Path) -> Path:
