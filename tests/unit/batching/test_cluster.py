@@ -137,7 +137,7 @@ def test_three_processes_of_a_local_cluster_find_the_same_rows(plain: tuple[Path
 
     folder, wanted = plain
     some = sorted(folder.iterdir())[:30]
-    cluster = distributed.LocalCluster(n_workers=3, threads_per_worker=1, processes=True, dashboard_address=None)
+    cluster = distributed.LocalCluster(n_workers=3, threads_per_worker=1, processes=True, dashboard_address=":0")
     with cluster, distributed.Client(cluster, set_as_default=False) as found:
         batch(some, out=tmp_path / "out", executor=found.get_executor(pure=False), workers=3)
     names = {path.name for path in some}
