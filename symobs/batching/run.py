@@ -94,7 +94,7 @@ class Batch:
                 self.names.setdefault(job.key, []).append(job.name)
                 continue
             self._seen.add(short)
-            before = self.store and self.store.outcome(job.key, self.settings.budget, self._retry)
+            before = None if self.store is None else self.store.outcome(job.key, self.settings.budget, self._retry)
             if before is None:
                 yield job
             else:
