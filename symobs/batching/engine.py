@@ -50,7 +50,7 @@ def work(jobs: Iterable[Job], force: Workforce, settings: Settings) -> Iterator[
     Raises `Unfinished` when time is over or nobody is left to work, and `CertificateRejected` for a row that does not
     hold.  Every row that was yielded stands.
     """
-    queue, again = iter(jobs), deque[tuple[Job, ...]]()
+    queue, ahead, again = iter(jobs), deque[Job](), deque[tuple[Job, ...]]()
     waiting: dict[Future[tuple[list[str], float]], tuple[Job, ...]] = {}
     size, end = 1.0, None if settings.deadline is None else time.monotonic() + settings.deadline
     examine = _examiner(settings.recheck)
@@ -63,7 +63,7 @@ def work(jobs: Iterable[Job], force: Workforce, settings: Settings) -> Iterator[
             if end is not None and time.monotonic() > end:
                 break
             while is_there and len(waiting) < IN_FLIGHT * force.workers:
-                chunk = again.popleft() if again else tuple(islice(queue, int(size)))
+                chunk = again.popleft() if again else _next_chunk(queue, ahead, int(size), force.workers)
                 if not chunk:
                     break
                 waiting[force.submit([(job.key, job.kind, job.payload) for job in chunk], settings.budget)] = chunk
@@ -91,8 +91,16 @@ def work(jobs: Iterable[Job], force: Workforce, settings: Settings) -> Iterator[
     finally:
         for future in waiting:
             future.cancel()
-    if waiting or again or next(queue, None) is not None:
+    if waiting or again or ahead or next(queue, None) is not None:
         raise Unfinished(f"{settings.deadline:g} seconds are over", where="--deadline")
+
+
+def _next_chunk(queue: Iterator[Job], ahead: deque[Job], size: int, workers: int) -> tuple[Job, ...]:
+    """Return so many jobs, or fewer near the end: what is left is shared out so that all workers end together."""
+    shares = 2 * workers
+    ahead.extend(islice(queue, max(0, shares * size - len(ahead))))
+    count = max(1, min(size, len(ahead) // shares))
+    return tuple(ahead.popleft() for _ in range(min(count, len(ahead))))
 
 
 def _taken_back(waiting: dict[Future[tuple[list[str], float]], tuple[Job, ...]]) -> list[tuple[Job, ...]]:

@@ -17,6 +17,8 @@ from symobs.problem import Decimal, parse
 if TYPE_CHECKING:
     from pathlib import Path
 
+    from symobs.errors import InputError
+
 SCHEMA = "symobs-batch/1"
 #: What of a problem file changes no answer, and what only its page shows.
 _SAYS_NOTHING = {"id", "printed"}
@@ -126,6 +128,11 @@ def solve_job(
         return job("solve", {**options, "problem": problem, **own_convention(tables, folder)}, name)
     except (ProblemErrors, TypeError):  # not TOML, or a date in it: whoever works on it says what is wrong
         return job("solve", {**options, "text": text}, name)
+
+
+def unread_job(reason: InputError, name: str) -> Job:
+    """Return the job of a problem whose file cannot be read: its row says why."""
+    return job("solve", {"unread": str(reason)}, name)
 
 
 def own_convention(tables: Mapping[str, Any], folder: Path | None) -> dict[str, str]:

@@ -8,6 +8,7 @@ from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any
 
 from symobs.batching.recheck import fault
+from symobs.errors import InputError
 from symobs.expect import mismatches
 from symobs.problem import parse, validate
 from symobs.render.formats.json import answer_object, result_object
@@ -45,6 +46,8 @@ _SHOWN = {"all": result_object, "answer": answer_object, "cases": _with_cases}
 
 def problem_of(payload: Mapping[str, Any]) -> Problem:
     """Return the problem of a job; raises `ProblemErrors` with all its errors."""
+    if "unread" in payload:
+        raise InputError(payload["unread"])
     if "text" in payload:
         return validate(parse(payload["text"]))
     if "convention_file" not in payload:

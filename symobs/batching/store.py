@@ -43,10 +43,11 @@ class Store:
 
     def __init__(self, folder: Path) -> None:
         self.folder = folder
-        self.final: set[bytes] = set()
+        self.final: dict[bytes, str] = {}
         self.others: dict[bytes, tuple[str, Budget]] = {}
         self.counts = dict.fromkeys(STATUSES, 0)
         self.torn: list[str] = []
+        self._is_indexed = False
 
     # -- reading -----------------------------------------------------------------------------------------------------
 
@@ -123,6 +124,7 @@ class Store:
             if head == _name(chunk.stem for chunk in chunks).encode():
                 for key, status, seconds, megabytes in _RECORD.iter_unpack(records):
                     self._note(key, STATUSES[status], Budget(seconds or None, megabytes or None))
+                self._is_indexed = True
                 return
         for path in chunks:
             data = path.read_bytes()
@@ -149,19 +151,19 @@ class Store:
             self.counts[self.others.pop(key)[0]] -= 1
         self.counts[status] += 1
         if status in FINAL:
-            self.final.add(key)
+            self.final[key] = status
         else:
             self.others[key] = status, budget
 
-    def has(self, key: str, budget: Budget, retry: Sequence[str] = ()) -> bool:
-        """Return whether a job is done, or has met as large a budget as this one without an end."""
+    def outcome(self, key: str, budget: Budget, retry: Sequence[str] = ()) -> str | None:
+        """Return what a job came to, None where it is to be done: it has no row, or met a smaller budget than this one."""
         short = bytes.fromhex(key[:32])
         if short in self.final:
-            return True
+            return self.final[short]
         if short not in self.others:
-            return False
+            return None
         status, allowed = self.others[short]
-        return status not in retry and not (status == "undecided" and budget.exceeds(allowed))
+        return None if status in retry or (status == "undecided" and budget.exceeds(allowed)) else status
 
     # -- writing -----------------------------------------------------------------------------------------------------
 
@@ -190,6 +192,7 @@ class Store:
 
     def add(self, rows: Sequence[dict[str, Any]], seconds: float) -> None:
         """Write a chunk of rows, and the pages that came with them: whole or not at all."""
+        self._is_indexed = False
         try:
             for row in rows:
                 for name, content in row.pop("files", {}).items():
@@ -217,11 +220,7 @@ class Store:
         return place
 
     def close(self, kinds: Sequence[str], aliases: dict[str, list[str]]) -> None:
-        """Write what the folder holds: the index of keys, and the manifest last."""
-        records = [_RECORD.pack(key, STATUSES.index("done"), 0, 0) for key in sorted(self.final)]
-        for key, (status, budget) in sorted(self.others.items()):
-            records.append(_RECORD.pack(key, STATUSES.index(status), budget.seconds or 0, budget.megabytes or 0))
-        chunks = self.chunks()
+        """Write what the folder holds: the index of keys where it is not there, and the manifest last."""
         manifest = {
             "schema": SCHEMA,
             "fingerprint": fingerprint(),
@@ -231,12 +230,20 @@ class Store:
             "index": "keys.bin",
         }
         try:
-            head = _name(chunk.stem for chunk in chunks).encode() + b"\n"
-            write_whole(self.folder / "keys.bin", head + b"".join(records))
+            if not self._is_indexed:
+                write_whole(self.folder / "keys.bin", self._index())
             text = json.dumps(manifest, indent=2, sort_keys=True, ensure_ascii=False) + "\n"
             write_whole(self.folder / "manifest.json", text.encode())
         except OSError as error:
             raise _refused(error, self.folder) from None
+
+    def _index(self) -> bytes:
+        """Return the index of keys: what says which chunks it is of, and a record of each key."""
+        head = _name(chunk.stem for chunk in self.chunks()).encode() + b"\n"
+        records = [_RECORD.pack(key, STATUSES.index(status), 0, 0) for key, status in sorted(self.final.items())]
+        for key, (status, budget) in sorted(self.others.items()):
+            records.append(_RECORD.pack(key, STATUSES.index(status), budget.seconds or 0, budget.megabytes or 0))
+        return head + b"".join(records)
 
 
 def work_folder(out: Path) -> Path:

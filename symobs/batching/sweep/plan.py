@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 from symobs.batching.engine import Settings
 from symobs.batching.jobs import Budget, job, read_payload, solve_job
 from symobs.batching.kept import CHILD
-from symobs.batching.run import Batch, texts_of
+from symobs.batching.run import Batch, one_problem
 from symobs.batching.store import work_folder
 from symobs.batching.sweep.grid import Grid, read_grid
 from symobs.batching.sweep.program import GAINS, MARGINS, MARGINS_STATUS, Program, names_used, with_values
@@ -53,7 +53,7 @@ class Plan:
 
         Raises `ProblemErrors` with all that is wrong with either, and `InputError` for a task that is no design of gains.
         """
-        ((text, name, folder),) = texts_of(problem)
+        text, name, folder = one_problem(problem)
         payload = read_payload(solve_job(text, name, folder).payload)
         if "problem" not in payload:
             from symobs.problem import parse  # noqa: PLC0415 - it raises what is wrong
@@ -251,23 +251,27 @@ def sweep(
     Returns the table.  Raises `ProblemErrors` for the problem or the grid, `InputError` for another task, `Unfinished`
     when nobody is left to do the work.
     """
-    import tempfile  # noqa: PLC0415 - only without `out`
-
     plan = Plan(problem, over, columns, way=way)
     if out is not None:
         check_target(Path(out))
     plan.answer  # noqa: B018 - what cannot be solved is said before a folder is made
-    folder = Path(tempfile.mkdtemp(prefix="symobs-sweep-")) if out is None else work_folder(Path(out))
+    folder = _folder_for(plan) if out is None else work_folder(Path(out))
     who = {"workers": workers, "scheduler": scheduler, "executor": executor}
     run = Batch(plan.jobs, folder, settings=Settings(Budget(timeout, memory)), **who).finish()  # type: ignore[arg-type]
     table = SweepTable(plan, run)
-    if out is None:
-        import weakref  # noqa: PLC0415 - only without `out`
-
-        weakref.finalize(table, shutil.rmtree, folder, ignore_errors=True)
-    else:
+    if out is not None:
         write_table(table, Path(out), decimals=decimals)
     return table
+
+
+def _folder_for(plan: Plan) -> Path:
+    """Return a folder that is there as long as the plan, which its table keeps."""
+    import tempfile  # noqa: PLC0415 - only without a place for the table
+    import weakref  # noqa: PLC0415
+
+    folder = Path(tempfile.mkdtemp(prefix="symobs-sweep-"))
+    weakref.finalize(plan, shutil.rmtree, folder, ignore_errors=True)
+    return folder
 
 
 __all__ = ["Plan", "SweepTable", "sweep"]

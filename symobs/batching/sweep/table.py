@@ -41,6 +41,8 @@ _LAST_COLUMNS = ("status", "case", "checked")
 
 def check_target(out: Path) -> None:
     """Raise an error, before any work, for a table that cannot be written."""
+    if not out.name:
+        raise UsageError("no table is named", where="--out", repair="write for example --out table.csv")
     if out.suffix in {".parquet", ""}:
         _arrow()
     if out.suffix not in {".csv", ".parquet", ""}:

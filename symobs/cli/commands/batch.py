@@ -5,6 +5,7 @@ from __future__ import annotations
 import signal
 import sys
 import time
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn
 
@@ -12,11 +13,12 @@ import click
 
 from symobs.batching.engine import Settings
 from symobs.batching.executors import Unfinished
-from symobs.batching.jobs import Budget, solve_job
-from symobs.batching.run import Batch, files_of, require_texts, texts_of, verified
+from symobs.batching.jobs import Budget
+from symobs.batching.run import Batch, files_of, jobs_of, require_own_folder, require_texts, verified
 from symobs.cli.shared.common import EXIT_NO, EXIT_UNDECIDED, write_message
 from symobs.cli.shared.options import WORKERS, options
-from symobs.errors import UsageError
+from symobs.errors import UsageError, raise_all
+from symobs.problem.noted_errors import Errors
 from symobs.result.digits_of_page import digits_asked
 
 if TYPE_CHECKING:
@@ -118,17 +120,19 @@ def command(
         return
     if not problems:
         raise UsageError("no problem is named", repair="write for example `symobs batch problems/ --out results`")
-    if out is None:
+    if not out:
         raise UsageError("no folder for the results is named", where="--out", repair="write --out results")
-    files = [file for each in problems for file in files_of(Path(each))]
+    files, errors = [], Errors()
+    for each in map(Path, problems):
+        with errors:
+            files += files_of(each)
+    raise_all(errors.found)
+    require_own_folder(Path(out), map(Path, problems))
     pages = tuple(name for name in formats.replace(" ", "").split(",") if name)
     require_texts(pages)
     asked = digits_asked(digits, exact=exact, where="--digits")
 
-    def jobs() -> Iterator[Job]:
-        for text, name, folder in texts_of(files):
-            yield solve_job(text, name, folder, formats=pages, fields=fields, digits=asked)
-
+    jobs = partial(jobs_of, files, formats=pages, fields=fields, digits=asked)
     budget = Budget(timeout or _SECONDS, memory or _MEGABYTES)
     work = batch_of(jobs, Path(out), budget, run, retry=retry, fail_fast=fail_fast)
     if dry_run:
@@ -158,13 +162,12 @@ def finish(
             progress.show(work)
     except Unfinished as error:
         progress.clear()
-        count = sum(work.counts.values())
-        write_message(f"{error}; {count} of {total} {unit} done, run the same command again to go on")
+        write_message(f"{error}; {min(work.stored, total)} of {total} {unit} done, run the same command again to go on")
         sys.exit(EXIT_UNDECIDED)
     finally:
         signal.signal(signal.SIGTERM, usual)
         progress.clear()
-    told = done() if done is not None else _told(work.counts)
+    told = done() if done is not None else _told(work.counts) + work.told_of_equals()
     for place in work.store.torn if work.store else ():
         write_message(f"{place} was torn and has been done again")
     if not quiet:

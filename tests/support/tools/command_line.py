@@ -46,6 +46,14 @@ def environment(checkout: Path = ROOT) -> dict[str, str]:
     return {**os.environ, "PYTHONPATH": str(checkout), "PYTHONDONTWRITEBYTECODE": "1"}
 
 
+def installed_environment(cache: Path) -> dict[str, str]:
+    """The environment of a symobs as it is installed: its modules are compiled already, here into the folder `cache`."""
+    found = {**environment(), "PYTHONPYCACHEPREFIX": str(cache)}
+    del found["PYTHONDONTWRITEBYTECODE"]
+    subprocess.run([sys.executable, "-m", "compileall", "-q", str(ROOT / "symobs")], env=found, check=True)
+    return found
+
+
 def fresh(*arguments: str, folder: Path, checkout: Path = ROOT, stdin: bytes = b"") -> Run:
     """Run symobs in a process of its own, in `folder`."""
     run = subprocess.run(

@@ -17,9 +17,11 @@ from typing import TYPE_CHECKING
 
 import pytest
 
+from symobs.batching.run import batch
 from symobs.batching.store import Store
 from tests.support.paths import ROOT
 from tests.support.problems.batches import design, eventually
+from tests.support.sampling import FULL
 from tests.support.tools.command_line import SAFETY, environment
 
 if TYPE_CHECKING:
@@ -130,6 +132,18 @@ def local_run(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, list[str]
     return folder, found
 
 
+def test_three_processes_of_a_local_cluster_find_the_same_rows(plain: tuple[Path, list[str]], tmp_path: Path) -> None:
+    import distributed  # noqa: PLC0415 - skipped without it
+
+    folder, wanted = plain
+    some = sorted(folder.iterdir())[:30]
+    cluster = distributed.LocalCluster(n_workers=3, threads_per_worker=1, processes=True, dashboard_address=":0")
+    with cluster, distributed.Client(cluster, set_as_default=False) as found:
+        batch(some, out=tmp_path / "out", executor=found.get_executor(pure=False), workers=3)
+    names = {path.name for path in some}
+    assert rows(tmp_path / "out") == [row for row in wanted if json.loads(row)["name"] in names]
+
+
 def _has_rows(out: Path, least: int) -> bool:
     return stored(out) >= least
 
@@ -149,7 +163,7 @@ def killing_workers(plain: tuple[Path, list[str]], tmp_path: Path, seed: int) ->
     assert stored(out) == len(wanted)
 
 
-@pytest.mark.parametrize("seed", range(2))
+@pytest.mark.parametrize("seed", range(20 if FULL else 2))
 def test_killed_workers_lose_nothing_and_double_nothing(
     seed: int, plain: tuple[Path, list[str]], tmp_path: Path
 ) -> None:
