@@ -194,28 +194,30 @@ class Checked:
 
 
 def _given(answer: Answer, views: Sequence[ResultInConvention]) -> dict[str, dict[str, Any]]:
-    """Return what is given for each task; raises `ProblemErrors` for what no task has."""
+    """Return what is given for each task, without what is empty; raises `ProblemErrors` for what no task has."""
     found: dict[str, dict[str, Any]] = {view.task: {} for view in views}
     errors: list[SymobsError] = []
-    tasks = set(found)
+    tasks = {view.task: view for view in views}
     for key, value in answer.values.items():
         if key in tasks and isinstance(value, Mapping):
-            view = next(view for view in views if view.task == key)
-            for name, entry in value.items():
-                if name in available(view):
-                    found[key][name] = entry
-                else:
-                    errors.append(_unknown(f"{key}.{name}", [view]))
+            known = available(tasks[key])
+            errors += [_unknown(f"{key}.{name}", [tasks[key]]) for name in value if name not in known]
+            found[key] |= {name: entry for name, entry in value.items() if name in known and not _is_empty(entry)}
             continue
         having = [view for view in views if key in available(view)]
         for view in having:
-            if key not in found[view.task]:
+            if key not in found[view.task] and not _is_empty(value):
                 found[view.task][key] = value
-        if not having and not answer.loose:
+        if not having and (not answer.loose or isinstance(value, Mapping)):
             errors.append(_unknown(key, views))
     if errors:
         raise ProblemErrors(tuple(errors))
     return found
+
+
+def _is_empty(value: Any) -> bool:
+    """Return whether nothing stands where a value could."""
+    return value is None or value == ""
 
 
 def _unknown(name: str, views: Sequence[ResultInConvention]) -> InputError:

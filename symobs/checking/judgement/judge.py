@@ -8,14 +8,22 @@ from typing import TYPE_CHECKING, Any
 
 from symobs._dataclass import dataclass
 from symobs.analysis.realization.coordinates import BLOCKS
-from symobs.checking.answers.values import decimal_comma, exact, has_decimals, read_like
+from symobs.checking.answers.values import decimal_comma, exact, has_decimal_commas, has_decimals, read_like
 from symobs.checking.judgement.coordinates import in_coordinates
 from symobs.checking.judgement.gains import from_gains, with_claimed, with_gain, with_gains
 from symobs.checking.judgement.other_compensators import closes_the_loop
 from symobs.checking.judgement.parts import CLAIMED, GAINS, IN_COORDINATES, exists, in_order
 from symobs.checking.judgement.regions import region_verdict
 from symobs.design.reference.integral_action import IntegralAction
-from symobs.errors import CertificateRejected, ExpressionError, InputError, NotShown, SymobsError
+from symobs.errors import (
+    CertificateRejected,
+    ExpressionError,
+    InputError,
+    NotShown,
+    ProblemErrors,
+    SymobsError,
+    UnknownName,
+)
 from symobs.exact import Matrix, TooLarge
 from symobs.expect import found_in, met, names_of
 from symobs.expression import parse_matrix
@@ -31,6 +39,8 @@ if TYPE_CHECKING:
 
 #: What is raised where a question about a value is too large to be decided.
 UNDECIDED = (NotShown, TooLarge)
+#: So many faults of one value are named.
+_MOST_SAID = 3
 #: Fields for which that of another name does as well, and what is said then.
 _EITHER = {
     "closed_loop_matrix": ("closed_loop_matrix_estimate", "in the state and its estimate"),
@@ -123,10 +133,20 @@ def judge_task(
 
 def unreadable(name: str, letter: str, given: Any, error: SymobsError) -> Judged:
     """Return the part that cannot be read, with the place and the repair."""
+    errors = error.errors if isinstance(error, ProblemErrors) else (error,)
     comma = decimal_comma(given)
-    repair = f"write {comma.replace(',', '.')} with a decimal point" if comma else error.repair
-    said = "; ".join(filter(None, (error.message, repair)))
+    repair = f"write {comma.replace(',', '.')} with a decimal point" if comma else _repair(errors[0])
+    said = "; ".join(filter(None, (*(each.message for each in errors[:_MOST_SAID]), repair)))
     return Judged(name, letter, "unreadable", given, reason=str(SymobsError(said)))
+
+
+def _repair(error: SymobsError) -> str:
+    """Return what a student can do, who declares no names in the problem file."""
+    if not isinstance(error, UnknownName):
+        return error.repair
+    near, known = error.facts.get("nearest"), error.facts.get("declared")
+    question = f'did you mean "{near}"? ' if near else ""
+    return f"{question}the letters known here are {', '.join(known)}" if known else "only numbers stand here"
 
 
 # -- gains ------------------------------------------------------------------------------------------------------------
@@ -142,6 +162,8 @@ def _gain(task: _Task, name: str, letter: str, given: Any) -> Judged:
     value = -read if sign < 0 else read
     shape = shape_of(task.right, name)
     if value.shape != shape:
+        if has_decimal_commas(given, task.names, shape):
+            return unreadable(name, letter, given, InputError("a comma sets entries apart"))
         rows, columns = (f"{a}x{b}" for a, b in (shape, value.shape))
         task.wrong = (*task.wrong, name)
         return Judged(name, letter, "wrong", given, value, reason=f"{letter} is {rows} here, yours is {columns}")
@@ -215,6 +237,9 @@ def _judged(task: _Task, name: str, letter: str, given: Any) -> Judged:
         rounded = has_decimals(given) and _met(task, task.right, part, given)
         if rounded and task.marking.decimals == "accept":
             return replace(part, verdict="right", hints=("rounded",))
+        right = task.right.fields.get(name)
+        if isinstance(right, Matrix) and has_decimal_commas(given, task.names, right.shape) and part.value is not None:
+            raise InputError("a comma sets entries apart")
     except UNDECIDED as error:
         return replace(part, verdict="undecided", reason=str(error))
     except SymobsError as error:

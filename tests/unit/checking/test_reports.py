@@ -180,6 +180,7 @@ def test_the_three_forms_of_an_answer_say_the_same() -> None:
         ('[answer]\n[[step]]\nwhere = "x"\n', r"step\[0\]: a table with relation is expected"),
         ("K = 1\n" * 201, "201 lines, more than 200"),
         ("K = " + "1" * 70_000, "the answer is larger than 64 kB"),
+        ("one\ntwo\n", 'line 2: "two" is no relation'),
         ('{"answer": {"Q": 1}}', r"answer\.Q: no task here has such a field"),
     ],
 )
@@ -205,10 +206,67 @@ def test_a_value_that_cannot_be_read_leaves_the_others(value: str, message: str)
     assert message in report.parts[0].reason
 
 
+@pytest.mark.parametrize(
+    "given",
+    [
+        {"L": "[[19],[81]]", "K": "[[4, 3]]"},  # NumPy, JSON
+        {"L": "np.array([[19.],\n [81.]])", "K": "array([[4, 3]])"},
+        {"L": "Matrix([[19], [81]])", "K": "Matrix([[4, 3]])"},  # SymPy
+        {"L": "[19\n81];", "K": "[4,3];"},  # MATLAB
+        {"L": "[19; 80 \u2212 \u20111]", "K": "\ufeff[4\u200b\u00a03]"},
+        "L = [19\n     81];   % by place\nK = [4 3];\n",
+        "# mine\nso:\nL = [[19],[81]]\nK = [4 3]\nK =\n",
+    ],
+    ids=range(7),
+)
+def test_what_is_pasted_from_elsewhere_is_read(given: Any) -> None:
+    assert [part.verdict for part in CHECKED.report(given).parts] == ["right", "right", "missing"]
+
+
+def test_rows_in_brackets_are_rows_and_blocks_are_blocks() -> None:
+    for column, row in (("[[19],[81]]", "[[19];[81]]"), ("[[19] [81]]", "[[19 81]]")):
+        verdicts = [CHECKED.report({"L": given}).parts[1].slip for given in (column, row)]
+        assert verdicts == [None, None if ";" in row else "transposed"]
+
+
+def test_a_function_of_s_is_an_answer_and_nothing_is_missing() -> None:
+    report = CHECKED.report(f"F(s) = {RIGHT['F']}\n")
+    assert (report.parts[2].verdict, report.lines[0].verdict) == ("right", "true")
+    assert CHECKED.report(f"F (s) = 1/s\nF(s) = {RIGHT['F']}\n").parts[2].verdict == "right"
+
+
+def test_a_line_of_words_harms_no_other_one() -> None:
+    report = CHECKED.report("Anna Example\nK = [4 3]\nL = [19\nF = 1/s\n")
+    assert [part.verdict for part in report.parts] == ["right", "unreadable", "wrong"]
+    assert [line.verdict for line in report.lines] == ["unreadable", "true", "unreadable", "false"]
+
+
+def test_what_stands_below_no_task_is_refused_in_a_text_too() -> None:
+    with pytest.raises(ProblemErrors, match=r"answer\.observer: no task here"):
+        CHECKED.report("observer.L = [19; 81]\n")
+
+
 def test_a_decimal_comma_is_told_so() -> None:
     problem = 'task = "characteristic_polynomial"\n[plant]\nA = "[-1/2]"\n'
     part = check(problem, {"polynomial": "s + 0,5"}).parts[0]
     assert (part.verdict, "write 0.5 with a decimal point" in part.reason) == ("unreadable", True)
+    for given in (
+        {"K": "[4,0 3,0]"},
+        {"L": "[19,5; 81]"},
+        {"closed_loop_matrix": "[" + "; ".join(["0,5 1,0 2 3"] * 4) + "]"},
+    ):
+        (part,) = (part for part in CHECKED.report(given).parts if part.given)
+        assert (part.verdict, "with a decimal point" in part.reason) == ("unreadable", True)
+    assert CHECKED.report({"K": "[4,3,1]"}).parts[0].verdict == "wrong"
+
+
+def test_letters_that_nobody_knows_are_named_with_those_that_are() -> None:
+    reasons = [part.reason for part in CHECKED.report({"K": "[k1 k2]", "F": "1/S"}).parts]
+    assert all(f'"{name}" is not declared' in reasons[0] for name in ("k1", "k2"))
+    assert reasons[0].endswith("only numbers stand here")
+    assert reasons[2].endswith("the letters known here are s")
+    for given in (r"\frac{1}{s}", "$1/s$", "{1}"):
+        assert re.search("LaTeX|write \\( \\)", CHECKED.report({"F": given}).parts[2].reason)
 
 
 def test_the_empty_answer_file_is_one() -> None:
