@@ -293,7 +293,7 @@ _INSTEAD = {
     "FRACTION": "write a fraction with /, such as 1/2",
     "SOLIDUS": "LaTeX is not read here: write [1 0; 0 1] and (s + 1)/(s + 2)",
     "DOLLAR": "write the formula alone, without dollar signs, and no LaTeX: [1 0; 0 1]",
-    "CURLY": "write ( ) around what belongs together, and [ ] around a matrix",
+    "CURLY": "write ( ) around what belongs together, [ ] around a list or a matrix",
     "ROOT": "write sqrt( )",
     "APOSTROPHE": "a transpose is not read here: write the entries out transposed",
     "STOP": "write a digit beside the decimal point, and * / ^ without a point",

@@ -146,7 +146,7 @@ def _repair(error: SymobsError) -> str:
         return error.repair
     near, known = error.facts.get("nearest"), error.facts.get("declared")
     question = f'did you mean "{near}"? ' if near else ""
-    return f"{question}the letters known here are {', '.join(known)}" if known else "only numbers stand here"
+    return f"{question}write it with the letters known here: {', '.join(known)}" if known else "write numbers alone"
 
 
 # -- gains ------------------------------------------------------------------------------------------------------------

@@ -66,14 +66,15 @@ def sentences(part: Part, *, effect: bool = True) -> Iterator[str]:
         yield part.reason
     yield from part.alternatives
     if part.origins:
-        yield f"it follows from your {' and '.join(origin.partition('.')[2] for origin in part.origins)}, which is wrong"
+        named = " and ".join(origin.partition(".")[2] for origin in part.origins)
+        yield f"it follows from your {named}, which {'are' if len(part.origins) > 1 else 'is'} wrong"
     if part.place and not part.reason:
         yield f"look at {_place(part.place)}"
     if effect and part.effect and part.verdict == "wrong":
         if part.effect["polynomial"] not in part.reason:
             yield f"with yours the polynomial is {part.effect['polynomial']}"
         if part.effect.get("stable") == "no":
-            yield "which is not stable"
+            yield "it is not stable"
     yield from part.hints
     if effect and part.right is not None and part.verdict != "right":
         yield f"right: {part.right}"
