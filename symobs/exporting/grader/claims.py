@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from symobs.exporting.grader.values import (
     DECIMAL,
-    MINUS,
+    TYPED,
     ONE,
     Poly,
     Ratio,
@@ -158,7 +158,7 @@ def rounds(texts: Texts, value: Rows, right: Rows) -> bool:
     found = False
     for row in zip(texts, value, right, strict=True):
         for text, mine, exact in zip(*row, strict=True):
-            match = DECIMAL.fullmatch(text.translate(MINUS))
+            match = DECIMAL.fullmatch(text.translate(TYPED))
             if match is None or (match[3] is None and match[4] is None):
                 if mine != exact:
                     return False
