@@ -1,4 +1,4 @@
-"""Measure what lecturers need: `python -m tests.programs.teaching variants|graders|class|peers|tasks [--count N] [--only NAME]`.
+"""Measure what lecturers need: `python -m tests.programs.teaching PART [--count N] [--only NAME]`.
 
 variants  500 candidates of each construction before any is left out, held to what it promises; 1,000 accepted ones of each
           compared pairwise for being the same plant in other coordinates

@@ -10,7 +10,9 @@ from typing import TYPE_CHECKING, Any
 import sympy as sp
 
 from symobs.checking import Checked
+from symobs.expression import parse_matrix
 from symobs.problem import read
+from symobs.result.conversions import to_sympy
 from tests.unit.checking.test_judgement import EXAMPLES, own_answer
 
 if TYPE_CHECKING:
@@ -114,8 +116,8 @@ def _holds(view: Any, data: Any, name: str, letter: str, changed: Any, own: Any,
             )
         case "tracking", "K_d":
             asked = data["specification"]
-            moves = _of_text(asked["reference_matrix"])
-            start = _of_text(asked["reference_start"]) if "reference_start" in asked else sp.eye(A.rows)
+            moves = _matrix(asked["reference_matrix"])
+            start = _matrix(asked["reference_start"]) if "reference_start" in asked else sp.eye(A.rows)
             courses = sp.Matrix.hstack(*[moves**k * start for k in range(A.rows)])
             return bool(sp.simplify(B * (new - old) * courses).is_zero_matrix)
         case "reduced_order_observer", "M" if alone:
@@ -132,11 +134,7 @@ def _holds(view: Any, data: Any, name: str, letter: str, changed: Any, own: Any,
 
 
 def _matrix(rows: Any) -> sp.Matrix:
-    return sp.Matrix([[sp.sympify(str(entry).replace("^", "**"), {"I": sp.I}) for entry in row] for row in rows])
-
-
-def _of_text(rows: str) -> sp.Matrix:
-    return _matrix([row.split() for row in rows.strip("[]").split(";")])
+    return sp.Matrix(to_sympy(parse_matrix(rows, None), {}))
 
 
 def _sign(view: Any, letter: str) -> int:
