@@ -99,10 +99,8 @@ def _put(value: Any, path: tuple[Any, ...], entry: Any) -> Any:
 def _holds(view: Any, data: Any, name: str, letter: str, changed: Any, own: Any, *, alone: bool) -> bool:
     """Return whether a changed value meets the claim of its task; where there is one right value, no changed one does."""
     m = view.plant.matrices
-    A, B, C = (
-        None if rows is None else _matrix([[str(e) for e in row] for row in rows.rows]) for rows in (m.A, m.B, m.C)
-    )
-    is_matrix = isinstance(changed, list) and isinstance(changed[0], list)
+    A, B, C = (sp.Matrix(to_sympy(part, {})) for part in (m.A, m.B, m.C))
+    is_matrix = name in {"K", "L", "K_d", "M", "T", "A", "B", "C"}
     new = _matrix(changed) if is_matrix else None
     old = _matrix(own[letter]) if is_matrix else None
     match view.task, name:
