@@ -15,7 +15,7 @@ from symobs.checking.judgement.judge import judge_task
 from symobs.checking.judgement.parts import asked_of
 from symobs.checking.marking_check import known_parts, marking_errors, part_of_name
 from symobs.checking.marks import missing, part_of
-from symobs.checking.report.data import SHOW, Part
+from symobs.checking.report.data import SHOW, Line, Part
 from symobs.checking.report.report import CheckReport
 from symobs.convention import Convention, convention_named
 from symobs.errors import InputError, ProblemErrors, SymobsError, UsageError
@@ -114,6 +114,8 @@ class Checked:
         }
         parts = self._parts(views, judged)
         lines, milestones = judge_lines(self.problem, views, judged, handed_in, self.problem.marking.milestones)
+        if handed_in.loose:
+            lines = tuple(line for line in lines if not _is_answer_alone(line, parts))
         report = CheckReport(
             self.problem.title,
             handed_in.student,
@@ -213,6 +215,13 @@ def _given(answer: Answer, views: Sequence[ResultInConvention]) -> dict[str, dic
     if errors:
         raise ProblemErrors(tuple(errors))
     return found
+
+
+def _is_answer_alone(line: Line, parts: Sequence[Part]) -> bool:
+    """Return whether a line that means nothing in a derivation is a part of the answer, which was read."""
+    letter = line.relation.partition("=")[0].strip()
+    read_parts = {part.letter for part in parts if part.given and part.verdict != "unreadable"}
+    return line.verdict == "unreadable" and letter in read_parts
 
 
 def _is_empty(value: Any) -> bool:

@@ -8,7 +8,7 @@ from dataclasses import field
 from typing import Any
 
 from symobs._dataclass import dataclass
-from symobs.checking.answers.values import as_value, plain, typed
+from symobs.checking.answers.values import VERDICTS, as_value, plain, typed
 from symobs.errors import InputError, ProblemErrors, SymobsError
 from symobs.expression import declared_name
 from symobs.expression.source import shown
@@ -26,8 +26,6 @@ _DEFINITION = re.compile(r"[ \t]*([A-Za-z][A-Za-z0-9_.]*)((?:[ \t]*\([szt]\))?)[
 #: What begins a remark.
 _REMARK = re.compile(r"[#%]")
 _RELATION = re.compile(r"[=<>]|!=")
-#: A verdict is an answer and no relation of a derivation.
-_VERDICTS = {"yes", "no", "conditional"}
 
 
 @dataclass(frozen=True)
@@ -92,7 +90,7 @@ def _of_lines(text: str, where: str) -> Answer:
         task, _, name = defined[1].rpartition(".")
         if value:
             (values.setdefault(task, {}) if task else values)[name] = value
-        if not task and value.lower() not in _VERDICTS:
+        if not task and value.lower() not in VERDICTS:  # a verdict is no relation of a derivation
             steps.append(Step(f"{name}{defined[2]} = {value}", place))
     if errors and len(errors) == len(kept):
         raise ProblemErrors(tuple(errors))

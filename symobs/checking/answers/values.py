@@ -25,7 +25,20 @@ _TYPED = str.maketrans(
 )
 #: Rows in brackets of their own, as NumPy and SymPy print a matrix; [[1]; [2]] is a matrix of blocks.
 _ROWS = re.compile(r"(?:[A-Za-z.]*(?:array|Matrix)\()?\s*\[\s*(\[[^][;]*\](?:[\s,]*\[[^][;]*\])*)[\s,]*\]\s*\)?")
+_LIST = re.compile(r"\[[^][{}]*\]|\{[^][{}]*\}")
 _ROW = re.compile(r"\[([^]]*)\]")
+
+
+#: What a verdict may be called.
+VERDICTS = {
+    "yes": "yes",
+    "true": "yes",
+    "ja": "yes",
+    "no": "no",
+    "false": "no",
+    "nein": "no",
+    "conditional": "conditional",
+}
 
 
 def typed(text: str) -> str:
@@ -89,6 +102,15 @@ def exact(value: Any) -> Any:
     if isinstance(value, list):
         return [exact(entry) for entry in value]
     return _DECIMAL.sub(lambda found: f"({Fraction(found[0])})", value) if isinstance(value, str) else value
+
+
+def as_list(value: Any) -> Any:
+    """Return the entries of a text in brackets, [1, 2] or [1; 2] or {1, 2}; another value as it is."""
+    if not isinstance(value, str) or not _LIST.fullmatch(value.strip()):
+        return value
+    inside = value.strip()[1:-1].strip()
+    parts = re.split(r"[,;\n]" if re.search(r"[,;\n]", inside) else r"\s+", inside)
+    return [part.strip() for part in parts if part.strip()]
 
 
 def text_of(value: Any) -> str:

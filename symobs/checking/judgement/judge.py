@@ -8,7 +8,15 @@ from typing import TYPE_CHECKING, Any
 
 from symobs._dataclass import dataclass
 from symobs.analysis.realization.coordinates import BLOCKS
-from symobs.checking.answers.values import decimal_comma, exact, has_decimal_commas, has_decimals, read_like
+from symobs.checking.answers.values import (
+    VERDICTS,
+    as_list,
+    decimal_comma,
+    exact,
+    has_decimal_commas,
+    has_decimals,
+    read_like,
+)
 from symobs.checking.judgement.coordinates import in_coordinates
 from symobs.checking.judgement.gains import from_gains, with_claimed, with_gain, with_gains
 from symobs.checking.judgement.other_compensators import closes_the_loop
@@ -24,16 +32,16 @@ from symobs.errors import (
     SymobsError,
     UnknownName,
 )
-from symobs.exact import Matrix, TooLarge
+from symobs.exact import Complex, Matrix, Root, Scalar, TooLarge
 from symobs.expect import found_in, met, names_of
 from symobs.expression import parse_matrix
+from symobs.expression.source import shown
 from symobs.result.in_convention import ResultInConvention
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from symobs.checking.judgement.regions import Separation
-    from symobs.exact import Scalar
     from symobs.problem.marking import Marking
     from symobs.result import Result
 
@@ -111,6 +119,7 @@ def judge_task(
     declared = names_of(view)
     names = declared if declared is None else {**declared, **dict.fromkeys(symbols, "real")}
     task = _Task(view, names, marking, view.result)
+    given = {letter: as_list(value) if _is_listed(view, letter) else value for letter, value in given.items()}
     standard = {view.standard(letter)[0]: letter for letter in given}
     parts: dict[str, Judged] = {}
     if isinstance(task.right, IntegralAction):
@@ -129,6 +138,14 @@ def judge_task(
         if name not in parts:
             parts[name] = _judged(task, name, letter, given[letter])
     return TaskJudgement(tuple(parts[name] for name in standard), task.right, task.own)
+
+
+def _is_listed(view: ResultInConvention, letter: str) -> bool:
+    """Return whether the right value is a list of numbers, which a text writes in brackets."""
+    right = view.fields.get(view.standard(letter)[0])
+    if not isinstance(right, (list, tuple)) or letter in {"kernel", "stable_if"}:
+        return letter == "sizes"
+    return all(isinstance(entry, (Scalar, Complex, Root)) for entry in right)
 
 
 def unreadable(name: str, letter: str, given: Any, error: SymobsError) -> Judged:
@@ -224,6 +241,12 @@ def _judged(task: _Task, name: str, letter: str, given: Any) -> Judged:
         return Judged(name, letter, "wrong", given, reason=f"there is no {letter} here")
     if (task.view.task, name) == ("stability_region", "stable_if"):
         return _region(task, name, letter, given)
+    if name == "verdict":
+        word = VERDICTS.get(str(given).strip().strip('"').lower())
+        if word is None:
+            error = InputError(f'"{shown(str(given), 40)}" is no verdict', repair="write yes, no or conditional")
+            return unreadable(name, letter, given, error)
+        given = word
     part = Judged(name, letter, "wrong", given)
     try:
         part = replace(part, value=_value(task, name, letter, given))
@@ -288,8 +311,6 @@ def _holds(task: _Task, result: Result, part: Judged) -> tuple[str, ...] | None:
 def _met(task: _Task, result: Result, part: Judged, given: Any) -> bool:
     """Return whether a value equals that of a result."""
     letter = part.letter if task.view.standard(part.letter)[0] == part.name else part.name
-    if isinstance(given, str) and part.name == "verdict":
-        given = given.strip().strip('"').lower()
     return met(ResultInConvention(result, task.view.convention), letter, given, part.letter)
 
 
@@ -345,6 +366,12 @@ def _is_met(task: _Task, result: Result, part: Judged) -> bool:
 
 def _region(task: _Task, name: str, letter: str, given: Any) -> Judged:
     """Return the verdict on a region given by conditions."""
+    if name == "verdict":
+        word = VERDICTS.get(str(given).strip().strip('"').lower())
+        if word is None:
+            error = InputError(f'"{shown(str(given), 40)}" is no verdict', repair="write yes, no or conditional")
+            return unreadable(name, letter, given, error)
+        given = word
     part = Judged(name, letter, "wrong", given)
     try:
         found = region_verdict(task.right, given, task.names)

@@ -21,9 +21,10 @@ def text(report: ReportData) -> str:
     from symobs.render.formats.text import printable  # noqa: PLC0415 - each format pays for its own
 
     lines: list[str] = []
-    width = max((len(part.letter) for part in report.parts), default=1)
+    names = names_of(report)
+    width = max(map(len, names.values()), default=1)
     for part in report.parts:
-        head = f"{part.letter:<{width}}  {part.verdict}"
+        head = f"{names[part.part]:<{width}}  {part.verdict}"
         credit = f"  {part.credit}" if part.weight and part.credit is not None and 0 < part.credit < 1 else ""
         lines += _wrapped(
             printable("  ".join(filter(None, (head + credit, of_numbers("; ".join(sentences(part))))))), width + 2
@@ -41,12 +42,13 @@ def markdown(report: ReportData) -> str:
     """Return a report as Markdown."""
     from symobs.render.formats.markdown import plain  # noqa: PLC0415 - each format pays for its own
 
+    names = names_of(report)
     lines = [f"**{plain(report.title)}**", ""] if report.title else []
     lines += ["| part | verdict | credit | |", "|---|---|---|---|"]
     for part in report.parts:
         credit = "" if part.credit is None else str(part.credit)
         lines.append(
-            f"| {plain(part.letter)} | {part.verdict} | {credit} | {plain(of_numbers('; '.join(sentences(part))))} |"
+            f"| {plain(names[part.part])} | {part.verdict} | {credit} | {plain(of_numbers('; '.join(sentences(part))))} |"
         )
     for line in shown_lines(report):
         said = f": {line.reason}" if line.reason else ""
@@ -58,6 +60,15 @@ def markdown(report: ReportData) -> str:
 
 def _wrapped(line: str, indent: int) -> list[str]:
     return wrap(line, _WIDTH, subsequent_indent=" " * indent, break_on_hyphens=False) or [""]
+
+
+def names_of(report: ReportData) -> dict[str, str]:
+    """Return what each part is called: its letter, with the task where several have that one."""
+    letters = [part.letter for part in report.parts]
+    return {
+        part.part: part.letter if letters.count(part.letter) == 1 else f"{part.part.partition('.')[0]}.{part.letter}"
+        for part in report.parts
+    }
 
 
 def sentences(part: Part, *, effect: bool = True) -> Iterator[str]:

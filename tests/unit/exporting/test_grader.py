@@ -461,12 +461,12 @@ def test_functions_are_equal_as_functions() -> None:
 
 
 @pytest.mark.parametrize(
-    ("given", "verdict"), [("yes", "right"), (' "Yes" ', "right"), ("no", "wrong"), ("yess", "wrong")]
+    ("given", "verdict"), [("yes", "right"), (' "Yes" ', "right"), ("nein", "wrong"), ("yess", "unreadable")]
 )
 def test_a_word_is_right_or_wrong(given: str, verdict: str) -> None:
     word = {"name": "v", "part": "pbh.verdict", "letter": "verdict", "weight": "1", "function": False, "kind": "word"}
     found = outcome(question({**word, "right": "yes"}), "v", {"v": [[given]]})
-    assert found == (verdict, "", "", int(verdict == "right"))
+    assert found == (verdict, "", "write yes, no or conditional" if given == "yess" else "", int(verdict == "right"))
 
 
 # -- the whole answer -------------------------------------------------------------------------------------------------
