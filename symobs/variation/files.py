@@ -147,7 +147,7 @@ def assignment(table: str, seed: int, count: int, where: str) -> str:
     text = table.removeprefix("\ufeff")
     delimiter = max(";\t,", key=text.partition("\n")[0].count)
     try:
-        rows = list(csv.reader(io.StringIO(text, newline=""), delimiter=delimiter))
+        rows = list(csv.reader(io.StringIO(text, newline=""), delimiter=delimiter, strict=True))
     except csv.Error as error:
         repair = "save the table as CSV, texts in quotes"
         raise InputError(f"this is not CSV: {error}", where=where, repair=repair) from None

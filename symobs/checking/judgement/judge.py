@@ -162,8 +162,10 @@ def _repair(error: SymobsError) -> str:
     if not isinstance(error, UnknownName):
         return error.repair
     near, known = error.facts.get("nearest"), error.facts.get("declared")
+    if not isinstance(known, tuple) or not known:
+        return "write numbers alone"
     question = f'did you mean "{near}"? ' if near else ""
-    return f"{question}write it with the letters known here: {', '.join(known)}" if known else "write numbers alone"
+    return f"{question}write it with the letters known here: {', '.join(known)}"
 
 
 # -- gains ------------------------------------------------------------------------------------------------------------

@@ -101,8 +101,7 @@ def _holds(view: Any, data: Any, name: str, letter: str, changed: Any, own: Any,
     m = view.plant.matrices
     A, B, C = (sp.Matrix(to_sympy(part, {})) for part in (m.A, m.B, m.C))
     is_matrix = name in {"K", "L", "K_d", "M", "T", "A", "B", "C"}
-    new = _matrix(changed) if is_matrix else None
-    old = _matrix(own[letter]) if is_matrix else None
+    new, old = (_matrix(rows) if is_matrix else sp.Matrix() for rows in (changed, own[letter]))
     match view.task, name:
         case ("state_feedback" | "compensator", "K"):
             return bool(

@@ -97,9 +97,8 @@ def test_without_reasons_no_right_value_and_no_polynomial_is_given_away(problem:
 def test_nothing_is_given_away_to_any_student_of_a_class() -> None:
     checked, seen = Checked.of(THIRD_ORDER), set()
     for number, answer in enumerate(answers(9, "feedback")):
-        handed_in = {"answer": {name: answer[name] for name in "KLF"}, "step": []}
-        handed_in["step"] = [{"relation": line} for line in lines(answer, number).splitlines()[:4]]
-        whole = checked.report(handed_in)
+        steps = [{"relation": line} for line in lines(answer, number).splitlines()[:4]]
+        whole = checked.report({"answer": {name: answer[name] for name in "KLF"}, "step": steps})
         seen |= {part.slip for part in whole.parts} | {line.verdict for line in whole.lines}
         for show in ("place", "verdict"):
             bounded = whole.bounded(show)
