@@ -15,7 +15,7 @@ from symobs.checking.judgement.judge import judge_task
 from symobs.checking.judgement.parts import asked_of
 from symobs.checking.marking_check import known_parts, marking_errors, part_of_name
 from symobs.checking.marks import missing, part_of
-from symobs.checking.report.data import SHOW, Part
+from symobs.checking.report.data import SHOW, Line, Part
 from symobs.checking.report.report import CheckReport
 from symobs.convention import Convention, convention_named
 from symobs.errors import InputError, ProblemErrors, SymobsError, UsageError
@@ -114,6 +114,8 @@ class Checked:
         }
         parts = self._parts(views, judged)
         lines, milestones = judge_lines(self.problem, views, judged, handed_in, self.problem.marking.milestones)
+        if handed_in.loose:
+            lines = tuple(line for line in lines if not _is_answer_alone(line, parts))
         report = CheckReport(
             self.problem.title,
             handed_in.student,
@@ -194,28 +196,37 @@ class Checked:
 
 
 def _given(answer: Answer, views: Sequence[ResultInConvention]) -> dict[str, dict[str, Any]]:
-    """Return what is given for each task; raises `ProblemErrors` for what no task has."""
+    """Return what is given for each task, without what is empty; raises `ProblemErrors` for what no task has."""
     found: dict[str, dict[str, Any]] = {view.task: {} for view in views}
     errors: list[SymobsError] = []
-    tasks = set(found)
+    tasks = {view.task: view for view in views}
     for key, value in answer.values.items():
         if key in tasks and isinstance(value, Mapping):
-            view = next(view for view in views if view.task == key)
-            for name, entry in value.items():
-                if name in available(view):
-                    found[key][name] = entry
-                else:
-                    errors.append(_unknown(f"{key}.{name}", [view]))
+            known = available(tasks[key])
+            errors += [_unknown(f"{key}.{name}", [tasks[key]]) for name in value if name not in known]
+            found[key] |= {name: entry for name, entry in value.items() if name in known and not _is_empty(entry)}
             continue
         having = [view for view in views if key in available(view)]
         for view in having:
-            if key not in found[view.task]:
+            if key not in found[view.task] and not _is_empty(value):
                 found[view.task][key] = value
-        if not having and not answer.loose:
+        if not having and (not answer.loose or isinstance(value, Mapping)):
             errors.append(_unknown(key, views))
     if errors:
         raise ProblemErrors(tuple(errors))
     return found
+
+
+def _is_answer_alone(line: Line, parts: Sequence[Part]) -> bool:
+    """Return whether a line that means nothing in a derivation is a part of the answer, which was read."""
+    letter = line.relation.partition("=")[0].strip()
+    read_parts = {part.letter for part in parts if part.given and part.verdict != "unreadable"}
+    return line.verdict == "unreadable" and letter in read_parts
+
+
+def _is_empty(value: Any) -> bool:
+    """Return whether nothing stands where a value could."""
+    return value is None or value == ""
 
 
 def _unknown(name: str, views: Sequence[ResultInConvention]) -> InputError:

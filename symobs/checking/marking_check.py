@@ -34,7 +34,11 @@ def part_of_name(part: str, views: Sequence[ResultInConvention]) -> tuple[Result
 
 def known_parts(part: str, views: Sequence[ResultInConvention]) -> str:
     """Return what to write for a part that does not exist."""
-    return meant(part, [f"{each.task}.{field}" for each in views for field in available(each)])
+    return meant(part, [f"{each.task}.{field}" for each in views for field in available(each) if _has(each, field)])
+
+
+def _has(view: ResultInConvention, letter: str) -> bool:
+    return exists(view.result, view.standard(letter)[0])
 
 
 def meant(name: str, known: Collection[str]) -> str:

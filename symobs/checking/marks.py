@@ -146,14 +146,27 @@ def _explanation(view: ResultInConvention, judgement: TaskJudgement, judged: Jud
         other = other_polynomial(judgement.right, judged.name)
         return explain_gain(design, judged.value, judged.letter, other, turned=turned, rounded=rounded)
     right = _exact(judgement.right.fields.get(judged.name))
-    if right is None or (judged.name in IN_COORDINATES.get(view.task, ()) and view.task != "reduced_order_observer"):
-        return Explained()
     value = judged.value
+    if right is None:
+        return Explained()
+    if judged.name in IN_COORDINATES.get(view.task, ()) and view.task != "reduced_order_observer":
+        return _without_coordinates(value, right, judged.letter) if isinstance(right, Matrix) else Explained()
     if isinstance(right, Scalar) and isinstance(value, Matrix) and value.shape == (1, 1):
         value = value[0, 0]
     variable = "t" if view.in_time else view.plant.variable
     others = other_values(judgement.right) if judged.name == "F" else []
     return explain_value(value, right, judged.letter, variable, others, rounded=judged.rounded)
+
+
+def _without_coordinates(value: Matrix | Scalar, right: Matrix, letter: str) -> Explained:
+    """Return why a matrix is wrong in any coordinates: its size, or that it has no inverse."""
+    rows, columns = value.shape if isinstance(value, Matrix) else (1, 1)
+    if (rows, columns) != right.shape:
+        sizes = f"{right.shape[0]}x{right.shape[1]} here, yours is {rows}x{columns}"
+        return Explained(None, f"{letter} is {sizes}")
+    if letter == "T" and isinstance(value, Matrix) and value.determinant().is_zero:
+        return Explained(None, f"{letter} has no inverse")
+    return Explained()
 
 
 def _exact(right: Any) -> Matrix | Scalar | None:

@@ -31,8 +31,8 @@ _OPERAND_ENDS = ("VALUE", "_CLOSE", "_RIGHT", "PRIME")
 #: A sign behind one of these belongs to the one operand that follows, not to the whole term.
 _BEFORE_INNER_SIGN = ("MULTIPLY", "POWER", "inner sign")
 EQUAL_ROWS = "give every row the same number of entries"
-#: Outside brackets `2 g` is a product, inside it is two entries.
-_SPACED_PRODUCT = re.compile(r"([0-9]) +([A-Za-z(])")
+#: Outside brackets `2 g` and `C A` are products, inside they are two entries.
+_SPACED_PRODUCT = re.compile(r"([0-9]|\b[A-Z]) +([A-Za-z(])")
 
 
 class _Waiting(NamedTuple):

@@ -144,13 +144,23 @@ def _cell(value: object) -> str:
 
 def assignment(table: str, seed: int, count: int, where: str) -> str:
     """Return a CSV with a variant for each student of a CSV: by SHA-256 of the student's id and the seed."""
-    rows = list(csv.reader(io.StringIO(table.removeprefix("\ufeff")), delimiter=";" if ";" in table[:200] else ","))
+    text = table.removeprefix("\ufeff")
+    delimiter = max(";\t,", key=text.partition("\n")[0].count)
+    try:
+        rows = list(csv.reader(io.StringIO(text, newline=""), delimiter=delimiter, strict=True))
+    except csv.Error as error:
+        repair = "save the table as CSV, texts in quotes"
+        raise InputError(f"this is not CSV: {error}", where=where, repair=repair) from None
     header = [name.strip().lower() for name in rows[0]] if rows else []
     if "student" not in header:
         repair = "name the column of the ids student in its first row"
         raise InputError("there is no column student", where=where, repair=repair)
     column = header.index("student")
-    students = list(dict.fromkeys(row[column].strip() for row in rows[1:] if len(row) > column and row[column].strip()))
+    ids = [row[column].strip() if len(row) > column else "" for row in rows[1:] if any(cell.strip() for cell in row)]
+    if "" in ids:
+        message = f"student {ids.index('') + 1} of {len(ids)} has no id"
+        raise InputError(message, where=where, repair="fill in the cell, or take out the row")
+    students = dict.fromkeys(ids)
     out = io.StringIO()
     writer = csv.writer(out, lineterminator="\n")
     writer.writerow(["student", "variant"])

@@ -8,7 +8,7 @@ from dataclasses import field
 from typing import Any
 
 from symobs._dataclass import dataclass
-from symobs.checking.answers.values import plain
+from symobs.checking.answers.values import VERDICTS, as_value, plain, typed
 from symobs.errors import InputError, ProblemErrors, SymobsError
 from symobs.expression import declared_name
 from symobs.expression.source import shown
@@ -21,11 +21,11 @@ KEYS = ("student", "convention", "symbols", "let", "answer", "step")
 _STEP = ("relation", "where", "let")
 #: What tells a file of tables from a text of lines.
 _TABLES = re.compile(r"(?m)^[ \t]*(\[\[?[ \t]*(answer|step)\b|(student|convention|symbols|let)[ \t]*=[ \t]*[\"'\[{])")
-_DEFINITION = re.compile(r"[ \t]*([A-Za-z][A-Za-z0-9_.]*)[ \t]*=([^=<>!]*)")
+#: What gives a letter its value, or a function of s, z or t: F(s) = 1/s.
+_DEFINITION = re.compile(r"[ \t]*([A-Za-z][A-Za-z0-9_.]*)((?:[ \t]*\([szt]\))?)[ \t]*=([^=<>!]*)")
+#: What begins a remark.
+_REMARK = re.compile(r"[#%]")
 _RELATION = re.compile(r"[=<>]|!=")
-#: A verdict is an answer and no relation of a derivation.
-_VERDICTS = {"yes", "no", "conditional"}
-_MINUS = str.maketrans({"\u2212": "-", "\u2013": "-", "\u00a0": " "})
 
 
 @dataclass(frozen=True)
@@ -62,36 +62,65 @@ def read_answer(given: str | Mapping[str, Any], where: str = "answer") -> Answer
     if len(given.encode(errors="surrogatepass")) > MAX_BYTES:
         message = f"the answer is larger than {MAX_BYTES // 1024} kB"
         raise ProblemErrors((InputError(message, where=where, repair="hand in the answer alone"),))
-    text = given.removeprefix("\ufeff").translate(_MINUS)
+    text = typed(given)
     if text.lstrip().startswith("{") or _TABLES.search(text):
         return _of_tables(parse(text, where))
     return _of_lines(text, where)
 
 
 def _of_lines(text: str, where: str) -> Answer:
-    """Return the answer of lines: the last `NAME = value` of a name is the answer, and every line is a step."""
-    lines = [(i, line.split("#")[0].strip()) for i, line in enumerate(text.splitlines(), start=1)]
-    kept = [(i, line) for i, line in lines if line]
-    if len(kept) > MAX_LINES:
-        message = f"{len(kept)} lines, more than {MAX_LINES}"
-        raise ProblemErrors((InputError(message, where=where, repair="hand in what leads to the answer"),))
+    """Return the answer of lines: the last `NAME = value` of a name is the answer, and every line is a step.
+
+    What is no relation is a line that cannot be read; raises `ProblemErrors` where there are no others.
+    """
+    kept = _lines(text, where)
     values: dict[str, Any] = {}
     steps: list[Step] = []
     errors: list[SymobsError] = []
     for number, line in kept:
         place = f"line {number}"
         defined = _DEFINITION.fullmatch(line)
-        if defined:
-            task, _, name = defined[1].rpartition(".")
-            (values.setdefault(task, {}) if task else values)[name] = defined[2].strip()
-        if not _RELATION.search(line):
-            message = f'"{shown(line, 60)}" is no relation'
-            errors.append(InputError(message, where=place, repair="write for example L = [19; 81]"))
-        elif not defined or ("." not in defined[1] and defined[2].strip().lower() not in _VERDICTS):
+        if not defined:
             steps.append(Step(line, place))
-    if errors:
+            if not _RELATION.search(line):
+                message = f'"{shown(line, 60)}" is no relation'
+                errors.append(InputError(message, where=place, repair="write for example L = [19; 81]"))
+            continue
+        value = as_value(defined[3])
+        task, _, name = defined[1].rpartition(".")
+        if value:
+            (values.setdefault(task, {}) if task else values)[name] = value
+        if not task and value.lower() not in VERDICTS:  # a verdict is no relation of a derivation
+            steps.append(Step(f"{name}{defined[2]} = {value}", place))
+    if errors and len(errors) == len(kept):
         raise ProblemErrors(tuple(errors))
     return Answer(values=values, steps=tuple(steps), loose=True)
+
+
+def _lines(text: str, where: str) -> list[tuple[int, str]]:
+    """Return the lines that say something, with their numbers; a matrix that is not closed goes on in the lines below it."""
+    split = [(i, _REMARK.split(line, maxsplit=1)[0].strip()) for i, line in enumerate(text.splitlines(), start=1)]
+    written = [(i, line) for i, line in split if line]
+    if len(written) > MAX_LINES:
+        message = f"{len(written)} lines, more than {MAX_LINES}"
+        raise ProblemErrors((InputError(message, where=where, repair="hand in what leads to the answer"),))
+    found: list[tuple[int, str]] = []
+    while written:
+        number, line = written.pop(0)
+        below, is_open = 0, _opened(line)
+        while is_open > 0 and below < len(written) and not _RELATION.search(written[below][1]):
+            is_open += _opened(written[below][1])
+            below += 1
+        if is_open == 0:
+            line = "\n".join([line, *(part for _, part in written[:below])])
+            del written[:below]
+        found.append((number, line))
+    return found
+
+
+def _opened(line: str) -> int:
+    """Return how many brackets a line leaves open."""
+    return line.count("[") - line.count("]")
 
 
 def _of_tables(data: Mapping[str, Any]) -> Answer:
@@ -111,7 +140,7 @@ def _of_tables(data: Mapping[str, Any]) -> Answer:
     def text(source: Mapping[str, Any], name: str, where: str, most: int = MAX_NAME) -> str:
         value = source.get(name, "")
         if isinstance(value, str) and len(value) <= most:
-            return value.translate(_MINUS)
+            return typed(value)
         note(f"a text of at most {most} characters is expected", where, "write it in quotes")
         return ""
 
@@ -120,7 +149,7 @@ def _of_tables(data: Mapping[str, Any]) -> Answer:
         for name, meaning in found.items():
             if not isinstance(meaning, str):
                 note("a text is expected", f"{where}.{shown(name, 40)}", 'write let = { M = "[m1; m2]" }')
-        return {name: str(meaning).translate(_MINUS) for name, meaning in found.items()}
+        return {name: typed(str(meaning)) for name, meaning in found.items()}
 
     for key in data:
         if key not in KEYS:

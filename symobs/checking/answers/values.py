@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
+from contextlib import suppress
 from fractions import Fraction
 from typing import Any
 
+from symobs.errors import SymobsError
 from symobs.exact import Factored, Matrix, Scalar
 from symobs.expect.structure import factored_table
 from symobs.expression import parse_matrix, parse_scalar
@@ -15,9 +17,40 @@ from symobs.expression import parse_matrix, parse_scalar
 _DECIMAL = re.compile(
     r"(?<![A-Za-z0-9_.])(?:(?:[0-9]+\.[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]{1,3})?|[0-9]+[eE][+-]?[0-9]{1,3})(?![A-Za-z0-9_.])"
 )
-#: A decimal comma stands between two digits, with no space around it, outside brackets of rows.
-_COMMA = re.compile(r"(?<![0-9.])[0-9]+,[0-9]+(?![0-9.,])")
-_MINUS = str.maketrans({"\u2212": "-", "\u2013": "-", "\u00a0": " "})
+#: A decimal comma stands between two digits, with no space around it.
+_COMMA = re.compile(r"(?<![0-9.,])([0-9]+),([0-9]+)(?![0-9.,])")
+#: What editors and web pages put in place of the minus and of nothing.
+_TYPED = str.maketrans(
+    dict.fromkeys("\u2212\u2010\u2011\u2013", "-") | dict.fromkeys("\u200b\u2060\ufeff") | {"\u00a0": " "}
+)
+#: Rows in brackets of their own, as NumPy and SymPy print a matrix; [[1]; [2]] is a matrix of blocks.
+_ROWS = re.compile(r"(?:[A-Za-z.]*(?:array|Matrix)\()?\s*\[\s*(\[[^][;]*\](?:[\s,]*\[[^][;]*\])*)[\s,]*\]\s*\)?")
+_LIST = re.compile(r"\[[^][{}]*\]|\{[^][{}]*\}")
+_ROW = re.compile(r"\[([^]]*)\]")
+
+
+#: What a verdict may be called.
+VERDICTS = {
+    "yes": "yes",
+    "true": "yes",
+    "ja": "yes",
+    "no": "no",
+    "false": "no",
+    "nein": "no",
+    "conditional": "conditional",
+}
+
+
+def typed(text: str) -> str:
+    """Return a text with the minus, the spaces and the byte order mark of ASCII."""
+    return text.translate(_TYPED)
+
+
+def as_value(text: str) -> str:
+    """Return the text of a value without the semicolon that ends a statement, and rows in brackets as rows of a matrix."""
+    value = text.strip().removesuffix(";").rstrip()
+    rows = _ROWS.fullmatch(value)
+    return f"[{'; '.join(row.strip() for row in _ROW.findall(rows[1]))}]" if rows else value
 
 
 def plain(value: Any) -> Any:
@@ -26,7 +59,7 @@ def plain(value: Any) -> Any:
     A float stays one, so that whoever reads it refuses it and says what to write.
     """
     if isinstance(value, str):
-        return value.translate(_MINUS)
+        return as_value(typed(value))
     if hasattr(value, "tolist"):
         return plain(value.tolist())
     if isinstance(value, Mapping):
@@ -49,8 +82,17 @@ def has_decimals(value: Any) -> bool:
 
 def decimal_comma(value: Any) -> str:
     """Return the number with a decimal comma in a text, empty where there is none."""
-    found = _COMMA.search(value) if isinstance(value, str) and "[" not in value else None
+    found = _COMMA.search(value) if isinstance(value, str) else None
     return found[0] if found else ""
+
+
+def has_decimal_commas(value: Any, names: Any, shape: tuple[int, int]) -> bool:
+    """Return whether a matrix has the right size if the commas between its digits are those of decimals."""
+    if not decimal_comma(value):
+        return False
+    with suppress(SymobsError):
+        return parse_matrix(_COMMA.sub(r"\1.\2", value), names).shape == shape
+    return False
 
 
 def exact(value: Any) -> Any:
@@ -60,6 +102,15 @@ def exact(value: Any) -> Any:
     if isinstance(value, list):
         return [exact(entry) for entry in value]
     return _DECIMAL.sub(lambda found: f"({Fraction(found[0])})", value) if isinstance(value, str) else value
+
+
+def as_list(value: Any) -> Any:
+    """Return the entries of a text in brackets, [1, 2] or [1; 2] or {1, 2}; another value as it is."""
+    if not isinstance(value, str) or not _LIST.fullmatch(value.strip()):
+        return value
+    inside = value.strip()[1:-1].strip()
+    parts = re.split(r"[,;\n]" if re.search(r"[,;\n]", inside) else r"\s+", inside)
+    return [part.strip() for part in parts if part.strip()]
 
 
 def text_of(value: Any) -> str:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import io
 import json
+import re
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
@@ -19,7 +20,9 @@ if TYPE_CHECKING:
 MAX_BYTES = 64 * 1024 * 1024
 #: Columns with a meaning of their own; every other one is a part, or is left alone.
 OWN = ("student", "convention", "variant", "steps")
-_FILES = {".toml", ".json", ".txt"}
+_FILES = (".toml", ".json", ".txt")
+#: The line above the header with which spreadsheets say what sets cells apart.
+_SEPARATOR = re.compile(r'"?sep=([;,\t])"?')
 
 
 @dataclass(frozen=True)
@@ -120,44 +123,58 @@ def _of_csv(
     text: str, path: Path, known: Collection[str], columns: Mapping[str, str]
 ) -> tuple[tuple[str, ...], list[tuple[str, Submission]]]:
     """Return header and rows of a table whose header names students and parts; its delimiter is that of the header."""
-    header = text.split("\n", 1)[0]
-    delimiter = max(";\t,", key=header.count)
-    csv.field_size_limit(MAX_BYTES)
-    try:
-        rows = list(csv.reader(io.StringIO(text, newline=""), delimiter=delimiter, strict=True))
-    except csv.Error as error:
-        raise _wrong(str(path), f"this is not CSV: {error}", "save the table as CSV, texts in quotes") from None
+    rows = _rows(text, path)
     if not rows:
         raise _wrong(str(path), "the table is empty", "the first line names the columns: student,K,L")
-    names = [columns.get(name.strip(), name.strip()) for name in rows[0]]
-    errors = _of_header(names, rows[0], known, columns)
+    (first, header), *body = rows
+    names = [columns.get(name.strip(), name.strip()) for name in header]
+    errors = _of_header(names, header, known, columns, first)
     used = [name for name in names if name in OWN or name in known]
-    errors += [
-        InputError(
-            f"{len(row)} cells, but {len(names)} columns", where=f"line {number}", repair="fill in or merge cells"
-        )
-        for number, row in enumerate(rows[1:], start=2)
-        if row and len(row) != len(names)
-    ]
+    found: list[tuple[str, Submission]] = []
+    for number, row in body:
+        place = f"line {number}"
+        if len(row) != len(names):
+            message = f"{len(row)} cells, but {len(names)} columns"
+            errors.append(InputError(message, where=place, repair="put cells that hold the separator in quotes"))
+        elif "student" in names:
+            submission = _of_cells({name: cell for name, cell in zip(names, row, strict=True) if name in used})
+            if not submission.student:
+                errors.append(
+                    InputError("no student is named", where=place, repair="fill in the cell, or take out the row")
+                )
+            found.append((place, submission))
     if errors:
         for wrong in errors:
             wrong.where = f"{shown(str(path), 200)}, {wrong.where}"
         raise ProblemErrors(tuple(errors))
-    found: list[tuple[str, Submission]] = []
-    for number, row in enumerate(rows[1:], start=2):
-        if any(cell.strip() for cell in row):
-            cells = {name: cell for name, cell in zip(names, row, strict=True) if name in used}
-            found.append((f"line {number}", _of_cells(cells)))
     return tuple(names), found
 
 
+def _rows(text: str, path: Path) -> list[tuple[int, list[str]]]:
+    """Return the rows that are not empty, each with the number of its first line."""
+    first, _, rest = text.partition("\n")
+    named = _SEPARATOR.fullmatch(first.strip(" \r"))  # what spreadsheets write above the header
+    delimiter = named[1] if named else max(";\t,", key=text.lstrip().partition("\n")[0].count)
+    csv.field_size_limit(MAX_BYTES)
+    reader = csv.reader(io.StringIO(f"\n{rest}" if named else text, newline=""), delimiter=delimiter, strict=True)
+    found, number = [], 1
+    try:
+        for row in reader:
+            if any(cell.strip() for cell in row):
+                found.append((number, row))
+            number = reader.line_num + 1
+    except csv.Error as error:
+        raise _wrong(str(path), f"this is not CSV: {error}", "save the table as CSV, texts in quotes") from None
+    return found
+
+
 def _of_header(
-    names: Sequence[str], written: Sequence[str], known: Collection[str], columns: Mapping[str, str]
+    names: Sequence[str], written: Sequence[str], known: Collection[str], columns: Mapping[str, str], number: int
 ) -> list[SymobsError]:
     errors: list[SymobsError] = []
 
     def note(message: str, repair: str) -> None:
-        errors.append(InputError(message, where="line 1", repair=repair))
+        errors.append(InputError(message, where=f"line {number}", repair=repair))
 
     used = [name for name in names if name in OWN or name in known]
     for column in columns:
@@ -172,6 +189,9 @@ def _of_header(
         note("no column is a part of the answer", f"name one of {', '.join(known)}")
     for name in {name for name in used if used.count(name) > 1}:
         note(f"the column {name} stands twice", "keep one of them")
+    for name in used:
+        if "." in name and name.rpartition(".")[2] in used:
+            note(f"the columns {name.rpartition('.')[2]} and {name} are one part", "keep one of them")
     return errors
 
 
@@ -198,7 +218,7 @@ def _of_json_lines(text: str, path: Path) -> list[tuple[str, Submission]]:
             table = json.loads(line, parse_float=str)
         except (ValueError, RecursionError):
             table = None
-        if not isinstance(table, dict) or not isinstance(table.get("student"), str):
+        if not isinstance(table, dict) or not isinstance(table.get("student"), str) or not table["student"].strip():
             errors.append(
                 InputError(
                     "an object with a student is expected",

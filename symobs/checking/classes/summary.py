@@ -73,10 +73,9 @@ def summary(
         "without_variant": sorted(without_variant),
         "superseded": [{"student": student, "place": place} for student, place in superseded],
         "unreadable": [
-            {"student": report.student, "message": part.reason}
+            {"student": report.student, "message": "; ".join(dict.fromkeys(reasons))}
             for report in reports
-            for part in report.parts[:1]
-            if report.verdict == "unreadable"
+            if (reasons := [part.reason for part in report.parts if part.verdict == "unreadable"])
         ],
     }
 

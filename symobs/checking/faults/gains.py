@@ -142,8 +142,9 @@ class _Search:
     def other_half(self) -> Iterator[Fault]:
         """Yield that the poles of the other half of the compensator were taken."""
         if self.other is not None:
-            asked = "observer" if self.design.letter == "K" else "control"
-            yield from self._of(self.other, "other_half", f"{self.letter} places the {asked} poles")
+            own, other = ("control", "observer") if self.design.letter == "K" else ("observer", "control")
+            said = f"{self.letter} places the {other} poles in place of the {own} poles"
+            yield from self._of(self.other, "other_half", said)
 
     def mirrored(self) -> Iterator[Fault]:
         """Yield that the poles were taken with the other sign."""

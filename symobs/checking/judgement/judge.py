@@ -8,29 +8,47 @@ from typing import TYPE_CHECKING, Any
 
 from symobs._dataclass import dataclass
 from symobs.analysis.realization.coordinates import BLOCKS
-from symobs.checking.answers.values import decimal_comma, exact, has_decimals, read_like
+from symobs.checking.answers.values import (
+    VERDICTS,
+    as_list,
+    decimal_comma,
+    exact,
+    has_decimal_commas,
+    has_decimals,
+    read_like,
+)
 from symobs.checking.judgement.coordinates import in_coordinates
 from symobs.checking.judgement.gains import from_gains, with_claimed, with_gain, with_gains
 from symobs.checking.judgement.other_compensators import closes_the_loop
 from symobs.checking.judgement.parts import CLAIMED, GAINS, IN_COORDINATES, exists, in_order
 from symobs.checking.judgement.regions import region_verdict
 from symobs.design.reference.integral_action import IntegralAction
-from symobs.errors import CertificateRejected, ExpressionError, InputError, NotShown, SymobsError
-from symobs.exact import Matrix, TooLarge
+from symobs.errors import (
+    CertificateRejected,
+    ExpressionError,
+    InputError,
+    NotShown,
+    ProblemErrors,
+    SymobsError,
+    UnknownName,
+)
+from symobs.exact import Complex, Matrix, Root, Scalar, TooLarge
 from symobs.expect import found_in, met, names_of
 from symobs.expression import parse_matrix
+from symobs.expression.source import shown
 from symobs.result.in_convention import ResultInConvention
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from symobs.checking.judgement.regions import Separation
-    from symobs.exact import Scalar
     from symobs.problem.marking import Marking
     from symobs.result import Result
 
 #: What is raised where a question about a value is too large to be decided.
 UNDECIDED = (NotShown, TooLarge)
+#: So many faults of one value are named.
+_MOST_SAID = 3
 #: Fields for which that of another name does as well, and what is said then.
 _EITHER = {
     "closed_loop_matrix": ("closed_loop_matrix_estimate", "in the state and its estimate"),
@@ -101,6 +119,7 @@ def judge_task(
     declared = names_of(view)
     names = declared if declared is None else {**declared, **dict.fromkeys(symbols, "real")}
     task = _Task(view, names, marking, view.result)
+    given = {letter: as_list(value) if _is_listed(view, letter) else value for letter, value in given.items()}
     standard = {view.standard(letter)[0]: letter for letter in given}
     parts: dict[str, Judged] = {}
     if isinstance(task.right, IntegralAction):
@@ -121,12 +140,32 @@ def judge_task(
     return TaskJudgement(tuple(parts[name] for name in standard), task.right, task.own)
 
 
+def _is_listed(view: ResultInConvention, letter: str) -> bool:
+    """Return whether the right value is a list of numbers, which a text writes in brackets."""
+    right = view.fields.get(view.standard(letter)[0])
+    if not isinstance(right, (list, tuple)) or letter in {"kernel", "stable_if"}:
+        return letter == "sizes"
+    return all(isinstance(entry, (Scalar, Complex, Root)) for entry in right)
+
+
 def unreadable(name: str, letter: str, given: Any, error: SymobsError) -> Judged:
     """Return the part that cannot be read, with the place and the repair."""
+    errors = error.errors if isinstance(error, ProblemErrors) else (error,)
     comma = decimal_comma(given)
-    repair = f"write {comma.replace(',', '.')} with a decimal point" if comma else error.repair
-    said = "; ".join(filter(None, (error.message, repair)))
+    repair = f"write {comma.replace(',', '.')} with a decimal point" if comma else _repair(errors[0])
+    said = "; ".join(filter(None, (*(each.message for each in errors[:_MOST_SAID]), repair)))
     return Judged(name, letter, "unreadable", given, reason=str(SymobsError(said)))
+
+
+def _repair(error: SymobsError) -> str:
+    """Return what a student can do, who declares no names in the problem file."""
+    if not isinstance(error, UnknownName):
+        return error.repair
+    near, known = error.facts.get("nearest"), error.facts.get("declared")
+    if not isinstance(known, tuple) or not known:
+        return "write numbers alone"
+    question = f'did you mean "{near}"? ' if near else ""
+    return f"{question}write it with the letters known here: {', '.join(known)}"
 
 
 # -- gains ------------------------------------------------------------------------------------------------------------
@@ -142,6 +181,8 @@ def _gain(task: _Task, name: str, letter: str, given: Any) -> Judged:
     value = -read if sign < 0 else read
     shape = shape_of(task.right, name)
     if value.shape != shape:
+        if has_decimal_commas(given, task.names, shape):
+            return unreadable(name, letter, given, InputError("a comma sets entries apart"))
         rows, columns = (f"{a}x{b}" for a, b in (shape, value.shape))
         task.wrong = (*task.wrong, name)
         return Judged(name, letter, "wrong", given, value, reason=f"{letter} is {rows} here, yours is {columns}")
@@ -202,6 +243,12 @@ def _judged(task: _Task, name: str, letter: str, given: Any) -> Judged:
         return Judged(name, letter, "wrong", given, reason=f"there is no {letter} here")
     if (task.view.task, name) == ("stability_region", "stable_if"):
         return _region(task, name, letter, given)
+    if name == "verdict":
+        word = VERDICTS.get(str(given).strip().strip('"').lower())
+        if word is None:
+            error = InputError(f'"{shown(str(given), 40)}" is no verdict', repair="write yes, no or conditional")
+            return unreadable(name, letter, given, error)
+        given = word
     part = Judged(name, letter, "wrong", given)
     try:
         part = replace(part, value=_value(task, name, letter, given))
@@ -215,6 +262,9 @@ def _judged(task: _Task, name: str, letter: str, given: Any) -> Judged:
         rounded = has_decimals(given) and _met(task, task.right, part, given)
         if rounded and task.marking.decimals == "accept":
             return replace(part, verdict="right", hints=("rounded",))
+        right = task.right.fields.get(name)
+        if isinstance(right, Matrix) and has_decimal_commas(given, task.names, right.shape) and part.value is not None:
+            raise InputError("a comma sets entries apart")
     except UNDECIDED as error:
         return replace(part, verdict="undecided", reason=str(error))
     except SymobsError as error:
@@ -263,8 +313,6 @@ def _holds(task: _Task, result: Result, part: Judged) -> tuple[str, ...] | None:
 def _met(task: _Task, result: Result, part: Judged, given: Any) -> bool:
     """Return whether a value equals that of a result."""
     letter = part.letter if task.view.standard(part.letter)[0] == part.name else part.name
-    if isinstance(given, str) and part.name == "verdict":
-        given = given.strip().strip('"').lower()
     return met(ResultInConvention(result, task.view.convention), letter, given, part.letter)
 
 
@@ -320,6 +368,12 @@ def _is_met(task: _Task, result: Result, part: Judged) -> bool:
 
 def _region(task: _Task, name: str, letter: str, given: Any) -> Judged:
     """Return the verdict on a region given by conditions."""
+    if name == "verdict":
+        word = VERDICTS.get(str(given).strip().strip('"').lower())
+        if word is None:
+            error = InputError(f'"{shown(str(given), 40)}" is no verdict', repair="write yes, no or conditional")
+            return unreadable(name, letter, given, error)
+        given = word
     part = Judged(name, letter, "wrong", given)
     try:
         found = region_verdict(task.right, given, task.names)

@@ -191,7 +191,7 @@ class ReportData:
         level = SHOW.index(show)
         parts = tuple(_bounded(part, level) for part in self.parts)
         lines = tuple(
-            replace(line, right=line.right if level > 2 else None, reason=line.reason if level > 1 else "")
+            replace(line, right=line.right if level > 2 else None, reason=line.reason if _may_say(line, level) else "")
             for line in self.lines
         )
         if level < 1:
@@ -233,9 +233,14 @@ def _part(part: Part) -> dict[str, Any]:
     }
 
 
+def _may_say(judged: Part | Line, level: int) -> bool:
+    """Return whether a level of feedback may give a reason: why something cannot be read is always said."""
+    return level > 1 or judged.verdict == "unreadable"
+
+
 def _bounded(part: Part, level: int) -> Part:
-    """Return a part without what a level of feedback may not give away; what cannot be read is always said."""
-    said = part.reason if level > 1 or part.verdict == "unreadable" else ""
+    """Return a part without what a level of feedback may not give away."""
+    said = part.reason if _may_say(part, level) else ""
     found = replace(part, right=part.right if level > 2 else None, reason=said)
     if level < 2:
         found = replace(found, slip=None, alternatives=(), effect={}, hints=())

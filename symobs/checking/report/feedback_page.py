@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from symobs.checking.report.pages import of_numbers, result, sentences
+from symobs.checking.report.pages import names_of, of_numbers, result, sentences
 from symobs.errors import SymobsError
 from symobs.expression import parse_matrix
 from symobs.formula import Literal
@@ -44,19 +44,20 @@ def html(report: ReportData) -> str:
     head = [f"<h1>{plain(title)}</h1>"]
     head += [f"<p>{plain(report.student)}</p>"] if report.student else []
     head += [f'<p class="score"><strong>{plain(result(report))}</strong></p>']
-    parts = [line for part in report.parts for line in _part(part)]
+    names = names_of(report)
+    parts = [line for part in report.parts for line in _part(part, names[part.part])]
     hints = [f"<p>{plain(hint)}</p>" for hint in report.hints]
     lines = ["<h2>Your derivation</h2>", '<ol class="derivation">', *map(_line, report.lines), "</ol>"]
     solution = ["<h2>Solution</h2>", report.page] if report.page else []
     return page(title, "\n".join([_STYLE, *head, *parts, *hints, *(lines if report.lines else []), *solution]))
 
 
-def _part(part: Part) -> Iterator[str]:
+def _part(part: Part, name: str) -> Iterator[str]:
     """Yield the section of a part."""
     yield f'<section class="judged {part.verdict}">'
     credit = part.credit is not None and part.weight > 0 and 0 < part.credit < 1
     extra = f", {part.credit} of its marks" if credit else ""
-    yield f"<h2>{plain(part.letter)}: {_WORDS[part.verdict]}{extra}</h2>"
+    yield f"<h2>{plain(name)}: {_WORDS[part.verdict]}{extra}</h2>"
     if part.given:
         yield f"<p>You gave {_math(part.given)}</p>"
     for said in sentences(part, effect=False):

@@ -21,9 +21,10 @@ def text(report: ReportData) -> str:
     from symobs.render.formats.text import printable  # noqa: PLC0415 - each format pays for its own
 
     lines: list[str] = []
-    width = max((len(part.letter) for part in report.parts), default=1)
+    names = names_of(report)
+    width = max(map(len, names.values()), default=1)
     for part in report.parts:
-        head = f"{part.letter:<{width}}  {part.verdict}"
+        head = f"{names[part.part]:<{width}}  {part.verdict}"
         credit = f"  {part.credit}" if part.weight and part.credit is not None and 0 < part.credit < 1 else ""
         lines += _wrapped(
             printable("  ".join(filter(None, (head + credit, of_numbers("; ".join(sentences(part))))))), width + 2
@@ -41,12 +42,13 @@ def markdown(report: ReportData) -> str:
     """Return a report as Markdown."""
     from symobs.render.formats.markdown import plain  # noqa: PLC0415 - each format pays for its own
 
+    names = names_of(report)
     lines = [f"**{plain(report.title)}**", ""] if report.title else []
     lines += ["| part | verdict | credit | |", "|---|---|---|---|"]
     for part in report.parts:
         credit = "" if part.credit is None else str(part.credit)
         lines.append(
-            f"| {plain(part.letter)} | {part.verdict} | {credit} | {plain(of_numbers('; '.join(sentences(part))))} |"
+            f"| {plain(names[part.part])} | {part.verdict} | {credit} | {plain(of_numbers('; '.join(sentences(part))))} |"
         )
     for line in shown_lines(report):
         said = f": {line.reason}" if line.reason else ""
@@ -60,20 +62,30 @@ def _wrapped(line: str, indent: int) -> list[str]:
     return wrap(line, _WIDTH, subsequent_indent=" " * indent, break_on_hyphens=False) or [""]
 
 
+def names_of(report: ReportData) -> dict[str, str]:
+    """Return what each part is called: its letter, with the task where several have that one."""
+    letters = [part.letter for part in report.parts]
+    return {
+        part.part: part.letter if letters.count(part.letter) == 1 else f"{part.part.partition('.')[0]}.{part.letter}"
+        for part in report.parts
+    }
+
+
 def sentences(part: Part, *, effect: bool = True) -> Iterator[str]:
     """Yield what is said of a part; with `effect` also what its value does, and what is right."""
     if part.reason and (effect or not part.effect or part.slip is not None):
         yield part.reason
     yield from part.alternatives
     if part.origins:
-        yield f"it follows from your {' and '.join(origin.partition('.')[2] for origin in part.origins)}, which is wrong"
+        named = " and ".join(origin.partition(".")[2] for origin in part.origins)
+        yield f"it follows from your {named}, which {'are' if len(part.origins) > 1 else 'is'} wrong"
     if part.place and not part.reason:
         yield f"look at {_place(part.place)}"
     if effect and part.effect and part.verdict == "wrong":
         if part.effect["polynomial"] not in part.reason:
             yield f"with yours the polynomial is {part.effect['polynomial']}"
         if part.effect.get("stable") == "no":
-            yield "which is not stable"
+            yield "it is not stable"
     yield from part.hints
     if effect and part.right is not None and part.verdict != "right":
         yield f"right: {part.right}"

@@ -117,7 +117,7 @@ def read_file(file: str, kind: str = "a problem file") -> str:
         raise InputError(reason_of(error), where=where, repair=repair) from None
     if len(raw) > MAX_BYTES:
         message = f"the file is larger than {MAX_BYTES // 1024} kB"
-        raise InputError(message, where=where, repair="keep one problem to a file")
+        raise InputError(message, where=where, repair=f"give {kind} alone")
     try:
         return raw.decode("utf-8-sig")
     except UnicodeDecodeError as error:

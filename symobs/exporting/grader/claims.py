@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING, Any
 
 from symobs.exporting.grader.values import (
     DECIMAL,
-    MINUS,
     ONE,
+    TYPED,
     Poly,
     Ratio,
     UnreadableError,
@@ -36,6 +36,17 @@ if TYPE_CHECKING:
     Texts = Sequence[Sequence[str]]
     Part = Mapping[str, Any]
     Verdict = tuple[str, str, str]
+
+#: What a verdict may be called.
+WORDS = {
+    "yes": "yes",
+    "true": "yes",
+    "ja": "yes",
+    "no": "no",
+    "false": "no",
+    "nein": "no",
+    "conditional": "conditional",
+}
 
 # -- matrices of numbers -------------------------------------------------------------------------------------------------
 
@@ -158,7 +169,7 @@ def rounds(texts: Texts, value: Rows, right: Rows) -> bool:
     found = False
     for row in zip(texts, value, right, strict=True):
         for text, mine, exact in zip(*row, strict=True):
-            match = DECIMAL.fullmatch(text.translate(MINUS))
+            match = DECIMAL.fullmatch(text.translate(TYPED))
             if match is None or (match[3] is None and match[4] is None):
                 if mine != exact:
                     return False
@@ -317,7 +328,11 @@ def _part(
     """Return the outcome of one part that was given; gains are kept for what follows from them."""
     factor = Fraction(1)
     if part["kind"] == "word":
-        verdict, slip, reason = "right" if texts[0][0].strip().strip('"').lower() == part["right"] else "wrong", "", ""
+        word = WORDS.get(texts[0][0].strip().strip('"').lower())
+        if word is None:
+            message = "write yes, no or conditional"
+            raise UnreadableError(message)
+        verdict, slip, reason = "right" if word == part["right"] else "wrong", "", ""
     else:
         variable = {part["variable"]: (poly([0, 1]), ONE)} if part["function"] else {}
         value = [[read(cell, {**point, **variable}) for cell in row] for row in texts]

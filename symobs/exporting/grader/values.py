@@ -26,7 +26,10 @@ _TOKEN = re.compile(
 DECIMAL = re.compile(r"\s*([+-]?)\s*([0-9]*)(?:\.([0-9]*))?(?:[eE]([+-]?[0-9]{1,3}))?\s*")
 #: Numerator or denominator 1.
 ONE: Poly = (Fraction(1),)
-MINUS = str.maketrans({"\u2212": "-", "\u2013": "-", "\u00a0": " "})
+#: What editors and web pages put in place of the minus and of nothing.
+TYPED = str.maketrans(
+    dict.fromkeys("\u2212\u2010\u2011\u2013", "-") | dict.fromkeys("\u200b\u2060\ufeff") | {"\u00a0": " "}
+)
 
 
 class UnreadableError(Exception):
@@ -95,7 +98,7 @@ def read(text: str, names: Mapping[str, Ratio]) -> Ratio:
         message = "this is too long"
         raise UnreadableError(message)
     tokens: list[tuple[str, str]] = []
-    text, place = text.translate(MINUS), 0
+    text, place = text.translate(TYPED).strip().removesuffix(";"), 0
     while place < len(text):
         found = _TOKEN.match(text, place)
         if found is None:

@@ -1,9 +1,10 @@
-"""Measure what lecturers need: `python -m tests.programs.teaching variants|graders|class|peers [--count N] [--only NAME]`.
+"""Measure what lecturers need: `python -m tests.programs.teaching PART [--count N] [--only NAME]`.
 
 variants  500 candidates of each construction before any is left out, held to what it promises; 1,000 accepted ones of each
           compared pairwise for being the same plant in other coordinates
 graders   answers to exported questions, judged by the grader of the platform and by `check`
 class     a class of 300 with K, L and F of a plant of order 3, and the same with derivations of 12 lines: time of the command
+tasks     our own answers of each task with one entry changed: right only where the claim holds
 peers     the same answers by a tolerance of 1 %, by equality with the printed gain, and by the claim
 """
 
@@ -12,9 +13,15 @@ from __future__ import annotations
 import argparse
 import sys
 
-from tests.programs.teaching import classes, graders, peers, variants
+from tests.programs.teaching import classes, graders, peers, tasks, variants
 
-PARTS = {"variants": variants.main, "graders": graders.main, "class": classes.main, "peers": peers.main}
+PARTS = {
+    "variants": variants.main,
+    "graders": graders.main,
+    "class": classes.main,
+    "peers": peers.main,
+    "tasks": tasks.main,
+}
 
 
 def main() -> int:

@@ -56,14 +56,14 @@ def lines(answer: dict[str, str], number: int) -> str:
         [
             "C A = [1 1 3]",
             "C A^2 = [4 1 9]" if number % 5 else "C A^2 = [4 1 8]",
-            f"rank([C; C A; C A^2]) = {rank}",
+            f"rank([C; C*A; C*A^2]) = {rank}",
             f"det(s I - A) = {sp.expand(A.charpoly(S).as_expr())} {shift}",
             f"K = {answer['K']}",
             f"L = {answer['L']}",
             "det(s I - A + B K) = (s + 1)(s + 2)(s + 4)",
             "det(s I - A + L C) = (s + 5)(s + 6)(s + 7)",
             "A - B K = A - (B K)",
-            "eigenvalues(A - B K) = {-1, -2, -4}",
+            "eigenvalues(A - B K) = [-1, -2, -4]",
             f"F = {answer['F']}",
             "det(s I - A + B K) = s^3 + 7 s^2 + 14 s + 8",
         ]

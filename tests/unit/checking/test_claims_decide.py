@@ -8,7 +8,10 @@ import pytest
 import sympy as sp
 
 from symobs.checking import Checked, check
+from tests.support.paths import ROOT
 from tests.support.problems.answered import SERVO, S, text
+
+EXAMPLES = ROOT / "worked_examples"
 
 CANONICAL = (
     'task = "canonical_form"\n[plant]\nA = "[1 2; 3 4]"\nB = "[1; 1]"\nC = "[1 0]"\n[specification]\nkind = "{}"\n'
@@ -151,9 +154,17 @@ def test_columns_of_a_block_may_be_permuted_and_others_not() -> None:
 
 
 @pytest.mark.parametrize(
-    ("given", "verdict"), [("yes", "right"), (' "Yes" ', "right"), ("no", "wrong"), ("yes!", "wrong")]
+    ("given", "verdict"),
+    [
+        ("yes", "right"),
+        (' "Yes" ', "right"),
+        ("no", "wrong"),
+        ("yes!", "unreadable"),
+        ("ja", "right"),
+        (False, "wrong"),
+    ],
 )
-def test_a_verdict_is_a_word(given: str, verdict: str) -> None:
+def test_a_verdict_is_a_word(given: object, verdict: str) -> None:
     problem = 'task = "detectability"\n[plant]\nA = "[0 1; 0 0]"\nC = "[1 0]"\n'
     assert verdicts(problem, {"verdict": given}) == {"verdict": verdict}
 
@@ -174,3 +185,36 @@ def test_sizes_are_four_numbers_in_order() -> None:
         assert verdicts(PARTS, {"T": "[1 0; 0 1]", "sizes": sizes})["sizes"] in {verdict, "unreadable"} - {"right"} | {
             verdict
         }
+
+
+@pytest.mark.parametrize(
+    ("given", "verdict"),
+    [
+        ("[x10; x20]", "right"),
+        ("[x10 x20]", "right"),
+        ("{x10, x20}", "right"),
+        ("[x20; x10]", "wrong"),
+        ("[x10]", "wrong"),
+    ],
+)
+def test_a_text_writes_a_list_in_brackets(given: str, verdict: str) -> None:
+    problem = (EXAMPLES / "servo_initial_state.toml").read_text(encoding="utf-8")
+    report = Checked.of(problem).report(f"x0 = {given}\n")
+    assert [part.verdict for part in report.parts] == [verdict]
+    assert report.lines == ()  # x0 is an answer here, and no letter of the derivation
+
+
+def test_sizes_in_a_text_and_matrices_that_are_none() -> None:
+    problem = (EXAMPLES / "four_parts.toml").read_text(encoding="utf-8")
+    report = Checked.of(problem).report("sizes = [1 1 1 1]\nT = [1 0; 0 1]\n")
+    found = {part.letter: (part.verdict, part.reason) for part in report.parts if part.given}
+    assert found == {"sizes": ("right", ""), "T": ("wrong", "T is 4x4 here, yours is 2x2")}
+    (part,) = (part for part in Checked.of(problem).report({"T": [[1] * 4] * 4}).parts if part.given)
+    assert (part.verdict, part.reason) == ("wrong", "T has no inverse")
+
+
+def test_parts_of_one_letter_are_told_apart() -> None:
+    problem = 'tasks = ["observability", "controllability"]\n[plant]\nA = "[0 1; 0 0]"\nB = "[0; 1]"\nC = "[1 0]"\n'
+    report = check(problem, {"observability": {"rank": 1}, "controllability": {"rank": 2}})
+    for written in (report.to_text(), report.to_markdown(), report.to_html()):
+        assert all(f"{task}.rank" in written.replace("\\", "") for task in ("observability", "controllability"))

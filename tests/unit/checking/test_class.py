@@ -145,6 +145,10 @@ def test_a_report_is_read_back_as_it_was(show: str) -> None:
         ("student,K\na,1\n", ["Mail=student"], 'there is no column "Mail"'),
         ("student,K\na,1\n", ["student=Q"], "Q is no part"),
         ("", [], "the table is empty"),
+        ("\n \n", [], "the table is empty"),
+        ("student,K\n,[4 3]\n ,[4 4]\n", [], "line 3: no student is named"),
+        ("student,K,compensator.K\na,1,1\n", [], "the columns K and compensator.K are one part"),
+        ('\nstudent,K\na,"[4\n3]"\na\n', [], "line 5: 1 cells, but 2 columns"),
     ],
 )
 def test_a_table_that_cannot_be_used_is_refused(folder: Path, table: str, mapped: list[str], message: str) -> None:
@@ -162,6 +166,21 @@ def test_what_nobody_could_hand_in_is_said(folder: Path) -> None:
     (folder / "class.csv").write_text("student,K,L,F\n", encoding="utf-8")
     found = run(folder)
     assert (found.code, "no student in class.csv" in found.err) == (3, True)
+
+
+def test_a_spreadsheet_may_say_what_sets_its_cells_apart(folder: Path) -> None:
+    table = '\ufeffsep=;\r\n"Student, whole name";K;note\r\nA;[4,3];";;;"\r\nB;[3,4];x\r\n'
+    (folder / "class.csv").write_bytes(table.encode())
+    assert run(folder, "--map", "Student, whole name=student").code == 0
+    marks = (folder / "RESULTS" / "marks.csv").read_text(encoding="utf-8").splitlines()
+    assert [line.split(",")[4] for line in marks[1:]] == ["right", "wrong"]
+
+
+def test_what_cannot_be_read_is_told_of_the_part_that_it_is(folder: Path) -> None:
+    (folder / "class.csv").write_text("student,K,L\na,[4 3],[19; q]\n", encoding="utf-8")
+    run(folder)
+    (found,) = json.loads((folder / "RESULTS" / "summary.json").read_text(encoding="utf-8"))["unreadable"]
+    assert (found["student"], '"q" is not declared' in found["message"]) == ("a", True)
 
 
 def test_a_verdict_of_a_text_is_no_line_of_a_derivation(tmp_path: Path) -> None:

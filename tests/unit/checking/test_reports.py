@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import pickle
 import re
+from dataclasses import replace
 from fractions import Fraction
 from typing import Any
 
@@ -12,13 +13,14 @@ import pytest
 from jsonschema import Draft202012Validator  # type: ignore[import-untyped]
 
 import symobs
-from symobs.checking import SHOW, Checked, check
+from symobs.checking import SHOW, Checked, CheckReport, check
 from symobs.checking.answers.answer_file import read_answer
 from symobs.checking.asked import answer_file
 from symobs.checking.report.schema import schema
 from symobs.errors import ProblemErrors, UsageError
 from symobs.problem import read
 from symobs.problem.marking import SLIPS
+from tests.programs.teaching.classes import answers, lines
 from tests.support.paths import ROOT
 from tests.support.problems.answered import SERVO, THIRD_ORDER, TWO_OUTPUTS, F, K, L
 
@@ -61,31 +63,55 @@ def _body(page: str) -> str:
     return re.sub(r"<[a-z][^>]*>", lambda tag: tag[0].split()[0] + ">", page.rpartition("</style>")[2])
 
 
-@pytest.mark.parametrize("show", ["verdict", "place"])
+_POLYNOMIAL = re.compile(r"\bs\*\*|\bs\^[0-9]|<msup>")
+
+
+def _given_away(report: CheckReport, right: str, handed_in: str) -> list[str]:
+    """The numbers of more than a digit of the right answers that a student did not write, and powers of s, in a report."""
+    found = []
+    for written in (report.to_json(), report.to_text(), report.to_markdown(), _body(report.to_html())):
+        secret = set(re.findall(r"[0-9]{2,}", right)) - set(re.findall(r"[0-9]+", handed_in))
+        found += [number for number in secret if re.search(rf"(?<![0-9#]){number}(?![0-9])", written)]
+        found += [] if _POLYNOMIAL.search(handed_in) else _POLYNOMIAL.findall(written)
+    return found
+
+
 @pytest.mark.parametrize(
-    ("problem", "wrong"),
+    ("problem", "right", "wrong"),
     [
-        (SERVO, {"K": "[1 1]", "L": "[-19; 5]", "F": "1/s"}),
-        (SERVO, "K = [1 1]\nL = [1; 5]\ndet(s I - A + L C) = s^2 + 7\nF = 3"),
-        (THIRD_ORDER, {"K": "[1 1 1]", "L": "[1; 1; 1]", "F": "7"}),
-        (TWO_OUTPUTS, {"L": "[1 1; 1 1; 1 1]"}),
+        (SERVO, str(RIGHT), {"K": "[1 1]", "L": "[-19; 5]", "F": "1/s"}),
+        (SERVO, str(RIGHT), "K = [1 1]\nL = [1; 5]\ndet(s I - A + L C) = s + 7\nF = 3"),
+        (SERVO, str(RIGHT), {"K": "[4 3 5]", "L": "[q; 5]", "F": "1/S"}),
+        (THIRD_ORDER, f"{K}{L}{F}", {"K": "[1 1 1]", "L": "[1; 1; 1]", "F": "7"}),
+        (TWO_OUTPUTS, "", {"L": "[1 1; 1 1; 1 1]"}),
     ],
 )
-def test_without_reasons_no_right_value_and_no_polynomial_is_given_away(problem: str, wrong: Any, show: str) -> None:
-    report = Checked.of(problem).report(wrong, show)
-    right = {
-        SERVO: ["19", "81", "319", "400", "161", "23"],
-        THIRD_ORDER: [number for value in (K, L, F) for number in re.findall(r"\d+/?\d*", str(value))],
-        TWO_OUTPUTS: [],
-    }[problem]
-    handed_in = str(wrong)
-    for written in (report.to_json(), report.to_text(), report.to_markdown(), _body(report.to_html())):
-        for number in right:
-            if len(number) > 1 and number not in handed_in:
-                assert not re.search(rf"(?<![0-9#]){re.escape(number)}(?![0-9])", written), number
-        assert not re.search(r"\bs\*\*|\bs\^[0-9]|<msup>", written.replace("s^2 + 7", ""))
-    if show == "verdict":
-        assert (report.lines, report.certificates, report.parts[0].slip) == ((), (), None)
+def test_without_reasons_no_right_value_and_no_polynomial_is_given_away(problem: str, right: str, wrong: Any) -> None:
+    for show in ("verdict", "place"):
+        report = Checked.of(problem).report(wrong, show)
+        assert _given_away(report, right, str(wrong)) == []
+    report = report.bounded("verdict")
+    assert (report.lines, report.certificates, report.parts[0].slip) == ((), (), None)
+
+
+def test_nothing_is_given_away_to_any_student_of_a_class() -> None:
+    checked, seen = Checked.of(THIRD_ORDER), set()
+    for number, answer in enumerate(answers(9, "feedback")):
+        steps = [{"relation": line} for line in lines(answer, number).splitlines()[:4]]
+        whole = checked.report({"answer": {name: answer[name] for name in "KLF"}, "step": steps})
+        seen |= {part.slip for part in whole.parts} | {line.verdict for line in whole.lines}
+        for show in ("place", "verdict"):
+            bounded = whole.bounded(show)
+            ours = replace(bounded, lines=(), parts=tuple(replace(part, given="") for part in bounded.parts))
+            assert _given_away(ours, f"{K}{L}{F}", "") == []
+        assert not any(line.reason or line.right for line in whole.bounded("place").lines)
+        assert _given_away(whole, f"{K}{L}{F}", "") != []
+    assert {"sign", "entry", "false"} <= seen
+
+
+def test_why_a_line_cannot_be_read_is_always_said() -> None:
+    report = CHECKED.report("K = [4 3\nL = [19; 80]\n", "place")
+    assert [bool(line.reason) for line in report.lines] == [True, False]
 
 
 def test_each_level_shows_more() -> None:
@@ -180,6 +206,7 @@ def test_the_three_forms_of_an_answer_say_the_same() -> None:
         ('[answer]\n[[step]]\nwhere = "x"\n', r"step\[0\]: a table with relation is expected"),
         ("K = 1\n" * 201, "201 lines, more than 200"),
         ("K = " + "1" * 70_000, "the answer is larger than 64 kB"),
+        ("one\ntwo\n", 'line 2: "two" is no relation'),
         ('{"answer": {"Q": 1}}', r"answer\.Q: no task here has such a field"),
     ],
 )
@@ -205,10 +232,67 @@ def test_a_value_that_cannot_be_read_leaves_the_others(value: str, message: str)
     assert message in report.parts[0].reason
 
 
+@pytest.mark.parametrize(
+    "given",
+    [
+        {"L": "[[19],[81]]", "K": "[[4, 3]]"},  # NumPy, JSON
+        {"L": "np.array([[19.],\n [81.]])", "K": "array([[4, 3]])"},
+        {"L": "Matrix([[19], [81]])", "K": "Matrix([[4, 3]])"},  # SymPy
+        {"L": "[19\n81];", "K": "[4,3];"},  # MATLAB
+        {"L": "[19; 80 \u2212 \u20111]", "K": "\ufeff[4\u200b\u00a03]"},
+        "L = [19\n     81];   % by place\nK = [4 3];\n",
+        "# mine\nso:\nL = [[19],[81]]\nK = [4 3]\nK =\n",
+    ],
+    ids=range(7),
+)
+def test_what_is_pasted_from_elsewhere_is_read(given: Any) -> None:
+    assert [part.verdict for part in CHECKED.report(given).parts] == ["right", "right", "missing"]
+
+
+def test_rows_in_brackets_are_rows_and_blocks_are_blocks() -> None:
+    for column, row in (("[[19],[81]]", "[[19];[81]]"), ("[[19] [81]]", "[[19 81]]")):
+        verdicts = [CHECKED.report({"L": given}).parts[1].slip for given in (column, row)]
+        assert verdicts == [None, None if ";" in row else "transposed"]
+
+
+def test_a_function_of_s_is_an_answer_and_nothing_is_missing() -> None:
+    report = CHECKED.report(f"F(s) = {RIGHT['F']}\n")
+    assert (report.parts[2].verdict, report.lines[0].verdict) == ("right", "true")
+    assert CHECKED.report(f"F (s) = 1/s\nF(s) = {RIGHT['F']}\n").parts[2].verdict == "right"
+
+
+def test_a_line_of_words_harms_no_other_one() -> None:
+    report = CHECKED.report("Anna Example\nK = [4 3]\nL = [19\nF = 1/s\n")
+    assert [part.verdict for part in report.parts] == ["right", "unreadable", "wrong"]
+    assert [line.verdict for line in report.lines] == ["unreadable", "true", "unreadable", "false"]
+
+
+def test_what_stands_below_no_task_is_refused_in_a_text_too() -> None:
+    with pytest.raises(ProblemErrors, match=r"answer\.observer: no task here"):
+        CHECKED.report("observer.L = [19; 81]\n")
+
+
 def test_a_decimal_comma_is_told_so() -> None:
     problem = 'task = "characteristic_polynomial"\n[plant]\nA = "[-1/2]"\n'
     part = check(problem, {"polynomial": "s + 0,5"}).parts[0]
     assert (part.verdict, "write 0.5 with a decimal point" in part.reason) == ("unreadable", True)
+    for given in (
+        {"K": "[4,0 3,0]"},
+        {"L": "[19,5; 81]"},
+        {"closed_loop_matrix": "[" + "; ".join(["0,5 1,0 2 3"] * 4) + "]"},
+    ):
+        (part,) = (part for part in CHECKED.report(given).parts if part.given)
+        assert (part.verdict, "with a decimal point" in part.reason) == ("unreadable", True)
+    assert CHECKED.report({"K": "[4,3,1]"}).parts[0].verdict == "wrong"
+
+
+def test_letters_that_nobody_knows_are_named_with_those_that_are() -> None:
+    reasons = [part.reason for part in CHECKED.report({"K": "[k1 k2]", "F": "1/S"}).parts]
+    assert all(f'"{name}" is not declared' in reasons[0] for name in ("k1", "k2"))
+    assert reasons[0].endswith("write numbers alone")
+    assert reasons[2].endswith("write it with the letters known here: s")
+    for given in (r"\frac{1}{s}", "$1/s$", "{1}"):
+        assert re.search("LaTeX|write \\( \\)", CHECKED.report({"F": given}).parts[2].reason)
 
 
 def test_the_empty_answer_file_is_one() -> None:

@@ -6,6 +6,8 @@ from typing import TYPE_CHECKING
 
 import pytest
 
+from symobs.errors import InputError
+from symobs.variation.files import assignment
 from tests.support.paths import ROOT
 from tests.support.tools.command_line import inside
 
@@ -48,6 +50,24 @@ def test_what_it_refuses(tmp_path: Path, arguments: list[str], code: int, messag
     assert run.code == code
     assert message in run.err
     assert not (tmp_path / "set").exists()
+
+
+@pytest.mark.parametrize(
+    ("table", "message"),
+    [
+        ("student\n\na\n", ""),
+        ("name\tstudent\nx\ta\ny\t\n", "student 2 of 2 has no id"),
+        ('student\n"' + "a" * 200_000, "not CSV"),
+    ],
+    ids=range(3),
+)
+def test_nobody_of_a_table_is_left_without_a_variant(table: str, message: str) -> None:
+    if not message:
+        assert assignment(table, 1, 3, "table.csv").splitlines()[0] == "student,variant"
+        assert len(assignment(table, 1, 3, "table.csv").splitlines()) == 2
+        return
+    with pytest.raises(InputError, match=message):
+        assignment(table, 1, 3, "table.csv")
 
 
 def test_none_at_all_leave_nothing_behind(tmp_path: Path) -> None:

@@ -11,7 +11,7 @@ import pytest
 import sympy as sp
 
 from symobs.exporting.grader import claims
-from symobs.exporting.grader.claims import judge, score
+from symobs.exporting.grader.claims import judge, score, written
 from symobs.exporting.grader.values import ONE, number, points, poly
 
 S = sp.Symbol("s")
@@ -185,6 +185,7 @@ def test_zeros_that_are_asked_for_must_be_there() -> None:
         ("633e-2; 27", True),
         (".633e1; 27", True),
         ("6.34; 27", False),
+        ("6.334; 27", False),
         ("6.4; 27", False),
         ("6.33; 26", False),
         ("6.33; 27.1", False),
@@ -200,6 +201,21 @@ def test_a_rounded_gain_is_named_so(given: str, rounds: bool) -> None:  # noqa: 
     assert (outcome(question({**THIRDS, "turned": True}), "L", {"L": opposite}) == said) is rounds
     assert outcome(question(THIRDS, decimals="accept"), "L", {"L": rows(given)})[0] == "wrong"
     assert rows(given) != [["6.5"], ["27"]]
+
+
+@pytest.mark.parametrize(
+    ("given", "slip"), [("0.67 0.67; -0.33 1.33", "rounded"), ("0.67 0.68; -0.33 1.33", ""), ("0.67 1; -0.33 1.33", "")]
+)
+def test_every_column_of_a_row_is_rounded(given: str, slip: str) -> None:
+    square = ([["0", "0"], ["0", "0"]], [["1", "0"], ["0", "1"]])
+    thirds = gain("L", *square, "10/9 2 1", rows("2/3 2/3; -1/3 4/3"))
+    assert outcome(question(thirds), "L", {"L": rows(given)})[1] == slip
+
+
+def test_coefficients_are_written_with_their_sign() -> None:
+    half = Fraction(1, 2)
+    assert written(poly([half, half, 1]), "s") == "s^2 + 1/2 s + 1/2"
+    assert written(poly([-half, 0, -1, 1]), "z") == "z^3 - z^2 - 1/2"
 
 
 def test_half_a_unit_of_the_last_place_is_rounding() -> None:
@@ -461,12 +477,12 @@ def test_functions_are_equal_as_functions() -> None:
 
 
 @pytest.mark.parametrize(
-    ("given", "verdict"), [("yes", "right"), (' "Yes" ', "right"), ("no", "wrong"), ("yess", "wrong")]
+    ("given", "verdict"), [("yes", "right"), (' "Yes" ', "right"), ("nein", "wrong"), ("yess", "unreadable")]
 )
 def test_a_word_is_right_or_wrong(given: str, verdict: str) -> None:
     word = {"name": "v", "part": "pbh.verdict", "letter": "verdict", "weight": "1", "function": False, "kind": "word"}
     found = outcome(question({**word, "right": "yes"}), "v", {"v": [[given]]})
-    assert found == (verdict, "", "", int(verdict == "right"))
+    assert found == (verdict, "", "write yes, no or conditional" if given == "yess" else "", int(verdict == "right"))
 
 
 # -- the whole answer -------------------------------------------------------------------------------------------------

@@ -33,6 +33,7 @@ TEXTS = {
     "\N{MINUS SIGN}3": "-3",
     "3 - -2": "5",
     "2\N{NO-BREAK SPACE}+\N{EN DASH}1": "1",
+    "\N{NON-BREAKING HYPHEN}3\N{ZERO WIDTH SPACE};": "-3",
     "0^0": "1",
     "1-2-3": "-4",
     "8/2/2": "2",

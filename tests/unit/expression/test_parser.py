@@ -445,7 +445,7 @@ REFUSED: list[Case] = [
     ("a.b", ExpressionError, "belongs to no expression"),
     ("a .* b", ExpressionError, "* / ^ without a point"),
     ("!!python/object:os.system", ExpressionError, "belongs to no expression"),
-    ("{a: 1}", ExpressionError, "write numbers, names"),
+    ("{a: 1}", ExpressionError, "around what belongs together, [ ] around a list"),
     ("a = 1", ExpressionError, 'the character "=" belongs to no expression'),
     ("lambda: 1", ExpressionError, "is a word of Python"),
     ("ω + 1", ExpressionError, "spell the letter out"),
