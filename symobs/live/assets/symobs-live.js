@@ -187,7 +187,7 @@ export function mount(element, transport, options = {}) {
     const close = h("button", { class: "quiet", title: "Close", "aria-label": `Close ${TITLES[name]}`, onclick: () => fold(name, true) }, "×");
     return (el[name] = h("section", { class: `panel ${name}`, "aria-label": TITLES[name] }, h("header", {}, h("h2", {}, TITLES[name]), (el[`${name}Bar`] = h("span", { class: "tools" })), close), (el[`${name}Body`] = h("div", { class: "body" }, inside))));
   };
-  el.task = h("select", { "aria-label": "Task", onchange: () => { s.task = el.task.value; problemChanged(); } });
+  el.task = h("select", { "aria-label": "Task", onchange: () => { s.task = el.task.value; problemChanged(); } }, h("option", { value: s.task }, s.task.replace(/_/g, " ")));
   el.examples = h("select", { "aria-label": "Example", onchange: choose }, h("option", { value: "" }, "Examples …"));
   el.snap = h("select", { "aria-label": "Grid", title: "Grid on which poles move", onchange: () => { s.snap = el.snap.value; commit(true); drawPlane(); } }, Object.keys(SNAPS).map((k) => h("option", { value: k }, k)));
   el.message = h("div", { class: "message", hidden: true });
@@ -298,11 +298,23 @@ export function mount(element, transport, options = {}) {
     root.setAttribute("aria-busy", String(is));
   }
 
+  /** What there is to choose from: asked when the first answer stands, for whatever loads it takes its time. */
+  async function learn() {
+    const got = await transport({ schema: SCHEMA, id: ++number, want: "start" }).catch(() => null);
+    if (!got?.tasks || start) return;
+    start = got;
+    el.task.replaceChildren(...Object.entries(got.tasks).map(([name, about]) => h("option", { value: name, title: about }, name.replace(/_/g, " "))));
+    el.task.value = s.task;
+    const by = Object.groupBy ? Object.groupBy(got.examples, (e) => e.task) : { all: got.examples };
+    el.examples.append(...Object.entries(by).map(([task, list]) => h("optgroup", { label: task.replace(/_/g, " ") }, list.map((e) => h("option", { value: e.name }, e.title)))));
+  }
+
   function rest(after) {
     clearTimeout(restTimer);
     if (held || gone) return;
     restTimer = setTimeout(async () => {
       announce();
+      if (!start) learn();
       if (!open("page") || running || answer?.status === "bad") return;
       aborted = new AbortController();
       const signal = aborted.signal, at = free();
@@ -808,14 +820,6 @@ export function mount(element, transport, options = {}) {
   // -- begin ------------------------------------------------------------------------------------------------------------
 
   build();
-  transport({ schema: SCHEMA, id: ++number, want: "start" }).then((got) => {
-    start = got;
-    const shown = Object.entries(got.tasks ?? {});
-    el.task.replaceChildren(...shown.map(([name, about]) => h("option", { value: name, title: about }, name.replace(/_/g, " "))));
-    el.task.value = s.task;
-    const by = Object.groupBy ? Object.groupBy(got.examples ?? [], (e) => e.task) : { all: got.examples };
-    el.examples.append(...Object.entries(by).map(([task, list]) => h("optgroup", { label: task.replace(/_/g, " ") }, list.map((e) => h("option", { value: e.name }, e.title)))));
-  }).catch(() => {});
   ask();
   return {
     destroy() { gone = true; aborted.abort(); root.remove(); },
