@@ -189,7 +189,7 @@ def _needs_values(relation: Relation, environment: Environment, leaves: Sequence
     if relation.is_of_instants or any(contains(formula, (At, Integral)) for formula in meanings):
         return True
     by = relation.derived_by.union(*map(derived_by, meanings))
-    if by - {TIME}:
+    if by - {TIME} or (by and environment.variable == TIME):  # a constant, too, has a derivative, which no residue has
         return True
     if not by:
         return False

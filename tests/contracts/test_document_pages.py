@@ -15,7 +15,9 @@ from tests.support.tools.command_line import inside
 if TYPE_CHECKING:
     from pathlib import Path
 
-PAGES = ["start", "how_to", "web_pages", "live", "tutorials/engineer", "tutorials/lecturer", "tutorials/student"]
+PAGES = [
+    "start", "how_to", "web_pages", "live", "believe", "tutorials/engineer", "tutorials/lecturer", "tutorials/student",
+]  # fmt: skip
 #: Without blocks of a shell or of Python, or with those of a developer.
 WITHOUT = {"index", "architecture", "measurements", "changelog", "contributing"}
 BLOCK = re.compile(r"^```(\w+)\n(.*?)^```", re.MULTILINE | re.DOTALL)

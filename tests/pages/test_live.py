@@ -14,7 +14,7 @@ from urllib.parse import quote
 import pytest
 
 from symobs.live import answer
-from symobs.live.process import Budget
+from symobs.live.process import Budget, Children
 from symobs.live.server import Server
 from tests.support.tools.command_line import environment
 
@@ -213,20 +213,36 @@ def test_the_only_real_pole_of_a_set_stays_on_the_axis(opened: Callable[..., Ope
     assert re.fullmatch(r"-\d+(/\d+)?", live.poles("observer_poles"))
 
 
+#: Grabs a handle and lets it go elsewhere, again and again; the poles that stand in their field after each.
+MOVES = """(moves) => {
+  const svg = document.querySelector('.plane svg');
+  svg.setPointerCapture = () => {};
+  const event = (kind, clientX, clientY) => new PointerEvent(kind, { bubbles: true, pointerId: 1, clientX, clientY });
+  return moves.map(([pick, x, y]) => {
+    const handles = svg.querySelectorAll('.handle'), handle = handles[Math.floor(pick * handles.length)];
+    const box = svg.getBoundingClientRect(), hit = handle.querySelector('.hit').getBoundingClientRect();
+    const places = [[hit.x + hit.width / 2, hit.y + hit.height / 2], [box.x + x * box.width, box.y + y * box.height]];
+    handle.querySelector('.hit').dispatchEvent(event('pointerdown', ...places[0]));
+    svg.dispatchEvent(event('pointermove', ...places[1]));
+    svg.dispatchEvent(event('pointerup', ...places[1]));
+    return document.querySelector('[data-set="poles"]').value;
+  });
+}"""
+
+
 def test_no_move_changes_the_number_of_poles(opened: Callable[..., Opened]) -> None:
     live = opened("v=1&task=observer&A=[0 1 0; 0 0 1; -1 -2 -3]&C=[1 0 0]&poles=-2+i, -2-i, -4&closed=page,responses")
     generator = random.Random(5)  # noqa: S311 - repeatable by design
-    box = live.page.locator(".plane svg").bounding_box()
-    for _ in range(60):
-        handles = live.page.locator(".plane .handle")
-        name = handles.nth(generator.randrange(handles.count())).get_attribute("data-handle")
-        x = box["x"] + generator.uniform(0.02, 0.98) * box["width"]
-        y = box["y"] + generator.choice([0.5, generator.uniform(0.02, 0.98)]) * box["height"]
-        live.drag(live.middle(name), (x, y), steps=4)
-        poles = live.poles("poles")
+    uniform = generator.uniform
+    moves = [[uniform(0, 1), uniform(0, 1), generator.choice([0.5, uniform(0, 1)])] for _ in range(300)]
+    found = live.page.evaluate(MOVES, moves)
+    assert len(set(found)) > 200
+    for poles in found:
         assert count(poles) == 3, poles
-        assert poles.count("+") + len(re.findall(r"(?<=\d)-", poles)) in {0, 2}, poles
+        assert poles.count("i") in {0, 2}, poles
+    assert {poles.count("i") for poles in found} == {0, 2}
     live.at_rest()
+    assert live.most == 1
     assert "Checked" in live.page.inner_text(".cards .verdict")
 
 
@@ -354,6 +370,24 @@ def test_a_page_is_given_up_for_a_newer_question(opened: Callable[..., Opened]) 
     live.page.mouse.up()
     live.at_rest()
     assert len([ask for ask in live.asked if ask["want"] == "page"]) > len(pages)
+
+
+def test_a_derivation_that_is_not_decided_can_be_asked_for_again(
+    opened: Callable[..., Opened], server: Server, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    usual, hasty = server.children.answer, Children(Budget(0, 1000))
+
+    def answered(body: bytes, has_left: Callable[[], bool]) -> bytes:
+        return (hasty.answer if json.loads(body)["want"] == "page" else usual)(body, has_left)
+
+    monkeypatch.setattr(server.children, "answer", answered)
+    live = opened(PAIR)
+    live.page.wait_for_selector(".html:has-text('not decided within 0 s')")
+    assert live.latex("K") == r"K=\begin{bmatrix}4&3\end{bmatrix}"
+    monkeypatch.undo()
+    live.page.click("text=Try again")
+    live.page.wait_for_selector(".html math")
+    hasty.close()
 
 
 def test_a_link_opens_the_same_and_back_undoes(opened: Callable[..., Opened]) -> None:

@@ -16,13 +16,17 @@ import sys
 import threading
 import time
 import tomllib
+from contextlib import contextmanager
 from http.server import SimpleHTTPRequestHandler, ThreadingHTTPServer
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from symobs.live.child import respond
 from symobs.live.site import POLICY
-from tests.programs.live_goals import PAINTED, row
+from tests.programs.live_goals import HEAD, dragged, row
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
 
 EXAMPLES = Path(__file__).parents[2] / "worked_examples"
 SERVO = "v=1&task=compensator&A=[0 1; 0 -1]&B=[0; 1]&C=[1 0]&control=-2, -2&observer=-5+3i, -5-3i&snap=1/20"
@@ -103,10 +107,8 @@ def looked_at(context: Any, address: str) -> None:
     page.goto(f"{address}#{SERVO}&closed=page")
     page.wait_for_selector(".card math")
     row("site: first answer, ms", [1000 * (time.perf_counter() - begin)], 10_000)
-    page.wait_for_timeout(2000)
-    box = page.locator('[data-handle="observer_poles.0"] .hit').first.bounding_box()
-    times = page.evaluate(PAINTED, [box["x"] + box["width"] / 2, box["y"] + box["height"] / 2, 60])
-    row("site: pointer to painted, n = 2, ms", times[5:], 150)
+    hit = '[data-handle="observer_poles.0"] .hit'
+    row("site: pointer to painted, n = 2, ms", dragged(page, ".plane svg", hit, ".cards .list"), 150)
     page.evaluate("() => navigator.serviceWorker.ready.then(() => true)")
     context.set_offline(True)
     page.fill('[data-set="observer_poles"]', "-7, -8")
@@ -139,24 +141,30 @@ def wait_for(page: Any, place: str, text: str) -> str:
     raise AssertionError(f"{text} did not come: {found}")
 
 
+@contextmanager
+def served(folder: Path) -> Iterator[str]:
+    """Serve a folder with the policy of the site; its address."""
+    server = ThreadingHTTPServer(("127.0.0.1", 0), functools.partial(Files, directory=folder))
+    threading.Thread(target=server.serve_forever, daemon=True).start()
+    yield f"http://127.0.0.1:{server.server_address[1]}/"
+    server.shutdown()
+    server.server_close()
+
+
 def main(folder: Path, names: list[str]) -> int:
     """Print everything; 1 where an answer differs."""
     from playwright.sync_api import sync_playwright  # noqa: PLC0415 - only where it is
 
-    server = ThreadingHTTPServer(("127.0.0.1", 0), functools.partial(Files, directory=folder))
-    threading.Thread(target=server.serve_forever, daemon=True).start()
-    address = f"http://127.0.0.1:{server.server_address[1]}/"
-    with sync_playwright() as driver:
+    with sync_playwright() as driver, served(folder) as address:
         flags = ["--headless", "--no-sandbox", "--disable-gpu", "--disable-background-networking"]
         browser = driver.chromium.launch(executable_path=shutil.which("chromium"), args=flags)
         if not names:
-            print("| what | median | 95 % | goal |\n|---|---:|---:|---:|")
+            print(HEAD)
             looked_at(browser.new_context(viewport={"width": 1180, "height": 900}), address)
         page = browser.new_page()
         page.goto(f"{address}THIRD-PARTY.txt")
         found = differences(page, names or sorted(path.stem for path in EXAMPLES.glob("*.toml")))
         browser.close()
-    server.shutdown()
     return 1 if found else 0
 
 

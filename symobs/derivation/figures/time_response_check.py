@@ -121,7 +121,7 @@ def _faults_of_component(
 
 def is_slow(matrix: Matrix, step: Fraction) -> bool:
     """Return whether |λ| h ≤ 3 for all eigenvalues λ of M: no |λ|ᵏ is larger than ‖Mᵏ‖, here for k = 64."""
-    power = matrix * Scalar.of(step / _TURN)
+    power = Matrix.of([[Scalar.of(entry.fraction() * step / _TURN) for entry in row] for row in matrix.rows])
     for _ in range(_SQUARINGS):
         power = power @ power
     return all(sum(abs(entry.fraction()) for entry in row) <= 1 for row in power.rows)

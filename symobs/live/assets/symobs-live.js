@@ -176,7 +176,7 @@ export function mount(element, transport, options = {}) {
   element.append(root);
   const begun = (link) => decoded(/(^|[#&])task=/.test(link) ? link : `${DEMO}&${link.replace(/^#/, "")}`);
   let s = begun(options.state ?? "");
-  let view = null, viewed = "", answer = null, sets = {}, held = null, frame = null, start = null, point = null;
+  let view = null, viewed = "", answer = null, sets = {}, held = null, frame = null, start = null;
   let waiting = null, running = false, number = 0, drawn = 0, resting = 0, restTimer = 0, busyTimer = 0, said = 0, gone = false, quiet = false, before = "";
   let aborted = new AbortController();
   const el = {};
@@ -187,7 +187,7 @@ export function mount(element, transport, options = {}) {
     const close = h("button", { class: "quiet", title: "Close", "aria-label": `Close ${TITLES[name]}`, onclick: () => fold(name, true) }, "×");
     return (el[name] = h("section", { class: `panel ${name}`, "aria-label": TITLES[name] }, h("header", {}, h("h2", {}, TITLES[name]), (el[`${name}Bar`] = h("span", { class: "tools" })), close), (el[`${name}Body`] = h("div", { class: "body" }, inside))));
   };
-  el.task = h("select", { "aria-label": "Task", onchange: () => { s.task = el.task.value; problemChanged(); } });
+  el.task = h("select", { "aria-label": "Task", onchange: () => { s.task = el.task.value; problemChanged(); } }, h("option", { value: s.task }, s.task.replace(/_/g, " ")));
   el.examples = h("select", { "aria-label": "Example", onchange: choose }, h("option", { value: "" }, "Examples …"));
   el.snap = h("select", { "aria-label": "Grid", title: "Grid on which poles move", onchange: () => { s.snap = el.snap.value; commit(true); drawPlane(); } }, Object.keys(SNAPS).map((k) => h("option", { value: k }, k)));
   el.message = h("div", { class: "message", hidden: true });
@@ -298,11 +298,23 @@ export function mount(element, transport, options = {}) {
     root.setAttribute("aria-busy", String(is));
   }
 
+  /** What there is to choose from: asked when the first answer stands, for whatever loads it takes its time. */
+  async function learn() {
+    const got = await transport({ schema: SCHEMA, id: ++number, want: "start" }).catch(() => null);
+    if (!got?.tasks || start) return;
+    start = got;
+    el.task.replaceChildren(...Object.entries(got.tasks).map(([name, about]) => h("option", { value: name, title: about }, name.replace(/_/g, " "))));
+    el.task.value = s.task;
+    const by = Object.groupBy ? Object.groupBy(got.examples, (e) => e.task) : { all: got.examples };
+    el.examples.append(...Object.entries(by).map(([task, list]) => h("optgroup", { label: task.replace(/_/g, " ") }, list.map((e) => h("option", { value: e.name }, e.title)))));
+  }
+
   function rest(after) {
     clearTimeout(restTimer);
     if (held || gone) return;
     restTimer = setTimeout(async () => {
       announce();
+      if (!start) learn();
       if (!open("page") || running || answer?.status === "bad") return;
       aborted = new AbortController();
       const signal = aborted.signal, at = free();
@@ -562,36 +574,35 @@ export function mount(element, transport, options = {}) {
     return [there.x, there.y];
   }
 
+  /** Follow a pointer over a picture until it is let go; Escape, or what takes the pointer away, puts back. */
+  function pursue(event, svg, follow, ended) {
+    event.preventDefault();
+    svg.setPointerCapture(event.pointerId);
+    const heard = [[svg, "pointermove", follow], [svg, "pointerup", () => end(false)], [svg, "pointercancel", () => end(true)], [root, "keydown", (e) => { if (e.key === "Escape") end(true); }]];
+    const end = (back) => {
+      for (const [where, what, hear] of heard) where.removeEventListener(what, hear, true);
+      held = null;
+      ended(back);
+    };
+    for (const [where, what, hear] of heard) where.addEventListener(what, hear, true);
+  }
+
   function grab(event, group, p) {
     if (event.button) return;
-    event.preventDefault();
-    const svg = el.poles;
     before = JSON.stringify(sets);
     held = { p };
-    svg.setPointerCapture(event.pointerId);
-    const follow = (e) => {
-      const [x, y] = where(e, svg);
+    pursue(event, el.poles, (e) => {
+      const [x, y] = where(e, el.poles);
       place(group, p, (Math.max(40, Math.min(464, x)) - frame.x) / frame.scale, (frame.y - Math.max(16, Math.min(336, y))) / frame.scale);
       moved(false);
-    };
-    const done = (back) => {
-      svg.removeEventListener("pointermove", follow);
-      svg.removeEventListener("pointerup", let_go);
-      svg.removeEventListener("pointercancel", cancel);
-      root.removeEventListener("keydown", escape, true);
-      held = null;
+    }, (back) => {
       if (back) sets = JSON.parse(before);
       const k = sets[group.key].indexOf(p);
       sets[group.key] = settled(sets[group.key]);
       fit();
       moved(true);
       refocus(`${group.key}.${Math.max(0, k)}`);
-    };
-    const let_go = () => done(false), cancel = () => done(true), escape = (e) => { if (e.key === "Escape") done(true); };
-    svg.addEventListener("pointermove", follow);
-    svg.addEventListener("pointerup", let_go);
-    svg.addEventListener("pointercancel", cancel);
-    root.addEventListener("keydown", escape, true);
+    });
     drawPlane();
   }
 
@@ -620,8 +631,15 @@ export function mount(element, transport, options = {}) {
   function buildPoint() {
     const region = view.region, svg = el.map.querySelector("svg");
     const fields = region.parameters.map((name) => field(`at.${name}`, name, s.at[name], (t) => { s.at[name] = t; commit(true); ask(); drawPointHandle(); }));
-    const values = region.values;
-    const scrub = values ? h("input", { type: "range", class: "scrub", "aria-label": region.parameters[0], min: 0, max: 400, step: 1, value: Math.round(((value(rational(s.at[region.parameters[0]]) ?? [0, 1]) - numberOf(values[0])) / (numberOf(values[1]) - numberOf(values[0]))) * 400), oninput: () => { held = "scrub"; s.at[region.parameters[0]] = onGrid(numberOf(values[0]) + (Number(scrub.value) / 400) * (numberOf(values[1]) - numberOf(values[0])), numberOf(values[1]) - numberOf(values[0])); fields[0].querySelector("input").value = s.at[region.parameters[0]]; commit(false); ask(); }, onchange: () => { held = null; commit(true); ask(); } }) : null;
+    const name = region.parameters[0], [low, high] = (region.values ?? ["0", "1"]).map(numberOf);
+    const scrubbed = () => {
+      held = "scrub";
+      s.at[name] = onGrid(low + (Number(scrub.value) / 400) * (high - low), high - low);
+      fields[0].querySelector("input").value = s.at[name];
+      commit(false);
+      ask();
+    };
+    const scrub = region.values ? h("input", { type: "range", class: "scrub", "aria-label": name, min: 0, max: 400, step: 1, value: Math.round(((numberOf(s.at[name]) - low) / (high - low)) * 400) || 0, oninput: scrubbed, onchange: () => { held = null; commit(true); ask(); } }) : null;
     el.pointVerdict = h("p", { class: "verdict" });
     el.pointMath = h("div", { class: "symobs" });
     el.point.replaceChildren(h("div", { class: "fields" }, fields), scrub ?? "", el.pointVerdict, el.pointMath);
@@ -641,7 +659,7 @@ export function mount(element, transport, options = {}) {
     drawPointHandle();
   }
 
-  const numberOf = (t) => value(rational(t) ?? ratio(Math.round(Number(t) * 1000), 1000));
+  const numberOf = (t) => (rational(t) ? value(rational(t)) : Number(t));
   const onGrid = (x, width) => { let grid = GRID; while (grid * width < 40) grid *= 10; return text(ratio(Math.round(x * grid), grid)); };
   function placeOf(k) {
     const [left, top, width, height] = view.region.frame, [low, high] = view.region.window[k].map(numberOf);
@@ -661,10 +679,8 @@ export function mount(element, transport, options = {}) {
 
   function grabPoint(event) {
     if (event.button) return;
-    event.preventDefault();
     const svg = el.map.querySelector("svg"), region = view.region, [left, top, width, height] = region.frame, before = { ...s.at };
     held = "point";
-    svg.setPointerCapture(event.pointerId);
     const follow = (e) => {
       const [x, y] = where(e, svg), part = [(x - left) / width, 1 - (y - top) / height];
       region.parameters.forEach((name, k) => {
@@ -675,21 +691,13 @@ export function mount(element, transport, options = {}) {
       commit(false);
       ask();
     };
-    const done = (back) => {
-      svg.removeEventListener("pointermove", follow);
-      svg.removeEventListener("pointerup", let_go);
-      root.removeEventListener("keydown", escape, true);
-      held = null;
+    pursue(event, svg, follow, (back) => {
       if (back) s.at = before;
       drawPointHandle();
       commit(true);
       ask();
       el.dot.focus({ preventScroll: true });
-    };
-    const let_go = () => done(false), escape = (e) => { if (e.key === "Escape") done(true); };
-    svg.addEventListener("pointermove", follow);
-    svg.addEventListener("pointerup", let_go);
-    root.addEventListener("keydown", escape, true);
+    });
     follow(event);
   }
 
@@ -697,7 +705,6 @@ export function mount(element, transport, options = {}) {
   function drawPoint(got) {
     if (got.status !== "done") { drawAnswer(got); return; }
     clearWrong();
-    point = got;
     el.pointVerdict.textContent = `${view.region.parameters.map((n) => `${n} = ${pretty(s.at[n])}`).join(", ")}: ${WORDS[got.verdict]}`;
     el.pointVerdict.dataset.verdict = got.verdict;
     el.pointMath.innerHTML = [...(got.cards ?? []), ...(got.boundary ?? [])].map((c) => `<div class="display">${c.mathml}</div>`).join("");
@@ -785,12 +792,12 @@ export function mount(element, transport, options = {}) {
   function drawCurves(got) {
     el.curves.classList.toggle("absent", !got);
     if (!got) { el.curves.replaceChildren(); el.legend.replaceChildren(); return; }
-    const [[t0, t1], [low, high]] = got.window.map((w) => w.map(numberOf2));
+    const [[t0, t1], [low, high]] = got.window.map((w) => w.map(numberOf));
     const px = (t) => 40 + ((t - t0) / (t1 - t0)) * 424, py = (v) => 268 - ((v - low) / (high - low || 1)) * 252;
     const made = [h("svg:rect", { class: "ground", x: 40, y: 16, width: 424, height: 252 })];
     for (const t of ticks(t0, t1, 7)) made.push(h("svg:line", { class: "rule", x1: px(t), y1: 16, x2: px(t), y2: 268 }), h("svg:text", { x: px(t), y: 284, "text-anchor": "middle" }, String(t)));
     for (const v of ticks(low, high, 6)) made.push(h("svg:line", { class: v ? "rule" : "axis", x1: 40, y1: py(v), x2: 464, y2: py(v) }), h("svg:text", { x: 34, y: py(v) + 4, "text-anchor": "end" }, pretty(String(v))));
-    made.push(h("svg:text", { x: 464, y: 298, "text-anchor": "end" }, got.discrete ? "k" : "t"));
+    made.push(h("svg:text", { x: 464, y: 284, dy: "1.15em", "text-anchor": "end" }, got.discrete ? "k" : "t"));
     const told = [];
     for (const line of got.lines) {
       const n = line.heights.length - 1, place = (v, k) => `${px(t0 + ((t1 - t0) * k) / n).toFixed(1)} ${py(v / got.parts).toFixed(1)}`;
@@ -803,19 +810,10 @@ export function mount(element, transport, options = {}) {
     el.curves.replaceChildren(h("svg:title", {}, `Responses up to ${got.end}: ${told.join("; ")}`), ...made);
     el.legend.replaceChildren(...got.lines.map((line) => h("span", {}, h("svg:svg", { viewBox: "0 0 24 8", "aria-hidden": "true" }, h("svg:path", { class: `curve c${((line.component || 1) - 1) % 4}${line.dashed ? " dashed" : ""}`, d: "M1 4h22" })), nameOf(line))));
   }
-  const numberOf2 = (t) => (rational(t) ? value(rational(t)) : Number(t));
 
   // -- begin ------------------------------------------------------------------------------------------------------------
 
   build();
-  transport({ schema: SCHEMA, id: ++number, want: "start" }).then((got) => {
-    start = got;
-    const shown = Object.entries(got.tasks ?? {});
-    el.task.replaceChildren(...shown.map(([name, about]) => h("option", { value: name, title: about }, name.replace(/_/g, " "))));
-    el.task.value = s.task;
-    const by = Object.groupBy ? Object.groupBy(got.examples ?? [], (e) => e.task) : { all: got.examples };
-    el.examples.append(...Object.entries(by).map(([task, list]) => h("optgroup", { label: task.replace(/_/g, " ") }, list.map((e) => h("option", { value: e.name }, e.title)))));
-  }).catch(() => {});
   ask();
   return {
     destroy() { gone = true; aborted.abort(); root.remove(); },

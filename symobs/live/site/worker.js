@@ -17,8 +17,7 @@ async function load() {
   return python.runPython(`
 import sys
 sys.path.insert(0, "${FOLDER}")
-from symobs.live.child import prepare, respond
-prepare()
+from symobs.live.child import respond
 lambda text: respond(text.encode()).decode()`);
 }
 

@@ -7,9 +7,9 @@ the browser's own background.
 
 from __future__ import annotations
 
+from html import escape
 from itertools import groupby
 from typing import TYPE_CHECKING
-from xml.sax.saxutils import escape
 
 from symobs.render.drawings.captions import NARROWEST, caption_below, spaced
 from symobs.render.drawings.diagram_layout import Metrics, diagram_scene
@@ -139,7 +139,7 @@ class _Writer:
             f'height="{coordinate(_PIXELS * height)}" font-family="{FONTS}" font-size="{self.size:g}" fill="none" '
             'stroke-linejoin="round">'
         )
-        named = [f"<title>{escape(title)}</title>"] if title else []
+        named = [f"<title>{escape(title, quote=False)}</title>"] if title else []
         styled = [f"<style>{style}</style>"] if style else []
         return "\n".join([head, *named, *styled, *parts, "</svg>"])
 

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import re
 import unicodedata
+from html import escape
 from itertools import groupby
 from typing import TYPE_CHECKING, NamedTuple
-from xml.sax.saxutils import escape
 
 from symobs.exact import Scalar
 from symobs.figures.block_diagram import without_sign
@@ -126,7 +126,7 @@ def spans(pieces: Iterable[TextRun], size: float) -> str:
     before = 0.0
     every = (character for piece in pieces for character in _characters(piece))
     for (level, is_italic), run in groupby(every, key=lambda item: item[1:]):
-        text = escape("".join(character for character, _, _ in run)).replace(DOT, "˙")
+        text = escape("".join(character for character, _, _ in run), quote=False).replace(DOT, "˙")
         lowered = _LOWERED[level] * size
         attributes = [f'dy="{coordinate(lowered - before)}"'] if lowered != before else []
         attributes += [f'dx="{coordinate(-_SET_BACK * size)}"'] if level == "dot" else []

@@ -455,3 +455,16 @@ def _same_space(one: Matrix, other: Matrix) -> bool:
     if tables[0].shape != tables[1].shape:
         return False
     return bool(sympy.Matrix.hstack(*tables).rank() == tables[0].rank() == tables[1].rank())
+
+
+def test_constant_matrices_with_long_entries_are_plants_whose_time_does_not_matter() -> None:
+    """The stack of a plant without t is its observability matrix, though a constant of many terms is derived on the way."""
+    given = "[-b -b a+1; a*b 1/a 1/10; -b 1/2 2]", "[2 0 0; 1/10 1 2]"
+    plant = symobs.StateSpace(A=given[0], C=given[1], symbols={"a": "real", "b": "real"})
+    A = sympy.Matrix([[-b, -b, a + 1], [a * b, 1 / a, sympy.Rational(1, 10)], [-b, sympy.Rational(1, 2), 2]])
+    C = sympy.Matrix([[2, 0, 0], [sympy.Rational(1, 10), 1, 2]])
+    found = symobs.time_varying_observability(plant)
+    names = {symbol.name: symbol for symbol in (a, b)}
+    stack = found.matrix.subs({symbol: names[symbol.name] for symbol in found.matrix.free_symbols})
+    assert all(is_zero(entry) for entry in stack - sympy.Matrix.vstack(C, C * A, C * A * A))
+    assert found.verdict == symobs.observability(plant).verdict

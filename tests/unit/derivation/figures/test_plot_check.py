@@ -586,6 +586,15 @@ def test_modes_are_slow_by_their_eigenvalues_and_not_by_the_entries() -> None:
             assert time_response_check.is_slow(table * Scalar.of(1000), Fraction(1, 1000)) is is_slow
 
 
+def test_numbers_in_a_field_with_letters_are_raised_to_powers_as_numbers() -> None:
+    """What is left of a matrix when a letter cancels has no letters, and its 64th power none in its denominators."""
+    a = Scalar.symbol("a")
+    table = Matrix.of([[(a + 1) / (a**2 + a + 3), 0], [0, -1]]) @ Matrix.of([[(a**2 + a + 3) / (a + 1), 0], [0, -1]])
+    assert table.field.names
+    assert not table.names
+    assert time_response_check.is_slow(table, Fraction(1))
+
+
 def test_the_error_of_an_exponential_and_of_its_powers_is_counted() -> None:
     """Each row is off by no more than is said, and hardly less than a thousandth of it."""
     table = [[Fraction(-7, 3), Fraction(5)], [Fraction(-11, 2), Fraction(1, 7)]]
