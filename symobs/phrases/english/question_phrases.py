@@ -90,7 +90,6 @@ UNSAID = (
     "fixed_modes",
     "gramian",
     "integral",
-    "minimal_order",
     "moments",
     "partition",
     "rank",

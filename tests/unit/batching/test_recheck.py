@@ -26,7 +26,7 @@ def answered(text: str, name: str = "p") -> list[tuple[str, dict[str, Any], dict
     problem, row = problem_of(payload), run(payload)
     results = json.loads(json.dumps(row["result"]))
     return [
-        (task.name, given_for(problem, task.name), answer) for task, answer in zip(problem.tasks, results, strict=True)
+        (task.name, given_for(problem, task), answer) for task, answer in zip(problem.tasks, results, strict=True)
     ]
 
 

@@ -97,6 +97,17 @@ def asked(
             'control_poles = [-2, -2]\nobserver_polynomial = "s + 10"\nobserver = "minimal"',
             "Place the control poles at -2, -2.",
         ),
+        (
+            "compensator",
+            'control_poles = [-2, -2]\nobserver_poles = { bessel = 3 }\nmethod = "minimal_order"',
+            "with a reduced-order observer), and find the closed loop. Place the control poles at -2, -2."
+            " The desired observer polynomial is s + 3.",
+        ),
+        (
+            "tracking",
+            'control_poles = [-2, -2]\nobserver_poles = { bessel = 3 }\nreference_matrix = "[0 1; 0 0]"',
+            "The desired observer polynomial is s + 3.",
+        ),
         ("gramian", 'horizon = "inf"', "the infinite-horizon observability Gramian"),
         ("gramian", "horizon = 2", "the observability Gramian over the horizon 2 and its determinant"),
         ("gramian", "", "the observability Gramian over the horizon T and its determinant"),
