@@ -28,6 +28,8 @@ def __getattr__(name: str) -> Any:
 
     if name == "StateSpace":
         return importlib.import_module("symobs.system").StateSpace
+    if name == "__all__":  # from symobs import *
+        return [each for each in __dir__() if not each.startswith("_")]
     if name == "__version__":
         return importlib.import_module("importlib.metadata").version("symobs")
     if name in FUNCTIONS:

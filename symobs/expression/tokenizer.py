@@ -292,6 +292,7 @@ _INSTEAD = {
     "DIVISION": "write the ASCII slash /",
     "FRACTION": "write the ASCII slash /",
     "ROOT": "write sqrt( )",
+    "PERCENT": 'write 5 % as "0.05"',
     "APOSTROPHE": "a transpose is not read here: write the entries out transposed",
     "STOP": "write a digit beside the decimal point, and * / ^ without a point",
     "LOW": "begin a name with a letter",

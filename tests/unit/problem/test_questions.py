@@ -100,8 +100,12 @@ def asked(
         (
             "compensator",
             'control_poles = [-2, -2]\nobserver_poles = { bessel = 3 }\nmethod = "minimal_order"',
-            "with a reduced-order observer), and find the closed loop. Place the control poles at -2, -2."
-            " The desired observer polynomial is s + 3.",
+            "Place the control poles at -2, -2. The desired observer polynomial is s + 3.",
+        ),
+        (
+            "compensator",
+            'control_poles = [-2, -2]\nobserver_poles = [-3]\nmethod = "minimal_order"',
+            "(state feedback with a reduced-order observer), and find the closed loop.",
         ),
         (
             "tracking",
