@@ -18,6 +18,7 @@ from symobs.analysis.realization.characteristic_polynomial import Characteristic
 from symobs.analysis.realization.dual import Dual as _Dual
 from symobs.analysis.realization.kalman_decomposition import Decomposition as _Decomposition
 from symobs.analysis.realization.transfer_function import TransferFunction as _TransferFunction
+from symobs.analysis.response.response import Response as _Response
 from symobs.analysis.stability_region.stability_region import StabilityRegion as _StabilityRegion
 from symobs.analysis.time_response.gramian import Gramian as _Gramian
 from symobs.analysis.time_response.initial_state import InitialState as _InitialState
@@ -556,6 +557,22 @@ def reduced_order_observer(
     floats: str | None = None,
 ) -> _ReducedOrderObserverResult:
     """Design the observer of order n − p  ż = F z + G u + H y,  x̂ = M [y − D u; z],  with det(sI − F) = φ(s)."""
+
+class _ResponseResult(_Response):
+    """What `response` returns."""
+
+    @property
+    def output(self) -> ImmutableMatrix: ...
+
+def response(
+    plant: _Plant,
+    *,
+    initial: _Matrix | None = None,
+    input: _Number | _Matrix | None = None,
+    method: str = "auto",
+    floats: str | None = None,
+) -> _ResponseResult:
+    """Return the response x(t) = e^{At} x₀ + ∫₀ᵗ e^{A(t−s)} B u(s) ds and y = C x + D u to an initial state and an input."""
 
 class _StabilityRegionResult(_StabilityRegion):
     """What `stability_region` returns."""

@@ -137,6 +137,10 @@ class DampingCases(Result):
                 message = f"{moved} is not {sign}"
                 raise ZeroDivisionError(message)
             taken[moved] = sign
+        return self.rebuild_on(plant, taken, substitution)
+
+    def rebuild_on(self, plant: StateSpace, taken: Signs, _: Mapping[str, Scalar]) -> Self:
+        """Return the result on a stratum; a substitution concerns what is given beside the plant."""
         return self.rebuild(plant, taken)
 
     def everything(self) -> Iterator[Matrix | Scalar]:
