@@ -562,6 +562,8 @@ class _ResponseResult(_Response):
     """What `response` returns."""
 
     @property
+    def state(self) -> ImmutableMatrix: ...
+    @property
     def output(self) -> ImmutableMatrix: ...
 
 def response(

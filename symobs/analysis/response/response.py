@@ -26,7 +26,6 @@ from symobs.certificate.claims import Claim
 from symobs.derivation.builder import Builder, relation
 from symobs.errors import InputError
 from symobs.exact import Matrix, Scalar
-from symobs.exact.core.generators import substitute
 from symobs.exact.time_functions.matrix_exponential import NoClosedForm
 from symobs.exact.time_functions.quasipolynomial import Table, matrix_at, product, table_of
 from symobs.formula.term import Term, letter
@@ -47,6 +46,7 @@ class Response(DampingCases):
 
     task: ClassVar[str] = "response"
     main: ClassVar[str] = "state"
+    asked_for: ClassVar[tuple[str, ...]] = ("initial", "input")
 
     @classmethod
     def of(cls, plant: StateSpace, method_name: str, asked: Mapping[str, Any], taken: Signs) -> Self:
@@ -71,18 +71,6 @@ class Response(DampingCases):
                 seen = _plus(seen, product(table_of(m.D), u))
             answer["output"] = matrix_at(seen, TIME)
         return cls(plant, method_name, {**answer, "state": matrix_at(state, TIME)})
-
-    def rebuild(self, plant: StateSpace, taken: Signs) -> Self:
-        """Return the response of another plant, or with other signs."""
-        return type(self).of(plant, self.method, self.answer, taken)
-
-    def rebuild_on(self, plant: StateSpace, taken: Signs, substitution: Mapping[str, Scalar]) -> Self:
-        """Return the response on a stratum: what is given there may contain the parameters, too."""
-        given_there = {
-            name: None if self.answer[name] is None else substitute(self.answer[name], substitution)
-            for name in ("initial", "input")
-        }
-        return type(self).of(plant, self.method, given_there, taken)
 
     @property
     def matrices(self) -> tuple[Matrix | Scalar, ...]:
