@@ -17,6 +17,7 @@ FUNCTIONS = {
     "batch": "symobs.batching",
     "check": "symobs.checking",
     "live": "symobs.live",
+    "margins": "symobs.analysis.stability_region.margins",
     "sweep": "symobs.batching.sweep",
     "variants": "symobs.variation",
 }

@@ -19,6 +19,7 @@ from symobs.analysis.realization.dual import Dual as _Dual
 from symobs.analysis.realization.kalman_decomposition import Decomposition as _Decomposition
 from symobs.analysis.realization.transfer_function import TransferFunction as _TransferFunction
 from symobs.analysis.response.response import Response as _Response
+from symobs.analysis.stability_region.margins import margins as margins
 from symobs.analysis.stability_region.stability_region import StabilityRegion as _StabilityRegion
 from symobs.analysis.time_response.gramian import Gramian as _Gramian
 from symobs.analysis.time_response.initial_state import InitialState as _InitialState
