@@ -28,7 +28,7 @@ from symobs.errors import InputError
 from symobs.exact import Matrix, Scalar
 from symobs.exact.time_functions.matrix_exponential import NoClosedForm
 from symobs.exact.time_functions.quasipolynomial import Table, matrix_at, product, table_of
-from symobs.formula.term import Term, letter
+from symobs.formula.term import Term, identity, letter
 from symobs.result import Result, choose, method, task
 from symobs.specification import read_gain
 
@@ -84,10 +84,16 @@ class Response(DampingCases):
         if self.answer["state"] is None:
             return
         m, names = self.plant.matrices, {"x_t": "state", "y_t": "output", "u_t": "input", "x_0": "initial"}
+        names |= {"exp_At": "exponential", "x_f": "forced"}
         values: dict[str, Any] = {"A": m.A, "B": m.B, "C": m.C, "D": m.D}
-        values |= {name: self.answer[key] for name, key in names.items() if self.answer[key] is not None}
+        values |= {name: self.answer[key] for name, key in names.items() if self.answer.get(key) is not None}
         e = time_environment(self.plant, values)
-        x = letter("x_t", e)
+        x, Phi = letter("x_t", e), letter("exp_At", e)
+        yield Claim(relation(rate_of(Phi), letter("A", e) @ Phi), e, "d/dt exp(A*t) = A*exp(A*t)")
+        yield Claim(relation(Phi.at("t", 0), identity(self.plant.order, e)), e, "exp(A*0) = I")
+        if "x_f" in values:
+            free = Phi @ letter("x_0", e)
+            yield Claim(relation(x, free + letter("x_f", e)), e, "x = exp(A*t)*x0 + x_f")
         yield Claim(relation(rate_of(x), _moved(self, e)), e, "x' = A*x + B*u")
         yield Claim(relation(x.at("t", 0), letter("x_0", e)), e, "x(0) = x0")
         if "y_t" in values:

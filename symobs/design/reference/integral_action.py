@@ -79,6 +79,9 @@ class IntegralAction(Result):
         if (K is None) != (self.loop.answer["K"] is None) or (K is None) != (k_I is None):
             message = "there are gains exactly where plant and integrator have a feedback"
             raise CertificateRejected(message, repair="please report this: it is a bug of symobs")
+        if self.answer["polynomial"] != self.desired.polynomial:  # also where there are no gains to have it
+            message = "the polynomial is the one asked for"
+            raise CertificateRejected(message, repair="please report this: it is a bug of symobs")
         values = letters_of(plant) | {"D": plant.matrices.D, "K": K, "k_I": k_I, "w": w}
         known = {name: value for name, value in values.items() if value is not None}
         relations = identities([part for part in (K, k_I) if part is not None])[1]
