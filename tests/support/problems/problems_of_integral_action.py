@@ -92,7 +92,7 @@ PROBLEMS_OF_INTEGRAL_ACTION = {
         Matrix([[a]]),
         Matrix([[1]]),
         Matrix([b]),
-        control=s**2 + sympy.Symbol("a1") * s + sympy.Symbol("a2"),
-        signs={"a": "real", "b": "real", "a1": "positive", "a2": "positive"},
+        control=s**2 + s + Rational(1, 4),
+        signs={"a": "real", "b": "real"},
     ),
 }
