@@ -15,7 +15,7 @@ PHRASES: dict[str, str] = {
 
 QUESTIONS: dict[str, str] = {
     "ask response": "Find the response of the plant.",
-    "ask response input": "The input is {input} for $t>=0$, and the initial state is zero. Find the response of the plant.",
+    "ask response input": "The input is {input} from $t=0$ on, and the initial state is zero. Find the response of the plant.",
     "ask response initial": "The plant is released from the initial state {initial}. Find its response.",
-    "ask response initial input": "The initial state is {initial}, and the input is {input} for $t>=0$. Find the response of the plant.",
+    "ask response initial input": "The initial state is {initial}, and the input is {input} from $t=0$ on. Find the response of the plant.",
 }

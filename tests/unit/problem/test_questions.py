@@ -118,6 +118,11 @@ def asked(
         ("detectability", 'meaning = "lyapunov"', "stable in the sense of Lyapunov?"),
         ("state_feedback", 'K = "[4 3]"', "Find the characteristic polynomial of the loop with the feedback gain K."),
         (
+            "response",
+            'input = "t"\ninitial = "[1; 0]"',
+            "The initial state is [1; 0], and the input is t from t = 0 on. Find the response of the plant.",
+        ),
+        (
             "initial_state",
             'output = "1 + p*t"\ninput = "0"',
             "The output p t + 1 was measured up to the time T, with the input 0.",
