@@ -100,6 +100,7 @@ UNSAID = (
     "stack",
     "static",
     "subspaces",
+    "superposition",
     "transpose",
 )
 
