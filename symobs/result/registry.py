@@ -48,7 +48,7 @@ class Task:
     def degree(self, poles: str, plant: StateSpace, asked: Mapping[str, Any]) -> int:
         """Return how many poles a keyword means, as the task states it: where it states nothing, the order of the plant."""
         count: Callable[..., int] | None = getattr(self.function, "degrees", {}).get(poles)
-        return plant.order if count is None else count(plant, self.defaults | asked)
+        return plant.order if count is None else count(plant, {**self.defaults, **asked})
 
 
 _TASKS: dict[str, Task] = {}

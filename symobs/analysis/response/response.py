@@ -60,14 +60,14 @@ class Response(DampingCases):
         m, exponential = plant.matrices, found.table()
         state = product(exponential, table_of(asked["initial"]))
         answer = {**shared, "chosen": chosen, "exponential": matrix_at(exponential, TIME), "output": None}
-        if asked["input"] is not None:
-            u = table_of(asked["input"])
+        u = None if asked["input"] is None else table_of(asked["input"])
+        if u is not None:
             forced = motion_from_rest(exponential, m.B, u)
             answer["forced"] = matrix_at(forced, TIME)
             state = _plus(state, forced)
         if m.has_output:
             seen = product(table_of(m.C), state)
-            if asked["input"] is not None and m.has_feedthrough:
+            if u is not None and m.has_feedthrough:
                 seen = _plus(seen, product(table_of(m.D), u))
             answer["output"] = matrix_at(seen, TIME)
         return cls(plant, method_name, {**answer, "state": matrix_at(state, TIME)})

@@ -129,7 +129,8 @@ def _require_proper(design: Result) -> None:
 
 def _public(value: Any) -> Any:
     """Return an exact number as SymPy has it, a rounded one as a decimal."""
-    from symobs.exact.sympy_bridge.conversion import real_to_sympy, sympy  # noqa: PLC0415 - only who asks in Python pays
+    from symobs.exact.sympy_bridge.conversion import real_to_sympy  # noqa: PLC0415 - only who asks in Python pays
+    from symobs.exact.sympy_bridge.sympy_import import sympy  # noqa: PLC0415
 
     if value == INFINITE:
         return sympy.oo

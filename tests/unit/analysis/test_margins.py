@@ -25,7 +25,11 @@ def test_margins_of_compensators_are_those_of_python_control(observer: str, dt: 
         A = [[chance.randint(-3, 3) for _ in range(2)] for _ in range(2)]
         plant = StateSpace(A, [[1], [chance.randint(-2, 2)]], [[1, chance.randint(-2, 2)]], dt=dt)
         poles, others = (["1/2", "1/4"], ["1/5", "0"]) if dt else ([-1, -2], [-3, -4])
-        asked = {"control_poles": poles, "observer_poles": others[: 2 - (observer == "minimal")], "observer": observer}
+        asked: dict[str, Any] = {
+            "control_poles": poles,
+            "observer_poles": others[: 2 - (observer == "minimal")],
+            "observer": observer,
+        }
         design = symobs.compensator(plant, **asked)
         if design.verdict != "yes":
             continue

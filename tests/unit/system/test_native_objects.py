@@ -9,7 +9,7 @@ from typing import Any
 import control  # type: ignore[import-untyped]
 import numpy as np
 import pytest
-import scipy.signal
+import scipy.signal  # type: ignore[import-untyped]
 import sympy
 from sympy.physics.control import TransferFunction, TransferFunctionMatrix
 
