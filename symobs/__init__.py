@@ -17,6 +17,7 @@ FUNCTIONS = {
     "batch": "symobs.batching",
     "check": "symobs.checking",
     "live": "symobs.live",
+    "margins": "symobs.analysis.stability_region.margins",
     "sweep": "symobs.batching.sweep",
     "variants": "symobs.variation",
 }
@@ -28,6 +29,8 @@ def __getattr__(name: str) -> Any:
 
     if name == "StateSpace":
         return importlib.import_module("symobs.system").StateSpace
+    if name == "__all__":  # from symobs import *
+        return [each for each in __dir__() if not each.startswith("_")]
     if name == "__version__":
         return importlib.import_module("importlib.metadata").version("symobs")
     if name in FUNCTIONS:

@@ -18,6 +18,8 @@ from symobs.analysis.realization.characteristic_polynomial import Characteristic
 from symobs.analysis.realization.dual import Dual as _Dual
 from symobs.analysis.realization.kalman_decomposition import Decomposition as _Decomposition
 from symobs.analysis.realization.transfer_function import TransferFunction as _TransferFunction
+from symobs.analysis.response.response import Response as _Response
+from symobs.analysis.stability_region.margins import margins as margins
 from symobs.analysis.stability_region.stability_region import StabilityRegion as _StabilityRegion
 from symobs.analysis.time_response.gramian import Gramian as _Gramian
 from symobs.analysis.time_response.initial_state import InitialState as _InitialState
@@ -101,7 +103,7 @@ class _CharacteristicPolynomialResult(_CharacteristicPolynomial):
     @property
     def stable(self) -> str: ...
     @property
-    def stable_if(self) -> tuple[Any, ...]: ...
+    def stable_if(self) -> tuple[str, ...]: ...
 
 def characteristic_polynomial(
     plant: _Plant,
@@ -373,7 +375,7 @@ class _IntegralActionResult(_IntegralAction):
     @property
     def solvable(self) -> bool: ...
     @property
-    def solvable_if(self) -> tuple[Any, ...]: ...
+    def solvable_if(self) -> tuple[str, ...]: ...
     @property
     def polynomial(self) -> Expr: ...
     @property
@@ -455,7 +457,7 @@ class _ObserverResult(_ObserverDesign):
     @property
     def stable(self) -> str: ...
     @property
-    def stable_if(self) -> tuple[Any, ...]: ...
+    def stable_if(self) -> tuple[str, ...]: ...
     @property
     def fixed_modes(self) -> tuple[Any, ...]: ...
     @property
@@ -505,7 +507,7 @@ class _PoleAdviceResult(_PoleAdvice):
     @property
     def zeros_used(self) -> tuple[Any, ...]: ...
     @property
-    def warnings(self) -> tuple[Any, ...]: ...
+    def warnings(self) -> tuple[str, ...]: ...
     @property
     def sigma(self) -> Expr: ...
     @property
@@ -557,13 +559,31 @@ def reduced_order_observer(
 ) -> _ReducedOrderObserverResult:
     """Design the observer of order n − p  ż = F z + G u + H y,  x̂ = M [y − D u; z],  with det(sI − F) = φ(s)."""
 
+class _ResponseResult(_Response):
+    """What `response` returns."""
+
+    @property
+    def state(self) -> ImmutableMatrix: ...
+    @property
+    def output(self) -> ImmutableMatrix: ...
+
+def response(
+    plant: _Plant,
+    *,
+    initial: _Matrix | None = None,
+    input: _Number | _Matrix | None = None,
+    method: str = "auto",
+    floats: str | None = None,
+) -> _ResponseResult:
+    """Return the response x(t) = e^{At} x₀ + ∫₀ᵗ e^{A(t−s)} B u(s) ds and y = C x + D u to an initial state and an input."""
+
 class _StabilityRegionResult(_StabilityRegion):
     """What `stability_region` returns."""
 
     @property
     def polynomial(self) -> Expr: ...
     @property
-    def parameters(self) -> tuple[Any, ...]: ...
+    def parameters(self) -> tuple[str, ...]: ...
     @property
     def routh_table(self) -> tuple[Any, ...]: ...
     @property
@@ -636,7 +656,7 @@ class _StateFeedbackResult(_StateFeedbackDesign):
     @property
     def stable(self) -> str: ...
     @property
-    def stable_if(self) -> tuple[Any, ...]: ...
+    def stable_if(self) -> tuple[str, ...]: ...
     @property
     def fixed_modes(self) -> tuple[Any, ...]: ...
     @property

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from symobs.problem import Problem
-    from symobs.result import Result
+    from symobs.result import Result, Task
 
 
 def run(payload: Mapping[str, Any]) -> dict[str, Any]:
@@ -86,13 +86,13 @@ def recheck(payload: Mapping[str, Any], row: Mapping[str, Any]) -> str | None:
     for task, answer in zip(problem.tasks, row["result"], strict=True):
         if task.name != answer.get("task"):
             return f"the answer is one of {answer.get('task')!r}, {task.name} was asked for"
-        found = fault(task.name, given_for(problem, task.name), answer, seed=row["key"])
+        found = fault(task.name, given_for(problem, task), answer, seed=row["key"])
         if found:
             return f"{task.name}: {found}"
     return None
 
 
-def given_for(problem: Problem, task: str) -> dict[str, Any]:
+def given_for(problem: Problem, task: Task) -> dict[str, Any]:
     """Return the data of a task as texts: the matrices, the polynomials asked for, the signs of the symbols."""
     plant, asked = problem.plant, problem.specification
     m = plant.matrices
@@ -103,13 +103,15 @@ def given_for(problem: Problem, task: str) -> dict[str, Any]:
         if is_there
     }
     given |= {"variable": plant.variable, "signs": dict(plant.symbols.signs), "polynomials": {}}
-    given["observer"] = asked.get("observer", "full")
+    is_minimal = "observer_poles" in task.keywords and task.degree("observer_poles", plant, asked) < plant.order
+    given["observer"] = "minimal" if is_minimal else "full"
     given["discrete"] = plant.is_discrete
-    degree = plant.order + (plant.outputs if task == "integral_action" else 0)
-    for half in _HALVES.get(task, ()):
-        own = {"poles", "polynomial"} & asked.keys() and len(_HALVES[task]) == 1
+    halves = _HALVES.get(task.name, ())
+    for half in halves:
+        own = {"poles", "polynomial"} & asked.keys() and len(halves) == 1
         poles, polynomial = (name if own else f"{half}_{name}" for name in ("poles", "polynomial"))
         if {poles, polynomial} & asked.keys() and not (half == "observer" and given["observer"] == "minimal"):
+            degree = task.degree("poles" if len(halves) == 1 else poles, plant, asked)
             found = desired_polynomial(plant, asked.get(poles), asked.get(polynomial), degree=degree, required=False)
             given["polynomials"][half] = None if found is None else str(found.polynomial)
     return given

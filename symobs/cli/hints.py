@@ -9,6 +9,9 @@ if TYPE_CHECKING:
     import click
 
 _QUOTES = 'A value with spaces stands in quotes, as in --A "[0 1; 0 -1]" and --poles "-10, -10".'
+#: What a plant as a whole may be called, for which there is no option of that name.
+_PLANTS = {"--plant", "--tf", "--system", "--P", "--G"}
+_PLANT = 'The plant is --A, --B, --C and --D, or --transfer-function "1/(s*(s + 1))".'
 
 
 def hint(error: click.ClickException) -> str:
@@ -22,6 +25,8 @@ def hint(error: click.ClickException) -> str:
         meant = {name.lower(): name for name in options}.get(f"--{unknown.lstrip('-').lower()}")
         if meant is not None and meant != unknown:
             return f"Write {meant}."
+        if unknown in _PLANTS and "--A" in options:
+            return _PLANT
         return _QUOTES if "--A" in options and re.match(r"-+[\d.]", unknown) else ""
     if "unexpected extra argument" not in error.message:
         return ""

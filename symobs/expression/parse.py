@@ -131,6 +131,9 @@ def parse_polynomial(
 
     `functions` and what is raised are as for `parse_scalar`.
     """
+    if hasattr(value, "__len__") and not isinstance(value, str):  # NumPy's arrays and its poly1d, too
+        message = "a polynomial is written out, but a list of coefficients came"
+        raise InputError(message, where=where, repair=f'write for example "{variable}^2 + 9 {variable} + 20"')
     polynomial = _entry(value, Scope.of(names, variable, where, functions=functions), where)
     if isinstance(polynomial, Complex):
         message, repair = f"the polynomial in {variable} has complex coefficients", "write the conjugate factors too"

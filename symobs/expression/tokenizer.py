@@ -295,6 +295,7 @@ _INSTEAD = {
     "DOLLAR": "write the formula alone, without dollar signs, and no LaTeX: [1 0; 0 1]",
     "CURLY": "write ( ) around what belongs together, [ ] around a list or a matrix",
     "ROOT": "write sqrt( )",
+    "PERCENT": 'write 5 % as "0.05"',
     "APOSTROPHE": "a transpose is not read here: write the entries out transposed",
     "STOP": "write a digit beside the decimal point, and * / ^ without a point",
     "LOW": "begin a name with a letter",

@@ -201,7 +201,7 @@ LETTERS: dict[str, LetterForm] = {
 #: Letters that are functions of several times, and those times; an underscore after the name leaves them out.
 TIMED: dict[str, tuple[str, ...]] = {"Phi": ("t", "t0"), "u_t": ("t",), "y_t": ("t",)}
 
-_OF_TIME = {*TIMED, "A", "B", "C", "D", "V", "W", "x_u", "C_1", "exp_At", "Y", "x_f", "y_0", "W_t", "V_t"}
+_OF_TIME = {*TIMED, "A", "B", "C", "D", "V", "W", "x_u", "x_t", "C_1", "exp_At", "Y", "x_f", "y_0", "W_t", "V_t"}
 
 
 def is_of_time(name: str) -> bool:

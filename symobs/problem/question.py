@@ -208,11 +208,7 @@ def _values(task: Task, problem: Problem) -> Iterator[tuple[str, Any]]:
 def _read_pattern(problem: Problem, task: Task, name: str, key: str) -> Scalar:
     """Return the polynomial of poles that are given by what they are to do."""
     plant, asked = problem.plant, problem.specification
-    is_minimal = task.name == "reduced_order_observer" or (
-        name == "observer_poles" and asked.get("observer") == "minimal"
-    )
-    integrators = plant.outputs if task.name == "integral_action" else 0
-    degree = plant.order + integrators - (plant.outputs if is_minimal else 0)
+    degree = task.degree(name, plant, asked)
     found = desired_polynomial(plant, asked[key], None, names=(key, key), degree=degree)
     assert found is not None  # noqa: S101 - they are given
     return found.polynomial

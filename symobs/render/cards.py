@@ -45,6 +45,7 @@ NAMES: dict[str, dict[str, str | Formula]] = {
     "decomposition": {"T": "T", "A": "A_bar", "B": "B_bar", "C": "C_bar", "D": "D", "transfer_function": "P"},
     "dual": {"A": "A_dual", "B": "B_dual", "C": "C_dual", "D": "D_dual"},
     "matrix_exponential": {"matrix": "exp_At"},
+    "response": {"state": "x_t", "output": "y_t"},
     "gramian": {"matrix": "W", "determinant": Apply("det", Letter("W")), "finite_sum": "M", "kernel": "N"},
     "initial_state": {"x0": "x_0"},
     "initial_state_covariance": {"covariance": "Cov", "input_part": "Cov_Q", "output_part": "Cov_R"},

@@ -36,13 +36,19 @@ class Method:
 
 @dataclass(frozen=True)
 class Task:
-    """A task: its function, its keywords with their kinds, and whether it works without a plant."""
+    """A task: its function, its keywords with their kinds and defaults, and whether it works without a plant."""
 
     name: str
     function: Callable[..., Result]
     keywords: Mapping[str, str]
+    defaults: Mapping[str, Any]
     summary: str
     works_without_plant: bool
+
+    def degree(self, poles: str, plant: StateSpace, asked: Mapping[str, Any]) -> int:
+        """Return how many poles a keyword means, as the task states it: where it states nothing, the order of the plant."""
+        count: Callable[..., int] | None = getattr(self.function, "degrees", {}).get(poles)
+        return plant.order if count is None else count(plant, {**self.defaults, **asked})
 
 
 _TASKS: dict[str, Task] = {}
@@ -53,6 +59,16 @@ _METHODS: dict[str, Method] = {}
 def task(function: Callback) -> Callback:
     """Register a task for plants with constant matrices; its keywords are its specification."""
     return _registered(_of_constant_plants(function))
+
+
+def poles_of(**degrees: Callable[[StateSpace, Mapping[str, Any]], int]) -> Callable[[Callback], Callback]:
+    """State how many poles the keywords of a task mean, other than the order of the plant."""
+
+    def state(function: Callback) -> Callback:
+        function.degrees = degrees  # type: ignore[attr-defined]
+        return function
+
+    return state
 
 
 def task_in_time(function: Callback) -> Callback:
@@ -114,9 +130,11 @@ def _registered(function: Callback) -> Callback:
     function = _of_plants(function)
     signature = inspect.signature(function).parameters
     keywords = {n: _kind(p.annotation) for n, p in signature.items() if p.kind is inspect.Parameter.KEYWORD_ONLY}
-    works_without_plant = signature["plant"].default is None
+    defaults = {name: signature[name].default for name in keywords}
     function.kinds = keywords  # type: ignore[attr-defined]  # a result that is asked anew reads its specification so
-    _TASKS[function.__name__] = Task(function.__name__, function, keywords, _summary(function), works_without_plant)
+    _TASKS[function.__name__] = Task(
+        function.__name__, function, keywords, defaults, _summary(function), signature["plant"].default is None
+    )
     return function
 
 

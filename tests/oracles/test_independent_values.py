@@ -35,6 +35,7 @@ from tests.support.problems.problems_by_hand import (
 )
 from tests.support.problems.problems_by_hand import points as points_of
 from tests.support.problems.problems_in_time import PROBLEMS_IN_TIME, VARYING
+from tests.support.problems.problems_of_integral_action import PROBLEMS_OF_INTEGRAL_ACTION, Integral
 from tests.support.problems.problems_of_minimal_order import (
     PROBLEMS_OF_MINIMAL_ORDER,
     PROBLEMS_OF_SEVERAL,
@@ -53,7 +54,13 @@ if TYPE_CHECKING:
 pytestmark = pytest.mark.slow
 
 FOLDER = ROOT / "worked_examples"
-BY_HAND: dict[str, Hand] = {**PROBLEMS, **PROBLEMS_OF_MINIMAL_ORDER, **PROBLEMS_OF_SEVERAL, **PROBLEMS_OF_TRACKING}
+BY_HAND: dict[str, Hand] = {
+    **PROBLEMS,
+    **PROBLEMS_OF_MINIMAL_ORDER,
+    **PROBLEMS_OF_SEVERAL,
+    **PROBLEMS_OF_TRACKING,
+    **PROBLEMS_OF_INTEGRAL_ACTION,
+}
 
 
 @cache
@@ -68,7 +75,7 @@ def points(name: str, count: int) -> Iterator[dict[Any, Any]]:
 
 def known_letters(hand: Hand) -> dict[str, Any]:
     """Return what the letters of a derivation must be worth."""
-    if isinstance(hand, MinimalOrder):
+    if isinstance(hand, (MinimalOrder, Integral)):
         return hand.letters()
     A, B, C, s_ = hand.A, hand.B, hand.C, hand.variable
     known: dict[str, Any] = {"A": A, "chi": characteristic(A, s_), "D": hand.feedthrough}
@@ -161,6 +168,8 @@ def read(name: str, result: Result) -> list[Reader]:
     def samples() -> Iterator[dict[Any, Any]]:
         return points(name, 60)
 
+    if isinstance(hand, Integral):
+        return [Reader(result.derivation, hand.letters(), samples, known_at=lambda values: hand.at(values).letters())]
     if not hand.large:
         return [Reader(result.derivation, known_letters(hand), samples, FREE_ENTRIES if hand.is_several else {})]
     return [
@@ -229,7 +238,7 @@ def repairs(A: Any, C: Any) -> tuple[tuple[int, ...], ...]:
 
 def answers(hand: Hand, task: str) -> dict[str, Any]:
     """Return every field of a task's answer by the textbook's formula."""
-    if isinstance(hand, MinimalOrder):
+    if isinstance(hand, (MinimalOrder, Integral)):
         return hand.answers(task)
     A, B, C, variable = hand.A, hand.B, hand.C, hand.variable
     match task:
@@ -327,6 +336,7 @@ WITNESSES = {
     "X",
     "N_K",
     "X_K",
+    "w_0",
     "mu",
     "S",
     "T",
@@ -440,10 +450,6 @@ def true_at(relation: str, point: Mapping[Any, Any]) -> bool:
 REGIONS = {path.stem for path in FOLDER.glob("*.toml") if "stability_region" in path.read_text(encoding="utf-8")}
 
 
-#: Its gains are held to NumPy and to its source in tests/unit/design/test_integral_action.py.
-HELD_ELSEWHERE = {"inverted_pendulum_integral_action"}
-
-
 def test_every_worked_example_is_written_out_here() -> None:
-    written = {*BY_HAND, *PROBLEMS_IN_TIME, *VARYING, *FAMILIES, *REGIONS, *HELD_ELSEWHERE}
+    written = {*BY_HAND, *PROBLEMS_IN_TIME, *VARYING, *FAMILIES, *REGIONS}
     assert {path.stem for path in FOLDER.glob("*.toml")} == written

@@ -130,7 +130,7 @@ def test_coordinates_of_finitely_many_points(
 
 def test_infinitely_many_points_are_not_counted() -> None:
     ideal = Ideal.of((a * b,))
-    assert (ideal.is_finite, ideal.dimension, ideal.triangular) == (False, None, None)
+    assert (ideal.is_finite, ideal.dimension, ideal.by_coordinate) == (False, None, None)
 
 
 # -- the oracle itself ---------------------------------------------------------------------------------------------------

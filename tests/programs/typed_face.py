@@ -75,7 +75,9 @@ def type_of(value: Any) -> str:
             return text
     if isinstance(value, (list, tuple)):
         rows = [row for row in value if isinstance(row, tuple) and row and isinstance(row[0], Factored)]
-        return "ImmutableMatrix" if rows and len(rows) == len(value) else "tuple[Any, ...]"
+        if rows and len(rows) == len(value):
+            return "ImmutableMatrix"
+        return "tuple[str, ...]" if value and all(isinstance(each, str) for each in value) else "tuple[Any, ...]"
     return "Any"
 
 
@@ -111,7 +113,8 @@ def result_class(task: Task, results: list[Result]) -> tuple[str, str]:
                 types.setdefault(name, set()).add(type_of(value))
     lines = [f"class {own}(_{kind.__name__}):", f'    """What `{task.name}` returns."""', ""]
     for name, found in types.items():
-        told = " | ".join(sorted(found - {""})) or "Any"
+        vague = {"tuple[Any, ...]"} if "tuple[str, ...]" in found else set()  # an empty one
+        told = " | ".join(sorted(found - {""} - vague)) or "Any"
         lines += ["    @property", f"    def {name}(self) -> {told}: ..."]
     return f"from {kind.__module__} import {kind.__name__} as _{kind.__name__}", "\n".join(lines)
 

@@ -84,7 +84,7 @@ class Locus:
         Leading coefficients are positive.
         """
         basis = ideal.generators
-        if EIGENVALUE not in ideal.field.position and (by_coordinate := ideal.triangular):
+        if EIGENVALUE not in ideal.field.position and (by_coordinate := ideal.by_coordinate):
             if (ideal.dimension or 0) > FEW:
                 ideal = Ideal.of(by_coordinate)
             basis = min(ideal.generators, by_coordinate, key=lambda equations: sum(e.size for e in equations))

@@ -43,14 +43,17 @@ class DampingCases(Result):
     in_time: ClassVar[bool] = True
     #: The answer that every result has, unless it is undecided or negative.
     main: ClassVar[str] = "matrix"
+    #: What is asked beside the plant, and may contain its parameters.
+    asked_for: ClassVar[tuple[str, ...]] = ()
 
     @property
     def matrices(self) -> tuple[Matrix | Scalar, ...]:
         """The answers that are functions of time."""
         return tuple(v for v in self.answer.values() if isinstance(v, (Matrix, Scalar)))
 
-    def rebuild(self, plant: StateSpace, taken: Signs) -> Self:
-        """Return the result on a stratum, or with other signs."""
+    @classmethod
+    def of(cls, plant: StateSpace, method_name: str, asked: Mapping[str, Any], taken: Signs) -> Self:
+        """Return the result for a plant, what is asked beside it, and the signs of discriminants."""
         raise NotImplementedError
 
     def claims(self) -> Iterator[Claim]:
@@ -121,7 +124,7 @@ class DampingCases(Result):
             if sign_of(delta, signs) not in {"nonpositive", "nonnegative"}:
                 other = opposite(sign)
                 when = (*before, _stated(delta, other))
-                found.append(Case(when, {}, self.rebuild(self.plant, {**taken, delta: other})))
+                found.append(Case(when, {}, self._rebuilt(self.plant, self.answer, {**taken, delta: other})))
             zeros.append(delta)
             taken[delta], before = sign, (*before, _stated(delta, sign))
         zeros = list(dict.fromkeys(zeros))
@@ -137,7 +140,12 @@ class DampingCases(Result):
                 message = f"{moved} is not {sign}"
                 raise ZeroDivisionError(message)
             taken[moved] = sign
-        return self.rebuild(plant, taken)
+        values = ((name, self.answer.get(name)) for name in self.asked_for)
+        moved = {name: substitute(v, substitution) for name, v in values if isinstance(v, (Matrix, Scalar))}
+        return self._rebuilt(plant, {**self.answer, **moved}, taken)
+
+    def _rebuilt(self, plant: StateSpace, asked: Mapping[str, Any], taken: Signs) -> Self:
+        return type(self).of(plant, self.method, asked, taken)
 
     def everything(self) -> Iterator[Matrix | Scalar]:
         """Yield all functions of time on the page: those of the cases too."""
@@ -146,7 +154,7 @@ class DampingCases(Result):
             if isinstance(case.result, DampingCases):
                 yield from case.result.everything()
 
-    def state(self, page: Builder) -> None:
+    def state_data(self, page: Builder) -> None:
         """State the data and the condition on the horizon."""
         from symobs.analysis.page_parts import given  # noqa: PLC0415
 

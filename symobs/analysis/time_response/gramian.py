@@ -69,6 +69,7 @@ class Gramian(DampingCases):
     """W with W = ∫ of its integrand (checked by differentiation), its determinant, Σ (Aᵀ)ᵏ Cᵀ C Aᵏ, and the kernel."""
 
     task: ClassVar[str] = "gramian"
+    asked_for: ClassVar[tuple[str, ...]] = ("horizon",)
 
     @classmethod
     def of(cls, plant: StateSpace, method_name: str, asked: Mapping[str, Any], taken: Signs) -> Self:
@@ -97,10 +98,6 @@ class Gramian(DampingCases):
             "exponential": matrix_at(table, TIME),
         }
         return cls(plant, method_name, {**shared, **answer, "chosen": chosen})
-
-    def rebuild(self, plant: StateSpace, taken: Signs) -> Self:
-        """Return the Gramian of another plant or with other signs."""
-        return type(self).of(plant, self.method, self.answer, taken)
 
     @property
     def matrices(self) -> tuple[Matrix | Scalar, ...]:

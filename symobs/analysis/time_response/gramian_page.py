@@ -40,7 +40,7 @@ def write_gramian(page: Builder, result: Gramian) -> None:
     if isinstance(horizon, Scalar):
         values += [substitute(value, {"t": horizon}) for value in values]
     page.in_time(*values)
-    result.state(page)
+    result.state_data(page)
     is_dual = result.answer["of"] == "controllability"
     if is_dual:
         page.environment = page.environment.extended_by(values={})

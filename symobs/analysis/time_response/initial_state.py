@@ -21,10 +21,11 @@ from symobs.analysis.time_response.matrix_exponential import (
 )
 from symobs.analysis.time_response.measurements import OfTheInitialState, read_functions
 from symobs.certificate.claims import Claim
+from symobs.conditions import vanishing_factors
 from symobs.derivation.builder import relation
 from symobs.errors import InputError
 from symobs.exact import Matrix, Scalar, kernel
-from symobs.exact.core.generators import normal_form, substitute
+from symobs.exact.core.generators import function_named, normal_form, substitute
 from symobs.exact.time_functions.matrix_exponential import NoClosedForm
 from symobs.exact.time_functions.quasipolynomial import Table, integral, matrix_at, product, table_of, transposed
 from symobs.formula import Environment, Literal
@@ -66,6 +67,7 @@ class InitialState(OfTheInitialState):
 
     task: ClassVar[str] = "initial_state"
     main: ClassVar[str] = "x0"
+    asked_for: ClassVar[tuple[str, ...]] = ("output", "input", "horizon")
 
     @classmethod
     def of(cls, plant: StateSpace, method_name: str, asked: Mapping[str, Any], taken: Signs) -> Self:
@@ -97,10 +99,6 @@ class InitialState(OfTheInitialState):
         }
         return cls(plant, method_name, {**answer, **_solved(test, derivatives_at_zero(free, plant.order), seen, free)})
 
-    def rebuild(self, plant: StateSpace, taken: Signs) -> Self:
-        """Return the result for another plant or with other signs."""
-        return type(self).of(plant, self.method, self.answer, taken)
-
     @property
     def matrices(self) -> tuple[Matrix | Scalar, ...]:
         """The functions of time."""
@@ -123,6 +121,13 @@ class InitialState(OfTheInitialState):
         if self.answer.get("question") is None and (self.answer["x0"] is None or not self.is_unique):
             return "no"
         return super().verdict
+
+    @property
+    def further_zeros(self) -> tuple[Scalar, ...]:
+        """Where the pair may lose rank, and where what refutes the data may not."""
+        refuted = vanishing_factors(self.answer.get("refuted", ()), self.plant.symbols.signs)
+        plain = [f for f in refuted if not any(function_named(name) for name in f.names)]
+        return tuple(dict.fromkeys((*super().further_zeros, *plain)))
 
     def _values(self) -> dict[str, Any]:
         m, answer = self.plant.matrices, self.answer
@@ -214,11 +219,28 @@ def _solved(test: Mapping[str, Any], start: list[Scalar], seen: Table, free: Tab
         null = kernel(O.T)
         for vector in (null.select(range(null.shape[0]), [j]) for j in range(null.shape[1])):
             if not normal_form((vector.T @ right)[0, 0]).is_zero:
-                return {"row": vector.T, "start": right}
+                return {"row": vector.T, "start": right, "refuted": ((vector.T @ right)[0, 0],)}
     rest = difference(free, product(seen, table_of(state)))
     if any(not entry.is_zero for row in rest for entry in row):
-        return {"candidate": state, "rest": matrix_at(rest, TIME)}
+        return {"candidate": state, "rest": matrix_at(rest, TIME), "refuted": tuple(_refuting(rest))}
     return {"x0": state}
+
+
+def _refuting(rest: Table) -> Iterator[Scalar]:
+    """Yield values one of which vanishes wherever all these functions do.
+
+    A term of one of them vanishes with its coefficient, or another becomes the same function of t.
+    """
+    terms = next(entry.terms for row in rest for entry in row if not entry.is_zero)
+    key, coefficient = next(iter(terms.items()))
+    yield coefficient
+    if key.wave == "sin":
+        yield key.frequency
+    for other in terms:
+        if other.power == key.power and other.rate != key.rate:
+            yield key.rate - other.rate
+        elif other.power == key.power and other.frequency != key.frequency:
+            yield key.frequency**2 - other.frequency**2
 
 
 @method("initial_state/moments", source="kalman1963a")

@@ -64,6 +64,7 @@ class InitialStateCovariance(OfTheInitialState):
 
     task: ClassVar[str] = "initial_state_covariance"
     main: ClassVar[str] = "covariance"
+    asked_for: ClassVar[tuple[str, ...]] = ("Q", "R", "horizon")
 
     @classmethod
     def of(cls, plant: StateSpace, method_name: str, asked: Mapping[str, Any], taken: Signs) -> Self:
@@ -84,10 +85,6 @@ class InitialStateCovariance(OfTheInitialState):
         if question := _too_long(plant, found):
             return cls(plant, method_name, {**shared, "question": question, "factor": None, "chosen": chosen})
         return cls(plant, method_name, {**shared, "chosen": chosen, **_parts(plant, found.table(), data)})
-
-    def rebuild(self, plant: StateSpace, taken: Signs) -> Self:
-        """Return the result for another plant or with other signs."""
-        return type(self).of(plant, self.method, self.answer, taken)
 
     @property
     def matrices(self) -> tuple[Matrix | Scalar, ...]:

@@ -28,7 +28,7 @@ def write_covariance(page: Builder, result: InitialStateCovariance) -> None:
     """Write e^{At}, the Gramian, the two integrals, the covariance and the best horizon."""
     values = list(result.everything())
     page.in_time(*values, *(substitute(value, {"t": result.answer["horizon"]}) for value in values))
-    result.state(page)
+    result.state_data(page)
     with page.section("covariance"):
         if result.answer["called_t"]:
             page.remark("horizon_called_t")

@@ -39,7 +39,7 @@ def write_initial_state(page: Builder, result: InitialState) -> None:
     if result.answer["horizon"] != INFINITE:
         values += [substitute(value, {"t": result.answer["horizon"]}) for value in values]
     page.in_time(*values)
-    result.state(page)
+    result.state_data(page)
     with page.section("initial_state"):
         tell_polynomial(page)
         result.write_branches(page, _write_branch)

@@ -73,7 +73,7 @@ class MatrixExponential(DampingCases):
     task: ClassVar[str] = "matrix_exponential"
 
     @classmethod
-    def of(cls, plant: StateSpace, method_name: str, taken: Signs) -> Self:
+    def of(cls, plant: StateSpace, method_name: str, _: Mapping[str, Any], taken: Signs) -> Self:
         """Return the result for a plant."""
         try:
             found, chosen = closed_form(plant, taken, sums=not plant.equations)
@@ -81,10 +81,6 @@ class MatrixExponential(DampingCases):
             answer = {"matrix": None, "question": question_of(error), "factor": error.factor}
             return cls(plant, method_name, {**answer, "taken": taken, "chosen": {}})
         return cls(plant, method_name, {"matrix": found.matrix(TIME), "taken": taken, "chosen": chosen})
-
-    def rebuild(self, plant: StateSpace, taken: Signs) -> Self:
-        """Return e^{At} of another plant or with other signs."""
-        return type(self).of(plant, self.method, taken)
 
     def claims(self) -> Iterator[Claim]:
         """Yield the differential equation and the start."""
@@ -229,7 +225,7 @@ def _shifted(rate: Scalar) -> Formula:
 @method("matrix_exponential/derivatives", source="leonard1996")
 def derivatives(plant: StateSpace) -> MatrixExponential:
     """Solve Σᵢ fᵢ⁽ᵏ⁾(0) Mᵢ = Aᵏ for the matrices of e^{At} = Σ fᵢ(t) Mᵢ."""
-    return MatrixExponential.of(plant, "derivatives", {})
+    return MatrixExponential.of(plant, "derivatives", {}, {})
 
 
 @task

@@ -83,7 +83,7 @@ def recheck(payload: Mapping[str, Any], row: Mapping[str, Any]) -> str | None:
         return None
     result, grid = row["result"], grid_of(payload)
     program = _program(canonical(payload["program"]))
-    given = given_for(program.problem, program.task.name)
+    given = given_for(program.problem, program.task)
     places = [k for k, status in enumerate(result["status"]) if status == "done"]
     drawn = random.Random(row["key"])  # noqa: S311 - no secret
     for place in drawn.sample(places, min(_LOOKED_AT, len(places))):

@@ -1,8 +1,4 @@
-"""How far the loop of a point is from instability: ends of the gain exactly, phase and modulus with certain digits.
-
-For K the loop is K(sI − A)⁻¹B, for L it is C(sI − A)⁻¹L, for a compensator F(s)G(s); P is its denominator without any
-cancelling, P + N the characteristic polynomial of the closed loop, and k the gain that it is multiplied by.
-"""
+"""The margins of the loop of each point of a sweep, as cells of its table."""
 
 from __future__ import annotations
 
@@ -11,11 +7,11 @@ from contextlib import contextmanager, suppress
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
-from symobs.analysis.stability_region.stability_region import stability_region
+from symobs.analysis.stability_region.margins import NotRational, margins_of
 from symobs.batching.sweep.program import MARGINS_STATUS
 from symobs.errors import BudgetExceeded, UsageError
 from symobs.exact import Matrix, RealNumber, Scalar
-from symobs.exact.algebraic.loop_distances import INFINITE, Loop, nearest_double, slowest_root
+from symobs.exact.algebraic.loop_distances import nearest_double
 from symobs.exact.core.generators import substitute
 
 if TYPE_CHECKING:
@@ -23,7 +19,6 @@ if TYPE_CHECKING:
 
     from symobs.batching.sweep.program import Program
 
-_DIGITS = 6
 #: Seconds of the processor that a point is allowed.
 _SECONDS = 2.0
 
@@ -41,14 +36,8 @@ def margins_at(program: Program, point: Sequence[Fraction], gains: Mapping[str, 
     values = dict(zip(program.names, map(Scalar.of, point), strict=True))
     plant = program.problem.plant
     closed, opened = _polynomials(program, values, gains)
-    slowest = slowest_root(_numbers(closed, plant.variable), discrete=plant.is_discrete)
-    found: dict[str, Any] = {"slowest": slowest, MARGINS_STATUS: "done"}
-    if not slowest < RealNumber.of(int(plant.is_discrete)):
-        return found | {MARGINS_STATUS: "unstable"}
-    loop = Loop.of(*(_numbers(p, plant.variable) for p in (closed, opened)), discrete=plant.is_discrete)
-    found |= {"phase_deg": loop.phase(_DIGITS), "modulus": loop.modulus(_DIGITS)}
-    found["gain_down"], found["gain_up"] = _gains(closed, opened, plant.dt)
-    return found
+    found = margins_of(closed, opened, plant.variable, plant.dt)
+    return found | {MARGINS_STATUS: "done" if "gain_up" in found else "unstable"}
 
 
 def _polynomials(program: Program, values: Mapping[str, Scalar], gains: Mapping[str, Matrix]) -> tuple[Scalar, Scalar]:
@@ -69,27 +58,6 @@ def _polynomials(program: Program, values: Mapping[str, Scalar], gains: Mapping[
     return closed, opened
 
 
-def _numbers(polynomial: Scalar, variable: str) -> list[Fraction]:
-    found = polynomial.coefficients(variable)
-    if not all(entry.is_constant for entry in found):
-        raise _NotRational(str(polynomial))
-    return [entry.fraction() for entry in found]
-
-
-def _gains(closed: Scalar, opened: Scalar, dt: object) -> tuple[RealNumber | str, RealNumber | str]:
-    """Return the ends of the interval around 1 of the gains k > 0 for which P + kN is stable."""
-    if closed == opened:
-        return RealNumber.of(0), INFINITE
-    moved = opened + Scalar.symbol("k") * (closed - opened)
-    region: Any = stability_region(moved, symbols={"k": "positive"}, dt=dt, parameters="k")
-    one = RealNumber.of(1)
-    for piece in region.region.intervals:
-        low, high = piece.low or RealNumber.of(0), piece.high
-        if low < one and (high is None or one < high):
-            return low, INFINITE if high is None else high
-    raise AssertionError(region.stable_if)
-
-
 # -- cells ------------------------------------------------------------------------------------------------------------
 
 
@@ -108,17 +76,13 @@ def cells_at(
         if gain in program.gains
     }
     found: dict[str, Any] = {}
-    with suppress(_TimeOver, _NotRational, BudgetExceeded), _within(_SECONDS):
+    with suppress(_TimeOver, NotRational, BudgetExceeded), _within(_SECONDS):
         found = margins_at(program, point, gains)
     if not found or None in found.values():
         return {MARGINS_STATUS: "undecided"}, {}
     numbers = {name: value for name, value in found.items() if isinstance(value, RealNumber)}
     doubles = {name: nearest_double(value) for name, value in numbers.items() if not value.is_rational}
     return {name: value.text() if name in numbers else value for name, value in found.items()}, doubles
-
-
-class _NotRational(ValueError):
-    """Raised for a loop with other than rational numbers."""
 
 
 class _TimeOver(BaseException):

@@ -27,6 +27,7 @@ ASKED: dict[str, tuple[str, ...]] = {
     "pbh": ("verdict",),
     "pole_advice": ("poles",),
     "reduced_order_observer": ("F", "G", "H", "M"),
+    "response": ("state",),
     "stability_region": ("stable_if",),
     "stabilizability": ("verdict",),
     "state_feedback": ("K",),

@@ -41,6 +41,9 @@ def _settings(_: click.Context, __: click.Parameter, entries: tuple[str, ...]) -
         name, separator, value = (part.strip() for part in entry.partition("="))
         if not (name and separator and value):
             raise UsageError(f"{quoted(entry)} gives no value", where="--set", repair="write for example --set k=4")
+        if "=" in value:
+            message = f"{quoted(entry)} sets more than one name"
+            raise UsageError(message, where="--set", repair="write --set once for each name: --set k=4 --set m=2")
         if name in found:
             raise UsageError(f"{quoted(name)} is set twice", where="--set", repair="keep one of them")
         found[name] = value

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from functools import cached_property
-from typing import TYPE_CHECKING, Self
+from typing import TYPE_CHECKING, Any, Self
 
 from symobs._dataclass import dataclass
 from symobs.certificate.claims import Claim
@@ -18,7 +18,7 @@ from symobs.exact import Matrix, Scalar, controller, modulo, transfer
 from symobs.exact.linear_algebra.realisation import Realisation
 from symobs.formula import Environment
 from symobs.formula.term import identity, letter
-from symobs.result import Result, choose, method, task
+from symobs.result import Result, choose, method, poles_of, task
 from symobs.specification import (
     GainText,
     Name,
@@ -31,7 +31,7 @@ from symobs.specification import (
 )
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Mapping
 
     from symobs.analysis.strata.strata import Place
     from symobs.design.compensator.minimal_order_compensator import MinimalOrderCompensator
@@ -168,7 +168,17 @@ def minimal_order(plant: StateSpace, control: Asked, observer: Asked) -> Minimal
 _METHODS = {"full": "separation", "minimal": "minimal_order"}
 
 
+def _is_minimal(observer: str, method_name: str) -> bool:
+    return "minimal" in (observer, method_name.removesuffix("_order"))
+
+
+def observer_order(plant: StateSpace, asked: Mapping[str, Any]) -> int:
+    """Return the number of poles of the observer that is asked for: n, or n − p."""
+    return plant.order - (plant.outputs if _is_minimal(asked["observer"], asked["method"]) else 0)
+
+
 @task
+@poles_of(observer_poles=observer_order)
 def compensator(
     plant: StateSpace,
     *,
@@ -244,8 +254,10 @@ def observer_based(
                 error.repair += f', or write observer = "{other}"'
             raise
 
-    minimal = "minimal" in (observer, method_name.removesuffix("_order"))
-    estimated = plant.order - (plant.outputs if minimal else 0)
+    minimal, estimated = (
+        _is_minimal(observer, method_name),
+        observer_order(plant, {"observer": observer, "method": method_name}),
+    )
     _, _, chosen, control_wish, observer_wish = together(
         lambda: _require_kind(observer, plant, method_name),
         lambda: _require_place(gains, method_name, minimal=minimal),
@@ -268,7 +280,7 @@ def _require_kind(observer: str, plant: StateSpace, method_name: str) -> None:
         raise InputError(
             message, where="specification.method", repair='leave the method out, or write observer = "full"'
         )
-    if "minimal" in (observer, method_name.removesuffix("_order")) and plant.order == plant.outputs:
+    if _is_minimal(observer, method_name) and plant.order == plant.outputs:
         message = "the outputs show the whole state, nothing is left to estimate"
         raise InputError(message, where="specification.observer", repair="use state_feedback with x = C⁻¹ (y − D u)")
 

@@ -62,6 +62,7 @@ QUESTIONS: dict[str, str] = {
     "ask compensator": "Design an observer-based compensator (state feedback with a full-order observer), and find the closed loop.",
     "ask compensator observer=full": "Design an observer-based compensator (state feedback with a full-order observer), and find the closed loop.",
     "ask compensator observer=minimal": "Design an observer-based compensator (state feedback with a reduced-order observer), and find the closed loop.",
+    "ask compensator method=minimal_order": "Design an observer-based compensator (state feedback with a reduced-order observer), and find the closed loop.",
     "ask compensator K L": "Close the loop with the feedback gain $K$ and a full-order observer with the gain $L$, and find its poles.",
     "ask compensator K": "Close the loop with the feedback gain $K$ and a full-order observer.",
     "ask compensator L": "Close the loop with state feedback and a full-order observer with the gain $L$.",

@@ -23,7 +23,7 @@ from symobs.exact import Ideal, Matrix, Root, Scalar, TooLarge, kernel, modulo
 from symobs.exact.linear_algebra.realisation import Realisation
 from symobs.formula import Environment
 from symobs.formula.term import block, identity, letter
-from symobs.result import Case, Result, choose, method, task
+from symobs.result import Case, Result, choose, method, poles_of, task
 from symobs.result.control_systems import Controller, observer_of
 from symobs.specification import (
     DesiredPolynomial,
@@ -317,7 +317,13 @@ def undetermined(plant: StateSpace, desired: DesiredPolynomial, T: Matrix) -> Re
     return ReducedOrderObserver.of(plant, desired, T, "undetermined")
 
 
+def unmeasured(plant: StateSpace, _: object = None) -> int:
+    """Return the number of states that are left to estimate, n − p."""
+    return plant.order - plant.outputs
+
+
 @task
+@poles_of(poles=unmeasured)
 def reduced_order_observer(
     plant: StateSpace,
     *,
@@ -341,7 +347,7 @@ def reduced_order_observer(
     if plant.order == plant.outputs:
         message = "the outputs show the whole state, nothing is left to estimate"
         raise InputError(message, where="plant.C", repair="use x = C⁻¹ (y − D u)")
-    desired = desired_polynomial(plant, poles, polynomial, degree=plant.order - plant.outputs)
+    desired = desired_polynomial(plant, poles, polynomial, degree=unmeasured(plant))
     assert desired is not None  # noqa: S101 - required
     plant, (desired,) = over_common_data(plant, desired)
     coordinates = completed(plant.matrices.C) if T is None else _read_coordinates(T, plant)

@@ -11,14 +11,14 @@ from symobs.analysis.strata.strata import common_places, places, solved
 from symobs.certificate.claims import Certificate, Claim
 from symobs.conditions import Condition, vanishing_factors
 from symobs.derivation.builder import relation
-from symobs.design.compensator.compensator import observer_based
+from symobs.design.compensator.compensator import observer_based, observer_order
 from symobs.design.gain.gain_design import letters_of
 from symobs.errors import CertificateRejected
 from symobs.exact import Matrix, Scalar, kernel
 from symobs.exact.linear_algebra.realisation import Realisation
 from symobs.formula import Environment
 from symobs.formula.term import block, identity, letter
-from symobs.result import Case, Result, choose, method, task
+from symobs.result import Case, Result, choose, method, poles_of, task
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -225,6 +225,7 @@ def static(loop: OutputFeedback) -> FeedforwardDesign:
 
 
 @task
+@poles_of(observer_poles=observer_order)
 def feedforward(
     plant: StateSpace,
     *,

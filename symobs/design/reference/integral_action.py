@@ -27,7 +27,7 @@ from symobs.exact.core.generators import identities
 from symobs.exact.linear_algebra.realisation import Realisation
 from symobs.formula import Environment, Literal
 from symobs.formula.term import Term, block, identity, letter
-from symobs.result import Case, Result, choose, method, task
+from symobs.result import Case, Result, choose, method, poles_of, task
 from symobs.specification import desired_polynomial, over_common_data
 from symobs.system import StateSpace
 
@@ -79,11 +79,14 @@ class IntegralAction(Result):
         if (K is None) != (self.loop.answer["K"] is None) or (K is None) != (k_I is None):
             message = "there are gains exactly where plant and integrator have a feedback"
             raise CertificateRejected(message, repair="please report this: it is a bug of symobs")
+        if self.answer["polynomial"] != self.desired.polynomial:  # also where there are no gains to have it
+            message = "the polynomial is the one asked for"
+            raise CertificateRejected(message, repair="please report this: it is a bug of symobs")
         values = letters_of(plant) | {"D": plant.matrices.D, "K": K, "k_I": k_I, "w": w}
         known = {name: value for name, value in values.items() if value is not None}
         relations = identities([part for part in (K, k_I) if part is not None])[1]
         e = Environment(variable=plant.variable, values=known, relations=relations)
-        whole, size = _system(e, plant), plant.order + plant.outputs
+        whole, size = _system(e, plant), extended_order(plant)
         if w is None:
             beside = replace(e, relations=(*relations, *outside(self.distances)), signs=plant.symbols.signs)
             yield Claim(relation(whole.apply("rank"), size), beside, "rank [A B; C D] = n + p")
@@ -209,7 +212,13 @@ def extended_state(plant: StateSpace, desired: DesiredPolynomial) -> IntegralAct
     return IntegralAction.of(plant, desired, "extended_state")
 
 
+def extended_order(plant: StateSpace, _: object = None) -> int:
+    """Return the number of poles of plant and integrator, n + p."""
+    return plant.order + plant.outputs
+
+
 @task
+@poles_of(poles=extended_order)
 def integral_action(
     plant: StateSpace, *, poles: Poles = None, polynomial: PolynomialText = None, method: Name = "auto"
 ) -> Result:
@@ -226,7 +235,7 @@ def integral_action(
     """
     plant = plant.knowing(poles, polynomial)
     plant.require("B", "C", task="integral_action")
-    desired = desired_polynomial(plant, poles, polynomial, degree=plant.order + plant.outputs)
+    desired = desired_polynomial(plant, poles, polynomial, degree=extended_order(plant))
     assert desired is not None  # noqa: S101 - required
     plant, (desired,) = over_common_data(plant, desired)
     found: Result = choose("integral_action", method, "extended_state").solve(plant, desired)

@@ -12,13 +12,13 @@ from symobs._dataclass import dataclass
 from symobs.analysis.strata.strata import common_places, places, solved
 from symobs.certificate.claims import Certificate, Claim
 from symobs.derivation.builder import relation
-from symobs.design.compensator.compensator import observer_based
+from symobs.design.compensator.compensator import observer_based, observer_order
 from symobs.design.gain.gain_design import letters_of
 from symobs.errors import CertificateRejected, InputError
 from symobs.exact import Matrix, Scalar, independent_rows, kernel, modulo
 from symobs.formula import Environment
 from symobs.formula.term import identity, letter
-from symobs.result import Case, Result, choose, method, task
+from symobs.result import Case, Result, choose, method, poles_of, task
 from symobs.specification import read_gain
 
 if TYPE_CHECKING:
@@ -229,6 +229,7 @@ def reference_model(loop: OutputFeedback, reference: Matrix, start: Matrix | Non
 
 
 @task
+@poles_of(observer_poles=observer_order)
 def tracking(
     plant: StateSpace,
     *,

@@ -7,7 +7,7 @@ N/P to −1 is 2 arcsin(√r/2).  Where these x are is decided exactly; values t
 
 from __future__ import annotations
 
-from functools import reduce
+from functools import cached_property, reduce
 from typing import TYPE_CHECKING, Any
 
 from flint import arb, fmpz_poly
@@ -57,6 +57,14 @@ class Loop:
 
     def modulus(self, digits: int) -> str | None:
         """Return min |1 + N/P| with so many digits after the point."""
+        return certain(self._distance, digits)
+
+    def peak(self, digits: int) -> str | None:
+        """Return max |1/(1 + N/P)|, the peak of the sensitivity."""
+        return certain(lambda bits: 1 / self._distance(bits), digits)
+
+    @cached_property
+    def _distance(self) -> Callable[[int], arb]:
         slope = self.closed.derivative() * self.opened - self.closed * self.opened.derivative()
         met = [*self._inside(slope), *(x for x in self._ends if x.sign_of(self.opened))]
 
@@ -64,7 +72,7 @@ class Loop:
             at_infinity = [] if self.discrete else [arb(1)]  # N/P vanishes there
             return reduce(arb.min, [*at_infinity, *(self._ratio(x, bits) for x in met)]).sqrt()
 
-        return certain(least, digits)
+        return least
 
     def phase(self, digits: int) -> str | None:
         """Return the least angle in degrees by which N/P can be turned until it meets −1, `oo` where it never does."""

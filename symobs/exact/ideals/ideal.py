@@ -155,7 +155,7 @@ class Ideal:
         return Quotient(monomials, self.field.names, self.reduced_column)
 
     @cached_property
-    def triangular(self) -> tuple[Scalar, ...] | None:
+    def by_coordinate(self) -> tuple[Scalar, ...] | None:
         """Other generators: a polynomial in one name, and every other name as a polynomial in it; None where there are none."""
         if self.coordinate is not None:
             return self.generators

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 from symobs.errors import InexactInput, InputError
 from symobs.exact.algebraic.complex import Complex
 from symobs.exact.algebraic.conjugates import root_in_field
-from symobs.exact.algebraic.real_algebraic import RealRoot, root_of_fraction, roots_of_scalar
+from symobs.exact.algebraic.real_algebraic import RealNumber, RealRoot, root_of_fraction, roots_of_scalar
 from symobs.exact.core import generators as functions
 from symobs.exact.core.field import EIGENVALUE
 from symobs.exact.core.matrix import Matrix
@@ -24,6 +24,14 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
     from symobs.exact.algebraic.polynomial_roots import Factored, Root
+
+
+def real_to_sympy(number: RealNumber) -> Any:
+    """Return a real algebraic number: a rational one, one with a square root, or `CRootOf`."""
+    if number.is_rational:
+        return sympy.Rational(number.fraction.numerator, number.fraction.denominator)
+    coefficients = [int(c) for c in reversed(number.polynomial.coeffs())]
+    return sympy.rootof(sympy.Poly(coefficients, sympy.Symbol("x")), number.index)
 
 
 def scalar_to_sympy(

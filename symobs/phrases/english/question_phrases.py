@@ -90,7 +90,6 @@ UNSAID = (
     "fixed_modes",
     "gramian",
     "integral",
-    "minimal_order",
     "moments",
     "partition",
     "rank",
@@ -101,6 +100,7 @@ UNSAID = (
     "stack",
     "static",
     "subspaces",
+    "superposition",
     "transpose",
 )
 

@@ -41,6 +41,7 @@ _CLAIMS: dict[str, Callable[[Branch], Iterator[Claim]]] = {
     "compensator": claims_of_designs.compensator,
     "feedforward": claims_of_designs.feedforward,
     "tracking": claims_of_designs.tracking,
+    "integral_action": claims_of_designs.integral_action,
     "matrix_exponential": claims_in_time.matrix_exponential,
     "gramian": claims_in_time.gramian,
     "time_varying_observability": claims_in_time.time_varying,

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from tests.programs.campaign.algebra import (
     Claim,
     Term,
+    beside,
     columns_of,
     identity,
     matrix,
@@ -211,3 +212,22 @@ def tracking(b: Branch) -> Iterator[Claim]:
     if b.has("error_matrix"):
         yield zero("error matrix", b.field("error_matrix").characteristic(b.s) - control * observer)
         yield zero("polynomial", b.field("polynomial") - control * observer)
+
+
+def integral_action(b: Branch) -> Iterator[Claim]:
+    wanted, n, p, own = b.desired(), b.order, rows_of(b.C), scalar(int(b.variable == "z"))
+    assert wanted is not None
+    A = stack(beside(b.A, zeros(n, p)), beside(zeros(p, n) - b.C, own * identity(p)))
+    B = stack(b.B, zeros(p, columns_of(b.B)) - b.D)
+    at_rest = stack(beside(b.A - own * identity(n), b.B), beside(b.C, b.D))
+    yield zero("polynomial", wanted - b.field("polynomial"))
+    yield Claim("verdict", "divides", (A.T, B.T, wanted), b.verdict != "no")
+    yield Claim("fixed modes", "hidden", (A.T, B.T, from_roots(b.variable, b.answer["fixed_modes"])))
+    yield Claim("solvable", "full", (at_rest,), (n + p, b.answer["solvable"]))
+    yield from stability_claims(b, b.field("polynomial"))
+    if b.verdict == "no":
+        return
+    closed = A - B @ beside(b.field("K"), zeros(columns_of(b.B), p) - b.field("k_I"))
+    yield zero("assigned", closed.characteristic(b.s) - wanted)
+    yield same("closed loop", closed, b.field("closed_loop_matrix"))
+    yield zero("poles", wanted - from_roots(b.variable, b.answer["poles"]))

@@ -40,6 +40,7 @@ TASKS: dict[str, float] = {
     "compensator": 7,
     "feedforward": 3,
     "tracking": 4,
+    "integral_action": 3,
     "pole_advice": 2,
     "stability_region": 2,
 }
@@ -154,6 +155,11 @@ def _feedforward(random: Random, shape: Shape) -> Drawn:
     return _compensator(random, shape)
 
 
+def _integral_action(random: Random, shape: Shape) -> Drawn:
+    """The modes of the plant that no gain moves are asked for like those of the plant alone."""
+    return desired(random, shape, shape.order + shape.outputs) if shape.order + shape.outputs <= 7 else None
+
+
 def _tracking(random: Random, shape: Shape) -> Drawn:
     """A reference that can be followed more often than not: A_d = A − B X."""
     minimal = shape.outputs < shape.order
@@ -235,6 +241,7 @@ _SPECIFICATIONS: dict[str, Callable[[Random, Shape], Drawn]] = {
     "compensator": _compensator,
     "feedforward": _feedforward,
     "tracking": _tracking,
+    "integral_action": _integral_action,
     "pole_advice": _pole_advice,
     "stability_region": regions.drawn,
 }

@@ -25,8 +25,9 @@ MORE = {"integral_action"}
 OWN_COORDINATES = {"reduced_order_observer", "compensator/minimal_order", "tracking"}
 #: Methods that answer another question than the other methods of their task.
 OTHER_QUESTIONS = {"compensator/minimal_order", "pole_advice/dominant_pair"}
-#: Which of a task's keywords for quantities are asked for, and with what: not all of them go together.
+#: Which of a task's keywords for quantities, and which inputs, are asked for, and with what: not all of them go together.
 QUANTITIES = {"pole_advice/dominant_pair": {"settling_time": "2", "overshoot": "1/20"}}
+QUANTITIES["response"] = QUANTITIES["response/superposition"] = QUANTITIES["response/auto"] = {"input": "1 - exp(-t)"}
 QUANTITIES |= {name: {"radius": "3"} for name in ("pole_advice", "pole_advice/butterworth", "pole_advice/auto")}
 
 

@@ -298,9 +298,29 @@ def _transition_holds(result: Any, world: World) -> None:
         assert nothing_explains(result, world, data, start)
 
 
+def response_holds(result: Any, at: Setting) -> None:
+    """Hold the Taylor coefficients of state and output to x' = A x + B u, x(0) = x0 and y = C x + D u."""
+    world, start = world_at(result, at), Fraction(0)
+    if result.fields["state"] is None:
+        assert result.fields["question"]
+        return
+    x, x0, u = taylor(world, result.fields["state"], start), result.answer["initial"], result.answer["input"]
+    m = result.plant.matrices
+    A, B = taylor(world, m.A, start), taylor(world, m.B, start)
+    driven = None if u is None else taylor(world, u, start)
+    assert x[0] == taylor(world, x0, start)[0]
+    for k in range(_COUNT - 1):
+        rate = _convolved(A, x, k)
+        rate = rate if driven is None else _plus(rate, _convolved(B, driven, k))
+        assert [[entry * Fraction(k + 1) for entry in row] for row in x[k + 1]] == rate
+    if result.fields["output"] is not None:
+        assert motion(world, result, x[0], u, start) == taylor(world, result.fields["output"], start)
+
+
 FUNCTIONS_OF_TIME: dict[str, Callable[[Any, Setting], None]] = {
     "matrix_exponential": exponential_holds,
     "gramian": gramian_holds,
+    "response": response_holds,
     "initial_state": initial_state_holds,
     "initial_state_covariance": covariance_holds,
     "time_varying_observability": stack_holds,

@@ -66,6 +66,7 @@ class InTime:
     x0: Any = None
     Q: Any = None
     R: Any = None
+    moves: bool = False
 
     def at(self, values: Mapping[str, Any]) -> InTime:
         """Return the problem with parameters replaced."""
@@ -90,6 +91,11 @@ class InTime:
         if self.input is None:
             return sympy.zeros(self.A.rows, 1)
         return integral(exponential(self.A, t - sigma) * self.B * self.input, sigma, 0, t)
+
+    @property
+    def moved(self) -> Any:
+        """Return the state: e^{At} x₀ and the motion from rest."""
+        return exponential(self.A, t) * self.x0 + self.forced
 
     @property
     def moment(self) -> Any:
@@ -138,6 +144,14 @@ class InTime:
             known |= {"Phi_m": exponential(self.A, -t), "W_t": replace(self, horizon=t).gramian_by(sigma)}
             known |= {f"var_{k + 1}": known["Cov"][k, k] for k in range(self.A.rows)}
             return known
+        if self.moves:
+            return known | {
+                "x_0": self.x0,
+                "u_t": self.input,
+                "x_f": self.forced,
+                "x_t": self.moved,
+                "y_t": self.C * self.moved,
+            }
         known |= {"W": self.gramian}
         if self.horizon != sympy.oo:
             known |= {"Phi_T": exponential(self.A, self.horizon)}
@@ -158,6 +172,8 @@ class InTime:
                 W = self.gramian
                 rank = {"rank": O.rank(), "kernel": tuple(tuple(v) for v in O.nullspace())}
                 return {"matrix": W, "determinant": W.det(), "finite_sum": self.finite_sum, **rank}
+            case "response":
+                return {"state": self.moved, "output": self.C * self.moved}
             case "initial_state":
                 return {"x0": self.x0, "kernel": tuple(tuple(v) for v in O.nullspace())}
             case "initial_state_covariance":
@@ -219,6 +235,14 @@ PROBLEMS_IN_TIME = {
         input=Matrix([Rational(3, 10)]),
         output=Matrix([10 + (x10 + x20 / 2 - 15) * exp(-t / 50) + (-x10 + x20 / 2 + 5) * exp(-3 * t / 50)]),
         x0=Matrix([x10, x20]),
+    ),
+    "step_response": InTime(
+        Matrix([[0, 1], [-2, -3]]),
+        Matrix([[1, 0]]),
+        Matrix([0, 1]),
+        input=Matrix([1]),
+        x0=Matrix([0, 0]),
+        moves=True,
     ),
     "servo_initial_state": InTime(
         **servo,

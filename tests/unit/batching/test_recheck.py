@@ -25,9 +25,7 @@ def answered(text: str, name: str = "p") -> list[tuple[str, dict[str, Any], dict
     payload = json.loads(solve_job(text, name).payload)
     problem, row = problem_of(payload), run(payload)
     results = json.loads(json.dumps(row["result"]))
-    return [
-        (task.name, given_for(problem, task.name), answer) for task, answer in zip(problem.tasks, results, strict=True)
-    ]
+    return [(task.name, given_for(problem, task), answer) for task, answer in zip(problem.tasks, results, strict=True)]
 
 
 def spoilt(answer: Any) -> Any:

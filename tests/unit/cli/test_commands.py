@@ -151,6 +151,7 @@ def test_wrong_usage_is_2(arguments: list[str], tmp_path: Path) -> None:
         (["solve", "a.toml", "b.toml"], "For several files there is `symobs sheet FILE...`."),
         (["observer", "-A", "[0]"], "No such option '-A'.\nWrite --A."),
         (["observer", "--a", "[0]"], "Write --A."),
+        (["observer", "--plant", "1/s"], 'The plant is --A, --B, --C and --D, or --transfer-function "1/(s*(s + 1))".'),
         (["observer", "--A", "0", "1"], 'A value with spaces stands in quotes, as in --A "[0 1; 0 -1]"'),
         (["observer", "--A", "[0]", "--poles", "-10,", "-10"], "A value with spaces stands in quotes"),
         (["observer", "--transfer_functio", "1"], "--transfer_function"),

@@ -115,6 +115,7 @@ def test_a_program_is_written_to_a_file_by_its_suffix(folder: Path) -> None:
     [
         (["--set", "k=-1"], 3, "--set k: -1 is not positive, as k is declared; give a value of that sign"),
         (["--set", "q=1", "--set", "k=x"], 3, "--set q: q is no parameter of the problem; use k"),
+        (["--set", "k=4, m=2"], 2, "sets more than one name; write --set once for each name: --set k=4 --set m=2"),
         (["--set", "k"], 2, '--set: "k" gives no value; write for example --set k=4'),
         (["--set", "k=1", "--set", "k=2"], 2, '--set: "k" is set twice; keep one of them'),
         (["--print", "M"], 2, "--print: there is no answer M; use K, L, F"),

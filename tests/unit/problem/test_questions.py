@@ -97,11 +97,31 @@ def asked(
             'control_poles = [-2, -2]\nobserver_polynomial = "s + 10"\nobserver = "minimal"',
             "Place the control poles at -2, -2.",
         ),
+        (
+            "compensator",
+            'control_poles = [-2, -2]\nobserver_poles = { bessel = 3 }\nmethod = "minimal_order"',
+            "Place the control poles at -2, -2. The desired observer polynomial is s + 3.",
+        ),
+        (
+            "compensator",
+            'control_poles = [-2, -2]\nobserver_poles = [-3]\nmethod = "minimal_order"',
+            "(state feedback with a reduced-order observer), and find the closed loop.",
+        ),
+        (
+            "tracking",
+            'control_poles = [-2, -2]\nobserver_poles = { bessel = 3 }\nreference_matrix = "[0 1; 0 0]"',
+            "The desired observer polynomial is s + 3.",
+        ),
         ("gramian", 'horizon = "inf"', "the infinite-horizon observability Gramian"),
         ("gramian", "horizon = 2", "the observability Gramian over the horizon 2 and its determinant"),
         ("gramian", "", "the observability Gramian over the horizon T and its determinant"),
         ("detectability", 'meaning = "lyapunov"', "stable in the sense of Lyapunov?"),
         ("state_feedback", 'K = "[4 3]"', "Find the characteristic polynomial of the loop with the feedback gain K."),
+        (
+            "response",
+            'input = "t"\ninitial = "[1; 0]"',
+            "The initial state is [1; 0], and the input is t from t = 0 on. Find the response of the plant.",
+        ),
         (
             "initial_state",
             'output = "1 + p*t"\ninput = "0"',

@@ -9,6 +9,7 @@ from typing import Any
 import control  # type: ignore[import-untyped]
 import numpy as np
 import pytest
+import scipy.signal  # type: ignore[import-untyped]
 import sympy
 from sympy.physics.control import TransferFunction, TransferFunctionMatrix
 
@@ -306,3 +307,45 @@ def test_foreign_objects_are_refused_with_a_reason(ask: Any) -> None:
     with pytest.raises(SymobsError) as caught:
         ask()
     assert str(caught.value)
+
+
+# -- what may be meant in two ways, and what comes from SciPy ----------------------------------------------------------
+
+
+@pytest.mark.parametrize("rows", [[[0, 1], [-2, -3]], [["0", "1"], ["a", "1"]], [[0, 1, 0], [0, 0, 1], [1, 2, 3]]])
+def test_a_list_of_rows_is_no_pair_of_numerator_and_denominator(rows: Any) -> None:
+    with pytest.raises(InputError, match=r"may be a matrix, or a numerator.*symobs\.StateSpace\(A, B, C\)"):
+        symobs.characteristic_polynomial(rows)
+    assert symobs.characteristic_polynomial(([1, 2], [1, 3])).polynomial == s + 3
+
+
+@pytest.mark.parametrize("dt", [None, 0.1])
+def test_systems_of_scipy_are_plants(dt: float | None) -> None:
+    above, below = [0.5, 2.0], [1.0, -0.3, 0.02]
+    transfer = scipy.signal.TransferFunction(above, below, **({} if dt is None else {"dt": dt}))
+    for system in (transfer, transfer.to_ss()):
+        result = symobs.transfer_function(system)
+        variable = sympy.Symbol("s" if dt is None else "z")
+        wanted = (variable / 2 + 2) / (variable**2 - sympy.Rational(3, 10) * variable + sympy.Rational(1, 50))
+        assert sympy.simplify(result.transfer_function - wanted) == 0
+        assert "Floating-point entries are taken as the shortest decimals" in result.to("text")
+    with pytest.raises(InputError, match=r"convert it by system\.to_tf\(\)"):
+        symobs.transfer_function(transfer.to_zpk())
+
+
+@pytest.mark.parametrize("polynomial", [[1, 9, 20], np.array([1, 9, 20]), np.poly1d([1, 9, 20])])
+def test_coefficients_are_no_polynomial_and_the_message_writes_one(polynomial: Any) -> None:
+    with pytest.raises(InputError, match=r'a list of coefficients came; write for example "s\^2 \+ 9 s \+ 20"'):
+        symobs.observer(SERVO, polynomial=polynomial)
+
+
+def test_per_cent_are_written_as_a_fraction() -> None:
+    with pytest.raises(InputError, match=r'write 5 % as "0\.05"'):
+        symobs.observer(SERVO, poles={"settling_time": 2, "overshoot": "5%"})
+
+
+def test_everything_comes_by_a_star() -> None:
+    found: dict[str, Any] = {}
+    exec("from symobs import *", found)  # noqa: S102 - no other way within a function
+    assert found["observer"] is symobs.observer
+    assert {"StateSpace", "check", "InputError"} <= found.keys()

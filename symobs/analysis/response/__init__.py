@@ -1,0 +1,1 @@
+"""The response of a plant to its initial state and its input."""
