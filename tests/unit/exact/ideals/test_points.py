@@ -97,3 +97,14 @@ def test_an_ideal_of_many_points_is_kept_by_a_coordinate() -> None:
     assert ideal.extended_by(a - b).is_whole
     assert c * (a - b**3) in ideal
     assert c * a not in ideal
+
+
+@settings(max_examples=10)
+@given(curves(), curves())
+def test_a_basis_is_the_reduced_one(one: Scalar, other: Scalar) -> None:
+    ideal = Ideal.of((one, other))
+    assume(ideal.coordinate is None and not ideal.is_whole)
+    symbols = [sympy.Symbol(name) for name in ideal.field.names]
+    found = sympy.groebner([in_sympy(one), in_sympy(other)], *symbols, order="grevlex")
+    wanted = {sympy.Poly(each, *symbols).monic().as_expr() for each in found.exprs}
+    assert monic(ideal.generators, *ideal.field.names) == wanted
