@@ -226,10 +226,10 @@ def _ideal(generators: tuple[Scalar, ...], field: Field | None = None) -> Ideal:
             return points
         message = f"the equations {'are too long to be decided' if has_few else 'have too many terms'}"
         raise TooLarge(message)
-    return Ideal(field, fmpz_mpoly_vec(_reduced(basis, home), home), home)
+    return Ideal(field, fmpz_mpoly_vec(_reduced(list(basis), home), home), home)
 
 
-def _reduced(basis: fmpz_mpoly_vec, home: fmpz_mpoly_ctx) -> list[fmpz_mpoly]:
+def _reduced(basis: list[fmpz_mpoly], home: fmpz_mpoly_ctx) -> list[fmpz_mpoly]:
     """Return the reduced Gröbner basis of a Gröbner basis.
 
     The members whose leading monomials no other one divides are one, too, and each is reduced by the others once.
