@@ -226,7 +226,7 @@ def _ideal(generators: tuple[Scalar, ...], field: Field | None = None) -> Ideal:
             return points
         message = f"the equations {'are too long to be decided' if has_few else 'have too many terms'}"
         raise TooLarge(message)
-    return Ideal(field, fmpz_mpoly_vec(_reduced(list(basis), home), home), home)
+    return Ideal(field, fmpz_mpoly_vec(_reduced(list(basis), home), home), home)  # type: ignore[call-overload]
 
 
 def _reduced(basis: list[fmpz_mpoly], home: fmpz_mpoly_ctx) -> list[fmpz_mpoly]:
