@@ -9,13 +9,12 @@ not repeated.
 
 from __future__ import annotations
 
-from fractions import Fraction
 from typing import TYPE_CHECKING
 
 from symobs._dataclass import dataclass
 from symobs.exact import EIGENVALUE, Scalar
 from symobs.exact.algebraic.enclosure import sign_of_number
-from symobs.exact.algebraic.real_algebraic import count_roots, integer_factor
+from symobs.exact.algebraic.real_algebraic import integer_factor, real_roots
 from symobs.exact.core.generators import PI, function_named
 from symobs.exact.core.polynomial import by_monomial
 
@@ -28,13 +27,8 @@ SIGNS = ("positive", "negative", "nonnegative", "nonpositive", "nonzero", "real"
 #: A polynomial with more terms than this is not factored: it counts as one factor.
 FACTORED_UP_TO = 1_500
 
-#: The part of the line that a sign leaves to a parameter, by its ends.
-_LINE: dict[str, tuple[Fraction | None, Fraction | None]] = {
-    "positive": (Fraction(0), None),
-    "nonnegative": (Fraction(0), None),
-    "negative": (None, Fraction(0)),
-    "nonpositive": (None, Fraction(0)),
-}
+#: The side of 0 that a sign leaves to a parameter.
+_SIDE = {"positive": 1, "nonnegative": 1, "negative": -1, "nonpositive": -1}
 _NEVER_ZERO = {"positive", "negative", "nonzero"}
 _OPPOSITE = {
     "positive": "negative",
@@ -159,11 +153,14 @@ def _sign_without_roots(factor: Scalar, signs: Mapping[str, str]) -> str:
     (name,) = names if len(names) == 1 else ("",)
     if name not in signs or factor.degree(name) < 2:
         return "real"
-    low, high = _LINE.get(signs[name], (None, None))
+    side = _SIDE.get(signs[name], 0)
     polynomial = integer_factor(factor, name)
-    if (polynomial.degree() % 2 and low is high) or count_roots(polynomial, low, high):
+    at_the_end = polynomial[polynomial.degree()] * (side or 1) ** polynomial.degree()
+    if (polynomial.degree() % 2 and not side) or (at_the_end > 0) != (polynomial[0] > 0):
         return "real"
-    return "positive" if polynomial(-1 if high is not None else 1) > 0 else "negative"
+    if any(not side or root.sign == side for root in real_roots(polynomial)):
+        return "real"
+    return "positive" if polynomial(side or 1) > 0 else "negative"
 
 
 def sign_of(value: Scalar, signs: Mapping[str, str]) -> str:

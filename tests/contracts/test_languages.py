@@ -204,7 +204,11 @@ def test_decimals_have_a_comma() -> None:
 
 def test_choices_of_states() -> None:
     german = language_named("de")
-    sets = {((1,),): "state 1", ((1,), (3,)): "state 1 or state 3", ((1,), (2,), (4,)): "any one of the states 1, 2 and 4"}
+    sets = {
+        ((1,),): "state 1",
+        ((1,), (3,)): "state 1 or state 3",
+        ((1,), (2,), (4,)): "any one of the states 1, 2 and 4",
+    }
     assert {each: ENGLISH.put(StateChoice(each)) for each in sets} == sets
     assert ENGLISH.put(StateChoice(((1, 3), (2, 3)))) == "states 1 and 3, or 2 and 3"
     assert german.put(StateChoice(((1,), (2,), (4,)))) == "einer der Zustände 1, 2 und 4"

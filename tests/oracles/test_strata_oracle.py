@@ -184,3 +184,30 @@ def test_plants_of_several_inputs_and_outputs_are_decided_on_all_strata_and_have
     assert len(decided) >= 15
     assert all(decided)
     assert result.derivation.steps
+
+
+@pytest.mark.parametrize(
+    ("task", "signs", "plant", "given"),
+    [
+        (
+            "state_feedback",
+            'a = "real"\nb = "nonzero"\nc = "negative"',
+            'A = "[0 1 2; 0 c 2; -1 -1 2]"\nB = "[b^2-a; 0; 1]"\nC = "[0 -1 -1]"',
+            'poles = "-3+1*I, -4, -3-1*I"',
+        ),
+        (
+            "gramian",
+            'omega = "positive"\nb = "nonnegative"\nT = "positive"',
+            'A = "[0 1; -omega^2 -b]"\nC = "[0 1]"',
+            'horizon = "T"',
+        ),
+    ],
+    ids=["a kernel on a curve", "the sign of a discriminant"],
+)
+def test_a_case_has_a_page_of_its_own(task: str, signs: str, plant: str, given: str) -> None:
+    """A kernel on a curve, and the signs of a discriminant: both are what the page of the case alone has to rest on."""
+    text = f'task = "{task}"\n[symbols]\n{signs}\n[plant]\n{plant}\n[specification]\n{given}\n'
+    (result,) = validate(parse(text, "problem")).solve()
+    first = result.case_tree[0].result
+    assert first is not None
+    assert first.derivation.steps

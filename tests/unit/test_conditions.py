@@ -137,6 +137,13 @@ class TestValues:
             (a * (b - a) ** 2, {"a": "negative"}, "nonpositive"),
             (a * b * (a + b) - a**2 * b, {"a": "nonzero"}, "real"),
             ((a + 1) * (b - 2), {"a": "positive", "b": "nonpositive"}, "negative"),
+            # nor do they, the roots do
+            (a**3 - a + 1, {"a": "positive"}, "positive"),
+            (a**3 - a + 1, {"a": "negative"}, "real"),
+            (a**3 - 4 * a + 1, {"a": "positive"}, "real"),
+            (1 - a - a**4 - 2 * a**2, {"a": "nonpositive"}, "real"),
+            (a**4 - 5 * a**2 + 5, {"a": "nonzero"}, "real"),
+            (3 * a - a**2 - 3, {"a": "real"}, "negative"),
         ],
         ids=str,
     )

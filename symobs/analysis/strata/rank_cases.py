@@ -18,13 +18,12 @@ from symobs.analysis.strata.rank_stratification import (
     cuts_out,
     exclusions,
     maximal_minors,
-    primitive,
     with_restriction,
 )
 from symobs.certificate.claims import Claim
 from symobs.conditions import Condition
 from symobs.derivation.builder import relation
-from symobs.exact import Matrix, Scalar, apart_from_zero
+from symobs.exact import Matrix, Scalar, apart_from_zero, primitive
 from symobs.formula import Environment
 from symobs.system.reading import is_identity
 

@@ -16,10 +16,20 @@ from typing import TYPE_CHECKING
 from symobs._dataclass import dataclass
 from symobs.analysis.strata.loci import Locus, loci, maximal
 from symobs.conditions import FACTORED_UP_TO
-from symobs.exact import Ideal, Matrix, Scalar, TooLarge, apart_from_zero, echelon, independent_rows, modulo
+from symobs.exact import (
+    Ideal,
+    Matrix,
+    Scalar,
+    TooLarge,
+    apart_from_zero,
+    echelon,
+    independent_rows,
+    modulo,
+    primitive_kernel,
+)
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
+    from collections.abc import Iterator
 
     from symobs.analysis.strata.loci import Region
 
@@ -294,14 +304,7 @@ def _best_kernel(
 
 def kernel_on(matrix: Matrix, A: Matrix, ideal: Ideal | None, order: tuple[int, ...]) -> Kernel:
     """Return the kernel where an ideal vanishes, eliminated with the columns in some order."""
-    height = matrix.shape[0]
-    _, vectors = echelon(matrix.select(range(height), order), ideal)
-    columns = []
-    for vector in vectors:
-        entries = [vector[order.index(i), 0] for i in range(len(order))]
-        columns.append(primitive(ideal.reduced_column(entries) if ideal is not None else entries))
-    N = Matrix.of([[column[i] for column in columns] for i in range(len(order))], len(columns))
-    return with_restriction(N, A, ideal)
+    return with_restriction(primitive_kernel(matrix, ideal, order), A, ideal)
 
 
 def with_restriction(N: Matrix, A: Matrix, ideal: Ideal | None = None) -> Kernel:
@@ -312,20 +315,6 @@ def with_restriction(N: Matrix, A: Matrix, ideal: Ideal | None = None) -> Kernel
         return Kernel(N, Matrix.zeros(len(count), len(count)), free)
     X = N.select(free, count).solve((A @ N).select(free, count)).normal()
     return Kernel(N, modulo(X, ideal), free)
-
-
-def primitive(entries: Iterable[Scalar]) -> list[Scalar]:
-    """Return a vector of rational functions as polynomials without common factor, the first coefficient positive."""
-    entries = list(entries)
-    whole = Matrix.column(entries)
-    entries = [(entry * whole.common_denominator()) for entry in entries]
-    field = Matrix.column(entries).field
-    shared = field.zero
-    for entry in entries:
-        shared = shared.gcd(entry.within(field).numerator_part)
-    if not shared:
-        return entries
-    return [entry / Scalar(field, shared, field.one) for entry in entries]
 
 
 def maximal_minors(N: Matrix) -> list[Scalar]:

@@ -155,11 +155,12 @@ class DampingCases(Result):
                 yield from case.result.everything()
 
     def state_data(self, page: Builder) -> None:
-        """State the data and the condition on the horizon."""
+        """State the data, the condition on the horizon, and on the page of a case the signs it stands on."""
         from symobs.analysis.page_parts import given  # noqa: PLC0415
 
         given(page)
         beyond = [c.expression for c in self.domain if c.operator == ">"]
+        beyond += [_plain(delta if sign == "positive" else -delta) for delta, sign in self.answer["taken"].items()]
         if beyond:
             page.start, page.environment = (
                 replace(each, positive=(*each.positive, *beyond)) for each in (page.start, page.environment)

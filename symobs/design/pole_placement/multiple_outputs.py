@@ -14,7 +14,7 @@ from symobs.analysis.rank.rank_test import power_rows
 from symobs.design.pole_placement.brunovsky_chains import cost, simple_gains
 from symobs.design.pole_placement.single_output import ObserverPair
 from symobs.design.pole_placement.sylvester import charts_of, has_meaning
-from symobs.exact import Matrix, factored, independent_rows, kernel, unit_rows
+from symobs.exact import Matrix, factored, independent_rows, primitive_kernel, unit_rows
 
 if TYPE_CHECKING:
     from symobs.exact import Scalar
@@ -38,7 +38,7 @@ class MultiOutputPair(ObserverPair):
     @cached_property
     def kernel(self) -> Matrix:
         """A basis of ker 𝒪 as columns."""
-        return kernel(self.matrix, self.ideal)
+        return primitive_kernel(self.matrix, self.ideal)
 
     @property
     def decisive(self) -> tuple[Scalar, ...]:

@@ -19,8 +19,8 @@ from symobs.exact import (
     apply_polynomial,
     echelon,
     independent_rows,
-    kernel,
     modulo,
+    primitive_kernel,
     remainder,
     unit_rows,
 )
@@ -69,7 +69,7 @@ class ObserverPair:
     @cached_property
     def kernel(self) -> Matrix:
         """A basis of ker 𝒪 as columns; no columns where the pair is observable."""
-        return kernel(self.krylov.matrix, self.ideal)
+        return primitive_kernel(self.krylov.matrix, self.ideal)
 
     @cached_property
     def restricted(self) -> Matrix:

@@ -120,6 +120,11 @@ class RealNumber:
                 return -1
             bits *= 2
 
+    @property
+    def sign(self) -> int:
+        """The sign of the number."""
+        return self.sign_of(fmpz_poly([0, 1]))
+
     def closed_form(self) -> Scalar | None:
         """Return the closed form by square roots, for degree 1 and 2 and ±√a ± √b."""
         return _closed_form(self)

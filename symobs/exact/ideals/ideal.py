@@ -226,7 +226,21 @@ def _ideal(generators: tuple[Scalar, ...], field: Field | None = None) -> Ideal:
             return points
         message = f"the equations {'are too long to be decided' if has_few else 'have too many terms'}"
         raise TooLarge(message)
-    return Ideal(field, basis.autoreduction(groebner=True), home)  # type: ignore[attr-defined]
+    return Ideal(field, fmpz_mpoly_vec(_reduced(list(basis), home), home), home)  # type: ignore[call-overload]
+
+
+def _reduced(basis: list[fmpz_mpoly], home: fmpz_mpoly_ctx) -> list[fmpz_mpoly]:
+    """Return the reduced Gröbner basis of a Gröbner basis.
+
+    The members whose leading monomials no other one divides are one, too, and each is reduced by the others once.
+    """
+    kept: dict[tuple[int, ...], fmpz_mpoly] = {}
+    for member in sorted(basis, key=lambda member: sum(member.monoms()[0])):
+        lead = member.monoms()[0]
+        if not any(_divides(other, lead) for other in kept):
+            kept[lead] = member
+    others = {lead: fmpz_mpoly_vec([kept[each] for each in kept if each != lead], home) for lead in kept}
+    return [member.reduction_primitive_part(others[lead]) for lead, member in kept.items()]  # type: ignore[attr-defined]
 
 
 def _alone(generator: Scalar) -> int:

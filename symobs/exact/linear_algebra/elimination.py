@@ -12,7 +12,7 @@ from symobs.exact.core.scalar import Scalar
 from symobs.exact.ideals.ideal import Ideal, TooLarge
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterable, Sequence
 
     from symobs.exact.core.field import Field
 
@@ -88,6 +88,31 @@ def kernel(matrix: Matrix, relations: Ideal | None = None) -> Matrix:
     """Return a basis of {v : M v = 0} as columns (where the relations hold); no columns where it is trivial."""
     vectors = echelon(matrix, relations)[1]
     return Matrix.of([[v[i, 0] for v in vectors] for i in range(matrix.shape[1])], len(vectors))
+
+
+def primitive_kernel(matrix: Matrix, relations: Ideal | None, order: Sequence[int] = ()) -> Matrix:
+    """Return the basis of `kernel` in the normal form of the relations, eliminated with the columns in some order.
+
+    The columns are polynomials without common factor.
+    """
+    order = order or range(matrix.shape[1])
+    columns = []
+    for vector in echelon(matrix.select(range(matrix.shape[0]), order), relations)[1]:
+        entries = [vector[order.index(i), 0] for i in range(len(order))]
+        columns.append(primitive(entries if relations is None else relations.reduced_column(entries)))
+    return Matrix.of([[column[i] for column in columns] for i in range(len(order))], len(columns))
+
+
+def primitive(entries: Iterable[Scalar]) -> list[Scalar]:
+    """Return a vector of rational functions as polynomials without common factor, the first coefficient positive."""
+    entries = list(entries)
+    whole = Matrix.column(entries)
+    entries = [(entry * whole.common_denominator()) for entry in entries]
+    field = Matrix.column(entries).field
+    shared = field.zero
+    for entry in entries:
+        shared = shared.gcd(entry.within(field).numerator_part)
+    return entries if not shared else [entry / Scalar(field, shared, field.one) for entry in entries]
 
 
 def independent_rows(matrix: Matrix, relations: Ideal | None = None) -> tuple[int, ...]:

@@ -30,7 +30,7 @@ class Refused:
 
 
 class _TooSlow(Exception):
-    """The time for one problem is over."""
+    """The CPU time for one problem is over."""
 
 
 def solved(kind: str, seed: int, problem: Tables, seconds: float = 20) -> Asked | Refused:
@@ -51,16 +51,16 @@ def solved(kind: str, seed: int, problem: Tables, seconds: float = 20) -> Asked 
 
 @contextmanager
 def _at_most(seconds: float, happened: Event) -> Iterator[None]:
-    """Give up after so many seconds; a call into FLINT ends first."""
+    """Give up after so many seconds of CPU; a call into FLINT ends first."""
 
     def over(_number: int, _frame: FrameType | None) -> None:
         happened.set()
         raise _TooSlow
 
-    before = signal.signal(signal.SIGALRM, over)
-    signal.setitimer(signal.ITIMER_REAL, seconds)
+    before = signal.signal(signal.SIGPROF, over)
+    signal.setitimer(signal.ITIMER_PROF, seconds)
     try:
         yield
     finally:
-        signal.setitimer(signal.ITIMER_REAL, 0)
-        signal.signal(signal.SIGALRM, before)
+        signal.setitimer(signal.ITIMER_PROF, 0)
+        signal.signal(signal.SIGPROF, before)

@@ -164,6 +164,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("--task", action="append", default=[], help="ask this task alone; may be repeated")
     parser.add_argument("--show", action="store_true", help="print the problems as files")
     options = parser.parse_args(arguments)
+    sys.setrecursionlimit(50_000)  # a relation of a thousand terms is a sum nested as deep
     found, begun, shown = Found(), time.perf_counter(), 0
     for seed in range(options.seed, options.seed + options.plants):
         examine(seed, found, options.task, options.seconds, options.points)

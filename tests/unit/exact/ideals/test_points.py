@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 import sympy
-from hypothesis import assume, given, settings
+from hypothesis import assume, example, given, settings
 from hypothesis import strategies as st
 
 from symobs.exact import Ideal, Scalar, apart_from_zero
@@ -97,3 +97,16 @@ def test_an_ideal_of_many_points_is_kept_by_a_coordinate() -> None:
     assert ideal.extended_by(a - b).is_whole
     assert c * (a - b**3) in ideal
     assert c * a not in ideal
+
+
+@settings(max_examples=10)
+@given(curves(), curves(), curves())
+@example(a**2 + b, a**3 * b + a**2 - 2, 3 * a * b**2 - a**3 + 1)
+@example(2 * b**2 + 3 * a**2 * b**2 + a, -2 * a**2 - 2 * a**2 * b - a**3 * b**2, a + 3 * b**2 - a**3)
+def test_a_basis_is_the_reduced_one(one: Scalar, other: Scalar, third: Scalar) -> None:
+    ideal = Ideal.of((one, other, third))
+    assume(ideal.coordinate is None and not ideal.is_whole)
+    symbols = [sympy.Symbol(name) for name in ideal.field.names]
+    found = sympy.groebner([in_sympy(each) for each in (one, other, third)], *symbols, order="grevlex")
+    wanted = {sympy.Poly(each, *symbols).monic().as_expr() for each in found.exprs}
+    assert monic(ideal.generators, *ideal.field.names) == wanted
