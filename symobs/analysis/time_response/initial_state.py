@@ -21,17 +21,17 @@ from symobs.analysis.time_response.matrix_exponential import (
 )
 from symobs.analysis.time_response.measurements import OfTheInitialState, read_functions
 from symobs.certificate.claims import Claim
-from symobs.conditions import vanishing_factors
+from symobs.conditions import Condition, vanishing_factors
 from symobs.derivation.builder import relation
 from symobs.errors import InputError
 from symobs.exact import Matrix, Scalar, kernel
-from symobs.exact.core.generators import function_named, normal_form, substitute
+from symobs.exact.core.generators import all_roots, function_named, normal_form, substitute
 from symobs.exact.time_functions.matrix_exponential import NoClosedForm
 from symobs.exact.time_functions.quasipolynomial import Table, integral, matrix_at, product, table_of, transposed
 from symobs.formula import Environment, Literal
 from symobs.formula.calculus import since_start
 from symobs.formula.term import Term, block, identity, letter
-from symobs.result import Result, choose, method, task
+from symobs.result import Case, Result, choose, method, task
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -125,9 +125,21 @@ class InitialState(OfTheInitialState):
     @property
     def further_zeros(self) -> tuple[Scalar, ...]:
         """Where the pair may lose rank, and where what refutes the data may not."""
-        refuted = vanishing_factors(self.answer.get("refuted", ()), self.plant.symbols.signs)
-        plain = [f for f in refuted if not any(function_named(name) for name in f.names)]
+        plain = (factor for factor in self._refuting_factors if not _has_functions(factor))
         return tuple(dict.fromkeys((*super().further_zeros, *plain)))
+
+    @cached_property
+    def case_tree(self) -> tuple[Case, ...]:
+        """Those of all results in time; and undecided ones where what refutes the data vanishes with roots or functions."""
+        beyond = filter(_has_functions, self._refuting_factors)
+        return (*super().case_tree, *(Case((Condition("existence", f, "=="),), {}, None) for f in beyond))
+
+    @property
+    def _refuting_factors(self) -> tuple[Scalar, ...]:
+        """What vanishes where the data are not refuted; a root by itself does not, as the sign of its argument is taken."""
+        found = vanishing_factors(self.answer.get("refuted", ()), self.plant.symbols.signs)
+        roots = {root.value for root in all_roots(*found)}
+        return tuple(factor for factor in found if factor not in roots)
 
     def _values(self) -> dict[str, Any]:
         m, answer = self.plant.matrices, self.answer
@@ -200,6 +212,10 @@ class InitialState(OfTheInitialState):
         vectors = [list(N.select(range(N.shape[0]), [j]).entries) for j in range(N.shape[1])]
         found = {"x0": None if x0 is None else list(x0.entries), "kernel": vectors}
         return {**found, **({"question": asked} if asked else {})}
+
+
+def _has_functions(value: Scalar) -> bool:
+    return any(function_named(name) for name in value.names)
 
 
 def _solved(test: Mapping[str, Any], start: list[Scalar], seen: Table, free: Table) -> dict[str, Any]:

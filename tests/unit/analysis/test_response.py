@@ -129,3 +129,17 @@ def test_modes_without_a_closed_form_are_undecided_and_another_answer_is_rejecte
 def test_what_has_no_response_is_refused(plant: StateSpace, asked: Any, kind: type[Exception], said: str) -> None:
     with pytest.raises(kind, match=said):
         symobs.response(plant, **asked)
+
+
+def test_what_roots_and_functions_leave_open_is_not_told_as_no() -> None:
+    """On a = sqrt(c) the state (1, a) explains y = exp(a t), and where exp(a) = 1 the zero state explains y = 0."""
+    plant = StateSpace("[0 1; c 0]", C="[1 0]", symbols={"a": "real", "c": "real"})
+    found = symobs.initial_state(plant, output="exp(a*t)", horizon="1")
+    (above,) = (case.result for case in found.cases if case.when == (c > 0,))
+    assert above.verdict == "no"
+    assert {str(case.when[0].lhs): case.result for case in above.cases} == {"a - sqrt(c)": None, "a + sqrt(c)": None}
+    assert (found.at(a=2, c=4).verdict, found.at(a=2, c=4).x0) == ("yes", (1, 2))
+    assert "is not decided here" in found.to("text")
+    lag = StateSpace("[-1]", C="[1]", symbols={"a": "real"})
+    (case,) = symobs.initial_state(lag, output="(exp(a) - 1)*exp(-2*t)", horizon="1").cases
+    assert (str(case.when[0].lhs), case.result) == ("exp(a) - 1", None)
