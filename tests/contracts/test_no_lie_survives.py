@@ -42,7 +42,7 @@ EXAMPLES = FILES
 OF_RANKS = {"observability", "controllability", "pbh", "detectability", "stabilizability"}
 
 #: Regions with edges parallel to an axis: a corner that is moved along its edge leaves the picture as it is.
-OF_STRAIGHT_EDGES = {"region_without_one_point", "region_disconnected"}
+OF_STRAIGHT_EDGES = {"pendulum_feedback_region", "region_without_one_point", "region_disconnected"}
 
 
 @cache

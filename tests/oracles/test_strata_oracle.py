@@ -164,7 +164,7 @@ def test_a_point_that_no_branch_covers_is_seen() -> None:
 
 
 #: Plants of order two whose answers come at once.
-SAMPLE = [0, 1, 2, 3, 4, 6, 8, 11, 16]
+SAMPLE = [0, 1, 2, 3, 4, 6, 8, 11, 12, 16, 66]
 
 
 def test_a_sample_of_plants_is_right_at_points_of_its_strata() -> None:
