@@ -317,12 +317,11 @@ def _settled(rows: Sequence[dict[str, Any]], folder: Path) -> dict[str, Any]:
 
 def _row(line: bytes, path: Path, number: int) -> dict[str, Any]:
     """Return the row that a line of a chunk holds; raises `Damaged` where it holds none."""
-    try:
-        row: dict[str, Any] = json.loads(line)
-        is_row = all(isinstance(row[name], str) for name in ("key", "status", "kind", "name", "job"))
-    except (ValueError, LookupError, TypeError, RecursionError):
-        is_row = False
-    if not is_row:
+    row: Any = None
+    with suppress(ValueError, RecursionError):
+        row = json.loads(line)
+    parts = ("key", "status", "kind", "name", "job")
+    if not isinstance(row, dict) or not all(isinstance(row.get(part), str) for part in parts):
         raise _damaged(path, number)
     return row
 
