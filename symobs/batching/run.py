@@ -83,7 +83,7 @@ class Batch:
                         return
             finally:
                 if self.store is not None:
-                    self.store.close(sorted(kinds), self.names)
+                    self.store.close(sorted(kinds), self.counts, self.names)
 
     def _wanted(self, kinds: set[str]) -> Iterator[Job]:
         """Yield the jobs that are not done yet, each once; the names of those that stand twice are kept."""
@@ -274,7 +274,7 @@ def require_own_folder(out: Path, problems: Iterable[Path]) -> None:
 def verified(folder: Path) -> int:
     """Return how many stored rows hold: key, hash, and the claims by other code than that which made them.
 
-    Raises `CertificateRejected` for the first one that does not.
+    Raises `CertificateRejected` for the first one that does not, `Damaged` for the first that is no whole row.
     """
     if not (folder / "manifest.json").is_file():
         raise InputError("there is no manifest.json", where=str(folder), repair="name the folder of a run")

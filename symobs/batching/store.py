@@ -3,6 +3,7 @@
 manifest.json              what the folder holds; written last
 rows/KK/CHUNK.jsonl        the rows of a chunk, named by the hash of their keys
 files/KK/KEY.SUFFIX        the pages of a job
+rows/KK/CHUNK.jsonl.damaged   a chunk that was not whole any more, set aside; its jobs are done again
 keys.bin                   the keys of all rows, to begin again quickly; made anew where it does not fit the rows
 log.jsonl                  times
 lock                       held while a run writes here
@@ -34,8 +35,14 @@ if TYPE_CHECKING:
 FINAL = ("done", "no", "unreadable")
 STATUSES = (*FINAL, "undecided", "failed")
 _RECORD = struct.Struct("<16sBff")
-_HEAD = re.compile(rb'\{"key":"([0-9a-f]{64})","status":"([a-z]+)"')
+_HEAD = re.compile(rb'\{"key":"([0-9a-f]{64})","status":"(%s)"' % "|".join(STATUSES).encode())
 _BUDGET = re.compile(rb'"budget":\{"seconds":([^,}]*),"megabytes":([^,}]*)\}')
+
+
+class Damaged(InputError):
+    """A stored row that is not what was written."""
+
+    exit_code = 4
 
 
 class Store:
@@ -46,7 +53,8 @@ class Store:
         self.final: dict[bytes, str] = {}
         self.others: dict[bytes, tuple[str, Budget]] = {}
         self.counts = dict.fromkeys(STATUSES, 0)
-        self.torn: list[str] = []
+        #: The chunks that are not whole.
+        self.torn: list[Path] = []
         self._is_indexed = False
 
     # -- reading -----------------------------------------------------------------------------------------------------
@@ -58,13 +66,15 @@ class Store:
     def rows(self) -> Iterator[dict[str, Any]]:
         """Yield the row of every job; of one that was tried again its last outcome.
 
-        Raises `CertificateRejected` where two results of one job contradict each other.
+        Raises `Damaged` for what is no row, and `CertificateRejected` where two results of one job contradict each other.
         """
         several: dict[str, list[dict[str, Any]]] = {key: [] for key in self._keys_met_again()}
         for path in self.chunks():
+            if not path.stat().st_size:
+                raise _damaged(path, 1)
             with path.open("rb") as stream:
-                for line in stream:
-                    row = json.loads(line)
+                for number, line in enumerate(stream, 1):
+                    row = _row(line, path, number)
                     if row["key"] in several:
                         several[row["key"]].append(row)
                     else:
@@ -75,16 +85,16 @@ class Store:
     def in_order(self, jobs: Iterable[Job]) -> Iterator[tuple[int, Any]]:
         """Yield the first index and the result of blocks, in the order of their jobs; one chunk is in memory at a time.
 
-        Raises `InputError` where one is missing.
+        Raises `InputError` where one is missing, `Damaged` where it is no row.
         """
         places = dict(self._places())
         for job in jobs:
             if job.key not in places:
                 raise InputError(f"{job.name} are missing", where=str(self.folder), repair="run the same command again")
-            path, start, length = places[job.key]
+            path, number, start = places[job.key]
             with path.open("rb") as stream:
                 stream.seek(start)
-                row = json.loads(stream.read(length))
+                row = _row(stream.readline(), path, number)
             if "result" not in row:
                 raise InputError(
                     f"{job.name}: {'; '.join(row['error'])}",
@@ -94,12 +104,13 @@ class Store:
             yield json.loads(job.payload)["first"], row["result"]
 
     def _places(self) -> Iterator[tuple[str, tuple[Path, int, int]]]:
-        """Yield where the row of each key stands."""
+        """Yield where the row of each key stands: the file, the number of the line, and where it begins."""
         for path in self.chunks():
             start = 0
             with path.open("rb") as stream:
-                for line in stream:
-                    yield line[8:72].decode(), (path, start, len(line))
+                for number, line in enumerate(stream, 1):
+                    if head := _HEAD.match(line):
+                        yield head[1].decode(), (path, number, start)
                     start += len(line)
 
     def _keys_met_again(self) -> set[str]:
@@ -107,38 +118,31 @@ class Store:
         seen: set[bytes] = set()
         again: set[str] = set()
         for path in self.chunks():
-            for line in path.read_bytes().splitlines():
-                key = line[8:72]  # after {"key":"
-                if key in seen:
-                    again.add(key.decode())
-                seen.add(key)
+            for head in filter(None, map(_HEAD.match, path.read_bytes().splitlines())):
+                if head[1] in seen:
+                    again.add(head[1].decode())
+                seen.add(head[1])
         return again
 
     def load(self) -> None:
-        """Read which jobs have rows."""
-        for left in self.folder.glob("*/*/*.tmp"):
-            left.unlink(missing_ok=True)
+        """Read which jobs have rows; those of a chunk that is not whole have none."""
         index, chunks = self.folder / "keys.bin", self.chunks()
         with suppress(OSError, struct.error):
             head, _, records = index.read_bytes().partition(b"\n")
-            if head == _name(chunk.stem for chunk in chunks).encode():
+            if head == _head_of_index(chunks, records):
                 for key, status, seconds, megabytes in _RECORD.iter_unpack(records):
                     self._note(key, STATUSES[status], Budget(seconds or None, megabytes or None))
                 self._is_indexed = True
                 return
         for path in chunks:
             data = path.read_bytes()
-            if not data.endswith(b"\n"):
-                self.torn.append(str(path))
-                path.unlink()
+            lines = data.splitlines()
+            heads = [_HEAD.match(line) if line.endswith(b"}") else None for line in lines]
+            if not data.endswith(b"\n") or None in heads:
+                self.torn.append(path)
                 continue
-            for line in data.splitlines():
-                head_of_row = _HEAD.match(line)
-                if head_of_row is None:
-                    raise InputError(
-                        "this is no row", where=str(path), repair="take the file away; its jobs are done again"
-                    )
-                key, status = bytes.fromhex(head_of_row[1].decode())[:16], head_of_row[2].decode()
+            for line, found in zip(lines, filter(None, heads), strict=True):
+                key, status = bytes.fromhex(found[1].decode())[:16], found[2].decode()
                 self._note(key, status, Budget(None, None) if status in FINAL else _budget_of(line))
 
     def _note(self, key: bytes, status: str, budget: Budget) -> None:
@@ -174,7 +178,11 @@ class Store:
             self.folder.mkdir(parents=True, exist_ok=True)
             with (self.folder / "lock").open("a+", encoding="utf-8") as stream:
                 self._take(stream)
+                for left in self.folder.glob("*/*/*.tmp"):
+                    left.unlink(missing_ok=True)
                 self.load()
+                for path in self.torn:
+                    path.replace(_aside(path))
                 yield
         except OSError as error:
             raise _refused(error, self.folder) from None
@@ -219,13 +227,13 @@ class Store:
         write_whole(self.folder / place, content.encode("utf-8", "surrogatepass"))
         return place
 
-    def close(self, kinds: Sequence[str], aliases: dict[str, list[str]]) -> None:
-        """Write what the folder holds: the index of keys where it is not there, and the manifest last."""
+    def close(self, kinds: Sequence[str], counts: dict[str, int], aliases: dict[str, list[str]]) -> None:
+        """Write the index of keys where it is not there, and last the manifest: what the jobs of this run came to."""
         manifest = {
             "schema": SCHEMA,
             "fingerprint": fingerprint(),
             "kinds": sorted(kinds),
-            "counts": self.counts,
+            "counts": counts,
             "names": aliases,
             "index": "keys.bin",
         }
@@ -239,11 +247,11 @@ class Store:
 
     def _index(self) -> bytes:
         """Return the index of keys: what says which chunks it is of, and a record of each key."""
-        head = _name(chunk.stem for chunk in self.chunks()).encode() + b"\n"
         records = [_RECORD.pack(key, STATUSES.index(status), 0, 0) for key, status in sorted(self.final.items())]
         for key, (status, budget) in sorted(self.others.items()):
             records.append(_RECORD.pack(key, STATUSES.index(status), budget.seconds or 0, budget.megabytes or 0))
-        return head + b"".join(records)
+        joined = b"".join(records)
+        return _head_of_index(self.chunks(), joined) + b"\n" + joined
 
 
 def work_folder(out: Path) -> Path:
@@ -305,6 +313,33 @@ def _settled(rows: Sequence[dict[str, Any]], folder: Path) -> dict[str, Any]:
         message = f"two results of one job: {first[:200]} and {second[:200]}"
         raise CertificateRejected(message, where=str(folder), repair="please report this: it is a bug of symobs")
     return (final or sorted(rows, key=lambda row: json.dumps(row.get("budget"))))[-1]
+
+
+def _row(line: bytes, path: Path, number: int) -> dict[str, Any]:
+    """Return the row that a line of a chunk holds; raises `Damaged` where it holds none."""
+    row: Any = None
+    with suppress(ValueError, RecursionError):
+        row = json.loads(line)
+    parts = ("key", "status", "kind", "name", "job")
+    if not isinstance(row, dict) or not all(isinstance(row.get(part), str) for part in parts):
+        raise _damaged(path, number)
+    return row
+
+
+def _damaged(path: Path, number: int) -> Damaged:
+    repair = f"rename it to {_aside(path).name} and run the same command again: what it held is done again"
+    return Damaged("this line is no whole row, the file was damaged", where=f"{path}, line {number}", repair=repair)
+
+
+def _aside(path: Path) -> Path:
+    """Return where a damaged chunk is kept."""
+    return path.with_name(f"{path.name}.damaged")
+
+
+def _head_of_index(chunks: Iterable[Path], records: bytes) -> bytes:
+    """Return what an index fits: the names and the sizes of its chunks, and its own records."""
+    sizes = [f"{chunk.stem} {chunk.stat().st_size}" for chunk in chunks]
+    return f"{_name(sizes)} {hashlib.sha256(records).hexdigest()}".encode()
 
 
 def _name(parts: Any) -> str:

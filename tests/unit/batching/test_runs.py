@@ -206,7 +206,7 @@ def test_what_was_torn_is_done_again_and_what_contradicts_is_shown(hostile: Path
     (out / "keys.bin").unlink()
     again = run(jobs, out, workers=1)
     assert again.store is not None
-    assert again.store.torn == [str(chunks[0])]
+    assert again.store.torn == [chunks[0]]
     assert stored(out) == before
     row = json.loads(before[0])
     twin = out / "rows" / "ff" / "ffffffffffffffff.jsonl"

@@ -20,6 +20,7 @@ from tests.support.tools.command_line import SERVO, inside
 from tests.unit.batching.test_sweep import CART
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
     from pathlib import Path
 
 
@@ -52,6 +53,85 @@ def test_what_a_problem_was_before_it_was_changed_counts_no_more(folder: Path, t
         assert (left.code, left.err) == (0, "2 done\n")
     assert len(list(Store(tmp_path / "out").rows())) == 3
     assert batch(folder, out=tmp_path / "out").failed == []
+
+
+def test_the_manifest_counts_the_problems_of_the_run(folder: Path, tmp_path: Path) -> None:
+    words = ["batch", folder.name, "--out", "out", "--in-process"]
+    for number in (4, 5, 6):
+        (folder / f"p{number}.toml").write_text(design(number), encoding="utf-8")
+    assert inside(*words, folder=tmp_path).err == "4 done, 1 unreadable\n"
+    (folder / "p4.toml").write_text(design(9), encoding="utf-8")
+    (folder / "p5.toml").unlink()
+    shutil.copy(folder / "good.toml", folder / "bad.toml")
+    for _ in range(2):
+        assert inside(*words, folder=tmp_path).err == "3 done, 1 equal to others\n"
+        manifest = json.loads((tmp_path / "out" / "manifest.json").read_text(encoding="utf-8"))
+        assert manifest["counts"] == {"done": 3, "no": 0, "unreadable": 0, "undecided": 0, "failed": 0}
+        assert list(manifest["names"].values()) == [["good.toml"]]
+
+
+def _shortened(text: bytes) -> bytes:
+    return text[:-20]
+
+
+def _emptied(_: bytes) -> bytes:
+    return b""
+
+
+def _of_another_kind(text: bytes) -> bytes:
+    return text + b"[]\n"
+
+
+def _without_its_end(text: bytes) -> bytes:
+    return text[:-20] + b"\n"
+
+
+@pytest.mark.parametrize("damage", [_shortened, _emptied, _of_another_kind, _without_its_end])
+def test_damaged_rows_are_named_set_aside_and_done_again(
+    damage: Callable[[bytes], bytes], folder: Path, tmp_path: Path
+) -> None:
+    words, out = ["batch", folder.name, "--out", "out", "--in-process"], tmp_path / "out"
+    assert inside(*words, folder=tmp_path).code == 4
+    (path, *_), before = Store(out).chunks(), sorted(map(json.dumps, Store(out).rows()))
+    damaged, line = damage(path.read_bytes()), 2 if damage is _of_another_kind else 1
+    path.write_bytes(damaged)
+    found = inside("batch", "--verify", "out", folder=tmp_path)
+    assert found.code == 4
+    place = path.relative_to(tmp_path)
+    assert found.err.startswith(f"{place}, line {line}: this line is no whole row, the file was damaged; rename it to ")
+    assert inside(*words, "--dry-run", folder=tmp_path).err == "2 problems, 1 to be done, 1 done already\n"
+    assert path.read_bytes() == damaged
+    again = inside(*words, folder=tmp_path)
+    assert (again.code, again.err.splitlines()[-1]) == (4, "1 done, 1 unreadable")
+    assert again.err.startswith(f"{place} was damaged: it is kept as {path.name}.damaged")
+    assert path.with_name(f"{path.name}.damaged").read_bytes() == damaged
+    assert sorted(map(json.dumps, Store(out).rows())) == before
+    assert inside("batch", "--verify", "out", folder=tmp_path).err == "2 results hold\n"
+    assert inside(*words, folder=tmp_path).err == "1 done, 1 unreadable\n"
+
+
+def test_damage_that_the_size_does_not_show_is_repaired_as_it_is_told(folder: Path, tmp_path: Path) -> None:
+    words, out = ["batch", folder.name, "--out", "out", "--in-process"], tmp_path / "out"
+    assert inside(*words, folder=tmp_path).code == 4
+    path = Store(out).chunks()[0]
+    path.write_bytes(path.read_bytes()[:-20] + b"\0" * 20)
+    told = inside("batch", "--verify", "out", folder=tmp_path)
+    assert (told.code, f"rename it to {path.name}.damaged and run the same command again" in told.err) == (4, True)
+    path.rename(path.with_name(f"{path.name}.damaged"))
+    assert inside(*words, folder=tmp_path).err == "1 done, 1 unreadable\n"
+    assert inside("batch", "--verify", "out", folder=tmp_path).err == "2 results hold\n"
+
+
+def test_a_damaged_index_is_made_anew(folder: Path, tmp_path: Path) -> None:
+    words, index = ["batch", folder.name, "--out", "out", "--in-process"], tmp_path / "out" / "keys.bin"
+    assert inside(*words, folder=tmp_path).code == 4
+    whole = index.read_bytes()
+    for damaged in (whole[:-25], whole.replace(b"\0" * 9, b"\x63" + b"\0" * 8), b"", b"\xff"):
+        assert damaged != whole
+        index.write_bytes(damaged)
+        assert inside(*words, "--dry-run", folder=tmp_path).err == "2 problems, 0 to be done, 2 done already\n"
+        assert inside(*words, folder=tmp_path).err == "1 done, 1 unreadable\n"
+        assert index.read_bytes() == whole
 
 
 def test_equal_problems_are_done_once_and_said(folder: Path, tmp_path: Path) -> None:
