@@ -250,7 +250,7 @@ def _judged(task: _Task, name: str, letter: str, given: Any) -> Judged:
         right = task.right.fields.get(name)
         if isinstance(right, Matrix) and has_decimal_commas(given, task.names, right.shape) and part.value is not None:
             raise two_readings()
-        if is_of_numbers and has_two_readings(given, len(right)):
+        if is_of_numbers and has_two_readings(given, len(right or ())):
             raise two_readings()
     except UNDECIDED as error:
         return replace(part, verdict="undecided", reason=str(error))
@@ -331,8 +331,9 @@ def _in_coordinates(task: _Task, given: Mapping[str, tuple[str, Any]]) -> dict[s
         except SymobsError as error:
             parts[name] = unreadable(name, letter, entry, error)
         value, right = parts[name].value, task.right.fields.get(name)
-        is_off = isinstance(value, Matrix) and isinstance(right, Matrix) and value.shape != right.shape
-        if is_off and has_decimal_commas(entry, task.names, right.shape):
+        if not isinstance(value, Matrix) or not isinstance(right, Matrix) or value.shape == right.shape:
+            continue
+        if has_decimal_commas(entry, task.names, right.shape):
             parts[name] = unreadable(name, letter, entry, two_readings())
     readable = {name: part for name, part in parts.items() if part.verdict != "unreadable"}
     matrices = {name: part.value for name, part in readable.items() if isinstance(part.value, Matrix)}
