@@ -8,6 +8,7 @@ from dataclasses import field
 from typing import Any
 
 from symobs._dataclass import dataclass
+from symobs.checking.answers.definitions import definition, is_of_conditions, statements
 from symobs.checking.answers.values import VERDICTS, as_value, plain, typed
 from symobs.errors import InputError, ProblemErrors, SymobsError
 from symobs.expression import declared_name
@@ -21,8 +22,6 @@ KEYS = ("student", "convention", "symbols", "let", "answer", "step")
 _STEP = ("relation", "where", "let")
 #: What tells a file of tables from a text of lines.
 _TABLES = re.compile(r"(?m)^[ \t]*(\[\[?[ \t]*(answer|step)\b|(student|convention|symbols|let)[ \t]*=[ \t]*[\"'\[{])")
-#: What gives a letter its value, or a function of s, z or t: F(s) = 1/s.
-_DEFINITION = re.compile(r"[ \t]*([A-Za-z][A-Za-z0-9_.]*)((?:[ \t]*\([szt]\))?)[ \t]*=([^=<>!]*)")
 #: What begins a remark.
 _REMARK = re.compile(r"[#%]")
 _RELATION = re.compile(r"[=<>]|!=")
@@ -71,39 +70,48 @@ def read_answer(given: str | Mapping[str, Any], where: str = "answer") -> Answer
 def _of_lines(text: str, where: str) -> Answer:
     """Return the answer of lines: the last `NAME = value` of a name is the answer, and every line is a step.
 
-    What is no relation is a line that cannot be read; raises `ProblemErrors` where there are no others.
+    Lines of conditions are the answer to a region that none names.  What is no relation is a line that cannot be read;
+    raises `ProblemErrors` where there are no others.
     """
     kept = _lines(text, where)
     values: dict[str, Any] = {}
     steps: list[Step] = []
+    conditions: list[str] = []
     errors: list[SymobsError] = []
     for number, line in kept:
         place = f"line {number}"
-        defined = _DEFINITION.fullmatch(line)
+        defined = definition(line)
         if not defined:
             steps.append(Step(line, place))
             if not _RELATION.search(line):
                 message = f'"{shown(line, 60)}" is no relation'
                 errors.append(InputError(message, where=place, repair="write for example L = [19; 81]"))
+            elif is_of_conditions(line):
+                conditions.append(line)
             continue
-        value = as_value(defined[3])
-        task, _, name = defined[1].rpartition(".")
+        value = as_value(defined.value)
+        task, _, name = defined.name.rpartition(".")
         if value:
             (values.setdefault(task, {}) if task else values)[name] = value
-        if not task and value.lower() not in VERDICTS:  # a verdict is no relation of a derivation
-            steps.append(Step(f"{name}{defined[2]} = {value}", place))
+        if not task and isinstance(value, str) and _is_relation(name, value):
+            steps.append(Step(line if defined.is_chain else f"{name}{defined.argument} = {value}", place))
     if errors and len(errors) == len(kept):
         raise ProblemErrors(tuple(errors))
+    if conditions and not any("stable_if" in table for table in (values, values.get("stability_region", {}))):
+        values["stable_if"] = conditions
     return Answer(values=values, steps=tuple(steps), loose=True)
+
+
+def _is_relation(name: str, value: str) -> bool:
+    """Return whether a definition is a relation of a derivation, as a verdict and a region are not."""
+    return name != "stable_if" and value.lower() not in VERDICTS
 
 
 def _lines(text: str, where: str) -> list[tuple[int, str]]:
     """Return the lines that say something, with their numbers; a matrix that is not closed goes on in the lines below it."""
     split = [(i, _REMARK.split(line, maxsplit=1)[0].strip()) for i, line in enumerate(text.splitlines(), start=1)]
     written = [(i, line) for i, line in split if line]
-    if len(written) > MAX_LINES:
-        message = f"{len(written)} lines, more than {MAX_LINES}"
-        raise ProblemErrors((InputError(message, where=where, repair="hand in what leads to the answer"),))
+    _at_most(len(written), where)
     found: list[tuple[int, str]] = []
     while written:
         number, line = written.pop(0)
@@ -114,8 +122,17 @@ def _lines(text: str, where: str) -> list[tuple[int, str]]:
         if is_open == 0:
             line = "\n".join([line, *(part for _, part in written[:below])])
             del written[:below]
-        found.append((number, line))
+        while written and written[0][1].startswith("="):  # a chain goes on
+            line = f"{line} {written.pop(0)[1]}"
+        found += [(number, part.strip()) for part in statements(line)]
+    _at_most(len(found), where)
     return found
+
+
+def _at_most(lines: int, where: str) -> None:
+    if lines > MAX_LINES:
+        message = f"{lines} lines, more than {MAX_LINES}"
+        raise ProblemErrors((InputError(message, where=where, repair="hand in what leads to the answer"),))
 
 
 def _opened(line: str) -> int:

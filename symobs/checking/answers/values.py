@@ -21,12 +21,21 @@ _DECIMAL = re.compile(
 _COMMA = re.compile(r"(?<![0-9.,])([0-9]+),([0-9]+)(?![0-9.,])")
 #: What editors and web pages put in place of the minus and of nothing.
 _TYPED = str.maketrans(
-    dict.fromkeys("\u2212\u2010\u2011\u2013", "-") | dict.fromkeys("\u200b\u2060\ufeff") | {"\u00a0": " "}
+    dict.fromkeys("\u2212\u2010\u2011\u2013", "-")
+    | dict.fromkeys("\u200b\u2060\ufeff")
+    | {"\u00a0": " "}
+    | {"\u2264": "<=", "\u2265": ">=", "\u2260": "!="}
 )
 #: Rows in brackets of their own, as NumPy and SymPy print a matrix; [[1]; [2]] is a matrix of blocks.
-_ROWS = re.compile(r"(?:[A-Za-z.]*(?:array|Matrix)\()?\s*\[\s*(\[[^][;]*\](?:[\s,]*\[[^][;]*\])*)[\s,]*\]\s*\)?")
-_LIST = re.compile(r"\[[^][{}]*\]|\{[^][{}]*\}")
+_ROWS = re.compile(r"\[\s*(\[[^][;]*\](?:[\s,]*\[[^][;]*\])*)[\s,]*\]")
+#: What NumPy and SymPy call a matrix.
+_CALL = re.compile(
+    r"(?:[A-Za-z]+\.)?(array|asarray|matrix|Matrix|ImmutableMatrix)\(\s*(\[.*\])\s*(?:,\s*dtype\s*=\s*[\w.]+\s*)?\)",
+    re.DOTALL,
+)
+_FLAT = re.compile(r"\[([^][;]*)\]")
 _ROW = re.compile(r"\[([^]]*)\]")
+_QUOTED = re.compile(r"[\"'].*[<>]", re.DOTALL)
 
 
 #: What a verdict may be called.
@@ -46,10 +55,22 @@ def typed(text: str) -> str:
     return text.translate(_TYPED)
 
 
-def as_value(text: str) -> str:
-    """Return the text of a value without the semicolon that ends a statement, and rows in brackets as rows of a matrix."""
+def as_value(text: str) -> str | list[str]:
+    """Return the text of a value without the semicolon that ends a statement, and rows in brackets as rows of a matrix.
+
+    A vector of NumPy, which is neither row nor column, is the list of its entries; one of SymPy is a column.
+    """
     value = text.strip().removesuffix(";").rstrip()
-    rows = _ROWS.fullmatch(value)
+    called = _CALL.fullmatch(value)
+    flat = _FLAT.fullmatch(called[2]) if called else None
+    if called and flat:
+        entries = [entry.strip() for entry in flat[1].split(",") if entry.strip()]
+        if called[1] in {"array", "asarray"}:
+            return entries
+        return f"[{(', ' if called[1] == 'matrix' else '; ').join(entries)}]"
+    if _QUOTED.search(value):  # conditions in quotes
+        return value
+    rows = _ROWS.fullmatch(called[2] if called else value)
     return f"[{'; '.join(row.strip() for row in _ROW.findall(rows[1]))}]" if rows else value
 
 
@@ -87,11 +108,11 @@ def decimal_comma(value: Any) -> str:
 
 
 def has_decimal_commas(value: Any, names: Any, shape: tuple[int, int]) -> bool:
-    """Return whether a matrix has the right size if the commas between its digits are those of decimals."""
+    """Return whether a matrix has the right size, or its transpose, if the commas between its digits are of decimals."""
     if not decimal_comma(value):
         return False
     with suppress(SymobsError):
-        return parse_matrix(_COMMA.sub(r"\1.\2", value), names).shape == shape
+        return parse_matrix(_COMMA.sub(r"\1.\2", value), names).shape in {shape, shape[::-1]}
     return False
 
 
@@ -102,15 +123,6 @@ def exact(value: Any) -> Any:
     if isinstance(value, list):
         return [exact(entry) for entry in value]
     return _DECIMAL.sub(lambda found: f"({Fraction(found[0])})", value) if isinstance(value, str) else value
-
-
-def as_list(value: Any) -> Any:
-    """Return the entries of a text in brackets, [1, 2] or [1; 2] or {1, 2}; another value as it is."""
-    if not isinstance(value, str) or not _LIST.fullmatch(value.strip()):
-        return value
-    inside = value.strip()[1:-1].strip()
-    parts = re.split(r"[,;\n]" if re.search(r"[,;\n]", inside) else r"\s+", inside)
-    return [part.strip() for part in parts if part.strip()]
 
 
 def text_of(value: Any) -> str:

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import json
 import re
+from contextlib import suppress
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from symobs.checking.answers.values import exact
@@ -16,7 +18,7 @@ if TYPE_CHECKING:
     from symobs.exact import Scalar
 
 _OPERATOR = re.compile(r"(!=|>=|<=|>|<|==|=)")
-_BETWEEN = re.compile(r"[()]|\band\b|&&?|,")
+_BETWEEN = re.compile(r"[()]|\band\b|&&?|[,;]")
 _MOST, _DEEPEST = 40, 10
 #: A union of conjunctions.
 Union = tuple[tuple["Inequality", ...], ...]
@@ -39,6 +41,7 @@ def read_conditions(given: Any, names: Any, where: str = "stable_if") -> Union:
 
     Raises `InputError` for what is no condition.
     """
+    given = _unpacked(given)
     if isinstance(given, str):
         union = [_conjunction([part], names, where) for part in re.split(r"\bor\b|\|\|?", given)]
     elif isinstance(given, list) and any(isinstance(part, list) for part in given):
@@ -56,6 +59,18 @@ def read_conditions(given: Any, names: Any, where: str = "stable_if") -> Union:
     if sum(map(len, found)) > _MOST:
         raise InputError(f"more than {_MOST} conditions", where=where, repair="write fewer")
     return found
+
+
+def _unpacked(given: Any) -> Any:
+    """Return the conditions in a text that is a list, of texts in quotes or of conditions; another value as it is."""
+    if not isinstance(given, str):
+        return given
+    text = given.strip()
+    if '"' in text or "'" in text:
+        inside = text.replace("'", '"')
+        with suppress(ValueError, RecursionError):
+            return json.loads(inside if inside.startswith("[") else f"[{inside}]")
+    return text[1:-1] if text[:1] + text[-1:] in {"[]", "{}"} else text
 
 
 def _conjunction(parts: Sequence[Any], names: Any, where: str) -> tuple[Inequality, ...] | None:

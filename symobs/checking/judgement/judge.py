@@ -8,15 +8,16 @@ from typing import TYPE_CHECKING, Any
 
 from symobs._dataclass import dataclass
 from symobs.analysis.realization.coordinates import BLOCKS
+from symobs.checking.answers.lists import has_two_readings
 from symobs.checking.answers.values import (
     VERDICTS,
-    as_list,
     decimal_comma,
     exact,
     has_decimal_commas,
     has_decimals,
     read_like,
 )
+from symobs.checking.judgement.as_asked import as_asked, is_listed, shape_of, two_readings
 from symobs.checking.judgement.coordinates import in_coordinates
 from symobs.checking.judgement.gains import from_gains, with_claimed, with_gain, with_gains
 from symobs.checking.judgement.other_compensators import closes_the_loop
@@ -32,7 +33,7 @@ from symobs.errors import (
     SymobsError,
     UnknownName,
 )
-from symobs.exact import Complex, Matrix, Root, Scalar, TooLarge
+from symobs.exact import Matrix, Scalar, TooLarge
 from symobs.expect import found_in, met, names_of
 from symobs.expression import parse_matrix
 from symobs.expression.source import shown
@@ -119,7 +120,7 @@ def judge_task(
     declared = names_of(view)
     names = declared if declared is None else {**declared, **dict.fromkeys(symbols, "real")}
     task = _Task(view, names, marking, view.result)
-    given = {letter: as_list(value) if _is_listed(view, letter) else value for letter, value in given.items()}
+    given = {letter: as_asked(view, letter, value) for letter, value in given.items()}
     standard = {view.standard(letter)[0]: letter for letter in given}
     parts: dict[str, Judged] = {}
     if isinstance(task.right, IntegralAction):
@@ -138,14 +139,6 @@ def judge_task(
         if name not in parts:
             parts[name] = _judged(task, name, letter, given[letter])
     return TaskJudgement(tuple(parts[name] for name in standard), task.right, task.own)
-
-
-def _is_listed(view: ResultInConvention, letter: str) -> bool:
-    """Return whether the right value is a list of numbers, which a text writes in brackets."""
-    right = view.fields.get(view.standard(letter)[0])
-    if not isinstance(right, (list, tuple)) or letter in {"kernel", "stable_if"}:
-        return letter == "sizes"
-    return all(isinstance(entry, (Scalar, Complex, Root)) for entry in right)
 
 
 def unreadable(name: str, letter: str, given: Any, error: SymobsError) -> Judged:
@@ -182,7 +175,7 @@ def _gain(task: _Task, name: str, letter: str, given: Any) -> Judged:
     shape = shape_of(task.right, name)
     if value.shape != shape:
         if has_decimal_commas(given, task.names, shape):
-            return unreadable(name, letter, given, InputError("a comma sets entries apart"))
+            return unreadable(name, letter, given, two_readings())
         rows, columns = (f"{a}x{b}" for a, b in (shape, value.shape))
         task.wrong = (*task.wrong, name)
         return Judged(name, letter, "wrong", given, value, reason=f"{letter} is {rows} here, yours is {columns}")
@@ -223,17 +216,6 @@ def _together(task: _Task, right: IntegralAction, given: Mapping[str, tuple[str,
     return right
 
 
-def shape_of(result: Result, name: str) -> tuple[int, int]:
-    """Return the size of a gain."""
-    right = result.fields.get(name)
-    if isinstance(right, Matrix):
-        return right.shape
-    n, m, p = result.plant.order, result.plant.inputs, result.plant.outputs
-    if name == "k_I":
-        return m, p
-    return (m, n) if name == "K" else (n - p, p) if result.has_reduced_observer else (n, p)
-
-
 # -- what follows from them -------------------------------------------------------------------------------------------
 
 
@@ -249,6 +231,9 @@ def _judged(task: _Task, name: str, letter: str, given: Any) -> Judged:
             error = InputError(f'"{shown(str(given), 40)}" is no verdict', repair="write yes, no or conditional")
             return unreadable(name, letter, given, error)
         given = word
+    is_of_numbers = name != "sizes" and is_listed(task.view, letter)
+    if is_of_numbers and has_two_readings(given):
+        return unreadable(name, letter, given, two_readings())
     part = Judged(name, letter, "wrong", given)
     try:
         part = replace(part, value=_value(task, name, letter, given))
@@ -264,7 +249,9 @@ def _judged(task: _Task, name: str, letter: str, given: Any) -> Judged:
             return replace(part, verdict="right", hints=("rounded",))
         right = task.right.fields.get(name)
         if isinstance(right, Matrix) and has_decimal_commas(given, task.names, right.shape) and part.value is not None:
-            raise InputError("a comma sets entries apart")
+            raise two_readings()
+        if is_of_numbers and has_two_readings(given, len(right or ())):
+            raise two_readings()
     except UNDECIDED as error:
         return replace(part, verdict="undecided", reason=str(error))
     except SymobsError as error:
@@ -343,6 +330,11 @@ def _in_coordinates(task: _Task, given: Mapping[str, tuple[str, Any]]) -> dict[s
             parts[name] = Judged(name, letter, "wrong", entry, _value(task, name, letter, entry))
         except SymobsError as error:
             parts[name] = unreadable(name, letter, entry, error)
+        value, right = parts[name].value, task.right.fields.get(name)
+        if not isinstance(value, Matrix) or not isinstance(right, Matrix) or value.shape == right.shape:
+            continue
+        if has_decimal_commas(entry, task.names, right.shape):
+            parts[name] = unreadable(name, letter, entry, two_readings())
     readable = {name: part for name, part in parts.items() if part.verdict != "unreadable"}
     matrices = {name: part.value for name, part in readable.items() if isinstance(part.value, Matrix)}
     best: dict[str, bool] = {}
@@ -368,12 +360,6 @@ def _is_met(task: _Task, result: Result, part: Judged) -> bool:
 
 def _region(task: _Task, name: str, letter: str, given: Any) -> Judged:
     """Return the verdict on a region given by conditions."""
-    if name == "verdict":
-        word = VERDICTS.get(str(given).strip().strip('"').lower())
-        if word is None:
-            error = InputError(f'"{shown(str(given), 40)}" is no verdict', repair="write yes, no or conditional")
-            return unreadable(name, letter, given, error)
-        given = word
     part = Judged(name, letter, "wrong", given)
     try:
         found = region_verdict(task.right, given, task.names)
