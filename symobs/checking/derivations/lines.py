@@ -195,6 +195,7 @@ def _not_true(
         corrected, reason = desk.explained(entry)
     except (CertificateRejected, *UNREADABLE):  # the search for the cause found none that stands
         corrected, reason = "", ""
+    reason = reason or "its sides are not equal"
     if defined is not None:
         state.bound[defined[0]] = (defined[1], step.where)
     return Line(step.where, step.relation, "false", right=corrected or None, reason=reason)

@@ -107,7 +107,8 @@ def of_numbers(text: str) -> str:
 
 def shown_lines(report: ReportData) -> list[Line]:
     """Return the lines that need a word: false, unreadable and undecided ones."""
-    return [line for line in report.lines if line.verdict not in {"true", "follows"}]
+    said = [line for line in report.lines if line.verdict not in {"true", "follows"}]
+    return [replace(line, relation=shown(line.relation, _LONGEST)) for line in said]
 
 
 def result(report: ReportData) -> str:

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import re
+
 import pytest
 
 from symobs.checking import Checked
+from symobs.errors import ProblemErrors
 
 # x1' = x2, x2' = -a x2 + 1 from rest: x2 = (1 - e^(-a t))/a, and x1 is its integral; checked in both equations by hand.
 STEP = Checked.of(
@@ -48,3 +51,19 @@ def test_the_matrix_exponential_is_called_as_on_the_page(name: str) -> None:
 def test_lines_that_state_a_function_of_time(line: str, verdict: str) -> None:
     (found,) = STEP.report({"answer": {}, "step": [{"relation": line}]}).lines
     assert found.verdict == verdict
+
+
+def test_a_function_of_time_that_is_wrong_is_given_as_a_whole() -> None:
+    report = STEP.report({"output": "t/a - 1/a^2"})
+    (part,) = [part for part in report.parts if part.part == "response.output"]
+    assert (part.verdict, part.slip) == ("wrong", None)
+    assert part.reason == "output is (t*a + exp(-t*a) - 1)/(a**2), not (t*a - 1)/(a**2)"
+
+
+def test_powers_of_e_are_told_how_they_are_written() -> None:
+    said = "write exp(-a*t) for e^(-a*t)"
+    report = STEP.report("output = t/a - 1/a^2 + e^(-a t)/a^2\ndet(A) = e^(-a t)")
+    assert said in next(part.reason for part in report.parts if part.part == "response.output")
+    assert said in report.lines[-1].reason
+    with pytest.raises(ProblemErrors, match=re.escape(said)):
+        Checked.of('task = "response"\n[plant]\nA = "[-1]"\nB = "[1]"\n[specification]\ninput = "e^(-t)"\n')
