@@ -209,3 +209,12 @@ def test_a_part_of_the_answer_that_has_a_letter_of_the_plant_is_no_line(problem:
 def test_a_line_on_the_matrix_of_the_plant_is_judged_beside_a_part_of_that_name() -> None:
     report = Checked.of(MODAL).report("A = [0 1; -2 -4]\nA = [-1 0; 0 -2]\nT = [2 1; 1 1]")
     assert report.first_false == "line 1"
+
+
+def test_a_false_line_has_a_reason_and_a_long_one_is_shown_by_its_beginning() -> None:
+    report = SERVO_CHECKED.report("K = [4 3]\nF = 319 (s + 1.254)/(s^2 + 23 s + 161)")
+    assert report.lines[1].verdict == "false"
+    assert report.lines[1].reason
+    long = SERVO_CHECKED.report(f"K = [4 3]\nrank(O) = {'+'.join(['1'] * 500)}").to_text()
+    assert "…" in long
+    assert len(long) < 1_000

@@ -65,7 +65,11 @@ def number_rows(document: Document, wanted: str) -> dict[str, list[list[str]]]:
         found = {name: value for name, value in found.items() if name not in left_out}
         if not found:
             listed = f"{', '.join(left_out)} contain{'s' if len(left_out) == 1 else ''}"
-            said = f"{listed} {' and '.join(sorted(set().union(*inside.values())))}" if left_out else "no answer is made of them"
+            said = (
+                f"{listed} {' and '.join(sorted(set().union(*inside.values())))}"
+                if left_out
+                else "no answer is made of them"
+            )
             repair = "write --format text for exact expressions"
             raise InputError(f"{wanted} needs numbers, and {said}", where="--format", repair=repair)
     tables = {name: _matrix(value) for name, value in found.items()}
