@@ -51,6 +51,7 @@ def _of_member(step: Step, name: str, member: str, view: ResultInConvention) -> 
             return None
         reason = "only functions of t that are written out can be compared here"
         return Line(step.where, step.relation, "undecided", reason=reason)
+    assert mine is not None  # noqa: S101 - a function of time is a matrix or a number
     own, exact = as_matrix(mine), as_matrix(right)
     if own.shape != exact.shape:
         rows, columns = (f"{a}x{b}" for a, b in (exact.shape, own.shape))
