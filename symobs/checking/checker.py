@@ -9,10 +9,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from symobs.checking.answers.answer_file import Answer, read_answer
-from symobs.checking.answers.values import plain
+from symobs.checking.answers.values import as_value, plain
 from symobs.checking.derivations.lines import judge_lines
 from symobs.checking.judgement.judge import judge_task
-from symobs.checking.judgement.parts import asked_of
+from symobs.checking.judgement.parts import asked_of, field_called, is_of_time
 from symobs.checking.marking_check import known_parts, marking_errors, part_of_name
 from symobs.checking.marks import missing, part_of
 from symobs.checking.report.data import SHOW, Line, Part
@@ -27,7 +27,7 @@ from symobs.result import Result
 from symobs.result.in_convention import ResultInConvention
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Collection, Sequence
 
     from symobs.checking.judgement.judge import TaskJudgement
 
@@ -200,21 +200,34 @@ def _given(answer: Answer, views: Sequence[ResultInConvention]) -> dict[str, dic
     found: dict[str, dict[str, Any]] = {view.task: {} for view in views}
     errors: list[SymobsError] = []
     tasks = {view.task: view for view in views}
-    for key, value in answer.values.items():
+    for key, value in [*answer.values.items(), *_functions_of_time(answer, tasks)]:
         if key in tasks and isinstance(value, Mapping):
             known = available(tasks[key])
-            errors += [_unknown(f"{key}.{name}", [tasks[key]]) for name in value if name not in known]
-            found[key] |= {name: entry for name, entry in value.items() if name in known and not _is_empty(entry)}
+            called = {field_called(key, name): (name, entry) for name, entry in value.items()}
+            errors += [
+                _unknown(f"{key}.{name}", [tasks[key]]) for field, (name, _) in called.items() if field not in known
+            ]
+            found[key] |= {
+                field: entry for field, (_, entry) in called.items() if field in known and not _is_empty(entry)
+            }
             continue
-        having = [view for view in views if key in available(view)]
-        for view in having:
-            if key not in found[view.task] and not _is_empty(value):
-                found[view.task][key] = value
+        having = [(view.task, field_called(view.task, key)) for view in views]
+        having = [(task, field) for task, field in having if field in available(tasks[task])]
+        for task, field in having:
+            if field not in found[task] and not _is_empty(value):
+                found[task][field] = value
         if not having and (not answer.loose or isinstance(value, Mapping)):
             errors.append(_unknown(key, views))
     if errors:
         raise ProblemErrors(tuple(errors))
     return found
+
+
+def _functions_of_time(answer: Answer, tasks: Collection[str]) -> list[tuple[str, str]]:
+    """Return exp(A t) and its value, the last one, where a text of lines defines it: it is no letter."""
+    sides = [step.relation.rpartition("=") for step in answer.steps if answer.loose]
+    named = {left.strip(): as_value(right) for left, _, right in sides if is_of_time(tasks, left.strip())}
+    return [(left, right) for left, right in named.items() if left not in answer.values]
 
 
 def _is_answer_alone(line: Line, parts: Sequence[Part]) -> bool:

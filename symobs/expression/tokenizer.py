@@ -264,11 +264,13 @@ class Tokeniser:
             listed = f'no name is declared; add {name} = "real" to [symbols], or declare it in place'
         if {name, self.scope.variable} == {"s", "z"}:
             question, listed = "", _OF_OTHER_TIME[name]
-        message = f'the name "{name}" is not declared'
+        message = f'the name "{name}" is not declared{EXPONENTIAL if name == "e" else ""}'
         facts = {"name": name, "nearest": nearest, "declared": tuple(declared)}
         return self.source.error(message, at, question + listed, UnknownName, **facts)
 
 
+#: What is said of e^(-a t), which is a power of a name here.
+EXPONENTIAL = ": write exp(-a*t) for e^(-a*t)"
 #: What to do about the variable of the other domain of time.
 _OF_OTHER_TIME = {
     "z": "z is the variable in discrete time: give dt = true, or the period",

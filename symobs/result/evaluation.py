@@ -49,6 +49,10 @@ def evaluate(result: Any, points: Mapping[Any, Any]) -> dict[str, Any]:
         message = "evaluating at arrays of points needs NumPy, which is not installed"
         raise UsageError(message, repair="pip install numpy, or use .at(...) for one point") from None
     fields = _fields(result)
+    if not fields:
+        words = "its answers are functions of t" if result.in_time else "its answers are polynomials or words"
+        repair = "take sympy.lambdify on the field itself" if result.in_time else "read the fields themselves"
+        raise InputError(f"{result.task} has no field of numbers: {words}", where="evaluate", repair=repair)
     given = _read(points, result, fields)
     arrays = np.broadcast_arrays(*given.values()) if given else [np.zeros(())]
     shape = arrays[0].shape

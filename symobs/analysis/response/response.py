@@ -142,6 +142,7 @@ def _write_branch(page: Builder, result: Response) -> None:
     answer = result.answer
     if answer.get("question") is not None:
         tell_question(page, answer["factor"])
+        page.remark("response_not_given")
         return
     found, _ = closed_form(result.plant, {**answer["taken"], **answer["chosen"]})
     tell_exponential(page, found, answer["exponential"])

@@ -10,6 +10,7 @@ PHRASES: dict[str, str] = {
     "response_state": "The state is the response to the initial state plus the forced response:",
     "response_state_free": "The state is therefore",
     "response_output": "The output is",
+    "response_not_given": "Therefore the response is not given either.",
     "response_checked": "The state satisfies the differential equation and has the initial value {start}.",
 }
 

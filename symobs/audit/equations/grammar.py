@@ -16,7 +16,7 @@ from symobs.expression.names import Scope
 from symobs.expression.source import Source
 from symobs.expression.syntax_parser import parse
 from symobs.expression.syntax_tree import every, exponent_of
-from symobs.expression.tokenizer import Tokeniser
+from symobs.expression.tokenizer import EXPONENTIAL, Tokeniser
 
 if TYPE_CHECKING:
     from collections.abc import Collection
@@ -72,7 +72,8 @@ def _require_known(part: SyntaxNode, source: Source) -> None:
     if part.kind == "power":
         exponent = exponent_of(part)
         if exponent is None or abs(exponent) > MOST_EXPONENT:
-            message = f"an exponent is an integer up to {MOST_EXPONENT}"
+            of_e = EXPONENTIAL if part.parts[0].text == "e" else ""
+            message = f"an exponent is an integer up to {MOST_EXPONENT}{of_e}"
             raise source.error(message, part.places[0], "write A^-1 for the inverse, A' for the transpose")
     if part.kind == "call" and len(part.parts) != _ARGUMENTS[part.text]:
         count = _ARGUMENTS[part.text]

@@ -7,6 +7,7 @@ wrong value is what later lines may follow from.
 from __future__ import annotations
 
 import re
+from collections.abc import Mapping
 from dataclasses import field
 from typing import TYPE_CHECKING, Any
 
@@ -14,10 +15,11 @@ from symobs._dataclass import dataclass
 from symobs.audit.printed_entries import printed_entries
 from symobs.audit.slips import SearchBudget
 from symobs.certificate.claims import UNREADABLE
+from symobs.checking.derivations.functions_of_time import of_function_of_time
 from symobs.checking.derivations.line_auditor import LineAuditor, auditor
 from symobs.checking.judgement.conditions import read_conditions
 from symobs.checking.judgement.gains import from_gains, with_gain
-from symobs.checking.judgement.parts import GAINS
+from symobs.checking.judgement.parts import GAINS, OF_THE_PLANT, exists
 from symobs.checking.judgement.regions import compare
 from symobs.checking.report.data import Line
 from symobs.errors import BudgetExceeded, CertificateRejected, NotShown, ProblemErrors, SymobsError
@@ -25,7 +27,7 @@ from symobs.exact import Matrix, Scalar, TooLarge
 from symobs.expect import names_of
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Sequence
     from fractions import Fraction
 
     from symobs.audit.printed_entries import PrintedEntry
@@ -114,10 +116,17 @@ def judge_lines(
                     view = next(view for view in views if view.task == each.right.task)
                     value = -part.value if view.standard(part.letter)[1] < 0 else part.value
                     state.bound[part.letter] = (value, "the answer")
-    lines = tuple(_judged(state, step, answer) for step in answer.steps)
+    lines = tuple(_judged(state, step, answer) for step in answer.steps if not _states_a_part(step, answer, views))
     right = {part.letter for each in judged.values() for part in each.parts if part.verdict == "right"}
     met = tuple((each.relation, each.points, _is_met(each, lines, right | state.rightly)) for each in milestones)
     return lines, met
+
+
+def _states_a_part(step: Step, answer: Answer, views: Sequence[ResultInConvention]) -> bool:
+    """Return whether a line only repeats a part of the answer, A = [...] of a canonical form, whose letter is the plant's."""
+    letter, _, value = (side.strip() for side in step.relation.partition("="))
+    given = [entry.get(letter) for entry in (answer.values, *answer.values.values()) if isinstance(entry, Mapping)]
+    return letter in OF_THE_PLANT and value in given and any(exists(view.result, letter) for view in views)
 
 
 def _without_place(error: SymobsError) -> str:
@@ -137,6 +146,12 @@ def _judged(state: _Derivation, step: Step, answer: Answer) -> Line:
     """Return a line with its verdict."""
     if is_of_conditions(step.relation):
         return _of_conditions(state, step)
+    of_time = of_function_of_time(step, state.views, lambda member: _audited(state, member, answer))
+    return of_time or _audited(state, step, answer)
+
+
+def _audited(state: _Derivation, step: Step, answer: Answer) -> Line:
+    """Return a line of letters with its verdict."""
     try:
         entry = _entry(state, step, answer)
         right = state.auditor_of_right()
@@ -180,6 +195,7 @@ def _not_true(
         corrected, reason = desk.explained(entry)
     except (CertificateRejected, *UNREADABLE):  # the search for the cause found none that stands
         corrected, reason = "", ""
+    reason = reason or "its sides are not equal"
     if defined is not None:
         state.bound[defined[0]] = (defined[1], step.where)
     return Line(step.where, step.relation, "false", right=corrected or None, reason=reason)

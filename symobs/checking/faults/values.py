@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING
 
@@ -40,7 +41,15 @@ def explain_value(
         partial(_specialised, mine, exact, letter, variable),
         partial(_whole, mine, exact, letter),
     ]
-    return first_kind(kinds)
+    found = first_kind(kinds)
+    if found.slip is None and exact.shape == (1, 1) and _has_functions(mine, exact, variable):
+        return replace(found, reason=f"{letter} is {exact[0, 0]}, not {mine[0, 0]}")
+    return found
+
+
+def _has_functions(mine: Matrix, exact: Matrix, variable: str) -> bool:
+    """Return whether exponentials, sines and cosines of the time stand in one of two values."""
+    return variable == "t" and not all(name.isidentifier() for name in mine.names | exact.names)
 
 
 def _rounded(letter: str) -> Iterator[Fault]:
@@ -63,6 +72,8 @@ def _sign(mine: Matrix, exact: Matrix, letter: str) -> Iterator[Fault]:
 def _entry(mine: Matrix, exact: Matrix, letter: str, variable: str) -> Iterator[Fault]:
     """Yield the one entry, or the one coefficient of a polynomial or a fraction, that is another one."""
     if exact.shape == (1, 1):
+        if _has_functions(mine, exact, variable):  # they have no coefficients
+            return
         off = _coefficients_off(mine[0, 0], exact[0, 0], variable)
         if len(off) == 1:
             ((of, power, came, right),) = off

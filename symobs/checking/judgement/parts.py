@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import re
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
+
     from symobs.result import Result
 
 #: The fields that a task asks for where the file says nothing.
@@ -53,6 +56,13 @@ IN_COORDINATES: dict[str, tuple[str, ...]] = {
     "decomposition": ("T", "A", "B", "C", "sizes"),
     "reduced_order_observer": ("F", "G", "H", "M"),
 }
+#: What a page calls a function of time that its field calls by a word, written without spaces and signs of products.
+_OF_TIME: dict[str, dict[str, str]] = {
+    "matrix_exponential": {"exp(At)": "matrix"},
+    "response": {"x": "state", "x(t)": "state", "y": "output", "y(t)": "output"},
+}
+#: Letters that a derivation keeps for the plant, also where an answer has parts of these names.
+OF_THE_PLANT = ("A", "B", "C", "D")
 #: The order in which parts are judged where one follows from the other.
 _FIRST = ("K", "L", "k_I", "T")
 
@@ -61,6 +71,16 @@ def asked_of(result: Result) -> tuple[str, ...]:
     """Return the fields that a task asks for; the verdict where there is nothing else to be found."""
     there = tuple(name for name in ASKED.get(result.task, ("verdict",)) if exists(result, name))
     return there or ("verdict",)
+
+
+def field_called(task: str, name: str) -> str:
+    """Return the field that a page writes x(t), y(t) or exp(A t); another name as it is."""
+    return _OF_TIME.get(task, {}).get(re.sub(r"[\s*]", "", name), name)
+
+
+def is_of_time(tasks: Iterable[str], name: str) -> bool:
+    """Return whether a name is that of a function of time, such as x(t), in one of the tasks."""
+    return any(field_called(task, name) != name for task in tasks)
 
 
 def exists(result: Result, name: str) -> bool:

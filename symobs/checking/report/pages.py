@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 from textwrap import wrap
 from typing import TYPE_CHECKING, Any
 
 from symobs.checking.report.data import decimal
+from symobs.expression.source import shown
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -14,6 +16,8 @@ if TYPE_CHECKING:
     from symobs.checking.report.data import Line, Part, ReportData
 
 _WIDTH = 100
+#: Longer lines of an answer are shown by their beginning.
+_LONGEST = 300
 
 
 def text(report: ReportData) -> str:
@@ -107,7 +111,8 @@ def of_numbers(text: str) -> str:
 
 def shown_lines(report: ReportData) -> list[Line]:
     """Return the lines that need a word: false, unreadable and undecided ones."""
-    return [line for line in report.lines if line.verdict not in {"true", "follows"}]
+    said = [line for line in report.lines if line.verdict not in {"true", "follows"}]
+    return [replace(line, relation=shown(" ".join(line.relation.split()), _LONGEST)) for line in said]
 
 
 def result(report: ReportData) -> str:

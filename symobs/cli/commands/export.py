@@ -45,7 +45,10 @@ def command(
             "no problem file is named", repair="write for example `symobs export a.toml --to stack -o a.xml`"
         )
     if platform not in PLATFORMS:
-        raise UsageError(f"{quoted(platform)} is no platform", where="--to", repair=f"take {', '.join(PLATFORMS)}")
+        question = "did you mean ipynb? " if platform == "nbgrader" else ""
+        raise UsageError(
+            f"{quoted(platform)} is no platform", where="--to", repair=f"{question}take {', '.join(PLATFORMS)}"
+        )
     total = None if points is None else _number(points)
     in_folder = platform in FOLDERS
     if in_folder and Path(target).is_file():

@@ -13,6 +13,7 @@ from symobs.formula import Evaluated, Literal
 from symobs.formula.term import block
 from symobs.phrases.spoken import Counted
 from symobs.result import page_of
+from symobs.stability.criteria.stability import stability
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -187,4 +188,10 @@ def _at_rest(page: Builder, design: IntegralAction) -> None:
         seen, corner = C - page["D"] @ page["K"], page["D"] @ k_I
     rest = (page.identity(size) - A_cl if plant.is_discrete else -A_cl).inverse
     gain = block([[seen, corner]]) @ rest @ _enters(page)
-    page.conclude("integral_rest", gain=relation(gain, Matrix.identity(plant.outputs)))
+    at_rest = relation(gain, Matrix.identity(plant.outputs))
+    asked, discrete = design.desired, plant.is_discrete
+    if asked.is_numeric and stability(asked.polynomial, plant.variable, {}, discrete=discrete).verdict == "yes":
+        loop = (page.s @ page.identity(size) - A_cl).apply("det")
+        page.conclude("integral_rest_stable", predicate("stable", loop), gain=at_rest)
+    else:
+        page.conclude("integral_rest", gain=at_rest)

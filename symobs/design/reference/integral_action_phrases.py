@@ -21,7 +21,10 @@ PHRASES: dict[str, str] = {
     "integral_loop": "In the coordinates ($x$, $xi_I$) the closed loop has the system matrix",
     "integral_closed": "The closed loop is therefore",
     "integral_rest": "If the closed loop is stable, the control error vanishes in the steady state, since the DC gain from $r_in$ to $y$ is {gain}.",
+    "integral_rest_stable": "The control error vanishes in the steady state, since the closed loop is stable and the DC gain from $r_in$ to $y$ is {gain}.",
 }
+
+ASSERTS: dict[str, tuple[str, ...]] = {"integral_rest_stable": ("stable",)}
 
 QUESTIONS: dict[str, str] = {
     "ask integral_action": "Design state feedback with integral action, such that the output follows constant references.",

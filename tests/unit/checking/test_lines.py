@@ -179,3 +179,42 @@ def test_lines_of_a_region_are_true_where_it_implies_them() -> None:
     conditions = checked.results[0].fields["stable_if"]
     text = "\n".join([conditions[0], f"{conditions[0]} and {conditions[-1]}"])
     assert {verdict for verdict, _ in lines(text, None, checked)} == {"true"}
+
+
+# A = [0 1; -2 -3], B = [0; 1], C = [1 0] has in T = [2 1; 1 1] its modal form diag(-1, -2), [1; 1], [1 -1] (by hand).
+MODAL = (
+    'task = "canonical_form"\n[plant]\nA = "[0 1; -2 -3]"\nB = "[0; 1]"\nC = "[1 0]"\n[specification]\nkind = "modal"\n'
+)
+DUAL = 'task = "dual"\n[plant]\nA = "[0 1; -2 -3]"\nB = "[0; 1]"\nC = "[1 0]"\n'
+PARTED = 'task = "decomposition"\n[plant]\nA = "[1 0; 0 -1]"\nB = "[1; 0]"\nC = "[0 1]"\n'
+
+
+@pytest.mark.parametrize(
+    ("problem", "answer"),
+    [
+        (MODAL, "A = [-1 0; 0 -2]\nT = [2 1; 1 1]\nB = [1; 1]\nC = [1 -1]"),
+        (DUAL, "A = [0 -2; 1 -3]\nB = [1; 0]\nC = [0 1]"),
+        (PARTED, "T = [0 1; 1 0]\nA = [-1 0; 0 1]\nB = [0; 1]\nC = [1 0]\nsizes = [0 1 1 0]"),
+    ],
+    ids=["canonical_form", "dual", "decomposition"],
+)
+def test_a_part_of_the_answer_that_has_a_letter_of_the_plant_is_no_line(problem: str, answer: str) -> None:
+    report = Checked.of(problem).report(answer)
+    assert (report.first_false, report.hints) == (None, ())
+    assert "false" not in {line.verdict for line in report.lines}
+    said = {"answer": {"A": "[9 9; 9 9]"}, "step": [{"relation": "A = [9 9; 9 9]"}, {"relation": "A = [0 0; 0 0]"}]}
+    assert [line.where for line in Checked.of(problem).report(said).lines] == ["line 2"]
+
+
+def test_a_line_on_the_matrix_of_the_plant_is_judged_beside_a_part_of_that_name() -> None:
+    report = Checked.of(MODAL).report("A = [0 1; -2 -4]\nA = [-1 0; 0 -2]\nT = [2 1; 1 1]")
+    assert report.first_false == "line 1"
+
+
+def test_a_false_line_has_a_reason_and_a_long_one_is_shown_by_its_beginning() -> None:
+    report = SERVO_CHECKED.report("K = [4 3]\nF = 319 (s + 1.254)/(s^2 + 23 s + 161)")
+    assert report.lines[1].verdict == "false"
+    assert report.lines[1].reason
+    long = SERVO_CHECKED.report(f"K = [4 3]\nrank(O) = {'+'.join(['1'] * 500)}").to_text()
+    assert "…" in long
+    assert len(long) < 1_000

@@ -147,6 +147,21 @@ def test_refusals(folder: Path, arguments: list[str], code: int, message: str) -
     assert message in run.err
 
 
+@pytest.mark.parametrize("kind", ["numpy", "csv"])
+@pytest.mark.parametrize(
+    ("task", "names"),
+    [
+        ('"response"\nspecification.input = "1"', "state, output contain t"),
+        ('"matrix_exponential"', "matrix contains t"),
+    ],
+)
+def test_a_table_of_numbers_that_would_be_empty_is_refused(folder: Path, kind: str, task: str, names: str) -> None:
+    (folder / "step.toml").write_text(f'task = {task}\n[plant]\nA = "[0 1; 0 -1]"\nB = "[0; 1]"\nC = "[1 0]"\n')
+    run = inside("solve", "step.toml", "--format", kind, folder=folder)
+    assert (run.code, run.out) == (3, "")
+    assert f"needs numbers, and {names}; write --format text" in run.err
+
+
 def test_all_wrong_values_of_a_file_are_told_at_once(folder: Path) -> None:
     (folder / "servo.toml").write_text(FILE + "[values]\nk = -1\nq = 2\n", encoding="utf-8")
     run = inside("solve", "servo.toml", folder=folder)

@@ -105,3 +105,12 @@ def test_signs_of_the_letters_of_the_specification_are_stated() -> None:
     by_pattern = symobs.integral_action(plant, poles={"bessel": "w"}).to("text")
     assert "Throughout, we assume a > 0, w > 0." in by_pattern
     assert "Throughout, we assume a > 0, k < 0." in symobs.state_feedback(plant, K="[1 k]").to("text")
+
+
+@pytest.mark.parametrize(
+    ("poles", "said"),
+    [("-1, -2, -3", "The control error vanishes"), ("-1, -2, 3", "If the closed loop is stable, the control error")],
+)
+def test_the_error_at_rest_is_no_matter_of_stability_that_was_shown(poles: str, said: str) -> None:
+    found = symobs.integral_action(symobs.StateSpace("[0 1; 0 -1]", "[0; 1]", "[1 0]"), poles=poles)
+    assert said in found.to("latex")

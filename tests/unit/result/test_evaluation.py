@@ -119,3 +119,17 @@ def test_without_numpy_the_error_says_what_to_do(monkeypatch: pytest.MonkeyPatch
     monkeypatch.setitem(sys.modules, "numpy", None)
     with pytest.raises(UsageError, match=r"needs NumPy, which is not installed; pip install .* or use \.at\(\.\.\.\)"):
         symobs.observer(HIDDEN, poles="-k, -5").evaluate({"c": 1, "k": 1})
+
+
+@pytest.mark.parametrize(
+    "result",
+    [
+        symobs.response(symobs.StateSpace("[0 1; 0 -a]", "[0; 1]", "[1 0]"), input="1"),
+        symobs.matrix_exponential(symobs.StateSpace("[0 1; 0 -1]")),
+    ],
+    ids=lambda result: result.task,
+)
+@pytest.mark.parametrize("points", [{}, {"t": [1, 2]}])
+def test_functions_of_time_alone_are_refused(result: Any, points: dict[str, Any]) -> None:
+    with pytest.raises(InputError, match="has no field of numbers: its answers are functions of t"):
+        result.evaluate(points)

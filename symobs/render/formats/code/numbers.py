@@ -5,8 +5,9 @@ from __future__ import annotations
 from difflib import get_close_matches
 from typing import TYPE_CHECKING, Any
 
-from symobs.errors import UsageError
+from symobs.errors import InputError, UsageError
 from symobs.exact import Matrix, Scalar
+from symobs.exact.core.generators import symbols_in
 from symobs.exact.floating.doubles import nearest_double
 from symobs.expression.source import shown
 from symobs.result.control_systems import require_numbers
@@ -45,20 +46,32 @@ def _text(value: Any) -> str:
 def number_rows(document: Document, wanted: str) -> dict[str, list[list[str]]]:
     """Return the rows of the requested numeric answers, in the shortest decimals of their doubles.
 
-    Raises `InputError` where one that is asked for has letters without a value, `UsageError` where it is no number.
+    Raises `InputError` where one that is asked for has letters without a value, and where none is made of numbers;
+    `UsageError` where one named is no number.
     """
     variables = {result.plant.variable for result in document.results} | {"t"}
     if document.printed:
         found = chosen_answers(document)
         for name, value in found.items():
-            if not _is_table(value) or _matrix(value).names & variables:
+            if not _is_table(value) or symbols_in(_matrix(value)) & variables:
                 message = f"{name} is not made of numbers"
                 raise UsageError(message, where="--print", repair="leave --format out, or write --format text")
     else:
         found = {
             name: value for r in reversed(document.results) for name, value in r.fields.items() if _is_table(value)
         }
-        found = {name: value for name, value in found.items() if not _matrix(value).names & variables}
+        inside = {name: symbols_in(_matrix(value)) & variables for name, value in found.items()}
+        left_out = [name for name, letters in inside.items() if letters]
+        found = {name: value for name, value in found.items() if name not in left_out}
+        if not found:
+            listed = f"{', '.join(left_out)} contain{'s' if len(left_out) == 1 else ''}"
+            said = (
+                f"{listed} {' and '.join(sorted(set().union(*inside.values())))}"
+                if left_out
+                else "no answer is made of them"
+            )
+            repair = "write --format text for exact expressions"
+            raise InputError(f"{wanted} needs numbers, and {said}", where="--format", repair=repair)
     tables = {name: _matrix(value) for name, value in found.items()}
     require_numbers(tables.values(), wanted)
     return {
