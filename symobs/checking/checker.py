@@ -223,7 +223,7 @@ def _given(answer: Answer, views: Sequence[ResultInConvention]) -> dict[str, dic
     return found
 
 
-def _functions_of_time(answer: Answer, tasks: Collection[str]) -> list[tuple[str, str]]:
+def _functions_of_time(answer: Answer, tasks: Collection[str]) -> list[tuple[str, Any]]:
     """Return exp(A t) and its value, the last one, where a text of lines defines it: it is no letter."""
     sides = [step.relation.rpartition("=") for step in answer.steps if answer.loose]
     named = {left.strip(): as_value(right) for left, _, right in sides if is_of_time(tasks, left.strip())}

@@ -388,7 +388,7 @@ def test_ctrl_c_while_computing(budget: list[str], tmp_path: Path) -> None:
     def ready() -> bool:
         """Hand over the problem once somebody reads it, and give the work a moment to be under way."""
         if given:
-            return time.monotonic() > given[0] + 2
+            return bool(time.monotonic() > given[0] + 2)
         try:
             opened = os.open(pipe, os.O_WRONLY | os.O_NONBLOCK)
         except OSError:
