@@ -35,7 +35,7 @@ _CALL = re.compile(
 )
 _FLAT = re.compile(r"\[([^][;]*)\]")
 _ROW = re.compile(r"\[([^]]*)\]")
-_QUOTED = re.compile(r"[\"'].*[<>]", re.DOTALL)
+_QUOTE, _ORDER = re.compile(r"[\"']"), re.compile(r"[<>]")
 
 
 #: What a verdict may be called.
@@ -68,7 +68,8 @@ def as_value(text: str) -> str | list[str]:
         if called[1] in {"array", "asarray"}:
             return entries
         return f"[{(', ' if called[1] == 'matrix' else '; ').join(entries)}]"
-    if _QUOTED.search(value):  # conditions in quotes
+    quote = _QUOTE.search(value)
+    if quote and _ORDER.search(value, quote.end()):  # conditions in quotes
         return value
     rows = _ROWS.fullmatch(called[2] if called else value)
     return f"[{'; '.join(row.strip() for row in _ROW.findall(rows[1]))}]" if rows else value

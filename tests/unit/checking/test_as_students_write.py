@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from typing import Any
 
 import pytest
@@ -174,3 +175,11 @@ def test_the_same_value_in_cells_tables_and_programs(answer: Any, expected: dict
 def test_a_long_line_of_definitions_is_refused_at_once() -> None:
     with pytest.raises(ValueError, match="lines, more than 200"):
         LOOP.report("a=1;" * 16000)
+
+
+@pytest.mark.parametrize("again", ['"', "'", "[", "; a", "and ", "1,"])
+def test_a_long_text_of_one_character_is_read_soon(again: str) -> None:
+    """The bound is ten times what the slowest takes on a slow machine: it says "not quadratic", and measures nothing."""
+    start = time.process_time()
+    assert LOOP.report(("L = [19; 81]" + again * 60_000)[:60_000]).verdict in {"unreadable", "incomplete", "wrong"}
+    assert time.process_time() - start < 10.0
