@@ -324,7 +324,7 @@ def rational(above: list[int], below: list[int]) -> tuple[Scalar, Any]:
 
 
 @given(COEFFICIENTS, COEFFICIENTS)
-@settings(max_examples=150 if FULL else 25, deadline=None)
+@settings(max_examples=150 if FULL else 12, deadline=None)
 def test_derivatives_and_antiderivatives(above: list[int], below: list[int]) -> None:
     value, image = rational(above, below)
     slope = derivative(value, "t")
