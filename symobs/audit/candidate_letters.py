@@ -49,7 +49,10 @@ class CandidateLetters:
 
     def rounded(self, block: SyntaxNode) -> str | None:
         """Return the letter whose value rounds to a matrix of decimals."""
-        printed = as_printed(block, Reading(self.environment))
+        try:
+            printed = as_printed(block, Reading(self.environment))
+        except Misfit:  # a matrix with 1/0 in it rounds nothing
+            return None
         if not isinstance(printed, Matrix) or not decimals_in(printed):
             return None
         known = [(name, value) for name, value in self.environment.values.items() if isinstance(value, Matrix)]

@@ -14,9 +14,11 @@ from symobs._dataclass import dataclass
 from symobs.analysis.stability_region.stability_region import StabilityRegion
 from symobs.analysis.stability_region.stability_region_question import RegionQuestion
 from symobs.checking.judgement.conditions import Inequality, Union, read_conditions
+from symobs.errors import NotShown
 from symobs.exact import Scalar, TooLarge
 from symobs.exact.algebraic.rational_points import value_at
 from symobs.exact.algebraic.real_algebraic import RealNumber, integer_factor, rational_between, roots_of_scalar
+from symobs.exact.core.generators import function_named
 from symobs.expect.conditions import conditions_agree
 from symobs.stability.criteria.critical_polynomials import irreducible
 from symobs.stability.regions.plane_region import PlaneRegion
@@ -51,7 +53,10 @@ class Separation:
 
 
 def region_verdict(result: Any, given: Any, names: Any) -> Separation:
-    """Return whether conditions describe the region of a result; raises `InputError` where they cannot be read."""
+    """Return whether conditions describe the region of a result.
+
+    Raises `InputError` where they cannot be read, and `NotShown` where they have roots or functions.
+    """
     known = None if names is None else {**dict.fromkeys(result.question.parameters, "real"), **names}
     union = read_conditions(given, known)
     found = compare(result, union)
@@ -59,7 +64,9 @@ def region_verdict(result: Any, given: Any, names: Any) -> Separation:
 
 
 def compare(result: StabilityRegion, union: Union) -> Separation:
-    """Return whether a union of conjunctions is the region."""
+    """Return whether a union of conjunctions is the region; raises `NotShown` where it has roots or functions."""
+    if any(function_named(name) for part in union for condition in part for name in condition.value.names):
+        raise NotShown("conditions with roots or functions are not compared")
     region = result.region
     if region is None:
         return _without_region(result, union)

@@ -183,3 +183,12 @@ def test_a_long_text_of_one_character_is_read_soon(again: str) -> None:
     start = time.process_time()
     assert LOOP.report(("L = [19; 81]" + again * 60_000)[:60_000]).verdict in {"unreadable", "incomplete", "wrong"}
     assert time.process_time() - start < 10.0
+
+
+def test_conditions_with_roots_are_undecided() -> None:
+    assert verdicts(REGION, {"stable_if": "h1 > -1, h2 > sqrt(2)"}) == {"stable_if": "undecided"}
+
+
+def test_a_line_with_the_inverse_of_zero_is_no_fault_of_ours() -> None:
+    lines = LOOP.report("K = [4 3]\nintegral(1, integral(A, C, O), B, -5/2) = [(0)^-1; 1]").lines
+    assert [line.verdict for line in lines][1:] != []
