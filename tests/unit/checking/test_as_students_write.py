@@ -190,5 +190,8 @@ def test_conditions_with_roots_are_undecided() -> None:
 
 
 def test_a_line_with_the_inverse_of_zero_is_no_fault_of_ours() -> None:
-    lines = LOOP.report("K = [4 3]\nintegral(1, integral(A, C, O), B, -5/2) = [(0)^-1; 1]").lines
-    assert [line.verdict for line in lines][1:] != []
+    line = (
+        "integral((1), (integral((A), (C), (obsv((O), (K))), (obsv((B), (x_hat))))), (B), (-(2.5))) = [((0)^-1); (1)]"
+    )
+    found = LOOP.report(f"K = [4 3]\n{line}").lines[-1]
+    assert (found.verdict, "is no time to integrate over" in found.reason) == ("false", True)
