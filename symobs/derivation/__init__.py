@@ -15,7 +15,6 @@ from symobs.derivation.steps import (
     RegionSummary,
     Section,
     Sentence,
-    Solve,
     Step,
     Tabulate,
 )
@@ -34,7 +33,6 @@ __all__ = [
     "RegionSummary",
     "Section",
     "Sentence",
-    "Solve",
     "Step",
     "Tabulate",
     "set_apart",

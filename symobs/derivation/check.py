@@ -30,9 +30,9 @@ from symobs.derivation.steps import (
     RegionSummary,
     Section,
     Sentence,
-    Solve,
     Step,
     Tabulate,
+    literals,
 )
 from symobs.derivation.wording_check import (
     are_added,
@@ -62,7 +62,6 @@ from symobs.formula import (
     Roots,
     Signal,
     SymbolList,
-    children,
     evaluate,
     letters,
     roots_written,
@@ -73,7 +72,7 @@ from symobs.phrases.spoken import SPOKEN, StateChoice
 from symobs.stability.criteria.stability import monic
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
+    from collections.abc import Mapping
 
     from symobs.figures.plot import Picture
 
@@ -129,9 +128,6 @@ def _after(step: Step, environment: Environment, discrete: bool) -> Environment:
         case Equal(relations):
             for relation in relations:
                 _fact(relation, environment, discrete)
-        case Solve(equation, solution):
-            environment = _introduce(solution, environment)
-            _fact(equation, environment, discrete)
         case Conclude(facts=facts) | Note(facts=facts):
             for fact in facts:
                 _fact(fact, environment, discrete)
@@ -206,7 +202,7 @@ def _sentence(sentence: Sentence, environment: Environment, discrete: bool) -> N
             _fact(slot, environment, discrete)
         elif not isinstance(slot, (str, *SPOKEN)):
             _established(slot, environment)
-            if _has_values(slot) and sentence.key not in NAMING:
+            if next(literals(slot), None) is not None and sentence.key not in NAMING:
                 reject(f"{plain(slot, environment.variable)}, a value in a sentence without what it is the value of,")
 
 
@@ -224,10 +220,6 @@ def _owed(sentence: Sentence, step: Step, environment: Environment) -> None:
     introduced = step.relation if isinstance(step, Define) else None
     reject_other_map(sentence, introduced, environment)
     reject_other_slots(sentence, introduced, environment)
-
-
-def _has_values(formula: Formula) -> bool:
-    return isinstance(formula, Literal) or any(_has_values(part) for part in children(formula))
 
 
 def _about_letters(formula: Formula, environment: Environment) -> None:
@@ -299,17 +291,10 @@ def _introduce(relation: Relation, environment: Environment) -> Environment:
 
 def _with_domain(relation: Relation, environment: Environment) -> Environment:
     """Assume the denominators of the data are nonzero; elsewhere the plant is undefined."""
-    literals = [value for member in relation.members for value in _literals(member)]
-    entries = [entry for value in literals for entry in (value.entries if isinstance(value, Matrix) else (value,))]
+    values = literals(relation.members)
+    entries = [entry for value in values for entry in (value.entries if isinstance(value, Matrix) else (value,))]
     factors = vanishing_factors([entry.denominator for entry in entries], environment.signs)
     return replace(environment, domain=tuple(dict.fromkeys((*environment.domain, *factors))))
-
-
-def _literals(formula: Formula) -> Iterator[Scalar | Matrix]:
-    if isinstance(formula, Literal):
-        yield formula.value
-    for part in children(formula):
-        yield from _literals(part)
 
 
 def _assume(relation: Relation, environment: Environment) -> Environment:

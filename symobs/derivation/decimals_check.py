@@ -10,28 +10,24 @@ from __future__ import annotations
 from dataclasses import fields, is_dataclass, replace
 from fractions import Fraction
 from itertools import pairwise
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from symobs.certificate.claims import UNREADABLE, verify
 from symobs.derivation.facts.rejection import BUG, reject
-from symobs.derivation.steps import CaseStep, Diagram, Given, Inequalities
+from symobs.derivation.steps import CaseStep, Diagram, Given, Inequalities, literals
 from symobs.errors import DerivationRejected
 from symobs.exact import Scalar, is_correctly_written
 from symobs.exact.core.generators import identities
 from symobs.exact.numerals.rounded_roots import are_rounded_roots
 from symobs.figures.block_diagram import letter_for
 from symobs.formula import (
-    Apply,
-    At,
     Block,
-    Decimals,
-    Derivative,
     Environment,
     Evaluated,
     Exact,
+    Formula,
     HoldsExactlyWhere,
     Identity,
-    Integral,
     Letter,
     Literal,
     Negative,
@@ -50,30 +46,6 @@ from symobs.formula import (
     with_children,
 )
 
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-    from symobs.exact import Matrix
-    from symobs.formula import Formula
-
-_FORMULAS = (
-    Apply,
-    At,
-    Block,
-    Decimals,
-    Derivative,
-    Identity,
-    Integral,
-    Letter,
-    Literal,
-    Negative,
-    Numeral,
-    Power,
-    Product,
-    Quotient,
-    Sum,
-    Transpose,
-)
 _ORDER = {
     "<": lambda left, right: left < right,
     ">": lambda left, right: left > right,
@@ -108,7 +80,7 @@ class _Comparison:
                 reject(f"{shown}, which are other roots,")
             if not are_rounded_roots(shown.values, shown.texts, self.digits):
                 reject(f"that the roots are about {shown.texts}")
-        elif isinstance(exact, _FORMULAS):
+        elif isinstance(exact, Formula):
             self._formula(exact, shown)
             if is_rounded(shown):
                 reject(f"{shown}, rounded without a sign that says so,")
@@ -167,7 +139,7 @@ class _Comparison:
 
     def _are_equal_in_time(self, exact: Formula, shown: Formula) -> bool:
         """Return whether functions of time are equal by their dependences: e^{−2aT} is the square of e^{−aT}."""
-        meanings, vanishing = identities([*_values(exact), *_values(shown)])
+        meanings, vanishing = identities(literals((exact, shown)))
         start = replace(self.environment, coefficients=meanings).with_relations(vanishing)
         return bool(meanings or vanishing) and verify(Relation((exact, shown), ("=",)), start)[0] != ""
 
@@ -193,13 +165,6 @@ def _is_value(formula: Formula) -> bool:
     """Return whether a formula is arithmetic of values written out, and of the variable."""
     arithmetic = Literal, Numeral, Sum, Negative, Product, Quotient, Power, Block, Transpose, Identity
     return formula == Letter("s") or (isinstance(formula, arithmetic) and all(map(_is_value, children(formula))))
-
-
-def _values(formula: Formula) -> Iterator[Scalar | Matrix]:
-    if isinstance(formula, Literal):
-        yield formula.value
-    for part in children(formula):
-        yield from _values(part)
 
 
 def _read(shown: Formula) -> Fraction | None:

@@ -5,16 +5,30 @@ A step says something about letters established before it, and carries the sente
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, TypeAlias
+from dataclasses import fields
+from typing import TYPE_CHECKING, Any, TypeAlias, get_args
 
 from symobs._dataclass import dataclass
+from symobs.formula import (
+    Conjunction,
+    Evaluated,
+    Formula,
+    HoldsExactlyWhere,
+    Literal,
+    Predicate,
+    Relation,
+    Roots,
+    children,
+)
 from symobs.phrases import slots_of
 
 if TYPE_CHECKING:
-    from symobs.exact import Scalar
+    from collections.abc import Iterable, Iterator
+
+    from symobs.exact import Matrix, Scalar
     from symobs.figures.block_diagram import Label
     from symobs.figures.plot import Picture
-    from symobs.formula import Conjunction, Fact, Formula, HoldsExactlyWhere, Relation
+    from symobs.formula import Fact
     from symobs.phrases.spoken import Counted, StateChoice
     from symobs.stability.criteria.routh_table import RouthTable
 
@@ -63,15 +77,6 @@ class Equal:
     relations: tuple[Relation, ...]
     sentence: Sentence | None = None
     answer: bool = False
-
-
-@dataclass(frozen=True)
-class Solve:
-    """`unknown` = solution because the equation then holds."""
-
-    equation: Relation
-    solution: Relation
-    sentence: Sentence | None = None
 
 
 @dataclass(frozen=True)
@@ -175,7 +180,6 @@ Step: TypeAlias = (
     Given
     | Define
     | Equal
-    | Solve
     | Conclude
     | Note
     | Diagram
@@ -186,3 +190,30 @@ Step: TypeAlias = (
     | CaseStep
     | Section
 )
+
+#: What has parts of its own besides formulas.
+WITH_PARTS = (*get_args(Step), Sentence, Predicate, Roots, HoldsExactlyWhere, Conjunction, Relation, Evaluated)
+
+
+def everything_in(item: Any) -> Iterator[Any]:
+    """Yield a step, or several, and everything in it: sentences, facts, formulas and their parts."""
+    yield item
+    parts: Iterable[Any] = ()
+    if isinstance(item, Formula):
+        parts = children(item)
+    elif isinstance(item, tuple):
+        parts = item
+    elif isinstance(item, WITH_PARTS):
+        parts = (getattr(item, field.name) for field in fields(item))
+    for part in parts:
+        yield from everything_in(part)
+
+
+def relations(steps: Any) -> Iterator[Relation]:
+    """Yield all relations of steps, those inside sentences and cases too."""
+    return (part for part in everything_in(steps) if isinstance(part, Relation))
+
+
+def literals(steps: Any) -> Iterator[Scalar | Matrix]:
+    """Yield all values that are written out."""
+    return (part.value for part in everything_in(steps) if isinstance(part, Literal))

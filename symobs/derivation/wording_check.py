@@ -15,6 +15,7 @@ from symobs.certificate.claims import as_scalar
 from symobs.certificate.pointwise import Pointwise
 from symobs.derivation.facts.properties import PREDICATES
 from symobs.derivation.facts.rejection import reject
+from symobs.derivation.steps import everything_in
 from symobs.exact import Matrix, Scalar, from_coefficients, rank, unit_rows
 from symobs.exact.core.generators import PI, function
 from symobs.formula import (
@@ -32,7 +33,6 @@ from symobs.formula import (
     Roots,
     SymbolList,
     agree,
-    children,
     evaluate,
 )
 from symobs.formula.plain_text import plain
@@ -40,7 +40,7 @@ from symobs.phrases import DEMANDS
 from symobs.phrases.spoken import Counted
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Mapping, Sequence
+    from collections.abc import Callable, Mapping, Sequence
 
     from symobs.derivation.steps import Sentence
     from symobs.formula import Environment, Fact
@@ -300,7 +300,7 @@ def reject_other_map(sentence: Sentence, relation: Relation | None, environment:
         return
     slot, limit = applied
     mapping = formula_in(sentence, slot)
-    is_there = relation is not None and any(mapping in _within(member) for member in relation.members)
+    is_there = relation is not None and any(mapping in everything_in(member) for member in relation.members)
     if not is_there or (limit and not _moves_to(limit, mapping, environment)):
         reject(f"{sentence.key} by {plain(mapping, environment.variable)}")
 
@@ -318,9 +318,3 @@ def formula_in(sentence: Sentence, name: str) -> Formula:
     if not isinstance(found, Formula):
         reject(f"{found} in a sentence, where a formula stands,")
     return found
-
-
-def _within(formula: Formula) -> Iterator[Formula]:
-    yield formula
-    for part in children(formula):
-        yield from _within(part)

@@ -36,7 +36,8 @@ from symobs.exact.linear_algebra.elimination import (
 )
 from symobs.exact.linear_algebra.smith_mcmillan import pole_and_zero_polynomial
 from symobs.exact.linear_algebra.transfer_function import controller, transfer, transfer_matrix
-from symobs.exact.numerals.significant_digits import is_correctly_written, is_written_exactly, significant
+from symobs.exact.numerals.significant_digits import is_correctly_written, is_written_exactly
+from symobs.exact.numerals.written_digits import significant
 from symobs.exact.sympy_bridge.stable_roots import stable_roots
 from symobs.exact.time_functions.antiderivative import antiderivative, exponential_of_integral
 

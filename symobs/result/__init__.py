@@ -1,4 +1,4 @@
-"""Results that own their claims, and the registries of tasks, methods and formats (trusted)."""
+"""Results that own their claims, and the registries of tasks, methods and formats."""
 
 from symobs.result.registry import (
     Method,

@@ -1,4 +1,4 @@
-"""Conversion of exact values to SymPy and JSON, and the output methods of results."""
+"""Conversion of exact values to SymPy and JSON."""
 
 from __future__ import annotations
 
@@ -14,43 +14,6 @@ if TYPE_CHECKING:
     from symobs.system import StateSpace
 
 _RELATIONS = {"!=": "!=", "=": "==", "==": "==", ">": ">", ">=": ">=", "<": "<", "<=": "<="}
-
-
-class OutputMethods:
-    """Output methods of a result, one for each format, and its display in a notebook."""
-
-    def to(self, format_name: str, *, convention: str = "standard", language: str = "en") -> str | bytes:
-        """Return the result in a format, in a convention and a language."""
-        raise NotImplementedError
-
-    @property
-    def symbols(self) -> dict[str, str]:
-        """Every symbol of the result with its sign."""
-        result: Any = self
-        return signs(result.plant, result.answer.values())
-
-    def to_latex(self, *, language: str = "en") -> str:
-        """Return the derivation as a LaTeX article."""
-        return str(self.to("latex", language=language))
-
-    def to_html(self, *, language: str = "en") -> str:
-        """Return the derivation as a complete HTML page."""
-        return str(self.to("html", language=language))
-
-    def to_markdown(self, *, language: str = "en") -> str:
-        """Return the derivation as Markdown."""
-        return str(self.to("markdown", language=language))
-
-    def to_json(self) -> str:
-        """Return the result as JSON."""
-        return str(self.to("json"))
-
-    def _repr_latex_(self) -> str:
-        return str(self.to("fragment"))
-
-    def _repr_mimebundle_(self, **_: Any) -> dict[str, str]:
-        kinds = {"plain": "text", "markdown": "markdown", "latex": "fragment", "html": "html_fragment"}
-        return {f"text/{kind}": str(self.to(name)) for kind, name in kinds.items()}
 
 
 def signs(plant: StateSpace, values: Iterable[Any] = ()) -> dict[str, str]:

@@ -1,4 +1,4 @@
-"""The registries of tasks and methods (trusted), which are filled when their modules are imported."""
+"""The registries of tasks and methods, which are filled when their modules are imported."""
 
 from __future__ import annotations
 

@@ -19,8 +19,9 @@ from symobs.derivation import translated
 from symobs.derivation.builder import Builder
 from symobs.errors import CertificateRejected, DerivationRejected
 from symobs.exact.linear_algebra.realisation import Realisation
-from symobs.result.conversions import OutputMethods
+from symobs.result.conversions import to_sympy
 from symobs.result.digits_of_page import document_options
+from symobs.result.output_methods import OutputMethods
 from symobs.result.web_page import PLAIN, WebPage
 from symobs.result.writers import render, writer_of
 
@@ -59,7 +60,7 @@ class Stratum(NamedTuple):
     result: Result | None
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Result(OutputMethods):
     """An answer with its certificates.  Subclasses own the claims; tampering with an answer makes construction fail."""
 
@@ -177,6 +178,18 @@ class Result(OutputMethods):
         return (*self.domain, *(Condition("claim", factor) for factor in new))
 
     @property
+    def conditions(self) -> tuple[Any, ...]:
+        """The conditions of the answer as SymPy relations."""
+        found: tuple[Any, ...] = to_sympy(self.holds_where, self.plant.symbols.objects)
+        return found
+
+    @property
+    def cases(self) -> tuple[Stratum, ...]:
+        """What is true where a condition of existence fails, with SymPy relations."""
+        objects = self.plant.symbols.objects
+        return tuple(Stratum(to_sympy(case.when, objects), case.result) for case in self.case_tree)
+
+    @property
     def _binding_conditions(self) -> tuple[Condition, ...]:
         """The conditions that make a verdict conditional: all but those of the domain."""
         return tuple(condition for condition in self.holds_where if condition.kind != "domain")
@@ -231,32 +244,6 @@ class Result(OutputMethods):
         m = self.plant.matrices
         return {"A": m.A, "B": m.B, "C": m.C, "D": m.D}
 
-    def at(self, values: Mapping[Any, Any] | None = None, /, **named: Any) -> Self:
-        """Return the same result where parameters have values: `result.at(k=4, m="1/2")`, or `result.at({k: 4})`.
-
-        The task is put anew to the plant and the specification at these values, exact as everywhere, so that conditions
-        are decided, the case that applies is the answer, and the constructor checks it; of gains that are not unique the
-        value of the chosen one is kept.  Other parameters stay.  Raises `InputError` for what is no parameter, for a value
-        that the declared sign excludes, and where there is no plant.
-        """
-        from symobs.result.at_values import at_values  # noqa: PLC0415 - a result that is not moved does not pay for it
-
-        found: Self = at_values(self, {**(values or {}), **named})
-        return found
-
-    def evaluate(self, points: Mapping[Any, Any]) -> dict[str, Any]:
-        """Return a NumPy array for each field at arrays of points: `result.evaluate({"k": np.linspace(1, 2, 100)})`.
-
-        Arrays of points are broadcast to one shape S; a matrix field has the shape S + (rows, columns).  Where a condition
-        of the result, or a declared sign, fails, there stands what holds in that case, else `nan`.  Floating-point points
-        are read as their shortest decimals where a condition is decided.  Fields that depend on time or on the variable
-        of polynomials, and words, are left out.  Raises `InputError` where a parameter has no value, and where no field is
-        left.
-        """
-        from symobs.result.evaluation import evaluate  # noqa: PLC0415 - it needs NumPy
-
-        return evaluate(self, points)
-
     @property
     def systems(self) -> Mapping[str, Realisation]:
         """The systems of a design by name: the plant, if it has input and output, and the designed systems."""
@@ -267,50 +254,6 @@ class Result(OutputMethods):
     def controller(self) -> Controller | None:
         """The system of a design that a program runs."""
         return None
-
-    def to_control(self) -> dict[str, Any]:
-        """Return the systems of a design by name as state-space systems of python-control.
-
-        plant         u → y
-        observer      (u, y) → x_hat
-        compensator   y → w = F y, so that u = v − w closes the loop
-        closed_loop   v → y
-        servo         r → y, the closed loop with integral action
-
-        Entries are the nearest doubles; `StateSpace.from_control` reads each system back exactly.  Raises `InputError`
-        where a parameter has no value, naming it, and `UsageError` where python-control is not installed.
-        """
-        from symobs.result.control_systems import to_control  # noqa: PLC0415 - it needs python-control
-
-        return to_control(self)
-
-    def __getattr__(self, name: str) -> Any:
-        """Return an answer as SymPy objects; Python also comes here after a failed property."""
-        for kind in type(self).__mro__:
-            if name in vars(kind):
-                return vars(kind)[name].__get__(self)  # its own error, not that there is no such name
-        from symobs.result.conversions import to_sympy  # noqa: PLC0415 - SymPy is the face only
-
-        objects = {} if name.startswith("_") else self.plant.symbols.objects
-        if name == "conditions":
-            return to_sympy(self.holds_where, objects)
-        if name == "cases":
-            return tuple(Stratum(to_sympy(case.when, objects), case.result) for case in self.case_tree)
-        if name.startswith("_") or name not in self.fields:
-            message = f"{type(self).__name__} has no attribute {name!r}"
-            raise AttributeError(message)
-        if name not in self._objects:
-            self._objects[name] = to_sympy(self.fields[name], objects)
-        return self._objects[name]
-
-    @cached_property
-    def _objects(self) -> dict[str, Any]:
-        """The answers as SymPy objects, converted at first use: large ones take seconds."""
-        return {}
-
-    def __dir__(self) -> Iterable[str]:
-        own = (name for name in super().__dir__() if not name.startswith("_"))
-        return sorted({*own, "conditions", "cases", *self.fields})
 
     @overload
     def to(self, format_name: Literal["pdf"], **page: Unpack[PageOptions]) -> bytes: ...
@@ -334,18 +277,6 @@ class Result(OutputMethods):
         """
         asked = document_options(**page)
         return render(Document("", "", (self,), period=period, hold=hold, **asked), format_name)
-
-    def __repr__(self) -> str:
-        """Show the answers in short; of one with many terms their number, for a display may not take seconds."""
-        parts = {name: value for name, value in self.answer.items() if value is not None}
-        long = {name: size for name, value in parts.items() if (size := getattr(value, "size", 0)) > _TERMS_SHOWN}
-        shown = [f"{name}=<{long[name]} terms>" if name in long else f"{name}={value}" for name, value in parts.items()]
-        verdict = "" if long else f", verdict={self.verdict!r}"
-        return f"{type(self).__name__}({', '.join(shown)[:200]}{verdict})"
-
-
-#: Answers of more terms than this are not written out by `repr`.
-_TERMS_SHOWN = 500
 
 
 @cache

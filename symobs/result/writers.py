@@ -1,4 +1,4 @@
-"""The registries of page writers and output formats (trusted), and the import of the modules that fill registries.
+"""The registries of page writers and output formats, and the import of the modules that fill registries.
 
 This module is below the type of results, which therefore has no name here.
 """

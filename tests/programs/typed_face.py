@@ -145,7 +145,6 @@ def stub() -> str:
     imports = {line for line, _ in classes.values()} | {"from symobs.system import StateSpace as StateSpace"}
     imports |= {f"from {module} import {name} as {name}" for name, module in symobs.FUNCTIONS.items()}
     imports |= {f"from symobs.errors import {name} as {name}" for name in raised}
-    imports |= {f"from {module} import {name} as {name}" for name, module in symobs.FUNCTIONS.items()}
     bodies = [f"{classes[name][1]}\n\n{signature(tasks()[name])}" for name in found]
     return HEAD + "\n".join(sorted(imports)) + "\n" + NAMES + "\n" + "\n\n".join(bodies) + "\n"
 

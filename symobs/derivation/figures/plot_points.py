@@ -1,4 +1,4 @@
-"""Places of a picture: whether they lie in its window, whether a polynomial is stable there, and how they are written."""
+"""Places of a picture: whether they lie in its window, whether a polynomial is stable there (trusted)."""
 
 from __future__ import annotations
 

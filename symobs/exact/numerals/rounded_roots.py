@@ -13,7 +13,8 @@ from symobs.exact.algebraic.enclosure import is_number, sign_of_number
 from symobs.exact.algebraic.root_location import root_boxes
 from symobs.exact.core.generators import square_root_of
 from symobs.exact.core.scalar import Scalar
-from symobs.exact.numerals.significant_digits import is_correctly_written, is_written_exactly, significant
+from symobs.exact.numerals.significant_digits import is_correctly_written, is_written_exactly
+from symobs.exact.numerals.written_digits import significant
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

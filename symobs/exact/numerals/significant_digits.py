@@ -1,4 +1,4 @@
-"""Significant digits of exact numbers: the text that a page prints, and the test that it is the correct rounding (trusted).
+"""Significant digits of exact numbers: the test that a text is the correct rounding of one (trusted).
 
 A text is `0.3676`, `16987` or `1.2346e-7`, always of a number that is not negative.  Either it is exactly the number, or it
 has as many significant digits as were asked for, trailing zeros among them, and is the multiple of the unit of its last
@@ -11,18 +11,12 @@ import re
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
-from symobs.exact.algebraic.enclosure import is_number, near, sign_of_number
+from symobs.exact.algebraic.enclosure import sign_of_number
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-
     from symobs.exact.core.scalar import Scalar
 
 _WRITTEN = re.compile(r"(?P<whole>0|[1-9][0-9]*)(?:\.(?P<places>[0-9]+))?(?:e(?P<power>-?[1-9][0-9]*))?")
-#: Powers of ten from which on an exact number, and the least one below which any number, is written with a power of ten.
-_LONGEST_WHOLE, _LONGEST_ZEROS = 9, -4
-#: Bits of the approximations that a rounding is read from.
-_BITS = (64, 256, 1024, 4000)
 
 
 def is_correctly_written(exact: Scalar, text: str, digits: int) -> bool:
@@ -50,88 +44,3 @@ def is_correctly_written(exact: Scalar, text: str, digits: int) -> bool:
 def is_written_exactly(exact: Scalar, text: str) -> bool:
     """Return whether a text is exactly the number."""
     return exact.is_constant and Fraction(text) == exact.fraction()
-
-
-def significant(value: Scalar, digits: int) -> str | None:
-    """Return the text of a number that is not negative, None where it is no number or cannot be approximated.
-
-    A number that has no more digits, and a longer one where that takes no more room, is written exactly; another one is
-    rounded, with a power of ten from 10^digits on, and below 10^-4.
-    """
-    if value.is_constant:
-        number = value.fraction()
-        rounded = _rounded(number, digits)
-        exact = _exact(number, digits)
-        return exact if exact is not None and (_is_short(number, digits) or _room(exact) <= _room(rounded)) else rounded
-    return next(_roundings(value, digits), None)
-
-
-def _roundings(value: Scalar, digits: int) -> Iterator[str]:
-    """Yield the rounding of a number that is not rational, from the first approximation that is near enough."""
-    for bits in _BITS if is_number(value) else ():
-        approximation = near(value, bits)
-        if approximation:
-            text = _rounded(approximation, digits)
-            if is_correctly_written(value, text, digits):
-                yield text
-
-
-def _is_short(number: Fraction, digits: int) -> bool:
-    """Return whether a number has at most the given significant digits."""
-    units = _units(number)
-    return units is not None and len(str(units).rstrip("0")) <= digits
-
-
-def _units(number: Fraction) -> int | None:
-    """Return the significant digits of a decimal that ends, trailing zeros of a whole number among them."""
-    twos, fives, below = 0, 0, number.denominator
-    while below % 2 == 0:
-        twos, below = twos + 1, below // 2
-    while below % 5 == 0:
-        fives, below = fives + 1, below // 5
-    return int(number * 10 ** max(twos, fives)) if below == 1 else None
-
-
-def _exact(number: Fraction, digits: int) -> str | None:
-    """Return a decimal that ends, with a power of ten where its digits stand far from the point."""
-    units = _units(number)
-    if units is None or number == 0:
-        return None if units is None else "0"
-    stripped = str(units).rstrip("0")
-    power = _power(number)
-    if len(stripped) <= digits and not _LONGEST_ZEROS <= power <= _LONGEST_WHOLE:
-        return f"{stripped[0]}{'.' * (len(stripped) > 1)}{stripped[1:]}e{power}"
-    return _plain(stripped, power)
-
-
-def _rounded(number: Fraction, digits: int) -> str:
-    """Return a positive number rounded to significant digits."""
-    if number == 0:
-        return "0"
-    power = _power(number)
-    units = round(number / Fraction(10) ** (power - digits + 1))
-    if units == 10**digits:
-        units, power = units // 10, power + 1
-    written = str(units)
-    if _LONGEST_ZEROS <= power < digits:
-        return _plain(written, power)
-    return f"{written[0]}{'.' * (digits > 1)}{written[1:]}e{power}"
-
-
-def _plain(written: str, power: int) -> str:
-    """Return digits with their point, the first of them standing for a multiple of 10^power."""
-    if power < 0:
-        return f"0.{'0' * (-power - 1)}{written}"
-    whole, places = written[: power + 1].ljust(power + 1, "0"), written[power + 1 :]
-    return f"{whole}.{places}" if places else whole
-
-
-def _power(number: Fraction) -> int:
-    """Return the largest k with 10^k not above a positive number."""
-    power = len(str(number.numerator)) - len(str(number.denominator))
-    return power if Fraction(10) ** power <= number else power - 1
-
-
-def _room(text: str) -> int:
-    """Return the characters of a text, a power of ten with its base and its dot."""
-    return len(text.replace("e", "·10"))

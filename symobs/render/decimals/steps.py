@@ -20,7 +20,6 @@ from symobs.derivation import (
     RegionSummary,
     Section,
     Sentence,
-    Solve,
     Tabulate,
 )
 from symobs.derivation.builder import left_out
@@ -166,8 +165,6 @@ class _Writer:
                 *others, last = relations
                 shown = *map(self.relation, others), self.answer(last) if answer else self.relation(last)
                 return self._said(replace(step, relations=shown))
-            case Solve(equation=equation, solution=solution):
-                return self._said(replace(step, equation=self.relation(equation), solution=self.relation(solution)))
             case Tabulate(findings=findings) | RegionSummary(findings=findings):
                 return self._said(replace(step, findings=tuple(map(self.sentence, findings))))
             case Diagram(name=name, labels=labels):

@@ -16,7 +16,6 @@ from symobs.derivation import (
     Plot,
     RegionSummary,
     Section,
-    Solve,
     Tabulate,
 )
 from symobs.formula import (
@@ -91,8 +90,6 @@ def _formulas(step: Step) -> Iterator[Formula]:
             yield from (*_in_facts(relations), *_in_sentence(sentence))
         case Define(relation=relation, sentence=sentence):
             yield from (*relation.members, *_in_sentence(sentence))
-        case Solve(equation=equation, solution=solution, sentence=sentence):
-            yield from (*equation.members, *solution.members, *_in_sentence(sentence))
         case (
             Conclude(sentence=sentence)
             | Note(sentence=sentence)

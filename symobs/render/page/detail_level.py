@@ -20,7 +20,6 @@ from symobs.derivation import (
     Plot,
     RegionSummary,
     Section,
-    Solve,
     Tabulate,
 )
 from symobs.errors import UsageError
@@ -56,7 +55,7 @@ def at_detail(steps: Sequence[Step], detail: str) -> tuple[Step, ...]:
     passed: list[Step] = []
     for step in steps:
         inner = tuple(_shortened(step, detail))
-        if isinstance(step, Define | Equal | Solve) and not inner:
+        if isinstance(step, Define | Equal) and not inner:
             passed = [step] if _begins(step.sentence) else [*passed, step]
             continue
         if inner and _speaks_of_before(step):
@@ -104,7 +103,7 @@ def _shortened(step: Step, detail: str) -> Iterator[Step]:
             yield step
         case Equal(relations=relations) if any("!=" in relation.operators for relation in relations):
             yield replace(step, sentence=None)
-        case Define() | Equal() | Solve() | Diagram() | Plot():
+        case Define() | Equal() | Diagram() | Plot():
             pass
         case Conclude(sentence=sentence) | Note(sentence=sentence):
             if sentence is None or sentence.key not in EXPLAINS:

@@ -24,7 +24,6 @@ from symobs.derivation import (
     RegionSummary,
     Section,
     Sentence,
-    Solve,
     Tabulate,
 )
 from symobs.formula import Conjunction
@@ -237,9 +236,6 @@ class _PageBlocks:
             case Equal(relations=relations, sentence=sentence, answer=answer):
                 self.emit_sentence(sentence)
                 self.emit_display(relations, boxed=answer)
-            case Solve(equation=equation, solution=solution, sentence=sentence):
-                self.emit_sentence(sentence)
-                self.emit_display((equation, solution))
             case Conclude(sentence=Sentence() as sentence, verified=True):
                 self.blocks.append(Verified(self.filled(sentence)))
             case Note(sentence=sentence, caution=True):

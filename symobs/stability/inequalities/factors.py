@@ -9,7 +9,8 @@ from symobs._dataclass import dataclass
 from symobs.conditions import FACTORED_UP_TO, sign_of
 from symobs.exact import Scalar, product_of
 from symobs.exact.algebraic.rational_points import value_at
-from symobs.stability.inequalities.proof import UNIT, Combined, Step, by_signs, is_product, is_quotient
+from symobs.stability.inequalities.proof import Combined, Step
+from symobs.stability.inequalities.proof_steps import UNIT, by_signs, is_product, is_quotient
 from symobs.stability.inequalities.prover import prove, prove_by_opposite
 from symobs.stability.inequalities.sample_points import find_points
 

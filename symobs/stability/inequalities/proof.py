@@ -26,7 +26,6 @@ if TYPE_CHECKING:
 ZERO, ONE = Scalar.of(0), Scalar.of(1)
 #: A coefficient, and values known to be positive which are multiplied with it.
 Product: TypeAlias = tuple[Scalar, tuple[Scalar, ...]]
-UNIT: tuple[Product, ...] = ((ONE, ()),)
 
 
 @dataclass(frozen=True)
@@ -126,28 +125,3 @@ def asks_z3(proof: Equivalence | None) -> bool:
 
 def _asks(step: Step) -> bool:
     return isinstance(step, ProvedByZ3) or (isinstance(step, Opposite) and any(map(_asks, step.steps)))
-
-
-def by_signs(value: Scalar) -> Combined:
-    """Return the step for a value positive by the declared signs."""
-    return Combined(value, UNIT, ((value, ()),))
-
-
-def is_product(value: Scalar, factors: Sequence[Scalar]) -> Combined:
-    """Return the step for a product of known values."""
-    return Combined(value, UNIT, ((ONE, tuple(factors)),))
-
-
-def is_quotient(value: Scalar, product: Scalar, factors: Sequence[Scalar], coefficient: Scalar = ONE) -> Combined:
-    """Return the step for a quotient of a known value by known factors and a coefficient of known sign."""
-    return Combined(value, ((coefficient, tuple(factors)),), ((ONE, (product,)),))
-
-
-def contradiction(value: Scalar) -> Combined:
-    """Return the step to 0 > 0 from value > 0 for a value that is never positive."""
-    return Combined(ZERO, (), ((ONE, (value,)), (-value, ())))
-
-
-def from_contradiction(value: Scalar) -> Combined:
-    """Return the step from 0 > 0 to anything."""
-    return Combined(value, (), ((ONE, (ZERO,)),))

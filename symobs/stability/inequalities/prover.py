@@ -15,20 +15,8 @@ from symobs._dataclass import dataclass
 from symobs.conditions import sign_of
 from symobs.exact import Scalar
 from symobs.stability.inequalities.positive_combination import combination
-from symobs.stability.inequalities.proof import (
-    ONE,
-    UNIT,
-    ZERO,
-    Combined,
-    Opposite,
-    Product,
-    Step,
-    by_signs,
-    contradiction,
-    from_contradiction,
-    proves,
-    refutes,
-)
+from symobs.stability.inequalities.proof import ONE, ZERO, Combined, Opposite, Product, Step, proves, refutes
+from symobs.stability.inequalities.proof_steps import UNIT, by_signs, contradiction, from_contradiction
 from symobs.stability.inequalities.z3_backend import is_free
 
 if TYPE_CHECKING:

@@ -13,15 +13,8 @@ from symobs._dataclass import dataclass
 from symobs.conditions import sign_of
 from symobs.exact import Scalar
 from symobs.stability.inequalities.factors import InequalitySystem, cleared, split_into_factors, split_products
-from symobs.stability.inequalities.proof import (
-    ZERO,
-    Equivalence,
-    ProvedByZ3,
-    Step,
-    contradiction,
-    from_contradiction,
-    is_product,
-)
+from symobs.stability.inequalities.proof import ZERO, Equivalence, ProvedByZ3, Step
+from symobs.stability.inequalities.proof_steps import contradiction, from_contradiction, is_product
 from symobs.stability.inequalities.prover import prove, refute
 from symobs.stability.inequalities.sample_points import (
     Point,

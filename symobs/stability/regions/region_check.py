@@ -1,6 +1,6 @@
 """Check of a region by independent means (trusted).
 
-The plane's division is proved by `exact.plane_proof`.  The critical values are held against determinants of numbers at
+The plane's division is proved by `decomposition_check`.  The critical values are held against determinants of numbers at
 random points, the verdict in every cell against the isolated roots of the polynomial at its sample, the list of
 inequalities against the cells of a division in which nothing listed changes its sign inside a cell.
 """

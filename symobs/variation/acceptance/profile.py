@@ -6,7 +6,7 @@ from dataclasses import fields, is_dataclass
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
-from symobs.derivation.steps import CaseStep, Define, Equal, Given, Section, Solve, Tabulate
+from symobs.derivation.steps import CaseStep, Define, Equal, Given, Section, Tabulate
 from symobs.exact import Matrix, Scalar
 from symobs.formula.nodes import Literal
 
@@ -95,9 +95,7 @@ def _each_step(steps: Iterable[Any]) -> Iterator[Any]:
 def _relations(step: Any) -> tuple[Any, ...]:
     if isinstance(step, (Given, Equal)):
         return () if getattr(step, "silent", False) else step.relations
-    if isinstance(step, Define):
-        return () if step.silent else (step.relation,)
-    return (step.equation, step.solution) if isinstance(step, Solve) else ()
+    return (step.relation,) if isinstance(step, Define) and not step.silent else ()
 
 
 def _kind(step: Any) -> str:

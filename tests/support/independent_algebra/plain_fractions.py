@@ -27,7 +27,6 @@ from symobs.derivation import (
     Plot,
     RegionSummary,
     Section,
-    Solve,
     Tabulate,
 )
 from symobs.exact import EIGENVALUE, Matrix, Root, Scalar
@@ -394,9 +393,6 @@ class World:
                     yield from self.data(relation)
                 case Equal(relations):
                     yield from self.facts(relations)
-                case Solve(equation, solution):
-                    yield from self.data(solution)
-                    yield from self.facts((equation,))
                 case Conclude(facts=facts) | Note(facts=facts):
                     yield from self.facts(facts)
                 case Diagram(figure, labels):

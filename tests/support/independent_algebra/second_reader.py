@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 import mpmath
 import sympy
 
-from symobs.derivation import CaseStep, Conclude, Define, Diagram, Equal, Given, Note, Section, Solve, Tabulate
+from symobs.derivation import CaseStep, Conclude, Define, Diagram, Equal, Given, Note, Section, Tabulate
 from symobs.exact import Matrix, Scalar
 from symobs.exact.core.generators import function_named
 from symobs.formula import (
@@ -190,9 +190,6 @@ class Reader:
             case Equal(relations):
                 for relation in relations:
                     self.fact(relation)
-            case Solve(equation, solution):
-                self.introduce(solution)
-                self.fact(equation)
             case Conclude(facts=facts) | Note(facts=facts):
                 for fact in facts:
                     self.fact(fact)

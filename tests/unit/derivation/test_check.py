@@ -19,7 +19,6 @@ from symobs.derivation import (
     Note,
     Section,
     Sentence,
-    Solve,
     Step,
 )
 from symobs.exact import Matrix, Scalar
@@ -99,7 +98,6 @@ def test_a_letter_nobody_introduced_is_refused_wherever_it_stands() -> None:
         Given((said(strange, "!=", 0),)),
         Define(said(A, strange)),
         Equal((said(strange, strange),)),
-        Solve(said(strange, 1), said(A, 1)),
         Conclude(None, (Predicate("stable", strange),)),
         Conclude(None, (Roots(strange, ()),)),
         Conclude(None, (HoldsExactlyWhere(Predicate("stable", strange), ()),)),
@@ -124,7 +122,6 @@ def test_links_after_the_first_are_checked_and_what_is_written_anew_must_agree()
 def test_only_an_equation_introduces(operator: str) -> None:
     refused(Define(said(F, operator, 1)))
     refused(Given((said(F, operator, 1),)))
-    refused(Solve(said(1, 1), said(F, operator, 1)))
 
 
 @pytest.mark.parametrize("target", [Transpose(A), Literal(a * b), Literal(Scalar.of(2)), Literal(COMPANION)])
@@ -144,12 +141,6 @@ def test_a_named_coefficient_is_a_new_name_that_stands_for_one_thing() -> None:
     refused(C_IS, Define(said(c, 5)), match="means something already")
     refused(Given((said(C, Matrix.of([[b, 1]])),)), Define(said(b, 5)), match="means something already")
     refused(Define(said(d, b)), Define(said(b, 5)), match="means something already")
-
-
-def test_what_solves_an_equation_makes_it_true() -> None:
-    unknown = Letter("L")
-    assert checked(Solve(said(Product((literal(2), unknown)), 6), said(unknown, 3))).values["L"] == Scalar.of(3)
-    refused(Solve(said(Product((literal(2), unknown)), 6), said(unknown, 4)))
 
 
 # -- conditions --------------------------------------------------------------------------------------------------------

@@ -22,12 +22,13 @@ from symobs.derivation import (
     RegionSummary,
     Section,
     Sentence,
-    Solve,
     Tabulate,
     convention_signs,
+    sign_translation,
     translated,
 )
 from symobs.derivation.convention_signs import set_apart
+from symobs.derivation.steps import everything_in, literals, relations
 from symobs.errors import DerivationRejected, UsageError
 from symobs.exact import Matrix, Scalar
 from symobs.formula import (
@@ -102,7 +103,7 @@ def test_data_that_are_equal_to_a_gain_keep_their_sign() -> None:
     product = Define(said(Letter("P"), Product((C, L)), written))
     found = steps_in(PLUS, plant, L_IS, product)
     assert found[2] == Define(said(Letter("P"), Negative(Product((C, L))), written))
-    (other,) = convention_signs._in_signs((product,), SignReversal(frozenset({"L"}), {GAIN}))
+    (other,) = sign_translation.in_signs((product,), SignReversal(frozenset({"L"}), {GAIN}))
     assert other == Define(said(Letter("P"), Negative(Product((C, L))), Negative(turned)))
     scalar = Define(said(Letter("D"), 3))
     assert steps_in(PLUS, plant, scalar, L_IS)[1] == scalar
@@ -141,33 +142,33 @@ LAW, TURNED_LAW = said(U, Negative(Product((K, ESTIMATE)))), said(U, Product((K,
     ],
 )
 def test_signs_of_what_a_page_is_made_of(before: Any, after: Any) -> None:
-    assert convention_signs._in_signs(before, SignReversal(frozenset({"K", "L"}), {GAIN, GAIN.T})) == after
+    assert sign_translation.in_signs(before, SignReversal(frozenset({"K", "L"}), {GAIN, GAIN.T})) == after
 
 
 def test_the_sentence_of_a_figure_is_turned_too() -> None:
     turned = SignReversal(frozenset({"K", "L"}), {GAIN, GAIN.T})
     before, after = (plain_words("test_slot", it=relation) for relation in (LAW, TURNED_LAW))
-    assert convention_signs._in_signs(Diagram("loop", (), before), turned) == Diagram("loop", (), after)
+    assert sign_translation.in_signs(Diagram("loop", (), before), turned) == Diagram("loop", (), after)
 
 
 # -- what is held against what ------------------------------------------------------------------------------------------
 
 
 def test_a_translation_that_turns_nothing_is_rejected(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(convention_signs, "_in_signs", lambda steps, _: steps)
+    monkeypatch.setattr(convention_signs, "in_signs", lambda steps, _: steps)
     with pytest.raises(DerivationRejected, match="L in another convention"):
         steps_in(PLUS, PLANT, L_IS)
 
 
 def test_a_letter_that_is_left_out_is_rejected(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(convention_signs, "_in_signs", lambda _, __: (PLANT,))
+    monkeypatch.setattr(convention_signs, "in_signs", lambda _, __: (PLANT,))
     with pytest.raises(DerivationRejected, match="L in another convention"):
         steps_in(PLUS, PLANT, L_IS)
 
 
 def test_every_line_is_checked_again(monkeypatch: pytest.MonkeyPatch) -> None:
     one_more = Equal((said(A, Matrix.of([[0, 1], [-2, -4]])),))
-    monkeypatch.setattr(convention_signs, "_in_signs", lambda _, __: (PLANT, Define(said(L, -GAIN)), one_more))
+    monkeypatch.setattr(convention_signs, "in_signs", lambda _, __: (PLANT, Define(said(L, -GAIN)), one_more))
     with pytest.raises(DerivationRejected, match="is not true"):
         steps_in(PLUS, PLANT, L_IS)
 
@@ -281,8 +282,8 @@ def test_some_letters_differ_on_pages_of_reduced_order_only() -> None:
     sought = Conclude(None, (said(L, Matrix.column([l1, l2])),))
     entries = Convention("book", reduced={"L": "H"})
     final = Environment()
-    assert convention_signs._with_own_unknowns((sought,), final, entries, reduced=False) == (sought,)
-    assert convention_signs._with_own_unknowns((sought,), final, entries, reduced=True) == (
+    assert sign_translation.with_own_unknowns((sought,), final, entries, reduced=False) == (sought,)
+    assert sign_translation.with_own_unknowns((sought,), final, entries, reduced=True) == (
         Conclude(None, (said(L, Matrix.column([h1, Scalar.symbol("h2")])),)),
     )
 
@@ -319,7 +320,7 @@ def test_the_variable_of_polynomials_is_no_parameter() -> None:
 
 def own(convention: Convention, *steps: Any, final: Environment | None = None, reduced: bool = False) -> Any:
     found = final or Environment()
-    return convention_signs._with_own_unknowns(steps, found, convention, reduced=reduced)
+    return sign_translation.with_own_unknowns(steps, found, convention, reduced=reduced)
 
 
 def sought(letter: Formula, *entries: Scalar) -> Conclude:
@@ -349,7 +350,7 @@ def test_an_entry_is_not_called_like_a_parameter(other: str) -> None:
 
 def test_what_an_unknown_entry_is() -> None:
     def unknown(*items: Any, final: Environment | None = None, letter: str = "L") -> list[str]:
-        return list(convention_signs._unknowns((Conclude(None, (said(*items),)),), letter, final or Environment()))
+        return list(sign_translation._unknowns((Conclude(None, (said(*items),)),), letter, final or Environment()))
 
     entries = Matrix.column([l1, a, l1 + 1, 2 * l2, 3])
     assert unknown(L, entries) == ["l1", "a"]
@@ -366,7 +367,7 @@ def test_symbols_are_replaced_wherever_they_stand() -> None:
     meant = {"l1": -m1, "l2": m2}
 
     def replaced(item: Any) -> Any:
-        return convention_signs._substituted(item, meant)
+        return sign_translation._substituted(item, meant)
 
     assert replaced(Literal(l1 + a)) == Literal(a - m1)
     assert replaced(SymbolList(("l1", "l2", "a"))) == SymbolList(("m1", "m2", "a"))
@@ -381,7 +382,7 @@ def test_symbols_are_replaced_wherever_they_stand() -> None:
 
 def test_the_minus_of_unknown_entries_goes_into_the_matrix_before_them() -> None:
     def replaced(item: Formula) -> Any:
-        return convention_signs._substituted(item, {"l1": -m1, "l2": -m2})
+        return sign_translation._substituted(item, {"l1": -m1, "l2": -m2})
 
     table, minus = literal(Matrix.of([[1, 2]])), literal(Matrix.of([[-1, -2]]))
     assert replaced(Product((table, literal(Matrix.column([l1, l2]))))) == Product(
@@ -402,7 +403,6 @@ MADE_OF: list[Any] = [
     Given((ENTRY,)),
     Define(ENTRY),
     Equal((ENTRY,)),
-    Solve(ENTRY, said(P, 1)),
     Conclude(None, (ENTRY,)),
     Plot(None, literal(l1)),  # type: ignore[arg-type]
     Tabulate(literal(l1), None, "s"),  # type: ignore[arg-type]
@@ -422,12 +422,12 @@ MADE_OF: list[Any] = [
 @pytest.mark.parametrize("part", MADE_OF, ids=lambda part: type(part).__name__)
 def test_everything_is_seen_in_every_kind_of_step(part: Any) -> None:
     for item in (part, (part, 7), Section(plain_words(), (part,)), Note(plain_words(), (part,)), "l1"):
-        literals = [value for value in convention_signs._literals(item) if value == l1]
-        assert len(literals) == (item != "l1")
-        relations = [relation for relation in convention_signs._relations(item) if relation == ENTRY]
-        assert len(relations) == (item != "l1" and "Relation" in repr(part) and ENTRY in convention_signs._every(part))
-        changed = convention_signs._substituted(item, {"l1": m1})
-        assert [value for value in convention_signs._literals(changed) if value in {l1, m1}] == [m1] * len(literals)
+        found = [value for value in literals(item) if value == l1]
+        assert len(found) == (item != "l1")
+        equations = [relation for relation in relations(item) if relation == ENTRY]
+        assert len(equations) == (item != "l1" and "Relation" in repr(part) and ENTRY in everything_in(part))
+        changed = sign_translation._substituted(item, {"l1": m1})
+        assert [value for value in literals(changed) if value in {l1, m1}] == [m1] * len(found)
     spoken = Note(Sentence("test_slot", (("it", part),)))
-    assert l1 in convention_signs._literals(spoken)
-    assert m1 in convention_signs._literals(convention_signs._substituted(spoken, {"l1": m1}))
+    assert l1 in literals(spoken)
+    assert m1 in literals(sign_translation._substituted(spoken, {"l1": m1}))

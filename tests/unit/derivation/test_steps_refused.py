@@ -21,7 +21,6 @@ from symobs.derivation import (
     RegionSummary,
     Section,
     Sentence,
-    Solve,
     Step,
     Tabulate,
 )
@@ -161,7 +160,6 @@ def test_every_slot_of_every_sentence_is_read() -> None:
             Given((said(A, 1),), slot(lie)),
             Define(said(A, 1), slot(lie)),
             Equal((one,), slot(lie)),
-            Solve(one, said(A, 1), slot(lie)),
             Conclude(slot(lie)),
             Note(slot(lie)),
             Section(slot(lie), ()),
@@ -482,7 +480,7 @@ def test_a_case_may_narrow_and_starts_anew() -> None:
     refused(C_IS, CaseStep(said(c, "!=", 1), (), ()), Equal((said(c, "!=", 1),)))
 
 
-@pytest.mark.parametrize("step", [Equal((two,)), Conclude(None, (two,)), Solve(two, said(F, 1))])
+@pytest.mark.parametrize("step", [Equal((two,)), Conclude(None, (two,))])
 def test_what_stands_inside_is_checked(step: Step) -> None:
     refused(Section(Sentence("test_plain"), (step,)))
     refused(Section(Sentence("test_plain"), (Equal((one,)), step)))

@@ -18,17 +18,8 @@ from symobs.exact import Scalar, from_coefficients
 from symobs.stability.criteria.stability_conditions import stable_where
 from symobs.stability.inequalities import z3_backend
 from symobs.stability.inequalities.decision import decide_empty, equivalence_of, implies
-from symobs.stability.inequalities.proof import (
-    UNIT,
-    Combined,
-    Equivalence,
-    Opposite,
-    ProvedByZ3,
-    Step,
-    contradiction,
-    proves,
-    refutes,
-)
+from symobs.stability.inequalities.proof import Combined, Equivalence, Opposite, ProvedByZ3, Step, proves, refutes
+from symobs.stability.inequalities.proof_steps import UNIT, contradiction
 from symobs.stability.inequalities.prover import prove, prove_by_opposite, refute
 from symobs.stability.inequalities.sample_points import find_point, point_where_zero
 from symobs.stability.inequalities.simplify import simplify
