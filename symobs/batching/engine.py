@@ -10,12 +10,14 @@ from itertools import islice
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from symobs.batching.executors import Unfinished, Workforce
-from symobs.batching.jobs import Budget, Job, digest, read_payload
+from symobs.batching.jobs import USUAL_BUDGET, Job, digest, read_payload
 from symobs.batching.kinds import recheck
 from symobs.errors import CertificateRejected
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator
+
+    from symobs.child_processes.budget import Budget
 
 #: Chunks in flight for each worker: enough that none waits, few enough that memory does not grow with the jobs.
 IN_FLIGHT = 4
@@ -30,7 +32,7 @@ Row = dict[str, Any]
 class Settings(NamedTuple):
     """How a run goes about its jobs."""
 
-    budget: Budget = Budget()
+    budget: Budget = USUAL_BUDGET
     chunk_seconds: float = 2.0
     #: The share of rows that are checked again, from 0 to 1.
     recheck: float = 0.01

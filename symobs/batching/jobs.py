@@ -10,6 +10,7 @@ from functools import cache
 from importlib.metadata import PackageNotFoundError, version
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+from symobs.child_processes.budget import Budget
 from symobs.convention.builtin import PROFILES
 from symobs.errors import ProblemErrors
 from symobs.problem import Decimal, parse
@@ -22,6 +23,8 @@ if TYPE_CHECKING:
 SCHEMA = "symobs-batch/1"
 #: What of a problem file changes no answer, and what only its page shows.
 _SAYS_NOTHING = {"id", "printed"}
+#: What one job is allowed where nothing else is said.
+USUAL_BUDGET = Budget(60.0, 2000.0)
 _ON_A_PAGE = {"title", "source", "text", "digits", "exact"}
 _JSON_NUMBER = re.compile(r"-?(0|[1-9][0-9]*)(\.[0-9]+)?([eE][-+]?[0-9]+)?")
 
@@ -33,18 +36,6 @@ class Job(NamedTuple):
     payload: str
     name: str
     key: str
-
-
-class Budget(NamedTuple):
-    """The time and the memory that one job is allowed; None is unlimited."""
-
-    seconds: float | None = 60.0
-    megabytes: float | None = 2000.0
-
-    def exceeds(self, other: Budget) -> bool:
-        """Return whether this one allows more of something than another."""
-        pairs = zip(self, other, strict=True)
-        return any(theirs is not None and (own is None or own > theirs) for own, theirs in pairs)
 
 
 @cache

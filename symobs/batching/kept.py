@@ -6,7 +6,8 @@ import sys
 import time
 from typing import TYPE_CHECKING, Any
 
-from symobs.batching.jobs import Budget, fingerprint, row_text
+from symobs.batching.jobs import fingerprint, row_text
+from symobs.child_processes.budget import Budget
 from symobs.child_processes.child import Died, Kept
 from symobs.errors import InputError
 

@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING, Any, Self
 
 from symobs.batching.engine import Settings, examined, rejected, work
 from symobs.batching.executors import Unfinished, workforce
-from symobs.batching.jobs import Budget, Job, digest, key_of, solve_job, unread_job
+from symobs.batching.jobs import Job, digest, key_of, solve_job, unread_job
 from symobs.batching.store import STATUSES, Store
+from symobs.child_processes.budget import Budget
 from symobs.errors import InputError, UsageError, reason_of
 from symobs.result.digits_of_page import digits_asked
 

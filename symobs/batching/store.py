@@ -22,7 +22,8 @@ import time
 from contextlib import contextmanager, suppress
 from typing import TYPE_CHECKING, Any
 
-from symobs.batching.jobs import SCHEMA, Budget, fingerprint
+from symobs.batching.jobs import SCHEMA, fingerprint
+from symobs.child_processes.budget import Budget
 from symobs.errors import CertificateRejected, InputError, reason_of
 
 if TYPE_CHECKING:

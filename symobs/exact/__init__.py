@@ -6,7 +6,7 @@ Owns every exact value.  Nothing outside this package imports `flint` or `sympy.
 from symobs.exact.algebraic.complex import Complex
 from symobs.exact.algebraic.decimals import decimal_digits, decimal_places, is_rounding, rounded
 from symobs.exact.algebraic.extension import AlgebraicExtension
-from symobs.exact.algebraic.polynomial_roots import Factored, Root, Shifted, factored, root_of_pole, roots_are, roots_of
+from symobs.exact.algebraic.polynomial_roots import Factored, Root, Shifted, factored, root_of_pole, roots_of
 from symobs.exact.algebraic.real_algebraic import RealNumber
 from symobs.exact.core.field import EIGENVALUE, RATIONALS, VARIABLES, Field
 from symobs.exact.core.generators import derivative
@@ -86,7 +86,6 @@ __all__ = [
     "remainder",
     "resultant",
     "root_of_pole",
-    "roots_are",
     "roots_of",
     "rounded",
     "significant",

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from symobs.expression.names import Scope
     from symobs.expression.syntax_tree import SyntaxNode
 
-    Entry: TypeAlias = "Number | Grid"
+    Entry: TypeAlias = "Number | MatrixRows"
 
 MOST_CHARACTERS = 10_000
 #: The highest degree of a root of a number.
@@ -44,7 +44,8 @@ def read(text: str, scope: Scope, where: str) -> list[Entry]:
     plain = plain_rows(text, scope)
     if plain is not None:
         rows, bracketed = plain
-        return [Grid(rows, text.index("["))] if bracketed and (len(rows), len(rows[0])) != (1, 1) else list(rows[0])
+        is_matrix = bracketed and (len(rows), len(rows[0])) != (1, 1)
+        return [MatrixRows(rows, text.index("["))] if is_matrix else list(rows[0])
     source, trees = trees_of(text, scope, where)
     evaluator = Evaluator(source, scope)
     return [evaluator.entry(tree) for tree in trees]
@@ -57,7 +58,7 @@ def trees_of(text: str, scope: Scope, where: str) -> tuple[Source, tuple[SyntaxN
 
 
 @dataclass(frozen=True)
-class Grid:
+class MatrixRows:
     """The rows of a matrix, all of one length, and where its bracket opens."""
 
     rows: Sequence[Sequence[Number]]
@@ -109,7 +110,7 @@ class Evaluator:
 
     def _require_no_pi(self, entry: Entry) -> None:
         """Raise ExpressionError where π is left: only as part of an argument it may be one of a number in the field."""
-        numbers = [number for row in entry.rows for number in row] if isinstance(entry, Grid) else [entry]
+        numbers = [number for row in entry.rows for number in row] if isinstance(entry, MatrixRows) else [entry]
         parts = (part for number in numbers for part in (Complex.of(number).real, Complex.of(number).imaginary))
         if any(PI in part.names for part in parts):
             instead = "declare a symbol for it; cos(pi/6) and the like have square roots for their values"
@@ -123,7 +124,7 @@ class Evaluator:
             case "row":
                 return parts
             case "block":
-                grid = Grid([[self._number(entry) for entry in row] for row in parts], node.places[0])
+                grid = MatrixRows([[self._number(entry) for entry in row] for row in parts], node.places[0])
                 return grid.rows[0][0] if grid.shape == (1, 1) else grid
             case "sum" | "product":
                 sign = "+" if node.kind == "sum" else "*"
@@ -210,7 +211,7 @@ class Evaluator:
         return radicand
 
     def _number(self, entry: Entry) -> Number:
-        if isinstance(entry, Grid):
+        if isinstance(entry, MatrixRows):
             message = "a matrix stands inside an expression or inside another matrix"
             raise self.source.error(message, entry.position, "write one pair of brackets around all rows: [1 0; 0 1]")
         return entry

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 
 from symobs.errors import BudgetExceeded, ExpressionError, InexactInput, InputError, ShapeMismatch
 from symobs.exact import Complex, Matrix, Scalar, matrix_of_numbers
-from symobs.expression.evaluation import Grid, read
+from symobs.expression.evaluation import MatrixRows, read
 from symobs.expression.fast_path import plain_rows
 from symobs.expression.names import Names, Scope, declared_name
 from symobs.expression.size_limits import common_denominator_excess
@@ -162,8 +162,8 @@ def _entry(value: object, scope: Scope, where: str) -> Number:
     return _single(entries[0], where)
 
 
-def _single(entry: Number | Grid, where: str) -> Number:
-    if isinstance(entry, Grid):
+def _single(entry: Number | MatrixRows, where: str) -> Number:
+    if isinstance(entry, MatrixRows):
         rows, columns = entry.shape
         repair = "write one expression without brackets around it"
         raise ExpressionError(f"one number is expected, but a {rows}×{columns} matrix came", where=where, repair=repair)
@@ -242,7 +242,7 @@ def _is_of_numbers(value: object) -> TypeGuard[list[list[int | Fraction]]]:
 def _numbers_of_text(text: str, scope: Scope, where: str) -> list[Number]:
     """Return the numbers set apart by commas, or those of one row or column in brackets."""
     entries = read(text, scope, where)
-    if len(entries) == 1 and isinstance(entries[0], Grid) and 1 in entries[0].shape:
+    if len(entries) == 1 and isinstance(entries[0], MatrixRows) and 1 in entries[0].shape:
         return [number for row in entries[0].rows for number in row]
     return [_single(entry, where) for entry in entries]
 
@@ -252,7 +252,7 @@ def _rows_of_text(text: str, scope: Scope, where: str) -> Sequence[Sequence[Numb
     if len(entries) > 1:
         repair = "write the rows in one pair of brackets: [1 0; 0 1]"
         raise ExpressionError(f'"{shown(text)}" is not one matrix', where=where, repair=repair)
-    return entries[0].rows if isinstance(entries[0], Grid) else [[entries[0]]]
+    return entries[0].rows if isinstance(entries[0], MatrixRows) else [[entries[0]]]
 
 
 def _rows_of_lists(value: object, scope: Scope, where: str) -> list[list[Number]]:

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 from symobs._dataclass import dataclass
 from symobs.exact import Complex, Scalar
-from symobs.expression.evaluation import Evaluator, Grid, trees_of
+from symobs.expression.evaluation import Evaluator, MatrixRows, trees_of
 from symobs.expression.names import Scope
 
 if TYPE_CHECKING:
@@ -42,7 +42,7 @@ def parse_fractions(text: str, names: Names, *, variable: str, where: str) -> li
     scope = Scope.of(names, variable, where, functions=True)
     source, (tree,) = trees_of(text, scope, where)
     found: Any = _Written(source, scope).entry(tree)
-    rows = found.rows if isinstance(found, Grid) else [[found]]
+    rows = found.rows if isinstance(found, MatrixRows) else [[found]]
     return [[_parts(_fraction(entry)) for entry in row] for row in rows]
 
 

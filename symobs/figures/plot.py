@@ -88,7 +88,7 @@ class PoleMap:
 
 
 @dataclass(frozen=True)
-class Response:
+class PlottedResponse:
     """The time response of one signal component: `row` times the state.
 
     `component` counts from 1, and is 0 where the signal has no other; a `dashed` response is an estimate.
@@ -111,13 +111,13 @@ class TimeResponse:
 
     states: tuple[str, ...]
     starts: tuple[tuple[Fraction, ...], ...]
-    responses: tuple[Response, ...]
+    responses: tuple[PlottedResponse, ...]
     window: tuple[Interval, Interval]
     parts: int
     drawn_for: tuple[tuple[str, Scalar], ...] = ()
     discrete: bool = False
 
-    def points(self, response: Response) -> list[Place]:
+    def points(self, response: PlottedResponse) -> list[Place]:
         """Return the points of one of the responses."""
         begin, end = self.window[0]
         step = (end - begin) / (len(response.heights) - 1)

@@ -23,7 +23,7 @@ _LONG = {"page", "view", "export"}
 
 
 @dataclass(frozen=True)
-class Budget:
+class AnswerBudget:
     """Seconds an answer may take, megabytes a child may use."""
 
     seconds: float = 5.0
@@ -37,7 +37,7 @@ class Gone(Exception):
 class Children:
     """The children of a server, each replaced as soon as it has ended."""
 
-    def __init__(self, budget: Budget, module: str = "symobs.live.child") -> None:
+    def __init__(self, budget: AnswerBudget, module: str = "symobs.live.child") -> None:
         """Start the first; it is ready a moment later, or when it is asked."""
         self.budget, self.kept = budget, Kept(module)
         self.free = threading.BoundedSemaphore(_CHILDREN)

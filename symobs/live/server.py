@@ -19,7 +19,7 @@ from pathlib import Path
 from socketserver import TCPServer
 from typing import Any
 
-from symobs.live.process import Budget, Children, Gone
+from symobs.live.process import AnswerBudget, Children, Gone
 from symobs.live.request import MOST_BYTES
 
 ASSETS = Path(__file__).parent / "assets"
@@ -58,13 +58,13 @@ class Server(ThreadingHTTPServer):
     daemon_threads = True
     allow_reuse_address = sys.platform != "win32"
 
-    def __init__(self, host: str = "127.0.0.1", port: int = 0, budget: Budget | None = None) -> None:
+    def __init__(self, host: str = "127.0.0.1", port: int = 0, budget: AnswerBudget | None = None) -> None:
         """Bind the address, choose a token, read the files."""
         self.address_family = socket.AF_INET6 if host == "::1" else socket.AF_INET
         super().__init__((host, port), Handler)
         self.token = secrets.token_urlsafe(24)
         self.routes = routes()
-        self.children = Children(budget or Budget())
+        self.children = Children(budget or AnswerBudget())
         self.connections = threading.BoundedSemaphore(_MOST_CONNECTIONS)
         number = self.server_address[1]
         self.names = frozenset({f"127.0.0.1:{number}", f"localhost:{number}", f"[::1]:{number}"})

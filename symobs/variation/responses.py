@@ -18,7 +18,7 @@ ERRORS = 3
 FEWEST = 10
 
 
-class Response(NamedTuple):
+class AnsweredVariant(NamedTuple):
     """How a variant was answered: how many have marks, their mean, and how it stands to the others: easier, harder or same."""
 
     name: str
@@ -27,7 +27,7 @@ class Response(NamedTuple):
     compared: str = "same"
 
 
-def responses_of(text: str, where: str) -> tuple[Response, ...]:
+def responses_of(text: str, where: str) -> tuple[AnsweredVariant, ...]:
     """Return how each variant of a class was answered, from the `summary.json` of `symobs check`.
 
     A variant with n marks of mean m, N being those of the others, M the median of all means and s² the variance of marks within
@@ -45,7 +45,7 @@ def responses_of(text: str, where: str) -> tuple[Response, ...]:
     for name, (count, mean, _) in found.items():
         bound = ERRORS**2 * variance * (Fraction(1, count) + Fraction(1, students - count))
         word = "easier" if mean > usual else "harder"
-        listed.append(Response(name, count, mean, word if (mean - usual) ** 2 > bound else "same"))
+        listed.append(AnsweredVariant(name, count, mean, word if (mean - usual) ** 2 > bound else "same"))
     return tuple(listed)
 
 
@@ -67,7 +67,7 @@ def _read(text: str, where: str) -> dict[str, tuple[int, Fraction, Fraction]]:
     return found
 
 
-def as_text(listed: tuple[Response, ...]) -> str:
+def as_text(listed: tuple[AnsweredVariant, ...]) -> str:
     """Return the table: a line a variant."""
     width = max(len(each.name) for each in listed)
     off = [each for each in listed if each.compared != "same"]

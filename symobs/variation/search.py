@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from symobs.batching.engine import Settings, work
 from symobs.batching.executors import workforce
-from symobs.batching.jobs import Budget, Job, canonical, digest, job, own_convention
+from symobs.batching.jobs import USUAL_BUDGET, Job, canonical, digest, job, own_convention
 from symobs.errors import CertificateRejected, InputError, OutOfBudget, ProblemErrors, SymobsError, UsageError
 from symobs.phrases.languages import ENGLISH, language_named
 from symobs.problem import parse
@@ -31,7 +31,6 @@ if TYPE_CHECKING:
     from symobs.batching.executors import Workforce
 
 MOST = 10_000
-_BUDGET = Budget(60.0, 2000.0)
 #: Seconds of work handed over at a time: what is begun beyond the last variant is done for nothing.
 _CHUNK = 0.05
 _SAME = "the same as another variant"
@@ -174,7 +173,7 @@ class Variants:
                 if order is not None:
                     yield order
 
-        settings = Settings(_BUDGET, chunk_seconds=_CHUNK)
+        settings = Settings(chunk_seconds=_CHUNK)
         for chunk in work(jobs(), force, settings):
             rows |= {row["key"]: row for row in chunk.rows}
             while waiting and (waiting[0][1] or waiting[0][2] in rows):
@@ -199,7 +198,7 @@ class Variants:
         """Return why a solved candidate is no variant, None where it is one."""
         match row["status"]:
             case "undecided":
-                message = f"candidate {found.number} takes more than {_BUDGET.seconds:g} seconds"
+                message = f"candidate {found.number} takes more than {USUAL_BUDGET.seconds:g} seconds"
                 raise OutOfBudget(message, repair="draw smaller ones: a slow one would not be the same elsewhere")
             case "failed":
                 error = "; ".join(row["error"])[:500]
@@ -240,7 +239,7 @@ class Variants:
         """Take the profile of the file's own plant as the one to be like; no variant is the same as it."""
         base = base_candidate(self.table)
         order = self._job(base, Cheap())
-        (chunk,) = work(iter([order]), force, Settings(_BUDGET))
+        (chunk,) = work(iter([order]), force, Settings())
         row = chunk.rows[0]
         if row["status"] == "done":
             _raise_unknown(row["result"])

@@ -14,7 +14,7 @@ from urllib.parse import quote
 import pytest
 
 from symobs.live import answer
-from symobs.live.process import Budget, Children
+from symobs.live.process import AnswerBudget, Children
 from symobs.live.server import Server
 from tests.support.tools.command_line import environment
 
@@ -43,7 +43,7 @@ def launched(require_tool: Callable[[str], str]) -> Iterator[Any]:
 
 @pytest.fixture(name="server", scope="module")
 def running_server() -> Iterator[Server]:
-    server = Server(budget=Budget(60, 1000))
+    server = Server(budget=AnswerBudget(60, 1000))
     thread = threading.Thread(target=server.serve_forever, kwargs={"poll_interval": 0.05})
     thread.start()
     yield server
@@ -375,7 +375,7 @@ def test_a_page_is_given_up_for_a_newer_question(opened: Callable[..., Opened]) 
 def test_a_derivation_that_is_not_decided_can_be_asked_for_again(
     opened: Callable[..., Opened], server: Server, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    usual, hasty = server.children.answer, Children(Budget(0, 1000))
+    usual, hasty = server.children.answer, Children(AnswerBudget(0, 1000))
 
     def answered(body: bytes, has_left: Callable[[], bool]) -> bytes:
         return (hasty.answer if json.loads(body)["want"] == "page" else usual)(body, has_left)

@@ -23,7 +23,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from symobs.batching.engine import Settings
-from symobs.batching.jobs import Budget, job, read_payload, row_text, solve_job
+from symobs.batching.jobs import job, read_payload, row_text, solve_job
 from symobs.batching.run import Batch
 from symobs.batching.store import Store
 from symobs.batching.sweep import block
@@ -66,7 +66,7 @@ def timed(work: Callable[[], object]) -> tuple[float, float]:
 def by_batch(count: int, folder: Path, **who: Any) -> None:
     """All designs into a store."""
     shutil.rmtree(folder, ignore_errors=True)
-    settings = Settings(Budget())
+    settings = Settings()
     Batch(lambda: (solve_job(design(n), f"p{n}") for n in range(count)), folder, settings=settings, **who).finish()
 
 

@@ -23,7 +23,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from symobs.live import answer
-from symobs.live.process import Budget
+from symobs.live.process import AnswerBudget
 from symobs.live.server import Server
 
 if TYPE_CHECKING:
@@ -85,7 +85,7 @@ def row(what: str, values: list[float], goal: float) -> None:
 @contextmanager
 def running() -> Iterator[Server]:
     """A server that takes its time."""
-    server = Server(budget=Budget(60, 1000))
+    server = Server(budget=AnswerBudget(60, 1000))
     thread = threading.Thread(target=server.serve_forever, kwargs={"poll_interval": 0.05})
     thread.start()
     yield server

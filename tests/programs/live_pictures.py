@@ -7,7 +7,7 @@ import threading
 from typing import Any
 from urllib.parse import quote
 
-from symobs.live.process import Budget
+from symobs.live.process import AnswerBudget
 from symobs.live.server import Server
 from tests.support.paths import ROOT
 
@@ -50,7 +50,7 @@ def main() -> None:
     """Write all of them."""
     from playwright.sync_api import sync_playwright  # noqa: PLC0415 - of the extra browser-test
 
-    server = Server(budget=Budget(60, 1000))
+    server = Server(budget=AnswerBudget(60, 1000))
     thread = threading.Thread(target=server.serve_forever, daemon=True)
     thread.start()
     with sync_playwright() as driver:

@@ -20,7 +20,7 @@ from symobs.exact.ideals.ideal import FEW
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
 
-    from symobs.exact.ideals.quotient import Quotient
+    from symobs.exact.ideals.quotient import QuotientRing
 
 #: The most systems that one question may branch into, and terms of the equations of a system that is worked on.
 _BRANCHES = 100
@@ -237,7 +237,7 @@ def _coordinates(ideal: Ideal, region: Region) -> tuple[Scalar, ...]:
     return _apart(ideal, quotient)
 
 
-def _apart(ideal: Ideal, quotient: Quotient) -> tuple[Scalar, ...]:
+def _apart(ideal: Ideal, quotient: QuotientRing) -> tuple[Scalar, ...]:
     """Return, of points that no coordinate tells apart, a polynomial in a linear form that has several factors, if any has."""
     names = ideal.field.names
     for multiple in range(1, _FORMS + 1):

@@ -12,13 +12,14 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from symobs.batching.engine import Settings
-from symobs.batching.jobs import Budget, job, read_payload, solve_job
+from symobs.batching.jobs import USUAL_BUDGET, job, read_payload, solve_job
 from symobs.batching.kept import CHILD
 from symobs.batching.run import Batch, one_problem
 from symobs.batching.store import work_folder
 from symobs.batching.sweep.grid import Grid, read_grid
 from symobs.batching.sweep.program import GAINS, MARGINS, MARGINS_STATUS, Program, names_used, with_values
 from symobs.batching.sweep.table import check_target, write_table
+from symobs.child_processes.budget import Budget
 from symobs.child_processes.child import Died, started
 from symobs.errors import InputError, SymobsError, UsageError, raise_all
 from symobs.problem.noted_errors import Errors
@@ -34,7 +35,6 @@ BLOCK = 1024
 #: Columns of rounded decimals and of words.
 _TEXTS = {"phase_deg", "modulus", MARGINS_STATUS}
 #: What the one solution with symbols may take.
-_ONCE = Budget(60.0, 2000.0)
 
 
 class Plan:
@@ -92,9 +92,9 @@ class Plan:
     def _once(self) -> dict[str, Any] | None:
         """Return the answer with the swept names as symbols, None where there is none to evaluate."""
         asked = job("solve", {"problem": self.tables, "fields": "cases", "formats": []})
-        child = started(CHILD, asked.kind, megabytes=_ONCE.megabytes)
+        child = started(CHILD, asked.kind, megabytes=USUAL_BUDGET.megabytes)
         try:
-            row = json.loads(child.ask((asked.key, asked.kind, asked.payload), _ONCE.seconds))
+            row = json.loads(child.ask((asked.key, asked.kind, asked.payload), USUAL_BUDGET.seconds))
         except (TimeoutError, Died):
             return None
         finally:

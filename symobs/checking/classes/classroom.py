@@ -8,12 +8,13 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from symobs.batching.engine import Settings
-from symobs.batching.jobs import Budget
+from symobs.batching.jobs import USUAL_BUDGET
 from symobs.batching.run import Batch
 from symobs.checking.classes.picture import picture
 from symobs.checking.classes.row import job_of, report_of_row, solved
 from symobs.checking.classes.submissions import not_held, read_submissions
 from symobs.checking.classes.summary import as_markdown, marks, summary
+from symobs.child_processes.budget import Budget
 from symobs.errors import InputError
 from symobs.expect import available
 from symobs.expression.source import shown
@@ -60,7 +61,7 @@ def check_class(
     known = [submission for i, submission in enumerate(entries) if i not in unknown]
     jobs = {id(each): job_of(problems.text_of(each.variant), str(folder), each, show) for each in known}
     few = workers is None and budget == Budget(None, None) and len(jobs) < _WORTH_CHILDREN
-    allowed = Budget(*(given or usual for given, usual in zip(budget, Budget(), strict=True)))
+    allowed = Budget(*(given or usual for given, usual in zip(budget, USUAL_BUDGET, strict=True)))
     settings = Settings(allowed, chunk_seconds=0.5, recheck=0)
     # Those of one variant follow each other: a process keeps the problems that it has solved last.
     in_turn = [jobs[id(each)] for each in sorted(known, key=lambda each: each.variant or "")]

@@ -13,8 +13,9 @@ import click
 
 from symobs.batching.engine import Settings
 from symobs.batching.executors import Unfinished
-from symobs.batching.jobs import Budget
+from symobs.batching.jobs import USUAL_BUDGET
 from symobs.batching.run import Batch, files_of, jobs_of, require_own_folder, require_texts, verified
+from symobs.child_processes.budget import Budget
 from symobs.cli.shared.common import EXIT_NO, EXIT_UNDECIDED, write_message
 from symobs.cli.shared.options import WORKERS, options
 from symobs.errors import UsageError, raise_all
@@ -28,7 +29,6 @@ if TYPE_CHECKING:
 
 _SPEAK_EVERY = 30.0
 #: What a job is allowed where nothing else is said: with many of them, one without an end must not hold up the rest.
-_SECONDS, _MEGABYTES = 60.0, 2000.0
 
 
 def of_a_run(command: Callable[..., Any]) -> Callable[..., Any]:
@@ -133,7 +133,7 @@ def command(
     asked = digits_asked(digits, exact=exact, where="--digits")
 
     jobs = partial(jobs_of, files, formats=pages, fields=fields, digits=asked)
-    budget = Budget(timeout or _SECONDS, memory or _MEGABYTES)
+    budget = Budget(timeout or USUAL_BUDGET.seconds, memory or USUAL_BUDGET.megabytes)
     work = batch_of(jobs, Path(out), budget, run, retry=retry, fail_fast=fail_fast)
     if dry_run:
         write_message(work.told(len(files)))

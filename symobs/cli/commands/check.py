@@ -143,10 +143,10 @@ def _class(
     limits: tuple[float | None, float | None],
 ) -> None:
     """Check a class and write its results into a folder."""
-    from symobs.batching.jobs import Budget  # noqa: PLC0415 - a single answer does not pay for it
     from symobs.batching.store import discard_work, work_folder  # noqa: PLC0415
     from symobs.checking.classes.classroom import check_class  # noqa: PLC0415
     from symobs.checking.classes.variants_of_class import class_variants, one_problem  # noqa: PLC0415
+    from symobs.child_processes.budget import Budget  # noqa: PLC0415 - a single answer does not pay for it
 
     if target is None:
         raise UsageError("the results of a class need a folder", where="-o", repair="write -o RESULTS/")

@@ -33,7 +33,7 @@ def command(
 ) -> None:
     """Move poles, parameters and entries in a browser, every answer checked; FILE is the problem to begin with."""
     from symobs.live.links import link_of  # noqa: PLC0415 - only a server imports it
-    from symobs.live.process import Budget  # noqa: PLC0415
+    from symobs.live.process import AnswerBudget  # noqa: PLC0415
     from symobs.live.server import HOSTS, Server, serve  # noqa: PLC0415
 
     if host not in HOSTS:
@@ -59,7 +59,7 @@ def command(
             data = {**data, "convention": convention_name}
         state = link_of(data)
     try:
-        server = Server(host, port, Budget(timeout, memory))
+        server = Server(host, port, AnswerBudget(timeout, memory))
     except OSError as error:
         raise UsageError(error.strerror or "cannot listen", where="--port", repair="leave it out") from None
     url = server.url + (f"&{state}" if state else "")

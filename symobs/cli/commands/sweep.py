@@ -7,11 +7,11 @@ from typing import Any
 
 import click
 
-from symobs.batching.jobs import Budget
 from symobs.batching.store import discard_work, work_folder
 from symobs.batching.sweep.picture import drawn_columns, write_picture
 from symobs.batching.sweep.plan import Plan, SweepTable
 from symobs.batching.sweep.table import check_target, write_table
+from symobs.child_processes.budget import Budget
 from symobs.cli.commands.batch import batch_of, finish, of_a_run
 from symobs.cli.shared.common import write_message
 from symobs.cli.shared.options import options

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from symobs._dataclass import dataclass
+from symobs.child_processes.budget import Budget
 from symobs.cli.shared.output import check_target
 from symobs.errors import InputError, OutOfBudget, ProblemErrors, UsageError
 from symobs.result.web_page import PLAIN, WebPage
@@ -192,7 +193,7 @@ def _as_far_as(found: Any, so_far: tuple[Any, ...], convention: Any, target: str
 
 def bounded(work: Callable[[Progress], Outcome], timeout: float | None, memory: float | None, where: str) -> Outcome:
     """Return the outcome of the work, or the partial outcome if its budget is exhausted."""
-    from symobs.cli.shared.time_and_memory import Budget, within  # noqa: PLC0415 - a budget costs nothing where there is none
+    from symobs.cli.shared.time_and_memory import within  # noqa: PLC0415 - a budget costs nothing where there is none
 
     try:
         return within(Budget(timeout, memory), work, where)

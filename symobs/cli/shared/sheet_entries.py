@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from symobs._dataclass import dataclass
+from symobs.child_processes.budget import Budget
 from symobs.cli.shared.common import EXIT_BUG, EXIT_NO, EXIT_UNDECIDED, NOT_ENOUGH_MEMORY
 from symobs.cli.shared.outcome import of_problem
 from symobs.errors import OutOfBudget, ProblemErrors, SymobsError, TypesettingError
@@ -110,7 +111,7 @@ def _rows(orders: Sequence[tuple[Any, ...]], wanted: Wanted, show: Show) -> list
     """Return the rows of some problems, in their order."""
     from symobs.batching.engine import Settings, work  # noqa: PLC0415 - a short sheet pays for none of it
     from symobs.batching.executors import workforce  # noqa: PLC0415
-    from symobs.batching.jobs import Budget, job  # noqa: PLC0415
+    from symobs.batching.jobs import job  # noqa: PLC0415
 
     jobs = [job("sheet-entry", {"asked": _packed(order)}, order[1].file) for order in orders]
     budget = Budget(wanted.timeout, wanted.memory)
@@ -153,7 +154,7 @@ def _bounded_entry(number: int, asked: SheetProblem, text: str, wanted: Wanted) 
     """Return the value of `_entry`, or the partial entry if its budget is exhausted."""
     if wanted.timeout is None and wanted.memory is None:
         return _entry(number, asked, text, wanted, lambda _: None)
-    from symobs.cli.shared.time_and_memory import Budget, within  # noqa: PLC0415 - a budget costs nothing where there is none
+    from symobs.cli.shared.time_and_memory import within  # noqa: PLC0415 - a budget costs nothing where there is none
 
     try:
         budget = Budget(wanted.timeout, wanted.memory)

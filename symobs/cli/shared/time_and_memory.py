@@ -7,8 +7,9 @@ import pickle
 import signal
 import sys
 import threading
-from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
+from symobs.child_processes.budget import Budget
 from symobs.child_processes.child import Died
 from symobs.child_processes.forked import INTERRUPTED, NO_TIME, REQUESTS, TimeOver, forked
 from symobs.child_processes.inside import NO_MEMORY, is_for_want_of_memory
@@ -27,13 +28,6 @@ Value = TypeVar("Value")
 GRACE = 1.0
 _ABORTS = {signal.SIGABRT, signal.SIGSEGV, signal.SIGBUS}
 _LESS = "ask for less, or put numbers in place of symbols"
-
-
-class Budget(NamedTuple):
-    """The time and memory allowed for a piece of work; None is unlimited."""
-
-    seconds: float | None = None
-    megabytes: float | None = None
 
 
 def within(budget: Budget, work: Callable[[Progress], Value], where: str = "") -> Value:

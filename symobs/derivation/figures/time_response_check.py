@@ -21,7 +21,7 @@ from symobs.formula import Block, Derivative, Exact, Letter, Literal, Product, R
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from symobs.figures.plot import Response, TimeResponse
+    from symobs.figures.plot import PlottedResponse, TimeResponse
     from symobs.formula import Environment, Formula
 
 #: Parts of the window: how far a point may lie from what it stands for, and a segment from what it passes between.
@@ -102,7 +102,7 @@ def _size(name: str, environment: Environment) -> int:
 
 
 def _faults_of_component(
-    response: Response, parts: int, values: list[list[int]], edges: tuple[Fraction, Fraction]
+    response: PlottedResponse, parts: int, values: list[list[int]], edges: tuple[Fraction, Fraction]
 ) -> Iterator[str]:
     """Yield the instants at which a response is wrong; `values` are those at all instants and between them."""
     common = lcm(*(part.denominator for part in response.row))

@@ -8,7 +8,7 @@ from operator import mul
 from typing import TYPE_CHECKING
 
 from symobs.exact import Matrix
-from symobs.figures.plot import Response, TimeResponse
+from symobs.figures.plot import PlottedResponse, TimeResponse
 from symobs.formula import Letter
 
 if TYPE_CHECKING:
@@ -70,7 +70,7 @@ def _plot(
         except ArithmeticError:
             return
         made = tuple(
-            Response(name, index if table.shape[0] > 1 else 0, row, _course(row, between[::2]), dashed)
+            PlottedResponse(name, index if table.shape[0] > 1 else 0, row, _course(row, between[::2]), dashed)
             for name, table, dashed in signals
             for index, row in enumerate(_rows(table), 1)
         )
@@ -116,7 +116,7 @@ def _plot_samples(
     ]
     parts = lcm(*(height.denominator for _, _, _, heights, _ in found for height in heights))
     made = tuple(
-        Response(name, index, row, tuple(int(height * parts) for height in heights), dashed)
+        PlottedResponse(name, index, row, tuple(int(height * parts) for height in heights), dashed)
         for name, index, row, heights, dashed in found
     )
     window = _window(Fraction(len(states_there) - 1), made, parts)
@@ -127,7 +127,7 @@ def _starts(page: Builder, states: tuple[str, ...]) -> tuple[tuple[Fraction, ...
     return tuple((Fraction(1),) * page.term(Letter(name)).value.size for name in states)
 
 
-def _window(end: Fraction, responses: Sequence[Response], parts: int) -> tuple[Interval, Interval]:
+def _window(end: Fraction, responses: Sequence[PlottedResponse], parts: int) -> tuple[Interval, Interval]:
     """Return a window with a little room above and below."""
     low, high = min(min(each.heights) for each in responses), max(max(each.heights) for each in responses)
     edge = Fraction(high - low, 20)

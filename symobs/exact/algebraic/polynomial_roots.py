@@ -204,11 +204,6 @@ def _roots_of_factor(factor: Scalar, variable: str) -> list[Root]:
     return [Root(factor, variable, zero, zero, 1, index) for index in range(len(coefficients) - 1)]
 
 
-def roots_are(polynomial: Scalar, variable: str, roots: tuple[Root, ...]) -> bool:
-    """Return whether these are all roots of a monic polynomial, with multiplicity."""
-    return polynomial_of_roots(variable, roots) == polynomial
-
-
 def polynomial_of_roots(variable: str, roots: tuple[Root, ...]) -> Scalar | None:
     """Return Π (s − root), expanded; None if conjugate roots are missing."""
     s = Scalar.symbol(variable)

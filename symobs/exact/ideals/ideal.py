@@ -18,7 +18,7 @@ from flint import Ordering, fmpz_mpoly_vec
 from symobs.exact.core.field import EIGENVALUE, Field, context_of
 from symobs.exact.core.scalar import Scalar
 from symobs.exact.ideals.conjugate_points import conjugate_points
-from symobs.exact.ideals.quotient import Quotient
+from symobs.exact.ideals.quotient import QuotientRing
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -144,7 +144,7 @@ class Ideal:
         return None if self.quotient is None else self.quotient.dimension
 
     @cached_property
-    def quotient(self) -> Quotient | None:
+    def quotient(self) -> QuotientRing | None:
         """The functions on the zeros, by the monomials that no leading monomial of the basis divides."""
         if self._bounds is None or prod(self._bounds) > _MONOMIALS:
             return None
@@ -152,7 +152,7 @@ class Ideal:
         found = [p for p in product(*map(range, self._bounds)) if not any(_divides(lead, p) for lead in leading)]
         names = [Scalar.symbol(name) for name in self.home.names()]
         monomials = [prod((x**k for x, k in zip(names, p, strict=True)), start=Scalar.of(1)) for p in found]
-        return Quotient(monomials, self.field.names, self.reduced_column)
+        return QuotientRing(monomials, self.field.names, self.reduced_column)
 
     @cached_property
     def by_coordinate(self) -> tuple[Scalar, ...] | None:

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
 
-class Quotient:
+class QuotientRing:
     """Q[names]/ideal as a vector space with a basis of monomials, the first of which is 1."""
 
     def __init__(

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Sequence
     from fractions import Fraction
 
-    from symobs.figures.plot import Drawn, End, Interval, Response, Run
+    from symobs.figures.plot import Drawn, End, Interval, PlottedResponse, Run
     from symobs.formula import Formula
     from symobs.phrases.languages import Language
     from symobs.render.drawings.scene import Content, Measure, Point
@@ -289,7 +289,7 @@ def _responses(picture: TimeResponse, measure: Measure) -> Scene:
     return Scene(frame.box, whole, (), (*zeros, *axes, *strokes), (), signs, texts, tuple(numbered))
 
 
-def _style_of(response: Response, picture: TimeResponse) -> str:
+def _style_of(response: PlottedResponse, picture: TimeResponse) -> str:
     """Return the style of a curve: no two of a signal are alike."""
     compared = any(other.dashed for other in picture.responses)
     styles = _BESIDE_ESTIMATE[response.dashed] if compared else _COMPONENTS
@@ -299,7 +299,7 @@ def _style_of(response: Response, picture: TimeResponse) -> str:
 def _panels(picture: TimeResponse, measure: Measure) -> Scene:
     """Return signals over time one below the other, each on an axis of its own with its name."""
 
-    def drawn_in(response: Response) -> Callable[[Frame], list[tuple[Point, ...]]]:
+    def drawn_in(response: PlottedResponse) -> Callable[[Frame], list[tuple[Point, ...]]]:
         def lines(frame: Frame) -> list[tuple[Point, ...]]:
             low, high = (edge * picture.parts for edge in frame.vertical)
             counted = replace(frame, horizontal=(0.0, len(response.heights) - 1.0), vertical=(low, high))

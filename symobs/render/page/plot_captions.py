@@ -16,7 +16,7 @@ from symobs.render.page.prose import filled, joined
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
-    from symobs.figures.plot import Curve, Drawn, Response
+    from symobs.figures.plot import Curve, Drawn, PlottedResponse
     from symobs.formula import Fact, Formula
     from symobs.phrases.languages import Language
     from symobs.render.page.blocks import Inline, Inlines
@@ -60,7 +60,7 @@ def part(name: str) -> Formula:
     return Apply(name, Letter("s"))
 
 
-def name_of(response: Response) -> Formula:
+def name_of(response: PlottedResponse) -> Formula:
     """Return the name of a response: the letter of its signal, with the index of its component."""
     return Letter(f"{response.signal}[{response.component}" if response.component else response.signal)
 

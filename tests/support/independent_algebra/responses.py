@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
     from fractions import Fraction
 
-    from symobs.figures.plot import Interval, Response, TimeResponse
+    from symobs.figures.plot import Interval, PlottedResponse, TimeResponse
 
 Rows: TypeAlias = "tuple[tuple[Fraction, ...], ...]"
 #: Digits that are kept while one instant after the other is found.
@@ -37,7 +37,7 @@ def _all_untrue(picture: TimeResponse, matrix: Rows) -> tuple[str, ...]:
 
 @lru_cache(maxsize=64)
 def _untrue(
-    response: Response, window: tuple[Interval, Interval], parts: int, start: tuple[Fraction, ...], matrix: Rows
+    response: PlottedResponse, window: tuple[Interval, Interval], parts: int, start: tuple[Fraction, ...], matrix: Rows
 ) -> tuple[str, ...]:
     """Return the points of one response: pictures that differ in another response have the same."""
     (begin, end), (bottom, top) = window

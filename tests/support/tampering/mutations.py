@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 from symobs.derivation import Derivation, Section, Sentence
 from symobs.exact import Factored, Matrix, Root, Scalar
-from symobs.figures.plot import Curve, MarkedPoint, PoleMap, Response
+from symobs.figures.plot import Curve, MarkedPoint, PlottedResponse, PoleMap
 from symobs.formula import (
     Apply,
     Block,
@@ -151,7 +151,7 @@ def changes(item: Any) -> Iterator[Change]:
     elif isinstance(item, (Curve, MarkedPoint, PoleMap)):
         yield from _of_drawn(item)
         yield from _of_parts(item)
-    elif isinstance(item, Response):
+    elif isinstance(item, PlottedResponse):
         yield from _of_heights(item)
         for change in _of_parts(replace(item, heights=())):
             yield replace(change, value=replace(change.value, heights=item.heights))
@@ -192,7 +192,7 @@ def _of_drawn(item: Curve | MarkedPoint | PoleMap) -> Iterator[Change]:
         yield Change(".discrete", "structure", replace(item, discrete=not item.discrete))
 
 
-def _of_heights(response: Response) -> Iterator[Change]:
+def _of_heights(response: PlottedResponse) -> Iterator[Change]:
     """Yield a response with one height changed by the least there is, which none may see, and by what can be seen."""
     heights = response.heights
     step = max(2, max(map(abs, heights)) // 20)

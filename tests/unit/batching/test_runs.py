@@ -21,10 +21,11 @@ import symobs
 from symobs.batching import kinds
 from symobs.batching.engine import Settings, work
 from symobs.batching.executors import InProcess, Unfinished, Workforce, workforce
-from symobs.batching.jobs import Budget, Job, job, key_of, solve_job
+from symobs.batching.jobs import Job, job, key_of, solve_job
 from symobs.batching.kept import run_in_process
 from symobs.batching.run import Batch, batch, verified
 from symobs.batching.store import Store
+from symobs.child_processes.budget import Budget
 from symobs.errors import CertificateRejected, InputError, UsageError
 from tests.support.paths import ROOT
 from tests.support.problems.batches import Tampering, children_of, design, eventually, hostile_kind
@@ -277,7 +278,7 @@ def test_a_deadline_ends_a_run_that_goes_on_later(
     hostile: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     jobs = orders(hostile, 60)
-    settings = Settings(Budget(), chunk_seconds=0.05, deadline=1000.0)
+    settings = Settings(chunk_seconds=0.05, deadline=1000.0)
     rows = iter(Batch(lambda: jobs, tmp_path / "out", settings=settings, workers=1))
     next(rows)
     later = SimpleNamespace(monotonic=lambda: time.monotonic() + 2000.0, sleep=time.sleep)
@@ -295,7 +296,8 @@ def test_a_deadline_ends_a_run_that_goes_on_later(
 _CLIENT = """
 import sys
 from symobs.batching.kept import run_in_process
-from symobs.batching.jobs import Budget, job
+from symobs.child_processes.budget import Budget
+from symobs.batching.jobs import job
 from symobs.batching.engine import Settings
 from symobs.batching.run import Batch
 from symobs.cli.commands.batch import finish
@@ -304,7 +306,7 @@ from pathlib import Path
 def jobs():
     for n in range(count):
         yield job("hostile", {"log": log, "seconds": 0.01, "number": n, "name": f"n{n}", "does": "sleep"}, f"n{n}")
-finish(Batch(jobs, Path(out), workers=2, settings=Settings(Budget(), chunk_seconds=0.05)), count, quiet=True)
+finish(Batch(jobs, Path(out), workers=2, settings=Settings(chunk_seconds=0.05)), count, quiet=True)
 """
 
 

@@ -15,9 +15,10 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
+from symobs.child_processes.budget import Budget
 from symobs.cli.commands import solve
 from symobs.cli.shared import time_and_memory as budget_module
-from symobs.cli.shared.time_and_memory import Budget, within
+from symobs.cli.shared.time_and_memory import within
 from symobs.errors import InputError, OutOfBudget, ProblemErrors, ShapeMismatch
 from symobs.render.formats.pdf import compiled
 from symobs.result import registry
@@ -456,7 +457,8 @@ def test_a_computation_does_not_outlive_its_command(tmp_path: Path) -> None:
 import os, signal, time
 signal.signal(signal.SIGINT, signal.default_int_handler)
 from symobs import cli
-from symobs.cli.shared.time_and_memory import Budget, within
+from symobs.child_processes.budget import Budget
+from symobs.cli.shared.time_and_memory import within
 def deaf(tell):
     signal.pthread_sigmask(signal.SIG_BLOCK, {{signal.SIGALRM, signal.SIGINT, signal.SIGTERM}})
     open({str(number)!r} + ".part", "w").write(str(os.getpid()))

@@ -18,7 +18,7 @@ from urllib.parse import parse_qsl
 import pytest
 
 from symobs.live.links import link_of
-from symobs.live.process import Budget, Children, Gone
+from symobs.live.process import AnswerBudget, Children, Gone
 from symobs.live.server import ASSETS, Server, routes
 from tests.support.paths import ROOT
 from tests.support.problems.batches import eventually
@@ -44,7 +44,7 @@ QUESTION = json.dumps(
 
 @pytest.fixture(name="server", scope="module")
 def running_server() -> Iterator[Server]:
-    server = Server(budget=Budget(60, 1000))
+    server = Server(budget=AnswerBudget(60, 1000))
     thread = threading.Thread(target=server.serve_forever, kwargs={"poll_interval": 0.05})
     thread.start()
     yield server
@@ -167,7 +167,7 @@ def ask(children: Children, **what: object) -> dict[str, Any]:
 
 
 def test_a_child_that_sleeps_or_swells_is_replaced() -> None:
-    children = Children(Budget(60, 300), OBEDIENT)
+    children = Children(AnswerBudget(60, 300), OBEDIENT)
     try:
         first = ask(children)["process"]
         assert ask(children)["process"] == first
@@ -176,9 +176,9 @@ def test_a_child_that_sleeps_or_swells_is_replaced() -> None:
         assert "300 MB" in swollen["message"]
         second = ask(children)["process"]
         assert second != first
-        children.budget = Budget(0.2, 300)
+        children.budget = AnswerBudget(0.2, 300)
         assert "not decided within 0.2 s" in ask(children, do="sleep")["message"]
-        children.budget = Budget(60, 300)
+        children.budget = AnswerBudget(60, 300)
         third = ask(children)["process"]
         assert third not in {first, second}
         with pytest.raises(Gone):
@@ -192,7 +192,7 @@ def test_a_child_that_sleeps_or_swells_is_replaced() -> None:
 
 
 def test_a_child_at_work_ends_with_the_server() -> None:
-    children = Children(Budget(600, 300), OBEDIENT)
+    children = Children(AnswerBudget(600, 300), OBEDIENT)
     process = ask(children)["process"]
     found: list[dict[str, Any]] = []
     is_asked = threading.Event()

@@ -19,7 +19,7 @@ from symobs.derivation.figures.root_locus_check import faults_of_poles
 from symobs.derivation.figures.time_response_check import faults_of_response
 from symobs.derivation.steps import Plot, Section, Sentence
 from symobs.exact import Matrix, Scalar
-from symobs.figures.plot import End, LinePicture, MarkedPoint, PoleMap, RegionPicture, Response, TimeResponse
+from symobs.figures.plot import End, LinePicture, MarkedPoint, PlottedResponse, PoleMap, RegionPicture, TimeResponse
 from symobs.formula import Environment, Letter, Literal, Product
 from tests.support.problems.steps import said
 from tests.support.regions import drawn_by_hand as hand
@@ -364,13 +364,13 @@ WIDE = ((Fraction(0), Fraction(2)), (Fraction(-1), Fraction(3)))
 PARTS = 600_000
 
 
-def course(*values: Any, signal: str = "x", component: int = 0, row: tuple[int, ...] = (1,)) -> Response:
+def course(*values: Any, signal: str = "x", component: int = 0, row: tuple[int, ...] = (1,)) -> PlottedResponse:
     heights = [Fraction(value) * PARTS for value in values]
     assert all(height.denominator == 1 for height in heights)
-    return Response(signal, component, tuple(map(Fraction, row)), tuple(map(int, heights)))
+    return PlottedResponse(signal, component, tuple(map(Fraction, row)), tuple(map(int, heights)))
 
 
-def responses(*drawn: Response, subject: str = "A", start: tuple[int, ...] = (1,), **more: Any) -> list[str]:
+def responses(*drawn: PlottedResponse, subject: str = "A", start: tuple[int, ...] = (1,), **more: Any) -> list[str]:
     response = TimeResponse(
         ("x",), (tuple(map(Fraction, start)),), drawn, more.get("window", WIDE), more.get("parts", PARTS)
     )
@@ -515,7 +515,7 @@ TURNING = Environment(
 )
 
 
-def samples(*drawn: Response, end: int = 3, low: str = "-1", high: str = "11", count: int = 2) -> list[str]:
+def samples(*drawn: PlottedResponse, end: int = 3, low: str = "-1", high: str = "11", count: int = 2) -> list[str]:
     """What is wrong with responses that begin at (1, 1): x₁ is 1, 3, 5, 11 and x₂ is 1, −1, 1, −1."""
     window = ((Fraction(0), Fraction(end)), (Fraction(low), Fraction(high)))
     start = (Fraction(1), Fraction(1))
@@ -523,8 +523,8 @@ def samples(*drawn: Response, end: int = 3, low: str = "-1", high: str = "11", c
     return list(faults_of_response(response, Letter("A"), TURNING))
 
 
-def sampled(*values: int, signal: str = "x", component: int = 0, row: tuple[int, ...] = (1, 0)) -> Response:
-    return Response(signal, component, tuple(map(Fraction, row)), tuple(2 * value for value in values))
+def sampled(*values: int, signal: str = "x", component: int = 0, row: tuple[int, ...] = (1, 0)) -> PlottedResponse:
+    return PlottedResponse(signal, component, tuple(map(Fraction, row)), tuple(2 * value for value in values))
 
 
 def test_courses_of_discrete_time_are_met_exactly() -> None:
@@ -568,7 +568,7 @@ def test_a_mode_that_turns_unseen_between_two_instants_is_refused() -> None:
         table = Matrix.of([[-1, turning], [-turning, -1]])
         known = replace(DECAY, values={"A": table}, sizes={"x": 2})
         falling = tuple(round(PARTS * exp(-k / 100)) for k in range(101))
-        drawn = [Response("x", j + 1, row, tuple(h * (1 - j) for h in falling)) for j, row in enumerate(UNITS)]
+        drawn = [PlottedResponse("x", j + 1, row, tuple(h * (1 - j) for h in falling)) for j, row in enumerate(UNITS)]
         window = ((Fraction(0), Fraction(1)), (Fraction(-1), Fraction(2)))
         response = TimeResponse(("x",), ((Fraction(1), Fraction(0)),), tuple(drawn), window, PARTS)
         assert list(faults_of_response(response, Letter("A"), known)) == expected
