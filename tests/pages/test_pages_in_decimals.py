@@ -30,7 +30,8 @@ from symobs.derivation import CaseStep, Conclude, Define, Equal, Given, Section,
 from symobs.derivation.decimals_check import check_decimals
 from symobs.errors import DerivationRejected, ProblemErrors, SymobsWarning, UsageError
 from symobs.exact import Scalar, is_correctly_written, roots_of, significant
-from symobs.exact.numerals.rounded_roots import are_rounded_roots, rounded_roots
+from symobs.exact.numerals.rounded_roots import are_rounded_roots
+from symobs.exact.numerals.written_roots import rounded_roots
 from symobs.formula import Letter, Literal, Negative, Numeral, Product, Relation, RoundedRoots
 from symobs.problem import validate
 from symobs.render.decimals.steps import in_decimals

@@ -1,4 +1,4 @@
-"""Proofs that the matrix of a loop is stable although numbers in it were rounded, with the margin (trusted).
+"""Proofs that the matrix of a loop is stable although numbers in it were rounded (trusted).
 
 The characteristic polynomial is enclosed, and every inequality of Jury's test (Schur and Cohn) has to hold for the whole
 enclosure; where one cannot be told, the enclosure is made narrower.  A matrix in continuous time is mapped by
@@ -7,7 +7,6 @@ enclosure; where one cannot be told, the enclosure is made narrower.  A matrix i
 
 from __future__ import annotations
 
-from fractions import Fraction
 from typing import TYPE_CHECKING
 
 from flint import arb, arb_mat
@@ -17,6 +16,7 @@ from symobs.exact.floating.sampled import Sampled, balls, held, joined
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
+    from fractions import Fraction
 
     from symobs.exact.linear_algebra.realisation import Realisation
 
@@ -25,8 +25,6 @@ if TYPE_CHECKING:
 
 #: Bits of the enclosures that are tried in turn.
 _BITS = (128, 256, 512, 1024, 2048, 4096)
-#: A margin is looked for from this power of ten down, with three digits.
-_LEAST_EXPONENT = -15
 
 
 def loop_matrix(plant: Realisation, period: Fraction | None, controller: Realisation) -> Enclosed:
@@ -48,27 +46,14 @@ def own_matrix(controller: Realisation) -> Enclosed:
     return lambda bits: Sampled(controller).enclosed(bits)[0]
 
 
-def disc_margin(enclosed: Enclosed) -> Fraction | None:
-    """Return some δ > 0 such that every eigenvalue has |z| < 1 − δ, proved; None where no δ is proved."""
-
-    def is_within(margin: Fraction) -> bool:
-        return _decided(lambda bits: _scaled(_polynomial(enclosed, bits), 1 - margin, bits))
-
-    if not is_within(Fraction(0)):
-        return None
-    return _largest(is_within, Fraction(999, 1000))
+def is_in_disc(enclosed: Enclosed, margin: Fraction) -> bool:
+    """Return whether every eigenvalue is proved to have |z| < 1 − margin."""
+    return _decided(lambda bits: _scaled(_polynomial(enclosed, bits), 1 - margin, bits))
 
 
-def half_plane_margin(enclosed: Enclosed) -> Fraction | None:
-    """Return some α > 0 such that every eigenvalue has Re s < −α, proved; None where no α is proved."""
-    size = _size(enclosed)
-
-    def is_left_of(margin: Fraction) -> bool:
-        return _decided(lambda bits: _mapped(enclosed, margin, size, bits))
-
-    if not is_left_of(Fraction(0)):
-        return None
-    return _largest(is_left_of, size)
+def is_left_of(enclosed: Enclosed, margin: Fraction, size: Fraction) -> bool:
+    """Return whether every eigenvalue is proved to have Re s < −margin; `size` is any c > 0, best that of the matrix."""
+    return _decided(lambda bits: _mapped(enclosed, margin, size, bits))
 
 
 def _decided(polynomial: Callable[[int], Sequence[arb]]) -> bool:
@@ -124,26 +109,3 @@ def _mapped(enclosed: Enclosed, margin: Fraction, size: Fraction, bits: int) -> 
         except ZeroDivisionError:  # c may be an eigenvalue, to the right of the axis
             return [arb(1), arb(2)]
         return list(reversed(image.charpoly().coeffs()))
-
-
-def _size(enclosed: Enclosed) -> Fraction:
-    """Return a number of the size of the largest row sum, at least 1."""
-    with Precision(64):
-        matrix = enclosed(64)
-        largest = max((float(sum((abs(entry) for entry in row), arb(0)).mid()) for row in matrix.tolist()), default=1.0)
-    return Fraction(max(1, round(largest)))
-
-
-def _largest(is_proved: Callable[[Fraction], bool], bound: Fraction) -> Fraction:
-    """Return the largest margin of three digits that is proved, at most `bound`; 0 is proved."""
-    if is_proved(bound):
-        return bound
-    exponent = len(str(int(bound)))
-    while exponent > _LEAST_EXPONENT and not (Fraction(10) ** exponent < bound and is_proved(Fraction(10) ** exponent)):
-        exponent -= 1
-    found, step = Fraction(0), Fraction(10) ** exponent
-    for _ in range(3):
-        while found + step < bound and is_proved(found + step):
-            found += step
-        step /= 10
-    return found

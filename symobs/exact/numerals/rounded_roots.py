@@ -1,4 +1,4 @@
-"""Roots of a polynomial in decimals: the texts that a page prints, and the test that they are correct roundings (trusted).
+"""Roots of a polynomial in decimals: the test that the texts of a page are correct roundings (trusted).
 
 A root is written as (real part, imaginary part, whether a part is rounded), the parts as `-0.36896`; that of a real root is
 empty.  Roots with a closed form are held against it; the others, all roots of their factor, against boxes that enclose them.
@@ -14,7 +14,6 @@ from symobs.exact.algebraic.root_location import root_boxes
 from symobs.exact.core.generators import square_root_of
 from symobs.exact.core.scalar import Scalar
 from symobs.exact.numerals.significant_digits import is_correctly_written, is_written_exactly
-from symobs.exact.numerals.written_digits import significant
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -32,25 +31,9 @@ _ZERO = Scalar.of(0)
 _MORE_PLACES = 40
 
 
-def rounded_roots(roots: Sequence[Root], digits: int) -> tuple[RootText, ...] | None:
-    """Return the texts of roots, None where one has parameters or cannot be separated from its neighbours."""
-    parts = _parts(roots, digits)
-    if parts is None:
-        return None
-    texts: list[RootText] = []
-    for real, imaginary in parts:
-        first = _text(real, digits)
-        second = "" if _is_zero(imaginary) else _text(imaginary, digits)
-        if first is None or second is None:
-            return None
-        exact = _is_exact(real, first) and (not second or _is_exact(imaginary, second))
-        texts.append((first, second, not exact))
-    return tuple(texts) if are_rounded_roots(roots, tuple(texts), digits) else None
-
-
 def are_rounded_roots(roots: Sequence[Root], texts: Sequence[RootText], digits: int) -> bool:
     """Return whether these are the correct roundings of the roots, each as often as its root."""
-    parts = _parts(roots, digits)
+    parts = root_parts(roots, digits)
     if parts is None or len(parts) != len(texts):
         return False
     return all(_is_right(part, text, digits) for part, text in zip(parts, texts, strict=True))
@@ -62,9 +45,9 @@ def _is_right(part: tuple[Bounds, Bounds], text: RootText, digits: int) -> bool:
     if not _is_correct(real, first, digits):
         return False
     if not second:
-        return _is_zero(imaginary) and is_rounded != _is_exact(real, first)
-    exact = _is_exact(real, first) and _is_exact(imaginary, second)
-    return not _is_zero(imaginary) and _is_correct(imaginary, second, digits) and is_rounded != exact
+        return is_zero(imaginary) and is_rounded != is_exact(real, first)
+    exact = is_exact(real, first) and is_exact(imaginary, second)
+    return not is_zero(imaginary) and _is_correct(imaginary, second, digits) and is_rounded != exact
 
 
 def _is_correct(bounds: Bounds, text: str, digits: int) -> bool:
@@ -79,26 +62,17 @@ def _is_correct(bounds: Bounds, text: str, digits: int) -> bool:
     return all(is_correctly_written(end, size, digits) for end in bounds)
 
 
-def _is_exact(bounds: Bounds, text: str) -> bool:
+def is_exact(bounds: Bounds, text: str) -> bool:
+    """Return whether a text is exactly the number that the bounds enclose."""
     return bounds[0] == bounds[1] and is_written_exactly(bounds[0], text)
 
 
-def _is_zero(bounds: Bounds) -> bool:
+def is_zero(bounds: Bounds) -> bool:
+    """Return whether the bounds enclose 0 alone."""
     return bounds[0].is_zero and bounds[1].is_zero
 
 
-def _text(bounds: Bounds, digits: int) -> str | None:
-    """Return the signed text of a part."""
-    if _is_zero(bounds):
-        return "0"
-    sign = sign_of_number(bounds[0])
-    if sign not in {"positive", "negative"}:
-        return None
-    size = significant(bounds[0] if sign == "positive" else -bounds[1], digits)
-    return None if size is None else f"{'-' * (sign == 'negative')}{size}"
-
-
-def _parts(roots: Sequence[Root], digits: int) -> list[tuple[Bounds, Bounds]] | None:
+def root_parts(roots: Sequence[Root], digits: int) -> list[tuple[Bounds, Bounds]] | None:
     """Return bounds of the real and the imaginary part of each root, None where there are none."""
     boxes = _boxes(roots, digits)
     if boxes is None:

@@ -26,7 +26,7 @@ from symobs.derivation.builder import left_out
 from symobs.derivation.decimals_check import check_decimals, is_in_order
 from symobs.errors import DerivationRejected
 from symobs.exact import Matrix, Scalar
-from symobs.exact.numerals.rounded_roots import rounded_roots
+from symobs.exact.numerals.written_roots import rounded_roots
 from symobs.figures.block_diagram import letter_for
 from symobs.formula import (
     Conjunction,

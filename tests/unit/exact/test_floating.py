@@ -17,8 +17,9 @@ from symobs.exact.core.generators import square_root
 from symobs.exact.floating.array_functions import ArrayFunction, evaluated, nested, sizes
 from symobs.exact.floating.deviation import deviation
 from symobs.exact.floating.doubles import nearest_double
+from symobs.exact.floating.margin_search import disc_margin, half_plane_margin
 from symobs.exact.floating.sampled import HOLDS, Sampled
-from symobs.exact.floating.stability_margin import disc_margin, half_plane_margin, loop_matrix, own_matrix
+from symobs.exact.floating.stability_margin import loop_matrix, own_matrix
 from symobs.exact.linear_algebra.realisation import Realisation
 from symobs.expression import parse_scalar
 

@@ -14,8 +14,9 @@ from symobs.errors import InputError, UsageError
 from symobs.exact import Matrix, Scalar
 from symobs.exact.floating.deviation import STEPS, deviation
 from symobs.exact.floating.doubles import nearest_double, rounded_matrix
+from symobs.exact.floating.margin_search import disc_margin, half_plane_margin
 from symobs.exact.floating.sampled import HOLDS, Sampled
-from symobs.exact.floating.stability_margin import disc_margin, half_plane_margin, loop_matrix, own_matrix
+from symobs.exact.floating.stability_margin import loop_matrix, own_matrix
 from symobs.exact.linear_algebra.realisation import Realisation
 from symobs.expression import parse_scalar
 from symobs.result import Result
