@@ -295,7 +295,7 @@ def degree_bound(polynomial: fmpz_mpoly) -> int:
 
 def occurring(polynomial: fmpz_mpoly, names: Sequence[str]) -> list[str]:
     """Return those of the names of the generators that occur in a polynomial."""
-    if polynomial.is_constant():
+    if len(polynomial) < 2 and polynomial.is_constant():  # which asks each term for its degree
         return []
     return [name for name, degree in zip(names, polynomial.degrees(), strict=True) if degree > 0]
 

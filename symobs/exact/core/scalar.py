@@ -209,7 +209,8 @@ class Scalar:
     @property
     def is_constant(self) -> bool:
         """Whether this is a rational number."""
-        return bool(self.numerator_part.is_constant() and self.denominator_part.is_constant())
+        above, below = self.numerator_part, self.denominator_part
+        return len(above) < 2 and len(below) < 2 and bool(above.is_constant() and below.is_constant())
 
     @property
     def names(self) -> frozenset[str]:

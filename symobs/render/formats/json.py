@@ -106,8 +106,12 @@ _encoded = json.JSONEncoder(ensure_ascii=False).encode
 def result_object(result: Result, convention: Convention = STANDARD) -> dict[str, Any]:
     """Return the object of one result: common fields, its own fields, and its forms in a convention."""
     own = ResultInConvention(result, convention).renamed_fields
-    answers = {name: to_json(value) for name, value in result.fields.items()}
-    differing = {name: to_json(value) for name, value in own.items() if value is not result.fields.get(name)}
+    fields = result.fields
+    # What stands under two names, as a gain and its input matrix, is written out once: a long one takes half a second.
+    different = {id(value): value for value in fields.values()}
+    written = {number: to_json(value) for number, value in different.items()}
+    answers = {name: written[id(value)] for name, value in fields.items()}
+    differing = {name: to_json(value) for name, value in own.items() if value is not fields.get(name)}
     in_convention = {name: value for name, value in differing.items() if name not in answers or answers[name] != value}
     return {
         "task": result.task,
