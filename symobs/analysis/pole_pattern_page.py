@@ -48,7 +48,7 @@ def say_pattern(page: Builder, phi: Term, desired: DesiredPolynomial) -> None:
 def _say_pair(
     page: Builder, pattern: PolePattern, values: dict[str, Scalar], written: Callable[[Term], Relation]
 ) -> None:
-    """s² + 2 ζ ω₀ s + ω₀² where ζ is given, (s + σ)² + ω² where σ follows from the settling time."""
+    """Write s² + 2 ζ ω₀ s + ω₀² where ζ is given, (s + σ)² + ω² where σ follows from the settling time."""
     _, twice, square = pattern.polynomial.coefficients(pattern.variable)
     sigma, s = twice / 2, page.s
     if "damping" in values:
@@ -68,7 +68,7 @@ def _say_pair(
 
 
 def _mirrored(page: Builder, pattern: PolePattern) -> Relation:
-    """p(s) p(−s) = ω₀²ⁿ + (−1)ⁿ s²ⁿ, with its factors."""
+    """Return p(s) p(−s) = ω₀²ⁿ + (−1)ⁿ s²ⁿ, with its factors."""
     ((_, radius),), variable = pattern.values, pattern.variable
     degree, away = pattern.polynomial.degree(variable), {variable: -Scalar.symbol(variable)}
     factors = [*pattern.factors, *(factor.substitute(away) for factor in pattern.factors)]

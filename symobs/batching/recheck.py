@@ -272,7 +272,7 @@ def _state_feedback(read: _Read) -> Iterator[tuple[str, bool]]:
 
 
 def _integral_action(read: _Read) -> Iterator[tuple[str, bool]]:
-    """[K, -k_I] places the poles of A_hat = [A 0; -C 0], B_hat = [B; -D], with I for 0 in discrete time."""
+    """Yield that [K, -k_I] places the poles of A_hat = [A 0; -C 0], B_hat = [B; -D], with I for 0 in discrete time."""
     K, k_I = read.answered("K"), read.answered("k_I")
     if K is None or k_I is None:
         return

@@ -28,7 +28,7 @@ listeners: list[Callable[[int | None], None]] = []
 
 @contextmanager
 def running(group: int) -> Iterator[None]:
-    """Tell that a group of processes has started, and, whatever happens, that it has ended."""
+    """Report that a group of processes has started, and, whatever happens, that it has ended."""
     try:
         _tell(group)
         yield

@@ -62,7 +62,7 @@ def decisive(P: Scalar | Matrix, plant: StateSpace) -> tuple[System, ...]:
 
 
 def _of_function(P: Scalar, variable: str) -> list[System]:
-    """The resultant of numerator and denominator, and the leading coefficient of the numerator."""
+    """Return the resultant of numerator and denominator, and the leading coefficient of the numerator."""
     above, below = P.numerator, P.denominator
     if not P or below.degree(variable) < 1:
         return []
@@ -70,7 +70,7 @@ def _of_function(P: Scalar, variable: str) -> list[System]:
 
 
 def _of_matrix(P: Matrix, plant: StateSpace) -> list[System]:
-    """Minors of 𝒪𝒞 of its rank, the zeros' leading coefficient, and what gives the largest minors a root in common."""
+    """Return minors of 𝒪𝒞 of its rank, the zeros' leading coefficient, and what gives the largest minors a root in common."""
     variable = plant.variable
     poles, zeros = pole_and_zero_polynomial(P, variable)
     largest = next((found for order in range(min(P.shape), 0, -1) if (found := list(minors(P, order)))), [])

@@ -44,7 +44,7 @@ class TransferFunction(Result):
             yield self._smallest(e)
 
     def _smallest(self, e: Environment) -> Claim:
-        """A minor of 𝒪𝒞 of the order of the fraction does not vanish."""
+        """Return the claim that a minor of 𝒪𝒞 of the order of the fraction does not vanish."""
         from symobs.analysis.realization.lowest_terms import hankel  # noqa: PLC0415 - only strata pay for it
 
         whole, ideal = hankel(self.plant), self.plant.ideal

@@ -132,7 +132,7 @@ def _of_line(picture: LinePicture, test: Stability) -> Iterator[str]:
 
 
 def _of_end(end: End, inward: Fraction, near: Fraction, numbers: dict[str, Scalar], test: Stability) -> Iterator[str]:
-    """Stable on the inner side; on the outer not, unless the end alone is taken out."""
+    """Yield the faults of an end: stable on the inner side, on the outer not, unless the end alone is taken out."""
     outward = end.place - near if inward > 0 else end.place + near
     is_taken_out = test.is_excluded((end.place,), [(end.place - near,), (end.place + near,)])
     if not test.is_stable(end.place + inward) or (test.is_stable(outward) and not is_taken_out):

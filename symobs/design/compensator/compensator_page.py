@@ -87,7 +87,7 @@ def write_compensator(page: Builder, design: CompensatorDesign) -> None:
 
 
 def _state_space(page: Builder, design: CompensatorDesign) -> None:
-    """U = −K x̂ put into the observer: (4.23), (4.24)."""
+    """Write u = −K x̂ put into the observer: (4.23), (4.24)."""
     m = design.plant.matrices
     A, B, C, K, L, x_hat = (page[name] for name in ("A", "B", "C", "K", "L", "x_hat"))
     model, innovation = model_and_innovation(page)
@@ -116,7 +116,7 @@ def _state_space(page: Builder, design: CompensatorDesign) -> None:
 
 
 def _transfer_function(page: Builder, design: CompensatorDesign) -> None:
-    """(4.25) in four stages: inverse, adjugate over determinant, adjugate times L, scalar; those that can be read."""
+    """Write (4.25) in four stages: inverse, adjugate over determinant, adjugate times L, scalar; those that can be read."""
     K, L, F = page["K"], page["L"], design.answer["F"]
     order = design.plant.order
     pencil = (page.s @ page.identity(order) - page["A_c"]).value
@@ -136,7 +136,7 @@ def _transfer_function(page: Builder, design: CompensatorDesign) -> None:
 
 
 def _transfer_matrix(page: Builder, design: CompensatorDesign) -> None:
-    """(4.25) for several inputs or outputs: the resolvent, then the entries."""
+    """Write (4.25) for several inputs or outputs: the resolvent, then the entries."""
     K, L, F = page["K"], page["L"], design.answer["F"]
     formula = K @ (page.s @ page.identity(design.plant.order) - page["A_c"]).inverse @ L
     define_or_hold(page, "F", formula, F, "transfer_function_of_compensator")
@@ -199,7 +199,7 @@ def _reason(page: Builder, design: OutputFeedback, word: str) -> dict[str, Slot]
 
 
 def _error_coordinates(page: Builder, design: CompensatorDesign, *, large: bool) -> None:
-    """(4.26)-(4.29): u = −Kx + Ke, ẋ = (A − BK) x + BKe, block triangular."""
+    """Write (4.26)-(4.29): u = −Kx + Ke, ẋ = (A − BK) x + BKe, block triangular."""
     A, B, C, K, L = (page[name] for name in "ABCKL")
     x, e, order = page["x"], page["e"], design.plant.order
     page.equal(
@@ -233,7 +233,7 @@ def _error_coordinates(page: Builder, design: CompensatorDesign, *, large: bool)
 
 
 def return_path(page: Builder, design: OutputFeedback) -> None:
-    """P/(1 + PF), multiplied out and factored."""
+    """Write P/(1 + PF), multiplied out and factored."""
     plant_form = _plant(page, design)
     form = design.single_loop
     denominator = Factored(Scalar.of(1), tuple((f, -power) for f, power in form.factors if power < 0)).value
@@ -304,7 +304,7 @@ def _has_short_roots(factor: Scalar, variable: str) -> bool:
 
 
 def return_path_of_several(page: Builder, design: OutputFeedback) -> None:
-    """(I + PF)⁻¹ P for several inputs or outputs."""
+    """Write (I + PF)⁻¹ P for several inputs or outputs."""
     plant = design.plant
     response = page["C"] @ (page.s @ page.identity(plant.order) - page["A"]).inverse @ page["B"]
     if plant.matrices.has_feedthrough:
@@ -338,7 +338,7 @@ def _plant(page: Builder, design: OutputFeedback) -> Term:
 
 
 def _named_transfer_function(page: Builder, design: CompensatorDesign) -> None:
-    """F(s) with letters for its coefficients, which are written out below it."""
+    """Write F(s) with letters for its coefficients, which are written out below it."""
     K, L, variable = page["K"], page["L"], design.plant.variable
     resolvent = (page.s @ page.identity(design.plant.order) - page["A_c"]).inverse
     numerator, denominator = transfer(page["A_c"].value, L.value, K.value, Scalar.of(0), variable)
@@ -378,7 +378,7 @@ class Namer:
 
 
 def named_return_path(page: Builder, design: OutputFeedback, own: Term) -> None:
-    """P/(1 + PF) over the product of the two polynomials, `own` being the denominator of F."""
+    """Write P/(1 + PF) over the product of the two polynomials, `own` being the denominator of F."""
     _plant(page, design)
     numerator, _ = design.plant_transfer
     definition = page["P"] / (page.value(1) + page["P"] @ page["F"])

@@ -65,12 +65,12 @@ def write_minimal_order(page: Builder, design: MinimalOrderCompensator) -> None:
 
 
 def _one(page: Builder) -> Term:
-    """I, or 1 for one input."""
+    """Return I, or 1 for one input."""
     return page.identity(page.plant.inputs) if page.plant.inputs > 1 else page.value(1)
 
 
 def write_control_law(page: Builder, design: MinimalOrderCompensator, *, large: bool) -> None:
-    """U = −K x̂ in terms of the output and of the observer's state."""
+    """Write u = −K x̂ in terms of the output and of the observer's state."""
     plant = page.plant
     partitioned_gain(page)
     K_1, K_2 = page["K_1"], page["K_2"]
@@ -105,7 +105,7 @@ def write_control_law(page: Builder, design: MinimalOrderCompensator, *, large: 
 
 
 def partitioned_gain(page: Builder) -> None:
-    """[K₁ K₂] = K T⁻¹."""
+    """Write [K₁ K₂] = K T⁻¹."""
     plant, K, T = page.plant, page["K"], page["T"]
     whole = K if T.value == Matrix.identity(plant.order) else K @ T.inverse
     parts, inputs = whole.value.normal(), range(plant.inputs)
@@ -124,7 +124,7 @@ def _numbers(page: Builder, pairs: list[tuple[Matrix | Scalar, Term]], *, large:
 
 
 def _closed(page: Builder, *, large: bool) -> None:
-    """The compensator in state space."""
+    """Write the compensator in state space."""
     F, G, H, K_y, K_2 = (page[name] for name in ("F_z", "G_z", "H_z", "K_y", "K_2"))
     y, z = page["y"], page[observer_state(page)]
     solved, direct = (page["W_u"] @ K_2, page["W_u"] @ K_y) if page.plant.matrices.has_feedthrough else (K_2, K_y)
@@ -148,7 +148,7 @@ def _own_denominator(page: Builder) -> Term:
 
 
 def _apart(page: Builder, pencil: Term) -> list[Term]:
-    """K₂ · Z/Y + K_y and the direct term with what decays: for an observer of first order, nothing solved for."""
+    """Return K₂ · Z/Y + K_y and the direct term with what decays: for an observer of first order, nothing solved for."""
     K_2, K_y, B_c = (page[name].value for name in ("K_2", "K_y", "B_c"))
     if page.plant.matrices.has_feedthrough or K_2.shape != (1, 1) or page["F_z"].value.shape != (1, 1):
         return []
@@ -162,7 +162,7 @@ def _apart(page: Builder, pencil: Term) -> list[Term]:
 
 
 def _transfer_function(page: Builder, design: MinimalOrderCompensator, *, large: bool) -> None:
-    """F(s) = K₂ (sI − A_c)⁻¹ B_c + K_y, times W where the output contains the input."""
+    """Write F(s) = K₂ (sI − A_c)⁻¹ B_c + K_y, times W where the output contains the input."""
     K_y, K_2, B_c = (page[name] for name in ("K_y", "K_2", "B_c"))
     pencil = page.s @ page.identity(page.plant.order - page.plant.outputs) - page["A_c"]
     formula = K_2 @ pencil.inverse @ B_c + K_y
@@ -201,7 +201,7 @@ def _transfer_function(page: Builder, design: MinimalOrderCompensator, *, large:
 
 
 def _error_coordinates(page: Builder, design: MinimalOrderCompensator) -> None:
-    """U = −Kx + K₂e₂, ẋ = (A − BK) x + BK₂e₂, block triangular; and the same in (x, z)."""
+    """Write u = −Kx + K₂e₂, ẋ = (A − BK) x + BK₂e₂, block triangular; and the same in (x, z)."""
     A, B, C, K, F, K_2, K_y = (page[name] for name in ("A", "B", "C", "K", "F_z", "K_2", "K_y"))
     x, e, z, order = page["x"], page["e_2"], page[observer_state(page)], page.plant.order
     page.equal(

@@ -169,7 +169,7 @@ def write_observer(page: Builder, *, drawn: bool = False, alone: bool = True) ->
 
 
 def _say_deadbeat(page: Builder, closed: Term) -> None:
-    """In discrete time with all poles at 0: after how many steps the error is gone."""
+    """Say after how many steps the error is gone, in discrete time with all poles at 0."""
     if not page.plant.is_discrete:
         return
     powers = (closed**steps for steps in range(1, page.plant.order + 1))

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 
 def write_ansatz(page: Builder, gain: Matrix) -> None:
-    """The error of the ansatz, and the choice of F and G that frees it of x and u."""
+    """Write the error of the ansatz, and the choice of F and G that frees it of x and u."""
     m = page.plant.matrices
     undetermined(page, "F_x", "f_", (m.A - gain @ m.C).normal())
     undetermined(page, "H_x", "h_", gain)
@@ -41,7 +41,7 @@ def write_ansatz(page: Builder, gain: Matrix) -> None:
 
 
 def write_found(page: Builder) -> None:
-    """The observer with the matrices found."""
+    """Write the observer with the matrices found."""
     m, L = page.plant.matrices, page["L"]
     page.conclude_silently(relation(page["H_x"], L))
     closed = page["A"] - L @ page["C"]

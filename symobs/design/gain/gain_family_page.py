@@ -69,7 +69,7 @@ def of_the_others(design: GainDesign) -> str:
 
 
 def _only_gain(page: Builder, design: GainDesign, side: PlacementProblem, desired: DesiredPolynomial) -> None:
-    """One output (input): G = e₁ᵀ, and X is unique."""
+    """Write the gain of one output (input): G = e₁ᵀ, and X is unique."""
     pair = design.dual_pair(page.plant)
     (equation,) = charts_of(pair.A, pair.c, desired.factors, pair.variable, ())
     _shift(page, equation, side, design)
@@ -124,7 +124,7 @@ def _equation(page: Builder, side: PlacementProblem, which: str, equation: Sylve
 
 
 def _sylvester(page: Builder, side: PlacementProblem, which: str, equation: Sylvester) -> Relation:
-    """AᵀX − XF = CᵀG, or AX − XF = BG."""
+    """Return AᵀX − XF = CᵀG, or AX − XF = BG."""
     A, F = _state_matrix(page, side, equation), page[f"F_{side.index}"]
     G, X = (f"{letter}_{side.index}{which}" for letter in "GX")
     if side.gain == "L":
@@ -133,7 +133,7 @@ def _sylvester(page: Builder, side: PlacementProblem, which: str, equation: Sylv
 
 
 def _gain(page: Builder, side: PlacementProblem, which: str, equation: Sylvester) -> Term:
-    """L₀ + (G X⁻¹)ᵀ, or K₀ + G X⁻¹."""
+    """Return L₀ + (G X⁻¹)ᵀ, or K₀ + G X⁻¹."""
     G, X = (f"{letter}_{side.index}{which}" for letter in "GX")
     found = page[G] @ page[X].inverse
     found = found.T if side.gain == "L" else found
@@ -141,7 +141,7 @@ def _gain(page: Builder, side: PlacementProblem, which: str, equation: Sylvester
 
 
 def _similar(page: Builder, side: PlacementProblem, which: str, equation: Sylvester) -> Relation:
-    """(A − LC)ᵀ = Aᵀ − CᵀGX⁻¹ = XFX⁻¹, or A − BK = A − BGX⁻¹ = XFX⁻¹."""
+    """Return (A − LC)ᵀ = Aᵀ − CᵀGX⁻¹ = XFX⁻¹, or A − BK = A − BGX⁻¹ = XFX⁻¹."""
     G, X = (f"{letter}_{side.index}{which}" for letter in "GX")
     A, moved = _state_matrix(page, side, equation), page[G] @ page[X].inverse
     left = A.T - page["C"].T @ moved if side.gain == "L" else A - page["B"] @ moved

@@ -26,7 +26,7 @@ _HARM = Fraction(1, 100)
 
 
 def write_ackermann_formula(page: Builder, _: GainDesign, side: PlacementProblem, desired: DesiredPolynomial) -> None:
-    """L = φ(A) 𝒪⁻¹ eₙ, and K = eₙᵀ 𝒞⁻¹ φ(A)."""
+    """Write L = φ(A) 𝒪⁻¹ eₙ, and K = eₙᵀ 𝒞⁻¹ φ(A)."""
     order = page.plant.order
     unit = page.value(Matrix.unit(order, order - 1))
     if side.gain == "L":
@@ -60,7 +60,7 @@ def _factor_at(page: Builder, factor: Scalar, power: int) -> Term:
 
 
 def write_matching(page: Builder, design: GainDesign, side: PlacementProblem, desired: DesiredPolynomial) -> None:
-    """det(sI − A + LC) with unknown l₁ … lₙ, its coefficients equated to those of φ, the linear system, its solution."""
+    """Write det(sI − A + LC) with unknown l₁ … lₙ, its coefficients equated to those of φ, the linear system, its solution."""
     order, variable = page.plant.order, page.plant.variable
     system = matching(design.dual_pair(page.plant), desired)
     names = fresh_names(f"{side.gain.lower()}_", order, taken_names(page))
@@ -81,7 +81,7 @@ def write_matching(page: Builder, design: GainDesign, side: PlacementProblem, de
 
 
 def write_companion(page: Builder, _: GainDesign, side: PlacementProblem, desired: DesiredPolynomial) -> None:
-    """T = [q; qAᵀ; …] carries the dual pair to companion form, where the gain is the row of differences."""
+    """Write T = [q; qAᵀ; …], which carries the dual pair to companion form, where the gain is the row of differences."""
     order, variable = page.plant.order, page.plant.variable
     found = page.plant.matrices.A.characteristic_polynomial(variable).coefficients(variable)[1:]
     unit = page.value(Matrix.unit(order, order - 1))
@@ -119,7 +119,7 @@ def _reductions(design: GainDesign) -> tuple[Reduction, ...] | None:
 
 
 def write_row_reduction(page: Builder, design: GainDesign, side: PlacementProblem, _: DesiredPolynomial) -> None:
-    """For each pole the matrix [λI − Aᵀ : Cᵀ], its reduced form, the scalar relations, what is chosen, the vector."""
+    """Write for each pole the matrix [λI − Aᵀ : Cᵀ], its reduced form, the scalar relations, what is chosen, the vector."""
     found = _reductions(design)
     assert found is not None  # noqa: S101 - `readable` has said so
     _open_eigenvalues(page, side)

@@ -178,7 +178,7 @@ def name_entries(page: Builder, gain: str) -> None:
 
 
 def write_canonical(page: Builder, _: GainDesign, side: PlacementProblem, desired: DesiredPolynomial) -> None:
-    """Difference of coefficients, constant first, carried back by V⁻¹."""
+    """Write the difference of coefficients, constant first, carried back by V⁻¹."""
     plant, order = page.plant, page.plant.order
     variable = plant.variable
     wanted = [page.value(c) for c in reversed(desired.coefficients)]

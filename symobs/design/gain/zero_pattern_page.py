@@ -43,7 +43,7 @@ def _listed(zero: Places) -> str:
 
 
 def _algebraic(page: Builder, design: GainDesign, kind: AlgebraicGain, side: PlacementProblem) -> None:
-    """A gain whose entries are polynomials in a real root λ."""
+    """Write a gain whose entries are polynomials in a real root λ."""
     found = kind.found
     low, high = found.bounds
     at_ends = [found.polynomial.substitute({EIGENVALUE: end}) for end in (low, high)]

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 
 def draw_copy(page: Builder) -> None:
-    """The observer as a copy of the plant: y − ŷ through L."""
+    """Draw the observer as a copy of the plant: y − ŷ through L."""
     m = page.plant.matrices
     page.signal("y_hat", page["C"] @ page["x_hat"], silent=True)
     gains: dict[str, Member] = {name: page[name] for name in ("A", "C", "L")}
@@ -25,7 +25,7 @@ def draw_copy(page: Builder) -> None:
 
 
 def draw_collected(page: Builder) -> None:
-    """The observer as one loop around A − LC."""
+    """Draw the observer as one loop around A − LC."""
     gains: dict[str, Member] = {"A": page["A"] - page["L"] @ page["C"], "L": page["L"]}
     if page.plant.matrices.has_input:
         gains["B"] = _driven(page)
@@ -34,7 +34,7 @@ def draw_collected(page: Builder) -> None:
 
 
 def draw_compensator(page: Builder) -> None:
-    """Plant, observer and feedback: in full with one input, one output and no feedthrough, else the plant as one box."""
+    """Draw plant, observer and feedback: in full with one input, one output and no feedthrough, else the plant as one box."""
     A, C, K, L = (page[name] for name in "ACKL")
     plant = page.plant
     if plant.inputs == plant.outputs == 1 and not plant.matrices.has_feedthrough:
@@ -56,17 +56,17 @@ def _whole(page: Builder, label: Member) -> Member:
 
 
 def draw_loop(page: Builder, plant: Member, compensator: Term) -> None:
-    """The compensator in the return path."""
+    """Draw the compensator in the return path."""
     page.diagram("loop", say="drawn_loop", P=_whole(page, plant), F=-compensator, response=page["G_cl"])
 
 
 def draw_unity_loop(page: Builder, plant: Member, compensator: Member) -> None:
-    """The compensator before the plant, unity feedback."""
+    """Draw the compensator before the plant, unity feedback."""
     page.diagram("unity_loop", say="drawn_unity_loop", P=_whole(page, plant), F=compensator, response=page["G_r"])
 
 
 def draw_feedforward(page: Builder, *, minimal: bool) -> None:
-    """Feedback from the estimate, and the feedforward."""
+    """Draw feedback from the estimate, and the feedforward."""
     observer = _minimal_order_observer(page) if minimal else _observer(page)
     gains = {"K": -page["K"], "F": page["F_v"]}
     say = "drawn_feedforward_minimal" if minimal else "drawn_feedforward"
@@ -74,7 +74,7 @@ def draw_feedforward(page: Builder, *, minimal: bool) -> None:
 
 
 def draw_tracking(page: Builder, *, minimal: bool) -> None:
-    """The generator of the reference, K and K_d, plant and observer."""
+    """Draw the generator of the reference, K and K_d, plant and observer."""
     observer = _minimal_order_observer(page) if minimal else _observer(page)
     gains = {"K": page["K"], "Kd": -page["K_d"], "Ad": page["A_ref"]}
     say = "drawn_tracking_minimal" if minimal else "drawn_tracking"
@@ -82,7 +82,7 @@ def draw_tracking(page: Builder, *, minimal: bool) -> None:
 
 
 def draw_minimal_order(page: Builder) -> None:
-    """The observer of what is not measured, and the estimate put together; a feedthrough is taken off the output."""
+    """Draw the observer of what is not measured, and the estimate put together; a feedthrough is taken off the output."""
     gains: dict[str, Member] = {name[0]: page[name] for name in ("F_z", "H_z", "M_z")}
     if page.plant.matrices.has_input:
         gains["G"] = page["G_z"]
@@ -120,5 +120,5 @@ def _minimal_order_observer(page: Builder) -> Conjunction:
 
 
 def _state(page: Builder) -> Term:
-    """In discrete time z is the variable."""
+    """Return z, but w in discrete time, where z is the variable."""
     return page["w_o" if page.plant.is_discrete else "z_o"]

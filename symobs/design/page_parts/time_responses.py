@@ -31,7 +31,7 @@ _ROUND = (Fraction(1), Fraction(3, 2), Fraction(2), Fraction(3), Fraction(4), Fr
 
 
 def plot_error(page: Builder, name: str, matrix: Term) -> None:
-    """The estimation error from the start x = (1, …, 1), x̂ = 0, for ė = matrix e."""
+    """Plot the estimation error from the start x = (1, …, 1), x̂ = 0, for ė = matrix e."""
     size = matrix.value.shape[0]
     _plot(page, (name,), matrix, [(name, Matrix.identity(size), False)], "plot_error")
 

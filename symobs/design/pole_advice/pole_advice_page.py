@@ -107,7 +107,7 @@ def _product(page: Builder, factors: tuple[tuple[Scalar, int], ...]) -> Term:
 
 
 def _zeros(page: Builder, advice: PoleAdvice) -> None:
-    """The numerator, its roots, and those of them that are used."""
+    """Write the numerator, its roots, and those of them that are used."""
     plant, b = page.plant, numerator_of(page.plant)
     page.define(
         "b_P", numerator_term(page.environment, plant), factored_form(page, b), say="numerator_of_plant", closing=False
@@ -129,7 +129,7 @@ def _zeros(page: Builder, advice: PoleAdvice) -> None:
 
 
 def _circle(page: Builder, advice: PoleAdvice, radius: Scalar) -> None:
-    """φ_r with φ_r(s) φ_r(−s), and the pairs."""
+    """Write φ_r with φ_r(s) φ_r(−s), and the pairs."""
     count, variable = advice.count, page.plant.variable
     if not count:
         _nothing(page)
@@ -163,7 +163,7 @@ def _nothing(page: Builder) -> None:
 
 
 def _pair(page: Builder, advice: PoleAdvice) -> None:
-    """σ from the settling time, ω from the overshoot, and φ_r."""
+    """Write σ from the settling time, ω from the overshoot, and φ_r."""
     answer, request, count = advice.answer, advice.request, advice.count
     assert request.settling_time is not None and request.overshoot is not None  # noqa: S101, PT018 - one of two ways to ask
     sigma, omega_d, time = answer["sigma"], answer["omega_d"], request.settling_time
@@ -194,7 +194,7 @@ def _pair(page: Builder, advice: PoleAdvice) -> None:
 
 
 def _polynomial(page: Builder, advice: PoleAdvice) -> None:
-    """φ, boxed, and where the gain tends."""
+    """Write φ, boxed, and where the gain tends."""
     zeros, plant, whole = advice.zeros, page.plant, formula_of_factored(advice.answer["polynomial"])
     parts = [*([page["phi_z"]] if zeros.used else []), *([page["phi_r"]] if advice.count else [])]
     page.define("phi_o", product(parts), page.term(whole), say="advised_polynomial", answer=True, closing=False)

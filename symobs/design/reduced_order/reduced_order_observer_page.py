@@ -79,7 +79,7 @@ def write_observer_of_rest(page: Builder, design: ReducedOrderObserver) -> None:
 
 
 def _coordinates(page: Builder, parts: Partition) -> None:
-    """T = [C; R] and the blocks of T A T⁻¹ and T B."""
+    """Write T = [C; R] and the blocks of T A T⁻¹ and T B."""
     plant = page.plant
     order, measured = plant.order, plant.outputs
     page.set("R", parts.T.select(range(measured, order), range(order)))
@@ -125,7 +125,7 @@ def _in_parts(page: Builder, whole: Sequence[Term], driven: Sequence[Term]) -> l
 
 
 def _parts(page: Builder, design: ReducedOrderObserver) -> None:
-    """x₁ = C x and x₂ = R x with their equations, and Lemma 4.1."""
+    """Write x₁ = C x and x₂ = R x with their equations, and Lemma 4.1."""
     trivial = page["T"].value == Matrix.identity(page.plant.order)
     page.signal("x_1", page["C"] @ page["x"], silent=True)
     page.signal("x_2", page["R"] @ page["x"], silent=True)
@@ -159,7 +159,7 @@ def _parts(page: Builder, design: ReducedOrderObserver) -> None:
 
 
 def _observer(page: Builder, design: ReducedOrderObserver) -> None:
-    """(4.37) and (4.38), the gain a matrix of unknowns."""
+    """Write (4.37) and (4.38), the gain a matrix of unknowns."""
     gain: Matrix = design.answer["L"]
     names = iter(fresh_names("l_", len(gain.entries), taken_names(page)))
     rows = [[page.name_coefficient(next(names), entry) for entry in row] for row in gain.rows]
@@ -183,7 +183,7 @@ def _observer(page: Builder, design: ReducedOrderObserver) -> None:
 
 
 def _mere_copy(page: Builder) -> None:
-    """A first attempt: the estimate takes x₁ from the measurement, so its output error is 0 and corrects nothing."""
+    """Write a first attempt: the estimate takes x₁ from the measurement, so its output error is 0 and corrects nothing."""
     if not any(page["A_12"].value.entries):  # then no observer does better
         return
     x_2, x_2_hat = page["x_2"], page["x_2_hat"]
@@ -249,7 +249,7 @@ def observer_state(page: Builder) -> str:
 
 
 def _collected(page: Builder) -> list[tuple[Term, Term]]:
-    """(4.39): the signals of the right-hand side with their matrices, the derivative of x₁ among them."""
+    """Return (4.39): the signals of the right-hand side with their matrices, the derivative of x₁ among them."""
     L, x_1 = page["L"], page["x_1"]
     pairs = [(_error_matrix(page), page["x_2_hat"]), (page["A_21"] - L @ page["A_11"], x_1)]
     if page.plant.matrices.has_input:
@@ -258,7 +258,7 @@ def _collected(page: Builder) -> list[tuple[Term, Term]]:
 
 
 def _without_derivative(page: Builder) -> None:
-    """(4.39) and (4.40): z = x̂₂ − L x₁ in place of x̂₂."""
+    """Write (4.39) and (4.40): z = x̂₂ − L x₁ in place of x̂₂."""
     m, L, u, x_1, x_2_hat = page.plant.matrices, page["L"], page["u"], page["x_1"], page["x_2_hat"]
     name = observer_state(page)
     page.signal(name, x_2_hat - L @ x_1, silent=True)
@@ -277,7 +277,7 @@ def _without_derivative(page: Builder) -> None:
 
 
 def _assembled(page: Builder, design: ReducedOrderObserver, say: tuple[str, str]) -> None:
-    """F, G, H and the observer, and (4.41): the estimate put together again."""
+    """Write F, G, H and the observer, and (4.41): the estimate put together again."""
     m, L, u, x_1, z = page.plant.matrices, page["L"], page["u"], page["x_1"], page[observer_state(page)]
     _matrices(page, design, say[0])
     pairs = [(page["F_z"], z)]
@@ -307,7 +307,7 @@ def _assembled(page: Builder, design: ReducedOrderObserver, say: tuple[str, str]
 
 
 def _matrices(page: Builder, design: ReducedOrderObserver, say: str) -> None:
-    """F = A₂₂ − L A₁₂, H = F L + A₂₁ − L A₁₁, G = B₂ − L B₁, which a feedthrough changes by −H D."""
+    """Write F = A₂₂ − L A₁₂, H = F L + A₂₁ − L A₁₁, G = B₂ − L B₁, which a feedthrough changes by −H D."""
     L, m = page["L"], page.plant.matrices
     page.define("F_z", _error_matrix(page), say=say)
     if m.has_input and not m.has_feedthrough:
@@ -331,7 +331,7 @@ def _fixed_modes(page: Builder, design: ReducedOrderObserver) -> tuple[Term, tup
 
 
 def _impossible(page: Builder, design: ReducedOrderObserver) -> None:
-    """No gain moves the modes that A₁₂ does not show, and they are not wanted."""
+    """Write that no gain moves the modes that A₁₂ does not show, and that they are not desired."""
     fixed, facts = _fixed_modes(page, design)
     modes = Roots(fixed.formula, roots_of(design.inner.fixed_polynomial, page.plant.variable))
     page.conclude("reduced_impossible", *facts, predicate("not_polynomial", page["phi_o"] / fixed), modes=modes)

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 def write_undetermined(page: Builder, design: ReducedOrderObserver) -> None:
-    """The error of the ansatz, collected by signals, and the choice of F, G and H that frees it of x and u."""
+    """Write the error of the ansatz, collected by signals, and the choice of F, G and H that frees it of x and u."""
     m, name = page.plant.matrices, "w_o" if page.plant.is_discrete else "z_o"
     letters = iter(fresh_names("l_", len(design.answer["L"].entries), taken_names(page)))
     entries = [[page.name_coefficient(next(letters), entry) for entry in row] for row in design.answer["L"].rows]

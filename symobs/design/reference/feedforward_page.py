@@ -38,7 +38,7 @@ def write_feedforward(page: Builder, design: FeedforwardDesign) -> None:
 
 
 def _at_rest(page: Builder) -> Term:
-    """(C − DK)(−A + BK)⁻¹B + D, in discrete time (C − DK)(I − A + BK)⁻¹B + D."""
+    """Return (C − DK)(−A + BK)⁻¹B + D, in discrete time (C − DK)(I − A + BK)⁻¹B + D."""
     A, B, C, K = (page[name] for name in "ABCK")
     closed = B @ K - A
     if page.plant.is_discrete:
@@ -49,7 +49,7 @@ def _at_rest(page: Builder) -> Term:
 
 
 def _impossible(page: Builder, design: FeedforwardDesign) -> None:
-    """The loop never comes to rest, or the gain at rest has dependent rows, whatever K is."""
+    """Write that the loop never comes to rest, or the gain at rest has dependent rows, whatever K is."""
     if design.answer["stuck"] is not None:
         x = page.set("x_0", design.answer["stuck"])
         moved = (page["A"] - page["B"] @ page["K"]) @ x
@@ -77,14 +77,14 @@ def _impossible(page: Builder, design: FeedforwardDesign) -> None:
 
 
 def _response(page: Builder) -> Term:
-    """C(sI − A)⁻¹B + D."""
+    """Return C(sI − A)⁻¹B + D."""
     resolvent = (page.s @ page.identity(page.plant.order) - page["A"]).inverse
     response = page["C"] @ resolvent @ page["B"]
     return response + page["D"] if page.plant.matrices.has_feedthrough else response
 
 
 def _loop(page: Builder, design: FeedforwardDesign, *, minimal: bool) -> None:
-    """U = −K x̂ + F v, and what becomes of state, error and output."""
+    """Write u = −K x̂ + F v, and what becomes of state, error and output."""
     plant, m = page.plant, page.plant.matrices
     F = design.answer["F"]
     page.set("F_v", F if isinstance(F, Matrix) else Matrix.of([[F]]))
@@ -124,7 +124,7 @@ def _loop(page: Builder, design: FeedforwardDesign, *, minimal: bool) -> None:
 
 
 def _gain(page: Builder, design: FeedforwardDesign) -> None:
-    """F from the gain at rest, and the transfer function from v to y."""
+    """Write F from the gain at rest, and the transfer function from v to y."""
     plant, m = page.plant, page.plant.matrices
     A, B, C, K, F_v = (page[name] for name in ("A", "B", "C", "K", "F_v"))
     page.define("G_0", _at_rest(page), say="gain_at_rest")

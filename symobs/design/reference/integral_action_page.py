@@ -59,7 +59,7 @@ def _cases(page: Builder, design: IntegralAction) -> Iterator[Step]:
 
 
 def _extended(page: Builder) -> None:
-    """ξ' = r − y, and both equations together."""
+    """Write ξ' = r − y, and both equations together."""
     kind = "discrete" if page.plant.is_discrete else "continuous"
     xi, error = page["xi_I"], page["r_in"] - page["y"]
     page.dynamics("xi_I", xi + error if page.plant.is_discrete else error, say=f"integral_state_{kind}")
@@ -88,7 +88,7 @@ def _enters(page: Builder) -> Term:
 
 
 def _design(page: Builder, design: IntegralAction, *, is_case: bool = False) -> None:
-    """The rank condition, and the gains or the reason why there are none."""
+    """Write the rank condition, and the gains or the reason why there are none."""
     assumed = design.assumed
     if assumed:
         page.assume("integral_provided", *assumed)
@@ -139,7 +139,7 @@ def _say_condition(page: Builder, design: IntegralAction) -> None:
 
 
 def _impossible(page: Builder, design: IntegralAction) -> None:
-    """The modes of plant and integrator that no gain moves are not among the desired poles."""
+    """Write that the modes of plant and integrator that no gain moves are not among the desired poles."""
     pair, size = design.loop.pair, page.plant.order + page.plant.outputs
     N, X = page.set("N_K", pair.kernel), page.set("X_K", pair.restricted)
     count = pair.kernel.shape[1]
@@ -156,7 +156,7 @@ def _impossible(page: Builder, design: IntegralAction) -> None:
 
 
 def _gains(page: Builder, design: IntegralAction) -> None:
-    """[K, −k_I] of the extended plant, and its parts."""
+    """Write [K, −k_I] of the extended plant, and its parts."""
     plant, gain = page.plant, design.loop.answer["K"]
     K, k_I = page.set("K", design.answer["K"]), page.set("k_I", design.answer["k_I"])
     both = block([[K, -k_I]])
@@ -171,13 +171,13 @@ def _gains(page: Builder, design: IntegralAction) -> None:
 
 
 def _closed_loop(page: Builder) -> None:
-    """The matrix of the closed loop in (x, ξ)."""
+    """Write the matrix of the closed loop in (x, ξ)."""
     plant = page.plant
     page.define("A_cl", block(closed_loop(page.environment, plant)), say="integral_loop")
 
 
 def _at_rest(page: Builder, design: IntegralAction) -> None:
-    """The gain at rest, which is one: the last rows of the closed loop are r − y."""
+    """Write the gain at rest, which is one: the last rows of the closed loop are r − y."""
     plant, A_cl = page.plant, page["A_cl"]
     zero = design.desired.polynomial.substitute({plant.variable: Scalar.of(int(plant.is_discrete))})
     if zero.is_zero:

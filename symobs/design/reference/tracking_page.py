@@ -35,7 +35,7 @@ def write_tracking(page: Builder, design: TrackingDesign) -> None:
 
 
 def _reference(page: Builder, design: TrackingDesign) -> None:
-    """ẋ_d = A_d x_d."""
+    """Write ẋ_d = A_d x_d."""
     page.set("A_ref", design.reference)
     page.dynamics("x_d", page["A_ref"] @ page["x_d"], silent=True)
     page.equal(
@@ -46,7 +46,7 @@ def _reference(page: Builder, design: TrackingDesign) -> None:
 
 
 def _law(page: Builder, design: TrackingDesign) -> None:
-    """U = K (x_d − x̂) − K_d x_d, and the equation of the error."""
+    """Write u = K (x_d − x̂) − K_d x_d, and the equation of the error."""
     page.set("K_d", design.answer["K_d"])
     minimal = isinstance(design.loop.estimator, ReducedOrderObserver)
     if minimal:
@@ -74,7 +74,7 @@ def _law(page: Builder, design: TrackingDesign) -> None:
 
 
 def _gain(page: Builder, design: TrackingDesign) -> None:
-    """A_d − A + BK_d = 0, for every reference or for what one trajectory passes through."""
+    """Write A_d − A + BK_d = 0, for every reference or for what one trajectory passes through."""
     A, B = page["A"], page["B"]
     order, columns = design.passed.shape
     if design.start is not None:
@@ -109,7 +109,7 @@ def _gain(page: Builder, design: TrackingDesign) -> None:
 
 
 def _errors(page: Builder, design: TrackingDesign) -> None:
-    """The block triangular matrix of both errors, and its polynomial."""
+    """Write the block triangular matrix of both errors, and its polynomial."""
     minimal = isinstance(design.loop.estimator, ReducedOrderObserver)
     A, B, C, K, L = (page[name] for name in "ABCKL")
     order, size = page.plant.order, design.matrix_of_errors.shape[0]

@@ -198,7 +198,7 @@ def _size(folder: Path) -> int:
 
 @contextmanager
 def _ending_in_order() -> Iterator[None]:
-    """On the first request to end this process, end TeX and remove its folder, undisturbed by a second one."""
+    """End TeX and remove its folder on the first request to end this process, undisturbed by a second one."""
     usual: dict[signal.Signals, Any] = {signal.SIGINT: signal.default_int_handler, signal.SIGTERM: signal.SIG_DFL}
     if hasattr(signal, "SIGHUP"):
         usual[signal.SIGHUP] = signal.SIG_DFL

@@ -119,7 +119,7 @@ class LatexPrinter(Printer[LatexBox]):
         return LatexBox(widths.source_width(source), Level.POWER if "^" in source else Level.ATOM, source)
 
     def identity(self) -> LatexBox:
-        """I."""
+        """Write I."""
         return LatexBox(0.5, Level.ATOM, "I")
 
     def empty(self, shape: tuple[int, int]) -> LatexBox:

@@ -107,7 +107,7 @@ class TextPrinter(Printer[TextBox]):
         return text_box(symbol_text(name, self.symbols.get(name)))
 
     def identity(self) -> TextBox:
-        """I."""
+        """Write I."""
         return text_box("I")
 
     def empty(self, shape: tuple[int, int]) -> TextBox:
@@ -228,7 +228,7 @@ class TextPrinter(Printer[TextBox]):
         return text_box(symbol_text(form.lstrip("\\").replace("{", "").replace("}", "")))
 
     def evaluated(self, box: TextBox, equations: Sequence[TextBox]) -> TextBox:
-        """X|t=0."""
+        """Write X|t=0."""
         where = ",".join(equation.line.replace(" ", "") for equation in equations)
         return self.joined([box, text_box(f"|{where}")], Level.POWER)
 

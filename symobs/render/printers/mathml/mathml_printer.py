@@ -168,7 +168,7 @@ class MathmlPrinter(Printer[MathmlBox]):
         return MathmlBox(widths.source_width(form), Level.ATOM, tuple(part.written for part in parts), 0, apart)
 
     def identity(self) -> MathmlBox:
-        """I."""
+        """Write I."""
         return MathmlBox(0.5, Level.ATOM, ("<mi>I</mi>",))
 
     def empty(self, shape: tuple[int, int]) -> MathmlBox:
