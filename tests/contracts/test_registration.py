@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
+from tests.support.claims.claims import HOLDS
 from tests.support.paths import ROOT
 from tests.support.tools.command_line import Run, environment, fresh
 
@@ -84,7 +85,8 @@ class Dummy:
         return "".join(f"{result.task} {result.method} {result.verdict}\\n" for result in document.results)
 '''
 
-#: A task in a folder of its own: what the result is, its page, its phrases with question, theorem and figure, an example.
+#: A task in a folder of its own: what the result is, its page, its phrases with question, theorem and figure, an example;
+#: and the words of the other language, and what checks its claims without symobs, each a file found by its name.
 FOLDER = "symobs/analysis/trace"
 
 TRACE = '''
@@ -121,7 +123,7 @@ class Trace(Result):
         yield Claim(relation(letter("M", e), letter("A", e)), e)
 
 
-@method("trace/direct", source="nobody, Theorem 2")
+@method("trace/direct", source="kalman1963a")
 def direct(plant: StateSpace) -> Trace:
     """Look at it."""
     return Trace(plant, "direct", {"M": plant.matrices.A})
@@ -129,7 +131,12 @@ def direct(plant: StateSpace) -> Trace:
 
 @task
 def trace(plant: StateSpace, *, method: Name = "auto") -> Trace:
-    """Find what is on the diagonal."""
+    """Find what is on the diagonal.
+
+    plant         A with n states
+    Returns M with M = A.  Raises `InputError` for an unknown method.
+    Source: R. E. Kalman (1963).
+    """
     return choose("trace", method, "direct").solve(plant)
 '''
 
@@ -153,7 +160,8 @@ def write_trace(page: Page, result: Trace) -> None:
     """Draw the plant and say what stands on its diagonal."""
     given(page)
     with page.section("trace"):
-        page.diagram("free_motion", say="trace_drawn", A=page["A"])
+        if not page.plant.matrices.has_input:
+            page.diagram("free_motion", say="trace_drawn", A=page["A"])
         page.define("M", page["A"], say="trace_is", answer=True)
 '''
 
@@ -172,7 +180,7 @@ QUESTIONS: dict[str, str] = {"ask trace": "What stands on the diagonal of $A$?"}
 
 RESTS_ON: dict[str, str] = {"trace_is": "trace_theorem"}
 
-THEOREMS: dict[str, str] = {"trace_theorem": "nobody, Theorem 2"}
+THEOREMS: dict[str, str] = {"trace_theorem": "kalman1963a"}
 
 FIGURES: dict[str, dict[str, object]] = {
     "free_motion": {
@@ -184,6 +192,26 @@ FIGURES: dict[str, dict[str, object]] = {
         "signals": {"x": "x"},
     },
 }
+'''
+
+TRACE_IN_GERMAN = """
+trace = "Die Diagonale."
+trace_drawn = "Sich selbst überlassen bewegt sich die Strecke wie folgt."
+trace_is = "Ihre Diagonale ist die von"
+"ask trace" = "Was steht auf der Diagonale von $A$?"
+"""
+
+TRACE_CLAIMS = '''
+"""The matrix is A."""
+
+from typing import Any
+
+from tests.support.independent_algebra.plain import matrix_at
+
+
+def holds(result: Any, at: Any) -> None:
+    """Check M = A at a point."""
+    assert matrix_at(result.answer["M"], at.point) == at.A
 '''
 
 TRACE_EXAMPLE = """
@@ -227,10 +255,10 @@ class Copy:
     def run(self, *arguments: str, stdin: str = "") -> Run:
         return fresh(*arguments, folder=self.folder, checkout=self.checkout, stdin=stdin.encode())
 
-    def kept(self, task: str) -> str:
-        """Run the contract tests of a task in the copy; return what they print."""
-        files = [f"tests/contracts/{name}.py" for name in ("test_phrases", "test_floors")]
-        arguments = [*files, "-k", task, "-q", "-p", "no:cacheprovider"]
+    def kept(self, which: str, *further: str) -> str:
+        """Run the contract tests of a task in the copy, or further ones; return what they print."""
+        files = [f"tests/contracts/{name}.py" for name in ("test_phrases", "test_floors", *further)]
+        arguments = [*files, "-k", which, "-q", "-p", "no:cacheprovider"]
         run = subprocess.run(
             [sys.executable, "-m", "pytest", *arguments],
             cwd=self.checkout,
@@ -323,13 +351,18 @@ def test_a_task_is_one_new_folder_and_an_example(copy: Copy) -> None:
     copy.add("worked_examples/trace.toml", TRACE_EXAMPLE)
     assert f"write {FOLDER}/trace_page.py" in copy.kept("trace")
     copy.add(f"{FOLDER}/trace_page.py", TRACE_PAGE)
-    told = copy.kept("trace")
-    assert " failed" not in told
+    with pytest.raises(AssertionError, match=r"write tests/support/claims/claims_of_trace\.py with `holds\("):
+        HOLDS["trace"]
+    copy.add("symobs/phrases/german/trace.toml", TRACE_IN_GERMAN)
+    copy.add("tests/support/claims/claims_of_trace.py", TRACE_CLAIMS)
+    others = "every_phrase or theorem or literature or language_has or (trace/direct and survives)"
+    told = copy.kept(f"{others} or (trace and not trace/)", "test_languages", "test_tasks_and_methods")
+    assert " failed" not in told, told
     assert " passed" in told
     example = str(copy.checkout / "worked_examples" / "trace.toml")
     page = copy.run("solve", example)
     assert (page.code, page.err) == (0, "")
-    for words in ("Its diagonal is that of", "moves as follows", r"\begin{tikzpicture}", r"\item nobody."):
+    for words in ("Its diagonal is that of", "moves as follows", r"\begin{tikzpicture}", "Kalman"):
         assert words in page.out
     sheet = copy.run("sheet", example, "--questions", "--format", "text")
     assert "What stands on the diagonal of A?" in sheet.out
