@@ -71,6 +71,7 @@ TESTS = {
     "time_response_check.py": "plot_check",
     "routh_check.py": "routh_table",
     "convention_signs.py": "convention_signs",
+    "sign_translation.py": "convention_signs",
     "wording_check.py": "wording_check sentences",
     "rejection.py": "check steps_refused",
     "registry.py": "registry result",
