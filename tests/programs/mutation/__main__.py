@@ -46,6 +46,7 @@ MARKING = [
 #: The tests that stand for each of their files, by the end of its path; small and direct ones, so that all mutants can be
 #: tried.
 TESTS = {
+    "judgement/as_asked.py": "as_students_write judgement",
     "judgement/conditions.py": "claims_decide regions",
     "judgement/coordinates.py": "claims_decide judgement",
     "judgement/gains.py": "claims_decide judgement faults",
