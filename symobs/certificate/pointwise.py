@@ -8,7 +8,17 @@ from typing import TYPE_CHECKING, Any
 
 from symobs.conditions import never_zero, real_consequences, vanishing_factors
 from symobs.errors import NotShown
-from symobs.exact import EIGENVALUE, Ideal, Matrix, Scalar, TooLarge, echelon, independent_rows, is_inverse
+from symobs.exact import (
+    EIGENVALUE,
+    Ideal,
+    Matrix,
+    Scalar,
+    TooLarge,
+    echelon,
+    independent_rows,
+    is_inverse,
+    kept_from_zero,
+)
 from symobs.exact.core.generators import all_roots
 from symobs.exact.ideals.conjugate_points import conjugate_points
 from symobs.formula import ModuloIdeal
@@ -27,7 +37,8 @@ def never_together_zero(
 ) -> bool:
     """Return whether the values have no common real zero with these signs where the relations hold.
 
-    Irreducible polynomials that are known not to vanish there may be given as `nonzero`.
+    Irreducible polynomials that are known not to vanish there may be given as `nonzero`; a sum of squares is one where its
+    terms do not vanish together.
 
     With the values the relations generate an ideal that holds 1, or a polynomial that the signs keep from 0.  What real
     parameters imply is added to it: a² + b² = 0 only where a = b = 0, and a² b = 0 with b > 0 only where a = 0; to
@@ -41,7 +52,12 @@ def never_together_zero(
     equations = [relation for relation in relations if relation not in apart]
     known = _implied([_stripped(value, signs, nonzero) for value in values if value], signs, nonzero)
     known = [part for ideal in known for part in _within(ideal, equations, signs, nonzero)]
-    return not any(_within(part, apart, signs, nonzero) for part in known)
+    known = [part for part in known if not any(value in part for value in nonzero)]
+    kept = [kept_from_zero(relation) for relation in apart]
+    return all(
+        any(value in part for value in kept) or (not part.is_seen_prime and not _within(part, apart, signs, nonzero))
+        for part in known
+    )
 
 
 def _within(

@@ -17,7 +17,7 @@ from flint import Ordering, fmpz_mpoly_vec
 
 from symobs.exact.core.field import EIGENVALUE, Field, context_of
 from symobs.exact.core.scalar import Scalar
-from symobs.exact.ideals.conjugate_points import conjugate_points
+from symobs.exact.ideals.conjugate_points import conjugate_points, shortened
 from symobs.exact.ideals.quotient import Quotient
 
 if TYPE_CHECKING:
@@ -72,6 +72,15 @@ class Ideal:
     def is_whole(self) -> bool:
         """Whether 1 lies in the ideal: there is no common complex zero."""
         return any(polynomial.is_constant() for polynomial in self.basis)
+
+    @cached_property
+    def is_seen_prime(self) -> bool:
+        """Whether this is the ideal of one irreducible curve, or of conjugate points by a coordinate."""
+        if self.field.roots or (len(self.generators) != 1 and self.coordinate is None):
+            return False
+        leading = [g for g in self.generators if self.coordinate is None or g.names <= {self.coordinate}]
+        factors = leading[0].factors()[1] if len(leading) == 1 else ()
+        return len(factors) == 1 and factors[0][1] == 1
 
     def remainder(self, value: Scalar) -> Scalar:
         """Return the normal form of a numerator up to a nonzero rational factor; 0 exactly for members."""
@@ -189,6 +198,12 @@ def apart_from_zero(value: Scalar) -> Scalar:
     return 1 - Scalar.symbol(f"{_INVERSE}({value.numerator})") * value.numerator
 
 
+def kept_from_zero(relation: Scalar) -> Scalar:
+    """Return the p of a relation 1 − w p."""
+    (name,) = filter(is_inverse, relation.names)
+    return -relation.coefficients(name)[0]
+
+
 def is_inverse(name: str) -> bool:
     """Return whether a generator stands for the inverse of a polynomial."""
     return name.startswith(_INVERSE)
@@ -224,6 +239,8 @@ def _ideal(generators: tuple[Scalar, ...], field: Field | None = None) -> Ideal:
     if basis is None or not complete:
         if points := _points(generators, field):
             return points
+        if (shorter := shortened(generators)) and set(shorter) != set(generators):
+            return _ideal(shorter, field)
         message = f"the equations {'are too long to be decided' if has_few else 'have too many terms'}"
         raise TooLarge(message)
     return Ideal(field, fmpz_mpoly_vec(_reduced(list(basis), home), home), home)  # type: ignore[call-overload]
