@@ -28,8 +28,9 @@ if TYPE_CHECKING:
 
     from symobs.formula import Environment
 
-#: The most minors of one order that are looked at.
+#: The most minors of one order that are looked at, and how many of the shortest are tried before all are.
 _MINORS = 100
+_FEW = (4, 12)
 
 
 def never_together_zero(
@@ -173,9 +174,11 @@ class Pointwise(ModuloIdeal):
         self, matrix: Matrix, order: int, first: tuple[tuple[int, ...], tuple[int, ...]] | None = None
     ) -> bool:
         """Return whether at every point a minor of some order is not zero; a likely one may be tried first."""
-        if not order or (first is not None and self._never_zero([matrix.select(*first)])):
+        if not order or (first is not None and self._never_together_zero([matrix.select(*first).determinant()])):
             return True
-        return self._never_zero(matrix.select(*minor) for minor in itertools.islice(_minors(matrix, order), _MINORS))
+        minors = [matrix.select(*minor).determinant() for minor in itertools.islice(_minors(matrix, order), _MINORS)]
+        shortest = sorted((minor for minor in minors if minor not in self.ideal), key=lambda minor: minor.size)
+        return any(self._never_together_zero(shortest[:count]) for count in (*_FEW, len(shortest)))
 
     def _has_none(self, matrix: Matrix, order: int) -> bool:
         """Return whether all minors of an order vanish; False if there are too many to check."""
@@ -183,6 +186,8 @@ class Pointwise(ModuloIdeal):
             return False
         return all(matrix.select(*minor).determinant() in self.ideal for minor in _minors(matrix, order))
 
-    def _never_zero(self, parts: Iterable[Matrix]) -> bool:
-        minors = (part.determinant() for part in parts)
-        return never_together_zero((m for m in minors if m not in self.ideal), self.relations, self.signs, self.nonzero)
+    def _never_together_zero(self, values: Sequence[Scalar]) -> bool:
+        try:
+            return never_together_zero(values, self.relations, self.signs, self.nonzero)
+        except TooLarge:
+            return False

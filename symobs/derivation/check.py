@@ -316,7 +316,7 @@ def _assume(relation: Relation, environment: Environment) -> Environment:
     """Let the factors of a difference, which there must be, be different from 0 from here on."""
     left, right = (as_scalar(evaluate(member, environment, Exact(environment))) for member in relation.members)
     difference = (left - right).numerator
-    if difference in Ideal.of(environment.relations):
+    if difference in Ideal.where(environment.relations):
         reject(plain_relation(relation, environment.variable))
     return replace(environment, nonzero=(*environment.nonzero, *(f for f, _ in difference.factors()[1])))
 

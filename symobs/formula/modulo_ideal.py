@@ -6,7 +6,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 from symobs.errors import NotShown
-from symobs.exact import EIGENVALUE, AlgebraicExtension, Ideal, Matrix, Scalar, is_inverse, kept_from_zero
+from symobs.exact import EIGENVALUE, AlgebraicExtension, Ideal, Matrix, Scalar
 from symobs.formula.evaluate import Exact
 
 if TYPE_CHECKING:
@@ -27,15 +27,8 @@ class ModuloIdeal(Exact):
 
     @cached_property
     def ideal(self) -> Ideal:
-        """The ideal of the relations, without those on what is not 0 where they add nothing; raises `TooLarge`.
-
-        Where p lies in a prime ideal I, but no q of 1 − w q does, p lies in I with 1 − w q just if it lies in I.
-        """
-        apart = [relation for relation in self.relations if any(map(is_inverse, relation.names))]
-        equations = Ideal.of(relation for relation in self.relations if relation not in apart)
-        if apart and equations.is_seen_prime and not any(value in equations for value in map(kept_from_zero, apart)):
-            return equations
-        return Ideal.of(self.relations)
+        """The ideal of the relations; raises `TooLarge`."""
+        return Ideal.where(self.relations)
 
     def leaf(self, value: Scalar | Matrix) -> Scalar | Matrix:
         """Raise ZeroDivisionError for a value whose denominator vanishes here."""
