@@ -24,6 +24,8 @@ from symobs.formula.term import block
 from symobs.phrases.spoken import StateChoice
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from symobs.analysis.rank.rank_test import RankResult
     from symobs.exact import Scalar
     from symobs.result import Case
@@ -51,7 +53,7 @@ def square_test(page: Builder, letter: str, result: RankResult, kind: str) -> No
         _deficient(page, letter, result, kind)
         return
     if determinant is None:
-        _outside_drops(page, result)
+        _outside_drops(page, [c.expression for c in result.holds_where if c.kind == "existence"])
         key = "full_rank" if result.verdict == "yes" or page.environment.relations else "generic_rank"
         page.conclude(f"{key}_{kind}", rank=relation(page[letter].apply("rank"), result.answer["rank"]))
         return
@@ -119,7 +121,7 @@ def repair(page: Builder, letter: str, result: RankResult, kind: str) -> list[St
 def _deficient(page: Builder, letter: str, result: RankResult, kind: str) -> None:
     rank = result.answer["rank"]
     rank_relation = relation(page[letter].apply("rank"), rank, "<", page.plant.order)
-    _outside_drops(page, result)
+    _outside_drops(page, _distances(result))
     is_said = not result.case_tree or page.environment.relations
     key = "no" if is_said and fits(f"no_{kind}", rank_relation, page.environment) else "generic_low"
     page.conclude(f"{key}_{kind}", rank=rank_relation)
@@ -150,9 +152,9 @@ def _outside_cases(result: RankResult, steps: list[Step]) -> list[Step]:
     return [CaseStep(Conjunction(tuple(relation(distance, "!=", 0) for distance in apart)), (), tuple(steps))]
 
 
-def _outside_drops(page: Builder, result: RankResult) -> None:
+def _outside_drops(page: Builder, apart: Sequence[Scalar] | None) -> None:
     """Assume on a stratum, of which a rank is said at every point, that it is outside the cases where it is another."""
-    if page.environment.relations and (apart := _distances(result)):
+    if page.environment.relations and apart:
         page.assume("outside_drops", *apart)
 
 
