@@ -7,6 +7,7 @@ from itertools import accumulate
 from typing import TYPE_CHECKING
 
 from symobs.analysis.factored_form import formula_of_factored
+from symobs.conditions import Condition, vanishing_factors
 from symobs.derivation import CaseStep, Note, Step
 from symobs.derivation.builder import Builder, predicate, relation, sentence
 from symobs.exact import Factored, Matrix, Scalar, decimal_places, root_of_pole
@@ -14,11 +15,11 @@ from symobs.formula import Conjunction, Decimals, HoldsExactlyWhere, Roots
 from symobs.formula.term import block
 from symobs.stability.criteria.stability import stability
 from symobs.stability.inequalities.written_form import as_inequality
+from symobs.system.reading import is_identity
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Iterable, Iterator, Sequence
 
-    from symobs.conditions import Condition
     from symobs.derivation import Step
     from symobs.formula import Relation
     from symobs.formula.term import Term
@@ -61,8 +62,11 @@ _WIDEST = 80
 _DECIMALS = 4
 
 
-def given(page: Builder, *desired: tuple[str, DesiredPolynomial | None]) -> None:
-    """State the plant, and the desired poles or polynomials by name (`control`, `observer`, …)."""
+def given(page: Builder, *desired: tuple[str, DesiredPolynomial | None], where: Iterable[Condition] = ()) -> None:
+    """State the plant, and the desired poles or polynomials by name (`control`, `observer`, …).
+
+    `where` says further of which parameters the page speaks.
+    """
     plant, m = page.plant, page.plant.matrices
     with page.section("given"):
         if plant.origin is not None:
@@ -91,6 +95,7 @@ def given(page: Builder, *desired: tuple[str, DesiredPolynomial | None]) -> None
             page.remark("from_floats")
         _say_decimals(page)
         state_signs(page)
+        _state_stratum(page, where)
         for name, desired_polynomial in desired:
             if desired_polynomial is not None:
                 _asked(page, name, desired_polynomial)
@@ -152,6 +157,20 @@ def state_signs(page: Builder) -> None:
     declared = [relation(Scalar.symbol(name), facts[sign], 0) for sign, names in by_sign.items() for name in names]
     if declared:
         page.conclude("declared", signs=Conjunction(tuple(declared)))
+
+
+def _state_stratum(page: Builder, further: Iterable[Condition]) -> None:
+    """Say, on the page of a case alone, of which parameters it speaks."""
+    plant = page.plant
+    here = [Condition("existence", value, "==") for value in plant.equations if not is_identity(value)]
+    apart = vanishing_factors(plant.nonzero, plant.symbols.signs)
+    if plant.equations:
+        here += [Condition("existence", value) for value in apart]
+    elif apart:
+        page.assume("stratum", *apart)
+    here += further
+    if here:
+        page.conclude("stratum", condition=Conjunction(tuple(map(as_written, here))))
 
 
 def in_blocks(page: Builder, value: Matrix, heights: Sequence[int], widths: Sequence[int]) -> Term:

@@ -8,7 +8,17 @@ from typing import TYPE_CHECKING, Any
 
 from symobs.conditions import never_zero, real_consequences, vanishing_factors
 from symobs.errors import NotShown
-from symobs.exact import EIGENVALUE, Ideal, Matrix, Scalar, TooLarge, echelon, independent_rows, is_inverse
+from symobs.exact import (
+    EIGENVALUE,
+    Ideal,
+    Matrix,
+    Scalar,
+    TooLarge,
+    echelon,
+    independent_rows,
+    is_inverse,
+    kept_from_zero,
+)
 from symobs.exact.core.generators import all_roots
 from symobs.exact.ideals.conjugate_points import conjugate_points
 from symobs.formula import ModuloIdeal
@@ -18,8 +28,9 @@ if TYPE_CHECKING:
 
     from symobs.formula import Environment
 
-#: The most minors of one order that are looked at.
+#: The most minors of one order that are looked at, and how many of the shortest are tried before all are.
 _MINORS = 100
+_FEW = (4, 12)
 
 
 def never_together_zero(
@@ -27,7 +38,8 @@ def never_together_zero(
 ) -> bool:
     """Return whether the values have no common real zero with these signs where the relations hold.
 
-    Irreducible polynomials that are known not to vanish there may be given as `nonzero`.
+    Irreducible polynomials that are known not to vanish there may be given as `nonzero`; a sum of squares is one where its
+    terms do not vanish together.
 
     With the values the relations generate an ideal that holds 1, or a polynomial that the signs keep from 0.  What real
     parameters imply is added to it: a² + b² = 0 only where a = b = 0, and a² b = 0 with b > 0 only where a = 0; to
@@ -41,7 +53,12 @@ def never_together_zero(
     equations = [relation for relation in relations if relation not in apart]
     known = _implied([_stripped(value, signs, nonzero) for value in values if value], signs, nonzero)
     known = [part for ideal in known for part in _within(ideal, equations, signs, nonzero)]
-    return not any(_within(part, apart, signs, nonzero) for part in known)
+    known = [part for part in known if not any(value in part for value in nonzero)]
+    kept = [kept_from_zero(relation) for relation in apart]
+    return all(
+        any(value in part for value in kept) or (not part.is_seen_prime and not _within(part, apart, signs, nonzero))
+        for part in known
+    )
 
 
 def _within(
@@ -157,9 +174,11 @@ class Pointwise(ModuloIdeal):
         self, matrix: Matrix, order: int, first: tuple[tuple[int, ...], tuple[int, ...]] | None = None
     ) -> bool:
         """Return whether at every point a minor of some order is not zero; a likely one may be tried first."""
-        if not order or (first is not None and self._never_zero([matrix.select(*first)])):
+        if not order or (first is not None and self._never_together_zero([matrix.select(*first).determinant()])):
             return True
-        return self._never_zero(matrix.select(*minor) for minor in itertools.islice(_minors(matrix, order), _MINORS))
+        minors = [matrix.select(*minor).determinant() for minor in itertools.islice(_minors(matrix, order), _MINORS)]
+        shortest = sorted((minor for minor in minors if minor not in self.ideal), key=lambda minor: minor.size)
+        return any(self._never_together_zero(shortest[:count]) for count in (*_FEW, len(shortest)))
 
     def _has_none(self, matrix: Matrix, order: int) -> bool:
         """Return whether all minors of an order vanish; False if there are too many to check."""
@@ -167,6 +186,8 @@ class Pointwise(ModuloIdeal):
             return False
         return all(matrix.select(*minor).determinant() in self.ideal for minor in _minors(matrix, order))
 
-    def _never_zero(self, parts: Iterable[Matrix]) -> bool:
-        minors = (part.determinant() for part in parts)
-        return never_together_zero((m for m in minors if m not in self.ideal), self.relations, self.signs, self.nonzero)
+    def _never_together_zero(self, values: Sequence[Scalar]) -> bool:
+        try:
+            return never_together_zero(values, self.relations, self.signs, self.nonzero)
+        except TooLarge:
+            return False

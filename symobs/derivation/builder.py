@@ -161,10 +161,14 @@ class Builder:
         asked = [value for name, value in specification.items() if name != "horizon"]
         self.asked = frozenset(re.findall(r"[^\W\d]\w*", str(asked)))
 
+    def where(self, *relations: Scalar) -> None:
+        """Let polynomials vanish from the start: what is told holds where they do."""
+        self.start = self.start.with_relations(relations)
+        self.environment = self.environment.with_relations(relations)
+
     def with_roots(self, *values: Scalar | Matrix) -> None:
         """Admit square roots: each squared is its radicand from the start."""
-        vanishing = identities(values)[1]
-        self.start, self.environment = self.start.with_relations(vanishing), self.environment.with_relations(vanishing)
+        self.where(*identities(values)[1])
 
     def in_time(self, *values: Scalar | Matrix) -> None:
         """Admit functions of time, with their algebraic dependences from the start."""

@@ -44,7 +44,7 @@ from symobs.derivation.wording_check import (
     with_limit,
 )
 from symobs.errors import DerivationRejected
-from symobs.exact import Matrix, Scalar, product_of
+from symobs.exact import Ideal, Matrix, Scalar, product_of
 from symobs.formula import (
     Apply,
     Conjunction,
@@ -300,9 +300,10 @@ def _with_domain(relation: Relation, environment: Environment) -> Environment:
 def _assume(relation: Relation, environment: Environment) -> Environment:
     """Let the factors of a difference, which there must be, be different from 0 from here on."""
     left, right = (as_scalar(evaluate(member, environment, Exact(environment))) for member in relation.members)
-    if left == right:
+    difference = (left - right).numerator
+    if difference in Ideal.where(environment.relations):
         reject(plain_relation(relation, environment.variable))
-    return replace(environment, nonzero=(*environment.nonzero, *(f for f, _ in (left - right).numerator.factors()[1])))
+    return replace(environment, nonzero=(*environment.nonzero, *(f for f, _ in difference.factors()[1])))
 
 
 def _meaning(target: Formula, rest: list[Formula], environment: Environment) -> Environment:

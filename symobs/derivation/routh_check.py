@@ -41,7 +41,7 @@ def is_tabulated(step: Tabulate, value: Scalar, environment: Environment) -> boo
 
 def _divides_by_zero(table: RouthTable, environment: Environment) -> bool:
     """Return whether an entry of the first column vanishes by the relations."""
-    known = Ideal.of(environment.relations)
+    known = Ideal.where(environment.relations)
     return any(entry.numerator in known for entry in table.first_column)
 
 

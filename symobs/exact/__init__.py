@@ -22,7 +22,7 @@ from symobs.exact.core.polynomial import (
 )
 from symobs.exact.core.rational_matrix import matrix_of_numbers
 from symobs.exact.core.scalar import Scalar
-from symobs.exact.ideals.ideal import Ideal, TooLarge, apart_from_zero, is_inverse
+from symobs.exact.ideals.ideal import Ideal, TooLarge, apart_from_zero, is_inverse, kept_from_zero
 from symobs.exact.linear_algebra.elimination import (
     echelon,
     independent_rows,
@@ -74,6 +74,7 @@ __all__ = [
     "is_inverse",
     "is_rounding",
     "is_written_exactly",
+    "kept_from_zero",
     "kernel",
     "matrix_of_numbers",
     "modulo",

@@ -28,7 +28,7 @@ class ModuloIdeal(Exact):
     @cached_property
     def ideal(self) -> Ideal:
         """The ideal of the relations; raises `TooLarge`."""
-        return Ideal.of(self.relations)
+        return Ideal.where(self.relations)
 
     def leaf(self, value: Scalar | Matrix) -> Scalar | Matrix:
         """Raise ZeroDivisionError for a value whose denominator vanishes here."""

@@ -176,12 +176,12 @@ def test_a_sample_of_plants_is_right_at_points_of_its_strata() -> None:
     assert {drawn(seed)["task"] for seed in SAMPLE} >= {"gramian", "observability", "controllability", "pbh"}
 
 
-@pytest.mark.parametrize("seed", [0, 17, 18])
-def test_plants_of_several_inputs_and_outputs_are_decided_on_all_strata_and_have_pages(seed: int) -> None:
-    """Curves of degree five and nine meet on them, and gains have poles on some of the curves."""
+@pytest.mark.parametrize(("seed", "least"), [(0, 15), (83, 5), (140, 7)])
+def test_plants_of_several_inputs_and_outputs_are_decided_on_all_strata_and_have_pages(seed: int, least: int) -> None:
+    """Curves of degree five and nine meet on them, gains have poles on some of the curves, and points lie on long ones."""
     (result,) = validate(parse(of_times(seed)[1], "problem")).solve()
     decided = list(strata(told(result)))
-    assert len(decided) >= 15
+    assert len(decided) >= least
     assert all(decided)
     assert result.derivation.steps
 

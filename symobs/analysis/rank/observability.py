@@ -10,8 +10,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from symobs._dataclass import dataclass
-from symobs.analysis.page_parts import given
-from symobs.analysis.rank.rank_page import rank_cases, square_test
+from symobs.analysis.rank.rank_page import given_here, rank_cases, square_test
 from symobs.analysis.rank.rank_test import RankResult, listed, power_rows, rank_answer
 from symobs.formula.term import block
 from symobs.result import Result, choose, method, task
@@ -61,7 +60,7 @@ class Observability(RankResult):
 
     def write(self, page: Builder) -> None:
         """Build 𝒪 block by block and read off the rank."""
-        given(page)
+        given_here(page, self)
         with page.section("observability"):
             rows, C, A = [[page["C"]]], page["C"], page["A"]
             rows += [[C @ A**k] for k in range(1, self.plant.order)]
@@ -99,7 +98,7 @@ class Controllability(RankResult):
 
     def write(self, page: Builder) -> None:
         """Build 𝒞 block by block and read off the rank."""
-        given(page)
+        given_here(page, self)
         with page.section("controllability"):
             columns, B, A = [page["B"]], page["B"], page["A"]
             columns += [A**k @ B for k in range(1, self.plant.order)]

@@ -9,6 +9,7 @@ from symobs.analysis.page_parts import (
     WRITTEN_UP_TO,
     conditions_of,
     determinant_form,
+    given,
     hidden,
     hidden_polynomial,
     undecided,
@@ -23,12 +24,23 @@ from symobs.formula.term import block
 from symobs.phrases.spoken import StateChoice
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from symobs.analysis.rank.rank_test import RankResult
+    from symobs.exact import Scalar
     from symobs.result import Case
 
 
 #: More sets of states are not named in one sentence.
 NAMED_SETS = 6
+
+
+def given_here(page: Builder, result: RankResult) -> None:
+    """State the data, and on the page of a case alone where it lies."""
+    where = () if result.piece is None else result.piece.conditions
+    if result.piece is not None:
+        page.where(*result.piece.relations(c.expression for c in result.domain))
+    given(page, where=where)
 
 
 def square_test(page: Builder, letter: str, result: RankResult, kind: str) -> None:
@@ -41,7 +53,8 @@ def square_test(page: Builder, letter: str, result: RankResult, kind: str) -> No
         _deficient(page, letter, result, kind)
         return
     if determinant is None:
-        key = "full_rank" if result.verdict == "yes" else "generic_rank"
+        _outside_drops(page, [c.expression for c in result.holds_where if c.kind == "existence"])
+        key = "full_rank" if result.verdict == "yes" or page.environment.relations else "generic_rank"
         page.conclude(f"{key}_{kind}", rank=relation(page[letter].apply("rank"), result.answer["rank"]))
         return
     signs = page.plant.symbols.signs
@@ -108,7 +121,9 @@ def repair(page: Builder, letter: str, result: RankResult, kind: str) -> list[St
 def _deficient(page: Builder, letter: str, result: RankResult, kind: str) -> None:
     rank = result.answer["rank"]
     rank_relation = relation(page[letter].apply("rank"), rank, "<", page.plant.order)
-    key = "no" if not result.case_tree and fits(f"no_{kind}", rank_relation, page.environment) else "generic_low"
+    _outside_drops(page, _distances(result))
+    is_said = not result.case_tree or page.environment.relations
+    key = "no" if is_said and fits(f"no_{kind}", rank_relation, page.environment) else "generic_low"
     page.conclude(f"{key}_{kind}", rank=rank_relation)
     matrix = page[letter] if kind == "observability" else page[letter].T
     zero = Matrix.zeros(matrix.value.shape[0], 1)
@@ -131,10 +146,21 @@ def _deficient(page: Builder, letter: str, result: RankResult, kind: str) -> Non
 
 def _outside_cases(result: RankResult, steps: list[Step]) -> list[Step]:
     """Return steps as a case of what holds in general, where there are others; none where these are everywhere."""
+    apart = _distances(result)
+    if not apart or not steps:
+        return steps if apart == () else []
+    return [CaseStep(Conjunction(tuple(relation(distance, "!=", 0) for distance in apart)), (), tuple(steps))]
+
+
+def _outside_drops(page: Builder, apart: Sequence[Scalar] | None) -> None:
+    """Assume on a stratum, of which a rank is said at every point, that it is outside the cases where it is another."""
+    if page.environment.relations and apart:
+        page.assume("outside_drops", *apart)
+
+
+def _distances(result: RankResult) -> tuple[Scalar, ...] | None:
+    """Return what is 0 exactly in the cases; None where one of them is everywhere."""
     from symobs.analysis.strata.repeated_eigenvalues import distances, systems_of  # noqa: PLC0415 - it needs the strata, which need pages
 
     systems = systems_of(result.case_tree)
-    if not systems or not steps:
-        return steps if systems == () else []
-    apart = tuple(relation(distance, "!=", 0) for distance in distances(systems))
-    return [CaseStep(Conjunction(apart), (), tuple(steps))]
+    return None if systems is None else distances(systems)

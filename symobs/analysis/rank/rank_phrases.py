@@ -28,6 +28,7 @@ PHRASES: dict[str, str] = {
     "undecided_together": "The case in which {when} and {other} vanish simultaneously is not decided here.",
     "provided_observability": "The pair ($C$, $A$) is observable if and only if this determinant is nonzero§. In what follows we assume {condition}.",
     "provided_controllability": "The pair ($A$, $B$) is controllable if and only if this determinant is nonzero§. In what follows we assume {condition}.",
+    "outside_drops": "In what follows we assume {condition}.",
     "no_observability": "Here {rank}, so the pair ($C$, $A$) is not observable.",
     "no_controllability": "Here {rank}, so the pair ($A$, $B$) is not controllable.",
     "generic_low_observability": "For generic parameter values {rank}, and for no values is it larger, so the pair ($C$, $A$) is not observable.",

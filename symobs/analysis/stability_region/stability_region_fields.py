@@ -109,25 +109,26 @@ def _point(region: PlaneRegion, sample: tuple[Fraction, Fraction]) -> dict[str, 
 
 def cells_of(region: PlaneRegion) -> list[dict[str, Any]]:
     """Return every open cell: its bounds, a point of it, whether it is stable, and its component."""
-    from symobs.stability.regions.description import edges_of  # noqa: PLC0415 - only where cells are asked for
+    from symobs.stability.regions.description import edges_over  # noqa: PLC0415 - only where cells are asked for
 
     component = {cell: k for k, found in enumerate(region.components) for cell in found.cells}
     x, y = region.names
-    listed = []
-    for number, cell in enumerate(region.cells):
-        if not cell.allowed:
-            continue
-        cylinder, lower, upper = edges_of(region, cell)
-        listed.append(
-            {
-                "sample": _point(region, cell.sample),
-                "stable": cell.stable,
-                "component": component.get(number),
-                x: [end(cylinder.left, "-", x), end(cylinder.right, "+", x)],
-                y: [_edge(lower, "-", y), _edge(upper, "+", y)],
-            }
-        )
-    return listed
+    widths = [[end(cylinder.left, "-", x), end(cylinder.right, "+", x)] for cylinder in region.plane.cylinders]
+    heights = [
+        [_edge(None, "-", y), *(_edge(edge, "", y) for edge in edges_over(region, index)), _edge(None, "+", y)]
+        for index in range(len(widths))
+    ]
+    return [
+        {
+            "sample": _point(region, cell.sample),
+            "stable": cell.stable,
+            "component": component.get(number),
+            x: list(widths[cell.cylinder]),
+            y: heights[cell.cylinder][cell.height : cell.height + 2],
+        }
+        for number, cell in enumerate(region.cells)
+        if cell.allowed
+    ]
 
 
 def components_of(region: PlaneRegion, parts: Sequence[CylindricalPart]) -> list[dict[str, Any]]:

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 
 from symobs._dataclass import dataclass
 from symobs.conditions import FACTORED_UP_TO, real_consequences, sign_of, vanishing_factors
-from symobs.exact import EIGENVALUE, Ideal, Scalar, TooLarge
+from symobs.exact import EIGENVALUE, Ideal, Scalar, TooLarge, resultant
 from symobs.exact.ideals.ideal import FEW
 
 if TYPE_CHECKING:
@@ -29,6 +29,8 @@ _TERMS = 1_000
 _WORK = 30_000
 #: The most terms of a sum of squares, before it is multiplied out.
 _SQUARED = 2_000
+#: The most meetings of two curves that are eliminated at once.
+_MEETINGS = 150
 #: How many linear forms are tried to tell points apart, and the name one goes by.
 _FORMS, _FORM = 6, "_form"
 
@@ -176,7 +178,10 @@ def _branches(equations: tuple[Scalar, ...], region: Region, budget: Iterator[in
         parts = _parts(ideal, region)
         news = () if parts else _news(ideal, region)
     except TooLarge:
-        yield Locus(tuple(simple))
+        if (eliminated := _eliminated(simple)) is not None:
+            yield from _branches((eliminated, *simple), region, budget)
+        else:
+            yield Locus(tuple(simple))
         return
     if parts:
         for part in parts:
@@ -187,6 +192,16 @@ def _branches(equations: tuple[Scalar, ...], region: Region, budget: Iterator[in
         yield Locus(tuple(simple))
     else:
         yield Locus.of(ideal)
+
+
+def _eliminated(equations: list[Scalar]) -> Scalar | None:
+    """Return a polynomial in one name that vanishes where curves in the plane meet; None where there is one, or for others."""
+    names = sorted(frozenset[str]().union(*(equation.names for equation in equations)))
+    if len(names) != 2 or any(len(equation.names) < 2 or equation.field.roots for equation in equations):
+        return None
+    one, other, *_ = sorted(equations, key=lambda equation: sum(equation.degrees()))
+    bound = one.degree(names[0]) * other.degree(names[1]) + one.degree(names[1]) * other.degree(names[0])
+    return resultant(one, other, names[1]) if EIGENVALUE not in names and bound <= _MEETINGS else None
 
 
 def _news(ideal: Ideal, region: Region) -> tuple[Scalar, ...]:

@@ -29,7 +29,7 @@ def _lowered(polynomial: Scalar, environment: Environment) -> Scalar:
     if not environment.relations:
         return polynomial
     try:
-        ideal = Ideal.of(environment.relations)
+        ideal = Ideal.where(environment.relations)
         coefficients = polynomial.coefficients(environment.variable)
         kept = next((k for k, c in enumerate(coefficients) if c.numerator not in ideal), 0)
     except TooLarge:
@@ -45,7 +45,7 @@ def _divided(value: Scalar, environment: Environment) -> tuple[Scalar, Scalar] |
     if not environment.relations:
         return value, Scalar.of(1)  # in lowest terms a fraction stays one
     try:
-        ideal = Ideal.of(environment.relations)
+        ideal = Ideal.where(environment.relations)
         if value.denominator.coefficients(variable)[0].numerator in ideal:
             return None
         quotient, rest = remainder(value.numerator, value.denominator, variable)
@@ -75,7 +75,7 @@ def are_roots(values: tuple[Root, ...], polynomial: Scalar, environment: Environ
     if product is None or product == polynomial:
         return product is not None
     try:
-        ideal = Ideal.of(environment.relations)
+        ideal = Ideal.where(environment.relations)
         divides_by_zero = any(part.denominator in ideal for part in (product, polynomial))
         return not divides_by_zero and (product - polynomial).numerator in ideal
     except TooLarge:

@@ -37,7 +37,9 @@ def on_stratum(when: Relation | Conjunction, substitution: dict[str, Scalar], en
     if not substitution and isinstance(when, Relation) and when.operators == ("=",):
         left, right = (as_scalar(evaluate(member, environment, Exact(environment))) for member in when.members)
         inside = replace(environment, relations=(*environment.relations, left - right), nonzero=())
-        return inside if not Ideal.of(inside.relations).is_whole else reject(plain_relation(when, environment.variable))
+        return (
+            inside if not Ideal.where(inside.relations).is_whole else reject(plain_relation(when, environment.variable))
+        )
     named, lost = dict(substitution), set[str]()
     for name, value in environment.coefficients.items():
         try:
@@ -94,7 +96,7 @@ def _left_of(when: Conjunction, substitution: dict[str, Scalar], environment: En
         else:
             reject(plain_relation(relation, environment.variable))
     relations = [apart_from_zero(value) for value in excluded]
-    known = Ideal.of((*equations, *relations, *environment.relations))
+    known = Ideal.where((*equations, *relations, *environment.relations))
     if known.is_whole:
         reject(f"that {' and '.join(plain_relation(r, environment.variable) for r in when.relations)} can be")
     for name, value in substitution.items():

@@ -21,7 +21,7 @@ from symobs.exact.core.precision import Precision
 from symobs.exact.core.scalar import Scalar
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Callable, Mapping, Sequence
 
 #: Bits of the first enclosure; doubled whenever they do not decide.
 FIRST_BITS = 64
@@ -272,8 +272,13 @@ def irreducible_factors(polynomial: fmpz_poly) -> list[fmpz_poly]:
 
 def count_roots(polynomial: fmpz_poly, low: Fraction | None, high: Fraction | None) -> int:
     """Return how many distinct real roots lie in the open interval, by Sturm's theorem; the ends must be no roots."""
+    return root_counter(polynomial)(low, high)
+
+
+def root_counter(polynomial: fmpz_poly) -> Callable[[Fraction | None, Fraction | None], int]:
+    """Return `count_roots` of one polynomial, whose chain serves for all intervals."""
     chain = sturm_chain(polynomial)
-    return _variations(chain, low, -1) - _variations(chain, high, 1)
+    return lambda low, high: _variations(chain, low, -1) - _variations(chain, high, 1)
 
 
 def sturm_chain(polynomial: fmpz_poly) -> list[fmpz_poly]:

@@ -10,19 +10,21 @@ from __future__ import annotations
 import hashlib
 import random
 from itertools import combinations, pairwise
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeAlias
 
 from flint import fmpz_poly, nmod, nmod_mat, nmod_poly
 
-from symobs.exact.algebraic.real_algebraic import RealNumber, count_roots
-from symobs.exact.cad.decomposition import in_first
+from symobs.exact.algebraic.real_algebraic import RealNumber, root_counter
 from symobs.exact.core.modular import PRIME_BITS, random_prime
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
+    from collections.abc import Callable, Iterable, Sequence
     from fractions import Fraction
 
     from symobs.exact.cad.decomposition import Cylinder, Plane
+
+#: How many roots of a polynomial lie in an open interval.
+Count: TypeAlias = "Callable[[Fraction | None, Fraction | None], int]"
 
 #: Points at which each determinant is compared: one of 64 bits lets a false value pass with a probability below 10⁻¹⁵.
 _POINTS = 2 * 64 // PRIME_BITS
@@ -35,26 +37,27 @@ def holds(plane: Plane) -> bool:
 
 def is_line(points: Sequence[RealNumber], factors: Iterable[fmpz_poly]) -> bool:
     """Return whether these are all real roots of irreducible polynomials, in ascending order, by Sturm's theorem."""
-    counted = {_key(factor): count_roots(factor, None, None) for factor in factors}
-    listed: dict[tuple[int, ...], list[int]] = {key: [] for key in counted}
+    counters = {_key(factor): root_counter(factor) for factor in factors}
+    listed: dict[tuple[int, ...], list[int]] = {key: [] for key in counters}
     for point in points:
-        listed.setdefault(_key(point.polynomial), []).append(point.index)
-        if not _is_isolated(point):
+        key = _key(point.polynomial)
+        if key not in counters or not _is_isolated(point, counters[key]):
             return False
+        listed[key].append(point.index)
     ascending = all(_before(one, other) for one, other in pairwise(points))
-    return ascending and {k: list(range(count)) for k, count in counted.items()} == listed
+    return ascending and all(listed[key] == list(range(count(None, None))) for key, count in counters.items())
 
 
 def _key(polynomial: fmpz_poly) -> tuple[int, ...]:
     return tuple(int(c) for c in polynomial.coeffs())
 
 
-def _is_isolated(point: RealNumber) -> bool:
+def _is_isolated(point: RealNumber, count: Count) -> bool:
     """Return whether the enclosure of a number contains the root of its index, and no other."""
     if point.is_rational:
         return point.index == 0
     low, high = point.interval()
-    return count_roots(point.polynomial, low, high) == 1 and count_roots(point.polynomial, None, low) == point.index
+    return count(low, high) == 1 and count(None, low) == point.index
 
 
 def _before(one: RealNumber, other: RealNumber) -> bool:
@@ -69,21 +72,21 @@ def _before(one: RealNumber, other: RealNumber) -> bool:
 
 def _projection_is_whole(plane: Plane) -> bool:
     """Return whether all leading coefficients, discriminants and resultants are products of the factors listed."""
+    claimed = {event.curves: event.polynomial for event in plane.events if event.kind != "lead"}
     values = [curve.by_second[-1] for curve in plane.curves]
-    risen = [curve for curve in plane.curves if curve.degree]
-    name = plane.names[1]
+    risen = [(index, curve.by_second) for index, curve in enumerate(plane.curves) if curve.degree]
     generator = random.Random(_seed(plane))  # noqa: S311 - repeatable by design
-    for curve in risen:
-        if curve.degree > 1:
+    for index, rows in risen:
+        if len(rows) > 2:
             # Res(f, f′) = ± lc(f) disc(f)
-            found = in_first(curve.inside.discriminant(name), plane.names)
-            slope = [c * k for k, c in enumerate(curve.by_second)][1:]
-            if not _is_resultant(found * curve.by_second[-1], curve.by_second, slope, generator):
+            found = claimed.get((index,), fmpz_poly())
+            slope = [c * k for k, c in enumerate(rows)][1:]
+            if not _is_resultant(found * rows[-1], rows, slope, generator):
                 return False
             values.append(found)
-    for one, other in combinations(risen, 2):
-        found = in_first(one.inside.resultant(other.inside, name), plane.names)
-        if not _is_resultant(found, one.by_second, other.by_second, generator):
+    for (i, one), (j, other) in combinations(risen, 2):
+        found = claimed.get((i, j), fmpz_poly())
+        if not _is_resultant(found, one, other, generator):
             return False
         values.append(found)
     return all(value and _is_product(value, plane.projection) for value in values)
@@ -142,18 +145,18 @@ def _is_stack(plane: Plane, cylinder: Cylinder) -> bool:
     """Return whether over the cylinder's point every branch lies alone between the two samples around it."""
     if list(cylinder.samples) != sorted(cylinder.samples) or len(cylinder.samples) != len(cylinder.branches) + 1:
         return False
-    cuts = [curve.on_vertical(cylinder.x) if curve.degree else None for curve in plane.curves]
+    cuts = [curve.on_vertical(cylinder.x) for curve in plane.curves]
+    counters = [
+        root_counter(cut) if curve.degree and cut.degree() > 0 else None
+        for curve, cut in zip(plane.curves, cuts, strict=True)
+    ]
     numbers = [0] * len(cuts)
     for branch, (low, high) in zip(cylinder.branches, pairwise(cylinder.samples), strict=True):
-        cut = cuts[branch.curve]
-        if cut is None or branch.number != numbers[branch.curve] or _count(cut, low, high) != 1:
+        count = counters[branch.curve]
+        if count is None or branch.number != numbers[branch.curve] or count(low, high) != 1:
             return False
         numbers[branch.curve] += 1
-    return all(cut is None or _count(cut, None, None) == number for cut, number in zip(cuts, numbers, strict=True))
-
-
-def _count(cut: fmpz_poly, low: Fraction | None, high: Fraction | None) -> int:
-    return count_roots(cut, low, high) if cut.degree() > 0 else 0
+    return all(n == (0 if count is None else count(None, None)) for count, n in zip(counters, numbers, strict=True))
 
 
 def _seed(plane: Plane) -> int:

@@ -27,6 +27,7 @@ PHRASES: dict[str, str] = {
     "rounded_digits": "Numbers after ≈ are exact values rounded to {digits} significant digits.",
     "without_serifs": "The sans-serif {parameter} denotes a parameter of the data, not the matrix or signal with that letter.",
     "declared": "Throughout, we assume {signs}.",
+    "stratum": "Here we consider the case {condition}.",
     "desired_pole": "The desired pole is {poles}.",
     "desired_poles": "The desired poles are {poles}.",
     "desired_polynomial": "The desired polynomial is {polynomial}.",

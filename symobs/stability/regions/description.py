@@ -147,13 +147,20 @@ def is_written(part: CylindricalPart) -> bool:
 
 def edges_of(region: PlaneRegion, cell: Cell) -> tuple[Cylinder, Edge | None, Edge | None]:
     """Return the cylinder of a cell, and its lower and upper bound."""
-    cylinder, below, above = region.bounds(cell)
-    return cylinder, _edge(region, cylinder, below), _edge(region, cylinder, above)
+    edges: tuple[Edge | None, ...] = (None, *edges_over(region, cell.cylinder), None)
+    return region.plane.cylinders[cell.cylinder], edges[cell.height], edges[cell.height + 1]
 
 
-def _edge(region: PlaneRegion, cylinder: Cylinder, branch: Branch | None) -> Edge | None:
-    if branch is None:
-        return None
+def edges_over(region: PlaneRegion, index: int) -> tuple[Edge, ...]:
+    """Return the branches over a cylinder from below."""
+    known = region.edges
+    if index not in known:
+        cylinder = region.plane.cylinders[index]
+        known[index] = tuple(_edge(region, cylinder, branch) for branch in cylinder.branches)
+    return known[index]
+
+
+def _edge(region: PlaneRegion, cylinder: Cylinder, branch: Branch) -> Edge:
     polynomial = region.plane.curves[branch.curve].scalar
     closed = _closed(polynomial, region.names, branch.number, cylinder.x)
     return Edge(polynomial, branch.number, closed, region.names[1])

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from functools import cached_property, lru_cache
 from itertools import combinations, pairwise
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from symobs._dataclass import dataclass
 from symobs.exact import TooLarge
@@ -98,6 +98,11 @@ class PlaneRegion:
         cylinder = self.plane.cylinders[cell.cylinder]
         branches: tuple[Branch | None, ...] = (None, *cylinder.branches, None)
         return cylinder, branches[cell.height], branches[cell.height + 1]
+
+    @cached_property
+    def edges(self) -> dict[int, tuple[Any, ...]]:
+        """The branches over cylinders with their closed forms, as far as they were asked for."""
+        return {}
 
     @cached_property
     def fibres(self) -> dict[int, Fibre]:

@@ -14,6 +14,7 @@ import pytest
 import sympy
 
 import symobs
+from symobs.exact import Scalar
 from symobs.exact.ideals import ideal
 from symobs.render.formats.json import result_object
 from tests.support.sampling import every
@@ -227,6 +228,25 @@ def test_without_an_output_there_is_no_reduced_order_observer() -> None:
     found: Any = symobs.reduced_order_observer(symobs.StateSpace("[0 1; -2 -3]", None, "[a 0]"), poles="-1")
     assert [(case.result.verdict, case.result.L) for case in found.cases] == [("no", None)]
     assert found.to("text")
+
+
+def test_the_page_of_a_case_alone_says_where_it_is() -> None:
+    found = symobs.observability(symobs.StateSpace("[0 1; 0 0]", None, "[a^2+b^2-25 1]"))
+    (case,) = found.case_tree
+    assert case.result is not None
+    page = case.result.to("text")
+    assert "Here we consider the case a² + b² - 25 = 0." in page
+    assert "Here we consider" not in found.to("text")
+
+
+def test_a_rank_that_drops_at_a_point_of_a_curve_is_said_outside_it() -> None:
+    # O = [C; CA] has the rows [a 0], [b 0], [0 a], [0 b]: its rank is 2 on b² = a³, but for the cusp.
+    plant = symobs.StateSpace("[0 1; 0 0]", None, "[a 0; b 0]").restricted(
+        [Scalar.symbol("b") ** 2 - Scalar.symbol("a") ** 3]
+    )
+    page = " ".join(symobs.observability(plant).to("text").split())
+    assert "Here we consider the case a³ = b²." in page
+    assert "In what follows we assume a ≠ 0. Since rank 𝒪 = 2" in page
 
 
 #: Where the basis of one of the strata is longer than the limits of the kernel.

@@ -153,6 +153,7 @@ def test_an_assumption_holds_from_there_on() -> None:
     refused(Equal((distinct,)), Given((distinct,)))
     refused(Given((distinct,)), Equal((said(c, "!=", 2),)))
     refused(Given((said(c, "!=", c),)), match="c != c")  # nothing is different from itself
+    refused(CaseStep(said(c, 1), (), (Given((distinct,)),)), match="c != 1")  # nor from what it is here
 
 
 def test_an_assumption_is_the_one_that_is_said() -> None:

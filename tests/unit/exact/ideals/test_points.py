@@ -8,7 +8,7 @@ from hypothesis import assume, example, given, settings
 from hypothesis import strategies as st
 
 from symobs.exact import Ideal, Scalar, apart_from_zero
-from symobs.exact.ideals.conjugate_points import conjugate_points
+from symobs.exact.ideals.conjugate_points import conjugate_points, shortened
 from symobs.exact.ideals.ideal import FEW
 from symobs.expression import parse_scalar
 
@@ -110,3 +110,38 @@ def test_a_basis_is_the_reduced_one(one: Scalar, other: Scalar, third: Scalar) -
     found = sympy.groebner([in_sympy(each) for each in (one, other, third)], *symbols, order="grevlex")
     wanted = {sympy.Poly(each, *symbols).monic().as_expr() for each in found.exprs}
     assert monic(ideal.generators, *ideal.field.names) == wanted
+
+
+@pytest.mark.parametrize(
+    ("equations", "points"),
+    [
+        ((a**3 - a - 1, (b - a**2) * (b + 1), (b - a**2) * (b**2 + a)), True),
+        ((2 * b**2 - 1, (a - b) * (a**2 + 3), (a - b) * (a**3 + b)), True),
+        ((a**3 - 2, (b**2 - a) * (b + 1), (b**2 - a) * (b - 3)), False),
+        ((a**3 - 2, (b - a) * (b + 1), (b + a) * (b - 3)), False),
+    ],
+)
+def test_equations_of_one_name_have_their_common_divisor(equations: tuple[Scalar, ...], points: bool) -> None:  # noqa: FBT001
+    """By Euclid's algorithm at the points of the first equation: a value, a polynomial of higher degree, or 1."""
+    found = conjugate_points(equations)
+    left = found[1] if found is not None else shortened(equations)
+    assert left is not None
+    assert basis(list(left), "a", "b") == basis(list(equations), "a", "b")
+    assert (found is not None and left != (1,)) == points
+    assert len(left) <= 2
+
+
+@pytest.mark.parametrize("equations", [(b**2 - a**3,), (a**7 - a - 1, b - a**2), ()])
+@pytest.mark.parametrize("apart", [(a - 1,), (b, a**2 + b**2 + 3)])
+def test_what_is_not_0_adds_nothing_to_a_prime_ideal(equations: tuple[Scalar, ...], apart: tuple[Scalar, ...]) -> None:
+    relations = (*equations, *map(apart_from_zero, apart))
+    short, whole = Ideal.where(relations), Ideal.of(relations)
+    assert set(short.field.names) <= {"a", "b"}
+    for value in (a * b, b**2 - a**3, (b**2 - a**3) * (a + 2), a**8 - a**2 - a, b**4 - a**8, a**8 - b - a):
+        assert (value in short) == (value in whole)
+
+
+def test_what_is_not_0_matters_where_an_ideal_is_not_prime() -> None:
+    assert b in Ideal.where((a * b, apart_from_zero(a)))
+    assert Ideal.where((b**2, apart_from_zero(a * b))).is_whole
+    assert Ideal.where((b**2 - a**3, apart_from_zero((b**2 - a**3) * a))).is_whole
