@@ -8,6 +8,7 @@ entries too wide for it get a name, to be told below.
 from __future__ import annotations
 
 from dataclasses import replace
+from itertools import count
 from typing import TYPE_CHECKING, Generic
 
 from symobs._dataclass import dataclass
@@ -288,7 +289,23 @@ class Breaker(Generic[B]):
 
     def _name(self, named: dict[Formula, B], entry: Formula, place: B | None = None) -> B:
         """Return the name of an entry, the same for equal entries: its place, or a star."""
-        return named.setdefault(entry, place or self.printer.star(len(named) + 1))
+        if entry not in named:
+            named[entry] = place or self._star(named, entry)
+        return named[entry]
+
+    def _star(self, named: dict[Formula, B], entry: Formula) -> B:
+        """Return the star of an entry on this page, or the first that neither the page nor this display has taken."""
+        stars = self.printer.stars
+        free = (self.printer.star(number) for number in count(len(stars) + 1))
+        taken = named.values()
+        return self.printer.star(stars[entry]) if entry in stars else next(star for star in free if star not in taken)
+
+    def settle(self) -> None:
+        """Keep the stars of this display for the page."""
+        stars = self.printer.stars
+        for entry, name in self.named.items():
+            if name == self.printer.star(len(stars) + 1):
+                stars[entry] = len(stars) + 1
 
     def _listed(self, rows: Sequence[Sequence[Formula]], room: float) -> list[LinePiece[B]]:
         """Return [a, b; c, d], its entries broken where they must be."""

@@ -97,6 +97,8 @@ class Printer(FormulaWriter[B]):
         self.language: Language = ENGLISH
         self.discrete = discrete
         self.known: dict[Scalar, B] = {}
+        #: The entries named by stars so far, numbered through the page.
+        self.stars: dict[Formula, int] = {}
 
     @abstractmethod
     def inline(self, item: Formula | Relation) -> str:
