@@ -198,7 +198,8 @@ def write_canonical(page: Builder, _: GainDesign, side: PlacementProblem, desire
     say = "" if is_announced else f"open_{side.kind}"
     page.define("chi", (page.s @ page.identity(order) - A).apply("det"), say=say)
     hankel = page.value(hankel_of(found))
-    V = page.define(f"V_{side.index}", matrix @ hankel, matrix.as_value @ hankel, say=f"canonical_{side.kind}")
+    written = [matrix.as_value @ hankel] if order > 1 else []
+    V = page.define(f"V_{side.index}", matrix @ hankel, *written, say=f"canonical_{side.kind}")
     page.equal(
         relation(V.inverse, V.inverse.as_value), relation(V.apply("det"), determinant_form(page, V.value.determinant()))
     )
