@@ -202,16 +202,13 @@ def _error_coordinates(page: Builder, design: CompensatorDesign, *, large: bool)
     """(4.26)-(4.29): u = −Kx + Ke, ẋ = (A − BK) x + BKe, block triangular."""
     A, B, C, K, L = (page[name] for name in "ABCKL")
     x, e, order = page["x"], page["e"], design.plant.order
-    in_error = {
-        "control": relation(page["u"], -K @ x + K @ e),
-        "rate": relation(x.derivative, (A - B @ K) @ x + B @ K @ e),
-    }
+    control, rate = relation(page["u"], -K @ x + K @ e), relation(x.derivative, (A - B @ K) @ x + B @ K @ e)
     zero = page.value(Matrix.zeros(order, order))
     state = block([[x], [e]])
     matrix = block([[A - B @ K, B @ K], [zero, A - L @ C]])
     halves = [order, order]
     numbers = [in_blocks(page, matrix.value, halves, halves)] if not large and is_narrow(matrix.value) else []
-    page.define("A_cl", matrix, *numbers, say="closed_loop_matrix", closing=False, **in_error)
+    page.define("A_cl", matrix, *numbers, say="closed_loop_matrix", closing=False, control=control, rate=rate)
     page.equal(relation(state.derivative, page["A_cl"] @ state))
     determinant = (page.s @ page.identity(2 * order) - page["A_cl"]).apply("det")
     parts = FEEDBACK.error_determinant(page) @ OBSERVER.error_determinant(page)
