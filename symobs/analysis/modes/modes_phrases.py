@@ -29,7 +29,7 @@ PHRASES: dict[str, str] = {
     "asks_detectability_discrete": "The pair ($C$, $A$) is detectable if and only if the matrix with $A - lambda I$ above $C$ has full column rank at every eigenvalue on or outside the unit circle.",
     "asks_stabilizability_continuous": "The pair ($A$, $B$) is stabilizable if and only if the matrix with $A - lambda I$ beside $B$ has full row rank at every eigenvalue with nonnegative real part.",
     "asks_stabilizability_discrete": "The pair ($A$, $B$) is stabilizable if and only if the matrix with $A - lambda I$ beside $B$ has full row rank at every eigenvalue on or outside the unit circle.",
-    "only_stable": "There is no such eigenvalue: every mode is stable.",
+    "only_stable": "Every mode is stable, so no eigenvalue has to be tested.",
     "means_lyapunov": "Here only stability in the sense of Lyapunov is required: a fixed mode may also lie on the stability boundary, provided that it is semisimple.",
     "means_detectability": "The pair ($C$, $A$) is detectable if and only if all its unobservable modes are stable.",
     "means_stabilizability": "The pair ($A$, $B$) is stabilizable if and only if all its uncontrollable modes are stable.",

@@ -34,6 +34,7 @@ def write_covariance(page: Builder, result: InitialStateCovariance) -> None:
             page.remark("horizon_called_t")
         if result.verdict != "no":
             page.remark("estimator_with_input" if result.plant.matrices.has_input else "estimator")
+            _tell_noise(result, page)
         tell_polynomial(page)
         result.write_branches(page, _write_branch)
 
@@ -55,10 +56,6 @@ def _write_branch(page: Builder, result: InitialStateCovariance) -> None:
     values = {name: _entry(value) for name, value in result.letters().items()}
     horizon = answer["horizon"]
     has_input = answer["Q"] is not None
-    given = [relation(page["R"], page.set("R", values["R"]).as_value)]
-    if has_input:
-        given.insert(0, relation(page["Q"], page.set("Q", values["Q"]).as_value))
-    page.equal(*given, say="noise" if has_input else "noise_output_only")
     Phi, C, R = page["exp_At"], page["C"], page["R"]
     gramian = since_start((Phi.T @ C.T @ C @ Phi).formula, Literal(answer["gramian"]), horizon)
     W = page.define("W", page.term(gramian), values["W"], say="gramian_is", closing=False)
@@ -90,6 +87,14 @@ def _write_branch(page: Builder, result: InitialStateCovariance) -> None:
     _tell_horizons(result, page)
     if has_input and any(result.answer["S_Q"].entries):
         page.remark("not_minimum_variance")
+
+
+def _tell_noise(result: InitialStateCovariance, page: Builder) -> None:
+    """Say what corrupts the data."""
+    Q, R = result.answer["Q"], result.answer["R"]
+    known = {name: _entry(value) for name, value in (("Q", Q), ("R", R)) if value is not None}
+    given = [relation(page[name], page.set(name, value).as_value) for name, value in known.items()]
+    page.equal(*given, say="noise_output_only" if Q is None else "noise")
 
 
 def _entry(value: Matrix | Scalar) -> Matrix | Scalar:

@@ -99,12 +99,12 @@ def _state_space(page: Builder, design: CompensatorDesign) -> None:
         closed, shown = closed + L @ page["D"] @ K, shown + (L @ page["D"] @ K).as_value
     own, is_written = closed @ x_hat + L @ page["y"], closed.value.size <= readability.MATRIX
     small = page.plant.order == readability.PRODUCTS_ORDER and not m.has_feedthrough
-    apart = [A.as_value - B.as_value @ K.as_value - L.as_value @ C.as_value] if small else []
+    shown = A.as_value - B.as_value @ K.as_value - L.as_value @ C.as_value if small else shown
     if not is_written:
         page.equal(relation(x_hat.derivative, own), say="observer_closed", **both)
-        page.define("A_c", closed, *apart, shown, say="compensator_matrix")
+        page.define("A_c", closed, shown, say="compensator_matrix")
     else:
-        page.define("A_c", closed, *apart, shown, say="observer_closed_matrix", **both)
+        page.define("A_c", closed, shown, say="observer_closed_matrix", **both)
         written = page["A_c"].as_value @ x_hat + L.as_value @ page["y"]
         page.conclude_silently(relation(x_hat.derivative, own))
         page.equal(
@@ -202,17 +202,13 @@ def _error_coordinates(page: Builder, design: CompensatorDesign, *, large: bool)
     """Write (4.26)-(4.29): u = −Kx + Ke, ẋ = (A − BK) x + BKe, block triangular."""
     A, B, C, K, L = (page[name] for name in "ABCKL")
     x, e, order = page["x"], page["e"], design.plant.order
-    page.equal(
-        relation(page["u"], -K @ x + K @ e),
-        relation(x.derivative, (A - B @ K) @ x + B @ K @ e),
-        say="control_in_error",
-    )
+    control, rate = relation(page["u"], -K @ x + K @ e), relation(x.derivative, (A - B @ K) @ x + B @ K @ e)
     zero = page.value(Matrix.zeros(order, order))
     state = block([[x], [e]])
     matrix = block([[A - B @ K, B @ K], [zero, A - L @ C]])
     halves = [order, order]
     numbers = [in_blocks(page, matrix.value, halves, halves)] if not large and is_narrow(matrix.value) else []
-    page.define("A_cl", matrix, *numbers, say="closed_loop_matrix", closing=False)
+    page.define("A_cl", matrix, *numbers, say="closed_loop_matrix", closing=False, control=control, rate=rate)
     page.equal(relation(state.derivative, page["A_cl"] @ state))
     determinant = (page.s @ page.identity(2 * order) - page["A_cl"]).apply("det")
     parts = FEEDBACK.error_determinant(page) @ OBSERVER.error_determinant(page)
@@ -224,11 +220,12 @@ def _error_coordinates(page: Builder, design: CompensatorDesign, *, large: bool)
     members = [states.derivative, second @ states]
     if not large and is_narrow(second.value):
         members.append(in_blocks(page, second.value, halves, halves) @ states)
-    page.equal(relation(*members), say="estimate_coordinates")
     one = page.identity(order)
     turn = block([[one, zero], [one, -one]])
-    page.conclude_silently(relation(turn @ turn, page.identity(2 * order)))
-    page.remark("similar_loops", relation(turn @ second @ turn, page["A_cl"]), turned=relation(state, turn @ states))
+    page.conclude_silently(
+        relation(turn @ turn, page.identity(2 * order)), relation(turn @ second @ turn, page["A_cl"])
+    )
+    page.equal(relation(*members), say="estimate_coordinates", turned=relation(state, turn @ states))
     plot_estimate(page, "e", page["A_cl"], Matrix.identity(order))
 
 
@@ -246,8 +243,9 @@ def return_path(page: Builder, design: OutputFeedback) -> None:
         below = factored_form(page, inserted.scalar.denominator)
         together = page.value(inserted.scalar.numerator) / below
         page.equal(relation(page.value(1) + page["P"] @ page["F"], inserted, together), say="return_difference")
-    members = [definition, expanded, factors] if page.plant.order <= readability.LOOP_ORDER else [definition, factors]
-    page.define("G_cl", *members, say="loop_after" if few else "return_path", answer=True, closing=False)
+    is_new = not few and page.plant.order <= readability.LOOP_ORDER  # the return difference shows it multiplied out
+    members = [definition, *([expanded] if is_new else []), factors]
+    page.define("G_cl", *members, say="" if few else "return_path", answer=True, closing=False)
     draw_loop(page, plant_form, page.value(design.answer["F"]))
     _say_poles(page, design, form.value)
     unity = page.term(formula_of_factored(design.unity_loop))

@@ -6,29 +6,26 @@ PHRASES: dict[str, str] = {
     "in_components": "Componentwise,",
     "right_estimate_stays": "If the estimate is exact at one instant, it remains exact: {consistent}.",
     "separation": "By the separation principle§, the state in the control law is replaced by its estimate:",
-    "observer_closed": "Substituting {law:number} into {rate:number} gives a system of the same order as the plant, driven by $y$ alone,",
-    "observer_closed_matrix": "Substituting {law:number} into {rate:number} gives a system of the same order as the plant, driven by $y$ alone, with the matrix",
+    "observer_closed": "Substituting {law:number} into {rate:number} gives a system of the plant's order, driven by $y$ alone,",
+    "observer_closed_matrix": "Substituting {law:number} into {rate:number} gives a system of the plant's order, driven by $y$ alone, with the matrix",
     "compensator_matrix": "with the matrix",
-    "compensator_written": "Explicitly, the compensator is",
+    "compensator_written": "that is,",
     "transfer_function_of_compensator": "Its transfer function from $y$ to $-u$ is",
     "compensator_stable": "It is strictly proper and stable.",
-    "compensator_stable_low": "It is strictly proper, and the compensator itself is stable, since all coefficients of {polynomial} are positive§.",
+    "compensator_stable_low": "It is strictly proper and stable, since all coefficients of {polynomial} are positive§.",
     "compensator_unstable": "It is strictly proper, but the compensator itself is not stable.",
     "compensator_unstable_alone": "It is strictly proper. The compensator itself is not stable, although the closed loop is.",
     "compensator_unstable_low": "It is strictly proper, but the compensator itself is not stable, since not all coefficients of {polynomial} are positive§.",
     "compensator_unstable_low_alone": "It is strictly proper. The compensator itself is not stable, since not all coefficients of {polynomial} are positive§, although the closed loop is stable.",
     "compensator_proper": "It is strictly proper.",
     "compensator_stable_if": "It is strictly proper, and the compensator itself is stable if and only if {where}.",
-    "control_in_error": "In terms of the estimation error,",
-    "closed_loop_matrix": "so that the closed-loop system matrix in state and error is block triangular,",
+    "closed_loop_matrix": "In terms of the estimation error, {control} and {rate}, so that the closed-loop system matrix in state and error is block triangular,",
     "polynomial_splits": "and the closed-loop characteristic polynomial is the product of the two desired polynomials:",
-    "estimate_coordinates": "In terms of state and estimate, the closed loop is",
+    "estimate_coordinates": "By the change of coordinates {turned}, the closed loop in terms of state and estimate is",
     "unity_feedback": "With $F$ in the forward path and unity feedback, the transfer function from the reference to the output has the same denominator but a different numerator,",
-    "similar_loops": "The two system matrices are related by the change of coordinates {turned}.",
     "plant_transfer": "The transfer function of the plant is",
     "return_path": "With $F$ in the feedback path, and the minus sign of the control law at the summing junction, the closed-loop transfer function is",
-    "return_difference": "With $F$ in the feedback path, and the minus sign of the control law at the summing junction, the return difference is",
-    "loop_after": "and hence the closed-loop transfer function is",
+    "return_difference": "With $F$ in the feedback path, and the minus sign of the control law at the summing junction, the return difference and the closed-loop transfer function are",
     "no_stable_compensator": "At a real zero of $P$ in the right half-plane the characteristic polynomial is negative: the plant lacks the parity interlacing property and cannot be stabilised by a stable compensator.",
     "with_coefficients": "where",
     "named_entries": "In what follows, its entries are denoted by",
@@ -38,8 +35,8 @@ PHRASES: dict[str, str] = {
     "loop_no_poles": "It has no poles: all control and observer poles, {lost}, cancel.",
     "loop_polynomial_divides": "The denominator divides the product of the two desired polynomials, as expected.",
     "loop_polynomial": "The denominator is the product of the two desired polynomials, as expected.",
-    "defective": "The repeated pole {pole} is a defective eigenvalue, {matrix}, so the transients contain its exponential multiplied by powers of time and are not bounded by a constant multiple of the exponential alone.",
-    "defective_instead": "The repeated pole {pole} is a defective eigenvalue, {matrix}, so the transients contain its exponential multiplied by powers of time and are not bounded by a constant multiple of the exponential alone. Distinct poles avoid this, for example {instead}.",
+    "defective": "The repeated pole {pole} is a defective eigenvalue, {matrix}, so the transients contain its exponential multiplied by powers of time.",
+    "defective_instead": "The repeated pole {pole} is a defective eigenvalue, {matrix}, so the transients contain its exponential multiplied by powers of time. Distinct poles avoid this, for example {instead}.",
     "side_by_side": "Pole placement for observer and state feedback.",
     "polynomial_splits_given": "and the closed-loop characteristic polynomial is the product of the two:",
     "loop_unstable_continuous": "Not all closed-loop poles lie in the open left half-plane: with these gains the closed loop is unstable.",
@@ -116,8 +113,6 @@ THEOREMS: dict[str, str] = {
 #: A new thought begins here.
 OPENS = ()
 
-EXPLAINS = ("similar_loops",)
-
 #: Titles of sections whose sections stand side by side, a step with a sentence beginning a row.
 BESIDE = ("side_by_side",)
 
@@ -192,9 +187,8 @@ FIGURES: dict[str, dict[str, object]] = {
 #: Phrases that go on with the sentence before them.
 CONTINUES = (
     "compensator_matrix",
-    "closed_loop_matrix",
+    "compensator_written",
     "polynomial_splits",
-    "loop_after",
     "with_coefficients",
     "polynomial_splits_given",
     "gain_transposed",

@@ -204,15 +204,13 @@ def _error_coordinates(page: Builder, design: MinimalOrderCompensator) -> None:
     """Write u = −Kx + K₂e₂, ẋ = (A − BK) x + BK₂e₂, block triangular; and the same in (x, z)."""
     A, B, C, K, F, K_2, K_y = (page[name] for name in ("A", "B", "C", "K", "F_z", "K_2", "K_y"))
     x, e, z, order = page["x"], page["e_2"], page[observer_state(page)], page.plant.order
-    page.equal(
-        relation(page["u"], -K @ x + K_2 @ e),
-        relation(x.derivative, (A - B @ K) @ x + B @ K_2 @ e),
-        say="control_in_error",
-    )
+    control = relation(page["u"], -K @ x + K_2 @ e)
+    rate = relation(x.derivative, (A - B @ K) @ x + B @ K_2 @ e)
     estimated = order - page.plant.outputs
     zero = page.value(Matrix.zeros(estimated, order))
     matrix, sizes = block([[A - B @ K, B @ K_2], [zero, F]]), [order, estimated]
-    page.define("A_cl", matrix, in_blocks(page, matrix.value, sizes, sizes), say="closed_loop_matrix", closing=False)
+    numbers = in_blocks(page, matrix.value, sizes, sizes)
+    page.define("A_cl", matrix, numbers, say="closed_loop_matrix", closing=False, control=control, rate=rate)
     state = block([[x], [e]])
     page.equal(relation(state.derivative, page["A_cl"] @ state))
     determinant = (page.s @ page.identity(order + estimated) - page["A_cl"]).apply("det")

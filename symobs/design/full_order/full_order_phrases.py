@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 PHRASES: dict[str, str] = {
-    "observer_equation": "The full-order observer is a copy of the plant with a correction proportional to the output error:",
+    "observer_equation": "The observer is a copy of the plant with a correction proportional to the output error:",
     "error_equation": "Irrespective of the input, the estimation error {error} satisfies",
     "feedthrough_cancels": "The feedthrough term cancels in the output error, which therefore does not depend on the input:",
     "deadbeat_error": "All observer poles are at the origin (deadbeat observer), so any initial error vanishes after finitely many steps: {gone}.",

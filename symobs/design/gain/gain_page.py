@@ -58,8 +58,9 @@ def write_gain(page: Builder, design: GainDesign, side: PlacementProblem, style:
     if not design.fixed_polynomial.is_one:
         _with_fixed_modes(page, design, side)
     else:
-        desired = name_coefficients(page, design, side)
-        (choose(design.task, style, style).page or _write_gain_alone)(page, design, side, desired)
+        write = choose(design.task, style, style).page or _write_gain_alone
+        asks = "polynomials" if write is write_canonical and not (side.gain == "K" and _is_canonical(page)) else "asks"
+        write(page, design, side, name_coefficients(page, design, side, asks))
     page.conclude_silently(relation(page[side.gain], design.answer[side.gain]))
     page.in_decimals(side.gain)
     _verified(page, design, side)
@@ -128,7 +129,9 @@ def _test(page: Builder, design: GainDesign, side: PlacementProblem, style: str)
         page.conclude(f"assignable_{side.kind}")
 
 
-def name_coefficients(page: Builder, design: GainDesign, side: PlacementProblem) -> DesiredPolynomial:
+def name_coefficients(
+    page: Builder, design: GainDesign, side: PlacementProblem, asks: str = "asks"
+) -> DesiredPolynomial:
     """Show φ; where its coefficients are long, give them letters and return φ in these letters."""
     desired = design.desired
     assert desired is not None  # noqa: S101 - only designs with a desired polynomial come here
@@ -139,7 +142,7 @@ def name_coefficients(page: Builder, design: GainDesign, side: PlacementProblem)
     if all(c.size - 1 <= readability.COEFFICIENT for c in coefficients):
         if not desired.poles and desired.is_expanded and page.defines(side.phi):
             return desired
-        page.define(side.phi, *members, say=f"asks_{side.kind}")
+        page.define(side.phi, *members, say=f"{asks}_{side.kind}")
         return desired
     taken = {*taken_names(page), *desired.polynomial.field.names}
     names = fresh_names(side.coefficient, len(coefficients), taken)
@@ -190,9 +193,13 @@ def write_canonical(page: Builder, _: GainDesign, side: PlacementProblem, desire
     matrix = page[side.matrix].T if side.gain == "L" else page[side.matrix]
     chi = plant.matrices.A.characteristic_polynomial(variable)
     found = chi.coefficients(variable)[1:]
-    page.define("chi", (page.s @ page.identity(order) - A).apply("det"), say=f"open_{side.kind}")
+    said = getattr(page.steps[-1], "sentence", None)
+    is_announced = said is not None and said.key == f"polynomials_{side.kind}"  # beside φ
+    say = "" if is_announced else f"open_{side.kind}"
+    page.define("chi", (page.s @ page.identity(order) - A).apply("det"), say=say)
     hankel = page.value(hankel_of(found))
-    V = page.define(f"V_{side.index}", matrix @ hankel, matrix.as_value @ hankel, say=f"canonical_{side.kind}")
+    written = [matrix.as_value @ hankel] if order > 1 else []
+    V = page.define(f"V_{side.index}", matrix @ hankel, *written, say=f"canonical_{side.kind}")
     page.equal(
         relation(V.inverse, V.inverse.as_value), relation(V.apply("det"), determinant_form(page, V.value.determinant()))
     )

@@ -21,7 +21,6 @@ PHRASES: dict[str, str] = {
     "picture_curve": "Curve (1) is {curve}.",
     "picture_curves": "The curves are",
     "picture_response": "Response to the initial condition {start}.",
-    "picture_estimates": "A hat denotes an estimate.",
     "picture_samples_only": "The signals are defined at the sampling instants 0, 1, 2, … only.",
     "picture_sweep": "Checked values at {count} points, joined by straight lines.",
     "picture_map": "Lines of equal {column}, between checked values at {count} points.",

@@ -114,7 +114,7 @@ def metrics_for(printer: LatexPrinter) -> Metrics:
         heights = [_FRACTION if b.height == 1 else _ROW * b.height if b.height else _LINE for b in boxes]
         return max(box.width for box in boxes), sum(heights) + 0.4 * (len(rows) - 1)
 
-    return Metrics(measure, inside=(0.55, 0.35), smallest=2.0, junction=0.9, gap=(1.7, 1.1), beside=0.3, sign=1.1)
+    return Metrics(measure, inside=(0.55, 0.35), smallest=2.0, junction=0.9, gap=(1.7, 0.75), beside=0.3, sign=1.1)
 
 
 # -- elements ---------------------------------------------------------------------------------------------------------

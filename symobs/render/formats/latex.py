@@ -169,7 +169,9 @@ class LatexWriter:
             case Display(), Paragraph((str(text),), continues), Display():
                 if len(text) > _FEW_LETTERS or not (continues or text.endswith(",")):
                     return ""
-                written = LatexWriter(self.printer, inset=_LETTER * len(text) + _SPACE).block(display)
+                trial = LatexWriter(self.printer, inset=_LETTER * len(text) + _SPACE)
+                trial.printer.stars = dict(self.printer.stars)
+                written = trial.block(display)
                 if written.startswith(_OPENING) and not display.number:
                     return rf"{_OPENING}\text{{{escape(text)}}}\qquad {written.removeprefix(_OPENING)}"
         return ""

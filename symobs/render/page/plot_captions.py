@@ -100,8 +100,6 @@ def _sentences(picture: Drawn) -> Iterator[Sentence]:
         case TimeResponse(states=states, starts=starts):
             begun = tuple(_beginning(*state) for state in zip(states, starts, strict=True))
             yield caption_sentence("response", start=Conjunction(begun))
-            if any(response.dashed for response in picture.responses):
-                yield caption_sentence("estimates")
             if picture.discrete:
                 yield caption_sentence("samples_only")
         case SweepCurves(points=count, columns=columns, infinite=infinite):

@@ -61,6 +61,7 @@ class Layout(Generic[B]):
         rows: list[DisplayRow[B]] = []
         for index, relation in enumerate(relations):
             rows += self._aligned(relation, margin, is_last=index == last)
+        self.breaker.settle()
         return rows, True
 
     def _inequalities(self, relations: Sequence[Relation]) -> tuple[list[DisplayRow[B]], bool]:

@@ -57,12 +57,13 @@ class LinePiece(Generic[B]):
 
 
 class Breaker(Generic[B]):
-    """Line breaker of the formulas of one relation; `named` collects entries of matrices to be defined below."""
+    """Line breaker of the formulas of one display; `named` collects entries of matrices to be defined below."""
 
     def __init__(self, printer: Printer[B]) -> None:
         """Break with the boxes of `printer`."""
         self.printer = printer
         self.named: dict[Formula, B] = {}
+        self.stars: dict[Formula, int] = {}
 
     def lines(self, pieces: Sequence[LinePiece[B]], first: float, rest: float) -> list[B]:
         """Fill lines, the first of width `first`, the others of width `rest`, without a short last line."""
@@ -264,7 +265,7 @@ class Breaker(Generic[B]):
         boxes = [[self.printer.block_entry(entry) for entry in row] for row in rows]
         bound = room
         while bound > 1:
-            named = dict(self.named)
+            named, stars = dict(self.named), dict(self.stars)
             table = [
                 [
                     box if box.width <= bound else self._name(named, entry, self._place(head, i, j, rows))
@@ -276,6 +277,7 @@ class Breaker(Generic[B]):
             if whole.width <= room:
                 self.named = named
                 return whole
+            self.stars = stars
             bound /= 1.4
         return None
 
@@ -288,7 +290,18 @@ class Breaker(Generic[B]):
 
     def _name(self, named: dict[Formula, B], entry: Formula, place: B | None = None) -> B:
         """Return the name of an entry, the same for equal entries: its place, or a star."""
-        return named.setdefault(entry, place or self.printer.star(len(named) + 1))
+        if entry not in named:
+            named[entry] = place or self.printer.star(self._number(entry))
+        return named[entry]
+
+    def _number(self, entry: Formula) -> int:
+        """Return the number of the star of an entry: its own on this page, or the next."""
+        stars = self.printer.stars
+        return stars.get(entry) or self.stars.setdefault(entry, len(stars) + len(self.stars) + 1)
+
+    def settle(self) -> None:
+        """Keep the stars of this display for the page."""
+        self.printer.stars.update(self.stars)
 
     def _listed(self, rows: Sequence[Sequence[Formula]], room: float) -> list[LinePiece[B]]:
         """Return [a, b; c, d], its entries broken where they must be."""

@@ -97,6 +97,8 @@ class Printer(FormulaWriter[B]):
         self.language: Language = ENGLISH
         self.discrete = discrete
         self.known: dict[Scalar, B] = {}
+        #: The entries named by stars so far, numbered through the page.
+        self.stars: dict[Formula, int] = {}
 
     @abstractmethod
     def inline(self, item: Formula | Relation) -> str:
@@ -176,9 +178,7 @@ class Printer(FormulaWriter[B]):
             case Block(rows) if table := partitioned(rows):
                 entries, rules = table
                 return self.matrix([[self.typeset(entry) for entry in row] for row in entries], rules)
-            case Block(((entry,),)) if (
-                isinstance(entry, Literal) and isinstance(entry.value, Matrix) and entry.value.is_zero
-            ):
+            case Block(((entry,),)):
                 return self.block_entry(entry)
             case Block(rows):
                 return self.matrix([[self.block_entry(entry) for entry in row] for row in rows])

@@ -472,6 +472,19 @@ def test_what_a_matrix_leaves_out_is_told_below(source: random.Random) -> None:
     assert read_latex(put_back(LatexPrinter().display([equation(A, lit(value))], end=""))) == at_point(value)
 
 
+def test_stars_are_numbered_through_a_page() -> None:
+    source, printer = random.Random("stars"), LatexPrinter()  # noqa: S311 - no secrets
+    entries = [polynomial(source, 30, degree=5) for _ in range(4)]
+
+    def defined(*shown: Scalar) -> list[str]:
+        product_of_matrices = Product((table([shown[0], 1], [2, 3]), table([1, 2], [3, shown[1]])))
+        return re.findall(r"\\ast_\{?(\d+)\}?=", printer.display([equation(A, product_of_matrices)]))
+
+    assert defined(*entries[:2]) == ["1", "2"]
+    assert defined(*entries[2:]) == ["3", "4"]
+    assert defined(entries[3], entries[0]) == ["4", "1"]  # the same entry, the same name
+
+
 @given(sources)
 @settings(max_examples=30)
 def test_a_fraction_with_a_wide_denominator_is_told_in_parts(source: random.Random) -> None:
@@ -596,6 +609,8 @@ FORMULAS: list[tuple[Formula, str, str]] = [
     ),
     (Block(((C,), (Product((C, A)),))), r"\begin{bmatrix}C\\CA\end{bmatrix}", "[C; C·A]"),
     (Block(((A, lit(Matrix.zeros(2, 2))),)), r"\begin{bmatrix}A&0\end{bmatrix}", "[A 0]"),
+    (Apply("rank", Block(((B,),))), r"\operatorname{rank}B", "rank B"),
+    (Product((Block(((Sum((lit(4), Negative(lit(0)))),),)), A)), "(4-0)A", "(4 - 0)A"),
     (lit(Matrix.zeros(2, 0)), r"0_{2\times 0}", "0(2×0)"),
     (Derivative(x), r"\dot x", "ẋ"),
     (Derivative(x_hat), r"\dot{\hat x}", "dx̂/dt"),
