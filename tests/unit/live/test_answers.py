@@ -164,6 +164,7 @@ def test_a_value_takes_the_place_of_its_symbol() -> None:
     assert there["status"] == "no"
     kernel = next(card for card in there["cards"] if card["name"] == "kernel")
     assert kernel["says"] == "N equals [-1; 1]"  # C x = x₁ + x₂ = 0
+    assert asked(DETECTABLE, at={"c": "1"}, cards_at=True, cases=True)["cases"] == general["cases"]
 
 
 @pytest.mark.parametrize(

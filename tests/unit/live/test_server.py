@@ -178,6 +178,8 @@ def test_a_child_that_sleeps_or_swells_is_replaced() -> None:
         assert second != first
         children.budget = Budget(0.2, 300)
         assert "not decided within 0.2 s" in ask(children, do="sleep")["message"]
+        german = ask(children, do="sleep", problem={"language": "de"})
+        assert german["message"] == "nicht innerhalb von 0,2 s entschieden"
         children.budget = Budget(60, 300)
         third = ask(children)["process"]
         assert third not in {first, second}
@@ -232,7 +234,7 @@ def test_an_interrupt_while_the_first_child_is_started_is_all_that_is_said(tmp_p
     begun = tmp_path / "begun"
     paths = {"BEGUN": str(begun), "PYTHONPATH": os.pathsep.join([str(tmp_path), str(ROOT)])}
     with subprocess.Popen(
-        [sys.executable, "-m", "symobs", "serve", "--no-browser", str(SERVO)],
+        [sys.executable, "-m", "symobs", "serve", "--no-browser", "--language", "de", str(SERVO)],
         env=environment() | paths,
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
@@ -254,6 +256,7 @@ def test_an_interrupt_while_the_first_child_is_started_is_all_that_is_said(tmp_p
         "transfer_function": "1/(s*(s + 1))",
         "control": "-2, -2",
         "observer": "-10, -10",
+        "language": "de",
     }
 
 
@@ -296,7 +299,7 @@ def test_a_link_holds_poles_by_what_they_are_to_do() -> None:
 
 
 def test_the_page_holds_nothing_of_others() -> None:
-    whole = "".join(path.read_text(encoding="utf-8") for path in ASSETS.iterdir())
+    whole = "".join(path.read_text(encoding="utf-8") for path in ASSETS.glob("*.[jch]*"))
     assert "//cdn" not in whole
     assert [line for line in whole.splitlines() if "https:" in line] == []
     assert "eval(" not in whole
