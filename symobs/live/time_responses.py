@@ -24,8 +24,10 @@ _LONGEST = Fraction(10**6)
 #: Thousandths of the height of the picture, or finer.
 _COARSE, _FINEST = 3, 9
 _DEAD, _SAMPLES = 1e-9, 40
+#: What is larger cannot be drawn beside numbers of usual size.
+_LARGEST = 10**12
 #: Why there is no response, as phrases.
-_NEEDS_NUMBERS, _TOO_WIDE = "said_needs_numbers", "said_too_wide"
+_NEEDS_NUMBERS, _TOO_WIDE, _TOO_LARGE = "said_needs_numbers", "said_too_wide", "said_too_large"
 
 
 class NoResponse(Exception):
@@ -55,6 +57,8 @@ def responses_of(result: Result, asked: Responses) -> dict[str, Any]:
     else:
         heights = _enclosed(signals, end, asked.count)
     peak = max(abs(height) for line in heights for height in line)
+    if peak > _LARGEST * _FINE:
+        raise NoResponse(_TOO_LARGE)
     digits = _COARSE if not peak else min(_FINEST, max(_COARSE, _COARSE - int(log10(peak / _FINE))))
     parts = 10**digits
     coarser = _FINE // parts

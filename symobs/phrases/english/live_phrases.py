@@ -109,6 +109,7 @@ PHRASES: dict[str, str] = {
     "said_unstable_compensator": "F is not stable by itself.",
     "said_unstable_pole": "A pole lies outside the region of stability.",
     "said_needs_numbers": "Responses need numbers: give every symbol a value.",
+    "said_too_large": "A response is left out: its values are too large to draw.",
     "said_too_wide": "A response is left out: its enclosure stays too wide.",
     # tasks
     "live_task_canonical_form": "canonical form",

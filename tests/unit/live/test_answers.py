@@ -156,6 +156,14 @@ def test_discrete_responses_are_exact() -> None:
     assert [line["heights"][:4] for line in found["courses"]["lines"]] == [[1000, 0, 0, 0], [1000, 0, 0, 0]]
 
 
+def test_values_too_large_to_draw_are_left_out() -> None:
+    for start in ("1e400, 1", "1e13, 0"):
+        found = asked(SERVO, courses={"start": start})
+        assert (found["status"], found["courses"]) == ("done", None)
+        assert found["note"] == "A response is left out: its values are too large to draw."
+    assert asked(SERVO, courses={"start": "1e9, 1"})["courses"]["parts"] == 1000
+
+
 def test_a_value_takes_the_place_of_its_symbol() -> None:
     general = asked(DETECTABLE, cases=True)
     assert general["verdict"] == "conditional"
