@@ -220,7 +220,7 @@ def test_pairs_form_and_part(opened: Callable[..., Opened]) -> None:
 
 
 def test_the_only_real_pole_of_a_set_stays_on_the_axis(opened: Callable[..., Opened]) -> None:
-    live = opened(SERVO.replace("observer=-10, -10", "observer=-4&kind=minimal"))
+    live = opened(SERVO.replace("observer=-10, -10", "observer=-4&order=minimal"))
     x, y = live.middle("observer_poles.0")
     live.drag((x, y), (x, y - 90))
     live.at_rest()

@@ -5,7 +5,7 @@
 const SCHEMA = "symobs-live/1", GRID = 20, REST = 250, BUSY = 150, LONGEST = 8000;
 const SVG = "http://www.w3.org/2000/svg";
 const SNAPS = { "1/20": 1, "1/10": 2, "1/4": 5, "1/2": 10, 1: 20 };
-const SHORT = { control: "control_poles", observer: "observer_poles", kind: "observer" };
+const SHORT = { control: "control_poles", observer: "observer_poles", order: "observer" };
 const PLANT = ["A", "B", "C", "D", "transfer_function", "dt"];
 const OWN = ["v", "task", "symbols", "convention", "language", "at", "snap", "closed", "detail", "x0", "xh0"];
 const DETAILS = ["full", "outline", "answer"];

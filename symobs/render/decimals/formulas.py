@@ -317,7 +317,7 @@ def _number_in(formula: Formula) -> Scalar | None:
 
 def _of_primes(value: Scalar) -> Scalar:
     """Return a number whose roots are those of the exact page: √15, one root for print, is √3 √5 there."""
-    roots = {root.name: square_root(root.argument) for root in roots_in(value)}
+    roots: dict[str, Scalar] = {root.name: square_root(root.argument) for root in roots_in(value)}
     return value.substitute(roots) if roots else value
 
 

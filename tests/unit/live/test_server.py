@@ -17,9 +17,11 @@ from urllib.parse import parse_qsl
 
 import pytest
 
-from symobs.live.links import link_of
+from symobs.live.assets import ASSETS
+from symobs.live.links import SHORT, link_of
 from symobs.live.process import Budget, Children, Gone
-from symobs.live.server import ASSETS, Server, routes
+from symobs.live.server import Server, routes
+from symobs.result import tasks
 from tests.support.paths import ROOT
 from tests.support.problems.batches import eventually
 from tests.support.tools.command_line import SAFETY, SERVO, environment
@@ -287,6 +289,31 @@ def test_a_link_holds_a_problem() -> None:
         "symbols": "omega:positive,p:positive",
         "convention": "S1",
         "language": "de",
+    }
+
+
+def test_a_link_calls_every_key_by_a_name_of_its_own() -> None:
+    long = {short: name for name, short in SHORT.items()}
+    for task in tasks().values():
+        for name in task.keywords:
+            short = SHORT.get(name, name)
+            assert long.get(short, short) == name, (task.name, name)
+
+
+def test_a_link_holds_what_its_task_takes_and_no_constants() -> None:
+    data = {
+        "tasks": ["initial_state", "observability"],
+        "constants": {"r": "sqrt(3)", "q": "2*r"},
+        "plant": {"A": "[0 1; -r^2 -q]", "C": [["1", "r"]]},
+        "specification": {"horizon": "1"},
+    }
+    halves = {"control_poles": "-1", "observer_poles": "-2"}
+    assert "observer=-2" in link_of({"tasks": ["state_feedback", "observer"], "specification": halves})
+    assert dict(parse_qsl(link_of(data))) == {
+        "v": "1",
+        "task": "observability",
+        "A": "[0 1; -(sqrt(3))^2 -(2*(sqrt(3)))]",
+        "C": "[1 (sqrt(3))]",
     }
 
 
