@@ -22,10 +22,11 @@ from symobs.exact import Scalar
 from symobs.exact.algebraic.root_location import complex_roots
 from symobs.formula import Letter, Literal, Relation
 from symobs.live.page import export_object, page_object
-from symobs.live.point import point_object, region_object
+from symobs.live.point import card_object, point_object, region_object
 from symobs.live.request import SCHEMA, Request, put_in, read
 from symobs.live.time_responses import NoResponse, readout, responses_of
 from symobs.live.views import view_object, view_of
+from symobs.phrases.languages import language_named
 from symobs.render.cards import Card, CardPrinter, cards
 from symobs.result import tasks
 from symobs.result.conversions import to_json
@@ -33,6 +34,7 @@ from symobs.specification import is_pattern, read_poles
 from symobs.system import Symbols, read_scalar
 
 if TYPE_CHECKING:
+    from symobs.phrases.languages import Language
     from symobs.problem import Problem
     from symobs.result import Case, Result
 
@@ -157,14 +159,15 @@ def _answer(asked: Request) -> dict[str, Any]:
     shown = there if asked.cards_at or not asked.at else _as_given(asked)
     result, convention = shown.result, shown.problem.convention
     names = view_of(result.task).cards if asked.names is None else asked.names
-    printer, found = CardPrinter(result, convention), cards(result, names, convention)
+    language = language_named(shown.problem.language)
+    printer, found = CardPrinter(result, convention, language), cards(result, names, convention)
     notes, responses = [], None
     if asked.responses is not None:
         try:
             responses = responses_of(there.result, asked.responses)
         except NoResponse as reason:
-            notes += [str(reason)] if str(reason) else []
-    notes += _notes(there.result)
+            notes += [language.phrases[str(reason)]] if str(reason) else []
+    notes += _notes(there.result, language)
     claims = len(result.all_certificates)
     whole = {
         "status": _status(result),
@@ -182,7 +185,9 @@ def _answer(asked: Request) -> dict[str, Any]:
         "courses": responses,
     }
     if asked.cases:
-        whole["cases"] = [_case(case, printer) for case in result.case_tree]
+        given = _as_given(asked).result
+        of_given = CardPrinter(given, convention, language)
+        whole["cases"] = [_case(case, of_given) for case in given.case_tree]
     return whole | ({"note": " ".join(notes)} if notes else {})
 
 
@@ -200,7 +205,8 @@ def _point(asked: Request) -> dict[str, Any]:
     found = _as_given(asked)
     if found.result.task != "stability_region":
         raise InputError("only a stability region has points", where="want", repair='ask for "answer"')
-    return {"status": "done", **point_object(found.result, asked.at, found.problem.convention)}
+    printer = CardPrinter(found.result, found.problem.convention, language_named(found.problem.language))
+    return {"status": "done", **point_object(found.result, asked.at, printer)}
 
 
 def _view(asked: Request) -> dict[str, Any]:
@@ -209,7 +215,7 @@ def _view(asked: Request) -> dict[str, Any]:
     symbols = found.result.plant.symbols
     whole["symbols"] = {name: symbols.sign(name) for name in sorted(symbols.signs)}
     if found.result.task == "stability_region":
-        whole["region"] = region_object(found.result)
+        whole["region"] = region_object(found.result, language_named(found.problem.language))
     return {"status": "done", "verdict": found.result.verdict, "view": whole}
 
 
@@ -247,11 +253,6 @@ _WANTED: dict[str, Callable[[Request], dict[str, Any]]] = {
 
 def _status(result: Result) -> str:
     return result.verdict if result.verdict in {"no", "undecided"} else "done"
-
-
-def card_object(card: Card, printer: CardPrinter) -> dict[str, str]:
-    """Return a card in every form."""
-    return {"name": card.name, "mathml": printer.mathml(card), "latex": printer.latex(card), "says": printer.says(card)}
 
 
 def _condition(condition: Any, printer: CardPrinter) -> dict[str, str]:
@@ -310,7 +311,7 @@ def _marks(result: Result) -> list[dict[str, str]]:
     return found
 
 
-def _notes(result: Result) -> list[str]:
+def _notes(result: Result, language: Language) -> list[str]:
     """Return why there is no design, and what a look at the curves may miss."""
     whole: Any = result
     parts = [getattr(whole, name) for name in ("feedback", "estimator") if name in vars(result)] or [result]
@@ -319,11 +320,7 @@ def _notes(result: Result) -> list[str]:
         fixed = part.fields.get("fixed_modes") or ()
         pair = "(A, B)" if part.task == "state_feedback" else "(C, A)"
         if fixed:
-            notes.append(
-                f"No gain moves the mode{'s' if len(fixed) > 1 else ''} {', '.join(map(str, fixed))} of {pair}."
-            )
-    stable = {
-        "compensator_stable": "F is not stable by itself.",
-        "stable": "A pole lies outside the region of stability.",
-    }
-    return notes + [text for name, text in stable.items() if result.fields.get(name) == "no"]
+            phrase = language.phrases["said_fixed_modes" if len(fixed) > 1 else "said_fixed_mode"]
+            notes.append(phrase.format(modes=", ".join(map(str, fixed)), pair=pair))
+    stable = {"compensator_stable": "said_unstable_compensator", "stable": "said_unstable_pole"}
+    return notes + [language.phrases[key] for name, key in stable.items() if result.fields.get(name) == "no"]

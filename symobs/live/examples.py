@@ -7,6 +7,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
+from symobs.live.links import of_one_task
 from symobs.live.views import VIEWS
 
 _PLACES = (Path(__file__).parents[1] / "worked_examples", Path(__file__).parents[2] / "worked_examples")
@@ -25,6 +26,7 @@ def examples() -> list[dict[str, Any]]:
         task = next((name for name in reversed(names) if name in VIEWS), None)
         if task is None or path.stem in _LARGE:
             continue
-        kept = {key: data[key] for key in ("convention", "symbols", "plant", "specification") if key in data}
+        problem = of_one_task(data, task)
+        kept = {key: problem[key] for key in ("convention", "symbols", "plant", "specification") if key in problem}
         found.append({"name": path.stem, "title": data.get("title", path.stem), "task": task, "problem": kept})
     return found

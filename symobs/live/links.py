@@ -7,10 +7,13 @@ from collections.abc import Mapping
 from typing import Any
 from urllib.parse import quote
 
+from symobs.live.request import put_in, with_values
+from symobs.problem.schema import kinds_of
+from symobs.result import task_named
 from symobs.specification.pole_patterns import OTHERS
 
 #: Keys of a specification that a link calls by shorter names.
-SHORT = {"control_poles": "control", "observer_poles": "observer", "observer": "kind"}
+SHORT = {"control_poles": "control", "observer_poles": "observer", "observer": "order"}
 
 
 def link_of(data: Mapping[str, Any]) -> str:
@@ -20,6 +23,7 @@ def link_of(data: Mapping[str, Any]) -> str:
     task = names[-1] if isinstance(names, list) and names else data.get("task")
     if isinstance(task, str):
         parts["task"] = task
+        data = of_one_task(data, task)
     for name, value in _table(data, "plant").items():
         parts[name] = _text(value, matrix=True)
     for name, value in _table(data, "specification").items():
@@ -31,6 +35,22 @@ def link_of(data: Mapping[str, Any]) -> str:
         parts["symbols"] = ",".join(f"{name}:{sign}" for name, sign in signs.items())
     parts |= {name: str(data[name]) for name in ("convention", "language") if name in data}
     return "&".join(f"{quote(name, safe='')}={quote(text, safe=',;:/-*^()[]')}" for name, text in parts.items())
+
+
+def of_one_task(data: Mapping[str, Any], task: str) -> dict[str, Any]:
+    """Return a problem without what the task does not take, its constants written out: a page knows neither."""
+    constants: dict[str, str] = {}
+    for name, value in _table(data, "constants").items():
+        constants[name] = with_values(str(value), constants)
+    found, names = put_in(data, constants), data.get("tasks")
+    own, *others = (kinds_of(one) for name in (task, *(names or ())) if (one := task_named(name)) is not None)
+    if isinstance(found.get("specification"), Mapping):
+        found["specification"] = {
+            name: value
+            for name, value in found["specification"].items()
+            if name in own or not any(name in of for of in others)
+        }
+    return {name: value for name, value in found.items() if name != "constants"}
 
 
 def _table(data: Mapping[str, Any], name: str) -> Mapping[str, Any]:

@@ -7,7 +7,6 @@ notebook shows the derivation of the problem that the widget began with.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import anywidget
@@ -15,10 +14,10 @@ import traitlets
 
 from symobs.errors import UsageError
 from symobs.live.answering import answer, result_of
+from symobs.live.assets import ASSETS, script, style
 from symobs.live.links import link_of
 from symobs.live.page import page_object
 from symobs.problem import parse, text_of, validate
-from symobs.render.formats.html import style
 from symobs.result.conversions import signs
 from symobs.system import StateSpace, as_plant
 
@@ -27,21 +26,20 @@ if TYPE_CHECKING:
     from symobs.problem import Problem
     from symobs.result import Result
 
-_ASSETS = Path(__file__).parent / "assets"
 _IMPORTED = 'import { mount } from "./symobs-live.js";\n'
 
 
 def front_end() -> str:
     """Return the front-end as the one module that anywidget takes."""
-    own = (_ASSETS / "start-widget.js").read_text(encoding="utf-8")
-    return (_ASSETS / "symobs-live.js").read_text(encoding="utf-8") + own.replace(_IMPORTED, "")
+    own = (ASSETS / "start-widget.js").read_text(encoding="utf-8")
+    return script() + own.replace(_IMPORTED, "")
 
 
 class LiveWidget(anywidget.AnyWidget):  # type: ignore[misc] # it is not typed where it is not installed
     """A problem whose poles, entries and parameters are moved in a notebook; `state` is that of a link."""
 
     _esm = front_end()
-    _css = (_ASSETS / "live.css").read_text(encoding="utf-8") + style()
+    _css = style()
     state = traitlets.Unicode("").tag(sync=True)
 
     def __init__(self, data: Mapping[str, Any]) -> None:

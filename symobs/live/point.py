@@ -11,7 +11,7 @@ from symobs.exact.algebraic.rational_points import value_at
 from symobs.exact.algebraic.root_location import root_boxes
 from symobs.figures.plot import LinePicture, PoleMap, RegionPicture
 from symobs.formula import Letter, Literal, Relation
-from symobs.render.cards import Card, CardPrinter
+from symobs.render.cards import Card
 from symobs.render.drawings.plot_file import is_shown
 from symobs.render.drawings.svg import svg, svg_scene
 from symobs.render.page.narrator import printer_for
@@ -22,7 +22,8 @@ from symobs.system import Symbols, read_scalar
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from symobs.convention import Convention
+    from symobs.phrases.languages import Language
+    from symobs.render.cards import CardPrinter
 
 _PLACES = 4
 
@@ -38,7 +39,7 @@ def numbers(at: Mapping[str, str]) -> dict[str, Fraction]:
     return found
 
 
-def point_object(region: Any, at: Mapping[str, str], convention: Convention) -> dict[str, Any]:
+def point_object(region: Any, at: Mapping[str, str], printer: CardPrinter) -> dict[str, Any]:
     """Return what is true at a point; `region` is a `StabilityRegion`."""
     critical, place = region.critical, numbers(at)
     boundary = critical.boundary
@@ -54,7 +55,6 @@ def point_object(region: Any, at: Mapping[str, str], convention: Convention) -> 
     chi = critical.polynomial.substitute({name: Scalar.of(value) for name, value in place.items()})
     stable = critical.is_stable(place)
     card = Card("polynomial", Relation((Letter("chi_p"), Literal(chi)), ("=",)), chi)
-    printer = CardPrinter(region, convention)
     vanishing = [factor for factor in critical.proper if factor.names <= place.keys() and not value_at(factor, place)]
     zero = Literal(Scalar.of(0))
     boundaries = [Card("boundary", Relation((Literal(factor), zero), ("=",)), factor) for factor in vanishing]
@@ -66,8 +66,8 @@ def point_object(region: Any, at: Mapping[str, str], convention: Convention) -> 
     }
     return {
         "verdict": verdict,
-        "cards": [_card(card, printer)],
-        "boundary": [_card(found, printer) for found in boundaries] if on_edge else [],
+        "cards": [card_object(card, printer)],
+        "boundary": [card_object(found, printer) for found in boundaries] if on_edge else [],
         "roots": [_root(box, power) for box, power in root_boxes(_coefficients(chi, boundary.variable), _PLACES)],
         **({"note": notes[verdict]} if verdict in notes else {}),
     }
@@ -89,20 +89,21 @@ def _decimal(value: Fraction) -> str:
     return f"{'-' if value < 0 else ''}{digits[:-_PLACES]}.{digits[-_PLACES:]}"
 
 
-def _card(card: Card, printer: CardPrinter) -> dict[str, str]:
+def card_object(card: Card, printer: CardPrinter) -> dict[str, str]:
+    """Return a card in every form."""
     return {"name": card.name, "mathml": printer.mathml(card), "latex": printer.latex(card), "says": printer.says(card)}
 
 
 # -- the picture ------------------------------------------------------------------------------------------------------
 
 
-def region_object(result: Any) -> dict[str, Any]:
+def region_object(result: Any, language: Language) -> dict[str, Any]:
     """Return the checked picture of a region, where its plane lies in it, and a point to begin with."""
     picture = result.picture
     parameters = list(result.question.parameters)
     if picture is None or not is_shown(picture, result):
         return {"svg": "", "parameters": parameters, "handle": None}
-    printer = printer_for(Document("", "", (result,)), TextPrinter)
+    printer = printer_for(Document("", "", (result,), language=language.code), TextPrinter)
     scene = svg_scene(picture, printer)
     frame = scene.frame
     found: dict[str, Any] = {

@@ -10,9 +10,12 @@ from typing import TYPE_CHECKING, Any
 from symobs._dataclass import dataclass
 from symobs.child_processes.child import Died, Ended, Kept
 from symobs.live.request import SCHEMA
+from symobs.phrases.languages import ENGLISH, language_named, languages
 
 if TYPE_CHECKING:
     from collections.abc import Callable
+
+    from symobs.phrases.languages import Language
 
 #: A whole page may take as many times the seconds of an answer.
 PAGE_FACTOR = 6
@@ -58,9 +61,10 @@ class Children:
                     response: bytes = child.ask(body, min(seconds, _MOST_SECONDS), look=look, every=_LOOK_EVERY)
                     return response
             except TimeoutError:
-                message = f"not decided within {seconds:g} s"
+                language = _language(asked)
+                message = language.phrases["live_late"].format(seconds=language.decimal(f"{seconds:g}"))
             except (Died, Ended):
-                message = f"{self.budget.megabytes} MB of memory were not enough"
+                message = _language(asked).phrases["said_memory"].format(megabytes=self.budget.megabytes)
             finally:
                 self.kept.add(_CHILDREN, megabytes=self.budget.megabytes)
         undecided = {"schema": SCHEMA, "id": asked.get("id"), "status": "undecided", "message": message}
@@ -69,6 +73,13 @@ class Children:
     def close(self) -> None:
         """End all, also those at work."""
         self.kept.close()
+
+
+def _language(asked: dict[str, Any]) -> Language:
+    """Return the language that a problem asks for."""
+    problem = asked.get("problem")
+    code = problem.get("language") if isinstance(problem, dict) else None
+    return language_named(code) if code in languages() else ENGLISH
 
 
 def _read(body: bytes) -> dict[str, Any]:

@@ -230,7 +230,7 @@ def put_in(data: Mapping[str, Any], values: Mapping[str, str]) -> dict[str, Any]
     for table in ("plant", "specification"):
         if isinstance(found.get(table), Mapping):
             found[table] = {
-                key: _without(entry, values) if key == "parameters" else _with_values(entry, values)
+                key: _without(entry, values) if key == "parameters" else with_values(entry, values)
                 for key, entry in found[table].items()
             }
     if isinstance(found.get("symbols"), Mapping):
@@ -244,8 +244,8 @@ def _without(names: Any, values: Mapping[str, str]) -> Any:
     return [name for name in names if name not in values] if isinstance(names, list) else names
 
 
-def _with_values(value: Any, values: Mapping[str, str]) -> Any:
+def with_values(value: Any, values: Mapping[str, str]) -> Any:
     """Return texts with values in parentheses in the place of names, and lists of them."""
     if isinstance(value, str):
         return _NAME.sub(lambda found: f"({values[found[0]]})" if found[0] in values else found[0], value)
-    return [_with_values(entry, values) for entry in value] if isinstance(value, (list, tuple)) else value
+    return [with_values(entry, values) for entry in value] if isinstance(value, (list, tuple)) else value

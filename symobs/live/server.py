@@ -15,15 +15,13 @@ import threading
 import time
 from contextlib import suppress
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
-from pathlib import Path
 from socketserver import TCPServer
 from typing import Any
 
+from symobs.live.assets import ASSETS, script, style
 from symobs.live.process import AnswerBudget, Children, Gone
 from symobs.live.request import MOST_BYTES
 
-ASSETS = Path(__file__).parent / "assets"
-_BODY_STYLE = Path(__file__).parents[1] / "render" / "formats" / "html_body.css"
 HOSTS = ("127.0.0.1", "::1", "localhost")
 _MOST_CONNECTIONS, _MOST_HEADERS, _TIMEOUT, _LINE = 16, 16 * 1024, 10.0, 65537
 _POLICY = (
@@ -42,13 +40,12 @@ _HEADERS = {
 
 def routes() -> dict[str, tuple[str, bytes]]:
     """Return every path there is, with its kind and its content."""
-    script, style = "text/javascript; charset=utf-8", "text/css; charset=utf-8"
-    css = (ASSETS / "live.css").read_bytes() + b"\n" + _BODY_STYLE.read_bytes()
+    javascript = "text/javascript; charset=utf-8"
     return {
         "/": ("text/html; charset=utf-8", (ASSETS / "http.html").read_bytes()),
-        "/symobs-live.js": (script, (ASSETS / "symobs-live.js").read_bytes()),
-        "/start-http.js": (script, (ASSETS / "start-http.js").read_bytes()),
-        "/live.css": (style, css),
+        "/symobs-live.js": (javascript, script().encode()),
+        "/start-http.js": (javascript, (ASSETS / "start-http.js").read_bytes()),
+        "/live.css": ("text/css; charset=utf-8", style().encode()),
     }
 
 

@@ -24,10 +24,14 @@ _LONGEST = Fraction(10**6)
 #: Thousandths of the height of the picture, or finer.
 _COARSE, _FINEST = 3, 9
 _DEAD, _SAMPLES = 1e-9, 40
+#: What is larger cannot be drawn beside numbers of usual size.
+_LARGEST = 10**12
+#: Why there is no response, as phrases.
+_NEEDS_NUMBERS, _TOO_WIDE, _TOO_LARGE = "said_needs_numbers", "said_too_wide", "said_too_large"
 
 
 class NoResponse(Exception):
-    """There is none, for a reason worth saying; its text may be empty."""
+    """There is none, for a reason worth saying; its text is a phrase, or empty."""
 
 
 class Signals:
@@ -53,6 +57,8 @@ def responses_of(result: Result, asked: Responses) -> dict[str, Any]:
     else:
         heights = _enclosed(signals, end, asked.count)
     peak = max(abs(height) for line in heights for height in line)
+    if peak > _LARGEST * _FINE:
+        raise NoResponse(_TOO_LARGE)
     digits = _COARSE if not peak else min(_FINEST, max(_COARSE, _COARSE - int(log10(peak / _FINE))))
     parts = 10**digits
     coarser = _FINE // parts
@@ -100,7 +106,7 @@ def _signals(result: Result, asked: Responses) -> Signals:
     if matrix is None:
         raise NoResponse
     if matrix.names or result.plant.relations:
-        raise NoResponse("Responses need numbers: give every symbol a value.")
+        raise NoResponse(_NEEDS_NUMBERS)
     return Signals(matrix, start, drawn)
 
 
@@ -120,7 +126,7 @@ def _state_and_estimate(order: int, T: Matrix | None, size: int) -> list[tuple[s
 def _below(T: Matrix, error: list[Fraction], size: int) -> list[Fraction]:
     """Return the last components of T e."""
     if T.names:
-        raise NoResponse("Responses need numbers: give every symbol a value.")
+        raise NoResponse(_NEEDS_NUMBERS)
     product = T @ Matrix.column(error)
     return [entry.fraction() for entry in product.entries][-size:]
 
@@ -166,11 +172,11 @@ def _enclosed(signals: Signals, end: Fraction, count: int) -> list[list[int]]:
     from symobs.exact.time_functions.state_response import state_response  # noqa: PLC0415 - FLINT
 
     if any(4 * (sum(map(abs, row)) + 1) * 10**_FINEST > _FINE for _, _, row, _ in signals.rows):
-        raise NoResponse("A response is left out: its enclosure stays too wide.")
+        raise NoResponse(_TOO_WIDE)
     try:
         states = state_response(signals.matrix, signals.start, end / (count - 1), count, _FINE)
     except ArithmeticError:
-        raise NoResponse("A response is left out: its enclosure stays too wide.") from None
+        raise NoResponse(_TOO_WIDE) from None
     lines = []
     for _, _, row, _ in signals.rows:
         common = lcm(*(part.denominator for part in row))

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class PoleSet:
-    """Poles that can be moved: the key of the specification, what they are called, and their mark."""
+    """Poles that can be moved: the key of the specification, the word for one of them, and their mark."""
 
     key: str
     label: str
@@ -29,20 +29,20 @@ class View:
     cards: tuple[str, ...] = ()
 
 
-_CONTROL = PoleSet("control_poles", "control pole", "cross")
-_OBSERVER = PoleSet("observer_poles", "observer pole", "ring")
+_CONTROL = PoleSet("control_poles", "control_pole", "cross")
+_OBSERVER = PoleSet("observer_poles", "observer_pole", "ring")
 _DESIGN = ("plane", "responses", "cards", "page")
 _RANK = ("cases", "cards", "page")
 VIEWS: dict[str, View] = {
     "compensator": View((_CONTROL, _OBSERVER), _DESIGN, ("K", "L", "F", "closed_loop_polynomial")),
     "feedforward": View((_CONTROL, _OBSERVER), _DESIGN, ("F", "K", "L", "transfer_function")),
     "tracking": View((_CONTROL, _OBSERVER), ("plane", "cards", "page"), ("K", "K_d", "L")),
-    "observer": View((PoleSet("poles", "observer pole", "ring"),), _DESIGN, ("L", "polynomial", "A")),
+    "observer": View((PoleSet("poles", "observer_pole", "ring"),), _DESIGN, ("L", "polynomial", "A")),
     "reduced_order_observer": View(
-        (PoleSet("poles", "observer pole", "ring"),), _DESIGN, ("L", "F", "G", "H", "M", "polynomial")
+        (PoleSet("poles", "observer_pole", "ring"),), _DESIGN, ("L", "F", "G", "H", "M", "polynomial")
     ),
     "state_feedback": View(
-        (PoleSet("poles", "control pole", "cross"),), _DESIGN, ("K", "polynomial", "closed_loop_matrix")
+        (PoleSet("poles", "control_pole", "cross"),), _DESIGN, ("K", "polynomial", "closed_loop_matrix")
     ),
     "stability_region": View((), ("region", "cards", "page"), ("polynomial",)),
     "observability": View((), _RANK, ("matrix", "rank", "determinant", "kernel")),

@@ -15,6 +15,7 @@ from symobs.convention import STANDARD, Convention
 from symobs.exact import Factored, Matrix, Root, Scalar
 from symobs.formula import Apply, Block, Letter, Literal, Negative, Product, Relation, Roots, SignReversal, Sum
 from symobs.notation import LETTERS
+from symobs.phrases.languages import ENGLISH
 from symobs.render.formats.html import HtmlWriter
 from symobs.render.printers.latex_printer import LatexPrinter
 from symobs.render.printers.mathml.mathml_printer import MathmlPrinter
@@ -25,6 +26,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
     from symobs.formula import Formula
+    from symobs.phrases.languages import Language
     from symobs.render.printers.printer import Printer
     from symobs.result import Result
 
@@ -80,14 +82,16 @@ class Card:
 
 @dataclass(frozen=True)
 class CardPrinter:
-    """The printers of a result's cards, in the letters of a convention."""
+    """The printers of a result's cards, in the letters of a convention; what they say is in a language."""
 
     result: Result
     convention: Convention = STANDARD
+    language: Language = ENGLISH
 
     def _printer(self, kind: type[Any]) -> Any:
         plant = self.result.plant
         printer: Printer[Any] = kind(plant.variable, plant.symbols.latex, discrete=plant.is_discrete)
+        printer.language = self.language
         printer.letters = {**LETTERS, **self.convention.forms(reduced=self.result.has_reduced_observer)}
         return printer
 
@@ -124,9 +128,9 @@ class CardPrinter:
         """Return the card in words for a reader of the screen: `K equals 4, 3`."""
         printer = self._text
         if isinstance(card.shown, Roots):
-            return f"roots {', '.join(listed(card.shown, printer, TEXT))}"
+            return self.language.phrases["said_roots"].format(roots=", ".join(listed(card.shown, printer, TEXT)))
         left, right = card.shown.members[0], card.shown.members[-1]
-        return f"{printer.inline(left)} equals {printer.inline(right)}"
+        return self.language.phrases["said_equals"].format(name=printer.inline(left), value=printer.inline(right))
 
 
 def names_of(result: Result) -> tuple[str, ...]:

@@ -27,6 +27,10 @@ PAIR = SERVO.replace("observer=-10, -10", "observer=-5+5/2i, -5-5/2i")
 CASES = "v=1&task=observability&A=[0 1; -2 -3]&C=[1 c]&symbols=c:real"
 REGION = "v=1&task=stability_region&A=[0 1; 9 0]&C=[0 1]&L=[h1; h2]&parameters=h1, h2&symbols=h1:real,h2:real"
 LOCUS = "v=1&task=stability_region&polynomial=s^3+2 s^2+3 s+k&parameters=k&symbols=k:real"
+#: Words that no German sentence contains.
+ENGLISH_WORDS = re.compile(
+    r"\b(the|is|are|and|with|this|poles|answers?|derivation|observer|row|save|copy)\b", re.IGNORECASE
+)
 PATIENCE = 60_000  # milliseconds; ends a page that hangs, measures nothing
 _FLAGS = ["--headless", "--no-sandbox", "--disable-gpu", "--disable-background-networking"]
 
@@ -155,6 +159,16 @@ def test_the_servo_opens(opened: Callable[..., Opened]) -> None:
     assert live.page.inner_text(".cards .verdict") == "Checked · 3 claims"
     live.page.wait_for_selector(".html math")
     assert "Observer" in live.page.inner_text(".html")
+    live.page.get_by_label("Language").select_option("de")
+    live.wait_for(
+        "document.querySelector('.html math') && document.querySelector('.html').innerText.includes('Regler')"
+    )
+    assert live.latex("K") == r"K=\begin{bmatrix}4&3\end{bmatrix}"
+    assert live.page.inner_text(".cards .verdict") == "Geprüft · 3 Aussagen"
+    assert ENGLISH_WORDS.findall(live.page.inner_text(".grid").partition("Literatur")[0]) == []
+    assert live.page.evaluate("document.activeElement.getAttribute('aria-label')") == "Sprache"
+    live.page.go_back()
+    live.wait_for("document.querySelector('.cards .verdict').innerText === 'Checked · 3 claims'")
 
 
 def test_the_last_answer_of_a_drag_belongs_to_the_last_place(opened: Callable[..., Opened]) -> None:
@@ -206,7 +220,7 @@ def test_pairs_form_and_part(opened: Callable[..., Opened]) -> None:
 
 
 def test_the_only_real_pole_of_a_set_stays_on_the_axis(opened: Callable[..., Opened]) -> None:
-    live = opened(SERVO.replace("observer=-10, -10", "observer=-4&kind=minimal"))
+    live = opened(SERVO.replace("observer=-10, -10", "observer=-4&order=minimal"))
     x, y = live.middle("observer_poles.0")
     live.drag((x, y), (x, y - 90))
     live.at_rest()
@@ -305,6 +319,7 @@ def test_a_case_is_set_exactly(opened: Callable[..., Opened]) -> None:
     assert live.page.get_attribute(".cards .verdict", "data-verdict") == "no"
     assert live.latex("kernel") == r"N=\begin{bmatrix}-1\\1\end{bmatrix}"
     assert live.page.input_value('[data-where="at.c"]') == "1"
+    assert live.page.get_attribute(""".chosen[data-case]""", "data-case") == '{"c":"1"}'
     live.page.click("text=in general")
     live.at_rest()
     assert live.page.get_attribute(".cards .verdict", "data-verdict") == "conditional"
@@ -397,18 +412,23 @@ def test_a_link_opens_the_same_and_back_undoes(opened: Callable[..., Opened]) ->
     live.drag((x, y), (x - 60, y))
     live.at_rest()
     moved = live.poles("observer_poles")
+    live.page.get_by_label("Detail").select_option("answer")
+    live.at_rest()
     live.page.click(".copy")
     link = live.page.evaluate("navigator.clipboard.readText()")
     assert "token" not in link
     other = opened(re.sub(r"%(..)", lambda c: chr(int(c[1], 16)), link.partition("#")[2]))
     assert other.poles("observer_poles") == moved
     assert other.latex("L") == live.latex("L")
+    other.page.wait_for_selector(".html math")
+    assert other.page.inner_text(".html") == live.page.inner_text(".html")
+    live.page.go_back()
     live.page.go_back()
     live.at_rest()
     assert live.poles("observer_poles") == "-5+5/2i, -5-5/2i"
 
 
-@pytest.mark.parametrize("state", [PAIR, CASES, REGION], ids=["poles", "cases", "region"])
+@pytest.mark.parametrize("state", [f"{PAIR}&language=de", CASES, REGION], ids=["poles", "cases", "region"])
 @pytest.mark.parametrize(("width", "scheme"), [(320, "light"), (590, "dark"), (1180, "dark")])
 def test_nothing_overflows(opened: Callable[..., Opened], state: str, width: int, scheme: str) -> None:
     live = opened(state, color_scheme=scheme)

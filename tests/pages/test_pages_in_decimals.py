@@ -20,6 +20,7 @@ from symobs import (
     StateSpace,
     compensator,
     gramian,
+    matrix_exponential,
     observer,
     reduced_order_observer,
     stability_region,
@@ -325,6 +326,17 @@ def test_exact_and_digits_choose() -> None:
         typed.to("text", digits=4, exact=True)
     with pytest.raises(UsageError, match="from 1 to 40"):
         typed.to("text", digits=0)
+
+
+def test_a_root_of_a_composite_number_is_rounded_too() -> None:
+    """The modes of the exponential have the discriminant 1265 = 5 · 11 · 23; sinh(ωt)/ω, ω = √1265/20, stands in it."""
+    plant = StateSpace("[0.5 0.1; 1 -3]")
+    with warnings.catch_warnings():
+        warnings.simplefilter("error", SymobsWarning)
+        page = str(matrix_exponential(plant).to("latex"))
+    one = 20 / Decimal(1265).sqrt()
+    assert page.count(f"{one.quantize(Decimal('1.00000'))}") == 2
+    assert f"{(one / 10).quantize(Decimal('1.000000'))}" in page
 
 
 def test_a_short_exact_answer_stands_before_its_decimals() -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import click
 
 from symobs.cli.shared.common import read_file
+from symobs.cli.shared.options import options
 from symobs.errors import UsageError
 
 
@@ -22,6 +23,7 @@ from symobs.errors import UsageError
 )
 @click.option("--memory", type=click.IntRange(100), default=1000, metavar="MB", help="What an answer may use.")
 @click.option("--convention", "convention_name", metavar="NAME", help="Write answers in another convention.")
+@options("language")
 def command(
     file: str | None,
     port: int,
@@ -30,6 +32,7 @@ def command(
     timeout: float,
     memory: int,
     convention_name: str | None,
+    language: str | None,
 ) -> None:
     """Move poles, parameters and entries in a browser, every answer checked; FILE is the problem to begin with."""
     from symobs.live.links import link_of  # noqa: PLC0415 - only a server imports it
@@ -43,7 +46,7 @@ def command(
             repair="leave it out; to look at it from another machine, use an SSH tunnel",
         )
     state = ""
-    if file is not None or convention_name is not None:
+    if file is not None or convention_name is not None or language is not None:
         from symobs.problem import parse, validate  # noqa: PLC0415 - only with a file
 
         text = read_file(file) if file is not None else ""
@@ -57,6 +60,10 @@ def command(
                 repair = f"use one of {', '.join(conventions())}"
                 raise UsageError(f"{convention_name[:40]!r} is not a convention", where="--convention", repair=repair)
             data = {**data, "convention": convention_name}
+        if language is not None:
+            from symobs.phrases.languages import language_named  # noqa: PLC0415 - only with --language
+
+            data = {**data, "language": language_named(language, "--language").code}
         state = link_of(data)
     try:
         server = Server(host, port, AnswerBudget(timeout, memory))

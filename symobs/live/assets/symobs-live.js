@@ -5,16 +5,23 @@
 const SCHEMA = "symobs-live/1", GRID = 20, REST = 250, BUSY = 150, LONGEST = 8000;
 const SVG = "http://www.w3.org/2000/svg";
 const SNAPS = { "1/20": 1, "1/10": 2, "1/4": 5, "1/2": 10, 1: 20 };
-const SHORT = { control: "control_poles", observer: "observer_poles", kind: "observer" };
+const SHORT = { control: "control_poles", observer: "observer_poles", order: "observer" };
 const PLANT = ["A", "B", "C", "D", "transfer_function", "dt"];
-const OWN = ["v", "task", "symbols", "convention", "language", "at", "snap", "closed", "x0", "xh0"];
-const TITLES = { plane: "Poles", responses: "Responses", cards: "Answers", cases: "Cases", region: "Region", page: "Derivation" };
+const OWN = ["v", "task", "symbols", "convention", "language", "at", "snap", "closed", "detail", "x0", "xh0"];
+const DETAILS = ["full", "outline", "answer"];
+const PANELS = ["plane", "responses", "cards", "cases", "region", "page"];
+
+/** The words of each language by its code; whoever hands out this file puts them in. @type {Record<string, Record<string, string>>} */
+export const LANGUAGES = {};
+
+/** Put what a phrase speaks of into its slots. @param {string} phrase @param {object} slots */
+export const filled = (phrase, slots) => phrase.replace(/\{(\w+)\}/g, (_, slot) => slots[slot]);
 
 /** Post questions to the server of `symobs serve`. @param {string} token */
 export const http = (token) => async (body, signal) => {
   const headers = { "Content-Type": "application/json", "X-Symobs-Token": token };
   const got = await fetch("api", { method: "POST", headers, body: JSON.stringify(body), signal });
-  if (!got.ok) throw new Error(got.status === 403 ? "this page is not the one the server opened" : `the server says ${got.status}`);
+  if (!got.ok) throw Object.assign(new Error(), { status: got.status });
   return got.json();
 };
 
@@ -25,7 +32,6 @@ const ratio = (n, d = 1) => { const g = gcd(n, d) || 1; return d < 0 ? [-n / g, 
 const plus = (a, b) => ratio(a[0] * b[1] + b[0] * a[1], a[1] * b[1]);
 const value = (a) => a[0] / a[1];
 const text = (a) => (a[1] === 1 ? `${a[0]}` : `${a[0]}/${a[1]}`);
-const pretty = (s) => s.replace(/-/g, "−");
 
 /** Read a rational number; null for anything else. @param {string} source */
 function rational(source) {
@@ -112,7 +118,7 @@ function decoded(link) {
   const listed = (source) => Object.fromEntries((source ?? "").split(",").filter(Boolean).map((e) => e.split(/:(.*)/s).slice(0, 2)));
   Object.assign(state, { symbols: listed(given.symbols), at: listed(given.at) });
   Object.assign(state, { snap: given.snap in SNAPS ? given.snap : "1/2", closed: (given.closed ?? "").split(",").filter(Boolean) });
-  Object.assign(state, { x0: given.x0 ?? "", xh0: given.xh0 ?? "" });
+  Object.assign(state, { detail: DETAILS.includes(given.detail) ? given.detail : "full", x0: given.x0 ?? "", xh0: given.xh0 ?? "" });
   for (const [key, entry] of Object.entries(given)) {
     if (PLANT.includes(key)) state.plant[key] = entry;
     else if (!OWN.includes(key) && key !== "token") state.spec[SHORT[key] ?? key] = entry;
@@ -126,7 +132,7 @@ function encoded(state) {
   const spec = Object.fromEntries(Object.entries(state.spec).map(([key, entry]) => [long[key] ?? key, entry]));
   const all = { v: 1, task: state.task, ...state.plant, ...spec, symbols: paired(state.symbols), at: paired(state.at) };
   Object.assign(all, { convention: state.convention, language: state.language, snap: state.snap === "1/2" ? "" : state.snap });
-  Object.assign(all, { closed: state.closed.join(","), x0: state.x0, xh0: state.xh0 });
+  Object.assign(all, { closed: state.closed.join(","), detail: state.detail === "full" ? "" : state.detail, x0: state.x0, xh0: state.xh0 });
   const plain = (t) => encodeURIComponent(t).replace(/%(2C|3B|3A|2F|5B|5D|5E)/g, decodeURIComponent);
   return Object.entries(all).filter(([, entry]) => entry !== "" && entry !== undefined).map(([key, entry]) => `${key}=${plain(String(entry))}`).join("&");
 }
@@ -136,7 +142,7 @@ function stateOf(problem, task, before) {
   const flat = (entry) => (Array.isArray(entry) ? (Array.isArray(entry[0]) ? matrix(entry.map((r) => r.map((c) => (/\s/.test(c) ? `(${c})` : `${c}`)))) : entry.join(", ")) : String(entry));
   const table = (entries) => Object.fromEntries(Object.entries(entries ?? {}).map(([key, entry]) => [key, flat(entry)]));
   const symbols = Object.fromEntries(Object.entries(problem.symbols ?? {}).map(([name, sign]) => [name, sign.sign ?? (typeof sign === "string" ? sign : "real")]));
-  return { ...before, task, plant: table(problem.plant), spec: table(problem.specification), symbols, at: {}, convention: problem.convention ?? "", language: problem.language ?? "", x0: "", xh0: "" };
+  return { ...before, task, plant: table(problem.plant), spec: table(problem.specification), symbols, at: {}, convention: problem.convention ?? "", language: problem.language ?? before.language, x0: "", xh0: "" };
 }
 
 // -- elements ---------------------------------------------------------------------------------------------------------
@@ -177,45 +183,60 @@ export function mount(element, transport, options = {}) {
   const begun = (link) => decoded(/(^|[#&])task=/.test(link) ? link : `${DEMO}&${link.replace(/^#/, "")}`);
   let s = begun(options.state ?? "");
   let view = null, viewed = "", answer = null, sets = {}, held = null, frame = null, start = null;
-  let waiting = null, running = false, number = 0, drawn = 0, resting = 0, restTimer = 0, busyTimer = 0, said = 0, gone = false, quiet = false, before = "";
-  let aborted = new AbortController();
+  let waiting = null, running = false, number = 0, drawn = 0, restTimer = 0, busyTimer = 0, said = 0, gone = false, quiet = false, before = "";
+  let aborted = new AbortController(), language = null;
   const el = {};
+
+  const w = (name, slots = {}) => filled(language[name], slots);
+  const pretty = (s) => s.replace(/-/g, "−").replace(/(\d)\.(?=\d)/g, `$1${language.decimal_mark}`);
+  const taskName = (task) => language[`task_${task}`] ?? task.replace(/_/g, " ");
+  const why = (error) => (error.status ? w(error.status === 403 ? "another_page" : "server_says", error) : error.message);
 
   // -- the frame of the page ------------------------------------------------------------------------------------------
 
   const panel = (name, ...inside) => {
-    const close = h("button", { class: "quiet", title: "Close", "aria-label": `Close ${TITLES[name]}`, onclick: () => fold(name, true) }, "×");
-    return (el[name] = h("section", { class: `panel ${name}`, "aria-label": TITLES[name] }, h("header", {}, h("h2", {}, TITLES[name]), (el[`${name}Bar`] = h("span", { class: "tools" })), close), (el[`${name}Body`] = h("div", { class: "body" }, inside))));
+    const label = w("close", { panel: w(name) }), close = h("button", { class: "quiet", title: label, "aria-label": label, onclick: () => fold(name, true) }, "×");
+    return (el[name] = h("section", { class: `panel ${name}`, "aria-label": w(name) }, h("header", {}, h("h2", {}, w(name)), (el[`${name}Bar`] = h("span", { class: "tools" })), close), (el[`${name}Body`] = h("div", { class: "body" }, inside))));
   };
-  el.task = h("select", { "aria-label": "Task", onchange: () => { s.task = el.task.value; problemChanged(); } }, h("option", { value: s.task }, s.task.replace(/_/g, " ")));
-  el.examples = h("select", { "aria-label": "Example", onchange: choose }, h("option", { value: "" }, "Examples …"));
-  el.snap = h("select", { "aria-label": "Grid", title: "Grid on which poles move", onchange: () => { s.snap = el.snap.value; commit(true); drawPlane(); } }, Object.keys(SNAPS).map((k) => h("option", { value: k }, k)));
-  el.message = h("div", { class: "message", hidden: true });
-  el.verdict = h("p", { class: "verdict" });
-  el.notes = h("p", { class: "notes" });
-  el.list = h("div", { class: "list" });
-  el.live = h("div", { class: "hidden", "aria-live": "polite", role: "status" });
-  el.poles = h("svg:svg", { class: "picture", viewBox: "0 0 480 360", role: "group", "aria-label": "Plane of the poles" });
-  el.texts = h("div", { class: "fields" });
-  el.curves = h("svg:svg", { class: "picture", viewBox: "0 0 480 300", role: "img" });
-  el.legend = h("p", { class: "legend" });
-  el.starts = h("div", { class: "fields starts" });
-  el.map = h("div", { class: "map" });
-  el.point = h("div", { class: "point" });
-  el.html = h("div", { class: "html", tabindex: "0", "aria-label": "Derivation" });
-  el.plant = h("section", { class: "panel plant", "aria-label": "Problem" });
-  el.reopen = h("span", { class: "reopen" });
-  const save = (as, label) => h("button", { onclick: () => take(as) }, label);
-  el.copy = h("button", { class: "copy", onclick: copyLink }, "Copy link");
-  root.append(
-    h("header", { class: "bar" }, h("strong", {}, "symobs"), el.task, el.examples, el.reopen, h("span", { class: "space" }), el.copy, h("details", { class: "menu" }, h("summary", {}, "Save"), h("div", {}, save("toml", "Problem file"), save("python", "Python"), save("latex", "LaTeX"), save("html", "Page")))),
-    el.message,
-    h("div", { class: "grid" }, el.plant, panel("region", el.map, el.point), panel("plane", el.poles, el.texts), panel("responses", el.curves, el.legend, el.starts), panel("cases"), panel("cards", el.verdict, el.notes, el.list), panel("page", el.html)),
-    el.live,
-  );
-  el.planeBar.append(h("label", {}, "grid ", el.snap));
-  el.detail = h("select", { "aria-label": "Detail", onchange: () => { drawn = 0; rest(0); } }, ["full", "outline", "answer"].map((d) => h("option", { value: d }, d)));
-  el.pageBar.append(el.detail);
+
+  /** Build the frame where there is none in the language of the state. */
+  function furnish() {
+    const code = s.language in LANGUAGES ? s.language : "en";
+    if (language === LANGUAGES[code]) return;
+    language = LANGUAGES[code];
+    root.lang = code;
+    el.task = h("select", { "aria-label": w("task"), onchange: () => { s.task = el.task.value; problemChanged(); } }, h("option", { value: s.task }, taskName(s.task)));
+    el.examples = h("select", { "aria-label": w("example"), onchange: choose }, h("option", { value: "" }, w("examples")));
+    el.language = h("select", { "aria-label": w("language"), onchange: () => { s.language = el.language.value; problemChanged(); el.language.focus(); } }, Object.entries(LANGUAGES).map(([key, own]) => h("option", { value: key, lang: key, selected: key === code }, own.name)));
+    el.snap = h("select", { title: w("grid_of_poles"), onchange: () => { s.snap = el.snap.value; commit(true); drawPlane(); } }, Object.keys(SNAPS).map((k) => h("option", { value: k }, k)));
+    el.message = h("div", { class: "message", hidden: true });
+    el.verdict = h("p", { class: "verdict" });
+    el.notes = h("p", { class: "notes" });
+    el.list = h("div", { class: "list" });
+    el.live = h("div", { class: "hidden", "aria-live": "polite", role: "status" });
+    el.poles = h("svg:svg", { class: "picture", viewBox: "0 0 480 360", role: "group", "aria-label": w("plane_of_poles") });
+    el.texts = h("div", { class: "fields" });
+    el.curves = h("svg:svg", { class: "picture", viewBox: "0 0 480 300", role: "img" });
+    el.legend = h("p", { class: "legend" });
+    el.starts = h("div", { class: "fields starts" });
+    el.map = h("div", { class: "map" });
+    el.point = h("div", { class: "point" });
+    el.html = h("div", { class: "html", tabindex: "0", "aria-label": w("page") });
+    el.plant = h("section", { class: "panel plant", "aria-label": w("problem") });
+    el.reopen = h("span", { class: "reopen" });
+    el.copy = h("button", { class: "copy", onclick: copyLink }, w("copy_link"));
+    const save = ["toml", "python", "latex", "html"].map((as) => h("button", { onclick: () => take(as) }, w(`save_${as}`)));
+    root.replaceChildren(
+      h("header", { class: "bar" }, h("strong", {}, "symobs"), el.task, el.examples, el.reopen, h("span", { class: "space" }), el.language, el.copy, h("details", { class: "menu" }, h("summary", {}, w("save")), h("div", {}, save))),
+      el.message,
+      h("div", { class: "grid" }, el.plant, panel("region", el.map, el.point), panel("plane", el.poles, el.texts), panel("responses", el.curves, el.legend, el.starts), panel("cases"), panel("cards", el.verdict, el.notes, el.list), panel("page", el.html)),
+      el.live,
+    );
+    el.planeBar.append(h("label", {}, `${w("grid")} `, el.snap));
+    el.detail = h("select", { "aria-label": w("detail"), onchange: () => { s.detail = el.detail.value; commit(true); rest(0); } }, DETAILS.map((d) => h("option", { value: d }, w(`detail_${d}`))));
+    el.pageBar.append(el.detail);
+    offer();
+  }
 
   function fold(name, close) {
     s.closed = close ? [...new Set([...s.closed, name])] : s.closed.filter((n) => n !== name);
@@ -226,8 +247,8 @@ export function mount(element, transport, options = {}) {
 
   function showPanels() {
     const known = view?.panels ?? ["cards"];
-    for (const name of Object.keys(TITLES)) el[name].hidden = !known.includes(name) || s.closed.includes(name);
-    el.reopen.replaceChildren(...known.filter((n) => s.closed.includes(n)).map((n) => h("button", { class: "quiet", onclick: () => fold(n, false) }, `+ ${TITLES[n]}`)));
+    for (const name of PANELS) el[name].hidden = !known.includes(name) || s.closed.includes(name);
+    el.reopen.replaceChildren(...known.filter((n) => s.closed.includes(n)).map((n) => h("button", { class: "quiet", onclick: () => fold(n, false) }, `+ ${w(n)}`)));
     root.dataset.task = s.task;
   }
 
@@ -242,13 +263,12 @@ export function mount(element, transport, options = {}) {
     for (const key of ["convention", "language"]) if (s[key]) told[key] = s[key];
     return told;
   };
-  const signature = () => JSON.stringify([s.task, s.plant, s.symbols, s.convention, s.task === "stability_region" ? s.spec : Object.keys(s.spec)]);
+  const signature = () => JSON.stringify([s.task, s.plant, s.symbols, s.convention, s.language, s.task === "stability_region" ? s.spec : Object.keys(s.spec)]);
   const free = () => Object.fromEntries(Object.entries(s.at).filter(([name]) => !view?.region?.parameters?.includes(name)));
   const asking = (want, more = {}) => ({ schema: SCHEMA, id: ++number, want, problem: problem(), ...more });
 
   function ask() {
     waiting = true;
-    resting = 0;
     aborted.abort();
     clearTimeout(restTimer);
     if (!running) run();
@@ -282,7 +302,7 @@ export function mount(element, transport, options = {}) {
         await painted();
         if (got.id >= drawn || !got.id) drawAnswer(got);
       } catch (error) {
-        if (!gone) say(`No answer: ${error.message}.`, () => ask());
+        if (!gone) say(w("no_answer", { reason: why(error) }), () => ask());
       }
     }
     running = false;
@@ -303,10 +323,15 @@ export function mount(element, transport, options = {}) {
     const got = await transport({ schema: SCHEMA, id: ++number, want: "start" }).catch(() => null);
     if (!got?.tasks || start) return;
     start = got;
-    el.task.replaceChildren(...Object.entries(got.tasks).map(([name, about]) => h("option", { value: name, title: about }, name.replace(/_/g, " "))));
+    offer();
+  }
+
+  function offer() {
+    if (!start) return;
+    el.task.replaceChildren(...Object.keys(start.tasks).map((name) => h("option", { value: name }, taskName(name))));
     el.task.value = s.task;
-    const by = Object.groupBy ? Object.groupBy(got.examples, (e) => e.task) : { all: got.examples };
-    el.examples.append(...Object.entries(by).map(([task, list]) => h("optgroup", { label: task.replace(/_/g, " ") }, list.map((e) => h("option", { value: e.name }, e.title)))));
+    const by = Object.groupBy ? Object.groupBy(start.examples, (e) => e.task) : { all: start.examples };
+    el.examples.append(...Object.entries(by).map(([task, list]) => h("optgroup", { label: taskName(task) }, list.map((e) => h("option", { value: e.name, lang: "en" }, e.title)))));
   }
 
   function rest(after) {
@@ -320,11 +345,11 @@ export function mount(element, transport, options = {}) {
       const signal = aborted.signal, at = free();
       el.page.setAttribute("aria-busy", "true");
       try {
-        const got = await transport(asking("page", { detail: el.detail.value, at, cards_at: Object.keys(at).length > 0 }), signal);
+        const got = await transport(asking("page", { detail: s.detail, at, cards_at: Object.keys(at).length > 0 }), signal);
         if (signal.aborted) return;
-        el.html.lang = s.language || "en";
+        
         if (got.html) el.html.innerHTML = got.html;
-        else el.html.replaceChildren(h("p", { class: "pale" }, got.message ?? got.errors?.map((e) => e.message).join("; ") ?? "no derivation"), got.status === "undecided" ? h("button", { onclick: () => rest(0) }, "Try again") : null);
+        else el.html.replaceChildren(h("p", { class: "pale" }, got.message ?? got.errors?.map((e) => e.message).join("; ") ?? w("no_derivation")), got.status === "undecided" ? h("button", { onclick: () => rest(0) }, w("try_again")) : null);
         el.page.setAttribute("aria-busy", "false");
       } catch { /* a newer question has taken its place */ }
     }, after);
@@ -338,14 +363,14 @@ export function mount(element, transport, options = {}) {
 
   function say(words, again) {
     el.message.hidden = !words;
-    el.message.replaceChildren(...(words ? [h("span", {}, words), again ? h("button", { onclick: () => { say(""); again(); } }, "Try again") : ""] : []));
+    el.message.replaceChildren(...(words ? [h("span", {}, words), again ? h("button", { onclick: () => { say(""); again(); } }, w("try_again")) : ""] : []));
   }
 
   // -- changes ----------------------------------------------------------------------------------------------------------
 
   function commit(final) {
     const link = encoded(s);
-    if (link.length > LONGEST) say("This problem is too long for a link: save the problem file instead.");
+    if (link.length > LONGEST) say(w("too_long"));
     else options.changed?.(link, final);
   }
   function problemChanged() { commit(true); build(); ask(); }
@@ -363,12 +388,12 @@ export function mount(element, transport, options = {}) {
     const link = options.link ? options.link(encoded(s)) : encoded(s);
     try {
       await navigator.clipboard.writeText(link);
-      el.copy.textContent = "Copied";
-      setTimeout(() => { el.copy.textContent = "Copy link"; }, 1500);
+      el.copy.textContent = w("copied");
+      setTimeout(() => { el.copy.textContent = w("copy_link"); }, 1500);
     } catch {
-      const field = h("input", { value: link, "aria-label": "Link", readonly: true });
+      const field = h("input", { value: link, "aria-label": w("link"), readonly: true });
       el.message.hidden = false;
-      el.message.replaceChildren("Copy this link: ", field);
+      el.message.replaceChildren(w("copy_this"), field);
       field.select();
     }
   }
@@ -376,11 +401,11 @@ export function mount(element, transport, options = {}) {
   async function take(as) {
     try {
       const got = await transport(asking("export", { as, at: free(), cards_at: Object.keys(free()).length > 0 }));
-      if (!got.text) throw new Error(got.message ?? got.errors?.[0]?.message ?? "nothing to save");
+      if (!got.text) throw new Error(got.message ?? got.errors?.[0]?.message ?? w("nothing_to_save"));
       const url = URL.createObjectURL(new Blob([got.text], { type: "text/plain" }));
       h("a", { href: url, download: got.file }).click();
       setTimeout(() => URL.revokeObjectURL(url), 1000);
-    } catch (error) { say(`Not saved: ${error.message}.`); }
+    } catch (error) { say(w("not_saved", { reason: why(error) })); }
   }
 
   // -- the problem: matrices, specification, symbols ---------------------------------------------------------------------
@@ -391,6 +416,7 @@ export function mount(element, transport, options = {}) {
   }
 
   function build() {
+    furnish();
     const isRegion = s.task === "stability_region";
     const listed = ["A", "B", "C", "D"].filter((name) => s.plant[name] !== undefined);
     const rows = listed.map((name) => {
@@ -399,22 +425,23 @@ export function mount(element, transport, options = {}) {
       if (!table) return field(`plant.${name}`, name, s.plant[name], set);
       const grid = h("span", { class: "matrix", style: `--columns:${table[0].length}` }, table.map((row, i) => row.map((cell, j) => {
         const size = Math.max(2, Math.min(14, Math.max(...table.map((r) => r[j].length))));
-        const input = field(`plant.${name}[${i + 1},${j + 1}]`, `${name} row ${i + 1} column ${j + 1}`, cell, (t) => { if (t === table[i][j]) return; table[i][j] = t; s.plant[name] = matrix(table.map((r) => r.map((c) => (/\s/.test(c) ? `(${c})` : c)))); commit(true); ask(); build(); }, false);
+        const input = field(`plant.${name}[${i + 1},${j + 1}]`, w("entry", { name, row: i + 1, column: j + 1 }), cell, (t) => { if (t === table[i][j]) return; table[i][j] = t; s.plant[name] = matrix(table.map((r) => r.map((c) => (/\s/.test(c) ? `(${c})` : c)))); commit(true); ask(); build(); }, false);
         input.style.setProperty("--size", `${size}ch`);
         return input;
       })));
       return h("div", { class: "named" }, h("i", {}, name), h("span", { class: "equals" }, "="), grid, h("small", { class: "wrong", "data-of": `plant.${name}` }));
     });
-    const all = h("details", { class: "astext" }, h("summary", {}, "as text"), ["A", "B", "C", "D", "transfer_function", "dt"].map((name) => field(`text.${name}`, name.replace("_", " "), s.plant[name], (t) => { if (t) s.plant[name] = t; else delete s.plant[name]; problemChanged(); })), field("text.symbols", "symbols", Object.entries(s.symbols).map(([n, g]) => `${n}: ${g}`).join(", "), (t) => { s.symbols = Object.fromEntries(t.split(",").map((e) => e.split(":").map((p) => p.trim())).filter(([n]) => n).map(([n, g]) => [n, g || "real"])); problemChanged(); }));
+    const all = h("details", { class: "astext" }, h("summary", {}, w("as_text")), ["A", "B", "C", "D", "transfer_function", "dt"].map((name) => field(`text.${name}`, name.replace("_", " "), s.plant[name], (t) => { if (t) s.plant[name] = t; else delete s.plant[name]; problemChanged(); })), field("text.symbols", "symbols", Object.entries(s.symbols).map(([n, g]) => `${n}: ${g}`).join(", "), (t) => { s.symbols = Object.fromEntries(t.split(",").map((e) => e.split(":").map((p) => p.trim())).filter(([n]) => n).map(([n, g]) => [n, g || "real"])); problemChanged(); }));
     if (s.plant.transfer_function !== undefined) rows.push(field("plant.transfer_function", "P(s)", s.plant.transfer_function, (t) => { s.plant.transfer_function = t; problemChanged(); }));
     const setKeys = (view?.sets ?? []).map((g) => g.key);
     const others = Object.keys(s.spec).filter((key) => !setKeys.includes(key) && key !== "observer").map((key) => field(`specification.${key}`, key.replace(/_/g, " "), s.spec[key], (t) => { if (t) s.spec[key] = t; else delete s.spec[key]; problemChanged(); }));
-    const kind = s.task === "compensator" ? h("label", { class: "field" }, h("span", {}, "observer"), h("select", { "aria-label": "Kind of observer", onchange: (e) => { s.spec.observer = e.target.value; fitObserver(); problemChanged(); } }, ["full", "minimal"].map((k) => h("option", { value: k, selected: (s.spec.observer ?? "full") === k }, k === "full" ? "full order" : "minimal order")))) : null;
+    const kind = s.task === "compensator" ? h("label", { class: "field" }, h("span", {}, w("kind")), h("select", { onchange: (e) => { s.spec.observer = e.target.value; fitObserver(); problemChanged(); } }, ["full", "minimal"].map((k) => h("option", { value: k, selected: (s.spec.observer ?? "full") === k }, w(`kind_${k}`))))) : null;
     const names = Object.keys(s.symbols).filter((n) => !(isRegion && view?.region?.parameters?.includes(n)));
     const sliders = names.map((name) => slider(name));
-    el.plant.replaceChildren(h("header", {}, h("h2", {}, "Problem")), h("div", { class: "body" }, h("div", { class: "matrices" }, rows), kind, others, sliders.length ? h("div", { class: "sliders" }, sliders) : null, all));
+    el.plant.replaceChildren(h("header", {}, h("h2", {}, w("problem"))), h("div", { class: "body" }, h("div", { class: "matrices" }, rows), kind, others, sliders.length ? h("div", { class: "sliders" }, sliders) : null, all));
     if ([...el.task.options].some((o) => o.value === s.task)) el.task.value = s.task;
     el.snap.value = s.snap;
+    el.detail.value = s.detail;
     buildSets();
     showPanels();
   }
@@ -432,8 +459,8 @@ export function mount(element, transport, options = {}) {
     const sign = s.symbols[name], low = /positive|nonnegative/.test(sign) ? 0 : -10, high = /negative|nonpositive/.test(sign) && sign !== "nonnegative" ? 0 : 10;
     const set = (t, final) => { if (t) s.at[name] = t; else delete s.at[name]; exact.value = t; range.value = t && rational(t) ? String(value(rational(t)) * GRID) : range.value; commit(final); ask(); };
     const range = h("input", { type: "range", min: (low || 0) * GRID, max: high * GRID, step: 1, value: rational(s.at[name] ?? "") ? value(rational(s.at[name])) * GRID : (low + high) * GRID / 2, "aria-label": `${name}, ${sign}`, oninput: () => { held = "slider"; set(text(ratio(Number(range.value), GRID)), false); }, onchange: () => { held = null; commit(true); ask(); } });
-    const exact = field(`at.${name}`, `value of ${name}`, s.at[name] ?? "", (t) => set(t, true), false);
-    exact.setAttribute("placeholder", "letter");
+    const exact = field(`at.${name}`, w("value_of", { name }), s.at[name] ?? "", (t) => set(t, true), false);
+    exact.setAttribute("placeholder", w("letter"));
     return h("div", { class: "slider" }, h("i", {}, name), range, exact, h("small", { class: "wrong", "data-of": `at.${name}` }));
   }
 
@@ -447,21 +474,21 @@ export function mount(element, transport, options = {}) {
     if (region?.handle) {
       region.parameters.forEach((name, k) => { s.at[name] ??= region.handle[k]; });
       buildPoint();
-    } else el.point.replaceChildren(h("p", { class: "pale" }, "There is no picture of this region; its conditions stand in the derivation."));
+    } else el.point.replaceChildren(h("p", { class: "pale" }, w("no_picture")));
   }
 
   // -- poles in their plane ---------------------------------------------------------------------------------------------
 
   function buildSets() {
     sets = Object.fromEntries((view?.sets ?? []).map((group) => [group.key, handles(s.spec[group.key] ?? "")]));
-    el.texts.replaceChildren(...(view?.sets ?? []).map((group) => h("label", { class: `field ${group.mark}` }, h("span", {}, `${group.label}s`), poleField(group), h("small", { class: "wrong", "data-of": `specification.${group.key}` }))));
+    el.texts.replaceChildren(...(view?.sets ?? []).map((group) => h("label", { class: `field ${group.mark}` }, h("span", {}, w(`${group.label}s`)), poleField(group), h("small", { class: "wrong", "data-of": `specification.${group.key}` }))));
     el.starts.replaceChildren(field("courses.start", "x(0)", s.x0 || "", (t) => { s.x0 = t; commit(true); ask(); }), ...(s.task === "state_feedback" ? [] : [field("courses.estimate", "x̂(0)", s.xh0 || "", (t) => { s.xh0 = t; commit(true); ask(); })]));
     for (const [input, fallback] of [[el.starts.querySelectorAll("input")[0], "1, 1, …"], [el.starts.querySelectorAll("input")[1], "0, 0, …"]]) input?.setAttribute("placeholder", fallback);
     drawPlane(true);
   }
 
   function poleField(group) {
-    const input = h("input", { value: s.spec[group.key] ?? "", "data-set": group.key, "aria-label": `${group.label}s`, spellcheck: "false", onchange: () => { s.spec[group.key] = input.value.trim(); sets[group.key] = handles(input.value); drawPlane(true); commit(true); ask(); } });
+    const input = h("input", { value: s.spec[group.key] ?? "", "data-set": group.key, "aria-label": w(`${group.label}s`), spellcheck: "false", onchange: () => { s.spec[group.key] = input.value.trim(); sets[group.key] = handles(input.value); drawPlane(true); commit(true); ask(); } });
     return input;
   }
 
@@ -499,19 +526,19 @@ export function mount(element, transport, options = {}) {
     if (view.discrete) parts.push(h("svg:circle", { class: "stable", cx: X(0), cy: Y(0), r: frame.scale }));
     else parts.push(h("svg:rect", { class: "stable", x: 40, y: 16, width: Math.max(0, Math.min(464, X(0)) - 40), height: 320 }));
     for (const x of ticks(x0, x1, 8)) parts.push(line("rule", X(x), 16, X(x), 336), label(X(x), 350, String(x), "middle"));
-    for (const y of ticks(y0, y1, 6)) parts.push(line("rule", 40, Y(y), 464, Y(y)), label(34, Y(y) + 4, y ? `${y}` : "0", "end"));
+    for (const y of ticks(y0, y1, 6)) parts.push(line("rule", 40, Y(y), 464, Y(y)), label(34, Y(y) + 4, `${y || 0}`, "end"));
     parts.push(line("axis", 40, Y(0), 464, Y(0)));
     if (X(0) > 40 && X(0) < 464) parts.push(line("axis", X(0), 16, X(0), 336));
     parts.push(label(464, Y(0) - 6, "Re", "end"), label(Math.min(456, Math.max(46, X(0) + 6)), 28, "Im", "start"));
     for (const m of answer?.marks ?? []) {
       const [x, y] = [X(Number(m.re)), Y(Number(m.im))];
-      if (x > 38 && x < 466 && y > 14 && y < 338) parts.push(h("svg:path", { class: `mark ${m.kind}`, d: m.kind === "F" ? `M${x - 4} ${y}h8M${x} ${y - 4}v8` : `M${x - 3.5} ${y - 3.5}l7 7m0 -7l-7 7` }, h("svg:title", {}, m.kind === "F" ? "pole of F" : "pole of the plant")));
+      if (x > 38 && x < 466 && y > 14 && y < 338) parts.push(h("svg:path", { class: `mark ${m.kind}`, d: m.kind === "F" ? `M${x - 4} ${y}h8M${x} ${y - 4}v8` : `M${x - 3.5} ${y - 3.5}l7 7m0 -7l-7 7` }, h("svg:title", {}, w(`pole_of_${m.kind}`))));
     }
     for (const group of view.sets) {
       const list = sets[group.key] ?? [], count = list.length;
       list.forEach((p, k) => p.raw || parts.push(handle(group, list, p, k, count)));
     }
-    if (Object.values(sets).flat().some((p) => p.raw)) parts.push(h("svg:text", { x: 46, y: 330, class: "remark" }, "poles with letters, or off a pair, are in the text fields"));
+    if (Object.values(sets).flat().some((p) => p.raw)) parts.push(h("svg:text", { x: 46, y: 330, class: "remark" }, w("in_fields")));
     el.poles.replaceChildren(...parts);
     if (focus) refocus(focus);
   }
@@ -524,7 +551,7 @@ export function mount(element, transport, options = {}) {
   }
 
   function handle(group, list, p, k, count) {
-    const spoken = pretty(p.pair && p.im[0] ? `${text(p.re)} plus or minus ${text(p.im)} i` : text(p.re));
+    const spoken = pretty(p.pair && p.im[0] ? w("pair", { real: text(p.re), imaginary: text(p.im) }) : text(p.re));
     const same = list.slice(0, k).filter((q) => !q.raw && !q.pair && !p.pair && text(q.re) === text(p.re)).length;
     const places = p.pair ? [[X(value(p.re)), Y(value(p.im))], [X(value(p.re)), Y(-value(p.im))]] : [[X(value(p.re)), Y(0)]];
     const nested = p.pair && !p.im[0];
@@ -536,15 +563,15 @@ export function mount(element, transport, options = {}) {
     const isHeld = held && held.p === p;
     const mine = h("svg:g", {
       class: `handle ${group.mark}${isHeld ? " held" : ""}`, tabindex: 0, role: "slider", "data-handle": `${group.key}.${k}`,
-      "aria-label": `${group.label} ${k + 1} of ${count}`, "aria-roledescription": "pole", "aria-valuemin": -100, "aria-valuemax": 100, "aria-valuenow": value(p.re), "aria-valuetext": spoken,
+      "aria-label": w("one_of", { pole: w(group.label), number: k + 1, count }), "aria-roledescription": w("pole"), "aria-valuemin": -100, "aria-valuemax": 100, "aria-valuenow": value(p.re), "aria-valuetext": spoken,
       onpointerdown: (e) => grab(e, group, p), onkeydown: (e) => key(e, group, p, k), onfocus: () => { if (!quiet) before = JSON.stringify(sets); },
     }, places.map(glyph));
     if (isHeld || root.getRootNode().activeElement?.getAttribute?.("data-handle") === `${group.key}.${k}`) {
       const [x, y] = places[0], right = x < 300;
       const lines = [pretty(p.pair && p.im[0] ? `${text(p.re)} ± ${text(p.im)} i` : text(p.re))];
       if (said?.damping && p.pair) lines.push(`ζ = ${pretty(said.damping)}, ${said.exact}`);
-      if (said?.settles) lines.push(`settles in ${said.settles}`);
-      if (said?.modulus) lines.push(`|z| = ${said.modulus}`);
+      if (said?.settles) lines.push(w("settles", { time: pretty(said.settles) }));
+      if (said?.modulus) lines.push(`|z| = ${pretty(said.modulus)}`);
       const top = y < 70 ? y + 26 : y - 12 - 16 * (lines.length - 1);
       mine.append(...lines.map((words, n) => h("svg:text", { class: n ? "readout" : "readout first", x: x + (right ? 16 : -16), y: top + 16 * n, "text-anchor": right ? "start" : "end" }, words)));
     }
@@ -644,7 +671,7 @@ export function mount(element, transport, options = {}) {
     el.pointMath = h("div", { class: "symobs" });
     el.point.replaceChildren(h("div", { class: "fields" }, fields), scrub ?? "", el.pointVerdict, el.pointMath);
     if (!svg || region.kind !== "plane") return;
-    el.dot = h("svg:g", { class: "handle pick", tabindex: 0, role: "slider", "aria-roledescription": "point", "aria-label": `point ${region.parameters.join(", ")}`, "aria-valuenow": 0, onkeydown: (e) => {
+    el.dot = h("svg:g", { class: "handle pick", tabindex: 0, role: "slider", "aria-roledescription": w("point"), "aria-label": w("point_of", { names: region.parameters.join(", ") }), "aria-valuenow": 0, onkeydown: (e) => {
       const moves = { ArrowLeft: [0, -1], ArrowRight: [0, 1], ArrowDown: [1, -1], ArrowUp: [1, 1] }[e.key];
       if (!moves) return;
       e.preventDefault();
@@ -701,16 +728,15 @@ export function mount(element, transport, options = {}) {
     follow(event);
   }
 
-  const WORDS = { stable: "stable", unstable: "not stable", boundary: "on the boundary, not stable", excluded: "outside of the declared signs", undefined: "not defined here" };
   function drawPoint(got) {
     if (got.status !== "done") { drawAnswer(got); return; }
     clearWrong();
-    el.pointVerdict.textContent = `${view.region.parameters.map((n) => `${n} = ${pretty(s.at[n])}`).join(", ")}: ${WORDS[got.verdict]}`;
+    el.pointVerdict.textContent = `${view.region.parameters.map((n) => `${n} = ${pretty(s.at[n])}`).join(", ")}: ${w(`point_${got.verdict}`)}`;
     el.pointVerdict.dataset.verdict = got.verdict;
     el.pointMath.innerHTML = [...(got.cards ?? []), ...(got.boundary ?? [])].map((c) => `<div class="display">${c.mathml}</div>`).join("");
     const middle = (p) => (Number(p[0]) + Number(p[1])) / 2, digits = (p) => pretty(middle(p).toFixed(3));
     const roots = got.roots.map((r) => `${digits(r.re)}${Number(r.im[1]) > 0 && Number(r.im[0]) > 0 ? ` + ${digits(r.im)} i` : Number(r.im[1]) < 0 ? ` − ${digits(r.im).slice(1)} i` : ""}${r.multiplicity > 1 ? ` (${r.multiplicity}×)` : ""}`);
-    el.pointMath.append(h("p", { class: "roots" }, roots.length ? `Roots ≈ ${roots.join(",  ")}` : ""));
+    el.pointMath.append(h("p", { class: "roots" }, roots.length ? w("roots", { roots: roots.join(language.decimal_mark === "," ? ";  " : ",  ") }) : ""));
     if (view.region.kind === "locus") {
       const svg = el.map.querySelector("svg"), [left, top, width, height] = view.region.frame, [[a, b], [c, d]] = view.region.window.map((w) => w.map(numberOf));
       svg.querySelectorAll(".root").forEach((e) => e.remove());
@@ -741,15 +767,14 @@ export function mount(element, transport, options = {}) {
     if (left.length) say(left.slice(0, 4).join(" · "));
   }
 
-  const VERDICTS = { yes: "Checked", no: "No", conditional: "Checked, under conditions", undecided: "Undecided" };
   function drawAnswer(got) {
     if (got.id) drawn = got.id;
     if (got.status === "bad") { answer = answer && { ...answer, status: "bad" }; clearWrong(); showErrors(got.errors); return; }
     clearWrong();
-    if (got.status === "bug" || (got.status === "undecided" && !got.cards)) { root.classList.add("stale"); say(got.status === "bug" ? got.message : `Undecided: ${got.message}.`, () => ask()); return; }
+    if (got.status === "bug" || (got.status === "undecided" && !got.cards)) { root.classList.add("stale"); say(got.status === "bug" ? got.message : w("undecided", { reason: got.message }), () => ask()); return; }
     answer = got;
-    const noun = got.claims === 1 ? "claim" : "claims";
-    el.verdict.textContent = `${VERDICTS[got.verdict] ?? got.verdict}${got.verdict === "no" ? "" : ` · ${got.claims} ${noun}`}`;
+    const claims = got.verdict === "no" ? "" : ` · ${w(got.claims === 1 ? "claim" : "claims", { count: got.claims })}`;
+    el.verdict.textContent = w(`verdict_${got.verdict}`) + claims;
     el.verdict.dataset.verdict = got.verdict;
     el.notes.textContent = got.note ?? "";
     drawCards(got);
@@ -761,9 +786,9 @@ export function mount(element, transport, options = {}) {
   function drawCards(got) {
     const names = got.cards.map((c) => c.name);
     if ([...el.list.children].map((c) => c.dataset.name).join() !== [...names, "conditions"].join()) {
-      el.list.replaceChildren(...got.cards.map((card) => h("article", { class: "card symobs", "data-name": card.name }, h("div", { class: "display" }), h("button", { class: "quiet tex", title: "Copy LaTeX", "aria-label": `Copy LaTeX of ${card.name}`, onclick: async (e) => {
+      el.list.replaceChildren(...got.cards.map((card) => h("article", { class: "card symobs", "data-name": card.name }, h("div", { class: "display" }), h("button", { class: "quiet tex", title: w("copy_latex"), "aria-label": w("copy_latex_of", card), onclick: async (e) => {
         const b = e.currentTarget;
-        try { await navigator.clipboard.writeText(answer.cards.find((c) => c.name === card.name)?.latex ?? ""); b.textContent = "copied"; } catch { b.textContent = "refused"; }
+        try { await navigator.clipboard.writeText(answer.cards.find((c) => c.name === card.name)?.latex ?? ""); b.textContent = w("copied"); } catch { b.textContent = w("refused"); }
         setTimeout(() => { b.textContent = "TeX"; }, 1200);
       } }, "TeX"))), h("article", { class: "conditions symobs", "data-name": "conditions" }));
     }
@@ -772,20 +797,19 @@ export function mount(element, transport, options = {}) {
       if (box.dataset.latex !== card.latex) { box.innerHTML = card.mathml; box.dataset.latex = card.latex; }
     });
     const last = el.list.lastChild;
-    last.innerHTML = got.conditions.length ? `<p>Provided that</p>${got.conditions.map((c) => `<div class="display">${c.mathml}</div>`).join("")}` : "";
+    last.innerHTML = got.conditions.length ? `<p>${w("provided")}</p>${got.conditions.map((c) => `<div class="display">${c.mathml}</div>`).join("")}` : "";
   }
 
   function drawCases(got) {
     if (!got.cases) return;
-    const general = h("button", { class: Object.keys(free()).length ? "" : "chosen", onclick: () => { s.at = {}; commit(true); build(); ask(); } }, "in general");
+    const general = h("button", { class: Object.keys(free()).length ? "" : "chosen", onclick: () => { s.at = {}; commit(true); build(); ask(); } }, w("in_general"));
     const made = got.cases.map((c) => {
       const usable = Object.keys(c.at).length > 0;
       const b = h("button", { disabled: !usable, "data-case": JSON.stringify(c.at), onclick: () => { s.at = { ...c.at }; commit(true); build(); ask(); } });
       b.innerHTML = (c.mathml.length ? c.mathml : c.when.map((w) => w.mathml)).join(" ");
-      return h("div", { class: "case-row" }, b, h("span", { class: "pale" }, c.rank !== undefined ? `rank ${c.rank}` : c.verdict));
+      return h("div", { class: "case-row" }, b, h("span", { class: "pale" }, c.rank !== undefined ? w("rank", c) : w(`case_${c.verdict}`)));
     });
-    if (made.length || !Object.keys(free()).length) el.casesBody.replaceChildren(...(made.length ? [general, ...made] : [h("p", { class: "pale" }, Object.keys(s.symbols).length ? "No values of the letters change the answer." : "No letters, no cases.")]));
-    else { const first = el.casesBody.querySelector("button"); first?.classList.remove("chosen"); }
+    el.casesBody.replaceChildren(...(made.length ? [general, ...made] : [h("p", { class: "pale" }, w(Object.keys(s.symbols).length ? "no_values" : "no_letters"))]));
     el.casesBody.querySelectorAll("[data-case]").forEach((b) => b.classList.toggle("chosen", b.dataset.case === JSON.stringify(free())));
   }
 
@@ -795,7 +819,7 @@ export function mount(element, transport, options = {}) {
     const [[t0, t1], [low, high]] = got.window.map((w) => w.map(numberOf));
     const px = (t) => 40 + ((t - t0) / (t1 - t0)) * 424, py = (v) => 268 - ((v - low) / (high - low || 1)) * 252;
     const made = [h("svg:rect", { class: "ground", x: 40, y: 16, width: 424, height: 252 })];
-    for (const t of ticks(t0, t1, 7)) made.push(h("svg:line", { class: "rule", x1: px(t), y1: 16, x2: px(t), y2: 268 }), h("svg:text", { x: px(t), y: 284, "text-anchor": "middle" }, String(t)));
+    for (const t of ticks(t0, t1, 7)) made.push(h("svg:line", { class: "rule", x1: px(t), y1: 16, x2: px(t), y2: 268 }), h("svg:text", { x: px(t), y: 284, "text-anchor": "middle" }, pretty(String(t))));
     for (const v of ticks(low, high, 6)) made.push(h("svg:line", { class: v ? "rule" : "axis", x1: 40, y1: py(v), x2: 464, y2: py(v) }), h("svg:text", { x: 34, y: py(v) + 4, "text-anchor": "end" }, pretty(String(v))));
     made.push(h("svg:text", { x: 464, y: 284, dy: "1.15em", "text-anchor": "end" }, got.discrete ? "k" : "t"));
     const told = [];
@@ -805,9 +829,9 @@ export function mount(element, transport, options = {}) {
       made.push(h("svg:path", { class: kind, d: `M${line.heights.map(place).join("L")}` }));
       if (got.discrete) line.heights.forEach((v, k) => { const [x, y] = place(v, k).split(" "); made.push(h("svg:circle", { class: kind, cx: x, cy: y, r: 2.6 })); });
       const peak = line.heights.reduce((a, b) => (Math.abs(b) > Math.abs(a) ? b : a), 0) / got.parts;
-      told.push(`${nameOf(line)} peaks at ${peak.toPrecision(3)} and ends at ${(line.heights[n] / got.parts).toPrecision(2)}`);
+      told.push(w("peaks", { signal: nameOf(line), peak: pretty(peak.toPrecision(3)), last: pretty((line.heights[n] / got.parts).toPrecision(2)) }));
     }
-    el.curves.replaceChildren(h("svg:title", {}, `Responses up to ${got.end}: ${told.join("; ")}`), ...made);
+    el.curves.replaceChildren(h("svg:title", {}, w("up_to", { end: got.end, told: told.join("; ") })), ...made);
     el.legend.replaceChildren(...got.lines.map((line) => h("span", {}, h("svg:svg", { viewBox: "0 0 24 8", "aria-hidden": "true" }, h("svg:path", { class: `curve c${((line.component || 1) - 1) % 4}${line.dashed ? " dashed" : ""}`, d: "M1 4h22" })), nameOf(line))));
   }
 

@@ -13,12 +13,13 @@ import zipfile
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from symobs.live.assets import ASSETS, script, style
+
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
 _HERE = Path(__file__).parent
 _PACKAGE = _HERE.parents[1]
-_ASSETS = _HERE.parent / "assets"
 #: Folders of the repository which an installed package holds itself.
 _DATA = ("worked_examples", "latex_templates")
 _KINDS = {".py", ".css", ".toml", ".tex"}
@@ -66,11 +67,11 @@ def build(out: Path, pyodide: Path, flint: Path) -> int:
     for name in _RUNTIME:
         shutil.copyfile(pyodide / name, out / "pyodide" / name)
     shutil.copyfile(flint, out / flint.name)
-    for path in (_ASSETS / "symobs-live.js", *_HERE.glob("*.js")):
+    for path in _HERE.glob("*.js"):
         shutil.copyfile(path, out / path.name)
-    style = (_ASSETS / "live.css", _PACKAGE / "render" / "formats" / "html_body.css")
-    (out / "live.css").write_text("\n".join(path.read_text(encoding="utf-8") for path in style), encoding="utf-8")
-    (out / "index.html").write_text(_page((_ASSETS / "http.html").read_text(encoding="utf-8")), encoding="utf-8")
+    page = _page((ASSETS / "http.html").read_text(encoding="utf-8"))
+    for name, text in (("symobs-live.js", script()), ("live.css", style()), ("index.html", page)):
+        (out / name).write_text(text, encoding="utf-8")
     version = json.loads((pyodide / "package.json").read_text(encoding="utf-8"))["version"]
     (out / "THIRD-PARTY.txt").write_text(_THIRD.format(pyodide=version, wheel=flint.name), encoding="utf-8")
     _pack(out / "symobs.zip")

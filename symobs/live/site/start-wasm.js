@@ -1,8 +1,9 @@
 // @ts-check
-import { atAddress } from "./symobs-live.js";
+import { atAddress, filled, LANGUAGES } from "./symobs-live.js";
 
 const SCHEMA = "symobs-live/1", ANSWER = 10, LONG = 60;
 const LOOKS = ["page", "view", "export", "start"];
+const language = LANGUAGES[/[#&]language=(\w+)/.exec(location.hash)?.[1]] ?? LANGUAGES.en;
 const told = /** @type {HTMLElement} */ (document.querySelector("[role=status]"));
 
 /**
@@ -26,11 +27,11 @@ function place() {
       answered({ schema: SCHEMA, id: body.id, status: "undecided", message });
     };
     worker ??= new Worker("worker.js", { type: "module" });
-    worker.onerror = (event) => give_up(event.message || "Python could not be loaded");
+    worker.onerror = (event) => give_up(event.message || language.not_loaded);
     worker.onmessage = ({ data }) => {
-      if (data.loading) told.textContent = `Loading ${data.loading} …`;
-      else if (data.begun) timer = setTimeout(() => give_up(`not decided within ${seconds} s`), 1000 * seconds);
-      else if (data.ended) give_up(`Python ended: ${data.ended}`);
+      if (data.loading) told.textContent = filled(language.loading, { part: language[data.loading] ?? data.loading });
+      else if (data.begun) timer = setTimeout(() => give_up(filled(language.late, { seconds })), 1000 * seconds);
+      else if (data.ended) give_up(filled(language.ended, { reason: data.ended }));
       else {
         clearTimeout(timer);
         told.textContent = "";

@@ -10,7 +10,7 @@ const loaded = load();
 async function load() {
   postMessage({ loading: "Python" });
   const python = await loadPyodide({ indexURL: here("pyodide/") });
-  postMessage({ loading: "exact arithmetic" });
+  postMessage({ loading: "arithmetic" });
   await python.loadPackage(here(self.CONTENTS.wheel), { messageCallback() {}, errorCallback: console.error });
   postMessage({ loading: "symobs" });
   python.unpackArchive(await (await fetch(here("symobs.zip"))).arrayBuffer(), "zip", { extractDir: FOLDER });

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 from symobs.exact import Matrix, Scalar, is_written_exactly, significant
 from symobs.exact.algebraic.enclosure import is_number, sign_of_number
-from symobs.exact.core.generators import function_named
+from symobs.exact.core.generators import function_named, roots_in, square_root
 from symobs.formula import (
     Block,
     Decimals,
@@ -302,7 +302,7 @@ def _number_in(formula: Formula) -> Scalar | None:
     """Return the number that a formula of values is, None for another one."""
     match formula:
         case Literal(Scalar() as value):
-            return value if _is_plain_number(value) else None
+            return _of_primes(value) if _is_plain_number(value) else None
         case Negative(operand):
             number = _number_in(operand)
             return None if number is None else -number
@@ -313,6 +313,12 @@ def _number_in(formula: Formula) -> Scalar | None:
             numbers = [number for factor in factors if (number := _number_in(factor)) is not None]
             return prod(numbers, start=_ONE) if len(numbers) == len(factors) else None
     return None
+
+
+def _of_primes(value: Scalar) -> Scalar:
+    """Return a number whose roots are those of the exact page: √15, one root for print, is √3 √5 there."""
+    roots: dict[str, Scalar] = {root.name: square_root(root.argument) for root in roots_in(value)}
+    return value.substitute(roots) if roots else value
 
 
 def _is_plain_number(value: Scalar) -> bool:

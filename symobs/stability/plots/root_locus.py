@@ -32,6 +32,8 @@ def pole_map(region: LineRegion, polynomial: Scalar, boundary: StabilityBoundary
     if not polynomial.coefficients(variable)[0].is_constant or not boundary.names <= {variable}:
         return None
     low, high = _way(region)
+    if _runs_off(polynomial, name, low, high):
+        return None
     nodes = _nodes(polynomial, variable, name, low, high)
     rows = [_roots(polynomial, variable, name, value) for value in nodes]
     paths = [[root] for root in rows[0]]
@@ -69,6 +71,13 @@ def _way(region: LineRegion) -> tuple[Fraction, Fraction]:
     if sign in {"negative", "nonpositive"}:
         high = min(high, Fraction(0))
     return low, high
+
+
+def _runs_off(polynomial: Scalar, name: str, low: Fraction, high: Fraction) -> bool:
+    """Return whether a denominator vanishes on the way: of `s^2 + s + 1/a` at a = 0, where the roots have no bound."""
+    below = polynomial.denominator
+    places = [root.interval() for root in roots_of_scalar(below, name)] if name in below.names else []
+    return any(begin <= high and low <= end for begin, end in places)
 
 
 def _nodes(polynomial: Scalar, variable: str, name: str, low: Fraction, high: Fraction) -> list[Fraction]:

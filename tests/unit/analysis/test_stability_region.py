@@ -14,6 +14,7 @@ from symobs.errors import CertificateRejected, InputError
 from symobs.exact import Scalar
 from symobs.exact.algebraic.real_algebraic import real_roots, roots_of_scalar
 from symobs.exact.cad import decomposition_check
+from symobs.figures.plot import LinePicture, PoleMap
 from symobs.stability.criteria.critical_polynomials import CriticalPolynomials, StabilityBoundary
 from symobs.stability.regions import region_check
 from symobs.stability.regions.interval_region import LineRegion
@@ -239,6 +240,21 @@ def test_pieces_bounds_and_holes_do_not_depend_on_which_parameter_is_across(poly
     bounds = None if one.empty else short_list(one)
     assert is_region(one, bounds)
     assert is_region(other, bounds)
+
+
+@pytest.mark.parametrize(
+    ("text", "sign", "kind"),
+    [
+        ("s^2 + (2 - a) s + 1/a", "positive", LinePicture),  # at a = 0, where the window begins, there is no polynomial
+        ("s^2 + (2 - a) s + 1/a", "real", LinePicture),
+        ("s^2 + (2 - a) s + 1/(a^2 + 1)", "real", PoleMap),
+    ],
+)
+def test_roots_are_not_drawn_where_a_denominator_vanishes(text: str, sign: str, kind: type) -> None:
+    result = region(text, parameters=["a"], symbols={"a": sign})
+    assert type(result.picture) is kind
+    assert result.critical.is_stable({"a": Fraction(1)})  # s² + s + 1
+    assert not result.critical.is_stable({"a": Fraction(3)})  # s² − s + 1/3
 
 
 def test_a_division_is_proved_once_where_the_list_adds_no_curve(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -17,9 +17,11 @@ from urllib.parse import parse_qsl
 
 import pytest
 
-from symobs.live.links import link_of
+from symobs.live.assets import ASSETS
+from symobs.live.links import SHORT, link_of
 from symobs.live.process import AnswerBudget, Children, Gone
-from symobs.live.server import ASSETS, Server, routes
+from symobs.live.server import Server, routes
+from symobs.result import tasks
 from tests.support.paths import ROOT
 from tests.support.problems.batches import eventually
 from tests.support.tools.command_line import SAFETY, SERVO, environment
@@ -178,6 +180,8 @@ def test_a_child_that_sleeps_or_swells_is_replaced() -> None:
         assert second != first
         children.budget = AnswerBudget(0.2, 300)
         assert "not decided within 0.2 s" in ask(children, do="sleep")["message"]
+        german = ask(children, do="sleep", problem={"language": "de"})
+        assert german["message"] == "nicht innerhalb von 0,2 s entschieden"
         children.budget = AnswerBudget(60, 300)
         third = ask(children)["process"]
         assert third not in {first, second}
@@ -232,7 +236,7 @@ def test_an_interrupt_while_the_first_child_is_started_is_all_that_is_said(tmp_p
     begun = tmp_path / "begun"
     paths = {"BEGUN": str(begun), "PYTHONPATH": os.pathsep.join([str(tmp_path), str(ROOT)])}
     with subprocess.Popen(
-        [sys.executable, "-m", "symobs", "serve", "--no-browser", str(SERVO)],
+        [sys.executable, "-m", "symobs", "serve", "--no-browser", "--language", "de", str(SERVO)],
         env=environment() | paths,
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
@@ -254,6 +258,7 @@ def test_an_interrupt_while_the_first_child_is_started_is_all_that_is_said(tmp_p
         "transfer_function": "1/(s*(s + 1))",
         "control": "-2, -2",
         "observer": "-10, -10",
+        "language": "de",
     }
 
 
@@ -287,6 +292,31 @@ def test_a_link_holds_a_problem() -> None:
     }
 
 
+def test_a_link_calls_every_key_by_a_name_of_its_own() -> None:
+    long = {short: name for name, short in SHORT.items()}
+    for task in tasks().values():
+        for name in task.keywords:
+            short = SHORT.get(name, name)
+            assert long.get(short, short) == name, (task.name, name)
+
+
+def test_a_link_holds_what_its_task_takes_and_no_constants() -> None:
+    data = {
+        "tasks": ["initial_state", "observability"],
+        "constants": {"r": "sqrt(3)", "q": "2*r"},
+        "plant": {"A": "[0 1; -r^2 -q]", "C": [["1", "r"]]},
+        "specification": {"horizon": "1"},
+    }
+    halves = {"control_poles": "-1", "observer_poles": "-2"}
+    assert "observer=-2" in link_of({"tasks": ["state_feedback", "observer"], "specification": halves})
+    assert dict(parse_qsl(link_of(data))) == {
+        "v": "1",
+        "task": "observability",
+        "A": "[0 1; -(sqrt(3))^2 -(2*(sqrt(3)))]",
+        "C": "[1 (sqrt(3))]",
+    }
+
+
 def test_a_link_holds_poles_by_what_they_are_to_do() -> None:
     poles = tomllib.loads(
         'poles = { others = ["-5", "-w"], damping = 0.7, natural_frequency = "w" }', parse_float=Decimal
@@ -296,7 +326,7 @@ def test_a_link_holds_poles_by_what_they_are_to_do() -> None:
 
 
 def test_the_page_holds_nothing_of_others() -> None:
-    whole = "".join(path.read_text(encoding="utf-8") for path in ASSETS.iterdir())
+    whole = "".join(path.read_text(encoding="utf-8") for path in ASSETS.glob("*.[jch]*"))
     assert "//cdn" not in whole
     assert [line for line in whole.splitlines() if "https:" in line] == []
     assert "eval(" not in whole

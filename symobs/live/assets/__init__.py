@@ -1,0 +1,34 @@
+"""What every page is made of, whoever hands it out: its script with the words of all languages, and its style."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+from symobs.phrases.languages import language_named, languages
+from symobs.render.formats.html import style as style_of_documents
+
+ASSETS = Path(__file__).parent
+#: The phrases that the script shows.
+_PREFIX = "live_"
+
+
+def words() -> dict[str, dict[str, str]]:
+    """Return the words of the script in every language, by its code; with them the mark of decimals."""
+    found = {}
+    for code in languages():
+        language = language_named(code)
+        own = {key.removeprefix(_PREFIX): text for key, text in language.phrases.items() if key.startswith(_PREFIX)}
+        found[code] = own | {"decimal_mark": language.words["decimal_mark"]}
+    return found
+
+
+def script() -> str:
+    """Return the script, which begins with the words of no language."""
+    text = (ASSETS / "symobs-live.js").read_text(encoding="utf-8")
+    return f"{text}Object.assign(LANGUAGES, {json.dumps(words(), ensure_ascii=False)});\n"
+
+
+def style() -> str:
+    """Return the style of the page and of the derivations in it."""
+    return (ASSETS / "live.css").read_text(encoding="utf-8") + "\n" + style_of_documents()
