@@ -73,7 +73,7 @@ def _right(view: ResultInConvention, result: Result, letter: str) -> str | None:
 def _followed(part: Part, judgement: TaskJudgement, judged: Judged, marking: Marking) -> Part:
     """Return a part that is right from the student's own earlier one, without credit where that made it easy."""
     if marking.guard and any(_is_degenerate(judgement, name) for name in judged.origins):
-        hint = "it follows from your earlier result, which makes this part too easy to count"
+        hint = "that makes this part too easy to count"
         return replace(part, credit=Fraction(0), hints=(*part.hints, hint))
     if marking.guard and judged.name == "F" and isinstance(judged.value, (Matrix, Scalar)):
         variable = judgement.right.plant.variable

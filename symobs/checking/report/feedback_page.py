@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from symobs.checking.report.pages import names_of, of_numbers, result, sentences
+from symobs.checking.report.pages import beginning, names_of, of_numbers, result, sentences
 from symobs.errors import SymobsError
 from symobs.expression import parse_matrix
 from symobs.formula import Literal
@@ -76,8 +76,8 @@ def _line(line: Line) -> str:
     said = f"<br/>{plain(_sentence(line.reason))}" if line.reason else ""
     origins = f" {plain(' and '.join(line.origins))}" if line.origins else ""
     word = f"✓ follows from{origins}" if line.verdict == "follows" else _WORDS[line.verdict]
-    right = f"<br/>right: <code>{plain(line.right)}</code>" if line.right else ""
-    code = f"<code>{plain(line.relation)}</code>"
+    right = f"<br/>right: <code>{plain(of_numbers(line.right))}</code>" if line.right else ""
+    code = f"<code>{plain(beginning(line.relation))}</code>"
     return f'<li class="{line.verdict}">{plain(line.where)}: {code} <span class="word">{word}</span>{said}{right}</li>'
 
 
@@ -92,5 +92,5 @@ def _math(text: str) -> str:
     try:
         value = parse_matrix(text, None, functions=True)
     except SymobsError:
-        return f"<code>{plain(text)}</code>"
+        return f"<code>{plain(beginning(text))}</code>"
     return MathmlPrinter().inline(Literal(value[0, 0] if value.shape == (1, 1) else value))

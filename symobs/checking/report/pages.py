@@ -34,8 +34,8 @@ def text(report: ReportData) -> str:
             printable("  ".join(filter(None, (head + credit, of_numbers("; ".join(sentences(part))))))), width + 2
         )
     for line in shown_lines(report):
-        said = f": {line.reason}" if line.reason else ""
-        right = f" (right: {line.right})" if line.right else ""
+        said = f": {of_numbers(line.reason)}" if line.reason else ""
+        right = f" (right: {of_numbers(line.right)})" if line.right else ""
         lines += _wrapped(printable(f"{line.where} is {line.verdict}: {line.relation}{said}{right}"), 2)
     lines += [line for hint in report.hints for line in _wrapped(printable(hint), 2)]
     lines += _wrapped(printable(result(report)), 2)
@@ -55,7 +55,7 @@ def markdown(report: ReportData) -> str:
             f"| {plain(names[part.part])} | {part.verdict} | {credit} | {plain(of_numbers('; '.join(sentences(part))))} |"
         )
     for line in shown_lines(report):
-        said = f": {line.reason}" if line.reason else ""
+        said = f": {of_numbers(line.reason)}" if line.reason else ""
         lines += ["", plain(f"{line.where} is {line.verdict}: {line.relation}{said}")]
     for hint in report.hints:
         lines += ["", plain(hint)]
@@ -112,7 +112,12 @@ def of_numbers(text: str) -> str:
 def shown_lines(report: ReportData) -> list[Line]:
     """Return the lines that need a word: false, unreadable and undecided ones."""
     said = [line for line in report.lines if line.verdict not in {"true", "follows"}]
-    return [replace(line, relation=shown(" ".join(line.relation.split()), _LONGEST)) for line in said]
+    return [replace(line, relation=beginning(line.relation)) for line in said]
+
+
+def beginning(written: str) -> str:
+    """Return what a student wrote on one line, a long one by its beginning."""
+    return shown(" ".join(written.split()), _LONGEST)
 
 
 def result(report: ReportData) -> str:

@@ -172,6 +172,7 @@ def test_several_signs_the_transpose_and_a_special_value() -> None:
         (sp.Matrix([[-1, 1], [-2, right[1, 1]]]), "sign_entries"),
         (right.T, "transposed"),
         (right.subs("a", 1), "entry"),
+        (sp.simplify(right.inv()), "inverse"),
     ):
         assert check(problem, {"matrix": text(matrix).replace(" + ", "+")}).parts[0].slip == slip
     every = 'task = "characteristic_polynomial"\n[symbols]\na = "real"\nb = "real"\n[plant]\nA = "[a 0; 0 b]"\n'

@@ -94,6 +94,25 @@ def test_without_reasons_no_right_value_and_no_polynomial_is_given_away(problem:
     assert (report.lines, report.certificates, report.parts[0].slip) == ((), (), None)
 
 
+def test_a_reason_is_not_the_solution() -> None:
+    wrong = (
+        "K = [1 1]\nL = [1; 5]\nA - B K = [0 7; -1 -1]\nA - L C = [-2 1; -7 -1]\nF = (3 s + 7)/(s + 2)\nrank(O) = 1\n"
+    )
+    written, secret = {}, r"(?<![0-9#])(?:19|81|319|400|161)(?![0-9])"
+    for show in ("reason", "solution"):
+        report = Checked.of(SERVO).report(wrong, show)
+        written[show] = [report.to_json(), report.to_text(), report.to_markdown(), _body(report.to_html())]
+    assert not any(re.search(secret, page) for page in written["reason"])
+    assert all(re.search(secret, page) for page in written["solution"])
+    assert [line.reason for line in report.lines][1:] == [
+        "not right: entry (1, 1), entry (2, 1)",
+        "entry (1, 2) is 1, not 7",
+        "not right: entry (1, 1), entry (2, 1)",
+        "its sides are not equal",
+        "its sides are not equal",
+    ]
+
+
 def test_nothing_is_given_away_to_any_student_of_a_class() -> None:
     checked, seen = Checked.of(THIRD_ORDER), set()
     for number, answer in enumerate(answers(9, "feedback")):
