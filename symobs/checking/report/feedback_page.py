@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from symobs.checking.report.pages import beginning, names_of, of_numbers, result, sentences
+from symobs.checking.report.pages import LONGEST, beginning, names_of, of_numbers, result, sentences
 from symobs.errors import SymobsError
 from symobs.expression import parse_matrix
 from symobs.formula import Literal
@@ -89,6 +89,8 @@ def _sentence(said: str) -> str:
 
 def _math(text: str) -> str:
     """Return a value as MathML, or as it was written where it is no expression."""
+    if len(text) > LONGEST:
+        return f"<code>{plain(beginning(text))}</code>"
     try:
         value = parse_matrix(text, None, functions=True)
     except SymobsError:

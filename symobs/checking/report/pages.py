@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 _WIDTH = 100
 #: Longer lines of an answer are shown by their beginning.
-_LONGEST = 300
+LONGEST = 300
 
 
 def text(report: ReportData) -> str:
@@ -117,7 +117,7 @@ def shown_lines(report: ReportData) -> list[Line]:
 
 def beginning(written: str) -> str:
     """Return what a student wrote on one line, a long one by its beginning."""
-    return shown(" ".join(written.split()), _LONGEST)
+    return shown(" ".join(written.split()), LONGEST)
 
 
 def result(report: ReportData) -> str:

@@ -53,6 +53,50 @@ def test_the_observable_form_in_any_layout_is_right_and_T_belongs_to_it(number: 
         }
 
 
+TURNED = "you gave T^-1: here the new state is T x"
+
+
+def moved(T: sp.Matrix, A: sp.Matrix, B: sp.Matrix, C: sp.Matrix) -> dict[str, Any]:
+    """An answer in the coordinates T x."""
+    return dict(zip("TABC", map(text, (T, T * A * T.inv(), T * B, C * T.inv())), strict=True))
+
+
+def test_a_decomposition_in_another_basis_is_right() -> None:
+    plant = sp.diag(-1, -2), sp.Matrix([1, 0]), sp.Matrix([[1, 1]])
+    own = moved(sp.diag(2, -3), *plant) | {"sizes": [1, 0, 1, 0]}
+    assert set(verdicts(PARTS, own).values()) == {"right"}
+    assert check(PARTS, own).parts[0].hints == ()
+    turned = check(PARTS, own | {"T": text(sp.diag(2, -3).inv())})
+    assert {part.verdict for part in turned.parts if part.given} == {"right"}
+    assert turned.parts[0].hints == (TURNED,)
+    # x1 + x2 is controllable, though it is to be the part that is not
+    mixed = verdicts(PARTS, moved(sp.Matrix([[1, 0], [1, 1]]), *plant))
+    assert mixed == dict.fromkeys("TABC", "wrong") | {"C": mixed["C"]}
+
+
+def test_a_modal_form_may_be_given_by_its_vectors_and_T_is_not_any_matrix() -> None:
+    problem = CANONICAL.format("modal").replace("[1 2; 3 4]", "[0 1; -2 -3]").replace("[1; 1]", "[0; 1]")
+    plant = sp.Matrix([[0, 1], [-2, -3]]), sp.Matrix([0, 1]), sp.Matrix([[1, 0]])
+    vectors = sp.Matrix([[3, 1], [-3, -2]])
+    answer = moved(vectors.inv(), *plant) | {"T": text(vectors)}
+    for given in (answer, {"T": answer["T"]}):
+        report = check(problem, given)
+        assert {part.verdict for part in report.parts if part.given} == {"right"}
+        assert report.parts[0].hints == (TURNED,)
+    assert set(verdicts(problem, moved(sp.eye(2), *plant)).values()) == {"wrong"}
+    assert verdicts(problem, {"A": "[-2 0; 0 -2]"}) == {"A": "wrong"}
+
+
+@pytest.mark.parametrize(("kind", "left_out"), [("controllable", 'C = "[1 0]"\n'), ("observable", 'B = "[1; 1]"\n')])
+def test_a_form_of_half_a_plant_and_without_T_is_judged_by_what_is_there(kind: str, left_out: str) -> None:
+    problem = CANONICAL.format(kind).replace(left_out, "")
+    # χ = s² − 5 s − 2 in the first row or column
+    A = "[5 2; 1 0]" if kind == "controllable" else "[5 1; 2 0]"
+    report = check(problem, {"A": A, **({"B": "[1; 0]"} if kind == "controllable" else {"C": "[1 0]"})})
+    assert [part.verdict for part in report.parts if part.given] == ["right", "right"]
+    assert "first" in report.parts[1].hints[0]
+
+
 def test_T_of_a_controllable_form_is_not_any_matrix() -> None:
     problem = CANONICAL.format("controllable")
     right = Checked.of(problem).results[0].fields

@@ -57,7 +57,7 @@ def test_a_function_of_time_that_is_wrong_is_not_given_away() -> None:
     report = STEP.report("output = t/a - 1/a^2\ny(t) = t/a - 1/a^2\nx(t) = [1; 2]", "solution")
     (part,) = [part for part in report.parts if part.part == "response.output"]
     assert (part.verdict, part.slip, part.reason) == ("wrong", None, "")
-    assert part.right == "(t*a + exp(-t*a) - 1)/(a**2)"
+    assert "exp(-t*a)" in str(part.right)
     assert [line.reason for line in report.lines[-2:]] == [
         "its sides are not equal",
         "not right: entry (1, 1), entry (2, 1)",

@@ -96,7 +96,7 @@ def test_without_reasons_no_right_value_and_no_polynomial_is_given_away(problem:
 
 def test_a_reason_is_not_the_solution() -> None:
     wrong = (
-        "K = [1 1]\nL = [1; 5]\nA - B K = [0 7; -1 -1]\nA - L C = [-2 1; -7 -1]\nF = (3 s + 7)/(s + 2)\nrank(O) = 1\n"
+        "K = [1 1]\nL = [1; 5]\nA - B K = [0 7; -1 -2]\nA - L C = [-2 1; -7 -1]\nF = (3 s + 7)/(s + 2)\nrank(O) = 1\n"
     )
     written, secret = {}, r"(?<![0-9#])(?:19|81|319|400|161)(?![0-9])"
     for show in ("reason", "solution"):
