@@ -154,8 +154,9 @@ def _explanation(view: ResultInConvention, judgement: TaskJudgement, judged: Jud
     if isinstance(right, Scalar) and isinstance(value, Matrix) and value.shape == (1, 1):
         value = value[0, 0]
     variable = "t" if view.in_time else view.plant.variable
-    others = other_values(judgement.right) if judged.name == "F" else []
-    return explain_value(value, right, judged.letter, variable, others, rounded=judged.rounded)
+    in_loop = (view.task, judged.name) == ("compensator", "F")
+    others = other_values(judgement.right) if in_loop else []
+    return explain_value(value, right, judged.letter, variable, others, rounded=judged.rounded, in_loop=in_loop)
 
 
 def _without_coordinates(value: Matrix | Scalar, right: Matrix, letter: str) -> Explained:

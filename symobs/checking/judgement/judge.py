@@ -337,20 +337,27 @@ def _in_coordinates(task: _Task, given: Mapping[str, tuple[str, Any]]) -> dict[s
             parts[name] = unreadable(name, letter, entry, two_readings())
     readable = {name: part for name, part in parts.items() if part.verdict != "unreadable"}
     matrices = {name: part.value for name, part in readable.items() if isinstance(part.value, Matrix)}
-    best: dict[str, bool] = {}
-    said = ""
+    best: set[str] = set()
+    there, said = task.right, ""
     for result, remark in [(task.right, ""), *in_coordinates(task.right, matrices)]:
-        held = {name: exists(result, name) and _is_met(task, result, part) for name, part in readable.items()}
-        if sum(held.values()) > sum(best.values()):
-            best, said = held, remark
+        held = {name for name, part in readable.items() if _is_met(task, result, part, exact(part.given))}
+        if len(held) > len(best):
+            best, there, said = held, result, remark
     hints = (said,) if said else ()
-    right = {name: replace(part, verdict="right", hints=hints) for name, part in readable.items() if best.get(name)}
-    return {**parts, **right}
+    for name, part in readable.items():
+        if name in best:
+            parts[name] = replace(part, verdict="right", hints=hints)
+        elif task.own is not None and _is_met(task, task.own, part, exact(part.given)):
+            parts[name] = replace(part, verdict="follows", origins=task.wrong)
+        else:
+            rounded = has_decimals(part.given) and _is_met(task, there, part, part.given)
+            parts[name] = replace(part, rounded=rounded)
+    return parts
 
 
-def _is_met(task: _Task, result: Result, part: Judged) -> bool:
+def _is_met(task: _Task, result: Result, part: Judged, given: Any) -> bool:
     try:
-        return _met(task, result, part, exact(part.given))
+        return exists(result, part.name) and _met(task, result, part, given)
     except InputError:
         return False
 

@@ -118,6 +118,30 @@ def test_M_alone_says_which_estimate_it_is() -> None:
     assert verdicts(REDUCED, given) == {"F": "right", "G": "right", "H": "right", "M": "wrong"}
 
 
+def test_an_observer_of_reduced_order_follows_from_a_wrong_gain() -> None:
+    """With L = 8 in place of 9 it is z for [-8 1] x: F = -9, and [-8 1] A + 9 [-8 1] = [-72 0]."""
+    report = check(REDUCED, "L = [8]\nF = [-9]\nG = [1]\nH = [-72]\n")
+    assert [part.verdict for part in report.parts] == ["follows", "right", "follows", "missing", "wrong"]
+    assert [line.verdict for line in report.lines] == ["false", "follows", "follows"]
+
+
+def test_a_part_that_is_right_in_coordinates_of_its_own_is_no_false_line() -> None:
+    report = check(REDUCED, "F = [-10]\nG = [2]\nH = [-180]\nA B = [1; -1]\n")
+    assert [part.verdict for part in report.parts] == ["right"] * 3 + ["missing"]
+    assert [line.verdict for line in report.lines] == ["true"]
+
+
+def test_what_is_wrong_with_an_observer_of_reduced_order() -> None:
+    report = Checked.of((EXAMPLES / "tanks_minimal_observer.toml").read_text(encoding="utf-8")).report(
+        {"F": "1/5", "G": "1", "H": "-0.6"}
+    )
+    assert [(part.slip, part.reason) for part in report.parts[:3]] == [
+        ("sign", "-F is right"),
+        (None, ""),
+        ("rounded", "H is rounded, and its exact value is asked for"),
+    ]
+
+
 def test_a_gain_where_there_is_none_is_wrong() -> None:
     for given, reason in (("[3; 0]", ""), ("[1 2]", "L is 2x1 here, yours is 1x2")):
         part = check(HIDDEN + '[marking]\nasked = ["observer.verdict"]\n', {"L": given, "verdict": "no"}).parts
