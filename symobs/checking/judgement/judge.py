@@ -168,7 +168,7 @@ def _gain(task: _Task, name: str, letter: str, given: Any) -> Judged:
     """Return the verdict on a gain: it is right where the claim of the design holds for it."""
     _, sign = task.view.standard(letter)
     try:
-        read = parse_matrix(exact(given), task.names, where=letter)
+        read = parse_matrix(given, task.names, where=letter)
     except SymobsError as error:
         return unreadable(name, letter, given, error)
     value = -read if sign < 0 else read
@@ -207,7 +207,7 @@ def _together(task: _Task, right: IntegralAction, given: Mapping[str, tuple[str,
             return right
         letter, written = given[name]
         with suppress(SymobsError):
-            read = parse_matrix(exact(written), task.names, where=letter)
+            read = parse_matrix(written, task.names, where=letter)
             gains[name] = -read if task.view.standard(letter)[1] < 0 else read
     if any(gains.get(name) is None or gains[name].shape != shape_of(right, name) for name in GAINS[right.task]):
         return right

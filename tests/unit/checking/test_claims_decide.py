@@ -286,3 +286,89 @@ def test_parts_of_one_letter_are_told_apart() -> None:
     report = check(problem, {"observability": {"rank": 1}, "controllability": {"rank": 2}})
     for written in (report.to_text(), report.to_markdown(), report.to_html()):
         assert all(f"{task}.rank" in written.replace("\\", "") for task in ("observability", "controllability"))
+
+
+def test_what_is_said_of_a_gain_and_which_claim_was_tried() -> None:
+    checked = Checked.of(SERVO)
+    (claim, holds, how), *_ = checked.report({"L": "[19; 80]"}).certificates
+    assert (claim.startswith("det("), holds, how) == (True, False, "exact")
+    assert [holds for _, holds, _ in checked.report({"L": "[19; 81]", "K": "[4 3]"}).certificates] == [True, True]
+    assert checked.report({"L": "[a b; c d]"}).parts[1].reason.count("is not declared") == 3
+    assert checked.report({"F": "1/s"}).parts[2].reason == ""
+    assert checked.report({"F": "1/s", "K": "[4 3]"}).parts[2].reason == "this is not the F of your gains"
+    assert checked.report({"F": "1/s"}).parts[2].slip is None
+
+
+def test_a_gain_that_is_right_on_a_smaller_domain_says_where_it_is_not() -> None:
+    problem = 'task = "observer"\n[symbols]\nalpha = "real"\n[plant]\nA = "[0 alpha; 0 0]"\nC = "[1 0; 0 1]"\n'
+    checked = Checked.of(problem + '[specification]\npoles = "-1, -2"\n')
+    (part,) = checked.report({"L": "[1 alpha-1/alpha; 0 2]"}).parts
+    assert (part.verdict, part.hints) == ("right", ("not defined where alpha = 0",))
+    assert checked.report({"L": "[1 alpha-1; 0 2]"}).parts[0].hints == ()
+    reason = checked.report({"L": "[1 alpa; 0 2]"}).parts[0].reason
+    assert reason.endswith('; did you mean "alpha"? write it with the letters known here: alpha')
+
+
+def test_what_follows_in_the_other_coordinates_says_so() -> None:
+    """[A, -BK; LC, A - BK - LC] of the servo with K = [4 3] and the wrong L = [19; 80]."""
+    asked = Checked.of(SERVO + '[marking]\nasked = ["compensator.closed_loop_matrix_estimate"]\n')
+    estimate = "[0 1 0 0; 0 -1 -4 -3; 19 0 -19 1; 80 0 -84 -4]"
+    error = "[0 1 0 0; -4 -4 4 3; 0 0 -19 1; 0 0 -80 -1]"
+    for matrix, hints in ((estimate, ()), (error, ("in the state and the error",))):
+        part = asked.report({"K": "[4 3]", "L": "[19; 80]", "closed_loop_matrix_estimate": matrix}).parts[0]
+        assert (part.verdict, part.hints, part.origins) == ("follows", hints, ("compensator.L",))
+
+
+def test_what_does_not_exist_is_wrong_in_any_form() -> None:
+    problem = 'task = "compensator"\n[plant]\nA = "[1 0; 0 2]"\nB = "[1; 1]"\nC = "[1 0]"\n'
+    problem += '[specification]\ncontrol_poles = "-1, -2"\nobserver_poles = "-1, -2"\n'
+    parts = {part.letter: part for part in check(problem, {"F": "1/s", "L": ["3", "0"]}).parts}
+    assert (parts["F"].verdict, parts["F"].reason) == ("wrong", "there is no F here")
+    assert (parts["L"].verdict, "yours is" in parts["L"].reason) == ("wrong", False)
+
+
+FEEDFORWARD = 'task = "feedforward"\n[plant]\nA = "[0 0; 0 0]"\nB = "[1 0; 0 1]"\nC = "[1 0; 0 1]"\n'
+FEEDFORWARD += '[specification]\ncontrol_poles = "-1, -2"\nobserver_poles = "-3, -4"\n'
+
+
+def test_a_feedforward_belongs_to_its_feedback() -> None:
+    """G(0) = C (BK - A)^-1 B: 1/4 of the servo with K = [4 3], K^-1 of two integrators."""
+    servo = Checked.of((EXAMPLES / "servo_feedforward.toml").read_text(encoding="utf-8"))
+    for answer, expected in (
+        ({"F": "4"}, ["right"]),
+        ({"F": "5"}, ["wrong"]),
+        ({"F": "5", "K": "[5 3]"}, ["follows", "wrong"]),
+        ({"F": "4", "K": "[-4 -3]"}, ["right", "wrong"]),
+    ):
+        parts = [part for part in servo.report(answer).parts if part.given]
+        assert [part.verdict for part in parts] == expected
+    assert (parts[1].slip, parts[1].effect["stable"]) == ("sign", "no")
+    for F, verdict in (("[1 0; 0 2]", "right"), ("[1 0; 0 3]", "wrong"), ("[2 0; 0 1]", "wrong")):
+        assert verdicts(FEEDFORWARD, {"K": "[1 0; 0 2]", "F": F}) == {"K": "right", "F": verdict}
+
+
+def test_tracking_does_not_depend_on_a_wrong_gain() -> None:
+    problem = Checked.of((EXAMPLES / "servo_tracking.toml").read_text(encoding="utf-8"))
+    for K_d, verdict in (("[omega^2 -1]", "right"), ("[omega^2 1]", "wrong")):
+        parts = {part.letter: part for part in problem.report({"K": "[5 3]", "L": "[-9]", "K_d": K_d}).parts}
+        assert (parts["K_d"].verdict, parts["K"].verdict, parts["L"].slip) == (verdict, "wrong", "sign")
+
+
+def test_a_chain_of_vectors_may_be_scaled_as_a_whole() -> None:
+    """χ = (s + 1)³ in companion form: one block of order 3, T of which was multiplied by 5."""
+    problem = CANONICAL.format("modal").replace('"[1 2; 3 4]"', '"[0 1 0; 0 0 1; -1 -3 -3]"')
+    problem = problem.replace('"[1; 1]"', '"[0; 0; 1]"').replace('"[1 0]"', '"[1 0 0]"')
+    plant = sp.Matrix([[0, 1, 0], [0, 0, 1], [-1, -3, -3]]), sp.Matrix([0, 0, 1]), sp.Matrix([[1, 0, 0]])
+    chain = sp.Matrix([[1, 1, 1], [-1, 0, 0], [1, -1, 0]])  # (A + I) v1 = 0, (A + I) v2 = v1, (A + I) v3 = v2
+    assert set(verdicts(problem, moved(5 * chain.inv(), *plant)).values()) == {"right"}
+    assert verdicts(problem, moved(sp.diag(1, 2, 1), *plant))["T"] == "wrong"
+
+
+def test_a_few_matrices_of_an_observer_of_reduced_order() -> None:
+    assert verdicts(REDUCED, {"H": "[-90]"}) == {"H": "right"}
+    assert verdicts(REDUCED, {"F": "[-10]", "H": "[-180]"}) == {"F": "right", "H": "right"}
+    wrong_size = {"F": "[-10 0; 0 1]", "G": "[2]", "H": "[-180]"}
+    assert verdicts(REDUCED, wrong_size) == dict.fromkeys("FGH", "wrong")
+    unobservable = REDUCED.replace("[0 1; 0 -1]", "[1 0; 0 2]")
+    parts = {part.letter: part.reason for part in check(unobservable, {"L": "[1 2]"}).parts if part.given}
+    assert parts == {"L": "L is 1x1 here, yours is 1x2"}

@@ -302,6 +302,8 @@ specification = { poles = "-1, -1, -2, -2" }
         (SERVO_WITH_INTEGRAL, {"K": "[11 5]", "k_I": "-6"}, "right wrong"),
         (SERVO_WITH_INTEGRAL, {"K": "[11 6]", "k_I": "6"}, "wrong right"),
         (SERVO_WITH_INTEGRAL, {"K": "[11 5]"}, "right missing"),
+        (SERVO_WITH_INTEGRAL, {"K": "[11 5", "k_I": "6"}, "unreadable right"),
+        (SERVO_WITH_INTEGRAL, {"K": "[11 5 1]", "k_I": "6"}, "wrong right"),
         (TWO_INTEGRATORS, {"K": "[3 1; 0 3]", "k_I": "[2 0; 0 2]"}, "right right"),
         (TWO_INTEGRATORS, {"K": "[3 1; 1 3]", "k_I": "[2 0; 0 2]"}, "wrong wrong"),
         (TWO_INTEGRATORS, {"K": "[3 1; 0 3]"}, "undecided missing"),
@@ -310,3 +312,6 @@ specification = { poles = "-1, -1, -2, -2" }
 def test_the_gains_of_integral_action_are_judged_together(problem: str, answer: dict[str, str], verdicts: str) -> None:
     report = check(read(problem), answer)
     assert " ".join(one(report, name).verdict for name in ("K", "k_I")) == verdicts
+    if "undecided" in verdicts:
+        part = one(report, "K")
+        assert (part.given, part.reason) == ("[3 1; 0 3]", "K and k_I are right together: give both")
