@@ -12,7 +12,7 @@ from symobs.render.formats.html import page, plain
 from symobs.render.printers.mathml.mathml_printer import MathmlPrinter
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Mapping
 
     from symobs.checking.report.data import Line, Part, ReportData
 
@@ -45,22 +45,22 @@ def html(report: ReportData) -> str:
     head += [f"<p>{plain(report.student)}</p>"] if report.student else []
     head += [f'<p class="score"><strong>{plain(result(report))}</strong></p>']
     names = names_of(report)
-    parts = [line for part in report.parts for line in _part(part, names[part.part])]
+    parts = [line for part in report.parts for line in _part(part, names)]
     hints = [f"<p>{plain(hint)}</p>" for hint in report.hints]
     lines = ["<h2>Your derivation</h2>", '<ol class="derivation">', *map(_line, report.lines), "</ol>"]
     solution = ["<h2>Solution</h2>", report.page] if report.page else []
     return page(title, "\n".join([_STYLE, *head, *parts, *hints, *(lines if report.lines else []), *solution]))
 
 
-def _part(part: Part, name: str) -> Iterator[str]:
+def _part(part: Part, names: Mapping[str, str]) -> Iterator[str]:
     """Yield the section of a part."""
     yield f'<section class="judged {part.verdict}">'
     credit = part.credit is not None and part.weight > 0 and 0 < part.credit < 1
     extra = f", {part.credit} of its marks" if credit else ""
-    yield f"<h2>{plain(name)}: {_WORDS[part.verdict]}{extra}</h2>"
+    yield f"<h2>{plain(names[part.part])}: {_WORDS[part.verdict]}{extra}</h2>"
     if part.given:
         yield f"<p>You gave {_math(part.given)}</p>"
-    for said in sentences(part, effect=False):
+    for said in sentences(part, names, effect=False):
         yield f"<p>{plain(_sentence(said))}</p>"
     if part.effect and part.verdict == "wrong":
         stable = {"no": ", and not stable", "yes": ""}.get(part.effect.get("stable", ""), "")

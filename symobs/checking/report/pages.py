@@ -11,7 +11,7 @@ from symobs.checking.report.data import decimal
 from symobs.expression.source import shown
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Mapping
 
     from symobs.checking.report.data import Line, Part, ReportData
 
@@ -31,7 +31,8 @@ def text(report: ReportData) -> str:
         head = f"{names[part.part]:<{width}}  {part.verdict}"
         credit = f"  {part.credit}" if part.weight and part.credit is not None and 0 < part.credit < 1 else ""
         lines += _wrapped(
-            printable("  ".join(filter(None, (head + credit, of_numbers("; ".join(sentences(part))))))), width + 2
+            printable("  ".join(filter(None, (head + credit, of_numbers("; ".join(sentences(part, names))))))),
+            width + 2,
         )
     for line in shown_lines(report):
         said = f": {of_numbers(line.reason)}" if line.reason else ""
@@ -51,9 +52,8 @@ def markdown(report: ReportData) -> str:
     lines += ["| part | verdict | credit | |", "|---|---|---|---|"]
     for part in report.parts:
         credit = "" if part.credit is None else str(part.credit)
-        lines.append(
-            f"| {plain(names[part.part])} | {part.verdict} | {credit} | {plain(of_numbers('; '.join(sentences(part))))} |"
-        )
+        said = plain(of_numbers("; ".join(sentences(part, names))))
+        lines.append(f"| {plain(names[part.part])} | {part.verdict} | {credit} | {said} |")
     for line in shown_lines(report):
         said = f": {of_numbers(line.reason)}" if line.reason else ""
         lines += ["", plain(f"{line.where} is {line.verdict}: {line.relation}{said}")]
@@ -75,13 +75,13 @@ def names_of(report: ReportData) -> dict[str, str]:
     }
 
 
-def sentences(part: Part, *, effect: bool = True) -> Iterator[str]:
-    """Yield what is said of a part; with `effect` also what its value does, and what is right."""
+def sentences(part: Part, names: Mapping[str, str], *, effect: bool = True) -> Iterator[str]:
+    """Yield what is said of a part, others having these `names`; with `effect` also what its value does, and what is right."""
     if part.reason and (effect or not part.effect or part.slip is not None):
         yield part.reason
     yield from part.alternatives
     if part.origins:
-        named = " and ".join(origin.partition(".")[2] for origin in part.origins)
+        named = " and ".join(names.get(origin, origin.partition(".")[2]) for origin in part.origins)
         yield f"it follows from your {named}, which {'are' if len(part.origins) > 1 else 'is'} wrong"
     if part.place and not part.reason:
         yield f"look at {_place(part.place)}"

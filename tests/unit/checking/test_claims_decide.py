@@ -132,9 +132,9 @@ def test_a_part_that_is_right_in_coordinates_of_its_own_is_no_false_line() -> No
 
 
 def test_what_is_wrong_with_an_observer_of_reduced_order() -> None:
-    report = Checked.of((EXAMPLES / "tanks_minimal_observer.toml").read_text(encoding="utf-8")).report(
-        {"F": "1/5", "G": "1", "H": "-0.6"}
-    )
+    tanks = Checked.of((EXAMPLES / "tanks_minimal_observer.toml").read_text(encoding="utf-8"))
+    assert "follows  it follows from your M, which" in tanks.report({"M": "-8", "F": "-9/25"}).to_text()
+    report = tanks.report({"F": "1/5", "G": "1", "H": "-0.6"})
     assert [(part.slip, part.reason) for part in report.parts[:3]] == [
         ("sign", "-F is right"),
         (None, ""),
