@@ -352,6 +352,8 @@ def test_tracking_does_not_depend_on_a_wrong_gain() -> None:
     for K_d, verdict in (("[omega^2 -1]", "right"), ("[omega^2 1]", "wrong")):
         parts = {part.letter: part for part in problem.report({"K": "[5 3]", "L": "[-9]", "K_d": K_d}).parts}
         assert (parts["K_d"].verdict, parts["K"].verdict, parts["L"].slip) == (verdict, "wrong", "sign")
+    given = {"K": "[5 3]", "error_matrix": "[0 1 0; -5 -4 -3; 0 0 -10]"}
+    assert {part.letter: part.verdict for part in problem.report(given).parts}["error_matrix"] == "follows"
 
 
 def test_a_chain_of_vectors_may_be_scaled_as_a_whole() -> None:
@@ -372,3 +374,16 @@ def test_a_few_matrices_of_an_observer_of_reduced_order() -> None:
     unobservable = REDUCED.replace("[0 1; 0 -1]", "[1 0; 0 2]")
     parts = {part.letter: part.reason for part in check(unobservable, {"L": "[1 2]"}).parts if part.given}
     assert parts == {"L": "L is 1x1 here, yours is 1x2"}
+
+
+def test_an_observer_of_two_states_and_two_outputs_with_any_of_its_gains_is_right() -> None:
+    """ż = -L z + P B u + H y is z for [-L I] x of two double integrators: P A + L P = [-L^2 0] = H C."""
+    problem = 'task = "reduced_order_observer"\n[plant]\nA = "[0 0 1 0; 0 0 0 1; 0 0 0 0; 0 0 0 0]"\n'
+    problem += 'B = "[0; 0; 1; 0]"\nC = "[1 0 0 0; 0 1 0 0]"\n[specification]\npoles = "-1, -2"\n'
+    for gain in (sp.Matrix([[1, 7], [0, 2]]), sp.Matrix([[4, 3], [-2, -1]])):
+        M = sp.eye(4)
+        M[2:, :2] = gain
+        answer = {"F": text(-gain), "G": "[1; 0]", "H": text(-(gain**2)), "M": text(M)}
+        assert set(verdicts(problem, answer).values()) == {"right"}
+        M[2, 0] += 1
+        assert verdicts(problem, {"M": text(M)}) == {"M": "wrong"}

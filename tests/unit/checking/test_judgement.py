@@ -315,3 +315,11 @@ def test_the_gains_of_integral_action_are_judged_together(problem: str, answer: 
     if "undecided" in verdicts:
         part = one(report, "K")
         assert (part.given, part.reason) == ("[3 1; 0 3]", "K and k_I are right together: give both")
+
+
+def test_a_loop_with_integral_action_follows_from_wrong_gains() -> None:
+    """u = -K x + k_I z with z' = r - y, K = [11 6] in place of [11 5]."""
+    asked = f'{SERVO_WITH_INTEGRAL}marking = {{ asked = ["integral_action.closed_loop_matrix"] }}\n'
+    given = {"K": "[11 6]", "k_I": "6", "closed_loop_matrix": "[0 1 0; -11 -7 6; -1 0 0]"}
+    part = check(read(asked), given).parts[0]
+    assert (part.verdict, part.origins) == ("follows", ("integral_action.K",))
