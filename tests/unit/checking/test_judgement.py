@@ -147,6 +147,11 @@ def test_in_the_letters_and_signs_of_a_convention() -> None:
     assert check(plant, {"L": "[19; 81]"}, convention="standard").verdict == "right"
 
 
+def test_both_gains_of_integral_action_have_the_sign_of_the_convention() -> None:
+    report = check(read(TWO_INTEGRATORS), {"K": "[-3 -1; 0 -3]", "k_I": "[2 0; 0 2]"}, convention="plusK-plusMC")
+    assert [part.verdict for part in report.parts] == ["right", "right"]
+
+
 def test_decimals_are_exact() -> None:
     plant = 'task = "transfer_function"\n[plant]\nA = "[-1/3]"\nB = "[1]"\nC = "[1/3]"\n'
     wrong = check(plant, {"transfer_function": "0.333/(s + 0.333)"}).parts[0]
