@@ -26,7 +26,6 @@ from symobs.checking.judgement.regions import region_verdict
 from symobs.design.reference.integral_action import IntegralAction
 from symobs.errors import (
     CertificateRejected,
-    ExpressionError,
     InputError,
     NotShown,
     ProblemErrors,
@@ -372,6 +371,6 @@ def _region(task: _Task, name: str, letter: str, given: Any) -> Judged:
         found = region_verdict(task.right, given, task.names)
     except UNDECIDED as error:
         return replace(part, verdict="undecided", reason=str(error))
-    except (ExpressionError, InputError) as error:
+    except InputError as error:
         return unreadable(name, letter, given, error)
     return replace(part, verdict=found.verdict, separation=found, reason=found.reason)
