@@ -156,6 +156,19 @@ def test_a_chain_of_vectors_may_be_scaled_as_a_whole() -> None:
     assert verdicts(problem, moved(sp.diag(1, 2, 1), *plant))["T"] == "wrong"
 
 
+def test_blocks_of_a_modal_form_may_change_places_and_the_sign_of_their_sine() -> None:
+    """χ = (s + 2)(s² + 2 s + 2): the last state first turns the block of the pair over."""
+    problem = CANONICAL.format("modal").replace('"[1 2; 3 4]"', '"[0 1 0; 0 0 1; -4 -6 -4]"')
+    problem = problem.replace('"[1; 1]"', '"[0; 0; 1]"').replace('"[1 0]"', '"[1 0 0]"')
+    plant = sp.Matrix([[0, 1, 0], [0, 0, 1], [-4, -6, -4]]), sp.Matrix([0, 0, 1]), sp.Matrix([[1, 0, 0]])
+    # of -1 + i: [1; -1 + i; -2 i], its real and its imaginary part; of -2: [1; -2; 4]
+    real, imaginary, alone = sp.Matrix([1, -1, 0]), sp.Matrix([0, 1, -2]), sp.Matrix([1, -2, 4])
+    for columns in ((alone, real, imaginary), (imaginary, real, 3 * alone), (5 * real, 5 * imaginary, alone)):
+        assert set(verdicts(problem, moved(sp.Matrix.hstack(*columns).inv(), *plant)).values()) == {"right"}
+    split = sp.Matrix.hstack(real, 2 * imaginary, alone).inv()
+    assert verdicts(problem, moved(split, *plant))["T"] == "wrong"
+
+
 def test_a_few_matrices_of_an_observer_of_reduced_order() -> None:
     assert verdicts(REDUCED, {"H": "[-90]"}) == {"H": "right"}
     assert verdicts(REDUCED, {"F": "[-10]", "H": "[-180]"}) == {"F": "right", "H": "right"}
