@@ -64,8 +64,8 @@ def as_value(text: str) -> str | list[str]:
     """
     value = text.strip().removesuffix(";").rstrip()
     if sized := _OF_SIZE.fullmatch(value):
-        rows, columns, entries = int(sized[1]), int(sized[2]), sized[3].split(",")
-        if len(entries) != rows * columns or not columns:
+        columns, entries = int(sized[2]), sized[3].split(",")
+        if len(entries) != int(sized[1]) * columns or not columns:
             return value
         return f"[{'; '.join(', '.join(entries[i : i + columns]) for i in range(0, len(entries), columns))}]"
     called = _CALL.fullmatch(value)

@@ -76,7 +76,7 @@ def _canonical(result: CanonicalForm, given: Mapping[str, Matrix]) -> Iterator[F
 class _Other:
     """A form in another layout or scaling: the fields of a result, with those of its coordinates in place of its own."""
 
-    def __init__(self, result: CanonicalForm, moved: Mapping[str, Any]) -> None:
+    def __init__(self, result: Result, moved: Mapping[str, Any]) -> None:
         self.result = result
         self.fields = {**result.fields, **moved}
 

@@ -204,6 +204,11 @@ def test_conditions_with_roots_are_undecided() -> None:
     assert part.reason == "conditions with roots or functions are not compared"
 
 
+def test_a_line_of_primes_is_read_soon() -> None:
+    found = LOOP.report(f"K = [4 3]\ndet(s {chr(39) * 98} + L C) = (s + 1)^3").lines[-1]
+    assert (found.verdict, "98 primes stand behind each other" in found.reason) == ("false", True)
+
+
 def test_a_line_with_the_inverse_of_zero_is_no_fault_of_ours() -> None:
     line = (
         "integral((1), (integral((A), (C), (obsv((O), (K))), (obsv((B), (x_hat))))), (B), (-(2.5))) = [((0)^-1); (1)]"

@@ -224,6 +224,7 @@ FEEDFORWARD += '[specification]\ncontrol_poles = "-1, -2"\nobserver_poles = "-3,
 def test_a_feedforward_belongs_to_its_feedback() -> None:
     """G(0) = C (BK - A)^-1 B: 1/4 of the servo with K = [4 3], K^-1 of two integrators."""
     servo = Checked.of((EXAMPLES / "servo_feedforward.toml").read_text(encoding="utf-8"))
+    parts: list[Any] = []
     for answer, expected in (
         ({"F": "4"}, ["right"]),
         ({"F": "5"}, ["wrong"]),
