@@ -105,7 +105,8 @@ def reasons(printed: Matrix, right: Matrix, whole: str) -> str:
 
 def listed(entries: Sequence[EntryDifference]) -> str:
     """Return the wrong entries as one text."""
-    more = [f"and {len(entries) - _MOST_LISTED} more entries"] if len(entries) > _MOST_LISTED else []
+    left = len(entries) - _MOST_LISTED
+    more = [f"and {left} more {'entries' if left > 1 else 'entry'}"] if left > 0 else []
     return "; ".join([*map(str, entries[:_MOST_LISTED]), *more])
 
 

@@ -68,7 +68,7 @@ def _statement(entry: Mapping[str, Any], place: str, convention: Convention, sig
     let = _lets(entry.get("let", {}), f"{place}.let")
     relation, condition = parted(entry.get("relation", ""), signs, f"{place}.relation")
     if "relation" in entry and len(read_relation(relation, f"{place}.relation")) < 2:
-        repair = 'write both sides, for example "A + M C = [-3 1; -2 0]"'
+        repair = 'write both sides, for example "det(s I - A) = s^2 + 3 s + 2"'
         raise InputError("an equation is expected", where=f"{place}.relation", repair=repair)
     where, erratum = entry.get("where", ""), entry.get("erratum", "")
     return PrintedEntry(place, where, erratum, written_in, relation, condition, let, entry.get("expect", {}))

@@ -231,10 +231,9 @@ def _functions_of_time(answer: Answer, tasks: Collection[str]) -> list[tuple[str
 
 
 def _is_answer_alone(line: Line, parts: Sequence[Part]) -> bool:
-    """Return whether a line that means nothing in a derivation is a part of the answer, which was read."""
+    """Return whether a line that means nothing in a derivation is a part of the answer, where it is told what is wrong."""
     letter = line.relation.partition("=")[0].strip()
-    read_parts = {part.letter for part in parts if part.given and part.verdict != "unreadable"}
-    return line.verdict == "unreadable" and letter in read_parts
+    return line.verdict == "unreadable" and letter in {part.letter for part in parts if part.given}
 
 
 def _is_empty(value: Any) -> bool:

@@ -73,7 +73,7 @@ def _right(view: ResultInConvention, result: Result, letter: str) -> str | None:
 def _followed(part: Part, judgement: TaskJudgement, judged: Judged, marking: Marking) -> Part:
     """Return a part that is right from the student's own earlier one, without credit where that made it easy."""
     if marking.guard and any(_is_degenerate(judgement, name) for name in judged.origins):
-        hint = "it follows from your earlier result, which makes this part too easy to count"
+        hint = "that makes this part too easy to count"
         return replace(part, credit=Fraction(0), hints=(*part.hints, hint))
     if marking.guard and judged.name == "F" and isinstance(judged.value, (Matrix, Scalar)):
         variable = judgement.right.plant.variable
@@ -154,8 +154,9 @@ def _explanation(view: ResultInConvention, judgement: TaskJudgement, judged: Jud
     if isinstance(right, Scalar) and isinstance(value, Matrix) and value.shape == (1, 1):
         value = value[0, 0]
     variable = "t" if view.in_time else view.plant.variable
-    others = other_values(judgement.right) if judged.name == "F" else []
-    return explain_value(value, right, judged.letter, variable, others, rounded=judged.rounded)
+    in_loop = (view.task, judged.name) == ("compensator", "F")
+    others = other_values(judgement.right) if in_loop else []
+    return explain_value(value, right, judged.letter, variable, others, rounded=judged.rounded, in_loop=in_loop)
 
 
 def _without_coordinates(value: Matrix | Scalar, right: Matrix, letter: str) -> Explained:

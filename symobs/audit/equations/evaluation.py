@@ -33,6 +33,9 @@ if TYPE_CHECKING:
 
     from symobs.audit.equations.reading import Reading
 
+#: So many primes may stand behind each other: derivatives, or transposes.
+_MOST_PRIMES = 8
+
 
 def value_of(node: SyntaxNode, reading: Reading) -> Printed:
     """Return the value of a tree; raises Misfit, Unknown and BudgetExceeded."""
@@ -213,6 +216,11 @@ def _at_matrix(function: SyntaxNode, value: Term, argument: SyntaxNode, where: T
 
 
 def _primed(base: SyntaxNode, reading: Reading) -> Printed:
+    inner, primes = base, 1
+    while inner.kind == "primed":
+        inner, primes = inner.parts[0], primes + 1
+    if primes > _MOST_PRIMES:  # each derivative of a signal is longer than the one before
+        raise Misfit(f"{primes} primes stand behind each other, more than {_MOST_PRIMES}")
     value = value_of(base, reading)
     if isinstance(value, Flexible):
         return value

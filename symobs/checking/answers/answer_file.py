@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping
 from dataclasses import field
+from itertools import takewhile
 from typing import Any
 
 from symobs._dataclass import dataclass
@@ -25,6 +26,8 @@ _TABLES = re.compile(r"(?m)^[ \t]*(\[\[?[ \t]*(answer|step)\b|(student|conventio
 #: What begins a remark.
 _REMARK = re.compile(r"[#%]")
 _RELATION = re.compile(r"[=<>]|!=")
+#: Several numbers in a row, and the bar of a quotient, as MATLAB displays them below a name.
+_NUMBERS, _BAR = re.compile(r"[-+]?[\d.][\d.eE/+-]*(?:\s+[-+]?[\d.][\d.eE/+-]*)+"), re.compile(r"-{3,}")
 
 
 @dataclass(frozen=True)
@@ -115,6 +118,8 @@ def _lines(text: str, where: str) -> list[tuple[int, str]]:
     found: list[tuple[int, str]] = []
     while written:
         number, line = written.pop(0)
+        if (named := definition(line)) and not named.value:
+            line = f"{line} {_displayed(written)}"
         below, is_open = 0, _opened(line)
         while is_open > 0 and below < len(written) and not _RELATION.search(written[below][1]):
             is_open += _opened(written[below][1])
@@ -127,6 +132,18 @@ def _lines(text: str, where: str) -> list[tuple[int, str]]:
         found += [(number, part.strip()) for part in statements(line)]
     _at_most(len(found), where)
     return found
+
+
+def _displayed(written: list[tuple[int, str]]) -> str:
+    """Take what is displayed below its name: a quotient over its bar, the rows of a matrix, or one expression."""
+    lines = [line for _, line in takewhile(lambda each: not _RELATION.search(each[1]), written)]
+    if len(lines) > 2 and _BAR.fullmatch(lines[1]):
+        del written[:3]
+        return f"({lines[0]})/({lines[2]})"
+    del written[: len(lines)]
+    if len(lines) == 1 and not _NUMBERS.fullmatch(lines[0]):
+        return lines[0]
+    return f"[{'; '.join(line.strip('[] ') for line in lines)}]" if lines else ""
 
 
 def _at_most(lines: int, where: str) -> None:

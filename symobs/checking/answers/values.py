@@ -33,6 +33,8 @@ _CALL = re.compile(
     r"(?:[A-Za-z]+\.)?(array|asarray|matrix|Matrix|ImmutableMatrix)\(\s*(\[.*\])\s*(?:,\s*dtype\s*=\s*[\w.]+\s*)?\)",
     re.DOTALL,
 )
+#: A matrix of SymPy by its size and the entries of its rows.
+_OF_SIZE = re.compile(r"(?:[A-Za-z]+\.)?(?:Immutable)?Matrix\(\s*(\d{1,2})\s*,\s*(\d{1,2})\s*,\s*\[([^][;]*)\]\s*\)")
 _FLAT = re.compile(r"\[([^][;]*)\]")
 _ROW = re.compile(r"\[([^]]*)\]")
 _QUOTE, _ORDER = re.compile(r"[\"']"), re.compile(r"[<>]")
@@ -61,6 +63,11 @@ def as_value(text: str) -> str | list[str]:
     A vector of NumPy, which is neither row nor column, is the list of its entries; one of SymPy is a column.
     """
     value = text.strip().removesuffix(";").rstrip()
+    if sized := _OF_SIZE.fullmatch(value):
+        columns, entries = int(sized[2]), sized[3].split(",")
+        if len(entries) != int(sized[1]) * columns or not columns:
+            return value
+        return f"[{'; '.join(', '.join(entries[i : i + columns]) for i in range(0, len(entries), columns))}]"
     called = _CALL.fullmatch(value)
     flat = _FLAT.fullmatch(called[2]) if called else None
     if called and flat:

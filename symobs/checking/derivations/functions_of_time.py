@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from symobs.audit.differences import as_matrix, wrong_entries
 from symobs.checking.answers.values import as_value, read_like
+from symobs.checking.derivations.line_auditor import without_solution
 from symobs.checking.judgement.parts import exists, field_called, is_of_time
 from symobs.checking.report.data import Line
 from symobs.errors import NotShown, SymobsError
@@ -56,5 +57,6 @@ def _of_member(step: Step, name: str, member: str, view: ResultInConvention) -> 
     if own.shape != exact.shape:
         rows, columns = (f"{a}x{b}" for a, b in (exact.shape, own.shape))
         return Line(step.where, step.relation, "false", reason=f"{name} is {rows} here, yours is {columns}")
-    reason = "; ".join(map(str, wrong_entries(own, exact, whole=name)))
+    wrong = wrong_entries(own, exact, whole=name)
+    reason = without_solution("; ".join(map(str, wrong))) or "its sides are not equal"
     return Line(step.where, step.relation, "false", right=f"{name} = {right}", reason=reason)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from contextlib import suppress
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any
@@ -21,6 +22,26 @@ if TYPE_CHECKING:
     from symobs.convention import Convention
     from symobs.problem import Problem
     from symobs.result import Result
+
+#: A right value beside the one that was written, and the slip from one to the other.
+_BESIDE = re.compile(r"(.+?) is .+, not [^:]+(?:: (.+))?")
+_PART = re.compile(r"(?:in )?(?:entry|the coefficient|the constant term)\b")
+
+
+def without_solution(reason: str, *, is_gain: bool = False) -> str:
+    """Return why a line is false without what is right: one wrong entry or coefficient is told, of several the places.
+
+    A value that is wrong as a whole has its slip for a reason, or none; so has a gain, which may be right in other places.
+    """
+    pieces = reason.split("; ")
+    told = [found for piece in pieces if (found := _BESIDE.fullmatch(piece))]
+    parts = [found[1] for found in told if _PART.match(found[1])]
+    if len(told) < 2:
+        return reason if parts or not told else told[0][2] or ""
+    others = [piece for piece in pieces if not _BESIDE.fullmatch(piece)]
+    if others and not others[0].startswith("and "):  # "and 2 more entries"
+        return others[0]
+    return "" if is_gain else f"not right: {', '.join([*parts, *others])}"
 
 
 class LineAuditor(EquationAuditor):
@@ -62,11 +83,11 @@ class LineAuditor(EquationAuditor):
         """Return the letters of a line."""
         return {*letters_of(*self.members(entry), *self.let.values())}
 
-    def explained(self, entry: PrintedEntry) -> tuple[str, str]:
-        """Return the correction of a false line and the reason, empty where none is found."""
+    def explained(self, entry: PrintedEntry, *, is_gain: bool) -> tuple[str, str]:
+        """Return the correction of a false line and the reason without it, empty where none is found."""
         for _, verdict in self.read(entry):
             if not verdict.holds:
-                return verdict.right, verdict.reason
+                return verdict.right, without_solution(verdict.reason, is_gain=is_gain)
         return "", ""
 
 

@@ -19,10 +19,10 @@ from symobs.checking.derivations.functions_of_time import of_function_of_time
 from symobs.checking.derivations.line_auditor import LineAuditor, auditor
 from symobs.checking.judgement.conditions import read_conditions
 from symobs.checking.judgement.gains import from_gains, with_gain
-from symobs.checking.judgement.parts import GAINS, OF_THE_PLANT, exists
+from symobs.checking.judgement.parts import GAINS, IN_COORDINATES, OF_THE_PLANT, exists
 from symobs.checking.judgement.regions import compare
 from symobs.checking.report.data import Line
-from symobs.errors import BudgetExceeded, CertificateRejected, NotShown, ProblemErrors, SymobsError
+from symobs.errors import BudgetExceeded, CertificateRejected, NotShown, ProblemErrors, SymobsError, UnknownName
 from symobs.exact import Matrix, Scalar, TooLarge
 from symobs.expect import names_of
 
@@ -81,6 +81,10 @@ class _Derivation:
         named = [where for letter, (_, where) in self.bound.items() if letter in letters]
         return tuple(dict.fromkeys(named or [where for _, where in self.bound.values()]))
 
+    def is_gain(self, letter: str) -> bool:
+        """Return whether a letter is that of a gain, of which the part of the answer says why it is wrong."""
+        return any(view.standard(letter)[0] in GAINS.get(view.task, ()) for view in self.views)
+
     def takes(self, letter: str, value: Any) -> bool:
         """Return whether a value of a gain meets its claim; then it takes the place of the right one."""
         for view in self.views:
@@ -116,16 +120,29 @@ def judge_lines(
                     view = next(view for view in views if view.task == each.right.task)
                     value = -part.value if view.standard(part.letter)[1] < 0 else part.value
                     state.bound[part.letter] = (value, "the answer")
-    lines = tuple(_judged(state, step, answer) for step in answer.steps if not _states_a_part(step, answer, views))
+    chosen = {
+        part.letter
+        for task, each in judged.items()
+        for part in each.parts
+        if part.verdict == "right" and part.name in IN_COORDINATES.get(task, ())
+    }
+    lines = tuple(
+        _judged(state, step, answer) for step in answer.steps if not _states_a_part(step, answer, views, chosen)
+    )
     right = {part.letter for each in judged.values() for part in each.parts if part.verdict == "right"}
     met = tuple((each.relation, each.points, _is_met(each, lines, right | state.rightly)) for each in milestones)
     return lines, met
 
 
-def _states_a_part(step: Step, answer: Answer, views: Sequence[ResultInConvention]) -> bool:
-    """Return whether a line only repeats a part of the answer, A = [...] of a canonical form, whose letter is the plant's."""
+def _states_a_part(step: Step, answer: Answer, views: Sequence[ResultInConvention], chosen: set[str]) -> bool:
+    """Return whether a line only repeats a part of the answer.
+
+    Its letter is the plant's, A = [...] of a canonical form, or it is right in coordinates that the student has `chosen`.
+    """
     letter, _, value = (side.strip() for side in step.relation.partition("="))
     given = [entry.get(letter) for entry in (answer.values, *answer.values.values()) if isinstance(entry, Mapping)]
+    if letter in chosen:
+        return value in given
     return letter in OF_THE_PLANT and value in given and any(exists(view.result, letter) for view in views)
 
 
@@ -134,6 +151,8 @@ def _without_place(error: SymobsError) -> str:
     errors = error.errors if isinstance(error, ProblemErrors) else (error,)
     for each in errors:
         each.where = ""
+        if isinstance(each, UnknownName) and not each.repair.startswith("did you mean"):
+            each.repair = "use the letters of the problem; your own ones belong to symbols or let of an answer file"
     return "\n".join(map(str, errors))
 
 
@@ -191,11 +210,12 @@ def _not_true(
                 state.bound[defined[0]] = (defined[1], step.where)
             return Line(step.where, step.relation, "follows", origins)
         desk = own
+    is_gain = defined is not None and state.is_gain(defined[0])
     try:
-        corrected, reason = desk.explained(entry)
+        corrected, reason = desk.explained(entry, is_gain=is_gain)
     except (CertificateRejected, *UNREADABLE):  # the search for the cause found none that stands
         corrected, reason = "", ""
-    reason = reason or "its sides are not equal"
+    reason = reason or ("" if is_gain else "its sides are not equal")
     if defined is not None:
         state.bound[defined[0]] = (defined[1], step.where)
     return Line(step.where, step.relation, "false", right=corrected or None, reason=reason)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING
 
@@ -25,8 +24,12 @@ def explain_value(
     others: Iterable[tuple[str, Matrix | Scalar, str]],
     *,
     rounded: bool,
+    in_loop: bool = False,
 ) -> Explained:
-    """Return why a value is wrong; `others` are known slips in the way to it, each with its value and reason."""
+    """Return why a value is wrong; `others` are known slips in the way to it, each with its value and reason.
+
+    With `in_loop` the value stands in a feedback loop, where its sign is a convention.
+    """
     mine, exact = differences.as_matrix(value), differences.as_matrix(right)
     if mine.shape != exact.shape:
         if exact == mine.T:
@@ -35,16 +38,13 @@ def explain_value(
         return Explained(None, f"{letter} is {sizes.replace(' and ', ' here, yours is ')}")
     kinds = [partial(_rounded, letter)] if rounded else []
     kinds += [
-        partial(_sign, mine, exact, letter),
+        partial(_sign, mine, exact, letter, in_loop=in_loop),
         partial(_entry, mine, exact, letter, variable),
         partial(_known, value, others),
         partial(_specialised, mine, exact, letter, variable),
         partial(_whole, mine, exact, letter),
     ]
-    found = first_kind(kinds)
-    if found.slip is None and exact.shape == (1, 1) and _has_functions(mine, exact, variable):
-        return replace(found, reason=f"{letter} is {exact[0, 0]}, not {mine[0, 0]}")
-    return found
+    return first_kind(kinds)
 
 
 def _has_functions(mine: Matrix, exact: Matrix, variable: str) -> bool:
@@ -56,10 +56,12 @@ def _rounded(letter: str) -> Iterator[Fault]:
     yield Fault("rounded", f"{letter} is rounded, and its exact value is asked for")
 
 
-def _sign(mine: Matrix, exact: Matrix, letter: str) -> Iterator[Fault]:
+def _sign(mine: Matrix, exact: Matrix, letter: str, *, in_loop: bool) -> Iterator[Fault]:
     if mine == -exact:
-        slip = "sign_convention" if letter == "F" and exact.shape == (1, 1) else "sign"
-        yield Fault(slip, f"-{letter} is right" if slip == "sign" else f"-{letter} is right with positive feedback")
+        if in_loop:
+            yield Fault("sign_convention", f"-{letter} is right: yours is that of positive feedback")
+        else:
+            yield Fault("sign", f"-{letter} is right")
         return
     if exact == mine.T:
         yield Fault("transposed", f"the transpose of {letter} is right")

@@ -6,6 +6,7 @@ values of the student are compared with those that it has there.
 
 from __future__ import annotations
 
+from contextlib import suppress
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
@@ -32,10 +33,9 @@ def in_coordinates(result: Result, given: Mapping[str, Matrix]) -> Iterator[Foun
         yield from _canonical(result, given)
     elif isinstance(result, Decomposition) and (T := given.get("T")) is not None:
         for matrix, said in _both_directions(T, result.plant.order):
-            try:
-                yield replace(result, answer={**result.answer, **_moved(result, matrix)}), said
-            except CertificateRejected:
-                continue
+            with suppress(CertificateRejected):
+                there = replace(result, answer={**result.answer, **_moved(result, matrix)})
+                yield _Other(there, {"T": T}), said  # type: ignore[misc]
 
 
 def _both_directions(T: Matrix, order: int) -> Iterator[tuple[Matrix, str]]:
@@ -62,7 +62,7 @@ def _canonical(result: CanonicalForm, given: Mapping[str, Matrix]) -> Iterator[F
         for T, said in _both_directions(given["T"], result.plant.order) if "T" in given else ():
             moved = _moved(result, T)
             if _same_blocks(moved["A"], result.answer["A"]):
-                yield _Other(result, moved), said  # type: ignore[misc]
+                yield _Other(result, {**moved, "T": given["T"]}), said  # type: ignore[misc]
         return
     for turn, layout in _layouts(result):
         T = (turn @ result.answer["T"]).normal()
@@ -76,7 +76,7 @@ def _canonical(result: CanonicalForm, given: Mapping[str, Matrix]) -> Iterator[F
 class _Other:
     """A form in another layout or scaling: the fields of a result, with those of its coordinates in place of its own."""
 
-    def __init__(self, result: CanonicalForm, moved: Mapping[str, Any]) -> None:
+    def __init__(self, result: Result, moved: Mapping[str, Any]) -> None:
         self.result = result
         self.fields = {**result.fields, **moved}
 

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 from symobs.design.compensator.output_feedback import OutputFeedback
 from symobs.design.full_order.observer import ObserverDesign
 from symobs.design.gain.gain_design import GainDesign
+from symobs.design.gain.gain_kind import AssignedGain
 from symobs.design.reduced_order.reduced_order_observer import ReducedOrderObserver
 from symobs.design.reference.feedforward import FeedforwardDesign, response
 from symobs.design.reference.integral_action import IntegralAction
@@ -71,8 +72,9 @@ def from_gains(result: Result, gains: Mapping[str, Matrix]) -> Result:
         placed = DesiredPolynomial(result.plant.variable, (inner.answer["polynomial"],))
         return type(result).assembled(result.plant, inner, placed, result.answer["T"], result.method)
     if isinstance(result, IntegralAction):
-        loop = type(result.loop).of_given(result.loop.plant, _whole(result, gains))
-        return result.of_loop(result.plant, loop, result.method)
+        given = type(result.loop).of_given(result.loop.plant, _whole(result, gains))
+        placed = DesiredPolynomial(result.plant.variable, (given.answer["polynomial"],))
+        return result.of_loop(result.plant, replace(given, kind=AssignedGain(placed)), result.method)
     assert isinstance(result, GainDesign)  # noqa: S101 - there is no other result with gains
     return type(result).of_given(result.plant, gains[result.letter]) if result.letter in gains else result
 

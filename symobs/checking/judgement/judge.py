@@ -26,7 +26,6 @@ from symobs.checking.judgement.regions import region_verdict
 from symobs.design.reference.integral_action import IntegralAction
 from symobs.errors import (
     CertificateRejected,
-    ExpressionError,
     InputError,
     NotShown,
     ProblemErrors,
@@ -168,7 +167,7 @@ def _gain(task: _Task, name: str, letter: str, given: Any) -> Judged:
     """Return the verdict on a gain: it is right where the claim of the design holds for it."""
     _, sign = task.view.standard(letter)
     try:
-        read = parse_matrix(exact(given), task.names, where=letter)
+        read = parse_matrix(given, task.names, where=letter)
     except SymobsError as error:
         return unreadable(name, letter, given, error)
     value = -read if sign < 0 else read
@@ -207,7 +206,7 @@ def _together(task: _Task, right: IntegralAction, given: Mapping[str, tuple[str,
             return right
         letter, written = given[name]
         with suppress(SymobsError):
-            read = parse_matrix(exact(written), task.names, where=letter)
+            read = parse_matrix(written, task.names, where=letter)
             gains[name] = -read if task.view.standard(letter)[1] < 0 else read
     if any(gains.get(name) is None or gains[name].shape != shape_of(right, name) for name in GAINS[right.task]):
         return right
@@ -337,20 +336,27 @@ def _in_coordinates(task: _Task, given: Mapping[str, tuple[str, Any]]) -> dict[s
             parts[name] = unreadable(name, letter, entry, two_readings())
     readable = {name: part for name, part in parts.items() if part.verdict != "unreadable"}
     matrices = {name: part.value for name, part in readable.items() if isinstance(part.value, Matrix)}
-    best: dict[str, bool] = {}
-    said = ""
+    best: set[str] = set()
+    there, said = task.right, ""
     for result, remark in [(task.right, ""), *in_coordinates(task.right, matrices)]:
-        held = {name: exists(result, name) and _is_met(task, result, part) for name, part in readable.items()}
-        if sum(held.values()) > sum(best.values()):
-            best, said = held, remark
+        held = {name for name, part in readable.items() if _is_met(task, result, part, exact(part.given))}
+        if len(held) > len(best):
+            best, there, said = held, result, remark
     hints = (said,) if said else ()
-    right = {name: replace(part, verdict="right", hints=hints) for name, part in readable.items() if best.get(name)}
-    return {**parts, **right}
+    for name, part in readable.items():
+        if name in best:
+            parts[name] = replace(part, verdict="right", hints=hints)
+        elif task.own is not None and _is_met(task, task.own, part, exact(part.given)):
+            parts[name] = replace(part, verdict="follows", origins=task.wrong)
+        else:
+            rounded = has_decimals(part.given) and _is_met(task, there, part, part.given)
+            parts[name] = replace(part, rounded=rounded)
+    return parts
 
 
-def _is_met(task: _Task, result: Result, part: Judged) -> bool:
+def _is_met(task: _Task, result: Result, part: Judged, given: Any) -> bool:
     try:
-        return _met(task, result, part, exact(part.given))
+        return exists(result, part.name) and _met(task, result, part, given)
     except InputError:
         return False
 
@@ -365,6 +371,6 @@ def _region(task: _Task, name: str, letter: str, given: Any) -> Judged:
         found = region_verdict(task.right, given, task.names)
     except UNDECIDED as error:
         return replace(part, verdict="undecided", reason=str(error))
-    except (ExpressionError, InputError) as error:
+    except InputError as error:
         return unreadable(name, letter, given, error)
     return replace(part, verdict=found.verdict, separation=found, reason=found.reason)

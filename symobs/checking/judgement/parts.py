@@ -10,14 +10,13 @@ if TYPE_CHECKING:
 
     from symobs.result import Result
 
-#: The fields that a task asks for where the file says nothing.
+#: The fields that a task asks for where the file says nothing; others ask for their verdict.
 ASKED: dict[str, tuple[str, ...]] = {
     "canonical_form": ("T", "A", "B", "C"),
     "characteristic_polynomial": ("polynomial",),
     "compensator": ("K", "L", "F"),
     "controllability": ("rank",),
     "decomposition": ("T", "sizes"),
-    "detectability": ("verdict",),
     "dual": ("A", "B", "C"),
     "feedforward": ("F",),
     "gramian": ("matrix",),
@@ -27,14 +26,11 @@ ASKED: dict[str, tuple[str, ...]] = {
     "matrix_exponential": ("matrix",),
     "observability": ("rank",),
     "observer": ("L",),
-    "pbh": ("verdict",),
     "pole_advice": ("poles",),
     "reduced_order_observer": ("F", "G", "H", "M"),
     "response": ("state",),
     "stability_region": ("stable_if",),
-    "stabilizability": ("verdict",),
     "state_feedback": ("K",),
-    "time_varying_observability": ("verdict",),
     "tracking": ("K_d",),
     "transfer_function": ("transfer_function",),
 }

@@ -244,6 +244,8 @@ def _bounded(part: Part, level: int) -> Part:
     found = replace(part, right=part.right if level > 2 else None, reason=said)
     if level < 2:
         found = replace(found, slip=None, alternatives=(), effect={}, hints=())
+    if level < 2 and part.slip == "entry_misread":  # its place is one of the data, which only the reason names
+        found = replace(found, place=None)
     if level < 1:
         found = replace(found, place=None, origins=())
     return found

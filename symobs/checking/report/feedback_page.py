@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from symobs.checking.report.pages import names_of, of_numbers, result, sentences
+from symobs.checking.report.pages import LONGEST, beginning, names_of, of_numbers, result, sentences
 from symobs.errors import SymobsError
 from symobs.expression import parse_matrix
 from symobs.formula import Literal
@@ -12,7 +12,7 @@ from symobs.render.formats.html import page, plain
 from symobs.render.printers.mathml.mathml_printer import MathmlPrinter
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Mapping
 
     from symobs.checking.report.data import Line, Part, ReportData
 
@@ -45,22 +45,22 @@ def html(report: ReportData) -> str:
     head += [f"<p>{plain(report.student)}</p>"] if report.student else []
     head += [f'<p class="score"><strong>{plain(result(report))}</strong></p>']
     names = names_of(report)
-    parts = [line for part in report.parts for line in _part(part, names[part.part])]
+    parts = [line for part in report.parts for line in _part(part, names)]
     hints = [f"<p>{plain(hint)}</p>" for hint in report.hints]
     lines = ["<h2>Your derivation</h2>", '<ol class="derivation">', *map(_line, report.lines), "</ol>"]
     solution = ["<h2>Solution</h2>", report.page] if report.page else []
     return page(title, "\n".join([_STYLE, *head, *parts, *hints, *(lines if report.lines else []), *solution]))
 
 
-def _part(part: Part, name: str) -> Iterator[str]:
+def _part(part: Part, names: Mapping[str, str]) -> Iterator[str]:
     """Yield the section of a part."""
     yield f'<section class="judged {part.verdict}">'
     credit = part.credit is not None and part.weight > 0 and 0 < part.credit < 1
     extra = f", {part.credit} of its marks" if credit else ""
-    yield f"<h2>{plain(name)}: {_WORDS[part.verdict]}{extra}</h2>"
+    yield f"<h2>{plain(names[part.part])}: {_WORDS[part.verdict]}{extra}</h2>"
     if part.given:
         yield f"<p>You gave {_math(part.given)}</p>"
-    for said in sentences(part, effect=False):
+    for said in sentences(part, names, effect=False):
         yield f"<p>{plain(_sentence(said))}</p>"
     if part.effect and part.verdict == "wrong":
         stable = {"no": ", and not stable", "yes": ""}.get(part.effect.get("stable", ""), "")
@@ -76,8 +76,8 @@ def _line(line: Line) -> str:
     said = f"<br/>{plain(_sentence(line.reason))}" if line.reason else ""
     origins = f" {plain(' and '.join(line.origins))}" if line.origins else ""
     word = f"✓ follows from{origins}" if line.verdict == "follows" else _WORDS[line.verdict]
-    right = f"<br/>right: <code>{plain(line.right)}</code>" if line.right else ""
-    code = f"<code>{plain(line.relation)}</code>"
+    right = f"<br/>right: <code>{plain(of_numbers(line.right))}</code>" if line.right else ""
+    code = f"<code>{plain(beginning(line.relation))}</code>"
     return f'<li class="{line.verdict}">{plain(line.where)}: {code} <span class="word">{word}</span>{said}{right}</li>'
 
 
@@ -89,8 +89,10 @@ def _sentence(said: str) -> str:
 
 def _math(text: str) -> str:
     """Return a value as MathML, or as it was written where it is no expression."""
+    if len(text) > LONGEST:
+        return f"<code>{plain(beginning(text))}</code>"
     try:
         value = parse_matrix(text, None, functions=True)
     except SymobsError:
-        return f"<code>{plain(text)}</code>"
+        return f"<code>{plain(beginning(text))}</code>"
     return MathmlPrinter().inline(Literal(value[0, 0] if value.shape == (1, 1) else value))

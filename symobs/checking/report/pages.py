@@ -11,13 +11,13 @@ from symobs.checking.report.data import decimal
 from symobs.expression.source import shown
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Mapping
 
     from symobs.checking.report.data import Line, Part, ReportData
 
 _WIDTH = 100
 #: Longer lines of an answer are shown by their beginning.
-_LONGEST = 300
+LONGEST = 300
 
 
 def text(report: ReportData) -> str:
@@ -31,11 +31,12 @@ def text(report: ReportData) -> str:
         head = f"{names[part.part]:<{width}}  {part.verdict}"
         credit = f"  {part.credit}" if part.weight and part.credit is not None and 0 < part.credit < 1 else ""
         lines += _wrapped(
-            printable("  ".join(filter(None, (head + credit, of_numbers("; ".join(sentences(part))))))), width + 2
+            printable("  ".join(filter(None, (head + credit, of_numbers("; ".join(sentences(part, names))))))),
+            width + 2,
         )
     for line in shown_lines(report):
-        said = f": {line.reason}" if line.reason else ""
-        right = f" (right: {line.right})" if line.right else ""
+        said = f": {of_numbers(line.reason)}" if line.reason else ""
+        right = f" (right: {of_numbers(line.right)})" if line.right else ""
         lines += _wrapped(printable(f"{line.where} is {line.verdict}: {line.relation}{said}{right}"), 2)
     lines += [line for hint in report.hints for line in _wrapped(printable(hint), 2)]
     lines += _wrapped(printable(result(report)), 2)
@@ -51,11 +52,10 @@ def markdown(report: ReportData) -> str:
     lines += ["| part | verdict | credit | |", "|---|---|---|---|"]
     for part in report.parts:
         credit = "" if part.credit is None else str(part.credit)
-        lines.append(
-            f"| {plain(names[part.part])} | {part.verdict} | {credit} | {plain(of_numbers('; '.join(sentences(part))))} |"
-        )
+        said = plain(of_numbers("; ".join(sentences(part, names))))
+        lines.append(f"| {plain(names[part.part])} | {part.verdict} | {credit} | {said} |")
     for line in shown_lines(report):
-        said = f": {line.reason}" if line.reason else ""
+        said = f": {of_numbers(line.reason)}" if line.reason else ""
         lines += ["", plain(f"{line.where} is {line.verdict}: {line.relation}{said}")]
     for hint in report.hints:
         lines += ["", plain(hint)]
@@ -75,13 +75,13 @@ def names_of(report: ReportData) -> dict[str, str]:
     }
 
 
-def sentences(part: Part, *, effect: bool = True) -> Iterator[str]:
-    """Yield what is said of a part; with `effect` also what its value does, and what is right."""
+def sentences(part: Part, names: Mapping[str, str], *, effect: bool = True) -> Iterator[str]:
+    """Yield what is said of a part, others having these `names`; with `effect` also what its value does, and what is right."""
     if part.reason and (effect or not part.effect or part.slip is not None):
         yield part.reason
     yield from part.alternatives
     if part.origins:
-        named = " and ".join(origin.partition(".")[2] for origin in part.origins)
+        named = " and ".join(names.get(origin, origin.partition(".")[2]) for origin in part.origins)
         yield f"it follows from your {named}, which {'are' if len(part.origins) > 1 else 'is'} wrong"
     if part.place and not part.reason:
         yield f"look at {_place(part.place)}"
@@ -112,7 +112,12 @@ def of_numbers(text: str) -> str:
 def shown_lines(report: ReportData) -> list[Line]:
     """Return the lines that need a word: false, unreadable and undecided ones."""
     said = [line for line in report.lines if line.verdict not in {"true", "follows"}]
-    return [replace(line, relation=shown(" ".join(line.relation.split()), _LONGEST)) for line in said]
+    return [replace(line, relation=beginning(line.relation)) for line in said]
+
+
+def beginning(written: str) -> str:
+    """Return what a student wrote on one line, a long one by its beginning."""
+    return shown(" ".join(written.split()), LONGEST)
 
 
 def result(report: ReportData) -> str:

@@ -49,7 +49,17 @@ _NOT_UNWRAPPED = {"list", "tuple", "dict", "iter", "isinstance", "len", "range",
 #: What only writes the text of an error, or decides how much is kept in memory.
 _TEXTS = {"reject", "lru_cache"}
 #: The order of the arguments does not matter, or makes no sense.
-_SYMMETRICAL = {"isinstance", "max", "min", "agree", "differ", "never_together_zero", "_distance"}
+_SYMMETRICAL = {
+    "isinstance",
+    "max",
+    "min",
+    "agree",
+    "differ",
+    "never_together_zero",
+    "suppress",
+    "_distance",
+    "_same_blocks",
+}
 _LONGEST = 110
 
 

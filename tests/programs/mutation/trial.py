@@ -101,9 +101,12 @@ class Trial:
         self.touching = {path: {int(k): v for k, v in lines.items()} for path, lines in known["touching"].items()}
 
     def names_for(self, mutant: Mutant, items: dict[str, pytest.Item]) -> list[str]:
-        """Return the tests that touch a mutant's lines, the quickest first; of what runs on import those of the module."""
+        """Return the tests that touch a mutant's lines, the quickest first.
+
+        Of what runs on import they are those that touch where its names are read, or else any line of the module.
+        """
         lines = self.touching.get(str(mutant.path), {})
-        touched = range(mutant.line, mutant.last_line + 1) if mutant.is_inside else lines
+        touched = range(mutant.line, mutant.last_line + 1) if mutant.is_inside else _lines_that_read(mutant) or lines
         found = {name for line in touched for name in lines.get(line, ())} & items.keys()
         last = self.lately[mutant.where]
         order = sorted(found, key=lambda name: (-last.index(name) - 1 if name in last else 0, self.seconds[name]))
@@ -216,6 +219,20 @@ def put_in(mutant: Mutant) -> bool:
                 return False
             function.__code__ = fresh
     return True
+
+
+def _lines_that_read(mutant: Mutant) -> set[int]:
+    """Return the lines of functions that read a name to which the mutated statement at the top of a module gives its value."""
+    names = {
+        name
+        for statement in mutant.tree.body
+        if isinstance(statement, (ast.Assign, ast.AnnAssign))
+        and statement.lineno <= mutant.line <= (statement.end_lineno or 0)
+        for name in _defined(statement)
+    }
+    functions = [node for node in ast.walk(mutant.tree) if isinstance(node, ast.FunctionDef)]
+    inside = [node for function in functions for part in function.body for node in ast.walk(part)]
+    return {node.lineno for node in inside if isinstance(node, ast.Name) and node.id in names}
 
 
 def _assignment(mutant: Mutant) -> ast.Assign | ast.AnnAssign | None:

@@ -141,6 +141,10 @@ def test_no_zeros(written: str) -> None:
         ("stable_if = h1 > -1, h2 > 0\n", "right"),
         ("stable_if = [h1 > -1; h2 > 0]\n", "right"),
         ('stable_if = ["h1 > -1", "h2 > 0"]\n', "right"),
+        ('stable_if = "h1 > -1", "h2 > 0"\n', "right"),
+        ("stable_if = {h1 > -1, h2 > 0}\n", "right"),
+        (f"stable_if = {'(' * 9}h1 > -1 and h2 > 0{')' * 9}\n", "right"),
+        (f"stable_if = {'(' * 12}h1 > -1 and h2 > 0{')' * 12}\n", "unreadable"),
         ('stable_if = [["h1 > -1", "h2 > 0"]]\n', "right"),
         ("stable_if = h1 > -1 = h2\n", "unreadable"),
         ({"stable_if": "stable_if = h1 > -1, h2 > 0"}, "right"),
@@ -164,6 +168,15 @@ def test_a_region_in_lines(answer: Any, verdict: str) -> None:
         ("K = np.array([4, 3])\nL = np.array([19, 81])\n", {"K": "right", "L": "right"}),
         ("K = Matrix([4, 3])\nL = Matrix([19, 81])\n", {"K": "wrong", "L": "right"}),
         ("K = matrix([[4, 3]])\nL = array([[19],[81]], dtype=float)\n", {"K": "right", "L": "right"}),
+        ("K =\n\n     4     3\n\nL =\n\n    19\n    80\n", {"K": "right", "L": "wrong"}),
+        ("L =\n[19]\n[81]\nK =\n[ 4, 3]\nF(s) =\n(319 s + 400)/(s^2 + 23 s + 161)\n", dict.fromkeys("KLF", "right")),
+        (
+            "F =\n \n  319 s + 400\n  ---------\n  s^2 + 23 s + 161\n \nContinuous-time transfer function.\n",
+            {"F": "right"},
+        ),
+        ("L =\n\n   1.0e+03 *\n\n    0.0190\n    0.0810\nK =\n", {"L": "unreadable"}),
+        ("K = Matrix(1, 2, [4, 3])\nL = sp.Matrix(2,1,[19, 81])\n", {"K": "right", "L": "right"}),
+        ("L = Matrix(2, 2, [19, 81])\n", {"L": "unreadable"}),
         ("K = [4 3]; L = [19; 81]\n", {"K": "right", "L": "right"}),
         ("K = [4 3] and L = [19; 80];\n", {"K": "right", "L": "wrong"}),
     ],
@@ -186,7 +199,14 @@ def test_a_long_text_of_one_character_is_read_soon(again: str) -> None:
 
 
 def test_conditions_with_roots_are_undecided() -> None:
-    assert verdicts(REGION, {"stable_if": "h1 > -1, h2 > sqrt(2)"}) == {"stable_if": "undecided"}
+    (part,) = REGION.report({"stable_if": "h1 > -1, h2 > sqrt(2)"}).parts
+    assert (part.verdict, part.given) == ("undecided", "h1 > -1, h2 > sqrt(2)")
+    assert part.reason == "conditions with roots or functions are not compared"
+
+
+def test_a_line_of_primes_is_read_soon() -> None:
+    found = LOOP.report(f"K = [4 3]\ndet(s {chr(39) * 98} + L C) = (s + 1)^3").lines[-1]
+    assert (found.verdict, "98 primes stand behind each other" in found.reason) == ("false", True)
 
 
 def test_a_line_with_the_inverse_of_zero_is_no_fault_of_ours() -> None:

@@ -2,76 +2,24 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
 import sympy as sp
 
 from symobs.checking import Checked, check
+from symobs.checking.judgement.parts import asked_of
 from tests.support.paths import ROOT
 from tests.support.problems.answered import SERVO, S, text
 
 EXAMPLES = ROOT / "worked_examples"
 
-CANONICAL = (
-    'task = "canonical_form"\n[plant]\nA = "[1 2; 3 4]"\nB = "[1; 1]"\nC = "[1 0]"\n[specification]\nkind = "{}"\n'
-)
-REDUCED = 'task = "reduced_order_observer"\n'
-REDUCED += '[plant]\nA = "[0 1; 0 -1]"\nB = "[0; 1]"\nC = "[1 0]"\n[specification]\npoles = "-10"\n'
-PARTS = 'task = "decomposition"\n[plant]\nA = "[-1 0; 0 -2]"\nB = "[1; 0]"\nC = "[1 1]"\n'
 HIDDEN = 'task = "observer"\n[plant]\nA = "[1 0; 0 2]"\nC = "[1 0]"\n[specification]\npoles = "-1, -2"\n'
 
 
 def verdicts(problem: str, answer: dict[str, Any]) -> dict[str, str]:
     return {part.letter: part.verdict for part in check(problem, answer).parts if part.letter in answer}
-
-
-def observable_layouts() -> list[sp.Matrix]:
-    """T of the dual four layouts: the columns of 𝒪⁻¹ and its last column with A, and both reversed."""
-    A, C = sp.Matrix([[1, 2], [3, 4]]), sp.Matrix([[1, 0]])
-    seen = C.col_join(C * A)
-    q = seen.inv()[:, 1]
-    turn = sp.Matrix([[0, 1], [1, 0]])
-    column = sp.Matrix.hstack(q, A * q).inv()
-    return [column, turn * column, seen, turn * seen]
-
-
-@pytest.mark.parametrize("number", range(4))
-def test_the_observable_form_in_any_layout_is_right_and_T_belongs_to_it(number: int) -> None:
-    A, B, C = sp.Matrix([[1, 2], [3, 4]]), sp.Matrix([1, 1]), sp.Matrix([[1, 0]])
-    T = observable_layouts()[number]
-    answer = dict(zip("TABC", map(text, (T, T * A * T.inv(), T * B, C * T.inv())), strict=True))
-    problem = CANONICAL.format("observable")
-    assert set(verdicts(problem, answer).values()) == {"right"}
-    assert set(verdicts(problem, answer | {"T": text(T.inv())}).values()) == {"right"}
-    for wrong in (sp.eye(2), 2 * T, sp.Matrix([[1, 1], [1, 1]])):
-        assert verdicts(problem, answer | {"T": text(wrong)}) == {
-            "T": "wrong",
-            "A": "right",
-            "B": "right",
-            "C": "right",
-        }
-
-
-def test_T_of_a_controllable_form_is_not_any_matrix() -> None:
-    problem = CANONICAL.format("controllable")
-    right = Checked.of(problem).results[0].fields
-    answer = {name: str(right[name]) for name in "ABC"}
-    for wrong in ("[1 0; 0 1]", "[1 1; 1 1]", "[1 0]"):
-        assert verdicts(problem, answer | {"T": wrong})["T"] == "wrong"
-
-
-@pytest.mark.parametrize("T", ["[1 1; 1 1]", "[1 0]", "[1 0; 0 1; 1 1]", "[0 0; 0 0]"])
-def test_coordinates_that_are_none_are_wrong(T: str) -> None:
-    assert verdicts(PARTS, {"T": T, "A": "[-1 0; 0 -2]"})["T"] == "wrong"
-
-
-def test_M_alone_says_which_estimate_it_is() -> None:
-    assert verdicts(REDUCED, {"M": "[1 0; 9 1/2]"}) == {"M": "right"}  # P = [-18 2], twice the usual one
-    for wrong in ("[1 0; 1 0]", "[1 0]", "[1 0; 9 0]", "[2 0; 9 1]"):
-        assert verdicts(REDUCED, {"M": wrong}) == {"M": "wrong"}
-    given = {"F": "[-10]", "G": "[2]", "H": "[-180]", "M": "[1 0]"}
-    assert verdicts(REDUCED, given) == {"F": "right", "G": "right", "H": "right", "M": "wrong"}
 
 
 def test_a_gain_where_there_is_none_is_wrong() -> None:
@@ -87,6 +35,8 @@ def test_another_compensator_is_right_only_where_no_gain_is_given() -> None:
     found = sp.solve([equation.subs(a, 5) for equation in loop.all_coeffs()], [b, c, d, e])
     F = f"(5 s^2 + {found[b]} s + {found[c]})/(s^2 + {found[d]} s + {found[e]})"
     assert verdicts(SERVO, {"F": F}) == {"F": "right"}
+    two = FEEDFORWARD.replace("feedforward", "compensator")
+    assert verdicts(two, {"F": [["1/s", "0"]]}) == {"F": "wrong"}
     assert verdicts(SERVO, {"F": F, "K": "[4 3]"})["F"] == "wrong"
     assert verdicts(SERVO, {"F": F, "L": "[19; 80]"})["F"] == "wrong"
     assert verdicts(SERVO, {"F": F, "L": "[19 81]"})["F"] == "wrong"
@@ -180,13 +130,6 @@ def test_a_closed_loop_is_right_in_either_coordinates() -> None:
         assert verdicts(asked, {"closed_loop_matrix": text(matrix)}) == {"closed_loop_matrix": verdict}
 
 
-def test_sizes_are_four_numbers_in_order() -> None:
-    for sizes, verdict in (([1, 0, 1, 0], "right"), ([1, 1, 0, 0], "wrong"), ([1, 0, 1], "wrong")):
-        assert verdicts(PARTS, {"T": "[1 0; 0 1]", "sizes": sizes})["sizes"] in {verdict, "unreadable"} - {"right"} | {
-            verdict
-        }
-
-
 @pytest.mark.parametrize(
     ("given", "verdict"),
     [
@@ -218,3 +161,87 @@ def test_parts_of_one_letter_are_told_apart() -> None:
     report = check(problem, {"observability": {"rank": 1}, "controllability": {"rank": 2}})
     for written in (report.to_text(), report.to_markdown(), report.to_html()):
         assert all(f"{task}.rank" in written.replace("\\", "") for task in ("observability", "controllability"))
+
+
+def test_what_is_said_of_a_gain_and_which_claim_was_tried() -> None:
+    checked = Checked.of(SERVO)
+    (claim, holds, how), *_ = checked.report({"L": "[19; 80]"}).certificates
+    assert (claim.startswith("det("), holds, how) == (True, False, "exact")
+    assert [holds for _, holds, _ in checked.report({"L": "[19; 81]", "K": "[4 3]"}).certificates] == [True, True]
+    assert checked.report({"L": "[a b; c d]"}).parts[1].reason.count("is not declared") == 3
+    assert checked.report({"F": "1/s"}).parts[2].reason == ""
+    assert checked.report({"F": "1/s", "K": "[4 3]"}).parts[2].reason == "this is not the F of your gains"
+    assert checked.report({"F": "1/s"}).parts[2].slip is None
+
+
+def test_what_each_task_asks_for() -> None:
+    asked = """canonical_form T A B C; characteristic_polynomial polynomial; compensator K L F; controllability rank;
+        decomposition T sizes; detectability verdict; dual A B C; feedforward F; gramian matrix; initial_state x0;
+        initial_state_covariance covariance; integral_action K k_I; matrix_exponential matrix; observability rank;
+        observer L; pbh verdict; pole_advice poles; reduced_order_observer F G H M; response state; state_feedback K;
+        stability_region stable_if; stabilizability verdict; time_varying_observability verdict; tracking K_d;
+        transfer_function transfer_function"""
+    rows = [row.split() for row in asked.split(";")]
+    assert len(rows) == 25
+    for task, *names in rows:
+        found = SimpleNamespace(task=task, fields=dict.fromkeys(names, 1))
+        assert asked_of(found) == tuple(names)  # type: ignore[arg-type]
+        assert asked_of(SimpleNamespace(task=task, fields={})) == ("verdict",)  # type: ignore[arg-type]
+
+
+def test_a_gain_that_is_right_on_a_smaller_domain_says_where_it_is_not() -> None:
+    problem = 'task = "observer"\n[symbols]\nalpha = "real"\n[plant]\nA = "[0 alpha; 0 0]"\nC = "[1 0; 0 1]"\n'
+    checked = Checked.of(problem + '[specification]\npoles = "-1, -2"\n')
+    (part,) = checked.report({"L": "[1 alpha-1/alpha; 0 2]"}).parts
+    assert (part.verdict, part.hints) == ("right", ("not defined where alpha = 0",))
+    assert checked.report({"L": "[1 alpha-1; 0 2]"}).parts[0].hints == ()
+    reason = checked.report({"L": "[1 alpa; 0 2]"}).parts[0].reason
+    assert reason.endswith('; did you mean "alpha"? write it with the letters known here: alpha')
+
+
+def test_what_follows_in_the_other_coordinates_says_so() -> None:
+    """[A, -BK; LC, A - BK - LC] of the servo with K = [4 3] and the wrong L = [19; 80]."""
+    asked = Checked.of(SERVO + '[marking]\nasked = ["compensator.closed_loop_matrix_estimate"]\n')
+    estimate = "[0 1 0 0; 0 -1 -4 -3; 19 0 -19 1; 80 0 -84 -4]"
+    error = "[0 1 0 0; -4 -4 4 3; 0 0 -19 1; 0 0 -80 -1]"
+    for matrix, hints in ((estimate, ()), (error, ("in the state and the error",))):
+        part = asked.report({"K": "[4 3]", "L": "[19; 80]", "closed_loop_matrix_estimate": matrix}).parts[0]
+        assert (part.verdict, part.hints, part.origins) == ("follows", hints, ("compensator.L",))
+
+
+def test_what_does_not_exist_is_wrong_in_any_form() -> None:
+    problem = 'task = "compensator"\n[plant]\nA = "[1 0; 0 2]"\nB = "[1; 1]"\nC = "[1 0]"\n'
+    problem += '[specification]\ncontrol_poles = "-1, -2"\nobserver_poles = "-1, -2"\n'
+    parts = {part.letter: part for part in check(problem, {"F": "1/s", "L": ["3", "0"]}).parts}
+    assert (parts["F"].verdict, parts["F"].reason) == ("wrong", "there is no F here")
+    assert (parts["L"].verdict, "yours is" in parts["L"].reason) == ("wrong", False)
+
+
+FEEDFORWARD = 'task = "feedforward"\n[plant]\nA = "[0 0; 0 0]"\nB = "[1 0; 0 1]"\nC = "[1 0; 0 1]"\n'
+FEEDFORWARD += '[specification]\ncontrol_poles = "-1, -2"\nobserver_poles = "-3, -4"\n'
+
+
+def test_a_feedforward_belongs_to_its_feedback() -> None:
+    """G(0) = C (BK - A)^-1 B: 1/4 of the servo with K = [4 3], K^-1 of two integrators."""
+    servo = Checked.of((EXAMPLES / "servo_feedforward.toml").read_text(encoding="utf-8"))
+    parts: list[Any] = []
+    for answer, expected in (
+        ({"F": "4"}, ["right"]),
+        ({"F": "5"}, ["wrong"]),
+        ({"F": "5", "K": "[5 3]"}, ["follows", "wrong"]),
+        ({"F": "4", "K": "[-4 -3]"}, ["right", "wrong"]),
+    ):
+        parts = [part for part in servo.report(answer).parts if part.given]
+        assert [part.verdict for part in parts] == expected
+    assert (parts[1].slip, parts[1].effect["stable"]) == ("sign", "no")
+    for F, verdict in (("[1 0; 0 2]", "right"), ("[1 0; 0 3]", "wrong"), ("[2 0; 0 1]", "wrong")):
+        assert verdicts(FEEDFORWARD, {"K": "[1 0; 0 2]", "F": F}) == {"K": "right", "F": verdict}
+
+
+def test_tracking_does_not_depend_on_a_wrong_gain() -> None:
+    problem = Checked.of((EXAMPLES / "servo_tracking.toml").read_text(encoding="utf-8"))
+    for K_d, verdict in (("[omega^2 -1]", "right"), ("[omega^2 1]", "wrong")):
+        parts = {part.letter: part for part in problem.report({"K": "[5 3]", "L": "[-9]", "K_d": K_d}).parts}
+        assert (parts["K_d"].verdict, parts["K"].verdict, parts["L"].slip) == (verdict, "wrong", "sign")
+    given = {"K": "[5 3]", "error_matrix": "[0 1 0; -5 -4 -3; 0 0 -10]"}
+    assert {part.letter: part.verdict for part in problem.report(given).parts}["error_matrix"] == "follows"

@@ -91,8 +91,10 @@ def test_the_dual_slips_of_a_feedback_gain_are_found(slip: str) -> None:
         "other_matrix": feedback_gain(A, C.T, polynomial(CONTROL)),
         "other_half": feedback_gain(A, B, polynomial(OBSERVER)),
     }[slip]
-    part = CHECKED.report({"K": text(wrong)}).parts[0]
+    report = CHECKED.report({"K": text(wrong)})
+    part = report.parts[0]
     assert part.slip == slip
+    assert report.bounded("place").parts[0].place is None  # the place of what was misread is one of A
     assert slip != "entry_misread" or (part.place, part.reason) == (
         [2, 2],
         "entry (2,2) of A is taken with the other sign",
@@ -172,6 +174,7 @@ def test_several_signs_the_transpose_and_a_special_value() -> None:
         (sp.Matrix([[-1, 1], [-2, right[1, 1]]]), "sign_entries"),
         (right.T, "transposed"),
         (right.subs("a", 1), "entry"),
+        (sp.simplify(right.inv()), "inverse"),
     ):
         assert check(problem, {"matrix": text(matrix).replace(" + ", "+")}).parts[0].slip == slip
     every = 'task = "characteristic_polynomial"\n[symbols]\na = "real"\nb = "real"\n[plant]\nA = "[a 0; 0 b]"\n'

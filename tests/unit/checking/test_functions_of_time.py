@@ -53,11 +53,16 @@ def test_lines_that_state_a_function_of_time(line: str, verdict: str) -> None:
     assert found.verdict == verdict
 
 
-def test_a_function_of_time_that_is_wrong_is_given_as_a_whole() -> None:
-    report = STEP.report({"output": "t/a - 1/a^2"})
+def test_a_function_of_time_that_is_wrong_is_not_given_away() -> None:
+    report = STEP.report("output = t/a - 1/a^2\ny(t) = t/a - 1/a^2\nx(t) = [1; 2]", "solution")
     (part,) = [part for part in report.parts if part.part == "response.output"]
-    assert (part.verdict, part.slip) == ("wrong", None)
-    assert part.reason == "output is (t*a + exp(-t*a) - 1)/(a**2), not (t*a - 1)/(a**2)"
+    assert (part.verdict, part.slip, part.reason) == ("wrong", None, "")
+    assert "exp(-t*a)" in str(part.right)
+    assert [line.reason for line in report.lines[-2:]] == [
+        "its sides are not equal",
+        "not right: entry (1, 1), entry (2, 1)",
+    ]
+    assert all("exp" in (line.right or "") for line in report.lines[-2:])
 
 
 def test_powers_of_e_are_told_how_they_are_written() -> None:

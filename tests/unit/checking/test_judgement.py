@@ -147,6 +147,11 @@ def test_in_the_letters_and_signs_of_a_convention() -> None:
     assert check(plant, {"L": "[19; 81]"}, convention="standard").verdict == "right"
 
 
+def test_both_gains_of_integral_action_have_the_sign_of_the_convention() -> None:
+    report = check(read(TWO_INTEGRATORS), {"K": "[-3 -1; 0 -3]", "k_I": "[2 0; 0 2]"}, convention="plusK-plusMC")
+    assert [part.verdict for part in report.parts] == ["right", "right"]
+
+
 def test_decimals_are_exact() -> None:
     plant = 'task = "transfer_function"\n[plant]\nA = "[-1/3]"\nB = "[1]"\nC = "[1/3]"\n'
     wrong = check(plant, {"transfer_function": "0.333/(s + 0.333)"}).parts[0]
@@ -242,7 +247,8 @@ def test_a_canonical_form_in_any_layout_is_right(name: str) -> None:
     assert report.verdict == "right"
     assert name == "last row" or name in report.parts[0].hints[0]
     inverse = check(CANONICAL, answer | {"T": text(T.inv())})
-    assert "you gave T^-1" in one(inverse, "T").hints[0]
+    layout = "" if name == "last row" else f"the coefficients stand in the {name} here; "
+    assert one(inverse, "T").hints == (f"{layout}you gave T^-1: here the new state is T x",)
     changed = Abar.copy()
     changed[0, 0] += 1
     assert one(check(CANONICAL, answer | {"A": text(changed)}), "A").verdict == "wrong"
@@ -301,6 +307,8 @@ specification = { poles = "-1, -1, -2, -2" }
         (SERVO_WITH_INTEGRAL, {"K": "[11 5]", "k_I": "-6"}, "right wrong"),
         (SERVO_WITH_INTEGRAL, {"K": "[11 6]", "k_I": "6"}, "wrong right"),
         (SERVO_WITH_INTEGRAL, {"K": "[11 5]"}, "right missing"),
+        (SERVO_WITH_INTEGRAL, {"K": "[11 5", "k_I": "6"}, "unreadable right"),
+        (SERVO_WITH_INTEGRAL, {"K": "[11 5 1]", "k_I": "6"}, "wrong right"),
         (TWO_INTEGRATORS, {"K": "[3 1; 0 3]", "k_I": "[2 0; 0 2]"}, "right right"),
         (TWO_INTEGRATORS, {"K": "[3 1; 1 3]", "k_I": "[2 0; 0 2]"}, "wrong wrong"),
         (TWO_INTEGRATORS, {"K": "[3 1; 0 3]"}, "undecided missing"),
@@ -309,3 +317,14 @@ specification = { poles = "-1, -1, -2, -2" }
 def test_the_gains_of_integral_action_are_judged_together(problem: str, answer: dict[str, str], verdicts: str) -> None:
     report = check(read(problem), answer)
     assert " ".join(one(report, name).verdict for name in ("K", "k_I")) == verdicts
+    if "undecided" in verdicts:
+        part = one(report, "K")
+        assert (part.given, part.reason) == ("[3 1; 0 3]", "K and k_I are right together: give both")
+
+
+def test_a_loop_with_integral_action_follows_from_wrong_gains() -> None:
+    """u = -K x + k_I z with z' = r - y, K = [11 6] in place of [11 5]."""
+    asked = f'{SERVO_WITH_INTEGRAL}marking = {{ asked = ["integral_action.closed_loop_matrix"] }}\n'
+    given = {"K": "[11 6]", "k_I": "6", "closed_loop_matrix": "[0 1 0; -11 -7 6; -1 0 0]"}
+    part = check(read(asked), given).parts[0]
+    assert (part.verdict, part.origins) == ("follows", ("integral_action.K",))

@@ -215,6 +215,7 @@ def test_a_false_line_has_a_reason_and_a_long_one_is_shown_by_its_beginning() ->
     report = SERVO_CHECKED.report("K = [4 3]\nF = 319 (s + 1.254)/(s^2 + 23 s + 161)")
     assert report.lines[1].verdict == "false"
     assert report.lines[1].reason
-    long = SERVO_CHECKED.report(f"K = [4 3]\nrank(O) = {'+'.join(['1'] * 500)}").to_text()
-    assert "…" in long
-    assert len(long) < 1_000
+    long = SERVO_CHECKED.report(f"K = [4 3]\nrank(O) = {'+'.join(['1'] * 500)}\nL = [{'q ' * 500}]")
+    for page in (long.to_text(), long.to_html().rpartition("</style>")[2]):
+        assert "…" in page
+        assert len(page) < 3_500
