@@ -76,8 +76,9 @@ def _initialiser(cls: Any, parts: dict[str, Any], names: tuple[str, ...]) -> Cal
 
     def initialise(self: Any, *values: Any, **named: Any) -> None:
         own = self.__dict__  # a frozen class refuses to be written to in any other way
-        if len(values) == whole and not named:
-            own.update(zip(names, values, strict=True))
+        if not named and len(values) == whole:
+            for name, value in zip(names, values):  # noqa: B905 - as many as were counted; the quickest way by far
+                own[name] = value
             if finish is not None:
                 finish(self)
             return

@@ -1,4 +1,4 @@
-"""The fast path for plain texts: numbers and names with signs, products and quotients, without spaces.
+"""The fast path for plain texts: numbers and names with signs, products and quotients, and a+bi, without spaces.
 
 It reads a text or leaves it alone: whatever is wrong, or could mean something else, is for the grammar to say.
 """
@@ -9,19 +9,24 @@ import re
 from itertools import chain
 from typing import TYPE_CHECKING
 
-from symobs.exact import Field, Scalar
+from symobs.exact import Complex, Field, Scalar
 from symobs.expression.names import FUNCTIONS, NAME, refusal
 
 if TYPE_CHECKING:
     from symobs.expression.names import Scope
+    from symobs.expression.size_limits import Number
 
-_ATOM = r"(?:[A-Za-z][A-Za-z0-9_]*|[0-9]{1,18}(?:\.[0-9]{1,18})?)"
+_NUMBER = r"[0-9]{1,18}(?:\.[0-9]{1,18})?"
+_ATOM = rf"(?:[A-Za-z][A-Za-z0-9_]*|{_NUMBER})"
 _CELL = re.compile(rf"[+-]?{_ATOM}(?:[*/]{_ATOM}){{0,8}}")
+_SIGNED = rf"[+-]?{_NUMBER}(?:/{_NUMBER})?"
+#: A real part, if any, and an imaginary one: -1+3/2i.
+_COMPLEX = re.compile(rf"(?:({_SIGNED})(?=[+-]))?([+-]?)({_NUMBER}(?:/{_NUMBER})?)?([A-Za-z])")
 _ATOMS = re.compile(rf"([*/+-]?)({_ATOM})")
 _MOST_NAMES = 100
 
 
-def plain_rows(text: str, scope: Scope) -> tuple[list[list[Scalar]], bool] | None:
+def plain_rows(text: str, scope: Scope) -> tuple[list[list[Number]], bool] | None:
     """Return rows of entries, and whether they are in brackets; None if the text is not plain."""
     inside = text.strip(" ")
     if scope.rounding and "." in inside:
@@ -34,7 +39,7 @@ def plain_rows(text: str, scope: Scope) -> tuple[list[list[Scalar]], bool] | Non
     if "\n" in inside or "\r" in inside or len({len(line) for line in lines}) != 1 or not lines[0]:
         return None
     if not all(map(_CELL.fullmatch, chain.from_iterable(lines))):
-        return None
+        return None if bracketed else _complex_numbers(lines[0], scope)
     names = set(NAME.findall(inside))
     if len(names) > _MOST_NAMES or not all(_is_symbol(name, scope) for name in names):
         return None
@@ -44,6 +49,26 @@ def plain_rows(text: str, scope: Scope) -> tuple[list[list[Scalar]], bool] | Non
         return [[known.get(cell) or _value(_ATOMS.findall(cell), known) for cell in line] for line in lines], bracketed
     except ZeroDivisionError:
         return None
+
+
+def _complex_numbers(cells: list[str], scope: Scope) -> tuple[list[list[Number]], bool] | None:
+    """Return one row of numbers, some of them complex."""
+    found: list[Number] = []
+    for cell in cells:
+        if _CELL.fullmatch(cell) and not NAME.search(cell):
+            real, sign, size, unit = cell, "", "0", "i"
+        elif parts := _COMPLEX.fullmatch(cell):
+            real, sign, size, unit = parts[1] or "0", parts[2], parts[3] or "1", parts[4]
+        else:
+            return None
+        if not scope.is_imaginary_unit(unit):
+            return None
+        try:
+            values = [_value(_ATOMS.findall(text), {}) for text in (real, sign + size)]
+        except ZeroDivisionError:
+            return None
+        found.append(Complex(*values) if values[1] else values[0])
+    return [found], False
 
 
 def _is_symbol(name: str, scope: Scope) -> bool:

@@ -180,8 +180,8 @@ def _enclosed(signals: Signals, end: Fraction, count: int) -> list[list[int]]:
     lines = []
     for _, _, row, _ in signals.rows:
         common = lcm(*(part.denominator for part in row))
-        whole = [int(part * common) for part in row]
-        lines.append([sum(map(mul, whole, state)) // common for state in states])
+        whole, seen = [int(part * common) for part in row if part], [place for place, part in enumerate(row) if part]
+        lines.append([sum(map(mul, whole, map(state.__getitem__, seen))) // common for state in states])
     return lines
 
 

@@ -141,8 +141,9 @@ def names_of(result: Result) -> tuple[str, ...]:
 
 def cards(result: Result, names: Iterable[str], convention: Convention = STANDARD) -> tuple[Card, ...]:
     """Return the cards of these fields, those left out that the result does not have."""
-    known = names_of(result)
-    return tuple(_card(result, name, convention) for name in dict.fromkeys(names) if name in known)
+    known, fields = NAMES.get(result.task, {}), result.fields
+    there = (name for name in dict.fromkeys(names) if name in known and name in fields and _is_shown(fields[name]))
+    return tuple(_card(result, name, convention) for name in there)
 
 
 def _is_shown(value: Any) -> bool:

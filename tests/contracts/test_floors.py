@@ -29,6 +29,7 @@ MOST_TRUSTED = 4600
 FLOORS = {
     "errors": 0,
     "_dataclass": 0,
+    "_on_demand": 0,
     "child_processes": 0,
     "parser_limits": 1,
     "exact": 1,

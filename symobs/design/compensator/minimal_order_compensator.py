@@ -9,6 +9,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any, Self
 
 from symobs._dataclass import dataclass
+from symobs._on_demand import OnDemand
 from symobs.analysis.strata.strata import places, solved
 from symobs.certificate.claims import Claim
 from symobs.conditions import Condition, vanishing_factors
@@ -182,10 +183,10 @@ class MinimalOrderCompensator(OutputFeedback):
     @cached_property
     def fields(self) -> Mapping[str, Any]:
         """The fields of the contract, the coordinates and the direct term."""
-        fields = dict(super().fields)
-        if self.exists:
-            fields |= {"T": self.estimator.answer["T"], "direct_term": self.realisation.D}
-        return fields
+        fields = super().fields
+        if not isinstance(fields, OnDemand):
+            return fields
+        return fields | {"T": lambda: self.estimator.answer["T"], "direct_term": lambda: self.realisation.D}
 
     @property
     def free_signals(self) -> Mapping[str, int]:

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from functools import cached_property
+from functools import cached_property, partial
 from typing import TYPE_CHECKING, Any, ClassVar, Self, TypeAlias
 
 from symobs._dataclass import dataclass
+from symobs._on_demand import OnDemand
 from symobs.analysis.factored_form import cancelled, over
 from symobs.analysis.strata.strata import places, solved
 from symobs.certificate.claims import Certificate, Claim, check
@@ -41,6 +42,12 @@ Asked: TypeAlias = "DesiredPolynomial | Matrix"
 _DECIDABLE_TERMS = 400
 #: What an answer has none of where there is no loop.
 _OF_A_LOOP = ("F_stable", "closed_loop_polynomial", "closed_loop", "closed_loop_matrix", "closed_loop_matrix_estimate")
+#: What follows from K, L and F, and the property that finds it.
+_FOUND = {
+    "F_stable": "own_stability", "compensator_stable": "law_stability", "compensator_matrix": "own_matrix",
+    "closed_loop_polynomial": "loop_polynomial", "closed_loop": "loop", "closed_loop_unity": "unity_loop",
+    "closed_loop_matrix": "error_coordinates", "closed_loop_matrix_estimate": "estimate_coordinates", "family": "families",
+}  # fmt: skip
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -263,8 +270,10 @@ class OutputFeedback(Result):
         return form
 
     @cached_property
-    def unity_loop(self) -> Factored:
+    def unity_loop(self) -> Factored | None:
         """PF/(1 + PF): from the reference to y with F before the plant and unity feedback; one input, one output."""
+        if not self.is_single:
+            return None
         numerator, _ = self.plant_transfer
         own, _ = self.own_transfer
         polynomial, variable = self.loop_polynomial, self.plant.variable
@@ -300,9 +309,9 @@ class OutputFeedback(Result):
         """Whether F in general is stable."""
         plant, F = self.plant, self.answer["F"]
         variable, signs, discrete = plant.variable, plant.symbols.signs, plant.is_discrete
-        if self._is_unavoidably_unstable:
-            return "no"
         denominator = F.common_denominator()
+        if denominator.names > {variable} and self._is_unavoidably_unstable:
+            return "no"
         if F.size <= _DECIDABLE_TERMS:
             verdict = stability(denominator, variable, signs, discrete=discrete).verdict
             if verdict != "conditional":
@@ -342,19 +351,10 @@ class OutputFeedback(Result):
         if not self.exists:
             fixed = {"fixed_modes": self.feedback.unmoved_modes + self.estimator.unmoved_modes}
             return {**answers, **dict.fromkeys(_OF_A_LOOP), **fixed}
-        return {
-            **answers,
-            "F_stable": self.own_stability,
-            "compensator_stable": self.law_stability,
-            "compensator_matrix": self.own_matrix,
-            "closed_loop_polynomial": self.loop_polynomial,
-            "closed_loop": self.loop,
-            "closed_loop_unity": self.unity_loop if self.is_single else None,
-            "closed_loop_matrix": self.error_coordinates,
-            "closed_loop_matrix_estimate": self.estimate_coordinates,
-            "family": self.families,
-            **(self._found_poles if self.has_given_gain else {}),
-        }
+        poles = self._found_poles if self.has_given_gain else {}
+        known = {name: partial(table.get, name) for table in (answers, poles) for name in table}
+        found = {name: partial(getattr, self, place) for name, place in _FOUND.items()}
+        return OnDemand({name: (known | found)[name] for name in (*answers, *found, *poles)})
 
     @property
     def _found_poles(self) -> Mapping[str, Any]:

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 
 from symobs.exact import Scalar
 from symobs.exact.core.generators import function_named, square_root_of
+from symobs.exact.core.ring import number_of
 from symobs.formula import Formula, Literal, Negative, Power, Product, Quotient, Sum
 
 if TYPE_CHECKING:
@@ -30,9 +31,8 @@ Monomial = tuple[int, tuple[tuple[str, int], ...]]
 def is_leaf(value: Scalar) -> bool:
     """Return whether a scalar is printed as one glyph: a nonnegative integer, or a symbol."""
     if value.is_constant:
-        number = value.fraction()
-        return number.denominator == 1 and number >= 0
-    if not value.denominator.is_one or value.size != 2:
+        return bool(value.denominator_part.is_one()) and number_of(value.numerator_part) >= 0
+    if len(value.numerator_part) > 1 or not value.denominator.is_one or value.size != 2:
         return False
     ((coefficient, powers),) = value.terms()
     return coefficient == 1 and len(powers) == 1 and powers[0][1] == 1

@@ -919,6 +919,7 @@ plain_atoms = st.one_of(
     st.sampled_from(
         ["a", "b", "omega", "i", "I", "s", "pi", "e", "oo", "sin", "x_1", "lambda", "1a", "2e3", "1.", ".5"]
     ),
+    st.sampled_from(["2i", "0.5j"]),
     st.integers(0, 30).map(str),
     st.decimals(0, 20, places=2).map(str),
 )
@@ -928,7 +929,7 @@ plain_cells = st.builds(
     ),
     st.sampled_from(["", "-", "+", "--", "- "]),
     st.lists(plain_atoms, min_size=1, max_size=3),
-    st.lists(st.sampled_from(["*", "/", "^", " ", " * ", "-"]), min_size=2, max_size=2),
+    st.lists(st.sampled_from(["*", "/", "^", " ", " * ", "-", "+"]), min_size=2, max_size=2),
 )
 plain_texts = st.builds(
     lambda left, rows, right: left + rows + right,
@@ -943,6 +944,8 @@ plain_texts = st.builds(
 @example("[1 -2; a -b/2]", None)
 @example("[1 - 2; a, b]", None)
 @example("-a/0", None)
+@example("-1+3/2i, -1-3/2i, 2*3, 4/0i", None)
+@example("1-i, 1+I, +2/3j, 0i", {"i": "real"})
 @example("0*a/0.0, 1", None)
 @example("[7]", None)
 @example("", None)

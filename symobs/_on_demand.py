@@ -1,0 +1,31 @@
+"""Values by name, each found when it is asked for."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+
+
+class OnDemand(Mapping[str, Any]):
+    """A mapping whose values are found when they are asked for; what is costly is remembered where it is found."""
+
+    def __init__(self, found: Mapping[str, Callable[[], Any]]) -> None:
+        self._found = found
+
+    def __getitem__(self, name: str) -> Any:
+        return self._found[name]()
+
+    def __contains__(self, name: object) -> bool:
+        return name in self._found
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._found)
+
+    def __len__(self) -> int:
+        return len(self._found)
+
+    def __or__(self, further: Mapping[str, Callable[[], Any]]) -> OnDemand:
+        return OnDemand({**self._found, **further})
