@@ -60,7 +60,7 @@ def _by_coordinate(first: Scalar, equations: list[Scalar]) -> tuple[str, tuple[S
             coefficients = _at(equation, known, unknown, modulus)
             if len(coefficients) > 1:
                 rest.append(equation)
-                by_name.setdefault(*unknown, []).append(coefficients)
+                by_name.setdefault(next(iter(unknown)), []).append(coefficients)
                 continue
             modulus = modulus.gcd(coefficients[0])
             known = {name: value % modulus for name, value in known.items()}
