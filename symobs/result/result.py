@@ -57,7 +57,7 @@ class Stratum(NamedTuple):
     """A case as a Python user meets it: SymPy relations, and the result where they hold (None: undecided)."""
 
     when: tuple[Any, ...]
-    result: Result | None
+    result: Any  # a `Result` of the same task or None, as the verdict says
 
 
 @dataclass(frozen=True, eq=False, repr=False)

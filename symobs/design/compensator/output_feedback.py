@@ -25,7 +25,7 @@ from symobs.result.control_systems import Controller
 from symobs.stability.criteria.stability import no_stable_compensator, stability, stable_somewhere
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
+    from collections.abc import Callable, Iterator, Mapping
 
     from symobs.analysis.strata.strata import Place
     from symobs.conditions import Condition
@@ -270,10 +270,8 @@ class OutputFeedback(Result):
         return form
 
     @cached_property
-    def unity_loop(self) -> Factored | None:
+    def unity_loop(self) -> Factored:
         """PF/(1 + PF): from the reference to y with F before the plant and unity feedback; one input, one output."""
-        if not self.is_single:
-            return None
         numerator, _ = self.plant_transfer
         own, _ = self.own_transfer
         polynomial, variable = self.loop_polynomial, self.plant.variable
@@ -353,7 +351,9 @@ class OutputFeedback(Result):
             return {**answers, **dict.fromkeys(_OF_A_LOOP), **fixed}
         poles = self._found_poles if self.has_given_gain else {}
         known = {name: partial(table.get, name) for table in (answers, poles) for name in table}
-        found = {name: partial(getattr, self, place) for name, place in _FOUND.items()}
+        found: dict[str, Callable[[], Any]] = {name: partial(getattr, self, place) for name, place in _FOUND.items()}
+        if not self.is_single:
+            found["closed_loop_unity"] = lambda: None
         return OnDemand({name: (known | found)[name] for name in (*answers, *found, *poles)})
 
     @property
