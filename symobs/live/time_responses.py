@@ -87,16 +87,16 @@ def _signals(result: Result, asked: Responses) -> Signals:
     drawn: list[tuple[str, Matrix, bool]] = []
     match result.task:
         case "observer":
-            matrix, start, drawn = fields["A"], error, [("e", Matrix.identity(order), False)]
+            matrix, start, drawn = fields.get("A"), error, [("e", Matrix.identity(order), False)]
         case "state_feedback":
-            matrix, start, drawn = fields["closed_loop_matrix"], state, [("x", Matrix.identity(order), False)]
+            matrix, start, drawn = fields.get("closed_loop_matrix"), state, [("x", Matrix.identity(order), False)]
         case "reduced_order_observer":
-            matrix = fields["F"]
+            matrix = fields.get("F")
             if matrix is not None:
                 start = _below(fields["T"], error, matrix.shape[0])
                 drawn = [("e_2", Matrix.identity(matrix.shape[0]), False)]
         case "compensator" | "feedforward":
-            matrix = fields["closed_loop_matrix"]
+            matrix = fields.get("closed_loop_matrix")
             if matrix is not None:
                 unseen, hidden = _unseen(given, order, matrix.shape[0] - order)
                 start = state + (error if unseen is None else _below(unseen, error, hidden))

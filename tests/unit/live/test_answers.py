@@ -156,6 +156,20 @@ def test_discrete_responses_are_exact() -> None:
     assert [line["heights"][:4] for line in found["courses"]["lines"]] == [[1000, 0, 0, 0], [1000, 0, 0, 0]]
 
 
+def test_where_there_is_no_design_there_is_no_response() -> None:
+    # Two outputs that are both −x and x cannot follow two references: there is no feedforward.
+    plant = {"A": "[-b]", "B": "[2, 0]", "C": "[-1; 1]"}
+    poles = {"control_poles": "-p", "observer_poles": "-10"}
+    problem = {
+        "task": "feedforward",
+        "plant": plant,
+        "specification": poles,
+        "symbols": {"b": "nonzero", "p": "nonzero"},
+    }
+    found = asked(problem, courses={})
+    assert (found["status"], found["courses"]) == ("no", None)
+
+
 def test_values_too_large_to_draw_are_left_out() -> None:
     for start in ("1e400, 1", "1e13, 0"):
         found = asked(SERVO, courses={"start": start})
