@@ -21,7 +21,7 @@ from symobs.design.gain.gain_family_page import of_the_others, write_hidden_fami
 from symobs.design.gain.gain_kind import GivenGain, UnassignableGain
 from symobs.design.gain.gain_methods_page import readable, write_ackermann_formula, write_row_reduction
 from symobs.design.gain.placement_problem import OBSERVER, PlacementProblem
-from symobs.design.gain.zero_pattern_page import another_gain, write_no_gain
+from symobs.design.gain.zero_pattern_page import another_gain, pattern_case, write_no_gain
 from symobs.design.page_parts import readability
 from symobs.design.page_parts.pole_cautions import caution_poles
 from symobs.design.pole_placement.fresh_names import fresh_names, taken_names
@@ -307,6 +307,9 @@ def write_case(page: Builder, case: Case, side: PlacementProblem) -> None:
         page.steps.append(undecided(page, case))
         return
     result = case.result
+    if result.answer[side.gain] is None and not isinstance(result.kind, UnassignableGain):
+        page.steps.append(pattern_case(page, case, side))
+        return
     if result.pair.is_observable and result.answer[side.gain] is not None:
         page.steps.append(another_gain(page, case, side, "case_another_gain"))
         return

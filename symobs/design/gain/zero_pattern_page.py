@@ -35,7 +35,7 @@ def write_no_gain(page: Builder, design: GainDesign, side: PlacementProblem) -> 
         else:
             page.remark("impossible_zero_in_general", places=listed)
         for case in design.case_tree:
-            page.steps.append(_case(page, case, side))
+            page.steps.append(pattern_case(page, case, side))
 
 
 def _listed(zero: Places) -> str:
@@ -57,8 +57,8 @@ def _algebraic(page: Builder, design: GainDesign, kind: AlgebraicGain, side: Pla
     page.steps.append(CaseStep(relation(found.polynomial, 0), (), steps))
 
 
-def _case(page: Builder, case: Case, side: PlacementProblem, say: str = "case_zero_gain") -> Step:
-    """Write the gain on a stratum where there is one."""
+def pattern_case(page: Builder, case: Case, side: PlacementProblem, say: str = "case_zero_gain") -> Step:
+    """Return the gain on a stratum where there is one with its zeros there."""
     result = case.result
     if not isinstance(result, GainDesign) or (result.answer[side.gain] is None and result.verdict != "no"):
         return undecided(page, case)
@@ -80,6 +80,6 @@ def another_gain(page: Builder, case: Case, side: PlacementProblem, say: str) ->
     if conditions:
         page.assume("gain_provided", *conditions)
     for further in result.case_tree:
-        page.steps.append(_case(page, further, side, say))
+        page.steps.append(pattern_case(page, further, side, say))
     steps, page.steps, page.environment = tuple(page.steps), inner, before
     return CaseStep(stratum_of(case), tuple(case.substitution.items()), steps, anew=(side.gain,))

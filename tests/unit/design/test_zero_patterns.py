@@ -170,3 +170,13 @@ def test_a_gain_that_is_found_cannot_be_denied() -> None:
         assert found.desired is not None
         with pytest.raises(CertificateRejected, match=f"a gain {letter} with these zeros is found"):
             replace(found, answer={**found.answer, letter: None}, kind=NoGainWithZeros(found.desired, found.zero))
+
+
+def test_a_pattern_may_have_no_gain_where_the_other_input_is_not_enough() -> None:
+    """With a = −4 the second column of B is in the kernel of A, and s = −7/2 stays where it is."""
+    plant = symobs.StateSpace("[a 2; -1 1/2]", "[-1 1/2; 2 1]", "[2 1]")
+    found = symobs.state_feedback(plant, poles=[-3, -11], zero="(1, 2), (1, 1)")
+    (case,) = found.cases
+    assert (case.result.verdict, case.result.K) == ("no", None)
+    assert plant.A.subs(sympy.Symbol("a"), -4) * plant.B.col(1) == sympy.zeros(2, 1)
+    assert "In this case no such gain exists." in " ".join(found.to("text").split())
