@@ -348,6 +348,8 @@ def test_a_constant_that_follows_is_too_easy() -> None:
     """With K = 0 wrong and L right nothing is left of F; with L of full size it is not the gain that is empty."""
     given = {**RIGHT, "K": rows("0 0"), "F": [["0"]]}
     assert outcome(WHOLE, "F", given)[3] == 0
+    # K L = 0 and (A - BK - LC) L = -2 L: nothing passes, though no entry of a gain is 0
+    assert outcome(WHOLE, "F", {"K": rows("-1 -1"), "L": rows("1; -1"), "F": [["0"]]})[::3] == ("follows", 0)
     first = gain("L", [["-1"]], [["1"]], "1 5", [["4"]], part="compensator.L")
     second = gain("K", [["-1"]], [["1"]], "1 3", [["2"]], part="compensator.K")
     matrices = {"A": [["-1"]], "B": [["1"]], "C": [["1"]], "D": [["1"]], "right_K": [["2"]], "right_L": [["4"]]}
@@ -477,7 +479,8 @@ def test_functions_are_equal_as_functions() -> None:
 
 
 @pytest.mark.parametrize(
-    ("given", "verdict"), [("yes", "right"), (' "Yes" ', "right"), ("nein", "wrong"), ("yess", "unreadable")]
+    ("given", "verdict"),
+    [("yes", "right"), (' "Yes" ', "right"), ("nein", "wrong"), ("False", "wrong"), ("yess", "unreadable")],
 )
 def test_a_word_is_right_or_wrong(given: str, verdict: str) -> None:
     word = {"name": "v", "part": "pbh.verdict", "letter": "verdict", "weight": "1", "function": False, "kind": "word"}
@@ -492,6 +495,8 @@ def test_parts_are_told_in_the_order_of_the_question_and_weighed() -> None:
     asked = question(F, OBSERVER, FEEDBACK)
     found = judge(asked, {**RIGHT, "L": rows("-19; -81")})
     assert list(found) == ["F", "L", "K"]
+    wrong = {**RIGHT, "L": rows("19; 80"), "F": [["(316 s + 396)/(s^2 + 23 s + 160)"]]}
+    assert judge(asked, wrong)["F"]["verdict"] == "follows"
     assert score(asked, found) == (2 + HALF + 1) / 4
     assert score(asked, judge(asked, {})) == 0
     assert {each["verdict"] for each in judge(asked, {"K": [[" ", ""]], "L": [], "F": [[""]]}).values()} == {"missing"}
