@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
     from symobs.analysis.rank.rank_test import RankResult
     from symobs.exact import Scalar
-    from symobs.result import Case
+    from symobs.result import Case, Result
 
 
 #: More sets of states are not named in one sentence.
@@ -129,7 +129,7 @@ def _deficient(page: Builder, letter: str, result: RankResult, kind: str) -> Non
     zero = Matrix.zeros(matrix.value.shape[0], 1)
     unseen = [relation(matrix @ page.value(vector), zero) for vector in result.kernel_vectors]
     page.equal(*unseen, say=f"kernel_{kind}" if len(unseen) == 1 else f"kernel_several_{kind}")
-    page.steps += _outside_cases(result, repair(page, letter, result, kind))
+    page.steps += outside_cases(result, repair(page, letter, result, kind))
     letters = HIDDEN[kind]
     page.set(letters[0], result.answer["kernel"])
     page.set(letters[1], result.answer["restricted"])
@@ -144,7 +144,7 @@ def _deficient(page: Builder, letter: str, result: RankResult, kind: str) -> Non
     )
 
 
-def _outside_cases(result: RankResult, steps: list[Step]) -> list[Step]:
+def outside_cases(result: Result, steps: list[Step]) -> list[Step]:
     """Return steps as a case of what holds in general, where there are others; none where these are everywhere."""
     apart = _distances(result)
     if not apart or not steps:
@@ -158,7 +158,7 @@ def _outside_drops(page: Builder, apart: Sequence[Scalar] | None) -> None:
         page.assume("outside_drops", *apart)
 
 
-def _distances(result: RankResult) -> tuple[Scalar, ...] | None:
+def _distances(result: Result) -> tuple[Scalar, ...] | None:
     """Return what is 0 exactly in the cases; None where one of them is everywhere."""
     from symobs.analysis.strata.repeated_eigenvalues import distances, systems_of  # noqa: PLC0415 - it needs the strata, which need pages
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from symobs.analysis.page_parts import determinant_form, given, stratum_of, undecided
+from symobs.analysis.rank.rank_page import outside_cases
 from symobs.analysis.time_varying.time_varying_observability import TimeVaryingObservability
 from symobs.analysis.time_varying.time_varying_solution import dependences, has_functions
 from symobs.analysis.time_varying.transition_matrix import (
@@ -264,7 +265,7 @@ def _case(page: Builder, case: Case) -> Step:
         hidden = case.result.answer["hidden"]
         zero = Matrix.zeros(page["O"].value.shape[0], hidden.shape[1])
         steps.append(Equal((relation(page["O"] @ page.value(hidden), zero),)))
-    steps += [_case(page, inner) for inner in case.result.case_tree]
+    steps = outside_cases(case.result, steps) + [_case(page, inner) for inner in case.result.case_tree]
     return CaseStep(stratum_of(case), tuple(case.substitution.items()), tuple(steps))
 
 

@@ -468,3 +468,18 @@ def test_constant_matrices_with_long_entries_are_plants_whose_time_does_not_matt
     stack = found.matrix.subs({symbol: names[symbol.name] for symbol in found.matrix.free_symbols})
     assert all(is_zero(entry) for entry in stack - sympy.Matrix.vstack(C, C * A, C * A * A))
     assert found.verdict == symobs.observability(plant).verdict
+
+
+def test_a_rank_on_a_stratum_is_said_outside_its_own_cases() -> None:
+    """On the curve where the minors of the first rows vanish the rank is 3, but for where another one vanishes, too."""
+    plant = symobs.StateSpace(
+        "[omega^2, a, -3; 2, a*b, -b; 1/10, a + 1, 1/a]",
+        None,
+        "[2, 1, 1; 2, -3, 1/10]",
+        symbols={"a": "nonzero", "b": "real", "omega": "positive"},
+    )
+    found = symobs.time_varying_observability(plant)
+    (case,) = found.cases
+    assert [each.result is None for each in case.result.cases] == [True]
+    page = " ".join(found.to("text").split())
+    assert "≠ 0. In this case rank 𝒪 = 3 for almost all t." in page
