@@ -27,5 +27,18 @@ class OnDemand(Mapping[str, Any]):
     def __len__(self) -> int:
         return len(self._found)
 
-    def __or__(self, further: Mapping[str, Callable[[], Any]]) -> OnDemand:
-        return OnDemand({**self._found, **further})
+    def __repr__(self) -> str:
+        return f"{{{', '.join(f'{name!r}: {value!r}' for name, value in self.items())}}}"
+
+    def __or__(self, further: Mapping[str, Any]) -> dict[str, Any]:
+        return {**self, **further}
+
+    def __ror__(self, further: Mapping[str, Any]) -> dict[str, Any]:
+        return {**further, **self}
+
+    def __reduce__(self) -> tuple[object, ...]:
+        return dict, (dict(self),)
+
+    def with_further(self, found: Mapping[str, Callable[[], Any]]) -> OnDemand:
+        """Return this with further values that are found when they are asked for."""
+        return OnDemand({**self._found, **found})

@@ -36,7 +36,7 @@ def part_of(
     """Return a part with its credit, its slip, and the right value, which the report may not show."""
     name = f"{view.task}.{judged.name}"
     weight = marking.parts.get(name, Fraction(1)) if counts else Fraction(0)
-    right = _right(view, judgement.right, judged.letter)
+    right = _right(view, judgement.right if judged.there is None else judged.there, judged.letter)
     part = Part(name, judged.letter, judged.verdict, weight, Fraction(0), text_of(judged.given), hints=judged.hints)
     part = replace(part, right=right, reason=judged.reason)
     match judged.verdict:
@@ -145,7 +145,7 @@ def _explanation(view: ResultInConvention, judgement: TaskJudgement, judged: Jud
         rounded = right is not None and _rounds(judged, right, turned=turned)
         other = other_polynomial(judgement.right, judged.name)
         return explain_gain(design, judged.value, judged.letter, other, turned=turned, rounded=rounded)
-    right = _exact(judgement.right.fields.get(judged.name))
+    right = _exact((judgement.right if judged.there is None else judged.there).fields.get(judged.name))
     value = judged.value
     if right is None:
         return Explained()

@@ -63,6 +63,7 @@ class Judged:
     name       the field in the standard convention;  `letter` is what the student's convention calls it
     value      the value in the standard convention, as far as it is a matrix or a number
     origins    the inputs of the student's that a part follows from
+    there      the result in the coordinates of the student's, where other parts are right in them alone
     claims     the claims that were tried, and whether they hold
     """
 
@@ -76,6 +77,7 @@ class Judged:
     origins: tuple[str, ...] = ()
     claims: tuple[tuple[str, bool, str], ...] = ()
     rounded: bool = False
+    there: Result | None = None
     separation: Separation | None = None
 
 
@@ -350,7 +352,7 @@ def _in_coordinates(task: _Task, given: Mapping[str, tuple[str, Any]]) -> dict[s
             parts[name] = replace(part, verdict="follows", origins=task.wrong)
         else:
             rounded = has_decimals(part.given) and _is_met(task, there, part, part.given)
-            parts[name] = replace(part, rounded=rounded)
+            parts[name] = replace(part, rounded=rounded, there=there)
     return parts
 
 

@@ -186,7 +186,7 @@ class MinimalOrderCompensator(OutputFeedback):
         fields = super().fields
         if not isinstance(fields, OnDemand):
             return fields
-        return fields | {"T": lambda: self.estimator.answer["T"], "direct_term": lambda: self.realisation.D}
+        return fields.with_further({"T": lambda: self.estimator.answer["T"], "direct_term": lambda: self.realisation.D})
 
     @property
     def free_signals(self) -> Mapping[str, int]:

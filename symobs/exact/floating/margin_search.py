@@ -26,11 +26,11 @@ def disc_margin(enclosed: Enclosed) -> Fraction | None:
 
 def half_plane_margin(enclosed: Enclosed) -> Fraction | None:
     """Return some α > 0 such that every eigenvalue has Re s < −α, proved; None where no α is proved."""
-    size = _size(enclosed)
+    size = size_of(enclosed)
     return _largest(lambda margin: is_left_of(enclosed, margin, size), size)
 
 
-def _size(enclosed: Enclosed) -> Fraction:
+def size_of(enclosed: Enclosed) -> Fraction:
     """Return a number of the size of the largest row sum, at least 1."""
     with Precision(64):
         matrix = enclosed(64)

@@ -135,6 +135,8 @@ def _written(root: Root, paired: bool, printer: Printer[Any], glyphs: RootGlyphs
 def _size_of_imaginary(radicand: Scalar) -> Scalar | None:
     """Return a product r of symbols and a whole number with r² = −radicand, so that ±√radicand is ±r i; else nothing."""
     unit, factors = (-radicand).factors()
+    if not unit.is_constant:
+        return None
     number = unit.fraction()
     outside = isqrt(number.numerator) if number > 0 else 0
     size = Scalar.of(outside)

@@ -10,13 +10,13 @@ from decimal import Decimal, localcontext
 from fractions import Fraction
 from typing import TYPE_CHECKING, NamedTuple
 
-from symobs.errors import InputError, UsageError
+from symobs.errors import CertificateRejected, InputError, UsageError
 from symobs.exact import Matrix, Scalar
 from symobs.exact.floating.deviation import STEPS, deviation
 from symobs.exact.floating.doubles import nearest_double, rounded_matrix
-from symobs.exact.floating.margin_search import disc_margin, half_plane_margin
+from symobs.exact.floating.margin_search import disc_margin, half_plane_margin, size_of
 from symobs.exact.floating.sampled import HOLDS, Sampled
-from symobs.exact.floating.stability_margin import loop_matrix, own_matrix
+from symobs.exact.floating.stability_margin import is_in_disc, is_left_of, loop_matrix, own_matrix
 from symobs.exact.linear_algebra.realisation import Realisation
 from symobs.expression import parse_scalar
 from symobs.result import Result
@@ -161,6 +161,9 @@ def _proof(plant: StateSpace, controller: Controller, numbers: Realisation, peri
         message = f"with these rounded numbers {of} is not proved stable"
         repair = "choose a shorter period, or other poles" if period is not None else "choose other poles"
         raise InputError(message, where=controller.name, repair=repair)
+    if not (is_in_disc(enclosed, margin) if in_disc else is_left_of(enclosed, margin, size_of(enclosed))):
+        message = f"the margin {margin} of {of} is not proved"
+        raise CertificateRejected(message, repair="please report this: it is a bug of symobs")
     bound = f"|z| < {_exact_decimal(1 - margin)}" if in_disc else f"Re s < -{_exact_decimal(margin)}"
     return f"Proved for exactly these doubles: every eigenvalue of {of} has {bound}."
 
