@@ -10,13 +10,16 @@ if TYPE_CHECKING:
 
 
 class OnDemand(Mapping[str, Any]):
-    """A mapping whose values are found when they are asked for; what is costly is remembered where it is found."""
+    """A mapping whose values are found when they are first asked for."""
 
     def __init__(self, found: Mapping[str, Callable[[], Any]]) -> None:
         self._found = found
+        self._known: dict[str, Any] = {}
 
     def __getitem__(self, name: str) -> Any:
-        return self._found[name]()
+        if name not in self._known:
+            self._known[name] = self._found[name]()
+        return self._known[name]
 
     def __contains__(self, name: object) -> bool:
         return name in self._found

@@ -13,7 +13,7 @@ from symobs.analysis.page_parts import (
     stratum_of,
     undecided,
 )
-from symobs.analysis.rank.rank_page import square_test
+from symobs.analysis.rank.rank_page import outside_cases, square_test
 from symobs.derivation import CaseStep
 from symobs.derivation.builder import Builder, predicate, relation
 from symobs.design.gain.gain_design import GainDesign
@@ -301,8 +301,8 @@ def say_as_required(page: Builder, desired: DesiredPolynomial, *members: Term) -
     page.verified("roots_as_required", check=relation(*members), roots=roots)
 
 
-def write_case(page: Builder, case: Case, side: PlacementProblem) -> None:
-    """State the findings on a stratum."""
+def write_case(page: Builder, case: Case, side: PlacementProblem, around: tuple[Case, ...] = ()) -> None:
+    """State the findings on a stratum, and on those within it; `around` are the strata it lies in."""
     if not isinstance(case.result, GainDesign):
         page.steps.append(undecided(page, case))
         return
@@ -316,18 +316,20 @@ def write_case(page: Builder, case: Case, side: PlacementProblem) -> None:
     outer, environment = page.steps, page.environment
     page.steps = []
     try:
-        _on_stratum(page, case, result, side)
+        _on_stratum(page, (*around, case), result, side)
+        page.steps, inside = outside_cases(result, page.steps), page.environment
+        for inner in result.case_tree:
+            write_case(page, inner, side, (*around, case))
     finally:
-        inside, steps = page.environment, page.steps
-        page.steps, page.environment = outer, environment
+        steps, page.steps, page.environment = page.steps, outer, environment
     own = (*side.hidden, side.gain)
     anew = [name for name in own if page.defines(name) and inside.values[name] != environment.values[name]]
     page.steps.append(CaseStep(stratum_of(case), tuple(case.substitution.items()), tuple(steps), anew=tuple(anew)))
 
 
-def _on_stratum(page: Builder, case: Case, result: GainDesign, side: PlacementProblem) -> None:
+def _on_stratum(page: Builder, cases: tuple[Case, ...], result: GainDesign, side: PlacementProblem) -> None:
     """Write whether a gain exists on a stratum, with the hidden modes that decide it."""
-    own, gain = design_gain_on(case, page, side), result.answer[side.gain]
+    own, gain = _is_finite_on(cases, page, side), result.answer[side.gain]
     fixed = _fixed(page, side, result.pair.kernel, result.pair.restricted)
     modes = Roots(fixed.formula, roots_of(result.fixed_polynomial, page.plant.variable))
     wanted = predicate("not_polynomial" if gain is None else "polynomial", page[side.phi] / fixed)
@@ -341,12 +343,16 @@ def _on_stratum(page: Builder, case: Case, result: GainDesign, side: PlacementPr
     page.conclude_silently(relation(side.error_determinant(page), page[side.phi]))
 
 
-def design_gain_on(case: Case, page: Builder, side: PlacementProblem) -> bool:
-    """Return whether there is a gain in the main line that is still finite on the stratum."""
+def _is_finite_on(cases: tuple[Case, ...], page: Builder, side: PlacementProblem) -> bool:
+    """Return whether there is a gain in the main line that is still finite on a stratum, the last of those around it."""
     if not page.defines(side.gain):
         return False
-    try:
-        moved = page[side.gain].value.substitute({**page.environment.coefficients}).substitute(dict(case.substitution))
-    except ZeroDivisionError:
-        return False
-    return case.result is not None and case.result.plant.admits(moved)
+    moved = page[side.gain].value.substitute({**page.environment.coefficients})
+    for case in cases:
+        try:
+            moved = moved.substitute(dict(case.substitution))
+        except ZeroDivisionError:
+            return False
+        if case.result is None or not case.result.plant.admits(moved):
+            return False
+    return True

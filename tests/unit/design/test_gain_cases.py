@@ -155,3 +155,19 @@ def test_a_page_that_tells_the_rank_in_general_as_that_of_all_parameters_is_reje
     assert said
     with pytest.raises(DerivationRejected, match="no_observability"):
         changed.check()
+
+
+def test_a_page_says_where_within_a_stratum_a_fixed_mode_is_wanted() -> None:
+    """Where (a − b) c = 1 the mode b is fixed: there is a gain for b = −1 and b = −2 alone."""
+    plant = symobs.StateSpace("[b 0; 1 a]", "[0; 1]", "[c 1]")
+    found = symobs.observer(plant, poles=[-1, -2])
+    (case,) = found.cases
+    a, b, c, s = sympy.symbols("a b c s")
+    for inner in case.result.cases:
+        (mode,) = sympy.solve(inner.when[0].lhs, b)
+        there = {b: mode, a: mode + 1 / c}
+        error = sympy.Matrix([[b, 0], [1, a]]).subs(there) - inner.result.L * sympy.Matrix([[c, 1]])
+        assert sympy.simplify(error.charpoly(s).as_expr() - (s + 1) * (s + 2)) == 0
+    assert len(case.result.cases) == 2
+    page = " ".join(found.to("text").split())
+    assert "Case a c - b c - 1 = 0. Case b + 1 ≠ 0, b + 2 ≠ 0. In this case" in page
