@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pickle
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
@@ -321,3 +322,17 @@ def test_the_unity_loop_divides_by_no_parameter_that_stands_in_front(A: str, B: 
     P = (plant.C * (s * sympy.eye(2) - plant.A).inv() * plant.B)[0]
     assert sympy.simplify(found.closed_loop_unity - P * found.F / (1 + P * found.F)) == 0
     assert all(factor.denominator.is_constant for factor, _ in form.factors)
+
+
+@pytest.mark.parametrize("observer", ["full", "minimal"])
+def test_what_follows_from_the_gains_is_a_mapping_found_when_it_is_asked_for(observer: str) -> None:
+    plant = symobs.StateSpace("[a 1; 0 b]", "[0; 1]", "[1 0]")
+    poles = [-3, -4] if observer == "full" else [-3]
+    found = symobs.compensator(plant, control_poles=[-1, -2], observer_poles=poles, observer=observer)
+    assert "loop" not in vars(found)
+    fields = found.fields
+    assert {"closed_loop", "F_stable"} <= set(fields)
+    assert "loop" not in vars(found)
+    assert fields["closed_loop"] is found.loop is fields["closed_loop"]
+    assert pickle.loads(pickle.dumps(fields)) == dict(fields)  # noqa: S301 - our own
+    assert (fields | {"K": 1})["K"] == ({"K": 1, "x": 2} | fields)["x"] - 1 == 1

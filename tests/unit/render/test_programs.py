@@ -10,7 +10,8 @@ import numpy as np
 import pytest
 
 import symobs
-from symobs.errors import InexactInput, InputError, SymobsError, UsageError
+from symobs.errors import CertificateRejected, InexactInput, InputError, SymobsError, UsageError
+from symobs.exact.floating import margin_search
 from symobs.exact.floating.sampled import Sampled
 from symobs.result import formats
 
@@ -43,6 +44,18 @@ def test_whole_gains_are_said_to_be_exact() -> None:
 
 def test_the_margin_in_continuous_time() -> None:
     assert "every eigenvalue of the plant with this program has Re s < -1.99." in DESIGN.to("modelica")
+
+
+@pytest.mark.parametrize("asked", [("python", {"period": Fraction(1, 100)}), ("modelica", {})])
+def test_a_margin_that_is_found_wrongly_is_not_said(
+    asked: tuple[str, dict[str, Any]], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The search is not trusted: what it finds is proved again."""
+    found = margin_search._largest
+    monkeypatch.setattr(margin_search, "_largest", lambda *given: 5 * (found(*given) or 0))
+    name, period = asked
+    with pytest.raises(CertificateRejected, match=r"the margin .* is not proved"):
+        DESIGN.to(name, **period)
 
 
 @pytest.mark.parametrize("language", LANGUAGES)

@@ -147,3 +147,9 @@ def test_constants_of_a_file() -> None:
     assert sympy.Matrix([[1, sympy.sqrt(3)]]) == problem.plant.C
     (result,) = problem.solve()
     assert result.verdict == "yes"
+
+
+def test_modes_may_be_roots_of_roots() -> None:
+    """s² = √2."""
+    found = symobs.observability(symobs.StateSpace("[0 1; sqrt(2) 0]", None, "[0 0]"))
+    assert "The unobservable modes are ± √(√2)." in " ".join(found.to("text").split())
