@@ -151,5 +151,5 @@ def test_constants_of_a_file() -> None:
 
 def test_modes_may_be_roots_of_roots() -> None:
     """s² = √2."""
-    found = symobs.observability(symobs.StateSpace("[0 1; sqrt(2) 0]", None, "[0 0]"))
+    found = so.observability(so.StateSpace("[0 1; sqrt(2) 0]", None, "[0 0]"))
     assert "The unobservable modes are ± √(√2)." in " ".join(found.to("text").split())
