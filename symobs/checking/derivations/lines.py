@@ -146,6 +146,11 @@ def _states_a_part(step: Step, answer: Answer, views: Sequence[ResultInConventio
     return letter in OF_THE_PLANT and value in given and any(exists(view.result, letter) for view in views)
 
 
+def _is_too_long(error: SymobsError) -> bool:
+    """Return whether a line has no other fault than its length, so that it may be true or false."""
+    return isinstance(error, ProblemErrors) and all(isinstance(each, BudgetExceeded) for each in error.errors)
+
+
 def _without_place(error: SymobsError) -> str:
     """Return what is wrong with a line; its place is that of the line."""
     errors = error.errors if isinstance(error, ProblemErrors) else (error,)
@@ -187,7 +192,8 @@ def _audited(state: _Derivation, step: Step, answer: Answer) -> Line:
     except _OPEN as error:
         return Line(step.where, step.relation, "undecided", reason=str(error))
     except SymobsError as error:
-        return Line(step.where, step.relation, "unreadable", reason=_without_place(error))
+        verdict = "undecided" if _is_too_long(error) else "unreadable"
+        return Line(step.where, step.relation, verdict, reason=_without_place(error))
     except UNREADABLE:
         return Line(step.where, step.relation, "undecided", reason="this line cannot be evaluated")
 

@@ -143,6 +143,24 @@ def test_a_false_line_beside_a_right_answer_is_said_so() -> None:
     assert report.hints == ("line 3 does not lead to your (right) result",)
 
 
+def test_a_line_too_long_to_be_checked_is_said_so_where_its_part_is_read() -> None:
+    report = SERVO_CHECKED.report(f"F = {'+'.join(['s'] * 200)}")
+    (part,) = (part for part in report.parts if part.given)
+    assert (part.verdict, [line.verdict for line in report.lines]) == ("wrong", ["undecided"])
+    assert "the equation has more than 200 parts" in report.to_text()
+    assert report.first_false is None
+
+
+@pytest.mark.parametrize(
+    ("text", "verdicts"),
+    [("K = [4,0 3,0]", []), ("K = [4 3", []), ("K = [1 1]\nK = [4,0 3,0]\nrank(O) = 2", ["false", "true"])],
+)
+def test_an_answer_that_cannot_be_read_is_no_false_line(text: str, verdicts: list[str]) -> None:
+    report = SERVO_CHECKED.report(text)
+    assert report.parts[0].verdict == "unreadable"
+    assert [line.verdict for line in report.lines] == verdicts
+
+
 def test_what_cannot_be_read_does_not_stop_the_rest() -> None:
     report = SERVO_CHECKED.report("A + = 3\nQ L = [1; 2]\nK = [4 3]\nh1 > 3")
     assert [line.verdict for line in report.lines] == ["unreadable", "unreadable", "true", "unreadable"]
