@@ -143,6 +143,15 @@ def test_a_false_line_beside_a_right_answer_is_said_so() -> None:
     assert report.hints == ("line 3 does not lead to your (right) result",)
 
 
+def test_a_correction_from_a_wrong_gain_says_so() -> None:
+    report = SERVO_CHECKED.report("K = [4 4]\nL = [19; 81]\nF = 1/s\ndet(s I - A) = s^2 - s", "solution")
+    # K (s I - A + B K + L C)^-1 L of K = [4 4] and L = [19; 81], by SymPy
+    assert report.lines[2].right == "F = (400*s + 400)/(s^2 + 24*s + 180)"
+    assert [line.reason.endswith("with your K") for line in report.lines] == [False, False, True, False]
+    (line,) = SERVO_CHECKED.report("F = 1/s", "solution").lines
+    assert (line.right, "with your" in line.reason) == ("F = (319*s + 400)/(s^2 + 23*s + 161)", False)
+
+
 def test_a_line_too_long_to_be_checked_is_said_so_where_its_part_is_read() -> None:
     report = SERVO_CHECKED.report(f"F = {'+'.join(['s'] * 200)}")
     (part,) = (part for part in report.parts if part.given)
