@@ -108,9 +108,9 @@ def test_a_reason_is_not_the_solution() -> None:
     assert all(re.search(secret, page) for page in written["solution"])
     assert [line.reason for line in report.lines][1:] == [
         "",  # of a gain its part says why
-        "entry (1, 2) is 1, not 7",
-        "not right: entry (1, 1), entry (2, 1)",
-        "its sides are not equal",
+        "entry (1, 2) is 1, not 7, with your K",
+        "not right: entry (1, 1), entry (2, 1), with your L",
+        "its sides are not equal, with your K and L",
         "its sides are not equal",
     ]
 
