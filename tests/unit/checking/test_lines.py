@@ -152,6 +152,21 @@ def test_a_correction_from_a_wrong_gain_says_so() -> None:
     assert (line.right, "with your" in line.reason) == ("F = (319*s + 400)/(s^2 + 23*s + 161)", False)
 
 
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("x_hat' = A x_hat + B u + [1; 5] (y - C x_hat)", ["in the coefficient of x_hat", "in the coefficient of y"]),
+        ("K = [1 1]\nu = K x", ["a term in x_hat is missing"]),
+    ],
+)
+def test_no_renaming_is_offered_under_which_any_gain_would_be_right(text: str, said: list[str]) -> None:
+    # With y = C x the correction of A x + B u vanishes; and K x' = x_2 - x_2 + u = u is true of the plant alone.
+    line = SERVO_CHECKED.report(text).lines[-1]
+    assert line.verdict == "false"
+    assert "is printed for" not in line.reason
+    assert all(place in line.reason for place in said)
+
+
 def test_a_line_too_long_to_be_checked_is_said_so_where_its_part_is_read() -> None:
     report = SERVO_CHECKED.report(f"F = {'+'.join(['s'] * 200)}")
     (part,) = (part for part in report.parts if part.given)
