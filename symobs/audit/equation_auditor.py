@@ -17,12 +17,13 @@ from symobs.audit.equations.reading import EquationConditions, Gap, Reading, exc
 from symobs.audit.equations.signals import signals
 from symobs.audit.equations.sizes import Flexible, Printed, common, equal, is_signal
 from symobs.audit.equations.spectra import is_spectrum, spectral, spectrum_text
+from symobs.audit.plausible import is_plausible
 from symobs.audit.printed_entries import PrintedEntry, parted
 from symobs.audit.slips import found_slip
 from symobs.conditions import vanishing_factors
 from symobs.errors import BudgetExceeded, CertificateRejected, UnknownName
 from symobs.exact import Matrix, Scalar
-from symobs.expression.syntax_tree import SyntaxNode, letters_of
+from symobs.expression.syntax_tree import SyntaxNode, every, letters_of
 from symobs.formula import Environment, Signal
 from symobs.formula.term import Term
 
@@ -253,7 +254,8 @@ class EquationAuditor:
         fields = {name for result in self.results for name in result.fields if name[0].islower()}
         matrices = {f"{result.task}_matrix" for result in self.results}
         alphabet = CandidateLetters(environment, frozenset(fields | matrices), fit=fit)
-        found = found_slip(left, right, self.patience.asks(self.true), alphabet)
+        true, sides = self.patience.asks(self.true), (left, right)
+        found = found_slip(*sides, lambda *new: true(*new) and is_plausible(sides, new, self.reading(*new)), alphabet)
         return None if found is None else (f"{found[0]} = {found[1]}", found[2])
 
     def _misfit(self, left: SyntaxNode, right: SyntaxNode, message: str, environment: Environment) -> tuple[str, str]:
@@ -366,7 +368,7 @@ class EquationAuditor:
     ) -> tuple[str, str] | None:
         """Return the equation with one more term, a product of letters of the equation and one signal."""
         names = [name for name in {**exact, **printed} if exact.get(name) != printed.get(name)]
-        if len(names) != 1 or self._has_numbers(right):
+        if len(names) != 1 or any(part.kind == "number" for part in every(right)):
             return None
         true, written = self.patience.asks(self.true), self._matrices(letters_of(left, right), environment)
         offered = self._matrices([*written, *environment.values], environment)
@@ -383,9 +385,6 @@ class EquationAuditor:
     def _matrices(self, names: Sequence[str], environment: Environment) -> list[str]:
         values = environment.values
         return [name for name in dict.fromkeys(names) if isinstance(values.get(name), Matrix)]
-
-    def _has_numbers(self, node: SyntaxNode) -> bool:
-        return node.kind == "number" or any(map(self._has_numbers, node.parts))
 
 
 def _is_evident(left: SyntaxNode, exact: Matrix, printed: Matrix, wrong: int) -> bool:

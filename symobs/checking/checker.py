@@ -115,7 +115,7 @@ class Checked:
         parts = self._parts(views, judged)
         lines, milestones = judge_lines(self.problem, views, judged, handed_in, self.problem.marking.milestones)
         if handed_in.loose:
-            lines = tuple(line for line in lines if not _is_answer_alone(line, parts))
+            lines = _without_answers(lines, parts)
         report = CheckReport(
             self.problem.title,
             handed_in.student,
@@ -230,10 +230,20 @@ def _functions_of_time(answer: Answer, tasks: Collection[str]) -> list[tuple[str
     return [(left, right) for left, right in named.items() if left not in answer.values]
 
 
-def _is_answer_alone(line: Line, parts: Sequence[Part]) -> bool:
-    """Return whether a line that means nothing in a derivation is a part of the answer, where it is told what is wrong."""
-    letter = line.relation.partition("=")[0].strip()
-    return line.verdict == "unreadable" and letter in {part.letter for part in parts if part.given}
+def _without_answers(lines: Sequence[Line], parts: Sequence[Part]) -> tuple[Line, ...]:
+    """Return the lines without those that mean nothing in a derivation and are parts of the answer, where it is told why.
+
+    The last line of a letter is the answer: where that cannot be read, it is no line that could be true or false either.
+    """
+    verdicts = {part.letter: part.verdict for part in parts if part.given}
+    letters = [line.relation.partition("=")[0].strip() for line in lines]
+    answers = set({letter: place for place, letter in enumerate(letters)}.values())
+    return tuple(
+        line
+        for place, (line, letter) in enumerate(zip(lines, letters, strict=True))
+        if letter not in verdicts
+        or (line.verdict != "unreadable" and not (verdicts[letter] == "unreadable" and place in answers))
+    )
 
 
 def _is_empty(value: Any) -> bool:

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import re
 from contextlib import suppress
+from dataclasses import field
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
+from symobs._dataclass import dataclass
 from symobs.audit.equation_auditor import EquationAuditor
 from symobs.audit.equations.evaluation import value_of
 from symobs.audit.equations.matrix_functions import Misfit, Unknown
@@ -26,26 +28,46 @@ if TYPE_CHECKING:
 #: A right value beside the one that was written, and the slip from one to the other.
 _BESIDE = re.compile(r"(.+?) is .+, not [^:]+(?:: (.+))?")
 _PART = re.compile(r"(?:in )?(?:entry|the coefficient|the constant term)\b")
+#: A term with its right coefficient, or with what a student's letters make of it: its signal alone is a place.
+_TERM = re.compile(r"the term (?:.* )?-?(\S+) (is missing|does not belong there)")
+_MORE = re.compile(r"and [0-9]+ more entr(?:y|ies)")
+#: What is wrong with a value as a whole, in words that have no right value in them.
+_CAUSE = re.compile(
+    r"(?:in the coefficient of \S+ )?"
+    r"(?:all signs are wrong|the (?:transpose|inverse) is printed|every entry is multiplied by \S+"
+    r"|the (?:entries|rows|columns) [(),0-9 ]+ and [(),0-9 ]+ are exchanged)"
+    r"|the eigenvalues are others"
+)
+_BETWEEN_PIECES = re.compile(r"; (?![^\[]*\])")
 
 
 def without_solution(reason: str, *, is_gain: bool = False) -> str:
     """Return why a line is false without what is right: one wrong entry or coefficient is told, of several the places.
 
     A value that is wrong as a whole has its slip for a reason, or none; so has a gain, which may be right in other places.
+    Of what has none of the known wordings nothing is told.
     """
-    pieces = reason.split("; ")
-    told = [found for piece in pieces if (found := _BESIDE.fullmatch(piece))]
-    parts = [found[1] for found in told if _PART.match(found[1])]
-    if len(told) < 2:
-        return reason if parts or not told else told[0][2] or ""
-    others = [piece for piece in pieces if not _BESIDE.fullmatch(piece)]
-    if others and not others[0].startswith("and "):  # "and 2 more entries"
-        return others[0]
-    return "" if is_gain else f"not right: {', '.join([*parts, *others])}"
+    pieces = _BETWEEN_PIECES.split(reason)
+    beside = [found for piece in pieces if (found := _BESIDE.fullmatch(piece)) and not _TERM.fullmatch(piece)]
+    if len(pieces) == len(beside) == 1:
+        return reason if _PART.match(beside[0][1]) else beside[0][2] or ""
+    causes = [piece for piece in pieces if _CAUSE.fullmatch(piece)]
+    if causes or is_gain:
+        return "; ".join(causes)
+    places = [found[1] for found in beside if _PART.match(found[1])]
+    places += [piece for piece in pieces if places and _MORE.fullmatch(piece)]
+    terms = [f"a term in {found[1]} {found[2]}" for piece in pieces if (found := _TERM.fullmatch(piece))]
+    return "; ".join([*([f"not right: {', '.join(places)}"] if places else []), *terms])
 
 
+@dataclass()
 class LineAuditor(EquationAuditor):
-    """An auditor that tells whether a line is true, and what it defines."""
+    """An auditor that tells whether a line is true, and what it defines.
+
+    What is said in the letters and numbers of the line itself, of slips and of sizes, is `harmless`: it gives nothing away.
+    """
+
+    harmless: set[str] = field(init=False, default_factory=set)
 
     def members(self, entry: PrintedEntry) -> tuple[SyntaxNode, ...]:
         """Return the members of a line, its conditions and its own letters being set."""
@@ -87,8 +109,29 @@ class LineAuditor(EquationAuditor):
         """Return the correction of a false line and the reason without it, empty where none is found."""
         for _, verdict in self.read(entry):
             if not verdict.holds:
-                return verdict.right, without_solution(verdict.reason, is_gain=is_gain)
+                said = verdict.reason
+                return verdict.right, said if said in self.harmless else without_solution(said, is_gain=is_gain)
         return "", ""
+
+    def _slip(self, *sides: Any, **options: Any) -> tuple[str, str] | None:
+        return self._noted(super()._slip(*sides, **options))
+
+    def _misfit(self, *sides: Any) -> tuple[str, str]:
+        found = super()._misfit(*sides)
+        self._noted(found)
+        return found
+
+    def _missing_factor(self, *sides: Any) -> tuple[str, str] | None:
+        return self._noted(super()._missing_factor(*sides))
+
+    def _missing_term(self, *sides: Any) -> tuple[str, str] | None:
+        return self._noted(super()._missing_term(*sides))
+
+    def _noted(self, found: tuple[str, str] | None) -> tuple[str, str] | None:
+        """Return a correction, its reason being noted as harmless."""
+        if found is not None:
+            self.harmless.add(found[1])
+        return found
 
 
 def auditor(

@@ -8,7 +8,8 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
-from dataclasses import field
+from contextlib import suppress
+from dataclasses import field, replace
 from typing import TYPE_CHECKING, Any
 
 from symobs._dataclass import dataclass
@@ -146,6 +147,11 @@ def _states_a_part(step: Step, answer: Answer, views: Sequence[ResultInConventio
     return letter in OF_THE_PLANT and value in given and any(exists(view.result, letter) for view in views)
 
 
+def _is_too_long(error: SymobsError) -> bool:
+    """Return whether a line has no other fault than its length, so that it may be true or false."""
+    return isinstance(error, ProblemErrors) and all(isinstance(each, BudgetExceeded) for each in error.errors)
+
+
 def _without_place(error: SymobsError) -> str:
     """Return what is wrong with a line; its place is that of the line."""
     errors = error.errors if isinstance(error, ProblemErrors) else (error,)
@@ -187,7 +193,8 @@ def _audited(state: _Derivation, step: Step, answer: Answer) -> Line:
     except _OPEN as error:
         return Line(step.where, step.relation, "undecided", reason=str(error))
     except SymobsError as error:
-        return Line(step.where, step.relation, "unreadable", reason=_without_place(error))
+        verdict = "undecided" if _is_too_long(error) else "unreadable"
+        return Line(step.where, step.relation, verdict, reason=_without_place(error))
     except UNREADABLE:
         return Line(step.where, step.relation, "undecided", reason="this line cannot be evaluated")
 
@@ -216,9 +223,23 @@ def _not_true(
     except (CertificateRejected, *UNREADABLE):  # the search for the cause found none that stands
         corrected, reason = "", ""
     reason = reason or ("" if is_gain else "its sides are not equal")
+    if desk is not right:
+        reason = ", ".join(filter(None, (reason, _with_own(state, entry, right, corrected))))
     if defined is not None:
         state.bound[defined[0]] = (defined[1], step.where)
     return Line(step.where, step.relation, "false", right=corrected or None, reason=reason)
+
+
+def _with_own(state: _Derivation, entry: PrintedEntry, right: LineAuditor, corrected: str) -> str:
+    """Return with which values of the student a correction holds, empty where it holds with the right ones as well."""
+    with suppress(SymobsError, *UNREADABLE):
+        if corrected and right.is_true(replace(entry, relation=corrected.partition(" where ")[0])):
+            return ""
+    letters = right.letters(entry) - {entry.relation.partition("=")[0].strip()}
+    own = [letter for letter in state.bound if letter in letters]
+    if not own and corrected:
+        own = [letter for letter in state.bound if state.is_gain(letter)]
+    return f"with your {' and '.join(own)}" if own else ""
 
 
 def _entry(state: _Derivation, step: Step, answer: Answer) -> PrintedEntry:

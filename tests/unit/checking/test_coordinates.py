@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from fractions import Fraction
 from typing import Any
 
 import pytest
@@ -137,6 +138,18 @@ def test_what_is_wrong_with_an_observer_of_reduced_order() -> None:
         (None, ""),
         ("rounded", "H is rounded, and its exact value is asked for"),
     ]
+
+
+def test_a_matrix_that_is_wrong_beside_right_ones_has_its_right_value_in_their_coordinates() -> None:
+    """t (A + 4 I) = C and t (A + 5 I) = C are the rows of T, and t B = -1/φ(-4) and -1/φ(-5), φ = s³ + 6 s² + 11 s + 6."""
+    problem = 'task = "reduced_order_observer"\n[plant]\nA = "[0 1 0; 0 0 1; -6 -11 -6]"\nB = "[0; 0; 1]"\n'
+    problem += 'C = "[1 0 0]"\n[specification]\npoles = "-4, -5"\n'
+    report = check(problem, {"F": "[-4 0; 0 -5]", "G": "[0; 1]", "H": "[1; 1]"}, show="solution")
+    parts = {part.letter: part for part in report.parts if part.given}
+    assert {letter: part.verdict for letter, part in parts.items()} == {"F": "right", "G": "wrong", "H": "right"}
+    first, second = (-1 / (Fraction(s) ** 3 + 6 * s**2 + 11 * s + 6) for s in (-4, -5))
+    assert parts["G"].right == f"[{first}; {second}]"
+    assert (parts["G"].reason, parts["G"].slip, parts["G"].alternatives) == ("", None, ())
 
 
 def test_sizes_are_four_numbers_in_order() -> None:

@@ -143,6 +143,48 @@ def test_a_false_line_beside_a_right_answer_is_said_so() -> None:
     assert report.hints == ("line 3 does not lead to your (right) result",)
 
 
+def test_a_correction_from_a_wrong_gain_says_so() -> None:
+    report = SERVO_CHECKED.report("K = [4 4]\nL = [19; 81]\nF = 1/s\ndet(s I - A) = s^2 - s", "solution")
+    # K (s I - A + B K + L C)^-1 L of K = [4 4] and L = [19; 81], by SymPy
+    assert report.lines[2].right == "F = (400*s + 400)/(s^2 + 24*s + 180)"
+    assert [line.reason.endswith("with your K") for line in report.lines] == [False, False, True, False]
+    (line,) = SERVO_CHECKED.report("F = 1/s", "solution").lines
+    assert (line.right, "with your" in line.reason) == ("F = (319*s + 400)/(s^2 + 23*s + 161)", False)
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("x_hat' = A x_hat + B u + [1; 5] (y - C x_hat)", ["in the coefficient of x_hat", "in the coefficient of y"]),
+        ("K = [1 1]\nu = K x", ["a term in x_hat is missing"]),
+    ],
+)
+def test_no_renaming_is_offered_under_which_any_gain_would_be_right(text: str, said: list[str]) -> None:
+    # With y = C x the correction of A x + B u vanishes; and K x' = x_2 - x_2 + u = u is true of the plant alone.
+    line = SERVO_CHECKED.report(text).lines[-1]
+    assert line.verdict == "false"
+    assert "is printed for" not in line.reason
+    assert all(place in line.reason for place in said)
+
+
+def test_a_line_too_long_to_be_checked_is_said_so_where_its_part_is_read() -> None:
+    report = SERVO_CHECKED.report(f"F = {'+'.join(['s'] * 200)}")
+    (part,) = (part for part in report.parts if part.given)
+    assert (part.verdict, [line.verdict for line in report.lines]) == ("wrong", ["undecided"])
+    assert "the equation has more than 200 parts" in report.to_text()
+    assert report.first_false is None
+
+
+@pytest.mark.parametrize(
+    ("text", "verdicts"),
+    [("K = [4,0 3,0]", []), ("K = [4 3", []), ("K = [1 1]\nK = [4,0 3,0]\nrank(O) = 2", ["false", "true"])],
+)
+def test_an_answer_that_cannot_be_read_is_no_false_line(text: str, verdicts: list[str]) -> None:
+    report = SERVO_CHECKED.report(text)
+    assert report.parts[0].verdict == "unreadable"
+    assert [line.verdict for line in report.lines] == verdicts
+
+
 def test_what_cannot_be_read_does_not_stop_the_rest() -> None:
     report = SERVO_CHECKED.report("A + = 3\nQ L = [1; 2]\nK = [4 3]\nh1 > 3")
     assert [line.verdict for line in report.lines] == ["unreadable", "unreadable", "true", "unreadable"]

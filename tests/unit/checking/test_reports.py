@@ -16,6 +16,7 @@ import symobs
 from symobs.checking import SHOW, Checked, CheckReport, check
 from symobs.checking.answers.answer_file import read_answer
 from symobs.checking.asked import answer_file
+from symobs.checking.derivations.line_auditor import without_solution
 from symobs.checking.report.schema import schema
 from symobs.errors import ProblemErrors, UsageError
 from symobs.problem import read
@@ -107,11 +108,38 @@ def test_a_reason_is_not_the_solution() -> None:
     assert all(re.search(secret, page) for page in written["solution"])
     assert [line.reason for line in report.lines][1:] == [
         "",  # of a gain its part says why
-        "entry (1, 2) is 1, not 7",
-        "not right: entry (1, 1), entry (2, 1)",
-        "its sides are not equal",
+        "entry (1, 2) is 1, not 7, with your K",
+        "not right: entry (1, 1), entry (2, 1), with your L",
+        "its sides are not equal, with your K and L",
         "its sides are not equal",
     ]
+
+
+@pytest.mark.parametrize(
+    ("line", "place"),
+    [
+        ("u = -[1 1] x", "a term in x_hat is missing; a term in x does not belong there"),
+        ("u = [5 6] x", "a term in x_hat is missing; a term in x does not belong there"),
+        ("u = K x", "a term in x_hat is missing; a term in x does not belong there"),
+        ("u = 0", "a term in x_hat is missing"),
+        ("u = -[1 1] x_hat", "not right: in the coefficient of x_hat entry (1, 1), entry (1, 2)"),
+        ("x_hat' = A x_hat + B u + [1; 5] y", ""),
+        ("K B = [1 1 1] C'", "the sizes do not fit: [1 1 1] is 1x3 and C' is 2x1"),
+    ],
+)
+def test_a_line_on_signals_does_not_tell_the_gains(line: str, place: str) -> None:
+    report = CHECKED.report(line)
+    (judged,) = report.lines
+    assert judged.verdict == "false"
+    assert place in judged.reason
+    assert not re.search(r"\b(?:4|3|19|81)\b", judged.reason)
+    for page in (report.to_text(), report.to_markdown(), _body(report.to_html())):
+        assert not re.search(r"\[-?4 -?3\]|\[-?19; -?81\]", page)
+
+
+@pytest.mark.parametrize("said", ["K is [4 3]", "with [4 3] it holds", "the gain [4 3] is asked for; and more"])
+def test_of_a_wording_that_nobody_knows_nothing_is_told(said: str) -> None:
+    assert without_solution(said) == ""
 
 
 def test_nothing_is_given_away_to_any_student_of_a_class() -> None:
