@@ -28,7 +28,6 @@ if TYPE_CHECKING:
     from symobs.batching.jobs import Job
 
 _SPEAK_EVERY = 30.0
-#: What a job is allowed where nothing else is said: with many of them, one without an end must not hold up the rest.
 
 
 def of_a_run(command: Callable[..., Any]) -> Callable[..., Any]:

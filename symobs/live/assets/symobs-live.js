@@ -347,7 +347,7 @@ export function mount(element, transport, options = {}) {
       try {
         const got = await transport(asking("page", { detail: s.detail, at, cards_at: Object.keys(at).length > 0 }), signal);
         if (signal.aborted) return;
-        
+
         if (got.html) el.html.innerHTML = got.html;
         else el.html.replaceChildren(h("p", { class: "pale" }, got.message ?? got.errors?.map((e) => e.message).join("; ") ?? w("no_derivation")), got.status === "undecided" ? h("button", { onclick: () => rest(0) }, w("try_again")) : null);
         el.page.setAttribute("aria-busy", "false");
