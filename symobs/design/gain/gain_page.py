@@ -314,7 +314,8 @@ def write_case(page: Builder, case: Case, side: PlacementProblem, around: tuple[
         page.steps.append(another_gain(page, case, side, "case_another_gain"))
         return
     if page.environment.coefficients and result.answer[side.gain] is not None:
-        page.steps.append(undecided(page, case))  # that the modes divide φ holds for its own coefficients, not for letters
+        # that the modes divide φ holds for its own coefficients, not for letters
+        page.steps.append(undecided(page, case))
         return
     outer, environment = page.steps, page.environment
     page.steps = []
