@@ -243,8 +243,7 @@ def return_path(page: Builder, design: OutputFeedback) -> None:
         below = factored_form(page, inserted.scalar.denominator)
         together = page.value(inserted.scalar.numerator) / below
         page.equal(relation(page.value(1) + page["P"] @ page["F"], inserted, together), say="return_difference")
-    is_new = not few and page.plant.order <= readability.LOOP_ORDER  # the return difference shows it multiplied out
-    members = [definition, *([expanded] if is_new else []), factors]
+    members = [definition, expanded, factors] if page.plant.order <= readability.LOOP_ORDER else [definition, factors]
     page.define("G_cl", *members, say="" if few else "return_path", answer=True, closing=False)
     draw_loop(page, plant_form, page.value(design.answer["F"]))
     _say_poles(page, design, form.value)
