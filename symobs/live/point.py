@@ -50,7 +50,7 @@ def point_object(region: Any, at: Mapping[str, str], printer: CardPrinter) -> di
         values = {name: Scalar.of(place[name]) for name in boundary.names}
         critical = type(critical)(critical.polynomial, boundary.substitute(values), critical.signs)
     if value_at(critical.denominator, place) == 0:
-        return {"verdict": "undefined", "roots": [], "note": "The polynomial has no value here."}
+        return {"verdict": "undefined", "roots": []}
     allowed = critical.allows({name: place[name] for name in critical.signs if name in place})
     chi = critical.polynomial.substitute({name: Scalar.of(value) for name, value in place.items()})
     stable = critical.is_stable(place)
@@ -60,16 +60,11 @@ def point_object(region: Any, at: Mapping[str, str], printer: CardPrinter) -> di
     boundaries = [Card("boundary", Relation((Literal(factor), zero), ("=",)), factor) for factor in vanishing]
     on_edge = bool(vanishing) and not stable
     verdict = "stable" if stable and allowed else "boundary" if on_edge else "unstable" if allowed else "excluded"
-    notes = {
-        "excluded": "Outside the declared signs.",
-        "boundary": "On the boundary: a root lies on the limit of stability.",
-    }
     return {
         "verdict": verdict,
         "cards": [card_object(card, printer)],
         "boundary": [card_object(found, printer) for found in boundaries] if on_edge else [],
         "roots": [_root(box, power) for box, power in root_boxes(_coefficients(chi, boundary.variable), _PLACES)],
-        **({"note": notes[verdict]} if verdict in notes else {}),
     }
 
 
