@@ -330,7 +330,7 @@ def test_what_follows_from_the_gains_is_a_mapping_found_when_it_is_asked_for(obs
     poles = [-3, -4] if observer == "full" else [-3]
     found = symobs.compensator(plant, control_poles=[-1, -2], observer_poles=poles, observer=observer)
     assert "loop" not in vars(found)
-    fields = found.fields
+    fields: Any = found.fields
     assert {"closed_loop", "F_stable"} <= set(fields)
     assert "loop" not in vars(found)
     assert fields["closed_loop"] is found.loop is fields["closed_loop"]
