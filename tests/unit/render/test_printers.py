@@ -757,7 +757,10 @@ def displays(source: random.Random, printer: LatexPrinter | TextPrinter) -> Iter
 @pytest.mark.slow
 def test_no_display_is_wider_than_the_page(tmp_path: Path, require_tool: Callable[[str], str]) -> None:
     pdflatex = require_tool("pdflatex")
-    pages = [f"\\typeout{{display {k}}}\n{d}" for k, d in enumerate(displays(random.Random(4), LatexPrinter()))]  # noqa: S311
+    pages, printer = list[str](), LatexPrinter()
+    for k, display in enumerate(displays(random.Random(4), printer)):  # noqa: S311
+        pages.append(f"\\typeout{{display {k}}}\n{display}")
+        printer.stars.clear()  # each stands on a page of its own
     (tmp_path / "page.tex").write_text(PAGE + "\n\n".join(pages) + "\n\\end{document}\n", encoding="utf-8")
     command = [pdflatex, "-interaction=nonstopmode", "-no-shell-escape", "page.tex"]
     run = subprocess.run(command, cwd=tmp_path, capture_output=True, check=False)
