@@ -133,12 +133,6 @@ class CardPrinter:
         return self.language.phrases["said_equals"].format(name=printer.inline(left), value=printer.inline(right))
 
 
-def names_of(result: Result) -> tuple[str, ...]:
-    """Return the fields of a result that have a card."""
-    known = NAMES.get(result.task, {})
-    return tuple(name for name, value in result.fields.items() if name in known and _is_shown(value))
-
-
 def cards(result: Result, names: Iterable[str], convention: Convention = STANDARD) -> tuple[Card, ...]:
     """Return the cards of these fields, those left out that the result does not have."""
     known, fields = NAMES.get(result.task, {}), result.fields

@@ -11,7 +11,7 @@ from symobs.convention import conventions
 from symobs.exact import Factored, Matrix, Scalar
 from symobs.formula import Environment, Exact, Literal, Relation, Roots, evaluate
 from symobs.problem import read
-from symobs.render.cards import NAMES, CardPrinter, cards, names_of
+from symobs.render.cards import NAMES, CardPrinter, cards
 from symobs.result import tasks
 from tests.support.tools.command_line import EXAMPLES
 
@@ -41,7 +41,7 @@ def value_of(field: Any) -> Any:
 def test_a_card_shows_the_value_of_its_field(path: Path) -> None:
     problem = read(path.read_text(encoding="utf-8"), folder=path.parent)
     for result in problem.solve():
-        for card in cards(result, names_of(result)):
+        for card in cards(result, result.fields):
             assert card.answer is result.fields[card.name]
             if isinstance(card.shown, Roots):
                 assert card.shown.values == card.answer
@@ -50,7 +50,7 @@ def test_a_card_shows_the_value_of_its_field(path: Path) -> None:
             shown = evaluate(card.shown.members[-1], environment, Exact(environment))
             assert shown == value_of(card.answer), (result.task, card.name)
         printer = CardPrinter(result, problem.convention)
-        for card in cards(result, names_of(result), problem.convention):
+        for card in cards(result, result.fields, problem.convention):
             ET.fromstring(f"<card>{printer.mathml(card)}</card>")  # noqa: S314 - our own
             assert printer.latex(card).count("{") == printer.latex(card).count("}")
             assert printer.says(card)
