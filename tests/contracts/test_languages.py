@@ -233,7 +233,7 @@ def test_a_false_number_in_a_sentence_is_rejected_in_every_language() -> None:
     lying = replace(derivation, steps=tuple(map(lie, derivation.steps)))  # type: ignore[arg-type]
     assert lying != derivation
     for code in languages():
-        with pytest.raises(DerivationRejected):
+        with pytest.raises(DerivationRejected, match="the line that this is the region of chi_p"):
             render(HandWritten("", "", (), written=(lying,), language=code), "text")
 
 

@@ -79,14 +79,14 @@ def test_a_page_with_a_wrong_digit_is_not_shown(shown: str) -> None:
 def test_a_rounding_is_no_equation() -> None:
     both = Literal(scalar("25/68")), Decimals(scalar("0.3676"))
     Derivation((Equal((Relation(both, ("≈",)),)),), Environment()).check()
-    with pytest.raises(DerivationRejected):
+    with pytest.raises(DerivationRejected, match="the line 25/68 = 919/2500"):
         Derivation((Equal((Relation(both, ("=",)),)),), Environment()).check()
 
 
 def test_what_depends_on_a_parameter_has_no_decimals() -> None:
     line = Relation((Letter("A"), Decimals(scalar("0.5"))), ("≈",))
     start = Environment(values={"A": Scalar.symbol("b")}, signs={"b": "positive"})
-    with pytest.raises(DerivationRejected):
+    with pytest.raises(DerivationRejected, match="the line A ≈ 1/2"):
         Derivation((Equal((line,)),), start).check()
 
 

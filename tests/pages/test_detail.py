@@ -230,7 +230,7 @@ def test_an_unknown_level_is_refused_before_work_starts() -> None:
     run = inside("solve", str(SERVO), "--detail", "short")
     assert (run.code, run.out) == (2, "")
     assert run.err == "--detail: 'short' is not a level of detail; use one of full, outline, answer\n"
-    with pytest.raises(UsageError):
+    with pytest.raises(UsageError, match="detail: 'short' is not a level of detail"):
         at_detail((), "short")
 
 

@@ -113,7 +113,7 @@ def test_modes_without_a_closed_form_are_undecided_and_another_answer_is_rejecte
         assert said in cubic.to("text", language=language)
     found = symobs.response(StateSpace("[-1]", "[1]"), input=1)
     wrong = {**found.answer, "state": found.answer["state"] * 2}
-    with pytest.raises(CertificateRejected):
+    with pytest.raises(CertificateRejected, match=r"the claim x = exp\(A\*t\)\*x0 \+ x_f"):
         type(found)(found.plant, found.method, wrong)
 
 

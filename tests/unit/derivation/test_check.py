@@ -335,7 +335,9 @@ def test_a_result_must_say_what_it_claims_and_how_its_page_reads() -> None:
     with pytest.raises(NotImplementedError):
         Claimless(plant, "none", {"number": 1})
     bare = Bare(plant, "none", {"number": 1, "missing": None})
-    with pytest.raises(NotImplementedError):
+    with pytest.raises(
+        NotImplementedError, match=r"no page is registered for Bare: write tests/unit/derivation/test_check_page\.py"
+    ):
         _ = bare.derivation
     assert (bare.existence, dict(bare.fields), bare.verdict) == ((), dict(bare.answer), "yes")
     assert repr(bare) == "Bare(number=1, verdict='yes')"

@@ -84,7 +84,7 @@ def test_a_page_stays_as_it_is_where_no_sign_and_no_letter_of_an_entry_changes()
     assert translated(derivation, ONLY_LETTERS) == derivation
     wrong = Derivation((PLANT, Define(said(L, GAIN, Matrix.column([5, 8])))), START)
     for convention in (STANDARD, PLUS):
-        with pytest.raises(DerivationRejected):
+        with pytest.raises(DerivationRejected, match=r"the line L = \[5; 7\] = \[5; 8\]"):
             translated(wrong, convention)
 
 
@@ -201,7 +201,7 @@ def test_every_letter_means_what_it_meant_or_its_negative() -> None:
     ):
         with pytest.raises(DerivationRejected):
             convention_signs._hold_against(BEFORE, replace(AFTER, values=values), GAINS)
-    with pytest.raises(DerivationRejected):
+    with pytest.raises(DerivationRejected, match="the line L in another convention"):
         convention_signs._hold_against(BEFORE, AFTER, frozenset({"K"}))
 
 

@@ -124,9 +124,9 @@ def test_a_matrix_has_the_property_of_all_its_entries() -> None:
     entries = subjects("strictly_proper", Matrix.of([[1, s], [2, 3]]), "s")
     assert entries == (Scalar.of(1), s, Scalar.of(2), Scalar.of(3))
     for other in (Matrix.of([[s + 1], [s + 2]]), Matrix.of([[s + 1, s + 2]])):
-        with pytest.raises(TypeError):
+        with pytest.raises(TypeError, match="never_zero is no property of this matrix"):
             subjects("never_zero", other, "s")
-    with pytest.raises(TypeError):
+    with pytest.raises(TypeError, match="str is not a scalar"):
         subjects("stable", "text", "s")
 
 

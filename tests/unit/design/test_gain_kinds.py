@@ -80,7 +80,9 @@ def test_a_gain_that_exists_cannot_be_called_unassignable() -> None:
     found = asked("assigned")
     assert found.desired is not None
     for kind in (UnassignableGain(found.desired), NoGainWithZeros(found.desired, ())):
-        with pytest.raises(CertificateRejected):
+        with pytest.raises(
+            CertificateRejected, match=r"a gain L with these zeros is found|the claim X has the order of the kernel"
+        ):
             replace(found, answer={**found.answer, "L": None}, kind=kind)
 
 

@@ -102,7 +102,7 @@ def test_what_is_not_observable_has_its_cases() -> None:
 
 def test_a_wrong_answer_for_given_gains_does_not_exist() -> None:
     found = symobs.compensator(SERVO, K=[1, 2], L=[3, 4])
-    with pytest.raises(CertificateRejected):
+    with pytest.raises(CertificateRejected, match=r"the claim F\(s\) = K\*\(s\*I - A \+ B\*K \+ L\*C\)\*\*\(-1\)\*L"):
         type(found)(
             found.plant, "separation", {**found.answer, "F": found.answer["F"] * 2}, found.feedback, found.estimator
         )

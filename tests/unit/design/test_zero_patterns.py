@@ -156,7 +156,7 @@ def test_what_is_no_solution_is_rejected() -> None:
                 [entry + 1 if (k, m) == (i, j) else entry for m, entry in enumerate(row)]
                 for k, row in enumerate(L.rows)
             ]
-            with pytest.raises(CertificateRejected):
+            with pytest.raises(CertificateRejected, match=r"the claim det\(s\*I - A \+ L\*C\) = phi\(s\)"):
                 found.with_answer("L", type(L).of(changed))
 
 

@@ -86,7 +86,7 @@ def test_every_word_comes_from_a_phrase_or_a_label() -> None:
 
 
 def test_a_derivation_with_a_false_line_is_not_told() -> None:
-    with pytest.raises(DerivationRejected):
+    with pytest.raises(DerivationRejected, match="the line 1 = 2"):
         told(Equal((equals(number(1), number(2)),)))
 
 

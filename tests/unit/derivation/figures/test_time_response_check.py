@@ -106,9 +106,9 @@ def test_a_spoiled_value_of_discrete_time_is_refused_however_near() -> None:
     exact = [height * 10**30 for height in course.heights]
     exact[2] += 1
     near = replace(course, heights=tuple(exact))
-    with pytest.raises(DerivationRejected):
+    with pytest.raises(DerivationRejected, match="the line the response of e_2, in a picture,"):
         replaced(derivation, step, replace(step, picture=replace(picture, responses=(near,), parts=finer))).check()
-    with pytest.raises(DerivationRejected):
+    with pytest.raises(DerivationRejected, match="the line another time, in a picture,"):
         replaced(derivation, step, replace(step, picture=replace(picture, discrete=False))).check()
 
 
