@@ -97,7 +97,7 @@ def _left_of(when: Conjunction, substitution: dict[str, Scalar], environment: En
             reject(plain_relation(relation, environment.variable))
     relations = [apart_from_zero(value) for value in excluded]
     known = Ideal.where((*equations, *relations, *environment.relations))
-    if known.is_whole:
+    if known.is_whole or never_together_zero(equations, (*relations, *environment.relations), environment.signs):
         reject(f"that {' and '.join(plain_relation(r, environment.variable) for r in when.relations)} can be")
     for name, value in substitution.items():
         rest = Scalar.symbol(name) * value.denominator - value.numerator

@@ -196,7 +196,8 @@ def _transfer_function(page: Builder, design: MinimalOrderCompensator, *, large:
         page.define(
             "F", formula, numbers, *_apart(page, pencil), result, say="minimal_transfer", answer=True, closing=False
         )
-    remainder = predicate("strictly_proper", page["F"] - direct)
+    # Of F with its own numbers the letters of K say nothing; the formula holds whatever they stand for.
+    remainder = predicate("strictly_proper", (formula if page.environment.coefficients else page["F"]) - direct)
     say_stability(page, design, "minimal", remainder, direct=relation(direct, direct.as_value))
 
 
