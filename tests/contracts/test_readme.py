@@ -75,15 +75,18 @@ def test_the_set_up_is_two_commands_of_one_line() -> None:
 def test_shell_lines_run_on_the_problem_file(require_tool: Callable[[str], str], tmp_path: Path) -> None:
     require_tool("latexmk")
     require_tool("pdflatex")
-    problem, lecture, _ = blocks("toml")
-    for name, text in (("problem", problem), ("servo", problem), ("lecture", lecture)):
-        (tmp_path / f"{name}.toml").write_text(text, encoding="utf-8")
+    _, lecture, _ = blocks("toml")
+    (tmp_path / "lecture.toml").write_text(lecture, encoding="utf-8")
     lines = [line for block in blocks("sh") for line in block.splitlines() if line.startswith("symobs ")]
-    assert len(lines) == 27
+    assert len(lines) == 31
     for line in lines:
-        run = fresh(*shlex.split(line, comments=True)[1:], folder=tmp_path)
+        words = shlex.split(line, comments=True)
+        target = words.pop() if ">" in words else ""
+        run = fresh(*words[1 : -1 if target else None], folder=tmp_path)
         assert (run.code, run.err) == (0, ""), line
         assert run.out or "-o" in line
+        if target:
+            (tmp_path / target).write_text(run.out, encoding="utf-8")
     assert (tmp_path / "region.svg").read_bytes() == (ROOT / ".github/pictures/region.svg").read_bytes()
     assert (tmp_path / "page.html").read_bytes().startswith(b"<!DOCTYPE html>")
     assert (tmp_path / "page.pdf").read_bytes().startswith(b"%PDF")
