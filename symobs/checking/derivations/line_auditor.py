@@ -71,7 +71,7 @@ class LineAuditor(EquationAuditor):
 
     def members(self, entry: PrintedEntry) -> tuple[SyntaxNode, ...]:
         """Return the members of a line, its conditions and its own letters being set."""
-        self.environments, self.gaps, self.where = {}, [], entry.condition
+        self.environments, self.kept, self.gaps, self.where = {}, {}, [], entry.condition
         self.let = {name: self._members(text)[0] for name, text in entry.let.items()}
         return self._members(entry.relation)
 
