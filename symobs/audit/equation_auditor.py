@@ -30,6 +30,7 @@ from symobs.formula.term import Term
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
+    from symobs.audit.equations.reading import Kept
     from symobs.audit.slips import SearchBudget
     from symobs.convention import Convention
     from symobs.problem import Problem
@@ -64,7 +65,7 @@ class EquationAuditor:
     let: Mapping[str, SyntaxNode] = field(init=False, default_factory=dict)
     where: EquationConditions = field(init=False, default_factory=EquationConditions)
     environments: dict[object, Environment] = field(init=False, default_factory=dict)
-    kept: dict[tuple[int, str], dict[int, tuple[SyntaxNode, Printed]]] = field(init=False, default_factory=dict)
+    kept: dict[tuple[int, str], Kept] = field(init=False, default_factory=dict)
     gaps: list[Gap] = field(init=False, default_factory=list)
 
     def __post_init__(self) -> None:

@@ -85,7 +85,7 @@ def found_slip(
         _signs,
         lambda side: (slip for slip in _letters(side, alphabet) if slip.near),
         _indices,
-        lambda side: _letters(side, alphabet),
+        lambda side: (slip for slip in _letters(side, alphabet) if not slip.near),
         lambda side: _letters(side, alphabet, primed=True),
     ]
     for kind in kinds:

@@ -39,15 +39,16 @@ _MOST_PRIMES = 8
 
 def value_of(node: SyntaxNode, reading: Reading) -> Printed:
     """Return the value of a tree; raises Misfit, Unknown and BudgetExceeded."""
-    if reading.kept is not None and id(node) in reading.kept:
-        return reading.kept[id(node)][1]
+    key = node.text if node.kind == "letter" else id(node)
+    if reading.kept is not None and key in reading.kept:
+        return reading.kept[key][1]
     found = _value(node, reading)
     if isinstance(found, Term):
         _bounded(found)
         if node.parts and not is_signal(found):  # what stands around it need not evaluate its formula again
             found = Term(Literal(found.value), found.environment)
     if reading.kept is not None:
-        reading.kept[id(node)] = (node, found)
+        reading.kept[key] = (node, found)
     return found
 
 

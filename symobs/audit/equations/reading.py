@@ -23,6 +23,8 @@ if TYPE_CHECKING:
     from symobs.expression.syntax_tree import SyntaxNode
     from symobs.formula import Environment
 
+    Kept = dict[int | str, tuple[SyntaxNode, Printed]]
+
 _CONDITION = re.compile(r"(.+?)(!=|>=|<=|>|<)(.+)")
 _STRICT = {"positive", "negative", "nonzero"}
 _STRICT_OF = {"nonnegative": "positive", "nonpositive": "negative", "real": "nonzero"}
@@ -118,7 +120,7 @@ class Reading:
 
     `gaps` are found as the equation is evaluated.  So are `squares`, f of a root of f² where the sign of f is open: its value
     is f, and for those in `turned` it is -f.  Where only the value is asked for, `kept` holds those of parts that were
-    evaluated before in the same environment, by the identity of the part, which is held with it.
+    evaluated before in the same environment, by the letter or the identity of the part, which is held with it.
     """
 
     environment: Environment
@@ -127,7 +129,7 @@ class Reading:
     turned: frozenset[Scalar] = frozenset()
     gaps: list[Gap] = field(default_factory=list)
     squares: list[Scalar] = field(default_factory=list)
-    kept: dict[int, tuple[SyntaxNode, Printed]] | None = None
+    kept: Kept | None = None
 
     def fails_where(self, values: Iterable[Scalar], says: str) -> None:
         """Note that something fails where all these values are 0."""
