@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from functools import partial
+from itertools import combinations
 from typing import TYPE_CHECKING
 
 from symobs.checking.faults.fault import Explained, Fault, Kind, first_kind
@@ -22,6 +23,8 @@ if TYPE_CHECKING:
 
 #: Entries of the data whose sign is changed one by one, before the search is given up.
 MOST_ENTRIES = 150
+#: Entries that are exchanged in pairs; entries whose signs are changed together.
+MOST_EXCHANGED, MOST_SIGNS = 12, 6
 
 
 def explain_gain(
@@ -41,6 +44,7 @@ def explain_gain(
         kinds.append(lambda: [Fault("rounded", f"{letter} is rounded, and its exact value is asked for")])
     if design.desired is not None and right is not None:
         kinds += [search.entry, search.one_coefficient, search.other_half]
+        kinds += [search.factor, search.exchanged, search.sign_entries]
         kinds += [search.mirrored, search.pole_repeated, search.pole_dropped, search.not_subtracted, search.reversed]
         kinds += [search.dual_untransposed, search.other_matrix, search.not_transformed, search.wrong_direction]
         kinds += [search.entry_misread]
@@ -132,6 +136,43 @@ class _Search:
                 "the constant term" if not power else f"the coefficient of {self.s}{f'^{power}' if power > 1 else ''}"
             )
             yield Fault("one_coefficient", f"{name} of the polynomial is {mine}, not {asked}", {"coefficient": power})
+
+    def factor(self) -> Iterator[Fault]:
+        """Yield that every entry is multiplied by one number, which the trace of the loop's matrix tells."""
+        chi, asked, mine = (p.coefficients(self.s)[1] for p in (self._delta()[0], self.phi, self.mine))
+        if asked == chi or mine == chi:
+            return
+        times = (mine - chi) / (asked - chi)
+        if times.is_constant and _is_right(self.design, self.value * (Scalar.of(1) / times)):
+            yield Fault("factor", f"every entry of {self.letter} is multiplied by {times}")
+
+    def exchanged(self) -> Iterator[Fault]:
+        """Yield two entries that stand in each other's place."""
+        for (i, j), (k, m) in combinations(self._places(), 2):
+            one, other = self.value[i, j], self.value[k, m]
+            if one != other and self._meets(_with(_with(self.value, i, j, other), k, m, one)):
+                said = f"the entries ({i + 1},{j + 1}) and ({k + 1},{m + 1}) are exchanged"
+                yield Fault("exchanged", said)
+
+    def sign_entries(self) -> Iterator[Fault]:
+        """Yield the entries, several but not all, that have the other sign."""
+        filled = [place for place in self._places() if not self.value[place].is_zero]
+        for count in range(2, len(filled) if len(filled) <= MOST_SIGNS else 0):
+            for chosen in combinations(filled, count):
+                turned = self.value
+                for i, j in chosen:
+                    turned = _with(turned, i, j, -self.value[i, j])
+                if self._meets(turned):
+                    yield Fault("sign_entries", f"{count} entries of {self.letter} have the other sign")
+
+    def _places(self) -> list[tuple[int, int]]:
+        rows, columns = self.value.shape
+        return [(i, j) for i in range(rows) for j in range(columns)][:MOST_EXCHANGED]
+
+    def _meets(self, gain: Matrix) -> bool:
+        """Return whether a gain is right, its polynomial being found first."""
+        mine = self.closed(self.A, self.C, self.design.transpose_for_task(gain))
+        return mine == self.phi and _is_right(self.design, gain)
 
     # -- the polynomial -----------------------------------------------------------------------------------------------
 

@@ -567,5 +567,7 @@ def test_points_are_drawn_from_the_answer() -> None:
     assert first["p"] != first["q"]
     assert points(asked, {"L": "1"}) == [first, second]
     assert points(asked, {"L": "2"}) != [first, second]
+    assert points({**asked, "parts": [F]}, {"L": "1"}) != [first, second]
+    assert points(asked, {"K": "1", "L": "2"}) == points(asked, {"L": "2", "K": "1"})
     assert all(2 <= number(entry) < 2**60 + 2 for point in (first, second) for entry in point.values())
     assert points(question(), {"L": "1"}) == [{}]
