@@ -31,7 +31,15 @@ if TYPE_CHECKING:
 
     from symobs.expression.size_limits import Number
 
-__all__ = ["Names", "comma_between_digits", "declared_name", "parse_matrix", "parse_poles", "parse_polynomial", "parse_scalar"]
+__all__ = [
+    "Names",
+    "comma_between_digits",
+    "declared_name",
+    "parse_matrix",
+    "parse_poles",
+    "parse_polynomial",
+    "parse_scalar",
+]
 
 _LONGEST_REPAIR = 30
 #: Numbers up to this many bits need no budget.

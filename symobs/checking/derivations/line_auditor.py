@@ -60,6 +60,11 @@ def without_solution(reason: str, *, is_gain: bool = False) -> str:
     return "; ".join([*([f"not right: {', '.join(places)}"] if places else []), *terms])
 
 
+def place_alone(reason: str) -> str:
+    """Return the reason for a matrix with one entry at most, of which a right entry may be all that there is to find."""
+    return re.sub(r"^(entry \([0-9]+, [0-9]+\)) is [^;]*$", r"\1 is wrong", reason)
+
+
 @dataclass()
 class LineAuditor(EquationAuditor):
     """An auditor that tells whether a line is true, and what it defines.

@@ -11,7 +11,7 @@ from functools import partial
 from itertools import combinations
 from typing import TYPE_CHECKING
 
-from symobs.checking.faults.fault import Explained, Fault, Kind, first_kind
+from symobs.checking.faults.fault import Explained, Fault, Kind, first_kind, is_empty_but_for
 from symobs.errors import CertificateRejected
 from symobs.exact import Matrix, Scalar, product_of
 
@@ -109,10 +109,15 @@ class _Search:
             yield Fault("transposed", f"the transpose of {self.letter} is right")
 
     def entry(self) -> Iterator[Fault]:
-        """Yield the single entries whose change makes the gain right: det(sI − A + LC) is affine in each of them."""
+        """Yield the single entries whose change makes the gain right: det(sI − A + LC) is affine in each of them.
+
+        A gain that is empty but for this entry has no slip in it: to tell the entry would be to tell the gain.
+        """
         rows, columns = self.value.shape
         for i in range(rows):
             for j in range(columns):
+                if is_empty_but_for(self.value, i, j):
+                    continue
                 step = Matrix.of([[int((a, b) == (i, j)) for b in range(columns)] for a in range(rows)])
                 moved = self.closed(self.A, self.C, self.L + self.design.transpose_for_task(step))
                 change = _factor(self.phi - self.mine, moved - self.mine, self.s)
@@ -122,9 +127,7 @@ class _Search:
                 if _is_right(self.design, right):
                     entry = -right[i, j] if self.turned else right[i, j]
                     said = f"entry ({i + 1},{j + 1}) should be {entry} with the others as they are"
-                    yield Fault(
-                        "entry", said if rows * columns > 1 else f"{self.letter} should be {entry}", [i + 1, j + 1]
-                    )
+                    yield Fault("entry", said, [i + 1, j + 1])
 
     def one_coefficient(self) -> Iterator[Fault]:
         """Yield the coefficient in which the polynomial alone differs from the one asked for."""

@@ -361,6 +361,9 @@ def test_a_constant_that_follows_is_too_easy() -> None:
     assert outcome(WHOLE, "F", {"K": rows("-1 -1"), "L": rows("1; -1"), "F": [["0"]]})[::3] == ("follows", 0)
     first = gain("L", [["-1"]], [["1"]], "1 5", [["4"]], part="compensator.L")
     second = gain("K", [["-1"]], [["1"]], "1 3", [["2"]], part="compensator.K")
+    assert outcome(question(first), "L", {"L": rows("5")}) == other_polynomial(
+        "L", "s + 6"
+    )  # nothing beside it is right
     matrices = {"A": [["-1"]], "B": [["1"]], "C": [["1"]], "D": [["1"]], "right_K": [["2"]], "right_L": [["4"]]}
     # s + 1 + k + l − l k = s + 1 + 2 + 5 − 10 is still of degree 1 with l = 5
     asked = question(second, first, {**F, **matrices, "order": 1, "phi": ["1", "8", "15"]})

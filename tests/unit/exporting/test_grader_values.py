@@ -74,7 +74,7 @@ REFUSED = {
     "1^" * 51 + "1": "brackets are nested too deeply",
     "2^-1001": "an exponent is an integer up to 1000",
     "1+2 3": "a number follows a number",
-    "'3": "\"'\" cannot stand in a value",
+    "'3": '"\'" cannot stand in a value',
     "*".join(["2^1000"] * 20): "this is too large",
     "(1/(s+2^1000))^30": "this is too large",
     "2^1000^1000": "an exponent is an integer up to 1000",
