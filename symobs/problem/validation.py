@@ -344,9 +344,8 @@ def _require_clear_commas(specification: Mapping[str, Any], kinds: Mapping[str, 
     """Note poles with a comma between digits in a file whose language has decimal commas: 1,5 is a number there, too."""
     for name in [name for name in specification if kinds[name] == "Poles"]:
         if (comma := comma_between_digits(specification[name])) and ";" not in specification[name]:
-            repair = (
-                f"write {comma.replace(',', '.')} with a decimal point, or a space behind a comma between two poles"
-            )
+            point = comma.replace(",", ".")
+            repair = f"write {point} with a decimal point, or a space behind a comma between two poles"
             errors.note(f"{comma} may be one number or two", f"specification.{name}", repair)
 
 

@@ -143,7 +143,7 @@ class _Search:
     def factor(self) -> Iterator[Fault]:
         """Yield that every entry is multiplied by one number, which the trace of the loop's matrix tells."""
         chi, asked, mine = (p.coefficients(self.s)[1] for p in (self._delta()[0], self.phi, self.mine))
-        if asked == chi or mine == chi:
+        if chi in (asked, mine):
             return
         times = (mine - chi) / (asked - chi)
         if times.is_constant and _is_right(self.design, self.value * (Scalar.of(1) / times)):
