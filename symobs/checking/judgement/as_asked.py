@@ -41,7 +41,7 @@ def is_listed(view: ResultInConvention, letter: str) -> bool:
 def two_readings() -> InputError:
     """Return the error of a comma between two digits that a decimal may be meant by."""
     return InputError(
-        "a comma sets entries apart", repair="write 2.5 with a decimal point, and semicolons between: 0.5; 2.5"
+        "commas set entries apart", repair="write 2.5 with a decimal point, and semicolons between: 0.5; 2.5"
     )
 
 
