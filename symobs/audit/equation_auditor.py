@@ -17,7 +17,7 @@ from symobs.audit.equations.reading import EquationConditions, Gap, Reading, exc
 from symobs.audit.equations.signals import signals, telling
 from symobs.audit.equations.sizes import Flexible, Printed, common, equal, is_signal
 from symobs.audit.equations.spectra import is_spectrum, spectral, spectrum_text
-from symobs.audit.plausible import is_plausible
+from symobs.audit.plausible import is_evident, is_plausible
 from symobs.audit.printed_entries import PrintedEntry, parted
 from symobs.audit.slips import found_slip
 from symobs.conditions import vanishing_factors
@@ -300,7 +300,7 @@ class EquationAuditor:
             reason = differences.polynomial_reason(printed[0, 0], exact[0, 0], variable)
         numbers = self._is_written_out(right, environment)
         plain = bool(reason) and "; " not in reason and not spectra
-        if not numbers or not (plain or _is_evident(left, exact, printed, len(wrong))):
+        if not numbers or not (plain or is_evident(left, exact, printed, len(wrong))):
             slip = self._slip(left, right, environment)
             if slip is not None:
                 return slip
@@ -391,14 +391,3 @@ class EquationAuditor:
     def _matrices(self, names: Sequence[str], environment: Environment) -> list[str]:
         values = environment.values
         return [name for name in dict.fromkeys(names) if isinstance(values.get(name), Matrix)]
-
-
-def _is_evident(left: SyntaxNode, exact: Matrix, printed: Matrix, wrong: int) -> bool:
-    """Return whether the error lies in numbers on the right: a value of a letter, an entry, a number.
-
-    A single number says too little to tell which letter was meant instead of another.
-    """
-    if left.kind == "letter" or (left.kind == "call" and left.text == "size"):
-        return True
-    alone = exact.shape == (1, 1)
-    return (alone and exact[0, 0].is_constant and printed[0, 0].is_constant) or (not alone and wrong == 1)

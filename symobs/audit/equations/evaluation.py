@@ -41,7 +41,8 @@ def value_of(node: SyntaxNode, reading: Reading) -> Printed:
     """Return the value of a tree; raises Misfit, Unknown and BudgetExceeded."""
     key = node.text if node.kind == "letter" else id(node)
     if reading.kept is not None and key in reading.kept:
-        return reading.kept[key][1]
+        known: Printed = reading.kept[key][1]
+        return known
     found = _value(node, reading)
     if isinstance(found, Term):
         _bounded(found)

@@ -19,11 +19,11 @@ from symobs.expression.source import shown
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
-    from symobs.audit.equations.sizes import Printed
     from symobs.expression.syntax_tree import SyntaxNode
     from symobs.formula import Environment
 
-    Kept = dict[int | str, tuple[SyntaxNode, Printed]]
+    #: A part of an equation, and its value.
+    Kept = dict[int | str, tuple[SyntaxNode, Any]]
 
 _CONDITION = re.compile(r"(.+?)(!=|>=|<=|>|<)(.+)")
 _STRICT = {"positive", "negative", "nonzero"}
