@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 from symobs._dataclass import dataclass
@@ -34,14 +35,19 @@ class CandidateLetters:
 
     def offered(self, name: str, *, primed: bool) -> list[str]:
         """Return the letters that fit in place of `name`; with `primed` those whose transpose or derivative fits."""
-        environment = self.environment
-        names = [*environment.values, *environment.signals, *INSTANTS, environment.variable]
-        known = [n for n in dict.fromkeys(names) if n not in {*self.fields, *HIDDEN, name} and not n.endswith("'")]
-        kinds = {other: self._kind(other) for other in known}
+        kinds = {other: kind for other, kind in self.kinds.items() if other != name}
         if primed:
             kinds = {other: _turned(kind) for other, kind in kinds.items() if kind is not None and any(kind)}
-        wanted = self._kind(name)
+        wanted = self.kinds[name] if name in self.kinds else self._kind(name)
         return [other for other, kind in kinds.items() if not self.fit or kind == wanted]
+
+    @cached_property
+    def kinds(self) -> dict[str, Kind]:
+        """What may be offered, and the kind of each."""
+        environment = self.environment
+        names = [*environment.values, *environment.signals, *INSTANTS, environment.variable]
+        known = [n for n in dict.fromkeys(names) if n not in {*self.fields, *HIDDEN} and not n.endswith("'")]
+        return {name: self._kind(name) for name in known}
 
     def is_signal(self, name: str) -> bool:
         """Return whether a letter is a signal."""

@@ -14,10 +14,10 @@ from symobs.audit.equations.grammar import read_relation
 from symobs.audit.equations.letter_values import INSTANTS, values
 from symobs.audit.equations.matrix_functions import Misfit, Unknown
 from symobs.audit.equations.reading import EquationConditions, Gap, Reading, exceptions, text
-from symobs.audit.equations.signals import signals
+from symobs.audit.equations.signals import signals, telling
 from symobs.audit.equations.sizes import Flexible, Printed, common, equal, is_signal
 from symobs.audit.equations.spectra import is_spectrum, spectral, spectrum_text
-from symobs.audit.plausible import is_plausible
+from symobs.audit.plausible import is_evident, is_plausible
 from symobs.audit.printed_entries import PrintedEntry, parted
 from symobs.audit.slips import found_slip
 from symobs.conditions import vanishing_factors
@@ -30,6 +30,7 @@ from symobs.formula.term import Term
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
+    from symobs.audit.equations.reading import Kept
     from symobs.audit.slips import SearchBudget
     from symobs.convention import Convention
     from symobs.problem import Problem
@@ -60,13 +61,16 @@ class EquationAuditor:
     known: list[SyntaxNode] = field(default_factory=list)
     notes: dict[str, None] = field(default_factory=dict)
     values: Mapping[str, Scalar | Matrix] = field(init=False)
+    telling: frozenset[str] = field(init=False)
     let: Mapping[str, SyntaxNode] = field(init=False, default_factory=dict)
     where: EquationConditions = field(init=False, default_factory=EquationConditions)
     environments: dict[object, Environment] = field(init=False, default_factory=dict)
+    kept: dict[tuple[int, str], Kept] = field(init=False, default_factory=dict)
     gaps: list[Gap] = field(init=False, default_factory=list)
 
     def __post_init__(self) -> None:
         self.values = values(self.problem.plant, self.results, self.convention)
+        self.telling = telling(self.problem.plant, self.convention)
 
     @property
     def symbols(self) -> Mapping[str, str]:
@@ -75,7 +79,7 @@ class EquationAuditor:
 
     def read(self, entry: PrintedEntry) -> Iterator[tuple[str, Verdict]]:
         """Yield the equations of an entry that do not hold in general."""
-        self.environments, self.gaps, self.where = {}, [], entry.condition
+        self.environments, self.kept, self.gaps, self.where = {}, {}, [], entry.condition
         self.let = {name: self._members(text)[0] for name, text in entry.let.items()}
         for left, right in pairwise(self._members(entry.relation)):
             verdict = self._checked(left, right)
@@ -125,8 +129,8 @@ class EquationAuditor:
     def environment(self, left: SyntaxNode, right: SyntaxNode) -> Environment:
         """Return the environment of an equation; the equations of signals depend on the signals that occur."""
         inside = letters_of(*(self.let[name] for name in letters_of(left, right) if name in self.let))
-        own = frozenset(self.symbols)
-        mentioned = (frozenset([*letters_of(left, right), *inside]) - own, frozenset(letters_of(right)) - own)
+        names = self.telling.difference(self.symbols)
+        mentioned = (names.intersection([*letters_of(left, right), *inside]), names.intersection(letters_of(right)))
         if mentioned not in self.environments:
             made = signals(self.problem.plant, self.results, self.convention, *mentioned)
             environment = made.extended_by(values=dict(self.values), signs=dict(self.symbols))
@@ -151,7 +155,9 @@ class EquationAuditor:
 
     def true(self, left: SyntaxNode, right: SyntaxNode) -> bool:
         """Return whether an equation holds in general."""
-        return self._true(left, right, self.reading(left, right))
+        reading = self.reading(left, right)
+        reading.kept = self.kept.setdefault((id(reading.environment), self.where.text), {})
+        return self._true(left, right, reading)
 
     def _true(self, left: SyntaxNode, right: SyntaxNode, reading: Reading) -> bool:
         try:
@@ -294,7 +300,7 @@ class EquationAuditor:
             reason = differences.polynomial_reason(printed[0, 0], exact[0, 0], variable)
         numbers = self._is_written_out(right, environment)
         plain = bool(reason) and "; " not in reason and not spectra
-        if not numbers or not (plain or _is_evident(left, exact, printed, len(wrong))):
+        if not numbers or not (plain or is_evident(left, exact, printed, len(wrong))):
             slip = self._slip(left, right, environment)
             if slip is not None:
                 return slip
@@ -385,14 +391,3 @@ class EquationAuditor:
     def _matrices(self, names: Sequence[str], environment: Environment) -> list[str]:
         values = environment.values
         return [name for name in dict.fromkeys(names) if isinstance(values.get(name), Matrix)]
-
-
-def _is_evident(left: SyntaxNode, exact: Matrix, printed: Matrix, wrong: int) -> bool:
-    """Return whether the error lies in numbers on the right: a value of a letter, an entry, a number.
-
-    A single number says too little to tell which letter was meant instead of another.
-    """
-    if left.kind == "letter" or (left.kind == "call" and left.text == "size"):
-        return True
-    alone = exact.shape == (1, 1)
-    return (alone and exact[0, 0].is_constant and printed[0, 0].is_constant) or (not alone and wrong == 1)

@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from symobs.audit.equations.reading import Reading
+    from symobs.exact import Matrix
     from symobs.expression.syntax_tree import SyntaxNode
 
 
@@ -47,3 +48,14 @@ def _vanishes(node: SyntaxNode, reading: Reading) -> bool:
         return found.factor.is_zero if isinstance(found, Flexible) else equal(found, found - found)
     except (Misfit, Unknown, *EVALUATION_ERRORS):
         return False
+
+
+def is_evident(left: SyntaxNode, exact: Matrix, printed: Matrix, wrong: int) -> bool:
+    """Return whether the error lies in numbers on the right: a value of a letter, an entry, a number.
+
+    A single number says too little to tell which letter was meant instead of another.
+    """
+    if left.kind == "letter" or (left.kind == "call" and left.text == "size"):
+        return True
+    alone = exact.shape == (1, 1)
+    return (alone and exact[0, 0].is_constant and printed[0, 0].is_constant) or (not alone and wrong == 1)

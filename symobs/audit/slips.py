@@ -85,7 +85,7 @@ def found_slip(
         _signs,
         lambda side: (slip for slip in _letters(side, alphabet) if slip.near),
         _indices,
-        lambda side: _letters(side, alphabet),
+        lambda side: (slip for slip in _letters(side, alphabet) if not slip.near),
         lambda side: _letters(side, alphabet, primed=True),
     ]
     for kind in kinds:
@@ -130,9 +130,8 @@ def _decided(
     ]
     fitting: dict[str, tuple[Slip, tuple[SyntaxNode, SyntaxNode]]] = {}
     for slip, pair in candidates:
-        text = f"{pair[0]} = {pair[1]}"
-        if text not in fitting and pair[0] != pair[1] and true(*pair):
-            fitting[text] = (slip, pair)
+        if pair[0] != pair[1] and not (fitting and _text(pair) in fitting) and true(*pair):
+            fitting[_text(pair)] = (slip, pair)
     if not fitting:
         return None
     near = [entry for entry in fitting.values() if entry[0].near] or list(fitting.values())
@@ -140,6 +139,10 @@ def _decided(
         return (None,)
     slip, pair = near[0]
     return ((*pair, slip.reason),)
+
+
+def _text(pair: tuple[SyntaxNode, SyntaxNode]) -> str:
+    return f"{pair[0]} = {pair[1]}"
 
 
 def _printed_for(printed: SyntaxNode | str, right: SyntaxNode | str) -> str:
@@ -151,7 +154,7 @@ def _everywhere(node: SyntaxNode, change: Callable[[SyntaxNode], Iterator[Slip]]
     yield from change(node)
     for i, part in enumerate(node.parts):
         for slip in _everywhere(part, change):
-            yield replace(slip, side=with_part(node, i, slip.side))
+            yield Slip(with_part(node, i, slip.side), slip.reason, slip.near)
 
 
 def _exchanged(side: SyntaxNode) -> Iterator[Slip]:
@@ -253,7 +256,7 @@ def _outermost(node: SyntaxNode, change: Callable[[SyntaxNode], Iterator[Slip]])
     for i, part in enumerate(node.parts):
         if node.kind not in {"primed", "power"} or part.kind not in {"letter", "primed"}:
             for slip in _outermost(part, change):
-                yield replace(slip, side=with_part(node, i, slip.side))
+                yield Slip(with_part(node, i, slip.side), slip.reason, slip.near)
 
 
 def _signs(side: SyntaxNode) -> Iterator[Slip]:

@@ -93,6 +93,7 @@ def _run_task(task: Any, options_given: dict[str, Any]) -> None:
         plant["dt"] = True
     symbols = dict(_declaration(entry) for entry in options_given["symbols"]) if options_given["symbols"] else OPEN
     data = {"task": task.name, "plant": plant, "specification": given("given_"), "symbols": symbols}
+    data |= {"language": page["language"]} if "language" in page else {}
     convention = convention_of(options_given["convention_name"])
 
     def work(report_progress: Progress) -> Outcome:

@@ -9,6 +9,7 @@ text, so any text ends, soon, in an exact value or in one of symobs's errors.
 from __future__ import annotations
 
 import numbers
+import re
 from decimal import Decimal
 from fractions import Fraction
 from math import lcm
@@ -30,7 +31,15 @@ if TYPE_CHECKING:
 
     from symobs.expression.size_limits import Number
 
-__all__ = ["Names", "declared_name", "parse_matrix", "parse_poles", "parse_polynomial", "parse_scalar"]
+__all__ = [
+    "Names",
+    "comma_between_digits",
+    "declared_name",
+    "parse_matrix",
+    "parse_poles",
+    "parse_polynomial",
+    "parse_scalar",
+]
 
 _LONGEST_REPAIR = 30
 #: Numbers up to this many bits need no budget.
@@ -103,13 +112,15 @@ def parse_poles(
     rounding: bool = False,
     roots: bool = False,
 ) -> tuple[Complex, ...]:
-    """Return the poles of a comma-separated text (`-20+20i, -20-20i`) or of a list of numbers and texts.
+    """Return the poles of a text with commas or semicolons between them, `-20+20i, -20-20i`, or of a list of numbers and texts.
 
+    Semicolons and a comma between digits, `-1,5; -2`, are an error: its writer means a decimal, which has a point.
     With `functions`, or with `roots` alone, square roots are read as generators; where there are names, the values stand in
     one context with `variable`, that of the polynomial to be made of them.  Raises as `parse_scalar` does.
     """
     scope = Scope.of(names, None, where, functions=functions, rounding=rounding, roots=roots)
     if isinstance(value, str):
+        value = _with_commas(value, where)
         scope = sharing(scope, [value], variable)
         return tuple(Complex.of(pole) for pole in _numbers_of_text(value, scope, where))
     listed = _as_list(value)
@@ -122,6 +133,23 @@ def parse_poles(
     if plain is not None and len(plain[0][0]) == len(listed):
         return tuple(map(Complex.of, plain[0][0]))
     return tuple(Complex.of(_entry(pole, scope, f"{where}[{index}]")) for index, pole in enumerate(listed))
+
+
+def comma_between_digits(value: object) -> str:
+    """Return the first number of a text that has a decimal comma, or the two that a comma without a space sets apart."""
+    found = re.search(r"[0-9]+,[0-9]+", value) if isinstance(value, str) else None
+    return found[0] if found else ""
+
+
+def _with_commas(text: str, where: str) -> str:
+    """Return a text of numbers with commas in place of the semicolons between them."""
+    if ";" not in text or "[" in text:
+        return text
+    comma = comma_between_digits(text)
+    if comma:
+        message = f'"{comma}" has a comma between its digits, and semicolons set the numbers apart'
+        raise InputError(message, where=where, repair=f"write {comma.replace(',', '.')} with a decimal point")
+    return text.replace(";", ",")
 
 
 def parse_polynomial(

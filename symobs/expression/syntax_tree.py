@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import field, replace
+from dataclasses import field
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
@@ -56,7 +56,8 @@ def letters_of(*nodes: SyntaxNode) -> list[str]:
 
 def with_part(node: SyntaxNode, index: int, part: SyntaxNode) -> SyntaxNode:
     """Return the node with one part replaced."""
-    return replace(node, parts=(*node.parts[:index], part, *node.parts[index + 1 :]))
+    parts = (*node.parts[:index], part, *node.parts[index + 1 :])
+    return SyntaxNode(node.kind, parts, node.text, node.value, node.places)
 
 
 def exponent_of(node: SyntaxNode) -> int | None:

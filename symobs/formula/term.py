@@ -40,7 +40,9 @@ class Term:
     @cached_property
     def value(self) -> Any:
         """The exact value: a `Scalar`, a `Matrix` or a `Signal`."""
-        environment = replace(self.environment, coefficients={})
+        environment = self.environment
+        if environment.coefficients:
+            environment = replace(environment, coefficients={})
         return evaluate(self.formula, environment, Exact(environment))
 
     @property

@@ -13,7 +13,7 @@ from symobs._dataclass import dataclass
 from symobs.convention import STANDARD, Convention, convention_named
 from symobs.errors import ProblemErrors, UsageError
 from symobs.expect import unreadable
-from symobs.expression import declared_name, parse_polynomial
+from symobs.expression import comma_between_digits, declared_name, parse_polynomial
 from symobs.expression.source import shown
 from symobs.phrases.languages import ENGLISH, language_named
 from symobs.problem.constants import with_constants
@@ -114,6 +114,8 @@ def validate(data: Mapping[str, Any], only: str | None = None, folder: Path | No
         data, symbols, dt, errors, optional=bool(wanted) and all(task.works_without_plant for task in wanted)
     )
     specification = _specification(data, (*asked, *wanted), convention, symbols, errors)
+    if language_named(language).has_comma:
+        _require_clear_commas(specification, _kinds((*asked, *wanted)), errors)
     expect = table_of(data, "expect", errors)
     printed = _printed(data.get("printed", []), errors)
     values = table_of(data, "values", errors)
@@ -336,6 +338,15 @@ def _specification(
         else:
             found[name] = table[name]
     return found
+
+
+def _require_clear_commas(specification: Mapping[str, Any], kinds: Mapping[str, str], errors: Errors) -> None:
+    """Note poles with a comma between digits in a file whose language has decimal commas: 1,5 is a number there, too."""
+    for name in [name for name in specification if kinds[name] == "Poles"]:
+        if (comma := comma_between_digits(specification[name])) and ";" not in specification[name]:
+            point = comma.replace(",", ".")
+            repair = f"write {point} with a decimal point, or a space behind a comma between two poles"
+            errors.note(f"{comma} may be one number or two", f"specification.{name}", repair)
 
 
 def _read_cells(value: object, symbols: Symbols, where: str, errors: Errors) -> None:

@@ -16,7 +16,7 @@ from symobs.conditions import sign_of
 from symobs.errors import InputError, ShapeMismatch
 from symobs.exact import Complex, Field, Matrix, Scalar, product_of
 from symobs.exact.algebraic.conjugates import conjugates, is_in_kernel, product_of_linear, tidied
-from symobs.expression import declared_name, parse_poles, parse_polynomial
+from symobs.expression import comma_between_digits, declared_name, parse_poles, parse_polynomial
 from symobs.specification.pole_patterns import (
     FILTERS,
     KEYS,
@@ -183,7 +183,10 @@ def desired_polynomial(
     if is_pattern(poles):
         found = _from_pattern(poles, plant, degree, first)
     elif poles is not None:
-        found = _from_poles(read_poles(poles, plant.symbols, first, plant.variable), plant.variable, degree, first)
+        read = read_poles(poles, plant.symbols, first, plant.variable)
+        if len(read) != degree:
+            raise _miscounted(poles, len(read), degree, first)
+        found = _from_poles(read, plant.variable, first)
     else:
         found = _from_polynomial(polynomial, plant, degree, second)
     require_known(found.factors, second if poles is None else first)
@@ -208,11 +211,17 @@ def read_poles(
     return parse_poles(read, symbols.names, variable=variable, where=where, roots=True, functions=functions)
 
 
-def _from_poles(poles: tuple[Complex, ...], variable: str, degree: int, where: str) -> DesiredPolynomial:
-    if len(poles) != degree:
-        message = f"{len(poles)} pole{'s' if len(poles) != 1 else ''} given, {degree} needed"
-        repair = f"give as many poles as the order asks for, {degree}, with commas between"
-        raise InputError(message, where=where, repair=repair, given=len(poles))
+def _miscounted(poles: object, count: int, degree: int, where: str) -> InputError:
+    """Return the error of too many poles or too few; a comma between digits may have been meant as that of a decimal."""
+    message = f"{count} pole{'s' if count != 1 else ''} given, {degree} needed"
+    repair = f"give as many poles as the order asks for, {degree}, with commas between"
+    comma = comma_between_digits(poles)
+    if comma:
+        repair += f"; if one of them is {comma.replace(',', '.')}, write it with a decimal point"
+    return InputError(message, where=where, repair=repair, given=count)
+
+
+def _from_poles(poles: tuple[Complex, ...], variable: str, where: str) -> DesiredPolynomial:
     if any(variable in part.names for pole in poles for part in (pole.real, pole.imaginary)):
         message = f"a pole contains {variable}, the variable of the polynomials"
         raise InputError(message, where=where, repair="write another name")
@@ -239,7 +248,7 @@ def _from_pattern(value: object, plant: StateSpace, degree: int, where: str) -> 
     named, others = read_pattern(value, plant, where)
     signs = plant.symbols.seen(value).signs
     pattern = pattern_of(named, degree - len(others), plant.variable, where, signs, len(others))
-    beside = _from_poles(others, plant.variable, len(others), where).factors
+    beside = _from_poles(others, plant.variable, where).factors
     return DesiredPolynomial(plant.variable, (*pattern.factors, *beside), pattern=pattern)
 
 

@@ -18,7 +18,7 @@ from symobs.problem import parse
 from symobs.variation.acceptance.candidates import Candidate, base_candidate, candidate
 from symobs.variation.acceptance.cheap import Cheap, cheap, kind_of
 from symobs.variation.acceptance.distinct import data_key, keys_of
-from symobs.variation.acceptance.profile import unlike
+from symobs.variation.acceptance.profile import UNLIKE, unlike
 from symobs.variation.drawing.parameters import is_integer
 from symobs.variation.drawing.stream import LARGEST_SEED
 from symobs.variation.files import About, manifest, write_folder
@@ -34,6 +34,7 @@ MOST = 10_000
 #: Seconds of work handed over at a time: what is begun beyond the last variant is done for nothing.
 _CHUNK = 0.05
 _SAME = "the same as another variant"
+_OF_ONE_KIND = "the first one is of a rare kind: draw distinct poles, or take another seed"
 PROFILES = ("loose", "strict")
 
 
@@ -254,9 +255,9 @@ class Variants:
         counts = self._counted(tried)
         most, often = next(iter(counts.items()), ("", 0))
         message = f"{len(self._found)} of {self.count} variants were found among {tried} candidates"
-        repair = (
-            f"most often ({100 * often / max(1, sum(counts.values())):.0f} %): {most}; widen that, or draw from more"
-        )
+        share = 100 * often / max(1, sum(counts.values()))
+        mend = _OF_ONE_KIND if most == UNLIKE else "widen that, or draw from more"
+        repair = f"most often ({share:.0f} %): {most}; {mend}"
         return TooFew(message, where="variants", repair=repair, rejected=counts)
 
 

@@ -39,9 +39,17 @@ _MOST_PRIMES = 8
 
 def value_of(node: SyntaxNode, reading: Reading) -> Printed:
     """Return the value of a tree; raises Misfit, Unknown and BudgetExceeded."""
+    key = node.text if node.kind == "letter" else id(node)
+    if reading.kept is not None and key in reading.kept:
+        known: Printed = reading.kept[key][1]
+        return known
     found = _value(node, reading)
     if isinstance(found, Term):
         _bounded(found)
+        if node.parts and not is_signal(found):  # what stands around it need not evaluate its formula again
+            found = Term(Literal(found.value), found.environment)
+    if reading.kept is not None:
+        reading.kept[key] = (node, found)
     return found
 
 

@@ -19,7 +19,11 @@ from symobs.expression.source import shown
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
+    from symobs.expression.syntax_tree import SyntaxNode
     from symobs.formula import Environment
+
+    #: A part of an equation, and its value.
+    Kept = dict[int | str, tuple[SyntaxNode, Any]]
 
 _CONDITION = re.compile(r"(.+?)(!=|>=|<=|>|<)(.+)")
 _STRICT = {"positive", "negative", "nonzero"}
@@ -115,7 +119,8 @@ class Reading:
     """Letters and conditions of an equation; with `rounding`, decimals are read as generators.
 
     `gaps` are found as the equation is evaluated.  So are `squares`, f of a root of f² where the sign of f is open: its value
-    is f, and for those in `turned` it is -f.
+    is f, and for those in `turned` it is -f.  Where only the value is asked for, `kept` holds those of parts that were
+    evaluated before in the same environment, by the letter or the identity of the part, which is held with it.
     """
 
     environment: Environment
@@ -124,6 +129,7 @@ class Reading:
     turned: frozenset[Scalar] = frozenset()
     gaps: list[Gap] = field(default_factory=list)
     squares: list[Scalar] = field(default_factory=list)
+    kept: Kept | None = None
 
     def fails_where(self, values: Iterable[Scalar], says: str) -> None:
         """Note that something fails where all these values are 0."""

@@ -56,6 +56,19 @@ def _times(matrix: Matrix, signal: str) -> Formula:
     return Product((Literal(matrix), Letter(signal)))
 
 
+def telling(plant: StateSpace, convention: Convention) -> frozenset[str]:
+    """Return the letters on which it depends, where they stand in an equation, which signals are free in it."""
+    called = _called(convention)
+    components = {f"{name}_{i + 1}" for name in ("x", called["x_hat"]) for i in range(plant.order)}
+    return frozenset({"x", "u", "y", "z", "x_hat", *called.values(), *components})
+
+
+def _called(convention: Convention) -> dict[str, str]:
+    """Return the names of errors and estimates in a convention."""
+    called = {key: convention.letters.get(key, key) for key in ("e", "e_2", "e_d", "x_hat")}
+    return {**called, "x_hat_2": convention.letters.get("x_2_hat", "x_hat_2")}
+
+
 def signals(
     plant: StateSpace,
     results: Sequence[Result],
@@ -68,10 +81,8 @@ def signals(
     y stands by itself where nothing of x is `mentioned`, u where it is; the error replaces the estimate where it stands
     on the `right`.
     """
-    m, answers = PlantMatrices.of(plant), answers_of(results)
+    m, answers, called = PlantMatrices.of(plant), answers_of(results), _called(convention)
     K, L, known = answers.get("K"), answers.get("L"), _Signals()
-    called = {key: convention.letters.get(key, key) for key in ("e", "e_2", "e_d", "x_hat")}
-    called["x_hat_2"] = convention.letters.get("x_2_hat", "x_hat_2")
     first, p = leading_block(m.C), 0 if m.C is None else m.C.shape[0]
     reduced = first is not None and L is not None and L.shape == (plant.order - p, p)
     states = {"x", called["e"], called["e_2"], called["e_d"], *(f"x_{i + 1}" for i in range(plant.order))}

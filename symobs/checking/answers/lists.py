@@ -17,7 +17,7 @@ _APART = r"[;\n]|(?<=\d)\s+(?=[-+]?\d)"
 
 
 def as_list(value: Any) -> Any:
-    """Return the entries of a text in brackets, [1, 2] or [1; 2] or {1, 2}; another value as it is.
+    """Return the entries of a text in brackets, [1, 2] or [1; 2] or {1, 2}, or with semicolons; another value as it is.
 
     So is one whose commas stand between digits while something else sets its entries apart: [1,5; 2,5].
     """
@@ -25,9 +25,10 @@ def as_list(value: Any) -> Any:
         return value
     if _NOTHING.fullmatch(value.strip()):
         return []
-    if not _LIST.fullmatch(value.strip()) or has_two_readings(value):
+    is_bare = ";" in value and not re.search(r"[][{}]", value)
+    if not (is_bare or _LIST.fullmatch(value.strip())) or has_two_readings(value):
         return value
-    inside = value.strip()[1:-1].strip()
+    inside = value.strip() if is_bare else value.strip()[1:-1].strip()
     parts = re.split(r"[,;\n]" if re.search(r"[,;\n]", inside) else r"\s+", inside)
     return [part.strip() for part in parts if part.strip()]
 

@@ -60,6 +60,11 @@ def without_solution(reason: str, *, is_gain: bool = False) -> str:
     return "; ".join([*([f"not right: {', '.join(places)}"] if places else []), *terms])
 
 
+def place_alone(reason: str) -> str:
+    """Return the reason for a matrix with one entry at most, of which a right entry may be all that there is to find."""
+    return re.sub(r"^(entry \([0-9]+, [0-9]+\)) is [^;]*$", r"\1 is wrong", reason)
+
+
 @dataclass()
 class LineAuditor(EquationAuditor):
     """An auditor that tells whether a line is true, and what it defines.
@@ -71,7 +76,7 @@ class LineAuditor(EquationAuditor):
 
     def members(self, entry: PrintedEntry) -> tuple[SyntaxNode, ...]:
         """Return the members of a line, its conditions and its own letters being set."""
-        self.environments, self.gaps, self.where = {}, [], entry.condition
+        self.environments, self.kept, self.gaps, self.where = {}, {}, [], entry.condition
         self.let = {name: self._members(text)[0] for name, text in entry.let.items()}
         return self._members(entry.relation)
 

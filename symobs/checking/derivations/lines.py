@@ -17,7 +17,7 @@ from symobs.audit.printed_entries import printed_entries
 from symobs.audit.slips import SearchBudget
 from symobs.certificate.claims import UNREADABLE
 from symobs.checking.derivations.functions_of_time import of_function_of_time
-from symobs.checking.derivations.line_auditor import LineAuditor, auditor
+from symobs.checking.derivations.line_auditor import LineAuditor, auditor, place_alone
 from symobs.checking.judgement.conditions import read_conditions
 from symobs.checking.judgement.gains import from_gains, with_gain
 from symobs.checking.judgement.parts import GAINS, IN_COORDINATES, OF_THE_PLANT, exists
@@ -222,6 +222,8 @@ def _not_true(
         corrected, reason = desk.explained(entry, is_gain=is_gain)
     except (CertificateRejected, *UNREADABLE):  # the search for the cause found none that stands
         corrected, reason = "", ""
+    if defined is not None and isinstance(defined[1], Matrix) and sum(not x.is_zero for x in defined[1].entries) < 2:
+        reason = place_alone(reason)
     reason = reason or ("" if is_gain else "its sides are not equal")
     if desk is not right:
         reason = ", ".join(filter(None, (reason, _with_own(state, entry, right, corrected))))

@@ -4,9 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import field
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from symobs._dataclass import dataclass
+
+if TYPE_CHECKING:
+    from symobs.exact import Matrix
 
 
 @dataclass(frozen=True)
@@ -32,6 +35,11 @@ class Explained:
 
 #: Finds the faults of one kind that reproduce a value.
 Kind = Callable[[], Iterable[Fault]]
+
+
+def is_empty_but_for(value: Matrix, i: int, j: int) -> bool:
+    """Return whether all other entries of a matrix are zero, so that this one is all that there is to find."""
+    return all(entry.is_zero for a, row in enumerate(value.rows) for b, entry in enumerate(row) if (a, b) != (i, j))
 
 
 def first_kind(kinds: Iterable[Kind]) -> Explained:

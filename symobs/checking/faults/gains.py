@@ -8,9 +8,10 @@ from __future__ import annotations
 
 from dataclasses import replace
 from functools import partial
+from itertools import combinations
 from typing import TYPE_CHECKING
 
-from symobs.checking.faults.fault import Explained, Fault, Kind, first_kind
+from symobs.checking.faults.fault import Explained, Fault, Kind, first_kind, is_empty_but_for
 from symobs.errors import CertificateRejected
 from symobs.exact import Matrix, Scalar, product_of
 
@@ -22,6 +23,8 @@ if TYPE_CHECKING:
 
 #: Entries of the data whose sign is changed one by one, before the search is given up.
 MOST_ENTRIES = 150
+#: Entries that are exchanged in pairs; entries whose signs are changed together.
+MOST_EXCHANGED, MOST_SIGNS = 12, 6
 
 
 def explain_gain(
@@ -41,6 +44,7 @@ def explain_gain(
         kinds.append(lambda: [Fault("rounded", f"{letter} is rounded, and its exact value is asked for")])
     if design.desired is not None and right is not None:
         kinds += [search.entry, search.one_coefficient, search.other_half]
+        kinds += [search.factor, search.exchanged, search.sign_entries]
         kinds += [search.mirrored, search.pole_repeated, search.pole_dropped, search.not_subtracted, search.reversed]
         kinds += [search.dual_untransposed, search.other_matrix, search.not_transformed, search.wrong_direction]
         kinds += [search.entry_misread]
@@ -105,10 +109,15 @@ class _Search:
             yield Fault("transposed", f"the transpose of {self.letter} is right")
 
     def entry(self) -> Iterator[Fault]:
-        """Yield the single entries whose change makes the gain right: det(sI − A + LC) is affine in each of them."""
+        """Yield the single entries whose change makes the gain right: det(sI − A + LC) is affine in each of them.
+
+        A gain that is empty but for this entry has no slip in it: to tell the entry would be to tell the gain.
+        """
         rows, columns = self.value.shape
         for i in range(rows):
             for j in range(columns):
+                if is_empty_but_for(self.value, i, j):
+                    continue
                 step = Matrix.of([[int((a, b) == (i, j)) for b in range(columns)] for a in range(rows)])
                 moved = self.closed(self.A, self.C, self.L + self.design.transpose_for_task(step))
                 change = _factor(self.phi - self.mine, moved - self.mine, self.s)
@@ -118,9 +127,7 @@ class _Search:
                 if _is_right(self.design, right):
                     entry = -right[i, j] if self.turned else right[i, j]
                     said = f"entry ({i + 1},{j + 1}) should be {entry} with the others as they are"
-                    yield Fault(
-                        "entry", said if rows * columns > 1 else f"{self.letter} should be {entry}", [i + 1, j + 1]
-                    )
+                    yield Fault("entry", said, [i + 1, j + 1])
 
     def one_coefficient(self) -> Iterator[Fault]:
         """Yield the coefficient in which the polynomial alone differs from the one asked for."""
@@ -132,6 +139,43 @@ class _Search:
                 "the constant term" if not power else f"the coefficient of {self.s}{f'^{power}' if power > 1 else ''}"
             )
             yield Fault("one_coefficient", f"{name} of the polynomial is {mine}, not {asked}", {"coefficient": power})
+
+    def factor(self) -> Iterator[Fault]:
+        """Yield that every entry is multiplied by one number, which the trace of the loop's matrix tells."""
+        chi, asked, mine = (p.coefficients(self.s)[1] for p in (self._delta()[0], self.phi, self.mine))
+        if chi in (asked, mine):
+            return
+        times = (mine - chi) / (asked - chi)
+        if times.is_constant and _is_right(self.design, self.value * (Scalar.of(1) / times)):
+            yield Fault("factor", f"every entry of {self.letter} is multiplied by {times}")
+
+    def exchanged(self) -> Iterator[Fault]:
+        """Yield two entries that stand in each other's place."""
+        for (i, j), (k, m) in combinations(self._places(), 2):
+            one, other = self.value[i, j], self.value[k, m]
+            if one != other and self._meets(_with(_with(self.value, i, j, other), k, m, one)):
+                said = f"the entries ({i + 1},{j + 1}) and ({k + 1},{m + 1}) are exchanged"
+                yield Fault("exchanged", said)
+
+    def sign_entries(self) -> Iterator[Fault]:
+        """Yield the entries, several but not all, that have the other sign."""
+        filled = [place for place in self._places() if not self.value[place].is_zero]
+        for count in range(2, len(filled) if len(filled) <= MOST_SIGNS else 0):
+            for chosen in combinations(filled, count):
+                turned = self.value
+                for i, j in chosen:
+                    turned = _with(turned, i, j, -self.value[i, j])
+                if self._meets(turned):
+                    yield Fault("sign_entries", f"{count} entries of {self.letter} have the other sign")
+
+    def _places(self) -> list[tuple[int, int]]:
+        rows, columns = self.value.shape
+        return [(i, j) for i in range(rows) for j in range(columns)][:MOST_EXCHANGED]
+
+    def _meets(self, gain: Matrix) -> bool:
+        """Return whether a gain is right, its polynomial being found first."""
+        mine = self.closed(self.A, self.C, self.design.transpose_for_task(gain))
+        return mine == self.phi and _is_right(self.design, gain)
 
     # -- the polynomial -----------------------------------------------------------------------------------------------
 

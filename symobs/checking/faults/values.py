@@ -6,7 +6,7 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 from symobs.audit import differences
-from symobs.checking.faults.fault import Explained, Fault, first_kind
+from symobs.checking.faults.fault import Explained, Fault, first_kind, is_empty_but_for
 from symobs.exact import Matrix, Scalar
 
 if TYPE_CHECKING:
@@ -88,7 +88,10 @@ def _entry(mine: Matrix, exact: Matrix, letter: str, variable: str) -> Iterator[
     wrong = differences.wrong_entries(mine, exact, whole=letter)
     if len(wrong) == 1:
         places = [(i, j) for i in range(exact.shape[0]) for j in range(exact.shape[1]) if mine[i, j] != exact[i, j]]
-        yield Fault("entry", str(wrong[0]), [places[0][0] + 1, places[0][1] + 1])
+        (i, j), said = places[0], str(wrong[0])
+        if is_empty_but_for(mine, i, j):  # to tell the entry would be to tell the value
+            said = f"entry ({i + 1}, {j + 1}) is wrong"
+        yield Fault("entry", said, [i + 1, j + 1])
 
 
 def _coefficients_off(mine: Scalar, exact: Scalar, variable: str) -> list[tuple[str, int, Scalar, Scalar]]:

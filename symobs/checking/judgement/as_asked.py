@@ -40,7 +40,9 @@ def is_listed(view: ResultInConvention, letter: str) -> bool:
 
 def two_readings() -> InputError:
     """Return the error of a comma between two digits that a decimal may be meant by."""
-    return InputError("a comma sets entries apart", repair="write 2.5 with a decimal point")
+    return InputError(
+        "commas set entries apart", repair="write 2.5 with a decimal point, and semicolons between: 0.5; 2.5"
+    )
 
 
 def shape_of(result: Result, name: str) -> tuple[int, int]:

@@ -8,19 +8,22 @@ from __future__ import annotations
 
 from contextlib import suppress
 from dataclasses import replace
+from itertools import product
 from typing import TYPE_CHECKING, Any
 
 from symobs.analysis.realization.canonical_form import CanonicalForm
 from symobs.analysis.realization.kalman_decomposition import Decomposition
 from symobs.design.reduced_order.reduced_order_observer import ReducedOrderObserver
 from symobs.errors import CertificateRejected
-from symobs.exact import Matrix, Scalar
+from symobs.exact import Matrix, Scalar, kernel
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
     from symobs.result import Result
 
+#: Orders up to which the coordinates of a modal form without T are looked for: they are the square of it in unknowns.
+_MOST_STATES = 8
 #: A result in the coordinates of an answer, and what is said of them.
 Found = tuple["Result", str]
 
@@ -57,9 +60,15 @@ def _moved(result: Result, T: Matrix) -> dict[str, Any]:
 
 
 def _canonical(result: CanonicalForm, given: Mapping[str, Matrix]) -> Iterator[Found]:
-    """Yield the form in the four layouts in use; the modal form in the order and scaling of the given T."""
+    """Yield the form in the four layouts in use; the modal form in the order and scaling of the given matrices."""
     if result.kind == "modal":
-        for T, said in _both_directions(given["T"], result.plant.order) if "T" in given else ():
+        if "T" not in given:
+            for wrong in ("", *"CBA"):  # one of the matrices may be wrong, and the others right together
+                T = _modal_coordinates(result, {name: value for name, value in given.items() if name != wrong})
+                if T is not None:
+                    yield _Other(result, _moved(result, T)), ""  # type: ignore[misc]
+            return
+        for T, said in _both_directions(given["T"], result.plant.order):
             moved = _moved(result, T)
             if _same_blocks(moved["A"], result.answer["A"]):
                 yield _Other(result, {**moved, "T": given["T"]}), said  # type: ignore[misc]
@@ -71,6 +80,38 @@ def _canonical(result: CanonicalForm, given: Mapping[str, Matrix]) -> Iterator[F
         if "T" in given and given["T"] == T.inverse():
             inverse = f"{layout}; " if layout else ""
             yield _Other(result, {**moved, "T": given["T"]}), f"{inverse}you gave T^-1: here the new state is T x"  # type: ignore[misc]
+
+
+def _modal_coordinates(result: CanonicalForm, given: Mapping[str, Matrix]) -> Matrix | None:
+    """Return a regular T with T A = Ā T, T B = B̄ and C̄ T = C for the matrices given of a modal form; None without one.
+
+    With a last unknown beside the entries of T the equations are homogeneous: a T is a solution in which it is 1.
+    """
+    m, n, right = result.plant.matrices, result.plant.order, result.answer
+    form = given.get("A", right["A"])
+    sizes = all(value.shape == right[name].shape for name, value in given.items() if name in {"A", "B", "C"})
+    if n > _MOST_STATES or not sizes or not _same_blocks(form, right["A"]):
+        return None
+    one, rows = Matrix.identity(n), []
+    for i, j in product(range(n), range(n)):
+        unit = one.select(range(n), [i]) @ one.select([j], range(n))
+        found = [unit @ m.A - form @ unit]
+        found += [unit @ m.B] if "B" in given else []
+        found += [(given["C"] @ unit).T] if "C" in given else []
+        rows.append([entry for each in found for entry in each.entries])
+    last = [Scalar.of(0)] * (n * n)
+    last += [-entry for entry in given["B"].entries] if "B" in given else []
+    last += [-entry for entry in m.C.T.entries] if "C" in given else []
+    solutions = kernel(Matrix.of([*rows, last]).T)
+    for step in (1, 3):  # a sum with other weights, where the first one happens to be singular
+        weights = Matrix.column([1 + step * k * k for k in range(solutions.shape[1])])
+        entries = (solutions @ weights).entries if solutions.shape[1] else ()
+        if not entries or entries[-1].is_zero:
+            return None
+        T = Matrix.of([[entries[i * n + j] / entries[-1] for j in range(n)] for i in range(n)])
+        if not T.determinant().is_zero:
+            return T
+    return None
 
 
 class _Other:

@@ -156,6 +156,9 @@ def corrected(part: Part, value: Rows, mine: Poly) -> Iterator[tuple[int, int, F
     for i, row in enumerate(value):
         for j, entry in enumerate(row):
             other = [list(line) for line in value]
+            other[i][j] = Fraction(0)
+            if not any(any(line) for line in other):  # to tell the entry would be to tell the gain
+                continue
             other[i][j] = entry + 1
             change = plus(closed(part, other), scaled(mine, -1))
             if change and wanted:

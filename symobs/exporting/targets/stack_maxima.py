@@ -31,7 +31,9 @@ sy_ratio$k(sy_r, sy_d, sy_q) := ratsimp(-ratcoef(sy_r, $s, sy_q)/ratcoef(sy_d, $
 sy_step$k(sy_r, sy_d) := if is(sy_d=0) then 0 else sy_ratio$k(sy_r, sy_d, lmax(sy_powers$k(sy_d)));
 sy_change$k(sy_L, sy_i, sy_j) := ratsimp(sy_res$k(sy_with$k(sy_L, 1, sy_i, sy_j))-sy_res$k(sy_L));
 sy_try$k(sy_L, sy_i, sy_j) := sy_step$k(sy_res$k(sy_L), sy_change$k(sy_L, sy_i, sy_j));
-sy_found$k(sy_L, sy_i, sy_j, sy_t) := if is(sy_t=0) then []
+sy_others$k(sy_L, sy_i, sy_j) := sublist(flatten(args(sy_with$k(sy_L, -sy_L[sy_i,sy_j], sy_i, sy_j))),
+    lambda([sy_c], not(is(ratsimp(sy_c)=0))));
+sy_found$k(sy_L, sy_i, sy_j, sy_t) := if is(sy_t=0) or emptyp(sy_others$k(sy_L, sy_i, sy_j)) then []
     else if sy_right$k(sy_with$k(sy_L, sy_t, sy_i, sy_j)) then [[sy_i, sy_j, ratsimp(sy_L[sy_i,sy_j]+sy_t)]]
     else [];
 sy_row$k(sy_L, sy_i) := makelist(sy_found$k(sy_L, sy_i, sy_j, sy_try$k(sy_L, sy_i, sy_j)), sy_j, 1, $columns);

@@ -13,6 +13,7 @@ from symobs.errors import InputError
 from symobs.expression import parse_scalar
 from symobs.expression.source import shown
 from symobs.variation.acceptance.candidates import desired, pole_kinds, tasks_of
+from symobs.variation.acceptance.profile import UNLIKE
 from symobs.variation.drawing.integers import (
     Poly,
     Rows,
@@ -62,7 +63,7 @@ def cheap(table: Table, found: Candidate, kind: Mapping[str, Any] | None = None)
         if longest(rows) > digits.get(name, digits.get("*", 99)):
             return Cheap(f"{name} has too many digits")
     if kind is not None and kind_of(found) != kind:
-        return Cheap("another structure")
+        return Cheap(UNLIKE)
     if not found.is_whole:
         return Cheap()
     return _of_plant(found, constraints, digits)

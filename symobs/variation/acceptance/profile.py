@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from symobs.result import Result
 
 _SIGN, _BAR = 2, 3
+UNLIKE = "another structure"
 
 
 def profile(results: Iterable[Result], derivations: Iterable[Derivation]) -> dict[str, Any]:
@@ -109,7 +110,7 @@ def _kind(step: Any) -> str:
 def unlike(found: Mapping[str, Any], other: Mapping[str, Any], load: Fraction, *, same_peak: bool) -> str | None:
     """Return in what a profile differs from the one it is to be like, None where it is like it."""
     if found["structure"] != other["structure"]:
-        return "another structure"
+        return UNLIKE
     if abs(found["load"] - other["load"]) > load * other["load"]:
         return "another load"
     if found["peak"] > other["peak"] + (0 if same_peak else 1) or (same_peak and found["peak"] != other["peak"]):

@@ -35,12 +35,13 @@ if TYPE_CHECKING:
 
 #: Seconds of processor time beyond those its tests take; and bytes of memory.
 GRACE, MEMORY = 15, 4 * 2**30
-#: The tests of one mutant take at most this many seconds, the quickest first.
-LONGEST = 6.0
+#: The tests of one mutant take at most this many seconds, the quickest first.  They are seconds of the map, whose traces make
+#: a test of judgement five times as long: with fewer most of what survived had never met the test that was written for it.
+LONGEST = 40.0
 #: And those of one that is known to say the same, which were all asked when it was found to.
 LONGEST_OF_KNOWN = 1.0
 #: A test that takes longer than this is not asked.
-LONGEST_TEST = 6.0
+LONGEST_TEST = 15.0
 #: Tests that have found a mutant of the same function lately are asked first.
 _REMEMBERED = 6
 

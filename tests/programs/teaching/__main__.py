@@ -2,6 +2,7 @@
 
 variants  500 candidates of each construction before any is left out, held to what it promises; 1,000 accepted ones of each
           compared pairwise for being the same plant in other coordinates
+loads     variants of each worked example: all of the structure of the first, and how far their loads are from its load
 graders   answers to exported questions, judged by the grader of the platform and by `check`
 class     a class of 300 with K, L and F of a plant of order 3, and the same with derivations of 12 lines: time of the command
 tasks     our own answers of each task with one entry changed: right only where the claim holds
@@ -13,10 +14,11 @@ from __future__ import annotations
 import argparse
 import sys
 
-from tests.programs.teaching import classes, graders, peers, tasks, variants
+from tests.programs.teaching import classes, graders, loads, peers, tasks, variants
 
 PARTS = {
     "variants": variants.main,
+    "loads": loads.main,
     "graders": graders.main,
     "class": classes.main,
     "peers": peers.main,

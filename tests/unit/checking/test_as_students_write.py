@@ -71,6 +71,7 @@ def test_the_last_member_of_the_last_definition_is_the_answer(
         (POLES, "poles = [-1,5, -2,5]\n"),
         (POLES, "poles = [-1,5 -2,5]\n"),
         (POLES, "poles = {-1,0; -1,0+2,0i}\n"),
+        (POLES, "poles = -1,5; -2,5\n"),
         (POLES, {"poles": ["-1,5", "-2,5"]}),
         (ONE_ZERO, "zeros = {-2,5}\n"),
         (ONE_ZERO, "zeros = -2,5\n"),
@@ -89,6 +90,8 @@ def test_a_decimal_comma_is_refused_and_never_wrong(checked: Checked, answer: An
     ("checked", "answer", "verdict"),
     [
         (POLES, "poles = [-3/2,-5/2]\n", "right"),
+        (POLES, "poles = -3/2; -5/2\n", "right"),
+        (POLES, "poles = -1; -5\n", "wrong"),
         (POLES, "poles = {-1,-5}\n", "wrong"),
         (POLES, "poles = {1,2,3}\n", "wrong"),
         (ONE_ZERO, "zeros = {-2.5}\n", "right"),

@@ -59,6 +59,9 @@ GAINS = {
     "entry_misread": gain(PHI.as_expr(), MISREAD),
     "not_transformed": CANONICAL,
     "wrong_direction": T * CANONICAL,
+    "factor": L / 10,
+    "exchanged": sp.Matrix([L[2], L[1], L[0]]),
+    "sign_entries": sp.Matrix([-L[0], L[1], -L[2]]),
 }
 RESOLVENT = S * sp.eye(3) - A
 COMPENSATORS = {
@@ -204,7 +207,12 @@ def explained_truly(slip: str, value: sp.Matrix, part: object) -> bool:
         return bool(sp.solve(equations, [t]))
     if slip == "one_coefficient":
         return bool(sum(a != b for a, b in zip(mine.all_coeffs(), PHI.all_coeffs(), strict=True)) == 1)
-    return bool(value == GAINS[slip])
+    alike = {
+        "factor": value * L[0] == L * value[0],
+        "exchanged": sorted(value) == sorted(L),
+        "sign_entries": value.applyfunc(abs) == L.applyfunc(abs),
+    }
+    return bool(alike.get(slip, value == GAINS.get(slip)))
 
 
 def hold(count: int, seed: int) -> tuple[int, int]:

@@ -277,6 +277,13 @@ def test_a_modal_form_in_any_order_and_scaling_is_right() -> None:
         T = sp.Matrix.hstack(first * vectors[order[0]], second * vectors[order[1]]).inv()
         answer = dict(zip("TABC", map(text, (T, T * A * T.inv(), T * B, C * T.inv())), strict=True))
         assert check(problem, answer).verdict == "right"
+        for names in ("ABC", "AB", "AC", "A", "BC"):
+            given = {name: answer[name] for name in names if names != "BC" or order == (-1, -2)}
+            assert {part.verdict for part in check(problem, given).parts if part.given} <= {"right"}, names
+        # of -1 and -2 in turn B̄ C̄ are the residues 1 and -1 of 1/(s² + 3 s + 2): no scaling makes them two others
+        wrong = {"A": answer["A"], "B": answer["B"], "C": text(C * T.inv() * sp.diag(1, 2))}
+        found = {part.letter: part.verdict for part in check(problem, wrong).parts if part.given}
+        assert found == {"A": "right", "B": "right", "C": "wrong"}
 
 
 def test_rows_of_a_block_may_be_permuted_and_kernels_have_any_basis() -> None:

@@ -142,6 +142,20 @@ def test_of_a_wording_that_nobody_knows_nothing_is_told(said: str) -> None:
     assert without_solution(said) == ""
 
 
+def test_an_empty_answer_is_not_filled_in() -> None:
+    """The one entry that is wrong in a gain of order 1, in K_d = 0 and in a line is all that there is to find."""
+    alone = 'task = "observer"\n[plant]\nA = "[2]"\nC = "[1]"\n[specification]\npoles = "-15"\n'
+    for answer in ({"L": "0"}, "L = [0]\n"):  # L = 17
+        report = Checked.of(alone).report(answer)
+        assert (report.parts[0].verdict, report.parts[0].slip) == ("wrong", "one_coefficient")
+        assert _given_away(report, "17", "s^2") == []
+    tracking = ROOT / "worked_examples" / "cart_tracking_angle.toml"  # K_d = [0 -539/50 0 0]
+    report = Checked.of(read(tracking.read_text(encoding="utf-8"), tracking.name, tracking.parent)).report(
+        "K_d = [0 0 0 0]\n"
+    )
+    assert report.parts[0].reason == report.lines[0].reason == "entry (1, 2) is wrong"
+
+
 def test_nothing_is_given_away_to_any_student_of_a_class() -> None:
     checked, seen = Checked.of(THIRD_ORDER), set()
     for number, answer in enumerate(answers(9, "feedback")):

@@ -344,6 +344,15 @@ def test_the_marks_of_a_compensator_are_those_of_the_file() -> None:
     assert outcome(WHOLE, "F", wrong)[0] == "wrong"
 
 
+def test_one_empty_gain_of_two_wrong_ones_makes_the_rest_easy() -> None:
+    A, B, C = sp.Matrix([[0, 1], [0, -1]]), sp.Matrix([0, 1]), sp.Matrix([[1, 0]])
+    for K, L, credit in (([4, 0], [19, 80], 0), ([4, 2], [19, 80], Fraction(3, 4))):
+        mine, other = sp.Matrix([K]), sp.Matrix(L)
+        found = str(sp.cancel((mine * (S * sp.eye(2) - A + B * mine + other * C).inv() * other)[0]))
+        given = {"K": [list(map(str, K))], "L": [[str(entry)] for entry in L], "F": [[found]]}
+        assert outcome(WHOLE, "F", given)[::3] == ("follows", credit)
+
+
 def test_a_constant_that_follows_is_too_easy() -> None:
     """With K = 0 wrong and L right nothing is left of F; with L of full size it is not the gain that is empty."""
     given = {**RIGHT, "K": rows("0 0"), "F": [["0"]]}
@@ -352,6 +361,9 @@ def test_a_constant_that_follows_is_too_easy() -> None:
     assert outcome(WHOLE, "F", {"K": rows("-1 -1"), "L": rows("1; -1"), "F": [["0"]]})[::3] == ("follows", 0)
     first = gain("L", [["-1"]], [["1"]], "1 5", [["4"]], part="compensator.L")
     second = gain("K", [["-1"]], [["1"]], "1 3", [["2"]], part="compensator.K")
+    assert outcome(question(first), "L", {"L": rows("5")}) == other_polynomial(
+        "L", "s + 6"
+    )  # nothing beside it is right
     matrices = {"A": [["-1"]], "B": [["1"]], "C": [["1"]], "D": [["1"]], "right_K": [["2"]], "right_L": [["4"]]}
     # s + 1 + k + l − l k = s + 1 + 2 + 5 − 10 is still of degree 1 with l = 5
     asked = question(second, first, {**F, **matrices, "order": 1, "phi": ["1", "8", "15"]})
@@ -416,6 +428,7 @@ def test_F_belongs_to_the_right_gains_that_were_given() -> None:
         ("1 0; 0 1; 0 0", "1 1; 1 1; 1 0", True),
         ("0; 0", "0; 0", True),
         ("0; 5", "1; 1", True),
+        ("1 1; 1 0; 0 0", "1 1; 1 1; 1 1", False),
     ],
 )
 def test_when_a_wrong_gain_makes_the_rest_easy(mine: str, right: str, easy: bool) -> None:  # noqa: FBT001 - a table
@@ -479,13 +492,22 @@ def test_functions_are_equal_as_functions() -> None:
 
 
 @pytest.mark.parametrize(
-    ("given", "verdict"),
-    [("yes", "right"), (' "Yes" ', "right"), ("nein", "wrong"), ("False", "wrong"), ("yess", "unreadable")],
+    ("given", "means"),
+    [
+        *((word, "yes") for word in ("yes", ' "Yes" ', "true", "Ja")),
+        *((word, "no") for word in ("no", "False", "nein")),
+        ("conditional", "conditional"),
+        *((word, "") for word in ("yess", "'yes'")),
+    ],
 )
-def test_a_word_is_right_or_wrong(given: str, verdict: str) -> None:
+def test_a_word_is_right_or_wrong(given: str, means: str) -> None:
     word = {"name": "v", "part": "pbh.verdict", "letter": "verdict", "weight": "1", "function": False, "kind": "word"}
-    found = outcome(question({**word, "right": "yes"}), "v", {"v": [[given]]})
-    assert found == (verdict, "", "write yes, no or conditional" if given == "yess" else "", int(verdict == "right"))
+    for right in ("yes", "no", "conditional"):
+        found = outcome(question({**word, "right": right}), "v", {"v": [[given]]})
+        if means:
+            assert found == ("right" if means == right else "wrong", "", "", int(means == right))
+        else:
+            assert found == ("unreadable", "", "write yes, no or conditional", 0)
 
 
 # -- the whole answer -------------------------------------------------------------------------------------------------
@@ -507,6 +529,7 @@ def test_what_cannot_be_read_says_why_and_harms_no_other_part(monkeypatch: pytes
     found = judge(WHOLE, {**RIGHT, "L": [["19"], ["81", "1"]]})
     assert (found["K"]["verdict"], found["L"]["verdict"]) == ("right", "unreadable")
     assert (found["L"]["reason"], found["L"]["credit"]) == ("the rows have different lengths", 0)
+    assert outcome(WHOLE, "L", {"L": [["19"], [""]]})[::2] == ("unreadable", "a value is missing")
     assert outcome(WHOLE, "L", {"L": [["19"], ["s"]]})[2] == "s is not a letter of this question"
     assert outcome(WHOLE, "F", {"F": [["1/x"]]})[2] == "x is not a letter of this question (s)"
 
@@ -534,6 +557,12 @@ def test_symbols_are_drawn_twice_and_both_must_agree(monkeypatch: pytest.MonkeyP
     assert outcome(asked, "L", {"L": rows("2; 3")})[0] == "right"
 
 
+def test_a_function_has_the_symbols_of_its_question() -> None:
+    asked = question(value("s^2+p*s+1", function=True), names=("p",))
+    for given, verdict in (("(s+p)*s+1", "right"), ("s^2+s+1", "wrong"), ("s^2+q*s+1", "unreadable")):
+        assert outcome(asked, "M", {"M": [[given]]})[0] == verdict
+
+
 def test_points_are_drawn_from_the_answer() -> None:
     asked = question(names=("p", "q"))
     first, second = points(asked, {"L": "1"})
@@ -541,5 +570,7 @@ def test_points_are_drawn_from_the_answer() -> None:
     assert first["p"] != first["q"]
     assert points(asked, {"L": "1"}) == [first, second]
     assert points(asked, {"L": "2"}) != [first, second]
+    assert points({**asked, "parts": [F]}, {"L": "1"}) != [first, second]
+    assert points(asked, {"K": "1", "L": "2"}) == points(asked, {"L": "2", "K": "1"})
     assert all(2 <= number(entry) < 2**60 + 2 for point in (first, second) for entry in point.values())
     assert points(question(), {"L": "1"}) == [{}]

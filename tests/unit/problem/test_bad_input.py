@@ -148,6 +148,21 @@ WRONG = {
     "table": (problem(top='task = "observer"\nexpect = "x"'), "expect", "a table is expected, but a text came"),
     # poles
     "too few poles": (problem("poles = [-10]"), "specification.poles", "1 pole given, 2 needed"),
+    "a comma between digits and too many poles": (
+        problem('poles = "-1,5, -2,5"'),
+        "specification.poles",
+        "4 poles given, 2 needed … if one of them is 1.5, write it with a decimal point",
+    ),
+    "a decimal comma among semicolons": (
+        problem('poles = "-1,5; -2"'),
+        "specification.poles",
+        '"1,5" has a comma between its digits … write 1.5 with a decimal point',
+    ),
+    "a comma between digits in German": (
+        'language = "de"\n' + problem('poles = "-1,5"'),
+        "specification.poles",
+        "1,5 may be one number or two; write 1.5 with a decimal point, or a space behind a comma between two poles",
+    ),
     "no poles": (problem(""), "specification.poles", 'poles are missing … poles = "-1, -2"'),
     "poles without their conjugates": (
         problem('poles = "-20+20i, -20+20i"'),

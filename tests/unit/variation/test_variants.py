@@ -244,6 +244,18 @@ def test_what_nothing_meets_ends_after_the_attempts_with_the_reasons() -> None:
     assert "L has too many digits" in counts
 
 
+def test_where_the_first_is_of_a_rare_kind_the_message_says_so() -> None:
+    text = 'task = "observer"\n[plant]\nA = "[0 1; 0 a]"\nC = "[1 0]"\n[specification]\npoles = "p"\n'
+    text += "[variants.parameters]\na = { set = [1] }\np = { poles = 2, from = [-9, -1] }\n"
+    double = next(seed for seed in range(99) if len(set(poles_of(text, seed))) == 1)
+    with pytest.raises(TooFew, match=r"another structure; the first one is of a rare kind: draw distinct poles"):
+        list(found(text, 12, double, attempts=60))
+
+
+def poles_of(text: str, seed: int) -> list[str]:
+    return str(candidate(read_table(text), seed, 0).data["specification"]["poles"]).split(", ")
+
+
 def test_what_follows_from_another_error_is_left_out() -> None:
     with pytest.raises(ProblemErrors, match=r"^variants.construct: this is no construction; write one of [^\n]*$"):
         read_table('task = "observer"\n[variants]\nconstruct = "observr"\n')
