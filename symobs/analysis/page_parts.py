@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import math
 from itertools import accumulate
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from symobs.analysis.factored_form import formula_of_factored
 from symobs.conditions import Condition, vanishing_factors
 from symobs.derivation import CaseStep, Note, Step
 from symobs.derivation.builder import Builder, predicate, relation, sentence
+from symobs.derivation.facts.restriction import on_stratum
 from symobs.exact import Factored, Matrix, Scalar, decimal_places, root_of_pole
 from symobs.formula import Conjunction, Decimals, HoldsExactlyWhere, Roots
 from symobs.formula.term import block
@@ -18,7 +19,7 @@ from symobs.stability.inequalities.written_form import as_inequality
 from symobs.system.reading import is_identity
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Sequence
+    from collections.abc import Callable, Iterable, Iterator, Sequence
 
     from symobs.derivation import Step
     from symobs.formula import Relation
@@ -34,20 +35,25 @@ def set_anew(outer: Builder, inner: Builder) -> Iterator[str]:
             yield name
 
 
-def case_steps(page: Builder, result: Result, write: str) -> Iterator[Step]:
-    """Yield a case for each stratum of a result; the method `write` of the result there fills its page."""
+def case_steps(page: Builder, result: Result, write: Callable[[Builder, Any], None]) -> Iterator[Step]:
+    """Yield a case for each stratum of a result; `write` tells what the result is there."""
     for case in result.case_tree:
         if case.result is None:
             yield undecided(page, case)
             continue
-        found = case.result
+        found, when = case.result, stratum_of(case)
         inner = Builder(found.plant)
-        matrices = {name: getattr(found.plant.matrices, name) for name in "ABCD" if name in page.environment.values}
-        inner.environment = page.environment.extended_by(values=matrices)
-        getattr(found, write)(inner)
+        here = on_stratum(when, dict(case.substitution), page.environment)
+        matrices = {name: getattr(found.plant.matrices, name) for name in "ABCD" if name in here.values}
+        inner.environment = here.extended_by(values=matrices)
+        write(inner, found)
         inner.steps += case_steps(inner, found, write)
-        anew = tuple(set_anew(page, inner))
-        yield CaseStep(stratum_of(case), tuple(case.substitution.items()), tuple(inner.steps), anew=anew)
+        anew = tuple(
+            name
+            for name, value in here.values.items()
+            if name not in "ABCD" and value != inner.environment.values[name]
+        )
+        yield CaseStep(when, tuple(case.substitution.items()), tuple(inner.steps), anew=anew)
 
 
 #: A polynomial of more terms is not written out among words.
