@@ -11,7 +11,8 @@ from symobs.conditions import Condition, vanishing_factors
 from symobs.derivation import CaseStep, Note, Step
 from symobs.derivation.builder import Builder, predicate, relation, sentence
 from symobs.derivation.facts.restriction import on_stratum
-from symobs.exact import Factored, Matrix, Scalar, decimal_places, root_of_pole
+from symobs.errors import DerivationRejected
+from symobs.exact import Factored, Matrix, Scalar, TooLarge, decimal_places, root_of_pole
 from symobs.formula import Conjunction, Decimals, HoldsExactlyWhere, Roots
 from symobs.formula.term import block
 from symobs.stability.criteria.stability import stability
@@ -22,38 +23,41 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Sequence
 
     from symobs.derivation import Step
-    from symobs.formula import Relation
+    from symobs.formula import Environment, Relation
     from symobs.formula.term import Term
     from symobs.result import Case, Result
     from symobs.specification import DesiredPolynomial
 
 
-def set_anew(outer: Builder, inner: Builder) -> Iterator[str]:
-    """Yield the letters, other than the data's, that a case redefines."""
-    for name, value in inner.environment.values.items():
-        if name in outer.environment.values and name not in "ABCD" and outer.environment.values[name] != value:
-            yield name
-
-
 def case_steps(page: Builder, result: Result, write: Callable[[Builder, Any], None]) -> Iterator[Step]:
     """Yield a case for each stratum of a result; `write` tells what the result is there."""
     for case in result.case_tree:
-        if case.result is None:
+        here = environment_on(case, page)
+        if case.result is None or here is None:
             yield undecided(page, case)
             continue
-        found, when = case.result, stratum_of(case)
+        found = case.result
         inner = Builder(found.plant)
-        here = on_stratum(when, dict(case.substitution), page.environment)
         matrices = {name: getattr(found.plant.matrices, name) for name in "ABCD" if name in here.values}
         inner.environment = here.extended_by(values=matrices)
         write(inner, found)
         inner.steps += case_steps(inner, found, write)
-        anew = tuple(
-            name
-            for name, value in here.values.items()
-            if name not in "ABCD" and value != inner.environment.values[name]
-        )
-        yield CaseStep(when, tuple(case.substitution.items()), tuple(inner.steps), anew=anew)
+        anew = set_anew(here, inner.environment)
+        yield CaseStep(stratum_of(case), tuple(case.substitution.items()), tuple(inner.steps), anew=anew)
+
+
+def environment_on(case: Case, page: Builder) -> Environment | None:
+    """Return what the letters of a page mean on a stratum; None where the check does not see that it is described right."""
+    try:
+        return on_stratum(stratum_of(case), dict(case.substitution), page.environment)
+    except (TooLarge, DerivationRejected):
+        return None
+
+
+def set_anew(outer: Environment, inner: Environment) -> tuple[str, ...]:
+    """Return the letters, other than the data's, that a case redefines."""
+    both = (name for name in outer.values if name in inner.values and name not in "ABCD")
+    return tuple(name for name in both if inner.values[name] != outer.values[name])
 
 
 #: A polynomial of more terms is not written out among words.

@@ -7,9 +7,11 @@ from typing import TYPE_CHECKING
 from symobs.analysis.factored_form import factored_form, formula_of_factored
 from symobs.analysis.page_parts import (
     determinant_form,
+    environment_on,
     hidden,
     hidden_polynomial,
     say_stability,
+    set_anew,
     stratum_of,
     undecided,
 )
@@ -308,7 +310,8 @@ def say_as_required(page: Builder, desired: DesiredPolynomial, *members: Term) -
 
 def write_case(page: Builder, case: Case, side: PlacementProblem, around: tuple[Case, ...] = ()) -> None:
     """State the findings on a stratum, and on those within it; `around` are the strata it lies in."""
-    if not isinstance(case.result, GainDesign):
+    here = environment_on(case, page)
+    if not isinstance(case.result, GainDesign) or here is None:
         page.steps.append(undecided(page, case))
         return
     result = case.result
@@ -318,8 +321,7 @@ def write_case(page: Builder, case: Case, side: PlacementProblem, around: tuple[
     if result.pair.is_observable and result.answer[side.gain] is not None:
         page.steps.append(another_gain(page, case, side, "case_another_gain"))
         return
-    outer, environment = page.steps, page.environment
-    page.steps = []
+    outer, environment, page.steps, page.environment = page.steps, page.environment, [], here
     try:
         _on_stratum(page, (*around, case), result, side)
         inside = page.environment
@@ -327,21 +329,19 @@ def write_case(page: Builder, case: Case, side: PlacementProblem, around: tuple[
             write_case(page, inner, side, (*around, case))
     finally:
         steps, page.steps, page.environment = page.steps, outer, environment
-    own = (*side.hidden, side.gain)
-    anew = [name for name in own if page.defines(name) and inside.values[name] != environment.values[name]]
-    page.steps.append(CaseStep(stratum_of(case), tuple(case.substitution.items()), tuple(steps), anew=tuple(anew)))
+    anew = set_anew(here, inside)
+    page.steps.append(CaseStep(stratum_of(case), tuple(case.substitution.items()), tuple(steps), anew=anew))
 
 
-def _on_stratum(page: Builder, cases_around: tuple[Case, ...], result: GainDesign, side: PlacementProblem) -> None:
+def _on_stratum(page: Builder, cases: tuple[Case, ...], result: GainDesign, side: PlacementProblem) -> None:
     """Write whether a gain exists on a stratum, with the hidden modes that decide it."""
-    own, gain = _is_finite_on(cases_around, page, side), result.answer[side.gain]
+    own, gain = _is_finite_on(cases, page, side), result.answer[side.gain]
     fixed = _fixed(page, side, result.pair.kernel, result.pair.restricted)
     modes = Roots(fixed.formula, roots_of(result.fixed_polynomial, page.plant.variable))
     facts = hidden(page, side is OBSERVER, side.hidden)
     if gain is None:
         keys, polynomial = (f"case_no_{side.kind}", f"unassignable_{side.kind}"), result.answer["polynomial"]
-        cases = result.case_tree
-        say_unassignable(page, keys, facts, page[side.phi], polynomial, fixed, cases, around=cases_around, modes=modes)
+        say_unassignable(page, keys, facts, page[side.phi], polynomial, fixed, result.case_tree, modes=modes)
         return
     kept = "case_same" if (page.plant.outputs if side is OBSERVER else page.plant.inputs) > 1 else "case_survives"
     quotient, bound = over_fixed(page, page[side.phi], result.answer["polynomial"], fixed)

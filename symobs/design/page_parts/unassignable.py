@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from symobs.analysis.page_parts import stratum_of
 from symobs.analysis.strata.repeated_eigenvalues import distances, systems_of
 from symobs.certificate.claims import verify
 from symobs.derivation import CaseStep, Conclude
@@ -43,11 +42,9 @@ def say_unassignable(
     fixed: Term,
     cases: Sequence[Case],
     /,
-    *,
-    around: Sequence[Case] = (),
     **slots: Slot,
 ) -> None:
-    """State on a stratum, `around` it those it lies in, that φ is no multiple of the polynomial of the fixed modes.
+    """State that φ is no multiple of the polynomial of the fixed modes.
 
     Where parameters make it one on cases with an equation each, or the modes are others there, it is said outside them;
     where more than one equation does, with the remainder.
@@ -55,10 +52,7 @@ def say_unassignable(
     quotient, bound = over_fixed(page, phi, polynomial, fixed)
     never = predicate("not_polynomial", quotient)
     said = Conclude(sentence(keys[0], slots), (*facts, *bound, never))
-    here = page.environment
-    for case in around:
-        here = on_stratum(stratum_of(case), dict(case.substitution), here)
-    left = _with_remainder(page, keys[1], facts, phi, fixed, here)
+    here, left = page.environment, _with_remainder(page, keys[1], facts, phi, fixed)
     everywhere, lines, others = None, _outside_lines(cases), _outside(cases)
     for step, where in ((said, everywhere), (said, lines), (left, everywhere), (said, others), (left, others)):
         if where is not None and not where.relations:
@@ -70,16 +64,13 @@ def say_unassignable(
     page.steps.append(said)
 
 
-def _with_remainder(
-    page: Builder, key: str, facts: Sequence[Relation], phi: Term, fixed: Term, here: Environment
-) -> Conclude:
+def _with_remainder(page: Builder, key: str, facts: Sequence[Relation], phi: Term, fixed: Term) -> Conclude:
     """Return the statement that φ is a multiple only where its remainder vanishes."""
-    dividend, divisor = (Term(term.formula, here).scalar for term in (phi, fixed))
-    whole, rest = remainder(dividend, divisor, page.plant.variable)
+    whole, rest = remainder(phi.scalar, fixed.scalar, page.plant.variable)
     left = phi - page.value(whole) @ fixed
     slots = {
-        "fixed": Evaluated(fixed.formula, Literal(divisor)),
-        "polynomial": Evaluated(phi.formula, Literal(dividend)),
+        "fixed": Evaluated(fixed.formula, Literal(fixed.scalar)),
+        "polynomial": Evaluated(phi.formula, Literal(phi.scalar)),
         "rest": Evaluated(left.formula, Literal(rest)),
     }
     return Conclude(sentence(key, slots), (*facts, predicate("strictly_proper", page.value(rest) / fixed)))
