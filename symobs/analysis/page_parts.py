@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from itertools import accumulate
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 from symobs.analysis.factored_form import formula_of_factored
@@ -20,7 +21,7 @@ from symobs.stability.inequalities.written_form import as_inequality
 from symobs.system.reading import is_identity
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Iterator, Sequence
+    from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 
     from symobs.derivation import Step
     from symobs.formula import Environment, Relation
@@ -32,7 +33,7 @@ if TYPE_CHECKING:
 def case_steps(page: Builder, result: Result, write: Callable[[Builder, Any], None]) -> Iterator[Step]:
     """Yield a case for each stratum of a result; `write` tells what the result is there."""
     for case in result.case_tree:
-        here = environment_on(case, page)
+        here = environment_on(page, stratum_of(case), case.substitution)
         if case.result is None or here is None:
             yield undecided(page, case)
             continue
@@ -46,10 +47,12 @@ def case_steps(page: Builder, result: Result, write: Callable[[Builder, Any], No
         yield CaseStep(stratum_of(case), tuple(case.substitution.items()), tuple(inner.steps), anew=anew)
 
 
-def environment_on(case: Case, page: Builder) -> Environment | None:
+def environment_on(
+    page: Builder, when: Relation | Conjunction, substitution: Mapping[str, Scalar] = MappingProxyType({})
+) -> Environment | None:
     """Return what the letters of a page mean on a stratum; None where the check does not see that it is described right."""
     try:
-        return on_stratum(stratum_of(case), dict(case.substitution), page.environment)
+        return on_stratum(when, dict(substitution), page.environment)
     except (TooLarge, DerivationRejected):
         return None
 

@@ -310,7 +310,7 @@ def say_as_required(page: Builder, desired: DesiredPolynomial, *members: Term) -
 
 def write_case(page: Builder, case: Case, side: PlacementProblem, around: tuple[Case, ...] = ()) -> None:
     """State the findings on a stratum, and on those within it; `around` are the strata it lies in."""
-    here = environment_on(case, page)
+    here = environment_on(page, stratum_of(case), case.substitution)
     if not isinstance(case.result, GainDesign) or here is None:
         page.steps.append(undecided(page, case))
         return
@@ -350,7 +350,7 @@ def _on_stratum(page: Builder, cases: tuple[Case, ...], result: GainDesign, side
     if not own:
         page.define(side.gain, gain)
     page.conclude_silently(relation(side.error_determinant(page), page[side.phi]))
-    page.steps = outside_cases(result, page.steps)
+    page.steps = outside_cases(page, result, page.steps) or [undecided(page, cases[-1])]
 
 
 def _is_finite_on(cases: tuple[Case, ...], page: Builder, side: PlacementProblem) -> bool:

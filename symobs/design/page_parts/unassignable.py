@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from symobs.analysis.page_parts import environment_on
 from symobs.analysis.strata.repeated_eigenvalues import distances, systems_of
 from symobs.certificate.claims import verify
 from symobs.derivation import CaseStep, Conclude
 from symobs.derivation.builder import predicate, relation, sentence
 from symobs.derivation.facts.properties import PREDICATES
-from symobs.derivation.facts.restriction import on_stratum
 from symobs.exact import remainder
 from symobs.formula import Conjunction, Evaluated, Literal, Predicate, Relation
 from symobs.formula.term import Term
@@ -52,13 +52,13 @@ def say_unassignable(
     quotient, bound = over_fixed(page, phi, polynomial, fixed)
     never = predicate("not_polynomial", quotient)
     said = Conclude(sentence(keys[0], slots), (*facts, *bound, never))
-    here, left = page.environment, _with_remainder(page, keys[1], facts, phi, fixed)
+    left = _with_remainder(page, keys[1], facts, phi, fixed)
     everywhere, lines, others = None, _outside_lines(cases), _outside(cases)
     for step, where in ((said, everywhere), (said, lines), (left, everywhere), (said, others), (left, others)):
         if where is not None and not where.relations:
             continue
-        environment = here if where is None else on_stratum(where, {}, here)
-        if _holds(step, environment):
+        environment = page.environment if where is None else environment_on(page, where)
+        if environment is not None and _holds(step, environment):
             page.steps.append(step if where is None else CaseStep(where, (), (step,)))
             return
     page.steps.append(said)
