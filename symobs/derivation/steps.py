@@ -6,6 +6,7 @@ A step says something about letters established before it, and carries the sente
 from __future__ import annotations
 
 from dataclasses import fields
+from functools import cache
 from typing import TYPE_CHECKING, Any, TypeAlias, get_args
 
 from symobs._dataclass import dataclass
@@ -23,7 +24,7 @@ from symobs.formula import (
 from symobs.phrases import slots_of
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
+    from collections.abc import Iterator
 
     from symobs.exact import Matrix, Scalar
     from symobs.figures.block_diagram import Label
@@ -197,16 +198,21 @@ WITH_PARTS = (*get_args(Step), Sentence, Predicate, Roots, HoldsExactlyWhere, Co
 
 def everything_in(item: Any) -> Iterator[Any]:
     """Yield a step, or several, and everything in it: sentences, facts, formulas and their parts."""
-    yield item
-    parts: Iterable[Any] = ()
-    if isinstance(item, Formula):
-        parts = children(item)
-    elif isinstance(item, tuple):
-        parts = item
-    elif isinstance(item, WITH_PARTS):
-        parts = (getattr(item, field.name) for field in fields(item))
-    for part in parts:
-        yield from everything_in(part)
+    left = [item]
+    while left:
+        item = left.pop()
+        yield item
+        if isinstance(item, Formula):
+            left += reversed(children(item))
+        elif isinstance(item, tuple):
+            left += reversed(item)
+        elif isinstance(item, WITH_PARTS):
+            left += reversed([getattr(item, name) for name in _names(type(item))])
+
+
+@cache
+def _names(kind: type) -> tuple[str, ...]:
+    return tuple(part.name for part in fields(kind))
 
 
 def relations(steps: Any) -> Iterator[Relation]:
