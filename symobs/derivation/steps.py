@@ -6,7 +6,6 @@ A step says something about letters established before it, and carries the sente
 from __future__ import annotations
 
 from dataclasses import fields
-from functools import cache
 from typing import TYPE_CHECKING, Any, TypeAlias, get_args
 
 from symobs._dataclass import dataclass
@@ -194,6 +193,7 @@ Step: TypeAlias = (
 
 #: What has parts of its own besides formulas.
 WITH_PARTS = (*get_args(Step), Sentence, Predicate, Roots, HoldsExactlyWhere, Conjunction, Relation, Evaluated)
+_PARTS: dict[Any, tuple[str, ...]] = {kind: tuple(part.name for part in fields(kind)) for kind in WITH_PARTS}
 
 
 def everything_in(item: Any) -> Iterator[Any]:
@@ -207,12 +207,7 @@ def everything_in(item: Any) -> Iterator[Any]:
         elif isinstance(item, tuple):
             left += reversed(item)
         elif isinstance(item, WITH_PARTS):
-            left += reversed([getattr(item, name) for name in _names(type(item))])
-
-
-@cache
-def _names(kind: type) -> tuple[str, ...]:
-    return tuple(part.name for part in fields(kind))
+            left += reversed([getattr(item, name) for name in _PARTS[type(item)]])
 
 
 def relations(steps: Any) -> Iterator[Relation]:
