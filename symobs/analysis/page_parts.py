@@ -4,13 +4,16 @@ from __future__ import annotations
 
 import math
 from itertools import accumulate
-from typing import TYPE_CHECKING
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any
 
 from symobs.analysis.factored_form import formula_of_factored
 from symobs.conditions import Condition, vanishing_factors
 from symobs.derivation import CaseStep, Note, Step
 from symobs.derivation.builder import Builder, predicate, relation, sentence
-from symobs.exact import Factored, Matrix, Scalar, decimal_places, root_of_pole
+from symobs.derivation.facts.restriction import on_stratum
+from symobs.errors import DerivationRejected
+from symobs.exact import Factored, Matrix, Scalar, TooLarge, decimal_places, root_of_pole
 from symobs.formula import Conjunction, Decimals, HoldsExactlyWhere, Roots
 from symobs.formula.term import block
 from symobs.stability.criteria.stability import stability
@@ -18,36 +21,46 @@ from symobs.stability.inequalities.written_form import as_inequality
 from symobs.system.reading import is_identity
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Sequence
+    from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 
     from symobs.derivation import Step
-    from symobs.formula import Relation
+    from symobs.formula import Environment, Relation
     from symobs.formula.term import Term
     from symobs.result import Case, Result
     from symobs.specification import DesiredPolynomial
 
 
-def set_anew(outer: Builder, inner: Builder) -> Iterator[str]:
-    """Yield the letters, other than the data's, that a case redefines."""
-    for name, value in inner.environment.values.items():
-        if name in outer.environment.values and name not in "ABCD" and outer.environment.values[name] != value:
-            yield name
-
-
-def case_steps(page: Builder, result: Result, write: str) -> Iterator[Step]:
-    """Yield a case for each stratum of a result; the method `write` of the result there fills its page."""
+def case_steps(page: Builder, result: Result, write: Callable[[Builder, Any], None]) -> Iterator[Step]:
+    """Yield a case for each stratum of a result; `write` tells what the result is there."""
     for case in result.case_tree:
-        if case.result is None:
+        here = environment_on(page, stratum_of(case), case.substitution)
+        if case.result is None or here is None:
             yield undecided(page, case)
             continue
         found = case.result
         inner = Builder(found.plant)
-        matrices = {name: getattr(found.plant.matrices, name) for name in "ABCD" if name in page.environment.values}
-        inner.environment = page.environment.extended_by(values=matrices)
-        getattr(found, write)(inner)
+        matrices = {name: getattr(found.plant.matrices, name) for name in "ABCD" if name in here.values}
+        inner.environment = here.extended_by(values=matrices)
+        write(inner, found)
         inner.steps += case_steps(inner, found, write)
-        anew = tuple(set_anew(page, inner))
+        anew = set_anew(here, inner.environment)
         yield CaseStep(stratum_of(case), tuple(case.substitution.items()), tuple(inner.steps), anew=anew)
+
+
+def environment_on(
+    page: Builder, when: Relation | Conjunction, substitution: Mapping[str, Scalar] = MappingProxyType({})
+) -> Environment | None:
+    """Return what the letters of a page mean on a stratum; None where the check does not see that it is described right."""
+    try:
+        return on_stratum(when, dict(substitution), page.environment)
+    except (TooLarge, DerivationRejected):
+        return None
+
+
+def set_anew(outer: Environment, inner: Environment) -> tuple[str, ...]:
+    """Return the letters, other than the data's, that a case redefines."""
+    both = (name for name in outer.values if name in inner.values and name not in "ABCD")
+    return tuple(name for name in both if inner.values[name] != outer.values[name])
 
 
 #: A polynomial of more terms is not written out among words.

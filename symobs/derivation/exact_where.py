@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
@@ -20,7 +19,6 @@ def is_exactly(fact: HoldsExactlyWhere, polynomial: Scalar, environment: Environ
 
     They are those that the criterion asks for, or proved to say the same; with one or two parameters by the region itself.
     """
-    environment = _with_signs(environment)
     arithmetic, name = Exact(environment), fact.property.name
     said: list[tuple[Scalar, str]] = []
     for relation in fact.where:
@@ -43,13 +41,3 @@ def is_exactly(fact: HoldsExactlyWhere, polynomial: Scalar, environment: Environ
     if region is not None and holds_exactly(region, where):
         return True
     return is_stable_where(polynomial, environment.variable, positive, environment.signs, discrete=discrete)
-
-
-def _with_signs(environment: Environment) -> Environment:
-    """Return the environment with positive symbols, and minus symbols, as declared signs."""
-    signs = dict(environment.signs)
-    for value in environment.positive:
-        for sign, symbol in (("positive", value), ("negative", -value)):
-            if str(symbol) in symbol.names:
-                signs[str(symbol)] = sign
-    return replace(environment, signs=signs)

@@ -23,7 +23,7 @@ from symobs.formula import (
 from symobs.phrases import slots_of
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
+    from collections.abc import Iterator
 
     from symobs.exact import Matrix, Scalar
     from symobs.figures.block_diagram import Label
@@ -193,20 +193,21 @@ Step: TypeAlias = (
 
 #: What has parts of its own besides formulas.
 WITH_PARTS = (*get_args(Step), Sentence, Predicate, Roots, HoldsExactlyWhere, Conjunction, Relation, Evaluated)
+_PARTS: dict[Any, tuple[str, ...]] = {kind: tuple(part.name for part in fields(kind)) for kind in WITH_PARTS}
 
 
 def everything_in(item: Any) -> Iterator[Any]:
     """Yield a step, or several, and everything in it: sentences, facts, formulas and their parts."""
-    yield item
-    parts: Iterable[Any] = ()
-    if isinstance(item, Formula):
-        parts = children(item)
-    elif isinstance(item, tuple):
-        parts = item
-    elif isinstance(item, WITH_PARTS):
-        parts = (getattr(item, field.name) for field in fields(item))
-    for part in parts:
-        yield from everything_in(part)
+    left = [item]
+    while left:
+        item = left.pop()
+        yield item
+        if isinstance(item, Formula):
+            left += reversed(children(item))
+        elif isinstance(item, tuple):
+            left += reversed(item)
+        elif isinstance(item, WITH_PARTS):
+            left += reversed([getattr(item, name) for name in _PARTS[type(item)]])
 
 
 def relations(steps: Any) -> Iterator[Relation]:

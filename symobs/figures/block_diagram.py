@@ -67,11 +67,21 @@ class Figure:
 
     def into(self, node: str) -> list[Wire]:
         """Return the wires that end at a node."""
-        return [wire for wire in self.wires if wire.end == node]
+        return self._ends[1].get(node, [])
 
     def out_of(self, node: str) -> list[Wire]:
         """Return the wires that begin at a node."""
-        return [wire for wire in self.wires if wire.begin == node]
+        return self._ends[0].get(node, [])
+
+    @cached_property
+    def _ends(self) -> tuple[dict[str, list[Wire]], dict[str, list[Wire]]]:
+        """The wires by the node where they begin, and by the one where they end."""
+        begin: dict[str, list[Wire]] = {}
+        end: dict[str, list[Wire]] = {}
+        for wire in self.wires:
+            begin.setdefault(wire.begin, []).append(wire)
+            end.setdefault(wire.end, []).append(wire)
+        return begin, end
 
     def is_junction(self, node: str) -> bool:
         """Return whether signals are added at a node."""

@@ -67,7 +67,7 @@ ASSERTED = {
     "no_stable_compensator": "always_unstable no_stable_compensator",
     "not_polynomial": """
         case_no_observer case_no_state_feedback impossible_observer impossible_state_feedback
-        reduced_impossible
+        integral_impossible reduced_impossible
     """,
     "polynomial": """
         case_other_observer case_other_state_feedback case_same_observer case_same_state_feedback
@@ -80,10 +80,13 @@ ASSERTED = {
     """,
     "stable strictly_proper": "compensator_stable compensator_stable_low minimal_stable",
     "stable strictly_proper unstable": "compensator_unstable_alone compensator_unstable_low_alone minimal_unstable_alone",
-    "strictly_proper": "compensator_proper compensator_stable_if minimal_proper minimal_stable_if",
+    "strictly_proper": """
+        compensator_proper compensator_stable_if integral_unassignable minimal_proper minimal_stable_if
+        reduced_unassignable unassignable_observer unassignable_state_feedback
+    """,
     "strictly_proper unstable": "compensator_unstable compensator_unstable_low minimal_unstable",
     "unstable": """
-        case_nowhere gramian_diverges_controllability gramian_diverges_observability hides_continuous
+        gramian_diverges_controllability gramian_diverges_observability hides_continuous
         hides_discrete lasts_observer_continuous lasts_observer_discrete lasts_state_feedback_continuous
         lasts_state_feedback_discrete law_unstable_continuous law_unstable_discrete
         lowest_terms_unstable_continuous lowest_terms_unstable_discrete unstable_continuous

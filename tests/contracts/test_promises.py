@@ -483,13 +483,16 @@ def test_pages_of_such_problems_can_be_written(problem: dict[str, Any]) -> None:
     [
         ("(s^2 + 9 s + 7)/(s - a)", "a^2 + 9 a + 7", {"polynomial"}),  # a is a root
         ("(s^2 + 9 s + 8)/(s - a)", "a^2 + 9 a + 7", {"not_polynomial"}),
-        ("(s^2 + 9 s + 7)/(s - a)", "", {"not_polynomial"}),
+        ("(s^2 + 9 s + 7)/(s - a)", "", set()),  # a may be a root
+        ("(s^2 + s + 7)/(s - a)", "", {"not_polynomial"}),  # which are not real
+        ("(s^2 + 3 s + 2)/(s - a)", "a*b - 1", set()),  # a = -1 lies on the curve
+        ("(s^2 + 3 s + 2)/(s - a)", "a - b^2", {"not_polynomial"}),  # and not on this one
         ("s^2 + a", "a^2 - 2", {"polynomial"}),
         ("(s^2 + 1)/((a^2 - 2) s + a)", "a^2 - 2", set()),  # 0 s + a: what it is there nobody knows
     ],
 )
 def test_a_fraction_is_a_polynomial_where_its_remainder_vanishes(text: str, equation: str, holds: set[str]) -> None:
-    names = {"a": "real", "s": "real"}
+    names = {"a": "real", "b": "real", "s": "real"}
     relations = (parse_scalar(equation, names),) if equation else ()
     environment = Environment(variable="s", relations=relations)
     fraction = parse_scalar(text, names)

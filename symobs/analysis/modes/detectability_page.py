@@ -208,5 +208,5 @@ def _case(page: Builder, letter: str, case: Case) -> Step:
         inner.conclude_silently(*hidden(inner, found.kind == "observability"))
     _generic(inner, found)
     _cases(inner, letter, found)
-    anew = tuple(set_anew(page, inner))
+    anew = set_anew(page.environment, inner.environment)
     return CaseStep(stratum_of(case), tuple(case.substitution.items()), tuple(inner.steps), anew=anew)

@@ -100,7 +100,7 @@ def meeting_steps(page: Builder, result: ModeResult) -> Iterator[Step]:
         inner.environment = page.environment.extended_by(values=values)
         at_eigenvalues(inner, found, [part for part, rank, _ in found.parts if rank < found.plant.order])
         inner.steps += meeting_steps(inner, found)
-        anew = tuple(set_anew(page, inner))
+        anew = set_anew(page.environment, inner.environment)
         yield CaseStep(
             conditions_of(case), tuple(case.substitution.items()), tuple(inner.steps), sentence("ranks_meet", {}), anew
         )

@@ -9,6 +9,7 @@ from symobs.analysis.page_parts import (
     WRITTEN_UP_TO,
     conditions_of,
     determinant_form,
+    environment_on,
     given,
     hidden,
     hidden_polynomial,
@@ -129,7 +130,7 @@ def _deficient(page: Builder, letter: str, result: RankResult, kind: str) -> Non
     zero = Matrix.zeros(matrix.value.shape[0], 1)
     unseen = [relation(matrix @ page.value(vector), zero) for vector in result.kernel_vectors]
     page.equal(*unseen, say=f"kernel_{kind}" if len(unseen) == 1 else f"kernel_several_{kind}")
-    page.steps += outside_cases(result, repair(page, letter, result, kind))
+    page.steps += outside_cases(page, result, repair(page, letter, result, kind))
     letters = HIDDEN[kind]
     page.set(letters[0], result.answer["kernel"])
     page.set(letters[1], result.answer["restricted"])
@@ -144,12 +145,16 @@ def _deficient(page: Builder, letter: str, result: RankResult, kind: str) -> Non
     )
 
 
-def outside_cases(result: Result, steps: list[Step]) -> list[Step]:
-    """Return steps as a case of what holds in general, where there are others; none where these are everywhere."""
+def outside_cases(page: Builder, result: Result, steps: list[Step]) -> list[Step]:
+    """Return steps as a case of what holds in general, where there are others.
+
+    None where these are everywhere, or too long for the check to be left out.
+    """
     apart = _distances(result)
     if not apart or not steps:
         return steps if apart == () else []
-    return [CaseStep(Conjunction(tuple(relation(distance, "!=", 0) for distance in apart)), (), tuple(steps))]
+    where = Conjunction(tuple(relation(distance, "!=", 0) for distance in apart))
+    return [] if environment_on(page, where) is None else [CaseStep(where, (), tuple(steps))]
 
 
 def _outside_drops(page: Builder, apart: Sequence[Scalar] | None) -> None:

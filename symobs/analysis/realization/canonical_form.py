@@ -158,7 +158,7 @@ class CanonicalForm(Result):
                 members.append(page.term(formula_of_factored(chi)))
             page.define("chi", *members, say=f"canonical_{self.kind}", closing=False)
             self.write_form(page)
-            page.steps += case_steps(page, self, "write_form")
+            page.steps += case_steps(page, self, lambda inner, found: found.write_form(inner))
 
     def write_form(self, page: Builder) -> None:
         """Write the coordinates and the plant in them."""

@@ -165,7 +165,7 @@ class Decomposition(Result):
             if conditions:
                 page.assume("structure_provided", *conditions)
             self._minimal(page)
-            page.steps += case_steps(page, self, "write_form")
+            page.steps += case_steps(page, self, lambda inner, found: found.write_form(inner))
 
     def _subspaces(self, page: Builder) -> None:
         A, B, C, n = page["A"], page["B"], page["C"], range(1, self.plant.order)

@@ -204,7 +204,7 @@ class TransferFunction(Result):
         if conditions:
             is_matrix = isinstance(self.answer["transfer_function"], Matrix)
             page.assume("no_pole_lost" if is_matrix else "lowest_provided", *conditions)
-        page.steps += case_steps(page, self, "write_form")
+        page.steps += case_steps(page, self, lambda inner, found: found.write_form(inner))
 
     def write_form(self, page: Builder) -> None:
         """Write the function in lowest terms, its poles and zeros, in a case."""

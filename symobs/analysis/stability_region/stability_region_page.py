@@ -227,7 +227,8 @@ def _case(page: Builder, case: Case, chi: str) -> Step:
     stable = predicate("stable", page[chi])
     steps: tuple[Step, ...]
     if found.empty:
-        steps = (Conclude(sentence("case_nowhere", {}), (predicate("unstable", page[chi]),)),)
+        names = found.question.parameters
+        steps = (RegionSummary(page[chi].formula, names, (sentence("region_empty", {}),)),)
     elif not found.answer["bounds"]:
         steps = (Conclude(sentence("case_everywhere", {}), (stable,)),)
     else:

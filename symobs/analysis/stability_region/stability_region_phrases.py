@@ -37,7 +37,6 @@ PHRASES: dict[str, str] = {
     "shortened": "Conditions implied by the others and by the declared signs are omitted. Hence all roots are stable if and only if",
     "case_region": "All roots are stable if and only if",
     "case_everywhere": "All roots are stable.",
-    "case_nowhere": "For no parameter values are all roots stable.",
     "box_bounded": "The region is a product of intervals: it is connected, convex and bounded.",
     "box_unbounded": "The region is a product of intervals: it is connected, convex and unbounded.",
     "not_divided": "The curves on which stability can change are too many or of too high a degree for a decomposition of the plane: the inequalities are exact, but the shape of the region is not described.",
@@ -67,7 +66,6 @@ QUESTIONS: dict[str, str] = {
 
 ASSERTS: dict[str, tuple[str, ...]] = {
     "case_everywhere": ("stable",),
-    "case_nowhere": ("unstable",),
 }
 
 DEMANDS: dict[str, str] = {

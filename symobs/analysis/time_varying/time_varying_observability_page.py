@@ -265,7 +265,7 @@ def _case(page: Builder, case: Case) -> Step:
         hidden = case.result.answer["hidden"]
         zero = Matrix.zeros(page["O"].value.shape[0], hidden.shape[1])
         steps.append(Equal((relation(page["O"] @ page.value(hidden), zero),)))
-    steps = outside_cases(case.result, steps) + [_case(page, inner) for inner in case.result.case_tree]
+    steps = outside_cases(page, case.result, steps) + [_case(page, inner) for inner in case.result.case_tree]
     return CaseStep(stratum_of(case), tuple(case.substitution.items()), tuple(steps))
 
 

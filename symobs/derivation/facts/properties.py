@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from symobs.certificate.claims import as_scalar
+from symobs.certificate.pointwise import never_together_zero
 from symobs.conditions import never_zero, sign_of
 from symobs.errors import WrongKind
 from symobs.exact import Ideal, Matrix, Scalar, TooLarge, from_coefficients, remainder
@@ -54,10 +55,15 @@ def _divided(value: Scalar, environment: Environment) -> tuple[Scalar, Scalar] |
         return None
 
 
-def _divides(value: Scalar, environment: Environment) -> bool | None:
-    """Return whether a rational function is a polynomial, None if that is not known."""
-    found = _divided(value, environment)
-    return None if found is None else found[1].is_zero
+def _never_divides(value: Scalar, environment: Environment) -> bool:
+    """Return whether a rational function is a polynomial at no point: its remainder's coefficients never vanish together."""
+    variable, apart = environment.variable, (*environment.nonzero, *environment.domain)
+    rest = remainder(value.numerator, value.denominator, variable)[1].coefficients(variable)
+    systems = value.denominator.coefficients(variable)[:1], [c.numerator for c in rest]
+    try:
+        return all(never_together_zero(s, environment.relations, environment.signs, apart) for s in systems)
+    except TooLarge:
+        return False
 
 
 def _verdict(value: Scalar, environment: Environment, discrete: bool) -> str:  # noqa: FBT001
@@ -126,8 +132,8 @@ PREDICATES: dict[str, Callable[[Scalar, Environment, bool], bool]] = {
     "stable": lambda value, environment, discrete: _verdict(value, environment, discrete) == "yes",
     "unstable": lambda value, environment, discrete: _verdict(value, environment, discrete) == "no",
     "strictly_proper": lambda value, environment, _: _degrees(value, environment)[0] < _degrees(value, environment)[1],
-    "polynomial": lambda value, environment, _: _divides(value, environment) is True,
-    "not_polynomial": lambda value, environment, _: _divides(value, environment) is False,
+    "polynomial": lambda value, environment, _: (_divided(value, environment) or (0, Scalar.of(1)))[1].is_zero,
+    "not_polynomial": lambda value, environment, _: _never_divides(value, environment),
     "no_stable_compensator": lambda value, environment, discrete: (
         not discrete and no_stable_compensator(value, environment.variable, environment.signs)
     ),

@@ -31,9 +31,7 @@ def on_stratum(when: Relation | Conjunction, substitution: dict[str, Scalar], en
         left, right = (as_scalar(evaluate(member, environment, Exact(environment))) for member in when.members)
         if when.operators == ("!=",):
             return environment  # it narrows, and nothing is put in: all stays true
-        return replace(
-            environment, positive=(*environment.positive, left - right if when.operators == (">",) else right - left)
-        )
+        return _where_positive(left - right if when.operators == (">",) else right - left, environment)
     if not substitution and isinstance(when, Relation) and when.operators == ("=",):
         left, right = (as_scalar(evaluate(member, environment, Exact(environment))) for member in when.members)
         inside = replace(environment, relations=(*environment.relations, left - right), nonzero=())
@@ -71,6 +69,14 @@ def on_stratum(when: Relation | Conjunction, substitution: dict[str, Scalar], en
     if not says_no_more or verify(when, inside)[0] == "":
         reject(plain_relation(when, environment.variable))
     return inside
+
+
+def _where_positive(value: Scalar, environment: Environment) -> Environment:
+    """Return the environment where a value is positive: of a symbol, or of minus a symbol, it is a sign."""
+    signs = {
+        str(symbol): sign for sign, symbol in (("positive", value), ("negative", -value)) if str(symbol) in symbol.names
+    }
+    return replace(environment, positive=(*environment.positive, value), signs={**environment.signs, **signs})
 
 
 def _there(value: Any, substitution: Mapping[str, Scalar], lost: set[str]) -> Any:

@@ -9,13 +9,14 @@ from __future__ import annotations
 
 from fractions import Fraction
 from functools import lru_cache
-from itertools import pairwise
+from itertools import islice, pairwise
 from math import lcm
 from operator import mul
 from typing import TYPE_CHECKING, NamedTuple
 
 from symobs.certificate.claims import verify
 from symobs.exact import Matrix, Scalar
+from symobs.exact.core.rational_matrix import whole_product
 from symobs.formula import Block, Derivative, Exact, Letter, Literal, Product, Relation, Signal, evaluate
 
 if TYPE_CHECKING:
@@ -140,10 +141,9 @@ class _Enclosed(NamedTuple):
 
     def times(self, other: _Enclosed, bits: int, divisor: int = 1) -> _Enclosed:
         """Return the product by a whole number, each entry rounded down."""
-        columns = list(zip(*other.rows, strict=True))
-        rows = [[(sum(map(mul, row, column)) >> bits) // divisor for column in columns] for row in self.rows]
+        rows = [[(entry >> bits) // divisor for entry in row] for row in whole_product(self.rows, other.rows)]
         error = self.norm * other.error + self.error * other.norm + self.error * other.error
-        return _Enclosed.of(rows, (error >> bits) // divisor + 1 + 2 * len(columns))
+        return _Enclosed.of(rows, (error >> bits) // divisor + 1 + 2 * len(rows[0]))
 
 
 @lru_cache(maxsize=2)
@@ -155,14 +155,17 @@ def _stepped(matrix: Matrix, start: tuple[Fraction, ...], step: Fraction, count:
     table = [[entry.fraction() * step for entry in row] for row in matrix.rows]
     for bits in _KEPT:
         power = _exponential(table, bits)
-        states = [_Enclosed.of([[round(part * (1 << bits))] for part in start], 1)]
-        while len(states) < count:
-            states += [power.times(state, bits) for state in states[: count - len(states)]]
+        states, error = [[round(part * (1 << bits))] for part in start], 1  # a column for each instant
+        while len(states[0]) < count:
+            largest = max(max(map(abs, row)) for row in states)
+            more = [[entry >> bits for entry in row] for row in whole_product(power.rows, states)]
+            error = max(error, ((power.norm * error + power.error * (largest + error)) >> bits) + 3)
+            states = [known + new for known, new in zip(states, more, strict=True)]
             power = power.times(power, bits)
         spare = bits - _BITS
-        if max(state.error for state in states) < 1 << (spare - 1):
+        if error < 1 << (spare - 1):
             half = 1 << (spare - 1)
-            return [[(part + half) >> spare for (part,) in state.rows] for state in states]
+            return [[(part + half) >> spare for part in state] for state in islice(zip(*states, strict=True), count)]
     raise ValueError("a response with too much to compute")
 
 

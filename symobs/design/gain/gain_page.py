@@ -7,9 +7,11 @@ from typing import TYPE_CHECKING
 from symobs.analysis.factored_form import factored_form, formula_of_factored
 from symobs.analysis.page_parts import (
     determinant_form,
+    environment_on,
     hidden,
     hidden_polynomial,
     say_stability,
+    set_anew,
     stratum_of,
     undecided,
 )
@@ -24,6 +26,7 @@ from symobs.design.gain.placement_problem import OBSERVER, PlacementProblem
 from symobs.design.gain.zero_pattern_page import another_gain, pattern_case, write_no_gain
 from symobs.design.page_parts import readability
 from symobs.design.page_parts.pole_cautions import caution_poles
+from symobs.design.page_parts.unassignable import over_fixed, say_unassignable
 from symobs.design.pole_placement.fresh_names import fresh_names, taken_names
 from symobs.exact import Factored, Matrix, Scalar, companion, from_coefficients, hankel_of, root_of_pole, roots_of
 from symobs.exact.core.generators import all_roots
@@ -240,10 +243,14 @@ def _impossible(page: Builder, design: GainDesign, side: PlacementProblem) -> No
         write_no_gain(page, design, side)
         return
     fixed = _fixed(page, side, design.pair.kernel, design.pair.restricted)
-    page.conclude(
-        f"impossible_{side.kind}",
-        *hidden(page, side is OBSERVER, side.hidden),
-        predicate("not_polynomial", page[side.phi] / fixed),
+    say_unassignable(
+        page,
+        (f"impossible_{side.kind}", f"unassignable_{side.kind}"),
+        hidden(page, side is OBSERVER, side.hidden),
+        page[side.phi],
+        design.answer["polynomial"],
+        fixed,
+        design.case_tree,
         fixed=Evaluated(fixed.formula, Literal(design.fixed_polynomial)),
         polynomial=Evaluated(page[side.phi].formula, Literal(page[side.phi].value)),
     )
@@ -303,7 +310,8 @@ def say_as_required(page: Builder, desired: DesiredPolynomial, *members: Term) -
 
 def write_case(page: Builder, case: Case, side: PlacementProblem, around: tuple[Case, ...] = ()) -> None:
     """State the findings on a stratum, and on those within it; `around` are the strata it lies in."""
-    if not isinstance(case.result, GainDesign):
+    here = environment_on(page, stratum_of(case), case.substitution)
+    if not isinstance(case.result, GainDesign) or here is None:
         page.steps.append(undecided(page, case))
         return
     result = case.result
@@ -313,22 +321,16 @@ def write_case(page: Builder, case: Case, side: PlacementProblem, around: tuple[
     if result.pair.is_observable and result.answer[side.gain] is not None:
         page.steps.append(another_gain(page, case, side, "case_another_gain"))
         return
-    if page.environment.coefficients and result.answer[side.gain] is not None:
-        # that the modes divide φ holds for its own coefficients, not for letters
-        page.steps.append(undecided(page, case))
-        return
-    outer, environment = page.steps, page.environment
-    page.steps = []
+    outer, environment, page.steps, page.environment = page.steps, page.environment, [], here
     try:
         _on_stratum(page, (*around, case), result, side)
-        page.steps, inside = outside_cases(result, page.steps), page.environment
+        inside = page.environment
         for inner in result.case_tree:
             write_case(page, inner, side, (*around, case))
     finally:
         steps, page.steps, page.environment = page.steps, outer, environment
-    own = (*side.hidden, side.gain)
-    anew = [name for name in own if page.defines(name) and inside.values[name] != environment.values[name]]
-    page.steps.append(CaseStep(stratum_of(case), tuple(case.substitution.items()), tuple(steps), anew=tuple(anew)))
+    anew = set_anew(here, inside)
+    page.steps.append(CaseStep(stratum_of(case), tuple(case.substitution.items()), tuple(steps), anew=anew))
 
 
 def _on_stratum(page: Builder, cases: tuple[Case, ...], result: GainDesign, side: PlacementProblem) -> None:
@@ -336,15 +338,19 @@ def _on_stratum(page: Builder, cases: tuple[Case, ...], result: GainDesign, side
     own, gain = _is_finite_on(cases, page, side), result.answer[side.gain]
     fixed = _fixed(page, side, result.pair.kernel, result.pair.restricted)
     modes = Roots(fixed.formula, roots_of(result.fixed_polynomial, page.plant.variable))
-    wanted = predicate("not_polynomial" if gain is None else "polynomial", page[side.phi] / fixed)
-    kept = "case_same" if (page.plant.outputs if side is OBSERVER else page.plant.inputs) > 1 else "case_survives"
-    key = "case_no" if gain is None else kept if own else "case_other"
-    page.conclude(f"{key}_{side.kind}", *hidden(page, side is OBSERVER, side.hidden), wanted, modes=modes)
+    facts = hidden(page, side is OBSERVER, side.hidden)
     if gain is None:
+        keys, polynomial = (f"case_no_{side.kind}", f"unassignable_{side.kind}"), result.answer["polynomial"]
+        say_unassignable(page, keys, facts, page[side.phi], polynomial, fixed, result.case_tree, modes=modes)
         return
+    kept = "case_same" if (page.plant.outputs if side is OBSERVER else page.plant.inputs) > 1 else "case_survives"
+    quotient, bound = over_fixed(page, page[side.phi], result.answer["polynomial"], fixed)
+    key = f"{kept if own else 'case_other'}_{side.kind}"
+    page.conclude(key, *facts, *bound, predicate("polynomial", quotient), modes=modes)
     if not own:
         page.define(side.gain, gain)
     page.conclude_silently(relation(side.error_determinant(page), page[side.phi]))
+    page.steps = outside_cases(page, result, page.steps) or [undecided(page, cases[-1])]
 
 
 def _is_finite_on(cases: tuple[Case, ...], page: Builder, side: PlacementProblem) -> bool:

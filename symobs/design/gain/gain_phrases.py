@@ -63,6 +63,8 @@ PHRASES: dict[str, str] = {
     "family_state_feedback": "The gain is not unique; the general solution is {gain}.",
     "impossible_observer": "The factor {fixed} of the characteristic polynomial of $A - L C$ is the same for every gain, and it does not divide {polynomial}: these poles cannot be assigned.",
     "impossible_state_feedback": "The factor {fixed} of the characteristic polynomial of $A - B K$ is the same for every gain, and it does not divide {polynomial}: these poles cannot be assigned.",
+    "unassignable_observer": "The factor {fixed} of the characteristic polynomial of $A - L C$ is the same for every gain, and the division of {polynomial} by it leaves the remainder {rest}: these poles can be assigned only where this remainder is the zero polynomial.",
+    "unassignable_state_feedback": "The factor {fixed} of the characteristic polynomial of $A - B K$ is the same for every gain, and the division of {polynomial} by it leaves the remainder {rest}: these poles can be assigned only where this remainder is the zero polynomial.",
     "gain_given_observer": "The observer gain is given,",
     "gain_given_state_feedback": "The feedback gain is given,",
     "closed_matrix": "so that",
@@ -78,6 +80,8 @@ PHRASES: dict[str, str] = {
 }
 
 ASSERTS: dict[str, tuple[str, ...]] = {
+    "unassignable_observer": ("strictly_proper",),
+    "unassignable_state_feedback": ("strictly_proper",),
     "fixed_but_wanted_observer": ("polynomial",),
     "case_survives_observer": ("polynomial",),
     "case_same_observer": ("polynomial",),

@@ -81,7 +81,7 @@ def _cases(page: Builder, advice: PoleAdvice) -> Iterator[Step]:
         inner.environment = page.environment.extended_by(values=matrices)
         _advice(inner, found)
         inner.steps += _cases(inner, found)
-        anew, steps = tuple(set_anew(page, inner)), tuple(inner.steps)
+        anew, steps = set_anew(page.environment, inner.environment), tuple(inner.steps)
         conditions = case.when
         if conditions[0].operator != ">":
             yield CaseStep(stratum_of(case), tuple(case.substitution.items()), steps, anew=anew)

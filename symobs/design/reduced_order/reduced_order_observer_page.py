@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from symobs.analysis.factored_form import formula_of_factored
-from symobs.analysis.page_parts import given, in_blocks
+from symobs.analysis.page_parts import case_steps, given, in_blocks
 from symobs.analysis.rank.observability import Observability
 from symobs.analysis.rank.rank_page import rank_cases, square_test
 from symobs.conditions import vanishing_factors
@@ -17,8 +17,9 @@ from symobs.design.page_parts.block_diagrams import draw_minimal_order
 from symobs.design.page_parts.component_equations import combination, summed
 from symobs.design.page_parts.pole_cautions import caution_poles
 from symobs.design.page_parts.time_responses import plot_error
+from symobs.design.page_parts.unassignable import say_unassignable
 from symobs.design.pole_placement.fresh_names import fresh_names, taken_names
-from symobs.design.reduced_order.partition import Partition, partition
+from symobs.design.reduced_order.partition import partition
 from symobs.design.reduced_order.reduced_order_observer import DependentOutputs, ReducedOrderObserver
 from symobs.design.reduced_order.undetermined_matrices_page import write_undetermined
 from symobs.exact import Factored, Matrix, Scalar, roots_of
@@ -43,47 +44,74 @@ def write_reduced_order(page: Builder, design: ReducedOrderObserver) -> None:
         plot_error(page, "e_2", page["A_22"] - page["L"] @ page["A_12"])
 
 
-@page_of(DependentOutputs)
-def write_dependent_outputs(page: Builder, design: DependentOutputs) -> None:
-    """Write data, and the combination of outputs that vanishes."""
-    given(page, ("observer", design.desired))
-    with page.section("reduced_order_observer"):
-        w = page.set("w_0", design.answer["w"])
-        zero = Matrix.zeros(1, page.plant.order)
-        page.conclude("outputs_dependent", row=relation(w, w.as_value), vanishes=relation(w @ page["C"], zero))
+def _dependent_outputs(page: Builder, design: DependentOutputs) -> None:
+    """Write the combination of outputs that vanishes."""
+    w = page.set("w_0", design.answer["w"])
+    zero = Matrix.zeros(1, page.plant.order)
+    page.conclude("outputs_dependent", row=relation(w, w.as_value), vanishes=relation(w @ page["C"], zero))
 
 
 def write_observer_of_rest(page: Builder, design: ReducedOrderObserver) -> None:
     """Write the test, the gain, and the observer without the derivative of the output."""
-    parts = partition(page.plant, design.answer["T"])
+    if isinstance(design, DependentOutputs):
+        with page.section("reduced_order_observer"):
+            _dependent_outputs(page, design)
+        return
     with page.section("observability"):
         test = Observability.of(page.plant, "rank")
         define_test_matrix(page, OBSERVER)
         square_test(page, "O", test, "observability")
         rank_cases(page, "O", test, "observability")
     with page.section("reduced_order_observer"):
-        _coordinates(page, parts)
+        _coordinates(page, design)
         if design.answer["L"] is None:
             _impossible(page, design)
-            return
-        _parts(page, design)
-        if design.page_method == "undetermined":
-            write_undetermined(page, design)
-            write_inner_gain(page, design)
-            _assembled(page, design, ("undetermined_matrices", "rest_set_out"))
         else:
-            _observer(page, design)
-            write_inner_gain(page, design)
-            _without_derivative(page)
-            _assembled(page, design, ("reduced_matrices", "rest_estimated"))
+            _whole_observer(page, design)
+        page.steps += case_steps(page, design, _case)
 
 
-def _coordinates(page: Builder, parts: Partition) -> None:
-    """Write T = [C; R] and the blocks of T A T⁻¹ and T B."""
-    plant = page.plant
+def _whole_observer(page: Builder, design: ReducedOrderObserver) -> None:
+    """Write the gain and the observer by the method of the page."""
+    _parts(page, design)
+    if design.page_method == "undetermined":
+        write_undetermined(page, design)
+        write_inner_gain(page, design)
+        _assembled(page, design, ("undetermined_matrices", "rest_set_out"))
+    else:
+        _observer(page, design)
+        write_inner_gain(page, design)
+        _without_derivative(page)
+        _assembled(page, design, ("reduced_matrices", "rest_estimated"))
+
+
+def _case(page: Builder, design: ReducedOrderObserver) -> None:
+    """Write on a stratum the coordinates where they are others, the gain and the observer, or why there is none."""
+    if isinstance(design, DependentOutputs):
+        _dependent_outputs(page, design)
+        return
+    page.set("phi_o", design.desired.polynomial)
+    _coordinates(page, design, known=page.defines("T") and page["T"].value == design.answer["T"])
+    if design.answer["L"] is None:
+        _impossible(page, design)
+        return
+    key = "gain_follows" if design.inner.fixed_polynomial.is_one else ""
+    if not key:
+        _say_fixed_modes(page, design)
+    page.define("L", design.answer["L"], say=key, answer=True)
+    conditions = [c.expression for c in design.holds_where if c.kind == "claim" and c.operator == "!="]
+    if conditions:
+        page.assume("gain_provided", *conditions)
+    page.conclude_silently(relation(_determinant(page), page["phi_o"]))
+    _matrices(page, design, "undetermined_matrices")
+
+
+def _coordinates(page: Builder, design: ReducedOrderObserver, *, known: bool = False) -> None:
+    """Write T = [C; R] and the blocks of T A T⁻¹ and T B; without words where T is known or the unit matrix."""
+    plant, parts = page.plant, partition(page.plant, design.answer["T"])
     order, measured = plant.order, plant.outputs
     page.set("R", parts.T.select(range(measured, order), range(order)))
-    trivial = Matrix.identity(order) == parts.T
+    trivial = known or Matrix.identity(order) == parts.T
     names = {
         "A_11": parts.A11,
         "A_12": parts.A12,
@@ -229,11 +257,7 @@ def write_inner_gain(page: Builder, design: ReducedOrderObserver) -> None:
         if open_:
             page.equal(*open_, say="compare")
     if not design.inner.fixed_polynomial.is_one:
-        fixed, facts = _fixed_modes(page, design)
-        modes = Roots(fixed.formula, roots_of(design.inner.fixed_polynomial, variable))
-        rest = page["phi_o"] / fixed
-        key = "reduced_all_fixed" if rest.value == 1 else "reduced_not_unique"
-        page.remark(key, *facts, predicate("polynomial", rest), relation(rest, rest.value), modes=modes)
+        _say_fixed_modes(page, design)
     key = "one_of_several" if several else "hence_gain"
     key = key if design.inner.fixed_polynomial.is_one else ""
     page.define("L", design.answer["L"], say=key, answer=True)
@@ -241,6 +265,15 @@ def write_inner_gain(page: Builder, design: ReducedOrderObserver) -> None:
     members = [_determinant(page), plain] if desired.is_expanded else [_determinant(page), plain, grouped]
     say_as_required(page, desired, *members)
     caution_poles(page, desired, "phi_o", "observer")
+
+
+def _say_fixed_modes(page: Builder, design: ReducedOrderObserver) -> None:
+    """State that the modes that A₁₂ does not show are among the desired poles."""
+    fixed, facts = _fixed_modes(page, design)
+    modes = Roots(fixed.formula, roots_of(design.inner.fixed_polynomial, page.plant.variable))
+    rest = page["phi_o"] / fixed
+    key = "reduced_all_fixed" if rest.value == 1 else "reduced_not_unique"
+    page.remark(key, *facts, predicate("polynomial", rest), relation(rest, rest.value), modes=modes)
 
 
 def observer_state(page: Builder) -> str:
@@ -334,4 +367,5 @@ def _impossible(page: Builder, design: ReducedOrderObserver) -> None:
     """Write that no gain moves the modes that A₁₂ does not show, and that they are not desired."""
     fixed, facts = _fixed_modes(page, design)
     modes = Roots(fixed.formula, roots_of(design.inner.fixed_polynomial, page.plant.variable))
-    page.conclude("reduced_impossible", *facts, predicate("not_polynomial", page["phi_o"] / fixed), modes=modes)
+    keys, polynomial = ("reduced_impossible", "reduced_unassignable"), design.desired.polynomial
+    say_unassignable(page, keys, facts, page["phi_o"], polynomial, fixed, design.case_tree, modes=modes)

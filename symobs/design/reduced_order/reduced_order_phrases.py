@@ -39,6 +39,7 @@ PHRASES: dict[str, str] = {
     "rest_estimated": "The estimate is recovered from the observer state by",
     "assembled": "and the estimate of the full state is",
     "reduced_impossible": "The eigenvalues of $A_22 - L A_12$ are to be placed. No $L$ moves the <mode|modes> {modes}, and <it is not|they are not all> among the desired poles: no such observer exists.",
+    "reduced_unassignable": "The eigenvalues of $A_22 - L A_12$ are to be placed. The factor {fixed} of its characteristic polynomial is the same for every $L$, and the division of {polynomial} by it leaves the remainder {rest}: such an observer exists only where this remainder is the zero polynomial.",
     "outputs_dependent": "With {row} the product {vanishes}: one output is a linear combination of the others. No rows complete $C$ to an invertible matrix, so no such observer exists.",
     "reduced_all_fixed": "No $L$ moves the <mode|modes> {modes}, and <it is the desired pole|they are the desired poles>: any gain will do, for example",
     "reduced_not_unique": "No $L$ moves the <mode|modes> {modes}, but <it is|they are> among the desired poles. A gain that places the remaining poles is",
@@ -53,6 +54,7 @@ QUESTIONS: dict[str, str] = {
 }
 
 ASSERTS: dict[str, tuple[str, ...]] = {
+    "reduced_unassignable": ("strictly_proper",),
     "reduced_impossible": ("not_polynomial",),
     "reduced_not_unique": ("polynomial",),
     "reduced_all_fixed": ("polynomial",),

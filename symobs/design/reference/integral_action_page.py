@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, cast
+from typing import TYPE_CHECKING
 
-from symobs.analysis.page_parts import given, say_stability, set_anew, stratum_of, undecided
-from symobs.derivation import CaseStep
+from symobs.analysis.page_parts import case_steps, given, say_stability
 from symobs.derivation.builder import Builder, predicate, relation
+from symobs.design.page_parts.unassignable import say_unassignable
 from symobs.design.reference.integral_action import IntegralAction, closed_loop, extended
 from symobs.exact import Matrix, Scalar, rank
 from symobs.formula import Evaluated, Literal
@@ -16,9 +16,6 @@ from symobs.result import page_of
 from symobs.stability.criteria.stability import stability
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-    from symobs.derivation import Step
     from symobs.formula import Relation
     from symobs.formula.term import Term
 
@@ -36,26 +33,14 @@ def write_integral_action(page: Builder, design: IntegralAction) -> None:
                 relation(state.derivative, page["A_cl"] @ state + _enters(page) @ page["r_in"]), say="integral_closed"
             )
             _at_rest(page, design)
-        page.steps += _cases(page, design)
+        page.steps += case_steps(page, design, _case)
 
 
-def _cases(page: Builder, design: IntegralAction) -> Iterator[Step]:
-    """Yield a case for each stratum."""
-    for case in design.case_tree:
-        if case.result is None:
-            yield undecided(page, case)
-            continue
-        found = cast("IntegralAction", case.result)
-        inner = Builder(found.plant, found.free_signals)
-        matrices = {name: getattr(found.plant.matrices, name) for name in "ABCD" if page.defines(name)}
-        inner.environment = page.environment.extended_by(values=matrices)
-        inner.set("phi_c", found.desired.polynomial)
-        _name_extended(inner)
-        _design(inner, found, is_case=True)
-        inner.steps += _cases(inner, found)
-        yield CaseStep(
-            stratum_of(case), tuple(case.substitution.items()), tuple(inner.steps), anew=tuple(set_anew(page, inner))
-        )
+def _case(page: Builder, design: IntegralAction) -> None:
+    """Write what is found on a stratum."""
+    page.set("phi_c", design.desired.polynomial)
+    _name_extended(page)
+    _design(page, design, is_case=True)
 
 
 def _extended(page: Builder) -> None:
@@ -140,17 +125,24 @@ def _say_condition(page: Builder, design: IntegralAction) -> None:
 
 def _impossible(page: Builder, design: IntegralAction) -> None:
     """Write that the modes of plant and integrator that no gain moves are not among the desired poles."""
-    pair, size = design.loop.pair, page.plant.order + page.plant.outputs
+    pair = design.loop.pair
     N, X = page.set("N_K", pair.kernel), page.set("X_K", pair.restricted)
     count = pair.kernel.shape[1]
     fixed = (page.s @ page.identity(count) - X).apply("det")
     rows = page["B_hat"].T @ N
-    page.conclude(
-        "integral_impossible",
+    facts = (
         relation(rows, Matrix.zeros(page.plant.inputs, count)),
         relation(page["A_hat"].T @ N, N @ X),
-        relation(N.apply("rank"), count, "<=", size),
-        predicate("not_polynomial", page["phi_c"] / fixed),
+        relation(N.apply("rank"), count),
+    )
+    say_unassignable(
+        page,
+        ("integral_impossible", "integral_unassignable"),
+        facts,
+        page["phi_c"],
+        design.desired.polynomial,
+        fixed,
+        design.case_tree,
         fixed=Evaluated(fixed.formula, Literal(design.loop.fixed_polynomial)),
     )
 
@@ -192,6 +184,7 @@ def _at_rest(page: Builder, design: IntegralAction) -> None:
     asked, discrete = design.desired, plant.is_discrete
     if asked.is_numeric and stability(asked.polynomial, plant.variable, {}, discrete=discrete).verdict == "yes":
         loop = (page.s @ page.identity(size) - A_cl).apply("det")
-        page.conclude("integral_rest_stable", predicate("stable", loop), gain=at_rest)
+        has_poles = relation(loop, page["phi_c"])
+        page.conclude("integral_rest_stable", has_poles, predicate("stable", page["phi_c"]), gain=at_rest)
     else:
         page.conclude("integral_rest", gain=at_rest)

@@ -13,6 +13,7 @@ PHRASES: dict[str, str] = {
     "integral_blocked": "The outputs cannot follow arbitrary constant references, since with {row} we obtain {annuls}: a pole of the integrators cannot be moved.",
     "integral_uncontrollable": "The pair ($A$, $B$) is not controllable, {rank}.",
     "integral_impossible": "The roots of {fixed} are uncontrollable modes of plant and integrator, and not all of them are among the desired poles: no gains exist.",
+    "integral_unassignable": "The roots of {fixed} are uncontrollable modes of plant and integrator, and the division of {polynomial} by it leaves the remainder {rest}: gains exist only where this remainder is the zero polynomial.",
     "integral_provided": "In what follows we assume {condition}.",
     "integral_gains": "The design of state feedback for plant and integrator together gives",
     "integral_parts": "so that the gains of the state and of the integral are",
@@ -24,7 +25,11 @@ PHRASES: dict[str, str] = {
     "integral_rest_stable": "The control error vanishes in the steady state, since the closed loop is stable and the DC gain from $r_in$ to $y$ is {gain}.",
 }
 
-ASSERTS: dict[str, tuple[str, ...]] = {"integral_rest_stable": ("stable",)}
+ASSERTS: dict[str, tuple[str, ...]] = {
+    "integral_unassignable": ("strictly_proper",),
+    "integral_impossible": ("not_polynomial",),
+    "integral_rest_stable": ("stable",),
+}
 
 QUESTIONS: dict[str, str] = {
     "ask integral_action": "Design state feedback with integral action, such that the output follows constant references.",

@@ -42,3 +42,8 @@ def horner(coefficients: Sequence[Scalar], matrix: Matrix, vector: Matrix) -> Ma
             image += column * (number * power)
     below = number_of(vector.denominator) * common * power
     return Matrix(RATIONALS, image, RATIONALS.context.constant(below), vector.shape)
+
+
+def whole_product(left: Sequence[Sequence[int]], right: Sequence[Sequence[int]]) -> list[list[int]]:
+    """Return the product of two matrices of whole numbers, given by their rows."""
+    return [list(map(int, row)) for row in (fmpz_mat(left) * fmpz_mat(right)).tolist()]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import lru_cache
 from itertools import pairwise
 from math import hypot
 from typing import TYPE_CHECKING, TypeAlias, TypeVar
@@ -122,12 +123,15 @@ def walk(line: Sequence[Point], step: float) -> Iterator[tuple[Point, Point, flo
         gone += length
 
 
-def _pieces(line: Sequence[Point]) -> Iterator[tuple[float, float, float, float, Sequence[Point]]]:
-    """Yield a line in pieces of some segments, each after its bounding box (left, bottom, right, top)."""
+@lru_cache(maxsize=64)
+def _pieces(line: Sequence[Point]) -> tuple[tuple[float, float, float, float, Sequence[Point]], ...]:
+    """Return a line in pieces of some segments, each after its bounding box (left, bottom, right, top)."""
+    found = []
     for first in range(0, len(line) - 1, _SEGMENTS):
         points = line[first : first + _SEGMENTS + 1]
         xs, ys = zip(*points, strict=True)
-        yield min(xs), min(ys), max(xs), max(ys), points
+        found.append((min(xs), min(ys), max(xs), max(ys), points))
+    return tuple(found)
 
 
 def _is_crossed(box: Rectangle, pieces: Sequence[tuple[float, float, float, float, Sequence[Point]]]) -> bool:
@@ -145,6 +149,7 @@ def _crosses(line: Sequence[Point], box: Rectangle) -> bool:
     return any(segment_in(a, b, box) is not None for a, b in pairwise(line))
 
 
+@lru_cache(maxsize=64)
 def _places(line: Sequence[Point]) -> list[Point]:
     """Return the places along a line used for distances."""
     return [point for point, _, _ in walk(line, _STEP)] or list(line)
@@ -155,9 +160,9 @@ def _distance(box: Rectangle, places: Iterable[Point], enough: float) -> float:
     left, right, bottom, top = box.left, box.right, box.bottom, box.top
     nearest = _FAR
     for x, y in places:
-        dx = left - x if x < left else max(x - right, 0.0)
+        dx = left - x if x < left else x - right if x > right else 0.0
         if dx < nearest:
-            dy = bottom - y if y < bottom else max(y - top, 0.0)
+            dy = bottom - y if y < bottom else y - top if y > top else 0.0
             if dy < nearest:
                 nearest = min(nearest, hypot(dx, dy))
                 if nearest <= enough:

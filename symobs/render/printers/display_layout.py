@@ -46,6 +46,14 @@ class Layout(Generic[B]):
         self.boxed = boxed
         self.end = end
         self.breaker = Breaker(printer)
+        self._members: dict[int, B] = {}
+
+    def _typeset(self, member: Formula) -> B:
+        """Return a member of a relation of this display, printed once: on one line, and then among several."""
+        box = self._members.get(id(member))
+        if box is None:
+            box = self._members[id(member)] = self.printer.typeset(member)
+        return box
 
     def rows(self, relations: Sequence[Relation]) -> tuple[list[DisplayRow[B]], bool]:
         """Return the rows, and whether they are aligned (else each is centred)."""
@@ -56,7 +64,7 @@ class Layout(Generic[B]):
         packed = self._packed(whole, self.width)
         if all(row.width <= self.width for row in packed) and (len(packed) == 1 or 2 * len(packed) <= len(whole)):
             return [DisplayRow(None, row) for row in packed], False
-        lefts = [self.printer.typeset(relation.members[0]).width for relation in relations]
+        lefts = [self._typeset(relation.members[0]).width for relation in relations]
         margin = max((left for left in lefts if left <= _WIDEST_LEFT * self.width), default=0.0)
         rows: list[DisplayRow[B]] = []
         for index, relation in enumerate(relations):
@@ -80,8 +88,8 @@ class Layout(Generic[B]):
     def _on_one_line(self, relation: Relation, *, is_last: bool) -> B:
         printer = self.printer
         *front, last = relation.members
-        boxes = [printer.typeset(member) for member in front]
-        answer = printer.typeset(last)
+        boxes = [self._typeset(member) for member in front]
+        answer = self._typeset(last)
         boxes.append(printer.framed(answer) if self.boxed and is_last else answer)
         signs = [printer.comparison(operator) for operator in relation.operators]
         parts = [boxes[0], *(part for pair in zip(signs, boxes[1:], strict=True) for part in pair)]
@@ -109,7 +117,7 @@ class Layout(Generic[B]):
         """Return the rows of one relation, then the definitions of the entries left out."""
         printer, defined = self.printer, len(self.breaker.named)
         framed = self.boxed and is_last
-        left = printer.typeset(relation.members[0])
+        left = self._typeset(relation.members[0])
         head = left if left.width <= _WIDEST_HEAD else None
         room = self.width - margin - printer.punctuation(",").width - (self._frame() if framed else 0.0)
         links = list(zip(relation.operators, relation.members[1:], strict=True))
@@ -141,7 +149,7 @@ class Layout(Generic[B]):
         has_frame = framed
         for index, (operator, member) in enumerate(links):
             is_answer = framed and index + 1 == len(links)
-            sign, box = printer.comparison(operator), printer.typeset(member)
+            sign, box = printer.comparison(operator), self._typeset(member)
             if is_answer:
                 box = printer.framed(box)
             if line and sum(part.width for part in line) + sign.width + box.width > room:

@@ -272,3 +272,23 @@ def test_a_division_is_proved_once_where_the_list_adds_no_curve(monkeypatch: pyt
     proved.clear()
     symobs.stability_region("s^3 + x1d s^2 + y1d s + 1", parameters=["x1d", "y1d"]).to_json()
     assert len(proved) == len(set(map(id, proved))) == 2
+
+
+def test_a_case_in_which_inequalities_contradict_each_other_is_told_to_be_empty() -> None:
+    plant = symobs.StateSpace("[a 0 a; a 1/2 -1; -1 -b 1/10]", symbols={"a": "real", "b": "nonzero"})
+    page = " ".join(symobs.stability_region(plant).to("text").split())
+    assert "Case b > 0. The stability region is empty. Case b < 0. All roots are stable if and only if" in page
+
+    def is_stable(
+        a: Fraction, b: Fraction
+    ) -> bool:  # Routh's criterion of order three for s³ + p s² + q s + r, by hand
+        p, q, r = (
+            -a - Fraction(3, 5),
+            Fraction(8, 5) * a - b + Fraction(1, 20),
+            a * a * b + a * b - Fraction(11, 20) * a,
+        )
+        return p > 0 and r > 0 and p * q > r
+
+    values = [Fraction(k, 7) for k in range(-100, 101, 9)]
+    assert not any(is_stable(a, b) for a in values for b in values if b > 0)
+    assert is_stable(Fraction(-1), Fraction(-10000))

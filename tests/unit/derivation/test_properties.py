@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import reduce
 from typing import TYPE_CHECKING, Any
 
 import pytest
 
 from symobs.derivation.exact_where import is_exactly
 from symobs.derivation.facts.properties import PREDICATES, is_criterion, needed, polynomial_of, subjects
+from symobs.derivation.facts.restriction import on_stratum
 from symobs.exact import Matrix, Scalar
 from symobs.formula import Environment, HoldsExactlyWhere, Letter, Predicate
 from tests.support.problems.steps import said
@@ -261,12 +263,15 @@ def test_in_discrete_time_the_disc_decides() -> None:
 def test_what_is_above_zero_here_has_a_sign() -> None:
     """Where h > 0, s² + h s + k is stable exactly where k > 0; and so where −h < 0."""
     polynomial = s**2 + h * s + k
-    for positive in ((h,), (c, h)):
-        assert exactly(polynomial, said(k, ">", 0), known=replace(IN_S, positive=positive))
-    assert exactly(s**2 - h * s + k, said(k, ">", 0), known=replace(IN_S, positive=(-h,)))
-    assert not exactly(polynomial, said(k, ">", 0), known=replace(IN_S, positive=(-h,)))
-    assert not exactly(polynomial, said(k, ">", 0), known=replace(IN_S, positive=(h + 1,)))
-    assert not exactly(polynomial, said(k, ">", 0), known=replace(IN_S, positive=(2 * h + c,)))
+
+    def where(*cases: Relation) -> Environment:
+        return reduce(lambda known, case: on_stratum(case, {}, known), cases, IN_S)
+
+    for cases in ((said(h, ">", 0),), (said(c, ">", 0), said(h, ">", 0)), (said(0, "<", h),)):
+        assert exactly(polynomial, said(k, ">", 0), known=where(*cases))
+    assert exactly(s**2 - h * s + k, said(k, ">", 0), known=where(said(h, "<", 0)))
+    for case in (said(h, "<", 0), said(h, ">", -1), said(2 * h + c, ">", 0)):
+        assert not exactly(polynomial, said(k, ">", 0), known=where(case))
 
 
 def test_members_are_numbers() -> None:
