@@ -94,6 +94,15 @@ _article(
     "1949",
     "487–490",
 )
+_article(
+    "darouach1994",
+    "M. Darouach, M. Zasadzinski and S. J. Xu",
+    "Full-order observers for linear systems with unknown inputs",
+    _TAC,
+    "39",
+    "1994",
+    "606–609",
+)
 _article("doyle1979", "J. C. Doyle and G. Stein", "Robustness with observers", _TAC, "24", "1979", "607–611")
 _article(
     "francis1976",
@@ -130,6 +139,15 @@ _article(
     "72",
     "1969",
     "443–448",
+)
+_article(
+    "hautus1983",
+    "M. L. J. Hautus",
+    "Strong detectability and observers",
+    "Linear Algebra Appl.",
+    "50",
+    "1983",
+    "353–368",
 )
 _article(
     "hautus1970",
@@ -291,6 +309,13 @@ _book("belevitch1968", "V. Belevitch", "Classical Network Theory", "Holden-Day",
 _book("brockett1970", "R. W. Brockett", "Finite Dimensional Linear Systems", "Wiley", "1970")
 _book("brogan1991", "W. L. Brogan", "Modern Control Theory", "Prentice Hall", "1991", "3rd")
 _book("chen1999", "C.-T. Chen", "Linear System Theory and Design", "Oxford University Press", "1999", "3rd")
+_book(
+    "chenpatton1999",
+    "J. Chen and R. J. Patton",
+    "Robust Model-Based Fault Diagnosis for Dynamic Systems",
+    "Kluwer",
+    "1999",
+)
 _book("jury1964", "E. I. Jury", "Theory and Application of the z-Transform Method", "Wiley", "1964")
 _book("kailath1980", "T. Kailath", "Linear Systems", "Prentice Hall", "1980")
 _book("popov1973", "V. M. Popov", "Hyperstability of Control Systems", "Springer", "1973")
