@@ -58,7 +58,7 @@ class UnknownInputObserver(Result):
         """Return the observer, or the negative result."""
         H = decoupling(plant, E)
         if H is None:
-            answer = dict.fromkeys(_MATRICES) | {"w": unseen_input(plant, E)}
+            answer = dict.fromkeys(_MATRICES) | {"polynomial": desired.polynomial, "w": unseen_input(plant, E)}
             return cls(plant, method_name, answer, desired, E, None)
         inner = design_of(ObserverDesign, decoupled(plant, H), desired)
         return cls.assembled(plant, E, H, inner, desired, method_name)
@@ -76,7 +76,8 @@ class UnknownInputObserver(Result):
         """Return the observer with a gain for (C, T A)."""
         m, L = plant.matrices, inner.answer["L"]
         T = (Matrix.identity(plant.order) - H @ m.C).normal()
-        answer: dict[str, Any] = dict.fromkeys(_MATRICES) | {"H": H, "T": T, "w": None}
+        answer: dict[str, Any] = dict.fromkeys(_MATRICES)
+        answer |= {"H": H, "T": T, "polynomial": desired.polynomial, "w": None}
         if L is not None:
             F = (inner.plant.matrices.A - L @ m.C).normal()
             B_y = (L + F @ H).normal()
@@ -87,12 +88,12 @@ class UnknownInputObserver(Result):
         """Return the observer with another L, and with the matrices that follow from it."""
         if name != "L" or self.inner is None:
             return super().with_answer(name, value)
-        inner, H = self.inner.with_answer("L", value), self.answer["H"]
-        return (
-            type(self)
-            .assembled(self.plant, self.disturbance_input, H, inner, self.desired, self.method)
-            .in_place_of(self)
-        )
+        return self.with_gain(self.inner.with_answer("L", value), self.desired)
+
+    def with_gain(self, inner: ObserverDesign, desired: DesiredPolynomial) -> Self:
+        """Return the observer with another gain for (C, T A), which places the roots of a polynomial."""
+        E, H = self.disturbance_input, self.answer["H"]
+        return type(self).assembled(self.plant, E, H, inner, desired, self.method).in_place_of(self)
 
     @property
     def has_reduced_observer(self) -> bool:
@@ -114,10 +115,11 @@ class UnknownInputObserver(Result):
         ):
             message = "there is an observer exactly where there are H and a gain of the pair (C, T A)"
             raise CertificateRejected(message, repair="please report this: it is a bug of symobs")
-        values = letters_of(plant) | {"E_d": self.disturbance_input, "phi": self.desired.polynomial}
+        values = letters_of(plant) | {"E_d": self.disturbance_input, "phi": answer["polynomial"]}
         known = {name: value for name, value in answer.items() if value is not None}
         e = Environment(variable=plant.variable, values=values | known)
         A, C, E = (letter(name, e) for name in ("A", "C", "E_d"))
+        yield Claim(relation(letter("phi", e), self.desired.polynomial), e, "the polynomial is the one asked for")
         if inner is None:
             w = letter("w", e)
             yield Claim(relation(C @ E @ w, Matrix.zeros(plant.outputs, 1)), e, "C*E*w = 0")
@@ -209,7 +211,7 @@ class UnknownInputObserver(Result):
     def fields(self) -> Mapping[str, Any]:
         """The matrices of the observer, whether there is an H, and what the gain for (C, T A) reports."""
         own = {name: self.answer[name] for name in _MATRICES} | {"solvable": self.inner is not None}
-        own["polynomial"] = self.desired.polynomial
+        own["polynomial"] = self.answer["polynomial"]
         return own | (dict(self.inner.report) if self.inner is not None else {})
 
     @property

@@ -15,7 +15,6 @@ from symobs.design.page_parts.time_responses import plot_error
 from symobs.exact import Matrix, roots_of
 from symobs.formula import Roots
 from symobs.formula.term import block
-from symobs.phrases.spoken import Counted
 from symobs.result import page_of
 from symobs.stability.criteria.stability import stability
 
@@ -152,9 +151,8 @@ def _gain(page: Builder, design: UnknownInputObserver) -> None:
     caution_poles(page, asked, "phi_o", "observer")
     if not asked.is_numeric:
         say_stability(page, pencil)
-    family = design.fields["family"]
-    if family is not None:
-        page.remark("uio_family", count=Counted("free_parameter", family["dimension"]))
+    if design.fields["family"] is not None:
+        page.remark("uio_family")
 
 
 #: The letters of the page and the answers that they are.

@@ -21,7 +21,7 @@ PHRASES: dict[str, str] = {
     "uio_zeros_unstable": "Since the plant has an unstable zero from the unknown input to the output, no observer of this kind has an error that converges.",
     "uio_gain": "The design of an observer gain for this pair gives",
     "uio_state_matrix": "so that the matrices of the observer are",
-    "uio_family": "The gain is not unique: the gains that assign this polynomial have {count}.",
+    "uio_family": "The gain is not unique: other gains assign the same polynomial.",
     "uio_observer": "The observer is therefore",
     "uio_error": "Irrespective of the unknown input, the estimation error {error} satisfies",
 }

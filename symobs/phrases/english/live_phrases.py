@@ -137,6 +137,7 @@ PHRASES: dict[str, str] = {
     "live_task_time_varying_observability": "time-varying observability",
     "live_task_tracking": "tracking",
     "live_task_transfer_function": "transfer function",
+    "live_task_unknown_input_observer": "unknown-input observer",
 }
 
 #: They stand within a sentence, or beside one.
@@ -154,5 +155,5 @@ CONTINUES = (
     "live_task_integral_action", "live_task_matrix_exponential", "live_task_observability", "live_task_observer",
     "live_task_pole_advice", "live_task_reduced_order_observer", "live_task_response", "live_task_stability_region",
     "live_task_stabilizability", "live_task_state_feedback", "live_task_time_varying_observability",
-    "live_task_tracking", "live_task_transfer_function",
+    "live_task_tracking", "live_task_transfer_function", "live_task_unknown_input_observer",
 )  # fmt: skip

@@ -41,6 +41,7 @@ TASKS: dict[str, float] = {
     "feedforward": 3,
     "tracking": 4,
     "integral_action": 3,
+    "unknown_input_observer": 3,
     "pole_advice": 2,
     "stability_region": 2,
 }
@@ -160,6 +161,14 @@ def _integral_action(random: Random, shape: Shape) -> Drawn:
     return desired(random, shape, shape.order + shape.outputs) if shape.order + shape.outputs <= 7 else None
 
 
+def _unknown_input_observer(random: Random, shape: Shape) -> Drawn:
+    """One or two disturbances, that the outputs do not always see."""
+    if shape.order > 5:
+        return None
+    E = shapes.dense(random, shape.order, random.choice([1, 1, min(2, shape.outputs)]), 0)
+    return _joined(desired(random, shape, shape.order), {"E": text_of(shapes.texts(E))})
+
+
 def _tracking(random: Random, shape: Shape) -> Drawn:
     """A reference that can be followed more often than not: A_d = A − B X."""
     minimal = shape.outputs < shape.order
@@ -242,6 +251,7 @@ _SPECIFICATIONS: dict[str, Callable[[Random, Shape], Drawn]] = {
     "feedforward": _feedforward,
     "tracking": _tracking,
     "integral_action": _integral_action,
+    "unknown_input_observer": _unknown_input_observer,
     "pole_advice": _pole_advice,
     "stability_region": regions.drawn,
 }
