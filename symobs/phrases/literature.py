@@ -123,6 +123,15 @@ _article(
     "128–151",
 )
 _article(
+    "johnson1971",
+    "C. D. Johnson",
+    "Accommodation of external disturbances in linear regulator and servomechanism problems",
+    _TAC,
+    "16",
+    "1971",
+    "635–644",
+)
+_article(
     "gopinath1971",
     "B. Gopinath",
     "On the control of linear multiple input-output systems",

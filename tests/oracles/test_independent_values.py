@@ -35,7 +35,7 @@ from tests.support.problems.problems_by_hand import (
 )
 from tests.support.problems.problems_by_hand import points as points_of
 from tests.support.problems.problems_in_time import PROBLEMS_IN_TIME, VARYING
-from tests.support.problems.problems_of_disturbances import PROBLEMS_OF_DISTURBANCES, Disturbed
+from tests.support.problems.problems_of_disturbances import PROBLEMS_OF_DISTURBANCES, Disturbed, Modelled
 from tests.support.problems.problems_of_integral_action import PROBLEMS_OF_INTEGRAL_ACTION, Integral
 from tests.support.problems.problems_of_minimal_order import (
     PROBLEMS_OF_MINIMAL_ORDER,
@@ -77,7 +77,7 @@ def points(name: str, count: int) -> Iterator[dict[Any, Any]]:
 
 def known_letters(hand: Hand) -> dict[str, Any]:
     """Return what the letters of a derivation must be worth."""
-    if isinstance(hand, (MinimalOrder, Integral, Disturbed)):
+    if isinstance(hand, (MinimalOrder, Integral, Disturbed, Modelled)):
         return hand.letters()
     A, B, C, s_ = hand.A, hand.B, hand.C, hand.variable
     known: dict[str, Any] = {"A": A, "chi": characteristic(A, s_), "D": hand.feedthrough}
@@ -170,7 +170,7 @@ def read(name: str, result: Result) -> list[Reader]:
     def samples() -> Iterator[dict[Any, Any]]:
         return points(name, 60)
 
-    if isinstance(hand, (Integral, Disturbed)):
+    if isinstance(hand, (Integral, Disturbed, Modelled)):
         return [Reader(result.derivation, hand.letters(), samples, known_at=lambda values: hand.at(values).letters())]
     if not hand.large:
         return [Reader(result.derivation, known_letters(hand), samples, FREE_ENTRIES if hand.is_several else {})]
@@ -240,7 +240,7 @@ def repairs(A: Any, C: Any) -> tuple[tuple[int, ...], ...]:
 
 def answers(hand: Hand, task: str) -> dict[str, Any]:
     """Return every field of a task's answer by the textbook's formula."""
-    if isinstance(hand, (MinimalOrder, Integral, Disturbed)):
+    if isinstance(hand, (MinimalOrder, Integral, Disturbed, Modelled)):
         return hand.answers(task)
     A, B, C, variable = hand.A, hand.B, hand.C, hand.variable
     match task:

@@ -163,6 +163,11 @@ class UnknownInputObserver(Result):
         """The unknown input, and the state of the observer."""
         return {"d": self.disturbance_input.shape[1], "w_o" if self.plant.is_discrete else "z_o": self.plant.order}
 
+    @property
+    def data(self) -> Mapping[str, Scalar | Matrix]:
+        """The matrices of the plant, and E."""
+        return {**super().data, "E_d": self.disturbance_input}
+
     @cached_property
     def domain(self) -> tuple[Condition, ...]:
         """What must not vanish for there to be plant and E."""

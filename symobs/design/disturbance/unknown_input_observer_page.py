@@ -79,11 +79,12 @@ def _independent(page: Builder, design: UnknownInputObserver) -> Term:
 
 def _not_decoupled(page: Builder, design: UnknownInputObserver) -> None:
     """Write that E w is not seen in the output, so that no H has H C E = E."""
-    w = page.set("w_0", design.answer["w"])
     C, E, along = page["C"], page["E_d"], ""
     unseen, direction = C @ E, E
     if design.disturbance_input.shape[1] > 1:
+        w = page.set("w_0", design.answer["w"])
         page.equal(relation(w, w.as_value), say="uio_direction")
+        C, E = page["C"], page["E_d"]
         unseen, direction, along = C @ E @ w, E @ w, "_along"
     zero, nothing = (Matrix.zeros(size, 1) for size in (page.plant.outputs, page.plant.order))
     differs = relation(direction, "!==" if direction.value.names else "!=", nothing)

@@ -253,3 +253,21 @@ def unknown_input_observer(b: Branch) -> Iterator[Claim]:
     yield same("error without x", T @ b.A - F @ T, B_y @ b.C)
     yield same("error without u", T @ b.B - B_y @ b.D, b.field("B_u"))
     yield zero("assigned", F.characteristic(b.s) - wanted)
+
+
+def disturbance_observer(b: Branch) -> Iterator[Claim]:
+    wanted, E, n = b.desired(), matrix(rows(b.specification["E"])), b.order
+    assert wanted is not None
+    q = columns_of(E)
+    S = matrix(rows(b.specification["S"])) if "S" in b.specification else scalar(int(b.variable == "z")) * identity(q)
+    order = 2 if "S" in b.specification else q
+    A = stack(beside(b.A, E if order == q else beside(E, zeros(n, 1))), beside(zeros(order, n), S))
+    C = beside(b.C, zeros(rows_of(b.C), order))
+    yield zero("polynomial", wanted - b.field("polynomial"))
+    yield Claim("verdict", "divides", (A, C, wanted), b.verdict != "no")
+    yield Claim("fixed modes", "hidden", (A, C, from_roots(b.variable, b.answer["fixed_modes"])))
+    if b.verdict == "no":
+        return
+    closed = A - stack(b.field("L_x"), b.field("L_w")) @ C
+    yield same("observer", closed, b.field("A"))
+    yield zero("assigned", closed.characteristic(b.s) - wanted)

@@ -28,6 +28,10 @@ def holds(result: Any, at: Setting) -> None:
     if result.answer["L"] is None:
         if result.fields["solvable"]:
             assert not assignable(without_disturbance(at, E), at.C, at.wanted[""])
+        else:
+            w = matrix_at(result.answer["w"], at.point)
+            assert not any(any(row) for row in multiply(seen, w))
+            assert any(any(row) for row in multiply(E, w))
         return
     H, T, F, B_y = (matrix_at(result.fields[name], at.point) for name in ("H", "T", "F", "B_y"))
     # e = x − z − H C x = T x − z, so ė = T (A x + B u + E d) − F z − B_u u − B_y (C x + D u) with z = T x − e.
