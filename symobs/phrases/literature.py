@@ -318,13 +318,6 @@ _book("belevitch1968", "V. Belevitch", "Classical Network Theory", "Holden-Day",
 _book("brockett1970", "R. W. Brockett", "Finite Dimensional Linear Systems", "Wiley", "1970")
 _book("brogan1991", "W. L. Brogan", "Modern Control Theory", "Prentice Hall", "1991", "3rd")
 _book("chen1999", "C.-T. Chen", "Linear System Theory and Design", "Oxford University Press", "1999", "3rd")
-_book(
-    "chenpatton1999",
-    "J. Chen and R. J. Patton",
-    "Robust Model-Based Fault Diagnosis for Dynamic Systems",
-    "Kluwer",
-    "1999",
-)
 _book("jury1964", "E. I. Jury", "Theory and Application of the z-Transform Method", "Wiley", "1964")
 _book("kailath1980", "T. Kailath", "Linear Systems", "Prentice Hall", "1980")
 _book("popov1973", "V. M. Popov", "Hyperstability of Control Systems", "Springer", "1973")

@@ -111,7 +111,7 @@ def test_floats_in_a_specification_are_refused_with_the_repair(task: str, name: 
     others = specification(task, ["-1", "-2"])
     gains = {"K": ("control", "poles"), "L": ("observer", "poles")}  # what a given gain takes the place of
     stems = gains.get(name, (name.removesuffix("poles").removesuffix("polynomial"),))
-    for key in [key for key in others if key.startswith(stems)]:
+    for key in [key for key in others if key.startswith(stems) and key.endswith(("poles", "polynomial"))]:
         del others[key]
     with pytest.raises(InexactInput) as caught:
         tasks()[task].function(symobs.StateSpace("[0 1; 0 -1]", "[0; 1]", "[1 0]"), **{**others, name: value})

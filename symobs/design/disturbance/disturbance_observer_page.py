@@ -170,7 +170,6 @@ def _observer(page: Builder, design: DisturbanceObserver) -> None:
         relation(state.derivative, rate + L @ left),
         relation(page["d_hat"], page["V_w"] @ w_hat, page["V_w"].as_value @ w_hat),
         say="disturbance_equation",
-        answer=True,
     )
     page.signal("e", page["x"] - page["x_hat"], silent=True)
     page.signal("e_w", page["w_e"] - w_hat, silent=True)

@@ -274,7 +274,7 @@ def _numerators(values: list[Scalar]) -> list[Scalar]:
     return [value.numerator for value in values if not value.is_zero]
 
 
-@method("unknown_input_observer/decoupled", source="darouach1994; chenpatton1999, ch. 3")
+@method("unknown_input_observer/decoupled", source="darouach1994")
 def by_decoupling(plant: StateSpace, E: Matrix, desired: DesiredPolynomial) -> UnknownInputObserver:
     """H decouples d from the error, and L places the poles of T A − L C."""
     return UnknownInputObserver.of(plant, E, desired, "decoupled")
