@@ -37,7 +37,7 @@ QUESTIONS: dict[str, str] = {
     "ask unknown_input_observer": "Design an observer whose estimation error does not depend on the unknown input.",
     "ask unknown_input_observer poles": "Design an observer with the poles {poles} whose estimation error does not depend on the unknown input.",
     "ask unknown_input_observer polynomial": "Design an observer with the characteristic polynomial {polynomial} whose estimation error does not depend on the unknown input.",
-    "also unknown_input_observer E": "The unknown input enters the state equation through $E = {E}$.",
+    "also unknown_input_observer E": "The term $E_d d$ with the unknown input $d$ is added to the state equation.",
 }
 
 RESTS_ON: dict[str, str] = {
