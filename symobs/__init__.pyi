@@ -31,6 +31,8 @@ from symobs.batching.sweep import sweep as sweep
 from symobs.checking import check as check
 from symobs.cli.shared.time_and_memory import bounded as bounded
 from symobs.design.compensator.output_feedback import OutputFeedback as _OutputFeedback
+from symobs.design.disturbance.disturbance_observer import DisturbanceObserver as _DisturbanceObserver
+from symobs.design.disturbance.unknown_input_observer import UnknownInputObserver as _UnknownInputObserver
 from symobs.design.full_order.observer import ObserverDesign as _ObserverDesign
 from symobs.design.full_order.state_feedback import StateFeedbackDesign as _StateFeedbackDesign
 from symobs.design.pole_advice.pole_advice import PoleAdvice as _PoleAdvice
@@ -240,6 +242,45 @@ def detectability(
     floats: str | None = None,
 ) -> _DetectabilityResult:
     """Decide whether some L makes A − LC stable: whether all unobservable modes are stable."""
+
+class _DisturbanceObserverResult(_DisturbanceObserver):
+    """What `disturbance_observer` returns."""
+
+    @property
+    def L_x(self) -> ImmutableMatrix: ...
+    @property
+    def L_w(self) -> ImmutableMatrix: ...
+    @property
+    def polynomial(self) -> Expr: ...
+    @property
+    def A(self) -> ImmutableMatrix: ...
+    @property
+    def B_u(self) -> ImmutableMatrix: ...
+    @property
+    def B_y(self) -> ImmutableMatrix: ...
+    @property
+    def poles(self) -> tuple[Any, ...]: ...
+    @property
+    def stable(self) -> str: ...
+    @property
+    def stable_if(self) -> tuple[Any, ...]: ...
+    @property
+    def fixed_modes(self) -> tuple[Any, ...]: ...
+    @property
+    def family(self) -> Any: ...
+
+def disturbance_observer(
+    plant: _Plant,
+    *,
+    E: _Matrix | None = None,
+    S: _Matrix | None = None,
+    V: _Matrix | None = None,
+    poles: str | Sequence[_Number] | Mapping[str, Any] | MatrixBase | None = None,
+    polynomial: str | Expr | None = None,
+    method: str = "auto",
+    floats: str | None = None,
+) -> _DisturbanceObserverResult:
+    """Estimate state and disturbance of ẋ = A x + B u + E d, d = V w, ẇ = S w, by the observer of (x, w)."""
 
 class _DualResult(_Dual):
     """What `dual` returns."""
@@ -754,3 +795,44 @@ def transfer_function(
     floats: str | None = None,
 ) -> _TransferFunctionResult:
     """Return P(s) = C (sI − A)⁻¹ B + D in lowest terms, with its poles and zeros."""
+
+class _UnknownInputObserverResult(_UnknownInputObserver):
+    """What `unknown_input_observer` returns."""
+
+    @property
+    def H(self) -> ImmutableMatrix: ...
+    @property
+    def T(self) -> ImmutableMatrix: ...
+    @property
+    def L(self) -> ImmutableMatrix: ...
+    @property
+    def F(self) -> ImmutableMatrix: ...
+    @property
+    def B_u(self) -> ImmutableMatrix: ...
+    @property
+    def B_y(self) -> ImmutableMatrix: ...
+    @property
+    def solvable(self) -> bool: ...
+    @property
+    def polynomial(self) -> Expr: ...
+    @property
+    def poles(self) -> tuple[Any, ...]: ...
+    @property
+    def stable(self) -> str: ...
+    @property
+    def stable_if(self) -> tuple[Any, ...]: ...
+    @property
+    def fixed_modes(self) -> tuple[Any, ...]: ...
+    @property
+    def family(self) -> Mapping[str, Any]: ...
+
+def unknown_input_observer(
+    plant: _Plant,
+    *,
+    E: _Matrix | None = None,
+    poles: str | Sequence[_Number] | Mapping[str, Any] | MatrixBase | None = None,
+    polynomial: str | Expr | None = None,
+    method: str = "auto",
+    floats: str | None = None,
+) -> _UnknownInputObserverResult:
+    """Estimate the state of ẋ = A x + B u + E d irrespective of d by  ż = F z + B_u u + B_y y,  x̂ = z + H (y − D u)."""

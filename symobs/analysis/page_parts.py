@@ -75,10 +75,15 @@ _WIDEST = 80
 _DECIMALS = 4
 
 
-def given(page: Builder, *desired: tuple[str, DesiredPolynomial | None], where: Iterable[Condition] = ()) -> None:
+def given(
+    page: Builder,
+    *desired: tuple[str, DesiredPolynomial | None],
+    where: Iterable[Condition] = (),
+    disturbed: Matrix | None = None,
+) -> None:
     """State the plant, and the desired poles or polynomials by name (`control`, `observer`, …).
 
-    `where` says further of which parameters the page speaks.
+    `where` says further of which parameters the page speaks; `disturbed` is the E of ẋ = A x + B u + E d.
     """
     plant, m = page.plant, page.plant.matrices
     with page.section("given"):
@@ -92,6 +97,9 @@ def given(page: Builder, *desired: tuple[str, DesiredPolynomial | None], where: 
         if m.has_input:
             page.set("B", m.B)
             rate = rate + _as_given(page, m.B) @ page["u"]
+        if disturbed is not None:
+            page.set("E_d", disturbed)
+            rate = rate + _as_given(page, disturbed) @ page["d"]
         relations.append(relation(page["x"].derivative, rate))
         page.environment = page.environment.extended_by(dynamics={"x": rate.formula})
         if m.has_output:
@@ -134,6 +142,8 @@ def _hold_to_letters(page: Builder) -> None:
     """Bind what is displayed to the letters: ẋ = A x + B u, y = C x + D u, and P to its realisation."""
     m, x, u = page.plant.matrices, page["x"], page["u"]
     rate = page["A"] @ x + page["B"] @ u if m.has_input else page["A"] @ x
+    if page.defines("E_d"):
+        rate = rate + page["E_d"] @ page["d"]
     facts = [relation(x.derivative, rate)]
     if m.has_output:
         output = page["C"] @ x + page["D"] @ u if m.has_feedthrough else page["C"] @ x

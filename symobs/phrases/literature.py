@@ -94,6 +94,15 @@ _article(
     "1949",
     "487–490",
 )
+_article(
+    "darouach1994",
+    "M. Darouach, M. Zasadzinski and S. J. Xu",
+    "Full-order observers for linear systems with unknown inputs",
+    _TAC,
+    "39",
+    "1994",
+    "606–609",
+)
 _article("doyle1979", "J. C. Doyle and G. Stein", "Robustness with observers", _TAC, "24", "1979", "607–611")
 _article(
     "francis1976",
@@ -114,6 +123,15 @@ _article(
     "128–151",
 )
 _article(
+    "johnson1971",
+    "C. D. Johnson",
+    "Accommodation of external disturbances in linear regulator and servomechanism problems",
+    _TAC,
+    "16",
+    "1971",
+    "635–644",
+)
+_article(
     "gopinath1971",
     "B. Gopinath",
     "On the control of linear multiple input-output systems",
@@ -130,6 +148,15 @@ _article(
     "72",
     "1969",
     "443–448",
+)
+_article(
+    "hautus1983",
+    "M. L. J. Hautus",
+    "Strong detectability and observers",
+    "Linear Algebra Appl.",
+    "50",
+    "1983",
+    "353–368",
 )
 _article(
     "hautus1970",

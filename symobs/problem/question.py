@@ -35,6 +35,7 @@ from symobs.specification import (
     read_quantity,
 )
 from symobs.system import read_matrix, read_scalar
+from symobs.system.matrices import as_rows
 from symobs.system.reading import has_decimals
 
 if TYPE_CHECKING:
@@ -49,6 +50,7 @@ if TYPE_CHECKING:
 
 #: Keywords whose matrices stand among the data, and the letters they have there.
 _DATA = {"K": "K", "L": "L", "T": "T", "reference_matrix": "A_ref", "reference_start": "x_d0"}
+_DATA |= {"E": "E_d", "S": "S_w", "V": "V_w"}  # of disturbances
 #: Kinds of keyword whose value is a word: the word chooses the sentence.
 _WORDS = {"Name", "Sign"}
 
@@ -233,7 +235,8 @@ def _read(value: object, kind: str, name: str, plant: StateSpace, task: str) -> 
         case "PolynomialText":
             return parse_polynomial(value, plant.variable, plant.symbols.names, where=where, functions=True)
         case "GainText" | "MatrixText":
-            return read_matrix(value, plant.symbols.seen(value), where)
+            rows = as_rows("B", value) if name == "E" else value
+            return read_matrix(rows, plant.symbols.seen(value), where)
         case "IntervalText":
             return read_interval(value, plant)
         case "SignalText" | "TimeFunctions":

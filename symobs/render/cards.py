@@ -66,6 +66,10 @@ NAMES: dict[str, dict[str, str | Formula]] = {
     },
     "tracking": {"K": "K", "K_d": "K_d", "L": "L", "error_matrix": "A_e", "polynomial": "chi_cl"},
     "integral_action": {"K": "K", "k_I": "k_I", "polynomial": "chi_cl", "closed_loop_matrix": "A_cl"},
+    "disturbance_observer": {"L_x": "L_x", "L_w": "L_w", "polynomial": "phi", "poles": "phi"},
+    "unknown_input_observer": {
+        "H": "H_d", "T": "T_d", "L": "L", "F": "F_d", "B_y": "L_y", "polynomial": "phi", "poles": "phi",
+    },
     "pole_advice": {"polynomial": "phi", "sigma": "sigma_d", "omega_d": "omega_d"},
     "stability_region": {"polynomial": "chi_p"},
 }  # fmt: skip

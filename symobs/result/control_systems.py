@@ -65,7 +65,7 @@ def to_control(result: Any) -> dict[str, Any]:
     for name, system in result.systems.items():
         require_numbers(system, "a system of python-control")
         arrays = [_array(matrix) for matrix in system]
-        inputs, outputs = _signals(name, plant)
+        inputs, outputs = _signals(name, plant, system.C.shape[0])
         dt = float(plant.dt) if isinstance(plant.dt, Fraction) else plant.dt
         made = control.ss(*arrays, dt, inputs=inputs, outputs=outputs, name=name)
         made.exact = _exact(system, plant)
@@ -80,13 +80,14 @@ def _exact(system: Realisation, plant: StateSpace) -> StateSpace:
     return StateSpace(*system, plant.dt)
 
 
-def _signals(name: str, plant: StateSpace) -> tuple[list[str], list[str]]:
-    """Return the names of the inputs and of the outputs of a system."""
+def _signals(name: str, plant: StateSpace, count: int) -> tuple[list[str], list[str]]:
+    """Return the names of the inputs and of the outputs, so many of them, of a system."""
     m, n, p = plant.inputs, plant.order, plant.outputs
     u, y, x_hat = _labels("u", m), _labels("y", p), _labels("x_hat", n)
     return {
         "plant": (u, y),
         "observer": ([*u, *y], x_hat),
+        "disturbance_observer": ([*u, *y], [*x_hat, *_labels("d_hat", count - n)]),
         "compensator": (y, _labels("w", m)),
         "closed_loop": (_labels("v", m), y),
         "servo": (_labels("r", p), y),

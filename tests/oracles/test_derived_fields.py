@@ -177,6 +177,10 @@ def computed(part: Result, point: Point) -> dict[str, Any]:
         closed = subtract(A, multiply(B, answer["K"])) if "K" in answer else None
         fixed = hidden_at(transposed(A), transposed(B), s)
         return {"closed_loop_matrix": closed, "poles": answer["polynomial"], "fixed_modes": fixed}
+    if part.task == "disturbance_observer":
+        return with_model(part, point, answer, s)
+    if part.task == "unknown_input_observer":
+        return without_input(answer, (A, C), s)
     if part.task == "integral_action":
         rows, inputs = [[-value for value in row] for row in C], [[-value for value in row] for row in D]
         wide, tall = (
@@ -223,6 +227,31 @@ def computed(part: Result, point: Point) -> dict[str, Any]:
         "closed_loop_polynomial": characteristic_at(loop, s),
         "closed_loop": loop_at((A, B, C, D), answer["F"], s),
     }
+
+
+def with_model(part: Any, point: Point, answer: dict[str, Any], s: Fraction) -> dict[str, Any]:
+    """Return the matrices of the observer of plant and exosystem from its gains."""
+    moved, seen = (matrix_at(getattr(part.inner.plant.matrices, name), point) for name in "AC")
+    expected = {"poles": answer["polynomial"], "fixed_modes": hidden_at(moved, seen, s)}
+    if "L_x" not in answer:
+        return expected
+    L = answer["L_x"] + answer["L_w"]
+    return expected | {"A": subtract(moved, multiply(L, seen)), "B_y": L}
+
+
+def without_input(answer: dict[str, Any], pair: tuple[Rows, Rows], s: Fraction) -> dict[str, Any]:
+    """Return T, F and what multiplies y from the H and L of an unknown-input observer."""
+    if "H" not in answer:
+        return {}
+    A, C = pair
+    T = subtract([[Fraction(int(i == j)) for j in range(len(A))] for i in range(len(A))], multiply(answer["H"], C))
+    assert answer["T"] == T
+    fixed = {"fixed_modes": hidden_at(multiply(T, A), C, s)}
+    if "L" not in answer:
+        return fixed
+    F = subtract(multiply(T, A), multiply(answer["L"], C))
+    assert answer["B_y"] == plus(answer["L"], multiply(F, answer["H"]))
+    return fixed | {"F": F, "polynomial": characteristic_at(F, s), "poles": characteristic_at(F, s)}
 
 
 def errors_of(part: Any, point: Point, A: Rows, B: Rows, C: Rows, s: Fraction) -> dict[str, Any]:

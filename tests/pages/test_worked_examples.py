@@ -266,6 +266,8 @@ def is_member(viewed: ResultInConvention, place: str, expect: Mapping[str, Any])
         known = part.plant.C.rows
         whole = part.T * A * part.T.inv()
         A, moved = whole[known:, known:], gain * whole[:known, known:]
+    if part.task == "unknown_input_observer":
+        A = part.T * A
     found = (variable * sympy.eye(A.rows) - A + moved).det(method="berkowitz")
     return bool(sympy.expand(found - part.polynomial) == 0)
 

@@ -10,6 +10,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from symobs.design.compensator.output_feedback import OutputFeedback
+from symobs.design.disturbance.unknown_input_observer import UnknownInputObserver
 from symobs.design.full_order.observer import ObserverDesign
 from symobs.design.gain.gain_design import GainDesign
 from symobs.design.gain.gain_kind import AssignedGain
@@ -71,6 +72,12 @@ def from_gains(result: Result, gains: Mapping[str, Matrix]) -> Result:
         inner = ObserverDesign.of_given(result.inner.plant, gains["L"])
         placed = DesiredPolynomial(result.plant.variable, (inner.answer["polynomial"],))
         return type(result).assembled(result.plant, inner, placed, result.answer["T"], result.method)
+    if isinstance(result, UnknownInputObserver):
+        if result.inner is None or "L" not in gains:
+            return result
+        inner = ObserverDesign.of_given(result.inner.plant, gains["L"])
+        placed = DesiredPolynomial(result.plant.variable, (inner.answer["polynomial"],))
+        return result.with_gain(inner, placed)
     if isinstance(result, IntegralAction):
         given = type(result.loop).of_given(result.loop.plant, _whole(result, gains))
         placed = DesiredPolynomial(result.plant.variable, (given.answer["polynomial"],))
@@ -86,6 +93,9 @@ def design_with(result: Result, name: str) -> GainDesign:
     if isinstance(result, OutputFeedback):
         return design_with(result.feedback if name == "K" else result.estimator, name)
     if isinstance(result, ReducedOrderObserver):
+        return result.inner
+    if isinstance(result, UnknownInputObserver):
+        assert result.inner is not None  # noqa: S101 - without it there is no gain to be judged
         return result.inner
     if isinstance(result, IntegralAction):
         return result.loop

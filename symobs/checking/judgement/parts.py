@@ -43,6 +43,7 @@ GAINS: dict[str, tuple[str, ...]] = {
     "reduced_order_observer": ("L",),
     "state_feedback": ("K",),
     "tracking": ("K", "L"),
+    "unknown_input_observer": ("L",),
 }
 #: Fields besides gains that many values meet: their claim decides, given the gains.
 CLAIMED = {("tracking", "K_d"), ("feedforward", "F")}

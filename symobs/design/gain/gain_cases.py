@@ -4,16 +4,17 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, TypeVar
 
-from symobs.analysis.strata.strata import common_places, places, places_of, solved
+from symobs.analysis.strata.strata import common_places, equations_of, places, places_of, solved
+from symobs.conditions import Condition
 from symobs.design.pole_placement.multiple_outputs import MultiOutputPair
-from symobs.exact import Matrix
+from symobs.exact import Ideal, Matrix, TooLarge
 
 if TYPE_CHECKING:
     from symobs.analysis.strata.strata import Place
     from symobs.design.gain.gain_design import GainDesign
     from symobs.design.gain.gain_kind import Places
     from symobs.exact import Scalar
-    from symobs.result import Case
+    from symobs.result import Case, Result
     from symobs.specification import DesiredPolynomial
     from symobs.system import StateSpace
 
@@ -78,6 +79,24 @@ def places_where(design: GainDesign) -> tuple[Place, ...]:
     if design.pair.is_observable or gain is not None:
         return (*found, *places(plant, chosen(design)))
     return (*found, *common_places(plant, design.existence)) if design.existence else found
+
+
+def places_beside(whole: Result, inner: GainDesign) -> tuple[Place, ...]:
+    """Return the strata of a gain that is a part of another result, on which its own plant is defined."""
+    known = {condition.expression for condition in whole.domain}
+    apart = [Condition("domain", c.expression) for c in inner.domain if c.expression not in known]
+    return tuple(
+        place._replace(when=(*place.when, *(c for c in apart if _meets(place, c.expression))))
+        for place in places_where(inner)
+    )
+
+
+def _meets(place: Place, value: Scalar) -> bool:
+    """Return whether a value may vanish where the equations of a stratum hold."""
+    try:
+        return not Ideal.of((*equations_of(place), value)).is_whole
+    except TooLarge:
+        return True
 
 
 def cases_of_given(design: GainDesign) -> tuple[Case, ...]:

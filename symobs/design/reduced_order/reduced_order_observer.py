@@ -12,14 +12,13 @@ from typing import TYPE_CHECKING, Any, ClassVar, Self
 from symobs._dataclass import dataclass
 from symobs.analysis.strata.strata import equations_of, places, solved
 from symobs.certificate.claims import Certificate, Claim
-from symobs.conditions import Condition
 from symobs.derivation.builder import relation
 from symobs.design.full_order.observer import ObserverDesign
-from symobs.design.gain.gain_cases import chosen, design_of, places_where
+from symobs.design.gain.gain_cases import chosen, design_of, places_beside
 from symobs.design.gain.gain_design import letters_of
 from symobs.design.reduced_order.partition import Partition, completed, partition
 from symobs.errors import CertificateRejected, InputError
-from symobs.exact import Ideal, Matrix, Root, Scalar, TooLarge, kernel, modulo
+from symobs.exact import Matrix, Root, Scalar, kernel, modulo
 from symobs.exact.linear_algebra.realisation import Realisation
 from symobs.formula import Environment
 from symobs.formula.term import block, identity, letter
@@ -41,6 +40,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
     from symobs.analysis.strata.strata import Place
+    from symobs.conditions import Condition
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -208,19 +208,9 @@ class ReducedOrderObserver(Result):
         if self.plant.outputs == 1 and not self.unmoved_modes:
             return own
         found = {equations_of(place): place for place in own}
-        for place in self._inner_places:
+        for place in places_beside(self, self.inner):
             found.setdefault(equations_of(place), place)
         return tuple(found.values())
-
-    @property
-    def _inner_places(self) -> tuple[Place, ...]:
-        """The strata of the inner gain on which the pair (A₁₂, A₂₂) is defined."""
-        known = {condition.expression for condition in self.domain}
-        apart = [Condition("domain", c.expression) for c in self.inner.domain if c.expression not in known]
-        return tuple(
-            place._replace(when=(*place.when, *(c for c in apart if _meets(place, c.expression))))
-            for place in places_where(self.inner)
-        )
 
     @cached_property
     def fields(self) -> Mapping[str, Any]:
@@ -232,14 +222,6 @@ class ReducedOrderObserver(Result):
             "fixed_modes": self.unmoved_modes,
             "family": self.gain_family,
         }
-
-
-def _meets(place: Place, value: Scalar) -> bool:
-    """Return whether a value may vanish where the equations of a stratum hold."""
-    try:
-        return not Ideal.of((*equations_of(place), value)).is_whole
-    except TooLarge:
-        return True
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -96,6 +96,8 @@ class IntegralAction(Result):
             )
             yield Claim(relation(letter("w", e), "!==", Matrix.zeros(1, size)), e, "w is not 0")
         if K is not None:
+            both = block([[letter("K", e), -letter("k_I", e)]])
+            yield Claim(relation(both, self.loop.answer["K"]), e, "[K, -k_I] is the feedback of plant and integrator")
             closed = block(closed_loop(e, plant))
             pencil = letter("s", e) @ identity(size, e) - closed
             yield Claim(relation(pencil.apply("det"), self.answer["polynomial"]), e, "det(s*I - closed loop) = phi")

@@ -11,7 +11,6 @@ from symobs.design.reference.integral_action import IntegralAction, closed_loop,
 from symobs.exact import Matrix, Scalar, rank
 from symobs.formula import Evaluated, Literal
 from symobs.formula.term import block
-from symobs.phrases.spoken import Counted
 from symobs.result import page_of
 from symobs.stability.criteria.stability import stability
 
@@ -86,7 +85,7 @@ def _design(page: Builder, design: IntegralAction, *, is_case: bool = False) -> 
         page.assume("integral_provided", *conditions)
     _gains(page, design)
     if design.fields["family"] is not None:
-        page.remark("integral_family", count=Counted("free_parameter", design.fields["family"]["dimension"]))
+        page.remark("integral_family")
     if not is_case:
         page.signal("u", -page["K"] @ page["x"] + page["k_I"] @ page["xi_I"], say="integral_law")
     _closed_loop(page)

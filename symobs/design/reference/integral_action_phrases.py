@@ -18,7 +18,7 @@ PHRASES: dict[str, str] = {
     "integral_gains": "The design of state feedback for plant and integrator together gives",
     "integral_parts": "so that the gains of the state and of the integral are",
     "integral_law": "The control law is",
-    "integral_family": "The gain is not unique: the gains that assign this polynomial have {count}.",
+    "integral_family": "The gain is not unique: other gains assign the same polynomial.",
     "integral_loop": "In the coordinates ($x$, $xi_I$) the closed loop has the system matrix",
     "integral_closed": "The closed loop is therefore",
     "integral_rest": "If the closed loop is stable, the control error vanishes in the steady state, since the DC gain from $r_in$ to $y$ is {gain}.",

@@ -118,6 +118,7 @@ PHRASES: dict[str, str] = {
     "live_task_controllability": "controllability",
     "live_task_decomposition": "decomposition",
     "live_task_detectability": "detectability",
+    "live_task_disturbance_observer": "disturbance observer",
     "live_task_dual": "dual",
     "live_task_feedforward": "feedforward",
     "live_task_gramian": "Gramian",
@@ -137,6 +138,7 @@ PHRASES: dict[str, str] = {
     "live_task_time_varying_observability": "time-varying observability",
     "live_task_tracking": "tracking",
     "live_task_transfer_function": "transfer function",
+    "live_task_unknown_input_observer": "unknown-input observer",
 }
 
 #: They stand within a sentence, or beside one.
@@ -149,10 +151,10 @@ CONTINUES = (
     "live_case_yes", "live_case_no", "live_case_conditional", "live_case_undecided", "live_nothing_to_save",
     "live_no_derivation", "live_another_page", "live_server_says", "live_late", "live_arithmetic", "said_roots",
     "live_task_canonical_form", "live_task_characteristic_polynomial", "live_task_compensator",
-    "live_task_controllability", "live_task_decomposition", "live_task_detectability", "live_task_dual",
+    "live_task_controllability", "live_task_decomposition", "live_task_detectability", "live_task_disturbance_observer", "live_task_dual",
     "live_task_feedforward", "live_task_initial_state", "live_task_initial_state_covariance",
     "live_task_integral_action", "live_task_matrix_exponential", "live_task_observability", "live_task_observer",
     "live_task_pole_advice", "live_task_reduced_order_observer", "live_task_response", "live_task_stability_region",
     "live_task_stabilizability", "live_task_state_feedback", "live_task_time_varying_observability",
-    "live_task_tracking", "live_task_transfer_function",
+    "live_task_tracking", "live_task_transfer_function", "live_task_unknown_input_observer",
 )  # fmt: skip

@@ -83,6 +83,7 @@ OPENS = ("part",)
 UNSAID = (
     "auto",
     "basis",
+    "decoupled",
     "derivatives",
     "determinant",
     "eigenvalues",

@@ -39,7 +39,6 @@ COUNTS: dict[str, dict[str, str]] = {
     "number": {"other": "{word}"},
     "varies": {"1": "varies", "other": "vary"},
     "point": {"1": "one point", "other": "{word} points"},
-    "free_parameter": {"1": "one free parameter", "other": "{word} free parameters"},
     "interval": {"1": "one interval", "other": "{word} intervals"},
     "open_piece": {"1": "one open piece", "other": "{word} open pieces"},
     "piece": {"1": "one piece", "other": "{word} pieces"},

@@ -70,6 +70,11 @@ SIGNALS = frozenset(
         "x_d",
         "e_d",
         "xi_I",
+        "d",
+        "d_hat",
+        "w_e",
+        "w_hat",
+        "e_w",
     }
 )
 

@@ -42,6 +42,8 @@ _CLAIMS: dict[str, Callable[[Branch], Iterator[Claim]]] = {
     "feedforward": claims_of_designs.feedforward,
     "tracking": claims_of_designs.tracking,
     "integral_action": claims_of_designs.integral_action,
+    "unknown_input_observer": claims_of_designs.unknown_input_observer,
+    "disturbance_observer": claims_of_designs.disturbance_observer,
     "matrix_exponential": claims_in_time.matrix_exponential,
     "gramian": claims_in_time.gramian,
     "time_varying_observability": claims_in_time.time_varying,

@@ -231,3 +231,43 @@ def integral_action(b: Branch) -> Iterator[Claim]:
     yield zero("assigned", closed.characteristic(b.s) - wanted)
     yield same("closed loop", closed, b.field("closed_loop_matrix"))
     yield zero("poles", wanted - from_roots(b.variable, b.answer["poles"]))
+
+
+def unknown_input_observer(b: Branch) -> Iterator[Claim]:
+    wanted, E = b.desired(), matrix(rows(b.specification["E"]))
+    assert wanted is not None
+    seen = b.C @ E
+    yield zero("polynomial", wanted - b.field("polynomial"))
+    yield Claim("solvable", "contains", (seen.T, E.T), b.answer["solvable"])
+    if not b.answer["solvable"]:
+        yield Claim("verdict", "is", (), b.verdict == "no")
+        return
+    H, T = as_matrix(b, "H"), b.field("T")
+    yield same("decoupled", H @ seen, E)
+    yield same("T", T, identity(b.order) - H @ b.C)
+    yield Claim("verdict", "divides", (T @ b.A, b.C, wanted), b.verdict != "no")
+    yield Claim("fixed modes", "hidden", (T @ b.A, b.C, from_roots(b.variable, b.answer["fixed_modes"])))
+    if b.verdict == "no":
+        return
+    F, B_y = b.field("F"), b.field("B_y")
+    yield same("error without x", T @ b.A - F @ T, B_y @ b.C)
+    yield same("error without u", T @ b.B - B_y @ b.D, b.field("B_u"))
+    yield zero("assigned", F.characteristic(b.s) - wanted)
+
+
+def disturbance_observer(b: Branch) -> Iterator[Claim]:
+    wanted, E, n = b.desired(), matrix(rows(b.specification["E"])), b.order
+    assert wanted is not None
+    q = columns_of(E)
+    S = matrix(rows(b.specification["S"])) if "S" in b.specification else scalar(int(b.variable == "z")) * identity(q)
+    order = 2 if "S" in b.specification else q
+    A = stack(beside(b.A, E if order == q else beside(E, zeros(n, 1))), beside(zeros(order, n), S))
+    C = beside(b.C, zeros(rows_of(b.C), order))
+    yield zero("polynomial", wanted - b.field("polynomial"))
+    yield Claim("verdict", "divides", (A, C, wanted), b.verdict != "no")
+    yield Claim("fixed modes", "hidden", (A, C, from_roots(b.variable, b.answer["fixed_modes"])))
+    if b.verdict == "no":
+        return
+    closed = A - stack(b.field("L_x"), b.field("L_w")) @ C
+    yield same("observer", closed, b.field("A"))
+    yield zero("assigned", closed.characteristic(b.s) - wanted)

@@ -41,6 +41,8 @@ TASKS: dict[str, float] = {
     "feedforward": 3,
     "tracking": 4,
     "integral_action": 3,
+    "unknown_input_observer": 3,
+    "disturbance_observer": 3,
     "pole_advice": 2,
     "stability_region": 2,
 }
@@ -160,6 +162,25 @@ def _integral_action(random: Random, shape: Shape) -> Drawn:
     return desired(random, shape, shape.order + shape.outputs) if shape.order + shape.outputs <= 7 else None
 
 
+def _unknown_input_observer(random: Random, shape: Shape) -> Drawn:
+    """One or two disturbances, that the outputs do not always see."""
+    if shape.order > 5:
+        return None
+    E = shapes.dense(random, shape.order, random.choice([1, 1, min(2, shape.outputs)]), 0)
+    return _joined(desired(random, shape, shape.order), {"E": text_of(shapes.texts(E))})
+
+
+def _disturbance_observer(random: Random, shape: Shape) -> Drawn:
+    """A constant disturbance, two of them, or a sinusoid."""
+    q = random.choice([1, 1, min(2, shape.outputs)])
+    E, model, more = shapes.dense(random, shape.order, q, 0), {}, q
+    if q == 1 and random.random() < 0.5:
+        model, more = {"S": random.choice(["[0 2; -2 0]", "[0 1; -1 0]", "[-1 1; 0 0]"])}, 2
+    if shape.order + more > 6:
+        return None
+    return _joined(desired(random, shape, shape.order + more), {"E": text_of(shapes.texts(E))}, model)
+
+
 def _tracking(random: Random, shape: Shape) -> Drawn:
     """A reference that can be followed more often than not: A_d = A − B X."""
     minimal = shape.outputs < shape.order
@@ -242,6 +263,8 @@ _SPECIFICATIONS: dict[str, Callable[[Random, Shape], Drawn]] = {
     "feedforward": _feedforward,
     "tracking": _tracking,
     "integral_action": _integral_action,
+    "unknown_input_observer": _unknown_input_observer,
+    "disturbance_observer": _disturbance_observer,
     "pole_advice": _pole_advice,
     "stability_region": regions.drawn,
 }

@@ -19,8 +19,8 @@ FEWER = {
     "compensator/minimal_order": ("observer_",),
     "tracking": ("observer_",),
 }
-#: Tasks whose polynomial has as many roots more as the plant has outputs; they are asked about plants with one.
-MORE = {"integral_action"}
+#: Tasks whose polynomial has as many roots more as the plant has outputs, or as there are disturbances: one is asked for.
+MORE = {"integral_action", "disturbance_observer"}
 #: Tasks whose gain is not one of x̄ = T x: they choose coordinates themselves.
 OWN_COORDINATES = {"reduced_order_observer", "compensator/minimal_order", "tracking"}
 #: Methods that answer another question than the other methods of their task.
@@ -28,6 +28,11 @@ OTHER_QUESTIONS = {"compensator/minimal_order", "pole_advice/dominant_pair"}
 #: Which of a task's keywords for quantities, and which inputs, are asked for, and with what: not all of them go together.
 QUANTITIES = {"pole_advice/dominant_pair": {"settling_time": "2", "overshoot": "1/20"}}
 QUANTITIES["response"] = QUANTITIES["response/superposition"] = QUANTITIES["response/auto"] = {"input": "1 - exp(-t)"}
+#: Tasks about plants with disturbances, which are asked for plants with two states.
+DISTURBED = {name: {"E": "[1; 0]"} for name in ("unknown_input_observer", "disturbance_observer")}
+QUANTITIES |= {name: given for task, given in DISTURBED.items() for name in (task, f"{task}/auto")}
+QUANTITIES |= {"unknown_input_observer/decoupled": DISTURBED["unknown_input_observer"]}
+QUANTITIES |= {"disturbance_observer/extended_state": DISTURBED["disturbance_observer"]}
 QUANTITIES |= {name: {"radius": "3"} for name in ("pole_advice", "pole_advice/butterworth", "pole_advice/auto")}
 
 
@@ -56,6 +61,8 @@ def factors(asked: str, keyword: str, listed: Sequence[Any]) -> Sequence[Any]:
 
 def is_for(asked: str, plant: StateSpace, poles: Sequence[str]) -> bool:
     """Whether a task can be asked about a plant at all: there is something left to estimate, and pairs stay whole."""
+    if asked.partition("/")[0] in DISTURBED:
+        return plant.order == 2
     if asked.partition("/")[0] in MORE:
         return plant.outputs == 1
     if not {asked, asked.partition("/")[0]} & FEWER.keys():

@@ -148,7 +148,7 @@ def _holds_at(part: Result, answer: Mapping[str, Any], world: World) -> bool:
         return _is_reduced_order(replace(part, answer=answer), (A, B, C, D), s, world)
     if part.task == "reduced_order_observer" and part.plant.equations:
         return _is_no_reduced_order(part, answer, A, C, world)
-    return part.task in HOLDS and _holds_by_definition(part, answer, world)
+    return _holds_by_definition(part, answer, world)
 
 
 def _is_no_reduced_order(part: Any, answer: Mapping[str, Any], A: Rows, C: Rows, world: World) -> bool:
@@ -181,6 +181,7 @@ def _holds_by_definition(part: Result, answer: Mapping[str, Any], world: World) 
     """Hold what a result would say with these answers to the plant, and to the polynomial asked for, at a point."""
     told = replace(part, answer=answer)
     values = [value for value in answer.values() if isinstance(value, (Matrix, Scalar))]
+    values += part.data.values()
     names = set(part.plant.field.names).union(*(value.names for value in values)) - {part.plant.variable}
     desired = getattr(part, "desired", None)
     wanted = {} if desired is None else {"polynomial": desired.polynomial}

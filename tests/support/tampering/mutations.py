@@ -279,7 +279,7 @@ def parts_of(result: Result, where: str = "") -> Iterator[tuple[str, Result]]:
     name = f"{where}{result.task}"
     yield name, result
     for part in ("feedback", "estimator", "inner"):
-        if part in type(result).__dataclass_fields__:
+        if getattr(result, part, None) is not None and part in type(result).__dataclass_fields__:
             yield from parts_of(getattr(result, part), f"{name}/")
     for case in result.case_tree:
         if case.result is not None:

@@ -1,0 +1,58 @@
+"""The unknown-input observer."""
+
+from __future__ import annotations
+
+PHRASES: dict[str, str] = {
+    "unknown_input_observer": "Unknown-input observer.",
+    "uio_independent": "The columns of $E_d$ are linearly dependent, {rank}. Independent ones are those of",
+    "uio_seen": "The existence test needs the product",
+    "uio_provided": "In what follows we assume {condition}.",
+    "uio_decoupled": "The estimation error can be decoupled from the unknown input, that is, $H_d C E_d = E_d$ has a solution $H_d$, if and only if $C E_d$ and $E_d$ have the same rank§, which they do: {rank}.",
+    "uio_output_matrix": "A solution is",
+    "uio_nothing": "There is no unknown input to decouple from, so we take",
+    "uio_projection": "With it we obtain",
+    "uio_not_decoupled": "Since {unseen} whereas {nonzero}, the ranks of $C E_d$ and $E_d$ differ. No matrix $H$ therefore satisfies $H C E_d = E_d$, and no such observer exists§.",
+    "uio_direction": "For the direction",
+    "uio_not_decoupled_along": "of the unknown input we obtain {unseen} whereas {nonzero}, so that the ranks of $C E_d$ and $E_d$ differ. No matrix $H$ therefore satisfies $H C E_d = E_d$, and no such observer exists§.",
+    "uio_observable": "The pair ($C$, $A_T$) is observable, {rank}: the plant has no invariant zeros from the unknown input to the output, and all poles of the observer can be assigned§.",
+    "uio_zeros_desired": "No observer of this kind moves the invariant <zero|zeros> {zeros} of the plant from the unknown input to the output, the unobservable <mode|modes> of the pair ($C$, $A_T$)§, but <it is|they are> among the desired poles.",
+    "uio_impossible": "No observer of this kind moves the invariant <zero|zeros> {zeros} of the plant from the unknown input to the output, the unobservable <mode|modes> of the pair ($C$, $A_T$)§, and <it is not|they are not all> among the desired poles: no such observer has these poles.",
+    "uio_zeros_stable": "Since no zero of the plant from the unknown input to the output is unstable, an observer with a convergent error exists; its poles include the zeros.",
+    "uio_zeros_unstable": "Since the plant has an unstable zero from the unknown input to the output, no observer of this kind has an error that converges.",
+    "uio_gain": "The design of an observer gain for this pair gives",
+    "uio_state_matrix": "so that the matrices of the observer are",
+    "uio_family": "The gain is not unique: other gains assign the same polynomial.",
+    "uio_observer": "The observer is therefore",
+    "uio_error": "Irrespective of the unknown input, the estimation error {error} satisfies",
+}
+
+ASSERTS: dict[str, tuple[str, ...]] = {
+    "uio_zeros_desired": ("polynomial",),
+    "uio_impossible": ("not_polynomial",),
+    "uio_zeros_stable": ("stable",),
+    "uio_zeros_unstable": ("unstable",),
+}
+
+QUESTIONS: dict[str, str] = {
+    "ask unknown_input_observer": "Design an observer whose estimation error does not depend on the unknown input.",
+    "ask unknown_input_observer poles": "Design an observer with the poles {poles} whose estimation error does not depend on the unknown input.",
+    "ask unknown_input_observer polynomial": "Design an observer with the characteristic polynomial {polynomial} whose estimation error does not depend on the unknown input.",
+    "also unknown_input_observer E": "The term $E_d d$ with the unknown input $d$ is added to the state equation.",
+}
+
+RESTS_ON: dict[str, str] = {
+    "uio_decoupled": "unknown_input",
+    "uio_not_decoupled": "unknown_input",
+    "uio_not_decoupled_along": "unknown_input",
+    "uio_observable": "unknown_input_zeros",
+    "uio_zeros_desired": "unknown_input_zeros",
+    "uio_impossible": "unknown_input_zeros",
+}
+
+THEOREMS: dict[str, str] = {
+    "unknown_input": "hautus1983; darouach1994",
+    "unknown_input_zeros": "hautus1983; darouach1994",
+}
+
+#: Phrases that go on with the sentence before them.
+CONTINUES = ("uio_state_matrix", "uio_not_decoupled_along")
