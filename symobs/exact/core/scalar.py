@@ -260,7 +260,12 @@ class Scalar:
         if self.field.roots and not self.is_constant:
             message = f"{self} is not rational"
             raise ValueError(message)
-        return Fraction(int(number_of(self.numerator_part)), int(number_of(self.denominator_part)))
+        above = int(number_of(self.numerator_part))
+        return (
+            Fraction(above)
+            if self.denominator_part.is_one()
+            else Fraction(above, int(number_of(self.denominator_part)))
+        )
 
     def terms(self) -> list[tuple[int, tuple[tuple[str, int], ...]]]:
         """Return the numerator's terms as (integer coefficient, ((name, exponent), …)), highest first."""
