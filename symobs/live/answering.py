@@ -21,9 +21,10 @@ from symobs.errors import (
 from symobs.exact import Scalar
 from symobs.exact.algebraic.root_location import complex_roots
 from symobs.formula import Letter, Literal, Relation
+from symobs.live.assets import SCHEMA
 from symobs.live.page import export_object, page_object
 from symobs.live.point import card_object, point_object, region_object
-from symobs.live.request import SCHEMA, Request, put_in, read
+from symobs.live.request import Request, put_in, read
 from symobs.live.time_responses import NoResponse, readout, responses_of
 from symobs.live.views import view_object, view_of
 from symobs.phrases.languages import language_named

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import gc
 import json
 import os
 import time
@@ -11,29 +10,21 @@ from itertools import count
 from symobs.child_processes.inside import serve
 from symobs.errors import SymobsError
 from symobs.live.answering import answer, errors_of
-from symobs.live.request import SCHEMA, parsed
-from symobs.result import formats, tasks
+from symobs.live.assets import SCHEMA
+from symobs.live.request import parsed
 
 #: It is replaced after so many answers, or when it has grown to so many megabytes.
 MOST_ANSWERS, MOST_MEGABYTES = 10_000, 500
-#: So many new objects are looked through for garbage at a time.
-_SELDOM = 20_000
 _answers = count(1)
 
 
 def prepare() -> None:
-    """Import every task and format, and solve one problem, so that the first question pays for nothing.
-
-    What is there then stays, and is not looked through for garbage again; an answer leaves little, so that is seldom done.
-    """
-    tasks()
-    formats()
+    """Solve the problem that the page begins with, so that the first question pays for nothing; further tasks wait."""
     plant = {"A": "[0 1; 0 -1]", "B": "[0; 1]", "C": "[1 0]"}
     poles = {"control_poles": "-2, -2", "observer_poles": "-10, -10"}
     problem = {"task": "compensator", "plant": plant, "specification": poles}
-    answer({"schema": "symobs-live/1", "problem": problem, "courses": {"count": 9}})
-    gc.freeze()
-    gc.set_threshold(_SELDOM)
+    for want in ("view", "answer"):
+        answer({"schema": SCHEMA, "want": want, "problem": problem, "courses": {"count": 9}})
 
 
 def respond(body: bytes) -> bytes:
