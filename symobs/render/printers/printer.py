@@ -195,8 +195,7 @@ class Printer(FormulaWriter[B]):
         """Return an exact scalar, spelled out once."""
         box = self.known.get(value)
         if box is None:
-            box = self.rational(value) if value.is_constant else self.expression(value)
-            self.known[value] = box
+            box = self.known[value] = self.rational(value) if value.is_constant else self.expression(value)
         return box
 
     def rational(self, value: Scalar) -> B:
