@@ -72,11 +72,14 @@ def plus_diagonal(rows: Rows, factor: fmpz_mpoly, addend: fmpz_mpoly) -> Rows:
 
 
 def leading_coefficient(polynomial: fmpz_mpoly, foreign: Sequence[int]) -> fmpz_mpoly:
-    """Return an integer times the coefficient of the highest powers of these generators, one after the other."""
-    for index in foreign:
-        while lower := polynomial.derivative(index):
-            polynomial = lower
-    return polynomial
+    """Return the coefficient of the highest powers of these generators, one after the other; powers may be thousands."""
+    terms = [(tuple([powers[i] for i in foreign]), powers, c) for powers, c in polynomial.terms()]
+    highest = max(own for own, _, _ in terms)
+    if not any(highest):
+        return polynomial
+    alone = {i: 0 for i in foreign}
+    found = {tuple([alone.get(i, e) for i, e in enumerate(powers)]): c for own, powers, c in terms if own == highest}
+    return polynomial.context().from_dict(found)
 
 
 def coprime(denominator: fmpz_mpoly, entries: Iterable[fmpz_mpoly]) -> bool:

@@ -184,12 +184,13 @@ export function mount(element, transport, options = {}) {
   let s = begun(options.state ?? "");
   let view = null, viewed = "", answer = null, sets = {}, held = null, frame = null, start = null;
   let waiting = null, running = false, number = 0, drawn = 0, restTimer = 0, busyTimer = 0, said = 0, gone = false, quiet = false, before = "";
-  let aborted = new AbortController(), language = null;
+  let aborted = new AbortController(), language = null, notice = "", point = null;
   const el = {};
 
   const w = (name, slots = {}) => filled(language[name], slots);
   const pretty = (s) => s.replace(/-/g, "−").replace(/(\d)\.(?=\d)/g, `$1${language.decimal_mark}`);
   const taskName = (task) => language[`task_${task}`] ?? task.replace(/_/g, " ");
+  const labelOf = (key) => language[`field_${key}`] ?? key.replace(/_/g, " ");
   const why = (error) => (error.status ? w(error.status === 403 ? "another_page" : "server_says", error) : error.message);
 
   // -- the frame of the page ------------------------------------------------------------------------------------------
@@ -199,12 +200,16 @@ export function mount(element, transport, options = {}) {
     return (el[name] = h("section", { class: `panel ${name}`, "aria-label": w(name) }, h("header", {}, h("h2", {}, w(name)), (el[`${name}Bar`] = h("span", { class: "tools" })), close), (el[`${name}Body`] = h("div", { class: "body" }, inside))));
   };
 
-  /** Build the frame where there is none in the language of the state. */
+  /** Build the frame where there is none in the language of the state, and return whether there was none. */
   function furnish() {
-    const code = s.language in LANGUAGES ? s.language : "en";
-    if (language === LANGUAGES[code]) return;
+    const stranger = s.language in LANGUAGES ? "" : s.language;
+    if (stranger) s.language = language ? root.lang : "";
+    const code = s.language || "en", derivation = el.html ? [...el.html.childNodes] : [];
+    if (language !== LANGUAGES[code] || stranger) notice = "";
+    if (language === LANGUAGES[code] && !stranger) return false;
     language = LANGUAGES[code];
     root.lang = code;
+    if (stranger) notice = w("no_language", { code: stranger.slice(0, 40) });
     el.task = h("select", { "aria-label": w("task"), onchange: () => { s.task = el.task.value; problemChanged(); } }, h("option", { value: s.task }, taskName(s.task)));
     el.examples = h("select", { "aria-label": w("example"), onchange: choose }, h("option", { value: "" }, w("examples")));
     el.language = h("select", { "aria-label": w("language"), onchange: () => { s.language = el.language.value; problemChanged(); el.language.focus(); } }, Object.entries(LANGUAGES).map(([key, own]) => h("option", { value: key, lang: key, selected: key === code }, own.name)));
@@ -221,7 +226,7 @@ export function mount(element, transport, options = {}) {
     el.starts = h("div", { class: "fields starts" });
     el.map = h("div", { class: "map" });
     el.point = h("div", { class: "point" });
-    el.html = h("div", { class: "html", tabindex: "0", "aria-label": w("page") });
+    el.html = h("div", { class: "html", tabindex: "0", "aria-label": w("page") }, derivation);
     el.plant = h("section", { class: "panel plant", "aria-label": w("problem") });
     el.reopen = h("span", { class: "reopen" });
     el.copy = h("button", { class: "copy", onclick: copyLink }, w("copy_link"));
@@ -236,6 +241,8 @@ export function mount(element, transport, options = {}) {
     el.detail = h("select", { "aria-label": w("detail"), onchange: () => { s.detail = el.detail.value; commit(true); rest(0); } }, DETAILS.map((d) => h("option", { value: d }, w(`detail_${d}`))));
     el.pageBar.append(el.detail);
     offer();
+    say("");
+    return true;
   }
 
   function fold(name, close) {
@@ -361,7 +368,8 @@ export function mount(element, transport, options = {}) {
     el.live.textContent = `${el.verdict.textContent}. ${answer.cards.filter((c) => /^[KLF]$/.test(c.name)).map((c) => c.says).join(". ")}`;
   }
 
-  function say(words, again) {
+  function say(now, again) {
+    const words = now || notice;
     el.message.hidden = !words;
     el.message.replaceChildren(...(words ? [h("span", {}, words), again ? h("button", { onclick: () => { say(""); again(); } }, w("try_again")) : ""] : []));
   }
@@ -410,14 +418,23 @@ export function mount(element, transport, options = {}) {
 
   // -- the problem: matrices, specification, symbols ---------------------------------------------------------------------
 
+  /** Hand on what was typed, with decimal points; a comma that may part entries or be a decimal mark is refused at its field. */
+  function typed(input, changed) {
+    const given = input.value.trim(), where = input.dataset.where ?? `specification.${input.dataset.set}`;
+    const points = given.replace(/(\d),(?=\d)/g, "$1."), isOne = /^at\.|\]$/.test(where);
+    const isParted = given.includes(";") && (input.dataset.set || where.startsWith("courses."));
+    if (language.decimal_mark === "," && (isOne || isParted)) changed(points.replace(/\s*;\s*/g, ", "));
+    else if (language.decimal_mark !== "," || points === given) changed(given);
+    else { clearWrong(); showErrors([{ where, message: w("comma"), repair: w("comma_repair") }]); }
+  }
+
   function field(where, label, given, changed, wide = true) {
-    const input = h("input", { value: given ?? "", "aria-label": label, "data-where": where, spellcheck: "false", autocapitalize: "off", autocomplete: "off", onchange: () => changed(input.value.trim()), onkeydown: (e) => { if (e.key === "Enter") changed(input.value.trim()); } });
+    const input = h("input", { value: given ?? "", "aria-label": label, "data-where": where, spellcheck: "false", autocapitalize: "off", autocomplete: "off", onchange: () => typed(input, changed), onkeydown: (e) => { if (e.key === "Enter") typed(input, changed); } });
     return wide ? h("label", { class: "field" }, h("span", {}, label), input, h("small", { class: "wrong" })) : input;
   }
 
   function build() {
-    furnish();
-    const isRegion = s.task === "stability_region";
+    const isFresh = furnish(), isRegion = s.task === "stability_region";
     const listed = ["A", "B", "C", "D"].filter((name) => s.plant[name] !== undefined);
     const rows = listed.map((name) => {
       const table = cells(s.plant[name]);
@@ -431,10 +448,10 @@ export function mount(element, transport, options = {}) {
       })));
       return h("div", { class: "named" }, h("i", {}, name), h("span", { class: "equals" }, "="), grid, h("small", { class: "wrong", "data-of": `plant.${name}` }));
     });
-    const all = h("details", { class: "astext" }, h("summary", {}, w("as_text")), ["A", "B", "C", "D", "transfer_function", "dt"].map((name) => field(`text.${name}`, name.replace("_", " "), s.plant[name], (t) => { if (t) s.plant[name] = t; else delete s.plant[name]; problemChanged(); })), field("text.symbols", "symbols", Object.entries(s.symbols).map(([n, g]) => `${n}: ${g}`).join(", "), (t) => { s.symbols = Object.fromEntries(t.split(",").map((e) => e.split(":").map((p) => p.trim())).filter(([n]) => n).map(([n, g]) => [n, g || "real"])); problemChanged(); }));
+    const all = h("details", { class: "astext" }, h("summary", {}, w("as_text")), ["A", "B", "C", "D", "transfer_function", "dt"].map((name) => field(`text.${name}`, labelOf(name), s.plant[name], (t) => { if (t) s.plant[name] = t; else delete s.plant[name]; problemChanged(); })), field("text.symbols", labelOf("symbols"), Object.entries(s.symbols).map(([n, g]) => `${n}: ${g}`).join(", "), (t) => { s.symbols = Object.fromEntries(t.split(",").map((e) => e.split(":").map((p) => p.trim())).filter(([n]) => n).map(([n, g]) => [n, g || "real"])); problemChanged(); }));
     if (s.plant.transfer_function !== undefined) rows.push(field("plant.transfer_function", "P(s)", s.plant.transfer_function, (t) => { s.plant.transfer_function = t; problemChanged(); }));
     const setKeys = (view?.sets ?? []).map((g) => g.key);
-    const others = Object.keys(s.spec).filter((key) => !setKeys.includes(key) && key !== "observer").map((key) => field(`specification.${key}`, key.replace(/_/g, " "), s.spec[key], (t) => { if (t) s.spec[key] = t; else delete s.spec[key]; problemChanged(); }));
+    const others = Object.keys(s.spec).filter((key) => !setKeys.includes(key) && key !== "observer").map((key) => field(`specification.${key}`, labelOf(key), s.spec[key], (t) => { if (t) s.spec[key] = t; else delete s.spec[key]; problemChanged(); }));
     const kind = s.task === "compensator" ? h("label", { class: "field" }, h("span", {}, w("kind")), h("select", { onchange: (e) => { s.spec.observer = e.target.value; fitObserver(); problemChanged(); } }, ["full", "minimal"].map((k) => h("option", { value: k, selected: (s.spec.observer ?? "full") === k }, w(`kind_${k}`))))) : null;
     const names = Object.keys(s.symbols).filter((n) => !(isRegion && view?.region?.parameters?.includes(n)));
     const sliders = names.map((name) => slider(name));
@@ -444,6 +461,11 @@ export function mount(element, transport, options = {}) {
     el.detail.value = s.detail;
     buildSets();
     showPanels();
+    if (!isFresh || !answer) return;
+    if (view?.panels.includes("region")) drawMap();
+    if (point && el.pointVerdict) drawPoint(point);
+    show(answer);
+    root.classList.add("stale");
   }
 
   /** An observer of minimal order has fewer poles: drop the last ones, or repeat the first. */
@@ -466,9 +488,13 @@ export function mount(element, transport, options = {}) {
 
   function takeView() {
     build();
-    const region = view.region;
+    point = null;
     el.map.replaceChildren();
-    if (!view.panels.includes("region")) return;
+    if (view.panels.includes("region")) drawMap();
+  }
+
+  function drawMap() {
+    const region = view.region;
     el.map.innerHTML = region?.svg ?? "";
     for (const [name, given] of Object.entries(region?.drawn_for ?? {})) s.at[name] ??= given;
     if (region?.handle) {
@@ -488,7 +514,7 @@ export function mount(element, transport, options = {}) {
   }
 
   function poleField(group) {
-    const input = h("input", { value: s.spec[group.key] ?? "", "data-set": group.key, "aria-label": w(`${group.label}s`), spellcheck: "false", onchange: () => { s.spec[group.key] = input.value.trim(); sets[group.key] = handles(input.value); drawPlane(true); commit(true); ask(); } });
+    const input = h("input", { value: s.spec[group.key] ?? "", "data-set": group.key, "aria-label": w(`${group.label}s`), spellcheck: "false", onchange: () => typed(input, (t) => { s.spec[group.key] = t; sets[group.key] = handles(t); drawPlane(true); commit(true); ask(); }) });
     return input;
   }
 
@@ -731,6 +757,7 @@ export function mount(element, transport, options = {}) {
   function drawPoint(got) {
     if (got.status !== "done") { drawAnswer(got); return; }
     clearWrong();
+    point = got;
     el.pointVerdict.textContent = `${view.region.parameters.map((n) => `${n} = ${pretty(s.at[n])}`).join(", ")}: ${w(`point_${got.verdict}`)}`;
     el.pointVerdict.dataset.verdict = got.verdict;
     el.pointMath.innerHTML = [...(got.cards ?? []), ...(got.boundary ?? [])].map((c) => `<div class="display">${c.mathml}</div>`).join("");
@@ -773,6 +800,11 @@ export function mount(element, transport, options = {}) {
     clearWrong();
     if (got.status === "bug" || (got.status === "undecided" && !got.cards)) { root.classList.add("stale"); say(got.status === "bug" ? got.message : w("undecided", { reason: got.message }), () => ask()); return; }
     answer = got;
+    show(got);
+  }
+
+  /** Show an answer. */
+  function show(got) {
     const claims = got.verdict === "no" ? "" : ` · ${w(got.claims === 1 ? "claim" : "claims", { count: got.claims })}`;
     el.verdict.textContent = w(`verdict_${got.verdict}`) + claims;
     el.verdict.dataset.verdict = got.verdict;
