@@ -77,7 +77,7 @@ def leading_coefficient(polynomial: fmpz_mpoly, foreign: Sequence[int]) -> fmpz_
     highest = max(own for own, _, _ in terms)
     if not any(highest):
         return polynomial
-    alone = {i: 0 for i in foreign}
+    alone = dict.fromkeys(foreign, 0)
     found = {tuple([alone.get(i, e) for i, e in enumerate(powers)]): c for own, powers, c in terms if own == highest}
     return polynomial.context().from_dict(found)
 
