@@ -423,7 +423,7 @@ export function mount(element, transport, options = {}) {
     const given = input.value.trim(), where = input.dataset.where ?? `specification.${input.dataset.set}`;
     const points = given.replace(/(\d),(?=\d)/g, "$1."), isOne = /^at\.|\]$/.test(where);
     const isParted = given.includes(";") && (input.dataset.set || where.startsWith("courses."));
-    if (language.decimal_mark === "," && (isOne || isParted)) changed(points.replace(/\s*;\s*/g, ", "));
+    if (language.decimal_mark === "," && (isOne || isParted)) changed(input.value = points.replace(/\s*;\s*/g, ", "));
     else if (language.decimal_mark !== "," || points === given) changed(given);
     else { clearWrong(); showErrors([{ where, message: w("comma"), repair: w("comma_repair") }]); }
   }
