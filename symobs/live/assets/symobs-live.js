@@ -298,7 +298,6 @@ export function mount(element, transport, options = {}) {
         const region = view.panels.includes("region") && view.region?.handle && Object.keys(s.at).length;
         if (region) {
           const got = await transport(asking("point", { at: s.at }));
-          await painted();
           drawPoint(got);
           if (waiting || moving) continue;
         }
@@ -306,7 +305,6 @@ export function mount(element, transport, options = {}) {
         const more = { at, cards_at: Object.keys(at).length > 0, cases: !moving && open("cases") };
         if (courses) more.courses = courses;
         const question = asking("answer", more), got = await transport(question);
-        await painted();
         if (got.id >= drawn || !got.id) drawAnswer(got);
       } catch (error) {
         if (!gone) say(w("no_answer", { reason: why(error) }), () => ask());
@@ -319,7 +317,6 @@ export function mount(element, transport, options = {}) {
   }
 
   const open = (name) => view?.panels.includes(name) && !s.closed.includes(name);
-  const painted = () => new Promise((done) => requestAnimationFrame(done));
   function busy(is) {
     root.classList.toggle("busy", is);
     root.setAttribute("aria-busy", String(is));
@@ -354,7 +351,6 @@ export function mount(element, transport, options = {}) {
       try {
         const got = await transport(asking("page", { detail: s.detail, at, cards_at: Object.keys(at).length > 0 }), signal);
         if (signal.aborted) return;
-
         if (got.html) el.html.innerHTML = got.html;
         else el.html.replaceChildren(h("p", { class: "pale" }, got.message ?? got.errors?.map((e) => e.message).join("; ") ?? w("no_derivation")), got.status === "undecided" ? h("button", { onclick: () => rest(0) }, w("try_again")) : null);
         el.page.setAttribute("aria-busy", "false");
@@ -370,6 +366,7 @@ export function mount(element, transport, options = {}) {
 
   function say(now, again) {
     const words = now || notice;
+    if (!words && el.message.hidden) return;
     el.message.hidden = !words;
     el.message.replaceChildren(...(words ? [h("span", {}, words), again ? h("button", { onclick: () => { say(""); again(); } }, w("try_again")) : ""] : []));
   }
@@ -545,6 +542,24 @@ export function mount(element, transport, options = {}) {
     if (!view?.panels.includes("plane")) return;
     if (!frame || (refit && !held)) fit();
     const focus = root.getRootNode().activeElement?.getAttribute?.("data-handle");
+    const grounded = JSON.stringify([frame, view.discrete, root.lang]), parts = [];
+    if (el.poles.firstChild?.dataset.of !== grounded) el.poles.replaceChildren(h("svg:g", { "data-of": grounded }, ground()));
+    else while (el.poles.childElementCount > 1) el.poles.lastChild.remove();
+    for (const m of answer?.marks ?? []) {
+      const [x, y] = [X(Number(m.re)), Y(Number(m.im))];
+      if (x > 38 && x < 466 && y > 14 && y < 338) parts.push(h("svg:path", { class: `mark ${m.kind}`, d: m.kind === "F" ? `M${x - 4} ${y}h8M${x} ${y - 4}v8` : `M${x - 3.5} ${y - 3.5}l7 7m0 -7l-7 7` }, h("svg:title", {}, w(`pole_of_${m.kind}`))));
+    }
+    for (const group of view.sets) {
+      const list = sets[group.key] ?? [], count = list.length;
+      list.forEach((p, k) => p.raw || parts.push(handle(group, list, p, k, count)));
+    }
+    if (Object.values(sets).flat().some((p) => p.raw)) parts.push(h("svg:text", { x: 46, y: 330, class: "remark" }, w("in_fields")));
+    el.poles.append(...parts);
+    if (focus) refocus(focus);
+  }
+
+  /** What stands still while poles are moved: the stable part, and the lines with their numbers. */
+  function ground() {
     const [x0, x1, y0, y1] = [(40 - frame.x) / frame.scale, (464 - frame.x) / frame.scale, (frame.y - 336) / frame.scale, (frame.y - 16) / frame.scale];
     const line = (name, a, b, c, d) => h("svg:line", { class: name, x1: a, y1: b, x2: c, y2: d });
     const label = (x, y, words, anchor) => h("svg:text", { x, y, "text-anchor": anchor }, pretty(words));
@@ -556,17 +571,7 @@ export function mount(element, transport, options = {}) {
     parts.push(line("axis", 40, Y(0), 464, Y(0)));
     if (X(0) > 40 && X(0) < 464) parts.push(line("axis", X(0), 16, X(0), 336));
     parts.push(label(464, Y(0) - 6, "Re", "end"), label(Math.min(456, Math.max(46, X(0) + 6)), 28, "Im", "start"));
-    for (const m of answer?.marks ?? []) {
-      const [x, y] = [X(Number(m.re)), Y(Number(m.im))];
-      if (x > 38 && x < 466 && y > 14 && y < 338) parts.push(h("svg:path", { class: `mark ${m.kind}`, d: m.kind === "F" ? `M${x - 4} ${y}h8M${x} ${y - 4}v8` : `M${x - 3.5} ${y - 3.5}l7 7m0 -7l-7 7` }, h("svg:title", {}, w(`pole_of_${m.kind}`))));
-    }
-    for (const group of view.sets) {
-      const list = sets[group.key] ?? [], count = list.length;
-      list.forEach((p, k) => p.raw || parts.push(handle(group, list, p, k, count)));
-    }
-    if (Object.values(sets).flat().some((p) => p.raw)) parts.push(h("svg:text", { x: 46, y: 330, class: "remark" }, w("in_fields")));
-    el.poles.replaceChildren(...parts);
-    if (focus) refocus(focus);
+    return parts;
   }
 
   /** Give the focus back to a handle that was drawn again; where it stood when it came there stays known. */
@@ -806,9 +811,10 @@ export function mount(element, transport, options = {}) {
   /** Show an answer. */
   function show(got) {
     const claims = got.verdict === "no" ? "" : ` · ${w(got.claims === 1 ? "claim" : "claims", { count: got.claims })}`;
-    el.verdict.textContent = w(`verdict_${got.verdict}`) + claims;
+    const told = w(`verdict_${got.verdict}`) + claims;
+    if (el.verdict.textContent !== told) el.verdict.textContent = told;
     el.verdict.dataset.verdict = got.verdict;
-    el.notes.textContent = got.note ?? "";
+    if (el.notes.textContent !== (got.note ?? "")) el.notes.textContent = got.note ?? "";
     drawCards(got);
     if (!el.cases.hidden) drawCases(got);
     if (!el.responses.hidden) drawCurves(got.courses);
@@ -880,13 +886,14 @@ export function mount(element, transport, options = {}) {
 
 /** Show a page whose state is that of its address: a drag is one step of its history, which Back undoes. */
 export function atAddress(transport) {
-  let moving = false;
+  let moving = false, timer = 0;
   const live = mount(/** @type {HTMLElement} */ (document.querySelector("main")), transport, {
     state: location.hash,
     link: (state) => `${location.origin}${location.pathname}#${state}`,
     changed(state, final) {
-      history[moving ? "replaceState" : "pushState"](null, "", `#${state}`);
-      moving = !final;
+      const write = () => { history[moving ? "replaceState" : "pushState"](null, "", `#${state}`); moving = !final; };
+      clearTimeout(timer);
+      if (final || !moving) write(); else timer = setTimeout(write, REST);  // it takes longer than a picture
     },
   });
   addEventListener("popstate", () => live.set(location.hash));
