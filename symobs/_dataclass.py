@@ -71,14 +71,18 @@ def _initialiser(cls: Any, parts: dict[str, Any], names: tuple[str, ...]) -> Cal
     made = [(name, part.default_factory) for name, part in parts.items() if part.default_factory is not _MISSING]
     most, total = len(names), len({*taken, *defaults, *(name for name, _ in made)})
     open_to_names = [frozenset(taken) - set(names[:count]) for count in range(most + 1)]
-    whole = most if most == total else None
+    rests = [{name: defaults[name] for name in names[count:] if name in defaults} for count in range(most + 1)]
+    whole = [most == total and count + len(rest) == most for count, rest in enumerate(rests)]
     finish = getattr(cls, "__post_init__", None)
 
     def initialise(self: Any, *values: Any, **named: Any) -> None:
         own = self.__dict__  # a frozen class refuses to be written to in any other way
-        if not named and len(values) == whole:
+        count = len(values)
+        if not named and count <= most and whole[count]:
             for name, value in zip(names, values):  # noqa: B905 - as many as were counted; the quickest way by far
                 own[name] = value
+            if count < most:
+                own.update(rests[count])
             if finish is not None:
                 finish(self)
             return
@@ -91,7 +95,7 @@ def _initialiser(cls: Any, parts: dict[str, Any], names: tuple[str, ...]) -> Cal
         for name, make in made:
             if name not in own:
                 own[name] = make()
-        if len(values) > most or len(own) != total or not named.keys() <= open_to_names[len(values)]:
+        if count > most or len(own) != total or not named.keys() <= open_to_names[count]:
             given = ", ".join((*map(repr, values), *named))
             raise TypeError(f"{cls.__qualname__} takes {', '.join(taken)}, not {given}")
         if finish is not None:

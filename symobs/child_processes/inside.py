@@ -20,7 +20,7 @@ NO_MEMORY = 76
 #: The bytes that tell the length of a record.
 HEAD = 8
 #: Imports and derivations make many objects that stay.
-_COLLECTED_AFTER = 50_000
+COLLECTED_AFTER = 50_000
 
 #: Who wants to know: called with the number of a group when it has started, and with None when it has ended.
 listeners: list[Callable[[int | None], None]] = []
@@ -80,9 +80,10 @@ def serve(
     os.dup2(2, 1)  # what libraries print must not come between the records
     _die_with(int(parent))
     signal.signal(signal.SIGINT, signal.SIG_IGN)
-    gc.set_threshold(_COLLECTED_AFTER)
+    gc.set_threshold(COLLECTED_AFTER)
     listeners.append(lambda group: say(stream, "group", group))
     prepare(*words)
+    gc.freeze()
     if float(megabytes):
         with suppress(ImportError, ValueError, OSError):  # where the system can
             bound_memory(int(float(megabytes) * 2**20))

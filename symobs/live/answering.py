@@ -21,9 +21,10 @@ from symobs.errors import (
 from symobs.exact import Scalar
 from symobs.exact.algebraic.root_location import complex_roots
 from symobs.formula import Letter, Literal, Relation
+from symobs.live.assets import SCHEMA
 from symobs.live.page import export_object, page_object
 from symobs.live.point import card_object, point_object, region_object
-from symobs.live.request import SCHEMA, Request, put_in, read
+from symobs.live.request import Request, put_in, read
 from symobs.live.time_responses import NoResponse, readout, responses_of
 from symobs.live.views import view_object, view_of
 from symobs.phrases.languages import language_named
@@ -278,13 +279,14 @@ def _case(case: Case, printer: CardPrinter) -> dict[str, Any]:
 
 def _readouts(solved: Solved) -> list[dict[str, str]]:
     """Return frequency, damping and settling time of every pole that was given as a number, a pair once."""
-    found, plant = [], solved.result.plant
+    found, plant, designs = [], solved.result.plant, _designs(solved.result)
     for group in view_of(solved.result.task).sets:
         for key in (group.key, *(f"{half}_{group.key}" for half in ("control", "observer"))):
             given = solved.problem.specification.get(key)
             if given is None or is_pattern(given):
                 continue
-            poles = read_poles(given, plant.symbols, f"specification.{key}")
+            asked = designs.get(key)
+            poles = asked.poles if asked else read_poles(given, plant.symbols, f"specification.{key}")
             upper = [pole for pole in poles if pole.imaginary.names or pole.imaginary.fraction() >= 0]
             for place, pole in enumerate(upper):
                 if pole.real.names or pole.imaginary.names:
@@ -292,6 +294,12 @@ def _readouts(solved: Solved) -> list[dict[str, str]]:
                 read_out = readout(pole.real.fraction(), pole.imaginary.fraction(), discrete=plant.is_discrete)
                 found.append({"handle": f"{key}.{place}", **read_out})
     return found
+
+
+def _designs(result: Result) -> dict[str, Any]:
+    """Return the desired polynomials of the two halves of a compensator."""
+    halves = {"control_poles": "feedback", "observer_poles": "estimator"}
+    return {key: getattr(vars(result)[half], "desired", None) for key, half in halves.items() if half in vars(result)}
 
 
 def _marks(result: Result) -> list[dict[str, str]]:

@@ -10,8 +10,8 @@ from itertools import count
 from symobs.child_processes.inside import serve
 from symobs.errors import SymobsError
 from symobs.live.answering import answer, errors_of
-from symobs.live.request import SCHEMA, parsed
-from symobs.result import formats, tasks
+from symobs.live.assets import SCHEMA
+from symobs.live.request import parsed
 
 #: It is replaced after so many answers, or when it has grown to so many megabytes.
 MOST_ANSWERS, MOST_MEGABYTES = 10_000, 500
@@ -19,13 +19,12 @@ _answers = count(1)
 
 
 def prepare() -> None:
-    """Import every task and format, and solve one problem, so that the first question pays for nothing."""
-    tasks()
-    formats()
+    """Solve the problem that the page begins with, so that the first question pays for nothing; further tasks wait."""
     plant = {"A": "[0 1; 0 -1]", "B": "[0; 1]", "C": "[1 0]"}
     poles = {"control_poles": "-2, -2", "observer_poles": "-10, -10"}
     problem = {"task": "compensator", "plant": plant, "specification": poles}
-    answer({"schema": "symobs-live/1", "problem": problem, "courses": {"count": 9}})
+    for want in ("view", "answer"):
+        answer({"schema": SCHEMA, "want": want, "problem": problem, "courses": {"count": 9}})
 
 
 def respond(body: bytes) -> bytes:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from symobs._dataclass import dataclass
 from symobs.child_processes.child import Died, Ended, Kept
-from symobs.live.request import SCHEMA
+from symobs.live.assets import SCHEMA
 from symobs.phrases.languages import ENGLISH, language_named, languages
 
 if TYPE_CHECKING:

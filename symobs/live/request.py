@@ -10,15 +10,15 @@ from typing import TYPE_CHECKING, Any
 from symobs._dataclass import dataclass
 from symobs.errors import InputError, ProblemErrors, SymobsError, reason_of
 from symobs.expression.source import shown
+from symobs.live.assets import MOST_BYTES, SCHEMA
 from symobs.problem import validate
 from symobs.result import task_named
 
 if TYPE_CHECKING:
     from symobs.problem import Problem
 
-SCHEMA = "symobs-live/1"
-#: A request is at most as long; it nests no deeper, and an exact value of a symbol is no longer.
-MOST_BYTES, MOST_DEPTH, LONGEST_VALUE = 64 * 1024, 20, 200
+#: A request nests no deeper, and an exact value of a symbol is no longer.
+MOST_DEPTH, LONGEST_VALUE = 20, 200
 WANTS = ("answer", "page", "point", "view", "export", "start")
 DETAILS = ("full", "outline", "answer")
 EXPORTS = ("latex", "toml", "python", "json", "html", "svg")

@@ -18,9 +18,8 @@ from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from socketserver import TCPServer
 from typing import Any
 
-from symobs.live.assets import ASSETS, script, style
+from symobs.live.assets import ASSETS, MOST_BYTES, script, style
 from symobs.live.process import AnswerBudget, Children, Gone
-from symobs.live.request import MOST_BYTES
 
 HOSTS = ("127.0.0.1", "::1", "localhost")
 _MOST_CONNECTIONS, _MOST_HEADERS, _TIMEOUT, _LINE = 16, 16 * 1024, 10.0, 65537
@@ -59,9 +58,9 @@ class Server(ThreadingHTTPServer):
         """Bind the address, choose a token, read the files."""
         self.address_family = socket.AF_INET6 if host == "::1" else socket.AF_INET
         super().__init__((host, port), Handler)
+        self.children = Children(budget or AnswerBudget())  # the first gets ready while the page is put together
         self.token = secrets.token_urlsafe(24)
         self.routes = routes()
-        self.children = Children(budget or AnswerBudget())
         self.connections = threading.BoundedSemaphore(_MOST_CONNECTIONS)
         number = self.server_address[1]
         self.names = frozenset({f"127.0.0.1:{number}", f"localhost:{number}", f"[::1]:{number}"})

@@ -177,11 +177,13 @@ def _enclosed(signals: Signals, end: Fraction, count: int) -> list[list[int]]:
         states = state_response(signals.matrix, signals.start, end / (count - 1), count, _FINE)
     except ArithmeticError:
         raise NoResponse(_TOO_WIDE) from None
-    lines = []
+    components, lines = list(zip(*states, strict=True)), []
     for _, _, row, _ in signals.rows:
         common = lcm(*(part.denominator for part in row))
-        whole, seen = [int(part * common) for part in row if part], [place for place, part in enumerate(row) if part]
-        lines.append([sum(map(mul, whole, map(state.__getitem__, seen))) // common for state in states])
+        whole = [int(part * common) for part in row if part]
+        seen = [component for component, part in zip(components, row, strict=True) if part]
+        one = whole == [1] and common == 1
+        lines.append(list(seen[0]) if one else [sum(map(mul, whole, at)) // common for at in zip(*seen, strict=True)])
     return lines
 
 

@@ -106,7 +106,7 @@ def validate(data: Mapping[str, Any], only: str | None = None, folder: Path | No
     convention = read_convention(data, folder, errors)
     language = _language(data, errors)
     asked = _tasks(data, errors, required=only is None)
-    wanted = asked if only is None else (tasks()[only],)
+    wanted = asked if only is None else tuple(filter(None, [task_named(only)]))
     symbols = Symbols() if data.get("symbols") is OPEN else _symbols(table_of(data, "symbols", errors), errors)
     symbols = with_constants(table_of(data, "constants", errors), symbols, errors)
     dt = _period(data, symbols, errors)

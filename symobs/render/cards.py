@@ -112,6 +112,7 @@ class CardPrinter:
     @cached_property
     def _text(self) -> TextPrinter:
         printer: TextPrinter = self._printer(TextPrinter)
+        printer.flat = True
         return printer
 
     def mathml(self, card: Card) -> str:

@@ -171,6 +171,36 @@ def test_the_servo_opens(opened: Callable[..., Opened]) -> None:
     live.wait_for("document.querySelector('.cards .verdict').innerText === 'Checked · 3 claims'")
 
 
+def test_each_language_has_its_labels_its_decimals_and_the_last_answer(opened: Callable[..., Opened]) -> None:
+    live = opened(f"{SERVO}&language=xx")
+    assert "no language xx" in live.page.inner_text(".message")
+    live.page.get_by_label("Language").select_option("de")
+    live.wait_for("document.querySelector('.cards .verdict').innerText.startsWith('Geprüft')")
+    assert not live.page.is_visible(".message")
+    live.page.click(".astext summary")
+    assert "Übertragungsfunktion" in live.page.inner_text(".plant")
+    asked = len(live.asked)
+    live.page.fill('[data-set="control_poles"]', "-1,5, -2")
+    live.page.press('[data-set="control_poles"]', "Tab")
+    live.page.wait_for_selector(".plane .wrong:has-text('Dezimalkomma')")
+    assert {ask["want"] for ask in live.asked[asked:]} <= {"page", "start"}
+    live.page.fill('[data-set="control_poles"]', "-1,5; -2")
+    live.page.press('[data-set="control_poles"]', "Tab")
+    live.wait_for("document.querySelector('.card[data-name=K] .display').dataset.latex.includes('3&')")
+    assert live.poles("control_poles") == "-1.5, -2"
+    live.page.get_by_label("A Zeile 2 Spalte 2").fill("-(")
+    live.page.get_by_label("A Zeile 2 Spalte 2").press("Tab")
+    live.page.wait_for_selector(".symobs-live.stale")
+    live.page.get_by_label("Sprache").select_option("en")
+    live.wait_for(
+        "document.querySelector('.symobs-live').lang === 'en' && document.querySelector('.plant .wrong span')"
+    )
+    assert "Checked" in live.page.inner_text(".cards .verdict")
+    assert live.page.locator(".card math").count() > 2
+    assert live.page.locator(".curve").count() > 2
+    assert "stale" in live.page.get_attribute(".symobs-live", "class")
+
+
 def test_the_last_answer_of_a_drag_belongs_to_the_last_place(opened: Callable[..., Opened]) -> None:
     live = opened(PAIR)
     x, y = live.middle("observer_poles.0")
@@ -382,9 +412,8 @@ def test_a_page_is_given_up_for_a_newer_question(opened: Callable[..., Opened]) 
     live.page.mouse.move(x - 40, y)
     live.page.wait_for_timeout(900)
     assert [ask for ask in live.asked if ask["want"] == "page"] == pages  # none while a handle is held
-    live.page.mouse.up()
-    live.at_rest()
-    assert len([ask for ask in live.asked if ask["want"] == "page"]) > len(pages)
+    with live.page.expect_request(lambda request: '"want":"page"' in (request.post_data or "")):
+        live.page.mouse.up()
 
 
 def test_a_derivation_that_is_not_decided_can_be_asked_for_again(

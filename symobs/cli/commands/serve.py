@@ -35,8 +35,7 @@ def command(
     language: str | None,
 ) -> None:
     """Move poles, parameters and entries in a browser, every answer checked; FILE is the problem to begin with."""
-    from symobs.live.links import link_of  # noqa: PLC0415 - only a server imports it
-    from symobs.live.process import AnswerBudget  # noqa: PLC0415
+    from symobs.live.process import AnswerBudget  # noqa: PLC0415 - only a server imports it
     from symobs.live.server import HOSTS, Server, serve  # noqa: PLC0415
 
     if host not in HOSTS:
@@ -47,7 +46,8 @@ def command(
         )
     state = ""
     if file is not None or convention_name is not None or language is not None:
-        from symobs.problem import parse, validate  # noqa: PLC0415 - only with a file
+        from symobs.live.links import link_of  # noqa: PLC0415 - only with a problem
+        from symobs.problem import parse, validate  # noqa: PLC0415
 
         text = read_file(file) if file is not None else ""
         data = parse(text, file or "problem") if file is not None else {}

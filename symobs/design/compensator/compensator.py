@@ -113,8 +113,8 @@ class CompensatorDesign(OutputFeedback):
     def error_coordinates(self) -> Matrix:
         """[A − BK, BK; 0, A − LC] in (x, e)."""
         m, K, L = self.plant.matrices, self.answer["K"], self.answer["L"]
-        zero = Matrix.zeros(self.plant.order, self.plant.order)
-        return Matrix.block([[m.A - m.B @ K, m.B @ K], [zero, m.A - L @ m.C]])
+        zero, fed = Matrix.zeros(self.plant.order, self.plant.order), m.B @ K
+        return Matrix.block([[m.A - fed, fed], [zero, m.A - L @ m.C]])
 
     @cached_property
     def estimate_coordinates(self) -> Matrix:

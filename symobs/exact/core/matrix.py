@@ -198,6 +198,8 @@ class Matrix:
 
     def common_denominator(self) -> Scalar:
         """Return the least common denominator of the entries."""
+        if isinstance(self.table, fmpz_mat):
+            return Scalar(self.field, _lowest(self).denominator, self.field.one)
         parts = (entry.within(self.field).denominator for entry in self.entries)
         return reduce(lambda multiple, below: multiple * (below / multiple).numerator, parts, Scalar.of(1))
 
@@ -327,8 +329,7 @@ class Matrix:
     def adjugate_column(self, index: int) -> Matrix:
         """Return one column of adj(M): the cofactors of row `index`."""
         order = self.shape[0]
-        rows = self.polynomials
-        column = tuple((ring.cofactor(rows, index, i, self.field),) for i in range(order))
+        column = tuple((entry,) for entry in ring.cofactors(self.polynomials, index, self.field))
         return build(self.field, column, self.denominator ** (order - 1), (order, 1))
 
     def inverse(self) -> Matrix:
@@ -347,9 +348,7 @@ class Matrix:
         if not determinant:
             message = "the matrix is singular"
             raise ZeroDivisionError(message)
-        adjugate = ring.transpose(
-            tuple(tuple(ring.cofactor(rows, j, i, field) for i in range(order)) for j in range(order))
-        )
+        adjugate = ring.transpose(tuple(ring.cofactors(rows, i, field) for i in range(order)))
         product = ring.product(adjugate, b.polynomials, field.zero)
         return Matrix(field, product, determinant * b.denominator, b.shape).scaled(a.denominator)
 

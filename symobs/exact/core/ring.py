@@ -6,6 +6,7 @@ numeric case, the functions here the parametric one.  Everything is fraction-fre
 
 from __future__ import annotations
 
+from bisect import bisect_left
 from math import log2
 from typing import TYPE_CHECKING, TypeAlias
 
@@ -71,11 +72,14 @@ def plus_diagonal(rows: Rows, factor: fmpz_mpoly, addend: fmpz_mpoly) -> Rows:
 
 
 def leading_coefficient(polynomial: fmpz_mpoly, foreign: Sequence[int]) -> fmpz_mpoly:
-    """Return an integer times the coefficient of the highest powers of these generators, one after the other."""
-    for index in foreign:
-        while lower := polynomial.derivative(index):
-            polynomial = lower
-    return polynomial
+    """Return the coefficient of the highest powers of these generators, one after the other; powers may be thousands."""
+    terms = [(tuple([powers[i] for i in foreign]), powers, c) for powers, c in polynomial.terms()]
+    highest = max(own for own, _, _ in terms)
+    if not any(highest):
+        return polynomial
+    alone = dict.fromkeys(foreign, 0)
+    found = {tuple([alone.get(i, e) for i, e in enumerate(powers)]): c for own, powers, c in terms if own == highest}
+    return polynomial.context().from_dict(found)
 
 
 def coprime(denominator: fmpz_mpoly, entries: Iterable[fmpz_mpoly]) -> bool:
@@ -158,7 +162,7 @@ def maximal_minors(rows: Rows, field: Field) -> dict[tuple[int, ...], fmpz_mpoly
                 entry = row[column]
                 if column in columns or not entry:
                     continue
-                position = sum(other < column for other in columns)
+                position = bisect_left(columns, column)
                 chosen = (*columns[:position], column, *columns[position:])
                 term = entry * minor
                 known = larger.get(chosen)
@@ -186,11 +190,18 @@ def _by_elimination(rows: Rows, field: Field) -> fmpz_mpoly:
     return work[-1][-1] if sign > 0 else -work[-1][-1]
 
 
-def cofactor(rows: Rows, row: int, column: int, field: Field) -> fmpz_mpoly:
-    """Return (−1)^(row+column) times the minor without that row and column."""
-    rest = tuple(tuple(entry for j, entry in enumerate(line) if j != column) for i, line in enumerate(rows) if i != row)
-    value = determinant(rest, field)
-    return -value if (row + column) % 2 else value
+def cofactors(rows: Rows, row: int, field: Field) -> tuple[fmpz_mpoly, ...]:
+    """Return the cofactors of a row, up to small orders all from one expansion of the rows around it."""
+    order, around = len(rows), (*rows[:row], *rows[row + 1 :])
+    if order > MINORS_UP_TO:
+        rest = (tuple((*line[:column], *line[column + 1 :]) for line in around) for column in range(order))
+        minors = [determinant(part, field) for part in rest]
+    else:
+        content, around = strip_row_contents(around, field)
+        found = maximal_minors(around, field) if around else {(): field.one}
+        every = (found.get((*range(column), *range(column + 1, order)), field.zero) for column in range(order))
+        minors = [field.normal(minor * content) for minor in every]
+    return tuple(-minor if (row + column) % 2 else minor for column, minor in enumerate(minors))
 
 
 def echelon(

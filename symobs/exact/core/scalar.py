@@ -258,9 +258,9 @@ class Scalar:
     def fraction(self) -> Fraction:
         """Return a constant as a `Fraction`; raises ValueError for a number with roots."""
         if self.field.roots and not self.is_constant:
-            message = f"{self} is not rational"
-            raise ValueError(message)
-        return Fraction(int(number_of(self.numerator_part)), int(number_of(self.denominator_part)))
+            raise ValueError(f"{self} is not rational")
+        above, below = number_of(self.numerator_part), number_of(self.denominator_part)
+        return Fraction(int(above), None if below == 1 else int(below))
 
     def terms(self) -> list[tuple[int, tuple[tuple[str, int], ...]]]:
         """Return the numerator's terms as (integer coefficient, ((name, exponent), …)), highest first."""

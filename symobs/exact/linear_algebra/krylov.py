@@ -73,18 +73,8 @@ class Krylov:
 
     @cached_property
     def _last_cofactors(self) -> tuple[fmpz_mpoly, ...]:
-        """The cofactors of N's last row: the minors of the rows above it, all from one expansion."""
-        order = len(self.rows)
-        if order > ring.MINORS_UP_TO:
-            table = tuple(row.polynomials[0] for row in self.rows)
-            return tuple(ring.cofactor(table, order - 1, i, self.field) for i in range(order))
-        content, rows = ring.strip_row_contents(tuple(row.polynomials[0] for row in self.rows[:-1]), self.field)
-        minors = ring.maximal_minors(rows, self.field) if rows else {(): self.field.one}
-        cofactors = []
-        for i in range(order):
-            minor = minors.get((*range(i), *range(i + 1, order)), self.field.zero) * content
-            cofactors.append(-minor if (order - 1 + i) % 2 else minor)
-        return tuple(cofactors)
+        """The cofactors of N's last row."""
+        return ring.cofactors(tuple(row.polynomials[0] for row in self.rows), len(self.rows) - 1, self.field)
 
     @cached_property
     def determinant(self) -> Scalar:

@@ -6,9 +6,12 @@ import json
 from pathlib import Path
 
 from symobs.phrases.languages import language_named, languages
-from symobs.render.formats.html import style as style_of_documents
 
+#: The protocol that the script speaks; a request is at most so long.
+SCHEMA, MOST_BYTES = "symobs-live/1", 64 * 1024
 ASSETS = Path(__file__).parent
+#: The style of derivations, read where it lies: who hands out pages need not import what writes them.
+_OF_DOCUMENTS = ASSETS.parents[1] / "render" / "formats" / "html_body.css"
 #: The phrases that the script shows.
 _PREFIX = "live_"
 
@@ -31,4 +34,4 @@ def script() -> str:
 
 def style() -> str:
     """Return the style of the page and of the derivations in it."""
-    return (ASSETS / "live.css").read_text(encoding="utf-8") + "\n" + style_of_documents()
+    return "\n".join(path.read_text(encoding="utf-8") for path in (ASSETS / "live.css", _OF_DOCUMENTS))

@@ -184,12 +184,13 @@ export function mount(element, transport, options = {}) {
   let s = begun(options.state ?? "");
   let view = null, viewed = "", answer = null, sets = {}, held = null, frame = null, start = null;
   let waiting = null, running = false, number = 0, drawn = 0, restTimer = 0, busyTimer = 0, said = 0, gone = false, quiet = false, before = "";
-  let aborted = new AbortController(), language = null;
+  let aborted = new AbortController(), language = null, notice = "", point = null;
   const el = {};
 
   const w = (name, slots = {}) => filled(language[name], slots);
   const pretty = (s) => s.replace(/-/g, "−").replace(/(\d)\.(?=\d)/g, `$1${language.decimal_mark}`);
   const taskName = (task) => language[`task_${task}`] ?? task.replace(/_/g, " ");
+  const labelOf = (key) => language[`field_${key}`] ?? key.replace(/_/g, " ");
   const why = (error) => (error.status ? w(error.status === 403 ? "another_page" : "server_says", error) : error.message);
 
   // -- the frame of the page ------------------------------------------------------------------------------------------
@@ -199,12 +200,16 @@ export function mount(element, transport, options = {}) {
     return (el[name] = h("section", { class: `panel ${name}`, "aria-label": w(name) }, h("header", {}, h("h2", {}, w(name)), (el[`${name}Bar`] = h("span", { class: "tools" })), close), (el[`${name}Body`] = h("div", { class: "body" }, inside))));
   };
 
-  /** Build the frame where there is none in the language of the state. */
+  /** Build the frame where there is none in the language of the state, and return whether there was none. */
   function furnish() {
-    const code = s.language in LANGUAGES ? s.language : "en";
-    if (language === LANGUAGES[code]) return;
+    const stranger = s.language in LANGUAGES ? "" : s.language;
+    if (stranger) s.language = language ? root.lang : "";
+    const code = s.language || "en", derivation = el.html ? [...el.html.childNodes] : [];
+    if (language !== LANGUAGES[code] || stranger) notice = "";
+    if (language === LANGUAGES[code] && !stranger) return false;
     language = LANGUAGES[code];
     root.lang = code;
+    if (stranger) notice = w("no_language", { code: stranger.slice(0, 40) });
     el.task = h("select", { "aria-label": w("task"), onchange: () => { s.task = el.task.value; problemChanged(); } }, h("option", { value: s.task }, taskName(s.task)));
     el.examples = h("select", { "aria-label": w("example"), onchange: choose }, h("option", { value: "" }, w("examples")));
     el.language = h("select", { "aria-label": w("language"), onchange: () => { s.language = el.language.value; problemChanged(); el.language.focus(); } }, Object.entries(LANGUAGES).map(([key, own]) => h("option", { value: key, lang: key, selected: key === code }, own.name)));
@@ -221,7 +226,7 @@ export function mount(element, transport, options = {}) {
     el.starts = h("div", { class: "fields starts" });
     el.map = h("div", { class: "map" });
     el.point = h("div", { class: "point" });
-    el.html = h("div", { class: "html", tabindex: "0", "aria-label": w("page") });
+    el.html = h("div", { class: "html", tabindex: "0", "aria-label": w("page") }, derivation);
     el.plant = h("section", { class: "panel plant", "aria-label": w("problem") });
     el.reopen = h("span", { class: "reopen" });
     el.copy = h("button", { class: "copy", onclick: copyLink }, w("copy_link"));
@@ -236,6 +241,8 @@ export function mount(element, transport, options = {}) {
     el.detail = h("select", { "aria-label": w("detail"), onchange: () => { s.detail = el.detail.value; commit(true); rest(0); } }, DETAILS.map((d) => h("option", { value: d }, w(`detail_${d}`))));
     el.pageBar.append(el.detail);
     offer();
+    say("");
+    return true;
   }
 
   function fold(name, close) {
@@ -291,7 +298,6 @@ export function mount(element, transport, options = {}) {
         const region = view.panels.includes("region") && view.region?.handle && Object.keys(s.at).length;
         if (region) {
           const got = await transport(asking("point", { at: s.at }));
-          await painted();
           drawPoint(got);
           if (waiting || moving) continue;
         }
@@ -299,7 +305,6 @@ export function mount(element, transport, options = {}) {
         const more = { at, cards_at: Object.keys(at).length > 0, cases: !moving && open("cases") };
         if (courses) more.courses = courses;
         const question = asking("answer", more), got = await transport(question);
-        await painted();
         if (got.id >= drawn || !got.id) drawAnswer(got);
       } catch (error) {
         if (!gone) say(w("no_answer", { reason: why(error) }), () => ask());
@@ -312,7 +317,6 @@ export function mount(element, transport, options = {}) {
   }
 
   const open = (name) => view?.panels.includes(name) && !s.closed.includes(name);
-  const painted = () => new Promise((done) => requestAnimationFrame(done));
   function busy(is) {
     root.classList.toggle("busy", is);
     root.setAttribute("aria-busy", String(is));
@@ -347,7 +351,6 @@ export function mount(element, transport, options = {}) {
       try {
         const got = await transport(asking("page", { detail: s.detail, at, cards_at: Object.keys(at).length > 0 }), signal);
         if (signal.aborted) return;
-
         if (got.html) el.html.innerHTML = got.html;
         else el.html.replaceChildren(h("p", { class: "pale" }, got.message ?? got.errors?.map((e) => e.message).join("; ") ?? w("no_derivation")), got.status === "undecided" ? h("button", { onclick: () => rest(0) }, w("try_again")) : null);
         el.page.setAttribute("aria-busy", "false");
@@ -361,7 +364,9 @@ export function mount(element, transport, options = {}) {
     el.live.textContent = `${el.verdict.textContent}. ${answer.cards.filter((c) => /^[KLF]$/.test(c.name)).map((c) => c.says).join(". ")}`;
   }
 
-  function say(words, again) {
+  function say(now, again) {
+    const words = now || notice;
+    if (!words && el.message.hidden) return;
     el.message.hidden = !words;
     el.message.replaceChildren(...(words ? [h("span", {}, words), again ? h("button", { onclick: () => { say(""); again(); } }, w("try_again")) : ""] : []));
   }
@@ -410,14 +415,23 @@ export function mount(element, transport, options = {}) {
 
   // -- the problem: matrices, specification, symbols ---------------------------------------------------------------------
 
+  /** Hand on what was typed, with decimal points; a comma that may part entries or be a decimal mark is refused at its field. */
+  function typed(input, changed) {
+    const given = input.value.trim(), where = input.dataset.where ?? `specification.${input.dataset.set}`;
+    const points = given.replace(/(\d),(?=\d)/g, "$1."), isOne = /^at\.|\]$/.test(where);
+    const isParted = given.includes(";") && (input.dataset.set || where.startsWith("courses."));
+    if (language.decimal_mark === "," && (isOne || isParted)) changed(input.value = points.replace(/\s*;\s*/g, ", "));
+    else if (language.decimal_mark !== "," || points === given) changed(given);
+    else { clearWrong(); showErrors([{ where, message: w("comma"), repair: w("comma_repair") }]); }
+  }
+
   function field(where, label, given, changed, wide = true) {
-    const input = h("input", { value: given ?? "", "aria-label": label, "data-where": where, spellcheck: "false", autocapitalize: "off", autocomplete: "off", onchange: () => changed(input.value.trim()), onkeydown: (e) => { if (e.key === "Enter") changed(input.value.trim()); } });
+    const input = h("input", { value: given ?? "", "aria-label": label, "data-where": where, spellcheck: "false", autocapitalize: "off", autocomplete: "off", onchange: () => typed(input, changed), onkeydown: (e) => { if (e.key === "Enter") typed(input, changed); } });
     return wide ? h("label", { class: "field" }, h("span", {}, label), input, h("small", { class: "wrong" })) : input;
   }
 
   function build() {
-    furnish();
-    const isRegion = s.task === "stability_region";
+    const isFresh = furnish(), isRegion = s.task === "stability_region";
     const listed = ["A", "B", "C", "D"].filter((name) => s.plant[name] !== undefined);
     const rows = listed.map((name) => {
       const table = cells(s.plant[name]);
@@ -431,10 +445,10 @@ export function mount(element, transport, options = {}) {
       })));
       return h("div", { class: "named" }, h("i", {}, name), h("span", { class: "equals" }, "="), grid, h("small", { class: "wrong", "data-of": `plant.${name}` }));
     });
-    const all = h("details", { class: "astext" }, h("summary", {}, w("as_text")), ["A", "B", "C", "D", "transfer_function", "dt"].map((name) => field(`text.${name}`, name.replace("_", " "), s.plant[name], (t) => { if (t) s.plant[name] = t; else delete s.plant[name]; problemChanged(); })), field("text.symbols", "symbols", Object.entries(s.symbols).map(([n, g]) => `${n}: ${g}`).join(", "), (t) => { s.symbols = Object.fromEntries(t.split(",").map((e) => e.split(":").map((p) => p.trim())).filter(([n]) => n).map(([n, g]) => [n, g || "real"])); problemChanged(); }));
+    const all = h("details", { class: "astext" }, h("summary", {}, w("as_text")), ["A", "B", "C", "D", "transfer_function", "dt"].map((name) => field(`text.${name}`, labelOf(name), s.plant[name], (t) => { if (t) s.plant[name] = t; else delete s.plant[name]; problemChanged(); })), field("text.symbols", labelOf("symbols"), Object.entries(s.symbols).map(([n, g]) => `${n}: ${g}`).join(", "), (t) => { s.symbols = Object.fromEntries(t.split(",").map((e) => e.split(":").map((p) => p.trim())).filter(([n]) => n).map(([n, g]) => [n, g || "real"])); problemChanged(); }));
     if (s.plant.transfer_function !== undefined) rows.push(field("plant.transfer_function", "P(s)", s.plant.transfer_function, (t) => { s.plant.transfer_function = t; problemChanged(); }));
     const setKeys = (view?.sets ?? []).map((g) => g.key);
-    const others = Object.keys(s.spec).filter((key) => !setKeys.includes(key) && key !== "observer").map((key) => field(`specification.${key}`, key.replace(/_/g, " "), s.spec[key], (t) => { if (t) s.spec[key] = t; else delete s.spec[key]; problemChanged(); }));
+    const others = Object.keys(s.spec).filter((key) => !setKeys.includes(key) && key !== "observer").map((key) => field(`specification.${key}`, labelOf(key), s.spec[key], (t) => { if (t) s.spec[key] = t; else delete s.spec[key]; problemChanged(); }));
     const kind = s.task === "compensator" ? h("label", { class: "field" }, h("span", {}, w("kind")), h("select", { onchange: (e) => { s.spec.observer = e.target.value; fitObserver(); problemChanged(); } }, ["full", "minimal"].map((k) => h("option", { value: k, selected: (s.spec.observer ?? "full") === k }, w(`kind_${k}`))))) : null;
     const names = Object.keys(s.symbols).filter((n) => !(isRegion && view?.region?.parameters?.includes(n)));
     const sliders = names.map((name) => slider(name));
@@ -444,6 +458,11 @@ export function mount(element, transport, options = {}) {
     el.detail.value = s.detail;
     buildSets();
     showPanels();
+    if (!isFresh || !answer) return;
+    if (view?.panels.includes("region")) drawMap();
+    if (point && el.pointVerdict) drawPoint(point);
+    show(answer);
+    root.classList.add("stale");
   }
 
   /** An observer of minimal order has fewer poles: drop the last ones, or repeat the first. */
@@ -466,9 +485,13 @@ export function mount(element, transport, options = {}) {
 
   function takeView() {
     build();
-    const region = view.region;
+    point = null;
     el.map.replaceChildren();
-    if (!view.panels.includes("region")) return;
+    if (view.panels.includes("region")) drawMap();
+  }
+
+  function drawMap() {
+    const region = view.region;
     el.map.innerHTML = region?.svg ?? "";
     for (const [name, given] of Object.entries(region?.drawn_for ?? {})) s.at[name] ??= given;
     if (region?.handle) {
@@ -488,7 +511,7 @@ export function mount(element, transport, options = {}) {
   }
 
   function poleField(group) {
-    const input = h("input", { value: s.spec[group.key] ?? "", "data-set": group.key, "aria-label": w(`${group.label}s`), spellcheck: "false", onchange: () => { s.spec[group.key] = input.value.trim(); sets[group.key] = handles(input.value); drawPlane(true); commit(true); ask(); } });
+    const input = h("input", { value: s.spec[group.key] ?? "", "data-set": group.key, "aria-label": w(`${group.label}s`), spellcheck: "false", onchange: () => typed(input, (t) => { s.spec[group.key] = t; sets[group.key] = handles(t); drawPlane(true); commit(true); ask(); }) });
     return input;
   }
 
@@ -519,6 +542,24 @@ export function mount(element, transport, options = {}) {
     if (!view?.panels.includes("plane")) return;
     if (!frame || (refit && !held)) fit();
     const focus = root.getRootNode().activeElement?.getAttribute?.("data-handle");
+    const grounded = JSON.stringify([frame, view.discrete, root.lang]), parts = [];
+    if (el.poles.firstChild?.dataset.of !== grounded) el.poles.replaceChildren(h("svg:g", { "data-of": grounded }, ground()));
+    else while (el.poles.childElementCount > 1) el.poles.lastChild.remove();
+    for (const m of answer?.marks ?? []) {
+      const [x, y] = [X(Number(m.re)), Y(Number(m.im))];
+      if (x > 38 && x < 466 && y > 14 && y < 338) parts.push(h("svg:path", { class: `mark ${m.kind}`, d: m.kind === "F" ? `M${x - 4} ${y}h8M${x} ${y - 4}v8` : `M${x - 3.5} ${y - 3.5}l7 7m0 -7l-7 7` }, h("svg:title", {}, w(`pole_of_${m.kind}`))));
+    }
+    for (const group of view.sets) {
+      const list = sets[group.key] ?? [], count = list.length;
+      list.forEach((p, k) => p.raw || parts.push(handle(group, list, p, k, count)));
+    }
+    if (Object.values(sets).flat().some((p) => p.raw)) parts.push(h("svg:text", { x: 46, y: 330, class: "remark" }, w("in_fields")));
+    el.poles.append(...parts);
+    if (focus) refocus(focus);
+  }
+
+  /** What stands still while poles are moved: the stable part, and the lines with their numbers. */
+  function ground() {
     const [x0, x1, y0, y1] = [(40 - frame.x) / frame.scale, (464 - frame.x) / frame.scale, (frame.y - 336) / frame.scale, (frame.y - 16) / frame.scale];
     const line = (name, a, b, c, d) => h("svg:line", { class: name, x1: a, y1: b, x2: c, y2: d });
     const label = (x, y, words, anchor) => h("svg:text", { x, y, "text-anchor": anchor }, pretty(words));
@@ -530,17 +571,7 @@ export function mount(element, transport, options = {}) {
     parts.push(line("axis", 40, Y(0), 464, Y(0)));
     if (X(0) > 40 && X(0) < 464) parts.push(line("axis", X(0), 16, X(0), 336));
     parts.push(label(464, Y(0) - 6, "Re", "end"), label(Math.min(456, Math.max(46, X(0) + 6)), 28, "Im", "start"));
-    for (const m of answer?.marks ?? []) {
-      const [x, y] = [X(Number(m.re)), Y(Number(m.im))];
-      if (x > 38 && x < 466 && y > 14 && y < 338) parts.push(h("svg:path", { class: `mark ${m.kind}`, d: m.kind === "F" ? `M${x - 4} ${y}h8M${x} ${y - 4}v8` : `M${x - 3.5} ${y - 3.5}l7 7m0 -7l-7 7` }, h("svg:title", {}, w(`pole_of_${m.kind}`))));
-    }
-    for (const group of view.sets) {
-      const list = sets[group.key] ?? [], count = list.length;
-      list.forEach((p, k) => p.raw || parts.push(handle(group, list, p, k, count)));
-    }
-    if (Object.values(sets).flat().some((p) => p.raw)) parts.push(h("svg:text", { x: 46, y: 330, class: "remark" }, w("in_fields")));
-    el.poles.replaceChildren(...parts);
-    if (focus) refocus(focus);
+    return parts;
   }
 
   /** Give the focus back to a handle that was drawn again; where it stood when it came there stays known. */
@@ -731,6 +762,7 @@ export function mount(element, transport, options = {}) {
   function drawPoint(got) {
     if (got.status !== "done") { drawAnswer(got); return; }
     clearWrong();
+    point = got;
     el.pointVerdict.textContent = `${view.region.parameters.map((n) => `${n} = ${pretty(s.at[n])}`).join(", ")}: ${w(`point_${got.verdict}`)}`;
     el.pointVerdict.dataset.verdict = got.verdict;
     el.pointMath.innerHTML = [...(got.cards ?? []), ...(got.boundary ?? [])].map((c) => `<div class="display">${c.mathml}</div>`).join("");
@@ -773,10 +805,16 @@ export function mount(element, transport, options = {}) {
     clearWrong();
     if (got.status === "bug" || (got.status === "undecided" && !got.cards)) { root.classList.add("stale"); say(got.status === "bug" ? got.message : w("undecided", { reason: got.message }), () => ask()); return; }
     answer = got;
+    show(got);
+  }
+
+  /** Show an answer. */
+  function show(got) {
     const claims = got.verdict === "no" ? "" : ` · ${w(got.claims === 1 ? "claim" : "claims", { count: got.claims })}`;
-    el.verdict.textContent = w(`verdict_${got.verdict}`) + claims;
+    const told = w(`verdict_${got.verdict}`) + claims;
+    if (el.verdict.textContent !== told) el.verdict.textContent = told;
     el.verdict.dataset.verdict = got.verdict;
-    el.notes.textContent = got.note ?? "";
+    if (el.notes.textContent !== (got.note ?? "")) el.notes.textContent = got.note ?? "";
     drawCards(got);
     if (!el.cases.hidden) drawCases(got);
     if (!el.responses.hidden) drawCurves(got.courses);
@@ -848,13 +886,14 @@ export function mount(element, transport, options = {}) {
 
 /** Show a page whose state is that of its address: a drag is one step of its history, which Back undoes. */
 export function atAddress(transport) {
-  let moving = false;
+  let moving = false, timer = 0;
   const live = mount(/** @type {HTMLElement} */ (document.querySelector("main")), transport, {
     state: location.hash,
     link: (state) => `${location.origin}${location.pathname}#${state}`,
     changed(state, final) {
-      history[moving ? "replaceState" : "pushState"](null, "", `#${state}`);
-      moving = !final;
+      const write = () => { history[moving ? "replaceState" : "pushState"](null, "", `#${state}`); moving = !final; };
+      clearTimeout(timer);
+      if (final || !moving) write(); else timer = setTimeout(write, REST);  // it takes longer than a picture
     },
   });
   addEventListener("popstate", () => live.set(location.hash));

@@ -15,7 +15,7 @@ from symobs.render.printers import widths
 from symobs.render.printers.display_layout import Layout
 from symobs.render.printers.glyphs import NO_RULES, GlyphBox, Level
 from symobs.render.printers.printer import Printer
-from symobs.render.printers.rational_formula import decimal
+from symobs.render.printers.rational_formula import digits_of
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -109,7 +109,7 @@ class LatexPrinter(Printer[LatexBox]):
     def leaf(self, value: Scalar) -> LatexBox:
         """Return a whole number or a symbol."""
         if value.is_constant:
-            digits = decimal(value.fraction().numerator)
+            digits = digits_of(value)
             if self.running and len(digits) > _LONG_NUMBER:
                 runs = [digits[start : start + _DIGITS] for start in range(0, len(digits), _DIGITS)]
                 return LatexBox(_UNBREAKABLE, Level.ATOM, r"\allowbreak ".join(runs))

@@ -30,7 +30,7 @@ from symobs.formula import (
 )
 from symobs.render.printers.glyphs import B, Level
 from symobs.render.printers.printer import shifted, signed_terms
-from symobs.render.printers.rational_formula import decimal, is_leaf
+from symobs.render.printers.rational_formula import digits_of, is_leaf
 from symobs.render.printers.scalar_formula import factors, formula_of, formula_of_matrix, partitioned
 
 if TYPE_CHECKING:
@@ -228,7 +228,7 @@ class Breaker(Generic[B]):
         """Return a number in runs of digits, with a sign of continuation on each further line."""
         if not value.is_constant:
             return [LinePiece(self.printer.scalar(value))]
-        digits = decimal(value.fraction().numerator)
+        digits = digits_of(value)
         runs = [digits[start : start + _DIGITS_TOGETHER] for start in range(0, len(digits), _DIGITS_TOGETHER)]
         first, *rest = [LinePiece(self.printer.digits(run)) for run in runs]
         return [first, *(replace(piece, at_start=self.printer.continued()) for piece in rest)]

@@ -39,7 +39,7 @@ from symobs.formula import (
 from symobs.notation import FUNCTIONS, LETTERS, TIMED, is_of_time, shows_time, symbol_latex, symbol_text
 from symobs.phrases.languages import ENGLISH
 from symobs.render.printers.glyphs import B, FormulaWriter, Level
-from symobs.render.printers.rational_formula import is_leaf
+from symobs.render.printers.rational_formula import is_leaf, is_negative
 from symobs.render.printers.scalar_formula import factors, formula_of, formula_of_matrix, is_table, partitioned
 
 if TYPE_CHECKING:
@@ -149,10 +149,18 @@ class Printer(FormulaWriter[B]):
     def typeset(self, formula: Formula) -> B:
         """Print a formula."""
         match formula:
-            case Letter(name):
-                return self.letter(name, "k" if self.discrete and name in SIGNALS else "")
             case Literal(Scalar() as value):
                 return self.scalar(value)
+            case Sum() | Negative():
+                return self.joined(self.sum_parts(formula), Level.SUM)
+            case Product():
+                return self.product(formula)
+            case Quotient():
+                return self.quotient(formula)
+            case Power(base, exponent):
+                return self.typeset(base) if exponent == 1 else self.raised(self.base(base), exponent)
+            case Letter(name):
+                return self.letter(name, "k" if self.discrete and name in SIGNALS else "")
             case Literal(Matrix(shape=(1, 1)) as value):
                 return self.scalar(value[0, 0])
             case Literal(Matrix() as value):
@@ -168,14 +176,6 @@ class Printer(FormulaWriter[B]):
                 return self.numeral(text)
             case Identity():
                 return self.identity()
-            case Sum() | Negative():
-                return self.joined(self.sum_parts(formula), Level.SUM)
-            case Product():
-                return self.product(formula)
-            case Quotient():
-                return self.quotient(formula)
-            case Power(base, exponent):
-                return self.typeset(base) if exponent == 1 else self.raised(self.base(base), exponent)
             case Transpose(operand):
                 return self.transposed(self.base(operand))
             case Apply(function, argument):
@@ -200,19 +200,28 @@ class Printer(FormulaWriter[B]):
         """Return an exact scalar, spelled out once."""
         box = self.known.get(value)
         if box is None:
-            function = function_named(next(iter(value.names))) if is_leaf(value) and value.names else None
-            if function is not None:
-                box = self.function_of_time(function)
-            else:
-                box = self.leaf(value) if is_leaf(value) else self.typeset(formula_of(value, self.variable))
-            self.known[value] = box
+            box = self.known[value] = self.rational(value) if value.is_constant else self.expression(value)
         return box
+
+    def rational(self, value: Scalar) -> B:
+        """Return a number: a whole one or a fraction, its minus in front."""
+        negative = is_negative(value)
+        box = self.leaf(-value.numerator if negative else value.numerator)
+        if not value.denominator_part.is_one():
+            box = self.fraction(box, self.leaf(value.denominator))
+        return self.joined([self.sign(negative=True, leading=True), box], Level.SUM) if negative else box
+
+    def expression(self, value: Scalar) -> B:
+        """Return what is no number: a symbol, a function of time, or what is made of them."""
+        if not is_leaf(value):
+            return self.typeset(formula_of(value, self.variable))
+        function = function_named(next(iter(value.names)))
+        return self.leaf(value) if function is None else self.function_of_time(function)
 
     def decimals(self, value: Scalar) -> B:
         """Return a number with its digits after the decimal mark of the language."""
         box = self.numeral(decimal_digits(value))
-        is_negative = value.fraction() < 0
-        return self.joined([self.sign(negative=True, leading=True), box], Level.SUM) if is_negative else box
+        return self.joined([self.sign(negative=True, leading=True), box], Level.SUM) if is_negative(value) else box
 
     def numeral(self, text: str) -> B:
         """Return decimals, 1.2346e-7 with its power of ten."""
@@ -350,7 +359,7 @@ class Printer(FormulaWriter[B]):
         """Return a matrix, entry by entry."""
         if 0 in matrix.shape:
             return self.empty(matrix.shape)
-        return self.matrix([[self.typeset(Literal(entry)) for entry in row] for row in matrix.rows])
+        return self.matrix([[self.scalar(entry) for entry in row] for row in matrix.rows])
 
     def block_entry(self, formula: Formula) -> B:
         """Return a block; a zero matrix among blocks is 0."""

@@ -30,12 +30,18 @@ Monomial = tuple[int, tuple[tuple[str, int], ...]]
 
 def is_leaf(value: Scalar) -> bool:
     """Return whether a scalar is printed as one glyph: a nonnegative integer, or a symbol."""
-    if value.is_constant:
-        return bool(value.denominator_part.is_one()) and number_of(value.numerator_part) >= 0
-    if len(value.numerator_part) > 1 or not value.denominator.is_one or value.size != 2:
+    above = value.numerator_part
+    if len(above) > 1 or not value.denominator_part.is_one():
         return False
+    if above.is_constant():
+        return number_of(above) >= 0
     ((coefficient, powers),) = value.terms()
     return coefficient == 1 and len(powers) == 1 and powers[0][1] == 1
+
+
+def is_negative(value: Scalar) -> bool:
+    """Return whether a rational number is negative."""
+    return number_of(value.numerator_part) < 0
 
 
 @lru_cache(maxsize=4096)
@@ -148,6 +154,8 @@ def _constant(value: Scalar) -> Formula:
     """Return a number or an expression in parameters, as sum, product or fraction, whichever is shortest."""
     if is_leaf(value):
         return Literal(value)
+    if value.is_constant:
+        return _number(value)
     if value.denominator.is_one:
         return _shortest(value)
     above, below = value.numerator, value.denominator
@@ -158,6 +166,14 @@ def _constant(value: Scalar) -> Formula:
             return Quotient(_shortest(-above), turned)
         return Negative(Quotient(_shortest(-above), bottom))
     return Quotient(top, bottom)
+
+
+def _number(value: Scalar) -> Formula:
+    """Return a rational number: a whole one or a fraction, its minus in front."""
+    negative = is_negative(value)
+    above: Formula = Literal(-value.numerator if negative else value.numerator)
+    size = above if value.denominator_part.is_one() else Quotient(above, Literal(value.denominator))
+    return Negative(size) if negative else size
 
 
 def _shortest(value: Scalar) -> Formula:
@@ -273,6 +289,11 @@ def sum_of(terms: Sequence[Formula]) -> Formula:
     return terms[0] if len(terms) == 1 else Sum(tuple(terms))
 
 
+def digits_of(whole: Scalar) -> str:
+    """Return the digits of a whole number."""
+    return decimal(int(number_of(whole.numerator_part)))
+
+
 def decimal(number: int) -> str:
     """Return the digits of an integer of any size; `str` is limited to some thousands of them."""
     if number.bit_length() < _BITS_AT_ONCE:
@@ -286,7 +307,7 @@ def size(formula: Formula) -> float:
     """Return the approximate number of glyphs of a formula."""
     match formula:
         case Literal(Scalar() as value):
-            return len(decimal(value.fraction().numerator)) if value.is_constant else _size_of_symbol(value)
+            return len(digits_of(value)) if value.is_constant else _size_of_symbol(value)
         case Sum(terms):
             return sum(size(term) for term in terms) + (len(terms) - 1) / 2
         case Negative(Sum() as operand):

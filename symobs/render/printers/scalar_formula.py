@@ -7,11 +7,13 @@ from __future__ import annotations
 
 from functools import lru_cache
 from itertools import accumulate
+from math import lcm
 from typing import TYPE_CHECKING
 
 from symobs.exact import Matrix, Scalar
 from symobs.exact.core.generators import function as function_of
 from symobs.exact.core.generators import function_named
+from symobs.exact.core.ring import number_of
 from symobs.formula import Block, Formula, Literal, Negative, Numeral, Power, Product, Quotient, Sum
 from symobs.render.printers.rational_formula import common_divisor, is_leaf, product, rational_formula, size, sum_of
 
@@ -97,7 +99,10 @@ def is_unit(formula: Formula) -> bool:
 
 def _least_common_multiple(values: Iterable[Scalar]) -> Scalar | None:
     """Return the least common multiple, unless it grows too long to be written."""
-    multiple = Scalar.of(1)
+    multiple, values = Scalar.of(1), tuple(values)
+    if all(value.is_constant for value in values):
+        whole = lcm(*(int(number_of(value.numerator_part)) for value in values))
+        return Scalar.of(whole) if whole.bit_length() <= FRONT_BITS else None
     for value in values:
         multiple = multiple * (value / multiple).numerator
         largest = max(abs(coefficient) for coefficient, _ in multiple.terms())

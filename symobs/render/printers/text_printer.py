@@ -12,7 +12,7 @@ from symobs.notation import FUNCTIONS, OPERATORS, symbol_text
 from symobs.render.printers.display_layout import Layout
 from symobs.render.printers.glyphs import NO_RULES, GlyphBox, Level
 from symobs.render.printers.printer import Printer
-from symobs.render.printers.rational_formula import decimal
+from symobs.render.printers.rational_formula import digits_of
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -102,7 +102,7 @@ class TextPrinter(Printer[TextBox]):
     def leaf(self, value: Scalar) -> TextBox:
         """Return a whole number or a symbol."""
         if value.is_constant:
-            return text_box(decimal(value.fraction().numerator))
+            return text_box(digits_of(value))
         (name,) = value.names
         return text_box(symbol_text(name, self.symbols.get(name)))
 
@@ -315,7 +315,7 @@ def text_box(text: str, level: Level = Level.ATOM) -> TextBox:
 
 def text_width(text: str) -> int:
     """Return the number of columns a terminal uses; accents stand on their letters."""
-    return sum(not unicodedata.combining(character) for character in text)
+    return len(text) if text.isascii() else sum(not unicodedata.combining(character) for character in text)
 
 
 def _starts_with_word(text: str) -> bool:

@@ -15,7 +15,8 @@ from hypothesis import strategies as st
 from jsonschema import Draft202012Validator  # type: ignore[import-untyped]
 
 from symobs.live import answer
-from symobs.live.request import MOST_BYTES, parsed
+from symobs.live.assets import MOST_BYTES
+from symobs.live.request import parsed
 from symobs.problem import validate
 from symobs.render.formats.json import result_object
 from tests.support.sampling import every

@@ -46,7 +46,7 @@ from symobs.render.printers.mathml.mathml_elements import (
     text,
 )
 from symobs.render.printers.printer import Printer
-from symobs.render.printers.rational_formula import decimal
+from symobs.render.printers.rational_formula import digits_of
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -154,7 +154,7 @@ class MathmlPrinter(Printer[MathmlBox]):
     def leaf(self, value: Scalar) -> MathmlBox:
         """Return a whole number or a symbol."""
         if value.is_constant:
-            digits = decimal(value.fraction().numerator)
+            digits = digits_of(value)
             step = _DIGITS if self.running and len(digits) > _LONG_NUMBER else len(digits)
             runs = tuple(f"<mn>{digits[start : start + step]}</mn>" for start in range(0, len(digits), step))
             return MathmlBox(len(digits) * widths.DIGIT, Level.ATOM, runs)
