@@ -215,6 +215,11 @@ LETTERS: dict[str, LetterForm] = {
     "G_cl": LetterForm(r"G_{\mathrm{cl}}({v})", "G_cl({v})", "closed loop"),
 }
 
+_STATES = {"x", "x_1", "x_2", "x_d", "x_hat", "x_hat_1", "x_hat_2", "x_2_hat", "z_o", "w_o", "xi_I", "w_e", "w_hat"}
+
+#: Signals; in discrete time they carry the index k.
+SIGNALS = frozenset({*_STATES, "u", "y", "y_hat", "d", "d_hat", "v_r", "e", "e_2", "e_d", "e_w"})
+
 #: Letters that are functions of several times, and those times; an underscore after the name leaves them out.
 TIMED: dict[str, tuple[str, ...]] = {"Phi": ("t", "t0"), "u_t": ("t",), "y_t": ("t",)}
 

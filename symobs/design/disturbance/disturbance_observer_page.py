@@ -2,10 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, cast
-
-from symobs.analysis.page_parts import given, say_stability, set_anew, stratum_of, undecided
-from symobs.derivation import CaseStep
+from symobs.analysis.page_parts import case_steps, given, say_stability
 from symobs.derivation.builder import Builder, predicate, relation
 from symobs.design.disturbance.disturbance_observer import DisturbanceObserver, extended
 from symobs.design.full_order.observer import model_and_innovation
@@ -15,11 +12,6 @@ from symobs.exact import Matrix, rank, roots_of
 from symobs.formula import Roots
 from symobs.formula.term import block
 from symobs.result import page_of
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-    from symobs.derivation import Step
 
 
 @page_of(DisturbanceObserver)
@@ -31,28 +23,16 @@ def write_disturbance_observer(page: Builder, design: DisturbanceObserver) -> No
         _design(page, design)
         if design.answer["L_x"] is not None:
             _observer(page, design)
-        page.steps += _cases(page, design)
+        page.steps += case_steps(page, design, _case)
 
 
-def _cases(page: Builder, design: DisturbanceObserver) -> Iterator[Step]:
-    """Yield a case for each stratum."""
-    for case in design.case_tree:
-        if case.result is None:
-            yield undecided(page, case)
-            continue
-        found = cast("DisturbanceObserver", case.result)
-        inner = Builder(found.plant, found.free_signals)
-        matrices = {name: getattr(found.plant.matrices, name) for name in "ABCD" if page.defines(name)}
-        inner.environment = page.environment.extended_by(values=matrices)
-        for name, value in zip(("E_d", "S_w", "V_w"), found.exosystem, strict=True):
-            inner.set(name, value)
-        inner.set("phi_o", found.desired.polynomial)
-        _name_extended(inner, found, silent=True)
-        _design(inner, found)
-        inner.steps += _cases(inner, found)
-        yield CaseStep(
-            stratum_of(case), tuple(case.substitution.items()), tuple(inner.steps), anew=tuple(set_anew(page, inner))
-        )
+def _case(page: Builder, design: DisturbanceObserver) -> None:
+    """Write the design on a stratum."""
+    for name, value in zip(("E_d", "S_w", "V_w"), design.exosystem, strict=True):
+        page.set(name, value)
+    page.set("phi_o", design.desired.polynomial)
+    _name_extended(page, design, silent=True)
+    _design(page, design)
 
 
 def _together(page: Builder, design: DisturbanceObserver) -> None:

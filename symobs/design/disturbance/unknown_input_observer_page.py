@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, cast
+from typing import TYPE_CHECKING
 
-from symobs.analysis.page_parts import given, say_stability, set_anew, stratum_of, undecided
-from symobs.derivation import CaseStep
+from symobs.analysis.page_parts import case_steps, given, say_stability
 from symobs.derivation.builder import Builder, predicate, relation
 from symobs.design.disturbance.unknown_input_observer import UnknownInputObserver, independent_columns
 from symobs.design.gain.gain_page import say_as_required
@@ -19,9 +18,6 @@ from symobs.result import page_of
 from symobs.stability.criteria.stability import stability
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-    from symobs.derivation import Step
     from symobs.formula.term import Term
 
 
@@ -34,26 +30,14 @@ def write_unknown_input_observer(page: Builder, design: UnknownInputObserver) ->
         if design.answer["L"] is not None:
             _observer(page, design)
             plot_error(page, "e", page["F_d"])
-        page.steps += _cases(page, design)
+        page.steps += case_steps(page, design, _case)
 
 
-def _cases(page: Builder, design: UnknownInputObserver) -> Iterator[Step]:
-    """Yield a case for each stratum."""
-    for case in design.case_tree:
-        if case.result is None:
-            yield undecided(page, case)
-            continue
-        found = cast("UnknownInputObserver", case.result)
-        inner = Builder(found.plant, found.free_signals)
-        matrices = {name: getattr(found.plant.matrices, name) for name in "ABCD" if page.defines(name)}
-        inner.environment = page.environment.extended_by(values=matrices)
-        inner.set("E_d", found.disturbance_input)
-        inner.set("phi_o", found.desired.polynomial)
-        _design(inner, found)
-        inner.steps += _cases(inner, found)
-        yield CaseStep(
-            stratum_of(case), tuple(case.substitution.items()), tuple(inner.steps), anew=tuple(set_anew(page, inner))
-        )
+def _case(page: Builder, design: UnknownInputObserver) -> None:
+    """Write the design on a stratum."""
+    page.set("E_d", design.disturbance_input)
+    page.set("phi_o", design.desired.polynomial)
+    _design(page, design)
 
 
 def _design(page: Builder, design: UnknownInputObserver) -> None:

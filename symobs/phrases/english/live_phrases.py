@@ -188,4 +188,11 @@ CONTINUES = (
     "live_task_pole_advice", "live_task_reduced_order_observer", "live_task_response", "live_task_stability_region",
     "live_task_stabilizability", "live_task_state_feedback", "live_task_time_varying_observability",
     "live_task_tracking", "live_task_transfer_function", "live_task_unknown_input_observer",
+    "live_field_method", "live_field_meaning", "live_field_of", "live_field_kind", "live_field_sign",
+    "live_field_output", "live_field_input", "live_field_horizon", "live_field_initial", "live_field_polynomial",
+    "live_field_parameters", "live_field_margin", "live_field_radius", "live_field_interval", "live_field_poles",
+    "live_field_zero", "live_field_member", "live_field_observer_poles", "live_field_observer_polynomial",
+    "live_field_control_poles", "live_field_control_polynomial", "live_field_settling_time", "live_field_overshoot",
+    "live_field_reference_matrix", "live_field_reference_start", "live_field_transfer_function",
+    "live_field_symbols", "live_field_dt", "live_comma", "live_comma_repair",
 )  # fmt: skip

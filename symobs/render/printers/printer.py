@@ -36,7 +36,7 @@ from symobs.formula import (
     children,
     with_children,
 )
-from symobs.notation import FUNCTIONS, LETTERS, TIMED, is_of_time, shows_time, symbol_latex, symbol_text
+from symobs.notation import FUNCTIONS, LETTERS, SIGNALS, TIMED, is_of_time, shows_time, symbol_latex, symbol_text
 from symobs.phrases.languages import ENGLISH
 from symobs.render.printers.glyphs import B, FormulaWriter, Level
 from symobs.render.printers.rational_formula import is_leaf, is_negative
@@ -48,36 +48,6 @@ if TYPE_CHECKING:
     from symobs.exact.core.generators import Function
     from symobs.notation import LetterForm
     from symobs.phrases.languages import Language
-
-#: Letters that are functions of time; in discrete time they carry the index k.
-SIGNALS = frozenset(
-    {
-        "x",
-        "x_hat",
-        "e",
-        "u",
-        "y",
-        "y_hat",
-        "x_1",
-        "x_2",
-        "x_2_hat",
-        "e_2",
-        "x_hat_1",
-        "x_hat_2",
-        "z_o",
-        "w_o",
-        "v_r",
-        "x_d",
-        "e_d",
-        "xi_I",
-        "d",
-        "d_hat",
-        "w_e",
-        "w_hat",
-        "e_w",
-    }
-)
-
 
 _BELOW = str.maketrans("0123456789", "₀₁₂₃₄₅₆₇₈₉")
 
