@@ -8,6 +8,7 @@ from symobs.design.disturbance.disturbance_observer import DisturbanceObserver, 
 from symobs.design.full_order.observer import model_and_innovation
 from symobs.design.gain.gain_page import say_as_required
 from symobs.design.page_parts.pole_cautions import caution_poles
+from symobs.design.page_parts.unassignable import say_unassignable
 from symobs.exact import Matrix, rank, roots_of
 from symobs.formula import Roots
 from symobs.formula.term import block
@@ -96,9 +97,8 @@ def _design(page: Builder, design: DisturbanceObserver) -> None:
         facts.append(relation(N.apply("rank"), count))
         roots = Roots(fixed.formula, roots_of(design.inner.fixed_polynomial, plant.variable))
         if design.answer["L_x"] is None:
-            page.conclude(
-                "disturbance_impossible", *facts, predicate("not_polynomial", page["phi_o"] / fixed), modes=roots
-            )
+            keys, polynomial = ("disturbance_impossible", "disturbance_unassignable"), design.desired.polynomial
+            say_unassignable(page, keys, facts, page["phi_o"], polynomial, fixed, design.case_tree, modes=roots)
             _zeros(page, design)
             return
         page.conclude("disturbance_fixed", *facts, predicate("polynomial", page["phi_o"] / fixed), modes=roots)

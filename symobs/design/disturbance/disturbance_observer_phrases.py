@@ -17,6 +17,7 @@ PHRASES: dict[str, str] = {
     "disturbance_blocked_one": "The plant has a zero at 1 from the disturbance to the output, {rank}: constant disturbances exist that the output does not show.",
     "disturbance_fixed": "No gain moves the unobservable <mode|modes> {modes} of plant and exosystem, but <it is|they are> among the desired poles.",
     "disturbance_impossible": "No gain moves the unobservable <mode|modes> {modes} of plant and exosystem, and <it is not|they are not all> among the desired poles: no such observer has these poles.",
+    "disturbance_unassignable": "The factor {fixed} of the characteristic polynomial of the error dynamics is the same for every $L$, and the division of {polynomial} by it leaves the remainder {rest}: an observer with these poles exists only where this remainder is the zero polynomial.",
     "disturbance_gain": "The design of an observer gain for plant and exosystem together gives",
     "disturbance_family": "The gain is not unique: other gains assign the same polynomial.",
     "disturbance_equation": "The observer estimates the state and the disturbance:",
@@ -26,6 +27,7 @@ PHRASES: dict[str, str] = {
 ASSERTS: dict[str, tuple[str, ...]] = {
     "disturbance_fixed": ("polynomial",),
     "disturbance_impossible": ("not_polynomial",),
+    "disturbance_unassignable": ("strictly_proper",),
 }
 
 QUESTIONS: dict[str, str] = {

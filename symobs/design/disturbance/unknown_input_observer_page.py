@@ -11,6 +11,7 @@ from symobs.design.gain.gain_page import say_as_required
 from symobs.design.page_parts.component_equations import combination, summed
 from symobs.design.page_parts.pole_cautions import caution_poles
 from symobs.design.page_parts.time_responses import plot_error
+from symobs.design.page_parts.unassignable import say_unassignable
 from symobs.exact import Matrix, roots_of
 from symobs.formula import Roots
 from symobs.formula.term import block
@@ -116,7 +117,8 @@ def _zeros(page: Builder, design: UnknownInputObserver) -> None:
     if design.answer["L"] is not None:
         page.conclude("uio_zeros_desired", *facts, predicate("polynomial", page["phi_o"] / fixed), zeros=zeros)
         return
-    page.conclude("uio_impossible", *facts, predicate("not_polynomial", page["phi_o"] / fixed), zeros=zeros)
+    keys, polynomial = ("uio_impossible", "uio_unassignable"), design.desired.polynomial
+    say_unassignable(page, keys, facts, page["phi_o"], polynomial, fixed, design.case_tree, zeros=zeros)
     signs, discrete = plant.symbols.signs, plant.is_discrete
     found = stability(design.inner.fixed_polynomial, plant.variable, signs, discrete=discrete).verdict
     if found == "yes":

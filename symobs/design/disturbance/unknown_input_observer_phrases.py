@@ -17,6 +17,7 @@ PHRASES: dict[str, str] = {
     "uio_observable": "The pair ($C$, $A_T$) is observable, {rank}: the plant has no invariant zeros from the unknown input to the output, and all poles of the observer can be assigned§.",
     "uio_zeros_desired": "No observer of this kind moves the invariant <zero|zeros> {zeros} of the plant from the unknown input to the output, the unobservable <mode|modes> of the pair ($C$, $A_T$)§, but <it is|they are> among the desired poles.",
     "uio_impossible": "No observer of this kind moves the invariant <zero|zeros> {zeros} of the plant from the unknown input to the output, the unobservable <mode|modes> of the pair ($C$, $A_T$)§, and <it is not|they are not all> among the desired poles: no such observer has these poles.",
+    "uio_unassignable": "The factor {fixed} of the characteristic polynomial of $A_T - L C$ is the same for every $L$, and the division of {polynomial} by it leaves the remainder {rest}: an observer with these poles exists only where this remainder is the zero polynomial.",
     "uio_zeros_stable": "Since no zero of the plant from the unknown input to the output is unstable, an observer with a convergent error exists; its poles include the zeros.",
     "uio_zeros_unstable": "Since the plant has an unstable zero from the unknown input to the output, no observer of this kind has an error that converges.",
     "uio_gain": "The design of an observer gain for this pair gives",
@@ -29,6 +30,7 @@ PHRASES: dict[str, str] = {
 ASSERTS: dict[str, tuple[str, ...]] = {
     "uio_zeros_desired": ("polynomial",),
     "uio_impossible": ("not_polynomial",),
+    "uio_unassignable": ("strictly_proper",),
     "uio_zeros_stable": ("stable",),
     "uio_zeros_unstable": ("unstable",),
 }
