@@ -9,7 +9,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, TypeAlias
 
 from symobs.certificate.claims import can_be_shown, verify
-from symobs.derivation.check import Derivation
+from symobs.derivation.check import Derivation, with_domain
 from symobs.derivation.convention_signs import set_apart
 from symobs.derivation.steps import (
     Conclude,
@@ -230,8 +230,10 @@ class Builder:
     # -- steps --------------------------------------------------------------------------------------------------------
 
     def given(self, *relations: Relation, silent: bool = False) -> None:
-        """State data."""
+        """State data; where their denominators vanish the plant is not defined."""
         self.steps.append(Given(relations, silent=silent))
+        for stated in relations:
+            self.environment = with_domain(stated, self.environment)
 
     def assume(self, key: str, *values: Scalar) -> None:
         """State that polynomials are not zero from here on."""

@@ -122,7 +122,7 @@ def _after(step: Step, environment: Environment, discrete: bool) -> Environment:
                 if relation.operators == ("!=",) and (not sentence or relation in stated):
                     environment = _assume(relation, environment)
                 else:
-                    environment = _with_domain(relation, _introduce(relation, environment))
+                    environment = with_domain(relation, _introduce(relation, environment))
         case Define(relation):
             environment = _introduce(relation, environment)
         case Equal(relations):
@@ -289,7 +289,7 @@ def _introduce(relation: Relation, environment: Environment) -> Environment:
     return _meaning(target, rest, environment)
 
 
-def _with_domain(relation: Relation, environment: Environment) -> Environment:
+def with_domain(relation: Relation, environment: Environment) -> Environment:
     """Assume the denominators of the data are nonzero; elsewhere the plant is undefined."""
     values = literals(relation.members)
     entries = [entry for value in values for entry in (value.entries if isinstance(value, Matrix) else (value,))]
