@@ -93,8 +93,9 @@ def _how_plane(region: PlaneRegion) -> Iterator[Sentence]:
     allowed = [cell for cell in region.cells if cell.allowed]
     if len(allowed) > 1:
         stable = sum(cell.stable for cell in allowed)
-        slots = {"cells": Counted("open_piece", len(allowed)), "stable": Counted("of_them", stable, len(allowed))}
-        yield Sentence("cells_decide", tuple(slots.items()))
+        lines = Literal(Scalar.symbol(region.plane.names[0]))  # on which the fibres of this division lie
+        counts = {"cells": Counted("open_piece", len(allowed)), "stable": Counted("of_them", stable, len(allowed))}
+        yield Sentence("cells_decide", (("lines", lines), *counts.items()))
 
 
 def _of_plane(region: PlaneRegion) -> Iterator[Sentence]:
