@@ -19,7 +19,7 @@ from symobs.errors import DerivationRejected
 from symobs.exact import Scalar, is_correctly_written
 from symobs.exact.core.generators import identities
 from symobs.exact.numerals.rounded_roots import are_rounded_roots
-from symobs.figures.block_diagram import letter_for
+from symobs.figures.block_diagram import letter_for, without_sign
 from symobs.formula import (
     Block,
     Environment,
@@ -92,6 +92,8 @@ class _Comparison:
                 reject(f"{shown}, another figure,")
             self.compare(exact.sentence, shown.sentence, exactly=exactly)
             for (place, label), (_, other) in zip(exact.labels, shown.labels, strict=True):
+                if isinstance(label, Negative) and without_sign(label)[0] != without_sign(other)[0]:
+                    reject(f"{other}, without the sign of {label} at its junction,")
                 if other != letter_for(exact.name, place, label):  # which a format may draw for any label
                     self.compare(label, other, exactly=exactly)
         elif is_dataclass(exact) and type(exact) is type(shown):

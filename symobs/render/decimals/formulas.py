@@ -226,7 +226,13 @@ class InDecimals:
         )
 
     def _of_terms(self, formula: Sum) -> Formula:
-        return Sum(tuple(map(self.formula, formula.terms)))
+        return Sum(tuple(map(self._term, formula.terms)))
+
+    def _term(self, formula: Formula) -> Formula:
+        """Return a term; a number that is subtracted stays so: 9 - (-20.6), 3.6 - 0."""
+        if isinstance(formula, Negative) and isinstance(formula.operand, Literal):
+            return Negative(self.formula(formula.operand))
+        return self.formula(formula)
 
     def _with_front(self, number: Scalar, rest: Formula | None) -> Formula:
         """Return number · rest, in the numerator of a fraction."""
@@ -250,7 +256,7 @@ class InDecimals:
     def _expanded(self, number: Scalar, rest: Formula) -> Formula | None:
         """Return number · polynomial multiplied out, None where several factors stand in the numerator."""
         above = rest.numerator if isinstance(rest, Quotient) else rest
-        if not isinstance(above, Sum):
+        if not isinstance(above, Sum) or number.is_one:
             return None
         start = Environment(variable=self.variable)
         shown = self.scalar(evaluate(exact_meaning(above), start, Exact(start)) * number)
