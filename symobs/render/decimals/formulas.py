@@ -52,14 +52,22 @@ class InDecimals:
         self.digits = digits
 
     def relation(self, relation: Relation) -> Relation:
-        """Return a chain with `≈` for `=` beside a number that is rounded."""
-        members = tuple(map(self.formula, relation.members))
-        rounded = tuple(map(is_rounded, members))
-        operators = (
+        """Return a chain with `≈` for `=` beside a number that is rounded; in a comparison its exact value comes first."""
+        shown = tuple(map(self.formula, relation.members))
+        rounded = tuple(map(is_rounded, shown))
+        signs = [
             "≈" if operator == "=" and (rounded[place] or rounded[place + 1]) else operator
             for place, operator in enumerate(relation.operators)
-        )
-        return Relation(members, tuple(operators))
+        ]
+        members: list[Formula] = []
+        operators: list[str] = []
+        for place, member in enumerate(shown):
+            if rounded[place] and "≈" not in (beside := signs[max(place - 1, 0) : place + 1]) and beside:
+                members.append(relation.members[place])
+                operators.append("≈")
+            members.append(member)
+            operators += signs[place : place + 1]
+        return Relation(tuple(members), tuple(operators))
 
     def formula(self, formula: Formula) -> Formula:
         """Return a formula with the decimals of its numbers."""
