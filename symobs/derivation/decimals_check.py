@@ -107,7 +107,11 @@ class _Comparison:
 
     def _relation(self, exact: Relation, shown: Relation, *, exactly: bool) -> None:
         """Compare chains, members perhaps once exactly and once in decimals, and every sign between members."""
-        exact = _with_members_twice(exact, shown)
+        for place, sign in enumerate(shown.operators):
+            (*before, member), after = exact.members[: place + 1], exact.members[place + 1 :]
+            if sign == "≈" and shown.members[place] == member and exact.operators[place : place + 1] != ("=",):
+                signs = (*exact.operators[:place], "=", *exact.operators[place:])
+                exact = Relation((*before, member, member, *after), signs)
         if len(exact.members) != len(shown.members) or len(exact.operators) != len(shown.operators):
             reject(f"{shown}, a chain of another length,")
         for one, other in zip(exact.members, shown.members, strict=True):
@@ -120,9 +124,8 @@ class _Comparison:
         for before, operator, beside in zip(exact.operators, shown.operators, pairwise(rounded), strict=True):
             if operator != ("≈" if before == "=" and any(beside) else before):
                 reject(f"{shown}, where {operator} stands for {before},")
-        for place, is_about in enumerate(rounded):
-            beside = shown.operators[max(place - 1, 0) : place + 1]
-            if is_about and "≈" not in beside and not _ORDER.keys().isdisjoint(beside):
+        for member, signs in zip(rounded, pairwise(("", *shown.operators, "")), strict=True):
+            if member and "≈" not in signs and not _ORDER.keys().isdisjoint(signs):
                 reject(f"{shown}, a comparison with a rounded number that no ≈ says to be one,")
 
     def _formula(self, exact: Formula, shown: Formula) -> None:
@@ -154,22 +157,6 @@ class _Comparison:
             reject(f"{shown.value} ≈ {shown.text}")
         for part in children(shown):
             self._digits(part)
-
-
-def _with_members_twice(exact: Relation, shown: Relation) -> Relation:
-    """Return an exact chain with twice what is shown exactly, then rounded: before a comparison, and at the end."""
-    members: list[Formula] = []
-    operators: list[str] = []
-    for place, member in enumerate(exact.members):
-        after = exact.operators[place : place + 1]
-        here = len(members)
-        members.append(member)
-        is_shown = shown.members[here : here + 1] == (member,) and shown.operators[here : here + 1] == ("≈",)
-        if is_shown and (not after or after[0] in _ORDER) and is_rounded(shown.members[here + 1]):
-            members.append(member)
-            operators.append("=")
-        operators += after
-    return Relation(tuple(members), tuple(operators))
 
 
 def is_in_order(shown: Relation) -> bool:
