@@ -308,3 +308,14 @@ def test_what_is_demanded_of_phrases_is_demanded_of_phrases_that_exist() -> None
         phrases.SPELLS_OUT,
     ):
         assert set(listed) <= phrases.PHRASES.keys()
+
+
+def test_where_two_decays_are_equal_the_kernel_of_the_gramian_is_told() -> None:
+    """With A = diag(−a, −b) and C = [1 1] the difference of the states is unseen at a = b, and (C; CA)(−1, 1)ᵀ = 0 there."""
+    plant = symobs.StateSpace("[-a 0; 0 -b]", C="[1 1]", symbols={"a": "positive", "b": "positive"})
+    _, _, sums = str(symobs.gramian(plant, horizon="inf").to("text")).partition("2. Finite sum")
+    _, _, equal = sums.partition("Case a - b = 0.")
+    lines = "\n".join(line.strip() for line in equal.splitlines())
+    assert "have the same kernel. For" in lines
+    assert "v = ⎡-1⎤\n⎣ 1⎦" in lines
+    assert "W v = ⎡0⎤,    M v = ⎡0⎤" in lines
