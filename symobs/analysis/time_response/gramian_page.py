@@ -184,15 +184,14 @@ def _tell_finite_sum(result: Gramian, page: Builder) -> None:
         total = total + _transposed(A) ** k @ _square(C) @ A**k
     page.define("M", total, say="finite_sum_is")
     _tell_kernel(result, page)
+    known = result.answer["rank"]["kernel"].shape[1]
     for case in result.case_tree:
-        if (
-            isinstance(case.result, Gramian)
-            and case.when[0].operator == "=="
-            and case.result.answer["matrix"] is not None
-        ):
-            there = inside_case(page, case.result.plant, case.substitution)
-            there.set("W", case.result.answer["matrix"])
-            _tell_kernel(case.result, there)
+        found = case.result
+        if isinstance(found, Gramian) and found.answer["rank"]["kernel"].shape[1] > known:
+            there = inside_case(page, found.plant, case.substitution)
+            if found.answer["matrix"] is not None:
+                there.set("W", found.answer["matrix"])
+            _tell_kernel(found, there)
             if len(there.steps) > 1:
                 page.steps.append(CaseStep(stratum_of(case), tuple(case.substitution.items()), tuple(there.steps)))
 
