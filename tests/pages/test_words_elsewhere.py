@@ -272,9 +272,11 @@ def test_a_rank_that_drops_is_not_told_of_every_instant() -> None:
 def test_several_hidden_directions_may_be_combined() -> None:
     two = symobs.StateSpace("[0 0 0; 0 0 0; 0 0 -1]", C="[0 0 1]")
     text = text_of(symobs.initial_state(two, output="exp(-t)", horizon=1))
-    assert "the vectors beside it are unobservable, so any linear combination of them may be added" in text
+    assert (
+        "the vectors in the further equations are unobservable, so any linear combination of them may be added" in text
+    )
     one = symobs.StateSpace("[0 0; 0 -1]", C="[0 1]")
-    assert "so any multiple of the latter may be added" in text_of(
+    assert "so any multiple of it may be added" in text_of(
         symobs.initial_state(one, output="exp(-t)", horizon=1)
     )
 
@@ -319,3 +321,11 @@ def test_where_two_decays_are_equal_the_kernel_of_the_gramian_is_told() -> None:
     assert "have the same kernel. For" in lines
     assert "v = ⎡-1⎤\n⎣ 1⎦" in lines
     assert "W v = ⎡0⎤,    M v = ⎡0⎤" in lines
+
+
+def test_a_motion_from_rest_that_stands_still_solves_no_equation_of_zeros() -> None:
+    plant = symobs.StateSpace("[-1/2 1/10; 0 -1/5]", "[1; 0]", "[0 1]")
+    text = text_of(symobs.initial_state(plant, output="exp(-t/5)", input="0"))
+    assert "which solves" not in text
+    assert "The output is y = C exp(A t)x₀ plus the forced response" in text
+    assert "the vector in the second equation is unobservable, so any multiple of it may be added" in text
