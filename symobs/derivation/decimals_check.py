@@ -19,7 +19,7 @@ from symobs.errors import DerivationRejected
 from symobs.exact import Scalar, is_correctly_written
 from symobs.exact.core.generators import identities
 from symobs.exact.numerals.rounded_roots import are_rounded_roots
-from symobs.figures.block_diagram import letter_for
+from symobs.figures.block_diagram import letter_for, without_sign
 from symobs.formula import (
     Block,
     Environment,
@@ -92,6 +92,8 @@ class _Comparison:
                 reject(f"{shown}, another figure,")
             self.compare(exact.sentence, shown.sentence, exactly=exactly)
             for (place, label), (_, other) in zip(exact.labels, shown.labels, strict=True):
+                if isinstance(label, Negative) and without_sign(label)[0] != without_sign(other)[0]:
+                    reject(f"{other}, without the sign of {label} at its junction,")
                 if other != letter_for(exact.name, place, label):  # which a format may draw for any label
                     self.compare(label, other, exactly=exactly)
         elif is_dataclass(exact) and type(exact) is type(shown):
@@ -104,9 +106,12 @@ class _Comparison:
             reject(f"{shown}, in place of {exact},")
 
     def _relation(self, exact: Relation, shown: Relation, *, exactly: bool) -> None:
-        """Compare chains, the last member perhaps once exactly and once in decimals, and every sign between members."""
-        if len(shown.members) == len(exact.members) + 1:
-            exact = Relation((*exact.members, exact.members[-1]), (*exact.operators, "="))
+        """Compare chains, members perhaps once exactly and once in decimals, and every sign between members."""
+        for place, sign in enumerate(shown.operators):
+            (*before, member), after = exact.members[: place + 1], exact.members[place + 1 :]
+            if sign == "≈" and shown.members[place] == member and exact.operators[place : place + 1] != ("=",):
+                signs = (*exact.operators[:place], "=", *exact.operators[place:])
+                exact = Relation((*before, member, member, *after), signs)
         if len(exact.members) != len(shown.members) or len(exact.operators) != len(shown.operators):
             reject(f"{shown}, a chain of another length,")
         for one, other in zip(exact.members, shown.members, strict=True):
@@ -119,6 +124,9 @@ class _Comparison:
         for before, operator, beside in zip(exact.operators, shown.operators, pairwise(rounded), strict=True):
             if operator != ("≈" if before == "=" and any(beside) else before):
                 reject(f"{shown}, where {operator} stands for {before},")
+        for member, signs in zip(rounded, pairwise(("", *shown.operators, "")), strict=True):
+            if member and "≈" not in signs and not _ORDER.keys().isdisjoint(signs):
+                reject(f"{shown}, a comparison with a rounded number that no ≈ says to be one,")
 
     def _formula(self, exact: Formula, shown: Formula) -> None:
         """Compare formulas: values by what they are, whatever their form, and others part by part."""

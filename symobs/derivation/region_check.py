@@ -93,8 +93,8 @@ def _how_plane(region: PlaneRegion) -> Iterator[Sentence]:
     allowed = [cell for cell in region.cells if cell.allowed]
     if len(allowed) > 1:
         stable = sum(cell.stable for cell in allowed)
-        slots = {"cells": Counted("open_piece", len(allowed)), "stable": Counted("of_them", stable, len(allowed))}
-        yield Sentence("cells_decide", tuple(slots.items()))
+        counts = {"cells": Counted("open_piece", len(allowed)), "stable": Counted("of_them", stable, len(allowed))}
+        yield Sentence("cells_decide", (("lines", Literal(Scalar.symbol(region.plane.names[0]))), *counts.items()))
 
 
 def _of_plane(region: PlaneRegion) -> Iterator[Sentence]:

@@ -8,7 +8,7 @@ from dataclasses import fields, is_dataclass, replace
 from decimal import ROUND_HALF_EVEN, Context, Decimal
 from fractions import Fraction
 from functools import cache
-from itertools import islice
+from itertools import islice, pairwise
 from typing import TYPE_CHECKING, Any
 
 import pytest
@@ -27,15 +27,19 @@ from symobs import (
     state_feedback,
     transfer_function,
 )
-from symobs.derivation import CaseStep, Conclude, Define, Equal, Given, Section, Sentence
+from symobs.derivation import CaseStep, Conclude, Define, Diagram, Equal, Given, Section, Sentence
 from symobs.derivation.decimals_check import check_decimals
 from symobs.errors import DerivationRejected, ProblemErrors, SymobsWarning, UsageError
 from symobs.exact import Scalar, is_correctly_written, roots_of, significant
+from symobs.exact.core.generators import function
 from symobs.exact.numerals.rounded_roots import are_rounded_roots
 from symobs.exact.numerals.written_roots import rounded_roots
-from symobs.formula import Letter, Literal, Negative, Numeral, Product, Relation, RoundedRoots
+from symobs.formula import Letter, Literal, Negative, Numeral, Product, Quotient, Relation, RoundedRoots
+from symobs.formula.plain_text import plain, plain_relation
 from symobs.problem import validate
+from symobs.render.decimals.formulas import InDecimals
 from symobs.render.decimals.steps import in_decimals
+from symobs.render.printers.latex_printer import LatexPrinter
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -219,6 +223,53 @@ def test_right_decimals_are_accepted_and_a_thousand_wrong_last_digits_rejected()
                     check_decimals(exact, wrong, "s", 5)
                 planted += 1
     assert planted >= 1000
+
+
+def test_no_member_of_a_chain_is_printed_twice_and_differences_stay() -> None:
+    plant = StateSpace("[0 1; 20.6 0]", "[0; 1]", "[1 0]")
+    poles: dict[str, Any] = {"control_poles": "-1.8+2.4j, -1.8-2.4j", "observer_poles": "-8", "observer": "minimal"}
+    loops = compensator(plant, **poles), state_feedback(plant, poles="-1.8+2.4j, -1.8-2.4j")
+    lines: list[list[str]] = []
+    for _, shown in (pair for result in loops for pair in exact_and_shown(result)):
+        for relation in (shown.relation,) if isinstance(shown, Define) else getattr(shown, "relations", ()):
+            lines += [[LatexPrinter().inline(member) for member in relation.members]]
+    assert not [line for line in lines if any(one == other for one, other in pairwise(line))]
+    assert any(
+        r"\begin{bmatrix}9-(-20.6)&3.6-0\end{bmatrix}" in member.replace("small", "b")
+        for line in lines
+        for member in line
+    )
+
+
+def test_a_rounded_number_in_a_comparison_is_said_to_be_one() -> None:
+    """Not 0.018316 ≤ 0.02 alone: e^{−4} ≈ 0.018316 ≤ 0.02."""
+    bound = Relation((Literal(function("exp", Scalar.of(-4))), Literal(number("1/50"))), ("<=",))
+    shown = InDecimals("s", 5).relation(bound)
+    assert plain_relation(shown, "s") == "exp(-4) ≈ 0.018316 <= 0.02"
+    check_decimals(bound, shown, "s", 5)
+    check_decimals(bound, bound, "s", 5)
+    between = Relation((Literal(number("0")), Literal(number("1/3")), Literal(number("2/3"))), ("<", "<"))
+    assert plain_relation(InDecimals("s", 5).relation(between), "s") == "0 < 1/3 ≈ 0.33333 < 2/3 ≈ 0.66667"
+    check_decimals(between, InDecimals("s", 5).relation(between), "s", 5)
+    silent = Relation(shown.members[1:], ("<=",))
+    other = Relation((Literal(function("exp", Scalar.of(-5))), *shown.members[1:]), shown.operators)
+    for lie in (silent, other, Relation(shown.members, ("=", "<=")), Relation(shown.members, ("<=", "<="))):
+        with pytest.raises(DerivationRejected):
+            check_decimals(bound, lie, "s", 5)
+
+
+def test_the_sign_at_a_junction_is_that_of_the_exact_figure() -> None:
+    """Where an exact gain has a minus sign at its junction, the decimals have it there, never in the box alone."""
+    poles: dict[str, Any] = {"control_poles": "-1.8+2.4j, -1.8-2.4j", "observer_poles": "-8", "observer": "minimal"}
+    result = compensator(StateSpace("[0 1; 20.6 0]", "[0; 1]", "[1 0]"), **poles)
+    figures = [pair for pair in exact_and_shown(result) if isinstance(pair[0], Diagram) and pair[0].name == "loop"]
+    ((exact, shown),) = figures
+    gain = dict(shown.labels)["F"]
+    assert plain(gain, "s") == "-(58.4*s + 310.96)/(s + 11.6)"
+    in_the_box = Quotient(Negative(gain.operand.numerator), gain.operand.denominator)  # the same value, but no sign
+    labels = tuple((place, in_the_box if place == "F" else label) for place, label in shown.labels)
+    with pytest.raises(DerivationRejected, match="without the sign"):
+        check_decimals(exact, replace(shown, labels=labels), "s", 5)
 
 
 THIRD = Numeral(number("1/3"), "0.33333")

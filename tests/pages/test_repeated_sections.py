@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 
 import pytest
 
@@ -44,3 +45,26 @@ def test_the_other_order_of_an_observer_is_named_where_its_poles_came(
         symobs.compensator(plant, control_poles=[-1, -2], observer_poles=poles, observer=observer)
     assert caught.value.where == "specification.observer_poles"
     assert (f'or write observer = "{other}"' in caught.value.repair) == bool(other)
+
+
+KEY = """
+    tasks = ["canonical_form", "observability", "controllability"]
+    [plant]
+    A = "[0 1; -2 -3]"
+    B = "[0; 1]"
+    C = "[1 0]"
+    [specification]
+    kind = "observable"
+"""
+
+
+@pytest.mark.parametrize("detail", ["full", "outline", "answer"])
+def test_a_part_that_is_answered_already_keeps_its_heading_and_says_where(detail: str) -> None:
+    problem = read(KEY)
+    text = str(render(replace(problem.document(problem.solve()), detail=detail), "text"))
+    headings = re.findall(r"^(\d\. .*)$", text, re.MULTILINE)
+    assert headings == ["1. Canonical form", "2. Observability", "3. Controllability"]
+    (again,) = re.findall(r"2\. Observability\n-+\n(.*?)\n3\. ", text, re.DOTALL)
+    assert "This has been shown in section 1." in again
+    assert "det 𝒪 = 1 ≠ 0" in again
+    assert "the pair (C, A) is observable" in again

@@ -272,9 +272,11 @@ def test_a_rank_that_drops_is_not_told_of_every_instant() -> None:
 def test_several_hidden_directions_may_be_combined() -> None:
     two = symobs.StateSpace("[0 0 0; 0 0 0; 0 0 -1]", C="[0 0 1]")
     text = text_of(symobs.initial_state(two, output="exp(-t)", horizon=1))
-    assert "the vectors beside it are unobservable, so any linear combination of them may be added" in text
+    assert (
+        "the vectors in the further equations are unobservable, so any linear combination of them may be added" in text
+    )
     one = symobs.StateSpace("[0 0; 0 -1]", C="[0 1]")
-    assert "so any multiple of the latter may be added" in text_of(
+    assert "so any multiple of it may be added" in text_of(
         symobs.initial_state(one, output="exp(-t)", horizon=1)
     )
 
@@ -308,3 +310,22 @@ def test_what_is_demanded_of_phrases_is_demanded_of_phrases_that_exist() -> None
         phrases.SPELLS_OUT,
     ):
         assert set(listed) <= phrases.PHRASES.keys()
+
+
+def test_where_two_decays_are_equal_the_kernel_of_the_gramian_is_told() -> None:
+    """With A = diag(−a, −b) and C = [1 1] the difference of the states is unseen at a = b, and (C; CA)(−1, 1)ᵀ = 0 there."""
+    plant = symobs.StateSpace("[-a 0; 0 -b]", C="[1 1]", symbols={"a": "positive", "b": "positive"})
+    _, _, sums = str(symobs.gramian(plant, horizon="inf").to("text")).partition("2. Finite sum")
+    _, _, equal = sums.partition("Case a - b = 0.")
+    lines = "\n".join(line.strip() for line in equal.splitlines())
+    assert "have the same kernel. For" in lines
+    assert "v = ⎡-1⎤\n⎣ 1⎦" in lines
+    assert "W v = ⎡0⎤,    M v = ⎡0⎤" in lines
+
+
+def test_a_motion_from_rest_that_stands_still_solves_no_equation_of_zeros() -> None:
+    plant = symobs.StateSpace("[-1/2 1/10; 0 -1/5]", "[1; 0]", "[0 1]")
+    text = text_of(symobs.initial_state(plant, output="exp(-t/5)", input="0"))
+    assert "which solves" not in text
+    assert "The output is y = C exp(A t)x₀ plus the forced response" in text
+    assert "the vector in the second equation is unobservable, so any multiple of it may be added" in text

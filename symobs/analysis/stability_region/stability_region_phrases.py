@@ -30,7 +30,7 @@ PHRASES: dict[str, str] = {
     "region_everywhere": "Hence all roots are stable for all values of {names}.",
     "points_decide": "Between {points} on the line the number of stable roots is constant, so one rational test value per interval suffices: all roots are stable on {stable}.",
     "point_decides": "On either side of this point the number of stable roots is constant, so one rational test value per side suffices: all roots are stable on {stable}.",
-    "cells_decide": "These curves, together with vertical lines through their turning points and intersections, divide the plane into {cells}. In each of them the number of stable roots is constant, so one rational test point suffices: {stable} stable.",
+    "cells_decide": "These curves, together with the lines {lines} = constant through their turning points and intersections, divide the plane into {cells}. In each of them the number of stable roots is constant, so one rational test point suffices: {stable} stable.",
     "point_missing": "The value {name} = {point} is excluded.",
     "criterion": "By the Liénard–Chipart criterion, all roots are stable if and only if",
     "criterion_long": "The Liénard–Chipart criterion requires {count} polynomials to be positive.",

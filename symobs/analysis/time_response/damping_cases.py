@@ -173,7 +173,7 @@ class DampingCases(Result):
         if not self.case_tree and not chosen:
             write_branch(page, self)
             return
-        inner = _inside(page, self.plant, {})
+        inner = inside_case(page, self.plant, {})
         write_branch(inner, self)
         zeros = dict.fromkeys(_distance(case) for case in self.case_tree if case.when[0].operator == "==")
         steps = tuple(inner.steps)
@@ -197,7 +197,7 @@ def _case(page: Builder, case: Case, doubled: Signs, write_branch: Callable[[Bui
     if not isinstance(case.result, DampingCases):
         return undecided(page, case)
     condition = case.when[0]
-    inner = _inside(page, case.result.plant, case.substitution)
+    inner = inside_case(page, case.result.plant, case.substitution)
     case.result.write_branches(inner, write_branch)
     steps = tuple(inner.steps)
     if condition.operator != "==":
@@ -215,7 +215,7 @@ def _narrowed(steps: tuple[Step, ...], conditions: Sequence[Condition]) -> tuple
     return steps
 
 
-def _inside(page: Builder, plant: StateSpace, substitution: Mapping[str, Scalar]) -> Builder:
+def inside_case(page: Builder, plant: StateSpace, substitution: Mapping[str, Scalar]) -> Builder:
     """Return a builder for the steps of a case, with the same environment."""
     inner = Builder(plant)
     inner.start, inner.forms = page.start, page.forms

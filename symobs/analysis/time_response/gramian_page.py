@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from symobs.analysis.page_parts import HIDDEN, hidden, hidden_polynomial
+from symobs.analysis.page_parts import HIDDEN, hidden, hidden_polynomial, stratum_of
+from symobs.analysis.time_response.damping_cases import inside_case
 from symobs.analysis.time_response.gramian import Gramian
 from symobs.analysis.time_response.horizons import INFINITE, lyapunov
 from symobs.analysis.time_response.matrix_exponential import (
@@ -176,13 +177,28 @@ def define_seen(result: Gramian, page: Builder) -> Term:
 
 
 def _tell_finite_sum(result: Gramian, page: Builder) -> None:
-    """Write Σ (Aᵀ)ᵏ Cᵀ C Aᵏ and the kernel with its vector, or that there is none."""
+    """Write Σ (Aᵀ)ᵏ Cᵀ C Aᵏ and its kernel, also in the cases."""
     A, C = _letters(result, page)
     total = _square(C)
     for k in range(1, result.plant.order):
         total = total + _transposed(A) ** k @ _square(C) @ A**k
-    M = page.define("M", total, say="finite_sum_is")
-    kernel: Matrix = result.answer["rank"]["kernel"]
+    page.define("M", total, say="finite_sum_is")
+    _tell_kernel(result, page)
+    known = result.answer["rank"]["kernel"].shape[1]
+    for case in result.case_tree:
+        found = case.result
+        if isinstance(found, Gramian) and found.answer["rank"]["kernel"].shape[1] > known:
+            there = inside_case(page, found.plant, case.substitution)
+            if found.answer["matrix"] is not None:
+                there.set("W", found.answer["matrix"])
+            _tell_kernel(found, there)
+            if len(there.steps) > 1:
+                page.steps.append(CaseStep(stratum_of(case), tuple(case.substitution.items()), tuple(there.steps)))
+
+
+def _tell_kernel(result: Gramian, page: Builder) -> None:
+    """Write the kernel of the finite sum with its vector, or that there is none."""
+    M, kernel = page["M"], result.answer["rank"]["kernel"]
     if not kernel.shape[1]:
         value = M.value.determinant()
         key = "kernel_none_controllability" if result.answer["of"] == "controllability" else "kernel_none"
@@ -204,4 +220,5 @@ def _tell_finite_sum(result: Gramian, page: Builder) -> None:
         unseen = relation(page["C"] @ page["exp_At"] @ v, zero)  # what it says is shown
         page.equal(unseen, say="kernel_unseen_several" if several else "kernel_unseen")
     shown = [relation(page["W"] @ v, nothing)] if page.defines("W") else []
-    page.equal(*shown, relation(M @ v, nothing), say="kernel_of_gramian")
+    say = "kernel_of_gramian" if page.defines("exp_At") else "kernel_annihilated"
+    page.equal(*shown, relation(M @ v, nothing), say=say)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from math import factorial
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from symobs.analysis.time_response.damping_cases import rate_of
 from symobs.analysis.time_response.horizons import INFINITE
@@ -85,7 +85,11 @@ def _tell_forced(result: InitialState, page: Builder) -> Term:
     equation = relation(rate_of(x_f), A @ x_f + page["B"] @ page["u_t"])
     start = relation(x_f.at("t", 0), Matrix.zeros(result.plant.order, 1))
     page.conclude_silently(start)
-    return page.define("y_0", moved, _entry(answer["free"]), say="output_solution", closing=False, equation=equation)
+    told: dict[str, Any] = {"say": "output_solution", "equation": equation}
+    if answer["forced"].is_zero:
+        page.conclude_silently(equation)
+        told = {"say": "output_at_rest"}
+    return page.define("y_0", moved, _entry(answer["free"]), closing=False, **told)
 
 
 def _tell_moments(result: InitialState, page: Builder, free: Term) -> None:

@@ -218,7 +218,8 @@ def _shifted(rate: Scalar) -> Formula:
     if rate.is_zero:
         return Letter("A")
     negative = rate.terms()[0][0] > 0
-    amount: Formula = Product((Literal(rate if negative else -rate), Identity(2)))
+    size = rate if negative else -rate
+    amount: Formula = Identity(2) if size.is_one else Product((Literal(size), Identity(2)))
     return Sum((Letter("A"), Negative(amount) if negative else amount))
 
 

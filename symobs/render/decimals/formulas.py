@@ -52,14 +52,22 @@ class InDecimals:
         self.digits = digits
 
     def relation(self, relation: Relation) -> Relation:
-        """Return a chain with `≈` for `=` beside a number that is rounded."""
-        members = tuple(map(self.formula, relation.members))
-        rounded = tuple(map(is_rounded, members))
-        operators = (
+        """Return a chain with `≈` for `=` beside a number that is rounded; in a comparison its exact value comes first."""
+        shown = tuple(map(self.formula, relation.members))
+        rounded = tuple(map(is_rounded, shown))
+        signs = [
             "≈" if operator == "=" and (rounded[place] or rounded[place + 1]) else operator
             for place, operator in enumerate(relation.operators)
-        )
-        return Relation(members, tuple(operators))
+        ]
+        members: list[Formula] = []
+        operators: list[str] = []
+        for place, member in enumerate(shown):
+            if rounded[place] and "≈" not in (beside := signs[max(place - 1, 0) : place + 1]) and beside:
+                members.append(relation.members[place])
+                operators.append("≈")
+            members.append(member)
+            operators += signs[place : place + 1]
+        return Relation(tuple(members), tuple(operators))
 
     def formula(self, formula: Formula) -> Formula:
         """Return a formula with the decimals of its numbers."""
@@ -226,7 +234,13 @@ class InDecimals:
         )
 
     def _of_terms(self, formula: Sum) -> Formula:
-        return Sum(tuple(map(self.formula, formula.terms)))
+        return Sum(tuple(map(self._term, formula.terms)))
+
+    def _term(self, formula: Formula) -> Formula:
+        """Return a term; a number that is subtracted stays so: 9 - (-20.6), 3.6 - 0."""
+        if isinstance(formula, Negative) and isinstance(formula.operand, Literal):
+            return Negative(self.formula(formula.operand))
+        return self.formula(formula)
 
     def _with_front(self, number: Scalar, rest: Formula | None) -> Formula:
         """Return number · rest, in the numerator of a fraction."""
@@ -250,7 +264,7 @@ class InDecimals:
     def _expanded(self, number: Scalar, rest: Formula) -> Formula | None:
         """Return number · polynomial multiplied out, None where several factors stand in the numerator."""
         above = rest.numerator if isinstance(rest, Quotient) else rest
-        if not isinstance(above, Sum):
+        if not isinstance(above, Sum) or number.is_one:
             return None
         start = Environment(variable=self.variable)
         shown = self.scalar(evaluate(exact_meaning(above), start, Exact(start)) * number)

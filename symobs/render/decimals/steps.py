@@ -35,7 +35,9 @@ from symobs.formula import (
     Formula,
     HoldsExactlyWhere,
     Literal,
+    Negative,
     Predicate,
+    Quotient,
     Relation,
     Roots,
     RoundedRoots,
@@ -201,11 +203,19 @@ class _Writer:
         return self.value(slot)
 
     def label(self, figure: str, place: str, label: Label) -> Label:
-        """Return a label of a block diagram: the letter of a value that would be rounded."""
-        if isinstance(label, Conjunction):
-            return Conjunction(tuple(map(self.relation, label.relations)))
-        shown = self.decimals.formula(label)
-        return letter_for(figure, place, label) or label if is_rounded(shown) else shown
+        """Return a label of a block diagram, its sign kept in front: the letter of a value that would be rounded."""
+        match label:
+            case Conjunction(relations):
+                return Conjunction(tuple(map(self.relation, relations)))
+            case Negative(operand):
+                inside = self.decimals.formula(operand)
+                if isinstance(inside, Negative) and isinstance(inside.operand, Quotient):
+                    inside = Quotient(Negative(inside.operand.numerator), inside.operand.denominator)
+                shown: Formula = Negative(inside)
+                is_kept = not isinstance(inside, Negative)
+            case _:
+                shown, is_kept = self.decimals.formula(label), True
+        return shown if is_kept and not is_rounded(shown) else letter_for(figure, place, label) or label
 
     def roots(self, roots: Roots) -> Roots:
         """Return roots in decimals, where they have them."""

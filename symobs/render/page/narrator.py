@@ -95,9 +95,13 @@ def narrate(document: Document) -> tuple[Block, ...]:
         if index in apart:
             page.printed.clear()
             page.emit_given(apart[index])
-        for step in steps:
-            if not _is_statement(step):
-                page.emit_step(step)
+        start = len(page.blocks)
+        told = [step for step in steps if not _is_statement(step)]
+        for step in told:
+            page.emit_step(step)
+        is_silent = not any(isinstance(block, Heading) for block in page.blocks[start:])
+        if is_silent and told and isinstance(told[-1], Section):
+            page.emit_again(told[-1])
         page.printed |= _inside(steps)
     if works:
         page.blocks.append(References(language.words["sources"], tuple(f"{language.reference(key)}." for key in works)))
@@ -132,10 +136,11 @@ def _given_relations(step: Step) -> Iterator[Relation]:
 def _inside(steps: Sequence[Step]) -> set[Step]:
     """Return the steps of the sections, which later derivations need not repeat."""
     printed = [inner for step in steps if isinstance(step, Section) for inner in step.steps]
-    return {
-        *printed,
-        *(replace(step, answer=False) for step in printed if isinstance(step, (Define, Equal, Inequalities))),
-    }
+    return {*printed, *map(_unboxed, printed)}
+
+
+def _unboxed(step: Step) -> Step:
+    return replace(step, answer=False) if isinstance(step, (Define, Equal, Inequalities)) else step
 
 
 def printer_for(document: Document, kind: type[P]) -> P:
@@ -180,6 +185,7 @@ class _PageBlocks:
         self.given = dict(given or {})
         self.stated: set[Sentence] = set()
         self.printed: set[Step] = set()
+        self.places: dict[Step, str] = {}  # the numbers of the sections in which steps are printed first
         self.numbers = [0]
         self.numbered = True
 
@@ -290,6 +296,17 @@ class _PageBlocks:
         if self.blocks[-1] is heading and not self.printed.isdisjoint(steps):  # all of it is printed already
             self.blocks.pop()
             self.numbers[-1] -= is_numbered
+            return
+        for step in steps:
+            self.places.setdefault(_unboxed(step), number.rstrip("."))
+
+    def emit_again(self, section: Section) -> None:
+        """Emit a section that stands on the page already, the whole of a part: its heading, where it is, its findings."""
+        places = [place for step in section.steps if (place := self.places.get(_unboxed(step)))]
+        where = [Note(Sentence("shown_in_section", (("number", place),))) for place in places[:1]]
+        printed, self.printed = self.printed, set()
+        self.emit_section(section.title, (*where, *at_detail(section.steps, "answer")))
+        self.printed = printed
 
     def side_by_side(self, columns: Sequence[Section]) -> Iterator[Block]:
         """Emit sections in columns."""

@@ -185,7 +185,7 @@ class Breaker(Generic[B]):
         is_after_fraction = False
         parts = factors(body, self.printer.variable)
         for index, factor in enumerate(parts):
-            whole = self.printer.factor(factor, last=index + 1 == len(parts))
+            whole = self.printer.factor(factor, parts[index + 1] if index + 1 < len(parts) else None)
             fits = whole.width <= room - 2
             first, *rest = [LinePiece(whole)] if fits else self._operand(factor, Level.FRACTION, room - 2)
             first = self._following(pieces, first)

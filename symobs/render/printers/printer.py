@@ -40,7 +40,7 @@ from symobs.notation import FUNCTIONS, LETTERS, SIGNALS, TIMED, is_of_time, show
 from symobs.phrases.languages import ENGLISH
 from symobs.render.printers.glyphs import B, FormulaWriter, Level
 from symobs.render.printers.rational_formula import is_leaf, is_negative
-from symobs.render.printers.scalar_formula import factors, formula_of, formula_of_matrix, is_table, partitioned
+from symobs.render.printers.scalar_formula import factors, formula_of, formula_of_matrix, is_table, partitioned, wave
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -221,8 +221,11 @@ class Printer(FormulaWriter[B]):
         if function.kind == "sqrt":
             return self.root(argument)
         is_plain = argument.level >= Level.PRODUCT and not isinstance(formula_of(function.argument, ""), Quotient)
-        box = self.applied(function.kind, argument if is_plain else self.grouped(argument))
-        return replace(box, level=Level.POWER)
+        return self._wave(function, argument if is_plain else self.grouped(argument))
+
+    def _wave(self, function: Function, argument: B) -> B:
+        """Return cos ωt, which binds like a power."""
+        return replace(self.applied(function.kind, argument), level=Level.POWER)
 
     def sum_parts(self, formula: Formula) -> list[B]:
         """Return the terms of a sum with their signs between them."""
@@ -251,15 +254,17 @@ class Printer(FormulaWriter[B]):
     def factor_boxes(self, formula: Formula) -> list[B]:
         """Return the factors of a product, parenthesised by precedence."""
         parts = factors(formula, self.variable)
-        return [self.factor(part, last=index + 1 == len(parts)) for index, part in enumerate(parts)]
+        return [self.factor(part, after) for part, after in zip(parts, [*parts[1:], None], strict=True)]
 
-    def factor(self, formula: Formula, *, last: bool) -> B:
-        """Return one factor; the argument of a function is separated from the factors after it."""
-        if not isinstance(formula, Apply):
-            return self.at_least(Level.FRACTION, self.typeset(formula))
-        if last:
-            return self.typeset(formula)
-        return self.applied(formula.function, self.grouped(self.typeset(formula.argument)))
+    def factor(self, formula: Formula, after: Formula | None) -> B:
+        """Return one factor; a function's argument is separated from what follows: cos(2t) I, but cos t sin t."""
+        if isinstance(formula, Apply) and after is not None:
+            return self.applied(formula.function, self.grouped(self.typeset(formula.argument)))
+        turning = wave(formula)
+        if turning is not None and after is not None and wave(after) is None:
+            return self._wave(turning, self.grouped(self.scalar(turning.argument)))
+        box = self.typeset(formula)
+        return box if isinstance(formula, Apply) else self.at_least(Level.FRACTION, box)
 
     def quotient(self, formula: Quotient) -> B:
         """Return a fraction with the minus of its numerator in front."""

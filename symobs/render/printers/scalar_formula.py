@@ -20,6 +20,7 @@ from symobs.render.printers.rational_formula import common_divisor, is_leaf, pro
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
+    from symobs.exact.core.generators import Function
     from symobs.render.printers.glyphs import Rules
 
 #: A common denominator of more terms, or more bits, is not put in front of a matrix.
@@ -35,6 +36,14 @@ def is_time_function(name: str) -> bool:
     """Return whether a generator is an exponential, a sine or a cosine."""
     found = function_named(name)
     return found is not None and found.kind not in {"sqrt", "CRootOf"}
+
+
+def wave(formula: Formula) -> Function | None:
+    """Return the sine or cosine, also hyperbolic, that a formula is."""
+    if not isinstance(formula, Literal) or not isinstance(formula.value, Scalar) or not is_leaf(formula.value):
+        return None
+    found = next(map(function_named, formula.value.names), None)
+    return found if found is not None and found.kind in {"sin", "cos", "sinh", "cosh"} else None
 
 
 @lru_cache(maxsize=4096)

@@ -173,7 +173,7 @@ class TextPrinter(Printer[TextBox]):
         """Return a function's name and its argument."""
         known = self.letters[function].text if function in self.letters else FUNCTIONS.get(function, ("", ""))[1]
         name = self.language.words["rank"] if function == "rank" else known or function.replace("_", " ")
-        if self.flat and function in {"sin", "cos", "sinh", "cosh"} and argument.line[0] not in "([":
+        if function in {"sin", "cos", "sinh", "cosh"} and argument.line[0] not in "([":
             argument = self.grouped(argument)
         space = "" if argument.line[0] in "([" or len(argument.lines) > 1 else " "
         return self.joined([text_box(name + space), argument], Level.PRODUCT)

@@ -117,7 +117,7 @@ def test_what_is_said_of_intervals(polynomial: Scalar, findings: list[tuple[str,
 
 def test_what_is_said_of_pieces_of_a_plane() -> None:
     quadrant = found(s**2 + h * s + k)
-    assert quadrant == [("cells_decide", "four open pieces", "one of them is"), ("connected_unbounded",)]
+    assert quadrant == [("cells_decide", "h", "four open pieces", "one of them is"), ("connected_unbounded",)]
     assert ("pieces", "two pieces", "none of them is") in found(s**2 + s + h * k)
     without_origin = found(s**2 + s + h**2 + k**2)
     assert ("hole", "0", "0", "h", "k") in without_origin
@@ -136,10 +136,23 @@ def test_what_is_said_of_pieces_of_a_plane() -> None:
     assert found(s**2 + s + h**2 * k**2)[2:] == [("curve_missing", "k = 0"), ("curve_missing", "h = 0")]
 
 
+def test_the_lines_of_a_division_are_those_over_whose_points_its_pieces_are_stacked() -> None:
+    """With the lines h = ±2, 0 there would be sixteen pieces of Jury's triangle; with k = ±1 there are nine."""
+    triangle, in_z = z**2 + h * z + k, Environment(variable="z")
+    region = region_of(triangle, in_z, discrete=True)
+    assert isinstance(region, PlaneRegion)
+    first, *others = findings_of_region(region)
+    assert words(first) == ("cells_decide", "k", "nine open pieces", "one of them is")
+    lines = dict(first.slots) | {"lines": Literal(h)}
+    step = RegionSummary(CHI, ("h", "k"), (Sentence("cells_decide", tuple(lines.items())), *others), ())
+    assert is_survey(replace(step, findings=(first, *others)), triangle, in_z, discrete=True)
+    assert not is_survey(step, triangle, in_z, discrete=True)
+
+
 def test_only_pieces_that_the_signs_allow_are_counted() -> None:
     known = Environment(signs={"a": "positive", "k": "positive"})
     assert found(s**2 + h * s + a, known) == [
-        ("cells_decide", "two open pieces", "one of them is"),
+        ("cells_decide", "a", "two open pieces", "one of them is"),
         ("connected_unbounded",),
     ]
     assert found(s + a + k, known) == [("region_everywhere", "SymbolList(names=('a', 'k'))")]

@@ -13,6 +13,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from symobs.exact import Matrix, Scalar
+from symobs.exact.core.generators import function
 from symobs.formula import (
     Apply,
     Block,
@@ -31,6 +32,7 @@ from symobs.formula import (
 )
 from symobs.notation import symbol_latex, symbol_text
 from symobs.render.printers.latex_printer import LatexPrinter
+from symobs.render.printers.mathml.mathml_printer import MathmlPrinter
 from symobs.render.printers.scalar_formula import formula_of
 from symobs.render.printers.text_printer import TextPrinter, text_width
 
@@ -774,3 +776,17 @@ def test_no_display_is_wider_than_the_page(tmp_path: Path, require_tool: Callabl
 def test_no_text_display_is_wider_than_its_lines() -> None:
     for display in displays(random.Random(5), TextPrinter(width=80)):  # noqa: S311
         assert max(map(text_width, display.split("\n"))) <= 80
+
+
+def test_the_argument_of_a_cosine_ends_where_it_is_seen_to() -> None:
+    """Not cos 2t I, which is read as cos(2t I); before another cosine or sine, and at the end, nothing can be misread."""
+    t = Scalar.symbol("t")
+    cosine, sine = (Literal(function(kind, 2 * t)) for kind in ("cos", "sin"))
+    shifted = Sum((A, Identity(2)))
+    modes = Sum((Product((cosine, Identity(2))), Product((Quotient(sine, lit(2)), shifted)), Product((sine, shifted))))
+    assert LatexPrinter().inline(modes) == r"\cos(2t)I+\frac{\sin2t}{2}(A+I)+\sin(2t)(A+I)"
+    assert TextPrinter().inline(modes) == "cos(2t)I + (sin(2t)/2)(A + I) + sin(2t)(A + I)"
+    assert LatexPrinter().inline(Product((cosine, sine))) == r"\cos2t\sin2t"
+    assert LatexPrinter().inline(Product((cosine, Power(sine, 2)))) == r"\cos(2t)(\sin2t)^2"
+    written = MathmlPrinter().inline(Product((cosine, Identity(2))))
+    assert "(2" in re.sub(r"<[^>]*>|\s", "", written)
