@@ -132,7 +132,9 @@ def _require_occurring(chosen: tuple[str, ...], asked: RegionQuestion, plant: St
         near = get_close_matches(absent[0], sorted(names), 1)
         repair = f"did you mean {near[0]}? " if near else ""
         repair += f"its symbols: {', '.join(sorted(names))}; leave {absent[0]} out, or declare it in [symbols]"
-        message = f"the parameter {absent[0]} does not occur in the {'plant' if plant.polynomial is None else 'polynomial'}"
+        message = (
+            f"the parameter {absent[0]} does not occur in the {'plant' if plant.polynomial is None else 'polynomial'}"
+        )
         raise InputError(message, where="specification.parameters", repair=repair)
 
 
