@@ -124,8 +124,8 @@ def read_question(
 
 def _require_occurring(chosen: tuple[str, ...], asked: RegionQuestion, plant: StateSpace) -> None:
     """Raise `InputError` for a parameter that is neither declared nor in the data, unless they have no symbol at all."""
-    data = (*plant.matrices, asked.K, asked.L) if plant.polynomial is None else (plant.polynomial,)
-    names = {name for part in data if part is not None for name in part.names} - {plant.variable}
+    data = set(plant.matrices.symbols) if plant.polynomial is None else plant.polynomial.names
+    names = data.union(*(gain.names for gain in (asked.K, asked.L) if gain is not None)) - {plant.variable}
     declared = set(plant.symbols.signs) - plant.symbols.named
     absent = [name for name in chosen if name not in names | declared | asked.boundary.names]
     if names and absent:
