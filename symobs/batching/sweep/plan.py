@@ -155,7 +155,8 @@ def _chosen(there: list[str], wanted: str | None) -> list[str]:
     if strange or not chosen:
         known = ", ".join(dict.fromkeys(group.values()))
         message = f"{' and '.join(strange) or 'nothing'} {'are' if len(strange) > 1 else 'is'} no column"
-        repair = f"name some of {known}, or entries such as {next((name for name in there if '[' in name), 'K[1,2]')}, counted from 1"
+        entry = next((name for name in there if "[" in name), "K[1,2]")
+        repair = f"name some of {known}, or entries such as {entry}, counted from 1"
         raise UsageError(message, where="--columns", repair=repair)
     return [*chosen, MARGINS_STATUS] if set(chosen) & set(MARGINS) else chosen
 
