@@ -1,4 +1,4 @@
-"""What `[marking]` names, held against the results: parts that exist, and relations that can be read."""
+"""What `[marking]` names, held against the results: parts that exist, and relations that can be read and are true."""
 
 from __future__ import annotations
 
@@ -6,11 +6,12 @@ from difflib import get_close_matches
 from typing import TYPE_CHECKING
 
 from symobs.audit.printed_entries import printed_entries
-from symobs.checking.derivations.lines import is_of_conditions
+from symobs.checking.derivations.lines import is_of_conditions, judge_milestone
 from symobs.checking.judgement.conditions import read_conditions
 from symobs.checking.judgement.parts import exists
 from symobs.errors import InputError, ProblemErrors, SymobsError
 from symobs.expect import available
+from symobs.expression.source import shown
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterator, Sequence
@@ -21,7 +22,7 @@ if TYPE_CHECKING:
 
 def marking_errors(problem: Problem, views: Sequence[ResultInConvention]) -> list[SymobsError]:
     """Return what in the weights and the milestones of a problem would never count."""
-    return [*_unknown_weights(problem, views), *_unreadable_milestones(problem)]
+    return [*_unknown_weights(problem, views), *_unmet_milestones(problem, views)]
 
 
 def part_of_name(part: str, views: Sequence[ResultInConvention]) -> tuple[ResultInConvention, str] | None:
@@ -55,17 +56,29 @@ def _unknown_weights(problem: Problem, views: Sequence[ResultInConvention]) -> I
             yield InputError(f"there is no {part}", where=f"marking.parts.{part}", repair=meant(part, known))
 
 
-def _unreadable_milestones(problem: Problem) -> Iterator[SymobsError]:
-    """Yield the relations that no line of a derivation could ever be."""
+def _unmet_milestones(problem: Problem, views: Sequence[ResultInConvention]) -> Iterator[SymobsError]:
+    """Yield the relations that no true line of a derivation could ever be."""
     for i, milestone in enumerate(problem.marking.milestones):
         where = f"marking.milestone[{i}].relation"
         try:
-            if is_of_conditions(milestone.relation):
-                read_conditions(milestone.relation, None, where)
-            else:
-                entry = {"relation": milestone.relation}
-                printed_entries([entry], problem.convention, problem.plant.symbols.signs)
+            _require_readable(milestone.relation, problem, where)
         except SymobsError as error:
             each = error.errors[0] if isinstance(error, ProblemErrors) else error
             repair = each.repair or 'write both sides, for example "L = [19; 81]"'
             yield InputError(each.message, where=where, repair=repair)
+            continue
+        line = judge_milestone(problem, views, milestone)
+        rounds = problem.marking.decimals == "accept" and "." in milestone.relation
+        if line.verdict == "false" and not rounds:
+            repair = f"write {line.right}" if line.right else "write a relation that the solution meets"
+            yield InputError(
+                f'"{shown(milestone.relation, 80)}" is not true here: {line.reason}', where=where, repair=repair
+            )
+
+
+def _require_readable(relation: str, problem: Problem, where: str) -> None:
+    """Raise an error of a relation that is neither an equation nor conditions."""
+    if is_of_conditions(relation):
+        read_conditions(relation, None, where)
+    else:
+        printed_entries([{"relation": relation}], problem.convention, problem.plant.symbols.signs)

@@ -46,6 +46,9 @@ _LONGEST_REPAIR = 30
 _NUMBERS, _SMALL = {int, Fraction}, 128
 #: What else to do about floats.
 FLOATS = ', or give the plant or the task floats="decimal"'
+_PLAIN = r"(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:/[0-9]+)?"
+#: Numbers with nothing but a blank and a sign between them.
+_SIGNED_APART = re.compile(rf"\s*[-+]?{_PLAIN}(?:\s+[-+]{_PLAIN})+\s*")
 #: Beyond it a float stands for several integers.
 _WHOLE_UP_TO = 2**53
 _KINDS = {bool: "a truth value (bool)", dict: "a table (dict)", int: "a number", list: "a list", str: "a text"}
@@ -129,6 +132,8 @@ def parse_poles(
         raise InputError(f"a list of poles is expected, but {_kind(value)} came", where=where, repair=repair)
     scope = sharing(scope, listed, variable)
     texts = [pole for pole in listed if isinstance(pole, str)]
+    for text in texts:
+        _refuse_blanks_for_commas(text, where)
     plain = plain_rows(",".join(texts), scope) if len(texts) == len(listed) else None
     if plain is not None and len(plain[0][0]) == len(listed):
         return tuple(map(Complex.of, plain[0][0]))
@@ -269,18 +274,47 @@ def _is_of_numbers(value: object) -> TypeGuard[list[list[int | Fraction]]]:
 
 def _numbers_of_text(text: str, scope: Scope, where: str) -> list[Number]:
     """Return the numbers set apart by commas, or those of one row or column in brackets."""
+    _refuse_blanks_for_commas(text, where)
     entries = read(text, scope, where)
     if len(entries) == 1 and isinstance(entries[0], MatrixRows) and 1 in entries[0].shape:
         return [number for row in entries[0].rows for number in row]
     return [_single(entry, where) for entry in entries]
 
 
+def _refuse_blanks_for_commas(text: str, where: str) -> None:
+    """Raise ExpressionError for numbers with a blank and a sign between them, -1 -2: two poles, or one difference.
+
+    With blanks on both sides, -1 - 2, the sign is that of a difference, and of a complex number it is -1 +2i.
+    """
+    if "[" in text or not any(_SIGNED_APART.fullmatch(part) for part in text.split(",")):
+        return
+    repair = f'write "{re.sub(r"(?<=[0-9.])[ ]+(?=[-+][0-9.])", ", ", text.strip())}", with commas between the numbers'
+    message = f'"{shown(text)}" may be several numbers or one sum'
+    raise ExpressionError(message, where=where, repair=repair)
+
+
 def _rows_of_text(text: str, scope: Scope, where: str) -> Sequence[Sequence[Number]]:
-    entries = read(text, scope, where)
+    try:
+        entries = read(text, scope, where)
+    except ExpressionError as error:
+        if _lacks_brackets(text, scope, where):
+            error.repair = f'put the matrix in brackets: write "[{shown(text)}]"'
+        raise
     if len(entries) > 1:
         repair = "write the rows in one pair of brackets: [1 0; 0 1]"
         raise ExpressionError(f'"{shown(text)}" is not one matrix', where=where, repair=repair)
     return entries[0].rows if isinstance(entries[0], MatrixRows) else [[entries[0]]]
+
+
+def _lacks_brackets(text: str, scope: Scope, where: str) -> bool:
+    """Return whether a text is a matrix as soon as it stands in brackets."""
+    if "[" in text or not text.strip():
+        return False
+    try:
+        read(f"[{text}]", scope, where)
+    except InputError:
+        return False
+    return True
 
 
 def _rows_of_lists(value: object, scope: Scope, where: str) -> list[list[Number]]:

@@ -259,9 +259,10 @@ class Tokeniser:
     def _unknown(self, name: str, at: int, *, called: bool) -> InputError:
         declared, nearest = self.scope.declared(), self.scope.nearest(name, called=called)
         question = f'did you mean "{nearest}"? ' if nearest else ""
-        listed = f"declared: {shown(', '.join(declared), 200)}"
-        if not self.scope.names:  # the variable alone is none that anybody declared
-            listed = f'no name is declared; add {name} = "real" to [symbols], or declare it in place'
+        declare = f'add {name} = "real" to [symbols], or --symbol {name}=real to a command'
+        listed = f"declared: {shown(', '.join(declared), 200)}{'' if question else f'; {declare}'}"
+        if set(self.scope.names or ()) <= {"t"}:  # the variable and the time alone are none that anybody declared
+            listed = f"no name is declared; {declare}"
         if {name, self.scope.variable} == {"s", "z"}:
             question, listed = "", _OF_OTHER_TIME[name]
         message = f'the name "{name}" is not declared{EXPONENTIAL if name == "e" else ""}'

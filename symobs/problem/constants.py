@@ -6,6 +6,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from symobs.errors import InputError
+from symobs.exact import Scalar
 from symobs.exact.algebraic.real_algebraic import roots_of_scalar
 from symobs.exact.core.generators import PI, function_named
 from symobs.expect.roots import COUNTED
@@ -18,7 +19,6 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
     from contextlib import AbstractContextManager
 
-    from symobs.exact import Scalar
     from symobs.system import Symbols
 
 _MAX_CONSTANTS = 100
@@ -27,8 +27,11 @@ _MAX_CONSTANTS = 100
 def with_constants(table: Mapping[str, Any], symbols: Symbols, errors: AbstractContextManager[Any, Any]) -> Symbols:
     """Return the symbols with named constants; `errors` collects the faults."""
     for name, value in list(table.items())[: _MAX_CONSTANTS + 1]:
+        before = symbols
         with errors:
             symbols = _with_constant(name, value, symbols)
+        if symbols is before and name not in symbols.signs:  # what uses it is no second error
+            symbols = replace(symbols, constants={**symbols.constants, name: Scalar.of(1)})
     return symbols
 
 

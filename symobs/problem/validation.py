@@ -25,7 +25,7 @@ from symobs.result import Document, Result, Task, task_named, tasks
 from symobs.result.digits_of_page import digits_asked
 from symobs.result.in_convention import ResultInConvention, names_in
 from symobs.specification import is_pattern, parse_signal, read_poles
-from symobs.specification.pole_patterns import OTHERS, named_parts
+from symobs.specification.pole_patterns import OTHERS, named_parts, require_positive
 from symobs.system import StateSpace, Symbols, read_matrix, read_scalar
 from symobs.system.time_domain import read_time
 
@@ -33,8 +33,6 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 _MAX_SYMBOLS = 400
-_MAX_TEXT = 2000
-_MAX_UNKNOWN = 20
 _MAX_CELLS = 1000
 _MAX_PRINTED = 200
 
@@ -125,7 +123,7 @@ def validate(data: Mapping[str, Any], only: str | None = None, folder: Path | No
     if not errors.found and plant is not None:
         about = title, source, ids, wanted, plant, specification, expect, convention, text, printed, values, marking
         return Problem(*about, digits, language)
-    if plant is not None and wanted:
+    if plant is not None and wanted and not any(error.where.startswith("constants") for error in errors.found):
         with errors:
             Problem(title, source, ids, wanted, plant, specification, expect, convention, values=values).solve()
             errors.found += unreadable(expect, symbols.names, plant.variable)
@@ -380,7 +378,10 @@ def _read_alone(
                 case "Poles" if is_pattern(value):
                     for part, given in named_parts(value, where).items():
                         with others:
-                            (read_poles if part == OTHERS else read_scalar)(given, symbols, f"{where}.{part}")
+                            read: Any = (read_poles if part == OTHERS else read_scalar)(
+                                given, symbols, f"{where}.{part}"
+                            )
+                            require_positive(part, read, symbols.signs, f"{where}.{part}")
                 case "Poles":
                     for i, pole in enumerate(value[:_MAX_CELLS] if isinstance(value, list) else ()):
                         with others:

@@ -103,7 +103,8 @@ def _read(points: Mapping[Any, Any], result: Any, fields: Mapping[str, Any]) -> 
         name = str(getattr(key, "name", key))
         if name not in needed | result.symbols.keys() | result.plant.symbols.signs.keys():
             message = f"{shown(name, 40)} is no parameter of the result"
-            raise InputError(message, where="evaluate", repair=f"use {', '.join(sorted(needed)) or 'none'}")
+            known = f"use {', '.join(sorted(needed))}" if needed else f"it has none: leave {shown(name, 40)} out"
+            raise InputError(message, where="evaluate", repair=known)
         try:
             found[name] = np.asarray(value, dtype=float)
         except (TypeError, ValueError):

@@ -108,7 +108,7 @@ def pattern_of(
 ) -> PolePattern:
     """Return the pattern of `count` poles, beside others; raises `InputError` where some values of symbols have none."""
     for asked, given in values.items():
-        _require_positive(asked, given, signs, f"{where}.{asked}")
+        require_positive(asked, given, signs, f"{where}.{asked}")
     if {*values} == {"damping", "settling_time"}:
         _require_less_than_one(values["damping"], signs, f"{where}.damping")
     ordered = tuple((name, values[name]) for name in KEYS if name in values)
@@ -127,12 +127,12 @@ def pattern_of(
     return PolePattern(variable, ordered, (s**2 + 2 * sigma * s + square,))
 
 
-def _require_positive(name: str, value: Scalar, signs: Mapping[str, str], where: str) -> None:
+def require_positive(name: str, value: Scalar, signs: Mapping[str, str], where: str) -> None:
     """Raise `InputError` unless the declared signs make a value positive: where it is not, poles are on the right.
 
-    An overshoot is a number within bounds of its own.
+    An overshoot is a number within bounds of its own, and others are poles.
     """
-    if name == "overshoot" or sign_of(value, signs) == "positive":
+    if name in {OVERSHOOT, OTHERS} or sign_of(value, signs) == "positive":
         return
     undeclared = sorted(symbol for symbol in symbols_in(value) if signs.get(symbol) != "positive")
     repair = f"give a positive {name}"

@@ -104,11 +104,8 @@ def read_values(values: Mapping[Any, Any], symbols: Symbols, names: Collection[s
         name = str(getattr(key, "name", key))
         where = f"substitute.{shown(name, 40)}"
         if name not in names and not isinstance(value, Scalar):  # our own values are of generators, too
-            message, repair = (
-                f"{shown(name, 40)} is no parameter of the plant",
-                f"use {', '.join(sorted(names)) or 'none'}",
-            )
-            raise InputError(message, where=where, repair=repair)
+            known = f"use {', '.join(sorted(names))}" if names else f"it has none: leave {shown(name, 40)} out"
+            raise InputError(f"{shown(name, 40)} is no parameter of the plant", where=where, repair=known)
         read[name] = read_scalar(value, symbols, where, functions=True)
         sign = symbols.sign(name)
         if not isinstance(value, Scalar) and sign_of(read[name], symbols.signs) in _EXCLUDED.get(sign, ()):

@@ -25,7 +25,7 @@ class Symbols:
     """The symbols of a problem: names, signs, printed forms, and the caller's SymPy objects.
 
     `closed` means that only these names exist; otherwise every well-formed name is a real symbol.  A text may have the names
-    of `constants` in it: their values take their place when it is read.
+    of `constants` in it: their values take their place when it is read.  The `named` ones are known by a list of names alone.
     """
 
     signs: Mapping[str, str] = field(default_factory=dict)
@@ -33,6 +33,7 @@ class Symbols:
     objects: Mapping[str, Any] = field(default_factory=dict)
     closed: bool = False
     constants: Mapping[str, Scalar] = field(default_factory=dict)
+    named: frozenset[str] = frozenset()
 
     @property
     def names(self) -> Mapping[str, object] | None:
@@ -93,7 +94,8 @@ class Symbols:
         if not self.closed or not isinstance(listed, (list, tuple)):
             return self
         fresh = {str(name): "real" for name in listed if str(name) and str(name) not in self.signs}
-        return replace(self, signs={**self.signs, **{declared_name(name, where): sign for name, sign in fresh.items()}})
+        signs = {**self.signs, **{declared_name(name, where): sign for name, sign in fresh.items()}}
+        return replace(self, signs=signs, named=self.named.union(fresh))
 
     def seen(self, values: object, variable: str = "") -> Symbols:
         """Return these symbols with those of SymPy objects in `values` added, except the variable of polynomials.

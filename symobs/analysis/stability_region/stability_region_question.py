@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from difflib import get_close_matches
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
@@ -107,6 +108,7 @@ def read_question(
         if plant.variable in chosen:
             message = f"{plant.variable} is the variable of the polynomial"
             raise InputError(message, where="specification.parameters", repair="leave it out")
+        _require_occurring(chosen, asked, plant)
     else:
         gained = {name for gain in found.values() if gain is not None for name in gain.names}
         chosen = _free((gained or set(names)) - boundary.names or set(names), plant)
@@ -118,6 +120,22 @@ def read_question(
             message, where=f"specification.{name}", repair="write another name, or leave it out of parameters"
         )
     return RegionQuestion(plant, found["K"], found["L"], chosen, boundary)
+
+
+def _require_occurring(chosen: tuple[str, ...], asked: RegionQuestion, plant: StateSpace) -> None:
+    """Raise `InputError` for a parameter that is neither declared nor in the data, unless they have no symbol at all."""
+    data = set(plant.matrices.symbols) if plant.polynomial is None else plant.polynomial.names
+    names = data.union(*(gain.names for gain in (asked.K, asked.L) if gain is not None)) - {plant.variable}
+    declared = set(plant.symbols.signs) - plant.symbols.named
+    absent = [name for name in chosen if name not in names | declared | asked.boundary.names]
+    if names and absent:
+        near = get_close_matches(absent[0], sorted(names), 1)
+        repair = f"did you mean {near[0]}? " if near else ""
+        repair += f"its symbols: {', '.join(sorted(names))}; leave {absent[0]} out, or declare it in [symbols]"
+        message = (
+            f"the parameter {absent[0]} does not occur in the {'plant' if plant.polynomial is None else 'polynomial'}"
+        )
+        raise InputError(message, where="specification.parameters", repair=repair)
 
 
 def _free(names: set[str], plant: StateSpace) -> tuple[str, ...]:

@@ -154,8 +154,10 @@ def _chosen(there: list[str], wanted: str | None) -> list[str]:
     strange = [name for name in names if not any(name in pair for pair in group.items())]
     if strange or not chosen:
         known = ", ".join(dict.fromkeys(group.values()))
-        message = f"{', '.join(strange) or 'nothing'} is no column"
-        raise UsageError(message, where="--columns", repair=f"name some of {known}")
+        message = f"{' and '.join(strange) or 'nothing'} {'are' if len(strange) > 1 else 'is'} no column"
+        entry = next((name for name in there if "[" in name), "K[1,2]")
+        repair = f"name some of {known}, or entries such as {entry}, counted from 1"
+        raise UsageError(message, where="--columns", repair=repair)
     return [*chosen, MARGINS_STATUS] if set(chosen) & set(MARGINS) else chosen
 
 

@@ -13,14 +13,16 @@ from dataclasses import field, replace
 from typing import TYPE_CHECKING, Any
 
 from symobs._dataclass import dataclass
+from symobs.analysis.rank.observability import controllability_rank, observability_rank
 from symobs.audit.printed_entries import printed_entries
 from symobs.audit.slips import SearchBudget
 from symobs.certificate.claims import UNREADABLE
+from symobs.checking.answers.answer_file import Answer, Step
 from symobs.checking.derivations.functions_of_time import of_function_of_time
 from symobs.checking.derivations.line_auditor import LineAuditor, auditor, place_alone
 from symobs.checking.judgement.conditions import read_conditions
 from symobs.checking.judgement.gains import from_gains, with_gain
-from symobs.checking.judgement.parts import GAINS, IN_COORDINATES, OF_THE_PLANT, exists
+from symobs.checking.judgement.parts import CLAIMED, GAINS, IN_COORDINATES, OF_THE_PLANT, exists
 from symobs.checking.judgement.regions import compare
 from symobs.checking.report.data import Line
 from symobs.errors import BudgetExceeded, CertificateRejected, NotShown, ProblemErrors, SymobsError, UnknownName
@@ -32,7 +34,6 @@ if TYPE_CHECKING:
     from fractions import Fraction
 
     from symobs.audit.printed_entries import PrintedEntry
-    from symobs.checking.answers.answer_file import Answer, Step
     from symobs.checking.judgement.judge import TaskJudgement
     from symobs.problem import Problem
     from symobs.problem.marking import Milestone
@@ -41,6 +42,8 @@ if TYPE_CHECKING:
 
 #: What a line may raise that is too large to be decided, or that the correction of a false one could not confirm.
 _OPEN = (NotShown, TooLarge, BudgetExceeded)
+#: Tasks whose values are right in many ways, though they design no gain.
+_CHOSEN = ("dual", "initial_state")
 _ORDER = re.compile(r"[<>]")
 
 
@@ -90,8 +93,8 @@ class _Derivation:
         """Return whether a value of a gain meets its claim; then it takes the place of the right one."""
         for view in self.views:
             name, sign = view.standard(letter)
-            right = self.right[view.task]
-            if name not in GAINS.get(view.task, ()) or not isinstance(value, Matrix):
+            right = self.right.get(view.task)
+            if right is None or name not in GAINS.get(view.task, ()) or not isinstance(value, Matrix):
                 continue
             known = right.fields.get(name)
             if not isinstance(known, Matrix) or known.shape != value.shape:
@@ -133,6 +136,36 @@ def judge_lines(
     right = {part.letter for each in judged.values() for part in each.parts if part.verdict == "right"}
     met = tuple((each.relation, each.points, _is_met(each, lines, right | state.rightly)) for each in milestones)
     return lines, met
+
+
+def judge_milestone(problem: Problem, views: Sequence[ResultInConvention], milestone: Milestone) -> Line:
+    """Return a milestone as a line with its verdict, given the problem's own answers as far as nobody could choose others.
+
+    Where an answer may be chosen, its letters mean nothing here: such a milestone is no line that could be called false.
+    """
+    letter = milestone.relation.partition("=")[0].strip()
+    if letter in OF_THE_PLANT and any(exists(view.result, letter) for view in views):
+        return Line("", milestone.relation, "undecided")  # the plant's letter, and that of an answer
+    right = {view.task: view.result for view in views if _is_unique(view.result)}
+    state = _Derivation(problem, views, {}, right)
+    return _judged(state, Step(milestone.relation, ""), Answer())
+
+
+def _is_unique(result: Result) -> bool:
+    """Return whether only one answer is right: no coordinates are chosen, and one signal alone is fed back to all modes."""
+    task = result.task
+    if task in _CHOSEN or task in IN_COORDINATES or any(task == claimed for claimed, _ in CLAIMED):
+        return False
+    plant, gains = result.plant, GAINS.get(task, ())
+    shapes = {"K": (1, plant.order), "L": (plant.order, 1)}
+    whole = {"K": controllability_rank, "L": observability_rank}
+    return all(
+        name in shapes
+        and isinstance(gain := result.fields.get(name), Matrix)
+        and gain.shape == shapes[name]
+        and whole[name](plant).answer["rank"] == plant.order
+        for name in gains
+    )
 
 
 def _states_a_part(step: Step, answer: Answer, views: Sequence[ResultInConvention], chosen: set[str]) -> bool:

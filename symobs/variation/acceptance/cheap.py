@@ -5,7 +5,6 @@ What they find of gains is compared with what the engine finds; a difference is 
 
 from __future__ import annotations
 
-import re
 from functools import lru_cache
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -30,7 +29,7 @@ from symobs.variation.drawing.integers import (
     transposed,
     trimmed,
 )
-from symobs.variation.reading.substitution import in_text
+from symobs.variation.reading.substitution import RELATION, in_text
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -39,7 +38,6 @@ if TYPE_CHECKING:
     from symobs.variation.acceptance.candidates import Candidate
     from symobs.variation.reading.table import Table
 
-_RELATION = re.compile(r"^(.*?)(!=|==|>=|<=|>|<|=)(.*)$", re.DOTALL)
 _DESIGNS = {"compensator", "observer", "state_feedback", "feedforward", "reduced_order_observer"}
 #: Which gains of single-input or single-output plants are known beforehand, by task.
 _KNOWN = {"compensator": ("K", "L"), "observer": ("L",), "state_feedback": ("K",)}
@@ -168,7 +166,7 @@ def longest(rows: Rows | tuple[Poly, ...]) -> int:
 
 def holds(relation: str, found: Candidate) -> bool:
     """Return whether a relation among the parameters holds; raises `InputError` for what is none."""
-    match = _RELATION.match(relation)
+    match = RELATION.match(relation)
     if match is None:
         message = f'"{shown(relation, 60)}" is no relation'
         raise InputError(message, where="variants.parameters.when", repair='write when = ["a < b"]')

@@ -20,6 +20,8 @@ if TYPE_CHECKING:
 #: Tables whose texts are expressions, and texts for people, where a letter stands in braces.
 _EXPRESSIONS = ("plant", "specification", "constants", "values", "marking")
 _WORDS = ("title", "text")
+#: A relation among parameters, as [variants.parameters] lists them: both sides, and the sign between.
+RELATION = re.compile(r"^(.*?)(!=|==|>=|<=|>|<|=)(.*)$", re.DOTALL)
 #: A number, which may end in a power of ten, or a name.
 _TOKEN = re.compile(r"\d+\.?\d*(?:[eE][-+]?\d+)?|([A-Za-z][A-Za-z0-9_]*)")
 #: A name in braces that are not the argument of a command, or an exponent or index, of a formula.
@@ -32,6 +34,11 @@ def letters_in(base: Mapping[str, Any]) -> set[str]:
     """Return the names that the expressions of a file contain, and those in the braces of its words."""
     found = {name for table in _EXPRESSIONS for text in _texts(base.get(table)) for name in _TOKEN.findall(text)}
     return found | {name for key in _WORDS for name in re.findall(r"\{(\w+)\}", str(base.get(key, "")))}
+
+
+def letters_of(text: str) -> set[str]:
+    """Return the names in a text."""
+    return set(_TOKEN.findall(text)) - {""}
 
 
 def placeholders(base: Mapping[str, Any]) -> list[tuple[str, str]]:

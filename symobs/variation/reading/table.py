@@ -14,7 +14,7 @@ from symobs.variation.drawing.constructions import CONSTRUCTIONS
 from symobs.variation.drawing.parameters import Parameter, count_of, interval, is_integer, read_parameter
 from symobs.variation.drawing.stream import VERSION
 from symobs.variation.reading.constraint_table import read_constraints
-from symobs.variation.reading.substitution import letters_in, placeholders
+from symobs.variation.reading.substitution import RELATION, letters_in, letters_of, placeholders
 
 if TYPE_CHECKING:
     from symobs.variation.drawing.parameters import Note
@@ -206,4 +206,17 @@ def _parameters(table: object, base: Mapping[str, Any], note: Note) -> tuple[dic
         parameter = read_parameter(name, table[name], note)
         if parameter is not None:
             found[name] = parameter
+    for i, relation in enumerate(when):
+        _read_relation(relation, set(table) - {"when"}, f"{where}.when[{i}]", note)
     return found, tuple(when)
+
+
+def _read_relation(relation: str, parameters: set[str], where: str, note: Note) -> None:
+    """Note a relation that has not two sides in the parameters."""
+    match = RELATION.match(relation)
+    if match is None or not (match[1].strip() and match[3].strip()):
+        note(f'"{shown(relation, 60)}" is no relation', where, 'write when = ["a < b"]')
+        return
+    for name in sorted({name for side in match.groups()[::2] for name in letters_of(side)} - parameters - {"sqrt"}):
+        known = ", ".join(sorted(parameters)) or "none"
+        note(f"{name} is no parameter", where, f"use those of [variants.parameters]: {known}")

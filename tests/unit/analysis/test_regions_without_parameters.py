@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import json
 from typing import Any
 
 import pytest
 import sympy
 
 import symobs
-from symobs.errors import InputError
+from symobs.errors import InputError, ProblemErrors
 from symobs.problem import read
 
 T, t = sympy.symbols("T t")
@@ -35,10 +36,28 @@ def test_a_polynomial_without_the_parameter_is_stable_everywhere_or_nowhere(
 
 
 def test_a_parameter_that_does_not_stand_in_the_polynomial_leaves_the_others_as_they_are() -> None:
-    region = symobs.stability_region("s^2 + h s + 1", parameters="h, k")
+    region = symobs.stability_region("s^2 + h s + 1", parameters="h, k", symbols={"h": "real", "k": "real"})
     assert list(region.stable_if) == ["h > 0"]
     assert region.to("latex")
     assert list(symobs.stability_region("s^2 + h s + 1", parameters=[]).stable_if) == ["h > 0"]
+
+
+@pytest.mark.parametrize(
+    ("parameters", "symbols", "repair"),
+    [
+        (["a", "bb"], None, "did you mean b"),
+        (["a", "bb"], {"b": "real"}, "did you mean b"),
+        ("a, b, c", None, "its symbols: a, b; leave c out"),
+    ],
+)
+def test_a_parameter_that_nothing_knows_is_misspelt(parameters: Any, symbols: Any, repair: str) -> None:
+    with pytest.raises(InputError, match="does not occur in the polynomial") as raised:
+        symobs.stability_region("s^2 + a s + b", parameters=parameters, symbols=symbols)
+    assert (raised.value.where, repair in raised.value.repair) == ("specification.parameters", True)
+    declared = "".join(f'{name} = "{sign}"\n' for name, sign in ({"a": "real", "b": "real"} | (symbols or {})).items())
+    text = f'task = "stability_region"\n[symbols]\n{declared}[specification]\npolynomial = "s^2 + a s + b"\n'
+    with pytest.raises(ProblemErrors, match="does not occur in the polynomial"):
+        read(f"{text}parameters = {json.dumps(parameters)}\n").solve()
 
 
 def test_a_file_needs_no_parameter() -> None:

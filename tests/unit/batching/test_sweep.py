@@ -257,6 +257,11 @@ def test_what_is_no_grid_is_said(over: str, where: str, says: str) -> None:
         (["--out", "t.xlsx"], 2, '".xlsx" names no kind of table'),
         ([], 2, "--out table.parquet, or --plot picture.svg"),
         (["--out", "t.csv", "--columns", "Q"], 2, "Q is no column; name some of K, L, F"),
+        (
+            ["--out", "t.csv", "--columns", "K[1,5], K"],
+            2,
+            "K[1,5] is no column; name some of K, L, F, or entries such as K[",
+        ),
         (["--out", "no/t.csv"], 3, "there is no folder"),
     ],
 )

@@ -236,6 +236,37 @@ def test_all_of_a_marking_that_would_never_count_is_named_at_once() -> None:
     assert all(error.repair for error in raised.value.errors)
 
 
+# L = [2 1; 0 2] and L = [1 1; 0 3] both place -1, -2 for x' = [1 1; 0 1] x, y = x (A - L triangular, by hand).
+_TWO_OUTPUTS = (
+    'task = "observer"\n[plant]\nA = "[1 1; 0 1]"\nC = "[1 0; 0 1]"\n[specification]\npoles = "-1, -2"\n[marking]\n'
+)
+
+
+@pytest.mark.parametrize(
+    ("problem", "relation", "refusal"),
+    [
+        (SERVO, "A - L C = [-19 1; -81 -2]", "entry (2, 2) is -1, not -2; write A - L C = [-19 1; -81 -1]"),
+        (SERVO, "L = [19; 80]", "entry (2, 1) is 81, not 80; write L = [19; 81]"),
+        (SERVO, "rank(O) = 1", "write rank(O) = 2"),
+        (SERVO, "A - L C = [-19 1; -81 -1]", ""),
+        (SERVO, "Q = A - L C", ""),  # Q is a letter that a student may declare
+        (_TWO_OUTPUTS, "rank(O) = 1", "write rank(O) = 2"),
+        (_TWO_OUTPUTS, "L = [3 1; 0 2]", ""),
+        (_TWO_OUTPUTS, "A - L C = [-2 0; 0 -1]", ""),
+    ],
+)
+def test_a_milestone_that_is_false_for_every_right_answer_is_refused(problem: str, relation: str, refusal: str) -> None:
+    text = f'{problem}[[marking.milestone]]\nrelation = "{relation}"\npoints = 1\n'
+    if not refusal:
+        assert Checked.of(text).problem.marking.milestones
+        return
+    with pytest.raises(ProblemErrors) as raised:
+        Checked.of(text)
+    (error,) = raised.value.errors
+    assert error.where == "marking.milestone[0].relation"
+    assert refusal in str(error)
+
+
 def test_the_slips_that_have_a_credit_are_those_that_are_found() -> None:
     folder = ROOT / "symobs" / "checking"
     paths = [*(folder / "faults").glob("*.py"), folder / "judgement" / "regions.py"]

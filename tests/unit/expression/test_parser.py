@@ -558,9 +558,33 @@ def test_unknown_name_among_declared_ones(text: str, repair: str) -> None:
 
 
 def test_no_name_is_declared() -> None:
-    for variable in (None, "t"):  # which nobody declares
+    for names, variable in (({}, None), ({}, "t"), ({"t": "real"}, None)):  # the time, which nobody declares
         with pytest.raises(UnknownName, match=r'no name is declared; add b = "real" to \[symbols\]'):
-            parse_scalar("b", {}, variable=variable)
+            parse_scalar("b", names, variable=variable)
+
+
+@pytest.mark.parametrize("text", ["0 1; 0 -1", "1 0", "k; 2"])
+def test_a_matrix_without_its_brackets_is_told_so(text: str) -> None:
+    with pytest.raises(ExpressionError, match="at column") as raised:
+        parse_matrix(text, {"k": "real"}, where="plant.A")
+    assert raised.value.repair == f'put the matrix in brackets: write "[{text}]"'
+    assert parse_matrix("2 k", {"k": "real"}).shape == (1, 1)
+
+
+@pytest.mark.parametrize(
+    ("poles", "repair"),
+    [("-1 -2", '"-1, -2"'), ("-1/2  +3, -4", '"-1/2, +3, -4"'), (["-1 -2"], '"-1, -2"')],
+)
+def test_numbers_with_a_blank_and_a_sign_between_are_not_guessed_at(poles: object, repair: str) -> None:
+    with pytest.raises(ExpressionError, match="may be several numbers or one sum") as raised:
+        parse_poles(poles, where="specification.poles")
+    assert repair in raised.value.repair
+
+
+def test_a_sign_with_blanks_on_both_sides_is_that_of_a_sum() -> None:
+    assert parse_poles("-1 - 2") == parse_poles("-3") == parse_poles("-1-2")
+    assert parse_poles("-1 +2i, -1 -2i") == parse_poles("-1+2i, -1-2i")
+    assert parse_poles("[-1 -2]") == parse_poles("-1, -2")
 
 
 @pytest.mark.parametrize(

@@ -398,3 +398,28 @@ def test_a_word_that_two_tasks_read_differently_is_read_as_the_task_asked_for_do
         with pytest.raises(ProblemErrors) as caught:
             read(text.replace("{entry}", entry), "problem.toml")
         assert [error.where for error in caught.value.errors] == places
+
+
+@pytest.mark.parametrize(
+    ("text", "places"),
+    [
+        (  # the damping is right, and the frequency is on the wrong side
+            (
+                'task = "compensator"\n[plant]\ntransfer_function = "1/(s^2 + k s"\n[specification]\n'
+                'control_poles = "-1, -2"\nobserver_poles = { damping = "1/2", natural_frequency = -3 }\n'
+            ),
+            ["plant.transfer_function", "specification.observer_poles.natural_frequency"],
+        ),
+        (  # r has no value, and is declared all the same
+            (
+                'task = "observer"\n[constants]\nr = "sqrt(k)"\n[symbols]\nk = "real"\n[plant]\nA = "[0 1; 0 -r]"\n'
+                'C = "[1 0]"\n[specification]\npoles = "-1, q"\n'
+            ),
+            ["constants.r", "specification.poles"],
+        ),
+    ],
+)
+def test_an_error_hides_no_other_and_makes_none(text: str, places: list[str]) -> None:
+    with pytest.raises(ProblemErrors) as raised:
+        read(text)
+    assert [error.where for error in raised.value.errors] == places

@@ -107,7 +107,7 @@ def test_what_rounding_does_to_a_program_that_is_unstable_by_itself(
 @pytest.mark.parametrize(
     ("call", "kind", "message"),
     [
-        (lambda: DESIGN.to("c"), UsageError, r"--period: a program runs in discrete time; .* --period 1/100"),
+        (lambda: DESIGN.to("c"), UsageError, r'--period: a program .*; .* --period 1/100, in Python period="1/100"'),
         (lambda: DESIGN.to("python", period=0.1), InexactInput, '--period: .* write an exact value such as "1/10"'),
         (lambda: DESIGN.to("python", period=0), UsageError, "0 is not a period; give a positive number"),
         (lambda: DESIGN.to("python", period="k"), SymobsError, "--period: .*k"),

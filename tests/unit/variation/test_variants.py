@@ -229,6 +229,20 @@ def test_all_errors_of_the_table_come_together_with_place_and_repair() -> None:
         read(OBSERVER)
 
 
+def test_relations_among_parameters_are_read_with_the_table() -> None:
+    text = 'task = "observer"\n[plant]\nA = "[0 1; a b]"\nC = "[1 0]"\n[specification]\npoles = "-1, -2"\n'
+    text += (
+        '[variants.parameters]\na = { integers = [5, -5] }\nb = { set = ["1"] }\nwhen = ["a < c", "a <", "a != b"]\n'
+    )
+    with pytest.raises(ProblemErrors) as raised:
+        Variants(text, 1)
+    assert [str(error) for error in raised.value.errors if "when" in error.where] == [
+        "variants.parameters.when[0]: c is no parameter; use those of [variants.parameters]: a, b",
+        'variants.parameters.when[1]: "a <" is no relation; write when = ["a < b"]',
+    ]
+    assert "variants.parameters.a.integers" in {error.where for error in raised.value.errors}
+
+
 @pytest.mark.parametrize("seed", [-1, 2**63, "abc", True, 1.5])
 def test_only_whole_seeds_are_taken(seed: Any) -> None:
     with pytest.raises(UsageError, match="is no seed"):

@@ -106,7 +106,8 @@ def _period(document: Document, plant: StateSpace, *, in_continuous_time: bool) 
         if in_continuous_time:
             return None
         message = "a program runs in discrete time"
-        raise UsageError(message, where="--period", repair="give the period, for example --period 1/100")
+        repair = 'give the period, for example --period 1/100, in Python period="1/100"'
+        raise UsageError(message, where="--period", repair=repair)
     value = parse_scalar(document.period, {}, where="--period")
     if not value.is_constant or value.fraction() <= 0:
         raise UsageError(f"{value} is not a period", where="--period", repair="give a positive number such as 1/100")
