@@ -276,9 +276,7 @@ def test_several_hidden_directions_may_be_combined() -> None:
         "the vectors in the further equations are unobservable, so any linear combination of them may be added" in text
     )
     one = symobs.StateSpace("[0 0; 0 -1]", C="[0 1]")
-    assert "so any multiple of it may be added" in text_of(
-        symobs.initial_state(one, output="exp(-t)", horizon=1)
-    )
+    assert "so any multiple of it may be added" in text_of(symobs.initial_state(one, output="exp(-t)", horizon=1))
 
 
 # -- advice on poles --------------------------------------------------------------------------------------------------

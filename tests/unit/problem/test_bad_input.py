@@ -113,7 +113,7 @@ WRONG = {
     },
     # keys and their values
     "key of the file": (problem(top='task = "observer"\ntitel = "x"'), "titel", "unknown key … did you mean title?"),
-    "key of the plant": (problem(E="1"), "plant.E", "unknown key … known keys are A, B, C, D"),
+    "key of the plant": (problem(F="1"), "plant.F", "unknown key … known keys are A, B, C, D"),
     "key of the file in a table": (
         problem(convention='"S1"'),
         "plant.convention",
