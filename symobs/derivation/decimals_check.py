@@ -108,10 +108,9 @@ class _Comparison:
     def _relation(self, exact: Relation, shown: Relation, *, exactly: bool) -> None:
         """Compare chains, members perhaps once exactly and once in decimals, and every sign between members."""
         for place, sign in enumerate(shown.operators):
-            (*before, member), after = exact.members[: place + 1], exact.members[place + 1 :]
-            if sign == "≈" and shown.members[place] == member and exact.operators[place : place + 1] != ("=",):
-                signs = (*exact.operators[:place], "=", *exact.operators[place:])
-                exact = Relation((*before, member, member, *after), signs)
+            first, rest = exact.members[: place + 1], exact.members[place:]
+            if sign == "≈" and shown.members[place] == first[-1] and exact.operators[place : place + 1] != ("=",):
+                exact = Relation((*first, *rest), (*exact.operators[:place], "=", *exact.operators[place:]))
         if len(exact.members) != len(shown.members) or len(exact.operators) != len(shown.operators):
             reject(f"{shown}, a chain of another length,")
         for one, other in zip(exact.members, shown.members, strict=True):
