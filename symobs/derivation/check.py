@@ -291,9 +291,8 @@ def _introduce(relation: Relation, environment: Environment) -> Environment:
 
 def with_domain(relation: Relation, environment: Environment) -> Environment:
     """Assume the denominators of the data are nonzero; elsewhere the plant is undefined."""
-    values = literals(relation.members)
-    entries = [entry for value in values for entry in (value.entries if isinstance(value, Matrix) else (value,))]
-    factors = vanishing_factors([entry.denominator for entry in entries], environment.signs)
+    denominators = [value.common_denominator() for value in literals(relation.members)]
+    factors = vanishing_factors(denominators, environment.signs)
     return replace(environment, domain=tuple(dict.fromkeys((*environment.domain, *factors))))
 
 
