@@ -73,9 +73,8 @@ def on_stratum(when: Relation | Conjunction, substitution: dict[str, Scalar], en
 
 def _where_positive(value: Scalar, environment: Environment) -> Environment:
     """Return the environment where a value is positive: of a symbol, or of minus a symbol, it is a sign."""
-    signs = {
-        str(symbol): sign for sign, symbol in (("positive", value), ("negative", -value)) if str(symbol) in symbol.names
-    }
+    told = (("positive", value), ("negative", -value))
+    signs = {str(symbol): sign for sign, symbol in told if str(symbol) in symbol.names}
     return replace(environment, positive=(*environment.positive, value), signs={**environment.signs, **signs})
 
 
