@@ -155,7 +155,7 @@ def holds_exactly(region: LineRegion | PlaneRegion, where: tuple[tuple[Scalar, s
         symbol = Scalar.symbol(region.name)
         ends = [(symbol - piece.low.scalar(region.name), ">")] if piece.low is not None else []
         ends += [(piece.high.scalar(region.name) - symbol, ">")] if piece.high is not None else []
-        if set(where) == set(ends) - set(_declared(region)):
+        if set(where).difference(_declared(region)) == set(ends).difference(_declared(region)):
             return is_region(region, short_list(region))
     names = {name for value, _ in where for name in value.names}
     if not names <= set(region.critical.parameters):

@@ -292,3 +292,14 @@ def test_a_case_in_which_inequalities_contradict_each_other_is_told_to_be_empty(
     values = [Fraction(k, 7) for k in range(-100, 101, 9)]
     assert not any(is_stable(a, b) for a in values for b in values if b > 0)
     assert is_stable(Fraction(-1), Fraction(-10000))
+
+
+def test_an_interval_that_begins_at_the_declared_sign_is_printed() -> None:
+    """By Routh's criterion 3 − 2a, a² − 6a + 3/10 and their product less 3a² − 3a/10 + 3/100 are positive."""
+    plant = symobs.StateSpace("[a 0.1 0; -3 -3 0.1; -3 0 a]", symbols={"a": "positive"})
+    found = symobs.stability_region(plant)
+    assert "0 < a < " in found.to("text")
+    for a, stable in ((Fraction(1, 25), True), (Fraction(1, 20), False), (Fraction(6), False)):
+        p, q, r = 3 - 2 * a, a * a - 6 * a + Fraction(3, 10), 3 * a * a - Fraction(3, 10) * a + Fraction(3, 100)
+        assert (p > 0 and q > 0 and r > 0 and p * q > r) is stable
+        assert (found.at(a=a).verdict == "yes") is stable
