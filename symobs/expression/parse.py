@@ -297,7 +297,7 @@ def _rows_of_text(text: str, scope: Scope, where: str) -> Sequence[Sequence[Numb
     try:
         entries = read(text, scope, where)
     except ExpressionError as error:
-        if _lacks_brackets(text, scope, where):
+        if (";" in text or "follows a number" in str(error)) and _lacks_brackets(text, scope, where):
             error.repair = f'put the matrix in brackets: write "[{shown(text)}]"'
         raise
     if len(entries) > 1:

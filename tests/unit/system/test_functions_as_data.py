@@ -80,7 +80,7 @@ def test_the_case_is_where_the_function_vanishes() -> None:
 
 def test_pages_speak_of_the_functions() -> None:
     text = symobs.state_feedback(plant("pendulum"), poles=[-1, -2]).to("text")
-    assert "cos θ" in text
+    assert "cos(θ)" in text
     assert "(cos(θ))² - 1 + (sin(θ))²" not in text
     assert symobs.observer(plant("roots"), poles=[-1, -2]).to_latex().count(r"\sqrt[5]{") > 0
 
