@@ -164,7 +164,7 @@ def test_a_point_that_no_branch_covers_is_seen() -> None:
 
 
 #: Plants of order two whose answers come at once.
-SAMPLE = [0, 1, 2, 3, 4, 6, 8, 11, 12, 16, 66]
+SAMPLE = [2, 7, 8, 9, 16, 20, 24, 35, 56, 68, 116]
 
 
 def test_a_sample_of_plants_is_right_at_points_of_its_strata() -> None:
@@ -173,7 +173,7 @@ def test_a_sample_of_plants_is_right_at_points_of_its_strata() -> None:
         examine(seed, found, seconds=600, most=5)
     assert not found.wrong, found.table()
     assert sum(found.counted[task, "points"] for task, _ in [*found.counted]) > 0
-    assert {drawn(seed)["task"] for seed in SAMPLE} >= {"gramian", "observability", "controllability", "pbh"}
+    assert {drawn(seed)["task"] for seed in SAMPLE} >= {"gramian", "pbh", "disturbance_observer"}
 
 
 @pytest.mark.parametrize(("seed", "least"), [(0, 15), (83, 5), (140, 7)])
