@@ -260,7 +260,7 @@ def test_what_is_no_grid_is_said(over: str, where: str, says: str) -> None:
         (
             ["--out", "t.csv", "--columns", "K[1,5], K"],
             2,
-            "K[1,5] is no column; name some of K, L, F, or entries such as K[",
+            "K[1,5] is no column; name some of K, L, F, margins, or entries such as K[",
         ),
         (["--out", "no/t.csv"], 3, "there is no folder"),
     ],
