@@ -53,10 +53,12 @@ def main(arguments: Sequence[str] | None = None) -> None:
     given = parser.parse_args(arguments)
     settings = Settings(given.repetitions, given.limit)
     rows = []
-    for name in given.only or known:
-        print(f"{name} …", file=sys.stderr)
-        rows += list(known[name].rows(settings))
-    print((markdown if given.markdown else table)(rows))
+    try:
+        for name in given.only or known:
+            print(f"{name} …", file=sys.stderr)
+            rows += known[name].rows(settings)
+    finally:
+        print((markdown if given.markdown else table)(rows))
 
 
 if __name__ == "__main__":

@@ -21,7 +21,6 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
 HERE = Path(__file__).resolve().parent
-TOP = HERE.parents[1]
 _NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
 #: gp's own default of 8 MB is too small for the larger orders.
 _GP = ("gp", "-q", "-f", "-s", "1G")

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from tests.programs.benchmarks import other_systems
 from tests.programs.benchmarks.measuring import Row
+from tests.support.paths import ROOT
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -22,7 +23,7 @@ print(int(re.search(r"VmHWM:\\s*(\\d+)", open("/proc/self/status").read())[1]) *
 _DESIGN = "from tests.programs.benchmarks import designs, models\ndesigns.solve(models.{})"
 _NUMERIC = "from tests.programs.benchmarks.groups import numeric\nnumeric.design({})"
 _SHEET = (
-    "from tests.programs.benchmarks.groups import sheets\nsheets.spent_on(sheets.TOP / 'worked_examples' / '{}.toml')"
+    "from tests.programs.benchmarks.groups import sheets\nsheets.spent_on(sheets.ROOT / 'worked_examples' / '{}.toml')"
 )
 _WORK = {
     "cart-pole: K, L, F": _DESIGN.format("cart_pole()"),
@@ -49,6 +50,6 @@ def rows(settings: Settings) -> Iterator[Row]:
 
 def peak(code: str, limit: float) -> float | None:
     """Return the megabytes that a Python process takes at most, None where it fails or this system does not tell."""
-    done = other_systems.run([sys.executable, "-c", code + _MARK], limit, folder=other_systems.TOP)
+    done = other_systems.run([sys.executable, "-c", code + _MARK], limit, folder=ROOT)
     last = done.output.split()[-1] if done and done.output.split() else ""
     return int(last) / 1e6 if last.isdigit() else None

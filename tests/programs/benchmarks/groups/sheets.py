@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from symobs.problem import parse, validate
 from symobs.result import render
 from tests.programs.benchmarks.measuring import Row
-from tests.programs.benchmarks.other_systems import TOP
+from tests.support.paths import ROOT
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -23,7 +23,7 @@ _FORMATS = ("html", "text", "json", "latex")
 
 def rows(_: Settings) -> Iterator[Row]:
     """Yield how many problems a second come to a page in each format, and which take longest to LaTeX."""
-    files = sorted((TOP / "worked_examples").glob("*.toml"))
+    files = sorted((ROOT / "worked_examples").glob("*.toml"))
     spent: Counter[str] = Counter()
     single: dict[str, float] = {}
     for file in files:

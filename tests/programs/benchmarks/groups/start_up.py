@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from tests.programs.benchmarks import other_systems
 from tests.programs.benchmarks.measuring import Row, medians
+from tests.support.paths import ROOT
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -14,7 +15,7 @@ if TYPE_CHECKING:
     from tests.programs.benchmarks.measuring import Settings
 
 PLACE = 9
-_SERVO = str(other_systems.TOP / "worked_examples/output_feedback_servo.toml")
+_SERVO = str(ROOT / "worked_examples/output_feedback_servo.toml")
 _COMMANDS: dict[str, Sequence[str]] = {
     "sympy": ["-c", "import sympy"],
     "symobs --help": ["-m", "symobs", "--help"],
@@ -23,7 +24,7 @@ _COMMANDS: dict[str, Sequence[str]] = {
 
 
 def rows(settings: Settings) -> Iterator[Row]:
-    """Yield `symobs --help` and `symobs solve` of S0-Ex4.2."""
+    """Yield `symobs --help` and `symobs solve` of the servo with output feedback."""
     subjects = {name: lambda arguments=arguments: wall(arguments) for name, arguments in _COMMANDS.items()}
     found = medians(3 * settings.repetitions, subjects)
     against = "import sympy (symobs / SymPy)"
