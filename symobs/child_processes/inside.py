@@ -11,6 +11,8 @@ import sys
 from contextlib import contextmanager, suppress
 from typing import TYPE_CHECKING, Any, NoReturn
 
+from symobs.child_processes import COLLECTED_AFTER
+
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
     from typing import BinaryIO
@@ -19,8 +21,6 @@ if TYPE_CHECKING:
 NO_MEMORY = 76
 #: The bytes that tell the length of a record.
 HEAD = 8
-#: Imports and derivations make many objects that stay.
-COLLECTED_AFTER = 50_000
 
 #: Who wants to know: called with the number of a group when it has started, and with None when it has ended.
 listeners: list[Callable[[int | None], None]] = []

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any, NoReturn
 
 import click
 
+from symobs.child_processes import COLLECTED_AFTER
 from symobs.cli.shared.common import EXIT_BUG, EXIT_INTERRUPTED, EXIT_UNDECIDED, NOT_ENOUGH_MEMORY, write_message
 from symobs.errors import ProblemErrors, SymobsError, UsageError
 
@@ -129,10 +130,6 @@ def cli() -> None:
     """Design observers and observer-based compensators exactly, with the derivation."""
 
 
-#: Imports make many objects that stay: collecting among them as often as usual takes a tenth of a short run.
-_COLLECTED_AFTER = 50_000
-
-
 def _interrupted() -> int:
     """Report the interruption in one line, safe from a second Ctrl-C, and return its exit code."""
     import signal  # noqa: PLC0415 - not for runs that nobody interrupts
@@ -145,7 +142,7 @@ def _interrupted() -> int:
 
 def main() -> NoReturn:
     """Run the command line; every error becomes a message and an exit code, never a traceback."""
-    gc.set_threshold(_COLLECTED_AFTER)
+    gc.set_threshold(COLLECTED_AFTER)
     for stream in (sys.stdout, sys.stderr):
         if hasattr(stream, "reconfigure"):
             stream.reconfigure(errors="backslashreplace")

@@ -24,7 +24,7 @@ from fractions import Fraction
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from symobs.child_processes.inside import COLLECTED_AFTER
+from symobs.child_processes import COLLECTED_AFTER
 from symobs.live import answer
 from symobs.live.child import prepare
 from symobs.live.process import AnswerBudget

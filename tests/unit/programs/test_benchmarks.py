@@ -10,6 +10,7 @@ import pytest
 import symobs
 from tests.programs.benchmarks import __main__ as benchmarks
 from tests.programs.benchmarks import designs, measuring, models, other_systems, raw_flint, raw_numeric
+from tests.support.paths import ROOT
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -108,7 +109,7 @@ def test_a_family_grows_in_every_size_asked_for() -> None:
 
 def test_a_sheet_is_timed_in_every_format() -> None:
     sheets = benchmarks.groups()["sheets"]
-    spent = sheets.spent_on(other_systems.TOP / "worked_examples" / "servo_observer.toml")
+    spent = sheets.spent_on(ROOT / "worked_examples" / "servo_observer.toml")
     assert set(spent) == {"html", "text", "json", "latex"}
     assert all(seconds > 0 for seconds in spent.values())
 
