@@ -92,6 +92,7 @@ def test_the_version_needs_neither_kernel_nor_tasks() -> None:
     assert found & (HEAVY | KERNEL) == set()
     own = {name for name in found if name.startswith("symobs")}
     own_modules = {
+        "symobs.child_processes",
         "symobs.cli",
         "symobs.cli.command_line",
         "symobs.cli.shared",

@@ -37,6 +37,7 @@ _CALL = re.compile(
 _OF_SIZE = re.compile(r"(?:[A-Za-z]+\.)?(?:Immutable)?Matrix\(\s*(\d{1,2})\s*,\s*(\d{1,2})\s*,\s*\[([^][;]*)\]\s*\)")
 _FLAT = re.compile(r"\[([^][;]*)\]")
 _ROW = re.compile(r"\[([^]]*)\]")
+_QUOTED = re.compile(r"""(["'])([^"']*)\1""")
 _QUOTE, _ORDER = re.compile(r"[\"']"), re.compile(r"[<>]")
 
 
@@ -58,11 +59,13 @@ def typed(text: str) -> str:
 
 
 def as_value(text: str) -> str | list[str]:
-    """Return the text of a value without the semicolon that ends a statement, and rows in brackets as rows of a matrix.
+    """Return the text of a value without its quotes and the semicolon that ends a statement, and rows in brackets as rows.
 
     A vector of NumPy, which is neither row nor column, is the list of its entries; one of SymPy is a column.
     """
     value = text.strip().removesuffix(";").rstrip()
+    if quoted := _QUOTED.fullmatch(value):
+        value = quoted[2].strip()
     if sized := _OF_SIZE.fullmatch(value):
         columns, entries = int(sized[2]), sized[3].split(",")
         if len(entries) != int(sized[1]) * columns or not columns:

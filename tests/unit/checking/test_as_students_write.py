@@ -170,6 +170,7 @@ def test_a_region_in_lines(answer: Any, verdict: str) -> None:
         ({"K": "K = [5 3]; L = [19; 81]"}, {"K": "unreadable"}),
         ("K = np.array([4, 3])\nL = np.array([19, 81])\n", {"K": "right", "L": "right"}),
         ("K = Matrix([4, 3])\nL = Matrix([19, 81])\n", {"K": "wrong", "L": "right"}),
+        ("K = \"[4 3]\"\nL = '[19; 82]'\n", {"K": "right", "L": "wrong"}),
         ("K = matrix([[4, 3]])\nL = array([[19],[81]], dtype=float)\n", {"K": "right", "L": "right"}),
         ("K =\n\n     4     3\n\nL =\n\n    19\n    80\n", {"K": "right", "L": "wrong"}),
         ("L =\n[19]\n[81]\nK =\n[ 4, 3]\nF(s) =\n(319 s + 400)/(s^2 + 23 s + 161)\n", dict.fromkeys("KLF", "right")),
