@@ -104,7 +104,7 @@ def _with_chosen(result: Any, found: Any, values: dict[str, Scalar]) -> Any:
 
 
 def _entries(value: object, plant: StateSpace, where: str) -> Matrix:
-    return read_matrix(value, plant.symbols.seen(value), where)
+    return read_matrix(value, plant.symbols.seen(value), where, functions=True)
 
 
 def _polynomial(value: object, plant: StateSpace, where: str) -> Scalar:

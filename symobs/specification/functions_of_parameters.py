@@ -7,8 +7,8 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from symobs.errors import InputError
-from symobs.exact import Complex, Matrix, Scalar
-from symobs.exact.core.generators import NotWritten, identities, roots_in, square_root
+from symobs.exact import Complex, Matrix, Scalar, modulo
+from symobs.exact.core.generators import NotWritten, functions_in, identities, roots_in, square_root
 from symobs.specification.keywords import DesiredPolynomial
 from symobs.system import Matrices
 
@@ -19,19 +19,20 @@ if TYPE_CHECKING:
 
 
 def over_common_data(plant: StateSpace, *asked: Any) -> tuple[StateSpace, tuple[Any, ...]]:
-    """Return a plant and what is asked for, the functions in desired polynomials among its data.
+    """Return a plant and what is asked for, the functions in desired polynomials and further matrices among its data.
 
     cos θ and e⁻ᵀ are letters of their own, as in the entries of a plant; on the plant that is returned cos² θ + sin² θ = 1
     holds.  Raises `InputError` for a function of s or z, and for a root that is not known to be real.
     """
     wanted = [one for one in asked if isinstance(one, DesiredPolynomial)]
     factors = [factor for one in wanted for factor in one.factors]
-    if all(function.square for factor in factors for function in factor.field.functions.values()):
+    further = [one for one in asked if isinstance(one, Matrix)]
+    if all(function.square for value in (*factors, *further) for function in functions_in([value])):
         return plant, asked
     m = plant.matrices
     parts = [part for one in wanted for pole in one.poles for part in (pole.real, pole.imaginary)]
     try:
-        meanings, _ = identities([m.A, m.B, m.C, m.D, *plant.equations, *factors, *parts])
+        meanings, _ = identities([m.A, m.B, m.C, m.D, *plant.equations, *factors, *parts, *further])
     except NotWritten as error:
         raise InputError(str(error), where="specification", repair="declare a symbol for it") from None
     there = copy(plant)
@@ -45,8 +46,15 @@ def over_common_data(plant: StateSpace, *asked: Any) -> tuple[StateSpace, tuple[
             message, where="specification", repair="write both with the smaller one, exp(-T)^2 for exp(-2 T)"
         )
     moved = [_moved(factor, meanings) for factor in factors]
-    there = there.restricted(identities([A, B, C, D, *moved])[1])
-    return there, tuple(_over(one, meanings, there) if isinstance(one, DesiredPolynomial) else one for one in asked)
+    further = [_moved_matrix(matrix, meanings) for matrix in further]
+    there = there.restricted(identities([A, B, C, D, *moved, *further])[1])
+
+    def over(one: Any) -> Any:
+        if isinstance(one, Matrix):
+            return modulo(_moved_matrix(one, meanings), there.ideal)
+        return _over(one, meanings, there) if isinstance(one, DesiredPolynomial) else one
+
+    return there, tuple(map(over, asked))
 
 
 def _over(desired: DesiredPolynomial, meanings: Mapping[str, Scalar], there: StateSpace) -> DesiredPolynomial:

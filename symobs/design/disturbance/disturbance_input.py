@@ -45,7 +45,7 @@ def read_exosystem(plant: StateSpace, E: Matrix, S: object, V: object) -> Exosys
 def _matrix(plant: StateSpace, value: object, name: str) -> Matrix:
     """Return a matrix, a flat list a row or, for E, a column; raises `InputError` where it contains s or t."""
     where = f"specification.{name}"
-    found = read_matrix(as_rows("B" if name == "E" else "C", value), plant.symbols.seen(value), where)
+    found = read_matrix(as_rows("B" if name == "E" else "C", value), plant.symbols.seen(value), where, functions=True)
     if found.names & {plant.variable, "t"}:
         message = f"{name} contains a name that stands for the time or the variable of polynomials"
         raise InputError(message, where=where, repair="give the parameter another name")

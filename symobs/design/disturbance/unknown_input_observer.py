@@ -306,5 +306,5 @@ def unknown_input_observer(
     desired = desired_polynomial(plant, poles, polynomial)
     assert desired is not None  # noqa: S101 - required
     enters = read_disturbance_input(plant, E)
-    plant, (desired,) = over_common_data(plant, desired)
+    plant, (desired, enters) = over_common_data(plant, desired, enters)
     return choose("unknown_input_observer", method, "decoupled").solve(plant, enters, desired).asked(method)

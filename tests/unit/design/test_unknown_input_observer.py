@@ -126,6 +126,16 @@ def test_a_wrong_disturbance_input_is_refused(E: Any, said: str) -> None:
         symobs.unknown_input_observer(symobs.StateSpace("[0 1; 0 0]", C="[1 0]"), E=E, poles="-1, -2")
 
 
+def test_a_direction_may_be_an_angle() -> None:
+    """With E = (cos, sin) and C = I the projection is H = E Eᵀ, since Eᵀ E = 1."""
+    plant = symobs.StateSpace("[0 1; -2 -3]", C="[1 0; 0 1]", symbols={"theta": "real"})
+    found = symobs.unknown_input_observer(plant, E="[cos(theta); sin(theta)]", poles="-2, -3")
+    (theta,) = found.H.free_symbols
+    E = sympy.Matrix([sympy.cos(theta), sympy.sin(theta)])
+    assert (found.H - E * E.T).applyfunc(sympy.simplify) == sympy.zeros(2, 2)
+    assert (found.H * E - E).applyfunc(sympy.simplify) == sympy.zeros(2, 1)
+
+
 def test_a_flat_list_is_a_column_and_the_observer_comes_out() -> None:
     plant = symobs.StateSpace("[0 1; -2 -3]", "[0; 1]", "[1 0; 0 1]")
     found = symobs.unknown_input_observer(plant, E=[0, Fraction(1, 2)], poles="-2, -3")
