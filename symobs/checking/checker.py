@@ -233,16 +233,22 @@ def _functions_of_time(answer: Answer, tasks: Collection[str]) -> list[tuple[str
 def _without_answers(lines: Sequence[Line], parts: Sequence[Part]) -> tuple[Line, ...]:
     """Return the lines without those that mean nothing in a derivation and are parts of the answer, where it is told why.
 
-    The last line of a letter is the answer: where that cannot be read, it is no line that could be true or false either.
+    The last line of a letter is the answer: where that cannot be read, it is no line that could be true or false either,
+    and a right one needs no other value to be.
     """
     verdicts = {part.letter: part.verdict for part in parts if part.given}
     letters = [line.relation.partition("=")[0].strip() for line in lines]
     answers = set({letter: place for place, letter in enumerate(letters)}.values())
+
+    def says_more(place: int, line: Line, verdict: str) -> bool:
+        if place in answers and (verdict == "unreadable" or (verdict == "right" and line.relation.count("=") == 1)):
+            return verdict == "right" and line.verdict == "true"
+        return line.verdict != "unreadable"
+
     return tuple(
         line
         for place, (line, letter) in enumerate(zip(lines, letters, strict=True))
-        if letter not in verdicts
-        or (line.verdict != "unreadable" and not (verdicts[letter] == "unreadable" and place in answers))
+        if letter not in verdicts or says_more(place, line, verdicts[letter])
     )
 
 

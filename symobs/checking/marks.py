@@ -12,10 +12,9 @@ from symobs.checking.faults.fault import Explained
 from symobs.checking.faults.gains import explain_gain
 from symobs.checking.faults.values import explain_value
 from symobs.checking.judgement.gains import design_with
-from symobs.checking.judgement.parts import GAINS, IN_COORDINATES
+from symobs.checking.judgement.parts import GAINS, IN_COORDINATES, TOGETHER
 from symobs.checking.report.data import Part
 from symobs.design.compensator.output_feedback import OutputFeedback
-from symobs.design.reference.integral_action import IntegralAction
 from symobs.errors import SymobsError
 from symobs.exact import Factored, Matrix, Scalar
 from symobs.expect import found_in, shown_value
@@ -135,7 +134,7 @@ def _explanation(view: ResultInConvention, judgement: TaskJudgement, judged: Jud
     """Return why a value is wrong, as far as it is a matrix or a number."""
     if judged.value is None:
         return Explained()
-    is_part = isinstance(judgement.right, IntegralAction)
+    is_part = view.task in TOGETHER
     if is_part and view.standard(judged.letter)[1] < 0:
         return Explained()  # what is said of a value has its standard sign
     if judged.name in GAINS.get(view.task, ()) and isinstance(judged.value, Matrix) and not is_part:

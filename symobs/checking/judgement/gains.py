@@ -7,9 +7,11 @@ gain claims no poles, so that F of a compensator, a closed loop or an observer f
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
+from symobs.checking.judgement.parts import GAINS
 from symobs.design.compensator.output_feedback import OutputFeedback
+from symobs.design.disturbance.disturbance_observer import DisturbanceObserver
 from symobs.design.disturbance.unknown_input_observer import UnknownInputObserver
 from symobs.design.full_order.observer import ObserverDesign
 from symobs.design.gain.gain_design import GainDesign
@@ -18,6 +20,7 @@ from symobs.design.reduced_order.reduced_order_observer import ReducedOrderObser
 from symobs.design.reference.feedforward import FeedforwardDesign, response
 from symobs.design.reference.integral_action import IntegralAction
 from symobs.design.reference.tracking import TrackingDesign
+from symobs.errors import CertificateRejected
 from symobs.exact import Matrix
 from symobs.specification import DesiredPolynomial
 
@@ -31,24 +34,35 @@ def with_gain(result: Result, name: str, gain: Matrix) -> Result:
     """Return the result with another gain; raises `CertificateRejected` where its claim does not hold."""
     if isinstance(result, (FeedforwardDesign, TrackingDesign)):
         return _remade(result, result.loop.with_answer(name, gain))
-    if isinstance(result, IntegralAction):
+    if isinstance(result, (DisturbanceObserver, IntegralAction)):
         return with_gains(result, {name: gain})
     return result.with_answer(name, gain)
 
 
-def with_gains(result: IntegralAction, gains: Mapping[str, Matrix]) -> IntegralAction:
-    """Return integral action with other gains; raises `CertificateRejected` where the claim does not hold for both."""
-    return result.of_loop(result.plant, result.loop.with_answer("K", _whole(result, gains)), result.method)
+def with_gains(result: DisturbanceObserver | IntegralAction, gains: Mapping[str, Matrix]) -> Result:
+    """Return the result with other gains; raises `CertificateRejected` where the claim does not hold for both."""
+    design = design_with(result, "")
+    return _of_larger(result, design.with_answer(design.letter, _whole(result, gains)))
 
 
-def _whole(result: IntegralAction, gains: Mapping[str, Matrix]) -> Matrix:
-    """Return [K, −k_I]; a gain that is not given is that of the result."""
-    K, k_I = (gains.get(name, result.answer[name]) for name in ("K", "k_I"))
-    return Matrix.block([[K, -k_I]])
+def _whole(result: DisturbanceObserver | IntegralAction, gains: Mapping[str, Matrix]) -> Matrix:
+    """Return [K, −k_I] or [L_x; L_w]; a gain that is not given is that of the result."""
+    first, second = (gains.get(name, result.answer[name]) for name in GAINS[result.task])
+    if first is None or second is None:
+        message = "there are no such gains"
+        raise CertificateRejected(message, repair="please report this: it is a bug of symobs")
+    return Matrix.block([[first, -second]] if isinstance(result, IntegralAction) else [[first], [second]])
+
+
+def _of_larger(result: DisturbanceObserver | IntegralAction, design: Any) -> Result:
+    """Return the result whose gains are those of the plant with further states."""
+    if isinstance(result, IntegralAction):
+        return result.of_loop(result.plant, design, result.method)
+    return result.of_inner(result.plant, result.exosystem, design, result.method)
 
 
 def with_claimed(result: Result, name: str, value: Matrix) -> Result:
-    """Return the result with another K_d or feedforward F; raises `CertificateRejected` where its claim does not hold."""
+    """Return the result with another K_d, feedforward F or H; raises `CertificateRejected` where its claim does not hold."""
     if not isinstance(result, FeedforwardDesign):
         return result.with_answer(name, value)
     response_to = response(result.loop, value).function(result.plant.variable)
@@ -78,10 +92,11 @@ def from_gains(result: Result, gains: Mapping[str, Matrix]) -> Result:
         inner = ObserverDesign.of_given(result.inner.plant, gains["L"])
         placed = DesiredPolynomial(result.plant.variable, (inner.answer["polynomial"],))
         return result.with_gain(inner, placed)
-    if isinstance(result, IntegralAction):
-        given = type(result.loop).of_given(result.loop.plant, _whole(result, gains))
+    if isinstance(result, (DisturbanceObserver, IntegralAction)):
+        design = design_with(result, "")
+        given = type(design).of_given(design.plant, _whole(result, gains))
         placed = DesiredPolynomial(result.plant.variable, (given.answer["polynomial"],))
-        return result.of_loop(result.plant, replace(given, kind=AssignedGain(placed)), result.method)
+        return _of_larger(result, replace(given, kind=AssignedGain(placed)))
     assert isinstance(result, GainDesign)  # noqa: S101 - there is no other result with gains
     return type(result).of_given(result.plant, gains[result.letter]) if result.letter in gains else result
 
@@ -96,6 +111,8 @@ def design_with(result: Result, name: str) -> GainDesign:
         return result.inner
     if isinstance(result, UnknownInputObserver):
         assert result.inner is not None  # noqa: S101 - without it there is no gain to be judged
+        return result.inner
+    if isinstance(result, DisturbanceObserver):
         return result.inner
     if isinstance(result, IntegralAction):
         return result.loop

@@ -19,11 +19,10 @@ from symobs.checking.answers.values import (
 )
 from symobs.checking.judgement.as_asked import as_asked, is_listed, shape_of, two_readings
 from symobs.checking.judgement.coordinates import in_coordinates
-from symobs.checking.judgement.gains import from_gains, with_claimed, with_gain, with_gains
+from symobs.checking.judgement.gains import design_with, from_gains, with_claimed, with_gain, with_gains
 from symobs.checking.judgement.other_compensators import closes_the_loop
-from symobs.checking.judgement.parts import CLAIMED, GAINS, IN_COORDINATES, exists, in_order
+from symobs.checking.judgement.parts import CLAIMED, GAINS, IN_COORDINATES, OF_GAIN, TOGETHER, exists, in_order
 from symobs.checking.judgement.regions import region_verdict
-from symobs.design.reference.integral_action import IntegralAction
 from symobs.errors import (
     CertificateRejected,
     InputError,
@@ -124,12 +123,16 @@ def judge_task(
     given = {letter: as_asked(view, letter, value) for letter, value in given.items()}
     standard = {view.standard(letter)[0]: letter for letter in given}
     parts: dict[str, Judged] = {}
-    if isinstance(task.right, IntegralAction):
+    if view.task in TOGETHER:
         task.is_half = view.fields["family"] is not None and not standard.keys() >= {*GAINS[view.task]}
         task.right = _together(task, task.right, {name: (standard[name], given[standard[name]]) for name in standard})
     for name in in_order(list(standard)):
         if name in GAINS.get(view.task, ()):
             parts[name] = _gain(task, name, standard[name], given[standard[name]])
+        elif name == "H" and (view.task, name) in CLAIMED:
+            parts[name] = _judged(task, name, standard[name], given[standard[name]])
+    if "L" not in standard and (name := OF_GAIN.get(view.task, "")) in standard:
+        task.right = _with_gain_behind(task, name, standard[name], given[standard[name]])
     if task.wrong:
         with suppress(SymobsError, ArithmeticError, ValueError, AttributeError, TypeError):
             task.own = from_gains(task.right, task.gains)
@@ -168,6 +171,8 @@ def _repair(error: SymobsError) -> str:
 def _gain(task: _Task, name: str, letter: str, given: Any) -> Judged:
     """Return the verdict on a gain: it is right where the claim of the design holds for it."""
     _, sign = task.view.standard(letter)
+    if task.right.fields.get("solvable") is False and not exists(task.right, name):  # nothing is left to place poles of
+        return Judged(name, letter, "wrong", given, reason=f"there is no {letter} here")
     try:
         read = parse_matrix(given, task.names, where=letter)
     except SymobsError as error:
@@ -186,7 +191,14 @@ def _gain(task: _Task, name: str, letter: str, given: Any) -> Judged:
         other = task.right if value == own else with_gain(task.right, name, value)
     except CertificateRejected as rejected:
         if task.is_half:
-            return Judged(name, letter, "undecided", given, value, reason="K and k_I are right together: give both")
+            return Judged(
+                name,
+                letter,
+                "undecided",
+                given,
+                value,
+                reason=f"{' and '.join(GAINS[task.view.task])} are right together: give both",
+            )
         task.wrong = (*task.wrong, name)
         claim = str(rejected.facts.get("claim", ""))
         return Judged(name, letter, "wrong", given, value, claims=((claim, False, "exact"),) if claim else ())
@@ -200,8 +212,8 @@ def _gain(task: _Task, name: str, letter: str, given: Any) -> Judged:
     return Judged(name, letter, "right", given, value, hints, claims=claims)
 
 
-def _together(task: _Task, right: IntegralAction, given: Mapping[str, tuple[str, Any]]) -> IntegralAction:
-    """Return integral action with the student's K and k_I where their claim holds for both, else what is right."""
+def _together(task: _Task, right: Any, given: Mapping[str, tuple[str, Any]]) -> Result:
+    """Return the result with the student's two gains where their claim holds for both, else what is right."""
     gains: dict[str, Matrix] = {}
     for name in GAINS[right.task]:
         if name not in given or right.answer[name] is None:
@@ -217,6 +229,16 @@ def _together(task: _Task, right: IntegralAction, given: Mapping[str, tuple[str,
     return right
 
 
+def _with_gain_behind(task: _Task, name: str, letter: str, given: Any) -> Result:
+    """Return the result with the L in the student's A − L C, where that places the poles; else what is right."""
+    with suppress(SymobsError, ArithmeticError, ValueError):
+        value, pair = _value(task, name, letter, given), design_with(task.right, "L").plant.matrices
+        if isinstance(value, Matrix) and value.shape == pair.A.shape:
+            L = (pair.A - value) @ pair.C.T @ (pair.C @ pair.C.T).inverse()
+            return with_gain(task.right, "L", L.normal())
+    return task.right
+
+
 # -- what follows from them -------------------------------------------------------------------------------------------
 
 
@@ -226,12 +248,13 @@ def _judged(task: _Task, name: str, letter: str, given: Any) -> Judged:
         return Judged(name, letter, "wrong", given, reason=f"there is no {letter} here")
     if (task.view.task, name) == ("stability_region", "stable_if"):
         return _region(task, name, letter, given)
-    if name == "verdict":
+    right = task.right.fields.get(name)
+    if name == "verdict" or isinstance(right, bool) or (isinstance(right, str) and right in VERDICTS):
         word = VERDICTS.get(str(given).strip().strip('"').lower())
         if word is None:
             error = InputError(f'"{shown(str(given), 40)}" is no verdict', repair="write yes, no or conditional")
             return unreadable(name, letter, given, error)
-        given = word
+        given = word == "yes" if isinstance(right, bool) else word
     is_of_numbers = name != "sizes" and is_listed(task.view, letter)
     if is_of_numbers and has_two_readings(given):
         return unreadable(name, letter, given, two_readings())
@@ -244,11 +267,10 @@ def _judged(task: _Task, name: str, letter: str, given: Any) -> Judged:
         if task.own is not None and exists(task.own, name) and (found := _holds(task, task.own, part)) is not None:
             return replace(part, verdict="follows", hints=found, origins=task.wrong)
         if name == "F" and view_is_free(task) and closes_the_loop(task.right, part.value):
-            return replace(part, verdict="right", hints=("another compensator with the same closed loop",))
+            return replace(part, verdict="right", hints=("another compensator with the same closed-loop polynomial",))
         rounded = has_decimals(given) and _met(task, task.right, part, given)
         if rounded and task.marking.decimals == "accept":
             return replace(part, verdict="right", hints=("rounded",))
-        right = task.right.fields.get(name)
         if isinstance(right, Matrix) and has_decimal_commas(given, task.names, right.shape) and part.value is not None:
             raise two_readings()
         if is_of_numbers and has_two_readings(given, len(right or ())):
@@ -281,9 +303,10 @@ def _holds(task: _Task, result: Result, part: Judged) -> tuple[str, ...] | None:
         if matrix is None:
             return None
         try:
-            with_claimed(result, part.name, matrix)
+            found = with_claimed(result, part.name, matrix)
         except CertificateRejected:
             return None
+        task.right = found if result is task.right else task.right
         return ()
     if _met(task, result, part, exact(part.given)):
         return ()

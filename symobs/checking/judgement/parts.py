@@ -17,6 +17,7 @@ ASKED: dict[str, tuple[str, ...]] = {
     "compensator": ("K", "L", "F"),
     "controllability": ("rank",),
     "decomposition": ("T", "sizes"),
+    "disturbance_observer": ("L_x", "L_w"),
     "dual": ("A", "B", "C"),
     "feedforward": ("F",),
     "gramian": ("matrix",),
@@ -33,10 +34,12 @@ ASKED: dict[str, tuple[str, ...]] = {
     "state_feedback": ("K",),
     "tracking": ("K_d",),
     "transfer_function": ("transfer_function",),
+    "unknown_input_observer": ("H", "L"),
 }
 #: The gains of a task.  Each is right where its claim holds, and the other fields follow from them.
 GAINS: dict[str, tuple[str, ...]] = {
     "compensator": ("K", "L"),
+    "disturbance_observer": ("L_x", "L_w"),
     "feedforward": ("K", "L"),
     "integral_action": ("K", "k_I"),
     "observer": ("L",),
@@ -45,8 +48,12 @@ GAINS: dict[str, tuple[str, ...]] = {
     "tracking": ("K", "L"),
     "unknown_input_observer": ("L",),
 }
-#: Fields besides gains that many values meet: their claim decides, given the gains.
-CLAIMED = {("tracking", "K_d"), ("feedforward", "F")}
+#: Tasks whose two gains are one of a larger system: they are right together.
+TOGETHER = {"disturbance_observer", "integral_action"}
+#: Fields besides gains that many values meet: their claim decides, given the gains; that of H comes before the gain.
+CLAIMED = {("tracking", "K_d"), ("feedforward", "F"), ("unknown_input_observer", "H")}
+#: A matrix from which a gain L that is not given follows: A − L C, or T A − L C.
+OF_GAIN = {"observer": "A", "unknown_input_observer": "F"}
 #: Tasks whose fields are right in many coordinates, and these fields.
 IN_COORDINATES: dict[str, tuple[str, ...]] = {
     "canonical_form": ("T", "A", "B", "C"),
@@ -61,7 +68,7 @@ _OF_TIME: dict[str, dict[str, str]] = {
 #: Letters that a derivation keeps for the plant, also where an answer has parts of these names.
 OF_THE_PLANT = ("A", "B", "C", "D")
 #: The order in which parts are judged where one follows from the other.
-_FIRST = ("K", "L", "k_I", "T")
+_FIRST = ("H", "K", "L", "k_I", "L_x", "L_w", "T")
 
 
 def asked_of(result: Result) -> tuple[str, ...]:

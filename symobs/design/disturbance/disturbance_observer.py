@@ -56,6 +56,11 @@ class DisturbanceObserver(Result):
         """Return the observer, or the negative result."""
         several = "ackermann" if plant.outputs == 1 else "sylvester"
         inner = design_of(ObserverDesign, with_exosystem(plant, exosystem), desired, several)
+        return cls.of_inner(plant, exosystem, inner, method_name)
+
+    @classmethod
+    def of_inner(cls, plant: StateSpace, exosystem: Exosystem, inner: ObserverDesign, method_name: str) -> Self:
+        """Return the observer that one of plant and exosystem together is."""
         gain, n, every = inner.answer["L"], plant.order, range(plant.outputs)
         answer = {
             "L_x": None if gain is None else gain.select(range(n), every),

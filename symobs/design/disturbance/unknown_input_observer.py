@@ -85,7 +85,11 @@ class UnknownInputObserver(Result):
         return cls(plant, method_name, answer, desired, E, inner)
 
     def with_answer(self, name: str, value: object) -> Self:
-        """Return the observer with another L, and with the matrices that follow from it."""
+        """Return the observer with another L, or with another H and a gain for it, and the matrices that follow."""
+        if name == "H" and isinstance(value, Matrix) and self.inner is not None:
+            inner = design_of(ObserverDesign, decoupled(self.plant, value), self.desired)
+            whole = (self.plant, self.disturbance_input, value, inner, self.desired, self.method)
+            return type(self).assembled(*whole).in_place_of(self)
         if name != "L" or self.inner is None:
             return super().with_answer(name, value)
         return self.with_gain(self.inner.with_answer("L", value), self.desired)

@@ -234,7 +234,7 @@ def judge_compensator(
             return "follows", "", f"{said}, which makes this part too easy to count", Fraction(0)
         return "follows", "", said, Fraction(marks["follow_through"])
     if not gains and closes_the_loop(part, F):
-        return "right", "", "another compensator with the same closed loop", Fraction(1)
+        return "right", "", "another compensator with the same closed-loop polynomial", Fraction(1)
     if opposite == exact:
         return "wrong", "sign_convention", "-F is right with positive feedback", Fraction(1)
     return "wrong", "", f"this is not the {part['letter']} of your gains" if gains else "", Fraction(1)

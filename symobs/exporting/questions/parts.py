@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 from symobs._dataclass import dataclass
 from symobs.checking.judgement.gains import design_with
-from symobs.checking.judgement.parts import GAINS
+from symobs.checking.judgement.parts import GAINS, TOGETHER
 from symobs.checking.marks import other_polynomial
 from symobs.design.compensator.compensator import CompensatorDesign
 from symobs.design.gain.gain_kind import AssignedGain, GainWithZeros
@@ -91,8 +91,9 @@ def exported_part(view: ResultInConvention, field: str, name: str, weight: str) 
         if word == "undecided":
             raise _refused(made["part"], "what is right is undecided")
         return _part(made | {"kind": "word", "symbolic": False, "right": word}, ((word,),))
-    if view.task == "integral_action" and field in GAINS[view.task]:
-        raise _refused(made["part"], "an exported grader does not hold K and k_I, which are right together")
+    if view.task in TOGETHER and field in GAINS[view.task]:
+        both = " and ".join(GAINS[view.task])
+        raise _refused(made["part"], f"an exported grader does not hold {both}, which are right together")
     if field in GAINS.get(view.task, ()):
         return _gain(view, field, made)
     if isinstance(view.result, CompensatorDesign) and field == "F":

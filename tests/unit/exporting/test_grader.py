@@ -313,7 +313,7 @@ MORE = {
     "alone": ({"K": [], "L": []}, ("right", "", "", 1)),
     "another one alone": (
         {"K": [], "L": [], "F": [[another()]]},
-        ("right", "", "another compensator with the same closed loop", 1),
+        ("right", "", "another compensator with the same closed-loop polynomial", 1),
     ),
     "another one with gains": ({"F": [[another()]]}, ("wrong", "", "this is not the F of your gains", 0)),
     "wrong alone": ({"K": [], "L": [], "F": [["1/(s + 1)"]]}, ("wrong", "", "", 0)),
@@ -383,7 +383,7 @@ def test_a_compensator_alone_is_held_to_the_closed_loop_and_its_order() -> None:
     """A mode that F does not reach stays: (s + 2) · ((s + 1)(s + 5) + 3) = (s + 2)² (s + 4)."""
     hidden = {"A": rows("-1 0; 0 -2"), "B": rows("1; 0"), "C": rows("1 0"), "phi": ["1", "8", "20", "16"]}
     asked = question({**F, **hidden, "right_K": rows("9 9"), "right_L": rows("9; 9")})
-    said = ("right", "", "another compensator with the same closed loop", 1)
+    said = ("right", "", "another compensator with the same closed-loop polynomial", 1)
     assert outcome(asked, "F", {"F": [["3/(s + 5)"]]}) == said
     assert outcome(asked, "F", {"F": [["4/(s + 5)"]]})[0] == "wrong"
     for order, verdict in ((1, "right"), (0, "wrong")):
