@@ -387,6 +387,24 @@ def test_the_verdict_of_a_point_changes_on_the_boundary(opened: Callable[..., Op
     assert live.page.get_attribute(verdict, "data-verdict") == "stable"
 
 
+def test_a_point_that_cannot_be_read_is_said_at_its_field(opened: Callable[..., Opened]) -> None:
+    live = opened(f"{REGION}&language=de")
+    field = live.page.locator('.point [data-where="at.h1"]')
+    for given, said in (("sqrt(2)", ""), ("x", "x")):
+        field.fill(given)
+        field.press("Tab")
+        live.page.wait_for_selector(f".symobs-live.stale .point .wrong:has-text('{said}'):not(:empty)")
+        live.at_rest()
+        assert field.get_attribute("aria-invalid") == "true"
+        assert live.page.eval_on_selector(".point .verdict", "e => getComputedStyle(e).opacity") == "0.38"
+    assert live.page.get_attribute(".point .wrong span", "lang") == "en"
+    field.fill("1,5")
+    field.press("Tab")
+    live.page.wait_for_selector(".symobs-live:not(.stale)")
+    live.at_rest()
+    assert "h1 = 1,5" in live.page.inner_text(".point .verdict")
+
+
 def test_one_parameter_is_scrubbed(opened: Callable[..., Opened]) -> None:
     live = opened(LOCUS)  # stable exactly for 0 < k < 6
     for value, expected in (("6", "boundary"), ("5", "stable"), ("7", "unstable")):

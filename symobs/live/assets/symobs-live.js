@@ -299,7 +299,7 @@ export function mount(element, transport, options = {}) {
         if (region) {
           const got = await transport(asking("point", { at: s.at }));
           drawPoint(got);
-          if (waiting || moving) continue;
+          if (waiting || moving || got.status !== "done") continue;
         }
         const at = free(), courses = open("responses") ? { start: s.x0, estimate: s.xh0, end: null, count: 129 } : undefined;
         const more = { at, cards_at: Object.keys(at).length > 0, cases: !moving && open("cases") };
@@ -445,7 +445,7 @@ export function mount(element, transport, options = {}) {
       })));
       return h("div", { class: "named" }, h("i", {}, name), h("span", { class: "equals" }, "="), grid, h("small", { class: "wrong", "data-of": `plant.${name}` }));
     });
-    const all = h("details", { class: "astext" }, h("summary", {}, w("as_text")), ["A", "B", "C", "D", "transfer_function", "dt"].map((name) => field(`text.${name}`, labelOf(name), s.plant[name], (t) => { if (t) s.plant[name] = t; else delete s.plant[name]; problemChanged(); })), field("text.symbols", labelOf("symbols"), Object.entries(s.symbols).map(([n, g]) => `${n}: ${g}`).join(", "), (t) => { s.symbols = Object.fromEntries(t.split(",").map((e) => e.split(":").map((p) => p.trim())).filter(([n]) => n).map(([n, g]) => [n, g || "real"])); problemChanged(); }));
+    const all = h("details", { class: "astext" }, h("summary", {}, w("as_text")), h("div", { class: "fields" }, ["A", "B", "C", "D", "transfer_function", "dt"].map((name) => field(`text.${name}`, labelOf(name), s.plant[name], (t) => { if (t) s.plant[name] = t; else delete s.plant[name]; problemChanged(); })), field("text.symbols", labelOf("symbols"), Object.entries(s.symbols).map(([n, g]) => `${n}: ${g}`).join(", "), (t) => { s.symbols = Object.fromEntries(t.split(",").map((e) => e.split(":").map((p) => p.trim())).filter(([n]) => n).map(([n, g]) => [n, g || "real"])); problemChanged(); })));
     if (s.plant.transfer_function !== undefined) rows.push(field("plant.transfer_function", "P(s)", s.plant.transfer_function, (t) => { s.plant.transfer_function = t; problemChanged(); }));
     const setKeys = (view?.sets ?? []).map((g) => g.key);
     const others = Object.keys(s.spec).filter((key) => !setKeys.includes(key) && key !== "observer").map((key) => field(`specification.${key}`, labelOf(key), s.spec[key], (t) => { if (t) s.spec[key] = t; else delete s.spec[key]; problemChanged(); }));
@@ -788,13 +788,13 @@ export function mount(element, transport, options = {}) {
   function showErrors(errors) {
     root.classList.add("stale");
     const left = [];
-    for (const { where, message, repair } of errors) {
+    for (const { where, message, repair, lang } of errors) {
       const words = `${message}${repair ? `: ${repair}` : ""}`, base = where.replace(/\[.*$/, "");
       const exact = where.replace(/\[(\d+)\]\[(\d+)\]$/, (_, i, j) => `[${Number(i) + 1},${Number(j) + 1}]`);
       const input = root.querySelector(`[data-where="${CSS.escape(exact)}"]`) ?? root.querySelector(`[data-set="${CSS.escape(base.replace("specification.", ""))}"]`) ?? root.querySelector(`[data-where="${CSS.escape(base)}"]`);
       input?.setAttribute("aria-invalid", "true");
       const spot = input?.closest("label")?.querySelector(".wrong") ?? root.querySelector(`.wrong[data-of="${CSS.escape(base)}"]`);
-      if (spot) spot.append(h("span", {}, words)); else left.push(`${where ? `${where}: ` : ""}${words}`);
+      if (spot) spot.append(h("span", { lang }, words)); else left.push(`${where ? `${where}: ` : ""}${words}`);
     }
     if (left.length) say(left.slice(0, 4).join(" · "));
   }

@@ -133,6 +133,12 @@ PHRASES: dict[str, str] = {
     "live_not_loaded": "Python could not be loaded",
     # said by Python
     "said_memory": "{megabytes} MB of memory were not enough",
+    "said_no_state": "{count} numbers are expected",
+    "said_no_state_repair": "write them with commas between, 1, 1/2",
+    "said_other_sign": "{name} is {sign}",
+    "said_other_sign_repair": "choose another value, or declare it real",
+    "said_no_rational": "a rational number is expected",
+    "said_no_rational_repair": "write it as 1/2 or 0.5",
     "said_equals": "{name} equals {value}",
     "said_roots": "roots {roots}",
     "said_fixed_mode": "No gain moves the mode {modes} of {pair}.",
@@ -195,4 +201,5 @@ CONTINUES = (
     "live_field_control_poles", "live_field_control_polynomial", "live_field_settling_time", "live_field_overshoot",
     "live_field_reference_matrix", "live_field_reference_start", "live_field_transfer_function",
     "live_field_symbols", "live_field_dt", "live_comma", "live_comma_repair",
+    "said_no_state_repair", "said_other_sign_repair", "said_no_rational", "said_no_rational_repair",
 )  # fmt: skip
