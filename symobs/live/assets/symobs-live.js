@@ -602,8 +602,8 @@ export function mount(element, transport, options = {}) {
       if (said?.damping && p.pair) lines.push(`ζ = ${pretty(said.damping)}, ${said.exact}`);
       if (said?.settles) lines.push(w("mode_settles", { time: pretty(said.settles) }));
       if (said?.modulus) lines.push(`|z| = ${pretty(said.modulus)}`);
-      const top = y < 70 ? y + 26 : y - 12 - 16 * (lines.length - 1);
-      mine.append(...lines.map((words, n) => h("svg:text", { class: n ? "readout" : "readout first", x: x + (right ? 16 : -16), y: top + 16 * n, "text-anchor": right ? "start" : "end" }, words)));
+      const below = y < 70, up = below ? 0 : lines.length - 1;
+      mine.append(...lines.map((words, n) => h("svg:text", { class: n ? "readout" : "readout first", x: x + (right ? 16 : -16), y: below ? y + 26 : y - 12, dy: `${1.25 * (n - up)}em`, "text-anchor": right ? "start" : "end" }, words)));
     }
     return mine;
   }
