@@ -21,10 +21,10 @@ from symobs.errors import (
 from symobs.exact import Scalar
 from symobs.exact.algebraic.root_location import complex_roots
 from symobs.formula import Letter, Literal, Relation
-from symobs.live.assets import SCHEMA
+from symobs.live.assets import SCHEMA, language_asked
 from symobs.live.page import export_object, page_object
 from symobs.live.point import card_object, point_object, region_object
-from symobs.live.request import Request, put_in, read
+from symobs.live.request import FieldError, Request, put_in, read
 from symobs.live.time_responses import NoResponse, readout, responses_of
 from symobs.live.views import view_object, view_of
 from symobs.phrases.languages import language_named
@@ -70,7 +70,7 @@ def answer(request: object) -> dict[str, Any]:
     except OutOfBudget as error:
         return head | {"status": "undecided", "message": error.message}
     except SymobsError as error:
-        return head | {"status": "bad", "errors": errors_of(error)}
+        return head | {"status": "bad", "errors": errors_of(error, language_asked(request))}
     except MemoryError:
         return head | {"status": "undecided", "message": "memory was not enough"}
     except RecursionError:
@@ -90,10 +90,16 @@ def _bug(error: Exception) -> dict[str, Any]:
     return {"status": "bug", "message": f"internal error: {type(error).__name__}; please report this"}
 
 
-def errors_of(error: SymobsError) -> list[dict[str, str]]:
-    """Return every error with its place and its repair."""
-    several = error.errors if isinstance(error, ProblemErrors) else (error,)
-    return [{"where": each.where, "message": each.message, "repair": each.repair} for each in several]
+def errors_of(error: SymobsError, language: Language) -> list[dict[str, str]]:
+    """Return every error with its place and its repair; `lang` says which are in English alone."""
+    found = []
+    for each in error.errors if isinstance(error, ProblemErrors) else (error,):
+        if isinstance(each, FieldError):
+            message, repair = each.told(language)
+            found.append({"where": each.where, "message": message, "repair": repair})
+        else:
+            found.append({"where": each.where, "message": each.message, "repair": each.repair, "lang": "en"})
+    return found
 
 
 def _solve(key: str, find: Callable[[], Problem]) -> Solved:
@@ -131,7 +137,7 @@ def _require_at(asked: Request) -> None:
             value = read_scalar(text, declared, where)
             sign = declared.signs[name]
             if not value.names and not _agrees(value, sign):
-                raise InputError(f"{name} is {sign}", where=where, repair="choose another value, or declare it real")
+                raise FieldError("said_other_sign", where, name=name, sign=sign)
         except SymobsError as error:
             errors.append(error)
     if errors:

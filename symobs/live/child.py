@@ -12,6 +12,7 @@ from symobs.errors import SymobsError
 from symobs.live.answering import answer, errors_of
 from symobs.live.assets import SCHEMA
 from symobs.live.request import parsed
+from symobs.phrases.languages import ENGLISH
 
 #: It is replaced after so many answers, or when it has grown to so many megabytes.
 MOST_ANSWERS, MOST_MEGABYTES = 10_000, 500
@@ -33,7 +34,7 @@ def respond(body: bytes) -> bytes:
     try:
         found = answer(parsed(body))
     except SymobsError as error:
-        found = {"schema": SCHEMA, "id": None, "status": "bad", "errors": errors_of(error)}
+        found = {"schema": SCHEMA, "id": None, "status": "bad", "errors": errors_of(error, ENGLISH)}
     found["ms"] = round(1000 * (time.perf_counter() - begin), 1)
     whole = json.dumps(found, ensure_ascii=False, separators=(",", ":")).encode("utf-8", "backslashreplace")
     if len(whole) > 2**20:

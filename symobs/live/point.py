@@ -11,6 +11,7 @@ from symobs.exact.algebraic.rational_points import value_at
 from symobs.exact.algebraic.root_location import root_boxes
 from symobs.figures.plot import LinePicture, PoleMap, RegionPicture
 from symobs.formula import Letter, Literal, Relation
+from symobs.live.request import FieldError
 from symobs.render.cards import Card
 from symobs.render.drawings.plot_file import is_shown
 from symobs.render.drawings.svg import svg, svg_scene
@@ -34,7 +35,7 @@ def numbers(at: Mapping[str, str]) -> dict[str, Fraction]:
     for name, text in at.items():
         value = read_scalar(text, Symbols.of({}), f"at.{name}")
         if value.names:
-            raise InputError("a rational number is expected", where=f"at.{name}", repair='write "1/2"')
+            raise FieldError("said_no_rational", f"at.{name}")
         found[name] = value.fraction()
     return found
 

@@ -9,13 +9,10 @@ from typing import TYPE_CHECKING, Any
 
 from symobs._dataclass import dataclass
 from symobs.child_processes.child import Died, Ended, Kept
-from symobs.live.assets import SCHEMA
-from symobs.phrases.languages import ENGLISH, language_named, languages
+from symobs.live.assets import SCHEMA, language_asked
 
 if TYPE_CHECKING:
     from collections.abc import Callable
-
-    from symobs.phrases.languages import Language
 
 #: A whole page may take as many times the seconds of an answer.
 PAGE_FACTOR = 6
@@ -61,10 +58,10 @@ class Children:
                     response: bytes = child.ask(body, min(seconds, _MOST_SECONDS), look=look, every=_LOOK_EVERY)
                     return response
             except TimeoutError:
-                language = _language(asked)
+                language = language_asked(asked)
                 message = language.phrases["live_late"].format(seconds=language.decimal(f"{seconds:g}"))
             except (Died, Ended):
-                message = _language(asked).phrases["said_memory"].format(megabytes=self.budget.megabytes)
+                message = language_asked(asked).phrases["said_memory"].format(megabytes=self.budget.megabytes)
             finally:
                 self.kept.add(_CHILDREN, megabytes=self.budget.megabytes)
         undecided = {"schema": SCHEMA, "id": asked.get("id"), "status": "undecided", "message": message}
@@ -73,13 +70,6 @@ class Children:
     def close(self) -> None:
         """End all, also those at work."""
         self.kept.close()
-
-
-def _language(asked: dict[str, Any]) -> Language:
-    """Return the language that a problem asks for."""
-    problem = asked.get("problem")
-    code = problem.get("language") if isinstance(problem, dict) else None
-    return language_named(code) if code in languages() else ENGLISH
 
 
 def _read(body: bytes) -> dict[str, Any]:

@@ -11,10 +11,12 @@ from symobs._dataclass import dataclass
 from symobs.errors import InputError, ProblemErrors, SymobsError, reason_of
 from symobs.expression.source import shown
 from symobs.live.assets import MOST_BYTES, SCHEMA
+from symobs.phrases.languages import ENGLISH
 from symobs.problem import validate
 from symobs.result import task_named
 
 if TYPE_CHECKING:
+    from symobs.phrases.languages import Language
     from symobs.problem import Problem
 
 #: A request nests no deeper, and an exact value of a symbol is no longer.
@@ -32,6 +34,20 @@ _SYMBOL = re.compile(r"[A-Za-z][A-Za-z0-9_]{0,63}")
 #: What a file holds against its answers, which are not those asked for here.
 _OF_A_FILE = {"expect", "id", "printed"}
 _MOST_INSTANTS, _MOST_NAMES = 1025, 60
+
+
+class FieldError(InputError):
+    """What is wrong with a field that the live page alone has: a phrase, so that the page says it in its language."""
+
+    def __init__(self, phrase: str, where: str, **slots: object) -> None:
+        """Say it in English."""
+        self.phrase, self.slots = phrase, slots
+        message, repair = self.told(ENGLISH)
+        super().__init__(message, where=where, repair=repair)
+
+    def told(self, language: Language) -> tuple[str, str]:
+        """Return message and repair in a language."""
+        return language.phrases[self.phrase].format(**self.slots), language.phrases[f"{self.phrase}_repair"]
 
 
 @dataclass(frozen=True)

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 from symobs.design.page_parts.time_responses import rounded_up
 from symobs.errors import InputError
 from symobs.exact import Matrix
+from symobs.live.request import FieldError
 from symobs.system import Symbols, read_matrix
 
 if TYPE_CHECKING:
@@ -137,7 +138,7 @@ def _vector(text: str, size: int, otherwise: Fraction, where: str) -> list[Fract
         return [otherwise] * size
     entries = read_matrix(f"[{text.strip().strip('[]')}]", Symbols.of({}), where).entries
     if len(entries) != size or any(not entry.is_constant or entry.names for entry in entries):
-        raise InputError(f"{size} numbers are expected", where=where, repair='write for example "1, 0"')
+        raise FieldError("said_no_state", where, count=size)
     return [entry.fraction() for entry in entries]
 
 

@@ -15,6 +15,7 @@ from symobs.variation.drawing.parameters import read_parameter
 from symobs.variation.reading.constraint_table import BOUNDS, FLAGS, LISTS, PAGE
 from tests.support.paths import ROOT
 from tests.support.tools.command_line import inside
+from tests.support.tools.document_pages import blocks
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -22,24 +23,22 @@ if TYPE_CHECKING:
 PAGE_TEXT = (ROOT / "docs" / "variants.md").read_text(encoding="utf-8")
 
 
-def block(language: str) -> str:
-    (found,) = re.findall(rf"^```{language}\n(.*?)^```", PAGE_TEXT, re.MULTILINE | re.DOTALL)
-    return str(found)
-
-
 def test_the_page_names_all_there_is() -> None:
     for name in (*CONSTRUCTIONS, *FLAGS, *LISTS, *BOUNDS, *PAGE):
         assert re.search(rf"\b{name}\b", PAGE_TEXT), name
-    for name, table in parse(block("text")).items():
+    *_, (_, _, parameters) = blocks("variants")
+    for name, table in parse(parameters).items():
         assert name == "when" or read_parameter(name, table, lambda *told: pytest.fail(str(told)))
 
 
 @pytest.mark.slow
 def test_every_command_of_the_page_runs(tmp_path: Path) -> None:
-    (tmp_path / "problem.toml").write_text(block("toml"), encoding="utf-8")
+    *files, (_, language, lines), _ = blocks("variants")
+    assert (language, [file for file, *_ in files]) == ("sh", ["problem.toml", "students.csv", "answer.txt"])
+    for file, _, text in files:
+        (tmp_path / file).write_text(text, encoding="utf-8")
     (tmp_path / "students.csv").write_text("student;name\ns01;A\n=cmd();B\ns02;C\ns01;A\n", encoding="utf-8")
-    (tmp_path / "answer.txt").write_text("L = [-4; 9]\n", encoding="utf-8")
-    runs = [inside(*shlex.split(line, comments=True)[1:], folder=tmp_path) for line in block("sh").splitlines()]
+    runs = [inside(*shlex.split(line, comments=True)[1:], folder=tmp_path) for line in lines.splitlines()]
     assert [run.code for run in runs] == [0] * 7
     assert "variant 2" in runs[0].out
     assert "Variant 2 of seed 0." in runs[0].out

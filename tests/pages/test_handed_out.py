@@ -340,20 +340,3 @@ def test_a_sheet_without_a_file_has_no_head() -> None:
     sheet = Sheet("T", (SheetEntry(1, "f", "t"),))
     assert sheet.header == Header()
     assert (sheet.heading, sheet.course, sheet.facts, sheet.fields, sheet.totals) == ("T", "", (), (), ())
-
-
-@pytest.mark.slow
-def test_the_sheet_of_the_guide_is_one(tmp_path: Path) -> None:
-    page = (ROOT / "docs" / "sheets.md").read_text(encoding="utf-8")
-    folder = tmp_path / "sheets"
-    folder.mkdir()
-    for name in ("pendulum_upright.toml", "servo_minimal_order.toml"):
-        (tmp_path / name).write_bytes((ROOT / "worked_examples" / name).read_bytes())
-    (folder / "logo.png").write_bytes(LOGO)
-    (folder / "sheet.toml").write_text(re.findall(r"```toml\n(.*?)```", page, re.DOTALL)[0], encoding="utf-8")
-    commands = [line.split("#")[0].split() for line in page.splitlines() if line.startswith("symobs sheet sheet.toml")]
-    assert len(commands) == 4
-    for _, *arguments in commands:
-        run = inside(*(argument.replace(".pdf", ".tex") for argument in arguments), folder=folder)
-        assert (run.code, run.err) == (0, "")
-        assert (folder / arguments[-1].replace(".pdf", ".tex")).stat().st_size > 5000

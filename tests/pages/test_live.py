@@ -226,6 +226,20 @@ def test_the_last_answer_of_a_drag_belongs_to_the_last_place(opened: Callable[..
     assert path.startswith("M40.0")
 
 
+def test_a_response_says_when_it_settles_and_a_pole_what_it_does_alone(opened: Callable[..., Opened]) -> None:
+    live = opened("v=1&task=observer&A=[0 1; 0 -1]&C=[1 0]&poles=-4, -4")
+    # From e(0) = (1, 1): e₁ = (1 − 2t) e⁻⁴ᵗ and e₂ = (1 − 6t) e⁻⁴ᵗ are 0.02 for the last time at 0.954 and 1.497,
+    # and e₂ so shortly before the end of the picture, at 3/2, that nothing is said.
+    first, second = live.page.locator(".legend small").all_text_contents()
+    assert 0.9537 < float(first.removeprefix("settles in ")) < 0.98
+    assert second == ""
+    live.page.focus('[data-handle="poles.0"]')
+    assert live.page.locator(".readout").all_text_contents() == ["−4", "alone settles in 0.978"]
+    live.page.keyboard.press("ArrowLeft")
+    live.at_rest()
+    assert live.page.locator(".readout").all_text_contents() == ["−9/2", "alone settles in 0.869"]
+
+
 def test_pairs_form_and_part(opened: Callable[..., Opened]) -> None:
     live = opened(PAIR)
     x, y = live.middle("observer_poles.0")
@@ -385,6 +399,24 @@ def test_the_verdict_of_a_point_changes_on_the_boundary(opened: Callable[..., Op
     live.drag(begin, (begin[0], begin[1] - 60))
     live.at_rest()
     assert live.page.get_attribute(verdict, "data-verdict") == "stable"
+
+
+def test_a_point_that_cannot_be_read_is_said_at_its_field(opened: Callable[..., Opened]) -> None:
+    live = opened(f"{REGION}&language=de")
+    field = live.page.locator('.point [data-where="at.h1"]')
+    for given, said in (("sqrt(2)", ""), ("x", "x")):
+        field.fill(given)
+        field.press("Tab")
+        live.page.wait_for_selector(f".symobs-live.stale .point .wrong:has-text('{said}'):not(:empty)")
+        live.at_rest()
+        assert field.get_attribute("aria-invalid") == "true"
+        assert live.page.eval_on_selector(".point .verdict", "e => getComputedStyle(e).opacity") == "0.38"
+    assert live.page.get_attribute(".point .wrong span", "lang") == "en"
+    field.fill("1,5")
+    field.press("Tab")
+    live.page.wait_for_selector(".symobs-live:not(.stale)")
+    live.at_rest()
+    assert "h1 = 1,5" in live.page.inner_text(".point .verdict")
 
 
 def test_one_parameter_is_scrubbed(opened: Callable[..., Opened]) -> None:

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Mapping
 from pathlib import Path
 
-from symobs.phrases.languages import language_named, languages
+from symobs.phrases.languages import ENGLISH, Language, language_named, languages
 
 #: The protocol that the script speaks; a request is at most so long.
 SCHEMA, MOST_BYTES = "symobs-live/1", 64 * 1024
@@ -24,6 +25,13 @@ def words() -> dict[str, dict[str, str]]:
         own = {key.removeprefix(_PREFIX): text for key, text in language.phrases.items() if key.startswith(_PREFIX)}
         found[code] = own | {"decimal_mark": language.words["decimal_mark"]}
     return found
+
+
+def language_asked(request: object) -> Language:
+    """Return the language that the problem of a request names, English where it names none that there is."""
+    problem = request.get("problem") if isinstance(request, Mapping) else None
+    code = problem.get("language") if isinstance(problem, Mapping) else None
+    return language_named(code) if isinstance(code, str) and code in languages() else ENGLISH
 
 
 def script() -> str:

@@ -299,7 +299,7 @@ export function mount(element, transport, options = {}) {
         if (region) {
           const got = await transport(asking("point", { at: s.at }));
           drawPoint(got);
-          if (waiting || moving) continue;
+          if (waiting || moving || got.status !== "done") continue;
         }
         const at = free(), courses = open("responses") ? { start: s.x0, estimate: s.xh0, end: null, count: 129 } : undefined;
         const more = { at, cards_at: Object.keys(at).length > 0, cases: !moving && open("cases") };
@@ -443,9 +443,9 @@ export function mount(element, transport, options = {}) {
         input.style.setProperty("--size", `${size}ch`);
         return input;
       })));
-      return h("div", { class: "named" }, h("i", {}, name), h("span", { class: "equals" }, "="), grid, h("small", { class: "wrong", "data-of": `plant.${name}` }));
+      return h("div", { class: "named" }, h("i", {}, name), " = ", grid, h("small", { class: "wrong", "data-of": `plant.${name}` }));
     });
-    const all = h("details", { class: "astext" }, h("summary", {}, w("as_text")), ["A", "B", "C", "D", "transfer_function", "dt"].map((name) => field(`text.${name}`, labelOf(name), s.plant[name], (t) => { if (t) s.plant[name] = t; else delete s.plant[name]; problemChanged(); })), field("text.symbols", labelOf("symbols"), Object.entries(s.symbols).map(([n, g]) => `${n}: ${g}`).join(", "), (t) => { s.symbols = Object.fromEntries(t.split(",").map((e) => e.split(":").map((p) => p.trim())).filter(([n]) => n).map(([n, g]) => [n, g || "real"])); problemChanged(); }));
+    const all = h("details", { class: "astext" }, h("summary", {}, w("as_text")), h("div", { class: "fields" }, ["A", "B", "C", "D", "transfer_function", "dt"].map((name) => field(`text.${name}`, labelOf(name), s.plant[name], (t) => { if (t) s.plant[name] = t; else delete s.plant[name]; problemChanged(); })), field("text.symbols", labelOf("symbols"), Object.entries(s.symbols).map(([n, g]) => `${n}: ${g}`).join(", "), (t) => { s.symbols = Object.fromEntries(t.split(",").map((e) => e.split(":").map((p) => p.trim())).filter(([n]) => n).map(([n, g]) => [n, g || "real"])); problemChanged(); })));
     if (s.plant.transfer_function !== undefined) rows.push(field("plant.transfer_function", "P(s)", s.plant.transfer_function, (t) => { s.plant.transfer_function = t; problemChanged(); }));
     const setKeys = (view?.sets ?? []).map((g) => g.key);
     const others = Object.keys(s.spec).filter((key) => !setKeys.includes(key) && key !== "observer").map((key) => field(`specification.${key}`, labelOf(key), s.spec[key], (t) => { if (t) s.spec[key] = t; else delete s.spec[key]; problemChanged(); }));
@@ -468,9 +468,9 @@ export function mount(element, transport, options = {}) {
   /** An observer of minimal order has fewer poles: drop the last ones, or repeat the first. */
   function fitObserver() {
     const rows = cells(s.plant.C ?? "")?.length ?? 1, order = cells(s.plant.A ?? "")?.length ?? 0;
-    const wanted = order - (s.spec.observer === "minimal" ? rows : 0), list = settled(handles(s.spec.observer_poles ?? ""));
-    const flat = list.flatMap((p) => (p.pair ? [{ re: p.re, im: [0, 1] }, { re: p.re, im: [0, 1] }] : [p]));
-    if (list.reduce((n, p) => n + (p.pair ? 2 : 1), 0) === wanted || !flat.length) return;
+    const wanted = order - (s.spec.observer === "minimal" ? rows : 0);
+    const flat = handles(s.spec.observer_poles ?? "").flatMap((p) => (p.pair ? [{ re: p.re, im: [0, 1] }, { re: p.re, im: [0, 1] }] : [p]));
+    if (flat.length === wanted || !flat.length) return;
     s.spec.observer_poles = Array.from({ length: wanted }, (_, k) => written(flat[Math.min(k, flat.length - 1)])).join(", ");
   }
 
@@ -511,8 +511,7 @@ export function mount(element, transport, options = {}) {
   }
 
   function poleField(group) {
-    const input = h("input", { value: s.spec[group.key] ?? "", "data-set": group.key, "aria-label": w(`${group.label}s`), spellcheck: "false", onchange: () => typed(input, (t) => { s.spec[group.key] = t; sets[group.key] = handles(t); drawPlane(true); commit(true); ask(); }) });
-    return input;
+    return h("input", { value: s.spec[group.key] ?? "", "data-set": group.key, "aria-label": w(`${group.label}s`), spellcheck: "false", onchange: (e) => typed(e.target, (t) => { s.spec[group.key] = t; sets[group.key] = handles(t); drawPlane(true); commit(true); ask(); }) });
   }
 
   function moved(final) {
@@ -551,9 +550,9 @@ export function mount(element, transport, options = {}) {
     }
     for (const group of view.sets) {
       const list = sets[group.key] ?? [], count = list.length;
-      list.forEach((p, k) => p.raw || parts.push(handle(group, list, p, k, count)));
+      list.forEach((p, k) => p.raw || parts.push(handle(group, list, p, k, count, focus === `${group.key}.${k}`)));
     }
-    if (Object.values(sets).flat().some((p) => p.raw)) parts.push(h("svg:text", { x: 46, y: 330, class: "remark" }, w("in_fields")));
+    if (Object.values(sets).flat().some((p) => p.raw)) parts.push(h("svg:text", { x: 46, y: 330 }, w("in_fields")));
     el.poles.append(...parts);
     if (focus) refocus(focus);
   }
@@ -581,7 +580,7 @@ export function mount(element, transport, options = {}) {
     quiet = false;
   }
 
-  function handle(group, list, p, k, count) {
+  function handle(group, list, p, k, count, focused) {
     const spoken = pretty(p.pair && p.im[0] ? w("pair", { real: text(p.re), imaginary: text(p.im) }) : text(p.re));
     const same = list.slice(0, k).filter((q) => !q.raw && !q.pair && !p.pair && text(q.re) === text(p.re)).length;
     const places = p.pair ? [[X(value(p.re)), Y(value(p.im))], [X(value(p.re)), Y(-value(p.im))]] : [[X(value(p.re)), Y(0)]];
@@ -595,16 +594,16 @@ export function mount(element, transport, options = {}) {
     const mine = h("svg:g", {
       class: `handle ${group.mark}${isHeld ? " held" : ""}`, tabindex: 0, role: "slider", "data-handle": `${group.key}.${k}`,
       "aria-label": w("one_of", { pole: w(group.label), number: k + 1, count }), "aria-roledescription": w("pole"), "aria-valuemin": -100, "aria-valuemax": 100, "aria-valuenow": value(p.re), "aria-valuetext": spoken,
-      onpointerdown: (e) => grab(e, group, p), onkeydown: (e) => key(e, group, p, k), onfocus: () => { if (!quiet) before = JSON.stringify(sets); },
+      onpointerdown: (e) => grab(e, group, p), onkeydown: (e) => key(e, group, p, k), onfocus: () => { if (!quiet) { before = JSON.stringify(sets); drawPlane(); } },
     }, places.map(glyph));
-    if (isHeld || root.getRootNode().activeElement?.getAttribute?.("data-handle") === `${group.key}.${k}`) {
+    if (isHeld || focused) {
       const [x, y] = places[0], right = x < 300;
       const lines = [pretty(p.pair && p.im[0] ? `${text(p.re)} ± ${text(p.im)} i` : text(p.re))];
       if (said?.damping && p.pair) lines.push(`ζ = ${pretty(said.damping)}, ${said.exact}`);
-      if (said?.settles) lines.push(w("settles", { time: pretty(said.settles) }));
+      if (said?.settles) lines.push(w("mode_settles", { time: pretty(said.settles) }));
       if (said?.modulus) lines.push(`|z| = ${pretty(said.modulus)}`);
-      const top = y < 70 ? y + 26 : y - 12 - 16 * (lines.length - 1);
-      mine.append(...lines.map((words, n) => h("svg:text", { class: n ? "readout" : "readout first", x: x + (right ? 16 : -16), y: top + 16 * n, "text-anchor": right ? "start" : "end" }, words)));
+      const below = y < 70, up = below ? 0 : lines.length - 1;
+      mine.append(...lines.map((words, n) => h("svg:text", { class: n ? "readout" : "readout first", x: x + (right ? 16 : -16), y: below ? y + 26 : y - 12, dy: `${1.25 * (n - up)}em`, "text-anchor": right ? "start" : "end" }, words)));
     }
     return mine;
   }
@@ -788,13 +787,13 @@ export function mount(element, transport, options = {}) {
   function showErrors(errors) {
     root.classList.add("stale");
     const left = [];
-    for (const { where, message, repair } of errors) {
+    for (const { where, message, repair, lang } of errors) {
       const words = `${message}${repair ? `: ${repair}` : ""}`, base = where.replace(/\[.*$/, "");
       const exact = where.replace(/\[(\d+)\]\[(\d+)\]$/, (_, i, j) => `[${Number(i) + 1},${Number(j) + 1}]`);
       const input = root.querySelector(`[data-where="${CSS.escape(exact)}"]`) ?? root.querySelector(`[data-set="${CSS.escape(base.replace("specification.", ""))}"]`) ?? root.querySelector(`[data-where="${CSS.escape(base)}"]`);
       input?.setAttribute("aria-invalid", "true");
       const spot = input?.closest("label")?.querySelector(".wrong") ?? root.querySelector(`.wrong[data-of="${CSS.escape(base)}"]`);
-      if (spot) spot.append(h("span", {}, words)); else left.push(`${where ? `${where}: ` : ""}${words}`);
+      if (spot) spot.append(h("span", { lang }, words)); else left.push(`${where ? `${where}: ` : ""}${words}`);
     }
     if (left.length) say(left.slice(0, 4).join(" · "));
   }
@@ -852,25 +851,26 @@ export function mount(element, transport, options = {}) {
   }
 
   function drawCurves(got) {
-    el.curves.classList.toggle("absent", !got);
-    if (!got) { el.curves.replaceChildren(); el.legend.replaceChildren(); return; }
+    if (el.curves.classList.toggle("absent", !got)) { el.legend.replaceChildren(); return; }
     const [[t0, t1], [low, high]] = got.window.map((w) => w.map(numberOf));
     const px = (t) => 40 + ((t - t0) / (t1 - t0)) * 424, py = (v) => 268 - ((v - low) / (high - low || 1)) * 252;
     const made = [h("svg:rect", { class: "ground", x: 40, y: 16, width: 424, height: 252 })];
     for (const t of ticks(t0, t1, 7)) made.push(h("svg:line", { class: "rule", x1: px(t), y1: 16, x2: px(t), y2: 268 }), h("svg:text", { x: px(t), y: 284, "text-anchor": "middle" }, pretty(String(t))));
     for (const v of ticks(low, high, 6)) made.push(h("svg:line", { class: v ? "rule" : "axis", x1: 40, y1: py(v), x2: 464, y2: py(v) }), h("svg:text", { x: 34, y: py(v) + 4, "text-anchor": "end" }, pretty(String(v))));
     made.push(h("svg:text", { x: 464, y: 284, dy: "1.15em", "text-anchor": "end" }, got.discrete ? "k" : "t"));
-    const told = [];
+    const told = [], named = [];
     for (const line of got.lines) {
-      const n = line.heights.length - 1, place = (v, k) => `${px(t0 + ((t1 - t0) * k) / n).toFixed(1)} ${py(v / got.parts).toFixed(1)}`;
+      const n = line.heights.length - 1, peak = line.heights.reduce((a, b) => (Math.abs(b) > Math.abs(a) ? b : a), 0), place = (v, k) => `${px(t0 + ((t1 - t0) * k) / n).toFixed(1)} ${py(v / got.parts).toFixed(1)}`;
       const kind = `curve c${((line.component || 1) - 1) % 4}${line.dashed ? " dashed" : ""}`;
       made.push(h("svg:path", { class: kind, d: `M${line.heights.map(place).join("L")}` }));
       if (got.discrete) line.heights.forEach((v, k) => { const [x, y] = place(v, k).split(" "); made.push(h("svg:circle", { class: kind, cx: x, cy: y, r: 2.6 })); });
-      const peak = line.heights.reduce((a, b) => (Math.abs(b) > Math.abs(a) ? b : a), 0) / got.parts;
-      told.push(w("peaks", { signal: nameOf(line), peak: pretty(peak.toPrecision(3)), last: pretty((line.heights[n] / got.parts).toPrecision(2)) }));
+      const after = line.heights.findLastIndex((v) => Math.abs(v) + 1 > 0.02 * Math.abs(peak)) + 1;  // a height is within 1 of the truth
+      const settles = after <= n ? w("settles", { time: pretty(String(Number((t0 + ((t1 - t0) * after) / n).toPrecision(3)))) }) : "";
+      told.push(`${w("peaks", { signal: nameOf(line), peak: pretty((peak / got.parts).toPrecision(3)), last: pretty((line.heights[n] / got.parts).toPrecision(2)) })}${settles && `, ${settles}`}`);
+      named.push(h("span", {}, h("svg:svg", { viewBox: "0 0 24 8", "aria-hidden": "true" }, h("svg:path", { class: kind, d: "M1 4h22" })), nameOf(line), h("small", {}, settles)));
     }
     el.curves.replaceChildren(h("svg:title", {}, w("up_to", { end: got.end, told: told.join("; ") })), ...made);
-    el.legend.replaceChildren(...got.lines.map((line) => h("span", {}, h("svg:svg", { viewBox: "0 0 24 8", "aria-hidden": "true" }, h("svg:path", { class: `curve c${((line.component || 1) - 1) % 4}${line.dashed ? " dashed" : ""}`, d: "M1 4h22" })), nameOf(line))));
+    el.legend.replaceChildren(...named);
   }
 
   // -- begin ------------------------------------------------------------------------------------------------------------

@@ -84,6 +84,7 @@ PHRASES: dict[str, str] = {
     "live_one_of": "{pole} {number} of {count}",
     "live_pair": "{real} plus or minus {imaginary} i",
     "live_settles": "settles in {time}",
+    "live_mode_settles": "alone settles in {time}",
     "live_pole_of_plant": "pole of the plant",
     "live_pole_of_F": "pole of F",
     "live_in_fields": "poles with letters, or off a pair, are in the text fields",
@@ -133,6 +134,12 @@ PHRASES: dict[str, str] = {
     "live_not_loaded": "Python could not be loaded",
     # said by Python
     "said_memory": "{megabytes} MB of memory were not enough",
+    "said_no_state": "{count} numbers are expected",
+    "said_no_state_repair": "write them with commas between, 1, 1/2",
+    "said_other_sign": "{name} is {sign}",
+    "said_other_sign_repair": "choose another value, or declare it real",
+    "said_no_rational": "a rational number is expected",
+    "said_no_rational_repair": "write it as 1/2 or 0.5",
     "said_equals": "{name} equals {value}",
     "said_roots": "roots {roots}",
     "said_fixed_mode": "No gain moves the mode {modes} of {pair}.",
@@ -176,7 +183,7 @@ PHRASES: dict[str, str] = {
 CONTINUES = (
     "live_detail_full", "live_detail_outline", "live_detail_answer", "live_as_text", "live_kind", "live_kind_full",
     "live_kind_minimal", "live_value_of", "live_letter", "live_grid", "live_control_pole", "live_control_poles",
-    "live_observer_pole", "live_observer_poles", "live_pole", "live_settles", "live_pole_of_plant", "live_pole_of_F",
+    "live_observer_pole", "live_observer_poles", "live_pole", "live_settles", "live_mode_settles", "live_pole_of_plant", "live_pole_of_F",
     "live_in_fields", "live_point", "live_point_of", "live_point_stable", "live_point_unstable",
     "live_point_boundary", "live_point_excluded", "live_point_undefined", "live_in_general", "live_rank",
     "live_case_yes", "live_case_no", "live_case_conditional", "live_case_undecided", "live_nothing_to_save",
@@ -195,4 +202,5 @@ CONTINUES = (
     "live_field_control_poles", "live_field_control_polynomial", "live_field_settling_time", "live_field_overshoot",
     "live_field_reference_matrix", "live_field_reference_start", "live_field_transfer_function",
     "live_field_symbols", "live_field_dt", "live_comma", "live_comma_repair",
+    "said_no_state_repair", "said_other_sign_repair", "said_no_rational", "said_no_rational_repair",
 )  # fmt: skip

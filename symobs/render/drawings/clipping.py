@@ -15,6 +15,9 @@ if TYPE_CHECKING:
 
     from symobs.render.drawings.scene import Point
 
+#: Of equally distant points, as a circle has them, the first counts: rounding, which differs between machines, does not decide.
+_FARTHER = 1 + 1e-9
+
 
 @dataclass(frozen=True)
 class Frame:
@@ -167,6 +170,6 @@ def _farthest(points: Sequence[Point], first: int, last: int) -> tuple[float, in
             if along > 0.0:
                 dx, dy = dx - ux, dy - uy
             square = dx * dx + dy * dy
-        if square > largest:
+        if square > largest * _FARTHER:
             largest, farthest = square, index
     return largest, farthest

@@ -15,7 +15,6 @@ from tests.support.paths import ROOT
 from tests.support.problems.batches import design, eventually
 from tests.support.tools.command_line import SAFETY, environment
 from tests.unit.batching.test_cluster import free_port
-from tests.unit.batching.test_sweep import CART
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -24,7 +23,9 @@ pytest.importorskip("distributed")
 pytestmark = pytest.mark.slow
 
 PAGE = (ROOT / "docs" / "cluster.md").read_text(encoding="utf-8")
-HERE, GRID, CLUSTER = (block.splitlines() for block in re.findall(r"^```sh\n(.*?)^```", PAGE, re.MULTILINE | re.DOTALL))
+_, HERE, GRID, CLUSTER = (
+    block.splitlines() for block in re.findall(r"^```sh\n(.*?)^```", PAGE, re.MULTILINE | re.DOTALL)
+)
 PROGRAMS = {"symobs": [sys.executable, "-m", "symobs"], "dask": [sys.executable, "-m", "dask"]}
 
 
@@ -33,7 +34,8 @@ def folder_of_the_page(tmp_path: Path) -> Path:
     (tmp_path / "problems").mkdir()
     for number in range(120):
         (tmp_path / "problems" / f"p{number}.toml").write_text(design(number), encoding="utf-8")
-    (tmp_path / "cart.toml").write_text(CART, encoding="utf-8")
+    (cart,) = re.findall(r"`cart\.toml`:\n\n```toml\n(.*?)^```", PAGE, re.MULTILINE | re.DOTALL)
+    (tmp_path / "cart.toml").write_text(cart, encoding="utf-8")
     return tmp_path
 
 

@@ -216,6 +216,18 @@ def test_a_value_keeps_the_declared_sign() -> None:
     assert asked(problem, at={"c": "2"}, cards_at=True)["status"] == "done"
 
 
+def test_what_is_wrong_with_a_field_of_the_page_is_said_in_its_language() -> None:
+    german = {**DETECTABLE, "symbols": {"c": "positive"}, "language": "de"}
+    (error,) = asked(german, at={"c": "-1"}, cards_at=True)["errors"]
+    assert error == {
+        "where": "at.c",
+        "message": "c ist als „positive“ vereinbart",
+        "repair": "wählen Sie einen anderen Wert, oder vereinbaren Sie das Symbol als real",
+    }
+    (error,) = asked(german, at={"c": "1) + (2"})["errors"]
+    assert error["lang"] == "en"
+
+
 def test_the_stability_of_a_point_is_exact() -> None:
     # s³ + 2 s² + 3 s + k is stable exactly for 0 < k < 6; at 6 it is (s + 2)(s² + 3).
     specification = {"polynomial": "s^3 + 2 s^2 + 3 s + k", "parameters": ["k"]}
