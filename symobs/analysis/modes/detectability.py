@@ -91,9 +91,14 @@ class HiddenStability(ModeResult):
 
     @property
     def verdict(self) -> str:
-        """That of the fixed modes where there are no cases, else what holds on all of them."""
+        """That of the fixed modes where there are no cases, else what holds on all of them.
+
+        A mode that grows in general is fixed on every stratum too: what is undecided there does not make it conditional.
+        """
         verdicts = {self.hidden.verdict}
         verdicts |= {"undecided" if case.result is None else case.result.verdict for case in self.deciding_cases}
+        if self.hidden.verdict == "no" and verdicts <= {"no", "undecided"} and not self._only_there:
+            return "no"
         if len(verdicts) == 1:
             return verdicts.pop()
         return "undecided" if "undecided" in verdicts and not verdicts & {"no", "conditional"} else "conditional"

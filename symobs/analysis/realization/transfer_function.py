@@ -92,9 +92,8 @@ class TransferFunction(Result):
     @cached_property
     def holds_where(self) -> tuple[Condition, ...]:
         """The plant's domain, and where nothing more cancels and no zero is lost."""
-        changing = {c.expression for case in self.case_tree for c in case.when}
         own = super().holds_where
-        changing -= {c.expression for c in own}
+        changing = self._cases_of_factors[1] - {c.expression for c in own}
         return (*own, *(Condition("existence", f) for f in self._factors if f in changing))
 
     @cached_property
@@ -114,13 +113,28 @@ class TransferFunction(Result):
         """Lowest terms, poles and zeros on every stratum where they may not be the generic ones."""
         if not self.decisive:
             return ()
-        from symobs.analysis.strata.strata import common_zeros, strata  # noqa: PLC0415 - only plants with parameters pay for it
+        from symobs.analysis.strata.strata import common_zeros  # noqa: PLC0415 - only plants with parameters pay for it
 
-        found = strata(self.plant, self._factors, self._there)
+        found = self._cases_of_factors[0]
         for system in self.decisive:
             if len(system) > 1:
-                found += common_zeros(self.plant, system, self._there)
-        return tuple({case.when: case for case in found if not self._is_as_ever(case)}.values())
+                further = common_zeros(self.plant, system, self._there)
+                found += tuple(case for case in further if not self._is_as_ever(case))
+        return tuple({case.when: case for case in found}.values())
+
+    @cached_property
+    def _cases_of_factors(self) -> tuple[tuple[Case, ...], frozenset[Scalar]]:
+        """The cases where one of the factors vanishes, and the factors with which poles or zeros become others somewhere.
+
+        Each point where such a factor vanishes is in a case: the factor is a condition of the generic answer.
+        """
+        if not self.decisive:
+            return (), frozenset()
+        from symobs.analysis.strata.strata import strata  # noqa: PLC0415 - only plants with parameters pay for it
+
+        found = strata(self.plant, self._factors, self._there)
+        changing = frozenset[Scalar]().union(*(_vanishing(case) for case in found if not self._is_as_ever(case)))
+        return tuple(case for case in found if _vanishing(case) & changing), changing
 
     @staticmethod
     def _there(plant: StateSpace, _: Mapping[str, Scalar]) -> TransferFunction:
@@ -219,6 +233,11 @@ class TransferFunction(Result):
         )
         if not isinstance(P, Matrix) and P:
             self._tell_roots(page)
+
+
+def _vanishing(case: Case) -> frozenset[Scalar]:
+    """Return what vanishes on the stratum of a case."""
+    return frozenset(condition.expression for condition in case.when if condition.operator == "==")
 
 
 @method("transfer_function/resolvent", source="definition")

@@ -157,10 +157,13 @@ def _branches(equations: tuple[Scalar, ...], region: Region, budget: Iterator[in
         if equation.is_zero:
             continue
         factors = region.vanishing(equation)
+        if any(factor in simple for factor in factors):
+            continue
+        factors = tuple(factor for factor in factors if not any(_are_apart(factor, other) for other in simple))
+        if not factors:
+            return
         if len(factors) == 1:
             simple.append(factors[0])
-            continue
-        if any(factor in simple for factor in factors):
             continue
         for factor in factors:
             if next(budget, None) is None:
@@ -192,6 +195,13 @@ def _branches(equations: tuple[Scalar, ...], region: Region, budget: Iterator[in
         yield Locus(tuple(simple))
     else:
         yield Locus.of(ideal)
+
+
+def _are_apart(factor: Scalar, other: Scalar) -> bool:
+    """Return whether two irreducible polynomials are different ones in the same single name: they have no zero in common."""
+    if len(factor.names) != 1 or factor.names != other.names or factor.field.roots or other.field.roots:
+        return False
+    return factor not in {other, -other} and max(factor.size, other.size) <= FACTORED_UP_TO
 
 
 def _eliminated(equations: list[Scalar]) -> Scalar | None:

@@ -22,20 +22,20 @@ if TYPE_CHECKING:
 def polynomial_of(value: Scalar, environment: Environment) -> Scalar:
     """Return a polynomial, and what is one where the relations hold, and of another rational function the denominator."""
     found = _divided(value, environment)
-    return found[0] if found is not None and found[1].is_zero else _lowered(value.denominator, environment)
+    return _lowered(found[0] if found is not None and found[1].is_zero else value.denominator, environment)
 
 
 def _lowered(polynomial: Scalar, environment: Environment) -> Scalar:
-    """Return a polynomial without the leading coefficients that vanish where the relations hold."""
+    """Return a polynomial without the coefficients that vanish where the relations hold."""
     if not environment.relations:
         return polynomial
     try:
         ideal = Ideal.where(environment.relations)
         coefficients = polynomial.coefficients(environment.variable)
-        kept = next((k for k, c in enumerate(coefficients) if c.numerator not in ideal), 0)
+        kept = [c if c.numerator not in ideal or c.denominator in ideal else Scalar.of(0) for c in coefficients]
     except TooLarge:
         return polynomial
-    return from_coefficients(coefficients[kept:], environment.variable) if kept else polynomial
+    return from_coefficients(kept, environment.variable) if any(kept) else polynomial
 
 
 def _divided(value: Scalar, environment: Environment) -> tuple[Scalar, Scalar] | None:

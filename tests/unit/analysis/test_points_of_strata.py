@@ -59,3 +59,20 @@ def test_a_stratum_without_real_points_is_no_case(equation: str) -> None:
     plant = symobs.StateSpace("[0 1; -1 -2]", C=f"[{equation} 0]", symbols={"a": "real"})
     told = result_object(symobs.observability(plant))
     assert (told["verdict"], told["conditions"], told["cases"]) == ("yes", [], [])
+
+
+def test_different_irreducible_polynomials_in_one_name_have_no_zero_in_common() -> None:
+    # Every product has a+1 or a-1; with its other factors there are ten thousand systems, and no common zero.
+    products = [(a + 1 - 2 * (k % 2)) * (a**3 + k * a + 1) * (a**5 - k * a - 7) for k in range(1, 12)]
+    region = Region(REAL)
+    assert found(*products, region=region) == set()
+    assert region.work.left > 0
+
+
+def test_a_curve_where_all_is_as_in_general_is_no_condition_of_a_transfer_function() -> None:
+    A = "[a a^2-1 a-1; -a a -a; 0 1 a]"
+    plant = symobs.StateSpace(A, "[a^2-1 0; -a a; -a a]", "[a^2-1 a -a]", symbols={"a": "real"})
+    answer = result_object(symobs.transfer_function(plant))
+    alone = {case["when"][0].removesuffix(" == 0") for case in answer["cases"] if len(case["when"]) == 1}
+    assert {text.removesuffix(" != 0") for text in answer["conditions"]} == alone
+    assert "a + 1" not in alone

@@ -289,3 +289,14 @@ def test_roots_on_the_axis_may_not_meet() -> None:
     for where in ("nonzero", "domain"):
         conditions: dict[str, Any] = {where: (a - d,)}
         assert is_marginal(pairs, replace(known, **conditions), False) is True  # noqa: FBT003 - positional there
+
+
+def test_a_coefficient_that_vanishes_where_the_relations_hold_is_no_part_of_a_polynomial() -> None:
+    there = replace(IN_S, relations=(c**2 - 3 * c + 2,))
+    discrete = IN_S.variable == "z"
+    marginal = s**2 + s + (c**2 - 3 * c + 2)  # a root is 0 where c is 1 or 2
+    assert PREDICATES["unstable"](marginal, there, discrete)
+    assert not PREDICATES["unstable"](marginal, IN_S, discrete)
+    assert not PREDICATES["stable"](marginal, there, discrete)
+    assert not PREDICATES["unstable"](marginal + 1, there, discrete)
+    assert polynomial_of((c**2 - 3 * c + 2) * s**2 + s + 1, there) == s + 1
