@@ -308,7 +308,10 @@ def response_holds(result: Any, at: Setting) -> None:
     m = result.plant.matrices
     A, B = taylor(world, m.A, start), taylor(world, m.B, start)
     driven = None if u is None else taylor(world, u, start)
-    assert x[0] == taylor(world, x0, start)[0]
+    begins = taylor(world, x0, start)[0]
+    if result.answer["impulse"] is not None:
+        begins = _plus(begins, multiply(B[0], taylor(world, result.answer["impulse"], start)[0]))
+    assert x[0] == begins
     for k in range(_COUNT - 1):
         rate = _convolved(A, x, k)
         rate = rate if driven is None else _plus(rate, _convolved(B, driven, k))
