@@ -1,9 +1,9 @@
-"""Certified enclosures, and signs, of numbers built from square roots, exponentials and π (trusted)."""
+"""Certified enclosures, and signs, of numbers built from roots, exponentials, cosines, sines and π (trusted)."""
 
 from __future__ import annotations
 
 from fractions import Fraction
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from flint import arb, ctx
 
@@ -18,12 +18,14 @@ if TYPE_CHECKING:
 
 #: Bits that are tried in turn until an enclosure keeps clear of 0.
 _BITS = (64, 256, 1024, 4096)
+#: Functions of numbers that have enclosures, by the name that the kernel calls them, too.
+_KINDS = frozenset({"sqrt", "exp", "cos", "sin", "cosh", "sinh"})
 
 
 def is_number(value: Scalar) -> bool:
-    """Return whether a value has no parameter: only rational numbers, square roots, exponentials and π."""
+    """Return whether a value has no parameter: only rational numbers, π, roots, and functions of them."""
     kinds = {f.kind for name in value.names if (f := function_named(name)) is not None}
-    return symbols_in(value) <= {PI} and kinds <= {"sqrt", "exp", "CRootOf"}
+    return symbols_in(value) <= {PI} and kinds <= {*_KINDS, "CRootOf"}
 
 
 def sign_of_number(value: Scalar) -> str:
@@ -88,5 +90,5 @@ def _generator(name: str) -> arb:
         return arb.pi()
     if isinstance(found, RealRoot):
         return found.number.ball(ctx.prec)
-    inner = _ball(found.argument)
-    return inner.sqrt() if found.kind == "sqrt" else inner.exp()
+    function: Any = getattr(_ball(found.argument), found.kind)
+    return function()
