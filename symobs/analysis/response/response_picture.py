@@ -78,7 +78,9 @@ def _annihilator(entry: Quasipolynomial) -> Scalar:
 
 def plot_response(page: Builder, begins: Matrix, model: InputModel | None) -> None:
     """Plot state and output from x(0); plant and input have numbers."""
-    order, states, starts = page.plant.order, ("x",), (_numbers(begins),)
+    order = page.plant.order
+    states: tuple[str, ...] = ("x",)
+    starts: tuple[tuple[Fraction, ...], ...] = (_numbers(begins),)
     whole, row, say = page["A"], Matrix.identity(order), ""
     slots: dict[str, Relation] = {}
     if model is not None:

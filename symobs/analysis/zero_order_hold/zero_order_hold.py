@@ -104,12 +104,12 @@ class ZeroOrderHold(DampingCases):
             message = f"the sampled plant is another one for each sign of {delta}"
             raise InputError(message, where="symbols", repair="declare signs that decide it, or put numbers in")
         m, period = self.plant.matrices, self.answer["horizon"]
-        outputs = ({"C": m.C} | ({"D": m.D} if m.has_feedthrough else {})) if m.has_output else {}
+        C, D = m.C if m.has_output else None, m.D if m.has_output and m.has_feedthrough else None
         symbols = self.plant.symbols
         if str(period) in period.names and symbols.sign(str(period)) == "real":
             symbols = replace(symbols, signs={**symbols.signs, str(period): "positive"})
         dt = period.fraction() if period.is_constant else True
-        return StateSpace(self.answer["A_d"], self.answer["B_d"], **outputs, dt=dt, symbols=symbols)
+        return StateSpace(self.answer["A_d"], self.answer["B_d"], C, D, dt=dt, symbols=symbols)
 
     @cached_property
     def fields(self) -> Mapping[str, Any]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from fractions import Fraction
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from flint import arb, ctx
 
@@ -90,5 +90,5 @@ def _generator(name: str) -> arb:
         return arb.pi()
     if isinstance(found, RealRoot):
         return found.number.ball(ctx.prec)
-    function: Any = getattr(_ball(found.argument), found.kind)
-    return function()
+    enclosed: arb = getattr(_ball(found.argument), found.kind)()
+    return enclosed
