@@ -18,14 +18,12 @@ if TYPE_CHECKING:
 
 #: Bits that are tried in turn until an enclosure keeps clear of 0.
 _BITS = (64, 256, 1024, 4096)
-#: Functions of numbers that have enclosures, by the name that the kernel calls them, too.
-_KINDS = frozenset({"sqrt", "exp", "cos", "sin", "cosh", "sinh"})
 
 
 def is_number(value: Scalar) -> bool:
     """Return whether a value has no parameter: only rational numbers, π, roots, and functions of them."""
     kinds = {f.kind for name in value.names if (f := function_named(name)) is not None}
-    return symbols_in(value) <= {PI} and kinds <= {*_KINDS, "CRootOf"}
+    return symbols_in(value) <= {PI} and kinds <= {"sqrt", "exp", "cos", "sin", "cosh", "sinh", "CRootOf"}
 
 
 def sign_of_number(value: Scalar) -> str:
@@ -90,5 +88,5 @@ def _generator(name: str) -> arb:
         return arb.pi()
     if isinstance(found, RealRoot):
         return found.number.ball(ctx.prec)
-    enclosed: arb = getattr(_ball(found.argument), found.kind)()
+    enclosed: arb = getattr(_ball(found.argument), found.kind)()  # the kernel calls them so, too
     return enclosed
