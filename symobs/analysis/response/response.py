@@ -100,7 +100,11 @@ class Response(DampingCases):
             yield Claim(relation(x, free + letter("x_f", e)), e, "x = exp(A*t)*x0 + x_f")
         yield Claim(relation(rate_of(x), _moved(self, e)), e, "x' = A*x + B*u")
         yield Claim(relation(x.at("t", 0), letter("x_0", e)), e, "x(0) = x0")
-        yield Claim(relation(letter("x_0", e), _begun(self, e)), e, "x0 is the initial state and what the impulse adds")
+        yield Claim(
+            relation(letter("x_0", e), _begun(self, e, leave_out_rest=False)),
+            e,
+            "x0 is the initial state and what the impulse adds",
+        )
         if "y_t" in values:
             yield Claim(relation(letter("y_t", e), _seen(self, e)), e, "y = C*x + D*u")
 
@@ -145,13 +149,13 @@ def _plus(left: Table, right: Table) -> Table:
     return tuple(tuple(a + b for a, b in zip(p, q, strict=True)) for p, q in zip(left, right, strict=True))
 
 
-def _begun(result: Response, e: Environment) -> Term:
+def _begun(result: Response, e: Environment, *, leave_out_rest: bool = True) -> Term:
     """Return the initial state plus B v, what an impulse of strength v adds to it."""
     before, v = result.answer["initial"], result.answer["impulse"]
     if v is None:
         return Term(Literal(before), e)
     added = letter("B", e) if v == Matrix.identity(1) else letter("B", e) @ Term(Literal(v), e)
-    return added if before.is_zero else Term(Literal(before), e) + added
+    return added if leave_out_rest and before.is_zero else Term(Literal(before), e) + added
 
 
 def _moved(result: Response, e: Environment) -> Term:
