@@ -26,6 +26,7 @@ from symobs.analysis.time_response.initial_state import InitialState as _Initial
 from symobs.analysis.time_response.initial_state_covariance import InitialStateCovariance as _InitialStateCovariance
 from symobs.analysis.time_response.matrix_exponential import MatrixExponential as _MatrixExponential
 from symobs.analysis.time_varying.time_varying_observability import TimeVaryingObservability as _TimeVaryingObservability
+from symobs.analysis.zero_order_hold.zero_order_hold import ZeroOrderHold as _ZeroOrderHold
 from symobs.batching import batch as batch
 from symobs.batching.sweep import sweep as sweep
 from symobs.checking import check as check
@@ -613,6 +614,7 @@ def response(
     *,
     initial: _Matrix | None = None,
     input: _Number | _Matrix | None = None,
+    impulse: _Matrix | None = None,
     method: str = "auto",
     floats: str | None = None,
 ) -> _ResponseResult:
@@ -836,3 +838,24 @@ def unknown_input_observer(
     floats: str | None = None,
 ) -> _UnknownInputObserverResult:
     """Estimate the state of ẋ = A x + B u + E d irrespective of d by  ż = F z + B_u u + B_y y,  x̂ = z + H (y − D u)."""
+
+class _ZeroOrderHoldResult(_ZeroOrderHold):
+    """What `zero_order_hold` returns."""
+
+    @property
+    def A(self) -> ImmutableMatrix: ...
+    @property
+    def B(self) -> ImmutableMatrix: ...
+    @property
+    def C(self) -> ImmutableMatrix: ...
+    @property
+    def D(self) -> ImmutableMatrix: ...
+
+def zero_order_hold(
+    plant: _Plant,
+    *,
+    period: _Number | None = None,
+    method: str = "auto",
+    floats: str | None = None,
+) -> _ZeroOrderHoldResult:
+    """Return the plant behind a zero-order hold, x_{k+1} = A_d x_k + B_d u_k, with A_d = e^{AT}, B_d = ∫₀ᵀ e^{At} B dt."""

@@ -144,7 +144,22 @@ def _sign_of_factor(factor: Scalar, signs: Mapping[str, str]) -> str:
     found = _sum_of_terms(factor, signs)
     if found == "real":
         found = sign_of_number(factor)
+    if found == "real":
+        found = _sign_beyond_one(factor, signs)
     return _sign_without_roots(factor, signs) if found == "real" else found
+
+
+def _sign_beyond_one(factor: Scalar, signs: Mapping[str, str]) -> str:
+    """Return the sign that follows from eˣ = 1 + w with w > 0, for each exponential whose x is positive."""
+    found = ((name, function_named(name)) for name in factor.names)
+    above = [
+        name for name, f in found if f is not None and f.kind == "exp" and sign_of(f.argument, signs) == "positive"
+    ]
+    beyond = {name: f"w_{place}" for place, name in enumerate(above)}
+    if not beyond or factor.names & {*beyond.values()}:
+        return "real"
+    moved = factor.substitute({name: 1 + Scalar.symbol(w) for name, w in beyond.items()})
+    return _sum_of_terms(moved, {**signs, **dict.fromkeys(beyond.values(), "positive")})
 
 
 def _sign_without_roots(factor: Scalar, signs: Mapping[str, str]) -> str:

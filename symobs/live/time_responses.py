@@ -7,7 +7,7 @@ from math import ceil, isqrt, lcm, log, log10
 from operator import mul
 from typing import TYPE_CHECKING, Any
 
-from symobs.design.page_parts.time_responses import rounded_up
+from symobs.analysis.response.courses import rounded_up
 from symobs.errors import InputError
 from symobs.exact import Matrix
 from symobs.live.request import FieldError

@@ -59,6 +59,8 @@ LETTERS: dict[str, LetterForm] = {
     "X_2": LetterForm("X_2", "X₂", "restriction of A to the unobservable subspace of the unmeasured part"),
     "exp_At": LetterForm("e^{At}", "exp(A t)", "matrix exponential"),
     "Phi_T": LetterForm("e^{AT}", "exp(A T)", "matrix exponential over the horizon"),
+    "A_zoh": LetterForm(r"A_{\mathrm d}", "A_d", "state matrix of the sampled plant"),
+    "B_zoh": LetterForm(r"B_{\mathrm d}", "B_d", "input matrix of the sampled plant"),
     "Y": LetterForm("Ce^{At}", "C exp(A t)", "output of the matrix exponential"),
     "W": LetterForm("W", "W", "Gramian"),
     "M": LetterForm("M", "M", "finite sum"),

@@ -319,6 +319,7 @@ _book("brockett1970", "R. W. Brockett", "Finite Dimensional Linear Systems", "Wi
 _book("brogan1991", "W. L. Brogan", "Modern Control Theory", "Prentice Hall", "1991", "3rd")
 _book("chen1999", "C.-T. Chen", "Linear System Theory and Design", "Oxford University Press", "1999", "3rd")
 _book("jury1964", "E. I. Jury", "Theory and Application of the z-Transform Method", "Wiley", "1964")
+_book("astrom1997", "K. J. Åström and B. Wittenmark", "Computer-Controlled Systems", "Prentice Hall", "1997", "3rd")
 _book("kailath1980", "T. Kailath", "Linear Systems", "Prentice Hall", "1980")
 _book("popov1973", "V. M. Popov", "Hyperstability of Control Systems", "Springer", "1973")
 _book("routh1877", "E. J. Routh", "A Treatise on the Stability of a Given State of Motion", "Macmillan", "1877")

@@ -235,7 +235,7 @@ def _read(value: object, kind: str, name: str, plant: StateSpace, task: str) -> 
         case "PolynomialText":
             return parse_polynomial(value, plant.variable, plant.symbols.names, where=where, functions=True)
         case "GainText" | "MatrixText":
-            rows = as_rows("B", value) if name == "E" else value
+            rows = as_rows("B", value) if name in {"E", "impulse"} else value
             return read_matrix(rows, plant.symbols.seen(value), where)
         case "IntervalText":
             return read_interval(value, plant)

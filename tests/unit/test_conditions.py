@@ -22,6 +22,7 @@ from symobs.conditions import (
     vanishing_factors,
 )
 from symobs.exact import Scalar
+from symobs.exact.core.generators import function
 from tests.support.independent_algebra.plain import has_sign, random_fraction, seeded, value_at
 from tests.support.problems.strategies import Twin, polynomials, rational_functions
 
@@ -29,6 +30,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
 a, b, c = (Scalar.symbol(name) for name in "abc")
+grown = function("exp", a)
 
 ALL = [*SIGNS, "zero"]
 #: Values of each sign, enough to tell the signs apart in sums and products.
@@ -144,6 +146,15 @@ class TestValues:
             (1 - a - a**4 - 2 * a**2, {"a": "nonpositive"}, "real"),
             (a**4 - 5 * a**2 + 5, {"a": "nonzero"}, "real"),
             (3 * a - a**2 - 3, {"a": "real"}, "negative"),
+            # an exponential is above 1 where its exponent is positive
+            (grown - 1, {"a": "positive"}, "positive"),
+            (b * grown**2 - b * grown, {"a": "positive", "b": "negative"}, "negative"),
+            (grown - 2, {"a": "positive"}, "real"),
+            (grown - 1, {}, "real"),
+            (1 - grown, {"a": "negative"}, "real"),
+            (a * grown - grown + 1, {"a": "positive"}, "real"),  # it is positive, but no sum of positive terms
+            (function("cos", Scalar.of(2)), {}, "negative"),
+            (function("sin", Scalar.of(2)) - function("cos", Scalar.of(2)), {}, "positive"),
         ],
         ids=str,
     )

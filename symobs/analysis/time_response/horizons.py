@@ -36,11 +36,11 @@ def read_horizon(plant: StateSpace, value: object, name: str = "horizon") -> Any
     else:
         found = read_scalar(value, plant.symbols.seen(value), where)
     if any(function_named(name) for name in found.names):
-        raise InputError(f"the horizon {found} is no rational expression", where=where, repair='write "T", 5 or "2*pi"')
+        raise InputError(f"the {name} {found} is no rational expression", where=where, repair='write "T", 5 or "2*pi"')
     if sign_of(found, plant.symbols.signs) in {"negative", "nonpositive", "zero"}:
-        raise InputError(f"the horizon {found} is not positive", where=where, repair='write "T", or a number above 0')
+        raise InputError(f"the {name} {found} is not positive", where=where, repair='write "T", or a number above 0')
     if "t" in found.names and found != Scalar.symbol("t"):  # the end of the horizon may be called t, as in W(t)
-        raise InputError("the horizon depends on t", where=where, repair='t is the time; write "t" itself, or "T"')
+        raise InputError(f"the {name} depends on t", where=where, repair='t is the time; write "t" itself, or "T"')
     if plant.is_discrete and not (found.is_constant and found.fraction().denominator == 1):
         raise InputError(f"{found} is not a number of steps", where=where, repair="write a whole number, or inf")
     if plant.is_discrete and found.fraction() > _MOST_STEPS:
@@ -48,13 +48,13 @@ def read_horizon(plant: StateSpace, value: object, name: str = "horizon") -> Any
     return found
 
 
-def over_horizon(solve: Callable[[], Result]) -> Result:
+def over_horizon(solve: Callable[[], Result], name: str = "horizon") -> Result:
     """Return a result over a horizon; raises `InputError` where cosines there are not written with square roots."""
     try:
         return solve()
     except NotWritten as error:
-        message = f"with this horizon the answer contains a value that has no form here: {error}"
-        raise InputError(message, where="specification.horizon", repair='write "T" and put the number in') from error
+        message = f"with this {name} the answer contains a value that has no form here: {error}"
+        raise InputError(message, where=f"specification.{name}", repair='write "T" and put the number in') from error
 
 
 def steps_gramian(A: Matrix, C: Matrix, steps: Scalar) -> dict[str, Any]:

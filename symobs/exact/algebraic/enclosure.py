@@ -1,4 +1,4 @@
-"""Certified enclosures, and signs, of numbers built from square roots, exponentials and π (trusted)."""
+"""Certified enclosures, and signs, of numbers built from roots, exponentials, cosines, sines and π (trusted)."""
 
 from __future__ import annotations
 
@@ -21,9 +21,9 @@ _BITS = (64, 256, 1024, 4096)
 
 
 def is_number(value: Scalar) -> bool:
-    """Return whether a value has no parameter: only rational numbers, square roots, exponentials and π."""
+    """Return whether a value has no parameter: only rational numbers, π, roots, and functions of them."""
     kinds = {f.kind for name in value.names if (f := function_named(name)) is not None}
-    return symbols_in(value) <= {PI} and kinds <= {"sqrt", "exp", "CRootOf"}
+    return symbols_in(value) <= {PI} and kinds <= {"sqrt", "exp", "cos", "sin", "cosh", "sinh", "CRootOf"}
 
 
 def sign_of_number(value: Scalar) -> str:
@@ -88,5 +88,5 @@ def _generator(name: str) -> arb:
         return arb.pi()
     if isinstance(found, RealRoot):
         return found.number.ball(ctx.prec)
-    inner = _ball(found.argument)
-    return inner.sqrt() if found.kind == "sqrt" else inner.exp()
+    enclosed: arb = getattr(_ball(found.argument), found.kind)()  # the kernel calls them so, too
+    return enclosed

@@ -22,17 +22,21 @@ _HALF = arb(0.5)
 _BLOCKS = 8
 
 
+def eigenvalues_near(matrix: Matrix) -> list[complex]:
+    """Return the different eigenvalues of a numeric matrix, approximately."""
+    roots: Any = _rational(matrix).charpoly().complex_roots()  # pairs (root, multiplicity), not what its stub says
+    return [complex(float(root.real.mid()), float(root.imag.mid())) for root, _ in roots]
+
+
 def spectral_abscissae(matrix: Matrix) -> tuple[float, float]:
     """Return the largest and smallest real part of the eigenvalues of a numeric matrix, approximately."""
-    roots: Any = _rational(matrix).charpoly().complex_roots()  # pairs (root, multiplicity), not what its stub says
-    real = [float(root.real.mid()) for root, _ in roots]
+    real = [root.real for root in eigenvalues_near(matrix)]
     return max(real), min(real)
 
 
 def spectral_radius(matrix: Matrix) -> float:
     """Return the spectral radius of a numeric matrix, approximately."""
-    roots: Any = _rational(matrix).charpoly().complex_roots()
-    return max(abs(complex(float(root.real.mid()), float(root.imag.mid()))) for root, _ in roots)
+    return max(map(abs, eigenvalues_near(matrix)))
 
 
 def state_response(

@@ -17,5 +17,7 @@ PHRASES: dict[str, str] = {
     "drawn_tracking_minimal": "Tracking: the reference model stands on the left; $M_z$ assembles the estimate from the output and the observer state.",
     "plot_error": "The estimation error.",
     "plot_estimate": "The state and its estimate.",
+    "plot_response_constant": "The response to the constant input {input}.",
+    "plot_response_forced": "The response to the input {input}, where {exosystem}.",
     "drawn_minimal_order": "The reduced-order observer; $M_z$ assembles the estimate from the output and the observer state.",
 }

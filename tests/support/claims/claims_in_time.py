@@ -308,7 +308,10 @@ def response_holds(result: Any, at: Setting) -> None:
     m = result.plant.matrices
     A, B = taylor(world, m.A, start), taylor(world, m.B, start)
     driven = None if u is None else taylor(world, u, start)
-    assert x[0] == taylor(world, x0, start)[0]
+    begins = taylor(world, x0, start)[0]
+    if result.answer["impulse"] is not None:
+        begins = _plus(begins, multiply(B[0], taylor(world, result.answer["impulse"], start)[0]))
+    assert x[0] == begins
     for k in range(_COUNT - 1):
         rate = _convolved(A, x, k)
         rate = rate if driven is None else _plus(rate, _convolved(B, driven, k))
@@ -317,10 +320,25 @@ def response_holds(result: Any, at: Setting) -> None:
         assert motion(world, result, x[0], u, start) == taylor(world, result.fields["output"], start)
 
 
+def zero_order_hold_holds(result: Any, at: Setting) -> None:
+    """Hold both matrices to mpmath's exponential of [A B; 0 0] T, which is [A_d B_d; 0 I]."""
+    world = world_at(result, at)
+    if result.fields["A"] is None:
+        assert result.fields["question"]
+        return
+    A, B = table(at.A), table(at.B)
+    whole = CONTEXT.matrix(A.rows + B.cols)
+    whole[: A.rows, : A.rows], whole[: A.rows, A.rows :] = A, B
+    flow = CONTEXT.expm(whole * digits_of(world, result.answer["horizon"]))
+    assert near(table(world.value(result.fields["A"])), flow[: A.rows, : A.rows])
+    assert near(table(world.value(result.fields["B"])), flow[: A.rows, A.rows :])
+
+
 FUNCTIONS_OF_TIME: dict[str, Callable[[Any, Setting], None]] = {
     "matrix_exponential": exponential_holds,
     "gramian": gramian_holds,
     "response": response_holds,
+    "zero_order_hold": zero_order_hold_holds,
     "initial_state": initial_state_holds,
     "initial_state_covariance": covariance_holds,
     "time_varying_observability": stack_holds,

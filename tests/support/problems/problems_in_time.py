@@ -67,6 +67,7 @@ class InTime:
     Q: Any = None
     R: Any = None
     moves: bool = False
+    is_held: bool = False
 
     def at(self, values: Mapping[str, Any]) -> InTime:
         """Return the problem with parameters replaced."""
@@ -91,6 +92,11 @@ class InTime:
         if self.input is None:
             return sympy.zeros(self.A.rows, 1)
         return integral(exponential(self.A, t - sigma) * self.B * self.input, sigma, 0, t)
+
+    @property
+    def held(self) -> Any:
+        """Return what a constant input does over the horizon: the integral of e^{At} B."""
+        return integral(exponential(self.A, sigma) * self.B, sigma, 0, self.horizon)
 
     @property
     def moved(self) -> Any:
@@ -138,6 +144,8 @@ class InTime:
         known |= {"y": {"x": self.C}}
         if self.B is not None:
             known |= {"B": self.B, "x'": {"x": self.A, "u": self.B}, "P": response(self.A, self.B, self.C, s)}
+        if self.is_held:
+            return known | {"A_zoh": exponential(self.A, self.horizon), "B_zoh": self.held}
         if self.R is not None:
             parts = self.parts
             known |= parts | {"Q": self.Q, "R": self.R, "V_t": self.spread, "Cov": parts["Cov_R"] + parts["Cov_Q"]}
@@ -172,6 +180,8 @@ class InTime:
                 W = self.gramian
                 rank = {"rank": O.rank(), "kernel": tuple(tuple(v) for v in O.nullspace())}
                 return {"matrix": W, "determinant": W.det(), "finite_sum": self.finite_sum, **rank}
+            case "zero_order_hold":
+                return {"A": exponential(self.A, T), "B": self.held, "C": self.C, "D": sympy.zeros(1, 1)}
             case "response":
                 return {"state": self.moved, "output": self.C * self.moved}
             case "initial_state":
@@ -244,6 +254,15 @@ PROBLEMS_IN_TIME = {
         x0=Matrix([0, 0]),
         moves=True,
     ),
+    "impulse_response": InTime(
+        Matrix([[0, 1], [-1, Rational(-1, 5)]]),
+        Matrix([[1, 0]]),
+        Matrix([0, 1]),
+        input=Matrix([0]),
+        x0=Matrix([0, 1]),
+        moves=True,
+    ),
+    "zero_order_hold": InTime(Matrix([[-1, 0], [1, 0]]), Matrix([[0, 1]]), Matrix([1, 0]), signs=plain, is_held=True),
     "servo_initial_state": InTime(
         **servo,
         signs=states,

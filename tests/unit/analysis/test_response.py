@@ -12,7 +12,9 @@ import sympy
 
 import symobs
 from symobs import StateSpace
+from symobs.derivation.steps import Plot
 from symobs.errors import CertificateRejected, InputError, ShapeMismatch
+from symobs.figures.plot import TimeResponse
 
 t, a, c = sympy.symbols("t a c")
 INPUTS: dict[str, Any] = {
@@ -58,6 +60,86 @@ def test_responses_of_designs_are_those_of_python_control(seed: int) -> None:
         assert np.allclose(state, wanted, rtol=1e-5, atol=1e-6 * (1 + np.abs(wanted).max()))
         seen = np.array([heights(entry, times) for entry in sympy.Matrix([found.output])])
         assert np.allclose(seen, np.array(system.C.tolist(), float) @ state)
+
+
+def pictures(result: Any) -> list[TimeResponse]:
+    """The pictures on the page of a response, which stand in its last section."""
+    steps = [step for section in result.derivation.steps for step in getattr(section, "steps", ())]
+    return [step.picture for step in steps if isinstance(step, Plot) and isinstance(step.picture, TimeResponse)]
+
+
+@pytest.mark.parametrize(("u", "signal"), [*INPUTS.items(), ("exp(-t)*cos(3*t)", lambda s: np.exp(-s) * np.cos(3 * s))])
+def test_drawn_courses_are_those_that_python_control_simulates(u: str, signal: Any) -> None:
+    """State and output of a plant with feedthrough, at every drawn instant, to a thousandth of the window."""
+    (picture,) = pictures(
+        symobs.response(StateSpace("[0 1; -2 -2]", "[0; 1]", "[1 1]", "[1/2]"), initial=[1, 0], input=u)
+    )
+    end = float(picture.window[0][1])
+    fine = np.linspace(0, end, 16001)
+    plant = control.ss([[0, 1], [-2, -2]], [[0], [1]], [[1, 0], [0, 1], [1, 1]], [[0], [0], [0.5]])
+    wanted = control.forced_response(plant, fine, signal(fine), [1.0, 0.0]).outputs
+    low, high = map(float, picture.window[1])
+    assert [(course.signal, course.component) for course in picture.responses] == [("x", 1), ("x", 2), ("y", 0)]
+    for course, values in zip(picture.responses, wanted, strict=True):
+        drawn = [float(height) for _, height in picture.points(course)]
+        assert np.abs(np.array(drawn) - values[:: 16000 // (len(drawn) - 1)]).max() < (high - low) / 1000
+
+
+def test_what_is_drawn_and_how_long() -> None:
+    """Six time constants, three periods, growth to e^3; parameters, irrational data and rest have no picture."""
+    servo, double = StateSpace("[0 1; 0 -1]", "[0; 1]", "[1 0]"), StateSpace("[0 1; 0 0]", "[0; 1]")
+    swing = StateSpace("[0 1; -4 0]", "[0; 1]")
+    ends: list[tuple[StateSpace, dict[str, Any], int]] = [
+        (servo, {"input": 1}, 6),
+        (double, {"input": 1}, 10),
+        (swing, {"impulse": 1}, 10),
+    ]
+    ends += [(StateSpace("[3]", "[1]"), {"initial": [1]}, 1), (servo, {"input": "exp(-t/100)"}, 600)]
+    for plant, asked, end in ends:
+        (picture,) = pictures(symobs.response(plant, **asked))
+        assert picture.window[0][1] == end
+        assert all(course.signal == "x" for course in picture.responses)  # the output is a component of the state
+    undrawn: list[tuple[StateSpace, dict[str, Any]]] = [
+        (StateSpace("[0 1; 0 -a]", "[0; 1]"), {"input": 1}),
+        (servo, {"input": "a"}),
+        (servo, {"input": "sqrt(2)*t"}),
+        (servo, {"initial": [0, 0]}),
+        (StateSpace("[-1 0; 0 -10000]", "[1; 1]"), {"input": 1}),
+    ]
+    for plant, asked in undrawn:
+        assert pictures(symobs.response(plant, **asked)) == []
+
+
+def test_irrational_waves_with_rational_derivatives_are_drawn() -> None:
+    """The derivatives of sqrt(2) sin(sqrt(2) t) at 0 are 0, 2, 0, -4, …"""
+    (picture,) = pictures(symobs.response(StateSpace("[-1]", "[1]"), input="sqrt(2)*sin(sqrt(2)*t)"))
+    assert [list(map(int, start)) for start in picture.starts] == [[0], [0, 2]]
+
+
+@pytest.mark.parametrize("strength", [1, -3])
+def test_impulses_are_those_of_python_control(strength: int) -> None:
+    A, B, C = [[0, 1], [-2, -3]], [[1], [1]], [[1, 2]]
+    found = symobs.response(StateSpace(A, B, C), impulse=strength)
+    times = np.linspace(0, 4, 21)
+    wanted = control.impulse_response(control.ss(A, B, C, 0), times).outputs
+    assert np.allclose(heights(sympy.Matrix([found.output])[0], times), strength * wanted)
+    assert found.state.subs(t, 0) == sympy.Matrix([strength, strength])
+    moved = symobs.response(StateSpace(A, B, C), impulse="v", initial=["p", 0], input=1)
+    whole = sum(
+        (symobs.response(StateSpace(A, B, C), **each).state for each in ({"input": 1}, {"impulse": "v"})),
+        sympy.zeros(2, 1),
+    )
+    whole += symobs.response(StateSpace(A, B, C), initial=["p", 0]).state
+    assert (moved.state - whole).expand() == sympy.zeros(2, 1)
+
+
+def test_an_impulse_without_effect_and_a_wrong_one() -> None:
+    plant = StateSpace("[-1]", "[1]", "[1]")
+    assert "x₀ = B·0 = 0" in symobs.response(plant, impulse=0).to("text")
+    found = symobs.response(plant, impulse=1)
+    wrong = {**found.answer, "impulse": found.answer["impulse"] * 2}
+    with pytest.raises(CertificateRejected, match="x0 is the initial state and what the impulse adds"):
+        type(found)(found.plant, found.method, wrong)
 
 
 def test_feedthrough_and_several_inputs() -> None:
@@ -121,6 +203,15 @@ def test_modes_without_a_closed_form_are_undecided_and_another_answer_is_rejecte
     ("plant", "asked", "kind", "said"),
     [
         (StateSpace("[-1]", "[1]"), {}, InputError, "neither an initial state nor an input is given"),
+        (
+            StateSpace("[-1]", "[1]"),
+            {"impulse": "t"},
+            InputError,
+            "strength of the impulse does not depend on the time t",
+        ),
+        (StateSpace("[-1]", "[1]", "[1]", "[1]"), {"impulse": 1}, InputError, "goes through D to the output"),
+        (StateSpace("[-1]", "[1]"), {"impulse": [1, 2]}, ShapeMismatch, "impulse"),
+        (StateSpace("[-1]"), {"impulse": 1}, InputError, "B"),
         (StateSpace("[-1]", "[1]", dt=1), {"input": 1}, InputError, "response belongs to continuous time"),
         (StateSpace("[-1]", "[1]"), {"initial": "t"}, InputError, "does not depend on the time t"),
         (StateSpace("[-1]"), {"input": 1}, InputError, "B"),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+import math
 from dataclasses import replace
 from fractions import Fraction
 from math import inf as oo
@@ -356,3 +357,14 @@ def test_signs_of_what_is_no_number_or_zero_stay_open() -> None:
     assert sign_of_number(function("exp", -Scalar.symbol("pi")) - Scalar.rational(1, 23)) == "negative"
     assert sign_of_number(function("exp", -Scalar.symbol("pi")) - Scalar.rational(1, 24)) == "positive"
     assert sign_of_number(square_root(two + 2) ** 2 - two - 2) == "real"
+    assert sign_of_number(function("sin", Scalar.symbol("a"))) == "real"
+
+
+@pytest.mark.parametrize(
+    ("kind", "f"), [("sin", math.sin), ("cos", math.cos), ("sinh", math.sinh), ("cosh", math.cosh), ("exp", math.exp)]
+)
+def test_functions_of_numbers_have_the_values_of_the_standard_library(kind: str, f: Any) -> None:
+    for k in (1, 2, 3, 5):
+        value, number = function(kind, Scalar.rational(k, 2)), Fraction(f(k / 2))
+        above, below = (Scalar.of(number + Fraction(side, 10**12)) for side in (1, -1))
+        assert (sign_of_number(value - above), sign_of_number(value - below)) == ("negative", "positive")

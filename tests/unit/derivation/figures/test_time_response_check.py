@@ -55,6 +55,14 @@ PAGES |= {
         SAMPLED, control_poles="1/2 + i/4, 1/2 - i/4", observer_poles="1/4, 0"
     ),
 }
+DRIVEN = StateSpace("[0 1; -2 -3]", "[0; 1]", "[1 1]", "[1/2]")
+PAGES |= {
+    "step": lambda: symobs.response(DRIVEN, input=1),
+    "ramp and waves": lambda: symobs.response(DRIVEN, input="t - exp(-t)*sin(2*t)", initial=[1, 0]),
+    "two inputs": lambda: symobs.response(StateSpace("[-1 1; 0 -2]", "[1 0; 0 1]"), input=["cos(t)", 2]),
+    "impulse": lambda: symobs.response(SERVO, impulse=2, initial=[0, 1]),
+    "growth": lambda: symobs.response(StateSpace("[0 1; 1 0]"), initial=[1, 0]),
+}
 every_page = pytest.mark.parametrize("page", PAGES.values(), ids=PAGES.keys())
 
 
@@ -279,6 +287,7 @@ def test_every_course_has_its_name_in_every_format(page: Callable[[], Result]) -
     names: dict[str, tuple[str, str]] = {
         "e": ("e", "e"),
         "x": ("x", "x"),
+        "y": ("y", "y"),
         "x_hat": ("x̂", r"\hat x"),
         "e_2": ("e₂", "e_2"),
     }

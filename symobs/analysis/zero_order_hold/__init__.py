@@ -1,0 +1,1 @@
+"""The discrete-time plant of a plant behind a zero-order hold."""
