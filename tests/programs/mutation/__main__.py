@@ -47,12 +47,12 @@ MARKING = [
 #: tried.
 TESTS = {
     "judgement/as_asked.py": "as_students_write claims_decide coordinates gains_of_each_task judgement",
-    "judgement/conditions.py": "as_students_write claims_decide conditions regions",
+    "judgement/conditions.py": "claims_decide conditions_as_written regions",
     "judgement/coordinates.py": "coordinates judgement",
     "judgement/gains.py": "claims_decide coordinates faults gains_of_each_task judgement",
     "judgement/judge.py": "as_students_write claims_decide coordinates faults functions_of_time gains_of_each_task judgement",
-    "judgement/other_compensators.py": "claims_decide judgement",
-    "judgement/parts.py": "claims_decide functions_of_time judgement",
+    "judgement/other_compensators.py": "claims_decide gains_of_each_task judgement",
+    "judgement/parts.py": "claims_decide functions_of_time gains_of_each_task judgement",
     "judgement/regions.py": "regions",
     "grader/claims.py": "grader prairielearn",
     "grader/values.py": "grader_values grader",

@@ -240,3 +240,58 @@ def test_in_a_convention_that_exchanges_letters_each_value_is_that_of_its_own() 
         "M": "right",
     }
     assert broken[letters["H"]].given == "[-90"
+
+
+#: ẋ = u and y = (x, x): s (s + e) + n₁ + n₂ = (s + 2)(s + 3) for F = [n₁ n₂]/(s + e).
+TWO_OUTPUTS_ONE_STATE = (
+    'task = "compensator"\n[plant]\nA = "[0]"\nB = "[1]"\nC = "[1; 1]"\n'
+    '[specification]\ncontrol_poles = "-2"\nobserver_poles = "-3"\n'
+)
+
+
+@pytest.mark.parametrize(
+    ("problem", "F", "verdict"),
+    [
+        (TWO_OUTPUTS_ONE_STATE, "[4*s/(s+1) 6/(s+1)]", "right"),
+        (TWO_OUTPUTS_ONE_STATE, "[(s + 6)/(s+1) 3*s/(s+1)]", "right"),
+        (TWO_OUTPUTS_ONE_STATE, "[4*s/(s+1) 5/(s+1)]", "wrong"),
+        (TWO_OUTPUTS_ONE_STATE, "[4*s/(s+1); 6/(s+1)]", "wrong"),
+        (TWO_OUTPUTS_ONE_STATE, "[s 4*s+6]", "wrong"),
+        # s (s + 1)(s² + 20 s + 1) + 3 s³ + 163 s² + 479 s + 400 = (s + 2)²(s + 10)², but F is improper
+        (SERVO, "(3 s^3 + 163 s^2 + 479 s + 400)/(s^2 + 20 s + 1)", "wrong"),
+        # y = x + u: s (s² + 2 s - 1) + (s + 1)(6 - s²) = (s + 2)(s + 3), where the loop has lost an order
+        (
+            TWO_OUTPUTS_ONE_STATE.replace('"[1; 1]"', '"[1]"\nD = "[1]"'),
+            "(6 - s^2)/(s^2 + 2 s - 1)",
+            "wrong",
+        ),
+    ],
+)
+def test_any_compensator_closes_the_loop_if_it_is_proper_and_of_no_larger_order(
+    problem: str, F: str, verdict: str
+) -> None:
+    assert judged(problem, {"F": F})["F"].verdict == verdict
+
+
+def test_a_list_in_place_of_a_row_or_a_column() -> None:
+    initial = (EXAMPLES / "servo_initial_state.toml").read_text(encoding="utf-8")
+    dual = 'task = "dual"\n[plant]\nA = "[0 1; 0 -1]"\nB = "[0; 1]"\nC = "[1 0]"\n'
+    for problem, answer in (
+        (initial, {"x0": ["x10", "x20"]}),
+        (dual, {"B": ["1", "0"], "C": [0, 1]}),
+        (SERVO, {"L": "L = array([19, 81])", "K": "K = [4, 3];"}),
+        (SERVO, {"L": "L = np.array([[19], [81]]);"}),
+    ):
+        assert {part.verdict for part in judged(problem, answer).values()} == {"right"}
+
+
+def test_lists_of_numbers_may_be_complex_and_those_of_conditions_are_none() -> None:
+    problem = 'task = "observer"\n[plant]\nA = "[0 1; 0 -1]"\nC = "[1 0]"\n[specification]\npoles = "-1+i, -1-i"\n'
+    problem += '[marking]\nasked = ["observer.poles", "observer.stable_if"]\n'
+    for poles, verdict in (("[-1+i; -1-i]", "right"), ("[-1-i, -1+i]", "right"), ("[-1-2i, -1+i]", "wrong")):
+        assert judged(problem, {"poles": poles})["poles"].verdict == verdict
+    assert judged(problem, {"stable_if": "none"})["stable_if"].verdict == "wrong"
+    assert judged(problem, {"stable_if": []})["stable_if"].verdict == "right"
+    advice = (EXAMPLES / "dominant_pair_pole_advice.toml").read_text(encoding="utf-8")
+    assert judged(advice, {"poles": "[-10; -10; -12; -2 + 52/25 i; -2 - 52/25 i]"})["poles"].verdict == "right"
+    assert judged(f'{SERVO}[marking]\nasked = ["compensator.conditions"]\n', {"conditions": "h"})
