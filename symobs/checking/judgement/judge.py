@@ -254,7 +254,7 @@ def _judged(task: _Task, part: Judged) -> Judged:
         right = task.right.fields.get(name)
         if isinstance(right, Matrix) and has_decimal_commas(given, task.names, right.shape):
             raise two_readings()
-        if is_of_numbers and has_two_readings(given, len(right)):
+        if is_of_numbers and has_two_readings(given, len(right or ())):
             raise two_readings()
     except UNDECIDED as error:
         return replace(part, verdict="undecided", reason=str(error))
