@@ -234,22 +234,22 @@ def _without_answers(lines: Sequence[Line], parts: Sequence[Part]) -> tuple[Line
     """Return the lines without those that mean nothing in a derivation and are parts of the answer, where it is told why.
 
     The last line of a letter is the answer: where that cannot be read, it is no line that could be true or false either,
-    and a right one needs no other value to be.
+    and a right one need not have the value of the solution.
     """
-    verdicts = {part.letter: part.verdict for part in parts if part.given}
-    letters = [line.relation.partition("=")[0].strip() for line in lines]
-    answers = set({letter: place for place, letter in enumerate(letters)}.values())
+    judged = {part.letter: part for part in parts if part.given}
+    sides = [[side.strip() for side in line.relation.partition("=")[::2]] for line in lines]
+    answers = set({letter: place for place, (letter, _) in enumerate(sides)}.values())
 
-    def says_more(place: int, line: Line, verdict: str) -> bool:
-        if place in answers and (verdict == "unreadable" or (verdict == "right" and line.relation.count("=") == 1)):
-            return verdict == "right" and line.verdict == "true"
+    def says_more(place: int) -> bool:
+        line, (letter, value) = lines[place], sides[place]
+        if letter not in judged:
+            return True
+        part = judged[letter]
+        if place in answers and (part.verdict == "unreadable" or (part.verdict == "right" and part.given == value)):
+            return line.verdict == "true"
         return line.verdict != "unreadable"
 
-    return tuple(
-        line
-        for place, (line, letter) in enumerate(zip(lines, letters, strict=True))
-        if letter not in verdicts or says_more(place, line, verdicts[letter])
-    )
+    return tuple(line for place, line in enumerate(lines) if says_more(place))
 
 
 def _is_empty(value: Any) -> bool:

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 
 _OPERATOR = re.compile(r"(!=|>=|<=|>|<|==|=)")
 _BETWEEN = re.compile(r"[()]|\band\b|&&?|[,;]")
+_OR = re.compile(r"\bor\b|\|\|?")
 _MOST, _DEEPEST = 40, 10
 #: A union of conjunctions.
 Union = tuple[tuple["Inequality", ...], ...]
@@ -43,13 +44,13 @@ def read_conditions(given: Any, names: Any, where: str = "stable_if") -> Union:
     """
     given = _unpacked(given)
     if isinstance(given, str):
-        union = [_conjunction([part], names, where) for part in re.split(r"\bor\b|\|\|?", given)]
+        union = [_conjunction([part], names, where) for part in _OR.split(given)]
     elif isinstance(given, list) and any(isinstance(part, list) for part in given):
         parts = [part if isinstance(part, list) else [part] for part in given]
         union = [_conjunction(part, names, where) for part in parts]
-    elif isinstance(given, list) and any(isinstance(part, str) and re.search(r"\bor\b|\|", part) for part in given):
-        if len(given) > 1:
-            raise InputError('a list with "or" has two readings', where=where, repair="write a list of lists")
+    elif isinstance(given, list) and len(given) > 1 and any(map(_OR.search, map(str, given))):
+        raise InputError('a list with "or" has two readings', where=where, repair="write a list of lists")
+    elif isinstance(given, list) and len(given) == 1:
         return read_conditions(given[0], names, where)
     elif isinstance(given, list):
         union = [_conjunction(given, names, where)]

@@ -79,26 +79,27 @@ def from_gains(result: Result, gains: Mapping[str, Matrix]) -> Result:
         return _remade(result, loop)
     if isinstance(result, OutputFeedback):
         feedback, estimator = (from_gains(half, gains) for half in (result.feedback, result.estimator))
-        return type(result).of(feedback, estimator, result.method)  # type: ignore[arg-type]
+        return result.of(feedback, estimator, result.method)  # type: ignore[arg-type]
     if isinstance(result, ReducedOrderObserver):
         if "L" not in gains:
             return result
         inner = ObserverDesign.of_given(result.inner.plant, gains["L"])
         placed = DesiredPolynomial(result.plant.variable, (inner.answer["polynomial"],))
-        return type(result).assembled(result.plant, inner, placed, result.answer["T"], result.method)
+        return result.assembled(result.plant, inner, placed, result.answer["T"], result.method)
     if isinstance(result, UnknownInputObserver):
-        if result.inner is None or "L" not in gains:
+        if "L" not in gains:
             return result
+        assert result.inner is not None  # noqa: S101 - without it there is no gain to be judged
         inner = ObserverDesign.of_given(result.inner.plant, gains["L"])
         placed = DesiredPolynomial(result.plant.variable, (inner.answer["polynomial"],))
         return result.with_gain(inner, placed)
     if isinstance(result, (DisturbanceObserver, IntegralAction)):
         design = design_with(result, "")
-        given = type(design).of_given(design.plant, _whole(result, gains))
+        given = design.of_given(design.plant, _whole(result, gains))
         placed = DesiredPolynomial(result.plant.variable, (given.answer["polynomial"],))
         return _of_larger(result, replace(given, kind=AssignedGain(placed)))
     assert isinstance(result, GainDesign)  # noqa: S101 - there is no other result with gains
-    return type(result).of_given(result.plant, gains[result.letter]) if result.letter in gains else result
+    return result.of_given(result.plant, gains[result.letter]) if result.letter in gains else result
 
 
 def design_with(result: Result, name: str) -> GainDesign:
@@ -122,5 +123,5 @@ def design_with(result: Result, name: str) -> GainDesign:
 
 def _remade(result: FeedforwardDesign | TrackingDesign, loop: OutputFeedback) -> Result:
     if isinstance(result, TrackingDesign):
-        return type(result).of(loop, result.reference, result.start, result.method)
-    return type(result).of(loop, result.method)
+        return result.of(loop, result.reference, result.start, result.method)
+    return result.of(loop, result.method)

@@ -21,7 +21,7 @@ from symobs.checking.judgement.as_asked import as_asked, is_listed, shape_of, tw
 from symobs.checking.judgement.coordinates import in_coordinates
 from symobs.checking.judgement.gains import design_with, from_gains, with_claimed, with_gain, with_gains
 from symobs.checking.judgement.other_compensators import closes_the_loop
-from symobs.checking.judgement.parts import CLAIMED, GAINS, IN_COORDINATES, OF_GAIN, TOGETHER, exists, in_order
+from symobs.checking.judgement.parts import CLAIMED, GAINS, IN_COORDINATES, OF_GAIN, TOGETHER, exists
 from symobs.checking.judgement.regions import region_verdict
 from symobs.errors import (
     CertificateRejected,
@@ -38,7 +38,7 @@ from symobs.expression.source import shown
 from symobs.result.in_convention import ResultInConvention
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Mapping, Sequence
 
     from symobs.checking.judgement.regions import Separation
     from symobs.problem.marking import Marking
@@ -94,8 +94,8 @@ class TaskJudgement:
 
     @property
     def has_gains(self) -> bool:
-        """Whether a gain is given from which others follow."""
-        return any(part.name in GAINS.get(self.right.task, ()) and part.value is not None for part in self.parts)
+        """Whether a gain is given from which others of the task follow."""
+        return any(part.name in GAINS[self.right.task] and part.value is not None for part in self.parts)
 
 
 @dataclass()
@@ -120,38 +120,37 @@ def judge_task(
     declared = names_of(view)
     names = declared if declared is None else {**declared, **dict.fromkeys(symbols, "real")}
     task = _Task(view, names, marking, view.result)
-    given = {letter: as_asked(view, letter, value) for letter, value in given.items()}
-    standard = {view.standard(letter)[0]: letter for letter in given}
+    each = [
+        Judged(view.standard(letter)[0], letter, "wrong", as_asked(view, letter, value))
+        for letter, value in given.items()
+    ]
+    asked = {part.name: part for part in each}
     parts: dict[str, Judged] = {}
     if view.task in TOGETHER:
-        task.is_half = view.fields["family"] is not None and not standard.keys() >= {*GAINS[view.task]}
-        task.right = _together(task, task.right, {name: (standard[name], given[standard[name]]) for name in standard})
-    for name in in_order(list(standard)):
+        task.is_half = view.fields["family"] is not None and not asked.keys() >= {*GAINS[view.task]}
+        task.right = _together(task, task.right, asked)
+    if view.task == "unknown_input_observer" and "H" in asked:  # which the gain is one for
+        parts["H"] = _judged(task, asked["H"])
+    for name, part in asked.items():
         if name in GAINS.get(view.task, ()):
-            parts[name] = _gain(task, name, standard[name], given[standard[name]])
-        elif name == "H" and (view.task, name) in CLAIMED:
-            parts[name] = _judged(task, name, standard[name], given[standard[name]])
-    if "L" not in standard and (name := OF_GAIN.get(view.task, "")) in standard:
-        task.right = _with_gain_behind(task, name, standard[name], given[standard[name]])
+            parts[name] = _gain(task, part)
+    if "L" not in asked and (name := OF_GAIN.get(view.task, "")) in asked:
+        task.right = _with_gain_behind(task, asked[name])
     if task.wrong:
         with suppress(SymobsError, ArithmeticError, ValueError, AttributeError, TypeError):
             task.own = from_gains(task.right, task.gains)
-    together = [name for name in standard if name in IN_COORDINATES.get(view.task, ())]
-    if together:
-        parts |= _in_coordinates(task, {name: (standard[name], given[standard[name]]) for name in together})
-    for name, letter in standard.items():
-        if name not in parts:
-            parts[name] = _judged(task, name, letter, given[letter])
-    return TaskJudgement(tuple(parts[name] for name in standard), task.right, task.own)
+    parts |= _in_coordinates(task, [part for part in each if part.name in IN_COORDINATES.get(view.task, ())])
+    parts |= {name: _judged(task, part) for name, part in asked.items() if name not in parts}
+    return TaskJudgement(tuple(parts[name] for name in asked), task.right, task.own)
 
 
-def unreadable(name: str, letter: str, given: Any, error: SymobsError) -> Judged:
-    """Return the part that cannot be read, with the place and the repair."""
+def _unreadable(part: Judged, error: SymobsError) -> Judged:
+    """Return the part as one that cannot be read, with the place and the repair."""
     errors = error.errors if isinstance(error, ProblemErrors) else (error,)
-    comma = decimal_comma(given)
+    comma = decimal_comma(part.given)
     repair = f"write {comma.replace(',', '.')} with a decimal point" if comma else _repair(errors[0])
     said = "; ".join(filter(None, (*(each.message for each in errors[:_MOST_SAID]), repair)))
-    return Judged(name, letter, "unreadable", given, reason=str(SymobsError(said)))
+    return replace(part, verdict="unreadable", reason=str(SymobsError(said)))
 
 
 def _repair(error: SymobsError) -> str:
@@ -159,80 +158,77 @@ def _repair(error: SymobsError) -> str:
     if not isinstance(error, UnknownName):
         return error.repair
     near, known = error.facts.get("nearest"), error.facts.get("declared")
-    if not isinstance(known, tuple) or not known:
+    if not known:
         return "write numbers alone"
     question = f'did you mean "{near}"? ' if near else ""
-    return f"{question}write it with the letters known here: {', '.join(known)}"
+    return f"{question}write it with the letters known here: {', '.join(map(str, known))}"  # type: ignore[call-overload]
 
 
 # -- gains ------------------------------------------------------------------------------------------------------------
 
 
-def _gain(task: _Task, name: str, letter: str, given: Any) -> Judged:
+def _gain(task: _Task, part: Judged) -> Judged:
     """Return the verdict on a gain: it is right where the claim of the design holds for it."""
-    _, sign = task.view.standard(letter)
-    if task.right.fields.get("solvable") is False and not exists(task.right, name):  # nothing is left to place poles of
-        return Judged(name, letter, "wrong", given, reason=f"there is no {letter} here")
+    name, letter = part.name, part.letter
     try:
-        read = parse_matrix(given, task.names, where=letter)
+        value = _gain_in(task, part)
     except SymobsError as error:
-        return unreadable(name, letter, given, error)
-    value = -read if sign < 0 else read
+        return _unreadable(part, error)
+    if task.right.fields.get("solvable") is False and not exists(
+        task.right, name
+    ):  # there is nothing to place poles of
+        return replace(part, reason=f"there is no {letter} here")
+    part = replace(part, value=value)
     shape = shape_of(task.right, name)
     if value.shape != shape:
-        if has_decimal_commas(given, task.names, shape):
-            return unreadable(name, letter, given, two_readings())
+        if has_decimal_commas(part.given, task.names, shape):
+            return _unreadable(part, two_readings())
         rows, columns = (f"{a}x{b}" for a, b in (shape, value.shape))
         task.wrong = (*task.wrong, name)
-        return Judged(name, letter, "wrong", given, value, reason=f"{letter} is {rows} here, yours is {columns}")
+        return replace(part, reason=f"{letter} is {rows} here, yours is {columns}")
     task.gains[name] = value
     try:
         own = task.right.fields.get(name)
         other = task.right if value == own else with_gain(task.right, name, value)
     except CertificateRejected as rejected:
         if task.is_half:
-            return Judged(
-                name,
-                letter,
-                "undecided",
-                given,
-                value,
-                reason=f"{' and '.join(GAINS[task.view.task])} are right together: give both",
+            return replace(
+                part, verdict="undecided", reason=f"{' and '.join(GAINS[task.view.task])} are right together: give both"
             )
         task.wrong = (*task.wrong, name)
-        claim = str(rejected.facts.get("claim", ""))
-        return Judged(name, letter, "wrong", given, value, claims=((claim, False, "exact"),) if claim else ())
+        claim = rejected.facts.get("claim")
+        return replace(part, claims=((str(claim), False, "exact"),) if claim else ())
     except UNDECIDED as error:
-        return Judged(name, letter, "undecided", given, value, reason=str(error))
+        return replace(part, verdict="undecided", reason=str(error))
     known = {condition.expression for condition in task.right.holds_where}
     new = [c.expression for c in other.holds_where if c.expression not in known]
     hints = (f"not defined where {' or '.join(f'{value} = 0' for value in new)}",) if new else ()
     task.right = other
     claims = tuple((c.claim, True, c.how) for c in other.all_certificates[:1])
-    return Judged(name, letter, "right", given, value, hints, claims=claims)
+    return replace(part, verdict="right", hints=hints, claims=claims)
 
 
-def _together(task: _Task, right: Any, given: Mapping[str, tuple[str, Any]]) -> Result:
+def _gain_in(task: _Task, part: Judged) -> Matrix:
+    """Return a gain with its sign in the standard convention."""
+    read = parse_matrix(part.given, task.names)
+    return -read if task.view.standard(part.letter)[1] < 0 else read
+
+
+def _together(task: _Task, right: Any, given: Mapping[str, Judged]) -> Any:
     """Return the result with the student's two gains where their claim holds for both, else what is right."""
-    gains: dict[str, Matrix] = {}
-    for name in GAINS[right.task]:
-        if name not in given or right.answer[name] is None:
-            return right
-        letter, written = given[name]
-        with suppress(SymobsError):
-            read = parse_matrix(written, task.names, where=letter)
-            gains[name] = -read if task.view.standard(letter)[1] < 0 else read
-    if any(gains.get(name) is None or gains[name].shape != shape_of(right, name) for name in GAINS[right.task]):
+    if right.answer[GAINS[right.task][0]] is None or not given.keys() >= {*GAINS[right.task]}:
         return right
-    with suppress(CertificateRejected, *UNDECIDED):
-        return with_gains(right, gains)
+    with suppress(SymobsError, *UNDECIDED):
+        gains = {name: _gain_in(task, given[name]) for name in GAINS[right.task]}
+        if all(gain.shape == shape_of(right, name) for name, gain in gains.items()):
+            return with_gains(right, gains)
     return right
 
 
-def _with_gain_behind(task: _Task, name: str, letter: str, given: Any) -> Result:
+def _with_gain_behind(task: _Task, part: Judged) -> Result:
     """Return the result with the L in the student's A − L C, where that places the poles; else what is right."""
     with suppress(SymobsError, ArithmeticError, ValueError):
-        value, pair = _value(task, name, letter, given), design_with(task.right, "L").plant.matrices
+        value, pair = _value(task, part), design_with(task.right, "L").plant.matrices
         if isinstance(value, Matrix) and value.shape == pair.A.shape:
             L = (pair.A - value) @ pair.C.T @ (pair.C @ pair.C.T).inverse()
             return with_gain(task.right, "L", L.normal())
@@ -242,66 +238,60 @@ def _with_gain_behind(task: _Task, name: str, letter: str, given: Any) -> Result
 # -- what follows from them -------------------------------------------------------------------------------------------
 
 
-def _judged(task: _Task, name: str, letter: str, given: Any) -> Judged:
+def _judged(task: _Task, part: Judged) -> Judged:
     """Return the verdict on a value: against the right gains, then against the student's own."""
+    name, given = part.name, part.given
     if not exists(task.right, name):
-        return Judged(name, letter, "wrong", given, reason=f"there is no {letter} here")
+        return replace(part, reason=f"there is no {part.letter} here")
     if (task.view.task, name) == ("stability_region", "stable_if"):
-        return _region(task, name, letter, given)
+        return _region(task, part)
     right = task.right.fields.get(name)
     if name == "verdict" or isinstance(right, bool) or (isinstance(right, str) and right in VERDICTS):
         word = VERDICTS.get(str(given).strip().strip('"').lower())
         if word is None:
             error = InputError(f'"{shown(str(given), 40)}" is no verdict', repair="write yes, no or conditional")
-            return unreadable(name, letter, given, error)
+            return _unreadable(part, error)
         given = word == "yes" if isinstance(right, bool) else word
-    is_of_numbers = name != "sizes" and is_listed(task.view, letter)
+        part = replace(part, given=given)
+    is_of_numbers = is_listed(task.view, part.letter)
     if is_of_numbers and has_two_readings(given):
-        return unreadable(name, letter, given, two_readings())
-    part = Judged(name, letter, "wrong", given)
+        return _unreadable(part, two_readings())
     try:
-        part = replace(part, value=_value(task, name, letter, given))
+        part = replace(part, value=_value(task, part))
         found = _holds(task, task.right, part)
         if found is not None:
             return replace(part, verdict="right", hints=found)
         if task.own is not None and exists(task.own, name) and (found := _holds(task, task.own, part)) is not None:
             return replace(part, verdict="follows", hints=found, origins=task.wrong)
-        if name == "F" and view_is_free(task) and closes_the_loop(task.right, part.value):
+        if name == "F" and not task.gains and not task.wrong and closes_the_loop(task.right, part.value):
             return replace(part, verdict="right", hints=("another compensator with the same closed-loop polynomial",))
         rounded = has_decimals(given) and _met(task, task.right, part, given)
         if rounded and task.marking.decimals == "accept":
             return replace(part, verdict="right", hints=("rounded",))
-        if isinstance(right, Matrix) and has_decimal_commas(given, task.names, right.shape) and part.value is not None:
+        if isinstance(right, Matrix) and has_decimal_commas(given, task.names, right.shape):
             raise two_readings()
         if is_of_numbers and has_two_readings(given, len(right or ())):
             raise two_readings()
     except UNDECIDED as error:
         return replace(part, verdict="undecided", reason=str(error))
     except SymobsError as error:
-        return unreadable(name, letter, given, error)
+        return _unreadable(part, error)
     return replace(part, rounded=rounded)
 
 
-def view_is_free(task: _Task) -> bool:
-    """Return whether a compensator is given without gains."""
-    return task.view.task == "compensator" and not task.gains and not task.wrong
-
-
-def _value(task: _Task, name: str, letter: str, given: Any) -> Matrix | Scalar | None:
-    """Return the value of a part as a matrix or a number, with the standard sign."""
+def _value(task: _Task, part: Judged) -> Matrix | Scalar | None:
+    """Return the value of a part as a matrix or a number."""
     variable = "t" if task.view.in_time else task.view.plant.variable
     if task.right.plant.is_time_varying:
         return None
-    read = read_like(found_in(task.right, name), given, task.names, variable, letter)
-    return -read if read is not None and task.view.standard(letter)[1] < 0 else read
+    return read_like(found_in(task.right, part.name), part.given, task.names, variable, part.letter)
 
 
 def _holds(task: _Task, result: Result, part: Judged) -> tuple[str, ...] | None:
     """Return the hints on a value that is right for a result, None where it is not."""
     if (task.view.task, part.name) in CLAIMED:
-        matrix = part.value if isinstance(part.value, Matrix) or part.value is None else Matrix.of([[part.value]])
-        if matrix is None:
-            return None
+        matrix = Matrix.of([[part.value]]) if isinstance(part.value, Scalar) else part.value
+        assert isinstance(matrix, Matrix)  # noqa: S101 - the right value exists, and is read like it
         try:
             found = with_claimed(result, part.name, matrix)
         except CertificateRejected:
@@ -310,14 +300,14 @@ def _holds(task: _Task, result: Result, part: Judged) -> tuple[str, ...] | None:
         return ()
     if _met(task, result, part, exact(part.given)):
         return ()
-    other, said = _EITHER.get(part.name, ("", ""))
-    if other and exists(result, other) and _met(task, result, replace(part, name=other), exact(part.given)):
-        return (said,)
+    if part.name in _EITHER:
+        other, said = _EITHER[part.name]
+        if exists(result, other) and _met(task, result, replace(part, name=other), exact(part.given)):
+            return (said,)
     if part.name == "matrix" and isinstance(part.value, Matrix) and _same_rows(task, result, part.value):
         return ("the rows of a block stand in another order",)
-    if part.name == "F" and task.marking.sign_of_F == "either" and part.value is not None:
-        right = result.fields["F"]
-        return ("with the other sign",) if part.value == -right else None
+    if part.name == "F" and task.marking.sign_of_F == "either" and part.value == -result.fields["F"]:
+        return ("with the other sign",)
     return None
 
 
@@ -330,8 +320,8 @@ def _met(task: _Task, result: Result, part: Judged, given: Any) -> bool:
 def _same_rows(task: _Task, result: Result, value: Matrix) -> bool:
     """Return whether an observability matrix has its rows, or a controllability matrix its columns, permuted in blocks."""
     tests = {"observability": result.plant.outputs, "controllability": result.plant.inputs}
-    width, right = tests.get(task.view.task, 0), result.fields.get("matrix")
-    if not width or not isinstance(right, Matrix) or value.shape != right.shape:
+    width, right = tests.get(task.view.task), result.fields["matrix"]
+    if width is None or value.shape != right.shape:
         return False
     if task.view.task == "controllability":
         value, right = value.T, right.T
@@ -344,32 +334,32 @@ def _same_rows(task: _Task, result: Result, value: Matrix) -> bool:
     return blocks[:half] == blocks[half:]
 
 
-def _in_coordinates(task: _Task, given: Mapping[str, tuple[str, Any]]) -> dict[str, Judged]:
+def _in_coordinates(task: _Task, given: Sequence[Judged]) -> dict[str, Judged]:
     """Return the verdicts on values that are right together, in coordinates that the student chose."""
     parts: dict[str, Judged] = {}
-    for name, (letter, written) in given.items():
-        in_a_row = name == "sizes" and isinstance(written, list) and len(written) == len(BLOCKS)
-        entry = dict(zip(BLOCKS, written, strict=True)) if in_a_row else written
+    for each in given:
+        name, entry = each.name, each.given
+        if name == "sizes" and isinstance(entry, list) and len(entry) == len(BLOCKS):
+            entry = dict(zip(BLOCKS, entry, strict=True))
+        part = replace(each, given=entry)
         try:
-            parts[name] = Judged(name, letter, "wrong", entry, _value(task, name, letter, entry))
+            parts[name] = replace(part, value=_value(task, part))
         except SymobsError as error:
-            parts[name] = unreadable(name, letter, entry, error)
-        value, right = parts[name].value, task.right.fields.get(name)
-        if not isinstance(value, Matrix) or not isinstance(right, Matrix) or value.shape == right.shape:
-            continue
-        if has_decimal_commas(entry, task.names, right.shape):
-            parts[name] = unreadable(name, letter, entry, two_readings())
+            parts[name] = _unreadable(part, error)
+        right = task.right.fields.get(name)
+        if isinstance(right, Matrix) and has_decimal_commas(entry, task.names, right.shape):
+            parts[name] = _unreadable(part, two_readings())
     readable = {name: part for name, part in parts.items() if part.verdict != "unreadable"}
     matrices = {name: part.value for name, part in readable.items() if isinstance(part.value, Matrix)}
-    best: set[str] = set()
-    there, said = task.right, ""
+    held: set[str] = set()
+    hints: tuple[str, ...] = ()
+    there = task.right
     for result, remark in [(task.right, ""), *in_coordinates(task.right, matrices)]:
-        held = {name for name, part in readable.items() if _is_met(task, result, part, exact(part.given))}
-        if len(held) > len(best):
-            best, there, said = held, result, remark
-    hints = (said,) if said else ()
+        here = {name for name, part in readable.items() if _is_met(task, result, part, exact(part.given))}
+        if len(here) > len(held):
+            held, there, hints = here, result, (remark,) if remark else ()
     for name, part in readable.items():
-        if name in best:
+        if name in held:
             parts[name] = replace(part, verdict="right", hints=hints)
         elif task.own is not None and _is_met(task, task.own, part, exact(part.given)):
             parts[name] = replace(part, verdict="follows", origins=task.wrong)
@@ -389,13 +379,12 @@ def _is_met(task: _Task, result: Result, part: Judged, given: Any) -> bool:
 # -- regions ----------------------------------------------------------------------------------------------------------
 
 
-def _region(task: _Task, name: str, letter: str, given: Any) -> Judged:
+def _region(task: _Task, part: Judged) -> Judged:
     """Return the verdict on a region given by conditions."""
-    part = Judged(name, letter, "wrong", given)
     try:
-        found = region_verdict(task.right, given, task.names)
+        found = region_verdict(task.right, part.given, task.names)
     except UNDECIDED as error:
         return replace(part, verdict="undecided", reason=str(error))
     except InputError as error:
-        return unreadable(name, letter, given, error)
+        return _unreadable(part, error)
     return replace(part, verdict=found.verdict, separation=found, reason=found.reason)

@@ -14,10 +14,11 @@ if TYPE_CHECKING:
 
 def closes_the_loop(result: Result, F: Matrix | Scalar | None) -> bool:
     """Return whether det(sI − A) · (poles of F) · det(I + PF) = φ_c φ_o, F proper and of no larger order than the observer."""
-    if not isinstance(result, OutputFeedback) or F is None or not result.exists:
+    if not isinstance(result, OutputFeedback):
         return False
     variable = result.plant.variable
-    matrix = F if isinstance(F, Matrix) else Matrix.of([[F]])
+    matrix = Matrix.of([[F]]) if isinstance(F, Scalar) else F
+    assert isinstance(matrix, Matrix)  # noqa: S101 - the right F exists, and is read like it
     P = result.plant_function
     plant = P if isinstance(P, Matrix) else Matrix.of([[P]])
     if matrix.shape != (result.plant.inputs, result.plant.outputs):

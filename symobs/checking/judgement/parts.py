@@ -67,8 +67,6 @@ _OF_TIME: dict[str, dict[str, str]] = {
 }
 #: Letters that a derivation keeps for the plant, also where an answer has parts of these names.
 OF_THE_PLANT = ("A", "B", "C", "D")
-#: The order in which parts are judged where one follows from the other.
-_FIRST = ("H", "K", "L", "k_I", "L_x", "L_w", "T")
 
 
 def asked_of(result: Result) -> tuple[str, ...]:
@@ -90,8 +88,3 @@ def is_of_time(tasks: Iterable[str], name: str) -> bool:
 def exists(result: Result, name: str) -> bool:
     """Return whether a field has a value, or is the verdict."""
     return name in {"verdict", "conditions"} or result.fields.get(name) is not None
-
-
-def in_order(names: list[str]) -> list[str]:
-    """Return fields so that each stands behind those that it may follow from."""
-    return sorted(names, key=lambda name: _FIRST.index(name) if name in _FIRST else len(_FIRST))

@@ -72,17 +72,20 @@ def compare(result: StabilityRegion, union: Union) -> Separation:
         return _without_region(result, union)
     if region.critical.never:
         return Separation("right") if not union else _somewhere(result, union)
-    pieces = _pieces(region, union)
     off: list[tuple[Mapping[str, Fraction], bool]] = []
     boundary = inside = False
-    for fixed, name, height, right in pieces:
-        mine = _holds(union, fixed, name, height)
-        if mine == right:
-            continue
-        if isinstance(height, Fraction) and not _on_a_curve(region, union, fixed, name, height):
-            off.append(({**fixed, name: height}, mine))
-        else:
-            boundary, inside = True, mine
+    try:
+        for fixed, name, height, right in _pieces(region, union):
+            mine = _holds(union, fixed, name, height)
+            if mine == right:
+                continue
+            if isinstance(height, Fraction) and not _on_a_curve(region, union, fixed, name, height):
+                off.append(({**fixed, name: height}, mine))
+            else:
+                boundary, inside = True, mine
+    except TooLarge:
+        if not off:
+            raise
     if off:
         found, inside = min(off, key=lambda entry: _length(entry[0]))
         point = {name: found[name] for name in sorted(found)}
@@ -280,10 +283,10 @@ def _slips_of_one(result: StabilityRegion, union: Union) -> Iterator[tuple[str, 
     if _equal(result, union, (tuple(positive),)):
         yield "only_positive_coefficients", "positive coefficients are necessary only, not sufficient"
     for text in result.stable_if:
-        (missing,) = read_conditions(text, None)
-        if _same(result, ((*part, *missing),)):
-            yield "condition_missing", f"the condition {text} is missing"
-            return
+        for missing in read_conditions(text, None):  # there is none in False
+            if _same(result, ((*part, *missing),)):
+                yield "condition_missing", f"the condition {text} is missing"
+                return
     for i, condition in enumerate(part):
         turned = Inequality(-condition.value, condition.operator, condition.text)
         if condition.operator != "!=" and _same(result, ((*part[:i], turned, *part[i + 1 :]),)):

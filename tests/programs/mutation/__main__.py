@@ -46,13 +46,13 @@ MARKING = [
 #: The tests that stand for each of their files, by the end of its path; small and direct ones, so that all mutants can be
 #: tried.
 TESTS = {
-    "judgement/as_asked.py": "as_students_write claims_decide coordinates judgement",
-    "judgement/conditions.py": "claims_decide regions",
+    "judgement/as_asked.py": "as_students_write claims_decide coordinates gains_of_each_task judgement",
+    "judgement/conditions.py": "claims_decide conditions_as_written regions",
     "judgement/coordinates.py": "coordinates judgement",
-    "judgement/gains.py": "claims_decide coordinates judgement faults",
-    "judgement/judge.py": "as_students_write claims_decide coordinates functions_of_time judgement faults",
-    "judgement/other_compensators.py": "claims_decide judgement",
-    "judgement/parts.py": "claims_decide functions_of_time judgement",
+    "judgement/gains.py": "claims_decide coordinates faults gains_of_each_task judgement",
+    "judgement/judge.py": "as_students_write claims_decide coordinates faults functions_of_time gains_of_each_task judgement",
+    "judgement/other_compensators.py": "claims_decide gains_of_each_task judgement",
+    "judgement/parts.py": "claims_decide functions_of_time gains_of_each_task judgement",
     "judgement/regions.py": "regions",
     "grader/claims.py": "grader prairielearn",
     "grader/values.py": "grader_values grader",

@@ -153,3 +153,54 @@ def test_what_is_no_condition_is_unreadable(conditions: Any) -> None:
     else:
         assert found.verdict == "unreadable"
         assert found.reason
+
+
+# s^3 + h s + 1 lacks the term in s^2, and so is never stable; s^2 + s + h^2 + 1 always is; s^2 + a s + b where a, b > 0.
+NEVER, ALWAYS, BOTH = (
+    Checked.of(f'task = "stability_region"\n[specification]\npolynomial = "{polynomial}"\nparameters = "{names}"\n')
+    for polynomial, names in (("s^3 + h s + 1", "h"), ("s^2 + s + h^2 + 1", "h"), ("s^2 + a s + b", "a, b"))
+)
+FAIL = "at {} your conditions fail, but all roots of {} are as asked for"
+HOLD = "at {} your conditions hold, but {} has roots with real part >= 0"
+LEFT_OUT = "the region is right, but yours leaves out a part of no width"
+INCLUDED = "the region is right, but yours includes its boundary, where a root is not stable"
+MISSING = "the condition {} is missing; "
+
+
+@pytest.mark.parametrize(
+    ("checked", "conditions", "verdict", "reason"),
+    [
+        (NEVER, "False", "right", ""),
+        (NEVER, "h > 0 and h < 0", "right", ""),
+        (NEVER, "True", "wrong", HOLD.format("h = 0", "s**3 + 1")),
+        (NEVER, "h > 100", "wrong", HOLD.format("h = 101", "s**3 + 101*s + 1")),
+        (NEVER, "none", "unreadable", '"none" is no condition; write for example "h1 > 3" or "3 < h1 < 8"'),
+        (ALWAYS, "True", "right", ""),
+        (ALWAYS, "h >= 0 or h < 0", "right", ""),
+        (ALWAYS, "h > 0", "wrong", FAIL.format("h = -1", "s**2 + s + 2")),
+        (ALWAYS, "h > -1", "wrong", FAIL.format("h = -2", "s**2 + s + 5")),
+        (ALWAYS, "False", "wrong", FAIL.format("h = 0", "s**2 + s + 1")),
+        (ALWAYS, "h != 0", "wrong", LEFT_OUT),
+        (LINE, "h^2 > 2", "wrong", MISSING.format("h > 3/2") + HOLD.format("h = -2", "s**3 + 4*s**2 - 2*s + 6")),
+        (LINE, "h >= 3/2", "wrong", INCLUDED),
+        (LINE, "h > 3/2 and h != 5", "wrong", LEFT_OUT),
+        (LINE, "sqrt(h) > 1", "undecided", "conditions with roots or functions are not compared"),
+        (LINE, "q > 1", "unreadable", 'the name "q" is not declared'),
+        (BOTH, "a^3 > 0 and b > 0", "right", ""),
+        (BOTH, "b > 0", "wrong", MISSING.format("a > 0") + HOLD.format("a = -1, b = 1", "s**2 - s + 1")),
+        (BOTH, "b > 0 and a > 0 and a != 1", "wrong", LEFT_OUT),
+        (BOTH, "b > 0 and a >= 0", "wrong", INCLUDED),
+        (BOTH, "b > 0 and a > 1", "wrong", FAIL.format("a = 1/2, b = 1", "s**2 + s/2 + 1")),
+        (BOTH, "b > 0 and a > 0 and b > a^2", "wrong", FAIL.format("a = 1, b = 1/2", "s**2 + s + 1/2")),
+        (BOTH, "b > 0 and a > 0 and a^2 > 2", "wrong", FAIL.format("a = 1, b = 1", "s**2 + s + 1")),
+        (BOTH, "b > 0 and a > 0 and a^2 != 2", "undecided", "a boundary lies at an irrational value of one parameter"),
+        (BOTH, "a b > 0", "wrong", None),
+        (BOTH, "(a - 1)(a - 2) > 0 and a > 0 and b > 0", "wrong", FAIL.format("a = 3/2, b = 1", "s**2 + 3*s/2 + 1")),
+    ],
+    ids=lambda value: value.problem.title or "region" if isinstance(value, Checked) else str(value),
+)
+def test_where_a_region_differs_and_how(checked: Checked, conditions: str, verdict: str, reason: str | None) -> None:
+    found = part(checked, conditions)
+    assert found.verdict == verdict
+    assert reason is None or found.reason.startswith(reason), found.reason
+    assert bool(found.reason) is (verdict != "right")
