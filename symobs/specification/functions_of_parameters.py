@@ -27,7 +27,7 @@ def over_common_data(plant: StateSpace, *asked: Any) -> tuple[StateSpace, tuple[
     wanted = [one for one in asked if isinstance(one, DesiredPolynomial)]
     factors = [factor for one in wanted for factor in one.factors]
     further = [one for one in asked if isinstance(one, Matrix)]
-    if all(function.square for value in (*factors, *further) for function in functions_in([value])):
+    if all(function.square for function in functions_in([*factors, *further])):
         return plant, asked
     m = plant.matrices
     parts = [part for one in wanted for pole in one.poles for part in (pole.real, pole.imaginary)]

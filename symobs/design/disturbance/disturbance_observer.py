@@ -237,6 +237,6 @@ def disturbance_observer(
     exosystem = read_exosystem(plant, read_disturbance_input(plant, E), S, V)
     desired = desired_polynomial(plant, poles, polynomial, degree=plant.order + exosystem.order)
     assert desired is not None  # noqa: S101 - required
-    plant, (desired, *exosystem) = over_common_data(plant, desired, *exosystem)
-    exosystem = Exosystem(*exosystem)
+    plant, (desired, *parts) = over_common_data(plant, desired, *exosystem)
+    exosystem = Exosystem(*parts)
     return choose("disturbance_observer", method, "extended_state").solve(plant, exosystem, desired).asked(method)

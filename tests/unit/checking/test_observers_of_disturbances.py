@@ -57,12 +57,12 @@ def test_both_gains_of_a_disturbance_observer_place_the_poles_together() -> None
     assert (half.verdict, half.reason) == ("undecided", "L_x and L_w are right together: give both")
 
 
-@pytest.mark.parametrize("H", [[[1, 0], [0, 0], [0, 0]], [[1, 1], [0, 2], [0, 3]]])
+@pytest.mark.parametrize("rows", [[[1, 0], [0, 0], [0, 0]], [[1, 1], [0, 2], [0, 3]]])
 @pytest.mark.parametrize("given", ["L", ""])
-def test_any_H_that_decouples_is_right_and_the_gain_is_one_for_it(H: list[list[int]], given: str) -> None:
+def test_any_H_that_decouples_is_right_and_the_gain_is_one_for_it(rows: list[list[int]], given: str) -> None:
     """With L, or with F = T A - L C alone; L is chosen so that F has the eigenvalues -2, -3, -4."""
     A, C = sp.Matrix([[0, 1, 0], [0, 0, 1], [-1, -2, -3]]), sp.Matrix([[1, 0, 0], [0, 0, 1]])
-    H = sp.Matrix(H)
+    H = sp.Matrix(rows)
     assert H * C * sp.Matrix([1, 0, 0]) == sp.Matrix([1, 0, 0])
     TA = (sp.eye(3) - H * C) * A
     a, b, c, lam = sp.symbols("a b c lambda")
