@@ -854,7 +854,7 @@ class _ZeroOrderHoldResult(_ZeroOrderHold):
 def zero_order_hold(
     plant: _Plant,
     *,
-    period: _Number | None = None,
+    sampling_period: _Number | None = None,
     method: str = "auto",
     floats: str | None = None,
 ) -> _ZeroOrderHoldResult:

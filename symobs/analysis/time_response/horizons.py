@@ -26,7 +26,7 @@ _MOST_STATES, _MOST_WITH_PARAMETERS = 12, 4
 
 def read_horizon(plant: StateSpace, value: object, name: str = "horizon") -> Any:
     """Return `inf`, or the horizon as a scalar: T where none is given.  Raises `InputError`."""
-    where = f"specification.{name}"
+    where, called = f"specification.{name}", name.replace("_", " ")
     if str(value).strip() in {"inf", "oo"}:  # SymPy's oo too
         return INFINITE
     if value is None:
@@ -36,11 +36,13 @@ def read_horizon(plant: StateSpace, value: object, name: str = "horizon") -> Any
     else:
         found = read_scalar(value, plant.symbols.seen(value), where)
     if any(function_named(name) for name in found.names):
-        raise InputError(f"the {name} {found} is no rational expression", where=where, repair='write "T", 5 or "2*pi"')
+        raise InputError(
+            f"the {called} {found} is no rational expression", where=where, repair='write "T", 5 or "2*pi"'
+        )
     if sign_of(found, plant.symbols.signs) in {"negative", "nonpositive", "zero"}:
-        raise InputError(f"the {name} {found} is not positive", where=where, repair='write "T", or a number above 0')
+        raise InputError(f"the {called} {found} is not positive", where=where, repair='write "T", or a number above 0')
     if "t" in found.names and found != Scalar.symbol("t"):  # the end of the horizon may be called t, as in W(t)
-        raise InputError(f"the {name} depends on t", where=where, repair='t is the time; write "t" itself, or "T"')
+        raise InputError(f"the {called} depends on t", where=where, repair='t is the time; write "t" itself, or "T"')
     if plant.is_discrete and not (found.is_constant and found.fraction().denominator == 1):
         raise InputError(f"{found} is not a number of steps", where=where, repair="write a whole number, or inf")
     if plant.is_discrete and found.fraction() > _MOST_STEPS:

@@ -159,11 +159,11 @@ def by_integral(plant: StateSpace, period: Any) -> ZeroOrderHold:
 
 
 @task
-def zero_order_hold(plant: StateSpace, *, period: Horizon = None, method: Name = "auto") -> Result:
+def zero_order_hold(plant: StateSpace, *, sampling_period: Horizon = None, method: Name = "auto") -> Result:
     """Return the plant behind a zero-order hold, x_{k+1} = A_d x_k + B_d u_k, with A_d = e^{AT}, B_d = ∫₀ᵀ e^{At} B dt.
 
-    plant    n states, continuous time; B must be given
-    period   T > 0, the sampling period: a symbol or a number ("T" if left out)
+    plant            n states, continuous time; B must be given
+    sampling_period  T > 0, the sampling period: a symbol or a number ("T" if left out)
     Returns A, B, C, D of the sampled plant.  In Python `sampled` is this plant, for every task in discrete time: e^{−T},
     cos T and sin T beside T are independent letters there.  Where the sign of a discriminant decides between oscillation
     and none, conditions hold the branch that is shown and cases the others; undecided where the modes have no closed form.
@@ -172,9 +172,9 @@ def zero_order_hold(plant: StateSpace, *, period: Horizon = None, method: Name =
     """
     plant.require("B", task="zero_order_hold")
     require_continuous(plant, "zero_order_hold")
-    plant = plant.knowing(period)
-    T = read_horizon(plant, period, "period")
+    plant = plant.knowing(sampling_period)
+    T = read_horizon(plant, sampling_period, "sampling_period")
     if T == INFINITE:
         message = "the sampling period inf is no number"
-        raise InputError(message, where="specification.period", repair='write "T", or a number above 0')
-    return over_horizon(lambda: choose("zero_order_hold", method, "integral").solve(plant, T), "period")
+        raise InputError(message, where="specification.sampling_period", repair='write "T", or a number above 0')
+    return over_horizon(lambda: choose("zero_order_hold", method, "integral").solve(plant, T), "sampling_period")

@@ -14,5 +14,5 @@ CONTINUES = ("zero_order_hold_integral",)
 
 QUESTIONS: dict[str, str] = {
     "ask zero_order_hold": "A zero-order hold precedes the plant. Find the matrices of the sampled plant.",
-    "ask zero_order_hold period": "A zero-order hold precedes the plant, and the sampling period is {period}. Find the matrices of the sampled plant.",
+    "ask zero_order_hold sampling_period": "A zero-order hold precedes the plant, and the sampling period is {sampling_period}. Find the matrices of the sampled plant.",
 }

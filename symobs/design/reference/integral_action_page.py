@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from symobs.analysis.page_parts import case_steps, given, say_stability
 from symobs.derivation.builder import Builder, predicate, relation
+from symobs.design.page_parts.pole_cautions import caution_poles
 from symobs.design.page_parts.unassignable import say_unassignable
 from symobs.design.reference.integral_action import IntegralAction, closed_loop, extended
 from symobs.exact import Matrix, Scalar, rank
@@ -32,6 +33,7 @@ def write_integral_action(page: Builder, design: IntegralAction) -> None:
                 relation(state.derivative, page["A_cl"] @ state + _enters(page) @ page["r_in"]), say="integral_closed"
             )
             _at_rest(page, design)
+            caution_poles(page, design.desired, "phi_c", "state_feedback")
         page.steps += case_steps(page, design, _case)
 
 

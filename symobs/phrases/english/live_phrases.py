@@ -177,6 +177,7 @@ PHRASES: dict[str, str] = {
     "live_task_tracking": "tracking",
     "live_task_transfer_function": "transfer function",
     "live_task_unknown_input_observer": "unknown-input observer",
+    "live_task_zero_order_hold": "zero-order hold",
 }
 
 #: They stand within a sentence, or beside one.
@@ -195,6 +196,7 @@ CONTINUES = (
     "live_task_pole_advice", "live_task_reduced_order_observer", "live_task_response", "live_task_stability_region",
     "live_task_stabilizability", "live_task_state_feedback", "live_task_time_varying_observability",
     "live_task_tracking", "live_task_transfer_function", "live_task_unknown_input_observer",
+    "live_task_zero_order_hold",
     "live_field_method", "live_field_meaning", "live_field_of", "live_field_kind", "live_field_sign",
     "live_field_output", "live_field_input", "live_field_horizon", "live_field_initial", "live_field_polynomial",
     "live_field_parameters", "live_field_margin", "live_field_radius", "live_field_interval", "live_field_poles",

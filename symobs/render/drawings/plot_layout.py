@@ -290,9 +290,10 @@ def _responses(picture: TimeResponse, measure: Measure) -> Scene:
 
 
 def _style_of(response: PlottedResponse, picture: TimeResponse) -> str:
-    """Return the style of a curve: no two of a signal are alike."""
-    compared = any(other.dashed for other in picture.responses)
-    styles = _BESIDE_ESTIMATE[response.dashed] if compared else _COMPONENTS
+    """Return the style of a curve: no two of a signal are alike, nor two signals without estimates."""
+    if not any(other.dashed for other in picture.responses):
+        return _COMPONENTS[picture.responses.index(response) % len(_COMPONENTS)]
+    styles = _BESIDE_ESTIMATE[response.dashed]
     return styles[max(0, response.component - 1) % len(styles)]
 
 

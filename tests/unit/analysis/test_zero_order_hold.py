@@ -36,7 +36,7 @@ TEXTBOOK: list[tuple[str, str, Any, Any]] = [
 @pytest.mark.parametrize(("A", "B", "A_d", "B_d"), TEXTBOOK)
 def test_sampled_plants_of_textbooks(A: str, B: str, A_d: Any, B_d: Any) -> None:
     signs = {"a": "positive", "omega": "positive", "T": "positive"}
-    found = symobs.zero_order_hold(StateSpace(A, B, symbols=signs), period="T")
+    found = symobs.zero_order_hold(StateSpace(A, B, symbols=signs), sampling_period="T")
     assert found.verdict == "yes"
     assert sympy.simplify(found.A - sympy.Matrix(A_d)) == sympy.zeros(*found.A.shape)
     assert sympy.simplify(found.B - sympy.Matrix(B_d)) == sympy.zeros(*found.B.shape)
@@ -54,7 +54,7 @@ def test_sampled_plants_are_those_of_python_control(seed: int) -> None:
     C, D = [[1] * n], [[0, chance.randint(0, 1)]]
     period = sympy.Rational(chance.randint(1, 9), 4)
     plant = StateSpace(A, B, C, D)
-    found = symobs.zero_order_hold(plant, period=str(period))
+    found = symobs.zero_order_hold(plant, sampling_period=str(period))
     wanted = control.sample_system(control.ss(A, B, C, D), float(period), "zoh")
     for name in "ABCD":
         mine = np.array(getattr(found, name).evalf().tolist(), float)
@@ -65,9 +65,9 @@ def test_sampled_plants_are_those_of_python_control(seed: int) -> None:
 
 def test_the_sampled_plant_is_a_plant_for_designs() -> None:
     """Deadbeat control of the double integrator: K = [1/T², 3/(2T)] (Åström and Wittenmark, ch. 4)."""
-    plant = symobs.zero_order_hold(StateSpace("[0 1; 0 0]", "[0; 1]", "[1 0]"), period="T").sampled
+    plant = symobs.zero_order_hold(StateSpace("[0 1; 0 0]", "[0; 1]", "[1 0]"), sampling_period="T").sampled
     assert sympy.Matrix([[1 / T**2, 3 / (2 * T)]]) == symobs.state_feedback(plant, poles=[0, 0]).K
-    motor = symobs.zero_order_hold(StateSpace("[0 1; 0 -1]", "[0; 1]", "[1 0]"), period="T").sampled
+    motor = symobs.zero_order_hold(StateSpace("[0 1; 0 -1]", "[0; 1]", "[1 0]"), sampling_period="T").sampled
     found = symobs.observer(motor, poles="1/2, 1/4")
     closed = motor.A - found.L * motor.C
     assert sympy.simplify(closed.trace() - sympy.Rational(3, 4)) == 0
@@ -76,12 +76,12 @@ def test_the_sampled_plant_is_a_plant_for_designs() -> None:
 
 def test_an_oscillator_sampled_at_half_its_period_is_not_controllable() -> None:
     swing = StateSpace("[0 1; -1 0]", "[0; 1]", "[1 0]")
-    assert symobs.controllability(symobs.zero_order_hold(swing, period="pi").sampled).verdict == "no"
-    assert symobs.controllability(symobs.zero_order_hold(swing, period=1).sampled).verdict == "yes"
+    assert symobs.controllability(symobs.zero_order_hold(swing, sampling_period="pi").sampled).verdict == "no"
+    assert symobs.controllability(symobs.zero_order_hold(swing, sampling_period=1).sampled).verdict == "yes"
 
 
 def test_what_vanishes_is_a_case_and_values_go_in() -> None:
-    found = symobs.zero_order_hold(StateSpace("[-a]", "[1]"), period="T")
+    found = symobs.zero_order_hold(StateSpace("[-a]", "[1]"), sampling_period="T")
     (case,) = found.cases
     assert case.when == (sympy.Eq(a, 0),)
     assert (sympy.Matrix([[1]]), sympy.Matrix([[T]])) == (case.result.A, case.result.B)
@@ -91,7 +91,7 @@ def test_what_vanishes_is_a_case_and_values_go_in() -> None:
 
 
 def test_a_plant_that_depends_on_an_open_sign_is_not_taken_for_one() -> None:
-    found = symobs.zero_order_hold(StateSpace("[0 1; -a -2]", "[0; 1]"), period=1)
+    found = symobs.zero_order_hold(StateSpace("[0 1; -a -2]", "[0; 1]"), sampling_period=1)
     assert found.verdict == "conditional"
     with pytest.raises(InputError, match="the sampled plant is another one for each sign of"):
         _ = found.sampled
@@ -114,7 +114,7 @@ def test_a_plant_that_depends_on_an_open_sign_is_not_taken_for_one() -> None:
     ],
 )
 def test_another_answer_is_rejected(name: str, said: str) -> None:
-    found = symobs.zero_order_hold(StateSpace("[-1 0; 1 0]", "[1; 0]"), period="T")
+    found = symobs.zero_order_hold(StateSpace("[-1 0; 1 0]", "[1; 0]"), sampling_period="T")
     with pytest.raises(CertificateRejected, match=said):
         type(found)(found.plant, found.method, {**found.answer, name: found.answer[name] * 2})
 
@@ -124,11 +124,11 @@ def test_another_answer_is_rejected(name: str, said: str) -> None:
     [
         (StateSpace("[-1]", "[1]", dt=1), 1, "zero_order_hold belongs to continuous time"),
         (StateSpace("[-1]", "[1]"), "inf", "the sampling period inf is no number"),
-        (StateSpace("[-1]", "[1]"), 0, "the period 0 is not positive"),
-        (StateSpace("[-1]", "[1]"), "exp(T)", "the period .* is no rational expression"),
+        (StateSpace("[-1]", "[1]"), 0, "the sampling period 0 is not positive"),
+        (StateSpace("[-1]", "[1]"), "exp(T)", "the sampling period .* is no rational expression"),
         (StateSpace("[-1]"), 1, "B"),
     ],
 )
 def test_what_cannot_be_sampled_is_refused(plant: StateSpace, period: Any, said: str) -> None:
     with pytest.raises(InputError, match=said):
-        symobs.zero_order_hold(plant, period=period)
+        symobs.zero_order_hold(plant, sampling_period=period)

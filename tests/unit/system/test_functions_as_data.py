@@ -63,7 +63,7 @@ def test_what_the_functions_are_decides() -> None:
     assert (symobs.observability(rotation).verdict, symobs.observability(rotation).determinant) == ("yes", 1)
     tilted = symobs.observability(plant("tilted sensor"))  # cos² θ + k sin² θ, k > 0
     assert (tilted.verdict, tilted.cases) == ("yes", ())
-    assert symobs.observability(plant("sampled")).verdict == "conditional"  # T ≠ 0 is no polynomial of e⁻ᵀ
+    assert symobs.observability(plant("sampled")).verdict == "yes"  # 1 - e⁻ᵀ > 0 for T > 0
 
 
 def test_the_case_is_where_the_function_vanishes() -> None:
