@@ -9,6 +9,7 @@ from symobs.analysis.rank.rank_test import minor_claim, rank_claims, rank_enviro
 from symobs.analysis.time_response.damping_cases import DampingCases
 from symobs.conditions import Condition
 from symobs.errors import InputError
+from symobs.exact.core.generators import all_roots
 from symobs.exact.time_functions.quasipolynomial import Table, table_of
 from symobs.specification import read_signal
 
@@ -57,10 +58,12 @@ def read_functions(value: object, plant: StateSpace, name: str, count: int) -> t
         message = f"the {name} is missing"
         raise InputError(message, where=where, repair=f'give it as a function of t, {name} = "1 - exp(-t)"')
     found = read_signal(value, plant, name, count, functions=True)
+    repair = "write sums of exponentials, sines and cosines times powers of t, such as 2 t exp(-t) sin(3 t)"
+    if any("t" in root.argument.names for root in all_roots(found)):
+        raise InputError(f"the {name} contains a root of t", where=where, repair=repair)
     try:
         sums = table_of(found)
     except ValueError as error:
-        repair = "write sums of exponentials, sines and cosines times powers of t, such as 2 t exp(-t) sin(3 t)"
         raise InputError(str(error), where=where, repair=repair) from None
     if sum(len(entry.terms) for row in sums for entry in row) > _MOST_TERMS:
         raise InputError("the functions have too many terms", where=where, repair=f"keep to {_MOST_TERMS} terms")

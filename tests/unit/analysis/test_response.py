@@ -216,6 +216,7 @@ def test_modes_without_a_closed_form_are_undecided_and_another_answer_is_rejecte
         (StateSpace("[-1]", "[1]"), {"initial": "t"}, InputError, "does not depend on the time t"),
         (StateSpace("[-1]"), {"input": 1}, InputError, "B"),
         (StateSpace("[-1]", "[1]"), {"initial": [1, 2]}, ShapeMismatch, "initial"),
+        (StateSpace("[-1]", "[1]"), {"input": "sqrt(t)"}, InputError, "a root of t; write sums of exponentials"),
         (StateSpace("[-1]", "[1]"), {"input": "1/(t + 1)"}, InputError, "sums of exponentials"),
     ],
 )
