@@ -31,7 +31,7 @@ _WORK = {
     "generic 4x4: L": _DESIGN.format("generic(4)"),
     "dense rational, n = 50: L": _NUMERIC.format(50),
     "dense rational, n = 100: L": _NUMERIC.format(100),
-    "sheet of S0-Ex4.2, four formats": _SHEET.format("output_feedback_servo"),
+    "sheet of the servo with output feedback, four formats": _SHEET.format("output_feedback_servo"),
     "sheet of a region, four formats": _SHEET.format("region_two_masses_observer"),
 }
 
