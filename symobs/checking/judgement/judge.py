@@ -174,9 +174,7 @@ def _gain(task: _Task, part: Judged) -> Judged:
         value = _gain_in(task, part)
     except SymobsError as error:
         return _unreadable(part, error)
-    if task.right.fields.get("solvable") is False and not exists(
-        task.right, name
-    ):  # there is nothing to place poles of
+    if not exists(task.right, name) and task.right.fields.get("solvable") is False:  # nothing to place poles of
         return replace(part, reason=f"there is no {letter} here")
     part = replace(part, value=value)
     shape = shape_of(task.right, name)
