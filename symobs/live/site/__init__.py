@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 _HERE = Path(__file__).parent
 _PACKAGE = _HERE.parents[1]
-#: Folders of the repository which an installed package holds itself.
+#: Folders which an installed package holds itself; in a checkout they lie beside it.
 _DATA = ("worked_examples", "latex_templates")
 _KINDS = {".py", ".css", ".toml", ".tex"}
 _RUNTIME = ("pyodide.mjs", "pyodide.asm.mjs", "pyodide.asm.wasm", "python_stdlib.zip", "pyodide-lock.json")
@@ -122,8 +122,8 @@ def _pack(path: Path) -> None:
 
     folders = {_PACKAGE: "symobs"}
     for name in _DATA:
-        places = (_PACKAGE / name, _PACKAGE.parent / name)
-        folders[next(place for place in places if place.is_dir())] = f"symobs/{name}"
+        if not (_PACKAGE / name).is_dir():
+            folders[_PACKAGE.parent / name] = f"symobs/{name}"
     for module in (jinja2, markupsafe):
         folders[Path(str(module.__file__)).parent] = module.__name__
     with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:

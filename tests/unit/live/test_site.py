@@ -60,6 +60,20 @@ def test_the_folder_holds_everything_that_it_asks_for(given: tuple[Path, Path], 
     assert before == {path.relative_to(out).as_posix(): path.read_bytes() for path in out.rglob("*") if path.is_file()}
 
 
+def test_an_installed_package_is_packed_once(
+    given: tuple[Path, Path], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for name in ("__init__.py", "worked_examples/servo.toml", "latex_templates/article.tex"):
+        (tmp_path / "symobs" / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / "symobs" / name).write_text("")
+    monkeypatch.setattr("symobs.live.site._PACKAGE", tmp_path / "symobs")
+    build(tmp_path / "out", *given)
+    with zipfile.ZipFile(tmp_path / "out" / "symobs.zip") as archive:
+        names = archive.namelist()
+    assert "symobs/worked_examples/servo.toml" in names
+    assert len(names) == len(set(names))
+
+
 def _asked(out: Path) -> Iterator[str]:
     """Every file that the page and its scripts name."""
     for path in (out / "index.html", *out.glob("*.js")):
