@@ -91,6 +91,10 @@ def given(
             from symobs.analysis.cancelled_poles import state_transfer_function  # noqa: PLC0415 - it stands on this module
 
             state_transfer_function(page)
+        if plant.nonlinear is not None:
+            from symobs.analysis.linearisation_page import state_linearisation  # noqa: PLC0415 - of such plants alone
+
+            state_linearisation(page)
         page.set("A", m.A)
         relations = []
         rate = _as_given(page, m.A) @ page["x"]

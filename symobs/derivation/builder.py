@@ -179,7 +179,8 @@ class Builder:
             self.forms[root] = next(letters, rf"\sqrt{{\cdot}}_{{{len(self.forms)}}}")
 
     def in_time_by(self, meanings: Mapping[str, Scalar], vanishing: tuple[Scalar, ...]) -> None:
-        """Admit functions of time with given algebraic dependences."""
+        """Admit functions of time with given algebraic dependences, besides those that are admitted."""
+        meanings = {**self.start.coefficients, **meanings}
         self.start = replace(self.start, coefficients=meanings).with_relations(vanishing)
         self.environment = replace(self.environment, coefficients=meanings).with_relations(vanishing)
 

@@ -11,6 +11,7 @@ from symobs.live.request import put_in, with_values
 from symobs.problem.schema import kinds_of
 from symobs.result import task_named
 from symobs.specification.pole_patterns import OTHERS
+from symobs.system.nonlinear import linearize
 
 #: Keys of a specification that a link calls by shorter names.
 SHORT = {"control_poles": "control", "observer_poles": "observer", "observer": "order"}
@@ -50,7 +51,19 @@ def of_one_task(data: Mapping[str, Any], task: str) -> dict[str, Any]:
             for name, value in found["specification"].items()
             if name in own or not any(name in of for of in others)
         }
+    if "f" in _table(found, "plant"):
+        found["plant"] = _linearised(found)
     return {name: value for name, value in found.items() if name != "constants"}
+
+
+def _linearised(data: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the matrices of a nonlinear plant at its equilibrium, which are what can be moved."""
+    plant = linearize(**data["plant"], symbols=data.get("symbols"))
+    m = plant.matrices
+    there = {"A": True, "B": m.has_input, "C": m.has_output, "D": m.has_feedthrough}
+    return {name: str(getattr(m, name)) for name, is_there in there.items() if is_there} | {
+        key: value for key, value in data["plant"].items() if key == "dt"
+    }
 
 
 def _table(data: Mapping[str, Any], name: str) -> Mapping[str, Any]:

@@ -34,6 +34,8 @@ LETTERS: dict[str, LetterForm] = {
     "B": LetterForm("B", "B", "input matrix"),
     "C": LetterForm("C", "C", "output matrix"),
     "D": LetterForm("D", "D", "feedthrough matrix"),
+    "f_x": LetterForm("f", "f", "rate of change of the states"),
+    "h_x": LetterForm("h", "h", "output as a function of the states"),
     "K": LetterForm("K", "K", "state feedback gain"),
     "L": LetterForm("L", "L", "observer gain"),
     "O": LetterForm(r"\mathcal O", "𝒪", "observability matrix"),

@@ -44,7 +44,7 @@ TOP: dict[str, dict[str, Any]] = {
         "type": "object",
         "additionalProperties": {"type": ["string", "integer"]},
     },
-    "plant": {"description": "A, B, C, D, or transfer_function; dt"},
+    "plant": {"description": "A, B, C, D, or transfer_function, or f, h, states, inputs, equilibrium; dt"},
     "specification": {"description": "what the tasks need"},
     "values": {"description": "values of symbols, k = 4: the answers are those at these values"},
     "expect": {"description": "answers to hold the results against; [expect.TASK] for one task", "type": "object"},
@@ -66,7 +66,8 @@ PRINTED: dict[str, dict[str, Any]] = {
     },
     "expect": {"description": "instead of relation: answers as in [expect]", "type": "object"},
 }
-PLANT = ("A", "B", "C", "D", "transfer_function", "dt")
+NONLINEAR = ("f", "h", "states", "inputs", "equilibrium")
+PLANT = ("A", "B", "C", "D", "transfer_function", *NONLINEAR, "dt")
 #: A compensator has poles for each of its halves; a task that is one half reads them where nothing else is said of it.
 _HALVES = {"state_feedback": "control", "observer": "observer", "reduced_order_observer": "observer"}
 
@@ -113,6 +114,7 @@ def schema() -> dict[str, Any]:
     row = {"type": "array", "items": number_or_text}
     matrix = {"type": ["string", "array"], "items": row}
     column_or_row = {"type": ["string", "array"], "items": {"anyOf": [row, number_or_text]}}  # one list may be either
+    names = {"type": ["string", "array"], "items": {"type": "string"}}
     sign = {"enum": list(SIGNS)}
     details = {"sign": sign, "latex": {"type": "string"}}
     symbol = {"type": "object", "properties": details, "additionalProperties": False}
@@ -121,6 +123,15 @@ def schema() -> dict[str, Any]:
         | dict.fromkeys("BCD", column_or_row)
         | {
             "transfer_function": {"description": 'instead of A, B, C, D: "1/(s*(s + 1))"', **number_or_text},
+            "f": {"description": 'instead of A and B: "[omega; g/l*sin(theta) + u]"', **column_or_row},
+            "h": {"description": 'with f, instead of C and D: "theta"', **column_or_row},
+            "states": {"description": 'the states of f in their order: "theta, omega"', **names},
+            "inputs": {"description": 'the inputs of f: "u"', **names},
+            "equilibrium": {
+                "description": "where f and h are linearised: a value for each state and input",
+                "type": "object",
+                "additionalProperties": number_or_text,
+            },
             "dt": {
                 "description": "0: continuous; true, or the period: discrete",
                 "type": ["number", "boolean", "string"],
@@ -166,7 +177,12 @@ def schema() -> dict[str, Any]:
         "properties": {name: {**TOP[name], **found} for name, found in properties.items()},
         "additionalProperties": False,
         "oneOf": [{"required": ["task"]}, {"required": ["tasks"]}],
-        "anyOf": [_has("plant", "A"), _has("plant", "transfer_function"), _has("specification", "polynomial")],
+        "anyOf": [
+            _has("plant", "A"),
+            _has("plant", "transfer_function"),
+            _has("plant", "f"),
+            _has("specification", "polynomial"),
+        ],
     }
 
 

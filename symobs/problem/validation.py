@@ -6,7 +6,6 @@ import re
 from collections.abc import Callable, Collection, Mapping
 from dataclasses import field
 from difflib import get_close_matches
-from itertools import islice
 from typing import TYPE_CHECKING, Any
 
 from symobs._dataclass import dataclass
@@ -20,7 +19,8 @@ from symobs.problem.constants import with_constants
 from symobs.problem.file_tables import Decimal, came
 from symobs.problem.marking import Marking, read_marking
 from symobs.problem.noted_errors import Errors, check_text, report_unknown, table_of, text_of
-from symobs.problem.schema import PLANT, PRINTED, TOP, keys_of, kinds_of, missing_poles
+from symobs.problem.plant_table import period_of, plant_of, read_cells
+from symobs.problem.schema import PRINTED, TOP, keys_of, kinds_of, missing_poles
 from symobs.result import Document, Result, Task, task_named, tasks
 from symobs.result.digits_of_page import digits_asked
 from symobs.result.in_convention import ResultInConvention, names_in
@@ -107,8 +107,8 @@ def validate(data: Mapping[str, Any], only: str | None = None, folder: Path | No
     wanted = asked if only is None else tuple(filter(None, [task_named(only)]))
     symbols = Symbols() if data.get("symbols") is OPEN else _symbols(table_of(data, "symbols", errors), errors)
     symbols = with_constants(table_of(data, "constants", errors), symbols, errors)
-    dt = _period(data, symbols, errors)
-    plant = _plant(
+    dt = period_of(data, symbols, errors)
+    plant = plant_of(
         data, symbols, dt, errors, optional=bool(wanted) and all(task.works_without_plant for task in wanted)
     )
     specification = _specification(data, (*asked, *wanted), convention, symbols, errors)
@@ -236,47 +236,6 @@ def _symbols(table: Mapping[str, Any], errors: Errors) -> Symbols:
     return Symbols.of(kept)
 
 
-def _period(data: Mapping[str, Any], symbols: Symbols, errors: Errors) -> object:
-    """Return dt, 0 where it is none."""
-    table = data.get("plant")
-    with errors:
-        dt: object = table.get("dt", 0) if isinstance(table, Mapping) else 0
-        read_time(dt, symbols)
-        return dt
-    return 0
-
-
-def _plant(
-    data: Mapping[str, Any], symbols: Symbols, dt: object, errors: Errors, *, optional: bool
-) -> StateSpace | None:
-    """Return the plant, None where it cannot be had; where it is `optional` a polynomial does instead."""
-    table = table_of(data, "plant", errors)
-    if not isinstance(data.get("plant", {}), Mapping):
-        return None
-    report_unknown(table, PLANT, "plant", errors)
-    given = [name for name in "ABCD" if name in table]
-    if "transfer_function" in table and given:
-        errors.note(f"both transfer_function and {given[0]} are given", "plant", "keep one of them")
-    elif "transfer_function" in table:
-        with errors:
-            return StateSpace.from_transfer_function(table["transfer_function"], dt, symbols=symbols)
-    elif optional and not given and "polynomial" in (specification := table_of(data, "specification", errors)):
-        with errors:
-            known = symbols.naming(specification.get("parameters"), "specification.parameters")
-            return StateSpace.from_polynomial(specification["polynomial"], dt, symbols=known)
-    elif "A" not in table:
-        errors.note("the state matrix is missing", "plant.A", 'give it, for example A = "[0 1; 0 -1]"')
-    else:
-        with errors:
-            B, C, D = (table.get(name) for name in "BCD")
-            return StateSpace(table["A"], B, C, D, dt, symbols=symbols)
-        others = Errors()
-        for name in given:
-            _read_cells(table[name], symbols.with_time(), f"plant.{name}", others)
-        errors.add_elsewhere(others)
-    return None
-
-
 def read_convention(data: Mapping[str, Any], folder: Path | None, errors: Errors) -> Convention:
     """Return the convention the file is written in, the standard one where it names none that exists."""
     name = data.get("convention", STANDARD.name)
@@ -347,15 +306,6 @@ def _require_clear_commas(specification: Mapping[str, Any], kinds: Mapping[str, 
             errors.note(f"{comma} may be one number or two", f"specification.{name}", repair)
 
 
-def _read_cells(value: object, symbols: Symbols, where: str, errors: Errors) -> None:
-    """Note every unreadable cell of a matrix in lists; reading the matrix as a whole stops at the first."""
-    rows = value if isinstance(value, list) else []
-    cells = ((i, j, cell) for i, row in enumerate(rows) if isinstance(row, list) for j, cell in enumerate(row))
-    for i, j, cell in islice(cells, _MAX_CELLS):
-        with errors:
-            read_scalar(cell, symbols, f"{where}[{i}][{j}]")
-
-
 def _kinds(wanted: Collection[Task]) -> dict[str, str]:
     """Return the kinds of the keywords of these tasks, or of all where none is named: the same word may mean two."""
     return {name: kind for task in wanted or tasks().values() for name, kind in kinds_of(task).items()}
@@ -392,7 +342,7 @@ def _read_alone(
                 case "IntervalText":
                     read_poles(value, symbols, where)
                 case "GainText" | "MatrixText":
-                    _read_cells(value, symbols, where, others)
+                    read_cells(value, symbols, where, others)
                     read_matrix(value, symbols, where)
                 case "SignalText" | "TimeFunctions" as kind:
                     parse_signal(value, symbols, where, functions=kind == "TimeFunctions")

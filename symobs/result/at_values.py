@@ -79,6 +79,8 @@ def _plant(plant: StateSpace, values: dict[str, Scalar]) -> StateSpace:
     elif plant.origin is not None:
         written = StateSpace.from_transfer_function(substitute(plant.origin, values), plant.dt, symbols=there.symbols)
         there = written if written.matrices == there.matrices else there
+    elif plant.nonlinear is not None:
+        there.nonlinear = plant.nonlinear.moved(values)
     kept = {name for value in values.values() for name in value.names}
     left = {name: sign for name, sign in there.symbols.signs.items() if name in kept or name not in values}
     there = there.with_symbols(replace(there.symbols, signs=left))

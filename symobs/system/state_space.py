@@ -23,6 +23,8 @@ from symobs.system.transfer_matrix import WrittenTransferMatrix, read_written
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping
 
+    from symobs.system.nonlinear import Nonlinear
+
 #: Equations of more terms than this cost no more: where they are long, what they leave is mostly few points.
 _LONG = 25
 
@@ -81,6 +83,7 @@ class StateSpace:
         self.time = read_time(dt, known)
         self.written = transfer_function
         self.polynomial: Scalar | None = None
+        self.nonlinear: Nonlinear | None = None
         self.is_in_decimals = any(has_decimals(value) for value in (A, B, C, D))
         self.equations: tuple[Scalar, ...] = ()
         self.nonzero: tuple[Scalar, ...] = ()
@@ -202,10 +205,8 @@ class StateSpace:
         if self.is_time_varying:
             return self
         if self.is_discrete:
-            message = "the plant is given in discrete time"
-            raise InputError(
-                message, where="plant.dt", repair="leave dt out: a time-varying plant is in continuous time"
-            )
+            repair = "leave dt out: a time-varying plant is in continuous time"
+            raise InputError("the plant is given in discrete time", where="plant.dt", repair=repair)
         m = self.matrices
         plant = StateSpace(m.A, m.B if m.has_input else None, m.C if m.has_output else None, symbols=self.symbols)
         plant.matrices, plant.time, plant.is_from_floats = m, TimeVarying(), self.is_from_floats
@@ -316,8 +317,7 @@ class StateSpace:
         if there is self:
             return self
         there.is_stratum, there.findings = True, self.findings
-        found: StateSpace = self.findings.same(there)
-        return found
+        return cast("StateSpace", self.findings.same(there))
 
     def beside(self, plant: StateSpace) -> StateSpace:
         """Return another plant derived from this one, with shared findings."""
@@ -391,7 +391,7 @@ class StateSpace:
     @property
     def _value(self) -> tuple[object, ...]:
         signs = {name: sign for name, sign in self.symbols.signs.items() if sign != "real"}
-        given = self.origin, self.polynomial, self.is_from_floats, self.is_in_decimals
+        given = self.origin, self.polynomial, self.nonlinear, self.is_from_floats, self.is_in_decimals
         return (self.matrices, self.time, signs, self.symbols.latex, given, self.equations, self.nonzero)
 
     def __repr__(self) -> str:

@@ -19,7 +19,7 @@ def test_an_inductance_is_no_gain() -> None:
     data = page[page.index(r"\textbf{Given.}") : page.index("Throughout")]
     assert not re.search(r"(?<![a-z{])[LC](?![a-z])", data.replace(r"\mathsf{L}", "").replace(r"\mathsf{C}", ""))
     assert r"-\dfrac{R}{\mathsf{L}}" in data
-    assert r"The sans-serif $\mathsf{L}$ denotes a parameter of the data" in page
+    assert r"The sans-serif $\mathsf{L}$ denotes a symbol of the data" in page
     assert r"\det(sI-A+LC)=s^2+3s+2" in page
     text = str(found.to("text"))
     assert "-R/\U0001d5ab" in text
@@ -42,7 +42,7 @@ def test_a_letter_that_stands_in_the_specification_only_is_a_parameter_too() -> 
     """Poles at −K and −2K ask for the gain [2K² 3K], which is no equation for the gain."""
     found = symobs.state_feedback(symobs.StateSpace("[0 1; 0 0]", "[0; 1]"), poles="-K, -2*K")
     page = str(found.to("fragment"))
-    assert r"The sans-serif $\mathsf{K}$ denotes a parameter of the data" in page
+    assert r"The sans-serif $\mathsf{K}$ denotes a symbol of the data" in page
     assert r"2\mathsf{K}^{2}" in page.replace(" ", "") or r"2\mathsf{K}^2" in page.replace(" ", "")
     assert re.search(r"\d ?K", page) is None
     assert "+BK)" in page.replace(" ", "")

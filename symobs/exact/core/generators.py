@@ -73,10 +73,11 @@ class Function:
 
     def rate(self, time: str) -> Scalar:
         """Return d/dt, by the chain rule."""
-        if self.kind == "sqrt":
-            return ZERO
+        slope = derivative(self.argument, time)
+        if self.kind not in KINDS or slope.is_zero:
+            return slope / (2 * self.value) if self.kind == "sqrt" else ZERO
         sign, kind = _RATES[self.kind]
-        return derivative(self.argument, time) * generator(kind, self.argument) * sign
+        return slope * generator(kind, self.argument) * sign
 
     def moved(self, values: Mapping[str, Scalar]) -> Scalar:
         """Return the function with symbols substituted in its argument."""

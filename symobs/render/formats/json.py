@@ -179,6 +179,10 @@ def _plant_object(plant: StateSpace) -> dict[str, Any]:
         m = plant.matrices
         present = {"A": True, "B": m.has_input, "C": m.has_output, "D": m.has_input and m.has_output}
         data = {name: to_json(getattr(m, name)) for name, is_there in present.items() if is_there}
+    if (given := plant.nonlinear) is not None:
+        functions = {"f": to_json(given.f)} | ({} if given.h is None else {"h": to_json(given.h)})
+        point = {name: str(value) for name, value in given.equilibrium}
+        data |= {**functions, "states": [*given.states], "inputs": [*given.inputs], "equilibrium": point}
     dt = plant.dt if isinstance(plant.dt, int) else str(plant.dt)
     return {**data, "dt": dt, "symbols": signs(plant, [plant.polynomial])}
 

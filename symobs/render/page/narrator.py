@@ -183,7 +183,7 @@ class _PageBlocks:
         #: The equations to which sentences refer, with their numbers once they are displayed.
         self.referred: dict[Relation, int] = {}
         self.given = dict(given or {})
-        self.stated: set[Sentence] = set()
+        self.stated: set[Sentence | Step] = set()
         self.printed: set[Step] = set()
         self.places: dict[Step, str] = {}  # the numbers of the sections in which steps are printed first
         self.numbers = [0]
@@ -227,6 +227,10 @@ class _PageBlocks:
             case Conclude(sentence=sentence) | Note(sentence=sentence):
                 if sentence and sentence not in self.stated:
                     self.stated.add(sentence)
+                    yield step
+            case Equal():
+                if step not in self.stated:
+                    self.stated.add(step)
                     yield step
             case _:
                 yield step

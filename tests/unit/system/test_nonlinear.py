@@ -1,0 +1,128 @@
+"""Nonlinear plants: their linearisation against SymPy's derivatives, and what is refused."""
+
+from __future__ import annotations
+
+from random import Random
+from typing import Any
+
+import pytest
+import sympy as sp
+
+import symobs
+from symobs.errors import InputError, ProblemErrors
+from symobs.problem import validate
+from symobs.problem.file_tables import parse
+
+PENDULUM = """
+task = "observer"
+[symbols]
+g = "positive"
+l = "positive"
+[plant]
+f = "[omega; -g/l*sin(theta) + u]"
+h = "theta"
+states = "theta, omega"
+inputs = "u"
+equilibrium = {point}
+[specification]
+poles = "-3, -4"
+"""
+x1 = sp.Symbol("x1", positive=True)
+x2, u, a, c = sp.symbols("x2 u a c", real=True)
+TERMS = [
+    x1 * x2,
+    x2**2,
+    sp.sin(x1),
+    sp.cos(x1 + x2),
+    sp.exp(-x2),
+    sp.sqrt(x1),
+    1 / x1,
+    u * x1**2,
+    a * x2**3,
+    sp.sinh(u),
+    sp.sin(2 * x1),
+]
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_the_matrices_are_the_partial_derivatives_that_sympy_finds(seed: int) -> None:
+    random = Random(seed)  # noqa: S311 - test problems, no secrets
+    point: dict[Any, Any] = {x1: random.choice([4, 9]), x2: random.choice([0, 1, c]), u: random.choice([0, 2])}
+    rows = [sum(random.randint(1, 3) * term for term in random.sample(TERMS, 4)) for _ in "123"]
+    f = [row - row.subs(point) for row in rows[:2]]  # it vanishes at the point
+    plant = symobs.linearize(f, rows[2], states=[x1, x2], inputs=[u], equilibrium=point)
+    for found, functions, by in (
+        (plant.A, f, [x1, x2]),
+        (plant.B, f, [u]),
+        (plant.C, rows[2:], [x1, x2]),
+        (plant.D, rows[2:], [u]),
+    ):
+        expected = sp.Matrix(functions).jacobian(by).subs(point)
+        difference = (found - expected).subs({a: sp.Rational(7, 5), c: sp.Rational(3, 7)})
+        assert all(abs(sp.N(entry, 30)) < 1e-25 for entry in difference)
+
+
+def test_a_file_is_linearised_and_its_page_derives_the_matrices() -> None:
+    (result,) = validate(parse(PENDULUM.replace("{point}", '{ theta = "pi", omega = 0, u = 0 }'), "problem")).solve()
+    assert str(result.L.T) == "Matrix([[7, (g + 12*l)/l]])"  # s^2 + L1 s + L2 - g/l is s^2 + 7 s + 12
+    page = result.to("text")
+    assert "f(π, 0, 0) = ⎡0⎤" in page
+    assert "[∂f/∂θ  ∂f/∂ω]" in page
+    assert "f(π, 0, 0) = ⎡0⎤" in result.at(g=10, l=2).to("text")
+    assert sp.Matrix([7, 17]) == result.at(g=10, l=2).L
+
+
+def test_in_discrete_time_the_states_keep_their_values() -> None:
+    f = "[x1 + x2^3; x1*x2 + u]"
+    plant = symobs.linearize(f, "x1", states="x1 x2", inputs="u", equilibrium={"x1": 2, "x2": 0, "u": 0}, dt=True)
+    assert sp.Matrix([[1, 0], [0, 2]]) == plant.A
+    with pytest.raises(InputError, match=r"f\(x, u\) - x is \[1; 0\] there"):
+        symobs.linearize(f, "x1", states="x1 x2", inputs="u", equilibrium={"x1": 2, "x2": 1, "u": -1}, dt=True)
+
+
+@pytest.mark.parametrize(
+    ("changes", "reason"),
+    [
+        (
+            {"equilibrium": {"theta": 1, "omega": 0, "u": 0}},
+            r"no equilibrium: f\(x, u\) is \[0; -g\*sin\(1\)/l\] there",
+        ),
+        ({"equilibrium": {"theta": 0, "omega": 0}}, "u has no value"),
+        ({"equilibrium": {"theta": 0, "omega": 0, "u": 0, "v": 1}}, "v is neither a state nor an input"),
+        ({"equilibrium": {"theta": "theta", "omega": 0, "u": 0}}, "does not depend on it"),
+        ({"equilibrium": "theta = 0"}, "a value for each state and input is expected"),
+        ({"states": ""}, "no state is named"),
+        ({"states": "theta, theta"}, "theta stands for something else, too"),
+        ({"states": "theta, s"}, "s stands for something else, too"),
+        ({"f": "[omega]"}, "f has 1 components, and there are 2 states"),
+        ({"f": "[omega 1; 1 2]"}, "a column is expected"),
+        ({"f": None}, "f is missing"),
+        ({"f": "[omega; sqrt(theta) + u]"}, "not differentiable there"),
+        ({"f": "[omega; 1/theta]"}, "not differentiable there"),
+        ({"symbols": {"g": "real", "l": "real"}, "f": "[omega; k*theta]"}, "k"),
+        (
+            {
+                "symbols": {"g": "real", "l": "real", "theta": "positive"},
+                "equilibrium": {"theta": -1, "omega": 0, "u": 0},
+            },
+            "is not positive",
+        ),
+    ],
+)
+def test_what_is_no_equilibrium_is_refused_with_the_reason(changes: dict[str, Any], reason: str) -> None:
+    given: dict[str, Any] = {
+        "f": "[omega; -g/l*sin(theta) + u]",
+        "h": "theta",
+        "states": "theta, omega",
+        "inputs": "u",
+        "equilibrium": {"theta": 0, "omega": 0, "u": 0},
+    }
+    with pytest.raises(InputError, match=reason):
+        symobs.linearize(**{**given, **changes})
+
+
+def test_a_plant_is_given_once() -> None:
+    with pytest.raises(ProblemErrors, match="both f and A are given"):
+        validate(
+            parse(PENDULUM.replace("{point}", "{ theta = 0 }").replace("[plant]", '[plant]\nA = "[0]"'), "problem")
+        )
