@@ -16,7 +16,7 @@ FUNCTIONS = {
     "bounded": "symobs.cli.shared.time_and_memory",
     "batch": "symobs.batching",
     "check": "symobs.checking",
-    "linearize": "symobs.system.nonlinear",
+    "linearize": "symobs.system.linearisation.linearize",
     "live": "symobs.live",
     "margins": "symobs.analysis.stability_region.margins",
     "sweep": "symobs.batching.sweep",

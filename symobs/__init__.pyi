@@ -56,7 +56,7 @@ from symobs.errors import UnknownName as UnknownName
 from symobs.errors import UsageError as UsageError
 from symobs.live import live as live
 from symobs.system import StateSpace as StateSpace
-from symobs.system.nonlinear import linearize as linearize
+from symobs.system.linearisation.linearize import linearize as linearize
 from symobs.variation import variants as variants
 
 _Number: TypeAlias = str | float | complex | Fraction | Decimal | Expr

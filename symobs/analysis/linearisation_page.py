@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from symobs.derivation.builder import Builder
     from symobs.formula import Formula
     from symobs.formula.term import Term
-    from symobs.system.nonlinear import Nonlinear
+    from symobs.system.matrices import Nonlinear
 
 
 def state_linearisation(page: Builder) -> None:

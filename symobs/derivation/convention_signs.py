@@ -15,7 +15,7 @@ from symobs.derivation.sign_translation import in_signs, with_own_unknowns
 from symobs.derivation.steps import Note, Section, Sentence, literals, relations
 from symobs.errors import UsageError
 from symobs.exact import Matrix, Scalar
-from symobs.formula import Exact, Letter, Literal, Relation, SignReversal, Transpose, evaluate
+from symobs.formula import Exact, Letter, Literal, Relation, SignReversal, SymbolList, Transpose, evaluate
 from symobs.notation import LETTERS, printed_alike, sans_serif
 
 if TYPE_CHECKING:
@@ -59,7 +59,7 @@ def set_apart(derivation: Derivation, letters: Iterable[str], forms: Mapping[str
     shared = printed_alike(letters, forms, named - {derivation.variable, *derivation.symbols})
     if not shared:
         return derivation
-    notes = [Note(Sentence("without_serifs", (("parameter", Literal(Scalar.symbol(name))),))) for name in shared]
+    notes = [Note(Sentence("without_serifs", (("parameter", SymbolList((name,))),))) for name in shared]
     first, *rest = derivation.steps
     if isinstance(first, Section):
         first = replace(first, steps=(*first.steps, *notes))

@@ -165,7 +165,7 @@ class Evaluator:
         if self.functions:
             return self._function(function, place, number)
         turns = isinstance(number, Scalar) and (number.is_zero or number.names == {PI})
-        if function in {"cos", "sin"} and turns and (number / Scalar.symbol(PI)).is_constant:  # type: ignore[operator]
+        if function in {"cos", "sin", "tan"} and turns and (number / Scalar.symbol(PI)).is_constant:  # type: ignore[operator]
             return self._function(function, place, number)
         instead = "roots of rational numbers, and cos and sin of pi/6, pi/4, pi/3, are possible; or declare a symbol"
         raise self.source.error(f"{function} has no exact value here", place, instead)
@@ -199,8 +199,8 @@ class Evaluator:
         except generators.NotWritten as error:
             raise self.source.error(str(error), place, "declare a symbol for it") from None
         except ZeroDivisionError:
-            instead = "write sin and cos of a real argument"
-            raise self.source.error("sqrt of a negative number", place, instead) from None
+            fault = "sqrt of a negative number" if name == "sqrt" else f"{name} has no value there"
+            raise self.source.error(fault, place, "write what is real") from None
 
     def _with_one_root(self, place: int, radicand: Scalar) -> Scalar:
         """Return the radicand; sqrt(a^2) is a or -a, decided by the sign of a."""

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 #: The declared names; None declares every well-formed name.
 Names: TypeAlias = "Mapping[str, object] | None"
 
-FUNCTIONS = ("sqrt", "exp", "sin", "cos", "sinh", "cosh")
+FUNCTIONS = ("sqrt", "exp", "sin", "cos", "tan", "sinh", "cosh", "tanh")
 RESERVED = ("I", "oo", "inf", "nan", "pi")
 IMAGINARY = ("i", "j", "I")
 LONGEST_NAME = 64

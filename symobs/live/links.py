@@ -11,7 +11,7 @@ from symobs.live.request import put_in, with_values
 from symobs.problem.schema import kinds_of
 from symobs.result import task_named
 from symobs.specification.pole_patterns import OTHERS
-from symobs.system.nonlinear import linearize
+from symobs.system.linearisation.linearize import linearize
 
 #: Keys of a specification that a link calls by shorter names.
 SHORT = {"control_poles": "control", "observer_poles": "observer", "observer": "order"}

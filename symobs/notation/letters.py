@@ -36,6 +36,7 @@ LETTERS: dict[str, LetterForm] = {
     "D": LetterForm("D", "D", "feedthrough matrix"),
     "f_x": LetterForm("f", "f", "rate of change of the states"),
     "h_x": LetterForm("h", "h", "output as a function of the states"),
+    "partial": LetterForm(r"\partial", "∂", "sign of a partial derivative"),
     "K": LetterForm("K", "K", "state feedback gain"),
     "L": LetterForm("L", "L", "observer gain"),
     "O": LetterForm(r"\mathcal O", "𝒪", "observability matrix"),

@@ -9,7 +9,7 @@ from typing import Any
 from symobs.problem.noted_errors import Errors, report_unknown, table_of
 from symobs.problem.schema import NONLINEAR, PLANT
 from symobs.system import StateSpace, Symbols, read_scalar
-from symobs.system.nonlinear import linearize
+from symobs.system.linearisation.linearize import linearize
 from symobs.system.time_domain import read_time
 
 _MAX_CELLS = 1000

@@ -1,15 +1,16 @@
-"""The four exact matrices of a plant, and the check of their shapes."""
+"""The four exact matrices of a plant, and the check of their shapes; the functions of a nonlinear one."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from symobs._dataclass import dataclass
 from symobs.errors import InputError, ShapeMismatch, SymobsError
-from symobs.exact import Matrix
-from symobs.exact.core.generators import symbols_in
+from symobs.exact import Matrix, Scalar
+from symobs.exact.core.generators import derivative, substitute, symbols_in
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Mapping, Sequence
 
 
 class Matrices:
@@ -90,3 +91,28 @@ def shape_errors(parts: Mapping[str, Matrix | None]) -> list[SymobsError]:
         if D.shape != (rows, columns):
             expect("D", f"a {rows}×{columns} matrix, outputs by inputs", D)
     return errors
+
+
+@dataclass(frozen=True)
+class Nonlinear:
+    """A plant ẋ = f(x, u), y = h(x, u) (x(k+1) = f in discrete time) and an equilibrium of it, by name."""
+
+    f: Matrix
+    h: Matrix | None
+    states: tuple[str, ...]
+    inputs: tuple[str, ...]
+    equilibrium: tuple[tuple[str, Scalar], ...]
+
+    def jacobian(self, function: Matrix, names: Sequence[str]) -> Matrix:
+        """Return ∂ function / ∂ names, a column for each name."""
+        return Matrix.block([[derivative(function, name) for name in names]])
+
+    def there(self, value: Matrix) -> Matrix:
+        """Return a matrix at the equilibrium; raises ZeroDivisionError where it is not defined there."""
+        return substitute(value, dict(self.equilibrium))
+
+    def moved(self, values: Mapping[str, Scalar]) -> Nonlinear:
+        """Return the plant with parameters replaced."""
+        point = tuple((name, substitute(value, values)) for name, value in self.equilibrium)
+        f, h = substitute(self.f, values), None if self.h is None else substitute(self.h, values)
+        return Nonlinear(f, h, self.states, self.inputs, point)

@@ -23,7 +23,7 @@ from symobs.system.transfer_matrix import WrittenTransferMatrix, read_written
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping
 
-    from symobs.system.nonlinear import Nonlinear
+    from symobs.system.matrices import Nonlinear
 
 #: Equations of more terms than this cost no more: where they are long, what they leave is mostly few points.
 _LONG = 25

@@ -80,7 +80,7 @@ def known_letters(hand: Hand) -> dict[str, Any]:
     if isinstance(hand, (MinimalOrder, Integral, Disturbed, Modelled)):
         return hand.letters()
     A, B, C, s_ = hand.A, hand.B, hand.C, hand.variable
-    known: dict[str, Any] = {"A": A, "chi": characteristic(A, s_), "D": hand.feedthrough}
+    known: dict[str, Any] = {"A": A, "chi": characteristic(A, s_), "D": hand.feedthrough, **hand.functions}
     rates = {"x": A}
     if B is not None:
         reach = observability_matrix(A.T, B.T).T

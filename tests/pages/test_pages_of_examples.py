@@ -45,6 +45,7 @@ def documents() -> Iterator[tuple[str, Document]]:
 
 _COMMANDS = {
     "varphi": "φ",
+    "partial": "∂",
     "ell": "l",
     "varepsilon": "ε",
     "lambda": "λ",

@@ -52,6 +52,6 @@ def test_a_letter_that_stands_in_the_specification_only_is_a_parameter_too() -> 
 def test_a_pole_is_named_like_a_state_or_an_observer(name: str) -> None:
     plant = symobs.StateSpace("[0 1; 0 0]", None, "[1 0]", symbols={name: "positive"})
     page = str(symobs.observer(plant, poles=f"-{name}, -2*{name}").to("fragment"))
-    assert rf"The sans-serif $\mathsf{{{name}}}$ denotes a parameter" in page
+    assert rf"The sans-serif $\mathsf{{{name}}}$ denotes a symbol of the data" in page
     assert re.search(rf"3 ?{name}(?![a-z])", page) is None
     assert rf"3\mathsf{{{name}}}" in page.replace(" ", "")

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 
 from symobs.errors import BudgetExceeded
 from symobs.exact import VARIABLES
+from symobs.expression.names import FUNCTIONS as SCALAR_FUNCTIONS
 from symobs.expression.names import Scope
 from symobs.expression.source import Source
 from symobs.expression.syntax_parser import parse
@@ -36,7 +37,7 @@ FUNCTIONS = (
     ("place", 3),
     ("Phi", 2),
     ("integral", 4),
-    *((name, 1) for name in ("sqrt", "exp", "sin", "cos", "sinh", "cosh")),
+    *((name, 1) for name in SCALAR_FUNCTIONS),
 )
 _ARGUMENTS = dict(FUNCTIONS)
 MOST_CHARACTERS = 2_000

@@ -12,6 +12,7 @@ from symobs.exact.core.generators import derivative, function, square_root, subs
 from symobs.exact.core.polynomial import product_of
 from symobs.exact.linear_algebra.elimination import reduced_echelon
 from symobs.exact.time_functions.antiderivative import antiderivative
+from symobs.expression.names import FUNCTIONS
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -24,7 +25,6 @@ MOST_TERMS = 5_000
 MOST_BITS = 10_000
 MOST_DEGREE = 1_000
 MOST_ORDER = 20
-SCALAR_FUNCTIONS = ("sqrt", "exp", "sin", "cos", "sinh", "cosh")
 #: A matrix of more rows has an inverse here only if it has no more symbols than this.
 MOST_GENERIC = 6
 #: So many minors of a matrix are looked at for where its rank is less.
@@ -70,7 +70,7 @@ def applied(node: SyntaxNode, arguments: Sequence[Matrix], reading: Reading) -> 
     name, first, environment = node.text, arguments[0], reading.environment
     for argument in arguments:
         require_small(argument)
-    if name in SCALAR_FUNCTIONS:
+    if name in FUNCTIONS:
         return _function(name, node.parts[0], first, reading)
     square = {"det", "adj", "trace", "eigenvalues", "ctrb", "place"}
     matrix, part = (arguments[1], node.parts[1]) if name == "obsv" else (first, node.parts[0])
@@ -148,7 +148,10 @@ def _function(name: str, part: SyntaxNode, argument: Matrix, reading: Reading) -
         raise Misfit(f"{part} is {sized(argument.shape)}, but {name} takes a number")
     number = argument[0, 0]
     if name != "sqrt":
-        return function(name, number)
+        try:
+            return function(name, number)
+        except ZeroDivisionError:
+            raise Misfit(f"{name}({part}) has no value") from None
     if number.is_constant and number.fraction() < 0:
         raise Misfit(f"{part} is negative: its square root is not real")
     return number if number.is_zero else _root(part, number, reading)

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 #: Integers of more bits are not split into primes under a root.
 _PRIME_BITS = 128
-#: The highest multiple of an angle whose cosine is written by that of the angle, and power of an exponential: degrees.
+#: The highest multiple of an angle whose cosine is written by that of the angle, and power of an exponential.
 _MOST_MULTIPLE, _MOST_POWER = 1000, 100_000
 ZERO, ONE = Scalar.of(0), Scalar.of(1)
 #: The number π, a generator like a parameter: no polynomial over Q vanishes at it.
@@ -86,8 +86,9 @@ class Function:
 
 
 _RATES = {"exp": (1, "exp"), "sin": (1, "cos"), "cos": (-1, "sin"), "sinh": (1, "cosh"), "cosh": (1, "sinh")}
-#: The functions that move with time, beside roots.
+#: The functions that move with time, beside roots; and those that are quotients of two of them.
 KINDS = frozenset(_RATES)
+QUOTIENTS = {"tan": ("sin", "cos"), "tanh": ("sinh", "cosh")}
 
 
 def function_named(name: str) -> Function | None:
@@ -102,6 +103,8 @@ def generator(kind: str, argument: Scalar) -> Scalar:
 
 def function(kind: str, argument: Scalar) -> Scalar:
     """Return kind(argument); arguments of even and odd functions are given a positive leading coefficient."""
+    if kind in QUOTIENTS:
+        return function(QUOTIENTS[kind][0], argument) / function(QUOTIENTS[kind][1], argument)
     if argument.is_zero:
         return ONE if kind in {"exp", "cos", "cosh"} else ZERO
     if kind in {"cos", "sin"} and argument.names == {PI} and (argument / Scalar.symbol(PI)).is_constant:
@@ -109,8 +112,7 @@ def function(kind: str, argument: Scalar) -> Scalar:
         return _cosine(turns if kind == "cos" else turns - Fraction(1, 2))
     if kind == "exp" or not leads_with_minus(argument):
         return generator(kind, argument)
-    value = generator(kind, -argument)
-    return -value if kind in {"sin", "sinh"} else value
+    return generator(kind, -argument) * (-1 if kind in {"sin", "sinh"} else 1)
 
 
 def _cosine(turns: Fraction) -> Scalar:
@@ -193,8 +195,8 @@ def roots_in(value: Scalar | Matrix) -> list[Function]:
 
 def functions_in(values: Iterable[Scalar | Matrix]) -> frozenset[Function]:
     """Return the functions among the generators that occur."""
-    having = [value for value in values if value.field.functions]
-    return frozenset(f for value in having for name in value.names if (f := function_named(name)) is not None)
+    names = (name for value in values if value.field.functions for name in value.names)
+    return frozenset(f for name in names if (f := function_named(name)) is not None)
 
 
 def all_roots(*values: Scalar | Matrix) -> frozenset[Function]:
@@ -211,13 +213,9 @@ def normal_form(value: Scalar) -> Scalar:
             continue  # the field itself keeps values in normal form in it
         above = _split(value.numerator, root)
         below = _split(value.denominator, root)
-        q = root.value
         over = below[0] * below[0] - below[1] * below[1] * root.argument
-        top = (
-            above[0] * below[0] - above[1] * below[1] * root.argument,
-            above[1] * below[0] - above[0] * below[1],
-        )
-        value = top[0] / over + top[1] / over * q
+        rational = above[0] * below[0] - above[1] * below[1] * root.argument
+        value = rational / over + (above[1] * below[0] - above[0] * below[1]) / over * root.value
     return value
 
 

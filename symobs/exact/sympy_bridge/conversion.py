@@ -238,7 +238,7 @@ def complex_from_sympy(expression: Any, where: str, *, roots: bool = False) -> C
     ):
         base = Fraction(int(expression.base.p), int(expression.base.q))
         return Complex.of(root_of_fraction(base, int(expression.exp.q)) ** int(expression.exp.p))
-    if roots and expression.is_Function and str(expression.func) in functions.KINDS:
+    if roots and expression.is_Function and str(expression.func) in functions.KINDS | functions.QUOTIENTS.keys():
         argument = complex_from_sympy(arguments[0], where, roots=roots)
         if argument.is_real:
             return Complex.of(functions.function(str(expression.func), argument.real))

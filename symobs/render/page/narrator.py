@@ -224,13 +224,9 @@ class _PageBlocks:
                 self.given.update((relation.members[0], relation) for relation in new)
                 if new:
                     yield replace(step, relations=new)
-            case Conclude(sentence=sentence) | Note(sentence=sentence):
-                if sentence and sentence not in self.stated:
-                    self.stated.add(sentence)
-                    yield step
-            case Equal():
-                if step not in self.stated:
-                    self.stated.add(step)
+            case Conclude(sentence=said) | Note(sentence=said) | (Equal() as said):
+                if said and said not in self.stated:
+                    self.stated.add(said)
                     yield step
             case _:
                 yield step

@@ -107,10 +107,6 @@ class FormulaWriter(ABC, Generic[B]):
     def rate(self, box: B, name: str = "t") -> B:
         """Return d/dt, or d/d(name), of something other than a letter."""
 
-    @abstractmethod
-    def partial(self, box: B) -> B:
-        """Return ∂ before a letter."""
-
     # -- of functions of time ---------------------------------------------------------------------------------------
 
     @abstractmethod

@@ -221,10 +221,6 @@ class LatexPrinter(Printer[LatexBox]):
         """Return d/dt before a stack."""
         return LatexBox(box.width + 1.2, Level.PRODUCT, rf"\frac{{d}}{{d{name}}}{box.source}", max(1, box.height))
 
-    def partial(self, box: LatexBox) -> LatexBox:
-        r"""Return `\partial x`."""
-        return LatexBox(box.width + 0.55, Level.ATOM, rf"\partial {box.source}")
-
     # -- functions of time ----------------------------------------------------------------------------------------
 
     def exponential(self, argument: Scalar) -> LatexBox:

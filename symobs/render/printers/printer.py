@@ -292,7 +292,8 @@ class Printer(FormulaWriter[B]):
     def derivative(self, operand: Formula, name: str) -> B:
         """Return ẋ, or d/dt of a stack, or ∂f/∂θ; in discrete time the next instant."""
         if name not in {"t", "s", "z"} and isinstance(operand, Letter):
-            return self.fraction(self.partial(self.letter(operand.name, "")), self.partial(self.symbol(name)))
+            partial, above, below = self.letter("partial", ""), self.letter(operand.name, ""), self.symbol(name)
+            return self.fraction(*(self.joined((partial, box), Level.ATOM) for box in (above, below)))
         if name != "t":
             return self.rate(self.at_least(Level.FRACTION, self.typeset(operand)), name)
         if isinstance(operand, Letter) and is_of_time(operand.name):

@@ -206,10 +206,6 @@ class TextPrinter(Printer[TextBox]):
         """Return d/dt before a stack."""
         return self.joined([text_box(f"d/d{name} "), box], Level.PRODUCT)
 
-    def partial(self, box: TextBox) -> TextBox:
-        """Return ∂x."""
-        return self.joined([text_box("∂"), box], Level.ATOM)
-
     # -- functions of time ----------------------------------------------------------------------------------------
 
     def exponential(self, argument: Scalar) -> TextBox:

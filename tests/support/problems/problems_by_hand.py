@@ -163,7 +163,7 @@ def fixed(A: Any, C: Any, s: Any) -> Any:
 # -- problems ----------------------------------------------------------------------------------------------------------
 
 s, z = symbols("s z")
-omega, b, p, q, h1, h2, k1, k2, c, d = symbols("omega b p q h1 h2 k1 k2 c d")
+omega, b, p, q, h1, h2, k1, k2, c, d, theta = symbols("omega b p q h1 h2 k1 k2 c d theta")
 M, m, l, g = symbols("M m l g")
 a, k, m1, m2, R1, R2, C1, C2 = symbols("a k m1 m2 R1 R2 C1 C2")
 omega_0, mu1, mu2 = symbols("omega_0 mu1 mu2")
@@ -198,6 +198,7 @@ class Hand:
     large: bool = False
     sign: int = 1
     follows: bool = False
+    functions: Mapping[str, Any] = field(default_factory=dict)
     shrunk: int = 1  # by what sample points are divided
     advice: Advice | None = None
 
@@ -356,6 +357,17 @@ PROBLEMS = {
     "pendulum_hanging_given_gain": Hand(**hanging, L=Matrix([h1, h2]), signs=pendulum | {"h1": "real", "h2": "real"}),
     "pendulum_upright": Hand(**upright, observer=s**2 + p * s + q, signs=pendulum | {"p": "real", "q": "real"}),
     "pendulum_upright_given_gain": Hand(**upright, L=Matrix([h1, h2]), signs=pendulum | {"h1": "real", "h2": "real"}),
+    "pendulum_linearised": Hand(
+        Matrix([[0, 1], [g / l, -b]]),
+        Matrix([[1, 0]]),
+        Matrix([0, 1]),
+        observer=(s + 3) * (s + 4),
+        signs=dict.fromkeys("bgl", "positive"),
+        functions={
+            "f_x": Matrix([omega, -g / l * sympy.sin(theta) - b * omega + symbols("u")]),
+            "h_x": Matrix([theta]),
+        },
+    ),
     "pendulum_state_feedback": Hand(
         A=hanging["A"], B=hanging["B"], K=Matrix([[-k1, -k2]]), signs=pendulum | {"k1": "real", "k2": "real"}
     ),

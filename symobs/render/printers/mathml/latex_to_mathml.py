@@ -23,6 +23,7 @@ _LETTERS = {name: symbol_text(name) for name in GREEK} | {
     "epsilon": "\N{GREEK LUNATE EPSILON SYMBOL}",
     "vartheta": "ϑ",
     "varphi": "φ",
+    "partial": "∂",
     "phi": "ϕ",
     "ell": "\N{SCRIPT SMALL L}",
 }

@@ -268,10 +268,6 @@ class MathmlPrinter(Printer[MathmlBox]):
         elements = (f"<mfrac><mi>d</mi>{below}</mfrac>", _SPACED.replace(TIMES, APPLY), *box.elements)
         return MathmlBox(box.width + 1.2, Level.PRODUCT, elements, max(1, box.height))
 
-    def partial(self, box: MathmlBox) -> MathmlBox:
-        """Return ∂ before a letter."""
-        return MathmlBox(box.width + 0.55, Level.ATOM, ("<mi>∂</mi>", *box.elements))
-
     # -- functions of time ----------------------------------------------------------------------------------------
 
     def exponential(self, argument: Scalar) -> MathmlBox:

@@ -1,4 +1,4 @@
-"""Nonlinear plants ẋ = f(x, u), y = h(x, u), linearised at an equilibrium."""
+"""The linearisation of ẋ = f(x, u), y = h(x, u) at an equilibrium, from what a user gives."""
 
 from __future__ import annotations
 
@@ -8,43 +8,18 @@ from dataclasses import replace
 from functools import partial
 from typing import Any
 
-from symobs._dataclass import dataclass
 from symobs.errors import InputError, ShapeMismatch, together
 from symobs.exact import Ideal, Matrix, Scalar
-from symobs.exact.core.generators import NotWritten, derivative, identities, substitute, symbols_in
+from symobs.exact.core.generators import NotWritten, identities, symbols_in
 from symobs.expression import declared_name, parse_matrix
 from symobs.expression.source import shown
+from symobs.system.matrices import Nonlinear
 from symobs.system.reading import has_decimals, read_values
 from symobs.system.state_space import StateSpace
 from symobs.system.symbols import Symbols, is_sympy
 from symobs.system.time_domain import read_time
 
 _EXAMPLE = 'equilibrium = { theta = "pi", omega = 0, u = 0 }'
-
-
-@dataclass(frozen=True)
-class Nonlinear:
-    """A plant ẋ = f(x, u), y = h(x, u) (x(k+1) = f in discrete time) and an equilibrium of it, by name."""
-
-    f: Matrix
-    h: Matrix | None
-    states: tuple[str, ...]
-    inputs: tuple[str, ...]
-    equilibrium: tuple[tuple[str, Scalar], ...]
-
-    def jacobian(self, function: Matrix, names: Sequence[str]) -> Matrix:
-        """Return ∂ function / ∂ names, a column for each name."""
-        return Matrix.block([[derivative(function, name) for name in names]])
-
-    def there(self, value: Matrix) -> Matrix:
-        """Return a matrix at the equilibrium; raises ZeroDivisionError where it is not defined there."""
-        return substitute(value, dict(self.equilibrium))
-
-    def moved(self, values: Mapping[str, Scalar]) -> Nonlinear:
-        """Return the plant with parameters replaced."""
-        point = tuple((name, substitute(value, values)) for name, value in self.equilibrium)
-        f, h = substitute(self.f, values), None if self.h is None else substitute(self.h, values)
-        return Nonlinear(f, h, self.states, self.inputs, point)
 
 
 def linearize(
@@ -63,7 +38,7 @@ def linearize(
     x(k+1) = f(x, u)); pages begin with that.
 
     f, h         n and p functions of the states and inputs: a text such as "[omega; g/l*sin(theta) + u]", a list or a
-                 SymPy matrix, rational in exp, sin, cos, sinh, cosh and sqrt
+                 SymPy matrix, rational in exp, sin, cos, tan, sinh, cosh, tanh and sqrt
     states       their names in the order of x, "theta, omega"; `inputs` likewise
     equilibrium  a value for each of them: {"theta": "pi", "omega": 0, "u": 0}
     dt, symbols  as for `StateSpace`; states and inputs need not be declared

@@ -126,3 +126,17 @@ def test_a_plant_is_given_once() -> None:
         validate(
             parse(PENDULUM.replace("{point}", "{ theta = 0 }").replace("[plant]", '[plant]\nA = "[0]"'), "problem")
         )
+
+
+@pytest.mark.parametrize("tangent", ["tan(delta)", "sin(delta)/cos(delta)"])
+def test_the_bicycle_of_vehicle_steering(tangent: str) -> None:
+    """K. J. Åström and R. M. Murray, Feedback Systems, 2008, Example 5.12: A = [0 v; 0 0], B = [a v/b; v/b]."""
+    plant = symobs.linearize(
+        f"[v*sin(a/b*delta + theta); v/b*{tangent}]",
+        "y",
+        states="y, theta",
+        inputs="delta",
+        equilibrium={"y": 0, "theta": 0, "delta": 0},
+        symbols=dict.fromkeys("abv", "positive"),
+    )
+    assert (str(plant.A), str(plant.B)) == ("Matrix([[0, v], [0, 0]])", "Matrix([[a*v/b], [v/b]])")

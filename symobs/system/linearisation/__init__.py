@@ -1,0 +1,1 @@
+"""Nonlinear plants, linearised at an equilibrium."""
