@@ -29,7 +29,7 @@ def told(result: Any) -> dict[str, Any]:
     return found
 
 
-def verdicts(result: Any, **point: int) -> set[str]:
+def verdicts(result: Any, **point: int | Fraction) -> set[str]:
     """Return what the branches say that cover a point."""
     covering = branches(told(result), {name: Fraction(value) for name, value in point.items()})
     return {branch.verdict for branch in covering or ()}
@@ -105,6 +105,29 @@ def test_a_given_gain_is_told_where_modes_are_fixed() -> None:
     assert [str(condition) for condition in case.when] == ["a == 0"]
     assert case.result is not None
     assert [str(mode) for mode in case.result.fields["fixed_modes"]] == ["-1 + sqrt(2)*I", "-1 - sqrt(2)*I"]
+
+
+@pytest.mark.parametrize(
+    ("A", "signs", "point"),
+    [
+        ("[b+1 a^2-1; -1 a-1]", {"a": "nonnegative", "b": "real"}, (1, -1)),
+        ("[0 a^2-1; a-b b+1]", {"a": "negative", "b": "nonzero"}, (-1, -1)),
+        ("[-1 a+b; a*b c-b]", {"a": "negative", "b": "nonzero", "c": "nonzero"}, (-2, 4, 11)),
+    ],
+)
+def test_a_double_root_is_one_wherever_the_discriminant_vanishes(A: str, signs: Any, point: Any) -> None:
+    # No sign of a discriminant that vanishes on the curve is left to be assumed there: the root is double, and exp(A t)
+    # is exp(r t) (I + (A − r I) t).
+    found = symobs.matrix_exponential(symobs.StateSpace(A, symbols=signs))
+    assert verdicts(found, **dict(zip("abc", point, strict=False))) == {"yes"}
+
+
+def test_exponents_over_several_denominators_depend_on_each_other() -> None:
+    # Where b = (a³ − a²)/(a² − a − 1), the rates of A are a, twice, and (a² − 1)/(a² − a − 1).
+    gramian = symobs.gramian(
+        symobs.StateSpace("[0 a^2-1 0; a-b b+1 0; 1 0 a]", None, "[1 0 0]", symbols={"a": "negative", "b": "nonzero"})
+    )
+    assert verdicts(gramian, a=-2, b=Fraction(-12, 5)) == {"yes"}
 
 
 # -- finitely many points ------------------------------------------------------------------------------------------------

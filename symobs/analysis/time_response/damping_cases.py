@@ -274,6 +274,8 @@ def with_signs(plant: StateSpace, taken: Signs, solve: Callable[[Callable[[Scala
         found = sign_of(delta, plant.symbols.signs)
         if found in {"positive", "negative"}:
             return found
+        if plant.ideal is not None and plant.ideal.simplified(delta).is_zero:
+            return "zero"
         return taken.get(delta) or chosen.get(delta) or "open"
 
     while True:

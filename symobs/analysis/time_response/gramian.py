@@ -43,13 +43,13 @@ from symobs.formula.calculus import since_start
 from symobs.formula.term import Term, identity, letter
 from symobs.result import Case, Result, choose, method, task
 from symobs.stability.criteria.stability import StabilityVerdict, stability
-from symobs.system import StateSpace
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
     from symobs.formula import Environment
     from symobs.specification import Horizon, Name
+    from symobs.system import StateSpace
 
 KINDS_OF = ("observability", "controllability")
 #: Determinants of entries with more terms than this together are left out.
@@ -84,11 +84,11 @@ class Gramian(DampingCases):
         if plant.is_discrete:
             return cls(plant, method_name, {**shared, **steps_gramian(A, C, asked["horizon"])})
         try:
-            exponential, chosen = closed_form(StateSpace(A, symbols=plant.symbols), taken)
+            exponential, chosen = closed_form(plant, taken)
         except NoClosedForm as error:
             open_answer = {"matrix": None, "determinant": None, "question": question_of(error), "factor": error.factor}
             return cls(plant, method_name, {**shared, **open_answer})
-        table = exponential.table()
+        table = exponential.table() if asked["of"] == "observability" else transposed(exponential.table())
         seen = product(table_of(C), table)
         W = integral(product(transposed(seen), seen))
         answer = {

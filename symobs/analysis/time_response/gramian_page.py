@@ -23,7 +23,6 @@ from symobs.formula import Conjunction, HoldsExactlyWhere, Literal, Quotient
 from symobs.formula.calculus import since_start
 from symobs.result import page_of
 from symobs.stability.inequalities.written_form import as_inequality
-from symobs.system import StateSpace
 
 if TYPE_CHECKING:
     from symobs.derivation.builder import Builder
@@ -110,8 +109,7 @@ def _write_branch(page: Builder, result: Gramian) -> None:
             total = total + _transposed(A) ** k @ _square(C) @ A**k
         page.define("W", total, say="gramian_steps", answer=True, steps=str(answer["horizon"]))
         return
-    pair = StateSpace(result.plant.matrices.A, symbols=result.plant.symbols)
-    found, _ = closed_form(pair, {**answer["taken"], **answer["chosen"]})
+    found, _ = closed_form(result.plant, {**answer["taken"], **answer["chosen"]})
     is_dual = answer["of"] == "controllability"
     shown = answer["exponential"].T if is_dual else answer["exponential"]
     tell_exponential(page, found, shown)

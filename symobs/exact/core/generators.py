@@ -321,16 +321,15 @@ def symbols_named(name: str) -> frozenset[str]:
 Coordinates = dict[Scalar, Fraction]
 
 
-def _coordinates(argument: Scalar) -> Coordinates:
-    """Return an argument as a sum of rational multiples of monomials over one denominator."""
-    below, found = argument.denominator, {}
-    content = gcd(*(coefficient for coefficient, _ in below.terms()))
-    below = below / content
-    for coefficient, powers in argument.terms():
+def _coordinates(argument: Scalar, below: Scalar) -> Coordinates:
+    """Return an argument as a sum of rational multiples of monomials over a multiple of its denominator."""
+    above, found = argument * below, {}
+    content = above.denominator.fraction()
+    for coefficient, powers in above.terms():
         monomial = ONE
         for name, power in powers:
             monomial = monomial * Scalar.symbol(name) ** power
-        found[monomial / below] = Fraction(coefficient, content)
+        found[monomial / below] = coefficient / content
     return found
 
 
@@ -352,8 +351,11 @@ def identities(
     roots = all_roots(*values)
     moving = sorted((f for f in found if f.kind in _RATES), key=lambda f: f.name)
     steps: dict[tuple[bool, Scalar], Fraction] = {}
+    # over one denominator: exp(t), exp(t/(a + 1)) and exp(t*a/(a + 1)) depend on each other
+    below = Matrix.of([[f.argument for f in moving] or [ONE]]).common_denominator()
+    below = below / gcd(*(coefficient for coefficient, _ in below.terms()))
     for f in moving:
-        for monomial, coefficient in _coordinates(f.argument).items():
+        for monomial, coefficient in _coordinates(f.argument, below).items():
             key = (f.kind in {"cos", "sin"}, monomial)
             steps[key] = _common_measure(steps.get(key, Fraction(0)), abs(coefficient))
     if falling:
@@ -366,7 +368,7 @@ def identities(
             relations.append(function("cos", monomial * step) ** 2 + function("sin", monomial * step) ** 2 - 1)
     meanings: dict[str, Scalar] = {}
     for f in moving:
-        meaning = _in_base(f, steps)
+        meaning = _in_base(f, steps, below)
         if meaning != f.value:
             meanings[f.name] = meaning
     return meanings, tuple(r.numerator for r in relations)
@@ -378,10 +380,10 @@ def _common_measure(left: Fraction, right: Fraction) -> Fraction:
     return Fraction(gcd(int(left * below), int(right * below)), below)
 
 
-def _in_base(f: Function, steps: Mapping[tuple[bool, Scalar], Fraction]) -> Scalar:
+def _in_base(f: Function, steps: Mapping[tuple[bool, Scalar], Fraction], below: Scalar) -> Scalar:
     turns = f.kind in {"cos", "sin"}
     real, imaginary = ONE, ZERO
-    for monomial, coefficient in _coordinates(f.argument).items():
+    for monomial, coefficient in _coordinates(f.argument, below).items():
         step = steps[turns, monomial]
         count = int(coefficient / step)
         if abs(count) > (_MOST_MULTIPLE if turns else _MOST_POWER):

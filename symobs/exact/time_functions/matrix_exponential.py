@@ -172,6 +172,9 @@ def modes_of(
             rate = -coefficients[1] / 2
             discriminant = rate * rate - coefficients[2]
             known = sign(discriminant)
+            if known == "zero":
+                found.append((Mode(rate, ZERO, oscillates=False), 2 * multiplicity))
+                continue
             if known not in {"positive", "negative"}:
                 raise OpenBranch(discriminant)
             found.append((Mode(rate, discriminant, known == "negative"), multiplicity))
