@@ -28,6 +28,7 @@ from symobs.live.request import FieldError, Request, put_in, read
 from symobs.live.time_responses import NoResponse, readout, responses_of
 from symobs.live.views import view_object, view_of
 from symobs.phrases.languages import language_named
+from symobs.problem.schema import kinds_of
 from symobs.render.cards import Card, CardPrinter, cards
 from symobs.result import tasks
 from symobs.result.conversions import to_json
@@ -239,7 +240,7 @@ def _start(_: Request) -> dict[str, Any]:
 
     return {
         "status": "done",
-        "tasks": {name: task.summary for name, task in sorted(tasks().items())},
+        "tasks": {name: sorted(kinds_of(task)) for name, task in sorted(tasks().items())},
         "conventions": sorted(conventions()),
         "examples": examples(),
     }

@@ -7,7 +7,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from symobs.live.links import of_one_task
+from symobs.live.links import link_of
 from symobs.live.views import VIEWS
 
 _PLACES = (Path(__file__).parents[1] / "worked_examples", Path(__file__).parents[2] / "worked_examples")
@@ -17,16 +17,15 @@ _LARGE = {"cart_pole"}
 
 @cache
 def examples() -> list[dict[str, Any]]:
-    """Return name, title, task and problem of every example whose task has something to move."""
+    """Return name, title, task and link of every example, with a task that has something to move where one has."""
     folder = next((place for place in _PLACES if place.is_dir()), None)
     found = []
     for path in sorted(folder.glob("*.toml")) if folder is not None else []:
         data = tomllib.loads(path.read_text(encoding="utf-8"), parse_float=str)
         names = data.get("tasks", [data.get("task")])
-        task = next((name for name in reversed(names) if name in VIEWS), None)
-        if task is None or path.stem in _LARGE:
+        task = next((name for name in reversed(names) if name in VIEWS), names[-1])
+        if path.stem in _LARGE:
             continue
-        problem = of_one_task(data, task)
-        kept = {key: problem[key] for key in ("convention", "symbols", "plant", "specification") if key in problem}
-        found.append({"name": path.stem, "title": data.get("title", path.stem), "task": task, "problem": kept})
+        told = {key: entry for key, entry in data.items() if key != "language"} | {"tasks": [*names, task]}
+        found.append({"name": path.stem, "title": data.get("title", path.stem), "task": task, "link": link_of(told)})
     return found

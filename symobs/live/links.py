@@ -15,6 +15,8 @@ from symobs.system.linearisation.linearize import linearize
 
 #: Keys of a specification that a link calls by shorter names.
 SHORT = {"control_poles": "control", "observer_poles": "observer", "observer": "order"}
+#: Matrices of which a list of numbers is a column.
+_COLUMNS = {"B", "E", "L"}
 
 
 def link_of(data: Mapping[str, Any]) -> str:
@@ -25,10 +27,11 @@ def link_of(data: Mapping[str, Any]) -> str:
     if isinstance(task, str):
         parts["task"] = task
         data = of_one_task(data, task)
-    for name, value in _table(data, "plant").items():
-        parts[name] = _text(value, matrix=True)
-    for name, value in _table(data, "specification").items():
-        parts[SHORT.get(name, name)] = _text(value, matrix=name in {"K", "L", "T", "reference_matrix", "Q", "R"})
+    matrices = {*_table(data, "plant"), "K", "L", "E", "T", "reference_matrix", "Q", "R"}
+    for name, value in [*_table(data, "plant").items(), *_table(data, "specification").items()]:
+        is_column = name in _COLUMNS and isinstance(value, (list, tuple))
+        entries = [row if isinstance(row, (list, tuple)) else [row] for row in value] if is_column else value
+        parts[SHORT.get(name, name)] = _text(entries, matrix=name in matrices)
     signs = {
         name: sign["sign"] if isinstance(sign, Mapping) else sign for name, sign in _table(data, "symbols").items()
     }

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from decimal import Decimal
 from fractions import Fraction
+from itertools import pairwise
 from math import ceil, isqrt, lcm, log, log10
 from operator import mul
 from typing import TYPE_CHECKING, Any
@@ -25,10 +27,17 @@ _LONGEST = Fraction(10**6)
 #: Thousandths of the height of the picture, or finer.
 _COARSE, _FINEST = 3, 9
 _DEAD, _SAMPLES = 1e-9, 40
+#: Between two instants a response is no further from its segment than this part of its height, over at most so many segments.
+_BETWEEN, _MOST_SEGMENTS = Fraction(1, 110), 4096
+#: What stays below this part of the peak has settled; nothing is read off a response whose second difference is a larger one.
+_SETTLED, _COARSEST = Fraction(1, 50), Fraction(1, 10)
 #: What is larger cannot be drawn beside numbers of usual size.
 _LARGEST = 10**12
 #: Why there is no response, as phrases.
 _NEEDS_NUMBERS, _TOO_WIDE, _TOO_LARGE = "said_needs_numbers", "said_too_wide", "said_too_large"
+_TOO_FAST = "said_too_fast"
+#: The fastest mode turns by no more than this between two instants, in radians.
+_TURN = 3.0
 
 
 class NoResponse(Exception):
@@ -53,10 +62,11 @@ def responses_of(result: Result, asked: Responses) -> dict[str, Any]:
     signals = _signals(result, asked)
     end = _end(signals.matrix, asked.end, discrete=result.plant.is_discrete)
     if result.plant.is_discrete:
-        count = int(end) + 1
-        heights = _stepped(signals, count)
+        every, seen = 1, _stepped(signals, 2 * int(end) + 1)
     else:
-        heights = _enclosed(signals, end, asked.count)
+        every, seen = 2, _enclosed(signals, end, asked.count)
+    last = len(seen[0]) // 2
+    heights = [line[: last + 1 : every] for line in seen]
     peak = max(abs(height) for line in heights for height in line)
     if peak > _LARGEST * _FINE:
         raise NoResponse(_TOO_LARGE)
@@ -65,8 +75,8 @@ def responses_of(result: Result, asked: Responses) -> dict[str, Any]:
     coarser = _FINE // parts
     rounded = [[(height + coarser // 2) // coarser for height in line] for line in heights]
     lines = [
-        {"signal": name, "component": place, "dashed": dashed, "heights": line}
-        for (name, place, _, dashed), line in zip(signals.rows, rounded, strict=True)
+        {"signal": name, "component": place, "dashed": dashed, "heights": line, **_read_off(fine, end, every)}
+        for (name, place, _, dashed), line, fine in zip(signals.rows, rounded, seen, strict=True)
     ]
     low, high = min(map(min, rounded)), max(map(max, rounded))
     room = Fraction(max(high - low, 1), 20)
@@ -169,13 +179,37 @@ def _end(matrix: Matrix, asked: str | None, *, discrete: bool) -> Fraction:
 
 
 def _enclosed(signals: Signals, end: Fraction, count: int) -> list[list[int]]:
-    """Return the heights of every signal in fine parts, within a quarter of the finest ones that are shown."""
-    from symobs.exact.time_functions.state_response import state_response  # noqa: PLC0415 - FLINT
+    """Return the heights of every signal in fine parts, within a quarter of the finest ones that are shown.
+
+    They are those of every half segment up to twice the end; more segments are drawn where a response changes fast.
+    """
+    from symobs.exact.time_functions.state_response import spectral_radius  # noqa: PLC0415 - FLINT
 
     if any(4 * (sum(map(abs, row)) + 1) * 10**_FINEST > _FINE for _, _, row, _ in signals.rows):
         raise NoResponse(_TOO_WIDE)
+    segments, fastest = count - 1, spectral_radius(signals.matrix)
+    while segments <= _MOST_SEGMENTS:
+        if fastest * float(end) <= _TURN * segments:  # else a mode might turn unseen between two instants
+            lines = _at_instants(signals, end / (2 * segments), 4 * segments + 1)
+            drawn = [line[: 2 * segments + 1] for line in lines]
+            height = max(map(max, drawn)) - min(map(min, drawn))
+            if all(_is_smooth(line[::2], line[1::2], height) for line in drawn):
+                return lines
+        segments *= 2
+    raise NoResponse(_TOO_FAST)
+
+
+def _is_smooth(ends: list[int], between: list[int], height: int) -> bool:
+    """Return whether segments pass close by the values at their middles."""
+    allowed = 2 * _BETWEEN * height + 4  # a height is within 1 of the truth
+    return all(abs(a - 2 * v + b) <= allowed for a, v, b in zip(ends, between, ends[1:], strict=False))
+
+
+def _at_instants(signals: Signals, step: Fraction, count: int) -> list[list[int]]:
+    from symobs.exact.time_functions.state_response import state_response  # noqa: PLC0415 - FLINT
+
     try:
-        states = state_response(signals.matrix, signals.start, end / (count - 1), count, _FINE)
+        states = state_response(signals.matrix, signals.start, step, count, _FINE)
     except ArithmeticError:
         raise NoResponse(_TOO_WIDE) from None
     components, lines = list(zip(*states, strict=True)), []
@@ -207,6 +241,38 @@ def _decimal(value: Fraction) -> str:
 # -- readouts ---------------------------------------------------------------------------------------------------------
 
 
+def _read_off(line: list[int], end: Fraction, every: int) -> dict[str, str]:
+    """Return the peak and the last value up to the end, and when the response settles, if that is before the end.
+
+    It has settled from an instant on if it stays below a fiftieth of its peak up to twice the end, between the instants too
+    if time is continuous: there it may bulge by what an eighth of the second difference says.  Where a response by itself
+    is drawn too coarsely to see that, nothing is read off.
+    """
+    last = len(line) // 2
+    place = max(range(last + 1), key=lambda k: abs(line[k]))
+    peak, bulges = Fraction(line[place]), [0] * len(line)
+    if every > 1:
+        inner = [a - 2 * v + b for a, v, b in zip(line, line[1:], line[2:], strict=False)]
+        second = [inner[0], *inner, inner[-1]]
+        if max(map(abs, second[:last])) > _COARSEST * abs(peak):
+            return {}
+        bulges = [max(abs(a), abs(b)) // 8 + 1 for a, b in pairwise(second)]
+        if 0 < place < last and second[place]:
+            peak -= Fraction(
+                (line[place + 1] - line[place - 1]) ** 2, 8 * second[place]
+            )  # of the parabola through three
+    band = _SETTLED * abs(peak) - 1
+    outside = (k for k in reversed(range(2 * last)) if max(abs(line[k]), abs(line[k + 1])) + bulges[k] > band)
+    settled = next(outside, -1) + 1
+    found = {"peak": _digits(peak / _FINE, 3), "last": _digits(Fraction(line[last], _FINE), 2)}
+    return found | ({"settles": _digits(settled * end / last, 3)} if settled <= last else {})
+
+
+def _digits(value: Fraction, count: int) -> str:
+    """Return a decimal with so many digits, without a power of ten."""
+    return f"{Decimal(f'{float(value):.{count}g}'):f}"
+
+
 def readout(real: Fraction, imaginary: Fraction, *, discrete: bool) -> dict[str, str]:
     """Return natural frequency, damping ratio and settling time of a pole, or its modulus in discrete time."""
     square = real * real + imaginary * imaginary
@@ -217,7 +283,7 @@ def readout(real: Fraction, imaginary: Fraction, *, discrete: bool) -> dict[str,
     if square:
         found["damping"] = _places(-real / _root(square))
     if real < 0:
-        found["settles"] = f"{log(50) / float(-real):.3g}"
+        found["settles"] = _digits(Fraction(log(50)) / -real, 3)
     return found
 
 

@@ -72,6 +72,7 @@ NAMES: dict[str, dict[str, str | Formula]] = {
     },
     "pole_advice": {"polynomial": "phi", "sigma": "sigma_d", "omega_d": "omega_d"},
     "stability_region": {"polynomial": "chi_p"},
+    "zero_order_hold": {"A_d": "A_zoh", "B_d": "B_zoh"},
 }  # fmt: skip
 
 

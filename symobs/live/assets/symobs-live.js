@@ -137,14 +137,6 @@ function encoded(state) {
   return Object.entries(all).filter(([, entry]) => entry !== "" && entry !== undefined).map(([key, entry]) => `${key}=${plain(String(entry))}`).join("&");
 }
 
-/** The state of a problem file, as JSON has it. */
-function stateOf(problem, task, before) {
-  const flat = (entry) => (Array.isArray(entry) ? (Array.isArray(entry[0]) ? matrix(entry.map((r) => r.map((c) => (/\s/.test(c) ? `(${c})` : `${c}`)))) : entry.join(", ")) : String(entry));
-  const table = (entries) => Object.fromEntries(Object.entries(entries ?? {}).map(([key, entry]) => [key, flat(entry)]));
-  const symbols = Object.fromEntries(Object.entries(problem.symbols ?? {}).map(([name, sign]) => [name, sign.sign ?? (typeof sign === "string" ? sign : "real")]));
-  return { ...before, task, plant: table(problem.plant), spec: table(problem.specification), symbols, at: {}, convention: problem.convention ?? "", language: problem.language ?? before.language, x0: "", xh0: "" };
-}
-
 // -- elements ---------------------------------------------------------------------------------------------------------
 
 function h(tag, attributes = {}, ...inside) {
@@ -161,9 +153,8 @@ function h(tag, attributes = {}, ...inside) {
 function ticks(low, high, count) {
   const rough = (high - low) / count, power = 10 ** Math.floor(Math.log10(rough));
   const step = [1, 2, 5, 10].map((k) => k * power).find((s) => s >= rough) ?? rough;
-  const found = [];
-  for (let k = Math.ceil(low / step - 1e-9); k * step <= high + step * 1e-9; k += 1) found.push(Number((k * step).toPrecision(12)));
-  return found;
+  const first = Math.ceil(low / step - 1e-9), many = Math.floor(high / step + 1e-9) - first + 1;
+  return Array.from({ length: many }, (_, k) => Number(((first + k) * step).toPrecision(12)));
 }
 
 const SUB = (n) => String(n).replace(/\d/g, (d) => "₀₁₂₃₄₅₆₇₈₉"[Number(d)]);
@@ -210,22 +201,18 @@ export function mount(element, transport, options = {}) {
     language = LANGUAGES[code];
     root.lang = code;
     if (stranger) notice = w("no_language", { code: stranger.slice(0, 40) });
-    el.task = h("select", { "aria-label": w("task"), onchange: () => { s.task = el.task.value; problemChanged(); } }, h("option", { value: s.task }, taskName(s.task)));
+    el.task = h("select", { "aria-label": w("task"), onchange: () => turn(el.task.value) }, h("option", { value: s.task }, taskName(s.task)));
     el.examples = h("select", { "aria-label": w("example"), onchange: choose }, h("option", { value: "" }, w("examples")));
     el.language = h("select", { "aria-label": w("language"), onchange: () => { s.language = el.language.value; problemChanged(); el.language.focus(); } }, Object.entries(LANGUAGES).map(([key, own]) => h("option", { value: key, lang: key, selected: key === code }, own.name)));
     el.snap = h("select", { title: w("grid_of_poles"), onchange: () => { s.snap = el.snap.value; commit(true); drawPlane(); } }, Object.keys(SNAPS).map((k) => h("option", { value: k }, k)));
     el.message = h("div", { class: "message", hidden: true });
-    el.verdict = h("p", { class: "verdict" });
-    el.notes = h("p", { class: "notes" });
-    el.list = h("div", { class: "list" });
+    for (const name of ["list", "map", "point"]) el[name] = h("div", { class: name });
+    for (const name of ["verdict", "notes", "legend"]) el[name] = h("p", { class: name });
     el.live = h("div", { class: "hidden", "aria-live": "polite", role: "status" });
     el.poles = h("svg:svg", { class: "picture", viewBox: "0 0 480 360", role: "group", "aria-label": w("plane_of_poles") });
     el.texts = h("div", { class: "fields" });
     el.curves = h("svg:svg", { class: "picture", viewBox: "0 0 480 300", role: "img" });
-    el.legend = h("p", { class: "legend" });
     el.starts = h("div", { class: "fields starts" });
-    el.map = h("div", { class: "map" });
-    el.point = h("div", { class: "point" });
     el.html = h("div", { class: "html", tabindex: "0", "aria-label": w("page") }, derivation);
     el.plant = h("section", { class: "panel plant", "aria-label": w("problem") });
     el.reopen = h("span", { class: "reopen" });
@@ -278,6 +265,7 @@ export function mount(element, transport, options = {}) {
     waiting = true;
     aborted.abort();
     clearTimeout(restTimer);
+    el.page.classList.add("old");
     if (!running) run();
   }
 
@@ -317,10 +305,7 @@ export function mount(element, transport, options = {}) {
   }
 
   const open = (name) => view?.panels.includes(name) && !s.closed.includes(name);
-  function busy(is) {
-    root.classList.toggle("busy", is);
-    root.setAttribute("aria-busy", String(is));
-  }
+  const busy = (is) => { root.classList.toggle("busy", is); root.setAttribute("aria-busy", String(is)); };
 
   /** What there is to choose from: asked when the first answer stands, for whatever loads it takes its time. */
   async function learn() {
@@ -351,6 +336,7 @@ export function mount(element, transport, options = {}) {
       try {
         const got = await transport(asking("page", { detail: s.detail, at, cards_at: Object.keys(at).length > 0 }), signal);
         if (signal.aborted) return;
+        el.page.classList.remove("old");
         if (got.html) el.html.innerHTML = got.html;
         else el.html.replaceChildren(h("p", { class: "pale" }, got.message ?? got.errors?.map((e) => e.message).join("; ") ?? w("no_derivation")), got.status === "undecided" ? h("button", { onclick: () => rest(0) }, w("try_again")) : null);
         el.page.setAttribute("aria-busy", "false");
@@ -380,12 +366,21 @@ export function mount(element, transport, options = {}) {
   }
   function problemChanged() { commit(true); build(); ask(); }
 
-  async function choose() {
-    const found = start?.examples.find((e) => e.name === el.examples.value);
+  function choose() {
+    const found = start?.examples.find((e) => e.name === el.examples.value), { snap, closed, detail, language } = s;
     if (!found) return;
-    s = stateOf(found.problem, found.task, s);
+    s = { ...decoded(found.link), snap, closed, detail, language };
     view = null;
     el.examples.value = "";
+    problemChanged();
+  }
+
+  /** Turn to another task with what it takes of the specification; poles keep what they are of. */
+  function turn(task) {
+    const takes = start?.tasks[task] ?? Object.keys(s.spec), half = /observer/.test(s.task) ? "observer_poles" : "control_poles";
+    if (s.spec.poles && !takes.includes("poles")) s.spec[half] = s.spec.poles;
+    s.spec = Object.fromEntries(Object.entries(s.spec).filter(([key]) => takes.includes(key) && key !== "method"));
+    s.task = task;
     problemChanged();
   }
 
@@ -445,10 +440,13 @@ export function mount(element, transport, options = {}) {
       })));
       return h("div", { class: "named" }, h("i", {}, name), " = ", grid, h("small", { class: "wrong", "data-of": `plant.${name}` }));
     });
-    const all = h("details", { class: "astext" }, h("summary", {}, w("as_text")), h("div", { class: "fields" }, ["A", "B", "C", "D", "transfer_function", "dt"].map((name) => field(`text.${name}`, labelOf(name), s.plant[name], (t) => { if (t) s.plant[name] = t; else delete s.plant[name]; problemChanged(); })), field("text.symbols", labelOf("symbols"), Object.entries(s.symbols).map(([n, g]) => `${n}: ${g}`).join(", "), (t) => { s.symbols = Object.fromEntries(t.split(",").map((e) => e.split(":").map((p) => p.trim())).filter(([n]) => n).map(([n, g]) => [n, g || "real"])); problemChanged(); })));
+    const told = (key) => field(`specification.${key}`, labelOf(key), s.spec[key], (t) => { if (t) s.spec[key] = t; else delete s.spec[key]; problemChanged(); });
+    const setKeys = (view?.sets ?? []).map((g) => g.key), untold = h("div", { class: "fields" });
+    const fill = () => untold.replaceChildren(...(start?.tasks[s.task] ?? []).filter((key) => s.spec[key] === undefined && !setKeys.includes(key)).map(told));
+    fill();
+    const all = h("details", { class: "astext", open: el.plant.querySelector(".astext")?.open, ontoggle: fill }, h("summary", {}, w("as_text")), h("div", { class: "fields" }, ["A", "B", "C", "D", "transfer_function", "dt"].map((name) => field(`text.${name}`, labelOf(name), s.plant[name], (t) => { if (t) s.plant[name] = t; else delete s.plant[name]; problemChanged(); })), field("text.symbols", labelOf("symbols"), Object.entries(s.symbols).map(([n, g]) => `${n}: ${g}`).join(", "), (t) => { s.symbols = Object.fromEntries(t.split(",").map((e) => e.split(":").map((p) => p.trim())).filter(([n]) => n).map(([n, g]) => [n, g || "real"])); problemChanged(); })), untold);
     if (s.plant.transfer_function !== undefined) rows.push(field("plant.transfer_function", "P(s)", s.plant.transfer_function, (t) => { s.plant.transfer_function = t; problemChanged(); }));
-    const setKeys = (view?.sets ?? []).map((g) => g.key);
-    const others = Object.keys(s.spec).filter((key) => !setKeys.includes(key) && key !== "observer").map((key) => field(`specification.${key}`, labelOf(key), s.spec[key], (t) => { if (t) s.spec[key] = t; else delete s.spec[key]; problemChanged(); }));
+    const others = Object.keys(s.spec).filter((key) => !setKeys.includes(key) && key !== "observer").map(told);
     const kind = s.task === "compensator" ? h("label", { class: "field" }, h("span", {}, w("kind")), h("select", { onchange: (e) => { s.spec.observer = e.target.value; fitObserver(); problemChanged(); } }, ["full", "minimal"].map((k) => h("option", { value: k, selected: (s.spec.observer ?? "full") === k }, w(`kind_${k}`))))) : null;
     const names = Object.keys(s.symbols).filter((n) => !(isRegion && view?.region?.parameters?.includes(n)));
     const sliders = names.map((name) => slider(name));
@@ -791,8 +789,10 @@ export function mount(element, transport, options = {}) {
       const words = `${message}${repair ? `: ${repair}` : ""}`, base = where.replace(/\[.*$/, "");
       const exact = where.replace(/\[(\d+)\]\[(\d+)\]$/, (_, i, j) => `[${Number(i) + 1},${Number(j) + 1}]`);
       const input = root.querySelector(`[data-where="${CSS.escape(exact)}"]`) ?? root.querySelector(`[data-set="${CSS.escape(base.replace("specification.", ""))}"]`) ?? root.querySelector(`[data-where="${CSS.escape(base)}"]`);
-      input?.setAttribute("aria-invalid", "true");
-      const spot = input?.closest("label")?.querySelector(".wrong") ?? root.querySelector(`.wrong[data-of="${CSS.escape(base)}"]`);
+      const below = root.querySelector(`.wrong[data-of="${CSS.escape(base)}"]`), field = input ?? (below ? null : root.querySelector(`[data-where="${CSS.escape(base.replace("plant.", "text."))}"]`));
+      field?.setAttribute("aria-invalid", "true");
+      field?.closest("details")?.setAttribute("open", "");
+      const spot = field?.closest("label")?.querySelector(".wrong") ?? below;
       if (spot) spot.append(h("span", { lang }, words)); else left.push(`${where ? `${where}: ` : ""}${words}`);
     }
     if (left.length) say(left.slice(0, 4).join(" · "));
@@ -860,13 +860,12 @@ export function mount(element, transport, options = {}) {
     made.push(h("svg:text", { x: 464, y: 284, dy: "1.15em", "text-anchor": "end" }, got.discrete ? "k" : "t"));
     const told = [], named = [];
     for (const line of got.lines) {
-      const n = line.heights.length - 1, peak = line.heights.reduce((a, b) => (Math.abs(b) > Math.abs(a) ? b : a), 0), place = (v, k) => `${px(t0 + ((t1 - t0) * k) / n).toFixed(1)} ${py(v / got.parts).toFixed(1)}`;
+      const n = line.heights.length - 1, place = (v, k) => `${px(t0 + ((t1 - t0) * k) / n).toFixed(1)} ${py(v / got.parts).toFixed(1)}`;
       const kind = `curve c${((line.component || 1) - 1) % 4}${line.dashed ? " dashed" : ""}`;
       made.push(h("svg:path", { class: kind, d: `M${line.heights.map(place).join("L")}` }));
       if (got.discrete) line.heights.forEach((v, k) => { const [x, y] = place(v, k).split(" "); made.push(h("svg:circle", { class: kind, cx: x, cy: y, r: 2.6 })); });
-      const after = line.heights.findLastIndex((v) => Math.abs(v) + 1 > 0.02 * Math.abs(peak)) + 1;  // a height is within 1 of the truth
-      const settles = after <= n ? w("settles", { time: pretty(String(Number((t0 + ((t1 - t0) * after) / n).toPrecision(3)))) }) : "";
-      told.push(`${w("peaks", { signal: nameOf(line), peak: pretty((peak / got.parts).toPrecision(3)), last: pretty((line.heights[n] / got.parts).toPrecision(2)) })}${settles && `, ${settles}`}`);
+      const settles = line.settles ? w("settles", { time: pretty(line.settles) }) : "";
+      if (line.peak) told.push(`${w("peaks", { signal: nameOf(line), peak: pretty(line.peak), last: pretty(line.last) })}${settles && `, ${settles}`}`);
       named.push(h("span", {}, h("svg:svg", { viewBox: "0 0 24 8", "aria-hidden": "true" }, h("svg:path", { class: kind, d: "M1 4h22" })), nameOf(line), h("small", {}, settles)));
     }
     el.curves.replaceChildren(h("svg:title", {}, w("up_to", { end: got.end, told: told.join("; ") })), ...made);

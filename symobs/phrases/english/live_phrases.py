@@ -69,6 +69,8 @@ PHRASES: dict[str, str] = {
     "live_field_transfer_function": "transfer function",
     "live_field_symbols": "symbols",
     "live_field_dt": "sampling period",
+    "live_field_sampling_period": "sampling period",
+    "live_field_impulse": "impulse",
     "live_no_language": "There is no language {code} here; choose one of the list.",
     "live_comma": "a comma between two digits may be a decimal mark, or part two entries",
     "live_comma_repair": "write 1.5, or a space after the comma; in a list of numbers, 1,5; 2",
@@ -147,6 +149,7 @@ PHRASES: dict[str, str] = {
     "said_unstable_compensator": "F is not stable by itself.",
     "said_unstable_pole": "A pole lies outside the region of stability.",
     "said_needs_numbers": "Responses need numbers: give every symbol a value.",
+    "said_too_fast": "The responses are left out: they change too fast for a picture that shows them to their end.",
     "said_too_large": "A response is left out: its values are too large to draw.",
     "said_too_wide": "A response is left out: its enclosure stays too wide.",
     # tasks
@@ -203,6 +206,6 @@ CONTINUES = (
     "live_field_zero", "live_field_member", "live_field_observer_poles", "live_field_observer_polynomial",
     "live_field_control_poles", "live_field_control_polynomial", "live_field_settling_time", "live_field_overshoot",
     "live_field_reference_matrix", "live_field_reference_start", "live_field_transfer_function",
-    "live_field_symbols", "live_field_dt", "live_comma", "live_comma_repair",
+    "live_field_symbols", "live_field_dt", "live_field_sampling_period", "live_field_impulse", "live_comma", "live_comma_repair",
     "said_no_state_repair", "said_other_sign_repair", "said_no_rational", "said_no_rational_repair",
 )  # fmt: skip

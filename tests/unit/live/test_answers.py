@@ -6,9 +6,12 @@ import json
 import subprocess
 import sys
 import tomllib
+from fractions import Fraction
 from typing import TYPE_CHECKING, Any
+from urllib.parse import parse_qsl
 
 import mpmath
+import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -16,7 +19,9 @@ from jsonschema import Draft202012Validator  # type: ignore[import-untyped]
 
 from symobs.live import answer
 from symobs.live.assets import MOST_BYTES
+from symobs.live.links import SHORT
 from symobs.live.request import parsed
+from symobs.live.views import VIEWS
 from symobs.problem import validate
 from symobs.render.formats.json import result_object
 from tests.support.sampling import every
@@ -130,8 +135,10 @@ def test_responses_are_within_their_bound() -> None:
     parts, lines = found["courses"]["parts"], found["courses"]["lines"]
     loop = mpmath.matrix([[0, 1, 0, 0], [0, -1, -4, -3], [19, 0, -19, 1], [81, 0, -85, -4]])  # (x, x̂) by hand
     with mpmath.workdps(50):
-        for k in range(33):
-            state = mpmath.expm(loop * mpmath.mpf(3 * k) / 32) * mpmath.matrix([1, -0.5, 0.25, 0])
+        count = len(lines[0]["heights"])
+        assert (count - 1) % 32 == 0
+        for k in range(count):
+            state = mpmath.expm(loop * mpmath.mpf(3 * k) / (count - 1)) * mpmath.matrix([1, -0.5, 0.25, 0])
             for place, line in enumerate(lines):
                 assert abs(line["heights"][k] - parts * state[place]) <= 1
     assert [(line["signal"], line["component"], line["dashed"]) for line in lines] == [
@@ -144,11 +151,55 @@ def test_responses_of_an_observer_of_minimal_order_are_within_their_bound() -> N
     problem = {**SERVO, "specification": {"control_poles": "-2, -2", "observer_poles": "-10", "observer": "minimal"}}
     found = asked(problem, courses={"start": "1, 1", "estimate": "0, 1/2", "end": "1", "count": 11})
     parts, lines = found["courses"]["parts"], {(x["signal"], x["component"]): x for x in found["courses"]["lines"]}
-    for k in range(11):
-        error = mpmath.exp(-k) / 2
+    last = len(lines["x", 2]["heights"]) - 1
+    for k in range(last + 1):
+        error = mpmath.exp(mpmath.mpf(-10 * k) / last) / 2
         x, seen = (lines["x", 2]["heights"][k], lines["x_hat", 2]["heights"][k])
         assert abs(x - seen - parts * error) <= 2
         assert abs(lines["x", 1]["heights"][k] - lines["x_hat", 1]["heights"][k]) <= 1
+
+
+@pytest.mark.parametrize("poles", ["-1, -20, -20", "-1, -40, -40", "-1/10+10i, -1/10-10i, -1", "-1, -1, -1"])
+def test_peak_and_settling_are_those_of_the_whole_response(poles: str) -> None:
+    chain = {"A": "[0 1 0; 0 0 1; 0 0 0]", "C": "[1 0 0]"}
+    found = asked({"task": "observer", "plant": chain, "specification": {"poles": poles}}, courses={})
+    error = np.array([[float(Fraction(entry)) for entry in row] for row in found["result"]["A"]])
+    end, count = float(found["courses"]["end"]), 40_001
+    times = np.linspace(0, 2 * end, count)
+    step = np.array(mpmath.expm(mpmath.matrix(error * times[1])).tolist(), float)
+    states = [np.ones(3)]
+    for _ in times[1:]:
+        states.append(step @ states[-1])
+    for line, values in zip(found["courses"]["lines"], np.array(states).T, strict=True):
+        seen = values[: count // 2 + 1]
+        peak = seen[np.argmax(np.abs(seen))]
+        settled = times[np.nonzero(np.abs(values) > 0.02 * abs(peak))[0][-1]]
+        assert float(line["peak"]) == pytest.approx(peak, rel=6e-3)
+        drawn = end / (len(line["heights"]) - 1)
+        assert ("settles" in line) == (settled < end)
+        if settled < end:
+            assert -1e-3 * end <= float(line["settles"]) - settled <= drawn + 6e-3 * settled
+
+
+def test_a_response_that_comes_back_after_the_picture_has_not_settled_in_it() -> None:
+    # e₁ = (t − 6) t³ e^(−t), the other errors by eₖ₊₁ = ėₖ + Lₖ e₁: 0 at the end, t = 6, and then 7 % of its peak again.
+    chain = {"A": "[0 1 0 0 0; 0 0 1 0 0; 0 0 0 1 0; 0 0 0 0 1; 0 0 0 0 0]", "C": "[1 0 0 0 0]"}
+    one = {"task": "observer", "plant": chain, "specification": {"poles": "-1, -1, -1, -1, -1"}}
+    start = "0, 0, 0, -36, -12"
+    first = asked(one, courses={"start": start})["courses"]["lines"][0]
+    assert first["heights"][-1] == 0
+    assert "settles" not in first
+
+
+@pytest.mark.parametrize("poles", ["-1, -200, -200", "-1/10+134i, -1/10-134i, -1"])
+def test_what_changes_too_fast_to_be_seen_is_left_out(poles: str) -> None:
+    # The second component goes down to −L₁/e ≈ −74 within 1/200 of the first second; the other turns 10 times between instants.
+    chain = {"A": "[0 1 0; 0 0 1; 0 0 0]", "C": "[1 0 0]"}
+    found = asked({"task": "observer", "plant": chain, "specification": {"poles": poles}}, courses={})
+    assert (found["status"], found["courses"]) == ("done", None)
+    assert (
+        found["note"] == "The responses are left out: they change too fast for a picture that shows them to their end."
+    )
 
 
 def test_discrete_responses_are_exact() -> None:
@@ -367,8 +418,13 @@ def test_the_start_names_tasks_and_examples() -> None:
     assert {"compensator", "observer"} <= found["tasks"].keys()
     names = {example["name"] for example in found["examples"]}
     assert "output_feedback_servo" in names
+    assert VIEWS.keys() - {"controllability"} <= {example["task"] for example in found["examples"]}
     for example in found["examples"]:
-        assert [task.name for task in validate(example["problem"], example["task"]).tasks] == [example["task"]]
+        told = dict(parse_qsl(example["link"]))
+        assert told.pop("task") == example["task"]
+        assert told.keys() - {SHORT.get(key, key) for key in found["tasks"][example["task"]]} <= {
+            "v", "A", "B", "C", "D", "transfer_function", "dt", "symbols", "convention", "H",
+        }  # fmt: skip  # H is L in the letters of one convention
 
 
 def test_integral_action_shows_both_gains() -> None:
