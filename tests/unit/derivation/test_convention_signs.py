@@ -293,7 +293,7 @@ def test_parameters_that_are_printed_like_a_letter_are_set_apart() -> None:
     plant = Given((said(A, Matrix.of([[mass, 1], [matrix, -3]])), said(C, Matrix.of([[1, 0]]))), silent=True)
     derivation = Derivation((plant, L_IS), START)
     both = translated(derivation, PLUS)
-    told = [Note(plain_words("without_serifs", parameter=literal(value))) for value in (matrix, mass)]
+    told = [Note(plain_words("without_serifs", parameter=SymbolList((name,)))) for name in "AM"]
     assert both.steps == (plant, Define(said(L, -GAIN)))
     assert both.symbols == {"A": r"\mathsf{A}"}
     alike = replace(PLUS, letters={"L": "M"})
