@@ -27,17 +27,18 @@ _LONGEST = Fraction(10**6)
 #: Thousandths of the height of the picture, or finer.
 _COARSE, _FINEST = 3, 9
 _DEAD, _SAMPLES = 1e-9, 40
-#: Between two instants a response is no further from its segment than this part of its height, over at most so many segments.
-_BETWEEN, _MOST_SEGMENTS = Fraction(1, 110), 4096
+#: A segment is halved where a response may be further from its middle than this part of the height of the picture; so many
+#: segments are drawn at most, one for each point of a screen, and so many looked at behind the end at least.
+_BETWEEN, _MOST_SEGMENTS, _LEAST_BEHIND = Fraction(1, 110), 512, 32
 #: What stays below this part of the peak has settled; nothing is read off a response whose second difference is a larger one.
-_SETTLED, _COARSEST = Fraction(1, 50), Fraction(1, 10)
+_SETTLED, _COARSEST = Fraction(1, 50), Fraction(1, 3)
 #: What is larger cannot be drawn beside numbers of usual size.
 _LARGEST = 10**12
 #: Why there is no response, as phrases.
 _NEEDS_NUMBERS, _TOO_WIDE, _TOO_LARGE = "said_needs_numbers", "said_too_wide", "said_too_large"
 _TOO_FAST = "said_too_fast"
 #: The fastest mode turns by no more than this between two instants, in radians.
-_TURN = 3.0
+_TURN = 2.0
 
 
 class NoResponse(Exception):
@@ -62,11 +63,12 @@ def responses_of(result: Result, asked: Responses) -> dict[str, Any]:
     signals = _signals(result, asked)
     end = _end(signals.matrix, asked.end, discrete=result.plant.is_discrete)
     if result.plant.is_discrete:
-        every, seen = 1, _stepped(signals, 2 * int(end) + 1)
+        last = int(end)
+        values = _stepped(signals, 2 * last + 1)
+        every, seen, behind = 1, [line[: last + 1] for line in values], [line[last:] for line in values]
     else:
-        every, seen = 2, _enclosed(signals, end, asked.count)
-    last = len(seen[0]) // 2
-    heights = [line[: last + 1 : every] for line in seen]
+        every, (seen, behind) = 2, _enclosed(signals, end, asked.count)
+    heights = [line[::every] for line in seen]
     peak = max(abs(height) for line in heights for height in line)
     if peak > _LARGEST * _FINE:
         raise NoResponse(_TOO_LARGE)
@@ -75,8 +77,8 @@ def responses_of(result: Result, asked: Responses) -> dict[str, Any]:
     coarser = _FINE // parts
     rounded = [[(height + coarser // 2) // coarser for height in line] for line in heights]
     lines = [
-        {"signal": name, "component": place, "dashed": dashed, "heights": line, **_read_off(fine, end, every)}
-        for (name, place, _, dashed), line, fine in zip(signals.rows, rounded, seen, strict=True)
+        {"signal": name, "component": place, "dashed": dashed, "heights": line, **_read_off(fine, after, end, every)}
+        for (name, place, _, dashed), line, fine, after in zip(signals.rows, rounded, seen, behind, strict=True)
     ]
     low, high = min(map(min, rounded)), max(map(max, rounded))
     room = Fraction(max(high - low, 1), 20)
@@ -178,31 +180,31 @@ def _end(matrix: Matrix, asked: str | None, *, discrete: bool) -> Fraction:
 # -- how --------------------------------------------------------------------------------------------------------------
 
 
-def _enclosed(signals: Signals, end: Fraction, count: int) -> list[list[int]]:
+def _enclosed(signals: Signals, end: Fraction, count: int) -> tuple[list[list[int]], list[list[int]]]:
     """Return the heights of every signal in fine parts, within a quarter of the finest ones that are shown.
 
-    They are those of every half segment up to twice the end; more segments are drawn where a response changes fast.
+    They are those of every half segment, and fewer from the end to twice the end.  Segments are halved where a response
+    changes fast.
     """
     from symobs.exact.time_functions.state_response import spectral_radius  # noqa: PLC0415 - FLINT
 
     if any(4 * (sum(map(abs, row)) + 1) * 10**_FINEST > _FINE for _, _, row, _ in signals.rows):
         raise NoResponse(_TOO_WIDE)
-    segments, fastest = count - 1, spectral_radius(signals.matrix)
-    while segments <= _MOST_SEGMENTS:
-        if fastest * float(end) <= _TURN * segments:  # else a mode might turn unseen between two instants
-            lines = _at_instants(signals, end / (2 * segments), 4 * segments + 1)
-            drawn = [line[: 2 * segments + 1] for line in lines]
-            height = max(map(max, drawn)) - min(map(min, drawn))
-            if all(_is_smooth(line[::2], line[1::2], height) for line in drawn):
-                return lines
-        segments *= 2
-    raise NoResponse(_TOO_FAST)
+    segments, fastest = count - 1, spectral_radius(signals.matrix) * float(end)
+    coarse = _at_instants(signals, end / segments, segments + 1)
+    height = max(map(max, coarse)) - min(map(min, coarse))
+    bend = max(map(abs, (second for line in coarse for second in _second_differences(line))))
+    while 2 * segments <= _MOST_SEGMENTS and (fastest > _TURN * segments or bend > 8 * _BETWEEN * height):
+        segments, bend = 2 * segments, bend // 4
+    if fastest > _TURN * segments:  # a mode might turn unseen between two instants
+        raise NoResponse(_TOO_FAST)
+    behind = max(_LEAST_BEHIND, ceil(fastest / _TURN))
+    after = _at_instants(signals, end / behind, 2 * behind + 1)
+    return _at_instants(signals, end / (2 * segments), 2 * segments + 1), [line[behind:] for line in after]
 
 
-def _is_smooth(ends: list[int], between: list[int], height: int) -> bool:
-    """Return whether segments pass close by the values at their middles."""
-    allowed = 2 * _BETWEEN * height + 4  # a height is within 1 of the truth
-    return all(abs(a - 2 * v + b) <= allowed for a, v, b in zip(ends, between, ends[1:], strict=False))
+def _second_differences(line: list[int]) -> list[int]:
+    return [a - 2 * v + b for a, v, b in zip(line, line[1:], line[2:], strict=False)]
 
 
 def _at_instants(signals: Signals, step: Fraction, count: int) -> list[list[int]]:
@@ -241,31 +243,34 @@ def _decimal(value: Fraction) -> str:
 # -- readouts ---------------------------------------------------------------------------------------------------------
 
 
-def _read_off(line: list[int], end: Fraction, every: int) -> dict[str, str]:
+def _read_off(line: list[int], after: list[int], end: Fraction, every: int) -> dict[str, str]:
     """Return the peak and the last value up to the end, and when the response settles, if that is before the end.
 
     It has settled from an instant on if it stays below a fiftieth of its peak up to twice the end, between the instants too
-    if time is continuous: there it may bulge by what an eighth of the second difference says.  Where a response by itself
-    is drawn too coarsely to see that, nothing is read off.
+    if time is continuous.  Where a response by itself is drawn too coarsely to see that, nothing is read off.
     """
-    last = len(line) // 2
+    last, is_continuous = len(line) - 1, every > 1
     place = max(range(last + 1), key=lambda k: abs(line[k]))
-    peak, bulges = Fraction(line[place]), [0] * len(line)
-    if every > 1:
-        inner = [a - 2 * v + b for a, v, b in zip(line, line[1:], line[2:], strict=False)]
-        second = [inner[0], *inner, inner[-1]]
-        if max(map(abs, second[:last])) > _COARSEST * abs(peak):
+    peak = Fraction(line[place])
+    if is_continuous:
+        second = _second_differences(line)
+        if max(map(abs, second)) > _COARSEST * abs(peak):
             return {}
-        bulges = [max(abs(a), abs(b)) // 8 + 1 for a, b in pairwise(second)]
-        if 0 < place < last and second[place]:
-            peak -= Fraction(
-                (line[place + 1] - line[place - 1]) ** 2, 8 * second[place]
-            )  # of the parabola through three
-    band = _SETTLED * abs(peak) - 1
-    outside = (k for k in reversed(range(2 * last)) if max(abs(line[k]), abs(line[k + 1])) + bulges[k] > band)
-    settled = next(outside, -1) + 1
+        if 0 < place < last and (bend := second[place - 1]):
+            peak -= Fraction((line[place + 1] - line[place - 1]) ** 2, 8 * bend)  # of the parabola through three
+    band = int(_SETTLED * abs(peak)) - 1
+    settled = max((k + 1 for k, most in enumerate(_most(line, is_continuous=is_continuous)) if most > band), default=0)
     found = {"peak": _digits(peak / _FINE, 3), "last": _digits(Fraction(line[last], _FINE), 2)}
-    return found | ({"settles": _digits(settled * end / last, 3)} if settled <= last else {})
+    stays = all(most <= band for most in _most(after, is_continuous=is_continuous))
+    return found | ({"settles": _digits(settled * end / last, 3)} if stays else {})
+
+
+def _most(line: list[int], *, is_continuous: bool) -> list[int]:
+    """Return what a response does not exceed on each segment: it may bulge by an eighth of the second difference."""
+    second = _second_differences(line) if is_continuous else []
+    bulges = [max(abs(a), abs(b)) // 8 + 1 for a, b in pairwise([*second[:1], *second, *second[-1:]])]
+    ends = [max(abs(a), abs(b)) for a, b in pairwise(line)]
+    return [end + bulge for end, bulge in zip(ends, bulges, strict=True)] if is_continuous else ends
 
 
 def _digits(value: Fraction, count: int) -> str:
