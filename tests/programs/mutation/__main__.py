@@ -49,7 +49,7 @@ TESTS = {
     "judgement/as_asked.py": "as_students_write claims_decide coordinates gains_of_each_task judgement",
     "judgement/conditions.py": "claims_decide conditions_as_written regions",
     "judgement/coordinates.py": "coordinates judgement",
-    "judgement/gains.py": "claims_decide coordinates faults gains_of_each_task judgement",
+    "judgement/gains.py": "claims_decide coordinates faults gains_of_each_task judgement observers_of_disturbances",
     "judgement/judge.py": "as_students_write claims_decide coordinates faults functions_of_time gains_of_each_task judgement",
     "judgement/other_compensators.py": "claims_decide gains_of_each_task judgement",
     "judgement/parts.py": "claims_decide functions_of_time gains_of_each_task judgement",
