@@ -52,7 +52,7 @@ TESTS = {
     "judgement/gains.py": "claims_decide coordinates faults gains_of_each_task judgement observers_of_disturbances",
     "judgement/judge.py": "as_students_write claims_decide coordinates faults functions_of_time gains_of_each_task judgement",
     "judgement/other_compensators.py": "claims_decide gains_of_each_task judgement",
-    "judgement/parts.py": "claims_decide functions_of_time gains_of_each_task judgement",
+    "judgement/parts.py": "claims_decide coordinates functions_of_time gains_of_each_task judgement observers_of_disturbances",
     "judgement/regions.py": "regions",
     "grader/claims.py": "grader prairielearn",
     "grader/values.py": "grader_values grader",
