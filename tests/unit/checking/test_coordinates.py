@@ -67,6 +67,9 @@ def test_a_decomposition_in_another_basis_is_right() -> None:
     turned = check(PARTS, own | {"T": text(sp.diag(2, -3).inv())})
     assert {part.verdict for part in turned.parts if part.given} == {"right"}
     assert turned.parts[0].hints == (TURNED,)
+    whole = PARTS.replace("[-1 0; 0 -2]", "[0 1; -2 -3]").replace("[1; 0]", "[0; 1]").replace("[1 1]", "[1 0]")
+    one_part = sp.Matrix([[0, 1], [-2, -3]]), sp.Matrix([0, 1]), sp.Matrix([[1, 0]])
+    assert set(verdicts(whole, moved(sp.Matrix([[1, 1], [0, 1]]), *one_part)).values()) == {"right"}
     # x1 + x2 is controllable, though it is to be the part that is not
     mixed = verdicts(PARTS, moved(sp.Matrix([[1, 0], [1, 1]]), *plant))
     assert mixed == dict.fromkeys("TABC", "wrong") | {"C": mixed["C"]}
