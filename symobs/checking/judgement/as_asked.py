@@ -51,6 +51,4 @@ def shape_of(result: Result, name: str) -> tuple[int, int]:
     if isinstance(right, Matrix):
         return right.shape
     n, m, p = result.plant.order, result.plant.inputs, result.plant.outputs
-    if name == "k_I":
-        return m, p
     return (m, n) if name == "K" else (n - p, p) if result.has_reduced_observer else (n, p)

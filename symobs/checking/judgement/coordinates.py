@@ -51,9 +51,13 @@ def _both_directions(T: Matrix, order: int) -> Iterator[tuple[Matrix, str]]:
 def _moved(result: Result, T: Matrix) -> dict[str, Any]:
     """Return the plant in the coordinates T x."""
     m, S = result.plant.matrices, T.inverse().normal()
-    found: dict[str, Any] = {"T": T, "inverse": S, "A": (T @ m.A @ S).normal()}
-    found |= {"B": (T @ m.B).normal()} if m.has_input else {}
-    return found | ({"C": (m.C @ S).normal()} if m.has_output else {})
+    return {
+        "T": T,
+        "inverse": S,
+        "A": (T @ m.A @ S).normal(),
+        "B": (T @ m.B).normal(),
+        "C": (m.C @ S).normal(),
+    }
 
 
 # -- canonical forms --------------------------------------------------------------------------------------------------
@@ -63,7 +67,7 @@ def _canonical(result: CanonicalForm, given: Mapping[str, Matrix]) -> Iterator[F
     """Yield the form in the four layouts in use; the modal form in the order and scaling of the given matrices."""
     if result.kind == "modal":
         if "T" not in given:
-            for wrong in ("", *"CBA"):  # one of the matrices may be wrong, and the others right together
+            for wrong in (None, *"CBA"):  # one of the matrices may be wrong, and the others right together
                 T = _modal_coordinates(result, {name: value for name, value in given.items() if name != wrong})
                 if T is not None:
                     yield _Other(result, _moved(result, T)), ""  # type: ignore[misc]
@@ -150,23 +154,21 @@ def _same_blocks(found: Matrix, right: Matrix) -> bool:
     """Return whether a matrix consists of the same diagonal blocks in some order; blocks of order 2 may be transposed."""
     mine, theirs = _blocks(found), _blocks(right)
     for block in mine:
-        match = next((other for other in theirs if other in {block, block.T} and block.shape[0] < 3), None)
-        match = block if match is None and block in theirs else match
-        if match is None:
+        match = block if block in theirs or block.shape[0] > 2 else block.T
+        if match not in theirs:
             return False
         theirs.remove(match)
-    return not theirs
+    return True
 
 
 def _blocks(matrix: Matrix) -> list[Matrix]:
     """Return the diagonal blocks of a matrix, as fine as neighbours allow."""
-    n, found, start = matrix.shape[0], [], 0
-    for end in range(1, n + 1):
-        inside, outside = range(start, end), range(end, n)
-        apart = matrix.select(inside, outside).is_zero and matrix.select(outside, inside).is_zero if end < n else True
-        if apart:
+    found, inside, outside = [], [], list(range(matrix.shape[0]))
+    while outside:
+        inside.append(outside.pop(0))
+        if matrix.select(inside, outside).is_zero and matrix.select(outside, inside).is_zero:
             found.append(matrix.select(inside, inside))
-            start = end
+            inside = []
     return found
 
 
@@ -200,8 +202,9 @@ def _reduced(result: ReducedOrderObserver, given: Mapping[str, Matrix]) -> Itera
 def _estimated(result: ReducedOrderObserver, F: Matrix, H: Matrix) -> Matrix | None:
     """Return P of P A − F P = H C, None where the sizes do not fit or it is not the only one."""
     A, C = result.plant.matrices.A, result.plant.matrices.C
-    n, r = A.shape[0], A.shape[0] - C.shape[0]
-    if F.shape != (r, r) or H.shape != (r, C.shape[0]):
+    n, p = result.plant.order, result.plant.outputs
+    r = n - p
+    if F.shape != (r, r) or H.shape != (r, p):
         return None
     right = H @ C
     rows = []

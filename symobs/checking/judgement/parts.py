@@ -71,7 +71,7 @@ OF_THE_PLANT = ("A", "B", "C", "D")
 
 def asked_of(result: Result) -> tuple[str, ...]:
     """Return the fields that a task asks for; the verdict where there is nothing else to be found."""
-    there = tuple(name for name in ASKED.get(result.task, ("verdict",)) if exists(result, name))
+    there = tuple(name for name in ASKED.get(result.task, ()) if exists(result, name))
     return there or ("verdict",)
 
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from fractions import Fraction
+from random import Random
 from typing import TYPE_CHECKING, Any
 
 from symobs._dataclass import dataclass
@@ -24,7 +25,7 @@ from symobs.stability.criteria.critical_polynomials import irreducible
 from symobs.stability.regions.plane_region import PlaneRegion
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Mapping, Sequence
+    from collections.abc import Iterator, Mapping, Sequence
 
     from symobs.stability.criteria.critical_polynomials import CriticalPolynomials, StabilityBoundary
     from symobs.stability.regions.interval_region import LineRegion
@@ -33,7 +34,7 @@ if TYPE_CHECKING:
 
 #: So many points are tried where there is no exact region, before the question is left open.
 _MOST_TRIED = 4000
-_TRIED = tuple(Fraction(value) for value in ("1", "2", "-1", "3", "1/2", "-2", "5", "10", "1/10", "-5", "20", "100"))
+_TRIED = tuple(map(Fraction, ["1", "2", "-1", "3", "1/2", "-2", "5", "10", "1/10", "-5", "20", "100"]))
 
 
 @dataclass(frozen=True)
@@ -57,8 +58,7 @@ def region_verdict(result: Any, given: Any, names: Any) -> Separation:
 
     Raises `InputError` where they cannot be read, and `NotShown` where they have roots or functions.
     """
-    known = None if names is None else {**dict.fromkeys(result.question.parameters, "real"), **names}
-    union = read_conditions(given, known)
+    union = read_conditions(given, {**dict.fromkeys(result.question.parameters, "real"), **names})
     found = compare(result, union)
     return found if found.verdict != "wrong" else _explained(result, union, found)
 
@@ -70,8 +70,6 @@ def compare(result: StabilityRegion, union: Union) -> Separation:
     region = result.region
     if region is None:
         return _without_region(result, union)
-    if region.critical.never:
-        return Separation("right") if not union else _somewhere(result, union)
     off: list[tuple[Mapping[str, Fraction], bool]] = []
     boundary = inside = False
     try:
@@ -119,11 +117,8 @@ def _along(
     lines = [_restricted(factor, fixed) for factor in critical.factors]
     others = [_restricted(factor, fixed) for factor in further]
     nowhere = any(line.is_zero for line in lines)
-    ends = sorted({root for line in lines if not line.is_constant for root in roots_of_scalar(line, name)})
-    more = {
-        root for line in others if not line.is_constant and not line.is_zero for root in roots_of_scalar(line, name)
-    }
-    points = sorted({*ends, *more})
+    ends = {root for line in lines for root in roots_of_scalar(line, name)}
+    points = sorted(ends.union(root for line in others for root in roots_of_scalar(line, name)))
     for low, high in zip([None, *points], [*points, None], strict=True):
         sample = rational_between(low, high)
         stable = not nowhere and critical.is_stable({**fixed, name: sample})
@@ -144,20 +139,18 @@ def _allowed(
 
 
 def _restricted(value: Scalar, fixed: Mapping[str, Fraction]) -> Scalar:
-    found = value.substitute({name: Scalar.of(number) for name, number in fixed.items()}) if fixed else value
+    found = value.substitute({name: Scalar.of(number) for name, number in fixed.items()})
     return found.numerator * found.denominator
 
 
 def _sign(value: Scalar, fixed: Mapping[str, Fraction], name: str, height: Height) -> int:
     """Return the sign of a value at a point."""
     found = _restricted(value, fixed)
-    if found.is_constant:
-        number = found.fraction()
-    elif isinstance(height, Fraction):
-        number = value_at(found, {name: height})
-    else:
-        return height.sign_of(integer_factor(found, name))
-    return (number > 0) - (number < 0)
+    return (
+        _number_sign(found, {name: height})
+        if isinstance(height, Fraction)
+        else height.sign_of(integer_factor(found, name))
+    )
 
 
 def _holds(union: Union, fixed: Mapping[str, Fraction], name: str, height: Height) -> bool:
@@ -172,9 +165,9 @@ def _on_a_curve(
     return any(_sign(value, fixed, name, height) == 0 for value in values)
 
 
-def _length(point: Mapping[str, Fraction]) -> tuple[int, Fraction]:
-    """Return what orders points by simplicity."""
-    return sum(value.denominator for value in point.values()), sum(map(abs, point.values()), Fraction(0))
+def _length(point: Mapping[str, Fraction]) -> Fraction:
+    """Return what orders points by simplicity: whole numbers first."""
+    return sum((3 * value.denominator + abs(value) for value in point.values()), Fraction())
 
 
 def _at(result: StabilityRegion, point: Mapping[str, Fraction]) -> str:
@@ -200,26 +193,16 @@ def _somewhere(result: StabilityRegion, union: Union) -> Separation:
     """Return a point that parts both, among simple ones; `undecided` where there is none."""
     critical = result.critical
     used = {name for part in union for condition in part for name in condition.value.names}
-    names = sorted({*critical.parameters, *used})
-    for number in range(_MOST_TRIED if names else 1):
-        point = {name: _TRIED[_digit(number, place, len(names))] for place, name in enumerate(names)}
+    names, drawn = sorted({*critical.parameters, *used}), Random(0)  # noqa: S311 - the same points every time
+    points = (dict(zip(names, drawn.choices(_TRIED, k=len(names)), strict=True)) for _ in range(_MOST_TRIED))
+    for point in sorted(points, key=_length):
         if not critical.allows(point):
             continue
         mine = any(all(c.holds(_number_sign(c.value, point)) for c in part) for part in union)
-        off = any(_number_sign(value, point) == 0 for part in union for value in [c.value for c in part])
+        off = any(value_at(c.value, point) == 0 for part in union for c in part)
         if not off and mine != critical.is_stable(point) and all(value_at(f, point) for f in critical.factors):
             return Separation("wrong", point, mine, polynomial=_at(result, point))
     return Separation("undecided")
-
-
-def _digit(number: int, place: int, count: int) -> int:
-    """Return which value is tried for a name: simple ones of all names first, then spread over all of them."""
-    base = len(_TRIED)
-    return (
-        (number // base**place) % base
-        if base**count <= _MOST_TRIED
-        else (number * (2 * place + 1) + place * place) % base
-    )
 
 
 def _number_sign(value: Scalar, point: Mapping[str, Fraction]) -> int:
@@ -244,14 +227,10 @@ def _at_point(result: StabilityRegion, found: Separation) -> str:
     assert found.point is not None  # noqa: S101 - asked only where both differ off the boundary
     where = ", ".join(f"{name} = {value}" for name, value in found.point.items())
     boundary = result.question.boundary
-    at = f"|z| >= {boundary.radius}" if boundary.discrete else f"real part >= {_negative(boundary.margin)}"
+    at = f"|z| >= {boundary.radius}" if boundary.discrete else f"real part >= {-boundary.margin}"
     if found.inside:
         return f"at {where} your conditions hold, but {found.polynomial} has roots with {at}"
     return f"at {where} your conditions fail, but all roots of {found.polynomial} are as asked for"
-
-
-def _negative(margin: Scalar) -> str:
-    return "0" if margin.is_zero else str(-margin)
 
 
 def _slips(result: StabilityRegion, union: Union) -> Iterator[tuple[str, str]]:
@@ -279,8 +258,8 @@ def _within(result: StabilityRegion, boundary: StabilityBoundary) -> StabilityRe
 def _slips_of_one(result: StabilityRegion, union: Union) -> Iterator[tuple[str, str]]:
     """Yield the slips of a single list of conditions."""
     (part,) = union
-    positive = [Inequality(c, ">", str(c)) for c in _oriented(result.critical.coefficients) if not c.is_constant]
-    if _equal(result, union, (tuple(positive),)):
+    lead, *rest = result.critical.coefficients
+    if _equal(result, union, (tuple(Inequality(c * lead, ">", "") for c in rest),)):
         yield "only_positive_coefficients", "positive coefficients are necessary only, not sufficient"
     for text in result.stable_if:
         for missing in read_conditions(text, None):  # there is none in False
@@ -292,11 +271,6 @@ def _slips_of_one(result: StabilityRegion, union: Union) -> Iterator[tuple[str, 
         if condition.operator != "!=" and _same(result, ((*part[:i], turned, *part[i + 1 :]),)):
             yield "half_plane", f"{condition.text} is the wrong half"
             return
-
-
-def _oriented(coefficients: Sequence[Scalar]) -> list[Scalar]:
-    lead = coefficients[0]
-    return [coefficient * lead for coefficient in coefficients]
 
 
 def _same(result: StabilityRegion, union: Union) -> bool:
@@ -311,15 +285,14 @@ def _same(result: StabilityRegion, union: Union) -> bool:
 def _equal(result: StabilityRegion, one: Union, other: Union) -> bool:
     """Return whether two unions agree off their curves, in the exact region's pieces."""
     region = result.region
-    if region is None or region.critical.never:
+    if region is None:
         return False
-    both: Callable[..., bool] = _holds
     try:
         pieces = list(_pieces(region, (*one, *other)))
     except TooLarge:
         return False
     return all(
-        both(one, fixed, name, height) == both(other, fixed, name, height)
+        _holds(one, fixed, name, height) == _holds(other, fixed, name, height)
         for fixed, name, height, _ in pieces
         if isinstance(height, Fraction)
     )

@@ -176,13 +176,14 @@ def test_what_is_said_of_a_gain_and_which_claim_was_tried() -> None:
 
 def test_what_each_task_asks_for() -> None:
     asked = """canonical_form T A B C; characteristic_polynomial polynomial; compensator K L F; controllability rank;
-        decomposition T sizes; detectability verdict; dual A B C; feedforward F; gramian matrix; initial_state x0;
+        decomposition T sizes; detectability verdict; disturbance_observer L_x L_w;
+        dual A B C; feedforward F; gramian matrix; initial_state x0;
         initial_state_covariance covariance; integral_action K k_I; matrix_exponential matrix; observability rank;
         observer L; pbh verdict; pole_advice poles; reduced_order_observer F G H M; response state; state_feedback K;
         stability_region stable_if; stabilizability verdict; time_varying_observability verdict; tracking K_d;
-        transfer_function transfer_function"""
+        transfer_function transfer_function; unknown_input_observer H L"""
     rows = [row.split() for row in asked.split(";")]
-    assert len(rows) == 25
+    assert len(rows) == 27
     for task, *names in rows:
         found = SimpleNamespace(task=task, fields=dict.fromkeys(names, 1))
         assert asked_of(found) == tuple(names)  # type: ignore[arg-type]

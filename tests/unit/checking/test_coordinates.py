@@ -67,6 +67,9 @@ def test_a_decomposition_in_another_basis_is_right() -> None:
     turned = check(PARTS, own | {"T": text(sp.diag(2, -3).inv())})
     assert {part.verdict for part in turned.parts if part.given} == {"right"}
     assert turned.parts[0].hints == (TURNED,)
+    whole = PARTS.replace("[-1 0; 0 -2]", "[0 1; -2 -3]").replace("[1; 0]", "[0; 1]").replace("[1 1]", "[1 0]")
+    one_part = sp.Matrix([[0, 1], [-2, -3]]), sp.Matrix([0, 1]), sp.Matrix([[1, 0]])
+    assert set(verdicts(whole, moved(sp.Matrix([[1, 1], [0, 1]]), *one_part)).values()) == {"right"}
     # x1 + x2 is controllable, though it is to be the part that is not
     mixed = verdicts(PARTS, moved(sp.Matrix([[1, 0], [1, 1]]), *plant))
     assert mixed == dict.fromkeys("TABC", "wrong") | {"C": mixed["C"]}
@@ -157,6 +160,78 @@ def test_sizes_are_four_numbers_in_order() -> None:
         assert verdicts(PARTS, {"T": "[1 0; 0 1]", "sizes": sizes})["sizes"] in {verdict, "unreadable"} - {"right"} | {
             verdict
         }
+
+
+#: Eigenvalues -1, -2 ± 3i, -5; of the fields of T x = z with integers, so that all of the plant is integral.
+BLOCKS = [sp.Matrix([[-1]]), sp.Matrix([[-2, 3], [-3, -2]]), sp.Matrix([[-5]])]
+OF_FOUR = sp.diag(*BLOCKS), sp.Matrix([1, 2, -1, 3]), sp.Matrix([[2, 1, 1, -1]])
+MIXED = sp.Matrix([[1, 2, 0, 1], [0, 1, 1, 0], [0, 0, 1, 3], [0, 0, 0, 1]])
+
+
+def modal(A: sp.Matrix, B: sp.Matrix, C: sp.Matrix) -> str:
+    plant = f'[plant]\nA = "{text(A)}"\nB = "{text(B)}"\nC = "{text(C)}"\n'
+    return f'task = "canonical_form"\n{plant}[specification]\nkind = "modal"\n'
+
+
+@pytest.mark.parametrize("order", [(0, 1, 2), (1, 2, 0), (2, 0, 1), (2, 1, 0)])
+def test_a_modal_form_without_T_in_any_order_and_scaling(order: tuple[int, ...]) -> None:
+    A, B, C = OF_FOUR
+    problem = modal(MIXED * A * MIXED.inv(), MIXED * B, C * MIXED.inv())
+    starts = {0: [0], 1: [1, 2], 2: [3]}
+    places = [state for block in order for state in starts[block]]
+    own = {0: sp.Matrix([[7]]), 1: sp.Matrix([[2, -1], [1, 2]]), 2: sp.Matrix([[-3]])}  # what commutes with each block
+    T = sp.diag(*(own[block] for block in order)) * sp.eye(4).extract(places, list(range(4)))
+    answer = moved(T, A, B, C)
+    del answer["T"]
+    assert verdicts(problem, answer) == dict.fromkeys("ABC", "right")
+    for name, wrong in (("B", T * B), ("C", C * T.inv())):
+        wrong[2] += 1  # B and C do not belong together: in the coordinates of one of them the other one is wrong
+        assert sorted(verdicts(problem, answer | {name: text(wrong)}).values()) == ["right", "right", "wrong"]
+        short = wrong[:3, :] if name == "B" else wrong[:, :3]
+        assert verdicts(problem, answer | {name: text(short)}) == dict.fromkeys("ABC", "right") | {name: "wrong"}
+    coupled, shared = T * A * T.inv(), sp.zeros(4)
+    for i, j in ((0, 3), (3, 0)):
+        shared[i, j] = 1
+        assert verdicts(problem, {"A": text(coupled + shared)}) == {"A": "wrong"}
+        shared[i, j] = 0
+    assert verdicts(problem, {"A": text(coupled[:3, :3])}) == {"A": "wrong"}
+
+
+def test_a_modal_form_of_modes_that_only_one_of_B_and_C_scales() -> None:
+    problem = modal(sp.Matrix([[-1, 0], [0, -2]]), sp.Matrix([0, 1]), sp.Matrix([[1, 0]]))
+    assert verdicts(problem, {"A": "[-1 0; 0 -2]", "B": "[0; 5]", "C": "[7 0]"}) == dict.fromkeys("ABC", "right")
+    assert verdicts(problem, {"A": "[-2 0; 0 -1]", "B": "[5; 0]", "C": "[0 7]"}) == dict.fromkeys("ABC", "right")
+    assert verdicts(problem, {"A": "[-1 0; 0 -2]", "B": "[5; 0]", "C": "[7 0]"})["B"] == "wrong"
+
+
+def test_a_chain_is_not_turned_over() -> None:
+    """Of (s + 1)³: the block of order 3 has its ones above the diagonal, where the page puts them, or nowhere."""
+    problem = modal(sp.Matrix([[0, 1, 0], [0, 0, 1], [-1, -3, -3]]), sp.Matrix([0, 0, 1]), sp.Matrix([[1, 0, 0]]))
+    block = sp.Matrix([[-1, 1, 0], [0, -1, 1], [0, 0, -1]])
+    assert verdicts(problem, {"A": text(block)}) == {"A": "right"}
+    assert verdicts(problem, {"A": text(block.T)}) == {"A": "wrong"}
+
+
+def test_an_observer_of_one_state_and_two_outputs_with_any_of_its_estimates() -> None:
+    """P = [u v 1] with P A + 4 P = H C: v follows from the third column, H from the first two, and G = P B."""
+    A, B, C = sp.Matrix([[0, 1, 1], [2, -1, 1], [1, 0, -2]]), sp.Matrix([1, 0, 2]), sp.eye(3)[:2, :]
+    problem = f'task = "reduced_order_observer"\n[plant]\nA = "{text(A)}"\nB = "{text(B)}"\nC = "{text(C)}"\n'
+    problem += '[specification]\npoles = "-4"\n'
+    for u, scale in ((0, 1), (1, 3), (-5, -2)):
+        P = scale * sp.Matrix([[u, -4 - A[2, 2] - u * A[0, 2], 1]])  # (P A)₃ = -4 P₃, as A₂₃ = 1
+        rest = P * A + 4 * P
+        assert rest[2] == 0
+        M = C.col_join(P).inv()
+        answer = {"F": "[-4]", "G": text(P * B), "H": text(rest[:, :2]), "M": text(M)}
+        assert set(verdicts(problem, answer).values()) == {"right"}
+        del answer["M"]
+        assert set(verdicts(problem, answer).values()) == {"right"}
+        assert verdicts(problem, answer | {"G": text(P * B + sp.eye(1))}) == {"F": "right", "G": "wrong", "H": "right"}
+    assert verdicts(problem, {"F": "[-4]", "H": "[0 0]"})["H"] == "wrong"  # the estimate of nothing
+    assert verdicts(problem, {"F": "[-4]", "H": "[1; 2; 3]"})["H"] == "wrong"
+    # where F is an eigenvalue of A, [1 0 0] (A + 4 I) = 0 and P is not the only one
+    alone = problem.replace(text(A), "[-4 0 0; 0 0 1; 0 1 0]")
+    assert verdicts(alone, {"F": "[-4]", "H": "[5 5]"})["H"] == "wrong"
 
 
 def test_a_chain_of_vectors_may_be_scaled_as_a_whole() -> None:

@@ -295,3 +295,22 @@ def test_lists_of_numbers_may_be_complex_and_those_of_conditions_are_none() -> N
     advice = (EXAMPLES / "dominant_pair_pole_advice.toml").read_text(encoding="utf-8")
     assert judged(advice, {"poles": "[-10; -10; -12; -2 + 52/25 i; -2 - 52/25 i]"})["poles"].verdict == "right"
     assert judged(f'{SERVO}[marking]\nasked = ["compensator.conditions"]\n', {"conditions": "h"})
+
+
+def test_another_right_gain_and_what_follows_from_it_alone() -> None:
+    """A - L C of two integrators, both measured: with L = [l1 1; 0 l2] it is diag(-l1, -l2)."""
+    plant = '[plant]\nA = "[0 1; 0 0]"\nB = "[0; 1]"\nC = "[1 0; 0 1]"\n[specification]\n'
+    observer = f'task = "observer"\n{plant}poles = "-3, -4"\n[marking]\nasked = ["observer.A"]\n'
+    tracking = f'task = "tracking"\n{plant}control_poles = "-1, -2"\nobserver_poles = "-3, -4"\n'
+    tracking += 'observer = "full"\nreference_matrix = "[0 1; 0 0]"\n[marking]\nasked = ["tracking.L"]\n'
+    for first, second, verdict in ((3, 4, "right"), (4, 3, "right"), (3, 3, "wrong")):
+        matrix = {"A": f"[-{first} 0; 0 -{second}]"}
+        assert [part.verdict for part in check(observer, matrix).parts] == [verdict]
+        assert [part.verdict for part in check(tracking, {"L": f"[{first} 1; 0 {second}]"}).parts] == [verdict]
+
+
+def test_any_gain_that_follows_the_one_reference_is_right() -> None:
+    """The trajectory is (v t, 0, 0, v): the second and third entry of K_d multiply 0."""
+    text = (EXAMPLES / "cart_tracking.toml").read_text(encoding="utf-8")
+    for gain, verdict in (("[0 2 3 0]", "right"), ("[1 0 0 0]", "wrong"), ("[0 0 0 1]", "wrong")):
+        assert [part.verdict for part in check(text, {"K_d": gain}).parts if part.given] == [verdict]

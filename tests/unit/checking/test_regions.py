@@ -5,6 +5,7 @@ from __future__ import annotations
 from fractions import Fraction
 from typing import Any
 
+import numpy as np
 import pytest
 
 from symobs.checking import Checked
@@ -204,3 +205,118 @@ def test_where_a_region_differs_and_how(checked: Checked, conditions: str, verdi
     assert found.verdict == verdict
     assert reason is None or found.reason.startswith(reason), found.reason
     assert bool(found.reason) is (verdict != "right")
+
+
+def region(polynomial: str, parameters: str, more: str = "", symbols: str = "", plant: str = "") -> Checked:
+    return Checked.of(
+        f'task = "stability_region"\n[symbols]\n{symbols}\n[plant]\n{plant}\n[specification]\n'
+        f'polynomial = "{polynomial}"\nparameters = "{parameters}"\n{more}\n'
+    )
+
+
+# s² + a s + b with all real parts below −1: (s − 1)² + a (s − 1) + b has a − 2 > 0 and 1 − a + b > 0.
+MARGIN = region("s^2 + a s + b", "a, b", 'margin = "1"')
+# z + a: |a| < 1; s + a with a declared; s³ + a s² + b s + c: a, c > 0 and a b > c (Routh); a s² + s has a root at 0.
+DISCRETE = region("z + a", "a", plant="dt = true")
+POSITIVE, NONZERO, REAL = (region("s + a", "a", symbols=symbols) for symbols in ('a = "positive"', 'a = "nonzero"', ""))
+SHIFTED = region("s + a - 1", "a", symbols='a = "positive"')
+THREE = region("s^3 + a s^2 + b s + c", "a, b, c")
+NOWHERE = region("s^4 + a s^3 + b s + c", "a, b, c")
+
+
+LAST = "a > 0 and c > 0 and a b > c"
+
+
+@pytest.mark.parametrize(
+    ("checked", "conditions", "verdict", "reason"),
+    [
+        (MARGIN, "a > 2 and b > a - 1", "right", ""),
+        (
+            MARGIN,
+            "a > 0 and b > 0",
+            "margin_forgotten",
+            "these are the conditions without the margin 1; at a = 1, b = 1 your",
+        ),
+        (
+            MARGIN,
+            "a > 2 and b > a - 2",
+            "condition_missing",
+            "the condition a < b + 1 is missing; at a = 3, b = 3/2 your",
+        ),
+        (MARGIN, "a > 3 and b > a - 1", "", FAIL.format("a = 5/2, b = 2", "s**2 + 5*s/2 + 2")),
+        (MARGIN, "b > a - 1 and a > 1", "condition_missing", "the condition a > 2 is missing"),
+        (DISCRETE, "-1 < a < 1", "right", ""),
+        (
+            DISCRETE,
+            "a > 0",
+            "discrete",
+            "these are the conditions for all real parts < 0, which is stability in the other kind of",
+        ),
+        (
+            DISCRETE,
+            "-1 < a",
+            "condition_missing",
+            "the condition a < 1 is missing; at a = 2 your conditions hold, but z + 2 has",
+        ),
+        (DISCRETE, "-1 < a < 3/2", "condition_missing", "the condition a < 1 is missing"),
+        (DISCRETE, "-1/2 < a < 1", "", "at a = -2/3 your conditions fail, but all roots of z - 2/3 are as asked for"),
+        (DISCRETE, "-1 < a < 1 or a > 3", "", "at a = 4 your conditions hold, but z + 4 has roots with |z| >= 1"),
+        (POSITIVE, "a >= 0", "right", ""),  # 0 is excluded
+        (POSITIVE, "a > 1", "", "at a = 1/2 your conditions fail, but all roots of s + 1/2 are as asked for"),
+        (NONZERO, "a >= 0", "right", ""),
+        (SHIFTED, "a >= 1", "boundary", INCLUDED),
+        (REAL, "a >= 0", "boundary", INCLUDED),
+        (
+            REAL,
+            "a < 0",
+            "half_plane",
+            "a < 0 is the wrong half; at a = -1 your conditions hold, but s - 1 has roots with real",
+        ),
+        (REAL, "a != 0", "condition_missing", "the condition a > 0 is missing"),
+        (THREE, LAST, "right", ""),
+        (THREE, "a > 0 and c > 0 and a b >= c", "undecided", ""),
+        (
+            THREE,
+            "a > 0 and b > 0 and c > 0",
+            "condition_missing",
+            "the condition c < a*b is missing; at a = 1, b = 1, c = 2 your",
+        ),
+        (THREE, "a > 0 and c > 0 and a b < c", "half_plane", "a b < c is the wrong half; at a = 1"),
+        (THREE, "a < 0 and c > 0 and a b > c", "half_plane", "a < 0 is the wrong half; at "),
+        (THREE, "a > 0 and c < 0 and a b > c", "half_plane", "c < 0 is the wrong half; at "),
+        (THREE, [["a > 0", "c > 0", "a b > c"], ["a > 0", "c > 0", "a b >= c", "b > 1"]], "undecided", ""),
+        (
+            THREE,
+            "False",
+            "",
+            "at a = 2, b = 1, c = 1 your conditions fail, but all roots of s**3 + 2*s**2 + s + 1 are",
+        ),
+        (THREE, "d > 0 and a > 0 and c > 0 and a b > c", "unreadable", 'the name "d" is not declared'),
+        (NOWHERE, "False", "right", ""),
+        (
+            NOWHERE,
+            "a > 0 and b > 0",
+            "",
+            "at a = 1, b = 1, c = 1 your conditions hold, but s**4 + s**3 + s + 1 has roots",
+        ),
+    ],
+    ids=str,
+)
+def test_the_slip_and_the_reason(checked: Checked, conditions: Any, verdict: str, reason: str) -> None:
+    found = part(checked, conditions)
+    told = verdict if verdict in {"right", "undecided", "unreadable"} else "wrong"
+    assert (found.verdict, found.slip or "") == (told, verdict if verdict != told else "")
+    assert found.reason.startswith(reason)
+    assert bool(found.reason) is bool(reason)
+
+
+@pytest.mark.parametrize(
+    "conditions", ["a > 0", "c > a b and a > 0", "b > 5", "False", "True", "a < 0", "a > 2 and c > 0 and a b > c"]
+)
+def test_a_point_of_three_parameters_parts_both(conditions: str) -> None:
+    """Roots by NumPy, the conditions by Python."""
+    found = part(THREE, conditions)
+    place = {name: float(Fraction(value)) for name, value in found.place.items()}
+    stable = max(np.roots([1, place["a"], place["b"], place["c"]]).real) < 0
+    assert eval(conditions.replace("a b", "a*b"), place) is not bool(stable)  # noqa: S307 - the text stands above
+    assert all(Fraction(value).denominator <= 2 for value in found.place.values())
