@@ -300,7 +300,7 @@ LAST = "a > 0 and c > 0 and a b > c"
             "at a = 1, b = 1, c = 1 your conditions hold, but s**4 + s**3 + s + 1 has roots",
         ),
     ],
-    ids=str,
+    ids=lambda value: value if isinstance(value, str) else "region",
 )
 def test_the_slip_and_the_reason(checked: Checked, conditions: Any, verdict: str, reason: str) -> None:
     found = part(checked, conditions)
