@@ -46,12 +46,13 @@ def within(budget: Budget, work: Callable[[Progress], Value], where: str = "") -
         signal.pthread_sigmask(signal.SIG_UNBLOCK, REQUESTS)
         last = None if seconds is None else seconds + GRACE
         value, error = child.ask(None, last, hear=lambda what: reached.update({isinstance(what, str): what}))
-    except TimeoutError:
-        raise _exhausted(budget, NO_TIME, reached, where) from None
-    except Died as death:
-        if death.code == INTERRUPTED:
+    except (TimeoutError, Died) as end:
+        code = end.code if isinstance(end, Died) else NO_TIME
+        if code == INTERRUPTED:
             raise KeyboardInterrupt from None
-        raise _exhausted(budget, death.code, reached, where) from None
+        if code == NO_TIME and child.group is not None:  # the only group of processes that work starts is TeX
+            raise _tex_stopped(budget) from None
+        raise _exhausted(budget, code, reached, where) from None
     finally:
         interrupts = signal.signal(signal.SIGINT, signal.SIG_IGN)
         child.leave(GRACE / 2)  # who interrupts is not to wait a second
@@ -110,8 +111,12 @@ def _outcome(budget: Budget, work: Callable[[Progress], Any], report: Progress) 
 
         if TEX_AT_WORK not in getattr(over, "__notes__", ()):
             raise
-        message = f"TeX was stopped: {budget.seconds:g} seconds were over"
-        return None, TypesettingError(message, repair="give more with --timeout, or write LaTeX with --format latex")
+        return None, _tex_stopped(budget)
+
+
+def _tex_stopped(budget: Budget) -> TypesettingError:
+    message = f"TeX was stopped: {budget.seconds:g} seconds were over"
+    return TypesettingError(message, repair="give more with --timeout, or write LaTeX with --format latex")
 
 
 def _portable(error: Exception) -> Exception:

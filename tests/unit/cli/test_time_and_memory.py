@@ -19,7 +19,7 @@ from symobs.child_processes.budget import Budget
 from symobs.cli.commands import solve
 from symobs.cli.shared import time_and_memory as budget_module
 from symobs.cli.shared.time_and_memory import within
-from symobs.errors import InputError, OutOfBudget, ProblemErrors, ShapeMismatch
+from symobs.errors import InputError, OutOfBudget, ProblemErrors, ShapeMismatch, TypesettingError
 from symobs.render.formats.pdf import compiled
 from symobs.result import registry
 from tests.support.paths import ROOT
@@ -323,19 +323,6 @@ def test_a_problem_that_takes_too_much_keeps_its_place_with_its_question(hard: P
     assert second["failure"] == "This problem could not be solved within the time or memory allowed."
 
 
-def test_the_alarm_in_tex_is_tex_s(tmp_path: Path) -> None:
-    number = hanging_tex(tmp_path)
-    (tmp_path / "page.pdf").write_text("before", encoding="utf-8")
-    path = f"{tmp_path}{os.pathsep}{os.environ['PATH']}"
-    code, said = unbounded("solve", str(SERVO), "-o", "page.pdf", "--timeout", "20", folder=tmp_path, PATH=path)
-    assert (code, said) == (
-        6,
-        "TeX was stopped: 20 seconds were over; give more with --timeout, or write LaTeX with --format latex\n",
-    )
-    assert (tmp_path / "page.pdf").read_text(encoding="utf-8") == "before"
-    assert ends(int(number.read_text(encoding="utf-8")))
-
-
 def hanging_tex(folder: Path) -> Path:
     """Put a TeX that hangs into a folder; the file returned has the number of the process it started."""
     number = folder / "number"
@@ -357,7 +344,7 @@ runpy.run_module("symobs", run_name="__main__", alter_sys=True)
 def signalled(
     number: int, ready: Callable[[], object], *arguments: str, folder: Path, **more: str
 ) -> tuple[int, str, str]:
-    """Run symobs, send it a signal once it is ready for that, and return what is left of it."""
+    """Run symobs, send it a signal once it is ready for that, and return what is left of it; the alarm is its child's."""
     with subprocess.Popen(
         [sys.executable, "-c", INTERRUPTIBLE, *arguments],
         cwd=folder,
@@ -372,7 +359,7 @@ def signalled(
                 assert process.poll() is None, process.communicate()
                 assert time.monotonic() < waited
                 time.sleep(0.02)
-            process.send_signal(number)
+            os.kill(child_of(process.pid) if number == signal.SIGALRM else process.pid, number)
             out, err = process.communicate(timeout=SAFETY)
         finally:
             process.kill()
@@ -436,6 +423,27 @@ def test_an_end_while_tex_runs_ends_tex(number: int, code: int, said: str, budge
     assert not any(temporary.iterdir())
 
 
+def child_of(parent: int) -> int:
+    """Number of the only child of a process."""
+    (number,) = Path(f"/proc/{parent}/task/{parent}/children").read_text(encoding="utf-8").split()
+    return int(number)
+
+
+def test_the_alarm_in_tex_is_tex_s(tmp_path: Path) -> None:
+    started = hanging_tex(tmp_path)
+    (tmp_path / "page.pdf").write_text("before", encoding="utf-8")
+    path = f"{tmp_path}{os.pathsep}{os.environ['PATH']}"
+    arguments = ["solve", str(SERVO), "-o", "page.pdf", "--timeout", "900"]
+    left = signalled(signal.SIGALRM, started.exists, *arguments, folder=tmp_path, PATH=path)
+    assert left == (
+        6,
+        "",
+        "TeX was stopped: 900 seconds were over; give more with --timeout, or write LaTeX with --format latex\n",
+    )
+    assert ends(int(started.read_text(encoding="utf-8")))
+    assert (tmp_path / "page.pdf").read_text(encoding="utf-8") == "before"
+
+
 def test_tex_of_a_child_that_cannot_leave_is_ended(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """A child that hears nothing, or comes to nothing on a busy machine, is killed: what it has started goes with it."""
     started = hanging_tex(tmp_path)
@@ -446,7 +454,7 @@ def test_tex_of_a_child_that_cannot_leave_is_ended(tmp_path: Path, monkeypatch: 
         monkeypatch.setenv("PATH", f"{tmp_path}{os.pathsep}{os.environ['PATH']}")
         compiled(r"\documentclass{article}", time_limit=LONG)
 
-    with pytest.raises(OutOfBudget):
+    with pytest.raises(TypesettingError, match=r"^TeX was stopped: 5 seconds were over; give more with --timeout"):
         within(Budget(5.0), work)
     assert ends(int(started.read_text(encoding="utf-8")))
 
