@@ -11,7 +11,7 @@ from fractions import Fraction
 from itertools import dropwhile, takewhile
 from typing import TYPE_CHECKING, Any, TypeAlias
 
-from symobs.certificate.claims import as_scalar
+from symobs.certificate.claims import as_scalar, verify
 from symobs.certificate.pointwise import Pointwise
 from symobs.derivation.facts.properties import PREDICATES
 from symobs.derivation.facts.rejection import reject
@@ -82,12 +82,106 @@ def _rank(*, is_full: bool, everywhere: bool = False) -> Callable[[Relation, Env
     return is_said
 
 
+def _of_pair(letter: str, **says: bool) -> Callable[[Relation, Environment], bool]:
+    """Return the check of a rank that is said of a pair: it is that of the pair's own test matrix."""
+    is_such = _rank(**says)
+
+    def is_said(relation: Relation, environment: Environment) -> bool:
+        return is_such(relation, environment) and _is_test_matrix(letter, relation, environment)
+
+    return is_said
+
+
+def _is_test_matrix(letter: str, relation: Relation, environment: Environment) -> bool:
+    """Return whether the matrix whose rank is said is [C; CA; …; CAⁿ⁻¹], or [B, AB, …, Aⁿ⁻¹B]."""
+    matrix, pair = _ranked(relation), _pair(letter, environment)
+    if matrix is None or pair is None:
+        return False
+    (A, C), exact = pair, Exact(environment)
+    found = evaluate(matrix, environment, exact)
+    X = found if letter == "C" else found.T
+    outputs, order = C.shape
+    if X.shape != (outputs * order, order):
+        return False
+    first, above, below = (X.select(rows, range(order)) for rows in _blocks(outputs, outputs * order))
+    return agree(first, C, exact) and agree(below, above @ A, exact)
+
+
+def _blocks(size: int, height: int) -> tuple[range, range, range]:
+    """Return the rows of the first block, of all blocks but the last, and of all but the first."""
+    return range(size), range(height - size), range(size, height)
+
+
+def _pair(letter: str, environment: Environment) -> tuple[Matrix, Matrix] | None:
+    """Return (A, C), or (Aᵀ, Bᵀ), where its letters are established."""
+    A, other = (environment.values.get(name) for name in ("A", letter))
+    if not isinstance(A, Matrix) or not isinstance(other, Matrix):
+        return None
+    return (A, other) if letter == "C" else (A.T, other.T)
+
+
+def _sums_powers(letter: str, environment: Environment) -> bool:
+    """Return whether M = Σ (Aᵀ)ᵏ Cᵀ C Aᵏ with all n powers, as its theorem demands."""
+    pair = _pair(letter, environment)
+    if pair is None or "M" not in environment.values:
+        return False
+    A, row = pair
+    total = row.T @ row
+    for _ in range(A.shape[0] - 1):
+        row = row @ A
+        total = total + row.T @ row
+    return agree(environment.values["M"], total, Exact(environment))
+
+
+def _shares_kernel(letter: str, environment: Environment) -> bool:
+    """Return whether W has the kernel of M, the sum over n powers: as an integral, or as a sum over all steps.
+
+    The letter W may be established in cases only.  An integral over all time has no e^{At} on its page.
+    """
+    pair, W = _pair(letter, environment), environment.values.get("W")
+    if pair is None or not _sums_powers(letter, environment):
+        return False
+    (A, C), is_discrete = pair, environment.variable == "z"
+    if W is None or (not is_discrete and "exp_At" in environment.values):
+        return not is_discrete
+    return agree(A.T @ W @ A - W if is_discrete else A.T @ W + W @ A, -(C.T @ C), Exact(environment))
+
+
+def _is_nonsingular(environment: Environment) -> bool:
+    """Return whether det W ≠ 0 here."""
+    letter = Letter("W")
+    return "W" in environment.values and _is_true(Apply("det", letter), "!=", 0, environment)
+
+
+def _spans_kernel(environment: Environment) -> bool:
+    """Return whether the columns of v (or N) are a basis of the kernel of W."""
+    values = environment.values
+    W, N = values.get("W"), values.get("v", values.get("N"))
+    if W is None or N is None:
+        return False
+    order, vectors = N.shape
+    return (
+        agree(W @ N, N * 0, Exact(environment))
+        and _is_true(Apply("rank", Literal(N)), "=", vectors, environment)
+        and _is_true(Apply("rank", Letter("W")), "=", order - vectors, environment)
+    )
+
+
+def _is_true(formula: Formula, operator: str, value: int, environment: Environment) -> bool:
+    return verify(Relation((formula, Literal(Scalar.of(value))), (operator,)), environment)[0] != ""
+
+
 def _properties(facts: Sequence[Fact]) -> set[str]:
     return {fact.name for fact in facts if isinstance(fact, Predicate)}
 
 
 def _has_rank(facts: Sequence[Fact], environment: Environment, *, is_full: bool) -> bool:
     return any(_is_of_rank(fact, environment, is_full=is_full) for fact in facts if isinstance(fact, Relation))
+
+
+def _has_test_rank(letter: str, facts: Sequence[Fact], environment: Environment) -> bool:
+    is_said = _of_pair(letter, is_full=True)
+    return any(is_said(fact, environment) for fact in facts if isinstance(fact, Relation))
 
 
 def _is_of_loop(fact: Predicate, environment: Environment) -> bool:
@@ -151,7 +245,12 @@ def _is_of_rank(relation: Relation, environment: Environment, *, is_full: bool) 
 _OF_SLOTS: dict[str, Callable[[Relation, Environment], bool]] = {
     "says_rank_full": _rank(is_full=True),
     "says_rank_low": _rank(is_full=False),
-    "says_rank_low_everywhere": _rank(is_full=False, everywhere=True),
+    "says_observable": _of_pair("C", is_full=True),
+    "says_controllable": _of_pair("B", is_full=True),
+    "says_unobservable": _of_pair("C", is_full=False),
+    "says_uncontrollable": _of_pair("B", is_full=False),
+    "says_unobservable_everywhere": _of_pair("C", is_full=False, everywhere=True),
+    "says_uncontrollable_everywhere": _of_pair("B", is_full=False, everywhere=True),
     "says_decay": _exponential(lambda of: -of["sigma_d"] * of["T_s"]),
     "says_overshoot": _exponential(lambda of: -Scalar.symbol(PI) * of["sigma_d"] / of["omega_d"]),
     "says_overshoot_above": _exponential(
@@ -163,6 +262,13 @@ _OF_SLOTS: dict[str, Callable[[Relation, Environment], bool]] = {
 _OF_FACTS: dict[str, Callable[[Sequence[Fact], Environment], bool]] = {
     "needs_rank_full": lambda facts, environment: _has_rank(facts, environment, is_full=True),
     "needs_rank_low": lambda facts, environment: _has_rank(facts, environment, is_full=False),
+    "needs_observable": lambda facts, environment: _has_test_rank("C", facts, environment),
+    "needs_controllable": lambda facts, environment: _has_test_rank("B", facts, environment),
+    "sums_powers": lambda _, environment: any(_sums_powers(letter, environment) for letter in ("C", "B")),
+    "shares_kernel_observability": lambda _, environment: _shares_kernel("C", environment),
+    "shares_kernel_controllability": lambda _, environment: _shares_kernel("B", environment),
+    "needs_nonsingular": lambda _, environment: _is_nonsingular(environment),
+    "spans_kernel": lambda _, environment: _spans_kernel(environment),
     "needs_modes_stable": lambda facts, environment: (
         bool(_properties(facts) & {"stable", "marginal"}) or _has_rank(facts, environment, is_full=True)
     ),

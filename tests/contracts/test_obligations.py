@@ -31,22 +31,31 @@ DEMANDED = {
     "needs_modes_stable": "yes_detectability yes_stabilizability",
     "needs_modes_unstable": "no_detectability no_stabilizability",
     "needs_pole_defective": "defective defective_instead",
+    "needs_controllable": "yes_controllability",
+    "needs_nonsingular": "steps_nonsingular_controllability steps_nonsingular_observability",
+    "needs_observable": "yes_observability",
     "needs_rank_full": """
         no_feedforward_zero no_fixed_modes_controllability no_fixed_modes_observability
-        pbh_yes_controllability pbh_yes_observability yes_controllability yes_observability
+        pbh_yes_controllability pbh_yes_observability
     """,
     "needs_rank_low": "pbh_no_controllability pbh_no_observability",
     "says_decay": "decayed",
     "says_overshoot": "overshoot_held",
     "says_overshoot_above": "overshoot_close",
-    "says_rank_full": """
-        case_stack_yes full_rank_controllability full_rank_observability generic_rank_controllability
-        generic_rank_observability stack_yes
-    """,
-    "says_rank_low": "case_stack generic_low_controllability generic_low_observability stack_no",
-    "says_rank_low_everywhere": "no_controllability no_observability",
+    "says_controllable": "full_rank_controllability generic_rank_controllability",
+    "says_observable": "full_rank_observability generic_rank_observability",
+    "says_rank_full": "case_stack_yes stack_yes",
+    "says_rank_low": "case_stack stack_no",
+    "says_uncontrollable": "generic_low_controllability",
+    "says_uncontrollable_everywhere": "no_controllability",
+    "says_unobservable": "generic_low_observability",
+    "says_unobservable_everywhere": "no_observability",
     "scales_by_radius": "enlarged",
+    "shares_kernel_controllability": "kernel_none_controllability",
+    "shares_kernel_observability": "kernel_none kernel_shared",
+    "spans_kernel": "steps_kernel_controllability steps_kernel_observability",
     "substitutes_law": "observer_closed observer_closed_matrix",
+    "sums_powers": "finite_sum_is",
     "sets_margin": "sought_margin",
     "sets_radius": "sought_radius",
 }

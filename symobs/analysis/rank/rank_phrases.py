@@ -47,16 +47,16 @@ QUESTIONS: dict[str, str] = {
 }
 
 DEMANDS: dict[str, str] = {
-    "yes_observability": "needs_rank_full",
-    "yes_controllability": "needs_rank_full",
-    "full_rank_observability": "says_rank_full",
-    "full_rank_controllability": "says_rank_full",
-    "generic_rank_observability": "says_rank_full",
-    "generic_rank_controllability": "says_rank_full",
-    "no_observability": "says_rank_low_everywhere",
-    "no_controllability": "says_rank_low_everywhere",
-    "generic_low_observability": "says_rank_low",
-    "generic_low_controllability": "says_rank_low",
+    "yes_observability": "needs_observable",
+    "yes_controllability": "needs_controllable",
+    "full_rank_observability": "says_observable",
+    "full_rank_controllability": "says_controllable",
+    "generic_rank_observability": "says_observable",
+    "generic_rank_controllability": "says_controllable",
+    "no_observability": "says_unobservable_everywhere",
+    "no_controllability": "says_uncontrollable_everywhere",
+    "generic_low_observability": "says_unobservable",
+    "generic_low_controllability": "says_uncontrollable",
 }
 
 RESTS_ON: dict[str, str] = {

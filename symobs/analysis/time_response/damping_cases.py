@@ -181,8 +181,7 @@ class DampingCases(Result):
             page.steps += _narrowed(steps, chosen)
         else:
             apart = relation(product_of(zeros), "!=", 0)
-            # on a stratum what is told rests on what does not vanish: a basis is one outside of its own cases only
-            page.steps.append(CaseStep(Conjunction((apart,)) if self.plant.equations else apart, (), steps))
+            page.steps.append(CaseStep(Conjunction((apart,)), (), steps))  # inside, what is told rests on it
         page.steps += [_case(page, case, self.answer["chosen"], write_branch) for case in self.case_tree]
 
 

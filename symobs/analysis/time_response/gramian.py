@@ -9,7 +9,14 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 from symobs._dataclass import dataclass
-from symobs.analysis.rank.rank_test import minor_claim, rank_answer, rank_claims, rank_environment, rank_losses
+from symobs.analysis.rank.rank_test import (
+    minor_claim,
+    power_rows,
+    rank_answer,
+    rank_claims,
+    rank_environment,
+    rank_losses,
+)
 from symobs.analysis.strata.repeated_eigenvalues import distances, systems_of
 from symobs.analysis.time_response.damping_cases import (
     DampingCases,
@@ -26,7 +33,7 @@ from symobs.certificate.claims import Claim
 from symobs.conditions import Condition
 from symobs.derivation.builder import relation
 from symobs.errors import InputError
-from symobs.exact import Matrix, Scalar, product_of
+from symobs.exact import Matrix, Scalar, modulo, product_of
 from symobs.exact.core.generators import symbols_in
 from symobs.exact.time_functions.matrix_exponential import NoClosedForm
 from symobs.exact.time_functions.quasipolynomial import (
@@ -64,6 +71,18 @@ def pair_of(plant: StateSpace, of: str) -> tuple[Matrix, Matrix]:
     return (m.A, m.C) if of == "observability" else (m.A.T, m.B.T)
 
 
+def _pair_seen(A: Matrix, C: Matrix, plant: StateSpace, horizon: Any) -> tuple[Matrix, Matrix]:
+    """Return the pair whose observability matrix has the kernel of W.
+
+    It is (A, C), since the rank of [C; CA; …] has stopped growing after n rows; over fewer steps than states it is
+    (0, [C; CA; …]) with as many rows as steps.
+    """
+    if not plant.is_discrete or horizon == INFINITE or horizon.fraction() >= plant.order:
+        return A, C
+    rows = power_rows(A, C)
+    return A * 0, rows.select(range(int(horizon.fraction()) * C.shape[0]), range(plant.order))
+
+
 @dataclass(frozen=True, eq=False, repr=False)
 class Gramian(DampingCases):
     """W with W = ∫ of its integrand (checked by differentiation), its determinant, Σ (Aᵀ)ᵏ Cᵀ C Aᵏ, and the kernel."""
@@ -75,8 +94,8 @@ class Gramian(DampingCases):
     def of(cls, plant: StateSpace, method_name: str, asked: Mapping[str, Any], taken: Signs) -> Self:
         """Return the result for a plant; `asked` holds `of` and `horizon`."""
         A, C = pair_of(plant, asked["of"])
-        found = rank_answer(A, C, plant.ideal)
-        O = found["matrix"]
+        found = rank_answer(*_pair_seen(A, C, plant, asked["horizon"]), plant.ideal)
+        O = modulo(power_rows(A, C), plant.ideal)
         shared = {"of": asked["of"], "horizon": asked["horizon"], "taken": taken, "chosen": {}, "rank": found}
         shared |= {"finite_sum": (O.T @ O).normal()}
         if asked["horizon"] == INFINITE:
@@ -111,6 +130,11 @@ class Gramian(DampingCases):
         if not self.has_answer:
             return "conditional" if self._kept else "no"
         return super().verdict
+
+    @property
+    def is_over_steps(self) -> bool:
+        """Whether W is a sum over a number of steps, which its own determinant and kernel describe."""
+        return self.plant.is_discrete and self.answer["horizon"] != INFINITE
 
     @property
     def has_answer(self) -> bool:
@@ -158,7 +182,8 @@ class Gramian(DampingCases):
         yield from super().claims()
         A, C = pair_of(self.plant, self.answer["of"])
         found, W = self.answer["rank"], self.answer["matrix"]
-        e = rank_environment(self.plant, (A, C), found)
+        pair = _pair_seen(A, C, self.plant, self.answer["horizon"])
+        e = rank_environment(self.plant, pair, found)
         yield from rank_claims(found, e)
         yield from minor_claim(found, e)
         values: dict[str, Any] = {"A": A, "C": C, "M": self.answer["finite_sum"]}
@@ -169,7 +194,7 @@ class Gramian(DampingCases):
             total = total + (a.T) ** k @ c.T @ c @ a**k
         yield Claim(relation(m, total), plain, "finite_sum = sum of (A.T)**k*C.T*C*A**k, k < n")
         kernel: Matrix = found["kernel"]
-        if kernel.shape[1]:
+        if kernel.shape[1] and pair == (A, C):
             zero = Matrix.zeros(*kernel.shape)
             yield Claim(relation(m @ Term(Literal(kernel), plain), zero), plain, "finite_sum*N = 0")
         if self.answer["horizon"] == INFINITE:

@@ -21,6 +21,7 @@ from symobs.exact import Matrix, Scalar
 from symobs.exact.core.generators import substitute
 from symobs.formula import Conjunction, HoldsExactlyWhere, Literal, Quotient
 from symobs.formula.calculus import since_start
+from symobs.phrases.spoken import Counted
 from symobs.result import page_of
 from symobs.stability.inequalities.written_form import as_inequality
 
@@ -50,7 +51,7 @@ def write_gramian(page: Builder, result: Gramian) -> None:
         if result.answer["chosen"]:
             _tell_lyapunov(result, page)
         result.write_branches(page, _write_branch)
-    if result.answer["matrix"] is not None or result.decay.verdict == "no":
+    if not result.is_over_steps and (result.answer["matrix"] is not None or result.decay.verdict == "no"):
         with page.section("finite_sum"):
             _tell_finite_sum(result, page)
 
@@ -107,7 +108,10 @@ def _write_branch(page: Builder, result: Gramian) -> None:
         total = _square(C)
         for k in range(1, int(answer["horizon"].fraction())):
             total = total + _transposed(A) ** k @ _square(C) @ A**k
-        page.define("W", total, say="gramian_steps", answer=True, steps=str(answer["horizon"]))
+        page.define(
+            "W", total, say="gramian_steps", answer=True, steps=Counted("step", int(answer["horizon"].fraction()))
+        )
+        _tell_kernel_over_steps(result, page)
         return
     found, _ = closed_form(result.plant, {**answer["taken"], **answer["chosen"]})
     is_dual = answer["of"] == "controllability"
@@ -194,18 +198,37 @@ def _tell_finite_sum(result: Gramian, page: Builder) -> None:
                 page.steps.append(CaseStep(stratum_of(case), tuple(case.substitution.items()), tuple(there.steps)))
 
 
+def _tell_kernel_over_steps(result: Gramian, page: Builder) -> None:
+    """Write the determinant of W, and that its kernel is trivial or which vectors span it."""
+    of, kernel, W = result.answer["of"], result.answer["rank"]["kernel"], page["W"]
+    if not kernel.shape[1]:
+        _tell_nonsingular(
+            f"steps_nonsingular_{of}", "W", result, page, known=result.further_zeros if result.case_tree else ()
+        )
+        return
+    page.equal(relation(W.apply("det"), 0), say="gramian_determinant")
+    v = page.set("N" if kernel.shape[1] > 1 else "v", kernel)
+    page.equal(relation(v, kernel), relation(W @ v, kernel * 0), say=f"steps_kernel_{of}")
+
+
+def _tell_nonsingular(key: str, name: str, result: Gramian, page: Builder, known: tuple[Scalar, ...] = ()) -> None:
+    """Write that a matrix has a nonzero determinant, as a case unless its factors are known not to vanish."""
+    value = page[name].value.determinant()
+    stated = relation(page[name].apply("det"), value)
+    says = Conclude(sentence(key, {"determinant": stated}), (relation(value, "!=", 0),))
+    factors = vanishing_factors([value], result.plant.symbols.signs)
+    apart = Conjunction(tuple(relation(factor, "!=", 0) for factor in factors))
+    page.steps.append(says if set(factors) <= set(known) else CaseStep(apart, (), (says,)))
+
+
 def _tell_kernel(result: Gramian, page: Builder) -> None:
     """Write the kernel of the finite sum with its vector, or that there is none."""
     M, kernel = page["M"], result.answer["rank"]["kernel"]
     if not kernel.shape[1]:
-        value = M.value.determinant()
         key = "kernel_none_controllability" if result.answer["of"] == "controllability" else "kernel_none"
         is_somewhere = result.answer["horizon"] == INFINITE and bool(result.decay.positive)
         key = "kernel_none_of_sum" if result.answer["matrix"] is None or is_somewhere else key
-        says = Conclude(sentence(key, {"determinant": relation(M.apply("det"), value)}), (relation(value, "!=", 0),))
-        factors = vanishing_factors([value], result.plant.symbols.signs)
-        apart = Conjunction(tuple(relation(factor, "!=", 0) for factor in factors))
-        page.steps.append(CaseStep(apart, (), (says,)) if factors else says)
+        _tell_nonsingular(key, "M", result, page)
         return
     if result.answer["matrix"] is None or result.answer["of"] == "controllability":
         return

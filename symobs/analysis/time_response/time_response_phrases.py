@@ -36,12 +36,16 @@ PHRASES: dict[str, str] = {
     "gramian_diverges_controllability": "Not all controllable modes decay, so the infinite-horizon Gramian does not exist.",
     "gramian_open": "Whether the infinite-horizon Gramian exists is not decided here: {question}.",
     "gramian_exists_if": "The infinite-horizon Gramian exists if and only if {where}.",
-    "gramian_steps": "Over a horizon of {steps} steps the Gramian is the sum",
+    "gramian_steps": "Over a horizon of {steps} the Gramian is the sum",
     "finite_sum": "Finite sum.",
     "finite_sum_is": "The finite sum over the powers of $A$ has the same kernel,",
     "kernel_none": "Its determinant is {determinant}, so its kernel is trivial, and so is that of $W$: the initial state is determined by the output.",
     "kernel_none_of_sum": "Its determinant is {determinant}, so its kernel is trivial.",
     "kernel_none_controllability": "Its determinant is {determinant}, so its kernel is trivial, and so is that of $W$: every state is reachable.",
+    "steps_nonsingular_observability": "Its determinant is {determinant}, so its kernel is trivial: the initial state is determined by the output over these steps.",
+    "steps_nonsingular_controllability": "Its determinant is {determinant}, so its kernel is trivial: every state is reachable in these steps.",
+    "steps_kernel_observability": "Initial states that differ by a vector of its kernel give the same output over these steps. The kernel is spanned by",
+    "steps_kernel_controllability": "The states reachable in these steps are those orthogonal to its kernel, which is spanned by",
     "kernel_shared": "The Gramian, the finite sum and $O$ have the same kernel. For",
     "kernel_unseen": "the output vanishes identically, so this state is indistinguishable from 0:",
     "kernel_unseen_several": "the output of every column vanishes identically, so the states they span are indistinguishable from 0:",
@@ -108,6 +112,17 @@ ASSERTS: dict[str, tuple[str, ...]] = {
     "gramian_infinite_controllability": ("stable",),
     "gramian_diverges_observability": ("unstable",),
     "gramian_diverges_controllability": ("unstable",),
+}
+
+DEMANDS: dict[str, str] = {
+    "finite_sum_is": "sums_powers",
+    "kernel_none": "shares_kernel_observability",
+    "kernel_none_controllability": "shares_kernel_controllability",
+    "kernel_shared": "shares_kernel_observability",
+    "steps_nonsingular_observability": "needs_nonsingular",
+    "steps_nonsingular_controllability": "needs_nonsingular",
+    "steps_kernel_observability": "spans_kernel",
+    "steps_kernel_controllability": "spans_kernel",
 }
 
 RESTS_ON: dict[str, str] = {

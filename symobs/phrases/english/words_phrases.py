@@ -58,6 +58,7 @@ COUNTS: dict[str, dict[str, str]] = {
         "6": "the sixth real root from the left",
         "other": "the {digits}th real root from the left",
     },
+    "step": {"1": "one step", "other": "{word} steps"},
     "root_lies": {"0": "no root lies", "1": "one root lies", "other": "{word} roots lie"},
     "sign_changes": {
         "0": "does not change sign",

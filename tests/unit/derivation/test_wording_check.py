@@ -51,15 +51,8 @@ BESIDE = (
     rank(LOW, 1, 2, 3, "=", "<", "<"),
 )
 
-SAID_OF_FULL = [
-    "full_rank_observability",
-    "full_rank_controllability",
-    "generic_rank_observability",
-    "generic_rank_controllability",
-    "stack_yes",
-    "case_stack_yes",
-]
-SAID_OF_LOWER = ["no_observability", "no_controllability", "stack_no", "case_stack"]
+SAID_OF_FULL = ["stack_yes", "case_stack_yes"]
+SAID_OF_LOWER = ["stack_no", "case_stack"]
 
 
 @pytest.mark.parametrize("key", SAID_OF_FULL)
@@ -78,17 +71,55 @@ def test_a_lower_rank_is_said_to_be_lower(key: str) -> None:
         assert fits(key, other, HERE) is False
 
 
-@pytest.mark.parametrize("key", ["no_observability", "no_controllability"])
-def test_a_rank_that_is_told_for_all_parameters_drops_nowhere(key: str) -> None:
-    h = Scalar.symbol("h")
-    everywhere, drops = Literal(Matrix.of([[1, h], [2, 2 * h]])), Literal(Matrix.of([[h, 1], [h * h, h]]))
-    falls = Literal(Matrix.of([[h, 0], [0, 0]]))
-    assert fits(key, rank(LOW, "<", 2), HERE) is True
-    assert fits(key, rank(everywhere, "<", 2), HERE) is True
-    assert fits(key, rank(drops, "<", 2), HERE) is True
-    assert fits(key, rank(falls, "<", 2), HERE) is False
-    assert fits(f"generic_low_{key[3:]}", rank(falls, "<", 2), HERE) is True
-    assert fits(f"generic_low_{key[3:]}", FULL, HERE) is False
+def pair(of: str, A: Matrix, row: list[Any], *more: Any) -> tuple[Relation, Environment]:
+    """The rank of the test matrix [C; CA] of a pair, or [B, AB] of its dual, and the environment of the pair."""
+    C = Matrix.of([row])
+    O = Matrix.block([[C], [C @ A]])
+    if of == "observability":
+        return rank(Literal(O), *more), Environment(values={"A": A, "C": C})
+    return rank(Literal(O.T), *more), Environment(values={"A": A.T, "B": C.T})
+
+
+@pytest.mark.parametrize("of", ["observability", "controllability"])
+def test_a_rank_that_is_said_of_a_pair_is_that_of_its_own_test_matrix(of: str) -> None:
+    h, I = Scalar.symbol("h"), Matrix.identity(2)
+    full, here = pair(of, Matrix.of([[0, 1], [0, 0]]), [1, 0], 2)
+    for key in (f"full_rank_{of}", f"generic_rank_{of}"):
+        assert fits(key, full, here)
+        assert not fits(key, full, HERE)
+        assert not fits(key, rank(Literal(I * 2), 2), here)  # the rank of another matrix
+    assert rests(f"yes_{of}", (full,), here)
+    assert not rests(f"yes_{of}", (rank(Literal(I * 2), 2),), here)
+    low, generic = f"no_{of}", f"generic_low_{of}"
+    for A, row in ((I * 2, [1, h]), (I * h, [h, 1])):  # of rank 1 for all h
+        assert fits(low, *pair(of, A, row, "<", 2))
+        assert not fits(low, pair(of, A, row, "<", 2)[0], here)
+    falls = pair(of, I * 0, [h, 0], "<", 2)  # of rank 0 at h = 0
+    assert not fits(low, *falls)
+    assert fits(generic, *falls)
+    assert not fits(generic, full, here)
+
+
+def test_a_fact_about_one_matrix_is_not_carried_to_another_without_its_ground() -> None:
+    A, C = Matrix.of([[-2, 1, 0], [0, 1, 2], [0, 0, 0]]), Matrix.of([[0, -1, 2]])
+    rows = [C, C @ A, C @ A @ A]
+    M = Matrix.block([[row] for row in rows]).T @ Matrix.block([[row] for row in rows])
+    W = Matrix.of([[0, 0, 0], [0, 2, 0], [0, 0, 8]])  # C'C + A'C'C A
+    v = Matrix.column([1, 0, 0])
+    data: dict[str, Any] = {"A": A, "C": C, "M": M, "W": W, "v": v}
+    here = Environment(variable="z", values=data)
+    flow = Environment(values=data | {"exp_At": A})
+    assert rests("finite_sum_is", (), here)
+    assert not rests("finite_sum_is", (), here.extended_by(values={"M": W}))
+    assert not rests("kernel_none", (), here)  # a sum of two powers is neither an integral nor over all time
+    assert not rests("kernel_shared", (), here)
+    assert rests("kernel_shared", (), flow)
+    assert not rests("kernel_shared", (), flow.extended_by(values={"M": W}))
+    assert rests("steps_kernel_observability", (), here)
+    assert not rests("steps_kernel_observability", (), here.extended_by(values={"v": Matrix.column([0, 1, 0])}))
+    assert not rests("steps_kernel_observability", (), here.extended_by(values={"W": W * 0}))  # more than v is in it
+    assert not rests("steps_nonsingular_observability", (), here)
+    assert rests("steps_nonsingular_observability", (), here.extended_by(values={"W": Matrix.identity(3)}))
 
 
 def test_other_sentences_may_speak_of_any_relation() -> None:

@@ -1,0 +1,50 @@
+"""Gramians over fewer steps than states: their rank and kernel are those of the sum, not of the test matrix."""
+
+from __future__ import annotations
+
+import random
+
+import pytest
+import sympy
+
+import symobs
+
+FEW = symobs.StateSpace("[-2 1 0; 0 1 2; 0 0 0]", "[0; 1; -1]", "[0 -1 2]", dt=True)
+
+
+def total(A: sympy.Matrix, C: sympy.Matrix, steps: int) -> sympy.Matrix:
+    """The sum Σ (Aᵀ)ᵏ Cᵀ C Aᵏ, k < steps, by SymPy."""
+    return sum(((C * A**k).T * (C * A**k) for k in range(steps)), sympy.zeros(*A.shape))
+
+
+def test_two_steps_do_not_reach_three_states() -> None:
+    found = symobs.gramian(FEW, of="controllability", horizon="2")
+    assert (found.rank, found.determinant) == (2, 0)
+    assert [tuple(v) for v in found.kernel] == [(1, 1, 1)]
+    page = " ".join(found.to("text").split())
+    assert "orthogonal to its kernel" in page
+    assert "every state is reachable" not in page
+    assert "every state is reachable in these steps" in " ".join(
+        symobs.gramian(FEW, of="controllability", horizon="3").to("text").split()
+    )
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_rank_and_kernel_are_those_of_the_sum(seed: int) -> None:
+    draw = random.Random(seed)  # noqa: S311
+    order, rows = draw.choice([2, 3]), draw.choice([1, 1, 2])
+    b = sympy.Symbol("b")
+    entries = [-1, 0, 0, 1, 2, b] if seed % 2 else [-1, 0, 0, 1, 2]
+    A = sympy.Matrix(order, order, lambda *_: draw.choice(entries))
+    C = sympy.Matrix(rows, order, lambda *_: draw.choice(entries))
+    plant = symobs.StateSpace(A, C=C, dt=True)
+    for steps in range(1, order + 2):
+        found = symobs.gramian(plant, horizon=steps)
+        assert sympy.simplify(found.matrix - total(A, C, steps)) == sympy.zeros(order)
+        for value in (None, -1, 0, 1, sympy.Rational(1, 2), 3) if b in (A.free_symbols | C.free_symbols) else (None,):
+            there = found if value is None else found.at(b=value)
+            W = there.matrix
+            assert there.rank == W.rank()
+            assert len(there.kernel) == order - there.rank
+            assert all(sympy.simplify(W * sympy.Matrix(v)) == sympy.zeros(order, 1) for v in there.kernel)
+        assert "Gramian" in found.to("text")
