@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 def caution_poles(page: Builder, desired: DesiredPolynomial, phi: str, of: str) -> None:
-    """Warn where the desired polynomial, the value of `phi`, is surely not stable; of: observer or control."""
+    """Warn where the desired polynomial, the value of `phi`, is surely not stable; of: observer, state_feedback, servo."""
     plant, signs = page.plant, page.plant.symbols.signs
     polynomial, discrete = desired.polynomial, page.plant.is_discrete
     if page[phi].value != polynomial or stability(polynomial, plant.variable, signs, discrete=discrete).verdict != "no":
@@ -23,7 +23,9 @@ def caution_poles(page: Builder, desired: DesiredPolynomial, phi: str, of: str) 
     facts = [predicate("unstable", subject)]
     if is_beyond(polynomial, plant.variable, signs, discrete=discrete):
         facts.append(predicate("beyond", subject))
-        key = "grows"
+        key, of = "grows", of if of == "observer" else "state_feedback"
+    elif of == "servo":  # whatever the gains, a constant reference may drive the integral of the error without end
+        key = "lasts"
     elif is_marginal(polynomial, plant.variable, signs, discrete=discrete):
         facts.append(predicate("marginal", subject))
         key = "stays"

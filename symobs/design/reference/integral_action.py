@@ -2,7 +2,8 @@
 
 Plant and integrator together are ẋ = Â x̂ + B̂ u + [0; I] r with Â = [A 0; −C 0], B̂ = [B; −D] (in discrete time [A 0; −C I]),
 and [K, −k_I] is a state feedback of them.  Their poles can be assigned arbitrarily if and only if (A, B) is controllable
-and rank [A B; C D] = n + p (rank [A − I, B; C D] in discrete time).
+and rank [A B; C D] = n + p (rank [A − I, B; C D] in discrete time).  Where that rank is lower no gains make y follow
+every constant r, not even if the pole of the integrators that cannot be moved is a desired one.
 """
 
 from __future__ import annotations
@@ -17,6 +18,7 @@ from symobs.analysis.strata.rank_cases import outside
 from symobs.analysis.strata.rank_stratification import maximal_minors
 from symobs.analysis.strata.strata import region_of, solved
 from symobs.certificate.claims import Certificate, Claim
+from symobs.conditions import Condition, vanishing_factors
 from symobs.derivation.builder import relation
 from symobs.design.full_order.state_feedback import StateFeedbackDesign
 from symobs.design.gain.gain_cases import design_of, places_where
@@ -63,8 +65,8 @@ class IntegralAction(Result):
     @classmethod
     def of_loop(cls, plant: StateSpace, loop: StateFeedbackDesign, method_name: str) -> Self:
         """Return the design that a feedback of plant and integrator is."""
-        gain, n, every = loop.answer["K"], plant.order, range(plant.inputs)
         left = kernel(system_matrix(plant).T, plant.ideal)
+        gain, n, every = None if left.shape[1] else loop.answer["K"], plant.order, range(plant.inputs)
         answer = {
             "K": None if gain is None else gain.select(every, range(n)),
             "k_I": None if gain is None else -gain.select(every, range(n, n + plant.outputs)),
@@ -76,8 +78,8 @@ class IntegralAction(Result):
     def claims(self) -> Iterator[Claim]:
         """Yield the polynomial of the closed loop, that it is at rest where y = r, and the rank of [A B; C D]."""
         K, k_I, w, plant = (*(self.answer[name] for name in ("K", "k_I", "w")), self.plant)
-        if (K is None) != (self.loop.answer["K"] is None) or (K is None) != (k_I is None):
-            message = "there are gains exactly where plant and integrator have a feedback"
+        if (K is None) != (w is not None or self.loop.answer["K"] is None) or (K is None) != (k_I is None):
+            message = "there are gains exactly where plant and integrator have a feedback and the outputs can follow"
             raise CertificateRejected(message, repair="please report this: it is a bug of symobs")
         if self.answer["polynomial"] != self.desired.polynomial:  # also where there are no gains to have it
             message = "the polynomial is the one asked for"
@@ -140,6 +142,16 @@ class IntegralAction(Result):
         return "no" if self.answer["K"] is None else super().verdict
 
     @cached_property
+    def holds_where(self) -> tuple[Condition, ...]:
+        """Also where the outputs can follow: the factors of what keeps away from where [A B; C D] loses rank."""
+        known = super().holds_where
+        if self.answer["K"] is None:
+            return known
+        listed = {condition.expression for condition in known}
+        factors = vanishing_factors(self.distances, self.plant.symbols.signs)
+        return (*known, *(Condition("existence", factor) for factor in factors if factor not in listed))
+
+    @cached_property
     def case_tree(self) -> tuple[Case, ...]:
         """The design where other modes than in general are beyond any gain, or none are."""
 
@@ -157,8 +169,10 @@ class IntegralAction(Result):
         """K, k_I, whether (and where) the rank condition holds, the closed loop in (x, ξ), and what the feedback reports."""
         own = {"K": self.answer["K"], "k_I": self.answer["k_I"], "solvable": self.answer["w"] is None}
         own["solvable_if"] = [" or ".join(f"{e} != 0" for e in equations) for equations in self.blocked]
-        own |= {"polynomial": self.answer["polynomial"], "closed_loop_matrix": self.loop.fields["closed_loop_matrix"]}
-        return own | {name: self.loop.report[name] for name in _REPORTED}
+        closed = None if self.answer["K"] is None else self.loop.fields["closed_loop_matrix"]
+        own |= {"polynomial": self.answer["polynomial"], "closed_loop_matrix": closed}
+        reported = {name: self.loop.report[name] for name in _REPORTED}
+        return own | reported | ({"family": None} if closed is None else {})
 
     @property
     def free_signals(self) -> Mapping[str, int]:
@@ -169,7 +183,7 @@ class IntegralAction(Result):
     def systems(self) -> Mapping[str, Realisation]:
         """The plant, and the loop from r to y."""
         plant, gain = self.plant, self.loop.answer["K"]
-        if gain is None:
+        if gain is None or self.answer["K"] is None:
             return super().systems
         m, p = plant.matrices, plant.outputs
         seen = (Matrix.block([[m.C, Matrix.zeros(p, p)]]) - m.D @ gain).normal()
@@ -232,7 +246,7 @@ def integral_action(
     Returns K (m×n), k_I (m×p), solvable (rank [A B; C D] = n + p, in discrete time rank [A − I, B; C D]; with parameters
     exactly where all of solvable_if holds), polynomial,
     closed_loop_matrix in (x, ξ), poles, stable; `family` where the gains [K, −k_I] are not unique.  The verdict is `no`
-    where φ cannot be assigned.  Raises `InputError` for wrong poles.
+    where that rank is lower or φ cannot be assigned.  Raises `InputError` for wrong poles.
     Source: E. J. Davison (1976); K. Ogata, Modern Control Engineering, 5th ed., ch. 10.
     """
     plant = plant.knowing(poles, polynomial)

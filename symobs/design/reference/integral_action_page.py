@@ -33,7 +33,7 @@ def write_integral_action(page: Builder, design: IntegralAction) -> None:
                 relation(state.derivative, page["A_cl"] @ state + _enters(page) @ page["r_in"]), say="integral_closed"
             )
             _at_rest(page, design)
-            caution_poles(page, design.desired, "phi_c", "state_feedback")
+            caution_poles(page, design.desired, "phi_c", "servo")
         page.steps += case_steps(page, design, _case)
 
 
@@ -80,7 +80,8 @@ def _design(page: Builder, design: IntegralAction, *, is_case: bool = False) -> 
         page.assume("integral_provided", *assumed)
     _say_condition(page, design)
     if design.answer["K"] is None:
-        _impossible(page, design)
+        if design.loop.answer["K"] is None:
+            _impossible(page, design)
         return
     conditions = [c.expression for c in design.holds_where if c.kind != "domain" and c.expression not in assumed]
     if conditions:

@@ -54,6 +54,26 @@ def test_poles_dc_gain_and_existence_are_those_of_other_systems(seed: int) -> No
     assert "as required" in found.to("text")
 
 
+@pytest.mark.parametrize(
+    ("A", "C", "dt"), [("[0 1; -2 -3]", "[0 1]", 0), ("[1 1; -2 -2]", "[0 1]", True), ("[0 0; 0 -1]", "[0 1]", 0)]
+)
+def test_outputs_that_cannot_follow_are_a_no_even_with_the_fixed_pole_desired(A: str, C: str, dt: object) -> None:
+    """The plant has a zero at the origin (at 1): k_I would be 0 and ξ grow without bound for r ≠ 0."""
+    found = symobs.integral_action(symobs.StateSpace(A, "[0; 1]", C, dt=dt), poles=f"{int(dt)}, -1/2, 0")
+    assert (found.verdict, found.K, found.k_I, found.solvable) == ("no", None, None, False)
+    page = " ".join(found.to("text").split())
+    assert "cannot follow arbitrary constant references" in page
+    assert "as required" not in page
+
+
+def test_where_the_outputs_can_follow_is_a_condition() -> None:
+    found = symobs.integral_action(symobs.StateSpace("[0 1; -2 -3]", "[0; 1]", "[c 1]"), poles="0, -1, -2")
+    c = sympy.Symbol("c")
+    assert (found.verdict, found.conditions) == ("conditional", (sympy.Ne(c, 0),))
+    assert [(case.when, case.result.verdict) for case in found.cases] == [((sympy.Eq(c, 0),), "no")]
+    assert "converges to an equilibrium" not in " ".join(found.to("text").split())
+
+
 def test_a_zero_at_the_origin_is_a_case_with_its_proof() -> None:
     design = symobs.integral_action(symobs.StateSpace("[0 1; 0 -a]", "[0; 1]", "[c 1]"), poles="-1, -2, -3")
     c = sympy.Symbol("c")
@@ -89,14 +109,6 @@ def test_as_many_poles_as_states_and_outputs_are_asked_for() -> None:
         symobs.integral_action(symobs.StateSpace("[0 1; 0 -1]", "[0; 1]", "[1 0]"), poles="-1, -2")
     with pytest.raises(InputError, match="integral_action needs C"):
         symobs.integral_action(symobs.StateSpace("[0 1; 0 -1]", "[0; 1]"), poles="-1, -2, -3")
-
-
-def test_a_polynomial_that_vanishes_at_the_origin_has_no_steady_state_to_speak_of() -> None:
-    plant = symobs.StateSpace("[0 1; 0 -1]", "[0; 1]", "[0 1]")
-    found = symobs.integral_action(plant, poles="0, -2, -3")
-    assert (found.verdict, found.solvable) == ("yes", False)
-    assert "DC gain" not in found.to("text")
-    assert Scalar.of(0) == found.answer["polynomial"].substitute({"s": Scalar.of(0)})
 
 
 def test_signs_of_the_letters_of_the_specification_are_stated() -> None:
