@@ -12,7 +12,7 @@ import sympy
 
 import symobs
 from symobs.errors import CertificateRejected, DerivationRejected, InputError
-from symobs.exact import Matrix, Scalar
+from symobs.exact import Matrix
 
 if TYPE_CHECKING:
     from symobs.design.reference.integral_action import IntegralAction
