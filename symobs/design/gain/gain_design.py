@@ -5,11 +5,12 @@ A − L C and (A − B K)ᵀ = Aᵀ − Kᵀ Bᵀ are one problem; `PlacementPro
 
 from __future__ import annotations
 
-from dataclasses import field
+from dataclasses import field, replace
 from functools import cache, cached_property
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 from symobs._dataclass import dataclass
+from symobs.analysis.strata.strata import region_of
 from symobs.certificate.claims import Claim, Statement
 from symobs.derivation.builder import relation
 from symobs.design.gain.gain_claims import (
@@ -369,10 +370,20 @@ class GainDesign(Result):
             "stable": self.stability.verdict,
             "stable_if": self.stability.inequalities(self.plant.symbols.signs),
             "fixed_modes": self.unmoved_modes,
-            "family": self.gain_family,
+            "family": self.reported_family,
             **({"zero": [[i + 1, j + 1] for i, j in self.zero]} if self.zero else {}),
             **self._algebraic_report,
         }
+
+    @property
+    def reported_family(self) -> Mapping[str, Any] | None:
+        """The family, and where no member of it has a value although the answer holds."""
+        family, chart = self.gain_family, self.chart
+        if family is None or chart is None or "scope" not in family:
+            return family
+        region = region_of(self.plant)
+        held = region.nonzero.union(condition.expression for condition in self.holds_where)
+        return family | {"scope": chart.scope(replace(region, nonzero=held))}
 
     @property
     def _algebraic_report(self) -> Mapping[str, Any]:

@@ -6,6 +6,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 from symobs._dataclass import dataclass
+from symobs.analysis.strata.loci import loci, maximal
 from symobs.certificate.claims import Claim
 from symobs.derivation.builder import relation
 from symobs.design.pole_placement.sylvester import charts_of, has_meaning
@@ -16,9 +17,19 @@ from symobs.formula.term import Term, letter
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping
 
+    from symobs.analysis.strata.loci import Region
     from symobs.design.pole_placement.multiple_outputs import MultiOutputPair
     from symobs.design.pole_placement.sylvester import Sylvester
     from symobs.specification import DesiredPolynomial
+
+
+def _coefficients(polynomial: Scalar, names: tuple[str, ...]) -> list[Scalar]:
+    """Return the coefficients of a polynomial in some of its symbols that are not 0."""
+    found = [polynomial]
+    for name in names:
+        found = [coefficient for value in found for coefficient in value.coefficients(name)]
+    return [coefficient for coefficient in found if not coefficient.is_zero]
+
 
 #: What the family leaves out.
 SCOPE = "every gain whose closed-loop matrix is cyclic, but for those where det X = 0"
@@ -76,6 +87,15 @@ class Family:
     def X(self) -> Matrix:
         """The solution of Sylvester's equation, with its parameters."""
         return self.equation.solution(self.equation.G)
+
+    def scope(self, region: Region) -> str:
+        """Return which gains the family consists of, and where in a region a denominator vanishes for each of them."""
+        if self.general is None:
+            return f"{SCOPE}; where none of them has a value is not decided"
+        factors = (factor for factor, _ in self.general.common_denominator().factors()[1])
+        lost = maximal(locus for factor in factors for locus in loci(_coefficients(factor, self.names), region))
+        found = [" and ".join(f"{equation} == 0" for equation in locus.equations) for locus in lost]
+        return f"{SCOPE}; none of them has a value where {', or where '.join(found)}" if found else SCOPE
 
     def fields(self, name: str, transposed_for_task: Callable[[Matrix], Matrix]) -> dict[str, Any]:
         """Return the fields of the family in results: those of the contract, then what they come from."""

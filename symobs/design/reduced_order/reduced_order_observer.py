@@ -220,7 +220,7 @@ class ReducedOrderObserver(Result):
             "polynomial": self.desired.polynomial,
             "poles": self.inner.roots if self.answer["L"] is not None else (),
             "fixed_modes": self.unmoved_modes,
-            "family": self.gain_family,
+            "family": None if self.gain_family is None else self.inner.reported_family,
         }
 
 

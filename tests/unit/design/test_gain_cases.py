@@ -171,3 +171,14 @@ def test_a_page_says_where_within_a_stratum_a_fixed_mode_is_wanted() -> None:
     assert len(case.result.cases) == 2
     page = " ".join(found.to("text").split())
     assert "Case a c - b c - 1 = 0. Case b + 1 ≠ 0, b + 2 ≠ 0. In this case" in page
+
+
+def test_a_family_says_where_none_of_its_members_has_a_value() -> None:
+    """At p = w = 0 every denominator vanishes for all free letters: held to it by SymPy."""
+    plant = symobs.StateSpace("[0 w; -w 0]", "[0; 2]", "[1 0; 1 c]")
+    family = symobs.unknown_input_observer(plant, E="[0 1; 0 1]", poles="-2*p, -p").family
+    assert family["scope"].endswith("none of them has a value where p == 0 and w == 0")
+    names = sympy.symbols("p w")
+    for point, is_lost in (((0, 0), True), ((0, 1), False), ((1, 0), False), ((3, 2), False)):
+        under = [sympy.fraction(sympy.together(entry))[1].subs(zip(names, point, strict=True)) for entry in family["L"]]
+        assert (sympy.expand(sympy.prod(under)) == 0) is is_lost
