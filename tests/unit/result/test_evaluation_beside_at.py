@@ -1,0 +1,104 @@
+"""`evaluate` is `at` at every point, or nan: also on the curves of conditions and cases, and beyond their inequalities."""
+
+from __future__ import annotations
+
+import random
+from fractions import Fraction
+from typing import Any
+
+import numpy as np
+import pytest
+import sympy
+
+import symobs
+
+S = symobs.StateSpace
+#: Results with parameters, with conditions and cases of every kind.
+RESULTS: dict[str, Any] = {
+    "gramian over all time": lambda: symobs.gramian(S("[-a 0; 0 -b]", C="[1 1]"), horizon="inf"),
+    "gramian": lambda: symobs.gramian(S("[-a 0; 0 -b]", C="[1 1]"), horizon="1"),
+    "gramian over steps": lambda: symobs.gramian(S("[a 1; 0 b]", C="[1 b]", dt=True), horizon=1),
+    "zero_order_hold": lambda: symobs.zero_order_hold(S("[0 1; -a -b]", "[0; 1]"), sampling_period="1"),
+    "observability": lambda: symobs.observability(S("[a 1; 0 b]", C="[1 a-b]")),
+    "state_feedback": lambda: symobs.state_feedback(S("[0 1; -2 -3]", "[1; a]"), poles="-b, -5"),
+    "observer of two outputs": lambda: symobs.observer(S("[0 1; a 0]", C="[1 0; b 0]"), poles="-1, -2"),
+    "compensator": lambda: symobs.compensator(
+        S("[0 1; -2 -3]", "[0; 1]", "[1 a]"), control_poles="-b, -5", observer_poles="-6, -7", observer="full"
+    ),
+    "integral_action": lambda: symobs.integral_action(S("[0 1; -2 -b]", "[0; 1]", "[a 1]"), poles="-1, -2, -3"),
+    "reduced_order_observer": lambda: symobs.reduced_order_observer(S("[0 1; a -1]", C="[1 b]"), poles="-3"),
+    "decomposition": lambda: symobs.decomposition(S("[-1 0; 0 a]", "[1; b]", "[1 1]")),
+    "feedforward": lambda: symobs.feedforward(
+        S("[0 1; -2 -3]", "[0; 1]", "[1 a]"), control_poles="-b, -5", observer_poles="-6, -7"
+    ),
+}
+
+
+def points_of(result: Any, draw: random.Random, count: int) -> list[dict[str, Fraction]]:
+    """Random points, a third of them on a curve of a condition or a case where one is solved for."""
+
+    def number() -> Fraction:
+        return Fraction(draw.randint(-8, 8), draw.choice([1, 2, 4]))
+
+    def equations(one: Any) -> Any:
+        yield from (relation.lhs - relation.rhs for relation in one.conditions)
+        for case in one.cases:
+            yield from (relation.lhs - relation.rhs for relation in case.when)
+            if case.result is not None:
+                yield from equations(case.result)
+
+    curves = [e for e in dict.fromkeys(equations(result)) if e.free_symbols <= {*sympy.symbols("a b")}]
+    found: list[dict[str, Fraction]] = []
+    while len(found) < count:
+        point = {"a": number(), "b": number()}
+        if curves and len(found) % 3 == 0:
+            name, other = draw.sample(["a", "b"], 2)
+            roots = sympy.solve(draw.choice(curves).subs(other, sympy.Rational(point[other])), sympy.Symbol(name))
+            rational = [root for root in roots if root.is_Rational and abs(root) < 100]
+            point[name] = Fraction(*rational[0].as_numer_denom()) if rational else point[name]
+        if all(Fraction(repr(float(value))) == value for value in point.values()):
+            found.append(point)
+    return found
+
+
+@pytest.mark.parametrize("name", RESULTS)
+def test_every_point_is_what_at_finds_or_nan(name: str) -> None:
+    result = RESULTS[name]()
+    points = points_of(result, random.Random(name), 24)  # noqa: S311
+    found = result.evaluate({letter: np.array([float(point[letter]) for point in points]) for letter in "ab"})
+    seen = 0
+    for index, point in enumerate(points):
+        try:
+            there = result.at(**point)
+        except symobs.SymobsError:
+            assert all(np.isnan(array[index]).all() for array in found.values()), point
+            continue
+        for field, array in found.items():
+            own, expected = array[index], getattr(there, field, None)
+            if expected is None:
+                assert np.isnan(own).all(), (field, point)
+            elif not np.isnan(own).any():
+                seen += 1
+                wanted = np.array(sympy.Matrix(expected).evalf() if hasattr(expected, "shape") else expected).astype(
+                    float
+                )
+                np.testing.assert_allclose(own, wanted, rtol=1e-9, atol=1e-9, err_msg=f"{field} at {point}")
+    assert seen > len(points) / 2
+
+
+def test_an_unstable_plant_has_no_gramian_over_all_time() -> None:
+    found = symobs.gramian(S("[-a 0; 0 -1]", C="[1 1]"), horizon="inf").evaluate({"a": [-2.0, 0.0, 1.0, 2.0]})
+    assert np.isnan(found["matrix"][:2]).all()
+    assert found["rank"][2:].tolist() == [1, 2]
+
+
+def test_a_point_in_a_case_of_inequalities_has_its_value_without_a_warning() -> None:
+    """x'' = x: the hold has cosh 1 and sinh 1."""
+    found = symobs.zero_order_hold(S("[0 1; -k 0]", "[0; 1]"), sampling_period="1").evaluate({"k": [-1.0, 4.0]})
+    np.testing.assert_allclose(found["A"][0], [[np.cosh(1), np.sinh(1)], [np.sinh(1), np.cosh(1)]])
+    np.testing.assert_allclose(found["A"][1], [[np.cos(2), np.sin(2) / 2], [-2 * np.sin(2), np.cos(2)]])
+
+
+def test_fields_without_parameters_need_no_values() -> None:
+    found = symobs.observer(S("[0 1; 0 -1]", C="[1 0]"), poles="-10, -10").evaluate({})
+    assert found["L"].tolist() == [[19.0], [81.0]]
