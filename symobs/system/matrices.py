@@ -17,7 +17,11 @@ class Matrices:
     """The four exact matrices of a plant; a missing one has no columns (B) or no rows (C)."""
 
     def __init__(self, A: Matrix, B: Matrix | None, C: Matrix | None, D: Matrix | None) -> None:
-        """Complete missing matrices; D is zero.  All have the same roots of numbers in their fields."""
+        """Complete missing matrices; D is zero.
+
+        All have the same roots of numbers in their fields, and no symbol that occurs in none of them: a plant of numbers
+        is one of numbers, whatever the transfer function was written in that it realises.
+        """
         order = A.shape[0]
         self.A = A
         self.B = Matrix.zeros(order, 0) if B is None else B
@@ -27,6 +31,10 @@ class Matrices:
         numbers = self.A.field.numbers | self.B.field.numbers | self.C.field.numbers | self.D.field.numbers
         if numbers.names:  # what factors over these numbers does so for every matrix
             self.A, self.B, self.C, self.D = (m.within(m.field | numbers) for m in (self.A, self.B, self.C, self.D))
+        parts = self.A, self.B, self.C, self.D
+        idle = frozenset[str]().union(*(m.field.names for m in parts)).difference(numbers.names, *(m.names for m in parts))
+        if idle:
+            self.A, self.B, self.C, self.D = (m.within(m.field.without(idle)) for m in parts)
 
     @property
     def has_feedthrough(self) -> bool:

@@ -10,15 +10,18 @@ above it the largest minors are the polynomial of the zeros times polynomials wi
 from __future__ import annotations
 
 from itertools import combinations, islice, product
+from math import comb
 from typing import TYPE_CHECKING, TypeAlias
 
 from symobs.analysis.rank.rank_test import power_rows
 from symobs.analysis.realization.coordinates import basis
 from symobs.analysis.realization.coordinates import transfer_matrix as reduced
-from symobs.exact import Matrix, Scalar, modulo, pole_and_zero_polynomial, resultant
+from symobs.exact import Matrix, Scalar, independent_rows, modulo, pole_and_zero_polynomial, resultant
 from symobs.exact.linear_algebra.smith_mcmillan import minors
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Sequence
+
     from symobs.system import StateSpace
 
 #: Polynomials in the parameters that must not vanish together.
@@ -85,12 +88,32 @@ def _of_matrix(P: Matrix, plant: StateSpace) -> list[System]:
 
 
 def _minors_of(matrix: Matrix, order: int) -> System:
-    """Return minors of an order that are not 0; (1) of order 0."""
+    """Return minors of the order of the rank that are not 0; (1) of order 0.
+
+    Where there are too many to look at all of them, they are one that elimination finds and its neighbours.
+    """
     if not order:
         return (Scalar.of(1),)
-    rows, columns = (combinations(range(size), order) for size in matrix.shape)
-    chosen = (matrix.select(*pair).determinant() for pair in islice(product(rows, columns), _MINORS * _MINORS))
+    height, width = matrix.shape
+    if comb(height, order) * comb(width, order) <= _MINORS * _MINORS:
+        pairs: Iterable[tuple[Sequence[int], Sequence[int]]] = product(
+            combinations(range(height), order), combinations(range(width), order)
+        )
+    else:
+        rows = independent_rows(matrix)
+        columns = independent_rows(matrix.select(rows, range(width)).T)
+        beside = [(other, columns) for other in _exchanged(rows, height)]
+        beside += [(rows, other) for other in _exchanged(columns, width)]
+        pairs = [(rows, columns), *beside]
+    chosen = (matrix.select(*pair).determinant() for pair in pairs)
     return tuple(islice((minor.numerator for minor in chosen if minor), _MINORS))
+
+
+def _exchanged(chosen: Sequence[int], size: int) -> Iterator[tuple[int, ...]]:
+    """Yield the choices with one index in place of another."""
+    for place, new in product(range(len(chosen)), range(size)):
+        if new not in chosen:
+            yield (*chosen[:place], new, *chosen[place + 1 :])
 
 
 def _together(polynomials: list[Scalar], variable: str) -> System:

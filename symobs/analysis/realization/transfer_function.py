@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 from symobs._dataclass import dataclass
 from symobs.analysis.factored_form import factored_form
 from symobs.analysis.page_parts import given, is_narrow
+from symobs.analysis.strata.loci import distance_from
 from symobs.certificate.claims import Claim
 from symobs.conditions import Condition, vanishing_factors
 from symobs.derivation.builder import Builder, predicate, relation
@@ -94,7 +95,11 @@ class TransferFunction(Result):
         """The plant's domain, and where nothing more cancels and no zero is lost."""
         own = super().holds_where
         changing = self._cases_of_factors[1] - {c.expression for c in own}
-        return (*own, *(Condition("existence", f) for f in self._factors if f in changing))
+        alone = (*own, *(Condition("existence", f) for f in self._factors if f in changing))
+        known = {condition.expression for condition in alone}
+        together = (_vanishing(case) for case in self.case_tree if case.when and not known & _vanishing(case))
+        distances = dict.fromkeys(distance_from(tuple(sorted(equations, key=str))) for equations in together if equations)
+        return (*alone, *(Condition("existence", distance) for distance in distances))
 
     @cached_property
     def _factors(self) -> tuple[Scalar, ...]:

@@ -108,6 +108,16 @@ def _below(equations: Iterable[Scalar], region: Region) -> Iterator[Place]:
             yield Place(when, parametrised(Node(locus, 0, ()), region))
 
 
+def losses(cases: Iterable[Case], above: tuple[Scalar, ...] = ()) -> Iterator[tuple[Scalar, ...]]:
+    """Yield the equations of the strata on which the answer is no or unknown, those inside of a case with its own."""
+    for case in cases:
+        equations = (*above, *(c.expression for c in case.when if c.operator == "=="))
+        if case.result is None or case.result.verdict == "no":
+            yield equations
+        else:
+            yield from losses(case.result.case_tree, equations)
+
+
 def places_of(cases: Iterable[Case]) -> tuple[Place, ...]:
     """Return where the cases of a test are."""
     return tuple(

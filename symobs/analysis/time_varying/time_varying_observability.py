@@ -13,13 +13,14 @@ from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 from symobs._dataclass import dataclass
 from symobs.analysis.rank.rank_test import determinant_term
-from symobs.analysis.strata.strata import strata
+from symobs.analysis.strata.loci import distance_from
+from symobs.analysis.strata.strata import losses, strata
 from symobs.analysis.time_response.damping_cases import reject, vanishing_denominators
 from symobs.analysis.time_varying.time_interval import instant_where_not_zero, reject_poles, reject_sizes_and_names
 from symobs.analysis.time_varying.time_varying_solution import TimeVaryingRequest, closed_form, dependences
 from symobs.analysis.time_varying.transition_matrix import START, TERMS_UP_TO, TIME
 from symobs.certificate.claims import Claim
-from symobs.conditions import Condition, never_zero, sign_of, vanishing_factors
+from symobs.conditions import Condition, never_zero, sign_of
 from symobs.derivation.builder import relation
 from symobs.errors import BudgetExceeded
 from symobs.exact import Matrix, Scalar, derivative, echelon, independent_rows
@@ -250,9 +251,8 @@ class TimeVaryingObservability(Result):
         known = (*known, *(Condition("claim", f) for f in self.denominators))
         if self.answer["rank"] < self.plant.order:
             return (*self.domain, *known)
-        lost = [c.when[0].expression for c in self.case_tree if c.result is None or c.result.verdict == "no"]
-        factors = [f for f in vanishing_factors(self.existence, signs) if f in lost]
-        return (*self.domain, *known, *(Condition("existence", f) for f in factors))
+        lost = dict.fromkeys(distance_from(equations) for equations in losses(self.case_tree) if equations)
+        return (*self.domain, *known, *(Condition("existence", distance) for distance in lost))
 
     @cached_property
     def case_tree(self) -> tuple[Case, ...]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from symobs.analysis.page_parts import determinant_form, given, stratum_of, undecided
-from symobs.analysis.rank.rank_page import outside_cases
+from symobs.analysis.strata.repeated_eigenvalues import distances, systems_of
 from symobs.analysis.time_varying.time_varying_observability import TimeVaryingObservability
 from symobs.analysis.time_varying.time_varying_solution import dependences, has_functions
 from symobs.analysis.time_varying.transition_matrix import (
@@ -19,7 +19,7 @@ from symobs.analysis.time_varying.transition_matrix import (
 from symobs.conditions import never_zero
 from symobs.derivation import CaseStep, Conclude, Equal
 from symobs.derivation.builder import relation, sentence
-from symobs.exact import Matrix, Scalar, antiderivative, rank
+from symobs.exact import Matrix, Scalar, antiderivative, product_of, rank
 from symobs.exact.core.generators import substitute
 from symobs.formula import Evaluated, Integral, Literal
 from symobs.formula.term import Term, block
@@ -265,8 +265,16 @@ def _case(page: Builder, case: Case) -> Step:
         hidden = case.result.answer["hidden"]
         zero = Matrix.zeros(page["O"].value.shape[0], hidden.shape[1])
         steps.append(Equal((relation(page["O"] @ page.value(hidden), zero),)))
-    steps = outside_cases(page, case.result, steps) + [_case(page, inner) for inner in case.result.case_tree]
+    steps = _outside(case.result, steps) + [_case(page, inner) for inner in case.result.case_tree]
     return CaseStep(stratum_of(case), tuple(case.substitution.items()), tuple(steps))
+
+
+def _outside(result: TimeVaryingObservability, steps: list[Step]) -> list[Step]:
+    """Return steps as a case of what holds outside of the cases: its rank is told for almost all t, not for each."""
+    systems = systems_of(result.case_tree)
+    if not systems:
+        return [] if systems is None else steps
+    return [CaseStep(relation(product_of(distances(systems)), "!=", 0), (), tuple(steps))]
 
 
 def _frozen(page: Builder, result: TimeVaryingObservability) -> None:

@@ -483,3 +483,12 @@ def test_a_rank_on_a_stratum_is_said_outside_its_own_cases() -> None:
     assert [each.result is None for each in case.result.cases] == [True]
     page = " ".join(found.to("text").split())
     assert "≠ 0. In this case rank 𝒪 = 3 for almost all t." in page
+
+
+def test_a_rank_that_drops_where_two_parameters_vanish_is_conditional_on_them() -> None:
+    """det 𝒪 = a t³ + (b² − 2a) t² + a t − b vanishes identically at a = b = 0 alone."""
+    plant = symobs.StateSpace("[0 1; -a*t 0]", C="[b*t 1-t]")
+    found = symobs.time_varying_observability(plant)
+    a, b = sympy.symbols("a b")
+    assert (found.verdict, found.conditions) == ("conditional", (sympy.Ne(a**2 + b**2, 0),))
+    assert "Case a = 0" in found.to("text")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pytest
 import sympy
 
 import symobs
@@ -38,3 +39,26 @@ def test_a_matrix_that_is_zero_has_neither() -> None:
     found = symobs.transfer_function(symobs.StateSpace("[-1 0; 0 -2]", "[1 0; 0 0]", "[0 1; 0 0]"))
     assert found.transfer_function.is_zero_matrix
     assert found.poles == found.zeros == ()
+
+
+@pytest.mark.parametrize(
+    ("text", "lost"),
+    [
+        ("[(s+k)/((s+1)(s+2)(s+3)(s+4)) 0; 0 1/(s+1)]", {1, 2, 3, 4}),
+        ("[k/(s+1) 1/(s+2); 1/(s+3) 1/((s+4)(s+5)(s+6))]", {0}),
+        ("[k/(s+1) 1/(s+2); 1/(s+3) 1/(s+k)]", {0, 2, 3}),
+    ],
+)
+def test_a_large_matrix_says_where_its_order_drops(text: str, lost: set[int]) -> None:
+    """The order there is that of the plant at the number, which has no parameter."""
+    found = symobs.transfer_function(symobs.StateSpace.from_transfer_function(text))
+    excluded = {value for relation in found.conditions for value in sympy.solve(relation.lhs)}
+    assert lost <= excluded
+    for value in range(6):
+        there = symobs.transfer_function(symobs.StateSpace.from_transfer_function(text.replace("k", str(value))))
+        assert (len(there.poles) < len(found.poles)) is (value in lost)
+
+
+def test_a_plant_of_numbers_has_no_symbol_whatever_it_was_written_in() -> None:
+    plant = symobs.StateSpace.from_transfer_function("[1/((s+1)(s+2)) 1/(s+3); 1/(s+4) (s+5)/((s+6)(s+7))]")
+    assert plant.field.names == ()
