@@ -97,14 +97,14 @@ def _is_test_matrix(letter: str, relation: Relation, environment: Environment) -
     matrix, pair = _ranked(relation), _pair(letter, environment)
     if matrix is None or pair is None:
         return False
-    (A, C), exact = pair, Exact(environment)
-    found = evaluate(matrix, environment, exact)
+    A, C = pair
+    found = evaluate(matrix, environment, Exact(environment))
     X = found if letter == "C" else found.T
     outputs, order = C.shape
     if X.shape != (outputs * order, order):
         return False
     first, above, below = (X.select(rows, range(order)) for rows in _blocks(outputs, outputs * order))
-    return agree(first, C, exact) and agree(below, above @ A, exact)
+    return _equal(first, C, environment) and _equal(below, above @ A, environment)
 
 
 def _blocks(size: int, height: int) -> tuple[range, range, range]:
@@ -130,21 +130,19 @@ def _sums_powers(letter: str, environment: Environment) -> bool:
     for _ in range(A.shape[0] - 1):
         row = row @ A
         total = total + row.T @ row
-    return agree(environment.values["M"], total, Exact(environment))
+    return _equal(environment.values["M"], total, environment)
 
 
 def _shares_kernel(letter: str, environment: Environment) -> bool:
     """Return whether W has the kernel of M, the sum over n powers: as an integral, or as a sum over all steps.
 
-    The letter W may be established in cases only.  An integral over all time has no e^{At} on its page.
+    An integral over any time has it; a sum has it where it solves W − AᵀWA = CᵀC, and not over every number of steps.
     """
     pair, W = _pair(letter, environment), environment.values.get("W")
     if pair is None or not _sums_powers(letter, environment):
         return False
-    (A, C), is_discrete = pair, environment.variable == "z"
-    if W is None or (not is_discrete and "exp_At" in environment.values):
-        return not is_discrete
-    return agree(A.T @ W @ A - W if is_discrete else A.T @ W + W @ A, -(C.T @ C), Exact(environment))
+    A, C = pair
+    return environment.variable != "z" or (W is not None and _equal(A.T @ W @ A - W, -(C.T @ C), environment))
 
 
 def _is_nonsingular(environment: Environment) -> bool:
@@ -161,9 +159,18 @@ def _spans_kernel(environment: Environment) -> bool:
         return False
     order, vectors = N.shape
     return (
-        agree(W @ N, N * 0, Exact(environment))
+        _equal(W @ N, N * 0, environment)
         and _is_true(Apply("rank", Literal(N)), "=", vectors, environment)
         and _is_true(Apply("rank", Letter("W")), "=", order - vectors, environment)
+    )
+
+
+def _equal(left: Matrix, right: Matrix, environment: Environment) -> bool:
+    """Return whether two matrices are equal, if need be modulo what is known here."""
+    if agree(left, right, Exact(environment)):
+        return True
+    return (
+        bool(environment.relations) and verify(Relation((Literal(left), Literal(right)), ("=",)), environment)[0] != ""
     )
 
 

@@ -32,7 +32,9 @@ class Matrices:
         if numbers.names:  # what factors over these numbers does so for every matrix
             self.A, self.B, self.C, self.D = (m.within(m.field | numbers) for m in (self.A, self.B, self.C, self.D))
         parts = self.A, self.B, self.C, self.D
-        idle = frozenset[str]().union(*(m.field.names for m in parts)).difference(numbers.names, *(m.names for m in parts))
+        idle = (
+            frozenset[str]().union(*(m.field.names for m in parts)).difference(numbers.names, *(m.names for m in parts))
+        )
         if idle:
             self.A, self.B, self.C, self.D = (m.within(m.field.without(idle)) for m in parts)
 

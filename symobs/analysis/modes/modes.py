@@ -288,10 +288,11 @@ class ModeResult(Result):
             if not hidden:
                 yield Claim(relation(found, order), inner, f"rank = n where {where}, since ker O = 0")
                 return
-            value = letter("X", inner).apply("phi_at").apply("rank")
-            yield Claim(
-                relation(value, hidden - degree * (order - found)), inner, f"rank q(X) gives the rank where {where}"
-            )
+            value, size = letter("X", inner).apply("phi_at"), hidden - degree * (order - found)
+            if self.plant.is_stratum or not self.plant.relations:
+                yield Claim(relation(value.apply("rank"), size), inner, f"rank q(X) gives the rank where {where}")
+            else:  # relations between functions of the parameters: not at each of their points, but in general
+                yield from self._general_rank_claims(value, size, f"q(X) where {where}")
             return
         rows, columns, kernel, free = part.witness
         inner = Environment(
@@ -321,6 +322,22 @@ class ModeResult(Result):
             )
             minor = Term(Literal(kernel.select(free, range(kernel.shape[1]))), inner).apply("det")
             yield Claim(relation(minor, operator, 0), inner, f"rank N = n - rank M where {where}")
+
+    def _general_rank_claims(self, value: Term, size: int, says: str) -> Iterator[Claim]:
+        """Yield that a square matrix has a rank in general: by a minor, and a basis of its kernel."""
+        e, ideal, Q = value.environment, self.plant.ideal, value.value.normal()
+        columns, vectors = echelon(Q, ideal)
+        rows = independent_rows(Q.select(range(Q.shape[0]), columns), ideal)
+        yield Claim(relation(size, len(columns), len(rows), Q.shape[0] - len(vectors)), e, f"the rank of {says}")
+        if size:
+            minor = Term(Literal(Q.select(rows, columns)), e).apply("det")
+            yield Claim(relation(value, Q), e, f"the matrix {says}")
+            yield Claim(relation(minor, "!==", 0), e, f"a minor of {says} is not zero")
+        if vectors:
+            N = Matrix.of([[v[i, 0] for v in vectors] for i in range(Q.shape[0])], len(vectors))
+            free = Term(Literal(N.select(independent_rows(N, ideal), range(len(vectors)))), e).apply("det")
+            yield Claim(relation(value @ Term(Literal(N), e), N * 0), e, f"the kernel of {says}")
+            yield Claim(relation(free, "!==", 0), e, f"the basis of the kernel of {says}")
 
     # -- fields -------------------------------------------------------------------------------------------------------
 

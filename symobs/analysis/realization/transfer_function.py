@@ -98,7 +98,9 @@ class TransferFunction(Result):
         alone = (*own, *(Condition("existence", f) for f in self._factors if f in changing))
         known = {condition.expression for condition in alone}
         together = (_vanishing(case) for case in self.case_tree if case.when and not known & _vanishing(case))
-        distances = dict.fromkeys(distance_from(tuple(sorted(equations, key=str))) for equations in together if equations)
+        distances = dict.fromkeys(
+            distance_from(tuple(sorted(equations, key=str))) for equations in together if equations
+        )
         return (*alone, *(Condition("existence", distance) for distance in distances))
 
     @cached_property

@@ -24,6 +24,7 @@ from symobs.certificate.claims import Claim
 from symobs.conditions import Condition
 from symobs.derivation.builder import relation
 from symobs.exact import Matrix, Scalar, apart_from_zero, primitive
+from symobs.exact.core.generators import letters_outside
 from symobs.formula import Environment
 from symobs.system.reading import is_identity
 
@@ -91,7 +92,7 @@ def parametrised(node: Node, region: Region) -> dict[str, Scalar] | None:
 def _linear(equations: list[Scalar], node: Node, region: Region) -> tuple[str, Scalar] | None:
     possible = []
     for equation in equations:
-        for name in sorted(equation.names):
+        for name in letters_outside(equation):
             if equation.degree(name) == 1:
                 lead, constant = equation.coefficients(name)
                 if not region.vanishing(lead):

@@ -15,7 +15,7 @@ from symobs.analysis.strata.rank_stratification import Node
 from symobs.conditions import Condition, never_zero, vanishing_factors
 from symobs.errors import CertificateRejected
 from symobs.exact import TooLarge
-from symobs.exact.core.generators import NotWritten
+from symobs.exact.core.generators import NotWritten, letters_outside
 from symobs.result import Case
 
 if TYPE_CHECKING:
@@ -183,7 +183,7 @@ def _linear(factor: Scalar, signs: Mapping[str, str]) -> tuple[dict[str, Scalar]
     the stratum only where it is not 0.
     """
     best = None
-    for name in sorted(factor.names):
+    for name in letters_outside(factor):
         if factor.degree(name) != 1:
             continue
         lead, constant = factor.coefficients(name)

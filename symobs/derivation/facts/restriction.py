@@ -48,10 +48,9 @@ def on_stratum(when: Relation | Conjunction, substitution: dict[str, Scalar], en
     for name, known in environment.values.items():
         with suppress(ZeroDivisionError):  # the letter means nothing on this stratum
             replaced[name] = _there(known, substitution, lost)
-    positive = tuple(value.substitute(substitution) for value in environment.positive)
-    moved = (value.substitute(substitution).numerator for value in environment.relations)
-    relations = tuple(value for value in moved if value)
-    domain = vanishing_factors((value.substitute(substitution) for value in environment.domain), environment.signs)
+    positive = _known_there(environment.positive, substitution)
+    relations = tuple(value.numerator for value in _known_there(environment.relations, substitution) if value)
+    domain = vanishing_factors(_known_there(environment.domain, substitution), environment.signs)
     inside = replace(
         environment,
         values=replaced,
@@ -83,6 +82,15 @@ def _there(value: Any, substitution: Mapping[str, Scalar], lost: set[str]) -> An
     if lost.intersection(value.names):
         raise ZeroDivisionError
     return substitute(value, substitution)
+
+
+def _known_there(values: tuple[Scalar, ...], substitution: Mapping[str, Scalar]) -> tuple[Scalar, ...]:
+    """Return values on a stratum, without those that mean nothing there: of these nothing is known any more."""
+    found = []
+    for value in values:
+        with suppress(ZeroDivisionError):
+            found.append(substitute(value, substitution))
+    return tuple(found)
 
 
 def _left_of(when: Conjunction, substitution: dict[str, Scalar], environment: Environment) -> tuple[Scalar, ...]:

@@ -18,9 +18,11 @@ from weakref import WeakValueDictionary
 from flint import Ordering, fmpz_mpoly, fmpz_mpoly_ctx
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Mapping
 
     from flint import fmpz
+
+    from symobs.exact.core.scalar import Scalar
 
 VARIABLES = ("s", "z", "t")
 #: The generator that stands for an eigenvalue.  No problem can declare it: it is a keyword of Python.
@@ -37,6 +39,13 @@ class NamedFunction(Protocol):
     @property
     def square(self) -> int:
         """The prime whose positive square root this is, 0 for any other function."""
+
+    @property
+    def symbols(self) -> frozenset[str]:
+        """The plain symbols inside."""
+
+    def moved(self, values: Mapping[str, Scalar]) -> Scalar:
+        """Return the function with symbols substituted in its argument."""
 
 
 class Generator(str):

@@ -291,14 +291,7 @@ def substitute(value: Matrix, values: Mapping[str, Scalar]) -> Matrix: ...
 def substitute(value: Scalar | Matrix, values: Mapping[str, Scalar]) -> Scalar | Matrix: ...
 def substitute(value: Scalar | Matrix, values: Mapping[str, Scalar]) -> Scalar | Matrix:
     """Return the value with symbols replaced, in the arguments of functions too; raises ZeroDivisionError."""
-    if isinstance(value, Matrix):
-        return Matrix.of([[substitute(entry, values) for entry in row] for row in value.rows], value.shape[1])
-    images = {name: values[name] for name in value.names if name in values}
-    for name in value.names:
-        found = function_named(name)
-        if found is not None and found.symbols & values.keys():
-            images[name] = found.moved(values)
-    return value.substitute(images) if images else value
+    return value.substitute(values)
 
 
 def symbols_in(value: Scalar | Matrix) -> frozenset[str]:
@@ -308,6 +301,12 @@ def symbols_in(value: Scalar | Matrix) -> frozenset[str]:
         found = function_named(name)
         names |= found.symbols if found is not None else {name}
     return frozenset(names)
+
+
+def letters_outside(value: Scalar) -> list[str]:
+    """Return the plain symbols of a value that stand in none of its functions: an equation can be solved for these."""
+    inside = {symbol for name in value.names if (found := function_named(name)) for symbol in found.symbols}
+    return sorted(name for name in value.names if function_named(name) is None and name not in inside)
 
 
 def symbols_named(name: str) -> frozenset[str]:

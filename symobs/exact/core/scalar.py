@@ -315,8 +315,14 @@ class Scalar:
         return (self, ()) if self.is_zero else _factored(self, self.field.names)
 
     def substitute(self, values: Mapping[str, Scalar]) -> Scalar:
-        """Return the value with generators replaced; raises ZeroDivisionError where a denominator vanishes."""
+        """Return the value with symbols replaced, in the arguments of functions too.
+
+        Raises ZeroDivisionError where a denominator vanishes, and `NotWritten` for a function that has no value there.
+        """
         relevant = {name: value for name, value in values.items() if name in self.field.position}
+        for name, function in self.field.functions.items():
+            if name not in values and name in self.names and function.symbols & values.keys():
+                relevant[name] = function.moved(values)
         if not relevant:
             return self
         above = _compose(self.numerator.numerator_part, self.field, relevant)
