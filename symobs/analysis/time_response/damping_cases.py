@@ -37,6 +37,10 @@ _MOST_BRANCHES = 4
 _BRANCHES = {"<": "branch_under", ">": "branch_over"}
 
 
+#: The signs that a value of a sign cannot have.
+_EXCLUDES = {"negative": {"positive", "nonnegative", "zero"}, "positive": {"negative", "nonpositive", "zero"}}
+
+
 class DampingCases(Result):
     """A result whose answer holds `taken` and `chosen`, the signs of discriminants it stands on."""
 
@@ -135,8 +139,7 @@ class DampingCases(Result):
         taken: Signs = {}
         for delta, sign in self.answer["taken"].items():
             moved = delta.substitute(substitution)
-            found = sign_of(moved, plant.symbols.signs)
-            if found not in {sign, "real"}:
+            if sign_of(moved, plant.symbols.signs) in _EXCLUDES[sign]:
                 message = f"{moved} is not {sign}"
                 raise ZeroDivisionError(message)
             taken[moved] = sign
