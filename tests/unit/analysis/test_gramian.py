@@ -65,7 +65,7 @@ def test_cases_that_hold_at_one_point_agree_there() -> None:
     def holds(relation: Any) -> bool:
         value = relation.lhs.subs(point).evalf()
         if relation.rel_op in {"==", "!="}:
-            return (abs(value) < 1e-9) is (relation.rel_op == "==")
+            return bool(abs(value) < 1e-9) is (relation.rel_op == "==")
         return bool(relation.func(value, 0))
 
     assert set(ranks(found)) == {1}
