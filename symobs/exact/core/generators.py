@@ -9,7 +9,7 @@ vanish there.
 from __future__ import annotations
 
 from fractions import Fraction
-from math import gcd, isqrt, lcm
+from math import gcd, isqrt
 from typing import TYPE_CHECKING, cast, overload
 
 from flint import fmpz
@@ -17,6 +17,8 @@ from flint import fmpz
 from symobs._dataclass import dataclass
 from symobs.exact.core.field import Generator
 from symobs.exact.core.matrix import Matrix
+from symobs.exact.core.polynomial import highest_power
+from symobs.exact.core.rational_matrix import measures
 from symobs.exact.core.scalar import Scalar
 
 if TYPE_CHECKING:
@@ -26,6 +28,8 @@ if TYPE_CHECKING:
 _PRIME_BITS = 128
 #: The highest multiple of an angle whose cosine is written by that of the angle, and power of an exponential.
 _MOST_MULTIPLE, _MOST_POWER = 1000, 100_000
+#: Relations of angles and of exponents with larger multiples need polynomials of a higher degree than claims have.
+_RELATED_ANGLES, _RELATED_POWERS = 30, 100
 ZERO, ONE = Scalar.of(0), Scalar.of(1)
 #: The number π, a generator like a parameter: no polynomial over Q vanishes at it.
 PI = "pi"
@@ -179,14 +183,6 @@ def _root_of_number(number: Fraction) -> Scalar:
     return value
 
 
-def square_root_of(numbers: Iterable[Scalar]) -> str:
-    """Return the name of one root of a product of numbers without common factors, for printing."""
-    product = ONE
-    for number in numbers:
-        product = product * number
-    return next(iter(generator("sqrt", product).names))
-
-
 def roots_in(value: Scalar | Matrix) -> list[Function]:
     """Return the square roots that occur, longer radicands last."""
     found = [f for name in value.names if (f := function_named(name)) is not None and f.kind == "sqrt"]
@@ -318,6 +314,8 @@ def symbols_named(name: str) -> frozenset[str]:
 # -- how generators depend on each other -----------------------------------------------------------------------------
 
 Coordinates = dict[Scalar, Fraction]
+#: For (whether it is an angle, a monomial): each coefficient as a sum of (measure, multiple).
+Steps = dict[tuple[bool, Scalar], dict[Fraction, list[tuple[Fraction, int]]]]
 
 
 def _coordinates(argument: Scalar, below: Scalar) -> Coordinates:
@@ -340,8 +338,8 @@ def identities(
     Base exponentials rise with their monomial, or with `falling` fall with it.
 
     exp is a product of powers of base exponentials, cosh and sinh are sums of two of them, cos and sin of a multiple or
-    a sum are polynomials in the base cosines and sines; what vanishes is c² + s² − 1, root² − radicand, and the
-    minimal polynomial of a real root.
+    a sum are polynomials in the base cosines and sines, several where exponents or angles are far from their common
+    measure; what vanishes is c² + s² − 1, root² − radicand, and the minimal polynomial of a real root.
     """
     values = tuple(values)
     found = functions_in(values)
@@ -349,21 +347,25 @@ def identities(
         return {}, ()
     roots = all_roots(*values)
     moving = sorted((f for f in found if f.kind in _RATES), key=lambda f: f.name)
-    steps: dict[tuple[bool, Scalar], Fraction] = {}
+    found_in: dict[tuple[bool, Scalar], set[Fraction]] = {}
     # over one denominator: exp(t), exp(t/(a + 1)) and exp(t*a/(a + 1)) depend on each other
     below = Matrix.of([[f.argument for f in moving] or [ONE]]).common_denominator()
     below = below / gcd(*(coefficient for coefficient, _ in below.terms()))
     for f in moving:
         for monomial, coefficient in _coordinates(f.argument, below).items():
-            key = (f.kind in {"cos", "sin"}, monomial)
-            steps[key] = _common_measure(steps.get(key, Fraction(0)), abs(coefficient))
-    if falling:
-        steps = {key: step if key[0] else -step for key, step in steps.items()}
+            found_in.setdefault((f.kind in {"cos", "sin"}, monomial), set()).add(abs(coefficient))
+    degree = highest_power(values, {f.name for f in moving})
+    steps: Steps = {}
+    for key, coefficients in found_in.items():
+        most, related = (_MOST_MULTIPLE, _RELATED_ANGLES) if key[0] else (_MOST_POWER, _RELATED_POWERS)
+        sign = -1 if falling and not key[0] else 1
+        sums = measures(sorted(coefficients), min(most, related * degree))
+        steps[key] = {c: [(sign * step, sign * count) for step, count in parts] for c, parts in sums.items()}
     relations = [root.value**2 - root.argument for root in sorted(roots, key=lambda f: f.name) if not root.square]
     counted = sorted((f for f in found if f.kind == "CRootOf"), key=lambda f: f.name)
     relations += [f.argument.substitute(dict.fromkeys(f.argument.names, f.value)) for f in counted]
-    for (turns, monomial), step in steps.items():
-        if turns:
+    for (turns, monomial), parts in steps.items():
+        for step in sorted({step for part in parts.values() for step, _ in part}) if turns else ():
             relations.append(function("cos", monomial * step) ** 2 + function("sin", monomial * step) ** 2 - 1)
     meanings: dict[str, Scalar] = {}
     for f in moving:
@@ -373,27 +375,21 @@ def identities(
     return meanings, tuple(r.numerator for r in relations)
 
 
-def _common_measure(left: Fraction, right: Fraction) -> Fraction:
-    """Return the greatest fraction of which both are whole multiples."""
-    below = lcm(left.denominator, right.denominator)
-    return Fraction(gcd(int(left * below), int(right * below)), below)
-
-
-def _in_base(f: Function, steps: Mapping[tuple[bool, Scalar], Fraction], below: Scalar) -> Scalar:
+def _in_base(f: Function, steps: Steps, below: Scalar) -> Scalar:
     turns = f.kind in {"cos", "sin"}
     real, imaginary = ONE, ZERO
     for monomial, coefficient in _coordinates(f.argument, below).items():
-        step = steps[turns, monomial]
-        count = int(coefficient / step)
-        if abs(count) > (_MOST_MULTIPLE if turns else _MOST_POWER):
-            raise NotWritten(f"{f.text} is too far from the other {'angles' if turns else 'exponents'}")
-        if not turns:
-            real = real * function("exp", monomial * step) ** count
-            continue
-        c, s = function("cos", monomial * step), function("sin", monomial * step)
-        s = s if count > 0 else -s
-        for _ in range(abs(count)):
-            real, imaginary = real * c - imaginary * s, real * s + imaginary * c
+        for step, multiple in steps[turns, monomial][abs(coefficient)]:
+            count = multiple if coefficient > 0 else -multiple
+            if abs(count) > (_MOST_MULTIPLE if turns else _MOST_POWER):
+                raise NotWritten(f"{f.text} is too far from the other {'angles' if turns else 'exponents'}")
+            if not turns:
+                real = real * function("exp", monomial * step) ** count
+                continue
+            c, s = function("cos", monomial * step), function("sin", monomial * step)
+            s = s if count > 0 else -s
+            for _ in range(abs(count)):
+                real, imaginary = real * c - imaginary * s, real * s + imaginary * c
     if turns or f.kind == "exp":
         return imaginary if f.kind == "sin" else real
     return (real + 1 / real if f.kind == "cosh" else real - 1 / real) / 2

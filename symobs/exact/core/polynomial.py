@@ -21,6 +21,13 @@ def from_coefficients(coefficients: Sequence[Scalar], variable: str) -> Scalar:
     return value
 
 
+def highest_power(values: Iterable[Scalar | Matrix], names: Collection[str]) -> int:
+    """Return the highest power of one of these names in numerators and denominators, at least 1."""
+    entries = [entry for value in values for entry in ([value] if isinstance(value, Scalar) else value.entries)]
+    parts = [part for entry in entries for part in (entry.numerator, entry.denominator)]
+    return max((part.degree(name) for part in parts for name in part.names if name in names), default=1)
+
+
 def coefficients_over(value: Scalar, names: Collection[str]) -> list[Scalar]:
     """Return the coefficients of a numerator as a polynomial in all other names."""
     return list(by_monomial(value, names).values())

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, TypeAlias
 
 from symobs.exact.algebraic.enclosure import is_number, sign_of_number
 from symobs.exact.algebraic.root_location import root_boxes
-from symobs.exact.core.generators import square_root_of
+from symobs.exact.core.generators import generator
 from symobs.exact.core.scalar import Scalar
 from symobs.exact.numerals.significant_digits import is_correctly_written, is_written_exactly
 
@@ -94,7 +94,7 @@ def _closed(root: Root) -> tuple[Bounds, Bounds]:
     if root.radicand.is_zero:
         return (centre, centre), (_ZERO, _ZERO)
     outside, inside, imaginary = root.surd()
-    radical = Scalar.of(1) if inside == 1 else Scalar.symbol(square_root_of([Scalar.of(inside)]))
+    radical = Scalar.of(1) if inside == 1 else generator("sqrt", Scalar.of(inside))
     distance = radical * (outside * root.sign)
     if imaginary:
         return (centre, centre), (distance, distance)

@@ -7,11 +7,11 @@ one; a coefficient is factored where that is shorter.  The spelling always has t
 from __future__ import annotations
 
 from functools import lru_cache
-from math import gcd
+from math import gcd, prod
 from typing import TYPE_CHECKING
 
 from symobs.exact import Scalar
-from symobs.exact.core.generators import function_named, square_root_of
+from symobs.exact.core.generators import Function, function_named
 from symobs.exact.core.ring import number_of
 from symobs.formula import Formula, Literal, Negative, Power, Product, Quotient, Sum
 
@@ -230,7 +230,7 @@ def _roots_together(powers: Sequence[tuple[str, int]]) -> Sequence[tuple[str, in
     }
     if len(roots) < 2:
         return powers
-    together = square_root_of(roots.values())
+    together = Function("sqrt", prod(roots.values(), start=Scalar.of(1))).name
     return [*((name, e) for name, e in powers if name not in roots), (together, 1)]
 
 

@@ -19,6 +19,7 @@ from symobs.derivation import CaseStep, Section
 from symobs.errors import CertificateRejected, DerivationRejected, InputError, ShapeMismatch
 from symobs.exact import Matrix, Scalar
 from symobs.exact.core.generators import derivative, function, identities, normal_form, square_root, substitute
+from symobs.exact.core.rational_matrix import measures
 from symobs.exact.time_functions.quasipolynomial import Key, Quasipolynomial, quasi_of
 from symobs.result.conversions import to_sympy
 from tests.support.paths import ROOT
@@ -563,3 +564,49 @@ def test_a_positive_horizon_needs_no_words() -> None:
     result = symobs.gramian(symobs.StateSpace("[0 1; 0 0]", C="[1 0]", symbols={"T": "positive"}), horizon="T")
     assert not result.holds_where
     assert "Throughout" not in result.to_latex()
+
+
+# -- exponents and angles far apart ----------------------------------------------------------------------------------
+
+
+@given(st.lists(st.fractions(Fraction(1, 1000), 10**7, max_denominator=10**5), min_size=1, max_size=5), st.data())
+@settings(deadline=None)
+def test_numbers_are_sums_of_few_measures(numbers: list[Fraction], data: st.DataObject) -> None:
+    """Each number is its sum, and a number beside its double or the sum of two brings no further measure."""
+    few = len(set(numbers))
+    some = st.sampled_from(numbers)
+    numbers = sorted({*numbers, 2 * data.draw(some), data.draw(some) + data.draw(some)})
+    sums = measures(numbers, 30)
+    assert all(sum(step * count for step, count in sums[number]) == number for number in numbers)
+    assert len({step for parts in sums.values() for step, _ in parts}) <= few
+    assert all(step > 0 for parts in sums.values() for step, _ in parts)
+    assert all(sums[n] == [(step, 2 * count) for step, count in sums[n / 2]] for n in numbers if n / 2 in sums)
+
+
+FAR_APART = (
+    lambda: symobs.matrix_exponential(symobs.StateSpace("[-0.12345 0; 0 -5.6789]")),
+    lambda: symobs.matrix_exponential(symobs.StateSpace("[-0.5 1; 0 -5000000]")),
+    lambda: symobs.matrix_exponential(symobs.StateSpace("[0 1.234 0 0; -1.234 0 0 0; 0 0 0 5.678; 0 0 -5.678 0]")),
+    lambda: symobs.gramian(symobs.StateSpace("[-0.12345 0; 0 -5.6789]", C="[1 1]"), horizon="T"),
+    lambda: symobs.response(symobs.StateSpace("[-1]", "[1]", "[1]"), input="sin(314.159*t)+sin(1000*t)"),
+    lambda: symobs.response(
+        symobs.StateSpace.from_transfer_function("1/((0.0123*s+1)*(0.4567*s+1)*(7.891*s+1))"), input="1"
+    ),
+)
+
+
+@pytest.mark.parametrize("solve", FAR_APART)
+def test_exponents_and_angles_far_apart(solve: Any) -> None:
+    """Plants with time constants and frequencies of several digits have their answers and their pages."""
+    result = solve()
+    assert result.verdict == "yes"
+    assert result.to_json()
+    assert result.to_latex()
+
+
+def test_relations_of_high_degree_are_kept() -> None:
+    """(e^t)^2000 − e^{2000t} is 0 though e^t and e^{2000t} are letters of their own where no power is so high."""
+    high, one = function("exp", Scalar.symbol("t") * 2000), function("exp", Scalar.symbol("t"))
+    assert identities([high + one])[0] == {}
+    difference = one**2000 - high
+    assert difference.substitute(identities([difference])[0]).is_zero
