@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING
 
 from symobs.errors import BudgetExceeded, ExpressionError, InexactInput, InputError, ShapeMismatch
 from symobs.exact import Complex, Matrix, Scalar, matrix_of_numbers
-from symobs.expression.evaluation import MatrixRows, read
+from symobs.expression.evaluation import MOST_CHARACTERS, MatrixRows, read
 from symobs.expression.fast_path import plain_rows
 from symobs.expression.names import Names, Scope, declared_name
 from symobs.expression.size_limits import common_denominator_excess
@@ -286,7 +286,7 @@ def _refuse_blanks_for_commas(text: str, where: str) -> None:
 
     With blanks on both sides, -1 - 2, the sign is that of a difference, and of a complex number it is -1 +2i.
     """
-    if "[" in text or not any(_SIGNED_APART.fullmatch(part) for part in text.split(",")):
+    if len(text) > MOST_CHARACTERS or "[" in text or not any(_SIGNED_APART.fullmatch(part) for part in text.split(",")):
         return
     repair = f'write "{re.sub(r"(?<=[0-9.])[ ]+(?=[-+][0-9.])", ", ", text.strip())}", with commas between the numbers'
     message = f'"{shown(text)}" may be several numbers or one sum'

@@ -991,3 +991,9 @@ def test_the_short_way_reads_what_the_grammar_reads(text: str, names: dict[str, 
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(evaluation, "plain_rows", lambda *_: None)
         assert [outcome(read) for read in readers] == found
+
+
+def test_poles_that_are_too_long_are_refused_before_a_pattern_is_tried(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("symobs.expression.parse._SIGNED_APART", None)
+    with pytest.raises(BudgetExceeded):
+        parse_poles("1" * 100_000)
