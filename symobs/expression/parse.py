@@ -49,6 +49,11 @@ FLOATS = ', or give the plant or the task floats="decimal"'
 _PLAIN = r"(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:/[0-9]+)?"
 #: Numbers with nothing but a blank and a sign between them.
 _SIGNED_APART = re.compile(rf"\s*[-+]?{_PLAIN}(?:\s+[-+]{_PLAIN})+\s*")
+#: The imaginary unit directly before a number or a frequency: j2.4, jw.
+_UNIT_BEFORE = re.compile(
+    r"(?<![A-Za-z0-9_.])(?P<unit>[ij])(?:(?P<size>[0-9]+(?:\.[0-9]+)?)|(?P<name>w|omega))"
+    r"(?![A-Za-z0-9_.])(?=\s*(?P<power>\^|\*\*)?)"
+)
 #: Beyond it a float stands for several integers.
 _WHOLE_UP_TO = 2**53
 _KINDS = {bool: "a truth value (bool)", dict: "a table (dict)", int: "a number", list: "a list", str: "a text"}
@@ -123,13 +128,14 @@ def parse_poles(
     """
     scope = Scope.of(names, None, where, functions=functions, rounding=rounding, roots=roots)
     if isinstance(value, str):
-        value = _with_commas(value, where)
+        value = _with_unit_behind(_with_commas(value, where), scope, where)
         scope = sharing(scope, [value], variable)
         return tuple(Complex.of(pole) for pole in _numbers_of_text(value, scope, where))
     listed = _as_list(value)
     if listed is None:
         repair = 'write [-1, -2] or "-1, -2"'
         raise InputError(f"a list of poles is expected, but {_kind(value)} came", where=where, repair=repair)
+    listed = [_with_unit_behind(pole, scope, where) if isinstance(pole, str) else pole for pole in listed]
     scope = sharing(scope, listed, variable)
     texts = [pole for pole in listed if isinstance(pole, str)]
     for text in texts:
@@ -279,6 +285,21 @@ def _numbers_of_text(text: str, scope: Scope, where: str) -> list[Number]:
     if len(entries) == 1 and isinstance(entries[0], MatrixRows) and 1 in entries[0].shape:
         return [number for row in entries[0].rows for number in row]
     return [_single(entry, where) for entry in entries]
+
+
+def _with_unit_behind(text: str, scope: Scope, where: str) -> str:
+    """Return poles with 2j for j2, the imaginary unit before a number; raises ExpressionError for jw and 1/j2."""
+
+    def behind(match: re.Match[str]) -> str:
+        whole, unit, size = match.group(), match["unit"], match["size"]
+        if scope.declares(whole) or not scope.is_imaginary_unit(unit):
+            return whole
+        if match["name"] or match["power"] or text[: match.start()].rstrip().endswith("/"):
+            repair = f"write {unit}*{match['name'] or size}, in parentheses where it is divided by or raised to a power"
+            raise ExpressionError(f'"{shown(whole)}" may be a name or a product', where=where, repair=repair)
+        return f"{size}{unit}"
+
+    return text if len(text) > MOST_CHARACTERS else _UNIT_BEFORE.sub(behind, text)
 
 
 def _refuse_blanks_for_commas(text: str, where: str) -> None:

@@ -997,3 +997,12 @@ def test_poles_that_are_too_long_are_refused_before_a_pattern_is_tried(monkeypat
     monkeypatch.setattr("symobs.expression.parse._SIGNED_APART", None)
     with pytest.raises(BudgetExceeded):
         parse_poles("1" * 100_000)
+
+
+@pytest.mark.parametrize("names", [None, {}])
+def test_the_imaginary_unit_stands_before_a_number_in_poles(names: dict[str, str] | None) -> None:
+    assert parse_poles("-2+j2, -2-j2.4", names) == parse_poles("-2+2*j, -2-12/5*j", names)
+    assert parse_poles(["i3", "-i3"], names) == parse_poles(["3*i", "-3*i"], names)
+    for text in ("-1+jw", "jomega", "1/j2", "j2^2"):
+        with pytest.raises(ExpressionError, match="may be a name or a product"):
+            parse_poles(text, names)
