@@ -9,18 +9,18 @@ from __future__ import annotations
 from typing import Any
 
 #: Where tasks and methods are discovered, and where output formats are.
-TASK_PACKAGES = ("symobs.analysis", "symobs.design")
-FORMAT_PACKAGE = "symobs.render.formats"
+TASK_PACKAGES = ("symobs.tasks.analysis", "symobs.tasks.design")
+FORMAT_PACKAGE = "symobs.pages.formats"
 #: Functions that are no tasks, and where they are.
 FUNCTIONS = {
     "bounded": "symobs.cli.shared.time_and_memory",
-    "batch": "symobs.batching",
-    "check": "symobs.checking",
+    "batch": "symobs.applications.batch",
+    "check": "symobs.applications.checking",
     "linearize": "symobs.system.linearisation.linearize",
     "live": "symobs.live",
-    "margins": "symobs.analysis.stability_region.margins",
-    "sweep": "symobs.batching.sweep",
-    "variants": "symobs.variation",
+    "margins": "symobs.tasks.analysis.stability_region.margins",
+    "sweep": "symobs.applications.batch.sweep",
+    "variants": "symobs.applications.variants",
 }
 
 
@@ -41,7 +41,7 @@ def __getattr__(name: str) -> Any:
         if name in _errors():
             return _errors()[name]
     elif not name.startswith("_"):
-        task = importlib.import_module("symobs.result").task_named(name)
+        task = importlib.import_module("symobs.tasks.result").task_named(name)
         if task is not None:
             return task.function
     message = f"module 'symobs' has no attribute {name!r}"
@@ -49,13 +49,13 @@ def __getattr__(name: str) -> Any:
 
 
 def __dir__() -> list[str]:
-    from symobs.result import tasks  # noqa: PLC0415
+    from symobs.tasks.result import tasks  # noqa: PLC0415
 
     return sorted(["StateSpace", "__version__", *_errors(), *FUNCTIONS, *tasks()])
 
 
 def _errors() -> dict[str, type[Exception]]:
     """Return the error classes by name."""
-    from symobs import errors  # noqa: PLC0415
+    from symobs.ground import errors  # noqa: PLC0415
 
     return {name: kind for name, kind in vars(errors).items() if isinstance(kind, type) and issubclass(kind, Exception)}

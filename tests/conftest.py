@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import pytest
 from hypothesis import HealthCheck, settings
 
-from symobs.phrases import PHRASES
+from symobs.formula.phrases import PHRASES
 from tests.support.problems.steps import OWN_PHRASES
 
 if TYPE_CHECKING:

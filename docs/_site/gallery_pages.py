@@ -45,7 +45,7 @@ class WorkedExample:
     @property
     def link(self) -> str:
         """Its state in a link."""
-        from symobs.live.links import link_of  # noqa: PLC0415 - only where there is a live page
+        from symobs.applications.live.links import link_of  # noqa: PLC0415 - only where there is a live page
 
         return link_of(self.data)
 
@@ -66,9 +66,9 @@ def examples(names: str = "") -> list[WorkedExample]:
 
 def solve(name: str) -> str:
     """Return the derivation of an example as HTML; raises `ValueError` where it is not what the example expects."""
-    from symobs.expect import mismatches  # noqa: PLC0415 - in the process that solves
     from symobs.problem import read  # noqa: PLC0415
-    from symobs.result import render  # noqa: PLC0415
+    from symobs.problem.expect import mismatches  # noqa: PLC0415 - in the process that solves
+    from symobs.tasks.result import render  # noqa: PLC0415
 
     found = example(name)
     problem = read(found.text, found.path.name, found.path.parent)
@@ -105,7 +105,7 @@ def solved(shown: list[WorkedExample], folder: Path) -> dict[str, str]:
 
 def pages(shown: list[WorkedExample], fragments: dict[str, str]) -> dict[str, str]:
     """Return the pages of the gallery by path: one a task, with the first picture of each example, and one an example."""
-    from symobs.result import tasks  # noqa: PLC0415 - the registry imports all tasks
+    from symobs.tasks.result import tasks  # noqa: PLC0415 - the registry imports all tasks
 
     by_task: dict[str, list[WorkedExample]] = {}
     for each in shown:

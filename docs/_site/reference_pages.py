@@ -12,15 +12,15 @@ from typing import TYPE_CHECKING, Any
 import click
 
 import symobs
-from symobs import errors
 from symobs.cli.command_line import COMMANDS
 from symobs.cli.commands.schema import SCHEMAS
+from symobs.ground import errors
 from symobs.problem import read
-from symobs.result import Result, methods, render, tasks
-from symobs.specification import CHOICES, KINDS
+from symobs.system.specification import CHOICES, KINDS
+from symobs.tasks.result import Result, methods, render, tasks
 
 if TYPE_CHECKING:
-    from symobs.result import Task
+    from symobs.tasks.result import Task
 
 ROOT = Path(__file__).parents[2]
 

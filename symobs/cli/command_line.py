@@ -14,9 +14,9 @@ from typing import TYPE_CHECKING, Any, NoReturn
 
 import click
 
-from symobs.child_processes import COLLECTED_AFTER
 from symobs.cli.shared.common import EXIT_BUG, EXIT_INTERRUPTED, EXIT_UNDECIDED, NOT_ENOUGH_MEMORY, write_message
-from symobs.errors import ProblemErrors, SymobsError, UsageError
+from symobs.ground.child_processes import COLLECTED_AFTER
+from symobs.ground.errors import ProblemErrors, SymobsError, UsageError
 
 if TYPE_CHECKING:
     from click.shell_completion import CompletionItem
@@ -66,7 +66,7 @@ class Tasks(click.Group):
         if cmd_name in COMMANDS:
             found: click.Command = import_module(place_of(cmd_name)).command
             return found
-        from symobs.result import task_named  # noqa: PLC0415
+        from symobs.tasks.result import task_named  # noqa: PLC0415
 
         task = task_named(cmd_name.replace("-", "_"))
         if task is None:

@@ -11,11 +11,11 @@ import click
 from symobs.cli.shared.common import chosen_format, progress_on_terminal, run_work
 from symobs.cli.shared.options import OF_A_PAGE, OneOf, options
 from symobs.cli.shared.outcome import check_targets, convention_of, page_of, solved
-from symobs.errors import ProblemErrors, SymobsError, UsageError
+from symobs.ground.errors import ProblemErrors, SymobsError, UsageError
 from symobs.problem import OPEN, validate
-from symobs.result import methods
-from symobs.result.web_page import WebPage
-from symobs.specification import CHOICES, KINDS
+from symobs.system.specification import CHOICES, KINDS
+from symobs.tasks.result import methods
+from symobs.tasks.result.web_page import WebPage
 
 if TYPE_CHECKING:
     from symobs.cli.shared.outcome import Outcome

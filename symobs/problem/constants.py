@@ -5,13 +5,13 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
-from symobs.errors import InputError
 from symobs.exact import Scalar
 from symobs.exact.algebraic.real_algebraic import roots_of_scalar
 from symobs.exact.core.generators import PI, function_named
-from symobs.expect.roots import COUNTED
-from symobs.expression import declared_name, parse_polynomial, parse_scalar
-from symobs.expression.source import shown
+from symobs.formula.expression import declared_name, parse_polynomial, parse_scalar
+from symobs.formula.expression.source import shown
+from symobs.ground.errors import InputError
+from symobs.problem.expect.roots import COUNTED
 from symobs.problem.file_tables import came
 from symobs.system.reading import require_known
 

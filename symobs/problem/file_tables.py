@@ -9,9 +9,9 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from symobs.errors import InputError, ProblemErrors, reason_of
-from symobs.expression.source import shown
-from symobs.parser_limits import refuse_costly
+from symobs.formula.expression.source import shown
+from symobs.formula.parser_limits import refuse_costly
+from symobs.ground.errors import InputError, ProblemErrors, reason_of
 
 MAX_BYTES = 256 * 1024
 

@@ -9,10 +9,10 @@ from difflib import get_close_matches
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
-from symobs._dataclass import dataclass
-from symobs.errors import SymobsError
-from symobs.expression import parse_scalar
-from symobs.expression.source import shown
+from symobs.formula.expression import parse_scalar
+from symobs.formula.expression.source import shown
+from symobs.ground.dataclass import dataclass
+from symobs.ground.errors import SymobsError
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection

@@ -7,12 +7,12 @@ from collections.abc import Collection, Mapping
 from typing import Any
 from unicodedata import category
 
-from symobs.convention import STANDARD, Convention
-from symobs.errors import InputError, ProblemErrors, SymobsError
-from symobs.expression.source import shown
+from symobs.formula.convention import STANDARD, Convention
+from symobs.formula.expression.source import shown
+from symobs.ground.errors import InputError, ProblemErrors, SymobsError
 from symobs.problem.file_tables import Decimal, came
 from symobs.problem.schema import repair_of
-from symobs.result.in_convention import names_in
+from symobs.tasks.result.in_convention import names_in
 
 _MAX_TEXT = 2000
 _MAX_UNKNOWN = 20

@@ -10,21 +10,19 @@ import string
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
-from symobs._dataclass import dataclass
-from symobs.analysis.factored_form import formula_of_factored
-from symobs.analysis.page_parts import given, state_signs
-from symobs.analysis.time_response.horizons import INFINITE, read_horizon
-from symobs.derivation import Note, Section, translated
-from symobs.derivation.builder import Builder, relation, sentence
 from symobs.exact import Matrix, Scalar, factored, root_of_pole
-from symobs.expression import parse_polynomial
-from symobs.formula import Roots, SymbolList
-from symobs.phrases import QUESTIONS
-from symobs.phrases.english.question_phrases import UNSAID
+from symobs.formula.expression import parse_polynomial
+from symobs.formula.phrases import QUESTIONS
+from symobs.formula.phrases.english.question_phrases import UNSAID
+from symobs.formula.tree import Roots, SymbolList
+from symobs.ground.dataclass import dataclass
 from symobs.problem.schema import keys_of
-from symobs.result import Document
-from symobs.result.digits_of_page import DIGITS
-from symobs.specification import (
+from symobs.proof.derivation import Note, Section, translated
+from symobs.proof.derivation.builder import Builder, relation, sentence
+from symobs.system import read_matrix, read_scalar
+from symobs.system.matrices import as_rows
+from symobs.system.reading import has_decimals
+from symobs.system.specification import (
     desired_polynomial,
     is_pattern,
     parse_signal,
@@ -34,19 +32,21 @@ from symobs.specification import (
     read_poles,
     read_quantity,
 )
-from symobs.system import read_matrix, read_scalar
-from symobs.system.matrices import as_rows
-from symobs.system.reading import has_decimals
+from symobs.tasks.analysis.factored_form import formula_of_factored
+from symobs.tasks.analysis.page_parts import given, state_signs
+from symobs.tasks.analysis.time_response.horizons import INFINITE, read_horizon
+from symobs.tasks.result import Document
+from symobs.tasks.result.digits_of_page import DIGITS
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
 
-    from symobs.derivation import Derivation, Sentence
-    from symobs.derivation.builder import Slot
-    from symobs.formula.term import Term
+    from symobs.formula.tree.term import Term
     from symobs.problem.validation import Problem
-    from symobs.result import Task
+    from symobs.proof.derivation import Derivation, Sentence
+    from symobs.proof.derivation.builder import Slot
     from symobs.system import StateSpace
+    from symobs.tasks.result import Task
 
 #: Keywords whose matrices stand among the data, and the letters they have there.
 _DATA = {"K": "K", "L": "L", "T": "T", "reference_matrix": "A_ref", "reference_start": "x_d0"}
@@ -218,7 +218,7 @@ def _read_pattern(problem: Problem, task: Task, name: str, key: str) -> Scalar:
 
 def _free_parameters(problem: Problem) -> tuple[str, ...]:
     """Return the parameters of the region where none are named."""
-    from symobs.analysis.stability_region.stability_region_question import read_question  # noqa: PLC0415 - only questions of regions
+    from symobs.tasks.analysis.stability_region.stability_region_question import read_question  # noqa: PLC0415 - only questions of regions
 
     asked = problem.specification
     gains = {"K": asked.get("K"), "L": asked.get("L")}

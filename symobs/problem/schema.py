@@ -5,18 +5,18 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
-from symobs.conditions import SIGNS
-from symobs.convention import conventions
+from symobs.formula.convention import conventions
 from symobs.problem.marking import MARKING
-from symobs.result import tasks
-from symobs.result.digits_of_page import MOST_DIGITS
-from symobs.result.in_convention import names_in
-from symobs.specification import CHOICES, KINDS
+from symobs.system.conditions import SIGNS
+from symobs.system.specification import CHOICES, KINDS
+from symobs.tasks.result import tasks
+from symobs.tasks.result.digits_of_page import MOST_DIGITS
+from symobs.tasks.result.in_convention import names_in
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterator
 
-    from symobs.result.registry import Task
+    from symobs.tasks.result.registry import Task
 
 TOP: dict[str, dict[str, Any]] = {
     "title": {"description": "the title of the page", "type": "string"},

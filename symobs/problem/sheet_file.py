@@ -11,19 +11,19 @@ from os.path import normpath
 from pathlib import Path, PurePosixPath
 from typing import TYPE_CHECKING, Any
 
-from symobs._dataclass import dataclass
-from symobs.errors import InputError, ProblemErrors, SymobsError, reason_of
-from symobs.expression import parse_scalar
-from symobs.expression.source import shown
-from symobs.phrases.languages import languages
+from symobs.formula.expression import parse_scalar
+from symobs.formula.expression.source import shown
+from symobs.formula.phrases.languages import languages
+from symobs.ground.dataclass import dataclass
+from symobs.ground.errors import InputError, ProblemErrors, SymobsError, reason_of
+from symobs.pages.page.blocks import AnswerSpace
+from symobs.pages.page.sheet import Header, Logo
 from symobs.problem.file_tables import Decimal, came, parse
 from symobs.problem.noted_errors import Errors, check_text
 from symobs.problem.validation import read_convention
-from symobs.render.page.blocks import AnswerSpace
-from symobs.render.page.sheet import Header, Logo
 
 if TYPE_CHECKING:
-    from symobs.convention import Convention
+    from symobs.formula.convention import Convention
 
 #: The keys of the file, each with what it is for.
 SHEET: dict[str, str] = {

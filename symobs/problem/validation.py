@@ -8,26 +8,26 @@ from dataclasses import field
 from difflib import get_close_matches
 from typing import TYPE_CHECKING, Any
 
-from symobs._dataclass import dataclass
-from symobs.convention import STANDARD, Convention, convention_named
-from symobs.errors import ProblemErrors, UsageError
-from symobs.expect import unreadable
-from symobs.expression import comma_between_digits, declared_name, parse_polynomial
-from symobs.expression.source import shown
-from symobs.phrases.languages import ENGLISH, language_named
+from symobs.formula.convention import STANDARD, Convention, convention_named
+from symobs.formula.expression import comma_between_digits, declared_name, parse_polynomial
+from symobs.formula.expression.source import shown
+from symobs.formula.phrases.languages import ENGLISH, language_named
+from symobs.ground.dataclass import dataclass
+from symobs.ground.errors import ProblemErrors, UsageError
 from symobs.problem.constants import with_constants
+from symobs.problem.expect import unreadable
 from symobs.problem.file_tables import Decimal, came
 from symobs.problem.marking import Marking, read_marking
 from symobs.problem.noted_errors import Errors, check_text, report_unknown, table_of, text_of
 from symobs.problem.plant_table import period_of, plant_of, read_cells
 from symobs.problem.schema import PRINTED, TOP, keys_of, kinds_of, missing_poles
-from symobs.result import Document, Result, Task, task_named, tasks
-from symobs.result.digits_of_page import digits_asked
-from symobs.result.in_convention import ResultInConvention, names_in
-from symobs.specification import is_pattern, parse_signal, read_poles
-from symobs.specification.pole_patterns import OTHERS, named_parts, require_positive
 from symobs.system import StateSpace, Symbols, read_matrix, read_scalar
+from symobs.system.specification import is_pattern, parse_signal, read_poles
+from symobs.system.specification.pole_patterns import OTHERS, named_parts, require_positive
 from symobs.system.time_domain import read_time
+from symobs.tasks.result import Document, Result, Task, task_named, tasks
+from symobs.tasks.result.digits_of_page import digits_asked
+from symobs.tasks.result.in_convention import ResultInConvention, names_in
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from symobs.errors import InputError, ShapeMismatch
 from symobs.exact import Matrix
 from symobs.exact.linear_algebra.realisation import Realisation, closed
+from symobs.ground.errors import InputError, ShapeMismatch
 from symobs.system.matrices import as_rows
 from symobs.system.reading import is_identity, read_matrix
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from symobs.errors import InputError
 from symobs.exact.floating.doubles import nearest_double
+from symobs.ground.errors import InputError
 
 if TYPE_CHECKING:
     from symobs.exact import Matrix

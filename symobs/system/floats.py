@@ -8,8 +8,8 @@ from fractions import Fraction
 from math import isfinite
 from typing import Any
 
-from symobs.errors import InputError
 from symobs.exact import Complex, Scalar
+from symobs.ground.errors import InputError
 from symobs.system.symbols import is_sympy
 
 

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from symobs._dataclass import dataclass
-from symobs.errors import InputError, ShapeMismatch, SymobsError
 from symobs.exact import Matrix, Scalar
 from symobs.exact.core.generators import derivative, substitute, symbols_in
+from symobs.ground.dataclass import dataclass
+from symobs.ground.errors import InputError, ShapeMismatch, SymobsError
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from symobs.errors import InputError
+from symobs.ground.errors import InputError
 from symobs.system.state_space import StateSpace
 from symobs.system.symbols import is_sympy
 

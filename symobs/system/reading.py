@@ -8,14 +8,14 @@ from decimal import Decimal
 from math import lcm, prod
 from typing import Any
 
-from symobs.conditions import sign_of
-from symobs.errors import InexactInput, InputError, ShapeMismatch
 from symobs.exact import Complex, Ideal, Matrix, Scalar
 from symobs.exact.algebraic.real_algebraic import RealRoot
 from symobs.exact.core.generators import Function, NotWritten, all_roots, function_named, functions_in, identities
-from symobs.expression import parse_matrix, parse_scalar
-from symobs.expression.parse import FLOATS
-from symobs.expression.source import shown
+from symobs.formula.expression import parse_matrix, parse_scalar
+from symobs.formula.expression.parse import FLOATS
+from symobs.formula.expression.source import shown
+from symobs.ground.errors import InexactInput, InputError, ShapeMismatch
+from symobs.system.conditions import sign_of
 from symobs.system.symbols import Symbols, is_sympy, sympy_symbols
 
 #: Signs that a value cannot have whose parameter is declared with another.

@@ -6,9 +6,9 @@ from copy import copy
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, cast
 
-from symobs.errors import InputError, SymobsError, raise_all
 from symobs.exact import Field, Ideal, Matrix, Scalar, apart_from_zero, companion, modulo
 from symobs.exact.core.generators import NotWritten, substitute
+from symobs.ground.errors import InputError, SymobsError, raise_all
 from symobs.system.connections import connected
 from symobs.system.control_system import exact_of, read_control_system
 from symobs.system.findings import Findings

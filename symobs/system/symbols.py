@@ -8,13 +8,13 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import field, replace
 from typing import TYPE_CHECKING, Any
 
-from symobs._dataclass import dataclass
-from symobs.conditions import SIGNS
-from symobs.errors import InputError
-from symobs.expression import declared_name
-from symobs.expression.names import NAME
-from symobs.expression.source import shown
-from symobs.notation import GREEK, symbol_latex
+from symobs.formula.expression import declared_name
+from symobs.formula.expression.names import NAME
+from symobs.formula.expression.source import shown
+from symobs.formula.notation import GREEK, symbol_latex
+from symobs.ground.dataclass import dataclass
+from symobs.ground.errors import InputError
+from symobs.system.conditions import SIGNS
 
 if TYPE_CHECKING:
     from symobs.exact import Scalar

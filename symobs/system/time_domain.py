@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from symobs._dataclass import dataclass
-from symobs.errors import InputError
+from symobs.ground.dataclass import dataclass
+from symobs.ground.errors import InputError
 from symobs.system.reading import read_scalar
 
 if TYPE_CHECKING:

@@ -5,11 +5,11 @@ from __future__ import annotations
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
-from symobs._dataclass import dataclass
-from symobs.errors import BudgetExceeded, InputError
 from symobs.exact import Ideal, Matrix, Scalar, companion, product_of, resultant
-from symobs.expression import parse_polynomial, parse_scalar
-from symobs.expression.written_fraction import parse_fraction
+from symobs.formula.expression import parse_polynomial, parse_scalar
+from symobs.formula.expression.written_fraction import parse_fraction
+from symobs.ground.dataclass import dataclass
+from symobs.ground.errors import BudgetExceeded, InputError
 from symobs.system.reading import over_a_base, read_scalar, require_known
 from symobs.system.symbols import is_sympy
 

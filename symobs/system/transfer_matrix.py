@@ -5,12 +5,12 @@ from __future__ import annotations
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
-from symobs._dataclass import dataclass
-from symobs.errors import BudgetExceeded, CertificateRejected, InputError, ShapeMismatch
 from symobs.exact import Matrix, Scalar, companion, product_of, rank, reduced_echelon, transfer_matrix
 from symobs.exact.core.generators import identities
-from symobs.expression import parse_matrix
-from symobs.expression.written_fraction import parse_fractions
+from symobs.formula.expression import parse_matrix
+from symobs.formula.expression.written_fraction import parse_fractions
+from symobs.ground.dataclass import dataclass
+from symobs.ground.errors import BudgetExceeded, CertificateRejected, InputError, ShapeMismatch
 from symobs.system.reading import require_known
 from symobs.system.transfer_function_text import (
     MOST_STATES,

@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from symobs.convention import conventions
 from symobs.exact import Factored, Matrix, Scalar
-from symobs.formula import Environment, Exact, Literal, Relation, Roots, evaluate
+from symobs.formula.convention import conventions
+from symobs.formula.tree import Environment, Exact, Literal, Relation, Roots, evaluate
+from symobs.pages.cards import NAMES, CardPrinter, cards
 from symobs.problem import read
-from symobs.render.cards import NAMES, CardPrinter, cards
-from symobs.result import tasks
+from symobs.tasks.result import tasks
 from tests.support.tools.command_line import EXAMPLES
 
 if TYPE_CHECKING:

@@ -16,10 +16,10 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 import symobs
-from symobs.conditions import never_zero
 from symobs.exact import Matrix, Scalar
 from symobs.exact.core.generators import function_named, symbols_in
 from symobs.problem import Problem, read
+from symobs.system.conditions import never_zero
 from tests.support.claims.claims import HOLDS, Setting, applicable, conditions_hold, read_once
 from tests.support.independent_algebra.plain import (
     assignable,
@@ -39,7 +39,7 @@ from tests.support.sampling import FULL, every
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from symobs.result import Result
+    from symobs.tasks.result import Result
 
 pytestmark = pytest.mark.slow
 
@@ -229,7 +229,9 @@ def ranked(result: Any) -> list[tuple[Any, bool]]:
     """Return the parts of a result that stand on a rank, and whether the pair is the dual one."""
     if result.task == "compensator":
         return [(result.feedback, True), (result.estimator, False)]
-    if result.task == "transfer_function":  # either rank may drop there: tests/unit/analysis/test_transfer_function.py
+    if (
+        result.task == "transfer_function"
+    ):  # either rank may drop there: tests/unit/tasks/analysis/test_transfer_function.py
         return []
     square = result.task not in {"observability", "controllability"} or result.test_determinant is not None
     return [(result, result.task in {"controllability", "state_feedback"})] if square and result.existence else []

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 
-from symobs.exporting import PLATFORMS
+from symobs.applications.export import PLATFORMS
 from tests.support.tools.document_pages import text_of
 
 

@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from symobs.audit import Audited, Finding, report
-from symobs.convention.convention_file import read_convention
-from symobs.errors import InputError, ProblemErrors
-from symobs.render.formats.pdf import compiled
+from symobs.applications.audit import Audited, Finding, report
+from symobs.formula.convention.convention_file import read_convention
+from symobs.ground.errors import InputError, ProblemErrors
+from symobs.pages.formats.pdf import compiled
 from symobs.system import Symbols
 from tests.support.tampering import injection
 from tests.support.tampering.injection import SECRET, TEXTS, corpus, printable, problem
@@ -62,7 +62,7 @@ def test_a_text_that_is_not_escaped_is_noticed(
     text: str, monkeypatch: pytest.MonkeyPatch, require_tool: RequireTool, tmp_path: Path
 ) -> None:
     require_tool("pdflatex")
-    monkeypatch.setattr("symobs.render.formats.latex.escape", str)
+    monkeypatch.setattr("symobs.pages.formats.latex.escape", str)
     text = text.replace("CANARY", str(tmp_path / "canary")).replace("OWNED", str(tmp_path / "owned"))
     assert list(injection.faults_of_pdf([text], tmp_path)) != []
 

@@ -16,24 +16,24 @@ from typing import Any
 import pytest
 
 import symobs
-from symobs.derivation import RegionSummary, Section
-from symobs.errors import DerivationRejected, InputError, UsageError
-from symobs.phrases import CONTINUES, PHRASES
-from symobs.phrases import languages as module
-from symobs.phrases.catalogue import phrases_of_modules
-from symobs.phrases.languages import ENGLISH, faults, language_named, languages
-from symobs.phrases.spoken import Counted, StateChoice
+from symobs.formula.phrases import CONTINUES, PHRASES
+from symobs.formula.phrases import languages as module
+from symobs.formula.phrases.catalogue import phrases_of_modules
+from symobs.formula.phrases.languages import ENGLISH, faults, language_named, languages
+from symobs.formula.phrases.spoken import Counted, StateChoice
+from symobs.ground.errors import DerivationRejected, InputError, UsageError
+from symobs.pages.page.blocks import CaseBlock, Heading, Paragraph, every
+from symobs.pages.page.narrator import narrate
 from symobs.problem import read
 from symobs.problem.question import question_of
-from symobs.render.page.blocks import CaseBlock, Heading, Paragraph, every
-from symobs.render.page.narrator import narrate
-from symobs.result import Document, render
+from symobs.proof.derivation import RegionSummary, Section
+from symobs.tasks.result import Document, render
 from tests.support.paths import ROOT
 from tests.support.problems.render_examples import HandWritten
 from tests.support.tools.command_line import inside
 
-FOLDERS = sorted(path.parent for path in (ROOT / "symobs" / "phrases").glob("*/words.toml"))
-GERMAN = ROOT / "symobs" / "phrases" / "german"
+FOLDERS = sorted(path.parent for path in (ROOT / "symobs" / "formula" / "phrases").glob("*/words.toml"))
+GERMAN = ROOT / "symobs" / "formula" / "phrases" / "german"
 EXAMPLES = ("servo_minimal_order", "region_two_intervals", "hidden_state_two_outputs", "routh_zero_row")
 
 
@@ -128,7 +128,7 @@ def test_a_missing_file_is_named(copy: Path) -> None:
 def test_a_third_language_is_one_folder(tmp_path: Path) -> None:
     """Every phrase in brackets, the numbers as digits: a copy of the package speaks it by this folder alone."""
     shutil.copytree(ROOT / "symobs", tmp_path / "symobs", ignore=shutil.ignore_patterns("__pycache__"))
-    folder = tmp_path / "symobs" / "phrases" / "bracketed"
+    folder = tmp_path / "symobs" / "formula" / "phrases" / "bracketed"
     shutil.copytree(GERMAN, folder)
     for name in phrases_of_modules():
         path = folder / f"{name}.toml"
@@ -138,7 +138,7 @@ def test_a_third_language_is_one_folder(tmp_path: Path) -> None:
     words = (folder / "words.toml").read_text(encoding="utf-8").replace('code = "de"', 'code = "xx"')
     (folder / "words.toml").write_text(words, encoding="utf-8")
     program = (
-        "import symobs; from symobs.phrases.languages import languages;"
+        "import symobs; from symobs.formula.phrases.languages import languages;"
         "print(languages(), symobs.__file__);"
         "print(symobs.observability(symobs.StateSpace('[0 1; 0 -1]', C='[1 0]')).to('text', language='xx'))"
     )

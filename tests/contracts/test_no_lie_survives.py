@@ -13,13 +13,13 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from symobs import StateSpace, compensator, observability, observer, state_feedback
-from symobs.derivation import Diagram
-from symobs.derivation.builder import Builder
-from symobs.design.compensator.output_feedback import OutputFeedback
-from symobs.design.gain.gain_design import GainDesign
-from symobs.errors import CertificateRejected, DerivationRejected
 from symobs.exact import Matrix, Scalar
+from symobs.ground.errors import CertificateRejected, DerivationRejected
 from symobs.problem import read
+from symobs.proof.derivation import Diagram
+from symobs.proof.derivation.builder import Builder
+from symobs.tasks.design.compensator.output_feedback import OutputFeedback
+from symobs.tasks.design.gain.gain_design import GainDesign
 from tests.programs.mutation.claims import drawn
 from tests.support.independent_algebra.truth import is_true, still_true
 from tests.support.paths import ROOT
@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
     from pathlib import Path
 
-    from symobs.result import Result
+    from symobs.tasks.result import Result
 
 pytestmark = pytest.mark.slow
 

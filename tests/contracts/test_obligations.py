@@ -12,9 +12,9 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from symobs.derivation import check, wording_check
-from symobs.derivation.facts.properties import PREDICATES
-from symobs.phrases import ASSERTS, DEMANDS, PHRASES
+from symobs.formula.phrases import ASSERTS, DEMANDS, PHRASES
+from symobs.proof.derivation import check, wording_check
+from symobs.proof.derivation.facts.properties import PREDICATES
 
 if TYPE_CHECKING:
     from types import ModuleType

@@ -18,7 +18,7 @@ import symobs
 from symobs.exact import Field, Matrix, Scalar
 from symobs.exact.core.generators import function
 from symobs.exact.core.precision import Precision
-from symobs.result import tasks
+from symobs.tasks.result import tasks
 from tests.programs.benchmarks.fresh_symbols import design
 from tests.support.claims.asking import specification
 from tests.support.tools.another_process import Account, account_of, read_in_another_process

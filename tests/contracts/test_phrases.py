@@ -12,11 +12,11 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from symobs.phrases import PHRASES, RESTS_ON, THEOREMS
-from symobs.phrases.english import question_phrases
-from symobs.phrases.literature import LITERATURE, bibliography, cited
+from symobs.formula.phrases import PHRASES, RESTS_ON, THEOREMS
+from symobs.formula.phrases.english import question_phrases
+from symobs.formula.phrases.literature import LITERATURE, bibliography, cited
 from symobs.problem import read
-from symobs.result import Task, methods, tasks
+from symobs.tasks.result import Task, methods, tasks
 from tests.support.paths import ROOT
 
 if TYPE_CHECKING:
@@ -118,10 +118,10 @@ def test_the_bibliography_has_an_entry_for_every_work() -> None:
 
 
 def test_the_phrases_bring_no_code_with_them() -> None:
-    code = "import sys, symobs.phrases; print(*(m for m in sys.modules if m.startswith('symobs.')))"
+    code = "import sys, symobs.formula.phrases; print(*(m for m in sys.modules if m.startswith('symobs.')))"
     run = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, check=True)
     loaded = [name for name in run.stdout.split() if not name.endswith("_phrases")]
-    folders = [name for name in loaded if not name.startswith("symobs.phrases")]
+    folders = [name for name in loaded if not name.startswith("symobs.formula.phrases")]
     for name in folders:
         path = ROOT.joinpath(*name.split("."), "__init__.py")
         assert [type(node) for node in ast.parse(path.read_text(encoding="utf-8")).body] == [ast.Expr], name

@@ -10,14 +10,14 @@ import pytest
 import sympy
 
 import symobs
-from symobs.derivation.facts.properties import PREDICATES, are_roots, polynomial_of
-from symobs.errors import ProblemErrors
 from symobs.exact import roots_of
-from symobs.expect import mismatches
-from symobs.expression import parse_scalar
-from symobs.formula import Environment
+from symobs.formula.expression import parse_scalar
+from symobs.formula.tree import Environment
+from symobs.ground.errors import ProblemErrors
+from symobs.pages.formats.json import result_object
 from symobs.problem import read
-from symobs.render.formats.json import result_object
+from symobs.problem.expect import mismatches
+from symobs.proof.derivation.facts.properties import PREDICATES, are_roots, polynomial_of
 from tests.programs.campaign.points import value
 
 

@@ -22,9 +22,9 @@ pytestmark = pytest.mark.slow
 METHOD = '''
 """A second way to a gain."""
 
-from symobs.design.full_order.observer import ObserverDesign
-from symobs.result import method
-from symobs.specification import DesiredPolynomial
+from symobs.tasks.design.full_order.observer import ObserverDesign
+from symobs.tasks.result import method
+from symobs.system.specification import DesiredPolynomial
 from symobs.system import StateSpace
 
 
@@ -45,9 +45,9 @@ TASK = '''
 
 from __future__ import annotations
 
-from symobs.analysis.rank.observability import Observability
-from symobs.result import Result, method, task
-from symobs.specification import Name, Poles
+from symobs.tasks.analysis.rank.observability import Observability
+from symobs.tasks.result import Result, method, task
+from symobs.system.specification import Name, Poles
 from symobs.system import StateSpace
 
 
@@ -69,8 +69,8 @@ FORMAT = '''
 
 from typing import ClassVar
 
-from symobs.result import Document
-from symobs.result import output_format
+from symobs.tasks.result import Document
+from symobs.tasks.result import output_format
 
 
 @output_format
@@ -87,7 +87,7 @@ class Dummy:
 
 #: A task in a folder of its own: what the result is, its page, its phrases with question, theorem and figure, an example;
 #: and the words of the other language, and what checks its claims without symobs, each a file found by its name.
-FOLDER = "symobs/analysis/trace"
+FOLDER = "symobs/tasks/analysis/trace"
 
 TRACE = '''
 """The trace of A."""
@@ -96,18 +96,18 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, ClassVar
 
-from symobs._dataclass import dataclass
-from symobs.certificate.claims import Claim
-from symobs.derivation.builder import relation
+from symobs.ground.dataclass import dataclass
+from symobs.proof.certificate.claims import Claim
+from symobs.proof.derivation.builder import relation
 from symobs.exact import Matrix
-from symobs.formula import Environment
-from symobs.formula.term import letter
-from symobs.result import Result, choose, method, task
+from symobs.formula.tree import Environment
+from symobs.formula.tree.term import letter
+from symobs.tasks.result import Result, choose, method, task
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from symobs.specification import Name
+    from symobs.system.specification import Name
     from symobs.system import StateSpace
 
 
@@ -147,12 +147,12 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from symobs.analysis.page_parts import given
-from symobs.analysis.trace.trace import Trace
-from symobs.result import page_of
+from symobs.tasks.analysis.page_parts import given
+from symobs.tasks.analysis.trace.trace import Trace
+from symobs.tasks.result import page_of
 
 if TYPE_CHECKING:
-    from symobs.derivation.builder import Page
+    from symobs.proof.derivation.builder import Page
 
 
 @page_of(Trace)
@@ -281,7 +281,7 @@ def test_a_method_is_one_new_file(copy: Copy) -> None:
     assert refused.code == 3
     assert "specification.method: 'dummy' is not a method of observer" in refused.err
 
-    copy.add("symobs/design/dummy.py", METHOD)
+    copy.add("symobs/tasks/design/dummy.py", METHOD)
     listed = copy.run("methods")
     assert "    dummy: Take what Ackermann's formula gives.\n        nobody, Theorem 0\n" in listed.out
     solved = copy.run("solve", "-", "--format", "json", stdin=f'{PROBLEM}method = "dummy"\n[expect]\nL = "[19; 81]"\n')
@@ -295,8 +295,8 @@ def test_a_method_is_one_new_file(copy: Copy) -> None:
 def test_a_method_tells_its_own_page_or_none(copy: Copy) -> None:
     """Without one the gain and the check of its claim are printed; no other method's story is borrowed."""
     page = 'page=lambda page, design, side, desired: page.define("L", design.answer["L"], say="gain_with_roots")'
-    copy.add("symobs/design/dummy.py", METHOD)
-    copy.add("symobs/design/second.py", METHOD.replace("dummy", "second").replace('0"', f'0", {page}'))
+    copy.add("symobs/tasks/design/dummy.py", METHOD)
+    copy.add("symobs/tasks/design/second.py", METHOD.replace("dummy", "second").replace('0"', f'0", {page}'))
     told = {
         name: copy.run("solve", "-", "--format", "text", stdin=f'{PROBLEM}method = "{name}"\n').out
         for name in ("ackermann", "dummy", "second")
@@ -311,7 +311,7 @@ def test_a_method_tells_its_own_page_or_none(copy: Copy) -> None:
 
 
 def test_a_method_that_lies_cannot_answer(copy: Copy) -> None:
-    copy.add("symobs/design/dummy.py", LIAR)
+    copy.add("symobs/tasks/design/dummy.py", LIAR)
     run = copy.run("solve", "-", stdin=f'{PROBLEM}method = "dummy"\n')
     assert (run.code, run.out) == (1, "")
     assert run.err.startswith("the claim det(s*I - A + L*C) = phi(s) does not hold")
@@ -322,7 +322,7 @@ def test_a_method_that_lies_cannot_answer(copy: Copy) -> None:
     [TASK, TASK.replace("from __future__ import annotations\n", "").replace("Poles = None", "Poles | None = None")],
 )
 def test_a_task_is_one_new_file(copy: Copy, text: str) -> None:
-    copy.add("symobs/design/dummy_task.py", text)
+    copy.add("symobs/tasks/design/dummy_task.py", text)
     assert "  dummy_task " in copy.run("--help").out
     assert "dummy_task: Decide what nobody asked.\n    direct: Look at the rank.\n" in copy.run("methods").out
     schema = json.loads(copy.run("schema").out)
@@ -353,7 +353,7 @@ def test_a_task_is_one_new_folder_and_an_example(copy: Copy) -> None:
     copy.add(f"{FOLDER}/trace_page.py", TRACE_PAGE)
     with pytest.raises(AssertionError, match=r"write tests/support/claims/claims_of_trace\.py with `holds\("):
         HOLDS["trace"]
-    copy.add("symobs/phrases/german/trace.toml", TRACE_IN_GERMAN)
+    copy.add("symobs/formula/phrases/german/trace.toml", TRACE_IN_GERMAN)
     copy.add("tests/support/claims/claims_of_trace.py", TRACE_CLAIMS)
     others = "every_phrase or theorem or literature or language_has or (trace/direct and survives)"
     told = copy.kept(f"{others} or (trace and not trace/)", "test_languages", "test_tasks_and_methods")
@@ -371,7 +371,7 @@ def test_a_task_is_one_new_folder_and_an_example(copy: Copy) -> None:
 def test_a_format_is_one_new_file(copy: Copy) -> None:
     refused = copy.run("solve", "-", "--format", "dummy", stdin=PROBLEM)
     assert refused.code == 2
-    copy.add("symobs/render/formats/dummy.py", FORMAT)
+    copy.add("symobs/pages/formats/dummy.py", FORMAT)
     solved = copy.run("solve", "-", "--format", "dummy", stdin=PROBLEM)
     assert (solved.code, solved.err) == (0, "")
     assert solved.out.startswith("observer ")

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 import pytest
 
 from symobs.cli.command_line import COMMANDS
-from symobs.convention.builtin import ALIASES
-from symobs.result import tasks
+from symobs.formula.convention.builtin import ALIASES
+from symobs.tasks.result import tasks
 from tests.support.paths import ROOT
 from tests.support.sampling import every
 from tests.support.tools.command_line import EXAMPLES, inside

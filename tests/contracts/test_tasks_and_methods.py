@@ -17,9 +17,9 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 import symobs
-from symobs.errors import CertificateRejected, InexactInput
 from symobs.exact import Matrix, Scalar
-from symobs.result import Result, methods, tasks
+from symobs.ground.errors import CertificateRejected, InexactInput
+from symobs.tasks.result import Result, methods, tasks
 from tests.support.claims.asking import (
     DISTURBED,
     OTHER_QUESTIONS,
@@ -170,7 +170,7 @@ def test_the_same_question_has_the_same_answer_to_the_letter(name: str) -> None:
 
 def test_answers_do_not_depend_on_the_hash_seed() -> None:
     program = (
-        "import symobs; from symobs.result import methods, tasks\n"
+        "import symobs; from symobs.tasks.result import methods, tasks\n"
         "from tests.support.claims.asking import specification\n"
         f"for name, m in sorted(methods().items()):\n"
         f"    task = tasks()[m.task]; given = specification(name, {POLES})\n"

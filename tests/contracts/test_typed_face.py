@@ -12,8 +12,8 @@ from pathlib import Path
 import pytest
 
 import symobs
-from symobs import errors
-from symobs.result import tasks
+from symobs.ground import errors
+from symobs.tasks.result import tasks
 from tests.programs import typed_face
 from tests.support.paths import ROOT
 

@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING
 
 import pytest
 
+from symobs.applications.variants.drawing.constructions import CONSTRUCTIONS
+from symobs.applications.variants.drawing.parameters import read_parameter
+from symobs.applications.variants.reading.constraint_table import BOUNDS, FLAGS, LISTS, PAGE
 from symobs.problem import parse
-from symobs.variation.drawing.constructions import CONSTRUCTIONS
-from symobs.variation.drawing.parameters import read_parameter
-from symobs.variation.reading.constraint_table import BOUNDS, FLAGS, LISTS, PAGE
 from tests.support.paths import ROOT
 from tests.support.tools.command_line import inside
 from tests.support.tools.document_pages import blocks

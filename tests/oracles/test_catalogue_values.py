@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import pytest
 
 from symobs.exact import Matrix, Scalar
-from symobs.expression import parse_matrix, parse_scalar
-from symobs.formula import Evaluated, Exact, Formula, Literal, Relation, evaluate
-from symobs.formula.nodes import children
-from symobs.result import render
+from symobs.formula.expression import parse_matrix, parse_scalar
+from symobs.formula.tree import Evaluated, Exact, Formula, Literal, Relation, evaluate
+from symobs.formula.tree.nodes import children
+from symobs.tasks.result import render
 from tests.pages.test_worked_examples import FILES, solved
 from tests.support.problems.catalogue_values import VALUES
 from tests.support.tampering.mutations import lines_of
@@ -21,8 +21,8 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
     from pathlib import Path
 
-    from symobs.derivation import Derivation
-    from symobs.formula import Environment
+    from symobs.formula.tree import Environment
+    from symobs.proof.derivation import Derivation
 
 pytestmark = pytest.mark.slow
 

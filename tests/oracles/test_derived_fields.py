@@ -13,8 +13,8 @@ import pytest
 
 from symobs.exact import Factored, Matrix, Root, Scalar
 from symobs.exact.core.generators import function_named, symbols_in
-from symobs.expression import parse_scalar
-from symobs.formula import Literal
+from symobs.formula.expression import parse_scalar
+from symobs.formula.tree import Literal
 from symobs.problem import read
 from tests.support.claims.claims import Setting, conditions_hold
 from tests.support.claims.claims_in_time import FUNCTIONS_OF_TIME
@@ -42,7 +42,7 @@ from tests.support.tampering.mutations import parts_of
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
-    from symobs.result import Result
+    from symobs.tasks.result import Result
     from tests.support.independent_algebra.plain import Point, Polynomial, Rows
 
 pytestmark = pytest.mark.slow

@@ -7,8 +7,8 @@ from typing import Any
 
 import pytest
 
+from symobs.pages.formats.json import result_object
 from symobs.problem import read
-from symobs.render.formats.json import result_object
 
 pytestmark = pytest.mark.slow
 

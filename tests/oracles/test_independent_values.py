@@ -13,8 +13,8 @@ import pytest
 import sympy
 
 from symobs import problem
-from symobs.expression import parse_scalar
-from symobs.result.conversions import to_sympy
+from symobs.formula.expression import parse_scalar
+from symobs.tasks.result.conversions import to_sympy
 from tests.support.independent_algebra.second_reader import Reader, facts_in, sympy_scalar, values_of
 from tests.support.paths import ROOT
 from tests.support.problems.problems_by_hand import (
@@ -49,7 +49,7 @@ from tests.support.sampling import every
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping
 
-    from symobs.result import Result
+    from symobs.tasks.result import Result
     from tests.support.problems.problems_by_hand import Hand
 
 pytestmark = pytest.mark.slow

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 import sympy
 
-from symobs.result.conversions import to_sympy
+from symobs.tasks.result.conversions import to_sympy
 from tests.oracles.test_independent_values import ROOTS, VERDICTS, results, same
 from tests.support.independent_algebra.second_reader import Reader, facts_in, values_of
 from tests.support.problems.problems_by_hand import s
@@ -17,7 +17,7 @@ from tests.support.sampling import every
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from symobs.result import Result
+    from symobs.tasks.result import Result
 
 pytestmark = pytest.mark.slow
 

@@ -17,7 +17,7 @@ import pytest
 import sympy
 
 import symobs
-from symobs.errors import InputError
+from symobs.ground.errors import InputError
 
 TABLE = tomllib.loads(Path(__file__).with_suffix(".toml").with_stem("textbook_problems").read_text(encoding="utf-8"))
 ROWS = TABLE["problems"]

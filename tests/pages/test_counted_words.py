@@ -7,7 +7,7 @@ import re
 import pytest
 
 import symobs
-from symobs.phrases import PHRASES
+from symobs.formula.phrases import PHRASES
 from symobs.problem import read
 
 

@@ -10,12 +10,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from symobs import StateSpace, observer, reduced_order_observer
-from symobs.derivation import Derivation, Equal
-from symobs.errors import DerivationRejected
 from symobs.exact import Matrix, Scalar, decimal_digits, decimal_places, is_rounding, rounded
-from symobs.formula import Decimals, Environment, Letter, Literal, Relation
-from symobs.render.printers.latex_printer import LatexPrinter
-from symobs.render.printers.text_printer import TextPrinter
+from symobs.formula.tree import Decimals, Environment, Letter, Literal, Relation
+from symobs.ground.errors import DerivationRejected
+from symobs.pages.printers.latex_printer import LatexPrinter
+from symobs.pages.printers.text_printer import TextPrinter
+from symobs.proof.derivation import Derivation, Equal
 
 
 def scalar(text: str) -> Scalar:

@@ -10,25 +10,25 @@ from typing import TYPE_CHECKING
 import pytest
 
 import symobs
-from symobs.derivation import CaseStep, Conclude, Define, Equal, Given, Note, Sentence
-from symobs.errors import UsageError
-from symobs.formula import Conjunction, Letter, Literal, Relation
-from symobs.formula.plain_text import plain_relation
-from symobs.phrases import ASSERTS, EXPLAINS, PHRASES, SPELLS_OUT, slots_of
+from symobs.formula.phrases import ASSERTS, EXPLAINS, PHRASES, SPELLS_OUT, slots_of
+from symobs.formula.tree import Conjunction, Letter, Literal, Relation
+from symobs.formula.tree.plain_text import plain_relation
+from symobs.ground.errors import UsageError
+from symobs.pages.page.blocks import CaseBlock, Caution, Display, Paragraph, References, Verified, every
+from symobs.pages.page.detail_level import DETAILS, at_detail
+from symobs.pages.page.narrator import narrate
 from symobs.problem import read
-from symobs.render.page.blocks import CaseBlock, Caution, Display, Paragraph, References, Verified, every
-from symobs.render.page.detail_level import DETAILS, at_detail
-from symobs.render.page.narrator import narrate
+from symobs.proof.derivation import CaseStep, Conclude, Define, Equal, Given, Note, Sentence
 from tests.support.tools.command_line import EXAMPLES, SERVO, inside
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
     from pathlib import Path
 
-    from symobs.derivation import Step
-    from symobs.formula import Formula
-    from symobs.render.page.blocks import Block
-    from symobs.result import Document
+    from symobs.formula.tree import Formula
+    from symobs.pages.page.blocks import Block
+    from symobs.proof.derivation import Step
+    from symobs.tasks.result import Document
 
 SHORTER = [detail for detail in DETAILS if detail != "full"]
 

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from symobs.cli.command_line import COMMANDS
-from symobs.result import tasks
+from symobs.tasks.result import tasks
 from tests.support.paths import ROOT
 from tests.support.tools.command_line import SAFETY, environment
 

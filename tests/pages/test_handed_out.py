@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from symobs.phrases import PHRASES
-from symobs.render.page.sheet import Header, Sheet, SheetEntry
+from symobs.formula.phrases import PHRASES
+from symobs.pages.page.sheet import Header, Sheet, SheetEntry
 from tests.pages.test_sheet import typeset
 from tests.support.paths import ROOT
 from tests.support.tools.command_line import inside

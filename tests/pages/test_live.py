@@ -13,9 +13,9 @@ from urllib.parse import quote
 
 import pytest
 
-from symobs.live import answer
-from symobs.live.process import AnswerBudget, Children
-from symobs.live.server import Server
+from symobs.applications.live import answer
+from symobs.applications.live.process import AnswerBudget, Children
+from symobs.applications.live.server import Server
 from tests.support.tools.command_line import environment
 
 if TYPE_CHECKING:

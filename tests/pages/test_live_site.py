@@ -14,8 +14,8 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from symobs.live import answer
-from symobs.live.site import build
+from symobs.applications.live import answer
+from symobs.applications.live.site import build
 from tests.programs.live_site import Files
 
 if TYPE_CHECKING:

@@ -27,24 +27,24 @@ from symobs import (
     state_feedback,
     transfer_function,
 )
-from symobs.derivation import CaseStep, Conclude, Define, Diagram, Equal, Given, Section, Sentence
-from symobs.derivation.decimals_check import check_decimals
-from symobs.errors import DerivationRejected, ProblemErrors, SymobsWarning, UsageError
 from symobs.exact import Scalar, is_correctly_written, roots_of, significant
 from symobs.exact.core.generators import function
 from symobs.exact.numerals.rounded_roots import are_rounded_roots
 from symobs.exact.numerals.written_roots import rounded_roots
-from symobs.formula import Letter, Literal, Negative, Numeral, Product, Quotient, Relation, RoundedRoots
-from symobs.formula.plain_text import plain, plain_relation
+from symobs.formula.tree import Letter, Literal, Negative, Numeral, Product, Quotient, Relation, RoundedRoots
+from symobs.formula.tree.plain_text import plain, plain_relation
+from symobs.ground.errors import DerivationRejected, ProblemErrors, SymobsWarning, UsageError
+from symobs.pages.decimals.formulas import InDecimals
+from symobs.pages.decimals.steps import in_decimals
+from symobs.pages.printers.latex_printer import LatexPrinter
 from symobs.problem import validate
-from symobs.render.decimals.formulas import InDecimals
-from symobs.render.decimals.steps import in_decimals
-from symobs.render.printers.latex_printer import LatexPrinter
+from symobs.proof.derivation import CaseStep, Conclude, Define, Diagram, Equal, Given, Section, Sentence
+from symobs.proof.derivation.decimals_check import check_decimals
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from symobs.result import Result
+    from symobs.tasks.result import Result
 
 #: The pitch of an aircraft, from the control tutorials of the University of Michigan.
 PITCH = "[-0.313 56.7 0; -0.0139 -0.426 0; 0 56.7 0]", "[0.232; 0.0203; 0]", "[0 0 1]"
@@ -448,7 +448,7 @@ def test_functions_of_time_are_compared_by_what_is_known_of_them() -> None:
 
 
 def test_a_line_whose_decimals_fail_their_check_stays_exact(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("symobs.render.decimals.formulas.significant", lambda *_: "0.5")
+    monkeypatch.setattr("symobs.pages.decimals.formulas.significant", lambda *_: "0.5")
     design = state_feedback(StateSpace("[0 1; -0.3 0.7]", "[0; 3]"), poles="-1, -2")
     with pytest.warns(SymobsWarning, match="a line in decimals is left out"):
         page = str(design.to("text"))

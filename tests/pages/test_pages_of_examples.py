@@ -10,27 +10,27 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from symobs.convention import STANDARD, convention_named
-from symobs.formula import Formula, Letter, Relation
-from symobs.notation import GREEK
-from symobs.render.formats.html import page
-from symobs.render.page.blocks import CaseBlock, Display, Drawing, Heading, PictureBlock, TableBlock, every
-from symobs.render.page.narrator import narrate, printer_for
-from symobs.render.printers.latex_printer import LatexPrinter
-from symobs.render.printers.mathml.mathml_printer import MathmlPrinter
-from symobs.result import render
+from symobs.formula.convention import STANDARD, convention_named
+from symobs.formula.notation import GREEK
+from symobs.formula.tree import Formula, Letter, Relation
+from symobs.pages.formats.html import page
+from symobs.pages.page.blocks import CaseBlock, Display, Drawing, Heading, PictureBlock, TableBlock, every
+from symobs.pages.page.narrator import narrate, printer_for
+from symobs.pages.printers.latex_printer import LatexPrinter
+from symobs.pages.printers.mathml.mathml_printer import MathmlPrinter
+from symobs.tasks.result import render
 from tests.pages.test_worked_examples import FILES, solved
 from tests.support.tools.browser import Browser
-from tests.unit.render.test_html import faults, local, parsed
-from tests.unit.render.test_markdown import formulas
-from tests.unit.render.test_printers import hostile_members
+from tests.unit.pages.test_html import faults, local, parsed
+from tests.unit.pages.test_markdown import formulas
+from tests.unit.pages.test_printers import hostile_members
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
     from pathlib import Path
 
-    from symobs.render.page.blocks import Block
-    from symobs.result import Document
+    from symobs.pages.page.blocks import Block
+    from symobs.tasks.result import Document
 
 pytestmark = pytest.mark.slow
 

@@ -8,9 +8,9 @@ from dataclasses import replace
 import pytest
 
 import symobs
-from symobs.errors import InputError
+from symobs.ground.errors import InputError
 from symobs.problem import read
-from symobs.result.writers import render
+from symobs.tasks.result.writers import render
 
 TWO = """
     tasks = ["state_feedback", "tracking"]

@@ -12,9 +12,9 @@ from typing import TYPE_CHECKING
 import pytest
 
 from symobs.cli.commands.sheet import _Progress
-from symobs.render.formats.pdf import SLOWEST, TIME_LIMIT, Pdf
-from symobs.render.page.sheet import WITHOUT_CONTENTS, Sheet, SheetEntry
-from symobs.result import formats
+from symobs.pages.formats.pdf import SLOWEST, TIME_LIMIT, Pdf
+from symobs.pages.page.sheet import WITHOUT_CONTENTS, Sheet, SheetEntry
+from symobs.tasks.result import formats
 from tests.support.paths import ROOT
 from tests.support.tools.command_line import EXAMPLES, SERVO, fresh, inside
 
@@ -337,7 +337,7 @@ def test_tex_has_more_time_for_a_longer_sheet(monkeypatch: pytest.MonkeyPatch) -
         limits.append(time_limit)
         return b""
 
-    monkeypatch.setattr("symobs.render.formats.pdf.compiled", recorded)
+    monkeypatch.setattr("symobs.pages.formats.pdf.compiled", recorded)
     long = {"body": "x" * int(200 * SLOWEST), "drawings": False}
     for part in ({"body": "x", "drawings": False}, long):
         Pdf().sheet(Sheet("", (SheetEntry(1, "file", "title", part, part),)))

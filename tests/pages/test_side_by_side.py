@@ -9,20 +9,20 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 import symobs
-from symobs.derivation import Equal, Section
-from symobs.errors import DerivationRejected, InputError
-from symobs.formula import Literal
-from symobs.formula.plain_text import plain_relation
+from symobs.formula.tree import Literal
+from symobs.formula.tree.plain_text import plain_relation
+from symobs.ground.errors import DerivationRejected, InputError
+from symobs.pages.page.blocks import Columns, Display, every
+from symobs.pages.page.narrator import narrate
+from symobs.pages.printers.text_printer import text_width
 from symobs.problem import read
-from symobs.render.page.blocks import Columns, Display, every
-from symobs.render.page.narrator import narrate
-from symobs.render.printers.text_printer import text_width
-from symobs.result import render
+from symobs.proof.derivation import Equal, Section
+from symobs.tasks.result import render
 from tests.support.tools.command_line import EXAMPLES
 
 if TYPE_CHECKING:
-    from symobs.derivation import Step
-    from symobs.result import Document
+    from symobs.proof.derivation import Step
+    from symobs.tasks.result import Document
 
 BESIDE = "side_by_side"
 SERVO = symobs.StateSpace("[0 1; 0 -1]", "[0; 1]", "[1 0]")

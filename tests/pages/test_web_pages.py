@@ -13,7 +13,7 @@ from urllib.parse import unquote
 
 import pytest
 
-from symobs.render.page.detail_level import DETAILS
+from symobs.pages.page.detail_level import DETAILS
 from tests.support.tools.command_line import EXAMPLES, SERVO, inside
 
 if TYPE_CHECKING:

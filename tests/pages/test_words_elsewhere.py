@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 
 import symobs
-from symobs import phrases
+from symobs.formula import phrases
 
 
 def text_of(result: Any) -> str:

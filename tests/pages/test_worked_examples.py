@@ -17,10 +17,10 @@ from click.testing import CliRunner
 from symobs import problem
 from symobs.cli import cli
 from symobs.exact import Matrix
-from symobs.expect import mismatches
-from symobs.expression import parse_matrix, parse_scalar
-from symobs.formula import Block, Literal
-from symobs.result import formats, render
+from symobs.formula.expression import parse_matrix, parse_scalar
+from symobs.formula.tree import Block, Literal
+from symobs.problem.expect import mismatches
+from symobs.tasks.result import formats, render
 from tests.support.independent_algebra.second_reader import sympy_scalar
 from tests.support.paths import ROOT
 from tests.support.sampling import every
@@ -30,8 +30,8 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from symobs.problem import Problem
-    from symobs.result import Result
-    from symobs.result.in_convention import ResultInConvention
+    from symobs.tasks.result import Result
+    from symobs.tasks.result.in_convention import ResultInConvention
 
 pytestmark = pytest.mark.slow
 

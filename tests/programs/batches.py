@@ -22,22 +22,22 @@ from itertools import islice
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from symobs.batching.engine import Settings
-from symobs.batching.jobs import job, read_payload, row_text, solve_job
-from symobs.batching.run import Batch
-from symobs.batching.store import Store
-from symobs.batching.sweep import block
-from symobs.batching.sweep.plan import BLOCK, Plan
+from symobs.applications.batch.engine import Settings
+from symobs.applications.batch.jobs import job, read_payload, row_text, solve_job
+from symobs.applications.batch.run import Batch
+from symobs.applications.batch.store import Store
+from symobs.applications.batch.sweep import block
+from symobs.applications.batch.sweep.plan import BLOCK, Plan
+from symobs.pages.formats.json import result_object
 from symobs.problem import read
-from symobs.render.formats.json import result_object
 from tests.support.problems.batches import children_of, design
 from tests.support.tools.command_line import environment, installed_environment
-from tests.unit.batching.test_sweep import CART
+from tests.unit.applications.batch.test_sweep import CART
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
-    from symobs.batching.jobs import Job
+    from symobs.applications.batch.jobs import Job
 
 #: Seconds of the machine that stores, a row of a sweep: 9 µs to take it, 28 µs to write it into the table.
 STORED = 37e-6

@@ -18,12 +18,12 @@ import time
 from pathlib import Path
 from statistics import median
 
-from symobs.batching.run import batch
+from symobs.applications.batch.run import batch
 from symobs.cli import main as command_line
 from symobs.cli.shared import sheet_entries
+from symobs.pages.formats.json import result_object
 from symobs.problem import read
-from symobs.render.formats.json import result_object
-from symobs.result import render
+from symobs.tasks.result import render
 from tests.support.tools.command_line import EXAMPLES, installed_environment
 
 #: Each comparison: one after another, and by two workers.

@@ -24,11 +24,11 @@ from fractions import Fraction
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from symobs.child_processes import COLLECTED_AFTER
-from symobs.live import answer
-from symobs.live.child import prepare
-from symobs.live.process import AnswerBudget
-from symobs.live.server import Server
+from symobs.applications.live import answer
+from symobs.applications.live.child import prepare
+from symobs.applications.live.process import AnswerBudget
+from symobs.applications.live.server import Server
+from symobs.ground.child_processes import COLLECTED_AFTER
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -7,8 +7,8 @@ import threading
 from typing import Any
 from urllib.parse import quote
 
-from symobs.live.process import AnswerBudget
-from symobs.live.server import Server
+from symobs.applications.live.process import AnswerBudget
+from symobs.applications.live.server import Server
 from tests.support.paths import ROOT
 
 FOLDER = ROOT / ".github" / "pictures"

@@ -21,8 +21,8 @@ from http.server import SimpleHTTPRequestHandler, ThreadingHTTPServer
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from symobs.live.child import respond
-from symobs.live.site import POLICY
+from symobs.applications.live.child import respond
+from symobs.applications.live.site import POLICY
 from tests.programs.live_goals import HEAD, dragged, row
 
 if TYPE_CHECKING:

@@ -15,10 +15,10 @@ import time
 from math import isqrt
 from pathlib import Path
 
-from symobs.batching.store import Store, work_folder
-from symobs.batching.sweep.plan import BLOCK
+from symobs.applications.batch.store import Store, work_folder
+from symobs.applications.batch.sweep.plan import BLOCK
 from tests.support.tools.command_line import environment
-from tests.unit.batching.test_sweep import CART
+from tests.unit.applications.batch.test_sweep import CART
 
 #: Seconds between two looks at the memory.
 _LOOK = 0.5

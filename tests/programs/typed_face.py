@@ -10,10 +10,10 @@ from collections.abc import Mapping
 from typing import Any
 
 import symobs
-from symobs import errors
 from symobs.exact import Complex, Factored, Matrix, Root, Scalar, Shifted
+from symobs.ground import errors
 from symobs.problem import read
-from symobs.result import Result, Task, tasks
+from symobs.tasks.result import Result, Task, tasks
 from tests.support.paths import ROOT
 
 STUB = ROOT / "symobs" / "__init__.pyi"
@@ -144,7 +144,7 @@ def stub() -> str:
     raised = [name for name in raised if issubclass(getattr(errors, name), errors.SymobsError)]
     imports = {line for line, _ in classes.values()} | {"from symobs.system import StateSpace as StateSpace"}
     imports |= {f"from {module} import {name} as {name}" for name, module in symobs.FUNCTIONS.items()}
-    imports |= {f"from symobs.errors import {name} as {name}" for name in raised}
+    imports |= {f"from symobs.ground.errors import {name} as {name}" for name in raised}
     bodies = [f"{classes[name][1]}\n\n{signature(tasks()[name])}" for name in found]
     return HEAD + "\n".join(sorted(imports)) + "\n" + NAMES + "\n" + "\n\n".join(bodies) + "\n"
 

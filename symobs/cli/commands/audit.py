@@ -8,16 +8,16 @@ from typing import TYPE_CHECKING
 
 import click
 
-from symobs.audit import REPORTS, audit, report
+from symobs.applications.audit import REPORTS, audit, report
 from symobs.cli.shared.common import EXIT_NO, place_of, read_file, run_work, write_message
 from symobs.cli.shared.options import LIMITS, AFile, OneOf, options
 from symobs.cli.shared.outcome import Outcome
 from symobs.cli.shared.output import check_target
-from symobs.errors import ProblemErrors, SymobsError, UsageError
+from symobs.ground.errors import ProblemErrors, SymobsError, UsageError
 from symobs.problem import read
 
 if TYPE_CHECKING:
-    from symobs.audit import Audited
+    from symobs.applications.audit import Audited
     from symobs.cli.shared.time_and_memory import Progress
 
 

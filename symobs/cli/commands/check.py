@@ -8,17 +8,17 @@ from typing import TYPE_CHECKING
 
 import click
 
-from symobs.checking import SHOW, Checked
-from symobs.checking.asked import answer_file
+from symobs.applications.checking import SHOW, Checked
+from symobs.applications.checking.asked import answer_file
 from symobs.cli.shared.common import place_of, read_file, run_work, write_message
 from symobs.cli.shared.options import LIMITS, WORKERS, options, quoted
 from symobs.cli.shared.outcome import Outcome, convention_of
 from symobs.cli.shared.output import check_target, make_folder, write_all
-from symobs.errors import UsageError
+from symobs.ground.errors import UsageError
 from symobs.problem import read
 
 if TYPE_CHECKING:
-    from symobs.checking import CheckReport
+    from symobs.applications.checking import CheckReport
     from symobs.cli.shared.time_and_memory import Progress
 
 #: The formats of a report, with the suffixes of their files.
@@ -143,10 +143,10 @@ def _class(
     limits: tuple[float | None, float | None],
 ) -> None:
     """Check a class and write its results into a folder."""
-    from symobs.batching.store import discard_work, work_folder  # noqa: PLC0415
-    from symobs.checking.classes.classroom import check_class  # noqa: PLC0415
-    from symobs.checking.classes.variants_of_class import class_variants, one_problem  # noqa: PLC0415
-    from symobs.child_processes.budget import Budget  # noqa: PLC0415 - a single answer does not pay for it
+    from symobs.applications.batch.store import discard_work, work_folder  # noqa: PLC0415
+    from symobs.applications.checking.classes.classroom import check_class  # noqa: PLC0415
+    from symobs.applications.checking.classes.variants_of_class import class_variants, one_problem  # noqa: PLC0415
+    from symobs.ground.child_processes.budget import Budget  # noqa: PLC0415 - a single answer does not pay for it
 
     if target is None:
         raise UsageError("the results of a class need a folder", where="-o", repair="write -o RESULTS/")

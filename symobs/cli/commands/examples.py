@@ -9,7 +9,7 @@ import click
 
 from symobs.cli.shared.options import AFile, OneOf, quoted
 from symobs.cli.shared.output import copied, write
-from symobs.errors import UsageError
+from symobs.ground.errors import UsageError
 
 _PACKAGE = Path(__file__).parents[2]
 

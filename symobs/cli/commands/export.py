@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING
 
 import click
 
+from symobs.applications.export import FOLDERS, PLATFORMS, exercises, export
 from symobs.cli.shared.common import run_work
 from symobs.cli.shared.options import LIMITS, options, quoted
 from symobs.cli.shared.outcome import Outcome
 from symobs.cli.shared.output import check_target
-from symobs.errors import UsageError
-from symobs.exporting import FOLDERS, PLATFORMS, exercises, export
+from symobs.ground.errors import UsageError
 
 if TYPE_CHECKING:
     from symobs.cli.shared.time_and_memory import Progress

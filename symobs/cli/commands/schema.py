@@ -6,12 +6,12 @@ import json
 
 import click
 
-from symobs.checking.report.schema import schema as of_check
+from symobs.applications.checking.report.schema import schema as of_check
+from symobs.applications.variants.schema import schema as of_variants
 from symobs.cli.shared.output import write
-from symobs.errors import UsageError
+from symobs.ground.errors import UsageError
 from symobs.problem import schema as of_problem
 from symobs.problem.sheet_file import schema as of_sheet
-from symobs.variation.schema import schema as of_variants
 
 #: What has a schema, by the name that the command takes.
 SCHEMAS = {"problem": of_problem, "sheet": of_sheet, "check": of_check, "variants": of_variants}

@@ -6,7 +6,7 @@ import click
 
 from symobs.cli.shared.common import read_file
 from symobs.cli.shared.options import options
-from symobs.errors import UsageError
+from symobs.ground.errors import UsageError
 
 
 @click.command("serve")
@@ -35,8 +35,8 @@ def command(
     language: str | None,
 ) -> None:
     """Move poles, parameters and entries in a browser, every answer checked; FILE is the problem to begin with."""
-    from symobs.live.process import AnswerBudget  # noqa: PLC0415 - only a server imports it
-    from symobs.live.server import HOSTS, Server, serve  # noqa: PLC0415
+    from symobs.applications.live.process import AnswerBudget  # noqa: PLC0415 - only a server imports it
+    from symobs.applications.live.server import HOSTS, Server, serve  # noqa: PLC0415
 
     if host not in HOSTS:
         raise UsageError(
@@ -46,7 +46,7 @@ def command(
         )
     state = ""
     if file is not None or convention_name is not None or language is not None:
-        from symobs.live.links import link_of  # noqa: PLC0415 - only with a problem
+        from symobs.applications.live.links import link_of  # noqa: PLC0415 - only with a problem
         from symobs.problem import parse, validate  # noqa: PLC0415
 
         text = read_file(file) if file is not None else ""
@@ -54,14 +54,14 @@ def command(
         if file is not None:
             validate(data)
         if convention_name is not None:
-            from symobs.convention import conventions  # noqa: PLC0415 - only with --convention
+            from symobs.formula.convention import conventions  # noqa: PLC0415 - only with --convention
 
             if convention_name not in conventions():
                 repair = f"use one of {', '.join(conventions())}"
                 raise UsageError(f"{convention_name[:40]!r} is not a convention", where="--convention", repair=repair)
             data = {**data, "convention": convention_name}
         if language is not None:
-            from symobs.phrases.languages import language_named  # noqa: PLC0415 - only with --language
+            from symobs.formula.phrases.languages import language_named  # noqa: PLC0415 - only with --language
 
             data = {**data, "language": language_named(language, "--language").code}
         state = link_of(data)

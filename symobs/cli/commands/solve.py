@@ -10,10 +10,10 @@ import click
 from symobs.cli.shared.common import chosen_format, place_of, progress_on_terminal, read_file, run_work
 from symobs.cli.shared.options import OF_A_PAGE, AFile, OneOf, options, quoted
 from symobs.cli.shared.outcome import check_targets, convention_of, of_problem, page_of, solved
-from symobs.errors import UsageError
+from symobs.ground.errors import UsageError
 from symobs.problem import parse, validate
-from symobs.result import tasks
-from symobs.result.web_page import WebPage
+from symobs.tasks.result import tasks
+from symobs.tasks.result.web_page import WebPage
 
 if TYPE_CHECKING:
     from symobs.cli.shared.outcome import Outcome
@@ -88,7 +88,7 @@ def _tables(text: str, file: str, variant: int | None) -> dict[str, Any]:
             repair = "leave --variant out, or name a file with [variants]"
             raise UsageError("the file has no table [variants]", where="--variant", repair=repair)
         return tables
-    from symobs.variation import variant_of  # noqa: PLC0415 - for files that have variants only
+    from symobs.applications.variants import variant_of  # noqa: PLC0415 - for files that have variants only
 
     try:
         return variant_of(text, file, variant or 1)

@@ -7,16 +7,16 @@ from typing import Any
 
 import click
 
-from symobs.batching.store import discard_work, work_folder
-from symobs.batching.sweep.picture import drawn_columns, write_picture
-from symobs.batching.sweep.plan import Plan, SweepTable
-from symobs.batching.sweep.table import check_target, write_table
-from symobs.child_processes.budget import Budget
+from symobs.applications.batch.store import discard_work, work_folder
+from symobs.applications.batch.sweep.picture import drawn_columns, write_picture
+from symobs.applications.batch.sweep.plan import Plan, SweepTable
+from symobs.applications.batch.sweep.table import check_target, write_table
 from symobs.cli.commands.batch import batch_of, finish, of_a_run
 from symobs.cli.shared.common import write_message
 from symobs.cli.shared.options import options
 from symobs.cli.shared.outcome import check_targets
-from symobs.errors import UsageError, raise_all
+from symobs.ground.child_processes.budget import Budget
+from symobs.ground.errors import UsageError, raise_all
 from symobs.problem.noted_errors import Errors
 
 #: What a block of points is allowed where nothing else is said.

@@ -8,7 +8,7 @@ import click
 
 from symobs.cli.shared.options import AFile
 from symobs.cli.shared.output import copied, write
-from symobs.render.formats.templates import template_folder
+from symobs.pages.formats.templates import template_folder
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -8,13 +8,13 @@ from pathlib import Path
 
 import click
 
+from symobs.applications.variants import TooFew, Variants
+from symobs.applications.variants.files import assignment
+from symobs.applications.variants.search import PROFILES
 from symobs.cli.shared.common import place_of, read_file, write_message
 from symobs.cli.shared.options import quoted
 from symobs.cli.shared.output import check_target, write, write_all
-from symobs.errors import UsageError
-from symobs.variation import TooFew, Variants
-from symobs.variation.files import assignment
-from symobs.variation.search import PROFILES
+from symobs.ground.errors import UsageError
 
 _REASONS_SHOWN = 12
 
@@ -103,7 +103,7 @@ def command(
 
 def _responses(summary: str) -> None:
     """Print how the variants were answered."""
-    from symobs.variation.responses import as_text, responses_of  # noqa: PLC0415 - a question of its own
+    from symobs.applications.variants.responses import as_text, responses_of  # noqa: PLC0415 - a question of its own
 
     write(as_text(responses_of(read_file(summary, "the summary.json of a class"), place_of(summary))))
 

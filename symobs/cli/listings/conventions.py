@@ -6,8 +6,8 @@ import click
 
 from symobs.cli.shared.options import OneOf
 from symobs.cli.shared.output import write
-from symobs.convention import conventions
-from symobs.convention.listing import file_of, listed
+from symobs.formula.convention import conventions
+from symobs.formula.convention.listing import file_of, listed
 
 
 @click.command("conventions")

@@ -5,9 +5,9 @@ from __future__ import annotations
 import click
 
 from symobs.cli.shared.output import write
-from symobs.phrases.literature import written_out
-from symobs.result import methods as known
-from symobs.result import tasks
+from symobs.formula.phrases.literature import written_out
+from symobs.tasks.result import methods as known
+from symobs.tasks.result import tasks
 
 
 @click.command("methods")

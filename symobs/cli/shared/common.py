@@ -12,7 +12,7 @@ import click
 
 from symobs.cli.shared.options import quoted
 from symobs.cli.shared.output import binary, make_folder, write_all
-from symobs.errors import InputError, UsageError, reason_of
+from symobs.ground.errors import InputError, UsageError, reason_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -81,7 +81,7 @@ def chosen_format(format_name: str | None, target: str | None, *, default: str =
     """Return the output format: that of --format, else that of the suffix of the target, else the default."""
     import symobs  # noqa: PLC0415 - the package itself stands above all floors
     from symobs.cli.shared.task_index import format_suffixes  # noqa: PLC0415 - a run pays for one format
-    from symobs.result import format_named  # noqa: PLC0415
+    from symobs.tasks.result import format_named  # noqa: PLC0415
 
     suffix = Path(target).suffix if target is not None else ""
     if format_name is None and suffix:
@@ -96,7 +96,7 @@ def chosen_format(format_name: str | None, target: str | None, *, default: str =
 
 def place_of(file: str) -> str:
     """Return the name of a file for messages."""
-    from symobs.expression.source import shown  # noqa: PLC0415 - needed for messages only
+    from symobs.formula.expression.source import shown  # noqa: PLC0415 - needed for messages only
 
     return shown(file, 200) or "an empty name" if file != "-" else "standard input"
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import click
 from click.shell_completion import CompletionItem
 
-from symobs.errors import UsageError
+from symobs.ground.errors import UsageError
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
@@ -122,19 +122,19 @@ def _formats() -> Iterable[str]:
 
 
 def _conventions() -> Iterable[str]:
-    from symobs.convention import conventions  # noqa: PLC0415 - for help and completion only
+    from symobs.formula.convention import conventions  # noqa: PLC0415 - for help and completion only
 
     return conventions()
 
 
 def _languages() -> Iterable[str]:
-    from symobs.phrases.languages import languages  # noqa: PLC0415 - for help and completion only
+    from symobs.formula.phrases.languages import languages  # noqa: PLC0415 - for help and completion only
 
     return languages()
 
 
 def _details() -> Iterable[str]:
-    from symobs.render.page.detail_level import DETAILS  # noqa: PLC0415 - for help and completion only
+    from symobs.pages.page.detail_level import DETAILS  # noqa: PLC0415 - for help and completion only
 
     return DETAILS
 
@@ -271,6 +271,6 @@ def options(*names: str) -> Callable[[Optioned], Optioned]:
 
 def quoted(text: str) -> str:
     """Return a user's text, shortened, in quotation marks."""
-    from symobs.expression.source import shown  # noqa: PLC0415 - needed for messages only
+    from symobs.formula.expression.source import shown  # noqa: PLC0415 - needed for messages only
 
     return f'"{shown(text, 40)}"'

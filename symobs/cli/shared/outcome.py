@@ -7,11 +7,11 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from symobs._dataclass import dataclass
-from symobs.child_processes.budget import Budget
 from symobs.cli.shared.output import check_target
-from symobs.errors import InputError, OutOfBudget, ProblemErrors, UsageError
-from symobs.result.web_page import PLAIN, WebPage
+from symobs.ground.child_processes.budget import Budget
+from symobs.ground.dataclass import dataclass
+from symobs.ground.errors import InputError, OutOfBudget, ProblemErrors, UsageError
+from symobs.tasks.result.web_page import PLAIN, WebPage
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -36,7 +36,7 @@ def convention_of(name: str | None) -> Any:
     """Return the convention of --convention, None for that of the file."""
     if name is None:
         return None
-    from symobs.convention import convention_named  # noqa: PLC0415 - only with --convention
+    from symobs.formula.convention import convention_named  # noqa: PLC0415 - only with --convention
 
     return convention_named(name)
 
@@ -56,8 +56,8 @@ def page_of(
 
     Raises `UsageError` for unknown values, and for options of pages that the format does not write.
     """
-    from symobs.render.page.detail_level import detail_named  # noqa: PLC0415 - it imports the steps
-    from symobs.result.digits_of_page import digits_asked  # noqa: PLC0415
+    from symobs.pages.page.detail_level import detail_named  # noqa: PLC0415 - it imports the steps
+    from symobs.tasks.result.digits_of_page import digits_asked  # noqa: PLC0415
 
     asked = digits_asked(digits, exact=exact, where="--digits")
     page = {
@@ -70,13 +70,13 @@ def page_of(
         where = next(f"--{name}" for name in ("details", "copy", "live") if getattr(web, name))
         raise UsageError(f"the format {format_name} is no web page", where=where, repair="use --format html")
     if language is not None:
-        from symobs.phrases.languages import language_named  # noqa: PLC0415 - only with --language
+        from symobs.formula.phrases.languages import language_named  # noqa: PLC0415 - only with --language
 
         page["language"] = language_named(language, "--language").code
     if templates is None:
         return page
-    from symobs.render.formats.templates import check_folder  # noqa: PLC0415 - only with --templates
-    from symobs.result import format_named, formats  # noqa: PLC0415
+    from symobs.pages.formats.templates import check_folder  # noqa: PLC0415 - only with --templates
+    from symobs.tasks.result import format_named, formats  # noqa: PLC0415
 
     if not hasattr(format_named(format_name), "template"):
         having = ", ".join(sorted(found.name for found in formats().values() if hasattr(found, "template")))
@@ -90,7 +90,7 @@ def of_problem(web: WebPage, data: Mapping[str, Any]) -> WebPage:
     """Return what a page offers, its link with the state of a problem."""
     if not web.live:
         return web
-    from symobs.live.links import link_of  # noqa: PLC0415 - only with --live
+    from symobs.applications.live.links import link_of  # noqa: PLC0415 - only with --live
 
     return replace(web, live=f"{web.live}#{link_of(data)}")
 
@@ -100,7 +100,7 @@ def check_targets(target: str | None, plot: str | None, bibliography: str | None
     check_target(target)
     check_target(bibliography)
     if plot is not None:
-        from symobs.render.drawings.plot_file import check_target as check_picture  # noqa: PLC0415 - only with --plot
+        from symobs.pages.drawings.plot_file import check_target as check_picture  # noqa: PLC0415 - only with --plot
 
         check_picture(plot)
         check_target(plot)
@@ -127,8 +127,8 @@ def solved(
     `only_some_tasks`, the expected answers of the file's other tasks are ignored.  `page` holds options of the document.
     `report_progress` is called with each task begun, and with the outcome that is kept if the work is ended.
     """
-    from symobs.expect import applicable, mismatches  # noqa: PLC0415
-    from symobs.result import render  # noqa: PLC0415
+    from symobs.problem.expect import applicable, mismatches  # noqa: PLC0415
+    from symobs.tasks.result import render  # noqa: PLC0415
 
     def document_of(results: tuple[Any, ...]) -> Any:
         return replace(found.document(results, convention), **page)
@@ -152,11 +152,11 @@ def solved(
     report_progress("the page")
     outputs = [(rendered(results), target)]
     if bibliography is not None:
-        from symobs.render.page.citations import bibliography_of  # noqa: PLC0415 - only with --bibliography
+        from symobs.pages.page.citations import bibliography_of  # noqa: PLC0415 - only with --bibliography
 
         outputs.append((bibliography_of(document_of(results)), bibliography))
     if plot is not None:
-        from symobs.render.drawings.plot_file import picture_file  # noqa: PLC0415
+        from symobs.pages.drawings.plot_file import picture_file  # noqa: PLC0415
 
         report_progress("the picture")
         try:
@@ -183,7 +183,7 @@ def _at(results: tuple[Any, ...], settings: Mapping[str, str]) -> tuple[Any, ...
 
 def _as_far_as(found: Any, so_far: tuple[Any, ...], convention: Any, target: str | None) -> Outcome:
     """Return what is left where the work ends now: the results so far, every other task undecided."""
-    from symobs.render.formats.json import given_up  # noqa: PLC0415 - only with --format json
+    from symobs.pages.formats.json import given_up  # noqa: PLC0415 - only with --format json
 
     names, method = [task.name for task in found.tasks], str(found.specification.get("method", "auto"))
     document = found.document(so_far, convention)

@@ -9,7 +9,7 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from symobs.errors import InputError, SymobsError, UsageError, reason_of
+from symobs.ground.errors import InputError, SymobsError, UsageError, reason_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -209,6 +209,6 @@ def _explained(target: str | None) -> Iterator[None]:
 
 
 def _shown(target: str | None) -> str:
-    from symobs.expression.source import shown  # noqa: PLC0415 - needed for messages only
+    from symobs.formula.expression.source import shown  # noqa: PLC0415 - needed for messages only
 
     return shown(str(target), 200)

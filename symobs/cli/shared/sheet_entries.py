@@ -10,25 +10,25 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from symobs._dataclass import dataclass
-from symobs.child_processes.budget import Budget
 from symobs.cli.shared.common import EXIT_BUG, EXIT_NO, EXIT_UNDECIDED, NOT_ENOUGH_MEMORY
 from symobs.cli.shared.outcome import of_problem
-from symobs.errors import OutOfBudget, ProblemErrors, SymobsError, TypesettingError
-from symobs.expect import mismatches
-from symobs.phrases.languages import ENGLISH, Language, language_named
+from symobs.formula.phrases.languages import ENGLISH, Language, language_named
+from symobs.ground.child_processes.budget import Budget
+from symobs.ground.dataclass import dataclass
+from symobs.ground.errors import OutOfBudget, ProblemErrors, SymobsError, TypesettingError
+from symobs.pages.page.detail_level import FINAL
+from symobs.pages.page.sheet import SheetEntry, points_in_words
 from symobs.problem import parse, validate
+from symobs.problem.expect import mismatches
 from symobs.problem.question import question_of
-from symobs.render.page.detail_level import FINAL
-from symobs.render.page.sheet import SheetEntry, points_in_words
-from symobs.result.web_page import PLAIN, WebPage
+from symobs.tasks.result.web_page import PLAIN, WebPage
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping, Sequence
 
     from symobs.cli.shared.time_and_memory import Progress
     from symobs.problem.sheet_file import SheetProblem
-    from symobs.result import Document
+    from symobs.tasks.result import Document
 
     #: What is said of a problem, and the text of its file.
     Text = tuple[SheetProblem, str]
@@ -109,9 +109,9 @@ def _undecided(reason: str) -> str:
 
 def _rows(orders: Sequence[tuple[Any, ...]], wanted: Wanted, show: Show) -> list[dict[str, Any]]:
     """Return the rows of some problems, in their order."""
-    from symobs.batching.engine import Settings, work  # noqa: PLC0415 - a short sheet pays for none of it
-    from symobs.batching.executors import workforce  # noqa: PLC0415
-    from symobs.batching.jobs import job  # noqa: PLC0415
+    from symobs.applications.batch.engine import Settings, work  # noqa: PLC0415 - a short sheet pays for none of it
+    from symobs.applications.batch.executors import workforce  # noqa: PLC0415
+    from symobs.applications.batch.jobs import job  # noqa: PLC0415
 
     jobs = [job("sheet-entry", {"asked": _packed(order)}, order[1].file) for order in orders]
     budget = Budget(wanted.timeout, wanted.memory)

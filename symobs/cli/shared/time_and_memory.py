@@ -9,11 +9,11 @@ import sys
 import threading
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from symobs.child_processes.budget import Budget
-from symobs.child_processes.child import Died
-from symobs.child_processes.forked import INTERRUPTED, NO_TIME, REQUESTS, TimeOver, forked
-from symobs.child_processes.inside import NO_MEMORY, is_for_want_of_memory
-from symobs.errors import OutOfBudget, SymobsError, TypesettingError, UsageError
+from symobs.ground.child_processes.budget import Budget
+from symobs.ground.child_processes.child import Died
+from symobs.ground.child_processes.forked import INTERRUPTED, NO_TIME, REQUESTS, TimeOver, forked
+from symobs.ground.child_processes.inside import NO_MEMORY, is_for_want_of_memory
+from symobs.ground.errors import OutOfBudget, SymobsError, TypesettingError, UsageError
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -107,7 +107,7 @@ def _outcome(budget: Budget, work: Callable[[Progress], Any], report: Progress) 
             raise MemoryError from None
         return None, _portable(error)
     except TimeOver as over:
-        from symobs.render.formats.pdf import TEX_AT_WORK  # noqa: PLC0415 - only where time ran out
+        from symobs.pages.formats.pdf import TEX_AT_WORK  # noqa: PLC0415 - only where time ran out
 
         if TEX_AT_WORK not in getattr(over, "__notes__", ()):
             raise

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from symobs._dataclass import dataclass
 from symobs.exact.core.scalar import Scalar
+from symobs.ground.dataclass import dataclass
 
 if TYPE_CHECKING:
     from fractions import Fraction

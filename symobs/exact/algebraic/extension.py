@@ -9,10 +9,10 @@ from __future__ import annotations
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-from symobs._dataclass import dataclass
 from symobs.exact.core.matrix import Matrix
 from symobs.exact.core.polynomial import from_coefficients
 from symobs.exact.core.scalar import Scalar
+from symobs.ground.dataclass import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -12,7 +12,6 @@ from typing import TYPE_CHECKING, Any
 
 from flint import arb, fmpz_poly
 
-from symobs._dataclass import dataclass
 from symobs.exact.algebraic.real_algebraic import (
     FIRST_BITS,
     RealNumber,
@@ -27,6 +26,7 @@ from symobs.exact.algebraic.root_location import integers
 from symobs.exact.core.polynomial import resultant
 from symobs.exact.core.precision import Precision
 from symobs.exact.core.scalar import Scalar
+from symobs.ground.dataclass import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence

@@ -7,10 +7,10 @@ from fractions import Fraction
 from math import isqrt
 from typing import TYPE_CHECKING
 
-from symobs._dataclass import dataclass
 from symobs.exact.algebraic.complex import Complex
 from symobs.exact.core.generators import leads_with_minus, normal_form, roots_in
 from symobs.exact.core.scalar import Scalar
+from symobs.ground.dataclass import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

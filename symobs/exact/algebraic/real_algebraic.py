@@ -13,12 +13,12 @@ from typing import TYPE_CHECKING, Any
 
 from flint import arb, fmpq, fmpz_poly
 
-from symobs._dataclass import dataclass
 from symobs.exact.algebraic.polynomial_roots import rational_sqrt
 from symobs.exact.core.field import Field
 from symobs.exact.core.generators import Function, square_root
 from symobs.exact.core.precision import Precision
 from symobs.exact.core.scalar import Scalar
+from symobs.ground.dataclass import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence

@@ -13,7 +13,6 @@ from typing import TYPE_CHECKING, Any
 
 from flint import arb, arb_mat
 
-from symobs._dataclass import dataclass
 from symobs.exact.algebraic.complex import Complex
 from symobs.exact.algebraic.enclosure import is_number, polynomial_ball, sign_of_number
 from symobs.exact.algebraic.real_algebraic import integer_factor, real_roots
@@ -21,6 +20,7 @@ from symobs.exact.core.generators import partial
 from symobs.exact.core.polynomial import coefficients_over
 from symobs.exact.core.precision import Precision
 from symobs.exact.core.scalar import Scalar
+from symobs.ground.dataclass import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence

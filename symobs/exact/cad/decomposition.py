@@ -12,9 +12,9 @@ from typing import TYPE_CHECKING
 
 from flint import fmpq, fmpq_poly, fmpz_poly
 
-from symobs._dataclass import dataclass
 from symobs.exact.algebraic.real_algebraic import RealNumber, irreducible_factors, rational_between, real_roots
 from symobs.exact.core.field import Field
+from symobs.ground.dataclass import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence

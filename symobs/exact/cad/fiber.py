@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 
 from flint import acb_poly, arb, arb_mat, fmpq, fmpq_poly
 
-from symobs._dataclass import dataclass
 from symobs.exact.algebraic.real_algebraic import (
     FIRST_BITS,
     RealNumber,
@@ -23,6 +22,7 @@ from symobs.exact.algebraic.real_algebraic import (
 )
 from symobs.exact.core.precision import Precision
 from symobs.exact.ideals.ideal import TooLarge
+from symobs.ground.dataclass import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -22,8 +22,6 @@ if TYPE_CHECKING:
 
     from flint import fmpz
 
-    from symobs.exact.core.scalar import Scalar
-
 VARIABLES = ("s", "z", "t")
 #: The generator that stands for an eigenvalue.  No problem can declare it: it is a keyword of Python.
 EIGENVALUE = "lambda"
@@ -44,7 +42,7 @@ class NamedFunction(Protocol):
     def symbols(self) -> frozenset[str]:
         """The plain symbols inside."""
 
-    def moved(self, values: Mapping[str, Scalar]) -> Scalar:
+    def moved(self, values: Mapping[str, Any]) -> Any:
         """Return the function with symbols substituted in its argument."""
 
 

@@ -12,7 +12,6 @@ from typing import TYPE_CHECKING
 
 from flint import fmpz, fmpz_mpoly
 
-from symobs.errors import WrongKind
 from symobs.exact.core import number_field
 from symobs.exact.core.canonical_text import scalar_text
 from symobs.exact.core.field import RATIONALS, Field
@@ -27,6 +26,7 @@ from symobs.exact.core.ring import (
     polynomial_fingerprint,
 )
 from symobs.exact.core.univariate import coefficients_in
+from symobs.ground.errors import WrongKind
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping

@@ -11,9 +11,9 @@ from fractions import Fraction
 from math import pi
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
 
-from symobs.errors import InputError
 from symobs.exact.algebraic.enclosure import decimal, is_number
 from symobs.exact.core.generators import PI, function_named
+from symobs.ground.errors import InputError
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence

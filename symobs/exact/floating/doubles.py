@@ -5,10 +5,10 @@ from __future__ import annotations
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
-from symobs.errors import InputError
 from symobs.exact.algebraic.enclosure import near
 from symobs.exact.core.matrix import Matrix
 from symobs.exact.core.scalar import Scalar
+from symobs.ground.errors import InputError
 
 if TYPE_CHECKING:
     from collections.abc import Callable

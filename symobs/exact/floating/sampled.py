@@ -11,12 +11,12 @@ from typing import NamedTuple
 
 from flint import arb, arb_mat
 
-from symobs.errors import InputError
 from symobs.exact.algebraic.enclosure import _ball
 from symobs.exact.core.matrix import Matrix
 from symobs.exact.core.precision import Precision
 from symobs.exact.core.scalar import Scalar
 from symobs.exact.linear_algebra.realisation import Realisation
+from symobs.ground.errors import InputError
 
 HOLDS = ("zoh", "tustin")
 #: Bits of the enclosures that are tried in turn until both ends round to one double.

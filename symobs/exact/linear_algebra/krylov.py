@@ -12,12 +12,12 @@ from typing import TYPE_CHECKING, Any
 
 from flint import fmpq_mat, fmpz, fmpz_mat, nmod_mat
 
-from symobs._dataclass import dataclass
 from symobs.exact.core import ring
 from symobs.exact.core.matrix import Matrix
 from symobs.exact.core.modular import LARGEST_PRIME
 from symobs.exact.core.ring import number_of
 from symobs.exact.core.scalar import Scalar
+from symobs.ground.dataclass import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

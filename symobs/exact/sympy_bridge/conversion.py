@@ -9,7 +9,6 @@ from functools import cmp_to_key
 from operator import itemgetter
 from typing import TYPE_CHECKING, Any
 
-from symobs.errors import InexactInput, InputError
 from symobs.exact.algebraic.complex import Complex
 from symobs.exact.algebraic.conjugates import root_in_field
 from symobs.exact.algebraic.real_algebraic import RealNumber, RealRoot, root_of_fraction, roots_of_scalar
@@ -19,6 +18,7 @@ from symobs.exact.core.matrix import Matrix
 from symobs.exact.core.scalar import Scalar
 from symobs.exact.sympy_bridge.sympy_import import sympy
 from symobs.exact.time_functions.root_sum import RootSum
+from symobs.ground.errors import InexactInput, InputError
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping

@@ -11,7 +11,6 @@ from __future__ import annotations
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
-from symobs._dataclass import dataclass
 from symobs.exact.algebraic.extension import AlgebraicExtension
 from symobs.exact.algebraic.polynomial_roots import factored
 from symobs.exact.core.field import EIGENVALUE
@@ -21,6 +20,7 @@ from symobs.exact.core.polynomial import companion
 from symobs.exact.core.scalar import Scalar
 from symobs.exact.time_functions.quasipolynomial import Key, Quasipolynomial, matrix_at
 from symobs.exact.time_functions.root_sum import RootSum
+from symobs.ground.dataclass import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence

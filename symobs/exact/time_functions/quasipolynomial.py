@@ -9,7 +9,6 @@ from __future__ import annotations
 from fractions import Fraction
 from typing import TYPE_CHECKING, NamedTuple
 
-from symobs._dataclass import dataclass
 from symobs.exact.core.generators import (
     ONE,
     ZERO,
@@ -24,6 +23,7 @@ from symobs.exact.core.generators import (
 )
 from symobs.exact.core.matrix import Matrix
 from symobs.exact.core.scalar import Scalar
+from symobs.ground.dataclass import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping

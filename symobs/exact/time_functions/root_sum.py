@@ -9,11 +9,11 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from symobs._dataclass import dataclass
 from symobs.exact.algebraic.extension import AlgebraicExtension
 from symobs.exact.core.field import EIGENVALUE
 from symobs.exact.core.generators import Function, derivative, function, partial, substitute, symbols_in
 from symobs.exact.core.scalar import Scalar
+from symobs.ground.dataclass import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

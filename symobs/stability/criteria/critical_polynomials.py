@@ -12,10 +12,10 @@ from dataclasses import field, replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-from symobs._dataclass import dataclass
 from symobs.exact import Scalar
 from symobs.exact.algebraic.rational_points import value_at
 from symobs.exact.algebraic.root_location import all_to_the_left
+from symobs.ground.dataclass import dataclass
 from symobs.stability.criteria.stability import bilinear, hurwitz_matrix, lienard_chipart
 
 if TYPE_CHECKING:

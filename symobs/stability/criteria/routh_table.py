@@ -14,8 +14,8 @@ from __future__ import annotations
 from itertools import chain, pairwise
 from typing import TYPE_CHECKING
 
-from symobs._dataclass import dataclass
 from symobs.exact import Scalar, from_coefficients
+from symobs.ground.dataclass import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence

@@ -11,11 +11,11 @@ from fractions import Fraction
 from itertools import combinations
 from typing import TYPE_CHECKING
 
-from symobs._dataclass import dataclass
-from symobs.conditions import FACTORED_UP_TO, sign_of, vanishing_factors
 from symobs.exact import Matrix, Scalar, from_coefficients, resultant
 from symobs.exact.core.generators import function_named
+from symobs.ground.dataclass import dataclass
 from symobs.stability.inequalities.written_form import as_inequality
+from symobs.system.conditions import FACTORED_UP_TO, sign_of, vanishing_factors
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Mapping, Sequence

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from symobs.conditions import FACTORED_UP_TO, sign_of
 from symobs.exact import Scalar
 from symobs.stability.criteria.stability import bilinear, lienard_chipart
 from symobs.stability.inequalities.decision import equivalence_of
@@ -17,6 +16,7 @@ from symobs.stability.inequalities.factors import cleared
 from symobs.stability.inequalities.prover import prove
 from symobs.stability.inequalities.simplify import Simplified, simplify
 from symobs.stability.inequalities.written_form import as_inequality
+from symobs.system.conditions import FACTORED_UP_TO, sign_of
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence

@@ -8,7 +8,7 @@ from __future__ import annotations
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
-from symobs._dataclass import dataclass
+from symobs.ground.dataclass import dataclass
 from symobs.stability.inequalities.factors import InequalitySystem, cleared, split_into_factors, split_products
 from symobs.stability.inequalities.proof import Equivalence, Step
 from symobs.stability.inequalities.simplify import failing_alone, nonempty_or_not, prove_value

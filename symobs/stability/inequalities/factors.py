@@ -5,14 +5,14 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from symobs._dataclass import dataclass
-from symobs.conditions import FACTORED_UP_TO, sign_of
 from symobs.exact import Scalar, product_of
 from symobs.exact.algebraic.rational_points import value_at
+from symobs.ground.dataclass import dataclass
 from symobs.stability.inequalities.proof import Combined, Step
 from symobs.stability.inequalities.proof_steps import UNIT, by_signs, is_product, is_quotient
 from symobs.stability.inequalities.prover import prove, prove_by_opposite
 from symobs.stability.inequalities.sample_points import find_points
+from symobs.system.conditions import FACTORED_UP_TO, sign_of
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence

@@ -12,8 +12,8 @@ from itertools import combinations, combinations_with_replacement, islice
 from math import gcd
 from typing import TYPE_CHECKING, TypeAlias
 
-from symobs._dataclass import dataclass
 from symobs.exact import Scalar
+from symobs.ground.dataclass import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence

@@ -15,10 +15,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, TypeAlias, assert_never
 
-from symobs._dataclass import dataclass
-from symobs.conditions import never_zero, sign_of
 from symobs.exact import Scalar, product_of
+from symobs.ground.dataclass import dataclass
 from symobs.stability.inequalities.z3_backend import none_by_z3
+from symobs.system.conditions import never_zero, sign_of
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence

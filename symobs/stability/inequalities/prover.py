@@ -11,13 +11,13 @@ from __future__ import annotations
 from dataclasses import field, replace
 from typing import TYPE_CHECKING
 
-from symobs._dataclass import dataclass
-from symobs.conditions import sign_of
 from symobs.exact import Scalar
+from symobs.ground.dataclass import dataclass
 from symobs.stability.inequalities.positive_combination import combination
 from symobs.stability.inequalities.proof import ONE, ZERO, Combined, Opposite, Product, Step, proves, refutes
 from symobs.stability.inequalities.proof_steps import UNIT, by_signs, contradiction, from_contradiction
 from symobs.stability.inequalities.z3_backend import is_free
+from symobs.system.conditions import sign_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence

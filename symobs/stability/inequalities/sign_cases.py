@@ -5,10 +5,10 @@ from __future__ import annotations
 from dataclasses import field
 from typing import TYPE_CHECKING
 
-from symobs._dataclass import dataclass
-from symobs.conditions import sign_of, sign_where
+from symobs.ground.dataclass import dataclass
 from symobs.stability.inequalities.decision import decide_empty
 from symobs.stability.inequalities.simplify import Simplified, simplify
+from symobs.system.conditions import sign_of, sign_where
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence

@@ -9,9 +9,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, TypeAlias
 
-from symobs._dataclass import dataclass
-from symobs.conditions import sign_of
 from symobs.exact import Scalar
+from symobs.ground.dataclass import dataclass
 from symobs.stability.inequalities.factors import InequalitySystem, cleared, split_into_factors, split_products
 from symobs.stability.inequalities.proof import ZERO, Equivalence, ProvedByZ3, Step
 from symobs.stability.inequalities.proof_steps import contradiction, from_contradiction, is_product
@@ -26,6 +25,7 @@ from symobs.stability.inequalities.sample_points import (
 )
 from symobs.stability.inequalities.written_form import root_of_square
 from symobs.stability.inequalities.z3_backend import Resources, point_by_z3
+from symobs.system.conditions import sign_of
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence

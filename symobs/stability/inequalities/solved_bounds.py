@@ -5,11 +5,11 @@ from __future__ import annotations
 from itertools import product
 from typing import TYPE_CHECKING
 
-from symobs._dataclass import dataclass
-from symobs.conditions import sign_of
 from symobs.exact import Scalar
+from symobs.ground.dataclass import dataclass
 from symobs.stability.inequalities.prover import prove
 from symobs.stability.inequalities.written_form import as_inequality
+from symobs.system.conditions import sign_of
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from symobs.conditions import FACTORED_UP_TO, sign_where
 from symobs.exact import Scalar, product_of
+from symobs.system.conditions import FACTORED_UP_TO, sign_where
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence

@@ -10,14 +10,14 @@ from typing import TYPE_CHECKING
 
 from symobs.exact import Scalar
 from symobs.exact.algebraic.real_algebraic import FIRST_BITS, RealNumber, real_roots
-from symobs.figures.plot import Curve, End, LinePicture, MarkedPoint, RegionPicture
-from symobs.formula import Literal, Relation
+from symobs.formula.figures.plot import Curve, End, LinePicture, MarkedPoint, RegionPicture
+from symobs.formula.tree import Literal, Relation
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
     from symobs.exact.cad.decomposition import CriticalLine, Cylinder
-    from symobs.figures.plot import Interval, Place
+    from symobs.formula.figures.plot import Interval, Place
     from symobs.stability.regions.interval_region import LineRegion
     from symobs.stability.regions.plane_region import Cell, PlaneRegion
 

@@ -14,8 +14,8 @@ from symobs.stability.regions.region_for import exact_region
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
-    from symobs.figures.plot import Picture
-    from symobs.formula import Relation
+    from symobs.formula.figures.plot import Picture
+    from symobs.formula.tree import Relation
 
 #: Small numbers that are tried for the symbols, so that no two curves coincide by chance.
 _VALUES = ((1, 1, 1), (1, 2, 3), (2, 1, 3), (3, 1, 2))

@@ -9,13 +9,13 @@ from symobs.exact import Scalar
 from symobs.exact.algebraic.real_algebraic import roots_of_scalar
 from symobs.exact.algebraic.root_location import complex_roots
 from symobs.exact.core.polynomial import discriminant
-from symobs.figures.plot import PoleMap
+from symobs.formula.figures.plot import PoleMap
 from symobs.stability.plots.region_plot import range_around
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from symobs.figures.plot import Place
+    from symobs.formula.figures.plot import Place
     from symobs.stability.criteria.critical_polynomials import StabilityBoundary
     from symobs.stability.regions.interval_region import LineRegion
 

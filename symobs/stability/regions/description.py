@@ -10,12 +10,12 @@ from collections import Counter
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from symobs._dataclass import dataclass
 from symobs.exact import Scalar
 from symobs.exact.algebraic.enclosure import sign_of_number
 from symobs.exact.algebraic.real_algebraic import integer_factor
 from symobs.exact.core.generators import square_part, square_root, substitute
-from symobs.formula import Literal, Relation
+from symobs.formula.tree import Literal, Relation
+from symobs.ground.dataclass import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

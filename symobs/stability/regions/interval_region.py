@@ -6,8 +6,8 @@ import itertools
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-from symobs._dataclass import dataclass
 from symobs.exact.algebraic.real_algebraic import rational_between, roots_of_scalar
+from symobs.ground.dataclass import dataclass
 from symobs.stability.regions.short_list import Sample
 
 if TYPE_CHECKING:

@@ -6,10 +6,10 @@ from functools import cached_property, lru_cache
 from itertools import combinations, pairwise
 from typing import TYPE_CHECKING, Any
 
-from symobs._dataclass import dataclass
 from symobs.exact import TooLarge
 from symobs.exact.cad.decomposition import Branch, CriticalLine, Cylinder, Plane
 from symobs.exact.cad.fiber import Fibre, curves_between, fibre, place_between, point_between
+from symobs.ground.dataclass import dataclass
 from symobs.stability.regions.short_list import Sample
 
 if TYPE_CHECKING:

@@ -11,11 +11,11 @@ from __future__ import annotations
 from functools import lru_cache
 from typing import TYPE_CHECKING, NamedTuple, Protocol
 
-from symobs._dataclass import dataclass
-from symobs.conditions import sign_of
 from symobs.exact import Scalar
 from symobs.exact.algebraic.rational_points import value_at
+from symobs.ground.dataclass import dataclass
 from symobs.stability.criteria.critical_polynomials import irreducible
+from symobs.system.conditions import sign_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence

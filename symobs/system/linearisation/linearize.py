@@ -8,11 +8,11 @@ from dataclasses import replace
 from functools import partial
 from typing import Any
 
-from symobs.errors import InputError, ShapeMismatch, together
 from symobs.exact import Ideal, Matrix, Scalar
 from symobs.exact.core.generators import NotWritten, identities, symbols_in
-from symobs.expression import declared_name, parse_matrix
-from symobs.expression.source import shown
+from symobs.formula.expression import declared_name, parse_matrix
+from symobs.formula.expression.source import shown
+from symobs.ground.errors import InputError, ShapeMismatch, together
 from symobs.system.matrices import Nonlinear
 from symobs.system.reading import has_decimals, read_values
 from symobs.system.state_space import StateSpace

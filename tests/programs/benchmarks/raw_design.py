@@ -16,7 +16,7 @@ from unittest import mock
 from flint import Ordering, fmpq_mat, fmpq_poly, fmpz_mat, fmpz_mpoly_ctx
 
 import symobs
-import symobs.result.result
+import symobs.tasks.result.result
 from tests.programs.benchmarks import models
 from tests.programs.benchmarks.raw_flint import _dot, _minors
 
@@ -189,7 +189,7 @@ def _family() -> float:
 
 def _unchecked(work: Callable[[], float]) -> float:
     """Return the time without the checks of claims."""
-    with mock.patch.object(symobs.result.result, "check_all", return_value=()):
+    with mock.patch.object(symobs.tasks.result.result, "check_all", return_value=()):
         return work()
 
 

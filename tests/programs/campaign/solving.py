@@ -8,10 +8,10 @@ from dataclasses import dataclass
 from threading import Event
 from typing import TYPE_CHECKING
 
-from symobs.errors import SymobsError
+from symobs.ground.errors import SymobsError
+from symobs.pages.formats.json import result_object
 from symobs.problem import validate
 from symobs.problem.file_tables import parse
-from symobs.render.formats.json import result_object
 from tests.programs.campaign.asked import Asked, Tables, to_toml
 
 if TYPE_CHECKING:

@@ -5,8 +5,8 @@ from __future__ import annotations
 import json
 from typing import TYPE_CHECKING, Any
 
-from symobs.checking.classes.row import DAMAGED, report_of
-from symobs.checking.classes.submissions import Submission
+from symobs.applications.checking.classes.row import DAMAGED, report_of
+from symobs.applications.checking.classes.submissions import Submission
 from tests.programs.fuzz import mutate, texts
 from tests.support.problems.answered import SERVO, TWO_OUTPUTS
 

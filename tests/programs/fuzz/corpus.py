@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     Table = dict[str, Any]
 
 EXAMPLES = sorted((ROOT / "worked_examples").rglob("*.toml"))
-PROFILES = sorted((ROOT / "symobs" / "convention" / "profiles").glob("*.toml"))
+PROFILES = sorted((ROOT / "symobs" / "formula" / "convention" / "profiles").glob("*.toml"))
 
 
 @cache

@@ -15,7 +15,7 @@ from typing import Any
 
 import atheris  # type: ignore[import-not-found, import-untyped, unused-ignore]
 
-from symobs.errors import SymobsError
+from symobs.ground.errors import SymobsError
 
 _KINDS = ("scalar", "matrix", "poles", "polynomial", "time", "time scalar", "name", "names", "entries")
 

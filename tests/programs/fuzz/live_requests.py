@@ -5,9 +5,9 @@ from __future__ import annotations
 import json
 from typing import TYPE_CHECKING, Any
 
-from symobs.live.assets import MOST_BYTES, SCHEMA
-from symobs.live.child import respond
-from symobs.live.request import DETAILS, EXPORTS, WANTS
+from symobs.applications.live.assets import MOST_BYTES, SCHEMA
+from symobs.applications.live.child import respond
+from symobs.applications.live.request import DETAILS, EXPORTS, WANTS
 from tests.programs.fuzz import corpus, mutate, problems, texts
 
 if TYPE_CHECKING:

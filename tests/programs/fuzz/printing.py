@@ -6,15 +6,15 @@ import re
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
-from symobs.errors import BudgetExceeded
 from symobs.exact import Complex, Matrix, Scalar, factored
 from symobs.exact.algebraic.polynomial_roots import roots_of
 from symobs.exact.core.generators import function, square_root
-from symobs.expression import parse_matrix, parse_poles, parse_polynomial, parse_scalar
-from symobs.formula import Literal
-from symobs.notation import GREEK_LETTERS, symbol_text
-from symobs.render.printers.text_printer import TextPrinter
-from symobs.result.conversions import to_json
+from symobs.formula.expression import parse_matrix, parse_poles, parse_polynomial, parse_scalar
+from symobs.formula.notation import GREEK_LETTERS, symbol_text
+from symobs.formula.tree import Literal
+from symobs.ground.errors import BudgetExceeded
+from symobs.pages.printers.text_printer import TextPrinter
+from symobs.tasks.result.conversions import to_json
 
 if TYPE_CHECKING:
     from collections.abc import Iterable

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from symobs.problem.schema import PLANT, PRINTED, TOP
-from symobs.result import tasks
+from symobs.tasks.result import tasks
 from tests.programs.fuzz import corpus, mutate, texts
 
 if TYPE_CHECKING:

@@ -16,17 +16,17 @@ from random import Random
 from typing import TYPE_CHECKING, Any
 from unittest.mock import patch
 
-from symobs.audit.equations.grammar import read_relation
-from symobs.audit.printed_entries import printed_entries
+from symobs.applications.audit.equations.grammar import read_relation
+from symobs.applications.audit.printed_entries import printed_entries
 from symobs.cli import main
-from symobs.convention.convention_file import of_file
-from symobs.errors import SymobsError
-from symobs.expression import declared_name, parse_matrix, parse_poles, parse_polynomial, parse_scalar
+from symobs.formula.convention.convention_file import of_file
+from symobs.formula.expression import declared_name, parse_matrix, parse_poles, parse_polynomial, parse_scalar
+from symobs.ground.errors import SymobsError
 from symobs.problem import Problem, parse, validate
 from symobs.problem.question import question_of
-from symobs.result import formats, tasks
-from symobs.result.in_convention import names_in
-from symobs.specification import read_entries, read_names
+from symobs.system.specification import read_entries, read_names
+from symobs.tasks.result import formats, tasks
+from symobs.tasks.result.in_convention import names_in
 from tests.programs.fuzz import answers, corpus, live_requests, mutate, printing, problems, texts
 
 if TYPE_CHECKING:
@@ -170,7 +170,7 @@ def _relation(source: Random) -> Any:
 def _read_printed(case: Any) -> str:
     """Read an equation, and its text again; or audit a file in which it stands."""
     if isinstance(case, bytes):
-        from symobs.audit import REPORTS, audit, report  # noqa: PLC0415 - a share of the inputs
+        from symobs.applications.audit import REPORTS, audit, report  # noqa: PLC0415 - a share of the inputs
 
         found = audit(validate(parse(_decoded(case))))
         for name in REPORTS:

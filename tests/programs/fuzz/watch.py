@@ -111,7 +111,7 @@ class Watch:
         if (
             self.works
             and event in _PROCESSES
-            and any(name.startswith("symobs.child_processes.") for name in frames[:3])
+            and any(name.startswith("symobs.ground.child_processes.") for name in frames[:3])
         ):
             return ""
         if event in _CODE and self.works and any(name.startswith("jinja2") for name in frames[:4]):

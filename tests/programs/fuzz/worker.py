@@ -14,7 +14,7 @@ from pathlib import Path
 from random import Random
 from typing import TYPE_CHECKING, Any
 
-from symobs.errors import SymobsError
+from symobs.ground.errors import SymobsError
 from tests.programs.fuzz import targets
 from tests.programs.fuzz.watch import Trespass, Watch, memory, processor_time
 from tests.support.paths import ROOT

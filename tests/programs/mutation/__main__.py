@@ -32,16 +32,16 @@ if TYPE_CHECKING:
 
 #: The trusted floors.
 TRUSTED = [
-    ROOT / "symobs" / "certificate" / "claims.py",
-    *sorted(path for path in (ROOT / "symobs" / "derivation").rglob("*.py") if path.name != "builder.py"),
-    ROOT / "symobs" / "result" / "registry.py",
-    ROOT / "symobs" / "result" / "result.py",
-    ROOT / "symobs" / "result" / "writers.py",
+    ROOT / "symobs" / "proof" / "certificate" / "claims.py",
+    *sorted(path for path in (ROOT / "symobs" / "proof" / "derivation").rglob("*.py") if path.name != "builder.py"),
+    ROOT / "symobs" / "tasks" / "result" / "registry.py",
+    ROOT / "symobs" / "tasks" / "result" / "result.py",
+    ROOT / "symobs" / "tasks" / "result" / "writers.py",
 ]
 #: What decides whether an answer is right: the claims of the check, and the grader that goes with an exported question.
 MARKING = [
-    *sorted((ROOT / "symobs" / "checking" / "judgement").glob("[a-z]*.py")),
-    *sorted((ROOT / "symobs" / "exporting" / "grader").glob("[a-z]*.py")),
+    *sorted((ROOT / "symobs" / "applications" / "checking" / "judgement").glob("[a-z]*.py")),
+    *sorted((ROOT / "symobs" / "applications" / "export" / "grader").glob("[a-z]*.py")),
 ]
 #: The tests that stand for each of their files, by the end of its path; small and direct ones, so that all mutants can be
 #: tried.

@@ -18,9 +18,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from symobs import StateSpace
-from symobs.errors import DerivationRejected, SymobsError
+from symobs.ground.errors import DerivationRejected, SymobsError
 from symobs.problem import read
-from symobs.result import tasks
+from symobs.tasks.result import tasks
 from tests.support.claims.asking import is_for, specification
 from tests.support.independent_algebra.truth import is_true
 from tests.support.paths import ROOT
@@ -30,7 +30,7 @@ from tests.support.tampering.mutations import parts_of
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
-    from symobs.result import Result
+    from symobs.tasks.result import Result
 
 #: What is asked: tasks with a plant whose claims are held in plain fractions or by SymPy.
 ASKED = (

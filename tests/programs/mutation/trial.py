@@ -315,7 +315,7 @@ def _map(items: list[pytest.Item], paths: Sequence[Path], known: dict[str, Any],
         thing
         for thing in gc.get_objects()
         if isinstance(thing, functools._lru_cache_wrapper)
-        and thing.__module__.startswith(("symobs.derivation", "test"))
+        and thing.__module__.startswith(("symobs.proof.derivation", "test"))
     ]
     tracer = coverage.Coverage(include=[str(path) for path in paths], data_file=None, config_file=False)
     tracer.start()

@@ -16,10 +16,10 @@ from random import Random
 from statistics import median, quantiles
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from symobs.errors import SymobsError
+from symobs.ground.errors import SymobsError
+from symobs.pages.formats.json import result_object
 from symobs.problem import validate
 from symobs.problem.file_tables import parse
-from symobs.render.formats.json import result_object
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence

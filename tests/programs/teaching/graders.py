@@ -8,16 +8,16 @@ from contextlib import redirect_stdout
 from typing import TYPE_CHECKING, Any
 from xml.etree.ElementTree import fromstring
 
-from symobs.exporting import export
-from symobs.exporting.grader.claims import judge
+from symobs.applications.export import export
+from symobs.applications.export.grader.claims import judge
 from tests.support.tools.exported import BY_HAND, HELD, checked, held, random_answer
-from tests.unit.exporting import test_other_platforms as others
-from tests.unit.exporting import test_stack as stack
+from tests.unit.applications.export import test_other_platforms as others
+from tests.unit.applications.export import test_stack as stack
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from symobs.exporting import ExerciseSet
+    from symobs.applications.export import ExerciseSet
 
     Given = dict[str, list[list[str]]]
 

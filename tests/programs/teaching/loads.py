@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 from fractions import Fraction
 
-from symobs.variation.search import TooFew, Variants
+from symobs.applications.variants.search import TooFew, Variants
 from tests.support.paths import ROOT
 
 

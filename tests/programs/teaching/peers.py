@@ -13,7 +13,7 @@ import subprocess
 from fractions import Fraction
 from typing import TYPE_CHECKING, NamedTuple
 
-from symobs.checking import Checked
+from symobs.applications.checking import Checked
 from tests.support.problems.answered import THIRD_ORDER, TWO_OUTPUTS
 
 if TYPE_CHECKING:

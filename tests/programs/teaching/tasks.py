@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING, Any
 
 import sympy as sp
 
-from symobs.checking import Checked
-from symobs.expression import parse_matrix
+from symobs.applications.checking import Checked
+from symobs.formula.expression import parse_matrix
 from symobs.problem import read
-from symobs.result.conversions import to_sympy
-from tests.unit.checking.test_judgement import EXAMPLES, own_answer
+from symobs.tasks.result.conversions import to_sympy
+from tests.unit.applications.checking.test_judgement import EXAMPLES, own_answer
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

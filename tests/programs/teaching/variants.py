@@ -11,17 +11,26 @@ from typing import TYPE_CHECKING, Any
 
 import sympy as sp
 
-from symobs.variation.acceptance.candidates import candidate
-from symobs.variation.acceptance.cheap import cheap
-from symobs.variation.acceptance.distinct import keys_of
-from symobs.variation.drawing.constructions import CONSTRUCTIONS, Made
-from symobs.variation.drawing.stream import Draws
-from symobs.variation.reading.table import read_table
+from symobs.applications.variants.acceptance.candidates import candidate
+from symobs.applications.variants.acceptance.cheap import cheap
+from symobs.applications.variants.acceptance.distinct import keys_of
+from symobs.applications.variants.drawing.constructions import CONSTRUCTIONS, Made
+from symobs.applications.variants.drawing.stream import Draws
+from symobs.applications.variants.reading.table import read_table
 from tests.support.independent_algebra.plain_fractions import determinant, eliminate, inverse, times
-from tests.unit.variation.test_constructions import desired, h1, h2, linear_forms, observability, s, table, turned
+from tests.unit.applications.variants.test_constructions import (
+    desired,
+    h1,
+    h2,
+    linear_forms,
+    observability,
+    s,
+    table,
+    turned,
+)
 
 if TYPE_CHECKING:
-    from symobs.variation.acceptance.candidates import Candidate
+    from symobs.applications.variants.acceptance.candidates import Candidate
 
 CANDIDATES, SEED = 500, 29
 _OF_GAINS = ("compensator", "observer", "state_feedback", "canonical_form")

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import sympy
 
-from symobs.result import tasks
+from symobs.tasks.result import tasks
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

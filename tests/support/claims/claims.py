@@ -9,8 +9,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from symobs.exact import Factored, Matrix, Scalar
-from symobs.expression import parse_polynomial
-from symobs.specification import read_poles
+from symobs.formula.expression import parse_polynomial
+from symobs.system.specification import read_poles
 from tests.support.claims.claims_in_time import FUNCTIONS_OF_TIME
 from tests.support.claims.claims_of_advice import advice_holds
 from tests.support.claims.claims_of_modes import MODES
@@ -43,10 +43,10 @@ from tests.support.regions.region_answers import holds as relations_hold
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Mapping
 
-    from symobs.conditions import Condition
     from symobs.exact import Complex
-    from symobs.result import Result
     from symobs.system import StateSpace
+    from symobs.system.conditions import Condition
+    from symobs.tasks.result import Result
 
 #: Values of s at which rational functions are compared; where there are parameters, one of them at each point.
 PROBES = (Fraction(7, 3), Fraction(-11, 5), Fraction(23), Fraction(-1, 7), Fraction(5, 2))

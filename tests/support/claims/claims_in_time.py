@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from mpmath.calculus.quadrature import GaussLegendre
 
-from symobs.formula import Literal
+from symobs.formula.tree import Literal
 from tests.support.claims.claims_of_modes import hidden_polynomial, quotient
 from tests.support.independent_algebra.plain import characteristic, multiply, observability_rows, rank_of, transposed
 from tests.support.independent_algebra.plain_fractions import World, eliminate

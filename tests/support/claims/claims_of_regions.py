@@ -14,7 +14,7 @@ from tests.support.regions.region_texts import bound, expression
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from symobs.analysis.stability_region.stability_region import StabilityRegion
+    from symobs.tasks.analysis.stability_region.stability_region import StabilityRegion
     from tests.support.independent_algebra.plain import Point
 
 #: Half of the last digit that is shown.

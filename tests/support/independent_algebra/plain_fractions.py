@@ -1,6 +1,6 @@
 """Derivations read without the kernel: every formula evaluated in plain fractions at random points.
 
-Nothing of `symobs.exact`, `symobs.formula.evaluate`, `certificate` or `derivation.check` takes part: a scalar is read by
+Nothing of `symobs.exact`, `symobs.formula.tree.evaluate`, `certificate` or `derivation.check` takes part: a scalar is read by
 its terms, a matrix is a list of lists, a determinant is an elimination.  A polynomial identity of degree d that is false
 holds at a point drawn from 10⁹ values with probability at most d / 10⁹; three points are drawn.  Functions of time are
 numbers of 60 digits there, derivatives are those of Taylor coefficients (`series`), and a primitive has its integrand as
@@ -15,26 +15,13 @@ from fractions import Fraction
 from functools import reduce
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from symobs.derivation import (
-    CaseStep,
-    Conclude,
-    Define,
-    Diagram,
-    Equal,
-    Given,
-    Inequalities,
-    Note,
-    Plot,
-    RegionSummary,
-    Section,
-    Tabulate,
-)
 from symobs.exact import EIGENVALUE, Matrix, Root, Scalar
 from symobs.exact.core.generators import PI, function_named, symbols_in
 from symobs.exact.time_functions.root_sum import RootSum
-from symobs.figures.block_diagram import figure_of, is_box, is_integrator, key
-from symobs.figures.plot import TimeResponse
-from symobs.formula import (
+from symobs.formula.figures.block_diagram import figure_of, is_box, is_integrator, key
+from symobs.formula.figures.plot import TimeResponse
+from symobs.formula.phrases.spoken import Counted, StateChoice
+from symobs.formula.tree import (
     Apply,
     At,
     Block,
@@ -58,7 +45,20 @@ from symobs.formula import (
     SymbolList,
     Transpose,
 )
-from symobs.phrases.spoken import Counted, StateChoice
+from symobs.proof.derivation import (
+    CaseStep,
+    Conclude,
+    Define,
+    Diagram,
+    Equal,
+    Given,
+    Inequalities,
+    Note,
+    Plot,
+    RegionSummary,
+    Section,
+    Tabulate,
+)
 from tests.support.independent_algebra import regions_in_plain_fractions as regions
 from tests.support.independent_algebra import series
 from tests.support.independent_algebra.plain import coefficients_at, multiply, transposed
@@ -67,9 +67,9 @@ from tests.support.independent_algebra.responses import untrue_responses
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
-    from symobs.derivation import Step
-    from symobs.figures.plot import Picture
-    from symobs.formula import Environment, Fact, Formula
+    from symobs.formula.figures.plot import Picture
+    from symobs.formula.tree import Environment, Fact, Formula
+    from symobs.proof.derivation import Step
     from tests.support.independent_algebra.plain import Rows
 
 LARGEST = 2**30

@@ -17,9 +17,9 @@ from flint import fmpz_poly
 
 from symobs.exact import Scalar
 from symobs.exact.core.generators import function_named
-from symobs.figures.plot import LinePicture, PoleMap, RegionPicture
-from symobs.formula import Literal, Relation
-from symobs.phrases.languages import ENGLISH
+from symobs.formula.figures.plot import LinePicture, PoleMap, RegionPicture
+from symobs.formula.phrases.languages import ENGLISH
+from symobs.formula.tree import Literal, Relation
 from tests.support.independent_algebra.plain import (
     characteristic,
     coefficients_at,
@@ -34,11 +34,11 @@ from tests.support.regions.region_texts import Binary, Call, Number, expression
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping, Sequence
 
-    from symobs.analysis.stability_region.stability_region import StabilityRegion
-    from symobs.derivation import Sentence
-    from symobs.figures.plot import Curve, Place
-    from symobs.formula import Formula
+    from symobs.formula.figures.plot import Curve, Place
+    from symobs.formula.tree import Formula
+    from symobs.proof.derivation import Sentence
     from symobs.stability.criteria.routh_table import RouthTable
+    from symobs.tasks.analysis.stability_region.stability_region import StabilityRegion
     from tests.support.independent_algebra.plain_fractions import World
 
 #: How many points a statement is held at, and of how many a picture.

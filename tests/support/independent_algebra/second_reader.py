@@ -18,10 +18,11 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 import mpmath
 import sympy
 
-from symobs.derivation import CaseStep, Conclude, Define, Diagram, Equal, Given, Note, Section, Tabulate
 from symobs.exact import Matrix, Scalar
 from symobs.exact.core.generators import function_named
-from symobs.formula import (
+from symobs.formula.phrases.languages import ENGLISH
+from symobs.formula.phrases.spoken import SPOKEN, Counted
+from symobs.formula.tree import (
     Apply,
     At,
     Block,
@@ -45,17 +46,16 @@ from symobs.formula import (
     SymbolList,
     Transpose,
 )
-from symobs.phrases.languages import ENGLISH
-from symobs.phrases.spoken import SPOKEN, Counted
+from symobs.proof.derivation import CaseStep, Conclude, Define, Diagram, Equal, Given, Note, Section, Tabulate
 from tests.support.independent_algebra.routh_by_hand import is_so, rows_of
 from tests.support.problems.problems_by_hand import compare, inverse, is_stable, is_zero, polynomial_at
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Mapping
 
-    from symobs.derivation import Derivation, Sentence, Step
     from symobs.exact import Root
-    from symobs.formula import Fact, Formula
+    from symobs.formula.tree import Fact, Formula
+    from symobs.proof.derivation import Derivation, Sentence, Step
 
 Value: TypeAlias = Any  # sympy.Expr, sympy.Matrix, or a signal: name of a free signal -> its coefficient matrix
 

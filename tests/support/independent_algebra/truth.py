@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 import sympy
 
 from symobs.exact import Scalar
-from symobs.formula import Literal, Negative, Power, Product, Quotient
+from symobs.formula.tree import Literal, Negative, Power, Product, Quotient
 from tests.support.independent_algebra.plain import at_number, multiply
 from tests.support.independent_algebra.plain_fractions import Compared, World, inverse, is_matrix, single
 from tests.support.independent_algebra.regions_in_plain_fractions import is_stable
@@ -17,7 +17,7 @@ from tests.support.independent_algebra.regions_in_plain_fractions import is_stab
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from symobs.derivation import Derivation
+    from symobs.proof.derivation import Derivation
 
 POINTS = 3
 #: Enough values of the variable to tell a polynomial of degree up to 9 from any other rational function.

@@ -45,7 +45,7 @@ from importlib.machinery import PathFinder
 
 class Finder(MetaPathFinder):
     def find_spec(self, name, path=None, target=None):
-        if name != "symobs.batching.kinds":
+        if name != "symobs.applications.batch.kinds":
             return None
         spec = PathFinder.find_spec(name, path)
         run = spec.loader.exec_module
@@ -87,7 +87,7 @@ class Tampering(Executor):
         self.name, self.change = name, change
 
     def submit(self, fn: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
-        from symobs.batching.jobs import digest  # noqa: PLC0415
+        from symobs.applications.batch.jobs import digest  # noqa: PLC0415
 
         future: Future[Any] = Future()
         texts, seconds = fn(*args, **kwargs)
@@ -119,8 +119,8 @@ def children_of(parent: int) -> list[int]:
         except OSError:
             continue
         if (
-            b"symobs.batching.child" in words
-            and words[words.index(b"symobs.batching.child") + 1] == str(parent).encode()
+            b"symobs.applications.batch.child" in words
+            and words[words.index(b"symobs.applications.batch.child") + 1] == str(parent).encode()
         ):
             found.append(int(path.parent.name))
     return found

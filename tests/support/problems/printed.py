@@ -5,11 +5,11 @@ from __future__ import annotations
 import json
 from typing import TYPE_CHECKING
 
-from symobs.audit import audit
+from symobs.applications.audit import audit
 from symobs.problem import read
 
 if TYPE_CHECKING:
-    from symobs.audit import Finding
+    from symobs.applications.audit import Finding
 
 SERVO = {"A": "[0 1; 0 -1]", "B": "[0; 1]", "C": "[1 0]"}
 

@@ -4,11 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from symobs._dataclass import dataclass
-from symobs.derivation import CaseStep, Conclude, Define, Derivation, Diagram, Equal, Given, Note, Section, Sentence
 from symobs.exact import Matrix, Scalar
 from symobs.exact.algebraic.polynomial_roots import roots_of
-from symobs.formula import (
+from symobs.formula.tree import (
     Apply,
     Block,
     Derivative,
@@ -28,12 +26,25 @@ from symobs.formula import (
     Sum,
     Transpose,
 )
-from symobs.result import Document
+from symobs.ground.dataclass import dataclass
+from symobs.proof.derivation import (
+    CaseStep,
+    Conclude,
+    Define,
+    Derivation,
+    Diagram,
+    Equal,
+    Given,
+    Note,
+    Section,
+    Sentence,
+)
+from symobs.tasks.result import Document
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from symobs.formula import Fact
+    from symobs.formula.tree import Fact
 
 #: The sentences of the page; tests put them among the phrases while they run.
 PHRASES = {

@@ -4,10 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from symobs.derivation import Define, Derivation, Given, Sentence, Step
-from symobs.errors import DerivationRejected
 from symobs.exact import Matrix, Scalar
-from symobs.formula import (
+from symobs.formula.tree import (
     Apply,
     Environment,
     Fact,
@@ -20,6 +18,8 @@ from symobs.formula import (
     Relation,
     Sum,
 )
+from symobs.ground.errors import DerivationRejected
+from symobs.proof.derivation import Define, Derivation, Given, Sentence, Step
 
 A, B, C, F, L, P, S = (Letter(name) for name in ("A", "B", "C", "F", "L", "P", "s"))
 X, ESTIMATE, E, U, Y = (Letter(name) for name in ("x", "x_hat", "e", "u", "y"))

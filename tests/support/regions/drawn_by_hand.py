@@ -10,13 +10,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from symobs.exact import Scalar
-from symobs.figures.plot import Curve, End, LinePicture, MarkedPoint, PoleMap, RegionPicture
-from symobs.formula import Literal, Relation
+from symobs.formula.figures.plot import Curve, End, LinePicture, MarkedPoint, PoleMap, RegionPicture
+from symobs.formula.tree import Literal, Relation
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
 
-    from symobs.figures.plot import Place
+    from symobs.formula.figures.plot import Place
 
     Window = tuple[tuple[int, int], tuple[int, int]]
     Branch = tuple[list[Place], int]

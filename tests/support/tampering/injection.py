@@ -20,8 +20,8 @@ import unicodedata
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from symobs.errors import SymobsError
-from symobs.render.formats.pdf import compiled
+from symobs.ground.errors import SymobsError
+from symobs.pages.formats.pdf import compiled
 from tests.support.tools.browser import Browser
 from tests.support.tools.command_line import inside
 

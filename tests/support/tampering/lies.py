@@ -12,17 +12,17 @@ from functools import partial
 from math import prod
 from typing import TYPE_CHECKING, Any
 
-from symobs.analysis.rank.observability import RankResult
-from symobs.analysis.stability_region.stability_region import StabilityRegion
-from symobs.derivation import Plot
-from symobs.design.compensator.compensator import CompensatorDesign
-from symobs.design.gain.gain_design import GainDesign
-from symobs.design.reference.tracking import TrackingDesign
-from symobs.errors import CertificateRejected, DerivationRejected
 from symobs.exact import Matrix, Scalar
 from symobs.exact.core.generators import symbols_in
-from symobs.figures.plot import TimeResponse
+from symobs.formula.figures.plot import TimeResponse
+from symobs.ground.errors import CertificateRejected, DerivationRejected
+from symobs.proof.derivation import Plot
 from symobs.stability.inequalities.proof import Combined, Opposite
+from symobs.tasks.analysis.rank.observability import RankResult
+from symobs.tasks.analysis.stability_region.stability_region import StabilityRegion
+from symobs.tasks.design.compensator.compensator import CompensatorDesign
+from symobs.tasks.design.gain.gain_design import GainDesign
+from symobs.tasks.design.reference.tracking import TrackingDesign
 from tests.support.claims.claims import HOLDS, Setting
 from tests.support.claims.claims_in_time import FUNCTIONS_OF_TIME
 from tests.support.independent_algebra.plain import (
@@ -50,9 +50,9 @@ from tests.support.tools.remembered import remembered
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
-    from symobs.derivation import Derivation
-    from symobs.design.pole_placement.single_output import ObserverPair
-    from symobs.result import Result
+    from symobs.proof.derivation import Derivation
+    from symobs.tasks.design.pole_placement.single_output import ObserverPair
+    from symobs.tasks.result import Result
     from tests.support.independent_algebra.plain import Rows
 
 #: How many changes are tried by default: of one answer, and of all the lines of a page together at least.

@@ -11,10 +11,11 @@ from dataclasses import dataclass, fields, is_dataclass, replace
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
-from symobs.derivation import Derivation, Section, Sentence
 from symobs.exact import Factored, Matrix, Root, Scalar
-from symobs.figures.plot import Curve, MarkedPoint, PlottedResponse, PoleMap
-from symobs.formula import (
+from symobs.formula.figures.plot import Curve, MarkedPoint, PlottedResponse, PoleMap
+from symobs.formula.phrases import slots_of
+from symobs.formula.phrases.spoken import SPOKEN, Counted
+from symobs.formula.tree import (
     Apply,
     Block,
     Derivative,
@@ -29,17 +30,16 @@ from symobs.formula import (
     Sum,
     Transpose,
 )
-from symobs.phrases import slots_of
-from symobs.phrases.spoken import SPOKEN, Counted
+from symobs.proof.derivation import Derivation, Section, Sentence
 from symobs.stability.criteria.routh_table import ORIGINS, RouthRow, RouthTable
 from symobs.stability.regions.short_list import RegionInequality
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from symobs.derivation import Step
-    from symobs.formula import Environment
-    from symobs.result import Result
+    from symobs.formula.tree import Environment
+    from symobs.proof.derivation import Step
+    from symobs.tasks.result import Result
 
 #: A formula node that may stand negated or doubled in its place.
 NODES = (Letter, Literal, Identity, Sum, Negative, Product, Power, Transpose, Quotient, Apply, Block, Derivative)

@@ -8,14 +8,14 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any
 
-from symobs.exporting import exercises
+from symobs.applications.export import exercises
 from tests.support.paths import ROOT
 
 if TYPE_CHECKING:
     import random
 
-    from symobs.exporting import Exercise, ExerciseSet
-    from symobs.exporting.questions.parts import ExportedPart
+    from symobs.applications.export import Exercise, ExerciseSet
+    from symobs.applications.export.questions.parts import ExportedPart
 
     Given = dict[str, list[list[str]]]
 

@@ -6,7 +6,7 @@ import json
 import os
 import time
 
-from symobs.child_processes.inside import serve
+from symobs.ground.child_processes.inside import serve
 
 
 def obey(body: bytes) -> bytes:

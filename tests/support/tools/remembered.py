@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from symobs.derivation.figures import plot_points, region_plot_check, root_locus_check
+from symobs.proof.derivation.figures import plot_points, region_plot_check, root_locus_check
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator

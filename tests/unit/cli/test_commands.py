@@ -15,9 +15,9 @@ import pytest
 from jsonschema import Draft202012Validator  # type: ignore[import-untyped]
 
 from symobs.cli.commands import solve
-from symobs.errors import CertificateRejected
-from symobs.phrases.literature import written_out
-from symobs.result import formats, methods, tasks
+from symobs.formula.phrases.literature import written_out
+from symobs.ground.errors import CertificateRejected
+from symobs.tasks.result import formats, methods, tasks
 from tests.support.paths import ROOT
 from tests.support.tools.command_line import EXAMPLES, SAFETY, SERVO, environment, fresh, inside
 
@@ -91,7 +91,7 @@ def test_verdict_or_expectation_decides(text: str, code: int, said: str) -> None
 
 
 def test_undecided_is_5_unless_something_is_denied(monkeypatch: pytest.MonkeyPatch) -> None:
-    from symobs.analysis.rank.observability import Observability  # noqa: PLC0415 - the class this test changes
+    from symobs.tasks.analysis.rank.observability import Observability  # noqa: PLC0415 - the class this test changes
 
     monkeypatch.setattr(Observability, "verdict", "undecided")
     text = f'tasks = ["observability", "observer"]\n{PLANT}[specification]\npoles = "-1, -2"'

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from symobs.result import registry, writers
+from symobs.tasks.result import registry, writers
 
 if TYPE_CHECKING:
     from types import ModuleType

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from symobs.cli.shared.output import check_target, write_all
-from symobs.errors import InputError
+from symobs.ground.errors import InputError
 from tests.support.paths import ROOT
 from tests.support.tools.command_line import SAFETY, SERVO, Run, environment, inside
 

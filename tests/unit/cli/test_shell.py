@@ -13,9 +13,9 @@ import pytest
 
 import symobs
 from symobs.cli.shared import common
-from symobs.errors import InputError, OutOfBudget, UsageError
-from symobs.result import formats, methods, tasks
-from symobs.specification import CHOICES
+from symobs.ground.errors import InputError, OutOfBudget, UsageError
+from symobs.system.specification import CHOICES
+from symobs.tasks.result import formats, methods, tasks
 from tests.support.paths import ROOT
 from tests.support.tools.command_line import environment, inside
 

@@ -15,16 +15,16 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from symobs.child_processes.budget import Budget
 from symobs.cli.commands import solve
 from symobs.cli.shared import time_and_memory as budget_module
 from symobs.cli.shared.time_and_memory import within
-from symobs.errors import InputError, OutOfBudget, ProblemErrors, ShapeMismatch, TypesettingError
-from symobs.render.formats.pdf import compiled
-from symobs.result import registry
+from symobs.ground.child_processes.budget import Budget
+from symobs.ground.errors import InputError, OutOfBudget, ProblemErrors, ShapeMismatch, TypesettingError
+from symobs.pages.formats.pdf import compiled
+from symobs.tasks.result import registry
 from tests.support.paths import ROOT
 from tests.support.tools.command_line import SAFETY, SERVO, environment, inside
-from tests.unit.render.test_pdf import ends, program
+from tests.unit.pages.test_pdf import ends, program
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -465,7 +465,7 @@ def test_a_computation_does_not_outlive_its_command(tmp_path: Path) -> None:
 import os, signal, time
 signal.signal(signal.SIGINT, signal.default_int_handler)
 from symobs import cli
-from symobs.child_processes.budget import Budget
+from symobs.ground.child_processes.budget import Budget
 from symobs.cli.shared.time_and_memory import within
 def deaf(tell):
     signal.pthread_sigmask(signal.SIG_BLOCK, {{signal.SIGALRM, signal.SIGINT, signal.SIGTERM}})

@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from symobs.errors import InputError
-from symobs.variation.files import assignment
+from symobs.applications.variants.files import assignment
+from symobs.ground.errors import InputError
 from tests.support.paths import ROOT
 from tests.support.tools.command_line import inside
 

@@ -11,7 +11,6 @@ import numpy as np
 import pytest
 from scipy import signal  # type: ignore[import-untyped]
 
-from symobs.errors import InputError
 from symobs.exact import Matrix, Scalar
 from symobs.exact.core.generators import square_root
 from symobs.exact.floating.array_functions import ArrayFunction, evaluated, nested, sizes
@@ -21,7 +20,8 @@ from symobs.exact.floating.margin_search import disc_margin, half_plane_margin
 from symobs.exact.floating.sampled import HOLDS, Sampled
 from symobs.exact.floating.stability_margin import loop_matrix, own_matrix
 from symobs.exact.linear_algebra.realisation import Realisation
-from symobs.expression import parse_scalar
+from symobs.formula.expression import parse_scalar
+from symobs.ground.errors import InputError
 
 
 def matrix(rows: Any) -> Matrix:

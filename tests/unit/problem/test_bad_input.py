@@ -11,7 +11,7 @@ import pytest
 import sympy
 
 import symobs
-from symobs.errors import InexactInput, InputError, ShapeMismatch
+from symobs.ground.errors import InexactInput, InputError, ShapeMismatch
 from tests.support.tools.command_line import Run, fresh, inside
 
 if TYPE_CHECKING:

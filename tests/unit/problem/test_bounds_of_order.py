@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 import symobs
-from symobs.errors import BudgetExceeded, InputError
+from symobs.ground.errors import BudgetExceeded, InputError
 from symobs.problem import read
 from tests.support.tools.command_line import inside
 

@@ -11,9 +11,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from symobs.errors import InputError, ProblemErrors, SymobsError
-from symobs.expect import mismatches
+from symobs.ground.errors import InputError, ProblemErrors, SymobsError
 from symobs.problem import parse, read, validate
+from symobs.problem.expect import mismatches
 from tests.support.tools.command_line import EXAMPLES, SERVO
 
 if TYPE_CHECKING:

@@ -6,12 +6,12 @@ import string
 
 import pytest
 
-from symobs.errors import InputError
-from symobs.phrases import QUESTIONS
-from symobs.phrases.english.question_phrases import UNSAID
+from symobs.formula.phrases import QUESTIONS
+from symobs.formula.phrases.english.question_phrases import UNSAID
+from symobs.ground.errors import InputError
 from symobs.problem import read
 from symobs.problem.question import question_of, sentences_for
-from symobs.result import Task, methods, render, tasks
+from symobs.tasks.result import Task, methods, render, tasks
 from tests.support.tools.command_line import EXAMPLES
 
 #: The words that a keyword of this name may be.

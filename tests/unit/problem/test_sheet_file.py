@@ -13,10 +13,10 @@ from typing import Any
 import pytest
 from jsonschema import Draft202012Validator  # type: ignore[import-untyped]
 
-from symobs.errors import InputError, ProblemErrors
+from symobs.ground.errors import InputError, ProblemErrors
+from symobs.pages.page.blocks import AnswerSpace
 from symobs.problem.sheet_file import PROBLEM, SHEET, is_sheet, read_sheet
 from symobs.problem.sheet_file import schema as sheet_schema
-from symobs.render.page.blocks import AnswerSpace
 from tests.support.paths import ROOT
 
 SHEETS = ROOT / "worked_examples" / "sheets"

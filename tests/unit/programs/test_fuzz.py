@@ -16,9 +16,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from symobs.errors import InputError
 from symobs.exact import Scalar
-from symobs.expression import parse_matrix, parse_poles, parse_polynomial, parse_scalar
+from symobs.formula.expression import parse_matrix, parse_poles, parse_polynomial, parse_scalar
+from symobs.ground.errors import InputError
 from tests.programs.fuzz import printing
 from tests.programs.fuzz.targets import TARGETS
 from tests.programs.fuzz.worker import Tally
@@ -150,7 +150,7 @@ _BAD: dict[str, tuple[str, str]] = {
 }
 _NOTICED = """
 import json, sys, time
-from symobs.errors import CertificateRejected
+from symobs.ground.errors import CertificateRejected
 from tests.programs.fuzz.targets import Target
 from tests.programs.fuzz.watch import Watch
 from tests.programs.fuzz.worker import Tally, memory, one

@@ -16,7 +16,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from symobs.exact import Scalar, from_coefficients
-from symobs.expression import parse_scalar
+from symobs.formula.expression import parse_scalar
 from symobs.stability.criteria.stability_conditions import condition_lists, stable_where
 from tests.support.independent_algebra.plain import (
     coefficients_at,

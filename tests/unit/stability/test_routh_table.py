@@ -16,15 +16,15 @@ import sympy
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
-from symobs.derivation import CaseStep, Define, Derivation, Sentence, Tabulate
-from symobs.derivation.builder import Builder
-from symobs.derivation.routh_check import findings_of, last_determinant
 from symobs.exact import Scalar, from_coefficients
-from symobs.formula import Environment, Letter, Sum
-from symobs.formula.plain_text import plain_relation
-from symobs.phrases import PHRASES, RESTS_ON, THEOREMS
-from symobs.phrases.languages import ENGLISH
-from symobs.phrases.spoken import Counted
+from symobs.formula.phrases import PHRASES, RESTS_ON, THEOREMS
+from symobs.formula.phrases.languages import ENGLISH
+from symobs.formula.phrases.spoken import Counted
+from symobs.formula.tree import Environment, Letter, Sum
+from symobs.formula.tree.plain_text import plain_relation
+from symobs.proof.derivation import CaseStep, Define, Derivation, Sentence, Tabulate
+from symobs.proof.derivation.builder import Builder
+from symobs.proof.derivation.routh_check import findings_of, last_determinant
 from symobs.stability.criteria.cauchy_index import imaginary_axis_roots, right_half_plane_roots
 from symobs.stability.criteria.routh_table import RouthRow, RouthTable, is_routh_table, routh_table, sign_changes
 from symobs.stability.criteria.stability import hurwitz_matrix

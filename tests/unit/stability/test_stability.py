@@ -12,7 +12,7 @@ from hypothesis import assume, example, given, settings
 from hypothesis import strategies as st
 
 from symobs.exact import Matrix, Scalar, from_coefficients, product_of
-from symobs.expression import parse_scalar
+from symobs.formula.expression import parse_scalar
 from symobs.stability.criteria.stability import (
     StabilityVerdict,
     hurwitz_matrix,

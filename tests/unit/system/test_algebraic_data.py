@@ -10,13 +10,13 @@ import pytest
 import sympy
 
 import symobs as so
-from symobs.certificate.claims import verify
-from symobs.derivation.builder import relation
 from symobs.exact import Matrix, Scalar
 from symobs.exact.core.generators import square_root
-from symobs.formula import Environment
-from symobs.formula.term import letter
+from symobs.formula.tree import Environment
+from symobs.formula.tree.term import letter
 from symobs.problem import read
+from symobs.proof.certificate.claims import verify
+from symobs.proof.derivation.builder import relation
 
 k = sympy.Symbol("k", real=True)
 

@@ -12,7 +12,7 @@ import sympy
 
 import symobs
 from symobs import StateSpace
-from symobs.errors import InputError
+from symobs.ground.errors import InputError
 
 
 def test_floats_are_read_as_their_shortest_decimals() -> None:

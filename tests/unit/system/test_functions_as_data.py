@@ -10,9 +10,9 @@ import pytest
 import sympy
 
 import symobs
-from symobs.errors import InputError
-from symobs.expect.expectations import mismatches
+from symobs.ground.errors import InputError
 from symobs.problem import validate
+from symobs.problem.expect.expectations import mismatches
 from symobs.problem.file_tables import parse
 
 SIGNS = {"theta": "real", "k": "positive", "T": "positive"}

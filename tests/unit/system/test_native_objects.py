@@ -15,7 +15,7 @@ from sympy.physics.control import TransferFunction, TransferFunctionMatrix
 
 import symobs
 from symobs import StateSpace
-from symobs.errors import InexactInput, InputError, ShapeMismatch, SymobsError
+from symobs.ground.errors import InexactInput, InputError, ShapeMismatch, SymobsError
 
 s, k = sympy.symbols("s k")
 SERVO = StateSpace("[0 1; 0 -1]", "[0; 1]", "[1 0]")

@@ -13,7 +13,7 @@ from sympy.physics.control import StateSpace as SymPyStateSpace
 
 import symobs
 from symobs import StateSpace
-from symobs.errors import InputError
+from symobs.ground.errors import InputError
 
 b, p, s, z = sympy.symbols("b p s z")
 

@@ -10,9 +10,9 @@ import sympy
 from sympy import Dummy, Symbol
 
 import symobs
-from symobs.errors import ExpressionError, InputError
 from symobs.exact.sympy_bridge.conversion import scalar_to_sympy
-from symobs.expression import parse_matrix, parse_poles, parse_scalar
+from symobs.formula.expression import parse_matrix, parse_poles, parse_scalar
+from symobs.ground.errors import ExpressionError, InputError
 from symobs.system import Symbols
 
 a, b, c, d, s = sympy.symbols("a b c d s")

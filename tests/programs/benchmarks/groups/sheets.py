@@ -7,7 +7,7 @@ from collections import Counter
 from typing import TYPE_CHECKING
 
 from symobs.problem import parse, validate
-from symobs.result import render
+from symobs.tasks.result import render
 from tests.programs.benchmarks.measuring import Row
 from tests.support.paths import ROOT
 

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from symobs.exact import Ideal, Scalar, apart_from_zero
 from symobs.exact.ideals.conjugate_points import conjugate_points, shortened
 from symobs.exact.ideals.ideal import FEW
-from symobs.expression import parse_scalar
+from symobs.formula.expression import parse_scalar
 
 a, b, c = (Scalar.symbol(name) for name in "abc")
 

@@ -15,13 +15,13 @@ from hypothesis import strategies as st
 
 import symobs
 from symobs import problem
-from symobs.derivation import CaseStep, Section
-from symobs.errors import CertificateRejected, DerivationRejected, InputError, ShapeMismatch
 from symobs.exact import Matrix, Scalar
 from symobs.exact.core.generators import derivative, function, identities, normal_form, square_root, substitute
 from symobs.exact.core.rational_matrix import measures
 from symobs.exact.time_functions.quasipolynomial import Key, Quasipolynomial, quasi_of
-from symobs.result.conversions import to_sympy
+from symobs.ground.errors import CertificateRejected, DerivationRejected, InputError, ShapeMismatch
+from symobs.proof.derivation import CaseStep, Section
+from symobs.tasks.result.conversions import to_sympy
 from tests.support.paths import ROOT
 from tests.support.problems.problems_in_time import PROBLEMS_IN_TIME
 from tests.support.sampling import every

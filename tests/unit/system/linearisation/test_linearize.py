@@ -9,7 +9,7 @@ import pytest
 import sympy as sp
 
 import symobs
-from symobs.errors import InputError, ProblemErrors
+from symobs.ground.errors import InputError, ProblemErrors
 from symobs.problem import validate
 from symobs.problem.file_tables import parse
 

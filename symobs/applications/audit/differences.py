@@ -1,0 +1,198 @@
+"""Differences of a printed value from the right one, entry by entry, and the simplest reason."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from typing import TYPE_CHECKING
+
+from symobs.applications.audit.equations.reading import text
+from symobs.exact import Matrix, Scalar
+from symobs.exact.algebraic.rounded_decimals import decimals_in, rounds_to, written_out
+from symobs.ground.dataclass import dataclass
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from symobs.exact.algebraic.rounded_decimals import PrintedDecimal
+
+_MOST_LISTED = 4
+_MOST_EXCHANGED = 12
+
+
+@dataclass(frozen=True)
+class EntryDifference:
+    """One entry of a printed value, and the right one."""
+
+    place: str
+    printed: str
+    right: str
+    slip: str = ""
+
+    def __str__(self) -> str:
+        because = f": {self.slip}" if self.slip else ""
+        return f"{self.place} is {self.right}, not {self.printed}{because}"
+
+
+def as_matrix(value: Scalar | Matrix) -> Matrix:
+    """Return a value as a matrix."""
+    return value if isinstance(value, Matrix) else Matrix.of([[value]])
+
+
+def single(printed: Scalar) -> PrintedDecimal | None:
+    """Return a printed value that is a signed decimal, None for any other value."""
+    decimals = decimals_in(printed)
+    if len(decimals) != 1:
+        return None
+    ((name, decimal),) = decimals.items()
+    generator = Scalar.symbol(name)
+    return decimal if printed == generator else -decimal if printed == -generator else None
+
+
+def wrong_entries(printed: Matrix, right: Matrix, *, whole: str = "the value") -> list[EntryDifference]:
+    """Return the entries in which a printed matrix differs beyond rounding."""
+    places = [(i, j) for i in range(right.shape[0]) for j in range(right.shape[1])]
+    return [
+        entry(whole if right.shape == (1, 1) else f"entry ({i + 1}, {j + 1})", printed[i, j], right[i, j])
+        for i, j in places
+        if not rounds_to(printed[i, j], right[i, j])
+    ]
+
+
+def entry(place: str, printed: Scalar, right: Scalar) -> EntryDifference:
+    """Return the message on a wrong value."""
+    decimal, plain = single(printed), written_out(printed)
+    if decimal is None or not right.is_constant:
+        return EntryDifference(place, text(plain), text(right), slip(plain, right))
+    exact = right.fraction()
+    sign, size = "-" if decimal.units < 0 else "", -decimal if decimal.units < 0 else decimal
+    because = decimal.slip(exact) or slip(plain, right)
+    return EntryDifference(place, f"{sign}{size.rounded(size.units * size.unit)}", decimal.rounded(exact), because)
+
+
+def slip(printed: Scalar, right: Scalar) -> str:
+    """Return the simplest slip from one number to another, empty if there is none."""
+    if printed == -right:
+        return "the sign is wrong"
+    if not printed.is_constant or not right.is_constant or printed.is_zero or right.is_zero:
+        return ""
+    ratio = printed.fraction() / right.fraction()
+    power = next((n for n in range(1, 7) if abs(ratio) in (Fraction(10) ** n, Fraction(10) ** -n)), 0)
+    if power and ratio > 0:
+        return f"the decimal point is {power} place{'s' if power > 1 else ''} off"
+    if printed.fraction() == 1 / right.fraction():
+        return "numerator and denominator are exchanged"
+    return ""
+
+
+def reasons(printed: Matrix, right: Matrix, whole: str) -> str:
+    """Return the simplest reason that explains all differences of a printed matrix."""
+    entries = wrong_entries(printed, right, whole=whole)
+    if len(entries) == 1 or (entries and all(entry.slip.startswith("truncated") for entry in entries)):
+        return listed(entries)
+    printed = written_out(printed)
+    if printed == -right:
+        return "all signs are wrong"
+    if printed == right.T:
+        return "the transpose is printed"
+    if printed == right.inverse() if _regular(right) else False:
+        return "the inverse is printed"
+    exchanged = _exchanged(printed, right)
+    if exchanged:
+        return exchanged
+    factor = _factor(printed, right)
+    return f"{factor}; {listed(entries)}" if factor and len(entries) <= _MOST_LISTED else factor or listed(entries)
+
+
+def listed(entries: Sequence[EntryDifference]) -> str:
+    """Return the wrong entries as one text."""
+    left = len(entries) - _MOST_LISTED
+    more = [f"and {left} more {'entries' if left > 1 else 'entry'}"] if left > 0 else []
+    return "; ".join([*map(str, entries[:_MOST_LISTED]), *more])
+
+
+def _regular(matrix: Matrix) -> bool:
+    return matrix.shape[0] == matrix.shape[1] > 1 and not matrix.determinant().is_zero
+
+
+def _exchanged(printed: Matrix, right: Matrix) -> str:
+    """Return the two exchanged entries, rows or columns."""
+    rows, columns = right.shape
+    cells = [(i, j) for i in range(rows) for j in range(columns) if printed[i, j] != right[i, j]]
+    if len(cells) == 2:
+        (a, b), (c, d) = cells
+        if printed[a, b] == right[c, d] and printed[c, d] == right[a, b]:
+            return f"the entries ({a + 1}, {b + 1}) and ({c + 1}, {d + 1}) are exchanged"
+    for size, what, line in ((rows, "rows", 0), (columns, "columns", 1)):
+        for i in range(min(size, _MOST_EXCHANGED)):
+            for j in range(i):
+                order = list(range(size))
+                order[i], order[j] = j, i
+                chosen = (order, range(columns)) if line == 0 else (range(rows), order)
+                if printed == right.select(*chosen):
+                    return f"the {what} {j + 1} and {i + 1} are exchanged"
+    return ""
+
+
+def _factor(printed: Matrix, right: Matrix) -> str:
+    """Return the rational factor between two matrices."""
+    pair = next(((p, r) for p, r in zip(printed.entries, right.entries, strict=True) if not r.is_zero), None)
+    if pair is None or pair[0].is_zero or printed != right * (pair[0] / pair[1]):
+        return ""
+    ratio = pair[0] / pair[1]
+    return f"every entry is multiplied by {ratio}" if len(right.entries) > 1 else ""
+
+
+def polynomial_reason(printed: Scalar, right: Scalar, variable: str) -> str:
+    """Return the coefficients in which a printed polynomial differs, empty if the two are not polynomials."""
+    if not (printed.is_polynomial_in(variable) and right.is_polynomial_in(variable)) or right.degree(variable) < 1:
+        return ""
+    wanted, came = (list(value.coefficients(variable)) for value in (right, printed))
+    length = max(len(wanted), len(came))
+    wanted, came = ([Scalar.of(0)] * (length - len(each)) + each for each in (wanted, came))
+    if wanted == [-coefficient for coefficient in came]:
+        return "all signs are wrong"
+    entries = [
+        entry(_power_name(length - 1 - i, variable), one, other)
+        for i, (one, other) in enumerate(zip(came, wanted, strict=True))
+        if not rounds_to(one, other)
+    ]
+    return listed(entries)
+
+
+def _power_name(power: int, variable: str) -> str:
+    if power == 0:
+        return "the constant term"
+    return f"the coefficient of {variable}{f'^{power}' if power > 1 else ''}"
+
+
+# -- values as text ---------------------------------------------------------------------------------------------------
+
+
+def value_text(value: Scalar | Matrix, printed: Scalar | Matrix | None = None) -> str:
+    """Return a value in the grammar of printed equations, rounded as printed."""
+    if isinstance(value, Scalar):
+        return _number_text(value, printed if isinstance(printed, Scalar) else None)
+    alike = printed if isinstance(printed, Matrix) and printed.shape == value.shape else None
+    rows = [
+        " ".join(
+            _number_text(entry, None if alike is None else alike[i, j]).replace(" ", "") for j, entry in enumerate(row)
+        )
+        for i, row in enumerate(value.rows)
+    ]
+    return f"[{'; '.join(rows)}]"
+
+
+def _number_text(value: Scalar, printed: Scalar | None) -> str:
+    decimal = single(printed) if printed is not None and value.is_constant else None
+    return text(value) if decimal is None else decimal.rounded(value.fraction())
+
+
+def term_text(value: Matrix, name: str) -> str:
+    """Return a matrix times a signal."""
+    if value.shape == (1, 1):
+        scalar = value[0, 0]
+        text = value_text(scalar)
+        if scalar == Scalar.of(1):
+            return name
+        return f"-{name}" if scalar == Scalar.of(-1) else f"({text}) {name}" if " " in text else f"{text} {name}"
+    return f"{value_text(value)} {name}"

@@ -1,0 +1,170 @@
+"""Where jobs are done: threads of this machine with a child process each, a dask cluster, or any executor."""
+
+from __future__ import annotations
+
+import logging
+import os
+import time
+from concurrent.futures import Executor, Future, ThreadPoolExecutor
+from contextlib import contextmanager, suppress
+from functools import partial
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from symobs.applications.batch.kept import CHILD, identity, run_chunk, run_in_process
+from symobs.ground.child_processes.child import Kept
+from symobs.ground.errors import InputError, SymobsError, UsageError, reason_of
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+
+#: Seconds that a connection takes at most, and after which one that was lost is given up.
+_CONNECT = 10.0
+_LOST_AFTER = 10.0
+_ASK = 5.0
+_CLOSE = 1.0
+
+
+class Unfinished(SymobsError):
+    """The run has ended before all jobs were done; what is done is kept."""
+
+    exit_code = 5
+
+
+class Workforce(NamedTuple):
+    """An executor, how many chunks it works on at a time, what it is given, and whether it is still there."""
+
+    executor: Executor
+    workers: int
+    work: Callable[..., tuple[list[str], float]] = run_chunk
+    #: Whether it can be reached now; raises `Unfinished` when there is nobody left to wait for.
+    is_there: Callable[[], bool] = lambda: True
+
+    def submit(self, orders: Any, budget: Any) -> Future[tuple[list[str], float]]:
+        """Hand over a chunk."""
+        return self.executor.submit(self.work, orders, tuple(budget), identity())
+
+
+class InProcess(Executor):
+    """An executor that does its work at once, in this process: for tests and debuggers."""
+
+    def submit(self, fn: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
+        """Return what is already done."""
+        future: Future[Any] = Future()
+        try:
+            future.set_result(fn(*args, **kwargs))
+        except Exception as error:  # noqa: BLE001 - it is the future's
+            future.set_exception(error)
+        return future
+
+
+@contextmanager
+def workforce(
+    workers: int | None = None,
+    scheduler: str | None = None,
+    executor: Executor | None = None,
+    *,
+    in_process: bool = False,
+    worker_timeout: float = 60.0,
+) -> Iterator[Workforce]:
+    """Give who does the work: threads, the workers of a dask scheduler, or the executor of a caller."""
+    if executor is not None:
+        yield Workforce(executor, workers or getattr(executor, "_max_workers", None) or 1)
+        return
+    if in_process:
+        yield Workforce(InProcess(), 1, run_in_process)
+        return
+    if scheduler is not None:
+        with _cluster(scheduler, worker_timeout) as found:
+            yield found
+        return
+    count, children = workers or os.cpu_count() or 1, Kept(CHILD)
+    pool = ThreadPoolExecutor(count, thread_name_prefix="symobs")
+    try:
+        yield Workforce(pool, count, partial(run_chunk, children=children))
+    finally:
+        pool.shutdown(wait=False, cancel_futures=True)
+        children.close()
+
+
+# -- dask -------------------------------------------------------------------------------------------------------------
+
+
+@contextmanager
+def _cluster(address: str, worker_timeout: float) -> Iterator[Workforce]:
+    """Give the workers of a dask scheduler."""
+    try:
+        import distributed
+    except ImportError:
+        repair = "install it with pip install 'symobs[distributed]', or use --workers"
+        raise UsageError("dask.distributed is not installed", where="--scheduler", repair=repair) from None
+    # What they have to say is said by who waits for them; with the scheduler goes whatever was being fetched.
+    for name in ("distributed", "distributed.client", "tornado.application"):
+        logging.getLogger(name).setLevel(logging.CRITICAL)
+    try:
+        client = distributed.Client(address, timeout=_CONNECT, set_as_default=False)
+    except (OSError, TimeoutError, ValueError) as error:
+        repair = "start one with `dask scheduler`, and give the address that it prints: tcp://HOST:8786"
+        message = f"no scheduler answers at {address}: {reason_of(error)[:200]}"
+        raise InputError(message, where="--scheduler", repair=repair) from None
+    try:
+        count = _threads_there(client, worker_timeout)
+        _require_same_versions(client)
+        pool = client.get_executor(pure=False, retries=0)
+        yield Workforce(pool, count, run_chunk, _Watch(client, worker_timeout))
+    finally:
+        with suppress(Exception):
+            client.close(timeout=_CLOSE)
+
+
+class _Watch:
+    """What ends a wait for a cluster that is gone."""
+
+    def __init__(self, client: Any, worker_timeout: float) -> None:
+        self.client, self.worker_timeout = client, worker_timeout
+        self.seen = self.staffed = self.asked = time.monotonic()
+
+    def __call__(self) -> bool:
+        """Return whether the scheduler is there; raises `Unfinished` if it, or every worker, is away for too long."""
+        now = time.monotonic()
+        if self.client.status == "running":
+            self.seen = now
+        elif now - self.seen > _LOST_AFTER:
+            raise Unfinished("the scheduler is gone", where="--scheduler")
+        else:
+            return False
+        if now - self.asked < _ASK:
+            return True
+        self.asked = now
+        with suppress(Exception):  # a scheduler that does not answer is seen above
+            if self.client.sync(self.client.scheduler.ncores, callback_timeout=_ASK):
+                self.staffed = time.monotonic()
+        if now - self.staffed > self.worker_timeout:
+            message = f"there has been no worker for {self.worker_timeout:g} seconds"
+            raise Unfinished(message, where="--scheduler")
+        return True
+
+
+def _threads_there(client: Any, worker_timeout: float) -> int:
+    """Return how many threads the workers have together; raises `Unfinished` where none comes."""
+    end = time.monotonic() + worker_timeout
+    while True:
+        with suppress(OSError, TimeoutError):
+            if found := client.sync(client.scheduler.ncores, callback_timeout=_ASK):
+                return sum(found.values())
+        if time.monotonic() > end:
+            repair = "start some with `dask worker ADDRESS --nthreads 1`"
+            raise Unfinished("the scheduler has no workers", where="--scheduler", repair=repair)
+        time.sleep(0.1)
+
+
+def _require_same_versions(client: Any) -> None:
+    """Raise `InputError` that lists the workers whose versions are not those here."""
+    try:
+        found = client.run(identity, on_error="return")
+    except Exception as error:  # noqa: BLE001 - whatever a strange worker answers
+        found = {"a worker": error}
+    others = {worker: said for worker, said in found.items() if said != identity()}
+    if others:
+        listed = "; ".join(f"{worker}: {said}" for worker, said in sorted(others.items()))
+        message = f"here is {identity()}, elsewhere other versions: {listed[:1000]}"
+        raise InputError(message, where="--scheduler", repair="install the same versions on every worker")

@@ -1,0 +1,388 @@
+"""The verdict on each part of an answer to one task: the claims of the result decide, taken on the student's values."""
+
+from __future__ import annotations
+
+from contextlib import suppress
+from dataclasses import field, replace
+from typing import TYPE_CHECKING, Any
+
+from symobs.applications.checking.answers.lists import has_two_readings
+from symobs.applications.checking.answers.values import (
+    VERDICTS,
+    decimal_comma,
+    exact,
+    has_decimal_commas,
+    has_decimals,
+    read_like,
+)
+from symobs.applications.checking.judgement.as_asked import as_asked, is_listed, shape_of, two_readings
+from symobs.applications.checking.judgement.coordinates import in_coordinates
+from symobs.applications.checking.judgement.gains import design_with, from_gains, with_claimed, with_gain, with_gains
+from symobs.applications.checking.judgement.other_compensators import closes_the_loop
+from symobs.applications.checking.judgement.parts import CLAIMED, GAINS, IN_COORDINATES, OF_GAIN, TOGETHER, exists
+from symobs.applications.checking.judgement.regions import region_verdict
+from symobs.exact import Matrix, Scalar, TooLarge
+from symobs.formula.expression import parse_matrix
+from symobs.formula.expression.source import shown
+from symobs.ground.dataclass import dataclass
+from symobs.ground.errors import (
+    CertificateRejected,
+    InputError,
+    NotShown,
+    ProblemErrors,
+    SymobsError,
+    UnknownName,
+)
+from symobs.problem.expect import found_in, met, names_of
+from symobs.tasks.analysis.realization.coordinates import BLOCKS
+from symobs.tasks.result.in_convention import ResultInConvention
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from symobs.applications.checking.judgement.regions import Separation
+    from symobs.problem.marking import Marking
+    from symobs.tasks.result import Result
+
+#: What is raised where a question about a value is too large to be decided.
+UNDECIDED = (NotShown, TooLarge)
+#: So many faults of one value are named.
+_MOST_SAID = 3
+#: Fields for which that of another name does as well, and what is said then.
+_EITHER = {
+    "closed_loop_matrix": ("closed_loop_matrix_estimate", "in the state and its estimate"),
+    "closed_loop_matrix_estimate": ("closed_loop_matrix", "in the state and the error"),
+}
+
+
+@dataclass(frozen=True)
+class Judged:
+    """A part of an answer with its verdict: right, follows, wrong, missing, unreadable, undecided.
+
+    name       the field in the standard convention;  `letter` is what the student's convention calls it
+    value      the value in the standard convention, as far as it is a matrix or a number
+    origins    the inputs of the student's that a part follows from
+    there      the result in the coordinates of the student's, where other parts are right in them alone
+    claims     the claims that were tried, and whether they hold
+    """
+
+    name: str
+    letter: str
+    verdict: str
+    given: Any = None
+    value: Matrix | Scalar | None = None
+    hints: tuple[str, ...] = ()
+    reason: str = ""
+    origins: tuple[str, ...] = ()
+    claims: tuple[tuple[str, bool, str], ...] = ()
+    rounded: bool = False
+    there: Result | None = None
+    separation: Separation | None = None
+
+
+@dataclass(frozen=True)
+class TaskJudgement:
+    """The parts of an answer to one task.
+
+    right   the result with those gains of the student's that are right in place of its own
+    own     the result that follows from all gains of the student's; None where all are right, or nothing follows
+    """
+
+    parts: tuple[Judged, ...]
+    right: Result
+    own: Result | None
+
+    @property
+    def has_gains(self) -> bool:
+        """Whether a gain is given from which others of the task follow."""
+        return any(part.name in GAINS[self.right.task] and part.value is not None for part in self.parts)
+
+
+@dataclass()
+class _Task:
+    """The judgement of one task as it is made."""
+
+    view: ResultInConvention
+    names: Any
+    marking: Marking
+    right: Result
+    gains: dict[str, Matrix] = field(default_factory=dict)
+    wrong: tuple[str, ...] = ()
+    own: Result | None = None
+    #: Whether one of two gains is given that are not unique, and right or wrong together.
+    is_half: bool = False
+
+
+def judge_task(
+    view: ResultInConvention, given: Mapping[str, Any], symbols: tuple[str, ...], marking: Marking
+) -> TaskJudgement:
+    """Return the verdict on each given part, by its name in the student's convention."""
+    declared = names_of(view)
+    names = declared if declared is None else {**declared, **dict.fromkeys(symbols, "real")}
+    task = _Task(view, names, marking, view.result)
+    each = [
+        Judged(view.standard(letter)[0], letter, "wrong", as_asked(view, letter, value))
+        for letter, value in given.items()
+    ]
+    asked = {part.name: part for part in each}
+    parts: dict[str, Judged] = {}
+    if view.task in TOGETHER:
+        task.is_half = view.fields["family"] is not None and not asked.keys() >= {*GAINS[view.task]}
+        task.right = _together(task, task.right, asked)
+    if view.task == "unknown_input_observer" and "H" in asked:  # which the gain is one for
+        parts["H"] = _judged(task, asked["H"])
+    for name, part in asked.items():
+        if name in GAINS.get(view.task, ()):
+            parts[name] = _gain(task, part)
+    if "L" not in asked and (name := OF_GAIN.get(view.task, "")) in asked:
+        task.right = _with_gain_behind(task, asked[name])
+    if task.wrong:
+        with suppress(SymobsError, ArithmeticError, ValueError, AttributeError, TypeError):
+            task.own = from_gains(task.right, task.gains)
+    parts |= _in_coordinates(task, [part for part in each if part.name in IN_COORDINATES.get(view.task, ())])
+    parts |= {name: _judged(task, part) for name, part in asked.items() if name not in parts}
+    return TaskJudgement(tuple(parts[name] for name in asked), task.right, task.own)
+
+
+def _unreadable(part: Judged, error: SymobsError) -> Judged:
+    """Return the part as one that cannot be read, with the place and the repair."""
+    errors = error.errors if isinstance(error, ProblemErrors) else (error,)
+    comma = decimal_comma(part.given)
+    repair = f"write {comma.replace(',', '.')} with a decimal point" if comma else _repair(errors[0])
+    said = "; ".join(filter(None, (*(each.message for each in errors[:_MOST_SAID]), repair)))
+    return replace(part, verdict="unreadable", reason=str(SymobsError(said)))
+
+
+def _repair(error: SymobsError) -> str:
+    """Return what a student can do, who declares no names in the problem file."""
+    if not isinstance(error, UnknownName):
+        return error.repair
+    near, known = error.facts.get("nearest"), error.facts.get("declared")
+    if not known:
+        return "write numbers alone"
+    question = f'did you mean "{near}"? ' if near else ""
+    return f"{question}write it with the letters known here: {', '.join(map(str, known))}"  # type: ignore[call-overload]
+
+
+# -- gains ------------------------------------------------------------------------------------------------------------
+
+
+def _gain(task: _Task, part: Judged) -> Judged:
+    """Return the verdict on a gain: it is right where the claim of the design holds for it."""
+    name, letter = part.name, part.letter
+    try:
+        value = _gain_in(task, part)
+    except SymobsError as error:
+        return _unreadable(part, error)
+    if not exists(task.right, name) and task.right.fields.get("solvable") is False:  # nothing to place poles of
+        return replace(part, reason=f"there is no {letter} here")
+    part = replace(part, value=value)
+    shape = shape_of(task.right, name)
+    if value.shape != shape:
+        if has_decimal_commas(part.given, task.names, shape):
+            return _unreadable(part, two_readings())
+        rows, columns = (f"{a}x{b}" for a, b in (shape, value.shape))
+        task.wrong = (*task.wrong, name)
+        return replace(part, reason=f"{letter} is {rows} here, yours is {columns}")
+    task.gains[name] = value
+    try:
+        own = task.right.fields.get(name)
+        other = task.right if value == own else with_gain(task.right, name, value)
+    except CertificateRejected as rejected:
+        if task.is_half:
+            return replace(
+                part, verdict="undecided", reason=f"{' and '.join(GAINS[task.view.task])} are right together: give both"
+            )
+        task.wrong = (*task.wrong, name)
+        claim = rejected.facts.get("claim")
+        return replace(part, claims=((str(claim), False, "exact"),) if claim else ())
+    except UNDECIDED as error:
+        return replace(part, verdict="undecided", reason=str(error))
+    known = {condition.expression for condition in task.right.holds_where}
+    new = [c.expression for c in other.holds_where if c.expression not in known]
+    hints = (f"not defined where {' or '.join(f'{value} = 0' for value in new)}",) if new else ()
+    task.right = other
+    claims = tuple((c.claim, True, c.how) for c in other.all_certificates[:1])
+    return replace(part, verdict="right", hints=hints, claims=claims)
+
+
+def _gain_in(task: _Task, part: Judged) -> Matrix:
+    """Return a gain with its sign in the standard convention."""
+    read = parse_matrix(part.given, task.names)
+    return -read if task.view.standard(part.letter)[1] < 0 else read
+
+
+def _together(task: _Task, right: Any, given: Mapping[str, Judged]) -> Any:
+    """Return the result with the student's two gains where their claim holds for both, else what is right."""
+    if right.answer[GAINS[right.task][0]] is None or not given.keys() >= {*GAINS[right.task]}:
+        return right
+    with suppress(SymobsError, *UNDECIDED):
+        gains = {name: _gain_in(task, given[name]) for name in GAINS[right.task]}
+        if all(gain.shape == shape_of(right, name) for name, gain in gains.items()):
+            return with_gains(right, gains)
+    return right
+
+
+def _with_gain_behind(task: _Task, part: Judged) -> Result:
+    """Return the result with the L in the student's A − L C, where that places the poles; else what is right."""
+    with suppress(SymobsError, ArithmeticError, ValueError):
+        value, pair = _value(task, part), design_with(task.right, "L").plant.matrices
+        if isinstance(value, Matrix) and value.shape == pair.A.shape:
+            L = (pair.A - value) @ pair.C.T @ (pair.C @ pair.C.T).inverse()
+            return with_gain(task.right, "L", L.normal())
+    return task.right
+
+
+# -- what follows from them -------------------------------------------------------------------------------------------
+
+
+def _judged(task: _Task, part: Judged) -> Judged:
+    """Return the verdict on a value: against the right gains, then against the student's own."""
+    name, given = part.name, part.given
+    if not exists(task.right, name):
+        return replace(part, reason=f"there is no {part.letter} here")
+    if (task.view.task, name) == ("stability_region", "stable_if"):
+        return _region(task, part)
+    right = task.right.fields.get(name)
+    if name == "verdict" or isinstance(right, bool) or (isinstance(right, str) and right in VERDICTS):
+        word = VERDICTS.get(str(given).strip().strip('"').lower())
+        if word is None:
+            error = InputError(f'"{shown(str(given), 40)}" is no verdict', repair="write yes, no or conditional")
+            return _unreadable(part, error)
+        given = word == "yes" if isinstance(right, bool) else word
+        part = replace(part, given=given)
+    is_of_numbers = is_listed(task.view, part.letter)
+    if is_of_numbers and has_two_readings(given):
+        return _unreadable(part, two_readings())
+    try:
+        part = replace(part, value=_value(task, part))
+        found = _holds(task, task.right, part)
+        if found is not None:
+            return replace(part, verdict="right", hints=found)
+        if task.own is not None and exists(task.own, name) and (found := _holds(task, task.own, part)) is not None:
+            return replace(part, verdict="follows", hints=found, origins=task.wrong)
+        if name == "F" and not task.gains and not task.wrong and closes_the_loop(task.right, part.value):
+            return replace(part, verdict="right", hints=("another compensator with the same closed-loop polynomial",))
+        rounded = has_decimals(given) and _met(task, task.right, part, given)
+        if rounded and task.marking.decimals == "accept":
+            return replace(part, verdict="right", hints=("rounded",))
+        if isinstance(right, Matrix) and has_decimal_commas(given, task.names, right.shape):
+            raise two_readings()
+        if is_of_numbers and has_two_readings(given, len(right or ())):
+            raise two_readings()
+    except UNDECIDED as error:
+        return replace(part, verdict="undecided", reason=str(error))
+    except SymobsError as error:
+        return _unreadable(part, error)
+    return replace(part, rounded=rounded)
+
+
+def _value(task: _Task, part: Judged) -> Matrix | Scalar | None:
+    """Return the value of a part as a matrix or a number."""
+    variable = "t" if task.view.in_time else task.view.plant.variable
+    if task.right.plant.is_time_varying:
+        return None
+    return read_like(found_in(task.right, part.name), part.given, task.names, variable, part.letter)
+
+
+def _holds(task: _Task, result: Result, part: Judged) -> tuple[str, ...] | None:
+    """Return the hints on a value that is right for a result, None where it is not."""
+    if (task.view.task, part.name) in CLAIMED:
+        matrix = Matrix.of([[part.value]]) if isinstance(part.value, Scalar) else part.value
+        assert isinstance(matrix, Matrix)  # noqa: S101 - the right value exists, and is read like it
+        try:
+            found = with_claimed(result, part.name, matrix)
+        except CertificateRejected:
+            return None
+        task.right = found if result is task.right else task.right
+        return ()
+    if _met(task, result, part, exact(part.given)):
+        return ()
+    if part.name in _EITHER:
+        other, said = _EITHER[part.name]
+        if exists(result, other) and _met(task, result, replace(part, name=other), exact(part.given)):
+            return (said,)
+    if part.name == "matrix" and isinstance(part.value, Matrix) and _same_rows(task, result, part.value):
+        return ("the rows of a block stand in another order",)
+    if part.name == "F" and task.marking.sign_of_F == "either" and part.value == -result.fields["F"]:
+        return ("with the other sign",)
+    return None
+
+
+def _met(task: _Task, result: Result, part: Judged, given: Any) -> bool:
+    """Return whether a value equals that of a result."""
+    letter = part.letter if task.view.standard(part.letter)[0] == part.name else part.name
+    return met(ResultInConvention(result, task.view.convention), letter, given, part.letter)
+
+
+def _same_rows(task: _Task, result: Result, value: Matrix) -> bool:
+    """Return whether an observability matrix has its rows, or a controllability matrix its columns, permuted in blocks."""
+    tests = {"observability": result.plant.outputs, "controllability": result.plant.inputs}
+    width, right = tests.get(task.view.task), result.fields["matrix"]
+    if width is None or value.shape != right.shape:
+        return False
+    if task.view.task == "controllability":
+        value, right = value.T, right.T
+    blocks = [
+        sorted(map(str, matrix.rows[i : i + width]))
+        for matrix in (value, right)
+        for i in range(0, right.shape[0], width)
+    ]
+    half = len(blocks) // 2
+    return blocks[:half] == blocks[half:]
+
+
+def _in_coordinates(task: _Task, given: Sequence[Judged]) -> dict[str, Judged]:
+    """Return the verdicts on values that are right together, in coordinates that the student chose."""
+    parts: dict[str, Judged] = {}
+    for each in given:
+        name, entry = each.name, each.given
+        if name == "sizes" and isinstance(entry, list) and len(entry) == len(BLOCKS):
+            entry = dict(zip(BLOCKS, entry, strict=True))
+        part = replace(each, given=entry)
+        try:
+            parts[name] = replace(part, value=_value(task, part))
+        except SymobsError as error:
+            parts[name] = _unreadable(part, error)
+        right = task.right.fields.get(name)
+        if isinstance(right, Matrix) and has_decimal_commas(entry, task.names, right.shape):
+            parts[name] = _unreadable(part, two_readings())
+    readable = {name: part for name, part in parts.items() if part.verdict != "unreadable"}
+    matrices = {name: part.value for name, part in readable.items() if isinstance(part.value, Matrix)}
+    held: set[str] = set()
+    hints: tuple[str, ...] = ()
+    there = task.right
+    for result, remark in [(task.right, ""), *in_coordinates(task.right, matrices)]:
+        here = {name for name, part in readable.items() if _is_met(task, result, part, exact(part.given))}
+        if len(here) > len(held):
+            held, there, hints = here, result, (remark,) if remark else ()
+    for name, part in readable.items():
+        if name in held:
+            parts[name] = replace(part, verdict="right", hints=hints)
+        elif task.own is not None and _is_met(task, task.own, part, exact(part.given)):
+            parts[name] = replace(part, verdict="follows", origins=task.wrong)
+        else:
+            rounded = has_decimals(part.given) and _is_met(task, there, part, part.given)
+            parts[name] = replace(part, rounded=rounded, there=there)
+    return parts
+
+
+def _is_met(task: _Task, result: Result, part: Judged, given: Any) -> bool:
+    try:
+        return exists(result, part.name) and _met(task, result, part, given)
+    except InputError:
+        return False
+
+
+# -- regions ----------------------------------------------------------------------------------------------------------
+
+
+def _region(task: _Task, part: Judged) -> Judged:
+    """Return the verdict on a region given by conditions."""
+    try:
+        found = region_verdict(task.right, part.given, task.names)
+    except UNDECIDED as error:
+        return replace(part, verdict="undecided", reason=str(error))
+    except InputError as error:
+        return _unreadable(part, error)
+    return replace(part, verdict=found.verdict, separation=found, reason=found.reason)

@@ -1,0 +1,302 @@
+"""Time responses as whole numbers over `parts`: each height is within 1/parts of the truth."""
+
+from __future__ import annotations
+
+from decimal import Decimal
+from fractions import Fraction
+from itertools import pairwise
+from math import ceil, isqrt, lcm, log, log10
+from operator import mul
+from typing import TYPE_CHECKING, Any
+
+from symobs.applications.live.request import FieldError
+from symobs.exact import Matrix
+from symobs.ground.errors import InputError
+from symobs.system import Symbols, read_matrix
+from symobs.tasks.analysis.response.courses import rounded_up
+
+if TYPE_CHECKING:
+    from symobs.applications.live.request import Responses
+    from symobs.tasks.result import Result
+
+#: States are enclosed in these parts; a response is rounded from them to coarser ones.
+_FINE = 10**15
+#: The slowest mode has fallen to e⁻⁶ at the end; one that grows has grown to e³.
+_TIMES, _GROWN = 6.0, 3.0
+_LONGEST = Fraction(10**6)
+#: Thousandths of the height of the picture, or finer.
+_COARSE, _FINEST = 3, 9
+_DEAD, _SAMPLES = 1e-9, 40
+#: A segment is halved where a response may be further from its middle than this part of the height of the picture; so many
+#: segments are drawn at most, one for each point of a screen, and so many looked at behind the end at least.
+_BETWEEN, _MOST_SEGMENTS, _LEAST_BEHIND = Fraction(1, 110), 512, 32
+#: What stays below this part of the peak has settled; nothing is read off a response whose second difference is a larger one.
+_SETTLED, _COARSEST = Fraction(1, 50), Fraction(1, 3)
+#: What is larger cannot be drawn beside numbers of usual size.
+_LARGEST = 10**12
+#: Why there is no response, as phrases.
+_NEEDS_NUMBERS, _TOO_WIDE, _TOO_LARGE = "said_needs_numbers", "said_too_wide", "said_too_large"
+_TOO_FAST = "said_too_fast"
+#: The fastest mode turns by no more than this between two instants, in radians.
+_TURN = 2.0
+
+
+class NoResponse(Exception):
+    """There is none, for a reason worth saying; its text is a phrase, or empty."""
+
+
+class Signals:
+    """A linear equation with its initial state, and the signals drawn: name, component, row of the state, dashed."""
+
+    def __init__(self, matrix: Matrix, start: list[Fraction], drawn: list[tuple[str, Matrix, bool]]) -> None:
+        """Take the signals apart into rows."""
+        self.matrix, self.start = matrix, start
+        self.rows = [
+            (name, place if table.shape[0] > 1 else 0, [entry.fraction() for entry in row], dashed)
+            for name, table, dashed in drawn
+            for place, row in enumerate(table.rows, 1)
+        ]
+
+
+def responses_of(result: Result, asked: Responses) -> dict[str, Any]:
+    """Return the responses of a design; raises `NoResponse` where it has none, `InputError` for what was asked."""
+    signals = _signals(result, asked)
+    end = _end(signals.matrix, asked.end, discrete=result.plant.is_discrete)
+    if result.plant.is_discrete:
+        last = int(end)
+        values = _stepped(signals, 2 * last + 1)
+        every, seen, behind = 1, [line[: last + 1] for line in values], [line[last:] for line in values]
+    else:
+        every, (seen, behind) = 2, _enclosed(signals, end, asked.count)
+    heights = [line[::every] for line in seen]
+    peak = max(abs(height) for line in heights for height in line)
+    if peak > _LARGEST * _FINE:
+        raise NoResponse(_TOO_LARGE)
+    digits = _COARSE if not peak else min(_FINEST, max(_COARSE, _COARSE - int(log10(peak / _FINE))))
+    parts = 10**digits
+    coarser = _FINE // parts
+    rounded = [[(height + coarser // 2) // coarser for height in line] for line in heights]
+    lines = [
+        {"signal": name, "component": place, "dashed": dashed, "heights": line, **_read_off(fine, after, end, every)}
+        for (name, place, _, dashed), line, fine, after in zip(signals.rows, rounded, seen, behind, strict=True)
+    ]
+    low, high = min(map(min, rounded)), max(map(max, rounded))
+    room = Fraction(max(high - low, 1), 20)
+    window = [["0", str(end)], [_decimal((low - room) / parts), _decimal((high + room) / parts)]]
+    return {"end": str(end), "parts": parts, "window": window, "discrete": result.plant.is_discrete, "lines": lines}
+
+
+# -- which ------------------------------------------------------------------------------------------------------------
+
+
+def _signals(result: Result, asked: Responses) -> Signals:
+    """Return what is drawn of a design."""
+    given: Any = result
+    fields, order = result.fields, result.plant.order
+    state = _vector(asked.start, order, Fraction(1), "courses.start")
+    estimate = _vector(asked.estimate, order, Fraction(0), "courses.estimate")
+    error = [a - b for a, b in zip(state, estimate, strict=True)]
+    start: list[Fraction] = []
+    drawn: list[tuple[str, Matrix, bool]] = []
+    match result.task:
+        case "observer":
+            matrix, start, drawn = fields.get("A"), error, [("e", Matrix.identity(order), False)]
+        case "state_feedback":
+            matrix, start, drawn = fields.get("closed_loop_matrix"), state, [("x", Matrix.identity(order), False)]
+        case "reduced_order_observer":
+            matrix = fields.get("F")
+            if matrix is not None:
+                start = _below(fields["T"], error, matrix.shape[0])
+                drawn = [("e_2", Matrix.identity(matrix.shape[0]), False)]
+        case "compensator" | "feedforward":
+            matrix = fields.get("closed_loop_matrix")
+            if matrix is not None:
+                unseen, hidden = _unseen(given, order, matrix.shape[0] - order)
+                start = state + (error if unseen is None else _below(unseen, error, hidden))
+                drawn = _state_and_estimate(order, unseen, hidden)
+        case _:
+            raise NoResponse
+    if matrix is None:
+        raise NoResponse
+    if matrix.names or result.plant.relations:
+        raise NoResponse(_NEEDS_NUMBERS)
+    return Signals(matrix, start, drawn)
+
+
+def _unseen(result: Any, order: int, size: int) -> tuple[Matrix | None, int]:
+    """Return T of an observer of reduced order, None for one of full order, and the size of the error."""
+    T = result.fields.get("T")
+    return (T if size < order else None), size
+
+
+def _state_and_estimate(order: int, T: Matrix | None, size: int) -> list[tuple[str, Matrix, bool]]:
+    """Return x and x̂ = x − e, or x̂ = x − T⁻¹ [0; e₂]."""
+    whole = Matrix.identity(order) if T is None else T.inverse().select(range(order), range(order - size, order))
+    plain = Matrix.block([[Matrix.identity(order), Matrix.zeros(order, size)]])
+    return [("x", plain, False), ("x_hat", Matrix.block([[Matrix.identity(order), -whole]]), True)]
+
+
+def _below(T: Matrix, error: list[Fraction], size: int) -> list[Fraction]:
+    """Return the last components of T e."""
+    if T.names:
+        raise NoResponse(_NEEDS_NUMBERS)
+    product = T @ Matrix.column(error)
+    return [entry.fraction() for entry in product.entries][-size:]
+
+
+def _vector(text: str, size: int, otherwise: Fraction, where: str) -> list[Fraction]:
+    """Return an initial state: numbers with commas between, or the same for every component."""
+    if not text.strip():
+        return [otherwise] * size
+    entries = read_matrix(f"[{text.strip().strip('[]')}]", Symbols.of({}), where).entries
+    if len(entries) != size or any(not entry.is_constant or entry.names for entry in entries):
+        raise FieldError("said_no_state", where, count=size)
+    return [entry.fraction() for entry in entries]
+
+
+# -- when -------------------------------------------------------------------------------------------------------------
+
+
+def _end(matrix: Matrix, asked: str | None, *, discrete: bool) -> Fraction:
+    """Return the last instant: as it was asked for, or where the slowest mode has converged."""
+    from symobs.exact.time_functions.state_response import spectral_abscissae, spectral_radius  # noqa: PLC0415 - FLINT
+
+    if asked is not None:
+        (value,) = _vector(asked, 1, Fraction(1), "courses.end")
+        if not 0 < value <= _LONGEST or (discrete and (value.denominator != 1 or value > 1000)):
+            raise InputError("no such last instant", where="courses.end", repair='write a positive number: "3"')
+        return value
+    if discrete:
+        radius, order = spectral_radius(matrix), matrix.shape[0]
+        usual = order + 2 if radius < _DEAD else ceil(_TIMES / -log(radius)) if radius < 1 else _SAMPLES
+        return Fraction(max(6, min(usual, _SAMPLES)))
+    largest, smallest = spectral_abscissae(matrix)
+    if largest > 0:
+        return rounded_up(_GROWN / largest)
+    slowest = -largest if largest < 0 else max(-smallest, 0.0) / 4
+    return min(rounded_up(_TIMES / slowest), _LONGEST) if slowest > 0 else Fraction(10)
+
+
+# -- how --------------------------------------------------------------------------------------------------------------
+
+
+def _enclosed(signals: Signals, end: Fraction, count: int) -> tuple[list[list[int]], list[list[int]]]:
+    """Return the heights of every signal in fine parts, within a quarter of the finest ones that are shown.
+
+    They are those of every half segment, and fewer from the end to twice the end.  Segments are halved where a response
+    changes fast.
+    """
+    from symobs.exact.time_functions.state_response import spectral_radius  # noqa: PLC0415 - FLINT
+
+    if any(4 * (sum(map(abs, row)) + 1) * 10**_FINEST > _FINE for _, _, row, _ in signals.rows):
+        raise NoResponse(_TOO_WIDE)
+    segments, fastest = count - 1, spectral_radius(signals.matrix) * float(end)
+    coarse = _at_instants(signals, end / segments, segments + 1)
+    height = max(map(max, coarse)) - min(map(min, coarse))
+    bend = max(map(abs, (second for line in coarse for second in _second_differences(line))))
+    while 2 * segments <= _MOST_SEGMENTS and (fastest > _TURN * segments or bend > 8 * _BETWEEN * height):
+        segments, bend = 2 * segments, bend // 4
+    if fastest > _TURN * segments:  # a mode might turn unseen between two instants
+        raise NoResponse(_TOO_FAST)
+    behind = max(_LEAST_BEHIND, ceil(fastest / _TURN))
+    after = _at_instants(signals, end / behind, 2 * behind + 1)
+    return _at_instants(signals, end / (2 * segments), 2 * segments + 1), [line[behind:] for line in after]
+
+
+def _second_differences(line: list[int]) -> list[int]:
+    return [a - 2 * v + b for a, v, b in zip(line, line[1:], line[2:], strict=False)]
+
+
+def _at_instants(signals: Signals, step: Fraction, count: int) -> list[list[int]]:
+    from symobs.exact.time_functions.state_response import state_response  # noqa: PLC0415 - FLINT
+
+    try:
+        states = state_response(signals.matrix, signals.start, step, count, _FINE)
+    except ArithmeticError:
+        raise NoResponse(_TOO_WIDE) from None
+    components, lines = list(zip(*states, strict=True)), []
+    for _, _, row, _ in signals.rows:
+        common = lcm(*(part.denominator for part in row))
+        whole = [int(part * common) for part in row if part]
+        seen = [component for component, part in zip(components, row, strict=True) if part]
+        one = whole == [1] and common == 1
+        lines.append(list(seen[0]) if one else [sum(map(mul, whole, at)) // common for at in zip(*seen, strict=True)])
+    return lines
+
+
+def _stepped(signals: Signals, count: int) -> list[list[int]]:
+    """Return the values at 0, 1, 2, … in fine parts, rounded from exact ones."""
+    table = [[entry.fraction() for entry in row] for row in signals.matrix.rows]
+    state, states = list(signals.start), []
+    for _ in range(count):
+        states.append(state)
+        state = [sum(map(mul, row, state), Fraction(0)) for row in table]
+    return [
+        [round(sum(map(mul, row, state), Fraction(0)) * _FINE) for state in states] for _, _, row, _ in signals.rows
+    ]
+
+
+def _decimal(value: Fraction) -> str:
+    return f"{float(value):.6g}"
+
+
+# -- readouts ---------------------------------------------------------------------------------------------------------
+
+
+def _read_off(line: list[int], after: list[int], end: Fraction, every: int) -> dict[str, str]:
+    """Return the peak and the last value up to the end, and when the response settles, if that is before the end.
+
+    It has settled from an instant on if it stays below a fiftieth of its peak up to twice the end, between the instants too
+    if time is continuous.  Where a response by itself is drawn too coarsely to see that, nothing is read off.
+    """
+    last, is_continuous = len(line) - 1, every > 1
+    place = max(range(last + 1), key=lambda k: abs(line[k]))
+    peak = Fraction(line[place])
+    if is_continuous:
+        second = _second_differences(line)
+        if max(map(abs, second)) > _COARSEST * abs(peak):
+            return {}
+        if 0 < place < last and (bend := second[place - 1]):
+            peak -= Fraction((line[place + 1] - line[place - 1]) ** 2, 8 * bend)  # of the parabola through three
+    band = int(_SETTLED * abs(peak)) - 1
+    settled = max((k + 1 for k, most in enumerate(_most(line, is_continuous=is_continuous)) if most > band), default=0)
+    found = {"peak": _digits(peak / _FINE, 3), "last": _digits(Fraction(line[last], _FINE), 2)}
+    stays = all(most <= band for most in _most(after, is_continuous=is_continuous))
+    return found | ({"settles": _digits(settled * end / last, 3)} if stays else {})
+
+
+def _most(line: list[int], *, is_continuous: bool) -> list[int]:
+    """Return what a response does not exceed on each segment: it may bulge by an eighth of the second difference."""
+    second = _second_differences(line) if is_continuous else []
+    bulges = [max(abs(a), abs(b)) // 8 + 1 for a, b in pairwise([*second[:1], *second, *second[-1:]])]
+    ends = [max(abs(a), abs(b)) for a, b in pairwise(line)]
+    return [end + bulge for end, bulge in zip(ends, bulges, strict=True)] if is_continuous else ends
+
+
+def _digits(value: Fraction, count: int) -> str:
+    """Return a decimal with so many digits, without a power of ten."""
+    return f"{Decimal(f'{float(value):.{count}g}'):f}"
+
+
+def readout(real: Fraction, imaginary: Fraction, *, discrete: bool) -> dict[str, str]:
+    """Return natural frequency, damping ratio and settling time of a pole, or its modulus in discrete time."""
+    square = real * real + imaginary * imaginary
+    if discrete:
+        return {"exact": f"|z|² = {square}", "modulus": _places(_root(square))}
+    exact = f"ωₙ² = {square}" if imaginary else f"ωₙ = {abs(real)}"
+    found = {"exact": exact}
+    if square:
+        found["damping"] = _places(-real / _root(square))
+    if real < 0:
+        found["settles"] = _digits(Fraction(log(50)) / -real, 3)
+    return found
+
+
+def _root(square: Fraction) -> Fraction:
+    """Return the square root, to twelve places."""
+    scale = 10**24
+    return Fraction(isqrt(square.numerator * scale // square.denominator), 10**12)
+
+
+def _places(value: Fraction) -> str:
+    return f"{float(value):.3f}".rstrip("0").rstrip(".")

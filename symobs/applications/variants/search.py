@@ -1,0 +1,273 @@
+"""Variants: candidates are drawn in their order, tested from cheap to dear, and the first ones that pass are taken.
+
+The i-th variant is the i-th accepted candidate, however many are asked for and whoever does the work.
+"""
+
+from __future__ import annotations
+
+from collections import Counter, deque
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from symobs.applications.batch.engine import Settings, work
+from symobs.applications.batch.executors import workforce
+from symobs.applications.batch.jobs import USUAL_BUDGET, Job, canonical, digest, job, own_convention
+from symobs.applications.variants.acceptance.candidates import Candidate, base_candidate, candidate
+from symobs.applications.variants.acceptance.cheap import Cheap, cheap, kind_of
+from symobs.applications.variants.acceptance.distinct import data_key, keys_of
+from symobs.applications.variants.acceptance.profile import UNLIKE, unlike
+from symobs.applications.variants.drawing.parameters import is_integer
+from symobs.applications.variants.drawing.stream import LARGEST_SEED
+from symobs.applications.variants.files import About, manifest, write_folder
+from symobs.applications.variants.reading.table import Table, read_table
+from symobs.applications.variants.variant import Variant
+from symobs.formula.phrases.languages import ENGLISH, language_named
+from symobs.ground.errors import CertificateRejected, InputError, OutOfBudget, ProblemErrors, SymobsError, UsageError
+from symobs.problem import parse
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator, Mapping
+
+    from symobs.applications.batch.executors import Workforce
+
+MOST = 10_000
+#: Seconds of work handed over at a time: what is begun beyond the last variant is done for nothing.
+_CHUNK = 0.05
+_SAME = "the same as another variant"
+_OF_ONE_KIND = "the first one is of a rare kind: draw distinct poles, or take another seed"
+PROFILES = ("loose", "strict")
+
+
+class TooFew(SymobsError):
+    """There are not so many variants among the candidates that were tried; `facts["rejected"]` says why."""
+
+    exit_code = 4
+
+
+class Variants:
+    """Variants of a problem: iterate over them, or take one by its place."""
+
+    def __init__(
+        self,
+        text: str,
+        count: int,
+        seed: int = 0,
+        *,
+        where: str = "problem",
+        folder: Path | None = None,
+        profile: str = "loose",
+        attempts: int | None = None,
+        workers: int | None = None,
+        in_process: bool = False,
+    ) -> None:
+        """Read the table of the file; raises `ProblemErrors` with all that is wrong with it."""
+        if not is_integer(count) or not 1 <= count <= MOST:
+            raise UsageError(f"{count!r} variants cannot be made", where="count", repair=f"ask for 1 to {MOST}")
+        if not is_integer(seed) or not 0 <= seed <= LARGEST_SEED:
+            repair = f"take a whole number from 0 to {LARGEST_SEED}"
+            raise UsageError(f"{seed!r} is no seed", where="seed", repair=repair)
+        if profile not in PROFILES:
+            raise UsageError(
+                f"{profile[:40]!r} is no profile", where="profile", repair=f"write {' or '.join(PROFILES)}"
+            )
+        self.table: Table = read_table(text, where)
+        self.count, self.seed, self.is_strict = count, seed, profile == "strict"
+        self.attempts = attempts or self.table.attempts
+        self.problem_hash = digest(canonical(parse(text, where)))
+        self.told: Callable[[int, int], None] = lambda _found, _tried: None
+        self._convention = own_convention(self.table.base, folder)
+        self._who = {"workers": workers, "in_process": in_process}
+        self._found: list[Variant] = []
+        self._last, self._was_read = -1, False
+        self._reasons: list[tuple[int, str]] = []
+        self._reference: tuple[Mapping[str, Any], Mapping[str, Any]] | None = None
+        self._keys: set[str] = set()
+        self._taken: set[str] = set()
+        self._running: Iterator[Variant] | None = None
+
+    def __len__(self) -> int:
+        return self.count
+
+    def __iter__(self) -> Iterator[Variant]:
+        """Yield the variants as they are found; raises `TooFew` where there are not so many."""
+        for place in range(self.count):
+            yield self[place]
+
+    def __getitem__(self, place: int) -> Variant:
+        """Return a variant by its place, the first one being 0."""
+        if not 0 <= place < self.count:
+            raise IndexError(place)
+        if self._running is None:
+            self._running = self._search()
+        while len(self._found) <= place:
+            self._found.append(next(self._running))
+        return self._found[place]
+
+    @property
+    def found(self) -> tuple[Variant, ...]:
+        """The variants found so far."""
+        return tuple(self._found)
+
+    @property
+    def rejected(self) -> dict[str, int]:
+        """How many candidates were left out before the last one taken, by the reason."""
+        return self._counted(self._last)
+
+    def _counted(self, last: int) -> dict[str, int]:
+        counts = Counter(reason for number, reason in self._reasons if number < last)
+        return dict(sorted(counts.items(), key=lambda item: (-item[1], item[0])))
+
+    @property
+    def manifest(self) -> dict[str, Any]:
+        """What was made, as JSON: all data and answers, so that old variants depend on no program."""
+        listed = list(self)
+        return manifest(self._about, listed)
+
+    @property
+    def _about(self) -> About:
+        return About(self.problem_hash, self.seed, self.rejected)
+
+    def write(self, folder: str | Path, *, report: bool = False) -> None:
+        """Write what was found so far: problem files and the manifest, all of them or none."""
+        write_folder(Path(folder), self._about, self.found, report=report)
+
+    # -- the search ---------------------------------------------------------------------------------------------------
+
+    def _search(self) -> Iterator[Variant]:
+        """Yield the variants.  The first one, or the file's own plant, is what the others have to be like."""
+        start = 0
+        with workforce(**self._who) as force:  # type: ignore[arg-type]
+            if self.table.like == "base":
+                self._measure_base(force)
+            while len(self._found) < self.count:
+                is_first = self._reference is None
+                for found, outcome in self._judged(force, start):
+                    start = found.number + 1
+                    reason = outcome if isinstance(outcome, str) else self._refusal(found, outcome)
+                    if reason is not None:
+                        self._reasons.append((found.number, reason))
+                        continue
+                    self._last = found.number
+                    yield self._accepted(found, outcome)
+                    if is_first or len(self._found) == self.count:
+                        break
+                else:
+                    if start > self._last + self.attempts:
+                        raise self._too_few(start)
+
+    def _judged(self, force: Workforce, start: int) -> Iterator[tuple[Candidate, str | dict[str, Any]]]:
+        """Yield candidates in their order from `start` on, each with the cheap reason against it or what became of it."""
+        waiting: deque[tuple[Candidate, str | None, str]] = deque()
+        rows: dict[str, dict[str, Any]] = {}
+
+        def jobs() -> Iterator[Job]:
+            number = start
+            while number <= self._last + self.attempts:
+                found = candidate(self.table, self.seed, number)
+                test = cheap(self.table, found, self._reference and self._reference[0])
+                reason = test.reason or (_SAME if data_key(found) in self._taken else None)
+                order = None if reason else self._job(found, test)
+                waiting.append((found, reason, order.key if order else ""))
+                number += 1
+                if number % 1000 == 0:
+                    self.told(len(self._found), number)
+                if order is not None:
+                    yield order
+
+        settings = Settings(chunk_seconds=_CHUNK)
+        for chunk in work(jobs(), force, settings):
+            rows |= {row["key"]: row for row in chunk.rows}
+            while waiting and (waiting[0][1] or waiting[0][2] in rows):
+                found, reason, key = waiting.popleft()
+                self.told(len(self._found), found.number)
+                yield found, reason or rows.pop(key)
+        for found, reason, _ in waiting:
+            assert reason is not None  # noqa: S101 - every job has had its row
+            yield found, reason
+
+    def _job(self, found: Candidate, test: Cheap) -> Job:
+        payload = {
+            "candidate": found.number,
+            "problem": found.data,
+            "constraints": self.table.constraints,
+            "gains": test.gains,
+            **self._convention,
+        }
+        return job("variant", payload, f"candidate {found.number}")
+
+    def _refusal(self, found: Candidate, row: Mapping[str, Any]) -> str | None:
+        """Return why a solved candidate is no variant, None where it is one."""
+        match row["status"]:
+            case "undecided":
+                message = f"candidate {found.number} takes more than {USUAL_BUDGET.seconds:g} seconds"
+                raise OutOfBudget(message, repair="draw smaller ones: a slow one would not be the same elsewhere")
+            case "failed":
+                error = "; ".join(row["error"])[:500]
+                raise CertificateRejected(f"candidate {found.number} of seed {self.seed}: {error}")
+            case "unreadable":
+                if not self._was_read:  # what the first one has, all have
+                    raise ProblemErrors(tuple(InputError(line) for line in row["error"]))
+                return "it cannot be read"
+        self._was_read, result = True, row["result"]
+        _raise_unknown(result)
+        if result["reason"] is not None:
+            return str(result["reason"])
+        if self._reference is not None:
+            load = self.table.load / 2 if self.is_strict else self.table.load
+            difference = unlike(result["profile"], self._reference[1], load, same_peak=self.is_strict)
+            if difference is not None:
+                return difference
+        return _SAME if keys_of(found, _values(result["answers"]), self.table.distinct) & self._keys else None
+
+    def _accepted(self, found: Candidate, row: Any) -> Variant:
+        """Return the variant that a candidate has become."""
+        result = row["result"]
+        self._keys |= keys_of(found, _values(result["answers"]), self.table.distinct)
+        self._taken.add(data_key(found))
+        if self._reference is None:
+            self._reference = kind_of(found), result["profile"]
+        index = len(self._found) + 1
+        phrases = language_named(found.data.get("language", ENGLISH.code)).phrases
+        own_title = str(found.data.get("title", ""))
+        title = phrases["variant_of" if own_title else "variant"].format(title=own_title, number=index)
+        data = {**found.data, "title": title[:1].upper() + title[1:]}
+        own = {key: value for key, value in data.items() if key != "expect"}
+        return Variant(
+            index, data_key(found)[:12], found.number, own, result["answers"], result["profile"], result["expect"]
+        )
+
+    def _measure_base(self, force: Workforce) -> None:
+        """Take the profile of the file's own plant as the one to be like; no variant is the same as it."""
+        base = base_candidate(self.table)
+        order = self._job(base, Cheap())
+        (chunk,) = work(iter([order]), force, Settings())
+        row = chunk.rows[0]
+        if row["status"] == "done":
+            _raise_unknown(row["result"])
+        if row["status"] != "done" or "profile" not in row["result"]:
+            lines = row.get("error") or [row["result"]["reason"]]
+            raise ProblemErrors(tuple(InputError(line, where="the file's own plant") for line in lines))
+        self._reference = kind_of(base), row["result"]["profile"]
+        self._keys |= keys_of(base, _values(row["result"]["answers"]), self.table.distinct)
+        self._taken.add(data_key(base))
+
+    def _too_few(self, tried: int) -> TooFew:
+        counts = self._counted(tried)
+        most, often = next(iter(counts.items()), ("", 0))
+        message = f"{len(self._found)} of {self.count} variants were found among {tried} candidates"
+        share = 100 * often / max(1, sum(counts.values()))
+        mend = _OF_ONE_KIND if most == UNLIKE else "widen that, or draw from more"
+        repair = f"most often ({share:.0f} %): {most}; {mend}"
+        return TooFew(message, where="variants", repair=repair, rejected=counts)
+
+
+def _values(answers: list[Any]) -> list[Any]:
+    """Return what answers say: no method or certificate makes two of them differ."""
+    return [{key: each[key] for key in each if key not in {"method", "certificates"}} for each in answers]
+
+
+def _raise_unknown(result: Mapping[str, Any]) -> None:
+    """Raise `ProblemErrors` where the constraints name what no candidate has."""
+    found = result.get("unknown", ())
+    if found:
+        raise ProblemErrors(tuple(InputError(message, where=where, repair=repair) for where, message, repair in found))

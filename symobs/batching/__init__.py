@@ -1,5 +1,0 @@
-"""Many problems at once: jobs, their store, and the processes that work on them, on one machine or a cluster."""
-
-from symobs.batching.run import Batch, batch
-
-__all__ = ["Batch", "batch"]

@@ -1,0 +1,261 @@
+"""Third step: evaluation of the tree with exact values."""
+
+from __future__ import annotations
+
+import operator
+from typing import TYPE_CHECKING, Any
+
+from symobs.exact import Complex, Scalar
+from symobs.exact.algebraic.conjugates import root_in_field
+from symobs.exact.algebraic.enclosure import is_number
+from symobs.exact.algebraic.real_algebraic import root_of_fraction
+from symobs.exact.core import generators
+from symobs.exact.core.generators import PI
+from symobs.formula.expression.fast_path import plain_rows
+from symobs.formula.expression.size_limits import MOST_EXPONENT, Number, Parts, operation_size, power_size, work
+from symobs.formula.expression.source import Source, shown
+from symobs.formula.expression.syntax_parser import parse
+from symobs.formula.expression.syntax_tree import operands_first
+from symobs.formula.expression.tokenizer import Tokeniser
+from symobs.ground.dataclass import dataclass
+from symobs.ground.errors import BudgetExceeded
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+    from typing import TypeAlias
+
+    from symobs.formula.expression.names import Scope
+    from symobs.formula.expression.syntax_tree import SyntaxNode
+
+    Entry: TypeAlias = "Number | MatrixRows"
+
+MOST_CHARACTERS = 10_000
+#: The highest degree of a root of a number.
+_MOST_DEGREE = 12
+_SMALLER = "write something smaller, with a symbol in place of what is large"
+
+
+def read(text: str, scope: Scope, where: str) -> list[Entry]:
+    """Return the comma-separated entries of a text; raises ExpressionError, BudgetExceeded, ShapeMismatch."""
+    source = Source(text, where)
+    if len(text) > MOST_CHARACTERS:
+        message = f"the expression has {len(text)} characters, more than {MOST_CHARACTERS}"
+        raise source.error(message, 0, _SMALLER, kind=BudgetExceeded)
+    plain = plain_rows(text, scope)
+    if plain is not None:
+        rows, bracketed = plain
+        is_matrix = bracketed and (len(rows), len(rows[0])) != (1, 1)
+        return [MatrixRows(rows, text.index("["))] if is_matrix else list(rows[0])
+    source, trees = trees_of(text, scope, where)
+    evaluator = Evaluator(source, scope)
+    return [evaluator.entry(tree) for tree in trees]
+
+
+def trees_of(text: str, scope: Scope, where: str) -> tuple[Source, tuple[SyntaxNode, ...]]:
+    """Return the trees of a text's entries, and where they stand."""
+    source = Source(text, where)
+    return source, parse(Tokeniser(source, scope).run(), source)
+
+
+@dataclass(frozen=True)
+class MatrixRows:
+    """The rows of a matrix, all of one length, and where its bracket opens."""
+
+    rows: Sequence[Sequence[Number]]
+    position: int
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        """The number of rows and of columns."""
+        return len(self.rows), len(self.rows[0])
+
+
+_OPERATIONS: dict[str, Callable[[Any, Any], Any]] = {
+    "+": operator.add,
+    "-": operator.sub,
+    "*": operator.mul,
+    "/": operator.truediv,
+}
+#: What one operation with complex numbers takes of operations with scalars.
+_SCALAR_OPERATIONS = 12
+
+
+def _degree_of_root(base: Scalar, exponent: Number) -> int:
+    """Return q where a positive number is raised to p/q, of a low degree; else 0."""
+    if isinstance(exponent, Complex) or not (exponent.is_constant and base.is_constant) or base.fraction() <= 0:
+        return 0
+    degree = exponent.fraction().denominator
+    return degree if 1 < degree <= _MOST_DEGREE and abs(exponent.fraction().numerator) <= _MOST_DEGREE else 0
+
+
+class Evaluator:
+    """Evaluation of a tree on a stack.  Invariant: no operation begins before `_spend` has bounded its result."""
+
+    def __init__(self, source: Source, scope: Scope) -> None:
+        self.source = source
+        self.meter = scope.meter
+        self.functions, self.roots = scope.functions, scope.roots
+        self.names = scope.names or {}
+
+    def entry(self, tree: SyntaxNode) -> Entry:
+        """Return the value of a tree."""
+        stack: list[Any] = []
+        for node in operands_first(tree):
+            start = len(stack) - len(node.parts)
+            stack[start:] = [self._value(node, stack[start:])]
+        (found,) = stack
+        if PI in self.source.text and not self.functions:
+            self._require_no_pi(found)
+        return found  # type: ignore[no-any-return]
+
+    def _require_no_pi(self, entry: Entry) -> None:
+        """Raise ExpressionError where π is left: only as part of an argument it may be one of a number in the field."""
+        numbers = [number for row in entry.rows for number in row] if isinstance(entry, MatrixRows) else [entry]
+        parts = (part for number in numbers for part in (Complex.of(number).real, Complex.of(number).imaginary))
+        if any(PI in part.names for part in parts):
+            instead = "declare a symbol for it; cos(pi/6) and the like have square roots for their values"
+            raise self.source.error('"pi" is no algebraic number', self.source.text.index(PI), instead)
+
+    def _value(self, node: SyntaxNode, parts: list[Any]) -> Any:
+        """Return the value of a node, given the values of its parts."""
+        match node.kind:
+            case "number":
+                return node.value
+            case "row":
+                return parts
+            case "block":
+                grid = MatrixRows([[self._number(entry) for entry in row] for row in parts], node.places[0])
+                return grid.rows[0][0] if grid.shape == (1, 1) else grid
+            case "sum" | "product":
+                sign = "+" if node.kind == "sum" else "*"
+                total = self._number(parts[0])
+                for part, place in zip(parts[1:], node.places, strict=True):
+                    total = self._combined(total, place, self._number(part), sign)
+                return total
+        numbers = [self._number(part) for part in parts]
+        match node.kind:
+            case "negative":
+                return -numbers[0]
+            case "quotient":
+                return self._combined(numbers[0], node.places[0], numbers[1], "/")
+            case "power":
+                return self._power(numbers[0], node.places[0], numbers[1])
+            case _:
+                return self._call(node, numbers[0])
+
+    def _power(self, base: Number, place: int, value: Number) -> Number:
+        if self.functions and isinstance(base, Scalar) and (degree := _degree_of_root(base, value)):
+            return root_of_fraction(base.fraction(), degree) ** int(Complex.of(value).real.fraction() * degree)
+        exponent = self._exponent(value, place)
+        if isinstance(base, Complex):
+            return self._complex_power(base, exponent, place)
+        if exponent < 0:
+            self._require_nonzero(base, place)
+        self._spend(power_size(base, exponent), place)
+        return base**exponent
+
+    def _call(self, call: SyntaxNode, number: Number) -> Number:
+        """Return the value of a call: sqrt of a number, cos and sin of a multiple of π.
+
+        Where functions of time are asked for, a function of a real argument is a generator of its own.
+        """
+        function, place = call.text, call.places[0]
+        if function == "sqrt" and (self.roots or not self.functions):
+            return self._root(place, number)
+        if self.functions:
+            return self._function(function, place, number)
+        turns = isinstance(number, Scalar) and (number.is_zero or number.names == {PI})
+        if function in {"cos", "sin", "tan"} and turns and (number / Scalar.symbol(PI)).is_constant:  # type: ignore[operator]
+            return self._function(function, place, number)
+        instead = "roots of rational numbers, and cos and sin of pi/6, pi/4, pi/3, are possible; or declare a symbol"
+        raise self.source.error(f"{function} has no exact value here", place, instead)
+
+    def _root(self, place: int, number: Number) -> Number:
+        """Return √number: of a number its value in a field with roots of primes, of others only where `roots` are read."""
+        if isinstance(number, Complex):
+            raise self.source.error("sqrt of a complex number", place, "write its real and imaginary part")
+        if number.is_constant and number.fraction() < 0:
+            return Complex(Scalar.of(0), generators.square_root(-number))
+        if number.is_zero:
+            return number
+        known = root_in_field(number)
+        if known is not None:
+            return known
+        instead = "sqrt of a rational number is possible; for other constants declare a symbol"
+        if not self.roots:
+            raise self.source.error("sqrt of this has no exact value here", place, instead)
+        return generators.square_root(self._with_one_root(place, number))
+
+    def _function(self, name: str, place: int, argument: Number) -> Scalar:
+        if isinstance(argument, Complex):
+            raise self.source.error(f"{name} of a complex number", place, "write it with sin and cos")
+        try:
+            if name != "sqrt":
+                return generators.function(name, argument)
+            if argument.is_zero:
+                return argument
+            known = root_in_field(argument) if is_number(argument) else None
+            return generators.square_root(self._with_one_root(place, argument)) if known is None else known
+        except generators.NotWritten as error:
+            raise self.source.error(str(error), place, "declare a symbol for it") from None
+        except ZeroDivisionError:
+            fault = "sqrt of a negative number" if name == "sqrt" else f"{name} has no value there"
+            raise self.source.error(fault, place, "write what is real") from None
+
+    def _with_one_root(self, place: int, radicand: Scalar) -> Scalar:
+        """Return the radicand; sqrt(a^2) is a or -a, decided by the sign of a."""
+        for factor, power in radicand.factors()[1]:
+            if power % 4 == 2 and self.names.get(str(factor)) not in {"positive", "nonnegative"}:
+                message = f"sqrt of a square: {shown(str(factor))} may be negative"
+                raise self.source.error(message, place, "write it without sqrt, or declare the symbol positive")
+        return radicand
+
+    def _number(self, entry: Entry) -> Number:
+        if isinstance(entry, MatrixRows):
+            message = "a matrix stands inside an expression or inside another matrix"
+            raise self.source.error(message, entry.position, "write one pair of brackets around all rows: [1 0; 0 1]")
+        return entry
+
+    def _exponent(self, value: Number, place: int) -> int:
+        if isinstance(value, Complex) or not value.is_constant or value.fraction().denominator != 1:
+            message = f"the exponent {shown(str(value))} is not an integer"
+            is_half = not isinstance(value, Complex) and value.is_constant and value.fraction().denominator == 2
+            instead = "write sqrt( ) for a root" if is_half else "declare a symbol for it"
+            raise self.source.error(message, place, f"exponents are integers; {instead}")
+        exponent = int(value.fraction())
+        if abs(exponent) > MOST_EXPONENT:
+            message = f"the exponent is beyond {MOST_EXPONENT}"
+            raise self.source.error(message, place, _SMALLER, kind=BudgetExceeded)
+        return exponent
+
+    def _combined(self, left: Number, place: int, right: Number, sign: str) -> Number:
+        """Return the result of one operation."""
+        if sign == "/":
+            self._require_nonzero(right, place)
+        sizes = operation_size(sign, left, right)
+        if isinstance(left, Scalar) and isinstance(right, Scalar):
+            self._spend(sizes, place)
+            real: Scalar = _OPERATIONS[sign](left, right)
+            return real
+        self._spend(sizes, place, _SCALAR_OPERATIONS)
+        result: Complex = _OPERATIONS[sign](Complex.of(left), Complex.of(right))
+        return result.real if result.is_real else result
+
+    def _complex_power(self, base: Number, exponent: int, place: int) -> Number:
+        if exponent < 0:
+            base, exponent = self._combined(Scalar.of(1), place, base, "/"), -exponent
+        power: Number = Scalar.of(1)
+        for digit in f"{exponent:b}":
+            power = self._combined(power, place, power, "*")
+            if digit == "1":
+                power = self._combined(power, place, base, "*")
+        return power
+
+    def _require_nonzero(self, value: Number, place: int) -> None:
+        if isinstance(value, Scalar) and value.is_zero:
+            raise self.source.error("division by zero", place, "write a denominator that is not 0")
+
+    def _spend(self, sizes: Parts, place: int, times: int = 1) -> None:
+        excess = self.meter.charge(times * work(*sizes), sizes)
+        if excess:
+            raise self.source.error(f"this would build {excess}", place, _SMALLER, kind=BudgetExceeded)

@@ -1,0 +1,108 @@
+"""Names in a text: declared symbols, the variable of a polynomial, the imaginary unit, functions."""
+
+from __future__ import annotations
+
+import keyword
+import re
+from dataclasses import field
+from difflib import get_close_matches
+from typing import TYPE_CHECKING, TypeAlias
+
+from symobs.exact import Scalar
+from symobs.formula.expression.size_limits import Meter
+from symobs.formula.expression.source import shown
+from symobs.ground.dataclass import dataclass
+from symobs.ground.errors import ExpressionError
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from symobs.exact import Field
+
+#: The declared names; None declares every well-formed name.
+Names: TypeAlias = "Mapping[str, object] | None"
+
+FUNCTIONS = ("sqrt", "exp", "sin", "cos", "tan", "sinh", "cosh", "tanh")
+RESERVED = ("I", "oo", "inf", "nan", "pi")
+IMAGINARY = ("i", "j", "I")
+LONGEST_NAME = 64
+
+NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
+_MOST_COMPARED = 1_000
+
+
+def declared_name(name: object, where: str = "") -> str:
+    """Return `name` if it is admissible for a symbol; raises ExpressionError otherwise."""
+    if not isinstance(name, str) or not NAME.fullmatch(name):
+        came = f'"{shown(name)}"' if isinstance(name, str) else f"a {type(name).__name__}"
+        repair = "begin with a letter A-Z or a-z and go on with letters, digits and _"
+        raise ExpressionError(f"{came} is not a name", where=where, repair=repair)
+    reasons = refusal(name)
+    if reasons:
+        raise ExpressionError(reasons[0], where=where, repair=reasons[1])
+    return name
+
+
+def refusal(name: str) -> tuple[str, str] | None:
+    """Return why a well-formed name is reserved, and the repair."""
+    if len(name) > LONGEST_NAME:
+        return f'the name "{shown(name)}" has more than {LONGEST_NAME} characters', "shorten it"
+    if keyword.iskeyword(name):
+        another = f"{name}_" if keyword.iskeyword(name[:3]) else name[:3]
+        return f'"{name}" is a word of Python and names no symbol', f'write another name, such as "{another}"'
+    if name in {"oo", "inf", "nan"}:
+        return f'"{name}" is reserved: it is not a finite number', "write a finite exact value"
+    if name in RESERVED or name in FUNCTIONS:
+        return f'"{name}" is reserved and names no symbol', "write another name"
+    return None
+
+
+@dataclass(frozen=True)
+class Scope:
+    """The names, the budget and the context of the texts of one call."""
+
+    names: Names
+    variable: str | None
+    meter: Meter = field(default_factory=Meter)
+    context: Field | None = None
+    functions: bool = False
+    rounding: bool = False
+    roots: bool = False
+
+    @staticmethod
+    def of(
+        names: Names,
+        variable: str | None,
+        where: str,
+        *,
+        functions: bool = False,
+        rounding: bool = False,
+        roots: bool = False,
+    ) -> Scope:
+        """Return the scope; raises ExpressionError if the variable of the polynomial is declared as a symbol."""
+        if names is not None and variable in names:
+            message = f'"{variable}" is the variable of the polynomial and cannot be a symbol'
+            raise ExpressionError(message, where=where, repair="give the symbol another name")
+        return Scope(names, variable, functions=functions, rounding=rounding, roots=roots)
+
+    def declares(self, name: str) -> bool:
+        """Return whether the name is declared by name, not only admitted because every name is."""
+        return name == self.variable or (self.names is not None and name in self.names)
+
+    def constant(self, name: str) -> Scalar | None:
+        """Return the value of a declared constant, None for any other name."""
+        value = None if self.names is None else self.names.get(name)
+        return value if isinstance(value, Scalar) else None
+
+    def is_imaginary_unit(self, name: str) -> bool:
+        """Return whether the name stands for the imaginary unit here."""
+        return name in IMAGINARY and (name in RESERVED or not self.declares(name))
+
+    def declared(self) -> list[str]:
+        """Return all declared names, for messages."""
+        return [*sorted(self.names or ()), *([self.variable] if self.variable else [])]
+
+    def nearest(self, name: str, *, called: bool) -> str | None:
+        """Return the known name most similar to `name`, functions included for a call."""
+        known = self.declared()[:_MOST_COMPARED] + (list(FUNCTIONS) if called else [])
+        return next(iter(get_close_matches(name, known, 1)), None)

@@ -1,0 +1,317 @@
+"""First step: from a text to tokens, with every implied product, comma and row end inserted.
+
+The product of two neighbours, the comma MATLAB reads from a space inside brackets and the row a newline ends are
+written out here, so that what comes after needs to know nothing of spaces.
+"""
+
+from __future__ import annotations
+
+import re
+import unicodedata
+from dataclasses import replace
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+from symobs.exact import Complex, Field, Scalar
+from symobs.exact.algebraic.rounded_decimals import as_generator
+from symobs.exact.core.generators import PI
+from symobs.formula.expression.ambiguous_products import OPERAND_ENDS, division_before, two_readings
+from symobs.formula.expression.names import FUNCTIONS, LONGEST_NAME, NAME, Scope, refusal
+from symobs.formula.expression.source import Source, Token, shown
+from symobs.ground.errors import BudgetExceeded, InputError, ProblemErrors, UnknownName
+
+if TYPE_CHECKING:
+    from collections.abc import Container, Iterable
+
+MOST_NESTING = 100
+#: After this many names that are not declared a text is read no further.
+_MOST_UNKNOWN = 20
+MOST_DIGITS = 1_000
+MOST_POWER_OF_TEN = 1_000
+MOST_NAMES = 400
+
+_TOKEN = re.compile(
+    r"(?P<NUMBER>(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?)"
+    r"|(?P<NAME>[A-Za-z][A-Za-z0-9_]*)"
+    r"|(?P<POWER>\*\*|\^)|(?P<MULTIPLY>[*/])|(?P<ADD>[+-])"
+    r"|(?P<OPEN>[(\[])|(?P<CLOSE>[)\]])|(?P<COMMA>,)|(?P<END>;)"
+    r"|(?P<SPACE>[ \t\r\n]+)"
+)
+_CLOSING = {"(": ")", "[": "]"}
+_CALL = re.compile(r"[ \t\r\n]*\(")
+_OPERAND_STARTS = ("NUMBER", "NAME", "OPEN")
+
+
+def sharing(scope: Scope, values: Iterable[object], variable: str | None = None) -> Scope:
+    """Return the scope with one context for all texts among the values and for the variable."""
+    context = _context_of((value for value in values if isinstance(value, str)), variable)
+    return replace(scope, context=context)
+
+
+def _context_of(texts: Iterable[str], variable: str | None = None) -> Field:
+    """Return one context for every name in the texts, so that no value needs conversion."""
+    names = {name for text in texts for name in NAME.findall(text)} - set(FUNCTIONS)
+    fit = {name for name in names if len(name) <= LONGEST_NAME}
+    return Field.of(fit.union([variable] if variable and fit else ()) if len(fit) <= MOST_NAMES else ())
+
+
+class Tokeniser:
+    """A tokeniser of one text; each VALUE has its exact number.
+
+    Invariant: `tokens` says what the text read so far means, `open` holds the brackets still to be closed.
+    """
+
+    #: What a token looks like.
+    pattern = _TOKEN
+
+    def __init__(self, source: Source, scope: Scope) -> None:
+        """Take the text, and the names it may use."""
+        self.source = source
+        self.text = source.text
+        self.scope = scope
+        self.tokens: list[Token] = []
+        self.open: list[Token] = []
+        self.symbols: dict[str, Scalar] = {}
+        self.unknown: list[InputError] = []
+        self.spaced = False
+
+    @cached_property
+    def field(self) -> Field:
+        """The context of the values."""
+        return _context_of([self.text]) if self.scope.context is None else self.scope.context
+
+    def run(self) -> list[Token]:
+        """Return the tokens, with brackets matched; raises ExpressionError with the place of the fault.
+
+        All names that are not declared are told together, at the end.
+        """
+        position = 0
+        while position < len(self.text):
+            match = self.pattern.match(self.text, position)
+            if match is None:
+                message, repair = _unreadable(self.text[position])
+                raise self.source.error(message, position, repair)
+            self._take(str(match.lastgroup), match.group(), position)
+            position = match.end()
+        if self.open:
+            place, repair = self.open[-1].start, f'close it with "{_CLOSING[self.open[-1]]}"'
+            raise self.source.error(f'this "{self.open[-1]}" is never closed', place, repair)
+        if not self.tokens:
+            raise self.source.error(
+                "an expression is expected, but the text is empty", 0, "write one between the quotes"
+            )
+        if self.unknown:
+            raise self.unknown[0] if len(self.unknown) == 1 else ProblemErrors(tuple(self.unknown))
+        return self.tokens
+
+    def _take(self, kind: str, text: str, at: int) -> None:
+        if kind == "SPACE":
+            self.spaced = True
+            if self._in_brackets() and ("\n" in text or "\r" in text):
+                self._end_row(text, at)
+            return
+        self._imply(kind, at)
+        self.spaced = False
+        match kind:
+            case "NUMBER":
+                self._add("VALUE", text, at, self._decimal(text, at))
+            case "NAME":
+                self._name(text, at)
+            case "OPEN":
+                self._open(text, at)
+            case "CLOSE":
+                self._close(text, at)
+            case "COMMA" | "END" if self.open and not self._in_brackets():
+                raise self.source.error(f'"{text}" stands inside parentheses', at, 'close them with ")" first')
+            case "COMMA":
+                self._add("_COMMA", text, at)
+            case "END":
+                self._end_row(text, at)
+            case _:
+                self._add(kind, text, at)
+
+    def _imply(self, kind: str, at: int) -> None:
+        """Insert the product or comma implied between the last operand and the token `kind`."""
+        if not self._after(OPERAND_ENDS):
+            return
+        apart = self.spaced and self._in_brackets()
+        signs_entry = kind == "ADD" and bool(self.text[at + 1 : at + 2].strip())  # [1 -2] is two entries, [1 - 2] one
+        if apart and (signs_entry or kind in _OPERAND_STARTS):
+            self._add("_COMMA", " ", at)
+        elif kind == "NUMBER" and self.tokens[-1][0] in ".0123456789":
+            raise self.source.error("a number follows a number", at, "write an operator between them")
+        elif kind in _OPERAND_STARTS:
+            division = division_before(self.tokens)
+            if division is not None and not self._is_imaginary_part(division, at):
+                readings = two_readings(self.tokens, division, self.text, at, self.pattern.finditer(self.text, at))
+                message = "a product without its sign follows a division, which can be read in two ways"
+                raise self.source.error(message, at, f"write {readings}")
+            self._add("MULTIPLY", "*", at)
+
+    def _is_imaginary_part(self, division: int, at: int) -> bool:
+        """Return whether the imaginary unit follows a number that something is divided by.
+
+        3/2 j and 52/25 I are these fractions times i, as all read them, and never a number over 2 i or 25 i.
+        """
+        name = NAME.match(self.text, at)
+        divisor = self.tokens[division + 1 :]
+        is_number = len(divisor) == 1 and isinstance(divisor[0].value, Scalar) and divisor[0].value.is_constant
+        return is_number and name is not None and self.scope.is_imaginary_unit(name[0])
+
+    def _in_brackets(self) -> bool:
+        """Return whether spaces count here: inside brackets, but not inside parentheses within them."""
+        return bool(self.open) and self.open[-1].type == "LEFT"
+
+    def _after(self, types: Container[str]) -> bool:
+        return bool(self.tokens) and self.tokens[-1].type in types
+
+    def _add(self, kind: str, text: str, at: int, value: Scalar | Complex | None = None) -> Token:
+        token = Token(kind, text, at, value)
+        self.tokens.append(token)
+        return token
+
+    # -- brackets -------------------------------------------------------------------------------------------------
+
+    def _open(self, text: str, at: int) -> None:
+        if len(self.open) >= MOST_NESTING:
+            message, repair = f"brackets are nested deeper than {MOST_NESTING}", "write it with fewer brackets"
+            raise self.source.error(message, at, repair, kind=BudgetExceeded)
+        self.open.append(self._add("LEFT" if text == "[" else "_OPEN", text, at))
+
+    def _close(self, text: str, at: int) -> None:
+        if not self.open:
+            raise self.source.error(f'this "{text}" closes nothing', at, "leave it out, or open it before")
+        if self.open[-1] + text not in {"()", "[]"}:
+            repair = f'write "{_CLOSING[self.open[-1]]}" before it'
+            raise self.source.error(f'this "{text}" stands where "{self.open[-1]}" has to be closed first', at, repair)
+        if self._after(("_END",)):
+            self.tokens.pop()
+        self._add("_RIGHT" if text == "]" else "_CLOSE", text, at)
+        self.open.pop()
+
+    def _end_row(self, text: str, at: int) -> None:
+        """End a row; semicolons and newlines in a run, or beside a bracket, end one row together."""
+        if not self.open:
+            raise self.source.error('";" ends a row, but no "[" is open', at, "write the rows in brackets: [1; 2]")
+        if not self._after(("_END", "LEFT")):
+            self._add("_END", text, at)
+
+    # -- operands -------------------------------------------------------------------------------------------------
+
+    def _decimal(self, text: str, at: int) -> Scalar:
+        """Return the exact value of a number: 10.78 is 539/50."""
+        mantissa, _, power = text.lower().partition("e")
+        whole, _, decimals = mantissa.partition(".")
+        if len(whole) + len(decimals) > MOST_DIGITS:
+            message, repair = f"a number has more than {MOST_DIGITS} digits", "write fewer digits"
+            raise self.source.error(message, at, repair, kind=BudgetExceeded)
+        if len(power.lstrip("+-0")) > 4 or abs(int(power or 0)) > MOST_POWER_OF_TEN:
+            message, repair = f"a power of ten is beyond {MOST_POWER_OF_TEN}", "write a smaller power"
+            raise self.source.error(message, at, repair, kind=BudgetExceeded)
+        decimal = as_generator(text, at) if self.scope.rounding else None
+        if decimal is not None:
+            return decimal
+        digits, shift = int(whole + decimals), int(power or 0) - len(decimals)
+        return Scalar.of(digits * 10**shift) if shift >= 0 else Scalar.rational(digits, 10**-shift)
+
+    def _name(self, name: str, at: int) -> None:
+        end = at + len(name)
+        called = self.text.startswith("(", end) if self._in_brackets() else bool(_CALL.match(self.text, end))
+        if self.scope.is_imaginary_unit(name):
+            self._add("VALUE", name, at, Complex(Scalar.of(0), Scalar.of(1)))
+        elif name not in FUNCTIONS:
+            self._add("VALUE", name, at, self.symbols.get(name) or self._symbol(name, at, called=called))
+        elif called:
+            self._add("FUNCTION", name, at)
+        else:
+            raise self.source.error(f'"{name}" is a function', at, f"write its argument in parentheses: {name}( )")
+
+    def _symbol(self, name: str, at: int, *, called: bool) -> Scalar:
+        """Return the symbol `name`; raises the error with the reason if there is none."""
+        if name == PI and (self.scope.functions or self.open):  # what it is an argument of takes it, or refuses it
+            return Scalar.symbol(PI)
+        reasons = refusal(name)
+        if reasons:
+            raise self.source.error(reasons[0], at, reasons[1])
+        constant = self.scope.constant(name)
+        if constant is not None:
+            return constant
+        if not self.scope.declares(name):
+            self._require_admitted(name, at, called=called)
+        if len(self.symbols) >= MOST_NAMES:
+            repair = "use fewer names in one matrix"
+            raise self.source.error(f"more than {MOST_NAMES} different names", at, repair, kind=BudgetExceeded)
+        shared = name in self.field.position  # not the e of 2e3e, which follows a number
+        return self.symbols.setdefault(name, Scalar.generator(self.field, name) if shared else Scalar.symbol(name))
+
+    def _require_admitted(self, name: str, at: int, *, called: bool) -> None:
+        if called and name == "CRootOf":
+            repair = 'name it in the table [constants] of a file: r = "CRootOf(x^3 - x - 1, 0)"'
+            raise self.source.error("a root of a polynomial stands inside an expression", at, repair)
+        if self.scope.names is not None:
+            self.unknown.append(self._unknown(name, at, called=called))
+            if len(self.unknown) == _MOST_UNKNOWN:
+                raise ProblemErrors(tuple(self.unknown))
+        elif called:
+            repair = f"write {name}*(...) for a product; the functions are {', '.join(FUNCTIONS)}"
+            raise self.source.error(f'"{name}" is followed by "(" but is neither declared nor a function', at, repair)
+
+    def _unknown(self, name: str, at: int, *, called: bool) -> InputError:
+        declared, nearest = self.scope.declared(), self.scope.nearest(name, called=called)
+        question = f'did you mean "{nearest}"? ' if nearest else ""
+        declare = f'add {name} = "real" to [symbols], or --symbol {name}=real to a command'
+        listed = f"declared: {shown(', '.join(declared), 200)}{'' if question else f'; {declare}'}"
+        if set(self.scope.names or ()) <= {"t"}:  # the variable and the time alone are none that anybody declared
+            listed = f"no name is declared; {declare}"
+        if {name, self.scope.variable} == {"s", "z"}:
+            question, listed = "", _OF_OTHER_TIME[name]
+        message = f'the name "{name}" is not declared{EXPONENTIAL if name == "e" else ""}'
+        facts = {"name": name, "nearest": nearest, "declared": tuple(declared)}
+        return self.source.error(message, at, question + listed, UnknownName, **facts)
+
+
+#: What is said of e^(-a t), which is a power of a name here.
+EXPONENTIAL = ": write exp(-a*t) for e^(-a*t)"
+#: What to do about the variable of the other domain of time.
+_OF_OTHER_TIME = {
+    "z": "z is the variable in discrete time: give dt = true, or the period",
+    "s": "s is the variable in continuous time: leave dt out, or write z",
+}
+
+
+# -- characters that begin no token -------------------------------------------------------------------------------
+
+# By a word of the character's Unicode name; the first that fits.
+_INSTEAD = {
+    "SUPERSCRIPT": "write a power with ^, such as s^2",
+    "GREEK": "spell the letter out, such as omega or lam",
+    "MINUS": "write the ASCII minus -",
+    "DASH": "write the ASCII minus -",
+    "HYPHEN": "write the ASCII minus -",
+    "MULTIPLICATION": "write the ASCII star *",
+    "DOT": "write the ASCII star *",
+    "ASTERISK": "write the ASCII star *",
+    "BULLET": "write the ASCII star *",
+    "DIVISION": "write the ASCII slash /",
+    "FRACTION": "write a fraction with /, such as 1/2",
+    "SOLIDUS": "LaTeX is not read here: write [1 0; 0 1] and (s + 1)/(s + 2)",
+    "DOLLAR": "write the formula alone, without dollar signs, and no LaTeX: [1 0; 0 1]",
+    "CURLY": "write ( ) around what belongs together, [ ] around a list or a matrix",
+    "ROOT": "write sqrt( )",
+    "PERCENT": 'write 5 % as "0.05"',
+    "APOSTROPHE": "a transpose is not read here: write the entries out transposed",
+    "STOP": "write a digit beside the decimal point, and * / ^ without a point",
+    "LOW": "begin a name with a letter",
+}
+
+
+def _unreadable(character: str) -> tuple[str, str]:
+    """Return the message and the repair for a character that begins no token."""
+    words = unicodedata.name(character, "").split()
+    plain = unicodedata.normalize("NFKC", character)
+    repair = "write numbers, names, + - * / ^ ( ) and, for a matrix, [ , ; ]"
+    if plain != character and plain.isascii():
+        repair = f'write the ASCII "{plain}"'
+    repair = next((instead for word, instead in _INSTEAD.items() if word in words), repair)
+    code = "" if character.isascii() else f" (U+{ord(character):04X})"
+    return f'the character "{shown(character)}"{code} belongs to no expression', repair

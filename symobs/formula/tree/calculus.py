@@ -1,0 +1,56 @@
+"""Derivatives, values at an instant, and integrals of exact values that contain the time (trusted).
+
+They need the values themselves, not residues: a claim with one of them is checked in the exact kernel.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from symobs.exact import Matrix, Scalar
+from symobs.exact.core.generators import derivative, substitute, symbols_in
+from symobs.formula.tree.nodes import Integral
+from symobs.ground.errors import WrongKind
+
+if TYPE_CHECKING:
+    from symobs.formula.tree.arithmetic import Arithmetic
+    from symobs.formula.tree.nodes import Formula
+
+TIME = "t"
+
+
+def since_start(integrand: Formula, primitive: Formula, upper: Scalar) -> Integral:
+    """Return the integral over t from 0 to `upper`."""
+    return Integral(integrand, primitive, TIME, Scalar.of(0), upper)
+
+
+def rate(value: Any, name: str, *, constant: bool) -> Any:
+    """Return d/d(name) of a value, entry by entry."""
+    if not constant and name not in symbols_in(exact(value)):
+        message = "a constant of a plant that does not vary has no derivative"
+        raise WrongKind(message)
+    return derivative(exact(value), name)
+
+
+def at(value: Any, name: str, instant: Scalar, arithmetic: Arithmetic) -> Any:
+    """Return the value with the generator `name` replaced."""
+    return arithmetic.leaf(substitute(exact(value), {name: exact(arithmetic.leaf(instant))}))
+
+
+def integral(integrand: Any, primitive: Any, name: str, limits: tuple[Scalar, Scalar], arithmetic: Arithmetic) -> Any:
+    """Return primitive(upper) − primitive(lower), after checking that the primitive's derivative is the integrand."""
+    from symobs.formula.tree.comparison import agree  # noqa: PLC0415 - it stands on `evaluate`, which calls this
+
+    if not agree(derivative(exact(primitive), name), integrand, arithmetic):
+        message = "the primitive is another function's"
+        raise ArithmeticError(message)
+    lower, upper = (at(primitive, name, limit, arithmetic) for limit in limits)
+    return upper - lower
+
+
+def exact(value: Any) -> Any:
+    """Return an exact value; raises WrongKind for any other, such as a residue, which has no derivative."""
+    if not isinstance(value, (Scalar, Matrix)):
+        message = f"{type(value).__name__} is not an exact value"
+        raise WrongKind(message)
+    return value

@@ -1,0 +1,120 @@
+r"""Slides: the format `beamer`, one frame a section, broken by TeX."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, ClassVar
+
+from symobs.formula.phrases.languages import Language, language_named
+from symobs.pages.formats.latex import LatexWriter, has_drawings, head_of
+from symobs.pages.formats.templates import fill
+from symobs.pages.page.blocks import AnswerSpace, Columns, Display, Drawing, Heading, PictureBlock, TableBlock, opened
+from symobs.pages.page.narrator import narrate, printer_for
+from symobs.pages.printers.latex_escape import escape
+from symobs.pages.printers.latex_printer import LatexPrinter
+from symobs.tasks.result import output_format
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+    from pathlib import Path
+
+    from symobs.pages.page.blocks import Block, Inlines
+    from symobs.pages.page.sheet import Sheet
+    from symobs.tasks.result import Document
+
+#: em of 10 pt: 145 mm of a slide 160 mm wide, less than a sheet of paper has.
+WIDTH = 39.5
+#: Displays of more rows than this may be too high for a slide.
+_TALL = 6
+
+
+@output_format
+class Beamer:
+    """Slides for LaTeX's class `beamer`; selected by name only, since its suffix is that of LaTeX."""
+
+    name: ClassVar[str] = "beamer"
+    suffix: ClassVar[str] = ".tex"
+    template: ClassVar[str] = "beamer.tex"
+
+    def render(self, document: Document) -> str:
+        """Return the LaTeX of the slides."""
+        return _slides([self.part(document)], language_named(document.language), document.templates)
+
+    def part(self, document: Document) -> dict[str, Any]:
+        """Return the template values of a document: its title and its frames."""
+        title, blocks = opened(narrate(document))
+        printer = printer_for(document, LatexPrinter)
+        printer.width = WIDTH
+        writer = _SlideWriter(printer)
+        return {
+            "title": escape(title.text).strip(),
+            "source": escape(title.source).strip(),
+            "conventions": writer.sentence(title.conventions),
+            "head": None,
+            "frames": [
+                {"title": writer.sentence(heading).removesuffix("."), "body": writer.body(body)}
+                for heading, body in _frames(blocks)
+            ],
+            "drawings": has_drawings(blocks),
+        }
+
+    def sheet(self, sheet: Sheet) -> str:
+        """Return the LaTeX of all problems' slides, those of each chapter after its title."""
+        head = head_of(sheet)
+        decks = [{**_title(sheet.heading), "head": head if any(head.values()) else None}]
+        for chapter in sheet.chapters():
+            decks += [_title(chapter.title)] if chapter.title else []
+            for item in chapter.items:
+                points = f" ({item.points.replace(' ', '~')})" if item.points else ""
+                slides = {**_title(""), "source": escape(item.text), **(item.part or {})}
+                slides["title"] = f"{item.label} {escape(item.title)}{points}".strip()
+                decks.append(_on_one_slide(slides) if item.part and item.kind == "questions" else slides)
+        return _slides(decks, language_named(sheet.language), sheet.templates)
+
+
+def _slides(decks: list[dict[str, Any]], language: Language, folder: Path | None) -> str:
+    drawings = any(deck["drawings"] for deck in decks)
+    values = {"decks": decks, "drawings": drawings, "babel": language.words["babel"]}
+    return fill(Beamer.template, values, folder=folder)
+
+
+def _on_one_slide(deck: dict[str, Any]) -> dict[str, Any]:
+    """Return a question without a slide for its title, which is that of its only one."""
+    below = f"\\framesubtitle{{{deck['source']}}}\n" if deck["source"] else ""
+    body = "\n\n".join(f"\\textbf{{{frame['title']}.}} {frame['body']}" for frame in deck["frames"])
+    return {**_title(""), "drawings": deck["drawings"], "frames": [{"title": deck["title"], "body": below + body}]}
+
+
+def _title(text: str) -> dict[str, Any]:
+    """Return slides with a title only."""
+    slides = {"title": escape(text).strip(), "source": "", "conventions": "", "head": None}
+    return {**slides, "frames": [], "drawings": False}
+
+
+def _frames(blocks: Sequence[Block]) -> Iterator[tuple[Inlines, tuple[Block, ...]]]:
+    """Yield the blocks of each heading of the first level after its title; leading blocks belong to the first."""
+    title: Inlines = ()
+    body: list[Block] = []
+    for block in blocks:
+        if not isinstance(block, Heading) or block.number.count(".") > 1:
+            body.append(block)
+        elif title and body:
+            yield title, tuple(body)
+            title, body = block.inlines, []
+        else:
+            title = block.inlines
+    if body:
+        yield title, tuple(body)
+
+
+class _SlideWriter(LatexWriter):
+    """Writer of blocks for slides, which fits unbreakable ones."""
+
+    def block(self, block: Block) -> str:
+        """Return one block."""
+        if isinstance(block, AnswerSpace):  # nobody writes on a slide
+            return ""
+        written = super().block(block)
+        is_tall = isinstance(block, Display) and written.count(r"\\") > _TALL
+        if is_tall or isinstance(block, Columns | Drawing | PictureBlock | TableBlock):
+            return f"\\begin{{fitted}}\n{written}\n\\end{{fitted}}"
+        return written

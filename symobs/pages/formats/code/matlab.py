@@ -1,0 +1,63 @@
+"""The observer or compensator as a function of MATLAB and Octave, or the numbers alone: the format `matlab`."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, ClassVar
+
+from symobs.pages.formats.code.numbers import number_rows
+from symobs.pages.formats.code.program import in_doubles, program_of
+from symobs.tasks.result import output_format
+
+if TYPE_CHECKING:
+    from symobs.exact import Matrix
+    from symobs.tasks.result import Document
+
+_TEMPLATE = """function [{output}, state] = {name}_step(state, {arguments})
+{lines}
+%
+% Call it once a period with columns ({sizes}) and the state it returned before; [] is the state 0.
+% Save it as {name}_step.m.
+A = {A};
+B = {B};
+C = {C};
+D = {D};
+if isempty(state)
+    state = zeros({order}, 1);
+end
+inputs = [{joined}];
+{output} = C * state + D * inputs;
+state = A * state + B * inputs;
+end
+"""
+
+
+@output_format
+class Matlab:
+    """The observer or compensator as a function of MATLAB and Octave; needs a period.  With --print the numbers alone."""
+
+    name: ClassVar[str] = "matlab"
+    suffix: ClassVar[str] = ".m"
+    is_program: ClassVar[bool] = True
+
+    def render(self, document: Document) -> str:
+        """Return a function file."""
+        program = program_of(document)
+        return _TEMPLATE.format(
+            **{name: _rows(getattr(program.numbers, name)) for name in "ABCD"},
+            lines="\n".join(f"% {line}" for line in program.lines),
+            name=program.name,
+            order=program.order,
+            arguments=", ".join(name for name, _ in program.inputs),
+            joined="; ".join(f"{name}(:)" for name, _ in program.inputs),
+            sizes=", ".join(f"{name}: {size}" for name, size in program.inputs),
+            output=program.output[0],
+        )
+
+    def answers(self, document: Document) -> str:
+        """Return the numbers as assignments."""
+        rows = number_rows(document, "a matrix of MATLAB")
+        return "".join(f"{name} = [{'; '.join(' '.join(row) for row in table)}];\n" for name, table in rows.items())
+
+
+def _rows(matrix: Matrix) -> str:
+    return "[" + "; ".join(" ".join(row) for row in in_doubles(matrix)) + "]"

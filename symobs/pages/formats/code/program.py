@@ -1,0 +1,202 @@
+"""The observer or compensator of a document as the difference equation that a program runs, with what is proved of it.
+
+ξ⁺ = A ξ + B w,  v = C ξ + D w  with doubles A, B, C, D: the inputs w in their order, the output v.  Nothing is written
+unless the loop with exactly these doubles is proved stable.
+"""
+
+from __future__ import annotations
+
+from decimal import Decimal, localcontext
+from fractions import Fraction
+from typing import TYPE_CHECKING, NamedTuple
+
+from symobs.exact import Matrix, Scalar
+from symobs.exact.floating.deviation import STEPS, deviation
+from symobs.exact.floating.doubles import nearest_double, rounded_matrix
+from symobs.exact.floating.margin_search import disc_margin, half_plane_margin, size_of
+from symobs.exact.floating.sampled import HOLDS, Sampled
+from symobs.exact.floating.stability_margin import is_in_disc, is_left_of, loop_matrix, own_matrix
+from symobs.exact.linear_algebra.realisation import Realisation
+from symobs.formula.expression import parse_scalar
+from symobs.ground.errors import CertificateRejected, InputError, UsageError
+from symobs.tasks.result import Result
+from symobs.tasks.result.control_systems import Controller, require_numbers
+
+if TYPE_CHECKING:
+    from symobs.system import StateSpace
+    from symobs.tasks.result import Document
+
+_HOLD_NAMES = {"zoh": "zero-order hold", "tustin": "the bilinear map"}
+_WHERE_MISSING = "use observer, reduced_order_observer or compensator"
+
+
+class CodeProgram(NamedTuple):
+    """The language-independent program: sizes, doubles, comments; `period` is None in continuous time."""
+
+    name: str
+    inputs: tuple[tuple[str, int], ...]
+    output: tuple[str, int]
+    numbers: Realisation
+    period: Fraction | None
+    lines: tuple[str, ...]
+
+    @property
+    def order(self) -> int:
+        """The number of states."""
+        return self.numbers.A.shape[0]
+
+    @property
+    def width(self) -> int:
+        """The number of inputs together."""
+        return self.numbers.B.shape[1]
+
+
+def program_of(document: Document, *, in_continuous_time: bool = False) -> CodeProgram:
+    """Return the program of the one result of a document that has one.
+
+    Raises `UsageError` where none or several have, or the period does not fit, and `InputError` for letters without a
+    value, for a plant with feedthrough, and where the loop with rounded numbers is not proved stable.
+    """
+    result, controller = _of_document(document)
+    require_numbers(controller.system, "code")
+    require_numbers(_gains(result, controller).values(), "code")
+    plant = result.plant
+    period = _period(document, plant, in_continuous_time=in_continuous_time)
+    if controller.returns and plant.matrices.has_feedthrough:
+        message = "the plant has feedthrough D: y would have to be measured while u, which depends on it, is applied"
+        raise InputError(message, where="plant.D", repair="take y without D u, or model the delay as a state")
+    sampled = Sampled(controller.system, period, document.hold)
+    numbers = sampled.rounded()
+    lines = [
+        _what(document, controller, plant, period),
+        *(line for name, gain in _gains(result, controller).items() for line in _gain(name, gain)),
+        _proof(plant, controller, numbers, period),
+        *_deviation(controller, sampled, numbers, plant, period),
+    ]
+    return CodeProgram(controller.name, controller.inputs, controller.output, numbers, period, tuple(lines))
+
+
+def _of_document(document: Document) -> tuple[Result, Controller]:
+    found = [(result, result.controller) for result in document.results]
+    having = [(result, controller) for result, controller in found if controller is not None]
+    if len(having) > 1:
+        names = ", ".join(result.task for result, _ in having)
+        raise UsageError(f"several results can be a program: {names}", where="--format", repair="choose one by --task")
+    if having:
+        return having[0]
+    negative = next((result for result, _ in found if type(result).controller is not Result.controller), None)
+    if negative is not None:
+        message = f"there is no {negative.task} to write: its verdict is {negative.verdict}"
+        raise InputError(message, where=negative.task, repair="look at its page for the reason")
+    names = ", ".join(result.task for result, _ in found) or "this document"
+    raise UsageError(f"{names} has no observer and no compensator", where="--format", repair=_WHERE_MISSING)
+
+
+def _period(document: Document, plant: StateSpace, *, in_continuous_time: bool) -> Fraction | None:
+    """Return the period, None for a plant in discrete time, or where the language has continuous time."""
+    if document.hold not in HOLDS:
+        repair = f"use one of {', '.join(HOLDS)}"
+        raise UsageError(f"{document.hold[:40]!r} is no way to sample", where="--hold", repair=repair)
+    if plant.is_discrete:
+        if document.period is not None:
+            message = "the plant is in discrete time already"
+            raise UsageError(message, where="--period", repair="leave the period out")
+        return None
+    if document.period is None:
+        if in_continuous_time:
+            return None
+        message = "a program runs in discrete time"
+        repair = 'give the period, for example --period 1/100, in Python period="1/100"'
+        raise UsageError(message, where="--period", repair=repair)
+    value = parse_scalar(document.period, {}, where="--period")
+    if not value.is_constant or value.fraction() <= 0:
+        raise UsageError(f"{value} is not a period", where="--period", repair="give a positive number such as 1/100")
+    return value.fraction()
+
+
+def _gains(result: Result, controller: Controller) -> dict[str, Matrix]:
+    loop = {name: result.answer.get(name) for name in controller.gains}
+    return {name: gain for name, gain in loop.items() if isinstance(gain, Matrix)}
+
+
+# -- what is said of it -----------------------------------------------------------------------------------------------
+
+
+def _what(document: Document, controller: Controller, plant: StateSpace, period: Fraction | None) -> str:
+    inputs = " and ".join(name for name, _ in controller.inputs)
+    order = controller.system.A.shape[0]
+    what = f"{controller.name.capitalize()} of order {order}: {controller.output[0]} from {inputs}"
+    if period is not None:
+        return f"{what}, with the period {period}, by {_HOLD_NAMES[document.hold]}."
+    dt = f" with the period {plant.dt}" if isinstance(plant.dt, Fraction) else ""
+    return f"{what}, in discrete time{dt}." if plant.is_discrete else f"{what}, in continuous time."
+
+
+def _gain(name: str, gain: Matrix) -> list[str]:
+    """Return the gain in doubles, and how far they are from its entries."""
+    rows = "; ".join(" ".join(repr(nearest_double(entry)) for entry in row) for row in gain.rows)
+    off = [_distance(entry) for entry in gain.entries]
+    largest = max(off, default=Fraction(0))
+    return [f"{name} = [{rows}], " + (f"rounded by at most {above(largest)}." if largest else "exactly.")]
+
+
+def _distance(value: Scalar) -> Fraction:
+    """Return a bound of the distance of a number from its nearest double: half a unit in the last place, or 0."""
+    near = Fraction(nearest_double(value))
+    if value.is_constant:
+        return abs(value.fraction() - near)
+    return abs(near) / 2**52
+
+
+def _proof(plant: StateSpace, controller: Controller, numbers: Realisation, period: Fraction | None) -> str:
+    """Return the margin of stability of the loop with these doubles; raises `InputError` where it is not proved stable."""
+    if controller.returns:
+        m = plant.matrices
+        enclosed = loop_matrix(Realisation(m.A, m.B, m.C, m.D), period, numbers)
+        of = "the plant with this program" if period is None else "the sampled plant with this program"
+    else:
+        enclosed, of = own_matrix(numbers), "the matrix of this program"
+    in_disc = plant.is_discrete or period is not None
+    margin = disc_margin(enclosed) if in_disc else half_plane_margin(enclosed)
+    if margin is None:
+        message = f"with these rounded numbers {of} is not proved stable"
+        repair = "choose a shorter period, or other poles" if period is not None else "choose other poles"
+        raise InputError(message, where=controller.name, repair=repair)
+    if not (is_in_disc(enclosed, margin) if in_disc else is_left_of(enclosed, margin, size_of(enclosed))):
+        message = f"the margin {margin} of {of} is not proved"
+        raise CertificateRejected(message, repair="please report this: it is a bug of symobs")
+    bound = f"|z| < {_exact_decimal(1 - margin)}" if in_disc else f"Re s < -{_exact_decimal(margin)}"
+    return f"Proved for exactly these doubles: every eigenvalue of {of} has {bound}."
+
+
+def _deviation(
+    controller: Controller, sampled: Sampled, numbers: Realisation, plant: StateSpace, period: Fraction | None
+) -> list[str]:
+    """Return how far the program stays from exact arithmetic."""
+    if period is None and not plant.is_discrete:
+        return []
+    bound = deviation(sampled, numbers)
+    if bound is None:
+        return [f"In {STEPS} steps rounding errors may grow beyond any bound in double precision."]
+    steps = "at every step" if bound.always else f"in the first {STEPS} steps"
+    output = f"{controller.output[0]} differs {steps} by at most {bound.output!r} from exact arithmetic"
+    return [f"For inputs of modulus at most 1, from the state 0, {output}."]
+
+
+def above(value: Fraction) -> str:
+    """Return a decimal of two digits that is not below a positive number."""
+    with localcontext() as context:
+        context.prec, context.rounding = 2, "ROUND_UP"
+        return f"{Decimal(value.numerator) / Decimal(value.denominator):.1e}"
+
+
+def _exact_decimal(value: Fraction) -> str:
+    """Return a terminating decimal in full."""
+    with localcontext() as context:
+        context.prec = 60
+        return f"{Decimal(value.numerator) / Decimal(value.denominator):f}"
+
+
+def in_doubles(matrix: Matrix) -> list[list[str]]:
+    """Return the entries of a matrix of doubles in the shortest decimals that name them."""
+    return [[repr(float(entry.fraction())) for entry in row] for row in rounded_matrix(matrix).rows]

@@ -1,0 +1,66 @@
+"""The observer or compensator as a class of Python, without further packages: the format `python`."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, ClassVar
+
+from symobs.pages.formats.code.program import in_doubles, program_of
+from symobs.tasks.result import output_format
+
+if TYPE_CHECKING:
+    from symobs.exact import Matrix
+    from symobs.tasks.result import Document
+
+_TEMPLATE = '''"""{lines}"""
+
+A = {A}
+B = {B}
+C = {C}
+D = {D}
+
+
+class {kind}:
+    """{kind} with its state; call step once a period."""
+
+    def __init__(self, state=None):
+        """Begin with a state of {order} numbers, with zeros where none is given."""
+        self.state = [0.0] * {order} if state is None else [float(entry) for entry in state]
+
+    def step(self, {arguments}):
+        """Return {output} from lists of numbers ({sizes}), and go on by one period."""
+        state, inputs = self.state, [{joined}]
+        self.state = [_dot(a, state) + _dot(b, inputs) for a, b in zip(A, B)]
+        return [_dot(c, state) + _dot(d, inputs) for c, d in zip(C, D)]
+
+
+def _dot(row, column):
+    return sum(entry * number for entry, number in zip(row, column))
+'''
+
+
+@output_format
+class Python:
+    """The observer or compensator as a class of plain Python with one method, step; needs a period."""
+
+    name: ClassVar[str] = "python"
+    suffix: ClassVar[str] = ".py"
+    is_program: ClassVar[bool] = True
+
+    def render(self, document: Document) -> str:
+        """Return a module."""
+        program = program_of(document)
+        return _TEMPLATE.format(
+            **{name: _rows(getattr(program.numbers, name)) for name in "ABCD"},
+            lines="\n\n".join(program.lines) + "\n",
+            kind=program.name.capitalize(),
+            order=program.order,
+            arguments=", ".join(name for name, _ in program.inputs),
+            joined=", ".join(f"*{name}" for name, _ in program.inputs),
+            sizes=", ".join(f"{name}: {size}" for name, size in program.inputs),
+            output=program.output[0],
+        )
+
+
+def _rows(matrix: Matrix) -> str:
+    """Return a matrix as a list of rows, one a line."""
+    return "[\n" + "".join(f"    [{', '.join(row)}],\n" for row in in_doubles(matrix)) + "]"

@@ -1,0 +1,147 @@
+"""Conventions stated on a page, those of its letters, below its title."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from symobs.formula.phrases.spoken import SPOKEN
+from symobs.formula.tree import (
+    Conjunction,
+    Evaluated,
+    HoldsExactlyWhere,
+    Letter,
+    Negative,
+    Predicate,
+    Product,
+    Relation,
+    Roots,
+    SignReversal,
+    Sum,
+    SymbolList,
+    letters,
+)
+from symobs.pages.page.blocks import Title
+from symobs.pages.page.prose import joined
+from symobs.proof.derivation import (
+    CaseStep,
+    Conclude,
+    Define,
+    Diagram,
+    Equal,
+    Given,
+    Inequalities,
+    Note,
+    Plot,
+    RegionSummary,
+    Section,
+    Tabulate,
+)
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Mapping
+
+    from symobs.formula.convention import Convention
+    from symobs.formula.phrases.languages import Language
+    from symobs.formula.tree import Fact, Formula
+    from symobs.pages.page.blocks import Inline
+    from symobs.proof.derivation import Sentence, Step
+    from symobs.tasks.result import Document
+
+
+def letters_used(steps: Iterable[Step]) -> frozenset[str]:
+    """Return the names of all letters in the steps."""
+    return frozenset().union(*(letters(formula) for step in steps for formula in _formulas(step)))
+
+
+def stated_conventions(
+    used: frozenset[str], convention: Convention, words: Mapping[str, str]
+) -> tuple[tuple[Inline, ...], ...]:
+    """Return the conventions of the letters used, each as words and a formula."""
+    turned = SignReversal(convention.turned)
+    conventions: list[tuple[Inline, ...]] = []
+    if "K" in used:
+        estimated = "L" in used or "x_hat" in used
+        conventions.append((turned.relation(_control_law("x_hat" if estimated else "x")),))
+    if "L" in used:
+        conventions.append((f"{words['observer_matrix']} ", turned.formula(_OBSERVER_MATRIX)))
+        conventions.append((f"{words['error']} ", _ERROR))
+    return tuple(conventions)
+
+
+def _control_law(state: str) -> Relation:
+    return Relation((Letter("u"), Negative(Product((Letter("K"), Letter(state))))), ("=",))
+
+
+_OBSERVER_MATRIX = Sum((Letter("A"), Negative(Product((Letter("L"), Letter("C"))))))
+_ERROR = Relation((Letter("e"), Sum((Letter("x"), Negative(Letter("x_hat"))))), ("=",))
+
+
+def _formulas(step: Step) -> Iterator[Formula]:
+    match step:
+        case Section(title=title, steps=steps):
+            yield from _in_sentence(title)
+            for inner in steps:
+                yield from _formulas(inner)
+        case CaseStep(when=when, steps=steps, sentence=sentence):
+            yield from (*_in_facts((when,)), *_in_sentence(sentence))
+            for inner in steps:
+                yield from _formulas(inner)
+        case Given(relations=relations, sentence=sentence) | Equal(relations=relations, sentence=sentence):
+            yield from (*_in_facts(relations), *_in_sentence(sentence))
+        case Define(relation=relation, sentence=sentence):
+            yield from (*relation.members, *_in_sentence(sentence))
+        case (
+            Conclude(sentence=sentence)
+            | Note(sentence=sentence)
+            | Tabulate(sentence=sentence)
+            | Plot(sentence=sentence)
+        ):
+            yield from _in_sentence(sentence)
+        case Inequalities(fact=fact, sentence=sentence):
+            yield from (*_in_facts((fact,)), *_in_sentence(sentence))
+        case RegionSummary(polynomial=polynomial):
+            yield polynomial
+        case Diagram(labels=labels, sentence=sentence):
+            yield from _in_sentence(sentence)
+            for _, label in labels:
+                yield from _in_facts((label,)) if isinstance(label, Conjunction) else (label,)
+
+
+def _in_facts(facts: Iterable[Fact]) -> Iterator[Formula]:
+    for fact in facts:
+        match fact:
+            case Relation(members=members):
+                yield from members
+            case Predicate(subject=subject) | Roots(polynomial=subject):
+                yield subject
+            case HoldsExactlyWhere(property=Predicate(subject=subject), where=where):
+                yield from (subject, *_in_facts(where))
+            case Conjunction(relations=relations):
+                yield from _in_facts(relations)
+
+
+def _in_sentence(sentence: Sentence | None) -> Iterator[Formula]:
+    for _, value in sentence.slots if sentence else ():
+        if isinstance(value, Relation | Predicate | Roots | HoldsExactlyWhere | Conjunction):
+            yield from _in_facts((value,))
+        elif isinstance(value, Evaluated):
+            yield value.value
+        elif not isinstance(value, (str, SymbolList, *SPOKEN)):
+            yield value
+
+
+def title_of(document: Document, language: Language) -> Title:
+    """Return the title of a page, with its source and the conventions that it states."""
+    steps = [step for derivation in document.derivations for step in derivation.steps]
+    conventions = stated_conventions(letters_used(steps), document.convention, language.words)
+    if not conventions:
+        return Title(document.title, _as_sentence(document.source), ())
+    listed: list[Inline] = [f"{language.words['conventions']} "]
+    for convention in conventions:
+        listed += [*convention, ", "]
+    return Title(document.title, _as_sentence(document.source), joined((*listed[:-1], ".")))
+
+
+def _as_sentence(text: str) -> str:
+    text = text.strip()
+    return f"{text}." if text and text[-1] not in ".!?" else text

@@ -1,0 +1,398 @@
+"""The narrator: from the steps of checked derivations to the blocks of a page.
+
+Every sentence comes from `phrases`; the narrator only decides what follows what: a sentence before its display,
+displays without a sentence between them on one line, what is given said once, sections numbered through the page.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from itertools import count, zip_longest
+from typing import TYPE_CHECKING, Any, TypeVar
+
+from symobs.formula.convention import OF_REDUCED_ORDER
+from symobs.formula.phrases import BESIDE, CONTINUES, OPENS, RESTS_ON
+from symobs.formula.phrases.languages import ENGLISH, language_named
+from symobs.formula.tree import Conjunction
+from symobs.pages.page.blocks import (
+    Block,
+    CaseBlock,
+    Caution,
+    Columns,
+    Display,
+    Drawing,
+    Heading,
+    Inline,
+    Inlines,
+    Paragraph,
+    PictureBlock,
+    References,
+    TableBlock,
+    Verified,
+    with_few_boxes,
+)
+from symobs.pages.page.citations import cited_literature, referred_to
+from symobs.pages.page.convention_notes import letters_used, title_of
+from symobs.pages.page.detail_level import FINAL, at_detail
+from symobs.pages.page.handout import handed_out
+from symobs.pages.page.prose import filled, joined, with_reference
+from symobs.pages.page.side_by_side import in_rows
+from symobs.proof.derivation import (
+    CaseStep,
+    Conclude,
+    Define,
+    Diagram,
+    Equal,
+    Given,
+    Inequalities,
+    Note,
+    Plot,
+    RegionSummary,
+    Section,
+    Sentence,
+    Tabulate,
+)
+from symobs.tasks.result.digits_of_page import shown_digits
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping, Sequence
+
+    from symobs.formula.convention import Convention
+    from symobs.formula.notation import LetterForm
+    from symobs.formula.phrases.languages import Language
+    from symobs.formula.tree import Formula, Relation
+    from symobs.pages.printers.printer import Printer
+    from symobs.proof.derivation import Step
+    from symobs.tasks.result import Document
+
+P = TypeVar("P", bound="Printer[Any]")
+
+#: The sections of a question.
+_UNNUMBERED = {"task", "tasks"}
+
+
+def narrate(document: Document) -> tuple[Block, ...]:
+    """Return the blocks of a document; raises `DerivationRejected` for a false line, before any output."""
+    for derivation in document.derivations:
+        derivation.check()
+    parts = [at_detail(derivation.steps, document.detail) for derivation in document.derivations]
+    if digits := shown_digits(document):
+        from symobs.pages.decimals.steps import in_decimals  # noqa: PLC0415 - only pages in decimals pay for it
+
+        parts = [in_decimals(*pair, digits) for pair in zip(document.derivations, parts, strict=True)]
+    is_final = document.detail == FINAL
+    language = language_named(document.language)
+    works, citations = cited_literature(() if is_final else (step for steps in parts for step in steps), language)
+    page = _PageBlocks(document.convention, language, citations=citations)
+    page.referred = dict.fromkeys((each for steps in parts for each in referred_to(steps)), 0)
+    page.blocks.append(title_of(document, language))
+    page.blocks += [Paragraph((" ".join(part.split()),)) for part in document.text.split("\n\n") if part.strip()]
+    together, apart = _statements(parts)
+    page.emit_given(together)
+    if is_final:  # the question has said what is given, and where it comes from
+        page.blocks[:] = [replace(title_of(document, language), source="")]
+    for index, steps in enumerate(parts):
+        if index in apart:
+            page.printed.clear()
+            page.emit_given(apart[index])
+        start = len(page.blocks)
+        told = [step for step in steps if not _is_statement(step)]
+        for step in told:
+            page.emit_step(step)
+        is_silent = not any(isinstance(block, Heading) for block in page.blocks[start:])
+        if is_silent and told and isinstance(told[-1], Section):
+            page.emit_again(told[-1])
+        page.printed |= _inside(steps)
+    if works:
+        page.blocks.append(References(language.words["sources"], tuple(f"{language.reference(key)}." for key in works)))
+    return handed_out(_punctuated(page.blocks), document.handout)
+
+
+def _statements(parts: Sequence[Sequence[Step]]) -> tuple[list[Step], dict[int, list[Step]]]:
+    """Return the data stated at the top, and the statements from the first contradicting one on."""
+    seen: dict[Formula, Relation] = {}
+    together: list[Step] = []
+    apart: dict[int, list[Step]] = {}
+    for index, steps in enumerate(parts):
+        statement = [step for step in steps if _is_statement(step)]
+        relations = [relation for step in statement for relation in _given_relations(step)]
+        if apart or any(seen.get(relation.members[0], relation) != relation for relation in relations):
+            apart[index] = statement
+        else:
+            together += statement
+            seen.update((relation.members[0], relation) for relation in relations)
+    return together, apart
+
+
+def _given_relations(step: Step) -> Iterator[Relation]:
+    match step:
+        case Given(relations=relations, silent=False):
+            yield from relations
+        case Section(steps=steps):
+            for inner in steps:
+                yield from _given_relations(inner)
+
+
+def _inside(steps: Sequence[Step]) -> set[Step]:
+    """Return the steps of the sections, which later derivations need not repeat."""
+    printed = [inner for step in steps if isinstance(step, Section) for inner in step.steps]
+    return {*printed, *map(_unboxed, printed)}
+
+
+def _unboxed(step: Step) -> Step:
+    return replace(step, answer=False) if isinstance(step, (Define, Equal, Inequalities)) else step
+
+
+def printer_for(document: Document, kind: type[P]) -> P:
+    """Return a printer for the mathematics of a document: variable, symbols, letters, time domain."""
+    printer = kind()
+    if document.derivations:
+        first = document.derivations[0]
+        symbols = {name: form for derivation in document.derivations for name, form in derivation.symbols.items()}
+        printer = kind(first.variable, symbols, discrete=first.discrete)
+        printer.letters = {**printer.letters, **_letters(document)}
+    printer.language = language_named(document.language)
+    return printer
+
+
+def _letters(document: Document) -> Mapping[str, LetterForm]:
+    """Return the forms of the letters that differ from the standard."""
+    if document.convention.is_standard:
+        return {}
+    steps = [step for derivation in document.derivations for step in derivation.steps]
+    return document.convention.forms(reduced=not letters_used(steps).isdisjoint(OF_REDUCED_ORDER))
+
+
+class _PageBlocks:
+    """The blocks emitted so far, and the state for the next ones."""
+
+    def __init__(
+        self,
+        convention: Convention,
+        language: Language = ENGLISH,
+        *,
+        given: Mapping[Formula, Relation] | None = None,
+        citations: Mapping[str, str] | None = None,
+        figures: Iterator[int] | None = None,
+    ) -> None:
+        self.convention = convention
+        self.figures = count(1) if figures is None else figures
+        self.language = language
+        self.blocks: list[Block] = []
+        self.citations = dict(citations or {})
+        #: The equations to which sentences refer, with their numbers once they are displayed.
+        self.referred: dict[Relation, int] = {}
+        self.given = dict(given or {})
+        self.stated: set[Sentence | Step] = set()
+        self.printed: set[Step] = set()
+        self.places: dict[Step, str] = {}  # the numbers of the sections in which steps are printed first
+        self.numbers = [0]
+        self.numbered = True
+
+    def inside(self, *, numbered: bool = True) -> _PageBlocks:
+        """Return the blocks of a part set apart from the page: its data hold there only, its figures are counted on."""
+        known = self.given, self.citations
+        found = _PageBlocks(self.convention, self.language, given=known[0], citations=known[1], figures=self.figures)
+        found.numbered, found.referred = numbered, self.referred
+        return found
+
+    def emit(self, steps: Sequence[Step]) -> None:
+        """Emit a derivation, the given data first."""
+        self.emit_given([step for step in steps if _is_statement(step)])
+        for step in steps:
+            if not _is_statement(step):
+                self.emit_step(step)
+
+    def emit_given(self, statement: Sequence[Step]) -> None:
+        """Emit the given data that are not printed yet."""
+        news = [new for step in statement for new in self.news(step)]
+        if news:
+            self.blocks.append(Heading("", (self.language.phrases["given"],)))
+            for step in news:
+                self.emit_step(step)
+
+    def news(self, step: Step) -> Iterator[Step]:
+        """Yield the parts of a step of the statement that are not printed yet."""
+        match step:
+            case Section(steps=steps):
+                for inner in steps:
+                    yield from self.news(inner)
+            case Given(silent=True):
+                pass
+            case Given(relations=relations):
+                new = tuple(relation for relation in relations if self.given.get(relation.members[0]) != relation)
+                self.given.update((relation.members[0], relation) for relation in new)
+                if new:
+                    yield replace(step, relations=new)
+            case Conclude(sentence=said) | Note(sentence=said) | (Equal() as said):
+                if said and said not in self.stated:
+                    self.stated.add(said)
+                    yield step
+            case _:
+                yield step
+
+    def emit_step(self, step: Step) -> None:
+        match step:
+            case Given(relations=relations, sentence=sentence, silent=silent):
+                self.emit_sentence(sentence)
+                self.emit_display(() if silent or (sentence and _is_condition(step)) else relations)
+            case Define(relation=relation, sentence=sentence, answer=answer, silent=silent):
+                self.emit_sentence(sentence)
+                self.emit_display(() if silent else (relation,), boxed=answer)
+            case Equal(relations=relations, sentence=sentence, answer=answer):
+                self.emit_sentence(sentence)
+                self.emit_display(relations, boxed=answer)
+            case Conclude(sentence=Sentence() as sentence, verified=True):
+                self.blocks.append(Verified(self.filled(sentence)))
+            case Note(sentence=sentence, caution=True):
+                self.blocks.append(Caution(self.language.words["caution"], self.filled(sentence)))
+            case Conclude(sentence=sentence) | Note(sentence=sentence):
+                self.emit_sentence(sentence)
+            case Diagram(name=name, labels=labels, sentence=sentence):
+                self.blocks.append(Drawing(name, labels, self.figure_title(sentence)))
+            case Tabulate(table=table, variable=variable, sentence=sentence, findings=findings):
+                self.emit_sentence(sentence)
+                from symobs.pages.page.routh_remarks import remarks  # noqa: PLC0415 - only pages with tables
+
+                self.blocks.append(
+                    TableBlock(
+                        table, variable, remarks(table, variable, self.language), self.filled(Sentence("routh_where"))
+                    )
+                )
+                for finding in findings:
+                    self.emit_sentence(finding)
+            case Inequalities(fact=fact, sentence=sentence, answer=answer):
+                self.emit_sentence(sentence)
+                self.emit_display(fact.where, boxed=answer)
+            case RegionSummary():
+                self.emit_survey(step)
+            case Plot(picture=picture, sentence=sentence):
+                from symobs.pages.page.plot_captions import caption  # noqa: PLC0415 - only pages with pictures
+
+                title = joined((*self.figure_title(sentence), " "))
+                self.blocks.append(PictureBlock(picture, joined((*title, *caption(picture, self.language))), title))
+            case CaseStep(when=when, steps=steps, sentence=sentence):
+                self.emit_case(when, steps, sentence)
+            case Section() if _is_statement(step):
+                self.emit_given((step,))
+            case Section(title=title, steps=steps):
+                self.emit_section(title, steps)
+
+    def emit_section(self, title: Sentence, steps: Sequence[Step]) -> None:
+        is_numbered = self.numbered and title.key not in _UNNUMBERED
+        self.numbers[-1] += is_numbered
+        number = ".".join(str(part) for part in self.numbers) + "." if is_numbered else ""
+        heading = Heading(number, self.filled(title))
+        self.blocks.append(heading)
+        start = len(self.blocks)
+        self.numbers.append(0)
+        columns = [step for step in steps if isinstance(step, Section)] if title.key in BESIDE else []
+        self.blocks += self.side_by_side(columns)
+        for step in steps:
+            if step not in columns and (isinstance(step, Section) or step not in self.printed):
+                self.emit_step(step)
+        self.numbers.pop()
+        self.blocks[start:] = with_few_boxes(self.blocks[start:])
+        if self.blocks[-1] is heading and not self.printed.isdisjoint(steps):  # all of it is printed already
+            self.blocks.pop()
+            self.numbers[-1] -= is_numbered
+            return
+        for step in steps:
+            self.places.setdefault(_unboxed(step), number.rstrip("."))
+
+    def emit_again(self, section: Section) -> None:
+        """Emit a section that stands on the page already, the whole of a part: its heading, where it is, its findings."""
+        places = [place for step in section.steps if (place := self.places.get(_unboxed(step)))]
+        where = [Note(Sentence("shown_in_section", (("number", place),))) for place in places[:1]]
+        printed, self.printed = self.printed, set()
+        self.emit_section(section.title, (*where, *at_detail(section.steps, "answer")))
+        self.printed = printed
+
+    def side_by_side(self, columns: Sequence[Section]) -> Iterator[Block]:
+        """Emit sections in columns."""
+        rows: list[tuple[tuple[Block, ...], ...]] = []
+        for row in in_rows([column.steps for column in columns]):
+            cells = [self.inside() for _ in row]
+            for cell, steps in zip(cells, row, strict=True):
+                for step in steps:
+                    cell.emit_step(step)
+            rows.append(tuple(_punctuated(cell.blocks) for cell in cells))
+        if rows:
+            yield Columns(tuple(self.filled(column.title) for column in columns), tuple(rows))
+
+    def figure_title(self, sentence: Sentence | None) -> Inlines:
+        """Return the number of the next figure, and what it shows."""
+        numbered = f"{self.language.phrases['figure']}\N{NO-BREAK SPACE}{next(self.figures)}."
+        return (numbered,) if sentence is None else joined((f"{numbered} ", *self.filled(sentence)))
+
+    def emit_survey(self, step: RegionSummary) -> None:
+        """Emit the summary of a region, its parts one below the other."""
+        for finding in step.findings:
+            self.emit_sentence(finding)
+        self.emit_sentence(step.sentence)
+        for part in step.parts:
+            self.blocks.append(Display(part))
+
+    def emit_case(self, when: Relation | Conjunction, steps: Sequence[Step], sentence: Sentence | None) -> None:
+        """Emit the steps of a case, whose data hold only there."""
+        inner = self.inside(numbered=False)
+        inner.emit_sentence(sentence)
+        inner.emit(steps)
+        label: list[Inline] = [f"{self.language.words['case']} "]
+        for place, relation in enumerate(when.relations if isinstance(when, Conjunction) else (when,)):
+            label += [", ", relation] if place else [relation]
+        self.blocks.append(CaseBlock((*label, "."), _punctuated(with_few_boxes(inner.blocks))))
+
+    def emit_sentence(self, sentence: Sentence | None) -> None:
+        """Emit a sentence, appended to a paragraph before it."""
+        if sentence is None:
+            return
+        inlines = with_reference(self.filled(sentence), self.citations.get(RESTS_ON.get(sentence.key, "")))
+        goes_on = sentence.key not in OPENS
+        if goes_on and self.blocks and isinstance(last := self.blocks[-1], Paragraph):
+            self.blocks[-1] = replace(last, inlines=joined((*last.inlines, " ", *inlines)))
+        else:
+            self.blocks.append(Paragraph(inlines, sentence.key in CONTINUES))
+
+    def filled(self, sentence: Sentence) -> Inlines:
+        """Return a sentence in the language and the convention of the page."""
+        numbers = {relation: number for relation, number in self.referred.items() if number}
+        return filled(sentence, self.convention, self.language, numbers)
+
+    def emit_display(self, relations: tuple[Relation, ...], *, boxed: bool = False) -> None:
+        """Emit a display, appended to an unfinished display before it; a box ends a display."""
+        if not relations:
+            return
+        if len(relations) == 1 and self.referred.get(relations[0]) == 0:
+            self.referred[relations[0]] = number = max(self.referred.values()) + 1
+            self.blocks.append(Display(relations, boxed, number=number))
+        elif self.blocks and isinstance(last := self.blocks[-1], Display) and not (last.boxed or last.number):
+            self.blocks[-1] = Display((*last.relations, *relations), boxed)
+        else:
+            self.blocks.append(Display(relations, boxed))
+
+
+def _is_statement(step: Step) -> bool:
+    """Return whether a step states the problem: a section of given data, or data alone."""
+    if isinstance(step, Section):
+        return step.title.key == "given"
+    return isinstance(step, Given) and not _is_condition(step)
+
+
+def _is_condition(step: Given) -> bool:
+    return all(relation.operators[0] == "!=" for relation in step.relations)
+
+
+def _punctuated(blocks: Sequence[Block]) -> tuple[Block, ...]:
+    """Return the blocks with punctuation after every display without a box.
+
+    A comma where the sentence goes on after it, else a full stop.
+    """
+    punctuated: list[Block] = []
+    for block, following in zip_longest(blocks, blocks[1:]):
+        if isinstance(block, Display) and not block.boxed:
+            goes_on = isinstance(following, Paragraph) and following.continues
+            punctuated.append(replace(block, closing="," if goes_on else "."))
+        else:
+            punctuated.append(block)
+    return tuple(punctuated)

@@ -1,0 +1,232 @@
+"""A sheet of several problems, with every part already rendered.
+
+A format that has sheets offers two functions besides `render`: `part(document)` returns whatever it will want of one
+question or solution, and `sheet(sheet)` returns the whole.  Parts are made one by one, so one that fails loses no other.
+"""
+
+from __future__ import annotations
+
+from datetime import date
+from fractions import Fraction
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+from symobs.formula.phrases.languages import Language, language_named
+from symobs.ground.dataclass import dataclass
+from symobs.tasks.result.web_page import PLAIN, WebPage
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+    from pathlib import Path
+
+#: A sheet of more problems than this begins with a table of contents.
+WITHOUT_CONTENTS = 6
+#: So many columns of a table of points stand beside each other.
+_COLUMNS = 10
+_PREFIX = "sheet_"
+
+
+def sheet_words(language: Language) -> dict[str, str]:
+    """Return the fixed words of a sheet, by the keys of their phrases without the prefix: all come from here."""
+    return {key.removeprefix(_PREFIX): words for key, words in language.phrases.items() if key.startswith(_PREFIX)}
+
+
+def decimal_of(points: Fraction) -> str:
+    """Return points as a decimal: 10, 2.5."""
+    whole, rest = divmod(points.numerator * 100 // points.denominator, 100)
+    return f"{whole}.{rest:02}".rstrip("0").rstrip(".")
+
+
+def points_in_words(points: Sequence[Fraction], language: Language) -> str:
+    """Return the sum of some points, `1 point` or `7.5 points`; nothing where there are none."""
+    total, words = sum(points, Fraction(0)), sheet_words(language)
+    return f"{language.decimal(decimal_of(total))} {words['point' if total == 1 else 'points']}" if points else ""
+
+
+@dataclass(frozen=True)
+class Logo:
+    """A picture at the head of a sheet: its kind (png, jpg or pdf), its bytes, and where LaTeX finds it."""
+
+    kind: str
+    content: bytes
+    path: str
+
+
+@dataclass(frozen=True)
+class Header:
+    """The head of a sheet."""
+
+    course: str = ""
+    term: str = ""
+    number: str = ""
+    due: str | date = ""
+    instructor: str = ""
+    text: str = ""
+    logo: Logo | None = None
+    #: Whether there is a line for name and student number.
+    has_name: bool = False
+    #: As in an examination: every problem on a page of its own, its solution right after it.
+    is_exam: bool = False
+
+
+@dataclass(frozen=True)
+class SheetEntry:
+    """One problem of a sheet; a part that failed is None."""
+
+    number: int
+    file: str
+    title: str
+    question: Any = None
+    solution: Any = None
+    #: What the sheet says in place of a part that could not be made.
+    failure: str = ""
+    #: One value for the whole problem, or one for each of its parts.
+    points: tuple[Fraction, ...] = ()
+    hint: str = ""
+    #: The answers alone, for the end of the sheet.
+    answer: Any = None
+    #: The code of the language of its parts.
+    language: str = ""
+
+
+@dataclass(frozen=True)
+class Item:
+    """One piece of a chapter: what it begins with, and a part of a problem or a text in its place."""
+
+    kind: str
+    entry: SheetEntry
+    label: str
+    title: str
+    part: Any = None
+    text: str = ""
+    points: str = ""
+
+    @property
+    def place(self) -> str:
+        """The name of its place on the sheet."""
+        return f"{self.kind}-{self.entry.number}"
+
+
+@dataclass(frozen=True)
+class Chapter:
+    """A chapter of a sheet; that of an examination has no title."""
+
+    name: str
+    title: str
+    items: tuple[Item, ...]
+
+
+@dataclass(frozen=True)
+class Sheet:
+    """Problems under one title: first all questions, then all solutions; in an examination one after the other."""
+
+    title: str
+    entries: tuple[SheetEntry, ...]
+    has_questions: bool = True
+    has_solutions: bool = True
+    templates: Path | None = None
+    header: Header = Header()
+    #: For a page of HTML: what it offers besides its text, and the level of detail that is shown first.
+    web: WebPage = PLAIN
+    detail: str = "full"
+
+    @property
+    def language(self) -> str:
+        """The language of the sheet's own words: that of all its problems, English where they differ."""
+        found = {entry.language for entry in self.entries if entry.language}
+        return found.pop() if len(found) == 1 else "en"
+
+    @property
+    def is_long(self) -> bool:
+        """Whether the sheet has a table of contents."""
+        return len(self.entries) > WITHOUT_CONTENTS and not self.header.is_exam
+
+    @cached_property
+    def words(self) -> dict[str, str]:
+        """The fixed words of the sheet."""
+        return sheet_words(self._language)
+
+    @property
+    def _language(self) -> Language:
+        return language_named(self.language)
+
+    @property
+    def heading(self) -> str:
+        """The number of the sheet and its title."""
+        number = f"{self.words['number']} {self.header.number}" if self.header.number else ""
+        return ": ".join(filter(None, (number, self.title)))
+
+    @property
+    def course(self) -> str:
+        """The course and its term."""
+        return ", ".join(filter(None, (self.header.course, self.header.term)))
+
+    @property
+    def facts(self) -> tuple[tuple[str, str], ...]:
+        """Who gives the sheet out and when it is due, each after its word."""
+        due = self._language.day(self.header.due) if isinstance(self.header.due, date) else self.header.due
+        told = ((self.words["instructor"], self.header.instructor), (self.words["due"], due))
+        return tuple((word, value) for word, value in told if value)
+
+    @property
+    def fields(self) -> tuple[str, ...]:
+        """What is to be filled in at the head, on a sheet that is handed out."""
+        is_handed_out = self.header.has_name and not self.has_solutions
+        return (self.words["name"], self.words["student_number"]) if is_handed_out else ()
+
+    @property
+    def totals(self) -> tuple[tuple[tuple[str, ...], ...], ...]:
+        """The tables of points, each as its rows: numbers, points, and on a sheet that is handed out empty scores."""
+        if not self.has_questions or not any(entry.points for entry in self.entries):
+            return ()
+        cells = [
+            (str(entry.number), self._language.decimal(decimal_of(sum(entry.points, Fraction(0)))))
+            for entry in self.entries
+        ]
+        total = sum((point for entry in self.entries for point in entry.points), Fraction(0))
+        cells.append((self.words["total"], self._language.decimal(decimal_of(total))))
+        tables = []
+        for some in (cells[start : start + _COLUMNS] for start in range(0, len(cells), _COLUMNS)):
+            numbers, points = zip(*some, strict=True)
+            rows = [(self.words["problem"], *numbers), (self.words["points_row"], *points)]
+            rows += [] if self.has_solutions else [(self.words["score_row"], *("" for _ in some))]
+            tables.append(tuple(rows))
+        return tuple(tables)
+
+    @property
+    def kinds(self) -> tuple[str, ...]:
+        """The kinds of part that every problem has on this sheet."""
+        return (*(("questions",) if self.has_questions else ()), *(("solutions",) if self.has_solutions else ()))
+
+    def chapters(self) -> tuple[Chapter, ...]:
+        """Return the chapters: questions, hints and final answers where there are any, and solutions."""
+        ends = {"hints": self._hints(), "answers": self._answers()} if self.has_questions else {}
+        if self.header.is_exam:
+            both = [self._items(kind) for kind in self.kinds]
+            named = {"problems": tuple(item for items in zip(*both, strict=True) for item in items), **ends}
+        else:
+            named = {kind: tuple(self._items(kind)) for kind in self.kinds[:1]} | ends
+            named |= {kind: tuple(self._items(kind)) for kind in self.kinds[1:]}
+        return tuple(Chapter(name, self.words.get(name, ""), items) for name, items in named.items() if items)
+
+    def _items(self, kind: str) -> Iterator[Item]:
+        """Yield the questions or the solutions; one below its question needs neither title nor points."""
+        is_below = self.header.is_exam and kind == "solutions"
+        for entry in self.entries:
+            part = entry.question if kind == "questions" else entry.solution
+            label = f"{self.words['one_solution']} {entry.number}" if is_below else f"{entry.number}."
+            points = "" if is_below else points_in_words(entry.points, self._language)
+            yield Item(kind, entry, label, "" if is_below else entry.title, part, "" if part else entry.failure, points)
+
+    def _hints(self) -> tuple[Item, ...]:
+        hinted = (entry for entry in self.entries if entry.hint)
+        return tuple(Item("hints", entry, f"{entry.number}.", entry.title, None, entry.hint) for entry in hinted)
+
+    def _answers(self) -> tuple[Item, ...]:
+        """Return the final answers, none where there are none at all."""
+        if not any(entry.answer for entry in self.entries):
+            return ()
+        return tuple(
+            Item("answers", entry, f"{entry.number}.", entry.title, entry.answer, "" if entry.answer else entry.failure)
+            for entry in self.entries
+        )

@@ -1,0 +1,193 @@
+"""Statements at every real point of a variety: values never 0 together, and ranks (trusted)."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from typing import TYPE_CHECKING, Any
+
+from symobs.exact import (
+    EIGENVALUE,
+    Ideal,
+    Matrix,
+    Scalar,
+    TooLarge,
+    echelon,
+    independent_rows,
+    is_inverse,
+    kept_from_zero,
+)
+from symobs.exact.core.generators import all_roots
+from symobs.exact.ideals.conjugate_points import conjugate_points
+from symobs.formula.tree import ModuloIdeal
+from symobs.ground.errors import NotShown
+from symobs.system.conditions import never_zero, real_consequences, vanishing_factors
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Mapping, Sequence
+
+    from symobs.formula.tree import Environment
+
+#: The most minors of one order that are looked at, and how many of the shortest are tried before all are.
+_MINORS = 100
+_FEW = (4, 12)
+
+
+def never_together_zero(
+    values: Iterable[Scalar], relations: Iterable[Scalar], signs: Mapping[str, str], nonzero: tuple[Scalar, ...] = ()
+) -> bool:
+    """Return whether the values have no common real zero with these signs where the relations hold.
+
+    Irreducible polynomials that are known not to vanish there may be given as `nonzero`; a sum of squares is one where its
+    terms do not vanish together.
+
+    With the values the relations generate an ideal that holds 1, or a polynomial that the signs keep from 0.  What real
+    parameters imply is added to it: a² + b² = 0 only where a = b = 0, and a² b = 0 with b > 0 only where a = 0; to
+    an eigenvalue, which may be complex, nothing, but to what is left of the parameters when it is eliminated.  The
+    equations among the relations are reduced by what follows from the values, and what is kept from 0 by what follows from
+    both, which keeps long ones short.
+    """
+    values = list(values)
+    relations = _without_other_roots(tuple(relations), values)
+    apart = [relation for relation in relations if any(is_inverse(name) for name in relation.names)]
+    equations = [relation for relation in relations if relation not in apart]
+    known = _implied([_stripped(value, signs, nonzero) for value in values if value], signs, nonzero)
+    known = [part for ideal in known for part in _within(ideal, equations, signs, nonzero)]
+    known = [part for part in known if not any(value in part for value in nonzero)]
+    kept = [kept_from_zero(relation) for relation in apart]
+    return all(
+        any(value in part for value in kept) or (not part.is_seen_prime and not _within(part, apart, signs, nonzero))
+        for part in known
+    )
+
+
+def _within(
+    ideal: Ideal, relations: Iterable[Scalar], signs: Mapping[str, str], nonzero: tuple[Scalar, ...]
+) -> list[Ideal]:
+    """Return ideals of the real points of an ideal where relations hold, none where there is none."""
+    relations = tuple(relations)
+    # Points by a coordinate are left as they are: they reduce the others.
+    if conjugate_points(relations) is None or Ideal.of(relations).coordinate is None:
+        relations = tuple(map(ideal.remainder, relations))
+    found = _implied([*relations, *ideal.generators], signs, nonzero)
+    return [part for reduced in found for part in _parts(reduced, signs, nonzero)]
+
+
+def _parts(ideal: Ideal, signs: Mapping[str, str], nonzero: tuple[Scalar, ...]) -> Iterator[Ideal]:
+    """Yield ideals one of which vanishes at each real point of these signs where an ideal does.
+
+    Among finitely many points a polynomial of the ideal in one parameter alone tells those apart where different factors
+    of it vanish, and leaves out those where none can.
+    """
+    quotient = ideal.quotient if EIGENVALUE not in ideal.field.position else None
+    if quotient is None:
+        yield ideal
+        return
+    for name in ideal.field.names if quotient.dimension else ():
+        alone = quotient.minimal_polynomial(Scalar.symbol(name), name)
+        factors = [factor for factor in vanishing_factors([alone], signs) if factor not in nonzero]
+        if alone not in ideal or (len(factors) == 1 and factors[0] in ideal):
+            continue
+        for factor in factors:
+            equations = quotient.by_coordinate(name, factor, alone) or [*ideal.generators, factor]
+            for part in _implied(equations, signs, nonzero):
+                yield from _parts(part, signs, nonzero)
+        return
+    yield ideal
+
+
+def _without_other_roots(relations: tuple[Scalar, ...], values: Sequence[Scalar]) -> tuple[Scalar, ...]:
+    """Drop relations on square roots that do not occur in the values.
+
+    Roots of q and of −q may stand on one page, each in a case of its own: taken as real together they leave no point, and
+    of no point everything is true.
+    """
+    others = {root.name for root in all_roots(*relations)} - {root.name for root in all_roots(*values)}
+    return tuple(relation for relation in relations if others.isdisjoint(relation.names))
+
+
+def _implied(equations: Iterable[Scalar], signs: Mapping[str, str], nonzero: tuple[Scalar, ...]) -> list[Ideal]:
+    """Return an ideal of polynomials that vanish at all real points of these signs where equations hold.
+
+    There is none in the list where that is nowhere.
+    """
+    ideal = Ideal.of(equations)
+    while not ideal.is_whole and not any(never_zero(generator, signs) for generator in ideal.generators):
+        implied = (c for g in ideal.generators for c in (_stripped(g, signs, nonzero), *real_consequences(g, signs)))
+        news = [value for value in implied if value not in ideal]
+        if not news:
+            return [ideal]
+        ideal = ideal.extended_by(*news)
+    return []
+
+
+def _stripped(value: Scalar, signs: Mapping[str, str], nonzero: tuple[Scalar, ...]) -> Scalar:
+    """Return the product of the distinct factors of a value that can vanish."""
+    factors = (factor for factor in vanishing_factors([value], signs) if factor not in nonzero)
+    return math.prod(factors, start=Scalar.of(1))
+
+
+def _minors(matrix: Matrix, order: int) -> Iterator[tuple[tuple[int, ...], ...]]:
+    """Yield the rows and the columns of every square part of an order."""
+    return itertools.product(*(itertools.combinations(range(size), order) for size in matrix.shape))
+
+
+class Pointwise(ModuloIdeal):
+    """The exact arithmetic modulo relations, with the rank of a matrix common to all points of the variety."""
+
+    def __init__(self, environment: Environment) -> None:
+        """Keep the signs and the nonzero values."""
+        super().__init__(environment)
+        self.signs = environment.signs
+        self.nonzero = (*environment.nonzero, *environment.domain)
+
+    def _meaningful(self, value: Scalar | Matrix) -> None:
+        """Accept a denominator that vanishes nowhere, too, where the relations are too long to be taken together."""
+        try:
+            super()._meaningful(value)
+        except TooLarge:
+            if not never_together_zero([value.common_denominator()], self.relations, self.signs, self.nonzero):
+                raise
+
+    def apply(self, function: str, value: Matrix) -> Any:
+        """Return det, adj, or the rank: r where r×r minors never vanish together and none is higher.
+
+        That it is not higher a kernel of dimension n − r shows, or that all larger minors vanish where they are few.
+
+        Raises TypeError where that cannot be shown.
+        """
+        at_number = self.relations and all(relation.names == {EIGENVALUE} for relation in self.relations)
+        if function != "rank" or at_number:
+            return super().apply(function, value)
+        columns, vectors = echelon(value, self.ideal)
+        kernel = Matrix.of([[v[i, 0] for v in vectors] for i in range(value.shape[1])], len(vectors))
+        sent_to_zero = all(entry in self.ideal for entry in (value @ kernel).entries)
+        rows = independent_rows(value.select(range(value.shape[0]), columns), self.ideal)
+        if not self._has_minor(value, len(columns), (rows, columns)) or not (
+            (sent_to_zero and self._has_minor(kernel, len(vectors))) or self._has_none(value, len(columns) + 1)
+        ):
+            message = "the rank is not seen to be the same everywhere"
+            raise NotShown(message)
+        return Scalar.of(len(columns))
+
+    def _has_minor(
+        self, matrix: Matrix, order: int, first: tuple[tuple[int, ...], tuple[int, ...]] | None = None
+    ) -> bool:
+        """Return whether at every point a minor of some order is not zero; a likely one may be tried first."""
+        if not order or (first is not None and self._never_together_zero([matrix.select(*first).determinant()])):
+            return True
+        minors = [matrix.select(*minor).determinant() for minor in itertools.islice(_minors(matrix, order), _MINORS)]
+        shortest = sorted((minor for minor in minors if minor not in self.ideal), key=lambda minor: minor.size)
+        return any(self._never_together_zero(shortest[:count]) for count in (*_FEW, len(shortest)))
+
+    def _has_none(self, matrix: Matrix, order: int) -> bool:
+        """Return whether all minors of an order vanish; False if there are too many to check."""
+        if math.prod(math.comb(size, order) for size in matrix.shape) > _MINORS:
+            return False
+        return all(matrix.select(*minor).determinant() in self.ideal for minor in _minors(matrix, order))
+
+    def _never_together_zero(self, values: Sequence[Scalar]) -> bool:
+        try:
+            return never_together_zero(values, self.relations, self.signs, self.nonzero)
+        except TooLarge:
+            return False

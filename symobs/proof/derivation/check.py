@@ -1,0 +1,349 @@
+"""Derivations, and the check without which none is shown (trusted).
+
+`Derivation.check` walks the steps in order, builds the environment from what is given and defined, and verifies every
+link of every relation, also those inside sentences; a false line raises `DerivationRejected`, and so does a letter
+that was not established before.  Renderers accept checked derivations only.
+"""
+
+from __future__ import annotations
+
+from dataclasses import field, replace
+from typing import TYPE_CHECKING, TypeAlias, assert_never
+
+from symobs.exact import Ideal, Matrix, Scalar, product_of
+from symobs.formula.phrases import ASSERTS, NAMING
+from symobs.formula.phrases.spoken import SPOKEN, StateChoice
+from symobs.formula.tree import (
+    Apply,
+    Conjunction,
+    Derivative,
+    Environment,
+    Evaluated,
+    Exact,
+    Fact,
+    Formula,
+    HoldsExactlyWhere,
+    Letter,
+    Literal,
+    Predicate,
+    Relation,
+    Roots,
+    Signal,
+    SymbolList,
+    evaluate,
+    letters,
+    roots_written,
+)
+from symobs.formula.tree.plain_text import plain, plain_relation
+from symobs.ground.dataclass import dataclass
+from symobs.ground.errors import DerivationRejected
+from symobs.proof.certificate.claims import UNREADABLE, as_scalar, verify
+from symobs.proof.derivation.exact_where import is_exactly
+from symobs.proof.derivation.facts.properties import PREDICATES, are_roots, polynomial_of, subjects
+from symobs.proof.derivation.facts.rejection import BUG, reject
+from symobs.proof.derivation.facts.restriction import on_stratum
+from symobs.proof.derivation.steps import (
+    CaseStep,
+    Conclude,
+    Define,
+    Diagram,
+    Equal,
+    Given,
+    Inequalities,
+    Note,
+    Plot,
+    RegionSummary,
+    Section,
+    Sentence,
+    Step,
+    Tabulate,
+    literals,
+)
+from symobs.proof.derivation.wording_check import (
+    are_added,
+    fits,
+    formula_in,
+    reject_other_map,
+    reject_other_slots,
+    rests,
+    with_limit,
+)
+from symobs.stability.criteria.stability import monic
+from symobs.system.conditions import vanishing_factors
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from symobs.formula.figures.plot import Picture
+
+Value: TypeAlias = Scalar | Matrix | Signal
+
+
+@dataclass(frozen=True)
+class Derivation:
+    """Steps that start from an environment with free signals and declared signs only."""
+
+    steps: tuple[Step, ...]
+    start: Environment
+    symbols: Mapping[str, str] = field(default_factory=dict)
+    discrete: bool = False
+
+    @property
+    def variable(self) -> str:
+        """The variable of polynomials, `s` or `z`."""
+        return self.start.variable
+
+    def check(self) -> Environment:
+        """Verify every line; return the final environment.  Raises `DerivationRejected`."""
+        known: Environment | None = self.__dict__.get("_checked")
+        if known is None:
+            known = _walk(self.steps, self.start, self.discrete)
+            object.__setattr__(self, "_checked", known)
+        return known
+
+
+def _walk(steps: tuple[Step, ...], environment: Environment, discrete: bool) -> Environment:  # noqa: FBT001
+    for step in steps:
+        try:
+            environment = _after(step, environment, discrete)
+        except UNREADABLE as error:
+            message = f"a step of kind {type(step).__name__} cannot be read: {error}"
+            raise DerivationRejected(message, repair=BUG, line=str(step)) from error
+    return environment
+
+
+def _after(step: Step, environment: Environment, discrete: bool) -> Environment:  # noqa: FBT001
+    """Verify one step and return the environment after it."""
+    match step:
+        case Given(relations, sentence):
+            said = [slot for _, slot in sentence.slots] if sentence else []
+            stated = {part for slot in said for part in (slot.relations if isinstance(slot, Conjunction) else (slot,))}
+            for relation in relations:
+                if relation.operators == ("!=",) and (not sentence or relation in stated):
+                    environment = _assume(relation, environment)
+                else:
+                    environment = with_domain(relation, _introduce(relation, environment))
+        case Define(relation):
+            environment = _introduce(relation, environment)
+        case Equal(relations):
+            for relation in relations:
+                _fact(relation, environment, discrete)
+        case Conclude(facts=facts) | Note(facts=facts):
+            for fact in facts:
+                _fact(fact, environment, discrete)
+        case Diagram(name, labels):
+            from symobs.proof.derivation.figures.block_diagram_check import equations_of  # noqa: PLC0415 - only pages with a diagram pay for it
+
+            for relation in equations_of(name, dict(labels), environment):
+                _fact(relation, environment, discrete)
+        case Tabulate():
+            environment = _tabulated(step, environment, discrete)
+        case Inequalities(fact):
+            _fact(fact, environment, discrete)
+        case RegionSummary(polynomial):
+            _about_letters(polynomial, environment)
+            value = as_scalar(evaluate(polynomial, environment, Exact(environment)))
+            from symobs.proof.derivation.region_check import is_survey  # noqa: PLC0415 - only pages of regions pay for it
+
+            if not is_survey(step, value, environment, discrete=discrete):
+                reject(f"that this is the region of {plain(polynomial, environment.variable)}")
+        case Plot(picture, subject):
+            _drawn(picture, subject, environment, discrete)
+        case CaseStep(when, substitution, inside, anew=anew):
+            stratum = on_stratum(when, dict(substitution), environment)
+            kept = {name: value for name, value in stratum.values.items() if name not in anew}
+            _walk(inside, replace(stratum, values=kept), discrete)
+        case Section(title, inside):
+            _sentence(title, environment, discrete)
+            _owed(title, step, environment)
+            environment = _walk(inside, environment, discrete)
+        case _:
+            assert_never(step)
+    sentence = getattr(step, "sentence", None)
+    if sentence is None:
+        return environment
+    _sentence(sentence, environment, discrete)
+    _owed(sentence, step, environment)
+    return with_limit(sentence, environment)
+
+
+def _tabulated(step: Tabulate, environment: Environment, discrete: bool) -> Environment:  # noqa: FBT001
+    """Verify a table and its polynomial; define Δₙ₋₁ for this table."""
+    polynomial, variable = step.polynomial, step.variable
+    _about_letters(polynomial, environment)
+    value = as_scalar(evaluate(polynomial, environment, Exact(environment)))
+    from symobs.proof.derivation.routh_check import is_tabulated, last_determinant  # noqa: PLC0415 - only pages of regions pay for it
+
+    if not is_tabulated(step, value, environment):
+        reject(f"that this is the table of {plain(polynomial, environment.variable)} in {variable}")
+    if step.sentence is not None and "polynomial" in dict(step.sentence.slots):
+        _fact(Relation((formula_in(step.sentence, "polynomial"), polynomial), ("=",)), environment, discrete)
+    return environment.extended_by(values=last_determinant(value, variable))
+
+
+def _drawn(picture: Picture, subject: Formula, environment: Environment, discrete: bool) -> None:  # noqa: FBT001
+    """Reject a plot that is false of its polynomial."""
+    from symobs.proof.derivation.figures.plot_check import faults, relations_of  # noqa: PLC0415 - only pages of regions pay for it
+
+    for formula in (subject, *(member for relation in relations_of(picture) for member in relation.members)):
+        _established(formula, environment)
+    if not letters(subject) - {"s"} and not isinstance(subject, Apply):
+        reject(f"a picture of {plain(subject, environment.variable)}, which is no letter's,")
+    fault = next(faults(picture, subject, environment, discrete=discrete), None)
+    if fault is not None:
+        reject(f"{fault}, in a picture,")
+
+
+def _sentence(sentence: Sentence, environment: Environment, discrete: bool) -> None:  # noqa: FBT001
+    for _, slot in sentence.slots:
+        if not fits(sentence.key, slot, environment):
+            reject(f"{slot}, which is not what {sentence.key} speaks of,")
+        if isinstance(slot, (Relation, Predicate, Roots, HoldsExactlyWhere, Conjunction, Evaluated, SymbolList)):
+            _fact(slot, environment, discrete)
+        elif not isinstance(slot, (str, *SPOKEN)):
+            _established(slot, environment)
+            if next(literals(slot), None) is not None and sentence.key not in NAMING:
+                reject(f"{plain(slot, environment.variable)}, a value in a sentence without what it is the value of,")
+
+
+def _owed(sentence: Sentence, step: Step, environment: Environment) -> None:
+    """Reject a sentence that asserts, rests on or applies what its step does not contain, whatever kind of step it is."""
+    facts = step.facts if isinstance(step, Conclude | Note) else ()
+    asserted = ASSERTS.get(sentence.key, ())
+    if not {fact.name for fact in facts if isinstance(fact, Predicate)}.issuperset(asserted):
+        reject(f"{sentence.key}, which rests on {', '.join(asserted)},")
+    roots = (slot for _, slot in sentence.slots if isinstance(slot, Roots))
+    if not rests(sentence.key, (*facts, *roots), environment):
+        reject(f"{sentence.key}, which rests on another fact,")
+    if not all(are_added(slot, facts) for _, slot in sentence.slots if isinstance(slot, StateChoice)):
+        reject(f"{sentence.key}, of other states,")
+    introduced = step.relation if isinstance(step, Define) else None
+    reject_other_map(sentence, introduced, environment)
+    reject_other_slots(sentence, introduced, environment)
+
+
+def _about_letters(formula: Formula, environment: Environment) -> None:
+    """Reject a property of written-out values only, which are no quantity of the problem."""
+    _established(formula, environment)
+    if not letters(formula) - {"s"}:
+        reject(f"a property of {plain(formula, environment.variable)}, which is no letter's,")
+
+
+def _fact(fact: Fact, environment: Environment, discrete: bool) -> None:  # noqa: FBT001
+    """Verify a relation or a property; a property must hold whatever the named coefficients stand for."""
+    if isinstance(fact, Relation):
+        for member in fact.members:
+            _established(member, environment)
+        if verify(fact, environment)[0] == "":
+            reject(plain_relation(fact, environment.variable))
+        return
+    if isinstance(fact, SymbolList):
+        _established(Literal(product_of(map(Scalar.symbol, fact.names))), environment)
+        return
+    if isinstance(fact, Conjunction):
+        for part in fact.relations:
+            _fact(part, environment, discrete)
+        return
+    if isinstance(fact, Evaluated):
+        _fact(Relation((fact.formula, fact.value), ("=",)), environment, discrete)
+        return
+    environment = replace(environment, coefficients={})
+    if isinstance(fact, Roots):
+        _about_letters(fact.polynomial, environment)
+        value = as_scalar(evaluate(fact.polynomial, environment, Exact(environment)))
+        polynomial = polynomial_of(value, environment)
+        if polynomial is not value:
+            polynomial = monic(polynomial, environment.variable)
+        if not are_roots(fact.values, polynomial, environment):
+            reject(f"the roots of {polynomial} are {', '.join(map(str, fact.values))}")
+        return
+    if isinstance(fact, HoldsExactlyWhere):
+        _about_letters(fact.property.subject, environment)
+        found = evaluate(fact.property.subject, environment, Exact(environment))
+        (value,) = subjects(fact.property.name, found, environment.variable)
+        polynomial = polynomial_of(value, environment)
+        if not is_exactly(fact, polynomial, environment, discrete=discrete):
+            reject(
+                f"{polynomial} is {fact.property.name} exactly where "
+                f"{', '.join(plain_relation(relation, environment.variable) for relation in fact.where)}"
+            )
+        return
+    _about_letters(fact.subject, environment)
+    found = evaluate(fact.subject, environment, Exact(environment))
+    parts = subjects(fact.name, found, environment.variable)
+    if not all(PREDICATES[fact.name](part, environment, discrete) for part in parts):
+        reject(f"{fact.name}({found})")
+
+
+def _introduce(relation: Relation, environment: Environment) -> Environment:
+    """Verify the links after the first member and let the first member mean the rest."""
+    target, *rest = relation.members
+    for member in rest:
+        _established(member, environment)
+    if relation.operators[0] != "=":
+        reject(plain_relation(relation, environment.variable))
+    anew = isinstance(target, Letter) and target.name in environment.values  # written anew, not given another meaning
+    agreeing = relation if anew else Relation(tuple(rest), relation.operators[1:])
+    if len(agreeing.members) > 1 and verify(agreeing, environment)[0] == "":
+        reject(plain_relation(relation, environment.variable))
+    return _meaning(target, rest, environment)
+
+
+def with_domain(relation: Relation, environment: Environment) -> Environment:
+    """Assume the denominators of the data are nonzero; elsewhere the plant is undefined."""
+    denominators = [value.common_denominator() for value in literals(relation.members)]
+    factors = vanishing_factors(denominators, environment.signs)
+    return replace(environment, domain=tuple(dict.fromkeys((*environment.domain, *factors))))
+
+
+def _assume(relation: Relation, environment: Environment) -> Environment:
+    """Let the factors of a difference, which there must be, be different from 0 from here on."""
+    left, right = (as_scalar(evaluate(member, environment, Exact(environment))) for member in relation.members)
+    difference = (left - right).numerator
+    if difference in Ideal.where(environment.relations):
+        reject(plain_relation(relation, environment.variable))
+    return replace(environment, nonzero=(*environment.nonzero, *(f for f, _ in difference.factors()[1])))
+
+
+def _meaning(target: Formula, rest: list[Formula], environment: Environment) -> Environment:
+    match target:
+        case Derivative(Letter(name)) if _is_free(name, environment):
+            return environment.extended_by(dynamics={name: rest[0]})
+        case Literal(value) if str(value) in value.names:
+            (name,) = value.names
+            _new_name(name, environment)
+            meaning = evaluate(rest[-1], environment, Exact(replace(environment, coefficients={})))
+            return environment.extended_by(coefficients={name: meaning})
+        case Letter(name) if name not in environment.signals or _is_free(name, environment):
+            last = next((member for member in reversed(rest) if isinstance(member, Literal)), rest[0])
+            value = evaluate(last, environment, Exact(environment))
+            if isinstance(value, Signal):
+                return environment.extended_by(signals={name: rest[0]})
+            if name == "s" or name in environment.signals:
+                reject(f"{name}, which stands for something else, as a name for a value")
+            if isinstance(last, Literal):
+                value = last.value
+            return environment.extended_by(values={name: value})
+        case _:
+            return reject("only a letter, a derivative or a named coefficient can be introduced")
+
+
+def _is_free(name: str, environment: Environment) -> bool:
+    """Return whether a signal has neither a definition nor a derivative: only such a one can be given either."""
+    return environment.signals[name] is None and name not in environment.dynamics
+
+
+def _new_name(name: str, environment: Environment) -> None:
+    """Reject a coefficient's name that stands for something already: a parameter would lose its generality."""
+    used = [*environment.values.values(), *environment.coefficients.values()]
+    if name in environment.signs or name in environment.coefficients or any(name in value.names for value in used):
+        reject(f"{name}, which means something already, as a name for a coefficient")
+
+
+def _established(formula: Formula, environment: Environment) -> None:
+    """Reject letters that are not established, and roots of what may be negative: they would not be real."""
+    for name in letters(formula):
+        if not environment.defines(name):
+            reject(f"{name} is used before it is established")
+    for root in roots_written(formula):
+        _fact(Relation((Literal(root.argument), Literal(Scalar.of(0))), (">=",)), environment, discrete=False)

@@ -1,0 +1,262 @@
+"""Declared signs, their consequences, and the conditions under which a result holds.
+
+A condition is one relation `expression op 0` on the parameters, of one of four kinds: *domain* (a denominator of the
+plant: where it vanishes there is no plant), *claim* (a denominator of the answer), *existence* (a factor whose
+vanishing
+costs observability or controllability), *route* (what one method's witness needs).  What the declared signs imply is
+not repeated.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from symobs.exact import EIGENVALUE, Scalar
+from symobs.exact.algebraic.enclosure import sign_of_number
+from symobs.exact.algebraic.real_algebraic import integer_factor, real_roots
+from symobs.exact.core.generators import PI, function_named
+from symobs.exact.core.polynomial import by_monomial
+from symobs.ground.dataclass import dataclass
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Mapping
+
+#: What may be declared of a symbol.  Each implies that the symbol is real.
+SIGNS = ("positive", "negative", "nonnegative", "nonpositive", "nonzero", "real")
+
+#: A polynomial with more terms than this is not factored: it counts as one factor.
+FACTORED_UP_TO = 1_500
+
+#: The side of 0 that a sign leaves to a parameter.
+_SIDE = {"positive": 1, "nonnegative": 1, "negative": -1, "nonpositive": -1}
+_NEVER_ZERO = {"positive", "negative", "nonzero"}
+_OPPOSITE = {
+    "positive": "negative",
+    "negative": "positive",
+    "nonnegative": "nonpositive",
+    "nonpositive": "nonnegative",
+}
+#: The signs that say something; of a number of any other sign nothing is known.
+_KNOWN = frozenset(SIGNS) - {"real"}
+
+
+@dataclass(frozen=True)
+class Condition:
+    """expression operator 0, of the given kind."""
+
+    kind: str
+    expression: Scalar
+    operator: str = "!="
+
+    def __str__(self) -> str:
+        return f"{self.expression} {self.operator} 0"
+
+
+#: What a sum of terms of one sign is that cannot all vanish.
+_WEAK = {"nonnegative": "positive", "nonpositive": "negative"}
+
+
+def _product_sign(left: str, right: str) -> str:
+    if "zero" in (left, right):
+        return "zero"
+    if not _KNOWN.issuperset((left, right)):
+        return "real"
+    if "nonzero" in (left, right):
+        weak = {"nonnegative", "nonpositive"} & {left, right}
+        return "real" if weak else "nonzero"
+    either_weak = left.startswith("non") or right.startswith("non")
+    down = {"negative", "nonpositive"}
+    negative = (left in down) != (right in down)
+    if either_weak:
+        return "nonpositive" if negative else "nonnegative"
+    return "negative" if negative else "positive"
+
+
+def _sum_sign(left: str, right: str) -> str:
+    for first, second in ((left, right), (right, left)):
+        if first == "zero":
+            return second
+    if {left, right} <= {"positive", "nonnegative"}:
+        return "positive" if "positive" in (left, right) else "nonnegative"
+    if {left, right} <= {"negative", "nonpositive"}:
+        return "negative" if "negative" in (left, right) else "nonpositive"
+    return "real"
+
+
+def _power_sign(sign: str, exponent: int) -> str:
+    if exponent % 2:
+        return sign
+    return "positive" if sign in {"positive", "negative", "nonzero"} else "nonnegative"
+
+
+def _sign_of_undeclared(name: str, signs: Mapping[str, str]) -> str:
+    """Return the sign of a generator that is no parameter: of π, of a root, of exp and cosh."""
+    found = function_named(name)
+    if found is None:
+        return "positive" if name == PI else "real"
+    if found.kind == "CRootOf":
+        return sign_of_number(found.value)
+    if found.kind == "sqrt":
+        return "positive" if sign_of(found.argument, signs) == "positive" else "real"
+    return "positive" if found.kind in {"exp", "cosh"} else "real"
+
+
+def _sum_of_terms(polynomial: Scalar, signs: Mapping[str, str]) -> str:
+    if EIGENVALUE in polynomial.names:  # it may be complex: nothing is certain of its square either
+        return "real"
+    total = "zero"
+    for lead, powers in _signed_terms(polynomial):
+        sign = lead
+        for name, exponent in powers:
+            sign = _product_sign(sign, _power_sign(signs.get(name) or _sign_of_undeclared(name, signs), exponent))
+        total = _sum_sign(total, sign)
+        if total == "real":
+            break
+    if total in _WEAK and polynomial.field.functions and _has_both_of_an_angle(polynomial, signs):
+        return _WEAK[total]
+    return total
+
+
+def _has_both_of_an_angle(polynomial: Scalar, signs: Mapping[str, str]) -> bool:
+    """Return whether two terms are a power of cos x and one of sin x, which do not vanish together, times what never does."""
+    found = set()
+    for _, powers in polynomial.each_term():
+        varying = [n for n, _ in powers if (signs.get(n) or _sign_of_undeclared(n, signs)) not in _NEVER_ZERO]
+        function = function_named(varying[0]) if len(varying) == 1 else None
+        if function is not None:
+            found.add((function.kind, function.argument))
+    return any(("cos", argument) in found for kind, argument in found if kind == "sin")
+
+
+def _signed_terms(polynomial: Scalar) -> Iterator[tuple[str, tuple[tuple[str, int], ...]]]:
+    """Yield the sign of the coefficient of each monomial, and its powers; roots of numbers belong to the coefficients."""
+    if not polynomial.field.roots:
+        for coefficient, powers in polynomial.each_term():
+            yield ("positive" if coefficient > 0 else "negative"), powers
+        return
+    roots = {polynomial.field.names[index] for index, _ in polynomial.field.roots}
+    for monomial, number in by_monomial(polynomial, roots).items():
+        yield sign_of_number(number), monomial
+
+
+def _sign_of_factor(factor: Scalar, signs: Mapping[str, str]) -> str:
+    """Return the certain sign of an irreducible polynomial."""
+    found = _sum_of_terms(factor, signs)
+    if found == "real":
+        found = sign_of_number(factor)
+    if found == "real":
+        found = _sign_beyond_one(factor, signs)
+    return _sign_without_roots(factor, signs) if found == "real" else found
+
+
+def _sign_beyond_one(factor: Scalar, signs: Mapping[str, str]) -> str:
+    """Return the sign that follows from eˣ = 1 + w with w > 0, for each exponential whose x is positive."""
+    found = ((name, function_named(name)) for name in factor.names)
+    above = [
+        name for name, f in found if f is not None and f.kind == "exp" and sign_of(f.argument, signs) == "positive"
+    ]
+    beyond = {name: f"w_{place}" for place, name in enumerate(above)}
+    if not beyond or factor.names & {*beyond.values()}:
+        return "real"
+    moved = factor.substitute({name: 1 + Scalar.symbol(w) for name, w in beyond.items()})
+    return _sum_of_terms(moved, {**signs, **dict.fromkeys(beyond.values(), "positive")})
+
+
+def _sign_without_roots(factor: Scalar, signs: Mapping[str, str]) -> str:
+    """Return the sign of an irreducible polynomial in one parameter that has no root where its sign lets the parameter be."""
+    names = factor.names
+    (name,) = names if len(names) == 1 else ("",)
+    if name not in signs or factor.degree(name) < 2:
+        return "real"
+    side = _SIDE.get(signs[name], 0)
+    polynomial = integer_factor(factor, name)
+    at_the_end = polynomial[polynomial.degree()] * (side or 1) ** polynomial.degree()
+    if (polynomial.degree() % 2 and not side) or (at_the_end > 0) != (polynomial[0] > 0):
+        return "real"
+    if any(not side or root.sign == side for root in real_roots(polynomial)):
+        return "real"
+    return "positive" if polynomial(side or 1) > 0 else "negative"
+
+
+def sign_of(value: Scalar, signs: Mapping[str, str]) -> str:
+    """Return the certain sign of a value: one of `SIGNS`, or `zero`.
+
+    `real` means nothing is certain.  Read off the terms of the value, or of its factors where those say more.
+    """
+    if value.is_zero:
+        return "zero"
+    whole = _product_sign(_sum_of_terms(value.numerator, signs), _sum_of_terms(value.denominator, signs))
+    if whole not in {"real", "nonnegative", "nonpositive"} or value.size > FACTORED_UP_TO:
+        return whole
+    unit, factors = value.factors()
+    sign = sign_of_number(unit)
+    for factor, power in factors:
+        sign = _product_sign(sign, _power_sign(_sign_of_factor(factor, signs), power))
+    return whole if sign == "real" else sign
+
+
+def sign_where(value: Scalar, signs: Mapping[str, str], above: Iterable[Scalar]) -> str:
+    """Return the certain sign of a value where some polynomials are positive."""
+    found = sign_of(value, signs)
+    if found in {"positive", "negative", "zero"}:
+        return found
+    beside = (sign_of(value / polynomial, signs) for polynomial in above)
+    return next((sign for sign in beside if sign != "real"), found)
+
+
+def never_zero(value: Scalar, signs: Mapping[str, str]) -> bool:
+    """Return whether the declared signs alone imply that the value is nonzero."""
+    return sign_of(value, signs) in _NEVER_ZERO
+
+
+def vanishing_factors(values: Iterable[Scalar], signs: Mapping[str, str]) -> tuple[Scalar, ...]:
+    """Return the distinct irreducible factors of numerators that can be 0 under the declared signs.
+
+    A numerator of more than `FACTORED_UP_TO` terms is returned as it is: factoring it might not end.
+    """
+    found: dict[Scalar, None] = {}
+    for value in values:
+        if value.is_constant or _sum_of_terms(value.numerator, signs) in _NEVER_ZERO:
+            continue
+        if value.numerator.size > FACTORED_UP_TO:
+            found[value.numerator] = None
+            continue
+        for factor, _ in value.numerator.factors()[1]:
+            if _sign_of_factor(factor, signs) not in _NEVER_ZERO:
+                found[factor] = None
+    return tuple(found)
+
+
+def real_consequences(polynomial: Scalar, signs: Mapping[str, str]) -> tuple[Scalar, ...]:
+    """Return polynomials that vanish at all real zeros of `polynomial` with these signs.
+
+    a² + b² = 0 only where a = b = 0: where no two terms have opposite signs, all of them vanish.  α x² + β x + γ = 0
+    with 4αγ − β² ≥ 0 and α ≠ 0 only where 2αx + β = 0 and 4αγ − β² = 0.  Nothing is returned where neither applies.
+    """
+    if polynomial.size > FACTORED_UP_TO or EIGENVALUE in polynomial.names:
+        return ()
+    monomials = [powers for _, powers in _signed_terms(polynomial)]
+    if len(monomials) > 1 and _sum_of_terms(polynomial, signs) != "real":
+        return tuple(_radical(powers, signs) for powers in monomials)
+    for name in sorted(polynomial.names):
+        if polynomial.degree(name) != 2:
+            continue
+        lead, linear, constant = polynomial.coefficients(name)
+        rest = 4 * lead * constant - linear**2
+        if not rest.is_zero and never_zero(lead, signs) and sign_of(rest, signs) in {"positive", "nonnegative"}:
+            return 2 * lead * Scalar.symbol(name) + linear, rest
+    return ()
+
+
+def _radical(powers: tuple[tuple[str, int], ...], signs: Mapping[str, str]) -> Scalar:
+    """Return the product of those generators of a monomial that can be 0."""
+    product = Scalar.of(1)
+    for name, _ in powers:
+        generator = Scalar.symbol(name)
+        product = product if never_zero(generator, signs) else product * generator
+    return product
+
+
+def opposite(sign: str) -> str:
+    """Return the sign of −x for the sign of x."""
+    return _OPPOSITE.get(sign, sign)

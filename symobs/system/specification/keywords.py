@@ -1,0 +1,390 @@
+"""Specifications of a design: a desired polynomial, given by poles or coefficients, or a gain.
+
+`KINDS` names every type a task's keyword may have.  A task's signature is its schema: the annotation of a keyword is
+the name of a kind, and the problem file, the command line and Python all read through it.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from functools import cached_property
+from typing import Annotated, Any, TypeAlias
+
+from symobs.exact import Complex, Field, Matrix, Scalar, product_of
+from symobs.exact.algebraic.conjugates import conjugates, is_in_kernel, product_of_linear, tidied
+from symobs.formula.expression import comma_between_digits, declared_name, parse_poles, parse_polynomial
+from symobs.ground.dataclass import dataclass
+from symobs.ground.errors import InputError, ShapeMismatch
+from symobs.system import StateSpace, Symbols, is_sympy, read_complex, read_matrix, read_scalar
+from symobs.system.conditions import sign_of
+from symobs.system.matrices import as_rows
+from symobs.system.reading import require_known
+from symobs.system.specification.pole_patterns import (
+    FILTERS,
+    KEYS,
+    OTHERS,
+    PolePattern,
+    is_pattern,
+    named_parts,
+    pattern_of,
+    refuse_names_of_patterns,
+)
+
+#: The kinds of keyword a task may have.  Their names in signatures are the schema, as text or as annotations.
+Poles: TypeAlias = Annotated[Any, "Poles"]
+PolynomialText: TypeAlias = Annotated[Any, "PolynomialText"]
+GainText: TypeAlias = Annotated[Any, "GainText"]
+MatrixText: TypeAlias = Annotated[Any, "MatrixText"]
+IntervalText: TypeAlias = Annotated[Any, "IntervalText"]
+SignalText: TypeAlias = Annotated[Any, "SignalText"]
+Name: TypeAlias = Annotated[str, "Name"]
+Horizon: TypeAlias = Annotated[Any, "Horizon"]
+TimeFunctions: TypeAlias = Annotated[Any, "TimeFunctions"]
+Intensity: TypeAlias = Annotated[Any, "Intensity"]
+Sign: TypeAlias = Annotated[Any, "Sign"]
+Entries: TypeAlias = Annotated[Any, "Entries"]
+Quantity: TypeAlias = Annotated[Any, "Quantity"]
+Names: TypeAlias = Annotated[Any, "Names"]
+
+KINDS: dict[str, dict[str, Any]] = {
+    "Poles": {
+        "description": 'poles: a list or a comma-separated text, "-20+20i, -20-20i", "-p"; or what they are to do, '
+        '"damping = 1/2, natural_frequency = 3", "butterworth = omega_0"',
+        "oneOf": [
+            {"type": "string"},
+            {"type": "array", "items": {"type": ["number", "string"]}},
+            {"type": "object", "propertyNames": {"enum": list(KEYS)}},
+        ],
+    },
+    "PolynomialText": {"description": 'a monic polynomial, "(s + 10)^2"', "type": "string"},
+    "GainText": {
+        "description": 'a gain, "[19; 81]"',
+        "oneOf": [{"type": "string"}, {"type": "array"}],
+    },
+    "MatrixText": {
+        "description": 'a matrix, "[1 0; 0 1]"',
+        "oneOf": [{"type": "string"}, {"type": "array"}],
+    },
+    "IntervalText": {
+        "description": 'an interval of time, "0, T"',
+        "oneOf": [{"type": "string"}, {"type": "array", "items": {"type": ["number", "string"]}}],
+    },
+    "SignalText": {
+        "description": 'a signal as a function of the time t, "t^2" or "[t; 1]"',
+        "oneOf": [{"type": "string"}, {"type": "number"}, {"type": "array"}],
+    },
+    "Entries": {
+        "description": 'entries of a matrix: (row, column) counted from 1, "(1, 2), (3, 1)", or a pattern, "[* 0; * *]"',
+        "oneOf": [{"type": "string"}, {"type": "array"}],
+    },
+    "Quantity": {"description": 'a positive quantity: "omega_0", 10, "1/2"', "type": ["string", "number"]},
+    "Names": {
+        "description": 'names of parameters: a list or a comma-separated text, "h1, h2"',
+        "oneOf": [{"type": "string"}, {"type": "array", "items": {"type": "string"}}],
+    },
+    "Sign": {"description": "1 or -1", "enum": [1, -1]},
+    "Name": {"description": "a name", "type": "string"},
+    "Horizon": {"description": 'the end of the interval [0, T]: "T", 2, or "inf"', "type": ["string", "number"]},
+    "TimeFunctions": {
+        "description": 'functions of t, one for each component: "exp(-t) + 2 t sin(3 t)"',
+        "oneOf": [{"type": "string"}, {"type": "array"}, {"type": "number"}],
+    },
+    "Intensity": {
+        "description": 'the intensity of white noise, symmetric: "q" or "[q1 0; 0 q2]"',
+        "oneOf": [{"type": "string"}, {"type": "array"}, {"type": "number"}],
+    },
+}
+
+#: The words a keyword of the kind Name may be; those of `method` are the task's methods.
+CHOICES: dict[str, tuple[str, ...]] = {
+    "kind": ("controllable", "observable", "modal"),
+    "meaning": ("asymptotic", "lyapunov"),
+    "member": ("simple", "decoupled"),
+    "observer": ("full", "minimal"),
+    "of": ("observability", "controllability"),
+}
+
+
+@dataclass(frozen=True)
+class DesiredPolynomial:
+    """A monic polynomial φ of degree n with real coefficients: its factors, and its poles, or their pattern, if given."""
+
+    variable: str
+    factors: tuple[Scalar, ...]
+    poles: tuple[Complex, ...] = ()
+    #: What the poles are to do, where they are given so.
+    pattern: PolePattern | None = None
+
+    @cached_property
+    def polynomial(self) -> Scalar:
+        """φ, multiplied out."""
+        return product_of(self.factors)
+
+    @cached_property
+    def coefficients(self) -> tuple[Scalar, ...]:
+        """The coefficients after the leading one: α₁ … αₙ of sⁿ + α₁ sⁿ⁻¹ + … + αₙ."""
+        return self.polynomial.coefficients(self.variable)[1:]
+
+    @property
+    def degree(self) -> int:
+        """The degree of φ."""
+        return sum(factor.degree(self.variable) for factor in self.factors)
+
+    @property
+    def is_numeric(self) -> bool:
+        """Whether φ has no parameter."""
+        return all(factor.names <= {self.variable} for factor in self.factors)
+
+    @property
+    def is_expanded(self) -> bool:
+        """Whether the product of the factors is φ multiplied out: one factor, or a power of the variable."""
+        return len(self.factors) == 1 or all(c.is_zero for c in self.coefficients)
+
+    def grouped(self) -> tuple[tuple[Scalar, int], ...]:
+        """Return the distinct factors with multiplicities, in the order they were given."""
+        counted: dict[Scalar, int] = {}
+        for factor in self.factors:
+            counted[factor] = counted.get(factor, 0) + 1
+        return tuple(counted.items())
+
+    def substitute(self, values: dict[str, Scalar]) -> DesiredPolynomial:
+        """Return φ with parameters substituted."""
+        poles = tuple(Complex(p.real.substitute(values), p.imaginary.substitute(values)) for p in self.poles)
+        return DesiredPolynomial(self.variable, tuple(f.substitute(values) for f in self.factors), poles)
+
+
+def desired_polynomial(
+    plant: StateSpace,
+    poles: object,
+    polynomial: object,
+    *,
+    names: tuple[str, str] = ("poles", "polynomial"),
+    degree: int | None = None,
+    required: bool = True,
+) -> DesiredPolynomial | None:
+    """Return φ read from `poles` or from `polynomial`, exactly one of which must be given.
+
+    Raises `InputError` where the degree is not the order asked for, where poles of a real design are not closed under
+    conjugation (naming the missing one), or where the polynomial is not monic.
+    """
+    degree = plant.order if degree is None else degree
+    first, second = (f"specification.{name}" for name in names)
+    if poles is None and polynomial is None:
+        if not required:
+            return None
+        message = f"{names[0]} are missing"
+        article = "an" if names[1].startswith("o") else "a"
+        repair = f'give {names[0]} = "{", ".join(str(-k) for k in range(1, degree + 1))}" or {article} {names[1]}'
+        raise InputError(message, where=first, repair=repair)
+    if poles is not None and polynomial is not None:
+        message = f"both {names[0]} and {names[1]} are given"
+        raise InputError(message, where=first, repair="keep one of them")
+    if is_pattern(poles):
+        found = _from_pattern(poles, plant, degree, first)
+    elif poles is not None:
+        read = read_poles(poles, plant.symbols, first, plant.variable)
+        if len(read) != degree:
+            raise _miscounted(poles, len(read), degree, first)
+        found = _from_poles(read, plant.variable, first)
+    else:
+        found = _from_polynomial(polynomial, plant, degree, second)
+    require_known(found.factors, second if poles is None else first)
+    return found
+
+
+def read_poles(
+    value: Any, symbols: Symbols, where: str, variable: str | None = None, *, functions: bool = True
+) -> tuple[Complex, ...]:
+    """Return exact poles from a text or a list of numbers, texts and SymPy expressions; `variable` is that of φ."""
+    if functions:
+        refuse_names_of_patterns(value, symbols.signs, where)
+    if isinstance(value, str):
+        return parse_poles(value, symbols.names, variable=variable, where=where, roots=True, functions=functions)
+    if is_sympy(value) and (hasattr(value, "tolist") or type(value).__name__ == "Tuple"):
+        value = list(value)  # a Matrix, or a Tuple
+    listed = value.tolist() if hasattr(value, "tolist") else value  # a NumPy array
+    entries = listed if isinstance(listed, Sequence) else [listed]
+    read = [
+        read_complex(entry, f"{where}[{index}]") if is_sympy(entry) else entry for index, entry in enumerate(entries)
+    ]
+    return parse_poles(read, symbols.names, variable=variable, where=where, roots=True, functions=functions)
+
+
+def _miscounted(poles: object, count: int, degree: int, where: str) -> InputError:
+    """Return the error of too many poles or too few; a comma between digits may have been meant as that of a decimal."""
+    message = f"{count} pole{'s' if count != 1 else ''} given, {degree} needed"
+    repair = f"give as many poles as the order asks for, {degree}, with commas between"
+    comma = comma_between_digits(poles)
+    if comma:
+        repair += f"; if one of them is {comma.replace(',', '.')}, write it with a decimal point"
+    return InputError(message, where=where, repair=repair, given=count)
+
+
+def _from_poles(poles: tuple[Complex, ...], variable: str, where: str) -> DesiredPolynomial:
+    if any(variable in part.names for pole in poles for part in (pole.real, pole.imaginary)):
+        message = f"a pole contains {variable}, the variable of the polynomials"
+        raise InputError(message, where=where, repair="write another name")
+    if all(is_in_kernel(part) and not part.field.roots for pole in poles for part in (pole.real, pole.imaginary)):
+        return DesiredPolynomial(variable, _factors_of_pairs(poles, variable, where), poles)
+    factors, waiting = list[Scalar](), list(map(tidied, poles))
+    while waiting:
+        families = (conjugates(waiting[0], of_numbers=choice) for choice in (True, False))
+        complete = (family for family in families if all(pole in waiting for pole in family))
+        found = ((family, product_of_linear(variable, family)) for family in complete)
+        family, factor = next(((family, factor) for family, factor in found if factor is not None), ((), None))
+        if factor is None:
+            raise _not_closed(waiting, where)
+        for pole in family:
+            waiting.remove(pole)
+        factors.append(factor)
+    return DesiredPolynomial(variable, tuple(factors), poles)
+
+
+def _from_pattern(value: object, plant: StateSpace, degree: int, where: str) -> DesiredPolynomial:
+    if plant.is_discrete:
+        message = "damping, settling time and filters are of continuous time"
+        raise InputError(message, where=where, repair="give the poles themselves, z = exp(s T)")
+    named, others = read_pattern(value, plant, where)
+    signs = plant.symbols.seen(value).signs
+    pattern = pattern_of(named, degree - len(others), plant.variable, where, signs, len(others))
+    beside = _from_poles(others, plant.variable, where).factors
+    return DesiredPolynomial(plant.variable, (*pattern.factors, *beside), pattern=pattern)
+
+
+def read_pattern(value: object, plant: StateSpace, where: str) -> tuple[dict[str, Scalar], tuple[Complex, ...]]:
+    """Return what is given by name, exact, and the poles beside it."""
+    parts = named_parts(value, where)
+    others = parts.pop(OTHERS, ())
+    named = {
+        name: read_quantity(
+            part, plant, "natural frequency ω₀" if name in FILTERS else name, f"{where}.{name}", functions=True
+        )
+        for name, part in parts.items()
+    }
+    return named, read_poles(others, plant.symbols, f"{where}.{OTHERS}", plant.variable) if others else ()
+
+
+def _not_closed(waiting: Sequence[Complex], where: str) -> InputError:
+    """Return the error for poles, of which those of the first one are not all there, or make no polynomial of the data."""
+    pole = waiting[0]
+    partner = next((other for other in conjugates(pole, of_numbers=False) if other not in waiting), None)
+    if partner is not None:
+        message = f"the poles are not closed under conjugation: {partner} is missing beside {pole}"
+        return InputError(message, where=where, repair=f"replace one of the poles by {partner}")
+    message = f"the polynomial with the pole {pole} has coefficients that are not in the field of the data"
+    repair = "give poles whose product is free of roots, but for those of rational numbers"
+    return InputError(message, where=where, repair=repair)
+
+
+def _factors_of_pairs(poles: tuple[Complex, ...], variable: str, where: str) -> tuple[Scalar, ...]:
+    """Return one factor for each real pole and each pair, for poles without roots."""
+    field = Field.of(
+        [variable, *(name for pole in poles for part in (pole.real, pole.imaginary) for name in part.field.names)]
+    )
+    s = Scalar.symbol(variable).within(field)
+    waiting = [Complex(pole.real.within(field), pole.imaginary.within(field)) for pole in poles]
+    factors: list[Scalar] = []
+    while waiting:
+        pole = waiting.pop(0)
+        if pole.is_real:
+            factors.append(s - pole.real)
+            continue
+        partner = pole.conjugate()
+        if partner not in waiting:
+            raise _not_closed([pole, *waiting], where)
+        waiting.remove(partner)
+        factors.append((s - pole.real) ** 2 + pole.imaginary**2)
+    return tuple(factors)
+
+
+def _from_polynomial(value: object, plant: StateSpace, degree: int, where: str) -> DesiredPolynomial:
+    variable = plant.variable
+    if is_pattern(value):
+        key = where.rpartition(".")[2].replace("polynomial", "poles")
+        message = f"an expression in {variable} is expected, but what poles are to do came"
+        raise InputError(message, where=where, repair=f"give it as {key}")
+    if is_sympy(value):
+        polynomial = read_scalar(value, plant.symbols, where, functions=True)
+    else:
+        polynomial = parse_polynomial(value, variable, plant.symbols.names, where=where, functions=True)
+    found = polynomial.degree(variable)
+    if not polynomial.is_polynomial_in(variable) or found < 1:
+        message = f"{polynomial} is not a polynomial in {variable}"
+        raise InputError(message, where=where, repair=f'write for example "{variable}^2 + 4 {variable} + 4"')
+    if found != degree:
+        message = f"a polynomial of degree {found} given, degree {degree} needed"
+        raise InputError(message, where=where, repair=f"give a polynomial of degree {degree}", given=found)
+    lead = polynomial.coefficients(variable)[0]
+    if not lead.is_one:
+        message = f"the polynomial is not monic, its leading coefficient is {lead}"
+        raise InputError(message, where=where, repair=f"divide it by {lead}")
+    return DesiredPolynomial(variable, _monic_factors(polynomial, variable))
+
+
+def _monic_factors(polynomial: Scalar, variable: str) -> tuple[Scalar, ...]:
+    """Return the irreducible factors that contain the variable, made monic, those of lower degree first."""
+    factors: list[Scalar] = []
+    for factor, power in polynomial.numerator.factors()[1]:
+        if factor.degree(variable) > 0:
+            factors += [factor / factor.coefficients(variable)[0]] * power
+    return tuple(sorted(factors, key=lambda f: f.degree(variable)))
+
+
+def read_gain(value: object, plant: StateSpace, name: str, shape: tuple[int, int]) -> Matrix:
+    """Return a given gain, a flat list where it is a row or a column; raises ShapeMismatch for another shape."""
+    where = f"specification.{name}"
+    gain = read_matrix(as_rows("B" if shape[1] == 1 else "C", value), plant.symbols.seen(value), where)
+    if gain.shape != shape:
+        message = f"{name} is {gain.shape[0]}×{gain.shape[1]}, expected {shape[0]}×{shape[1]}"
+        raise ShapeMismatch(message, where=where, repair=f"write {name} as a {shape[0]}×{shape[1]} matrix")
+    return gain
+
+
+def read_quantity(value: object, plant: StateSpace, name: str, where: str = "", *, functions: bool = False) -> Scalar:
+    """Return a real quantity free of the variable; raises `InputError` if it is certainly not positive."""
+    where = where or f"specification.{name}"
+    quantity = read_scalar(value, plant.symbols.seen(value), where, functions=functions)
+    if plant.variable in quantity.names:
+        message = f"{name} contains {plant.variable}, the variable of the polynomials"
+        raise InputError(message, where=where, repair="write another name")
+    if sign_of(quantity, plant.symbols.signs) in {"zero", "negative", "nonpositive"}:
+        message = f"{name} is {quantity}, which is not positive"
+        raise InputError(message, where=where, repair=f"give a positive {name}")
+    return quantity
+
+
+def read_names(value: object, name: str) -> tuple[str, ...]:
+    """Return the names of a list or a text, possibly none; raises `InputError` for a repeated name."""
+    where = f"specification.{name}"
+    listed = re.split(r"[,;\s]+", value.strip(" []")) if isinstance(value, str) else value
+    listed = [str(entry) for entry in (listed if isinstance(listed, (list, tuple)) else [listed])]
+    found = [declared_name(entry, where) for entry in listed if entry]
+    if len(set(found)) < len(found):
+        repair = f'write for example {name} = "{", ".join(dict.fromkeys(found))}"'
+        raise InputError("a parameter is named twice", where=where, repair=repair)
+    return tuple(found)
+
+
+def read_interval(value: object, plant: StateSpace) -> tuple[Scalar, Scalar]:
+    """Return the two ends of a time interval; raises `InputError` unless they are real, free of t and in order."""
+    where = "specification.interval"
+    ends = read_poles(value, plant.symbols, where, functions=False)
+    if len(ends) != 2 or not all(end.is_real for end in ends):
+        message = f"an interval has two real ends, but {len(ends)} came"
+        raise InputError(message, where=where, repair='write for example interval = "0, T"')
+    start, end = (end.real for end in ends)
+    if plant.variable in start.names | end.names:
+        message = f"the ends of the interval contain the time {plant.variable}"
+        raise InputError(message, where=where, repair='write another name: interval = "0, T"')
+    if sign_of(end - start, plant.symbols.signs) in {"zero", "negative", "nonpositive"}:
+        message = f"the interval from {start} to {end} has no length"
+        raise InputError(message, where=where, repair="give the earlier end first")
+    return start, end
+
+
+def reject_both(name: str, gain: object, poles: object, polynomial: object, other: str = "poles") -> None:
+    """Raise `InputError` if a gain is given together with desired poles."""
+    if gain is not None and (poles is not None or polynomial is not None):
+        message = f"both {name} and {other if poles is not None else 'polynomial'} are given"
+        raise InputError(message, where=f"specification.{name}", repair="keep one of them")

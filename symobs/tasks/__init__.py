@@ -1,0 +1,1 @@
+"""Tasks: results, the analysis of plants, and designs for them."""

@@ -1,0 +1,64 @@
+"""A nonlinear plant and its linearisation at an equilibrium, as the page states them."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from symobs.exact import Matrix, Scalar
+from symobs.formula.tree import At, Block, Derivative, Letter, Literal, SymbolList
+from symobs.proof.derivation.builder import relation
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from symobs.formula.tree import Formula
+    from symobs.formula.tree.term import Term
+    from symobs.proof.derivation.builder import Builder
+    from symobs.system.matrices import Nonlinear
+
+
+def state_linearisation(page: Builder) -> None:
+    """State f and h, hold f to its equilibrium, and derive A, B, C and D as partial derivatives there."""
+    plant, given = page.plant, page.plant.nonlinear
+    assert given is not None  # noqa: S101 - the caller has looked
+    m = plant.matrices
+    page.in_time(given.f, *([given.h] if given.h is not None else []), m.A, m.B, m.C, m.D)
+    time = "discrete" if plant.is_discrete else "continuous"
+    states, inputs = SymbolList(given.states), SymbolList(given.inputs)
+    page.remark(f"nonlinear_{time}" if given.inputs else f"nonlinear_{time}_free", states=states, inputs=inputs)
+    f = page.set("f_x", given.f)
+    shown = [relation(f, given.f)]
+    if given.h is not None:
+        shown.append(relation(page.set("h_x", given.h), given.h))
+    page.given(*shown)
+    rest = Matrix.of([[dict(given.equilibrium)[name] if plant.is_discrete else Scalar.of(0)] for name in given.states])
+    page.equal(relation(_there(page, given, f.formula), rest), say=f"equilibrium_{time}")
+    lines = []
+    for letter, function, name in (("A", given.f, "f_x"), ("C", given.h, "h_x")):
+        for matrix, names in ((letter, given.states), ({"A": "B", "C": "D"}[letter], given.inputs)):
+            value: Matrix = getattr(m, matrix)
+            if function is None or not names or (matrix == "D" and not m.has_feedthrough):
+                continue
+            jacobian = given.jacobian(function, names)
+            page.set(matrix, value)
+            columns = _there(page, given, _columns(name, jacobian, names))
+            between = [] if jacobian == value else [_there(page, given, Literal(jacobian))]
+            lines.append(relation(page[matrix], columns, *between, value))
+    page.equal(*lines, say="linearised")
+
+
+def _columns(name: str, jacobian: Matrix, names: Sequence[str]) -> Formula:
+    """Return the row of the partial derivatives; one by what does not occur is written as 0."""
+    columns = [Matrix.of([[entry] for entry in column]) for column in zip(*jacobian.rows, strict=True)]
+    parts = [
+        Literal(column) if column.is_zero else Derivative(Letter(name), by)
+        for column, by in zip(columns, names, strict=True)
+    ]
+    return parts[0] if len(parts) == 1 else Block((tuple(parts),))
+
+
+def _there(page: Builder, given: Nonlinear, formula: Formula) -> Term:
+    """Return a formula at the equilibrium."""
+    for name, value in given.equilibrium:
+        formula = At(formula, name, value)
+    return page.term(formula)

@@ -1,0 +1,264 @@
+"""Detectability and stabilizability: whether the modes that stay hidden are stable.
+
+(C, A) is detectable exactly when the polynomial of the fixed modes, det(sI − X) with X = A on ker 𝒪, is stable; (A, B)
+is stabilizable exactly when (Bᵀ, Aᵀ) is detectable.  Under Brogan's weaker reading a fixed mode may lie on the
+boundary, if it does not grow: X must be stable in the sense of Lyapunov.
+"""
+
+from __future__ import annotations
+
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
+
+from symobs.exact import Scalar, product_of
+from symobs.ground.dataclass import dataclass
+from symobs.ground.errors import InputError
+from symobs.stability.criteria.stability import (
+    is_beyond,
+    is_marginal,
+    marginal_where,
+    meetings,
+    monic,
+    on_boundary,
+    stability,
+)
+from symobs.system.conditions import Condition
+from symobs.tasks.analysis.modes.modes import ModeResult, polynomial_of
+from symobs.tasks.analysis.strata.repeated_eigenvalues import distances, systems_of
+from symobs.tasks.result import Case, Result, choose, method, task
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from symobs.system import StateSpace
+    from symobs.system.specification import Name
+
+MEANINGS = ("asymptotic", "lyapunov")
+
+
+class Hidden(NamedTuple):
+    """The verdict on the fixed modes, and its conditions."""
+
+    verdict: str
+    where: tuple[Condition, ...] = ()
+    annuls: Scalar | None = None
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class HiddenStability(ModeResult):
+    """The modes, and whether the fixed ones are stable in the chosen meaning."""
+
+    meaning: str
+
+    @cached_property
+    def hidden(self) -> Hidden:
+        """The verdict on the fixed modes, the cases left aside."""
+        f: Scalar = self.answer["fixed_polynomial"]
+        plant = self.plant
+        found = stability(f, plant.variable, plant.symbols.signs, discrete=plant.is_discrete)
+        strict = tuple(Condition("existence", value, ">") for value in found.positive)
+        if self.meaning == "asymptotic" or found.verdict == "yes":
+            return Hidden(found.verdict, strict)
+        return self._in_the_sense_of_lyapunov(f, found.verdict, strict)
+
+    def _in_the_sense_of_lyapunov(self, f: Scalar, verdict: str, strict: tuple[Condition, ...]) -> Hidden:
+        """Decide X: no root beyond the boundary, and those on it simple in a polynomial that annuls X."""
+        plant, X = self.plant, self.test.answer["restricted"]
+        variable, signs, discrete = plant.variable, plant.symbols.signs, plant.is_discrete
+        if is_beyond(f, variable, signs, discrete=discrete):
+            return Hidden("no")
+        smaller = [
+            monic(factor, variable) ** (power if _is_stable(factor, plant) else 1)
+            for factor, power in f.numerator.factors()[1]
+            if factor.degree(variable) > 0
+        ]
+        annuls = product_of(smaller)
+        if is_marginal(annuls, variable, signs, discrete=discrete, apart=self.meetings):
+            return Hidden("yes" if polynomial_of(annuls, variable, X).is_zero else "no", (), annuls)
+        bounds = marginal_where(f, variable, signs, discrete=discrete)
+        if bounds:
+            return Hidden("conditional", tuple(Condition("existence", bound, ">=") for bound in bounds))
+        return Hidden("conditional", strict) if verdict == "conditional" else Hidden("undecided")
+
+    @cached_property
+    def meetings(self) -> tuple[Scalar, ...]:
+        """What vanishes where two fixed modes on the boundary meet, under the weaker reading: they may grow there."""
+        plant = self.plant
+        variable, signs, discrete = plant.variable, plant.symbols.signs, plant.is_discrete
+        factors = [factor for factor, _ in self.answer["fixed_polynomial"].numerator.factors()[1]]
+        marginal = [factor for factor in factors if on_boundary(factor, variable, signs, discrete=discrete)]
+        return meetings(marginal, variable, signs) if self.meaning == "lyapunov" else ()
+
+    @property
+    def verdict(self) -> str:
+        """That of the fixed modes where there are no cases, else what holds on all of them.
+
+        A mode that grows in general is fixed on every stratum too: what is undecided there does not make it conditional.
+        """
+        verdicts = {self.hidden.verdict}
+        verdicts |= {"undecided" if case.result is None else case.result.verdict for case in self.deciding_cases}
+        if self.hidden.verdict == "no" and verdicts <= {"no", "undecided"} and not self._only_there:
+            return "no"
+        if len(verdicts) == 1:
+            return verdicts.pop()
+        return "undecided" if "undecided" in verdicts and not verdicts & {"no", "conditional"} else "conditional"
+
+    @cached_property
+    def rank_cases(self) -> tuple[Case, ...]:
+        """The fixed modes on the strata where the rank test has others."""
+        task_name, meaning, method_name = self.task, self.meaning, self.method
+        return self.cases_by(lambda plant: solve(plant, task_name, meaning, method_name))
+
+    @cached_property
+    def meeting_cases(self) -> tuple[Case, ...]:
+        """The modes where eigenvalues meet."""
+        task_name, meaning, method_name = self.task, self.meaning, self.method
+        further = [(value,) for value in self.meetings]
+        return self.meetings_by(lambda plant: solve(plant, task_name, meaning, method_name), *further)
+
+    @property
+    def deciding_cases(self) -> tuple[Case, ...]:
+        """The cases on which another verdict may hold.
+
+        Where eigenvalues meet the fixed modes are the same, and only the weaker reading asks for their eigenvectors: a
+        mode that grows in general may have as many as it should there, on strata that are told.
+        """
+        if self.hidden.annuls is None:
+            return self.rank_cases
+        return (*self.rank_cases, *(case for case in self.meeting_cases if case.when or self.hidden.verdict == "no"))
+
+    @cached_property
+    def case_tree(self) -> tuple[Case, ...]:
+        """The cases of the rank test, where eigenvalues meet, and the boundary where the weaker reading leaves it open."""
+        strict = [c.expression for c in self.hidden.where if c.operator == ">"]
+        found = (*self.rank_cases, *self.meeting_cases)
+        if self.meaning == "asymptotic" or not strict:
+            return found
+        return (*found, Case((Condition("existence", product_of(strict), "=="),), {}, None))
+
+    @cached_property
+    def holds_where(self) -> tuple[Condition, ...]:
+        """The plant's domain, what makes the fixed modes stable, and the strata on which others are not."""
+        if self.hidden.verdict == "no":
+            return (*self.domain, *self._only_there)
+        if self.hidden.verdict == "undecided":
+            return self.domain
+        listed = {c.expression for c in self.domain}
+        lost = (value for value in distances(self._lost) if value not in listed)
+        others = (Condition("existence", value) for value in lost)
+        return (*self.domain, *self.hidden.where, *others)
+
+    @cached_property
+    def _lost(self) -> tuple[tuple[Scalar, ...], ...]:
+        """The equations of the strata on which another verdict may hold."""
+        differing = [case for case in self.deciding_cases if case.result is None or case.result.verdict != "yes"]
+        return systems_of(differing) or ()
+
+    @property
+    def grows_where(self) -> tuple[Condition, ...]:
+        """What keeps away from the strata on which a mode that grows in general, under the weaker reading, may not."""
+        if self.hidden.annuls is None or self.hidden.verdict != "no":
+            return ()
+        return tuple(Condition("existence", value) for value in distances(systems_of(self.meeting_cases) or ()))
+
+    @property
+    def _only_there(self) -> tuple[Condition, ...]:
+        """What must vanish where fixed modes grow in general: some of these strata, where they do not."""
+        kept = [case for case in self.meeting_cases if case.result is None or case.result.verdict != "no"]
+        if not self.grows_where or not kept:
+            return ()
+        return (Condition("existence", product_of(distances(systems_of(kept) or ())), "=="),)
+
+    @cached_property
+    def fields(self) -> Mapping[str, Any]:
+        """The modes, the polynomial of the fixed ones, and where it is stable."""
+        return {
+            "meaning": self.meaning,
+            "modes": self.modes_of(with_matrix=False),
+            "fixed_polynomial": self.answer["fixed_polynomial"],
+            "polynomial": self.answer["polynomial"],
+            "rank": self.test.answer["rank"],
+        }
+
+
+def _is_stable(factor: Scalar, plant: StateSpace) -> bool:
+    found = stability(factor, plant.variable, plant.symbols.signs, discrete=plant.is_discrete)
+    return found.verdict == "yes"
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Detectability(HiddenStability):
+    """Detectability: stability of the unobservable modes."""
+
+    task: ClassVar[str] = "detectability"
+
+    @property
+    def kind(self) -> str:
+        """The rank test below it."""
+        return "observability"
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Stabilizability(HiddenStability):
+    """Stabilizability: stability of the uncontrollable modes."""
+
+    task: ClassVar[str] = "stabilizability"
+
+    @property
+    def kind(self) -> str:
+        """The rank test below it."""
+        return "controllability"
+
+
+_KINDS = {"detectability": "observability", "stabilizability": "controllability"}
+
+
+def solve(plant: StateSpace, task_name: str, meaning: str, method_name: str) -> HiddenStability:
+    """Return the answer for a plant."""
+    result = Detectability if task_name == "detectability" else Stabilizability
+    return result(plant, method_name, ModeResult.answer_of(plant, _KINDS[task_name]), meaning)
+
+
+def _checked(meaning: str) -> str:
+    if meaning not in MEANINGS:
+        message = f"{str(meaning)[:40]!r} is not a meaning of stability"
+        raise InputError(message, where="specification.meaning", repair=f"write one of {', '.join(MEANINGS)}")
+    return meaning
+
+
+@method("detectability/fixed_modes", source="wonham1968; hautus1970; brogan1991")
+def detectability_fixed_modes(plant: StateSpace, meaning: str) -> HiddenStability:
+    """Stability of the characteristic polynomial of A on ker 𝒪, without eigenvalues."""
+    return solve(plant, "detectability", meaning, "fixed_modes")
+
+
+@method("stabilizability/fixed_modes", source="wonham1968; hautus1970; brogan1991")
+def stabilizability_fixed_modes(plant: StateSpace, meaning: str) -> HiddenStability:
+    """Stability of the characteristic polynomial of Aᵀ on the left kernel of 𝒞, without eigenvalues."""
+    return solve(plant, "stabilizability", meaning, "fixed_modes")
+
+
+@task
+def detectability(plant: StateSpace, *, meaning: Name = "asymptotic", method: Name = "auto") -> Result:
+    """Decide whether some L makes A − LC stable: whether all unobservable modes are stable.
+
+    plant    n states, p ≥ 1 outputs; B and D do not matter
+    meaning  "asymptotic", or "lyapunov": unobservable modes may lie on the boundary if they do not grow (Brogan)
+    Returns modes (list of eigenvalue, stable, observable, rank, with multiplicity), fixed_polynomial; with parameters the
+    conditions and cases.  Raises `InputError` where C is missing.  Source: W. M. Wonham (1968); M. L. J. Hautus (1970).
+    """
+    plant.require("C", task="detectability")
+    return choose("detectability", method, "fixed_modes").solve(plant, _checked(meaning))
+
+
+@task
+def stabilizability(plant: StateSpace, *, meaning: Name = "asymptotic", method: Name = "auto") -> Result:
+    """Decide whether some K makes A − BK stable: whether all uncontrollable modes are stable.
+
+    plant    n states, m ≥ 1 inputs; C and D do not matter
+    meaning  "asymptotic", or "lyapunov": uncontrollable modes may lie on the boundary if they do not grow
+    Returns modes (list of eigenvalue, stable, controllable, rank, with multiplicity), fixed_polynomial; with parameters
+    the conditions and cases.  Raises `InputError` where B is missing.  Source: W. M. Wonham (1968); M. L. J. Hautus (1970).
+    """
+    plant.require("B", task="stabilizability")
+    return choose("stabilizability", method, "fixed_modes").solve(plant, _checked(meaning))

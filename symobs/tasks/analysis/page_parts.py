@@ -1,0 +1,294 @@
+"""Parts shared by the pages of analysis and design: the given data, cases, factored forms and stability."""
+
+from __future__ import annotations
+
+import math
+from itertools import accumulate
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any
+
+from symobs.exact import Factored, Matrix, Scalar, TooLarge, decimal_places, root_of_pole
+from symobs.formula.tree import Conjunction, Decimals, HoldsExactlyWhere, Roots
+from symobs.formula.tree.term import block
+from symobs.ground.errors import DerivationRejected
+from symobs.proof.derivation import CaseStep, Note, Step
+from symobs.proof.derivation.builder import Builder, predicate, relation, sentence
+from symobs.proof.derivation.facts.restriction import on_stratum
+from symobs.stability.criteria.stability import stability
+from symobs.stability.inequalities.written_form import as_inequality
+from symobs.system.conditions import Condition, vanishing_factors
+from symobs.system.reading import is_identity
+from symobs.tasks.analysis.factored_form import formula_of_factored
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+
+    from symobs.formula.tree import Environment, Relation
+    from symobs.formula.tree.term import Term
+    from symobs.proof.derivation import Step
+    from symobs.system.specification import DesiredPolynomial
+    from symobs.tasks.result import Case, Result
+
+
+def case_steps(page: Builder, result: Result, write: Callable[[Builder, Any], None]) -> Iterator[Step]:
+    """Yield a case for each stratum of a result; `write` tells what the result is there."""
+    for case in result.case_tree:
+        here = environment_on(page, stratum_of(case), case.substitution)
+        if case.result is None or here is None:
+            yield undecided(page, case)
+            continue
+        found = case.result
+        inner = Builder(found.plant)
+        matrices = {name: getattr(found.plant.matrices, name) for name in "ABCD" if name in here.values}
+        inner.environment = here.extended_by(values=matrices)
+        write(inner, found)
+        inner.steps += case_steps(inner, found, write)
+        anew = set_anew(here, inner.environment)
+        yield CaseStep(stratum_of(case), tuple(case.substitution.items()), tuple(inner.steps), anew=anew)
+
+
+def environment_on(
+    page: Builder, when: Relation | Conjunction, substitution: Mapping[str, Scalar] = MappingProxyType({})
+) -> Environment | None:
+    """Return what the letters of a page mean on a stratum; None where the check does not see that it is described right."""
+    try:
+        return on_stratum(when, dict(substitution), page.environment)
+    except (TooLarge, DerivationRejected):
+        return None
+
+
+def set_anew(outer: Environment, inner: Environment) -> tuple[str, ...]:
+    """Return the letters, other than the data's, that a case redefines."""
+    both = (name for name in outer.values if name in inner.values and name not in "ABCD")
+    return tuple(name for name in both if inner.values[name] != outer.values[name])
+
+
+#: A polynomial of more terms is not written out among words.
+WRITTEN_UP_TO = 200
+
+
+#: A row of a matrix that is longer than this, written in one line, does not fit beside others.
+_WIDEST = 80
+
+
+#: More decimals of the data are not told as fractions.
+_DECIMALS = 4
+
+
+def given(
+    page: Builder,
+    *desired: tuple[str, DesiredPolynomial | None],
+    where: Iterable[Condition] = (),
+    disturbed: Matrix | None = None,
+) -> None:
+    """State the plant, and the desired poles or polynomials by name (`control`, `observer`, …).
+
+    `where` says further of which parameters the page speaks; `disturbed` is the E of ẋ = A x + B u + E d.
+    """
+    plant, m = page.plant, page.plant.matrices
+    with page.section("given"):
+        if plant.origin is not None:
+            from symobs.tasks.analysis.cancelled_poles import state_transfer_function  # noqa: PLC0415 - it stands on this module
+
+            state_transfer_function(page)
+        if plant.nonlinear is not None:
+            from symobs.tasks.analysis.linearisation_page import state_linearisation  # noqa: PLC0415 - of such plants alone
+
+            state_linearisation(page)
+        page.set("A", m.A)
+        relations = []
+        rate = _as_given(page, m.A) @ page["x"]
+        if m.has_input:
+            page.set("B", m.B)
+            rate = rate + _as_given(page, m.B) @ page["u"]
+        if disturbed is not None:
+            page.set("E_d", disturbed)
+            rate = rate + _as_given(page, disturbed) @ page["d"]
+        relations.append(relation(page["x"].derivative, rate))
+        page.environment = page.environment.extended_by(dynamics={"x": rate.formula})
+        if m.has_output:
+            page.set("C", m.C)
+            output = _as_given(page, m.C) @ page["x"]
+            if m.has_feedthrough:
+                page.set("D", m.D)
+                output = output + _as_given(page, m.D) @ page["u"]
+            relations.append(relation(page["y"], output))
+            page.environment = page.environment.extended_by(signals={"y": output.formula})
+        page.given(*relations)
+        _hold_to_letters(page)
+        if plant.is_from_floats:
+            page.remark("from_floats")
+        _say_decimals(page)
+        state_signs(page)
+        _state_stratum(page, where)
+        for name, desired_polynomial in desired:
+            if desired_polynomial is not None:
+                _asked(page, name, desired_polynomial)
+
+
+def _as_given(page: Builder, matrix: Matrix) -> Term:
+    """Return a matrix of the data: in decimals where the data are, and all its entries can be."""
+    if page.plant.is_in_decimals and all(decimal_places(entry) is not None for entry in matrix.entries):
+        return page.term(Decimals(matrix))
+    return page.value(matrix)
+
+
+def _say_decimals(page: Builder) -> None:
+    """Say which fractions the decimals of the data are, where they are few."""
+    m, plant = page.plant.matrices, page.plant
+    entries = [entry for matrix in (m.A, m.B, m.C, m.D) for entry in matrix.entries if decimal_places(entry)]
+    sizes = dict.fromkeys(-entry if entry.fraction() < 0 else entry for entry in entries)
+    if plant.is_in_decimals and 0 < len(sizes) <= _DECIMALS:
+        page.remark("exact_decimals", numbers=Conjunction(tuple(relation(page.term(Decimals(v)), v) for v in sizes)))
+
+
+def _hold_to_letters(page: Builder) -> None:
+    """Bind what is displayed to the letters: ẋ = A x + B u, y = C x + D u, and P to its realisation."""
+    m, x, u = page.plant.matrices, page["x"], page["u"]
+    rate = page["A"] @ x + page["B"] @ u if m.has_input else page["A"] @ x
+    if page.defines("E_d"):
+        rate = rate + page["E_d"] @ page["d"]
+    facts = [relation(x.derivative, rate)]
+    if m.has_output:
+        output = page["C"] @ x + page["D"] @ u if m.has_feedthrough else page["C"] @ x
+        facts.append(relation(page["y"], output))
+    if page.plant.origin is not None:
+        resolvent = (page.s @ page.identity(page.plant.order) - page["A"]).inverse
+        response = page["C"] @ resolvent @ page["B"]
+        facts.append(relation(page["P"], response + page["D"] if m.has_feedthrough else response))
+    page.conclude_silently(*facts)
+
+
+def _asked(page: Builder, name: str, desired_polynomial: DesiredPolynomial) -> None:
+    """State the desired poles or the desired polynomial."""
+    phi = page.set(f"phi_{name[0]}", desired_polynomial.polynomial)
+    if desired_polynomial.poles:
+        roots = tuple(root_of_pole(pole, page.plant.variable) for pole in desired_polynomial.poles)
+        page.conclude(f"{name}_{'pole' if len(roots) == 1 else 'poles'}", poles=Roots(phi.formula, roots))
+    else:
+        page.conclude(f"{name}_polynomial", polynomial=relation(phi, desired_polynomial.polynomial))
+    if desired_polynomial.pattern is not None:
+        from symobs.tasks.analysis.pole_pattern_page import say_pattern  # noqa: PLC0415 - only such poles pay for it
+
+        say_pattern(page, phi, desired_polynomial)
+
+
+def state_signs(page: Builder) -> None:
+    """Say which parameters have a declared sign."""
+    by_sign: dict[str, list[str]] = {}
+    used = {*page.plant.field.names, *page.asked}
+    for name, sign in page.plant.symbols.signs.items():
+        if name in used and sign != "real":
+            by_sign.setdefault(sign, []).append(name)
+    facts = {"positive": ">", "negative": "<", "nonnegative": ">=", "nonpositive": "<=", "nonzero": "!="}
+    declared = [relation(Scalar.symbol(name), facts[sign], 0) for sign, names in by_sign.items() for name in names]
+    if declared:
+        page.conclude("declared", signs=Conjunction(tuple(declared)))
+
+
+def _state_stratum(page: Builder, further: Iterable[Condition]) -> None:
+    """Say, on the page of a case alone, of which parameters it speaks."""
+    plant = page.plant
+    here = [Condition("existence", value, "==") for value in plant.equations if not is_identity(value)]
+    apart = vanishing_factors(plant.nonzero, plant.symbols.signs)
+    if plant.equations:
+        here += [Condition("existence", value) for value in apart]
+    elif apart:
+        page.assume("stratum", *apart)
+    here += further
+    if here:
+        page.conclude("stratum", condition=Conjunction(tuple(map(as_written, here))))
+
+
+def in_blocks(page: Builder, value: Matrix, heights: Sequence[int], widths: Sequence[int]) -> Term:
+    """Return a matrix divided into blocks, between which pages draw lines; blocks without rows or columns are left out."""
+    parts = [
+        [range(end - size, end) for size, end in zip(sizes, accumulate(sizes), strict=True) if size]
+        for sizes in (heights, widths)
+    ]
+    return block([[page.value(value.select(rows, columns)) for columns in parts[1]] for rows in parts[0]])
+
+
+def is_narrow(*matrices: Matrix) -> bool:
+    """Return whether matrices can be read on a page: the widest row, with its fractions in one line."""
+    return all(sum(len(str(entry)) for entry in row) <= _WIDEST for matrix in matrices for row in matrix.rows)
+
+
+def determinant_form(page: Builder, value: Scalar) -> Term:
+    """Return a determinant as its irreducible factors where it has several, else as it is."""
+    unit, factors = value.factors()
+    if len(factors) < 2 and all(power == 1 for _, power in factors):
+        return page.value(value)
+    return page.term(formula_of_factored(Factored(unit, factors)))
+
+
+def conditions_of(case: Case) -> Relation | Conjunction:
+    """Return the equations and inequations of a case; p = q is written for p − q = 0 of two terms."""
+    relations = tuple(as_written(condition) for condition in case.when)
+    return relations[0] if len(relations) == 1 and len(case.substitution) == 1 else Conjunction(relations)
+
+
+def stratum_of(case: Case) -> Relation | Conjunction:
+    """Return the conditions of a case: a single equation as p = 0."""
+    return relation(case.when[0].expression, 0) if len(case.when) == 1 else conditions_of(case)
+
+
+def as_written(condition: Condition) -> Relation:
+    """Return a condition with p = q for p − q = 0 of two terms."""
+    value, operator = condition.expression, condition.operator.replace("==", "=")
+    terms = value.terms()
+    if [coefficient > 0 for coefficient, _ in terms] in ([True, False], [False, True]):
+        first, second = (
+            math.prod((Scalar.symbol(name) ** power for name, power in powers), start=Scalar.of(abs(coefficient)))
+            for coefficient, powers in sorted(terms, key=lambda term: term[0] < 0)
+        )
+        return relation(first, operator, second)
+    return relation(value, operator, 0)
+
+
+def undecided(page: Builder, case: Case) -> Step:
+    """Return the remark that names a part of the parameters that the page does not decide."""
+    if not case.when:
+        return Note(sentence("undecided_rank", {}))
+    simplest, *others = sorted((condition.expression for condition in case.when), key=lambda value: value.size)
+    if simplest.size > WRITTEN_UP_TO:
+        return Note(sentence("undecided_long", {"count": str(simplest.numerator.size - 1)}))
+    first = page.value(simplest)
+    if len(others) > 1 or any(other.size > WRITTEN_UP_TO for other in others):
+        return Note(sentence("undecided_many", {"when": first, "count": str(len(others))}))
+    if others:
+        return Note(sentence("undecided_together", {"when": first, "other": page.value(others[0])}))
+    return Note(sentence("undecided_case", {"when": first}))
+
+
+#: The letters of what is not seen, and of what is not moved: a page may speak of both.
+HIDDEN = {"observability": ("N", "X"), "controllability": ("N_K", "X_K")}
+
+
+def hidden(page: Builder, is_observer: bool, letters: tuple[str, str] = ("N", "X")) -> tuple[Relation, ...]:  # noqa: FBT001
+    """Return that the columns of N are a basis of an invariant subspace never seen (never moved): CN = 0, AN = NX."""
+    N, X = (page[name] for name in letters)
+    A, row = (page["A"], page["C"]) if is_observer else (page["A"].T, page["B"].T)
+    count = N.value.shape[1]
+    zero = Matrix.zeros(row.value.shape[0], count)
+    return relation(row @ N, zero), relation(A @ N, N @ X), relation(N.apply("rank"), count)
+
+
+def hidden_polynomial(page: Builder, order: int, name: str = "X") -> Term:
+    """Return det(sI − X): the polynomial of the hidden modes."""
+    return (page.s @ page.identity(order) - page[name]).apply("det")
+
+
+def say_stability(page: Builder, about: Term) -> None:
+    """Say whether the polynomial that a term means is stable, or exactly where."""
+    plant, polynomial = page.plant, about.scalar
+    found = stability(polynomial, plant.variable, plant.symbols.signs, discrete=plant.is_discrete)
+    time = "discrete" if plant.is_discrete else "continuous"
+    if found.verdict == "yes":
+        page.conclude(f"stable_{time}", predicate("stable", about))
+    elif found.verdict == "no":
+        page.conclude(f"unstable_{time}", predicate("unstable", about))
+    else:
+        inequalities = [as_inequality(value, plant.symbols.signs) for value in found.positive]
+        where = tuple(relation(left, operator, right) for left, operator, right in inequalities)
+        page.conclude(f"stable_if_{time}", where=HoldsExactlyWhere(predicate("stable", about), where))

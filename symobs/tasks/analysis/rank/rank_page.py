@@ -1,0 +1,171 @@
+"""Parts of pages that several tasks share: the data, and the determinant or rank that decides a test."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, cast
+
+from symobs.exact import Matrix, roots_of, unit_rows
+from symobs.formula.phrases.spoken import StateChoice
+from symobs.formula.tree import Conjunction, Roots
+from symobs.formula.tree.term import block
+from symobs.proof.derivation import CaseStep, Conclude, Equal, Step
+from symobs.proof.derivation.builder import Builder, relation, sentence, shows
+from symobs.proof.derivation.wording_check import fits
+from symobs.system.conditions import vanishing_factors
+from symobs.tasks.analysis.page_parts import (
+    HIDDEN,
+    WRITTEN_UP_TO,
+    conditions_of,
+    determinant_form,
+    environment_on,
+    given,
+    hidden,
+    hidden_polynomial,
+    undecided,
+)
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from symobs.exact import Scalar
+    from symobs.tasks.analysis.rank.rank_test import RankResult
+    from symobs.tasks.result import Case, Result
+
+
+#: More sets of states are not named in one sentence.
+NAMED_SETS = 6
+
+
+def given_here(page: Builder, result: RankResult) -> None:
+    """State the data, and on the page of a case alone where it lies."""
+    where = () if result.piece is None else result.piece.conditions
+    if result.piece is not None:
+        page.where(*result.piece.relations(c.expression for c in result.domain))
+    given(page, where=where)
+
+
+def square_test(page: Builder, letter: str, result: RankResult, kind: str) -> None:
+    """Decide the test of a matrix: by its determinant where it is square, by its rank otherwise.
+
+    Factors of the determinant that can vanish become conditions from here on.
+    """
+    determinant, order = result.test_determinant, page.plant.order
+    if result.answer["rank"] < order:
+        _deficient(page, letter, result, kind)
+        return
+    if determinant is None:
+        _outside_drops(page, [c.expression for c in result.holds_where if c.kind == "existence"])
+        key = "full_rank" if result.verdict == "yes" or page.environment.relations else "generic_rank"
+        page.conclude(f"{key}_{kind}", rank=relation(page[letter].apply("rank"), result.answer["rank"]))
+        return
+    signs = page.plant.symbols.signs
+    if determinant.size > WRITTEN_UP_TO:
+        page.conclude(f"long_{kind}", count=str(determinant.numerator.size - 1))
+        return
+    det = page[letter].apply("det")
+    shown = determinant_form(page, determinant)
+    open_factors = vanishing_factors([determinant], signs)
+    if not open_factors:
+        page.equal(relation(det, shown, "!=", 0))
+        page.conclude(f"yes_{kind}", relation(page[letter].apply("rank"), order))
+        return
+    page.equal(relation(det, shown))
+    page.assume(f"provided_{kind}", *open_factors)
+
+
+def rank_cases(page: Builder, letter: str, result: RankResult, kind: str) -> None:
+    """Say what rank and kernel are on every stratum where they are not the generic ones."""
+    page.steps += [_rank_case(page, letter, case, kind) for case in result.case_tree]
+
+
+def _rank_case(page: Builder, letter: str, case: Case, kind: str) -> Step:
+    if case.result is None:
+        return undecided(page, case)
+    result = cast("RankResult", case.result)
+    answer, matrix = result.answer, page[letter] if kind == "observability" else page[letter].T
+    steps: list[Step] = []
+    if not answer["rank"]:
+        steps.append(Conclude(sentence("case_zero", {}), (relation(page[letter], page[letter].value * 0),)))
+    else:
+        rank = relation(page[letter].apply("rank"), answer["rank"])
+        steps.append(Conclude(sentence("case_rank", {"rank": rank})))
+    N, vectors = answer["kernel"], answer["kernel"].shape[1]
+    if answer["rank"] and vectors:
+        zero = Matrix.zeros(matrix.value.shape[0], vectors)
+        words = sentence(f"kernel_{kind}" if vectors == 1 else f"kernel_basis_{kind}", {})
+        steps.append(Equal((relation(matrix @ page.value(N), zero),), words))
+    steps += repair(page, letter, result, kind)
+    return CaseStep(conditions_of(case), tuple(case.substitution.items()), tuple(steps))
+
+
+def repair(page: Builder, letter: str, result: RankResult, kind: str) -> list[Step]:
+    """Say which states would have to be measured (actuated) too: with their unit rows below, the rank is n."""
+    sets, order = result.repaired, page.plant.order
+    if not 0 < len(sets) <= NAMED_SETS:
+        return []
+    test, A = (page[letter], page["A"]) if kind == "observability" else (page[letter].T, page["A"].T)
+    facts = []
+    for numbers in sets:
+        rows = page.value(unit_rows(order, tuple(number - 1 for number in numbers)))
+        below = [[rows], *([rows @ A**k] for k in range(1, order))]
+        facts.append(relation(block([[test], *below]).apply("rank"), order))
+    if result.piece is not None:  # a rank on a stratum may be beyond what the check of a page can see
+        relations = result.piece.relations(c.expression for c in result.domain)
+        values = {letter: result.answer["matrix"] if kind == "observability" else result.answer["matrix"].T}
+        e = page.environment.extended_by(values=values | {"A": result.plant.matrices.A}).with_relations(relations)
+        if not shows(facts, e):
+            return []
+    words = "one" if len(sets[0]) == 1 else "several"
+    return [Conclude(sentence(f"repair_{words}_{kind}", {"states": StateChoice(sets)}), tuple(facts))]
+
+
+def _deficient(page: Builder, letter: str, result: RankResult, kind: str) -> None:
+    rank = result.answer["rank"]
+    rank_relation = relation(page[letter].apply("rank"), rank, "<", page.plant.order)
+    _outside_drops(page, _distances(result))
+    is_said = not result.case_tree or page.environment.relations
+    key = "no" if is_said and fits(f"no_{kind}", rank_relation, page.environment) else "generic_low"
+    page.conclude(f"{key}_{kind}", rank=rank_relation)
+    matrix = page[letter] if kind == "observability" else page[letter].T
+    zero = Matrix.zeros(matrix.value.shape[0], 1)
+    unseen = [relation(matrix @ page.value(vector), zero) for vector in result.kernel_vectors]
+    page.equal(*unseen, say=f"kernel_{kind}" if len(unseen) == 1 else f"kernel_several_{kind}")
+    page.steps += outside_cases(page, result, repair(page, letter, result, kind))
+    letters = HIDDEN[kind]
+    page.set(letters[0], result.answer["kernel"])
+    page.set(letters[1], result.answer["restricted"])
+    polynomial = result.answer["restricted"].characteristic_polynomial(page.plant.variable)
+    page.conclude(
+        f"modes_{kind}",
+        *hidden(page, kind == "observability", letters),
+        modes=Roots(
+            hidden_polynomial(page, len(result.kernel_vectors), letters[1]).formula,
+            roots_of(polynomial, page.plant.variable),
+        ),
+    )
+
+
+def outside_cases(page: Builder, result: Result, steps: list[Step]) -> list[Step]:
+    """Return steps as a case of what holds in general, where there are others.
+
+    None where these are everywhere, or too long for the check to be left out.
+    """
+    apart = _distances(result)
+    if not apart or not steps:
+        return steps if apart == () else []
+    where = Conjunction(tuple(relation(distance, "!=", 0) for distance in apart))
+    return [] if environment_on(page, where) is None else [CaseStep(where, (), tuple(steps))]
+
+
+def _outside_drops(page: Builder, apart: Sequence[Scalar] | None) -> None:
+    """Assume on a stratum, of which a rank is said at every point, that it is outside the cases where it is another."""
+    if page.environment.relations and apart:
+        page.assume("outside_drops", *apart)
+
+
+def _distances(result: Result) -> tuple[Scalar, ...] | None:
+    """Return what is 0 exactly in the cases; None where one of them is everywhere."""
+    from symobs.tasks.analysis.strata.repeated_eigenvalues import distances, systems_of  # noqa: PLC0415 - it needs the strata, which need pages
+
+    systems = systems_of(result.case_tree)
+    return None if systems is None else distances(systems)

@@ -1,0 +1,255 @@
+"""Canonical forms: controllable and observable (one input, one output), and the real modal form.
+
+With χ = sⁿ + a₁ sⁿ⁻¹ + … + aₙ and the Hankel matrix H = [aₙ₋₁ … a₁ 1; …; 1 0 … 0] the controllable form has S = T⁻¹ = 𝒞 H,
+ones above the diagonal, the last row −aₙ … −a₁ and B̄ = eₙ; the observable form has T = H 𝒪 and is its transpose.
+The modal form is block diagonal: numbers, Jordan blocks, [σ ω; −ω σ], companion blocks of irreducible factors.
+"""
+
+from __future__ import annotations
+
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, ClassVar
+
+from symobs.exact import Matrix, Scalar, companion, factored, hankel_of
+from symobs.formula.tree import Environment
+from symobs.formula.tree.term import block, identity, letter
+from symobs.ground.dataclass import dataclass
+from symobs.ground.errors import InputError
+from symobs.proof.certificate.claims import Claim
+from symobs.proof.derivation.builder import Builder, relation
+from symobs.system.conditions import Condition, vanishing_factors
+from symobs.tasks.analysis.factored_form import formula_of_factored
+from symobs.tasks.analysis.modes.modes import TESTS
+from symobs.tasks.analysis.page_parts import case_steps, given
+from symobs.tasks.analysis.rank.observability import power_rows
+from symobs.tasks.analysis.rank.rank_page import square_test
+from symobs.tasks.analysis.realization.modal_form import modal_basis, modal_matrix
+from symobs.tasks.analysis.strata.strata import carried, strata
+from symobs.tasks.result import Case, Result, choose, method, task
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
+
+    from symobs.proof.certificate.claims import Certificate
+    from symobs.system import StateSpace
+    from symobs.system.specification import Name
+    from symobs.tasks.analysis.rank.observability import RankResult
+
+#: Kind of the form, and the rank test that decides whether it exists.
+KINDS: dict[str, str | None] = {"controllable": "controllability", "observable": "observability", "modal": None}
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class CanonicalForm(Result):
+    """The plant in canonical coordinates x̄ = T x, or that there are none.
+
+    Claims: T S = I, Ā = T A S, B̄ = T B, C̄ = C S; Ā and B̄ (C̄) are those of the form, the modal form being that of χ's
+    factors.  Where there is no form, the rank test says why.
+    """
+
+    kind: str
+
+    task: ClassVar[str] = "canonical_form"
+
+    @cached_property
+    def test(self) -> RankResult | None:
+        """The rank test that decides, None for the modal form."""
+        name = KINDS[self.kind]
+        return None if name is None else TESTS[name].of(self.plant, "rank")
+
+    @property
+    def all_certificates(self) -> tuple[Certificate, ...]:
+        """The certificates of this result and of the rank test below it."""
+        return (*self.certificates, *(self.test.certificates if self.test is not None else ()))
+
+    def claims(self) -> Iterator[Claim]:
+        """Yield the change of coordinates and the form; or that the rank is below n."""
+        m, answer, n = self.plant.matrices, self.answer, self.plant.order
+        chi = answer["polynomial"]
+        e = Environment(variable=self.plant.variable, values={"A": m.A, "chi": chi})
+        yield Claim(relation((letter("s", e) @ identity(n, e) - letter("A", e)).apply("det"), letter("chi", e)), e)
+        if answer["T"] is None:
+            rank = self.test.answer["rank"] if self.test is not None else n
+            yield Claim(relation(rank, "<", n), e, "the pair does not have full rank")
+            absent = Scalar.of(sum(answer[key] is not None for key in ("inverse", *"ABCD")))
+            yield Claim(relation(absent, 0), e, "no form is given where there is none")
+            return
+        values = {"T": answer["T"], "S": answer["inverse"], "A_bar": answer["A"]}
+        values |= {"B": m.B, "B_bar": answer["B"]} if m.has_input else {}
+        values |= {"C": m.C, "C_bar": answer["C"]} if m.has_output else {}
+        values |= {"D": m.D, "D_bar": answer["D"]} if m.has_input and m.has_output else {}
+        e = e.extended_by(values=values)
+        T, S = letter("T", e), letter("S", e)
+        yield Claim(relation(T @ S, identity(n, e)), e)
+        yield Claim(relation(letter("A_bar", e), T @ letter("A", e) @ S), e)
+        for left, right in (("B_bar", T @ letter("B", e)), ("C_bar", letter("C", e) @ S), ("D_bar", letter("D", e))):
+            if left in values:
+                yield Claim(relation(letter(left, e), right), e)
+        yield from self._form(e)
+
+    def _form(self, e: Environment) -> Iterator[Claim]:
+        n, A_bar = self.plant.order, letter("A_bar", e)
+        wanted = companion(self.answer["polynomial"].coefficients(self.plant.variable)[1:])
+        last = Matrix.unit(n, n - 1)
+        if self.kind == "controllable":
+            yield Claim(relation(A_bar, wanted), e, "A_bar has the coefficients of chi in its last row")
+            yield Claim(relation(letter("B_bar", e), last), e, "B_bar is the last unit vector")
+        elif self.kind == "observable":
+            yield Claim(relation(A_bar, wanted.T), e, "A_bar has the coefficients of chi in its last column")
+            yield Claim(relation(letter("C_bar", e), last.T), e, "C_bar is the last unit row")
+        else:
+            blocks = modal_matrix(self.answer["blocks"], self.plant.variable)
+            yield Claim(relation(A_bar, blocks), e, "A_bar consists of the blocks of the factors of chi")
+            product = Scalar.of(1)
+            for factor, length in self.answer["blocks"]:
+                product = product * factor**length
+            yield Claim(relation(letter("chi", e), product), e, "chi = product of the polynomials of the blocks")
+
+    @property
+    def existence(self) -> tuple[Scalar, ...]:
+        """The determinant of the test matrix, or of the basis of the modal form."""
+        if self.test is not None:
+            return self.test.existence
+        S: Matrix = self.answer["inverse"]
+        return (S.determinant(), S.common_denominator())
+
+    @property
+    def verdict(self) -> str:
+        """Whether the form exists."""
+        if self.test is not None:
+            return self.test.verdict
+        return "conditional" if self._binding_conditions else "yes"
+
+    @cached_property
+    def holds_where(self) -> tuple[Condition, ...]:
+        """The plant's domain, and where the coordinates are independent."""
+        if self.answer["T"] is None:
+            return self.domain
+        listed = {c.expression for c in self.domain}
+        matrices = [value.common_denominator() for value in self.answer.values() if isinstance(value, Matrix)]
+        factors = dict.fromkeys(vanishing_factors((*self.existence, *matrices), self.plant.symbols.signs))
+        return (*self.domain, *(Condition("existence", f) for f in factors if f not in listed))
+
+    @cached_property
+    def case_tree(self) -> tuple[Case, ...]:
+        """The form where the generic coordinates are dependent."""
+
+        def anew(plant: StateSpace, _: dict[str, Scalar]) -> CanonicalForm:
+            return solve(plant, self.kind, self.method)
+
+        if self.test is not None:
+            return carried(self.plant, self.test.case_tree, anew)
+        return strata(self.plant, [c.expression for c in self.holds_where if c.kind == "existence"], anew)
+
+    @cached_property
+    def fields(self) -> Mapping[str, Any]:
+        """The change of coordinates and the matrices in it."""
+        matrices = {key: self.answer[key] for key in "TABCD"}
+        return {"kind": self.kind, **matrices, "polynomial": self.answer["polynomial"]}
+
+    def write(self, page: Builder) -> None:
+        """Write χ, the basis, and the plant in it."""
+        given(page)
+        with page.section("canonical_form"):
+            chi = factored(self.answer["polynomial"], self.plant.variable)
+            members = [(page.s @ page.identity(self.plant.order) - page["A"]).apply("det")]
+            members.append(page.value(self.answer["polynomial"]))
+            if self.kind == "modal" and (len(chi.factors) > 1 or chi.factors[0][1] > 1):
+                members.append(page.term(formula_of_factored(chi)))
+            page.define("chi", *members, say=f"canonical_{self.kind}", closing=False)
+            self.write_form(page)
+            page.steps += case_steps(page, self, lambda inner, found: found.write_form(inner))
+
+    def write_form(self, page: Builder) -> None:
+        """Write the coordinates and the plant in them."""
+        if self.test is not None and not self._write_test(page):
+            return
+        m = self.plant.matrices
+        if self.kind == "observable":
+            page.define("T", page.value(self._hankel) @ page["O"], say="last_column_observable", answer=True)
+            page.define("S", page["T"].inverse)
+        elif self.kind == "controllable":
+            page.define("S", page["Ctr"] @ page.value(self._hankel), say="last_row_controllable")
+            page.define("T", page["S"].inverse, answer=True)
+        else:
+            page.define("S", page.value(self.answer["inverse"]), say="modal_basis")
+            conditions = [c.expression for c in self.holds_where if c.kind == "existence"]
+            if conditions:
+                page.assume("distinct_provided", *conditions)
+            page.define("T", page["S"].inverse, answer=True)
+        T, S = page["T"], page["S"]
+        page.define("A_bar", T @ page["A"] @ S, say="decomposed", answer=True)
+        if m.has_input:
+            page.define("B_bar", T @ page["B"], answer=True)
+        if m.has_output:
+            page.define("C_bar", page["C"] @ S, answer=True)
+
+    @property
+    def _hankel(self) -> Matrix:
+        return hankel_of(self.answer["polynomial"].coefficients(self.plant.variable)[1:])
+
+    def _write_test(self, page: Builder) -> bool:
+        """Write the test matrix and decide it; return whether the form exists."""
+        A, n = page["A"], range(1, self.plant.order)
+        if self.kind == "observable":
+            page.define("O", block([[page["C"]], *([page["C"] @ A**k] for k in n)]), say="observability_matrix")
+        else:
+            page.define("Ctr", block([[page["B"], *(A**k @ page["B"] for k in n)]]), say="controllability_matrix")
+        assert self.test is not None  # noqa: S101 - an invariant: this is asked of the two forms with a test only
+        square_test(page, "O" if self.kind == "observable" else "Ctr", self.test, str(KINDS[self.kind]))
+        if self.answer["T"] is None:
+            page.conclude(f"canonical_impossible_{self.kind}")
+        return self.answer["T"] is not None
+
+
+def solve(plant: StateSpace, kind: str, method_name: str) -> CanonicalForm:
+    """Return the canonical form of a plant."""
+    m, variable = plant.matrices, plant.variable
+    chi = m.A.characteristic_polynomial(variable)
+    blocks: tuple[tuple[Scalar, int], ...] = ()
+    S: Matrix | None
+    if kind == "modal":
+        S, blocks = modal_basis(m.A, chi, variable)
+    else:
+        hankel = hankel_of(chi.coefficients(variable)[1:])
+        A, C = (m.A.T, m.B.T) if kind == "controllable" else (m.A, m.C)
+        rows = power_rows(A, C)
+        S = (rows.T @ hankel).normal() if plant.simplified(rows.determinant()) else None
+    answer: dict[str, Any] = dict.fromkeys(("T", "inverse", *"ABCD"))
+    if S is not None:
+        T = S.inverse().normal()
+        if kind == "observable":
+            T, S = S.T, T.T
+        answer |= {"T": T, "inverse": S, "A": (T @ m.A @ S).normal()}
+        answer |= {"B": (T @ m.B).normal()} if m.has_input else {}
+        answer |= {"C": (m.C @ S).normal()} if m.has_output else {}
+        answer |= {"D": m.D} if m.has_input and m.has_output else {}
+    return CanonicalForm(plant, method_name, {**answer, "polynomial": chi, "blocks": blocks}, kind)
+
+
+@method("canonical_form/basis", source="bass1965; kailath1980, ch. 2")
+def canonical_basis(plant: StateSpace, kind: str) -> CanonicalForm:
+    """𝒞 H, its dual, or for the modal form cyclic bases of the invariant subspaces of χ's factors."""
+    return solve(plant, kind, "basis")
+
+
+@task
+def canonical_form(plant: StateSpace, *, kind: Name = "controllable", method: Name = "auto") -> Result:
+    """Return the controllable, observable or modal canonical form, x̄ = T x.
+
+    plant    n states; one input for "controllable", one output for "observable"; only A for "modal"
+    kind     controllable: ones above the diagonal, −aₙ … −a₁ in the last row, B̄ = eₙ; observable: its transpose, C̄ = eₙᵀ;
+             modal: block diagonal and real, a block for each elementary divisor of A over Q(parameters)
+    Returns T, A, B, C, D, polynomial.  Raises `InputError` where a matrix is missing or there are several inputs (outputs).
+    Source: T. Kailath, Linear Systems, ch. 2.
+    """
+    if kind not in KINDS:
+        message = f"{str(kind)[:40]!r} is not a canonical form"
+        raise InputError(message, where="specification.kind", repair=f"write one of {', '.join(KINDS)}")
+    if kind != "modal":
+        part, count, name = ("B", plant.inputs, "inputs") if kind == "controllable" else ("C", plant.outputs, "outputs")
+        plant.require(part, task="canonical_form")
+        if count != 1:
+            message = f"the plant has {count} {name}, and the {kind} canonical form is that of one"
+            raise InputError(message, where=f"plant.{part}", repair='keep one of them, or write kind = "modal"')
+    return choose("canonical_form", method, "basis").solve(plant, kind)

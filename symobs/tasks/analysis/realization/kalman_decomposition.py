@@ -1,0 +1,266 @@
+"""Kalman decomposition in four parts: reached and seen (co), reached and hidden (c_no), and the same not reached.
+
+With R the reachable subspace, the image of 𝒞, and N = ker 𝒪, the columns of S = T⁻¹ are bases of a complement of R ∩ N in
+R, of R ∩ N, of a complement of R + N, and of a complement of R ∩ N in N, in the order co, c_no, nc_o, nc_no.  Then
+
+    Ā = [A₁₁  0   A₁₃  0 ;  A₂₁ A₂₂ A₂₃ A₂₄ ;  0  0  A₃₃  0 ;  0  0  A₄₃ A₄₄],   B̄ = [B₁; B₂; 0; 0],   C̄ = [C₁ 0 C₃ 0].
+"""
+
+from __future__ import annotations
+
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, ClassVar
+
+from symobs.exact import Matrix, Scalar, modulo
+from symobs.formula.tree import Environment, Literal
+from symobs.formula.tree.term import Term, block, identity, letter
+from symobs.ground.dataclass import dataclass
+from symobs.proof.certificate.claims import Claim
+from symobs.proof.derivation.builder import Builder, relation
+from symobs.system.conditions import Condition, vanishing_factors
+from symobs.tasks.analysis.factored_form import factored_form
+from symobs.tasks.analysis.page_parts import case_steps, given, in_blocks
+from symobs.tasks.analysis.rank.observability import power_rows
+from symobs.tasks.analysis.realization.coordinates import BLOCKS, basis, minor_of, transfer_matrix
+from symobs.tasks.analysis.strata.strata import strata
+from symobs.tasks.result import Case, Result, choose, method, task
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
+
+    from symobs.system import StateSpace
+    from symobs.system.specification import Name
+
+#: The blocks (to, from) of Ā that are 0: nothing leads out of R, and nothing out of N.
+ZEROS = ((0, 1), (0, 3), (2, 0), (2, 1), (2, 3), (3, 0), (3, 1))
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Decomposition(Result):
+    """The plant in coordinates x̄ = T x that separate the four parts, and its minimal transfer function.
+
+    Claims: T S = I, Ā = T A S, B̄ = T B, C̄ = C S; the blocks that must be 0 are 0; minors show that what should be
+    reached is reached and what should be seen is seen; C₁ (sI − A₁₁)⁻¹ B₁ + D = C (sI − A)⁻¹ B + D = the transfer function.
+    """
+
+    task: ClassVar[str] = "decomposition"
+
+    @property
+    def dimensions(self) -> tuple[int, ...]:
+        """The dimensions of the four parts."""
+        found: tuple[int, ...] = self.answer["sizes"]
+        return found
+
+    def part(self, *blocks: int) -> list[int]:
+        """Return the indices of the states of some parts."""
+        starts = [sum(self.dimensions[:k]) for k in range(4)]
+        return [i for k in blocks for i in range(starts[k], starts[k] + self.dimensions[k])]
+
+    def claims(self) -> Iterator[Claim]:
+        """Yield the change of coordinates, the zero pattern, the minors, the transfer function."""
+        m, answer, n = self.plant.matrices, self.answer, self.plant.order
+        names = {"A_bar": "A", "B_bar": "B", "C_bar": "C", "D_bar": "D", "T": "T", "S": "inverse"}
+        values = {"A": m.A, "B": m.B, "C": m.C, "D": m.D} | {name: answer[key] for name, key in names.items()}
+        e = Environment(variable=self.plant.variable, values=values)
+        T, S = letter("T", e), letter("S", e)
+        yield Claim(relation(T @ S, identity(n, e)), e)
+        yield Claim(relation(letter("A_bar", e), T @ letter("A", e) @ S), e)
+        yield Claim(relation(letter("B_bar", e), T @ letter("B", e)), e)
+        yield Claim(relation(letter("C_bar", e), letter("C", e) @ S), e)
+        yield Claim(relation(letter("D_bar", e), letter("D", e)), e)
+        yield Claim(relation(Scalar.of(sum(self.dimensions)), n), e, "the parts make up the whole")
+        yield Claim(relation(answer["minimal_order"], self.dimensions[0]), e, "the order is that of the first part")
+        for to, out in ZEROS:
+            yield from self._zero("A_bar", self.part(to), self.part(out), e)
+        yield from self._zero("B_bar", self.part(2, 3), range(self.plant.inputs), e)
+        yield from self._zero("C_bar", range(self.plant.outputs), self.part(1, 3), e)
+        yield from self._minors(e)
+        yield from self._transfer(e)
+
+    def _zero(self, name: str, rows: Any, columns: Any, e: Environment) -> Iterator[Claim]:
+        rows, columns = list(rows), list(columns)
+        if rows and columns:
+            entries = Term(Literal(e.value(name).select(rows, columns)), e)  # type: ignore[union-attr]
+            says = f"{name}: rows {rows} do not depend on columns {columns}"
+            yield Claim(relation(entries, Matrix.zeros(len(rows), len(columns))), e, says)
+
+    def _minors(self, e: Environment) -> Iterator[Claim]:
+        """Yield that the parts that should be reached are controllable, and those that should be seen observable."""
+        for minor, says in ((self._reaching, "reached"), (self._seeing, "seen")):
+            if minor is not None:
+                yield Claim(
+                    relation(Term(Literal(minor), e).apply("det"), "!==", 0), e, f"what should be {says} is {says}"
+                )
+
+    @cached_property
+    def _reaching(self) -> Matrix | None:
+        """A minor of the order of co and c_no of their controllability matrix."""
+        there = self.part(0, 1)
+        A, B = self.answer["A"].select(there, there), self.answer["B"].select(there, range(self.plant.inputs))
+        return minor_of(power_rows(A.T, B.T), len(there), self.plant.ideal)
+
+    @cached_property
+    def _seeing(self) -> Matrix | None:
+        """A minor of the order of co and nc_o of their observability matrix."""
+        there = self.part(0, 2)
+        A, C = self.answer["A"].select(there, there), self.answer["C"].select(range(self.plant.outputs), there)
+        return minor_of(power_rows(A, C), len(there), self.plant.ideal)
+
+    def _transfer(self, e: Environment) -> Iterator[Claim]:
+        first, inputs, outputs = self.part(0), range(self.plant.inputs), range(self.plant.outputs)
+        A1 = self.answer["A"].select(first, first)
+        B1, C1 = self.answer["B"].select(first, inputs), self.answer["C"].select(outputs, first)
+        e = e.extended_by(values={"P": self.answer["transfer_function"], "A_co": A1, "B_co": B1, "C_co": C1})
+        s, P = letter("s", e), letter("P", e)
+        whole = (s @ identity(self.plant.order, e) - letter("A", e)).inverse
+        yield Claim(relation(P, letter("C", e) @ whole @ letter("B", e) + letter("D", e)), e)
+        if first:
+            own = (s @ identity(len(first), e) - letter("A_co", e)).inverse
+            yield Claim(relation(P, letter("C_co", e) @ own @ letter("B_co", e) + letter("D", e)), e)
+        else:
+            yield Claim(relation(P, letter("D", e)), e)
+
+    @property
+    def existence(self) -> tuple[Scalar, ...]:
+        """The minors of 𝒞 and 𝒪 and the determinant of S: where they do not vanish the parts are the generic ones."""
+        minors = [m.determinant() for m in (self._reaching, self._seeing) if m is not None]
+        return (*minors, self.answer["inverse"].determinant(), self.answer["inverse"].common_denominator())
+
+    @cached_property
+    def holds_where(self) -> tuple[Condition, ...]:
+        """The plant's domain, and where the parts have the generic dimensions in these coordinates."""
+        listed = {c.expression for c in self.domain}
+        entries = [value.common_denominator() for value in self.answer.values() if isinstance(value, Matrix)]
+        claimed = [
+            f for f in vanishing_factors(entries, self.plant.symbols.signs) if self.plant.variable not in f.names
+        ]
+        factors = dict.fromkeys((*vanishing_factors(self.existence, self.plant.symbols.signs), *claimed))
+        return (*self.domain, *(Condition("existence", f) for f in factors if f not in listed))
+
+    @cached_property
+    def case_tree(self) -> tuple[Case, ...]:
+        """The decomposition on every stratum where that of the plant in general may not hold."""
+        factors = [c.expression for c in self.holds_where if c.kind == "existence"]
+        return strata(self.plant, factors, lambda plant, _: solve(plant, self.method))
+
+    @cached_property
+    def fields(self) -> Mapping[str, Any]:
+        """The change of coordinates, the four matrices in it, the sizes, the minimal order and transfer function."""
+        P: Matrix = self.answer["transfer_function"]
+        single = P.shape == (1, 1)
+        return {
+            **{key: self.answer[key] for key in "TABCD"},
+            "sizes": dict(zip(BLOCKS, self.dimensions, strict=True)),
+            "minimal_order": self.answer["minimal_order"],
+            "transfer_function": P[0, 0] if single else P,
+        }
+
+    def write(self, page: Builder) -> None:
+        """Write the two subspaces, the basis, the plant in it, and its minimal part."""
+        given(page)
+        with page.section("decomposition"):
+            self._subspaces(page)
+            self._coordinates(page)
+            conditions = [c.expression for c in self.holds_where if c.kind == "existence"]
+            if conditions:
+                page.assume("structure_provided", *conditions)
+            self._minimal(page)
+            page.steps += case_steps(page, self, lambda inner, found: found.write_form(inner))
+
+    def _subspaces(self, page: Builder) -> None:
+        A, B, C, n = page["A"], page["B"], page["C"], range(1, self.plant.order)
+        reach = page.term(block([[B, *(A**k @ B for k in n)]]).formula)
+        see = page.term(block([[C], *([C @ A**k] for k in n)]).formula)
+        page.define("Ctr", reach, say="reached_and_hidden")
+        page.define("O", see)
+
+    def _coordinates(self, page: Builder) -> None:
+        page.define(
+            "S", page.value(self.answer["inverse"]), say="basis_blocks", sizes=", ".join(map(str, self.dimensions))
+        )
+        page.define("T", page["S"].inverse, say="", answer=True)
+        T, S = page["T"], page["S"]
+        sizes, inputs, outputs = self.dimensions, [self.plant.inputs], [self.plant.outputs]
+        parts = {name: self.answer[name] for name in "ABC"}
+        page.define(
+            "A_bar",
+            T @ page["A"] @ S,
+            in_blocks(page, parts["A"], sizes, sizes),
+            say="decomposed",
+            answer=True,
+            closing=False,
+        )
+        page.define("B_bar", T @ page["B"], in_blocks(page, parts["B"], sizes, inputs), answer=True, closing=False)
+        page.define("C_bar", page["C"] @ S, in_blocks(page, parts["C"], outputs, sizes), answer=True, closing=False)
+        page.remark("zero_pattern")
+
+    def _minimal(self, page: Builder) -> None:
+        first = self.part(0)
+        P: Matrix = self.answer["transfer_function"]
+        value = factored_form(page, P[0, 0]) if P.shape == (1, 1) else page.value(P)
+        direct = page["D"] if self.plant.matrices.has_feedthrough else None
+        resolvent = (page.s @ page.identity(self.plant.order) - page["A"]).inverse
+        whole = page["C"] @ resolvent @ page["B"]
+        whole = whole + direct if direct is not None else whole
+        if not first:
+            page.define("P", whole, value, say="nothing_remains", answer=True, closing=False)
+            return
+        m, p = range(self.plant.inputs), range(self.plant.outputs)
+        page.set("A_co", self.answer["A"].select(first, first))
+        page.set("B_co", self.answer["B"].select(first, m))
+        page.set("C_co", self.answer["C"].select(p, first))
+        own = page["C_co"] @ (page.s @ page.identity(len(first)) - page["A_co"]).inverse @ page["B_co"]
+        own = own + direct if direct is not None else own
+        page.define("P", whole, own, value, say="minimal_part", answer=True, closing=False)
+
+    def write_form(self, page: Builder) -> None:
+        """Write the coordinates and the minimal part, in a case."""
+        self._coordinates(page)
+        self._minimal(page)
+
+
+def solve(plant: StateSpace, method_name: str) -> Decomposition:
+    """Return the decomposition of a plant."""
+    m = plant.matrices
+    S, sizes = basis(m.A, m.B, m.C, plant.ideal)
+    T = modulo(S.inverse().normal(), plant.ideal)
+    A, B, C = (modulo(value.normal(), plant.ideal) for value in (T @ m.A @ S, T @ m.B, m.C @ S))
+    first = range(sizes[0])
+    P = transfer_matrix(
+        A.select(first, first),
+        B.select(first, range(plant.inputs)),
+        C.select(range(plant.outputs), first),
+        m.D,
+        plant.variable,
+    )
+    answer = {
+        "T": T,
+        "inverse": S,
+        "A": A,
+        "B": B,
+        "C": C,
+        "D": m.D,
+        "sizes": sizes,
+        "minimal_order": sizes[0],
+        "transfer_function": P,
+    }
+    return Decomposition(plant, method_name, answer)
+
+
+@method("decomposition/subspaces", source="kalman1962")
+def subspaces(plant: StateSpace) -> Decomposition:
+    """Bases of im 𝒞 ∩ ker 𝒪 and of its complements, by elimination."""
+    return solve(plant, "subspaces")
+
+
+@task
+def decomposition(plant: StateSpace, *, method: Name = "auto") -> Result:
+    """Split a plant into four parts: reached and seen, reached and hidden, not reached and seen, neither.
+
+    plant    n states, m ≥ 1 inputs, p ≥ 1 outputs
+    Returns T (x̄ = T x), A, B, C, D in the new coordinates, sizes (co, c_no, nc_o, nc_no, in the order of the blocks),
+    minimal_order, transfer_function in lowest terms; with parameters the generic parts and the cases.  Raises `InputError`
+    where B or C is missing.  Source: R. E. Kalman, 1962.
+    """
+    plant.require("B", "C", task="decomposition")
+    return choose("decomposition", method, "subspaces").solve(plant)

@@ -1,0 +1,310 @@
+"""Gramians  W = ∫₀ᵀ e^{Aᵀt} Cᵀ C e^{At} dt  in closed form, their determinant and kernel, and the finite sum beside them.
+
+The controllability Gramian is that of (Bᵀ, Aᵀ).  In discrete time W is the sum over the horizon's steps.
+"""
+
+from __future__ import annotations
+
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, ClassVar, Self
+
+from symobs.exact import Matrix, Scalar, modulo, product_of
+from symobs.exact.core.generators import symbols_in
+from symobs.exact.time_functions.matrix_exponential import NoClosedForm
+from symobs.exact.time_functions.quasipolynomial import (
+    Table,
+    determinant,
+    integral,
+    matrix_at,
+    product,
+    table_of,
+    transposed,
+)
+from symobs.formula.tree import Literal
+from symobs.formula.tree.calculus import since_start
+from symobs.formula.tree.term import Term, identity, letter
+from symobs.ground.dataclass import dataclass
+from symobs.ground.errors import InputError
+from symobs.proof.certificate.claims import Claim
+from symobs.proof.derivation.builder import relation
+from symobs.stability.criteria.stability import StabilityVerdict, stability
+from symobs.system.conditions import Condition
+from symobs.tasks.analysis.rank.rank_test import (
+    minor_claim,
+    power_rows,
+    rank_answer,
+    rank_claims,
+    rank_environment,
+    rank_losses,
+)
+from symobs.tasks.analysis.strata.repeated_eigenvalues import distances, systems_of
+from symobs.tasks.analysis.time_response.damping_cases import (
+    DampingCases,
+    Signs,
+    from_zero,
+    rate_of,
+    reject,
+    time_environment,
+    vanishing_denominators,
+)
+from symobs.tasks.analysis.time_response.horizons import (
+    INFINITE,
+    infinite_gramian,
+    over_horizon,
+    read_horizon,
+    steps_gramian,
+)
+from symobs.tasks.analysis.time_response.matrix_exponential import TIME, closed_form, question_of, require_continuous
+from symobs.tasks.result import Case, Result, choose, method, task
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
+
+    from symobs.formula.tree import Environment
+    from symobs.system import StateSpace
+    from symobs.system.specification import Horizon, Name
+
+KINDS_OF = ("observability", "controllability")
+#: Determinants of entries with more terms than this together are left out.
+_MOST_TERMS = 60
+#: Up to this order there is always one.
+_ALWAYS_WITH_DETERMINANT = 2
+
+
+def pair_of(plant: StateSpace, of: str) -> tuple[Matrix, Matrix]:
+    """Return (A, C), or (Aᵀ, Bᵀ) for controllability."""
+    m = plant.matrices
+    return (m.A, m.C) if of == "observability" else (m.A.T, m.B.T)
+
+
+def _pair_seen(A: Matrix, C: Matrix, plant: StateSpace, horizon: Any) -> tuple[Matrix, Matrix]:
+    """Return the pair whose observability matrix has the kernel of W.
+
+    It is (A, C), since the rank of [C; CA; …] has stopped growing after n rows; over fewer steps than states it is
+    (0, [C; CA; …]) with as many rows as steps.
+    """
+    if not plant.is_discrete or horizon == INFINITE or horizon.fraction() >= plant.order:
+        return A, C
+    rows = power_rows(A, C)
+    return A * 0, rows.select(range(int(horizon.fraction()) * C.shape[0]), range(plant.order))
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Gramian(DampingCases):
+    """W with W = ∫ of its integrand (checked by differentiation), its determinant, Σ (Aᵀ)ᵏ Cᵀ C Aᵏ, and the kernel."""
+
+    task: ClassVar[str] = "gramian"
+    asked_for: ClassVar[tuple[str, ...]] = ("horizon",)
+
+    @classmethod
+    def of(cls, plant: StateSpace, method_name: str, asked: Mapping[str, Any], taken: Signs) -> Self:
+        """Return the result for a plant; `asked` holds `of` and `horizon`."""
+        A, C = pair_of(plant, asked["of"])
+        found = rank_answer(*_pair_seen(A, C, plant, asked["horizon"]), plant.ideal)
+        O = modulo(power_rows(A, C), plant.ideal)
+        shared = {"of": asked["of"], "horizon": asked["horizon"], "taken": taken, "chosen": {}, "rank": found}
+        shared |= {"finite_sum": (O.T @ O).normal()}
+        if asked["horizon"] == INFINITE:
+            return cls(plant, method_name, {**shared, **infinite_gramian(plant, A, C, found)})
+        if plant.is_discrete:
+            return cls(plant, method_name, {**shared, **steps_gramian(A, C, asked["horizon"])})
+        try:
+            exponential, chosen = closed_form(plant, taken)
+        except NoClosedForm as error:
+            open_answer = {"matrix": None, "determinant": None, "question": question_of(error), "factor": error.factor}
+            return cls(plant, method_name, {**shared, **open_answer})
+        table = exponential.table() if asked["of"] == "observability" else transposed(exponential.table())
+        seen = product(table_of(C), table)
+        W = integral(product(transposed(seen), seen))
+        answer = {
+            "matrix": matrix_at(W, asked["horizon"]),
+            "determinant": _determinant(W, asked["horizon"]),
+            "function": matrix_at(W, TIME),
+            "exponential": matrix_at(table, TIME),
+        }
+        return cls(plant, method_name, {**shared, **answer, "chosen": chosen})
+
+    @property
+    def matrices(self) -> tuple[Matrix | Scalar, ...]:
+        """The functions of time, at the horizon too."""
+        names = ("matrix", "determinant", "function", "exponential")
+        return tuple(self.answer[name] for name in names if self.answer.get(name) is not None)
+
+    @property
+    def verdict(self) -> str:
+        """`no` where an integral over all time does not exist, not even where less is seen."""
+        if not self.has_answer:
+            return "conditional" if self._kept else "no"
+        return super().verdict
+
+    @property
+    def is_over_steps(self) -> bool:
+        """Whether W is a sum over a number of steps, which its own determinant and kernel describe."""
+        return self.plant.is_discrete and self.answer["horizon"] != INFINITE
+
+    @property
+    def has_answer(self) -> bool:
+        """Whether the generic observable part decays, if it must."""
+        return self.decay.verdict != "no"
+
+    @cached_property
+    def _kept(self) -> tuple[Case, ...]:
+        """The cases with a convergent infinite-horizon integral, where the generic observable part does not decay."""
+        if self.has_answer:
+            return ()
+        return tuple(case for case in self.case_tree if case.result is not None and case.result.verdict != "no")
+
+    @cached_property
+    def decay(self) -> StabilityVerdict:
+        """Whether the observable part decays, which the infinite horizon requires."""
+        if "seen" not in self.answer:
+            return StabilityVerdict("yes")
+        plant = self.plant
+        return stability(self.answer["seen"], plant.variable, plant.symbols.signs, discrete=plant.is_discrete)
+
+    @cached_property
+    def holds_where(self) -> tuple[Condition, ...]:
+        """Also the conditions for an integral over all time to exist."""
+        if self._kept:
+            there = product_of(distances(systems_of(self._kept) or ()))
+            return (*self.domain, Condition("existence", there, "=="))
+        exists = self.decay.positive if self.answer["matrix"] is not None else ()
+        beyond = [Condition("existence", value, ">") for value in exists]
+        return (*super().holds_where, *beyond)
+
+    @cached_property
+    def denominators(self) -> tuple[Scalar, ...]:
+        """Also those of what is seen: on a curve its coefficients may have poles, where it decays or not anew."""
+        divided = [*self.matrices, self.answer["seen"]] if "seen" in self.answer else self.matrices
+        return vanishing_denominators(divided, self.plant.symbols.signs)
+
+    @property
+    def further_zeros(self) -> tuple[Scalar, ...]:
+        """Where the kernel may be another one, and more of what grows unseen."""
+        return rank_losses(self.answer["rank"], self.plant.symbols.signs)
+
+    def claims(self) -> Iterator[Claim]:
+        """Yield the integral, symmetry, determinant, finite sum, rank and kernel."""
+        yield from super().claims()
+        A, C = pair_of(self.plant, self.answer["of"])
+        found, W = self.answer["rank"], self.answer["matrix"]
+        pair = _pair_seen(A, C, self.plant, self.answer["horizon"])
+        e = rank_environment(self.plant, pair, found)
+        yield from rank_claims(found, e)
+        yield from minor_claim(found, e)
+        values: dict[str, Any] = {"A": A, "C": C, "M": self.answer["finite_sum"]}
+        plain = time_environment(self.plant, values)
+        a, c, m = letter("A", plain), letter("C", plain), letter("M", plain)
+        total = c.T @ c
+        for k in range(1, self.plant.order):
+            total = total + (a.T) ** k @ c.T @ c @ a**k
+        yield Claim(relation(m, total), plain, "finite_sum = sum of (A.T)**k*C.T*C*A**k, k < n")
+        kernel: Matrix = found["kernel"]
+        if kernel.shape[1] and pair == (A, C):
+            zero = Matrix.zeros(*kernel.shape)
+            yield Claim(relation(m @ Term(Literal(kernel), plain), zero), plain, "finite_sum*N = 0")
+        if self.answer["horizon"] == INFINITE:
+            yield from self._about_decay(e)
+        if W is None:
+            return
+        values |= {"W": W, **({"N": kernel} if kernel.shape[1] else {})}
+        if self.answer["determinant"] is None and self.plant.order <= _ALWAYS_WITH_DETERMINANT:
+            reject("the determinant of a small Gramian is missing")
+        if self.answer["determinant"] is not None:
+            values["determinant"] = self.answer["determinant"]
+        if "exponential" in self.answer:
+            values["exp_At"] = self.answer["exponential"]
+            values["primitive"] = self.answer["function"]
+        e = time_environment(self.plant, {**values, **_at_horizon(values, self.answer["horizon"])})
+        yield from self._about_gramian(e)
+
+    def _about_decay(self, e: Environment) -> Iterator[Claim]:
+        """Yield the claims on the observable part; if it surely grows the integral does not exist."""
+        count, seen = self.answer["rank"]["restricted"].shape[0], Term(Literal(self.answer["seen"]), e)
+
+        def polynomial(name: str, order: int) -> Term:
+            return (letter("s", e) @ identity(order, e) - letter(name, e)).apply("det")
+
+        product = polynomial("X", count) * seen if count else seen
+        yield Claim(relation(polynomial("A", self.plant.order), product), e, "det(s*I - A) = seen*det(s*I - X)")
+        if self.answer["matrix"] is not None and self.decay.verdict not in {"yes", "conditional"}:
+            reject("an integral over all time of what does not decay is none")
+
+    def _about_gramian(self, e: Any) -> Iterator[Claim]:
+        W, A, C = letter("W", e), letter("A", e), letter("C", e)
+        horizon = self.answer["horizon"]
+        if "exponential" in self.answer:
+            Phi = letter("exp_At", e)
+            yield Claim(relation(rate_of(Phi), A @ Phi), e, "d/dt exp(A*t) = A*exp(A*t)")
+            yield Claim(relation(Phi.at("t", 0), identity(self.plant.order, e)), e, "exp(A*0) = I")
+            integrand = Phi.T @ C.T @ C @ Phi
+            yield from from_zero(["primitive"], e)
+            whole = Term(since_start(integrand.formula, letter("primitive", e).formula, horizon), e)
+            yield Claim(relation(W, whole), e, "W = integral of exp(A.T*t)*C.T*C*exp(A*t) from 0 to the horizon")
+        elif horizon == INFINITE and self.plant.is_discrete:
+            yield Claim(relation(A.T @ W @ A - W + C.T @ C, Matrix.zeros(*A.value.shape)), e, "A.T*W*A - W = -C.T*C")
+        elif horizon == INFINITE:
+            yield Claim(relation(A.T @ W + W @ A + C.T @ C, Matrix.zeros(*A.value.shape)), e, "A.T*W + W*A = -C.T*C")
+        else:
+            total = C.T @ C
+            for k in range(1, int(horizon.fraction())):
+                total = total + (A.T) ** k @ C.T @ C @ A**k
+            yield Claim(relation(W, total), e, "W = sum over the steps of the horizon")
+        yield Claim(relation(W, W.T), e, "W = W.T")
+        if self.answer["determinant"] is not None:
+            yield Claim(relation(W.apply("det"), letter("determinant", e)), e, "det W")
+        if "N" in e.values:
+            yield Claim(relation(W @ letter("N", e), Matrix.zeros(*e.values["N"].shape)), e, "W*N = 0")
+
+    @cached_property
+    def fields(self) -> Mapping[str, Any]:
+        """Matrix, determinant, finite sum, rank and kernel."""
+        kernel: Matrix = self.answer["rank"]["kernel"]
+        vectors = [list(kernel.select(range(kernel.shape[0]), [j]).entries) for j in range(kernel.shape[1])]
+        asked = self.answer.get("question")
+        found = {name: self.answer[name] for name in ("matrix", "determinant", "finite_sum")}
+        found |= {"rank": self.answer["rank"]["rank"], "kernel": vectors}
+        return {**found, **({"question": asked} if asked else {})}
+
+
+def _at_horizon(values: Mapping[str, Any], horizon: Any) -> dict[str, Any]:
+    """Return the functions of time at the horizon, so that their generators are known as well."""
+    if not isinstance(horizon, Scalar):
+        return {}
+    from symobs.exact.core.generators import substitute  # noqa: PLC0415
+
+    moving = {name: value for name, value in values.items() if "t" in symbols_in(value)}
+    return {f"{name} at T": substitute(value, {"t": horizon}) for name, value in moving.items()}
+
+
+def _determinant(W: Table, horizon: Scalar) -> Scalar | None:
+    """Return det W as a sum of functions, None where it would be long."""
+    if len(W) > _ALWAYS_WITH_DETERMINANT and sum(len(entry.terms) for row in W for entry in row) > _MOST_TERMS:
+        return None
+    return determinant(W).value_at(horizon)
+
+
+@method("gramian/integral", source="kalman1963a")
+def by_integral(plant: StateSpace, of: str, horizon: Any) -> Gramian:
+    """Integrate the entries of e^{Aᵀt} Cᵀ C e^{At} as sums of tⁿ e^{αt} cos βt and sin βt; over all time by Lyapunov."""
+    return Gramian.of(plant, "integral", {"of": of, "horizon": horizon}, {})
+
+
+@task
+def gramian(plant: StateSpace, *, horizon: Horizon = None, of: Name = "observability", method: Name = "auto") -> Result:
+    """Return the Gramian W = ∫₀ᵀ e^{Aᵀt} Cᵀ C e^{At} dt (of = "controllability": ∫₀ᵀ e^{At} B Bᵀ e^{Aᵀt} dt).
+
+    plant    n states; C (or B) must be given
+    horizon  T > 0, a symbol or a number ("T" if left out), or "inf"; in discrete time a number of steps (n if left out)
+    Returns matrix, determinant, finite_sum (Σ (Aᵀ)ᵏ Cᵀ C Aᵏ), rank, kernel; verdict no where the integral over all time
+    does not exist.  Raises `InputError` where the horizon is not one.
+    Source: R. E. Kalman, Y. C. Ho and K. S. Narendra (1963); R. W. Brockett (1970).
+    """
+    if of not in KINDS_OF:
+        message = f"{of[:40]!r} is not a kind of Gramian"
+        raise InputError(message, where="specification.of", repair="write observability or controllability")
+    plant.require("C" if of == "observability" else "B", task="gramian")
+    end = read_horizon(plant, horizon)
+    if not plant.is_discrete:
+        require_continuous(plant, "gramian")
+    return over_horizon(lambda: choose("gramian", method, "integral").solve(plant, of, end))

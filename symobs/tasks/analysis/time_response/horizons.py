@@ -1,0 +1,124 @@
+"""Horizons: reading them, and the Gramians over all time and over a number of steps."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from symobs.exact import Matrix, Scalar, remainder
+from symobs.exact.core.generators import NotWritten, function_named
+from symobs.formula.expression import parse_scalar
+from symobs.ground.errors import InputError
+from symobs.stability.criteria.stability import stability
+from symobs.system import read_scalar
+from symobs.system.conditions import sign_of
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+
+    from symobs.system import StateSpace
+    from symobs.tasks.result import Result
+
+INFINITE = "inf"
+_MOST_STEPS = 60
+#: Lyapunov's equation is solved for up to this many states, without and with parameters.
+_MOST_STATES, _MOST_WITH_PARAMETERS = 12, 4
+
+
+def read_horizon(plant: StateSpace, value: object, name: str = "horizon") -> Any:
+    """Return `inf`, or the horizon as a scalar: T where none is given.  Raises `InputError`."""
+    where, called = f"specification.{name}", name.replace("_", " ")
+    if str(value).strip() in {"inf", "oo"}:  # SymPy's oo too
+        return INFINITE
+    if value is None:
+        return Scalar.of(plant.order) if plant.is_discrete else Scalar.symbol("T")
+    if isinstance(value, str):
+        found = parse_scalar(value, plant.symbols.names, where=where, functions=True)
+    else:
+        found = read_scalar(value, plant.symbols.seen(value), where)
+    if any(function_named(name) for name in found.names):
+        raise InputError(
+            f"the {called} {found} is no rational expression", where=where, repair='write "T", 5 or "2*pi"'
+        )
+    if sign_of(found, plant.symbols.signs) in {"negative", "nonpositive", "zero"}:
+        raise InputError(f"the {called} {found} is not positive", where=where, repair='write "T", or a number above 0')
+    if "t" in found.names and found != Scalar.symbol("t"):  # the end of the horizon may be called t, as in W(t)
+        raise InputError(f"the {called} depends on t", where=where, repair='t is the time; write "t" itself, or "T"')
+    if plant.is_discrete and not (found.is_constant and found.fraction().denominator == 1):
+        raise InputError(f"{found} is not a number of steps", where=where, repair="write a whole number, or inf")
+    if plant.is_discrete and found.fraction() > _MOST_STEPS:
+        raise InputError(f"{found} steps are too many", where=where, repair=f"write at most {_MOST_STEPS}, or inf")
+    return found
+
+
+def over_horizon(solve: Callable[[], Result], name: str = "horizon") -> Result:
+    """Return a result over a horizon; raises `InputError` where cosines there are not written with square roots."""
+    try:
+        return solve()
+    except NotWritten as error:
+        message = f"with this {name} the answer contains a value that has no form here: {error}"
+        raise InputError(message, where=f"specification.{name}", repair='write "T" and put the number in') from error
+
+
+def steps_gramian(A: Matrix, C: Matrix, steps: Scalar) -> dict[str, Any]:
+    """Return Σ (Aᵀ)ᵏ Cᵀ C Aᵏ over the steps, and its determinant."""
+    row, total = C, C.T @ C
+    for _ in range(int(steps.fraction()) - 1):
+        row = (row @ A).normal()
+        total = total + row.T @ row
+    total = total.normal()
+    return {"matrix": total, "determinant": total.determinant()}
+
+
+def infinite_gramian(plant: StateSpace, A: Matrix, C: Matrix, test: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the polynomial of the observable part, and the infinite-horizon Gramian if that decays."""
+    variable, hidden = plant.variable, test["restricted"]
+    seen = A.characteristic_polynomial(variable)
+    if hidden.shape[0]:  # on a stratum the factor divides modulo its equations only
+        seen = plant.simplified(remainder(seen, hidden.characteristic_polynomial(variable), variable)[0])
+    found = stability(seen, variable, plant.symbols.signs, discrete=plant.is_discrete)
+    nothing: dict[str, Any] = {"matrix": None, "determinant": None, "seen": seen}
+    if found.verdict == "no":
+        return nothing
+    order = A.shape[0]
+    if order > (_MOST_WITH_PARAMETERS if (A.names | C.names) else _MOST_STATES):
+        return {**nothing, "question": f"Lyapunov's equation for {order} states"}
+    W = _of_what_is_seen(A, C, test, discrete=plant.is_discrete)
+    if W is None:
+        return {**nothing, "question": "Lyapunov's equation has no unique solution"}
+    return {"matrix": W, "determinant": W.determinant(), "seen": seen}
+
+
+def _of_what_is_seen(A: Matrix, C: Matrix, test: Mapping[str, Any], *, discrete: bool) -> Matrix | None:
+    """Solve Lyapunov's equation for the part that is seen: with x₁ = Q x, Q rows of 𝒪, A₁ Q = Q A and W = QᵀW₁Q."""
+    order = range(A.shape[0])
+    if not test["rank"]:
+        return Matrix.zeros(*A.shape)
+    if test["rank"] == A.shape[0]:
+        return lyapunov(A, C, discrete=discrete)
+    Q: Matrix = test["matrix"].select(test["rows"], order)
+    square = Q.select(range(Q.shape[0]), test["columns"]).T
+
+    def through(rows: Matrix) -> Matrix:  # Y with Y Q = rows
+        return square.solve(rows.select(range(rows.shape[0]), test["columns"]).T).T.normal()
+
+    W = lyapunov(through(Q @ A), through(C), discrete=discrete)
+    return None if W is None else (Q.T @ W @ Q).normal()
+
+
+def lyapunov(A: Matrix, C: Matrix, *, discrete: bool) -> Matrix | None:
+    """Return the symmetric P with AᵀP + PA = −CᵀC (AᵀPA − P = −CᵀC), None where it is not unique."""
+    order = A.shape[0]
+    places = [(i, j) for i in range(order) for j in range(i, order)]
+    Q = (C.T @ C).normal()
+    columns = []
+    for i, j in places:
+        unit = Matrix.of([[int((r, c) in {(i, j), (j, i)}) for c in range(order)] for r in range(order)])
+        image = A.T @ unit @ A - unit if discrete else A.T @ unit + unit @ A
+        columns.append([image[r, c] for r, c in places])
+    table = Matrix.of(columns).T
+    try:
+        found = table.solve(Matrix.column([-Q[r, c] for r, c in places])).normal()
+    except ZeroDivisionError:
+        return None
+    values = {place: found[k, 0] for k, place in enumerate(places)}
+    return Matrix.of([[values[min(i, j), max(i, j)] for j in range(order)] for i in range(order)])

@@ -1,0 +1,299 @@
+"""The initial state from the output, and from output and input with feedthrough.
+
+With ỹ = y − C x_f − D u, where x_f is the motion from rest, ỹ = C e^{At} x₀, so W x₀ = ∫ e^{Aᵀt} Cᵀ ỹ dt.  The value and
+the derivatives of ỹ at 0 give the only candidate; whether it explains the data at all times is then asked exactly.
+"""
+
+from __future__ import annotations
+
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, ClassVar, Self
+
+from symobs.exact import Matrix, Scalar, kernel
+from symobs.exact.core.generators import all_roots, function_named, normal_form, substitute
+from symobs.exact.time_functions.matrix_exponential import NoClosedForm
+from symobs.exact.time_functions.quasipolynomial import Table, integral, matrix_at, product, table_of, transposed
+from symobs.formula.tree import Environment, Literal
+from symobs.formula.tree.calculus import since_start
+from symobs.formula.tree.term import Term, block, identity, letter
+from symobs.ground.dataclass import dataclass
+from symobs.ground.errors import InputError
+from symobs.proof.certificate.claims import Claim
+from symobs.proof.derivation.builder import relation
+from symobs.system.conditions import Condition, vanishing_factors
+from symobs.tasks.analysis.rank.rank_test import rank_answer
+from symobs.tasks.analysis.time_response.damping_cases import Signs, from_zero, rate_of, time_environment
+from symobs.tasks.analysis.time_response.horizons import INFINITE, over_horizon, read_horizon
+from symobs.tasks.analysis.time_response.matrix_exponential import (
+    TIME,
+    closed_form,
+    question_of,
+    require_continuous,
+)
+from symobs.tasks.analysis.time_response.measurements import OfTheInitialState, read_functions
+from symobs.tasks.result import Case, Result, choose, method, task
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
+
+    from symobs.system import StateSpace
+    from symobs.system.specification import Horizon, Name, TimeFunctions
+
+
+def difference(left: Table, right: Table) -> Table:
+    """Return left − right."""
+    return tuple(tuple(a - b for a, b in zip(p, q, strict=True)) for p, q in zip(left, right, strict=True))
+
+
+def motion_from_rest(exponential: Table, B: Matrix, u: Table) -> Table:
+    """Return ∫₀ᵗ e^{A(t−s)} B u(s) ds."""
+    backwards = tuple(tuple(entry.reversed() for entry in row) for row in exponential)
+    return product(exponential, integral(product(backwards, product(table_of(B), u))))
+
+
+def derivatives_at_zero(free: Table, count: int) -> list[Scalar]:
+    """Return the values of ỹ, ỹ′, … at 0, output by output within each derivative."""
+    found: list[Scalar] = []
+    rows = [row[0] for row in free]
+    for _ in range(count):
+        found += [entry.at_zero for entry in rows]
+        rows = [entry.derivative() for entry in rows]
+    return found
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class InitialState(OfTheInitialState):
+    """x₀ with y = C (e^{At} x₀ + x_f) + D u, where x_f′ = A x_f + B u and x_f(0) = 0; or the proof that there is none."""
+
+    task: ClassVar[str] = "initial_state"
+    main: ClassVar[str] = "x0"
+    asked_for: ClassVar[tuple[str, ...]] = ("output", "input", "horizon")
+
+    @classmethod
+    def of(cls, plant: StateSpace, method_name: str, asked: Mapping[str, Any], taken: Signs) -> Self:
+        """Return the result for a plant; `asked` holds horizon, output and input as matrices of functions of t."""
+        m = plant.matrices
+        test = rank_answer(m.A, m.C)
+        data = {name: asked[name] for name in ("horizon", "output", "input")}
+        shared = {**data, "x0": None, "taken": taken, "chosen": {}, "rank": test}
+        try:
+            found, chosen = closed_form(plant, taken)
+        except NoClosedForm as error:
+            return cls(plant, method_name, {**shared, "question": question_of(error), "factor": error.factor})
+        table = found.table()
+        y, seen = table_of(asked["output"]), product(table_of(m.C), table)
+        answer = {**shared, "chosen": chosen, "exponential": matrix_at(table, TIME)}
+        free = y
+        if asked["input"] is not None:
+            u = table_of(asked["input"])
+            rest = motion_from_rest(table, m.B, u)
+            free = difference(free, product(table_of(m.C), rest))
+            if m.has_feedthrough:
+                free = difference(free, product(table_of(m.D), u))
+            answer["forced"] = matrix_at(rest, TIME)
+        answer["free"] = matrix_at(free, TIME)
+        weighted = product(transposed(seen), free)
+        answer |= {
+            "gramian_function": matrix_at(integral(product(transposed(seen), seen)), TIME),
+            "moment_function": matrix_at(integral(weighted), TIME),
+        }
+        return cls(plant, method_name, {**answer, **_solved(test, derivatives_at_zero(free, plant.order), seen, free)})
+
+    @property
+    def matrices(self) -> tuple[Matrix | Scalar, ...]:
+        """The functions of time."""
+        names = (
+            "output",
+            "input",
+            "exponential",
+            "forced",
+            "free",
+            "gramian_function",
+            "moment_function",
+            "rest",
+            "x0",
+        )
+        return tuple(self.answer[name] for name in names if self.answer.get(name) is not None)
+
+    @property
+    def verdict(self) -> str:
+        """`no` where nothing explains the data, or more than one state does."""
+        if self.answer.get("question") is None and (self.answer["x0"] is None or not self.is_unique):
+            return "no"
+        return super().verdict
+
+    @property
+    def further_zeros(self) -> tuple[Scalar, ...]:
+        """Where the pair may lose rank, and where what refutes the data may not."""
+        plain = (factor for factor in self._refuting_factors if not _has_functions(factor))
+        return tuple(dict.fromkeys((*super().further_zeros, *plain)))
+
+    @cached_property
+    def case_tree(self) -> tuple[Case, ...]:
+        """Those of all results in time; and undecided ones where what refutes the data vanishes with roots or functions."""
+        beyond = filter(_has_functions, self._refuting_factors)
+        return (*super().case_tree, *(Case((Condition("existence", f, "=="),), {}, None) for f in beyond))
+
+    @property
+    def _refuting_factors(self) -> tuple[Scalar, ...]:
+        """What vanishes where the data are not refuted; a root by itself does not, as the sign of its argument is taken."""
+        found = vanishing_factors(self.answer.get("refuted", ()), self.plant.symbols.signs)
+        roots = {root.value for root in all_roots(*found)}
+        return tuple(factor for factor in found if factor not in roots)
+
+    def _values(self) -> dict[str, Any]:
+        m, answer = self.plant.matrices, self.answer
+        names = {"exp_At": "exponential", "y_t": "output", "u_t": "input", "x_f": "forced", "y_0": "free", "x_0": "x0"}
+        names |= {"W_t": "gramian_function", "r_t": "moment_function", "candidate": "candidate"}
+        values: dict[str, Any] = {"A": m.A, "B": m.B, "C": m.C, "D": m.D, "O": answer["rank"]["matrix"]}
+        values |= {letter: answer[name] for letter, name in names.items() if answer.get(name) is not None}
+        if answer["horizon"] != INFINITE:
+            values |= {f"{n} at T": substitute(v, {"t": answer["horizon"]}) for n, v in list(values.items())}
+        return values
+
+    def claims(self) -> Iterator[Claim]:
+        """Yield the motion from rest, the output explained, the moment equations, and what excludes others."""
+        yield from super().claims()
+        if self.answer.get("question") is None:
+            e = time_environment(self.plant, self._values())
+            yield from self._about_motion(e)
+            yield from self._about_state(e)
+        yield from self.observability_claims()
+
+    def _about_motion(self, e: Environment) -> Iterator[Claim]:
+        A, Phi, free = letter("A", e), letter("exp_At", e), letter("y_t", e)
+        yield Claim(relation(rate_of(Phi), A @ Phi), e, "d/dt exp(A*t) = A*exp(A*t)")
+        yield Claim(relation(Phi.at("t", 0), identity(self.plant.order, e)), e, "exp(A*0) = I")
+        if "x_f" in e.values:
+            x_f, u = letter("x_f", e), letter("u_t", e)
+            yield Claim(relation(rate_of(x_f), A @ x_f + letter("B", e) @ u), e, "x_f' = A*x_f + B*u")
+            yield Claim(relation(x_f.at("t", 0), Matrix.zeros(self.plant.order, 1)), e, "x_f(0) = 0")
+            free = free - letter("C", e) @ x_f
+            if self.plant.matrices.has_feedthrough:
+                free = free - letter("D", e) @ u
+        yield Claim(relation(letter("y_0", e), free), e, "what the input adds is taken away")
+
+    def _about_state(self, e: Environment) -> Iterator[Claim]:
+        seen, free = letter("C", e) @ letter("exp_At", e), letter("y_0", e)
+        if "x_0" in e.values:
+            yield Claim(relation(free, seen @ letter("x_0", e)), e, "y = C*(exp(A*t)*x0 + x_f) + D*u")
+            if self.answer["horizon"] != INFINITE:
+                yield from from_zero(["W_t", "r_t"], e)
+                yield self._moments(e)
+            return
+        at_zero = []
+        for _ in range(self.plant.order):
+            at_zero.append(free.at("t", 0))
+            free = rate_of(free)
+        start, O = block([[part] for part in at_zero]), letter("O", e)
+        if "candidate" in e.values:
+            state = letter("candidate", e)
+            yield Claim(relation(O @ state, start), e, "the candidate follows from the derivatives at 0")
+            yield Claim(relation(letter("y_0", e), "!==", seen @ state), e, "its output is not the one measured")
+            return
+        row = Term(Literal(self.answer["row"]), e)
+        yield Claim(relation(row @ O, Matrix.zeros(1, self.plant.order)), e, "w*O = 0")
+        yield Claim(relation(row @ start, "!==", 0), e, "w times the derivatives at 0 is not 0")
+
+    def _moments(self, e: Environment) -> Claim:
+        """Return W x₀ = ∫ e^{Aᵀt} Cᵀ ỹ dt, both integrals with their primitives."""
+        Phi, C, horizon = letter("exp_At", e), letter("C", e), self.answer["horizon"]
+        gramian = since_start((Phi.T @ C.T @ C @ Phi).formula, letter("W_t", e).formula, horizon)
+        right = since_start((Phi.T @ C.T @ letter("y_0", e)).formula, letter("r_t", e).formula, horizon)
+        return Claim(
+            relation(Term(gramian, e) @ letter("x_0", e), Term(right, e)), e, "W*x0 = integral of exp(A.T*t)*C.T*y"
+        )
+
+    @cached_property
+    def fields(self) -> Mapping[str, Any]:
+        """The state, and the kernel where it is not the only one."""
+        x0, N = self.answer["x0"], self.answer["rank"]["kernel"]
+        asked = self.answer.get("question")
+        vectors = [list(N.select(range(N.shape[0]), [j]).entries) for j in range(N.shape[1])]
+        found = {"x0": None if x0 is None else list(x0.entries), "kernel": vectors}
+        return {**found, **({"question": asked} if asked else {})}
+
+
+def _has_functions(value: Scalar) -> bool:
+    return any(function_named(name) for name in value.names)
+
+
+def _solved(test: Mapping[str, Any], start: list[Scalar], seen: Table, free: Table) -> dict[str, Any]:
+    """Return x₀; or the only candidate and what its output leaves; or a row w with w 𝒪 = 0 that refutes the data."""
+    O: Matrix = test["matrix"]
+    right = Matrix.column(start)
+    rows, columns = test["rows"], test["columns"]
+    order = O.shape[1]
+    values = [Scalar.of(0)] * order
+    if columns:
+        solution = O.select(rows, columns).solve(right.select(rows, [0]))
+        for place, index in enumerate(columns):
+            values[index] = normal_form(solution[place, 0])
+    state = Matrix.column(values)
+    left = [normal_form(entry) for entry in (O @ state - right).entries]
+    if any(not entry.is_zero for entry in left):
+        null = kernel(O.T)
+        for vector in (null.select(range(null.shape[0]), [j]) for j in range(null.shape[1])):
+            if not normal_form((vector.T @ right)[0, 0]).is_zero:
+                return {"row": vector.T, "start": right, "refuted": ((vector.T @ right)[0, 0],)}
+    rest = difference(free, product(seen, table_of(state)))
+    if any(not entry.is_zero for row in rest for entry in row):
+        return {"candidate": state, "rest": matrix_at(rest, TIME), "refuted": tuple(_refuting(rest))}
+    return {"x0": state}
+
+
+def _refuting(rest: Table) -> Iterator[Scalar]:
+    """Yield values one of which vanishes wherever all these functions do.
+
+    A term of one of them vanishes with its coefficient, or another becomes the same function of t.
+    """
+    terms = next(entry.terms for row in rest for entry in row if not entry.is_zero)
+    key, coefficient = next(iter(terms.items()))
+    yield coefficient
+    if key.wave == "sin":
+        yield key.frequency
+    for other in terms:
+        if other.power == key.power and other.rate != key.rate:
+            yield key.rate - other.rate
+        elif other.power == key.power and other.frequency != key.frequency:
+            yield key.frequency**2 - other.frequency**2
+
+
+@method("initial_state/moments", source="kalman1963a")
+def moments(plant: StateSpace, asked: Mapping[str, Any]) -> InitialState:
+    """Take the input's part away, take the candidate from the derivatives at 0, hold it to the data at all times."""
+    return InitialState.of(plant, "moments", asked, {})
+
+
+@task
+def initial_state(
+    plant: StateSpace,
+    *,
+    output: TimeFunctions = None,
+    input: TimeFunctions = None,  # noqa: A002 - the specification's word
+    horizon: Horizon = None,
+    method: Name = "auto",
+) -> Result:
+    """Return the initial state x₀ of an output y(t) under an input u(t), y = C (e^{At} x₀ + x_f) + D u, or that none exists.
+
+    plant    n states, p outputs; B where an input is given; continuous time
+    output   y(t): sums of exponentials, sines and cosines times powers of t, one for each output
+    input    u(t), likewise; 0 where it is left out
+    horizon  the end of the interval of measurement, "T" if left out
+    Returns x0, kernel.  Verdict no where no state explains the data, and where more than one does.  Raises `InputError`
+    where C (or B) is missing, in discrete time, for other functions of t and for an infinite horizon; `ShapeMismatch`.
+    Source: R. E. Kalman, Y. C. Ho and K. S. Narendra (1963).
+    """
+    plant.require("C", task="initial_state")
+    require_continuous(plant, "initial_state")
+    y, _ = read_functions(output, plant, "output", plant.outputs)
+    u = None
+    if input is not None:
+        plant.require("B", task="initial_state")
+        u, _ = read_functions(input, plant, "input", plant.inputs)
+    end = read_horizon(plant, horizon)
+    if end == INFINITE:
+        message = "the interval of measurement is finite"
+        raise InputError(message, where="specification.horizon", repair='write "T", or a number above 0')
+    asked = {"output": y, "input": u, "horizon": end}
+    return over_horizon(lambda: choose("initial_state", method, "moments").solve(plant, asked))

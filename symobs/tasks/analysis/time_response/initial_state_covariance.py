@@ -1,0 +1,344 @@
+"""The covariance of the reconstructed initial state under white noise.
+
+x̂₀ = W⁻¹ ∫ e^{Aᵀt} Cᵀ ỹ dt with W = W(T).  Output noise of intensity R contributes W⁻¹ ∫ e^{Aᵀt} Cᵀ R C e^{At} dt W⁻¹, input
+noise of intensity Q contributes W⁻¹ ∫ V Q Vᵀ dt W⁻¹ with V(t) = e^{Aᵀt} W(T − t) B = (W(T) − W(t)) e^{−At} B.
+"""
+
+from __future__ import annotations
+
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, ClassVar, Self
+
+from symobs.exact import Matrix, Scalar
+from symobs.exact.core.generators import identities, roots_in, substitute
+from symobs.exact.time_functions.matrix_exponential import Exponential, NoClosedForm
+from symobs.exact.time_functions.quasipolynomial import (
+    Quasipolynomial,
+    Table,
+    determinant,
+    integral,
+    matrix_at,
+    product,
+    quasi_of,
+    table_of,
+    transposed,
+)
+from symobs.formula.tree.calculus import since_start
+from symobs.formula.tree.term import Term, identity, letter
+from symobs.ground.dataclass import dataclass
+from symobs.ground.errors import InputError, ShapeMismatch
+from symobs.proof.certificate.claims import Claim
+from symobs.proof.derivation.builder import relation
+from symobs.system import read_matrix
+from symobs.system.conditions import Condition, sign_of
+from symobs.tasks.analysis.rank.rank_test import rank_answer
+from symobs.tasks.analysis.time_response.best_horizon import stationary
+from symobs.tasks.analysis.time_response.damping_cases import Signs, from_zero, rate_of, time_environment
+from symobs.tasks.analysis.time_response.horizons import INFINITE, over_horizon, read_horizon
+from symobs.tasks.analysis.time_response.matrix_exponential import (
+    TIME,
+    closed_form,
+    question_of,
+    require_continuous,
+)
+from symobs.tasks.analysis.time_response.measurements import OfTheInitialState
+from symobs.tasks.result import Result, choose, method, task
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
+
+    from symobs.formula.tree import Environment
+    from symobs.system import StateSpace
+    from symobs.system.specification import Horizon, Intensity, Name
+
+#: Orders for which the inverse of a Gramian in closed form is still readable.
+_MOST_STATES = 4
+#: Gramians of more terms than this are not inverted.
+_MOST_TERMS = 16
+END = Scalar.symbol("T")
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class InitialStateCovariance(OfTheInitialState):
+    """Σ = Σ_R + Σ_Q with W Σ_R W = S_R and W Σ_Q W = S_Q, the two integrals checked by differentiation."""
+
+    task: ClassVar[str] = "initial_state_covariance"
+    main: ClassVar[str] = "covariance"
+    asked_for: ClassVar[tuple[str, ...]] = ("Q", "R", "horizon")
+
+    @classmethod
+    def of(cls, plant: StateSpace, method_name: str, asked: Mapping[str, Any], taken: Signs) -> Self:
+        """Return the result for a plant; `asked` holds Q (None: no input noise), R, horizon, and whether that is called t."""
+        m = plant.matrices
+        test = rank_answer(m.A, m.C)
+        data = {name: asked[name] for name in ("Q", "R", "horizon", "called_t")}
+        shared = {**data, "rank": test, "taken": taken, "chosen": {}, "covariance": None}
+        if test["rank"] < plant.order:
+            return cls(plant, method_name, shared)
+        if plant.order > _MOST_STATES:
+            question = f"the inverse of the Gramian of {plant.order} states, more than {_MOST_STATES}"
+            return cls(plant, method_name, {**shared, "question": question, "factor": None})
+        try:
+            found, chosen = closed_form(plant, taken)
+        except NoClosedForm as error:
+            return cls(plant, method_name, {**shared, "question": question_of(error), "factor": error.factor})
+        if question := _too_long(plant, found):
+            return cls(plant, method_name, {**shared, "question": question, "factor": None, "chosen": chosen})
+        return cls(plant, method_name, {**shared, "chosen": chosen, **_parts(plant, found.table(), data)})
+
+    @property
+    def matrices(self) -> tuple[Matrix | Scalar, ...]:
+        """The functions of time and of the horizon."""
+        parts = ("covariance", "input_part", "output_part", "W", "S_R", "S_Q", "V")
+        names = (*parts, "exponential", "backwards", "gramian", "R_primitive", "Q_primitive")
+        return tuple(self.answer[name] for name in names if self.answer.get(name) is not None)
+
+    @property
+    def verdict(self) -> str:
+        """`no` where the pair is not observable."""
+        return super().verdict if self.is_unique else "no"
+
+    @property
+    def further_zeros(self) -> tuple[Scalar, ...]:
+        """Where the pair is not observable; nothing more is said of one that never is."""
+        return super().further_zeros if self.is_unique else ()
+
+    @cached_property
+    def stated(self) -> tuple[Condition, ...]:
+        """The horizon is positive: that it is not 0 is no further condition, and 0 no case."""
+        return tuple(c for c in super().stated if c.kind == "domain" or c.expression.names != {"T"})
+
+    def claims(self) -> Iterator[Claim]:
+        """Yield the integrals, the two parts between Gramians, and their sum."""
+        yield from super().claims()
+        yield from self.observability_claims()
+        if self.answer["covariance"] is None:
+            return
+        yield from self._about_parts(time_environment(self.plant, self.letters()))
+
+    def letters(self) -> dict[str, Any]:
+        """Return the values of the letters of claims and page."""
+        m, answer = self.plant.matrices, self.answer
+        names = {"exp_At": "exponential", "Phi_m": "backwards", "W_t": "gramian", "W": "W", "S_R": "S_R", "S_Q": "S_Q"}
+        names |= {"Cov": "covariance", "Cov_R": "output_part", "Cov_Q": "input_part", "V_t": "V"}
+        names |= {"R_t": "R_primitive", "Q_t": "Q_primitive", "Q": "Q", "R": "R"}
+        values: dict[str, Any] = {"A": m.A, "B": m.B, "C": m.C}
+        values |= {name: answer[key] for name, key in names.items() if answer.get(key) is not None}
+        horizon = answer["horizon"]
+        return values | {f"{n} at T": substitute(v, {"t": horizon}) for n, v in list(values.items())}
+
+    def _about_parts(self, e: Environment) -> Iterator[Claim]:
+        Phi, A, C, W, R = (letter(name, e) for name in ("exp_At", "A", "C", "W", "R"))
+        horizon = self.answer["horizon"]
+        yield Claim(relation(rate_of(Phi), A @ Phi), e, "d/dt exp(A*t) = A*exp(A*t)")
+        yield Claim(relation(Phi.at("t", 0), identity(self.plant.order, e)), e, "exp(A*0) = I")
+        yield from from_zero(["W_t", "R_t", "Q_t"], e)
+        whole = since_start((Phi.T @ C.T @ C @ Phi).formula, letter("W_t", e).formula, horizon)
+        yield Claim(relation(W, Term(whole, e)), e, "W = integral of exp(A.T*t)*C.T*C*exp(A*t)")
+        noise = since_start((Phi.T @ C.T @ R @ C @ Phi).formula, letter("R_t", e).formula, horizon)
+        yield Claim(relation(letter("S_R", e), Term(noise, e)), e, "S_R = integral of exp(A.T*t)*C.T*R*C*exp(A*t)")
+        yield Claim(relation(W @ letter("Cov_R", e) @ W, letter("S_R", e)), e, "W*output_part*W = S_R")
+        total = letter("Cov_R", e)
+        if "V_t" in e.values:
+            V, Q, back = letter("V_t", e), letter("Q", e), letter("Phi_m", e)
+            yield Claim(relation(back @ Phi, identity(self.plant.order, e)), e, "exp(-A*t)*exp(A*t) = I")
+            yield Claim(relation(V, (W - letter("W_t", e)) @ back @ letter("B", e)), e, "V = (W(T) - W(t))*exp(-A*t)*B")
+            driven = since_start((V @ Q @ V.T).formula, letter("Q_t", e).formula, horizon)
+            yield Claim(relation(letter("S_Q", e), Term(driven, e)), e, "S_Q = integral of V*Q*V.T")
+            yield Claim(relation(W @ letter("Cov_Q", e) @ W, letter("S_Q", e)), e, "W*input_part*W = S_Q")
+            total = total + letter("Cov_Q", e)
+        yield Claim(relation(letter("Cov", e), total), e, "covariance = output_part + input_part")
+
+    @cached_property
+    def best_horizon(self) -> list[str | None]:
+        """For each component the equation of the horizon with the least variance, None where it is not a simple one."""
+        found = self.answer["covariance"]
+        if found is None or self.answer["horizon"] != END:
+            return []
+        name = "t" if self.answer["called_t"] else "T"
+        signs = {**self.plant.symbols.signs, name: "positive"}
+        return [stationary(self._as_called(found[i, i]), name, signs) for i in range(self.plant.order)]
+
+    def _as_called(self, value: Any) -> Any:
+        """Return a value in the name that the horizon was given."""
+        return substitute(value, {"T": TIME}) if value is not None and self.answer["called_t"] else value
+
+    @cached_property
+    def fields(self) -> Mapping[str, Any]:
+        """The covariance, its two parts, the best horizon."""
+        asked = self.answer.get("question")
+        names = ("covariance", "input_part", "output_part")
+        found: dict[str, Any] = {name: self._as_called(self.answer.get(name)) for name in names}
+        found["best_horizon"] = self.best_horizon
+        return {**found, **({"question": asked} if asked else {})}
+
+
+def _too_long(plant: StateSpace, found: Exponential) -> str:
+    """Return the question that stays open where the Gramian cannot be inverted readably."""
+    table, order = found.table(), plant.order
+    if plant.matrices.A.names and any(roots_of_frequencies(entry) for row in table for entry in row):
+        return (
+            f"the inverse of the {order}x{order} Gramian, whose functions have square roots of the parameters in them"
+        )
+    seen = product(table_of(plant.matrices.C), table)
+    terms = sum(len(entry.terms) for row in product(transposed(seen), seen) for entry in row)
+    return (
+        f"the inverse of the {order}x{order} Gramian, of {terms} terms, more than {_MOST_TERMS}"
+        if terms > _MOST_TERMS
+        else ""
+    )
+
+
+def roots_of_frequencies(value: Quasipolynomial) -> bool:
+    """Return whether a root stands in a rate or a frequency."""
+    return any(roots_in(key.rate) or roots_in(key.frequency) for key in value.terms)
+
+
+def _parts(plant: StateSpace, exponential: Table, asked: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the integrals with their primitives and the parts of the covariance."""
+    m, horizon = plant.matrices, asked["horizon"]
+    seen = product(table_of(m.C), exponential)
+    W = integral(product(transposed(seen), seen))
+    noisy = integral(product(transposed(seen), product(table_of(asked["R"]), seen)))
+    ends = {"T": horizon}
+    W_end, S_R = (_in_end(matrix_at(table, END)) for table in (W, noisy))
+    answer: dict[str, Any] = {
+        "exponential": matrix_at(exponential, TIME),
+        "gramian": matrix_at(W, TIME),
+        "W": substitute(matrix_at(W, END), ends),
+        "R_primitive": matrix_at(noisy, TIME),
+        "S_R": substitute(matrix_at(noisy, END), ends),
+    }
+    inverse = _Inverse(W_end)
+    output_part = inverse.times(_scalar_of(asked["R"])) or inverse.between(S_R)
+    total = output_part
+    if asked["Q"] is not None:
+        backwards = tuple(tuple(entry.reversed() for entry in row) for row in exponential)
+        whole = table_of(matrix_at(W, END))
+        left = tuple(tuple(a - b for a, b in zip(p, q, strict=True)) for p, q in zip(whole, W, strict=True))
+        V = product(left, product(backwards, table_of(m.B)))
+        driven = integral(product(V, product(table_of(asked["Q"]), transposed(V))))
+        S_Q = _in_end(matrix_at(driven, END))
+        input_part = inverse.between(S_Q)
+        total = output_part + input_part
+        answer |= {
+            "backwards": matrix_at(backwards, TIME),
+            "V": substitute(matrix_at(V, TIME), ends),
+            "Q_primitive": substitute(matrix_at(driven, TIME), ends),
+            "S_Q": substitute(matrix_at(S_Q, END), ends),
+            "input_part": substitute(input_part, ends),
+        }
+    return {**answer, "output_part": substitute(output_part, ends), "covariance": substitute(total, ends)}
+
+
+def _in_end(matrix: Matrix) -> Table:
+    """Return the entries as sums of functions of T."""
+    return tuple(tuple(quasi_of(entry, "T") for entry in row) for row in matrix.rows)
+
+
+def _scalar_of(R: Matrix) -> Scalar | None:
+    """Return r where R = r I."""
+    r = R[0, 0]
+    return r if Matrix.identity(R.shape[0]) * r == R else None
+
+
+class _Inverse:
+    """W⁻¹ = adj W / det W, products taken as sums of functions, quotients reduced in the exponentials they have."""
+
+    def __init__(self, W: Table) -> None:
+        self.determinant = determinant(W)
+        order = len(W)
+        minor = [
+            [
+                tuple(tuple(e for c, e in enumerate(row) if c != j) for r, row in enumerate(W) if r != i)
+                for j in range(order)
+            ]
+            for i in range(order)
+        ]
+        one = Quasipolynomial.constant(Scalar.of(1))
+        cofactors = [[determinant(m) if m else one for m in row] for row in minor]
+        self.adjugate = tuple(
+            tuple(-cofactors[j][i] if (i + j) % 2 else cofactors[j][i] for j in range(order)) for i in range(order)
+        )
+
+    def times(self, factor: Scalar | None) -> Matrix | None:
+        """Return r W⁻¹."""
+        if factor is None:
+            return None
+        return _over(matrix_at(self.adjugate, END) * factor, self.determinant.value_at(END))
+
+    def between(self, middle: Table) -> Matrix:
+        """Return W⁻¹ S W⁻¹."""
+        top = product(self.adjugate, product(middle, self.adjugate))
+        below = self.determinant * self.determinant
+        return _over(matrix_at(top, END), below.value_at(END))
+
+
+def _over(top: Matrix, below: Scalar) -> Matrix:
+    """Return a quotient, its exponentials written in a common one so that what both share cancels."""
+    meanings, _ = identities([top, below], falling=True)
+    base = {name: value for name, value in meanings.items() if not value.names & {name} and name.startswith("exp(")}
+    return Matrix.of([[entry.substitute(base) / below.substitute(base) for entry in row] for row in top.rows])
+
+
+def read_intensity(value: object, plant: StateSpace, name: str, size: int) -> Matrix | None:
+    """Return a symmetric matrix; a single value q stands for q I.  Raises `InputError`, `ShapeMismatch`."""
+    if value is None:
+        return None
+    where = f"specification.{name}"
+    found = read_matrix(
+        [[value]] if not isinstance(value, (str, list, tuple)) else value, plant.symbols.seen(value), where
+    )
+    if found.shape == (1, 1):
+        found = Matrix.identity(size) * found[0, 0]
+    if found.shape != (size, size):
+        message = f"{name} is {found.shape[0]}×{found.shape[1]}, expected {size}×{size}"
+        raise ShapeMismatch(message, where=where, repair=f"write {name} as a symmetric {size}×{size} matrix")
+    if found != found.T:
+        raise InputError(f"{name} is not symmetric", where=where, repair="an intensity is a symmetric matrix")
+    for i in range(size):
+        if sign_of(found[i, i], plant.symbols.signs) == "negative":
+            raise InputError(
+                f"{name} has a negative entry on its diagonal", where=where, repair="variances are not negative"
+            )
+    return found
+
+
+@method("initial_state_covariance/gramian", source="least-squares estimate; kalman1961")
+def gramian_estimate(plant: StateSpace, asked: Mapping[str, Any]) -> InitialStateCovariance:
+    """Propagate white noise through the estimate W⁻¹ ∫ e^{Aᵀt} Cᵀ ỹ dt, entry by entry in closed form."""
+    return InitialStateCovariance.of(plant, "gramian", asked, {})
+
+
+@task
+def initial_state_covariance(
+    plant: StateSpace, *, Q: Intensity = None, R: Intensity = None, horizon: Horizon = None, method: Name = "auto"
+) -> Result:
+    """Return the covariance Σ of the estimate x̂₀ = W⁻¹ ∫ e^{Aᵀt} Cᵀ y dt under white input noise Q and output noise R.
+
+    plant    n ≤ 3 states, p outputs; B where Q is given; continuous time
+    Q, R     intensities: symmetric m×m and p×p, or one value for a multiple of I; Q left out: no input noise
+    horizon  T > 0, a symbol or a number, "T" if left out; called t, it stands so in the answers, and as T in the derivation
+    Returns covariance, input_part, output_part, best_horizon (for each component the equation of its least variance).
+    Verdict no where the pair (C, A) is not observable.  Raises `InputError` where C, R (or B) is missing, in discrete
+    time, for an intensity that is not symmetric and for an infinite horizon; `ShapeMismatch`.
+    Source: derived on the page; R. E. Kalman and R. S. Bucy (1961) for the optimal estimate.
+    """
+    plant.require("C", task="initial_state_covariance")
+    require_continuous(plant, "initial_state_covariance")
+    if Q is not None:
+        plant.require("B", task="initial_state_covariance")
+    intensity = read_intensity(R, plant, "R", plant.outputs)
+    if intensity is None:
+        message = "the intensity R of the output noise is missing"
+        raise InputError(message, where="specification.R", repair='give it, for example R = "r"')
+    end = read_horizon(plant, horizon)
+    if end == INFINITE:
+        raise InputError("the horizon is finite here", where="specification.horizon", repair='write "T", or a number')
+    asked: dict[str, Any] = {"Q": read_intensity(Q, plant, "Q", max(plant.inputs, 1)), "R": intensity}
+    called_t = end == TIME  # the integrands contain the time, too: beside it the end of the horizon is T
+    if called_t and any("T" in part.field.names for part in (plant, intensity, asked["Q"]) if part is not None):
+        message = "the horizon cannot be called t where T is a parameter: t is the time, and T stands for its end"
+        raise InputError(message, where="specification.horizon", repair="give the parameter another name")
+    asked |= {"horizon": END if called_t else end, "called_t": called_t}
+    return over_horizon(lambda: choose("initial_state_covariance", method, "gramian").solve(plant, asked))

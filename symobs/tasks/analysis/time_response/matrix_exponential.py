@@ -1,0 +1,244 @@
+"""The matrix exponential e^{At} in closed form: exponentials, cosines, sines, cosh, sinh, powers of t; never complex."""
+
+from __future__ import annotations
+
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, ClassVar, Self
+
+from symobs.exact import Matrix, Scalar, factored
+from symobs.exact.core.generators import function_named
+from symobs.exact.time_functions.matrix_exponential import (
+    MOST_STATES_WITH_PARAMETERS,
+    Exponential,
+    Mode,
+    NoClosedForm,
+    exponential,
+)
+from symobs.exact.time_functions.root_sum import RootSum
+from symobs.formula.tree import Identity, Letter, Literal, Negative, Power, Product, Sum
+from symobs.formula.tree.term import identity, letter
+from symobs.ground.dataclass import dataclass
+from symobs.ground.errors import InputError
+from symobs.proof.certificate.claims import Claim
+from symobs.proof.derivation.builder import Builder, relation
+from symobs.system.conditions import vanishing_factors
+from symobs.tasks.analysis.factored_form import formula_of_factored
+from symobs.tasks.analysis.page_parts import given
+from symobs.tasks.analysis.time_response.damping_cases import DampingCases, Signs, rate_of, time_environment, with_signs
+from symobs.tasks.result import Result, choose, method, task
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
+
+    from symobs.formula.tree import Formula
+    from symobs.formula.tree.term import Term
+    from symobs.system import StateSpace
+    from symobs.system.specification import Name
+
+TIME = Scalar.symbol("t")
+#: Sums of up to this many matrices are shown before the entries.
+_SHOWN_SUM = 4
+#: Derivatives of matrices of up to this order are shown.
+_SHOWN_RATE = 3
+
+
+def closed_form(plant: StateSpace, taken: Signs, *, sums: bool = False) -> tuple[Exponential, Signs]:
+    """Return e^{At} and the signs that were chosen, with `sums` over roots if need be.  Raises `NoClosedForm`."""
+    return with_signs(plant, taken, lambda sign: exponential(plant.matrices.A, plant.variable, sign, sums=sums))
+
+
+def question_of(error: NoClosedForm) -> str:
+    """Return what would have to be known."""
+    if error.factor is None:
+        return f"the exponential of a matrix of more than {MOST_STATES_WITH_PARAMETERS} states"
+    return f"the roots of {error.factor}"
+
+
+def require_continuous(plant: StateSpace, task_name: str) -> None:
+    """Raise `InputError` in discrete time, and where t is a parameter."""
+    if plant.is_discrete:
+        message = f"{task_name} belongs to continuous time"
+        raise InputError(
+            message, where="plant.dt", repair="leave dt out; in discrete time the powers of A take its place"
+        )
+    if "t" in plant.field.names and "t" in plant.matrices.A.names:
+        message = "t is the time and cannot be a parameter of the plant"
+        raise InputError(message, where="plant.A", repair="give the parameter another name")
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class MatrixExponential(DampingCases):
+    """Φ(t) with Φ′ = A Φ and Φ(0) = I, which has one solution."""
+
+    task: ClassVar[str] = "matrix_exponential"
+
+    @classmethod
+    def of(cls, plant: StateSpace, method_name: str, _: Mapping[str, Any], taken: Signs) -> Self:
+        """Return the result for a plant."""
+        try:
+            found, chosen = closed_form(plant, taken, sums=not plant.equations)
+        except NoClosedForm as error:
+            answer = {"matrix": None, "question": question_of(error), "factor": error.factor}
+            return cls(plant, method_name, {**answer, "taken": taken, "chosen": {}})
+        return cls(plant, method_name, {"matrix": found.matrix(TIME), "taken": taken, "chosen": chosen})
+
+    def claims(self) -> Iterator[Claim]:
+        """Yield the differential equation and the start."""
+        yield from super().claims()
+        if self.answer["matrix"] is None:
+            return
+        e = time_environment(self.plant, {"A": self.plant.matrices.A, "exp_At": self.answer["matrix"]})
+        Phi = letter("exp_At", e)
+        yield Claim(relation(rate_of(Phi), letter("A", e) @ Phi), e, "d/dt exp(A*t) = A*exp(A*t)")
+        yield Claim(relation(Phi.at("t", 0), identity(self.plant.order, e)), e, "exp(A*0) = I")
+
+    @cached_property
+    def denominators(self) -> tuple[Scalar, ...]:
+        """Beside those of the entries, the discriminants of polynomials over whose roots a sum goes."""
+        if self.answer["matrix"] is None:
+            return ()
+        sums = [f for f in _functions(self.answer["matrix"]) if isinstance(f, RootSum)]
+        found = vanishing_factors([f.discriminant for f in sums], self.plant.symbols.signs)
+        return tuple(dict.fromkeys((*super().denominators, *found)))
+
+    @cached_property
+    def fields(self) -> Mapping[str, Any]:
+        """The matrix in t; where there is none, the question that is open."""
+        asked = self.answer.get("question")
+        return {"matrix": self.answer["matrix"], **({"question": asked} if asked else {})}
+
+    def write(self, page: Builder) -> None:
+        """Write the characteristic polynomial, the sum of functions and matrices, the entries, the check."""
+        page.in_time(*self.everything())
+        given(page)
+        with page.section("matrix_exponential"):
+            tell_polynomial(page)
+            self.write_branches(page, _write_branch)
+
+
+def _write_branch(page: Builder, result: MatrixExponential) -> None:
+    """Write one branch."""
+    if result.answer["matrix"] is None:
+        tell_question(page, result.answer["factor"])
+        return
+    signs = {**result.answer["taken"], **result.answer["chosen"]}
+    found, _ = closed_form(result.plant, signs, sums=not result.plant.equations)
+    tell_exponential(page, found, result.answer["matrix"], answer=True)
+    Phi = page["exp_At"]
+    if found.is_closed and not result.plant.field.names and result.plant.order <= _SHOWN_RATE:
+        page.equal(relation(rate_of(Phi), (page["A"] @ Phi).as_value, page["A"] @ Phi), say="exponential_rate")
+    start = relation(Phi.at("t", 0), page.identity(result.plant.order))
+    page.verified("exponential_start", relation(rate_of(Phi), page["A"] @ Phi), start=start)
+
+
+def tell_polynomial(page: Builder) -> None:
+    """Write the characteristic polynomial with its factors."""
+    polynomial = page.plant.matrices.A.characteristic_polynomial(page.plant.variable)
+    form = factored(polynomial, page.plant.variable)
+    pencil = page.s @ page.identity(page.plant.order) - page["A"]
+    members = [pencil.apply("det"), page.value(polynomial)]
+    if len(polynomial.terms()) > 1 and (len(form.factors) > 1 or form.factors[0][1] > 1):
+        members.append(page.term(formula_of_factored(form)))
+    page.define("chi", *members, say="exponential_modes", closing=False)
+
+
+def tell_question(page: Builder, factor: Scalar | None) -> None:
+    """State the undecided question."""
+    if factor is None:
+        page.remark("too_many_states", order=str(page.plant.order))
+    else:
+        page.remark("no_closed_form", factor=factor, degree=str(factor.degree(page.plant.variable)))
+
+
+def tell_exponential(page: Builder, found: Exponential, matrix: Matrix, *, answer: bool = False) -> None:
+    """Define e^{At}: the sum over the modes where it is short, then the entries, then the roots."""
+    count = sum(len(own) for _, _, own in found.parts)
+    is_shown = not found.is_closed or 1 < count <= _SHOWN_SUM
+    members: list[Term | Matrix] = [page.term(_sum_of_modes(found))] if is_shown else []
+    say = "exponential_sum" if members else "exponential_here"
+    if found.is_closed:
+        members.append(matrix)
+    page.define("exp_At", *members, say=say, answer=answer, closing=False)
+    tell_roots(page, matrix)
+
+
+def tell_roots(page: Builder, *values: Matrix) -> None:
+    """Define the letters of square roots."""
+    for name in page.forms:
+        used = any(name in v.names or any(name in f.argument.names for f in _functions(v)) for v in values)
+        root = function_named(name)
+        if used and root is not None:
+            square = page.term(Power(Literal(Scalar.symbol(name)), 2))
+            page.conclude("root_named", root=relation(square, page.term(_term_by_term(root.argument))))
+
+
+def _term_by_term(value: Scalar) -> Formula:
+    """Return ω² − b²/4, a sum of its terms."""
+    terms: list[Formula] = []
+    for coefficient, powers in sorted(value.terms(), key=lambda term: term[0] < 0):
+        monomial = Scalar.of(abs(coefficient)) / value.denominator
+        for name, power in powers:
+            monomial = monomial * Scalar.symbol(name) ** power
+        terms.append(Negative(Literal(monomial)) if coefficient < 0 else Literal(monomial))
+    return Sum(tuple(terms)) if len(terms) > 1 else terms[0]
+
+
+def _functions(value: Matrix) -> list[Any]:
+    return [f for name in value.names if (f := function_named(name)) is not None]
+
+
+def _sum_of_modes(found: Exponential) -> Formula:
+    """Return Σ function · matrix; a single pair on two states in the letters A and I."""
+    mode = found.parts[0][0]
+    if found.order == 2 and len(found.parts) == 1 and isinstance(mode, Mode) and len(mode.start) == 2:
+        still = Mode(Scalar.of(0), mode.discriminant, mode.oscillates)
+        C, S = still.values(0, TIME)
+        shifted = _shifted(mode.rate)
+        inside = Sum((Product((Literal(C), Identity(2))), Product((Literal(S), shifted))))
+        rate = found_rate(mode.rate)
+        return inside if rate is None else Product((rate, inside))
+    terms = []
+    for mode, power, matrices in found.parts:
+        for value, matrix in zip(mode.values(power, TIME), matrices, strict=True):
+            if matrix.is_zero:
+                continue
+            terms.append(Literal(matrix) if value.is_one else Product((Literal(value), Literal(matrix))))
+    return Sum(tuple(terms)) if len(terms) > 1 else terms[0]
+
+
+def found_rate(rate: Scalar) -> Formula | None:
+    """Return e^{σt}, None where it is 1."""
+    from symobs.exact.core.generators import function  # noqa: PLC0415
+
+    return None if rate.is_zero else Literal(function("exp", rate * TIME))
+
+
+def _shifted(rate: Scalar) -> Formula:
+    """Return A − σI."""
+    if rate.is_zero:
+        return Letter("A")
+    negative = rate.terms()[0][0] > 0
+    size = rate if negative else -rate
+    amount: Formula = Identity(2) if size.is_one else Product((Literal(size), Identity(2)))
+    return Sum((Letter("A"), Negative(amount) if negative else amount))
+
+
+@method("matrix_exponential/derivatives", source="leonard1996")
+def derivatives(plant: StateSpace) -> MatrixExponential:
+    """Solve Σᵢ fᵢ⁽ᵏ⁾(0) Mᵢ = Aᵏ for the matrices of e^{At} = Σ fᵢ(t) Mᵢ."""
+    return MatrixExponential.of(plant, "derivatives", {}, {})
+
+
+@task
+def matrix_exponential(plant: StateSpace, *, method: Name = "auto") -> Result:
+    """Return e^{At} as a real matrix of exponentials, cosines, sines, cosh, sinh and powers of t.
+
+    plant    n states, continuous time; only A matters
+    Returns matrix, in t.  Where the sign of a discriminant decides between oscillation and none, conditions hold the
+    branch that is shown and cases the others.  An irreducible factor q of χ of degree 3 or more brings sums over its roots,
+    Σ λʲ e^{λt}/q′(λ), in SymPy's syntax `RootSum`; where parameters make two of the roots equal it is undecided.
+    Raises `InputError` in discrete time, and where t is a parameter of A.
+    Source: I. E. Leonard (1996).
+    """
+    require_continuous(plant, "matrix_exponential")
+    return choose("matrix_exponential", method, "derivatives").solve(plant)

@@ -1,0 +1,180 @@
+"""The plant behind a zero-order hold, from one sampling instant to the next:  A_d = e^{AT},  B_d = ∫₀ᵀ e^{At} B dt.
+
+Exponentials, cosines and sines of the period are independent letters with their relations, as everywhere.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, ClassVar, Self
+
+from symobs.exact import Matrix
+from symobs.exact.core.generators import substitute
+from symobs.exact.time_functions.matrix_exponential import NoClosedForm
+from symobs.exact.time_functions.quasipolynomial import integral, matrix_at, product, table_of
+from symobs.formula.tree import Literal
+from symobs.formula.tree.calculus import since_start
+from symobs.formula.tree.term import Term, identity, letter
+from symobs.ground.dataclass import dataclass
+from symobs.ground.errors import InputError
+from symobs.proof.certificate.claims import Claim
+from symobs.proof.derivation.builder import relation
+from symobs.system import StateSpace
+from symobs.tasks.analysis.time_response.damping_cases import DampingCases, Signs, from_zero, rate_of, time_environment
+from symobs.tasks.analysis.time_response.horizons import INFINITE, over_horizon, read_horizon
+from symobs.tasks.analysis.time_response.matrix_exponential import (
+    TIME,
+    closed_form,
+    question_of,
+    require_continuous,
+    tell_exponential,
+    tell_polynomial,
+    tell_question,
+)
+from symobs.tasks.result import Result, choose, method, task
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
+
+    from symobs.exact import Scalar
+    from symobs.formula.tree import Environment
+    from symobs.proof.derivation.builder import Builder
+    from symobs.system.specification import Horizon, Name
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class ZeroOrderHold(DampingCases):
+    """A_d = Φ(T) with Φ′ = A Φ and Φ(0) = I, and B_d = ∫₀ᵀ Φ(t) B dt."""
+
+    task: ClassVar[str] = "zero_order_hold"
+    main: ClassVar[str] = "A_d"
+    asked_for: ClassVar[tuple[str, ...]] = ("horizon",)
+
+    @classmethod
+    def of(cls, plant: StateSpace, method_name: str, asked: Mapping[str, Any], taken: Signs) -> Self:
+        """Return the result for a plant; `asked` holds the sampling period."""
+        m, period = plant.matrices, asked["horizon"]
+        shared = {"horizon": period, "taken": taken, "chosen": {}}
+        try:
+            found, chosen = closed_form(plant, taken)
+        except NoClosedForm as error:
+            nothing = {"A_d": None, "B_d": None, "question": question_of(error), "factor": error.factor}
+            return cls(plant, method_name, {**shared, **nothing})
+        exponential = found.table()
+        driven = integral(product(exponential, table_of(m.B)))
+        answer = {"exponential": matrix_at(exponential, TIME), "driven": matrix_at(driven, TIME)}
+        at_period = {"A_d": matrix_at(exponential, period), "B_d": matrix_at(driven, period)}
+        return cls(plant, method_name, {**shared, **answer, **at_period, "chosen": chosen})
+
+    @property
+    def matrices(self) -> tuple[Matrix | Scalar, ...]:
+        """The functions of time, at the period too."""
+        names = ("exponential", "driven", "A_d", "B_d")
+        return tuple(self.answer[name] for name in names if self.answer.get(name) is not None)
+
+    def claims(self) -> Iterator[Claim]:
+        """Yield the differential equation and its start, the value at the period, and the integral."""
+        yield from super().claims()
+        if self.answer["A_d"] is None:
+            return
+        m, period = self.plant.matrices, self.answer["horizon"]
+        values = {"A": m.A, "B": m.B, "exp_At": self.answer["exponential"], "driven": self.answer["driven"]}
+        values |= {f"{name} at T": substitute(values[name], {"t": period}) for name in ("exp_At", "driven")}
+        e = time_environment(self.plant, {**values, "A_zoh": self.answer["A_d"], "B_zoh": self.answer["B_d"]})
+        Phi = letter("exp_At", e)
+        yield Claim(relation(rate_of(Phi), letter("A", e) @ Phi), e, "d/dt exp(A*t) = A*exp(A*t)")
+        yield Claim(relation(Phi.at("t", 0), identity(self.plant.order, e)), e, "exp(A*0) = I")
+        yield Claim(relation(letter("A_zoh", e), Phi.at("t", period)), e, "A_d = exp(A*T)")
+        yield from from_zero(["driven"], e)
+        whole = Term(_integral(e, letter("driven", e), period), e)
+        yield Claim(relation(letter("B_zoh", e), whole), e, "B_d = integral of exp(A*t)*B from 0 to T")
+
+    @property
+    def sampled(self) -> StateSpace:
+        """The discrete-time plant x_{k+1} = A_d x_k + B_d u_k, y_k = C x_k + D u_k.
+
+        Its sampling period is the number T, or left open.  Raises `InputError` where there is no closed form, and where
+        the sign of a discriminant that is not known decides.
+        """
+        if self.answer["A_d"] is None:
+            message = f"there is no sampled plant in closed form: what is open is {self.answer['question']}"
+            raise InputError(message, where="plant.A", repair="put numbers in, and sample those")
+        for delta in (*self.answer["chosen"], *self.answer["taken"]):
+            message = f"the sampled plant is another one for each sign of {delta}"
+            raise InputError(message, where="symbols", repair="declare signs that decide it, or put numbers in")
+        m, period = self.plant.matrices, self.answer["horizon"]
+        C, D = m.C if m.has_output else None, m.D if m.has_output and m.has_feedthrough else None
+        symbols = self.plant.symbols
+        if str(period) in period.names and symbols.sign(str(period)) == "real":
+            symbols = replace(symbols, signs={**symbols.signs, str(period): "positive"})
+        dt = period.fraction() if period.is_constant else True
+        return StateSpace(self.answer["A_d"], self.answer["B_d"], C, D, dt=dt, symbols=symbols)
+
+    @cached_property
+    def fields(self) -> Mapping[str, Any]:
+        """The matrices of the sampled plant; where there are none, the question that is open."""
+        m, asked = self.plant.matrices, self.answer.get("question")
+        found = {"A": self.answer["A_d"], "B": self.answer["B_d"], "C": m.C, "D": m.D}
+        return {**found, **({"question": asked} if asked else {})}
+
+    def write(self, page: Builder) -> None:
+        """Write the matrix exponential, its value at the period, the integral, the check."""
+        page.in_time(*self.everything())
+        self.state_data(page)
+        with page.section("zero_order_hold"):
+            tell_polynomial(page)
+            self.write_branches(page, _write_branch)
+
+
+def _integral(e: Environment, primitive: Term | Matrix, period: Scalar) -> Any:
+    """Return ∫₀ᵀ e^{At} B dt with its primitive."""
+    known = Literal(primitive) if isinstance(primitive, Matrix) else primitive.formula
+    return since_start((letter("exp_At", e) @ letter("B", e)).formula, known, period)
+
+
+def _write_branch(page: Builder, result: ZeroOrderHold) -> None:
+    """Write one branch."""
+    answer, period = result.answer, result.answer["horizon"]
+    if answer.get("question") is not None:
+        tell_question(page, answer["factor"])
+        page.remark("zero_order_hold_not_given")
+        return
+    found, _ = closed_form(result.plant, {**answer["taken"], **answer["chosen"]})
+    tell_exponential(page, found, answer["exponential"])
+    Phi = page["exp_At"]
+    page.define("A_zoh", Phi.at("t", period), answer["A_d"], say="zero_order_hold_held", answer=True, closing=False)
+    whole = page.term(_integral(page.environment, answer["driven"], period))
+    page.define("B_zoh", whole, answer["B_d"], say="zero_order_hold_integral", answer=True, closing=False)
+    A, A_d = page["A"], page["A_zoh"]
+    start = relation(Phi.at("t", 0), page.identity(result.plant.order))
+    balance = relation(A @ page["B_zoh"], (A_d - page.identity(result.plant.order)) @ page["B"])
+    page.verified("zero_order_hold_checked", relation(rate_of(Phi), A @ Phi), start=start, balance=balance)
+
+
+@method("zero_order_hold/integral", source="astrom1997, ch. 2")
+def by_integral(plant: StateSpace, period: Any) -> ZeroOrderHold:
+    """Integrate the entries of e^{At} B as sums of tⁿ e^{αt} cos βt and sin βt: B_d = ∫₀ᵀ e^{At} B dt, A_d = e^{AT}."""
+    return ZeroOrderHold.of(plant, "integral", {"horizon": period}, {})
+
+
+@task
+def zero_order_hold(plant: StateSpace, *, sampling_period: Horizon = None, method: Name = "auto") -> Result:
+    """Return the plant behind a zero-order hold, x_{k+1} = A_d x_k + B_d u_k, with A_d = e^{AT}, B_d = ∫₀ᵀ e^{At} B dt.
+
+    plant            n states, continuous time; B must be given
+    sampling_period  T > 0, the sampling period: a symbol or a number ("T" if left out)
+    Returns A, B, C, D of the sampled plant.  In Python `sampled` is this plant, for every task in discrete time: e^{−T},
+    cos T and sin T beside T are independent letters there.  Where the sign of a discriminant decides between oscillation
+    and none, conditions hold the branch that is shown and cases the others; undecided where the modes have no closed form.
+    Raises `InputError` in discrete time, and for a period that is not positive or infinite.
+    Source: K. J. Åström and B. Wittenmark, Computer-Controlled Systems, 3rd ed., ch. 2.
+    """
+    plant.require("B", task="zero_order_hold")
+    require_continuous(plant, "zero_order_hold")
+    plant = plant.knowing(sampling_period)
+    T = read_horizon(plant, sampling_period, "sampling_period")
+    if T == INFINITE:
+        message = "the sampling period inf is no number"
+        raise InputError(message, where="specification.sampling_period", repair='write "T", or a number above 0')
+    return over_horizon(lambda: choose("zero_order_hold", method, "integral").solve(plant, T), "sampling_period")

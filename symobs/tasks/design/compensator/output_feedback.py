@@ -1,0 +1,398 @@
+"""Output feedback with an observer of either kind: the two gains and the closed loop."""
+
+from __future__ import annotations
+
+from functools import cached_property, partial
+from typing import TYPE_CHECKING, Any, ClassVar, Self, TypeAlias
+
+from symobs.exact import Factored, Matrix, Scalar, factored, resultant, roots_of, transfer
+from symobs.exact.linear_algebra.realisation import Realisation, closed
+from symobs.exact.linear_algebra.transfer_function import transfer_matrix
+from symobs.formula.tree import Environment
+from symobs.formula.tree.term import Term, identity, letter
+from symobs.ground.dataclass import dataclass
+from symobs.ground.errors import CertificateRejected
+from symobs.ground.on_demand import OnDemand
+from symobs.proof.certificate.claims import Certificate, Claim, check
+from symobs.proof.derivation.builder import relation
+from symobs.stability.criteria.stability import no_stable_compensator, stability, stable_somewhere
+from symobs.system.conditions import sign_of, vanishing_factors
+from symobs.tasks.analysis.factored_form import cancelled, over
+from symobs.tasks.analysis.strata.strata import places, solved
+from symobs.tasks.design.gain.gain_cases import places_where
+from symobs.tasks.design.gain.gain_design import letters_of
+from symobs.tasks.result import Case, Result
+from symobs.tasks.result.control_systems import Controller
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator, Mapping
+
+    from symobs.system import StateSpace
+    from symobs.system.conditions import Condition
+    from symobs.system.specification import DesiredPolynomial
+    from symobs.tasks.analysis.strata.strata import Place
+    from symobs.tasks.design.full_order.observer import ObserverDesign
+    from symobs.tasks.design.full_order.state_feedback import StateFeedbackDesign
+    from symobs.tasks.design.gain.gain_design import GainDesign
+    from symobs.tasks.design.reduced_order.reduced_order_observer import ReducedOrderObserver
+
+#: What one half of a compensator is asked for by: its polynomial, or its gain.
+Asked: TypeAlias = "DesiredPolynomial | Matrix"
+#: The Hurwitz determinants of a compensator with more terms than this take seconds, and only points are tried.
+_DECIDABLE_TERMS = 400
+#: What an answer has none of where there is no loop.
+_OF_A_LOOP = ("F_stable", "closed_loop_polynomial", "closed_loop", "closed_loop_matrix", "closed_loop_matrix_estimate")
+#: What follows from K, L and F, and the property that finds it.
+_FOUND = {
+    "F_stable": "own_stability", "compensator_stable": "law_stability", "compensator_matrix": "own_matrix",
+    "closed_loop_polynomial": "loop_polynomial", "closed_loop": "loop", "closed_loop_unity": "unity_loop",
+    "closed_loop_matrix": "error_coordinates", "closed_loop_matrix_estimate": "estimate_coordinates", "family": "families",
+}  # fmt: skip
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class OutputFeedback(Result):
+    """U = −F(s) Y from a state feedback and an observer, each with its own claims.
+
+    Where one of the two is impossible there is no F.
+    """
+
+    feedback: StateFeedbackDesign
+    estimator: ObserverDesign | ReducedOrderObserver
+
+    task: ClassVar[str] = "compensator"
+
+    # -- what a subclass says ----------------------------------------------------------------------------------------
+
+    @classmethod
+    def design(cls, plant: StateSpace, control: Asked, observer: Asked, name: str) -> Self:
+        """Return the compensator for these polynomials, or with these gains."""
+        raise NotImplementedError
+
+    @classmethod
+    def of(cls, feedback: StateFeedbackDesign, estimator: Any, method_name: str) -> Self:
+        """Return the compensator of two designs for one plant."""
+        raise NotImplementedError
+
+    @cached_property
+    def realisation(self) -> Realisation:
+        """F in state space."""
+        raise NotImplementedError
+
+    @property
+    def coupling(self) -> Matrix:
+        """What multiplies the estimation error in u: K, or K₂ with an observer of minimal order."""
+        raise NotImplementedError
+
+    @property
+    def error_input(self) -> tuple[Matrix, Matrix]:
+        """What v moves the error by where it is added to u = −F y, and what of it is left in u."""
+        raise NotImplementedError
+
+    @cached_property
+    def error_coordinates(self) -> Matrix:
+        """The loop in (x, e) or (x, e₂)."""
+        raise NotImplementedError
+
+    @cached_property
+    def estimate_coordinates(self) -> Matrix:
+        """The loop in (x, x̂) or (x, z)."""
+        raise NotImplementedError
+
+    @cached_property
+    def own_transfer(self) -> tuple[Scalar, Scalar]:
+        """F as numerator over denominator, normalised so that χ · denominator + n · numerator is φ_c φ_o for P = n/χ.
+
+        For one input and one output.
+        """
+        raise NotImplementedError
+
+    def with_answer(self, name: str, value: object) -> Self:
+        """Return the compensator with another gain, and with the F that follows from it."""
+        if name not in {"K", "L"}:
+            return super().with_answer(name, value)
+        feedback = self.feedback.with_answer(name, value) if name == "K" else self.feedback
+        estimator = self.estimator.with_answer(name, value) if name == "L" else self.estimator
+        return type(self).of(feedback, estimator, self.method).in_place_of(self)
+
+    @property
+    def exists(self) -> bool:
+        """Whether there is a compensator."""
+        return self.answer["F"] is not None
+
+    def certified(self, environment: Environment) -> Iterator[Claim]:
+        """Yield that K and L are the certified gains of the two designs, which are for this plant."""
+        for design in (self.feedback, self.estimator):
+            if design.plant is not self.plant and letters_of(design.plant) != letters_of(self.plant):
+                message = f"{design.letter} is a gain for another plant"
+                raise CertificateRejected(message, repair="please report this: it is a bug of symobs")
+            own, certified = self.answer[design.letter], design.answer[design.letter]
+            if own is not certified:
+                yield Claim(relation(own, certified), environment, f"{design.letter} is the certified gain")
+
+    @property
+    def all_certificates(self) -> tuple[Certificate, ...]:
+        """The certificates of both gains and of F."""
+        return (*self.feedback.certificates, *self.estimator.certificates, *self.certificates)
+
+    # -- what follows ------------------------------------------------------------------------------------------------
+
+    @property
+    def verdict(self) -> str:
+        """`no` where either gain does not exist; `undecided` where other gains may do what these do not."""
+        if not self.exists:
+            return "undecided" if self.other_gains_may_do else "no"
+        return super().verdict
+
+    @property
+    def other_gains_may_do(self) -> bool:
+        """Whether only the gains that were chosen, of many with the same poles, leave the law unsolved for u."""
+        return False
+
+    @cached_property
+    def holds_where(self) -> tuple[Condition, ...]:
+        """The conditions of both gains."""
+        both = [*self.feedback.holds_where, *self.estimator.holds_where]
+        return tuple({c.expression: c for c in both}.values())
+
+    @cached_property
+    def gain_places(self) -> tuple[Place, ...]:
+        """Every stratum where (A, B) or (C, A) loses its rank, each of them once."""
+        found = (*places_where(self.feedback), *self._estimator_places)
+        return tuple({frozenset(place.when): place for place in found}.values())
+
+    @property
+    def _estimator_places(self) -> tuple[Place, ...]:
+        """The strata of the estimator."""
+        raise NotImplementedError
+
+    @cached_property
+    def case_tree(self) -> tuple[Case, ...]:
+        """The whole compensator on the strata of the gains, and where an unstable F may lose poles."""
+        cancelled = places(self.plant, self._cancelling) if self._may_lose_poles else ()
+        asked = {frozenset(place.when): place for place in (*self.gain_places, *cancelled)}
+        return solved(self.plant, asked.values(), self.on)
+
+    @property
+    def _may_lose_poles(self) -> bool:
+        """Whether F is unstable only where none of its poles cancels."""
+        return self.exists and self._own_stability == "no" and not self._is_unavoidably_unstable
+
+    @cached_property
+    def _cancelling(self) -> tuple[Scalar, ...]:
+        """What vanishes where poles of F cancel against its zeros; of a matrix that is not asked."""
+        F, variable = self.answer["F"], self.plant.variable
+        if not self.is_single or self.plant.equations or not F:
+            return ()
+        return vanishing_factors([resultant(F.numerator, F.denominator, variable)], self.plant.symbols.signs)
+
+    def on(self, plant: StateSpace, values: dict[str, Scalar]) -> Self:
+        """Return the compensator on a stratum."""
+        control, observer = (asked.substitute(values) for asked in self.asked_for[2:])
+        kind, name = type(self), self.method
+        found: Self = plant.once((kind, control, observer, name), lambda: kind.design(plant, control, observer, name))
+        return found
+
+    @property
+    def asked_for(self) -> tuple[Any, ...]:
+        """The specification of a compensator: its kind and method, and the polynomial or the gain of each half."""
+        halves = (self.feedback, self.estimator)
+        return type(self), self.method, *(half.desired or half.answer[half.letter] for half in halves)
+
+    @property
+    def has_given_gain(self) -> bool:
+        """Whether one of the gains is given, so that its poles are found, not desired."""
+        return None in (self.feedback.desired, self.estimator.desired)
+
+    @property
+    def is_single(self) -> bool:
+        """Whether there are one input and one output."""
+        return self.plant.inputs == self.plant.outputs == 1
+
+    @property
+    def own_matrix(self) -> Matrix:
+        """The matrix of the compensator's own state."""
+        return self.realisation.A
+
+    @cached_property
+    def plant_transfer(self) -> tuple[Scalar, Scalar]:
+        """The plant's transfer function as numerator over characteristic polynomial, nothing cancelled; single only."""
+        m = self.plant.matrices
+        return transfer(m.A, m.B, m.C, m.D[0, 0], self.plant.variable)
+
+    @cached_property
+    def plant_function(self) -> Scalar | Matrix:
+        """P(s)."""
+        if self.is_single:
+            numerator, characteristic = self.plant_transfer
+            return numerator / characteristic
+        m = self.plant.matrices
+        return Realisation(m.A, m.B, m.C, m.D).function(self.plant.variable)
+
+    @cached_property
+    def loop(self) -> Factored | tuple[tuple[Factored, ...], ...]:
+        """(I + PF)⁻¹ P: the plant with F in the return path, checked against its definition."""
+        return self.single_loop if self.is_single else self.loop_of_several
+
+    @cached_property
+    def loop_of_several(self) -> tuple[tuple[Factored, ...], ...]:
+        """The entries of (I + PF)⁻¹ P = [(C − DK)(sI − A + BK)⁻¹B + D] [W + K₂(sI − E)⁻¹V], E and V those of the error.
+
+        What is added to u moves the error, too: ė = E e + V v, u = −K x + K₂ e + W v.
+        """
+        m, variable, K = self.plant.matrices, self.plant.variable, self.answer["K"]
+        V, W = self.error_input
+        first, second = range(m.A.shape[0]), range(m.A.shape[0], self.error_coordinates.shape[0])
+        A, E = (self.error_coordinates.select(part, part).normal() for part in (first, second))
+        above, below = transfer_matrix(A, m.B, (m.C - m.D @ K).normal(), m.D, variable)
+        further, own = transfer_matrix(E, V, self.coupling, W, variable)
+        product, characteristic = above @ further, below * own
+        whole = Matrix.of([[entry / characteristic for entry in row] for row in product.rows])
+        values = {"P": self.plant_function, "F": self.answer["F"], "G_cl": whole}
+        e = Environment(variable=variable, values=values)
+        P, F, G = (letter(name, e) for name in ("P", "F", "G_cl"))
+        check(Claim(relation((identity(self.plant.outputs, e) + P @ F) @ G, P), e.with_relations(self.plant.relations)))
+        return tuple(tuple(factored(entry, variable, monic=False) for entry in row) for row in whole.rows)
+
+    @cached_property
+    def single_loop(self) -> Factored:
+        """P/(1 + PF)."""
+        numerator, characteristic = self.plant_transfer
+        P, F = numerator / characteristic, self.answer["F"]
+        _, own = self.own_transfer
+        polynomial = self.loop_polynomial
+        value = numerator * own / polynomial.value
+        kept = value.denominator.degree(self.plant.variable) == polynomial.value.degree(self.plant.variable)
+        form = over(numerator, own, polynomial) if kept else factored(value, self.plant.variable, monic=False)
+        e = Environment(variable=self.plant.variable, values={"P": P, "F": F, "G_cl": value})
+        P_, F_, one = letter("P", e), letter("F", e), Term(relation(1, 1).members[0], e)
+        check(Claim(relation(letter("G_cl", e), P_ / (one + P_ @ F_)), e.with_relations(self.plant.relations)))
+        return form
+
+    @cached_property
+    def unity_loop(self) -> Factored:
+        """PF/(1 + PF): from the reference to y with F before the plant and unity feedback; one input, one output."""
+        numerator, _ = self.plant_transfer
+        own, _ = self.own_transfer
+        polynomial, variable = self.loop_polynomial, self.plant.variable
+        value = numerator * own / polynomial.value
+        kept = value.denominator.degree(variable) == polynomial.value.degree(variable)
+        e = Environment(variable=variable, values={"P": self.plant_function, "F": self.answer["F"], "G_r": value})
+        P, F, one = letter("P", e), letter("F", e), Term(relation(1, 1).members[0], e)
+        check(Claim(relation(letter("G_r", e), P @ F / (one + P @ F)), e.with_relations(self.plant.relations)))
+        return cancelled(numerator, own, polynomial, variable) if kept else factored(value, variable, monic=False)
+
+    @cached_property
+    def loop_polynomial(self) -> Factored:
+        """φ_c φ_o, with its desired factors."""
+        factors: dict[Scalar, int] = {}
+        for design in (self.feedback, self.estimator):
+            for factor, power in _factors_of(design):
+                factors[factor] = factors.get(factor, 0) + power
+        return Factored(Scalar.of(1), tuple(factors.items()))
+
+    @property
+    def own_stability(self) -> str:
+        """Whether F itself is stable; `conditional` with a stable and an unstable point found, else `undecided`.
+
+        An unstable pole may cancel: where that is no case of its own, nothing is said.
+        """
+        F, found = self.answer["F"], self._own_stability
+        names = F.names.difference(F.field.numbers.names)
+        untold = self.plant.equations or (not self.is_single and names != {self.plant.variable})
+        return "undecided" if untold and self._may_lose_poles else found
+
+    @cached_property
+    def _own_stability(self) -> str:
+        """Whether F in general is stable."""
+        plant, F = self.plant, self.answer["F"]
+        variable, signs, discrete = plant.variable, plant.symbols.signs, plant.is_discrete
+        denominator = F.common_denominator()
+        if denominator.names > {variable} and self._is_unavoidably_unstable:
+            return "no"
+        if F.size <= _DECIDABLE_TERMS:
+            verdict = stability(denominator, variable, signs, discrete=discrete).verdict
+            if verdict != "conditional":
+                return verdict
+        met = stable_somewhere(denominator, variable, signs, discrete=discrete)
+        return "conditional" if len(met) == 2 else "undecided"
+
+    @cached_property
+    def law_stability(self) -> str:
+        """Whether the compensator by itself is stable, with the modes that F does not show."""
+        from symobs.tasks.design.compensator.hidden_modes import law_stability  # noqa: PLC0415 - gains in a loop of many are not asked
+
+        return law_stability(self.answer["F"], self.own_matrix, self.plant, self.own_stability)
+
+    @cached_property
+    def _is_unavoidably_unstable(self) -> bool:
+        """Whether nothing stable stabilises the plant, and the loop's polynomial has only positive coefficients."""
+        plant = self.plant
+        signs = plant.symbols.signs
+        if plant.is_discrete or not self.is_single:
+            return False
+        wanted = (c for factor, _ in self.loop_polynomial.factors for c in factor.coefficients(plant.variable))
+        numerator, characteristic = self.plant_transfer
+        return all(sign_of(c, signs) == "positive" for c in wanted) and no_stable_compensator(
+            numerator / characteristic, plant.variable, signs
+        )
+
+    @property
+    def asked_fields(self) -> Mapping[str, Any]:
+        """K, L and F."""
+        return {name: self.answer[name] for name in ("K", "L", "F")}
+
+    @cached_property
+    def fields(self) -> Mapping[str, Any]:
+        """The fields of the contract."""
+        answers = self.asked_fields
+        if not self.exists:
+            fixed = {"fixed_modes": self.feedback.unmoved_modes + self.estimator.unmoved_modes}
+            return {**answers, **dict.fromkeys(_OF_A_LOOP), **fixed}
+        poles = self._found_poles if self.has_given_gain else {}
+        known = {name: partial(table.get, name) for table in (answers, poles) for name in table}
+        found: dict[str, Callable[[], Any]] = {name: partial(getattr, self, place) for name, place in _FOUND.items()}
+        if not self.is_single:
+            found["closed_loop_unity"] = lambda: None
+        return OnDemand({name: (known | found)[name] for name in (*answers, *found, *poles)})
+
+    @property
+    def _found_poles(self) -> Mapping[str, Any]:
+        """The poles of the loop and its stability under a given gain."""
+        plant, whole = self.plant, self.loop_polynomial.value
+        verdict_of_loop = stability(whole, plant.variable, plant.symbols.signs, discrete=plant.is_discrete)
+        return {
+            "poles": roots_of(whole, plant.variable),
+            "stable": verdict_of_loop.verdict,
+            "stable_if": verdict_of_loop.inequalities(plant.symbols.signs),
+        }
+
+    @property
+    def systems(self) -> Mapping[str, Realisation]:
+        """The plant, the observer, F, and the plant with F in the return path: u = v − F y."""
+        if not self.exists:
+            return super().systems
+        m, own = self.plant.matrices, self.estimator.systems
+        loop = closed(Realisation(m.A, m.B, m.C, m.D), self.realisation)
+        return {**own, "compensator": self.realisation, "closed_loop": loop}
+
+    @property
+    def controller(self) -> Controller | None:
+        """Y → u = −F y."""
+        if not self.exists:
+            return None
+        A, B, C, D = self.realisation
+        sizes = (("y", self.plant.outputs),), ("u", self.plant.inputs)
+        return Controller("compensator", Realisation(A, B, -C, -D), *sizes, returns=True, gains=("K", "L"))
+
+    @property
+    def families(self) -> Mapping[str, Any] | None:
+        """The general gains where they are not unique."""
+        found = {d.letter: d.gain_family for d in (self.feedback, self.estimator) if d.gain_family is not None}
+        return found or None
+
+
+def _factors_of(design: GainDesign | ReducedOrderObserver) -> tuple[tuple[Scalar, int], ...]:
+    if design.desired is not None:
+        return design.desired.grouped()
+    return factored(design.answer["polynomial"], design.plant.variable).factors

@@ -1,0 +1,242 @@
+"""The disturbance observer: plant and model of the disturbance together, ẋ = A x + B u + E d, d = V w, ẇ = S w.
+
+With Â = [A EV; 0 S] and Ĉ = [C 0] it is the observer of (x, w), whose poles can be assigned arbitrarily if and only if (Ĉ, Â)
+is observable.  For a constant d (S = 0, V = I) that is: (C, A) is observable and rank [A E; C 0] = n + q; for a single d,
+(C, A) and (V, S) are observable and no eigenvalue of S is a zero of (A, E, C).
+"""
+
+from __future__ import annotations
+
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, ClassVar, Self
+
+from symobs.exact import Matrix, modulo
+from symobs.exact.linear_algebra.realisation import Realisation
+from symobs.formula.tree import Environment, Literal
+from symobs.formula.tree.term import Term, block, identity, letter
+from symobs.ground.dataclass import dataclass
+from symobs.ground.errors import CertificateRejected
+from symobs.proof.certificate.claims import Certificate, Claim
+from symobs.proof.derivation.builder import relation
+from symobs.system import StateSpace
+from symobs.system.conditions import Condition, vanishing_factors
+from symobs.system.specification import desired_polynomial, over_common_data
+from symobs.tasks.analysis.strata.strata import solved
+from symobs.tasks.design.disturbance.disturbance_input import Exosystem, read_disturbance_input, read_exosystem
+from symobs.tasks.design.full_order.observer import ObserverDesign
+from symobs.tasks.design.gain.gain_cases import design_of, places_beside
+from symobs.tasks.design.gain.gain_design import letters_of
+from symobs.tasks.result import Case, Result, choose, method, poles_of, task
+from symobs.tasks.result.control_systems import Controller
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
+
+    from symobs.exact import Scalar
+    from symobs.system.specification import DesiredPolynomial, MatrixText, Name, Poles, PolynomialText
+
+#: The matrices of the model, by the letters of the page.
+_LETTERS = {"E_d": "E", "S_w": "S", "V_w": "V"}
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class DisturbanceObserver(Result):
+    """L_x and L_w with det(sI − [A − L_x C, EV; −L_w C, S]) = φ(s), or the proof that there are none.
+
+    `inner` is the observer of plant and exosystem together, with its own claims.
+    """
+
+    exosystem: Exosystem
+    inner: ObserverDesign
+
+    task: ClassVar[str] = "disturbance_observer"
+
+    @classmethod
+    def of(cls, plant: StateSpace, exosystem: Exosystem, desired: DesiredPolynomial, method_name: str) -> Self:
+        """Return the observer, or the negative result."""
+        several = "ackermann" if plant.outputs == 1 else "sylvester"
+        inner = design_of(ObserverDesign, with_exosystem(plant, exosystem), desired, several)
+        return cls.of_inner(plant, exosystem, inner, method_name)
+
+    @classmethod
+    def of_inner(cls, plant: StateSpace, exosystem: Exosystem, inner: ObserverDesign, method_name: str) -> Self:
+        """Return the observer that one of plant and exosystem together is."""
+        gain, n, every = inner.answer["L"], plant.order, range(plant.outputs)
+        answer = {
+            "L_x": None if gain is None else gain.select(range(n), every),
+            "L_w": None if gain is None else gain.select(range(n, n + exosystem.order), every),
+            "polynomial": inner.answer["polynomial"],
+        }
+        return cls(plant, method_name, answer, exosystem, inner)
+
+    def claims(self) -> Iterator[Claim]:
+        """Yield that the observer of plant and exosystem has the desired poles, and that it is theirs."""
+        L_x, L_w, plant = self.answer["L_x"], self.answer["L_w"], self.plant
+        if (L_x is None) != (self.inner.answer["L"] is None) or (L_x is None) != (L_w is None):
+            message = "there are gains exactly where plant and exosystem have an observer"
+            raise CertificateRejected(message, repair="please report this: it is a bug of symobs")
+        values = letters_of(plant) | {name: getattr(self.exosystem, of) for name, of in _LETTERS.items()}
+        values |= {"phi": self.answer["polynomial"]}
+        gains = {} if L_x is None else {"L_x": L_x, "L_w": L_w}
+        e = Environment(variable=plant.variable, values=values | gains)
+        whole = block(extended(e, plant, self.exosystem))
+        yield Claim(relation(whole, self.inner.plant.matrices.A), e, "the inner observer is one for A_hat")
+        yield Claim(relation(letter("phi", e), self.desired.polynomial), e, "the polynomial is the one asked for")
+        if L_x is not None:
+            both = block([[letter("L_x", e)], [letter("L_w", e)]])
+            yield Claim(relation(both, self.inner.answer["L"]), e, "[L_x; L_w] = L")
+            order = plant.order + self.exosystem.order
+            seen = block([[letter("L_x", e) @ letter("C", e)], [letter("L_w", e) @ letter("C", e)]])
+            wide = Matrix.block([[Matrix.identity(plant.order), Matrix.zeros(plant.order, self.exosystem.order)]])
+            pencil = letter("s", e) @ identity(order, e) - whole + seen @ Term(Literal(wide), e)
+            yield Claim(relation(pencil.apply("det"), letter("phi", e)), e, "det(s*I - A_hat + L*C_hat) = phi")
+
+    @property
+    def all_certificates(self) -> tuple[Certificate, ...]:
+        """The certificates of the observer of plant and exosystem, and of the gains."""
+        return (*self.inner.all_certificates, *self.certificates)
+
+    @property
+    def desired(self) -> DesiredPolynomial:
+        """The polynomial that is to be assigned."""
+        assert self.inner.desired is not None  # noqa: S101 - the observer is asked for by its polynomial
+        return self.inner.desired
+
+    @property
+    def verdict(self) -> str:
+        """`no` where there are no gains."""
+        return "no" if self.answer["L_x"] is None else super().verdict
+
+    @property
+    def data(self) -> Mapping[str, Scalar | Matrix]:
+        """The matrices of the plant, and those of the exosystem."""
+        return {**super().data, **{name: getattr(self.exosystem, of) for name, of in _LETTERS.items()}}
+
+    @cached_property
+    def domain(self) -> tuple[Condition, ...]:
+        """What must not vanish for there to be plant and exosystem."""
+        own, signs = super().domain, self.plant.symbols.signs
+        known = {condition.expression for condition in own}
+        factors = vanishing_factors([part.common_denominator() for part in self.exosystem], signs)
+        return (*own, *(Condition("domain", factor) for factor in factors if factor not in known))
+
+    @cached_property
+    def holds_where(self) -> tuple[Condition, ...]:
+        """The conditions of the gains, and of the pair."""
+        own = super().holds_where
+        known = {condition.expression for condition in own}
+        inner = self.inner.holds_where
+        return (*own, *(c for c in inner if c.kind == "existence" and c.expression not in known))
+
+    @cached_property
+    def case_tree(self) -> tuple[Case, ...]:
+        """The design where other modes than in general are beyond any gain, or none are."""
+
+        def on(there: StateSpace, values: dict[str, Scalar]) -> Result:
+            exosystem = Exosystem(*(modulo(part.substitute(values), there.ideal) for part in self.exosystem))
+            desired = self.desired.substitute(values)
+            found: Result = there.once(
+                (type(self), exosystem, desired, self.method),
+                lambda: type(self).of(there, exosystem, desired, self.method),
+            )
+            return found
+
+        return solved(self.plant, places_beside(self, self.inner), on)
+
+    @cached_property
+    def fields(self) -> Mapping[str, Any]:
+        """The gains, the matrices of the observer of (x, w), and what it reports."""
+        inner = self.inner.fields
+        own = {name: self.answer[name] for name in ("L_x", "L_w", "polynomial")}
+        return own | {name: inner[name] for name in ("A", "B_u", "B_y")} | dict(self.inner.report)
+
+    @property
+    def free_signals(self) -> Mapping[str, int]:
+        """The disturbance, the state of its model, and the estimate of that."""
+        order = self.exosystem.order
+        return {"d": self.exosystem.E.shape[1], "w_e": order, "w_hat": order}
+
+    @property
+    def systems(self) -> Mapping[str, Realisation]:
+        """The plant, and the observer (u, y) → (x̂, d̂)."""
+        m, found, (_, S, V) = self.plant.matrices, self.inner.fields, self.exosystem
+        if found["A"] is None:
+            return super().systems
+        driven = Matrix.block([[found["B_u"], found["B_y"]]]) if m.has_input else found["B_y"]
+        n, order, q = self.plant.order, S.shape[0], V.shape[0]
+        shown = Matrix.block([[Matrix.identity(n), Matrix.zeros(n, order)], [Matrix.zeros(q, n), V]])
+        own = Realisation(found["A"].normal(), driven.normal(), shown, Matrix.zeros(n + q, driven.shape[1]))
+        return {**super().systems, "disturbance_observer": own}
+
+    @property
+    def controller(self) -> Controller | None:
+        """(u, y) → (x̂, d̂)."""
+        system, plant = self.systems.get("disturbance_observer"), self.plant
+        if system is None:
+            return None
+        inputs = (("u", plant.inputs), ("y", plant.outputs)) if plant.inputs else (("y", plant.outputs),)
+        output = ("estimate", system.C.shape[0])
+        return Controller("disturbance_observer", system, inputs, output, returns=False, gains=("L_x", "L_w"))
+
+
+def with_exosystem(plant: StateSpace, exosystem: Exosystem) -> StateSpace:
+    """Return plant and exosystem together, with the states (x, w)."""
+    m, n, order = plant.matrices, plant.order, exosystem.order
+    A = Matrix.block([[m.A, (exosystem.E @ exosystem.V).normal()], [Matrix.zeros(order, n), exosystem.S]])
+    B = Matrix.block([[m.B], [Matrix.zeros(order, plant.inputs)]]) if m.has_input else None
+    C = Matrix.block([[m.C, Matrix.zeros(plant.outputs, order)]])
+    found = StateSpace(A, B, C, m.D if m.has_feedthrough else None, dt=plant.dt, symbols=plant.symbols)
+    return plant.beside(found.restricted(plant.equations, plant.nonzero))
+
+
+def extended(e: Environment, plant: StateSpace, exosystem: Exosystem) -> list[list[Term]]:
+    """Return the blocks of [A EV; 0 S]."""
+    A, E, S, V = (letter(name, e) for name in ("A", "E_d", "S_w", "V_w"))
+    return [[A, E @ V], [Term(Literal(Matrix.zeros(exosystem.order, plant.order)), e), S]]
+
+
+@method("disturbance_observer/extended_state", source="johnson1971; francis1976")
+def extended_state(plant: StateSpace, exosystem: Exosystem, desired: DesiredPolynomial) -> DisturbanceObserver:
+    """[L_x; L_w] is the observer gain of the plant with the states of the exosystem as further states."""
+    return DisturbanceObserver.of(plant, exosystem, desired, "extended_state")
+
+
+def extended_order(plant: StateSpace, asked: Mapping[str, Any]) -> int:
+    """Return the number of poles of plant and exosystem."""
+    E = read_disturbance_input(plant, asked.get("E"))
+    return plant.order + read_exosystem(plant, E, asked.get("S"), asked.get("V")).order
+
+
+@task
+@poles_of(poles=extended_order)
+def disturbance_observer(
+    plant: StateSpace,
+    *,
+    E: MatrixText = None,
+    S: MatrixText = None,
+    V: MatrixText = None,
+    poles: Poles = None,
+    polynomial: PolynomialText = None,
+    method: Name = "auto",
+) -> Result:
+    """Estimate state and disturbance of ẋ = A x + B u + E d, d = V w, ẇ = S w, by the observer of (x, w).
+
+    plant         n states, p outputs, D allowed; B may be missing
+    E             n×q: how the disturbance d enters
+    S             r×r; left out, d is constant: S = 0, in discrete time S = I.  [0 omega; -omega 0] is a sinusoid
+    V             q×r; left out, d consists of the first q entries of w
+    poles         the n + r poles, closed under conjugation; or
+    polynomial    φ, monic of degree n + r
+    Returns L_x (n×p), L_w (r×p), the observer's A ([A − L_x C, EV; −L_w C, S]), B_u, B_y in (x, w), fixed_modes, poles,
+    stable; `family` where the gains are not unique.  The verdict is `no` where φ cannot be assigned.
+    Raises `InputError` for wrong poles or shapes.
+    Source: C. D. Johnson (1971); B. A. Francis and W. M. Wonham (1976).
+    """
+    plant = plant.knowing(E, S, V, poles, polynomial)
+    plant.require("C", task="disturbance_observer")
+    exosystem = read_exosystem(plant, read_disturbance_input(plant, E), S, V)
+    desired = desired_polynomial(plant, poles, polynomial, degree=plant.order + exosystem.order)
+    assert desired is not None  # noqa: S101 - required
+    plant, (desired, *parts) = over_common_data(plant, desired, *exosystem)
+    exosystem = Exosystem(*parts)
+    return choose("disturbance_observer", method, "extended_state").solve(plant, exosystem, desired).asked(method)

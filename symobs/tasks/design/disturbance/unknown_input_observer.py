@@ -1,0 +1,314 @@
+"""The unknown-input observer  ż = F z + T B u + (L + F H)(y − D u),  x̂ = z + H (y − D u)  of  ẋ = A x + B u + E d.
+
+With T = I − H C and F = T A − L C the error e = T x − z satisfies ė = F e + T E d, and T E = 0 is H C E = E: such an H exists
+if and only if rank C E = rank E.  With H = E [(CE)ᵀ CE]⁻¹ (CE)ᵀ the unobservable modes of (C, T A) are the zeros of (A, E, C),
+which are eigenvalues of F whatever H and L are: C v = 0 and A v = s v + E w make F v = T A v = s T v = s v.
+"""
+
+from __future__ import annotations
+
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, ClassVar, Self
+
+from symobs.exact import Matrix, Scalar, independent_rows, kernel, modulo
+from symobs.exact.linear_algebra.realisation import Realisation
+from symobs.formula.tree import Environment
+from symobs.formula.tree.term import identity, letter
+from symobs.ground.dataclass import dataclass
+from symobs.ground.errors import CertificateRejected
+from symobs.proof.certificate.claims import Certificate, Claim
+from symobs.proof.derivation.builder import relation
+from symobs.system import StateSpace
+from symobs.system.conditions import Condition, vanishing_factors
+from symobs.system.specification import desired_polynomial, over_common_data
+from symobs.tasks.analysis.strata.rank_stratification import maximal_minors
+from symobs.tasks.analysis.strata.strata import common_places, solved
+from symobs.tasks.design.disturbance.disturbance_input import read_disturbance_input, with_disturbance
+from symobs.tasks.design.full_order.observer import ObserverDesign
+from symobs.tasks.design.gain.gain_cases import design_of, places_beside
+from symobs.tasks.design.gain.gain_design import letters_of
+from symobs.tasks.result import Case, Result, choose, method, task
+from symobs.tasks.result.control_systems import Controller, observer_of
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
+
+    from symobs.system.specification import DesiredPolynomial, MatrixText, Name, Poles, PolynomialText
+    from symobs.tasks.analysis.strata.strata import Place
+
+#: The matrices of the observer.
+_MATRICES = ("H", "T", "L", "F", "B_u", "B_y")
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class UnknownInputObserver(Result):
+    """An observer with T E = 0, T A − F T = B_y C, B_u = T B − B_y D, T + H C = I, det(sI − F) = φ(s), or why there is none.
+
+    `inner` is the gain L for the pair (C, T A), with its own claims; None where there is no H, and C E w = 0 with E w ≠ 0.
+    """
+
+    desired: DesiredPolynomial
+    disturbance_input: Matrix
+    inner: ObserverDesign | None
+
+    task: ClassVar[str] = "unknown_input_observer"
+
+    @classmethod
+    def of(cls, plant: StateSpace, E: Matrix, desired: DesiredPolynomial, method_name: str) -> Self:
+        """Return the observer, or the negative result."""
+        H = decoupling(plant, E)
+        if H is None:
+            answer = dict.fromkeys(_MATRICES) | {"polynomial": desired.polynomial, "w": unseen_input(plant, E)}
+            return cls(plant, method_name, answer, desired, E, None)
+        inner = design_of(ObserverDesign, decoupled(plant, H), desired)
+        return cls.assembled(plant, E, H, inner, desired, method_name)
+
+    @classmethod
+    def assembled(
+        cls,
+        plant: StateSpace,
+        E: Matrix,
+        H: Matrix,
+        inner: ObserverDesign,
+        desired: DesiredPolynomial,
+        method_name: str,
+    ) -> Self:
+        """Return the observer with a gain for (C, T A)."""
+        m, L = plant.matrices, inner.answer["L"]
+        T = (Matrix.identity(plant.order) - H @ m.C).normal()
+        answer: dict[str, Any] = dict.fromkeys(_MATRICES)
+        answer |= {"H": H, "T": T, "polynomial": desired.polynomial, "w": None}
+        if L is not None:
+            F = (inner.plant.matrices.A - L @ m.C).normal()
+            B_y = (L + F @ H).normal()
+            answer |= {"L": L, "F": F, "B_y": B_y, "B_u": (T @ m.B - B_y @ m.D).normal() if m.has_input else None}
+        return cls(plant, method_name, answer, desired, E, inner)
+
+    def with_answer(self, name: str, value: object) -> Self:
+        """Return the observer with another L, or with another H and a gain for it, and the matrices that follow."""
+        if name == "H" and isinstance(value, Matrix) and self.inner is not None:
+            inner = design_of(ObserverDesign, decoupled(self.plant, value), self.desired)
+            whole = (self.plant, self.disturbance_input, value, inner, self.desired, self.method)
+            return type(self).assembled(*whole).in_place_of(self)
+        if name != "L" or self.inner is None:
+            return super().with_answer(name, value)
+        return self.with_gain(self.inner.with_answer("L", value), self.desired)
+
+    def with_gain(self, inner: ObserverDesign, desired: DesiredPolynomial) -> Self:
+        """Return the observer with another gain for (C, T A), which places the roots of a polynomial."""
+        E, H = self.disturbance_input, self.answer["H"]
+        return type(self).assembled(self.plant, E, H, inner, desired, self.method).in_place_of(self)
+
+    @property
+    def has_reduced_observer(self) -> bool:
+        """Its H is no gain, and is written so where a convention calls the gain H."""
+        return True
+
+    def claims(self) -> Iterator[Claim]:
+        """Yield that z follows T x whatever u and d are, and where the poles are; or that E d is not seen in the output."""
+        plant, answer, inner = self.plant, self.answer, self.inner
+        m = plant.matrices
+        is_whole = all((answer[name] is None) == (answer["L"] is None) for name in ("F", "B_y"))
+        has_gain = inner is not None and inner.answer["L"] is not None
+        if (
+            any((answer[name] is None) != (inner is None) for name in "HT")
+            or (answer["w"] is None) != (inner is not None)
+            or (answer["L"] is None) == has_gain
+            or not is_whole
+            or (answer["B_u"] is None) == (has_gain and m.has_input)
+        ):
+            message = "there is an observer exactly where there are H and a gain of the pair (C, T A)"
+            raise CertificateRejected(message, repair="please report this: it is a bug of symobs")
+        values = letters_of(plant) | {"E_d": self.disturbance_input, "phi": answer["polynomial"]}
+        known = {name: value for name, value in answer.items() if value is not None}
+        e = Environment(variable=plant.variable, values=values | known)
+        A, C, E = (letter(name, e) for name in ("A", "C", "E_d"))
+        yield Claim(relation(letter("phi", e), self.desired.polynomial), e, "the polynomial is the one asked for")
+        if inner is None:
+            w = letter("w", e)
+            yield Claim(relation(C @ E @ w, Matrix.zeros(plant.outputs, 1)), e, "C*E*w = 0")
+            yield Claim(relation(E @ w, "!==", Matrix.zeros(plant.order, 1)), e, "E*w is not 0")
+            return
+        H, T = letter("H", e), letter("T", e)
+        yield Claim(
+            relation((H @ C - identity(plant.order, e)) @ E, Matrix.zeros(*self.disturbance_input.shape)),
+            e,
+            "(H*C - I)*E = 0",
+        )
+        yield Claim(relation(T, identity(plant.order, e) - H @ C), e, "T = I - H*C")
+        yield Claim(relation(T @ A, inner.plant.matrices.A), e, "the inner gain is one for T*A")
+        yield Claim(relation(C, inner.plant.matrices.C), e, "the inner gain is one for C")
+        yield Claim(relation(letter("phi", e), inner.answer["polynomial"]), e, "the inner gain is one for phi(s)")
+        if answer["L"] is None:
+            return
+        L, F, B_y = (letter(name, e) for name in ("L", "F", "B_y"))
+        yield Claim(relation(F, T @ A - L @ C), e, "F = T*A - L*C")
+        yield Claim(relation(B_y, L + F @ H), e, "B_y = L + F*H")
+        yield Claim(relation(T @ A - F @ T, B_y @ C), e, "T*A - F*T = B_y*C")
+        if answer["B_u"] is not None:
+            driven = T @ letter("B", e)
+            driven = driven - B_y @ letter("D", e) if m.has_feedthrough else driven
+            yield Claim(relation(letter("B_u", e), driven), e, "B_u = T*B - B_y*D")
+        pencil = letter("s", e) @ identity(plant.order, e) - F
+        yield Claim(relation(pencil.apply("det"), letter("phi", e)), e, "det(s*I - F) = phi(s)")
+
+    @property
+    def all_certificates(self) -> tuple[Certificate, ...]:
+        """The certificates of the gain for (C, T A) and of the observer."""
+        return (*(() if self.inner is None else self.inner.certificates), *self.certificates)
+
+    @property
+    def verdict(self) -> str:
+        """`no` where d cannot be decoupled, or φ not be assigned."""
+        return "no" if self.answer["L"] is None else super().verdict
+
+    @property
+    def free_signals(self) -> Mapping[str, int]:
+        """The unknown input, and the state of the observer."""
+        return {"d": self.disturbance_input.shape[1], "w_o" if self.plant.is_discrete else "z_o": self.plant.order}
+
+    @property
+    def data(self) -> Mapping[str, Scalar | Matrix]:
+        """The matrices of the plant, and E."""
+        return {**super().data, "E_d": self.disturbance_input}
+
+    @cached_property
+    def domain(self) -> tuple[Condition, ...]:
+        """What must not vanish for there to be plant and E."""
+        own, signs = super().domain, self.plant.symbols.signs
+        known = {condition.expression for condition in own}
+        factors = vanishing_factors([self.disturbance_input.common_denominator()], signs)
+        return (*own, *(Condition("domain", factor) for factor in factors if factor not in known))
+
+    @cached_property
+    def holds_where(self) -> tuple[Condition, ...]:
+        """The conditions of H, and of the gain."""
+        own = super().holds_where
+        known = {condition.expression for condition in own}
+        inner = () if self.inner is None else self.inner.holds_where
+        return (*own, *(c for c in inner if c.kind == "existence" and c.expression not in known))
+
+    @cached_property
+    def case_tree(self) -> tuple[Case, ...]:
+        """The whole question again where the rank of E or of C E, or the zeros of (A, E, C), are others than in general."""
+
+        def on(there: StateSpace, values: dict[str, Scalar]) -> Result:
+            E, desired = modulo(self.disturbance_input.substitute(values), there.ideal), self.desired.substitute(values)
+            found: Result = there.once(
+                (type(self), E, desired, self.method), lambda: type(self).of(there, E, desired, self.method)
+            )
+            return found
+
+        return solved(self.plant, self.places, on)
+
+    @property
+    def places(self) -> tuple[Place, ...]:
+        """The strata where there is another H, or another gain."""
+        whole, E = (
+            with_disturbance(self.plant, self.disturbance_input),
+            independent_columns(self.disturbance_input, self.plant.ideal),
+        )
+        if self.inner is None:  # E d would have to be seen, or to vanish
+            return common_places(whole, _numerators(maximal_minors(E)))
+        beside = places_beside(self, self.inner)
+        if self.answer["H"].common_denominator().is_constant:
+            return beside
+        minors = _numerators(maximal_minors((self.plant.matrices.C @ E).normal()))
+        return tuple({place.when: place for place in (*common_places(whole, minors), *beside)}.values())
+
+    @cached_property
+    def fields(self) -> Mapping[str, Any]:
+        """The matrices of the observer, whether there is an H, and what the gain for (C, T A) reports."""
+        own = {name: self.answer[name] for name in _MATRICES} | {"solvable": self.inner is not None}
+        own["polynomial"] = self.answer["polynomial"]
+        return own | (dict(self.inner.report) if self.inner is not None else {})
+
+    @property
+    def systems(self) -> Mapping[str, Realisation]:
+        """The plant, and the observer (u, y) → x̂ with the state z."""
+        m, known = self.plant.matrices, self.answer
+        if known["L"] is None:
+            return super().systems
+        driven, shown = known["B_y"], known["H"]
+        if m.has_input:
+            driven, shown = Matrix.block([[known["B_u"], driven]]), Matrix.block([[-(shown @ m.D), shown]])
+        own = Realisation(known["F"], driven.normal(), Matrix.identity(self.plant.order), shown.normal())
+        return {**super().systems, "observer": own}
+
+    @property
+    def controller(self) -> Controller | None:
+        """(u, y) → x̂."""
+        return observer_of(self)
+
+
+def independent_columns(E: Matrix, ideal: Any = None) -> Matrix:
+    """Return columns of E that are independent and span what all of them do."""
+    return E.select(range(E.shape[0]), independent_rows(E.T, ideal))
+
+
+def decoupling(plant: StateSpace, E: Matrix) -> Matrix | None:
+    """Return H = E [(CE)ᵀ CE]⁻¹ (CE)ᵀ, E (CE)⁻¹ where C E is square, of independent columns of E; None if rank C E < rank E."""
+    E = independent_columns(E, plant.ideal)
+    seen = modulo((plant.matrices.C @ E).normal(), plant.ideal)
+    outputs, inputs = seen.shape
+    if not inputs:
+        return Matrix.zeros(plant.order, outputs)
+    if len(independent_rows(seen.T, plant.ideal)) < inputs:
+        return None
+    left = seen.inverse() if inputs == outputs else (seen.T @ seen).inverse() @ seen.T
+    return modulo((E @ left).normal(), plant.ideal)
+
+
+def unseen_input(plant: StateSpace, E: Matrix) -> Matrix:
+    """Return a w with C E w = 0 and E w ≠ 0."""
+    ideal = plant.ideal
+    N = kernel((plant.matrices.C @ E).normal(), ideal)
+    columns = (N.select(range(N.shape[0]), [j]) for j in range(N.shape[1]))
+    return next(w for w in columns if not modulo((E @ w).normal(), ideal).is_zero)
+
+
+def decoupled(plant: StateSpace, H: Matrix) -> StateSpace:
+    """Return the plant of T x: T A, seen through C."""
+    m = plant.matrices
+    seen = StateSpace((m.A - H @ m.C @ m.A).normal(), None, m.C, dt=plant.dt, symbols=plant.symbols)
+    return plant.beside(seen.restricted(plant.equations, plant.nonzero))
+
+
+def _numerators(values: list[Scalar]) -> list[Scalar]:
+    return [value.numerator for value in values if not value.is_zero]
+
+
+@method("unknown_input_observer/decoupled", source="darouach1994")
+def by_decoupling(plant: StateSpace, E: Matrix, desired: DesiredPolynomial) -> UnknownInputObserver:
+    """H decouples d from the error, and L places the poles of T A − L C."""
+    return UnknownInputObserver.of(plant, E, desired, "decoupled")
+
+
+@task
+def unknown_input_observer(
+    plant: StateSpace,
+    *,
+    E: MatrixText = None,
+    poles: Poles = None,
+    polynomial: PolynomialText = None,
+    method: Name = "auto",
+) -> Result:
+    """Estimate the state of ẋ = A x + B u + E d irrespective of d by  ż = F z + B_u u + B_y y,  x̂ = z + H (y − D u).
+
+    plant         n states, p outputs, D allowed; B may be missing
+    E             n×q: how the unknown input d enters
+    poles         n desired poles, closed under conjugation; or
+    polynomial    φ, monic of degree n
+    Returns H (n×p), T (I − HC), L (n×p), F (TA − LC, whose characteristic polynomial is φ), B_u (TB − B_y D), B_y (L + FH),
+    solvable (rank CE = rank E), fixed_modes (the zeros of (A, E, C), poles of every such observer) and, where L is not
+    unique, its family.  The verdict is `no` where rank CE < rank E, and where φ cannot be assigned.
+    Raises `InputError` for wrong poles or shapes.
+    Source: M. Darouach, M. Zasadzinski and S. J. Xu (1994); J. Chen and R. J. Patton (1999), ch. 3.
+    """
+    plant = plant.knowing(E, poles, polynomial)
+    plant.require("C", task="unknown_input_observer")
+    desired = desired_polynomial(plant, poles, polynomial)
+    assert desired is not None  # noqa: S101 - required
+    enters = read_disturbance_input(plant, E)
+    plant, (desired, enters) = over_common_data(plant, desired, enters)
+    return choose("unknown_input_observer", method, "decoupled").solve(plant, enters, desired).asked(method)

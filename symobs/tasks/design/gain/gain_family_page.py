@@ -1,0 +1,148 @@
+"""The page of the family of gains: companion matrix, Sylvester's equation, its solution, the general gain, one member."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from symobs.exact import Matrix, companion
+from symobs.proof.derivation.builder import Builder, relation
+from symobs.system.conditions import vanishing_factors
+from symobs.tasks.analysis.page_parts import determinant_form
+from symobs.tasks.design.page_parts import readability
+from symobs.tasks.design.pole_placement.sylvester import Sylvester, charts_of
+
+if TYPE_CHECKING:
+    from symobs.formula.tree import Relation
+    from symobs.formula.tree.term import Term
+    from symobs.system.specification import DesiredPolynomial
+    from symobs.tasks.design.gain.gain_design import GainDesign
+    from symobs.tasks.design.gain.placement_problem import PlacementProblem
+
+
+def write_sylvester(page: Builder, design: GainDesign, side: PlacementProblem, desired: DesiredPolynomial) -> None:
+    """Write the equation, its solution, and for several outputs (inputs) the family and one member of it."""
+    page.define(f"F_{side.index}", companion(desired.coefficients), say="companion_of_wish")
+    chart = design.chart
+    if chart is None:
+        _only_gain(page, design, side, desired)
+        return
+    equation = chart.equation
+    _shift(page, equation, side, design)
+    _equation(page, side, "", equation, equation.G)
+    page.remark(f"dimension_{side.kind}", count=str(len(chart.names)))
+    if chart.general is not None and chart.general.size <= readability.GENERAL_GAIN:
+        general = design.transpose_for_task(chart.general)
+        page.define(f"{side.gain}_G", _gain(page, side, "", equation), general, say="general_gain")
+    own = chart.own_G
+    if own is None:
+        page.define(
+            side.gain,
+            design.answer[side.gain],
+            say=f"alone_decoupled_{side.kind}" if design.decoupled else "no_member",
+            answer=True,
+        )
+        return
+    words = f"decoupled_{side.kind}" if design.decoupled else "zero" if design.zero else "several"
+    page.define(f"G_{side.index}1", own, say=f"member_{words}")
+    solution = page.set(f"X_{side.index}1", equation.solution(own))
+    determinant = relation(solution.apply("det"), determinant_form(page, solution.value.determinant()))
+    if solution.value.size <= readability.MEMBER_SOLUTION:
+        page.equal(relation(solution, solution.as_value), determinant, say="solution_of_member")
+    else:
+        page.equal(determinant, say="solution_long")
+    page.conclude_silently(_sylvester(page, side, "1", equation))
+    page.define(side.gain, _gain(page, side, "1", equation), say="gain_follows", answer=True)
+
+
+def write_hidden_family(page: Builder, design: GainDesign, side: PlacementProblem) -> None:
+    """Write one gain and the dimension of the family where some modes are fixed."""
+    assert design.chart is not None  # noqa: S101 - several outputs have a chart wherever there is a gain
+    key = of_the_others(design)
+    page.define(side.gain, design.answer[side.gain], say=f"{key}_{side.kind}", answer=True)
+    if key == "one_gain":
+        page.remark(f"family_hidden_{side.kind}", count=str(len(design.chart.names)))
+
+
+def of_the_others(design: GainDesign) -> str:
+    """Return how a gain is announced beside fixed modes: it places the other poles, or there are none."""
+    return "no_others" if design.fixed_polynomial.degree(design.plant.variable) == design.plant.order else "one_gain"
+
+
+def _only_gain(page: Builder, design: GainDesign, side: PlacementProblem, desired: DesiredPolynomial) -> None:
+    """Write the gain of one output (input): G = e₁ᵀ, and X is unique."""
+    pair = design.dual_pair(page.plant)
+    (equation,) = charts_of(pair.A, pair.c, desired.factors, pair.variable, ())
+    _shift(page, equation, side, design)
+    _equation(page, side, "", equation, equation.G)
+    page.define(side.gain, _gain(page, side, "", equation), say="gain_follows", answer=True)
+
+
+def _shift(page: Builder, equation: Sylvester, side: PlacementProblem, design: GainDesign) -> None:
+    """Part the spectra where they meet."""
+    if equation.shift is None:
+        return
+    gain = page.define(f"{side.gain}_0", design.transpose_for_task(equation.shift), say="spectra_meet")
+    moved = gain @ page["C"] if side.gain == "L" else page["B"] @ gain
+    page.define(f"A_{side.index}0", page["A"] - moved)
+
+
+def _state_matrix(page: Builder, side: PlacementProblem, equation: Sylvester) -> Term:
+    return page["A"] if equation.shift is None else page[f"A_{side.index}0"]
+
+
+def _equation(page: Builder, side: PlacementProblem, which: str, equation: Sylvester, value: Matrix) -> None:
+    """Write G, the equation, and X with its determinant."""
+    G, X = (f"{letter}_{side.index}{which}" for letter in "GX")
+    page.set(G, value)
+    solution = page.set(X, equation.solution(value))
+    conditional = _sylvester(page, side, which, equation)
+    page.equal(conditional, say=f"sylvester_{side.kind}")
+    apart = vanishing_factors([equation.resultant], page.plant.symbols.signs)
+    if apart and all(factor.size <= readability.FAMILY_SOLUTION for factor in apart):
+        page.assume("spectra_provided", *apart)
+    elif apart:
+        page.remark("spectra_apart")
+    page.equal(_similar(page, side, which, equation), say=f"similar_{side.kind}")
+    has_choice = value.shape[0] > 1
+    row = relation(page[G], value)
+    if has_choice:
+        page.equal(row, say=f"one_row_held_{side.kind}")
+    else:
+        page.equal(row, say=f"one_gain_only_{side.kind}", equation=conditional)
+    if solution.value.size <= readability.FAMILY_SOLUTION:
+        shown = relation(solution, solution.as_value)
+        if has_choice:
+            page.equal(shown, say="solution_is", equation=conditional)
+        else:
+            page.equal(shown)
+    determinant = solution.value.determinant()
+    if determinant.size <= readability.FAMILY_DETERMINANT:
+        page.equal(
+            relation(solution.apply("det"), determinant_form(page, determinant)),
+            say="determinant_free" if value.shape[0] > 1 else "",
+        )
+
+
+def _sylvester(page: Builder, side: PlacementProblem, which: str, equation: Sylvester) -> Relation:
+    """Return AᵀX − XF = CᵀG, or AX − XF = BG."""
+    A, F = _state_matrix(page, side, equation), page[f"F_{side.index}"]
+    G, X = (f"{letter}_{side.index}{which}" for letter in "GX")
+    if side.gain == "L":
+        return relation(A.T @ page[X] - page[X] @ F, page["C"].T @ page[G])
+    return relation(A @ page[X] - page[X] @ F, page["B"] @ page[G])
+
+
+def _gain(page: Builder, side: PlacementProblem, which: str, equation: Sylvester) -> Term:
+    """Return L₀ + (G X⁻¹)ᵀ, or K₀ + G X⁻¹."""
+    G, X = (f"{letter}_{side.index}{which}" for letter in "GX")
+    found = page[G] @ page[X].inverse
+    found = found.T if side.gain == "L" else found
+    return found if equation.shift is None else page[f"{side.gain}_0"] + found
+
+
+def _similar(page: Builder, side: PlacementProblem, which: str, equation: Sylvester) -> Relation:
+    """Return (A − LC)ᵀ = Aᵀ − CᵀGX⁻¹ = XFX⁻¹, or A − BK = A − BGX⁻¹ = XFX⁻¹."""
+    G, X = (f"{letter}_{side.index}{which}" for letter in "GX")
+    A, moved = _state_matrix(page, side, equation), page[G] @ page[X].inverse
+    left = A.T - page["C"].T @ moved if side.gain == "L" else A - page["B"] @ moved
+    return relation(left, page[X] @ page[f"F_{side.index}"] @ page[X].inverse)

@@ -1,0 +1,350 @@
+"""The reduced-order observer  ż = F z + G u + H y,  x̂ = M [y − D u; z].
+
+In the coordinates T = [C; R], x₁ = C x is measured and x₂ = R x is not.  With P = R − L C the estimate of P x is z.
+"""
+
+from __future__ import annotations
+
+from dataclasses import field
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, ClassVar, Self
+
+from symobs.exact import Matrix, Root, Scalar, kernel, modulo
+from symobs.exact.linear_algebra.realisation import Realisation
+from symobs.formula.tree import Environment
+from symobs.formula.tree.term import block, identity, letter
+from symobs.ground.dataclass import dataclass
+from symobs.ground.errors import CertificateRejected, InputError
+from symobs.proof.certificate.claims import Certificate, Claim
+from symobs.proof.derivation.builder import relation
+from symobs.system import StateSpace
+from symobs.system.specification import (
+    DesiredPolynomial,
+    MatrixText,
+    Name,
+    Poles,
+    PolynomialText,
+    desired_polynomial,
+    over_common_data,
+    read_gain,
+)
+from symobs.tasks.analysis.strata.strata import equations_of, places, solved
+from symobs.tasks.design.full_order.observer import ObserverDesign
+from symobs.tasks.design.gain.gain_cases import chosen, design_of, places_beside
+from symobs.tasks.design.gain.gain_design import letters_of
+from symobs.tasks.design.reduced_order.partition import Partition, completed, partition
+from symobs.tasks.result import Case, Result, choose, method, poles_of, task
+from symobs.tasks.result.control_systems import Controller, observer_of
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
+
+    from symobs.system.conditions import Condition
+    from symobs.tasks.analysis.strata.strata import Place
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class ReducedOrderObserver(Result):
+    """An observer of order n − p: P A − F P = H C, G = P B − H D, M [C; P] = I, det(sI − F) = φ(s), P = R − L C.
+
+    `inner` is the gain L for the pair (A₁₂, A₂₂), with its own claims.
+    """
+
+    desired: DesiredPolynomial
+    inner: ObserverDesign
+
+    task: ClassVar[str] = "reduced_order_observer"
+    letter: ClassVar[str] = "L"
+
+    @classmethod
+    def of(cls, plant: StateSpace, desired: DesiredPolynomial, T: Matrix, method_name: str) -> Self:
+        """Return the observer in the coordinates T, or the negative result."""
+
+        def find() -> ReducedOrderObserver:
+            inner = design_of(ObserverDesign, _unmeasured(plant, partition(plant, T)), desired)
+            return cls.assembled(plant, inner, desired, T, method_name)
+
+        found: Self = plant.once((cls, desired, T, method_name), find)
+        return found
+
+    @classmethod
+    def assembled(
+        cls, plant: StateSpace, inner: ObserverDesign, desired: DesiredPolynomial, T: Matrix, method_name: str
+    ) -> Self:
+        """Return the observer with a gain for (A₁₂, A₂₂)."""
+        parts = partition(plant, T)
+        m = plant.matrices
+        answer: dict[str, Any] = dict.fromkeys("LTFGHM") | {"T": T}
+        L = inner.answer["L"]
+        if L is not None:
+            F = (parts.A22 - L @ parts.A12).normal()
+            H = (F @ L + parts.A21 - L @ parts.A11).normal()
+            G = None
+            if parts.B1 is not None and parts.B2 is not None:
+                G = parts.B2 - L @ parts.B1
+                G = (G - H @ m.D if m.has_feedthrough else G).normal()
+            known, rest = Matrix.identity(plant.outputs), Matrix.identity(L.shape[0])
+            lift = Matrix.block([[known, Matrix.zeros(plant.outputs, L.shape[0])], [L, rest]])
+            answer |= {"L": L, "F": F, "G": G, "H": H, "M": (T.inverse() @ lift).normal()}
+        return cls(plant, method_name, answer, desired, inner)
+
+    def with_answer(self, name: str, value: object) -> Self:
+        """Return the observer with another L, and with the F, G, H and M that follow from it."""
+        if name != "L":
+            return super().with_answer(name, value)
+        inner = self.inner.with_answer("L", value)
+        remade = type(self).assembled(self.plant, inner, self.desired, self.answer["T"], self.method)
+        return remade.in_place_of(self)
+
+    @property
+    def has_reduced_observer(self) -> bool:
+        """It is one."""
+        return True
+
+    def claims(self) -> Iterator[Claim]:
+        """Yield that z follows P x, that [C; P] is undone by M, and where the poles are."""
+        plant, answer = self.plant, self.answer
+        rows, columns = range(plant.outputs), range(plant.order)
+        values = letters_of(plant) | {name: value for name, value in answer.items() if value is not None}
+        T: Matrix = answer["T"]
+        values |= {"phi": self.desired.polynomial, "R": T.select(range(plant.outputs, plant.order), columns)}
+        e = Environment(variable=plant.variable, values=values)
+        parts, inner = partition(plant, T), self.inner
+        yield Claim(relation(T.select(rows, columns), letter("C", e)), e, "the upper rows of T are C")
+        yield Claim(relation(parts.A22, inner.plant.matrices.A), e, "the inner gain is one for A22")
+        yield Claim(relation(parts.A12, inner.plant.matrices.C), e, "the inner gain is one for A12")
+        yield Claim(relation(letter("phi", e), inner.answer["polynomial"]), e, "the inner gain is one for phi(s)")
+        if (answer["L"] is None) != (inner.answer["L"] is None):
+            message = "there is a reduced-order observer exactly where the pair (A12, A22) has a gain"
+            raise CertificateRejected(message, repair="please report this: it is a bug of symobs")
+        if answer["L"] is None:
+            return
+        if (answer["G"] is None) == plant.matrices.has_input:
+            message = "G belongs to a plant with an input, and to no other"
+            raise CertificateRejected(message, repair="please report this: it is a bug of symobs")
+        A, C, L, F, H, M, R = (letter(name, e) for name in ("A", "C", "L", "F", "H", "M", "R"))
+        P = R - L @ C
+        yield Claim(relation(P @ A - F @ P, H @ C), e, "P*A - F*P = H*C")
+        if answer["G"] is not None:
+            driven = P @ letter("B", e)
+            if plant.matrices.has_feedthrough:
+                driven = driven - H @ letter("D", e)
+            yield Claim(relation(letter("G", e), driven), e, "G = P*B - H*D")
+        yield Claim(relation(M @ block([[C], [P]]), identity(plant.order, e)), e, "M*[C; P] = I")
+        order = plant.order - plant.outputs
+        pencil = letter("s", e) @ identity(order, e) - F
+        yield Claim(relation(pencil.apply("det"), letter("phi", e)), e, "det(s*I - F) = phi(s)")
+
+    @property
+    def systems(self) -> Mapping[str, Realisation]:
+        """The plant, and the observer (u, y) → x̂ with the state z."""
+        m, known = self.plant.matrices, self.answer
+        if known["L"] is None:
+            return super().systems
+        M = known["M"]
+        rows, p = range(self.plant.order), self.plant.outputs
+        of_y, of_z = M.select(rows, range(p)), M.select(rows, range(p, self.plant.order))
+        driven, shown = known["H"], of_y
+        if m.has_input:
+            driven, shown = Matrix.block([[known["G"], driven]]), Matrix.block([[-(of_y @ m.D), shown]])
+        return {**super().systems, "observer": Realisation(known["F"], driven.normal(), of_z, shown.normal())}
+
+    @property
+    def controller(self) -> Controller | None:
+        """(u, y) → x̂."""
+        return observer_of(self)
+
+    @property
+    def all_certificates(self) -> tuple[Certificate, ...]:
+        """The certificates of the inner gain and of the observer."""
+        return (*self.inner.certificates, *self.certificates)
+
+    @property
+    def free_signals(self) -> Mapping[str, int]:
+        """The estimate of x₂; the observer's state where the estimate is made of it."""
+        names = ["x_2_hat"]
+        if self.page_method == "undetermined":
+            names.append("w_o" if self.plant.is_discrete else "z_o")
+        return dict.fromkeys(names, self.plant.order - self.plant.outputs)
+
+    @property
+    def verdict(self) -> str:
+        """`no` where φ cannot be assigned."""
+        return "no" if self.answer["L"] is None else super().verdict
+
+    @cached_property
+    def holds_where(self) -> tuple[Condition, ...]:
+        """The conditions of the coordinates and of the inner gain."""
+        own = super().holds_where
+        known = {condition.expression for condition in own}
+        inner = [c for c in self.inner.holds_where if c.kind == "existence" and c.expression not in known]
+        return (*own, *inner)
+
+    @property
+    def unmoved_modes(self) -> tuple[Root, ...]:
+        """The modes that no gain moves."""
+        return self.inner.unmoved_modes
+
+    @property
+    def gain_family(self) -> dict[str, Any] | None:
+        """The general gain L where it is not unique."""
+        return self.inner.gain_family
+
+    @cached_property
+    def case_tree(self) -> tuple[Case, ...]:
+        """The whole question again where T is singular or the pair (A₁₂, A₂₂) loses its rank."""
+
+        def solve(plant: StateSpace, values: dict[str, Scalar]) -> Result:
+            desired = self.desired.substitute(values)
+            return reduced_observer_of(plant, desired, self.answer["T"].substitute(values), self.method)
+
+        return solved(self.plant, self.places, solve)
+
+    @cached_property
+    def places(self) -> tuple[Place, ...]:
+        """The strata where T is singular or the pair (A₁₂, A₂₂) loses its rank, each of them once."""
+        determinant = self.answer["T"].determinant()
+        own = places(self.plant, (determinant, *self.inner.existence, *chosen(self.inner)))
+        if self.plant.outputs == 1 and not self.unmoved_modes:
+            return own
+        found = {equations_of(place): place for place in own}
+        for place in places_beside(self, self.inner):
+            found.setdefault(equations_of(place), place)
+        return tuple(found.values())
+
+    @cached_property
+    def fields(self) -> Mapping[str, Any]:
+        """The fields of the contract, and P, polynomial and family."""
+        return {
+            **{name: self.answer[name] for name in "LTFGHM"},
+            "polynomial": self.desired.polynomial,
+            "poles": self.inner.roots if self.answer["L"] is not None else (),
+            "fixed_modes": self.unmoved_modes,
+            "family": None if self.gain_family is None else self.inner.reported_family,
+        }
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class DependentOutputs(ReducedOrderObserver):
+    """No observer of order n − p on a stratum: w C = 0 with w ≠ 0, so no [C; P] with n rows has an inverse."""
+
+    #: There are no coordinates [C; R], and no pair (A₁₂, A₂₂) in them.
+    inner: ObserverDesign = field(default=None, init=False)  # type: ignore[assignment]
+
+    def claims(self) -> Iterator[Claim]:
+        """Yield w C = 0 and w ≠ 0."""
+        e = Environment(values=letters_of(self.plant) | {"w": self.answer["w"]})
+        w, m = letter("w", e), self.plant.matrices
+        yield Claim(relation(w @ letter("C", e), Matrix.zeros(1, m.C.shape[1])), e, "w*C = 0")
+        yield Claim(relation(w, "!==", Matrix.zeros(1, m.C.shape[0])), e, "w is not 0")
+        if any(self.answer[name] is not None for name in "LTFGHM"):
+            message = "outputs that depend on each other leave no observer of order n - p"
+            raise CertificateRejected(message, repair="please report this: it is a bug of symobs")
+
+    @property
+    def all_certificates(self) -> tuple[Certificate, ...]:
+        """The certificates that outputs depend on each other."""
+        return self.certificates
+
+    @property
+    def holds_where(self) -> tuple[Condition, ...]:
+        """Everywhere on the stratum: the rank of C is nowhere higher there."""
+        return self.domain
+
+    @property
+    def unmoved_modes(self) -> tuple[Root, ...]:
+        """None that is spoken of."""
+        return ()
+
+    @property
+    def gain_family(self) -> None:
+        """None: there is no gain."""
+
+    @property
+    def places(self) -> tuple[Place, ...]:
+        """None: nothing else is true anywhere on the stratum."""
+        return ()
+
+
+def reduced_observer_of(
+    plant: StateSpace, desired: DesiredPolynomial, T: Matrix | None = None, method_name: str = "partition"
+) -> ReducedOrderObserver:
+    """Return the observer in the coordinates T, or in others where these are singular; the negative result on a stratum.
+
+    Raises `InputError` where the outputs of a plant that is no stratum depend on each other.
+    """
+    C, ideal = plant.matrices.C, plant.ideal
+    if plant.is_stratum and (rows := kernel(C.T, ideal)).shape[1]:
+        w = modulo(rows.select(range(rows.shape[0]), [0]).T, ideal)
+        return DependentOutputs(plant, method_name, dict.fromkeys("LTFGHM") | {"w": w}, desired)
+    usable = T is not None and not plant.simplified(T.determinant()).is_zero
+    return ReducedOrderObserver.of(plant, desired, T if T is not None and usable else completed(C, ideal), method_name)
+
+
+def _unmeasured(plant: StateSpace, parts: Partition) -> StateSpace:
+    """Return the plant of x₂ alone, seen through A₁₂."""
+    seen = StateSpace(parts.A22, None, parts.A12, dt=plant.dt, symbols=plant.symbols)
+    return plant.beside(seen.restricted(plant.equations, plant.nonzero))
+
+
+@method("reduced_order_observer/partition", source="luenberger1971; gopinath1971")
+def by_partition(plant: StateSpace, desired: DesiredPolynomial, T: Matrix) -> ReducedOrderObserver:
+    """L places the poles of A₂₂ − L A₁₂ in coordinates where the outputs are the first states."""
+    return ReducedOrderObserver.of(plant, desired, T, "partition")
+
+
+@method("reduced_order_observer/undetermined", source="luenberger1971")
+def undetermined(plant: StateSpace, desired: DesiredPolynomial, T: Matrix) -> ReducedOrderObserver:
+    """x̂₂ = z + L x₁, ż = F z + G u + H y: the error is free of x and u for one choice of F, G, H, whatever L is."""
+    return ReducedOrderObserver.of(plant, desired, T, "undetermined")
+
+
+def unmeasured(plant: StateSpace, _: object = None) -> int:
+    """Return the number of states that are left to estimate, n − p."""
+    return plant.order - plant.outputs
+
+
+@task
+@poles_of(poles=unmeasured)
+def reduced_order_observer(
+    plant: StateSpace,
+    *,
+    poles: Poles = None,
+    polynomial: PolynomialText = None,
+    T: MatrixText = None,
+    method: Name = "auto",
+) -> Result:
+    """Design the observer of order n − p  ż = F z + G u + H y,  x̂ = M [y − D u; z],  with det(sI − F) = φ(s).
+
+    plant         n states, p < n outputs, none a combination of the others; B may be missing
+    poles         n − p desired poles, closed under conjugation; or
+    polynomial    φ, monic of degree n − p
+    T             optional n×n coordinates x̄ = T x whose upper p rows are C
+    Returns L ((n−p)×p), T, F, G, H, M; where (C, A) is not observable either the family of gains or verdict `no` with
+    the fixed modes.  Raises `InputError` for wrong poles or shapes, and where nothing is left to estimate.
+    Source: D. G. Luenberger (1971); B. Gopinath (1971).
+    """
+    plant = plant.knowing(poles, polynomial, T)
+    plant.require("C", task="reduced_order_observer")
+    if plant.order == plant.outputs:
+        message = "the outputs show the whole state, nothing is left to estimate"
+        raise InputError(message, where="plant.C", repair="use x = C⁻¹ (y − D u)")
+    desired = desired_polynomial(plant, poles, polynomial, degree=unmeasured(plant))
+    assert desired is not None  # noqa: S101 - required
+    plant, (desired,) = over_common_data(plant, desired)
+    coordinates = completed(plant.matrices.C) if T is None else _read_coordinates(T, plant)
+    return choose("reduced_order_observer", method, "partition").solve(plant, desired, coordinates).asked(method)
+
+
+def _read_coordinates(value: object, plant: StateSpace) -> Matrix:
+    T = read_gain(value, plant, "T", (plant.order, plant.order))
+    if T.select(range(plant.outputs), range(plant.order)) != plant.matrices.C:
+        message = "the upper rows of T are not C"
+        raise InputError(message, where="specification.T", repair="write T as [C; R]")
+    if T.names & {plant.variable, "t"}:
+        message = "T contains a name that stands for the time or the variable of polynomials"
+        raise InputError(message, where="specification.T", repair="give the parameter another name")
+    if T.determinant().is_zero:
+        message = "T is singular"
+        raise InputError(message, where="specification.T", repair="choose rows below C that are independent of it")
+    return T

@@ -1,0 +1,258 @@
+"""Feedforward for unit DC gain: u = −K x̂ + F v with y = v at rest; the observer's modes do not appear from v to y."""
+
+from __future__ import annotations
+
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, ClassVar, Self
+
+from symobs.exact import Matrix, Scalar, kernel
+from symobs.exact.linear_algebra.realisation import Realisation
+from symobs.formula.tree import Environment
+from symobs.formula.tree.term import block, identity, letter
+from symobs.ground.dataclass import dataclass
+from symobs.ground.errors import CertificateRejected
+from symobs.proof.certificate.claims import Certificate, Claim
+from symobs.proof.derivation.builder import relation
+from symobs.system.conditions import Condition, vanishing_factors
+from symobs.tasks.analysis.strata.rank_stratification import maximal_minors
+from symobs.tasks.analysis.strata.strata import common_places, places, solved
+from symobs.tasks.design.compensator.compensator import observer_based, observer_order
+from symobs.tasks.design.gain.gain_design import letters_of
+from symobs.tasks.result import Case, Result, choose, method, poles_of, task
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
+
+    from symobs.system import StateSpace
+    from symobs.system.specification import Name, Poles, PolynomialText
+    from symobs.tasks.analysis.strata.strata import Place
+    from symobs.tasks.design.compensator.output_feedback import OutputFeedback
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class FeedforwardDesign(Result):
+    """F with T = (C − DK)(sI − A + BK)⁻¹BF + DF and T(0) = I (T(1) = I in discrete time), or why there is none.
+
+    `loop` is the compensator whose gains are used, with its own claims.  Where there is no F, `w` is a row with w G = 0
+    for the gain G at rest from the input, or `stuck` a state with (A − BK) x = 0 (x in discrete time): the loop has a mode
+    that never comes to rest.
+    """
+
+    loop: OutputFeedback
+
+    task: ClassVar[str] = "feedforward"
+
+    @classmethod
+    def of(cls, loop: OutputFeedback, method_name: str) -> Self:
+        """Return the feedforward of a loop, or the negative result."""
+        plant = loop.plant
+        answer: dict[str, Any] = dict.fromkeys(("F", "transfer_function", "w", "stuck"))
+        if loop.exists:
+            stuck = kernel(moving_at_rest(loop), plant.ideal)
+            G = None if stuck.shape[1] else gain_at_rest(loop)
+            left = Matrix.zeros(1, 0) if G is None else kernel(G.T, plant.ideal)
+            if G is None:
+                answer["stuck"] = stuck.select(range(plant.order), [0])
+            elif left.shape[1]:
+                answer["w"] = left.select(range(left.shape[0]), [0]).T
+            else:
+                F = (G.inverse() if plant.inputs == plant.outputs else G.T @ (G @ G.T).inverse()).normal()
+                T = response(loop, F).function(plant.variable)
+                single = F.shape == (1, 1)
+                answer |= {"F": F[0, 0] if single else F, "transfer_function": T[0, 0] if single else T}
+        return cls(plant, method_name, answer, loop)
+
+    @property
+    def has_reduced_observer(self) -> bool:
+        """The loop's estimator may be one."""
+        return self.loop.has_reduced_observer
+
+    def claims(self) -> Iterator[Claim]:
+        """Yield what v does to y, that y = v at rest, and that the error has no part in it; or that no F exists."""
+        K, F, w, stuck = self.loop.answer["K"], self.answer["F"], self.answer["w"], self.answer["stuck"]
+        have = self.loop.exists
+        reasons = sum(value is not None for value in (F, w, stuck))
+        if reasons != int(have) or (F is None) != (self.answer["transfer_function"] is None):
+            message = "there is a feedforward exactly where both gains exist and the gain at rest has full rank"
+            raise CertificateRejected(message, repair="please report this: it is a bug of symobs")
+        if not have:
+            return
+        m = self.plant.matrices
+        values = letters_of(self.plant) | {"D": m.D, "K": K, "F": F, "w": w, "T_v": self.answer["transfer_function"]}
+        values |= {"A_cl": self.loop.error_coordinates, "K_e": self.loop.coupling, "x_0": stuck}
+        restored = {
+            name: Matrix.of(v.rows) if isinstance(v, Matrix) else v for name, v in values.items()
+        }  # as unpickled
+        e = Environment(variable=self.plant.variable, values=restored)
+        A, B, C, D = (letter(name, e) for name in "ABCD")
+        K_ = letter("K", e)
+        order, one = self.plant.order, identity(self.plant.order, e)
+        if stuck is not None:
+            still = A @ letter("x_0", e) - B @ K_ @ letter("x_0", e)
+            there = letter("x_0", e) if self.plant.is_discrete else Matrix.zeros(order, 1)
+            yield Claim(relation(still, there), e, "a mode never comes to rest")
+            yield Claim(relation(letter("x_0", e), "!==", Matrix.zeros(order, 1)), e, "the mode is not 0")
+            return
+        rest = (one - A + B @ K_ if self.plant.is_discrete else B @ K_ - A).inverse
+        at_rest = (C - D @ K_) @ rest @ B + D
+        if w is not None:
+            yield Claim(relation(letter("w", e) @ at_rest, Matrix.zeros(1, self.plant.inputs)), e, "w*G = 0")
+            yield Claim(relation(letter("w", e), "!==", Matrix.zeros(1, self.plant.outputs)), e, "w is not 0")
+            return
+        F_, T, s = letter("F", e), letter("T_v", e), letter("s", e)
+        yield Claim(relation(at_rest @ F_, identity(self.plant.outputs, e)), e, "G*F = I")
+        yield Claim(relation(T, (C - D @ K_) @ (s @ one - A + B @ K_).inverse @ B @ F_ + D @ F_), e)
+        errors = self.loop.error_coordinates.shape[0] - order
+        zero = e.extended_by(values={"O_e": Matrix.zeros(errors, self.plant.outputs)})
+        A_cl, K_e, nothing = letter("A_cl", zero), letter("K_e", zero), letter("O_e", zero)
+        seen = block([[C - D @ K_, D @ K_e]])
+        driven = block([[B @ F_], [nothing]])
+        whole = seen @ (letter("s", zero) @ identity(order + errors, zero) - A_cl).inverse @ driven + D @ F_
+        yield Claim(relation(letter("T_v", zero), whole), zero, "the whole loop with its error responds alike")
+
+    @property
+    def systems(self) -> Mapping[str, Realisation]:
+        """Those of the loop, which is closed from v to y."""
+        if self.answer["F"] is None:
+            return self.loop.systems
+        F = self.answer["F"]
+        return {
+            **self.loop.systems,
+            "closed_loop": response(self.loop, F if isinstance(F, Matrix) else Matrix.of([[F]])),
+        }
+
+    @property
+    def all_certificates(self) -> tuple[Certificate, ...]:
+        """The certificates of the loop and of F."""
+        return (*self.loop.all_certificates, *self.certificates)
+
+    @cached_property
+    def gain_at_rest(self) -> Matrix:
+        """G = (C − DK)(−A + BK)⁻¹B + D."""
+        return gain_at_rest(self.loop)
+
+    @property
+    def verdict(self) -> str:
+        """`no` where either gain, or F, does not exist; as the loop's where there is none."""
+        return self.loop.verdict if not self.loop.exists else "no" if self.answer["F"] is None else super().verdict
+
+    @property
+    def existence(self) -> tuple[Scalar, ...]:
+        """What must not vanish besides: det (−A + BK), and det G, or det GGᵀ where there are more inputs than outputs."""
+        if self.answer["F"] is None:
+            return ()
+        G = self.gain_at_rest
+        square = G if self.plant.inputs == self.plant.outputs else G @ G.T
+        return moving_at_rest(self.loop).determinant(), square.determinant()
+
+    @cached_property
+    def holds_where(self) -> tuple[Condition, ...]:
+        """The conditions of the gains and of F."""
+        own = super().holds_where
+        known = {condition.expression for condition in own}
+        further = {c.expression: c for c in self.loop.holds_where if c.expression not in known}
+        for factor in vanishing_factors([value.numerator for value in self.existence], self.plant.symbols.signs):
+            if factor not in known:
+                further.setdefault(factor, Condition("existence", factor))
+        return (*own, *further.values())
+
+    @cached_property
+    def case_tree(self) -> tuple[Case, ...]:
+        """The strata of the gains, and those where the gain at rest loses its rank."""
+
+        def on(plant: StateSpace, values: dict[str, Scalar]) -> Result:
+            loop = self.loop.on(plant, values)
+            found: Result = plant.once(
+                (type(self), self.method, *loop.asked_for), lambda: type(self).of(loop, self.method)
+            )
+            return found
+
+        asked = {place.when: place for place in (*self._own_places, *self.loop.gain_places)}
+        return solved(self.plant, asked.values(), on)
+
+    @property
+    def _own_places(self) -> tuple[Place, ...]:
+        """The strata where nothing comes to rest, or G loses its rank, its minors of the highest order being 0 together."""
+        if self.answer["F"] is None:
+            return ()
+        moving = self.existence[0].numerator
+        lost = [minor.numerator for minor in maximal_minors(self.gain_at_rest.T)]
+        if len(lost) == 1:
+            return places(self.plant, [moving, *lost])
+        return (*places(self.plant, [moving]), *common_places(self.plant, lost))
+
+    @cached_property
+    def fields(self) -> Mapping[str, Any]:
+        """The fields of the contract, the gains and the loop's polynomial."""
+        loop = self.loop
+        found = {name: self.answer[name] for name in ("F", "transfer_function")}
+        found |= {"K": loop.answer["K"], "L": loop.answer["L"]}
+        if self.answer["F"] is None:
+            modes = loop.feedback.unmoved_modes + loop.estimator.unmoved_modes
+            return found | {"fixed_modes": modes}
+        return found | {"polynomial": loop.loop_polynomial, "closed_loop_matrix": loop.error_coordinates}
+
+    @property
+    def free_signals(self) -> Mapping[str, int]:
+        """The new input, and the free signals of the loop."""
+        return {"v_r": self.plant.outputs, **self.loop.free_signals}
+
+
+def moving_at_rest(loop: OutputFeedback) -> Matrix:
+    """Return −A + BK, in discrete time I − A + BK: what must be regular for the loop to come to rest."""
+    m = loop.plant.matrices
+    moving: Matrix = m.B @ loop.answer["K"] - m.A
+    return moving + Matrix.identity(loop.plant.order) if loop.plant.is_discrete else moving
+
+
+def gain_at_rest(loop: OutputFeedback) -> Matrix:
+    """Return (C − DK)(−A + BK)⁻¹B + D, in discrete time (C − DK)(I − A + BK)⁻¹B + D."""
+    m, K = loop.plant.matrices, loop.answer["K"]
+    found: Matrix = ((m.C - m.D @ K) @ moving_at_rest(loop).solve(m.B) + m.D).normal()
+    return found
+
+
+def response(loop: OutputFeedback, F: Matrix) -> Realisation:
+    """Return v → y: A − BK, BF, C − DK, DF."""
+    m, K = loop.plant.matrices, loop.answer["K"]
+    return Realisation((m.A - m.B @ K).normal(), (m.B @ F).normal(), (m.C - m.D @ K).normal(), (m.D @ F).normal())
+
+
+@method("feedforward/static", source="chen1999, ch. 8")
+def static(loop: OutputFeedback) -> FeedforwardDesign:
+    """F = [(C − DK)(−A + BK)⁻¹B + D]⁻¹."""
+    return FeedforwardDesign.of(loop, "static")
+
+
+@task
+@poles_of(observer_poles=observer_order)
+def feedforward(
+    plant: StateSpace,
+    *,
+    control_poles: Poles = None,
+    control_polynomial: PolynomialText = None,
+    observer_poles: Poles = None,
+    observer_polynomial: PolynomialText = None,
+    observer: Name = "full",
+    method: Name = "auto",
+) -> Result:
+    """Design F in u = −K x̂ + F v so that y = v at rest:  F = [(C − DK)(−A + BK)⁻¹B + D]⁻¹.
+
+    plant                                   n states, m inputs, p ≤ m outputs, D allowed
+    control_poles or control_polynomial     the n poles of A − BK
+    observer_poles or observer_polynomial   the n poles of A − LC, or the n − p poles of the observer
+    observer                                `full` or `minimal`
+    Returns F (m×p; with more inputs than outputs the smallest one), transfer_function v → y, K, L, polynomial (control
+    times observer) and closed_loop_matrix in (x, e) or (x, e₂).  Where the plant has a zero at 0 (in
+    discrete time at 1), or a control pole stands there, the verdict is `no`.  Raises `InputError` for wrong poles or shapes.
+    Source: C.-T. Chen, Linear System Theory and Design, 3rd ed., ch. 8.
+    """
+    loop = observer_based(
+        plant,
+        task="feedforward",
+        control=(control_poles, control_polynomial),
+        estimate=(observer_poles, observer_polynomial),
+        observer=observer,
+    )
+    found: Result = choose("feedforward", method, "static").solve(loop)
+    return found.asked(method)

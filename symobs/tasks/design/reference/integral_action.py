@@ -1,0 +1,258 @@
+"""Integral action:  u = −K x + k_I ξ,  ξ' = r − y,  so that y follows a constant reference r exactly.
+
+Plant and integrator together are ẋ = Â x̂ + B̂ u + [0; I] r with Â = [A 0; −C 0], B̂ = [B; −D] (in discrete time [A 0; −C I]),
+and [K, −k_I] is a state feedback of them.  Their poles can be assigned arbitrarily if and only if (A, B) is controllable
+and rank [A B; C D] = n + p (rank [A − I, B; C D] in discrete time).  Where that rank is lower no gains make y follow
+every constant r, not even if the pole of the integrators that cannot be moved is a desired one.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, ClassVar, Self
+
+from symobs.exact import Matrix, Scalar, kernel
+from symobs.exact.core.generators import identities
+from symobs.exact.linear_algebra.realisation import Realisation
+from symobs.formula.tree import Environment, Literal
+from symobs.formula.tree.term import Term, block, identity, letter
+from symobs.ground.dataclass import dataclass
+from symobs.ground.errors import CertificateRejected
+from symobs.proof.certificate.claims import Certificate, Claim
+from symobs.proof.derivation.builder import relation
+from symobs.system import StateSpace
+from symobs.system.conditions import Condition, vanishing_factors
+from symobs.system.specification import desired_polynomial, over_common_data
+from symobs.tasks.analysis.strata.loci import distance_from, loci
+from symobs.tasks.analysis.strata.rank_cases import outside
+from symobs.tasks.analysis.strata.rank_stratification import maximal_minors
+from symobs.tasks.analysis.strata.strata import region_of, solved
+from symobs.tasks.design.full_order.state_feedback import StateFeedbackDesign
+from symobs.tasks.design.gain.gain_cases import design_of, places_where
+from symobs.tasks.design.gain.gain_design import letters_of
+from symobs.tasks.result import Case, Result, choose, method, poles_of, task
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
+
+    from symobs.system.specification import DesiredPolynomial, Name, Poles, PolynomialText
+
+#: What is reported of the feedback of plant and integrator.
+_REPORTED = ("poles", "stable", "stable_if", "fixed_modes", "family")
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class IntegralAction(Result):
+    """K and k_I with det(sI − [A − BK, B k_I; −C + DK, −D k_I]) = φ(s), or the proof that there are none.
+
+    `loop` is the state feedback of plant and integrator together, with its own claims.  `w` is a row with
+    w [A B; C D] = 0 where there is one: a zero at the origin, which the integrator's pole would cancel.
+    """
+
+    loop: StateFeedbackDesign
+
+    task: ClassVar[str] = "integral_action"
+
+    @classmethod
+    def of(cls, plant: StateSpace, desired: DesiredPolynomial, method_name: str) -> Self:
+        """Return the design, or the negative result."""
+        loop = design_of(
+            StateFeedbackDesign, extended(plant), desired, "ackermann" if plant.inputs == 1 else "sylvester"
+        )
+        return cls.of_loop(plant, loop, method_name)
+
+    @classmethod
+    def of_loop(cls, plant: StateSpace, loop: StateFeedbackDesign, method_name: str) -> Self:
+        """Return the design that a feedback of plant and integrator is."""
+        left = kernel(system_matrix(plant).T, plant.ideal)
+        gain, n, every = None if left.shape[1] else loop.answer["K"], plant.order, range(plant.inputs)
+        answer = {
+            "K": None if gain is None else gain.select(every, range(n)),
+            "k_I": None if gain is None else -gain.select(every, range(n, n + plant.outputs)),
+            "polynomial": loop.answer["polynomial"],
+            "w": left.select(range(left.shape[0]), [0]).T if left.shape[1] else None,
+        }
+        return cls(plant, method_name, answer, loop)
+
+    def claims(self) -> Iterator[Claim]:
+        """Yield the polynomial of the closed loop, that it is at rest where y = r, and the rank of [A B; C D]."""
+        K, k_I, w, plant = (*(self.answer[name] for name in ("K", "k_I", "w")), self.plant)
+        if (K is None) != (w is not None or self.loop.answer["K"] is None) or (K is None) != (k_I is None):
+            message = "there are gains exactly where plant and integrator have a feedback and the outputs can follow"
+            raise CertificateRejected(message, repair="please report this: it is a bug of symobs")
+        if self.answer["polynomial"] != self.desired.polynomial:  # also where there are no gains to have it
+            message = "the polynomial is the one asked for"
+            raise CertificateRejected(message, repair="please report this: it is a bug of symobs")
+        values = letters_of(plant) | {"D": plant.matrices.D, "K": K, "k_I": k_I, "w": w}
+        known = {name: value for name, value in values.items() if value is not None}
+        relations = identities([part for part in (K, k_I) if part is not None])[1]
+        e = Environment(variable=plant.variable, values=known, relations=relations)
+        whole, size = _system(e, plant), extended_order(plant)
+        if w is None:
+            beside = replace(e, relations=(*relations, *outside(self.distances)), signs=plant.symbols.signs)
+            yield Claim(relation(whole.apply("rank"), size), beside, "rank [A B; C D] = n + p")
+        else:
+            yield Claim(
+                relation(letter("w", e) @ whole, Matrix.zeros(1, plant.order + plant.inputs)), e, "w*[A B; C D] = 0"
+            )
+            yield Claim(relation(letter("w", e), "!==", Matrix.zeros(1, size)), e, "w is not 0")
+        if K is not None:
+            both = block([[letter("K", e), -letter("k_I", e)]])
+            yield Claim(relation(both, self.loop.answer["K"]), e, "[K, -k_I] is the feedback of plant and integrator")
+            closed = block(closed_loop(e, plant))
+            pencil = letter("s", e) @ identity(size, e) - closed
+            yield Claim(relation(pencil.apply("det"), self.answer["polynomial"]), e, "det(s*I - closed loop) = phi")
+
+    @cached_property
+    def blocked(self) -> tuple[tuple[Scalar, ...], ...]:
+        """Systems of equations where [A B; C D] loses rank that it has in general; none where it always has it."""
+        if self.answer["w"] is not None or not self.plant.field.names:
+            return ()
+        region = region_of(self.plant)
+        minors = [minor.numerator for minor in maximal_minors(system_matrix(self.plant).T)]
+        found = loci(region.simplest_first(minor for minor in minors if not minor.is_zero), region)
+        return tuple(locus.equations for locus in found)
+
+    @cached_property
+    def distances(self) -> tuple[Scalar, ...]:
+        """Polynomials that are 0 exactly where [A B; C D] loses rank."""
+        return tuple(distance_from(equations) for equations in self.blocked)
+
+    @cached_property
+    def assumed(self) -> tuple[Scalar, ...]:
+        """What must not vanish for plant and integrator to be controllable."""
+        known = self.loop.test.holds_where if self.loop.test.answer["rank"] == self.loop.plant.order else ()
+        return tuple(condition.expression for condition in known if condition.kind == "existence")
+
+    @property
+    def all_certificates(self) -> tuple[Certificate, ...]:
+        """The certificates of the feedback of plant and integrator, and of the gains."""
+        return (*self.loop.all_certificates, *self.certificates)
+
+    @property
+    def desired(self) -> DesiredPolynomial:
+        """The polynomial that is to be assigned."""
+        assert self.loop.desired is not None  # noqa: S101 - the feedback is asked for by its polynomial
+        return self.loop.desired
+
+    @property
+    def verdict(self) -> str:
+        """`no` where there are no gains."""
+        return "no" if self.answer["K"] is None else super().verdict
+
+    @cached_property
+    def holds_where(self) -> tuple[Condition, ...]:
+        """Also where the outputs can follow: the factors of what keeps away from where [A B; C D] loses rank."""
+        known = super().holds_where
+        if self.answer["K"] is None:
+            return known
+        listed = {condition.expression for condition in known}
+        factors = vanishing_factors(self.distances, self.plant.symbols.signs)
+        return (*known, *(Condition("existence", factor) for factor in factors if factor not in listed))
+
+    @cached_property
+    def case_tree(self) -> tuple[Case, ...]:
+        """The design where other modes than in general are beyond any gain, or none are."""
+
+        def on(there: StateSpace, values: dict[str, Scalar]) -> Result:
+            desired = self.desired.substitute(values)
+            found: Result = there.once(
+                (type(self), desired, self.method), lambda: type(self).of(there, desired, self.method)
+            )
+            return found
+
+        return solved(self.plant, places_where(self.loop), on)
+
+    @cached_property
+    def fields(self) -> Mapping[str, Any]:
+        """K, k_I, whether (and where) the rank condition holds, the closed loop in (x, ξ), and what the feedback reports."""
+        own = {"K": self.answer["K"], "k_I": self.answer["k_I"], "solvable": self.answer["w"] is None}
+        own["solvable_if"] = [" or ".join(f"{e} != 0" for e in equations) for equations in self.blocked]
+        closed = None if self.answer["K"] is None else self.loop.fields["closed_loop_matrix"]
+        own |= {"polynomial": self.answer["polynomial"], "closed_loop_matrix": closed}
+        reported = {name: self.loop.report[name] for name in _REPORTED}
+        return own | reported | ({"family": None} if closed is None else {})
+
+    @property
+    def free_signals(self) -> Mapping[str, int]:
+        """The reference and the integral of its error."""
+        return {"r_in": self.plant.outputs, "xi_I": self.plant.outputs}
+
+    @property
+    def systems(self) -> Mapping[str, Realisation]:
+        """The plant, and the loop from r to y."""
+        plant, gain = self.plant, self.loop.answer["K"]
+        if gain is None or self.answer["K"] is None:
+            return super().systems
+        m, p = plant.matrices, plant.outputs
+        seen = (Matrix.block([[m.C, Matrix.zeros(p, p)]]) - m.D @ gain).normal()
+        enters = Matrix.block([[Matrix.zeros(plant.order, p)], [Matrix.identity(p)]])
+        loop = Realisation(self.fields["closed_loop_matrix"].normal(), enters, seen, Matrix.zeros(p, p))
+        return {**super().systems, "servo": loop}
+
+
+def extended(plant: StateSpace) -> StateSpace:
+    """Return plant and integrator together, with the states (x, ξ) and the input u."""
+    m, n, p = plant.matrices, plant.order, plant.outputs
+    own = Matrix.identity(p) if plant.is_discrete else Matrix.zeros(p, p)
+    A = Matrix.block([[m.A, Matrix.zeros(n, p)], [-m.C, own]])
+    found = StateSpace(A, Matrix.block([[m.B], [-m.D]]), dt=plant.dt, symbols=plant.symbols)
+    return plant.beside(found.restricted(plant.equations, plant.nonzero))
+
+
+def system_matrix(plant: StateSpace) -> Matrix:
+    """Return [A B; C D], in discrete time [A − I, B; C D]."""
+    m = plant.matrices
+    first = m.A - Matrix.identity(plant.order) if plant.is_discrete else m.A
+    return Matrix.block([[first, m.B], [m.C, m.D]])
+
+
+def _system(e: Environment, plant: StateSpace) -> Term:
+    A, B, C, D = (letter(name, e) for name in "ABCD")
+    return block([[A - identity(plant.order, e) if plant.is_discrete else A, B], [C, D]])
+
+
+def closed_loop(e: Environment, plant: StateSpace) -> list[list[Term]]:
+    """Return the blocks of [A − BK, B k_I; −C + DK, −D k_I], with I − D k_I in discrete time."""
+    A, B, C, D, K, k_I = (letter(name, e) for name in ("A", "B", "C", "D", "K", "k_I"))
+    p, one = plant.outputs, identity(plant.outputs, e)
+    if not plant.matrices.has_feedthrough:
+        return [[A - B @ K, B @ k_I], [-C, one if plant.is_discrete else Term(Literal(Matrix.zeros(p, p)), e)]]
+    return [[A - B @ K, B @ k_I], [D @ K - C, one - D @ k_I if plant.is_discrete else -D @ k_I]]
+
+
+@method("integral_action/extended_state", source="davison1976; ogata2010, ch. 10")
+def extended_state(plant: StateSpace, desired: DesiredPolynomial) -> IntegralAction:
+    """[K, −k_I] is the state feedback of the plant with ξ' = r − y as a further state."""
+    return IntegralAction.of(plant, desired, "extended_state")
+
+
+def extended_order(plant: StateSpace, _: object = None) -> int:
+    """Return the number of poles of plant and integrator, n + p."""
+    return plant.order + plant.outputs
+
+
+@task
+@poles_of(poles=extended_order)
+def integral_action(
+    plant: StateSpace, *, poles: Poles = None, polynomial: PolynomialText = None, method: Name = "auto"
+) -> Result:
+    """Let y follow constant references by u = −K x + k_I ξ, ξ' = r − y, with n + p given poles.
+
+    plant         n states, m inputs, p outputs, D allowed; in discrete time ξ(k + 1) = ξ(k) + r − y(k)
+    poles         the n + p poles of plant and integrator, closed under conjugation; or
+    polynomial    φ, monic of degree n + p
+    Returns K (m×n), k_I (m×p), solvable (rank [A B; C D] = n + p, in discrete time rank [A − I, B; C D]; with parameters
+    exactly where all of solvable_if holds), polynomial,
+    closed_loop_matrix in (x, ξ), poles, stable; `family` where the gains [K, −k_I] are not unique.  The verdict is `no`
+    where that rank is lower or φ cannot be assigned.  Raises `InputError` for wrong poles.
+    Source: E. J. Davison (1976); K. Ogata, Modern Control Engineering, 5th ed., ch. 10.
+    """
+    plant = plant.knowing(poles, polynomial)
+    plant.require("B", "C", task="integral_action")
+    desired = desired_polynomial(plant, poles, polynomial, degree=extended_order(plant))
+    assert desired is not None  # noqa: S101 - required
+    plant, (desired,) = over_common_data(plant, desired)
+    found: Result = choose("integral_action", method, "extended_state").solve(plant, desired)
+    return found.asked(method)

@@ -1,0 +1,277 @@
+"""Tracking of a reference ẋ_d = A_d x_d:  u = K (x_d − x̂) − K_d x_d,  error e_d = x_d − x.
+
+ė_d = (A − BK) e_d + (A_d − A + BK_d) x_d − BK e, so the reference has no part in the error where A_d − A + BK_d = 0.
+"""
+
+from __future__ import annotations
+
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, ClassVar, Self
+
+from symobs.exact import Matrix, Scalar, independent_rows, kernel, modulo
+from symobs.formula.tree import Environment
+from symobs.formula.tree.term import identity, letter
+from symobs.ground.dataclass import dataclass
+from symobs.ground.errors import CertificateRejected, InputError
+from symobs.proof.certificate.claims import Certificate, Claim
+from symobs.proof.derivation.builder import relation
+from symobs.system.specification import read_gain
+from symobs.tasks.analysis.strata.strata import common_places, places, solved
+from symobs.tasks.design.compensator.compensator import observer_based, observer_order
+from symobs.tasks.design.gain.gain_design import letters_of
+from symobs.tasks.result import Case, Result, choose, method, poles_of, task
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
+
+    from symobs.system import StateSpace
+    from symobs.system.conditions import Condition
+    from symobs.system.specification import MatrixText, Name, Poles, PolynomialText
+    from symobs.tasks.analysis.strata.strata import Place
+    from symobs.tasks.design.compensator.output_feedback import OutputFeedback
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class TrackingDesign(Result):
+    """K_d with A_d − A + BK_d = 0, or with (A_d − A + BK_d) V = 0 for one trajectory; or why there is none.
+
+    `loop` is the compensator whose gains are used, with its own claims.  The columns of V are x_d(0), A_d x_d(0), …, and
+    span what the trajectory passes through.  `w` is None, or a row with w B = 0 and w (A − A_d) ≠ 0 (w (A − A_d) V ≠ 0).
+    """
+
+    loop: OutputFeedback
+    reference: Matrix
+    start: Matrix | None
+
+    task: ClassVar[str] = "tracking"
+
+    @classmethod
+    def of(cls, loop: OutputFeedback, reference: Matrix, start: Matrix | None, method_name: str) -> Self:
+        """Return the tracking design, or the negative result."""
+        B, ideal = loop.plant.matrices.B, loop.plant.ideal
+        passed = trajectory(reference, start)
+        wanted = ((loop.plant.matrices.A - reference) @ passed).normal()
+        rows, columns = independent_rows(B, ideal), independent_rows(B.T, ideal)
+        found = B.select(rows, columns).solve(wanted.select(rows, range(wanted.shape[1])))
+        Y = placed(found, columns, B.shape[1])
+        answer: dict[str, Any] = {"K_d": None, "w": None}
+        if modulo((B @ Y - wanted).normal(), ideal).is_zero:
+            square = passed.shape[0] == passed.shape[1]
+            back = passed.inverse() if square else (passed.T @ passed).inverse() @ passed.T
+            answer["K_d"] = (Y @ back).normal()
+        else:
+            left = kernel(B.T, ideal)
+            free = modulo((left.T @ wanted).normal(), ideal)
+            index = next(i for i in range(free.shape[0]) if not free.select([i], range(free.shape[1])).is_zero)
+            answer["w"] = left.select(range(B.shape[0]), [index]).T
+        return cls(loop.plant, method_name, answer, loop, reference, start)
+
+    @property
+    def has_reduced_observer(self) -> bool:
+        """The loop's estimator may be one."""
+        return self.loop.has_reduced_observer
+
+    def claims(self) -> Iterator[Claim]:
+        """Yield that the reference has no part in the error, or that no K_d makes it so; and the error's polynomial."""
+        K_d, w = self.answer["K_d"], self.answer["w"]
+        if (K_d is None) == (w is None):
+            message = "there is a K_d exactly where no row shows that there is none"
+            raise CertificateRejected(message, repair="please report this: it is a bug of symobs")
+        values = letters_of(self.plant) | {"A_ref": self.reference, "V_d": self.passed, "K_d": K_d, "w": w}
+        e = Environment(variable=self.plant.variable, values=values)
+        A, B, A_ref, V = (letter(name, e) for name in ("A", "B", "A_ref", "V_d"))
+        if self.start is not None:
+            yield from self._passed_through(e)
+        everywhere = self.start is None
+        if w is not None:
+            row = letter("w", e)
+            left = row @ (A - A_ref) if everywhere else row @ (A - A_ref) @ V
+            yield Claim(relation(row @ B, Matrix.zeros(1, self.plant.inputs)), e, "w*B = 0")
+            zero = Matrix.zeros(1, self.passed.shape[1])
+            yield Claim(
+                relation(left, "!==", zero), e, "w*(A - A_d) is not 0" if everywhere else "w*(A - A_d)*V is not 0"
+            )
+        else:
+            left = A_ref - A + B @ letter("K_d", e)
+            zero = Matrix.zeros(self.plant.order, self.passed.shape[1])
+            said = "A_d - A + B*K_d = 0" if everywhere else "(A_d - A + B*K_d)*V = 0"
+            yield Claim(relation(left if everywhere else left @ V, zero), e, said)
+        if self.has_gains:
+            values = {"A_e": self.matrix_of_errors, "phi": self.loop.loop_polynomial.value}
+            own = Environment(variable=self.plant.variable, values=values)
+            pencil = letter("s", own) @ identity(self.matrix_of_errors.shape[0], own) - letter("A_e", own)
+            yield Claim(relation(pencil.apply("det"), letter("phi", own)), own, "det(s*I - error matrix) = phi_c*phi_o")
+
+    def _passed_through(self, e: Environment) -> Iterator[Claim]:
+        """Yield that V holds the start and is carried into itself by A_d: V Z = [x_d(0), A_d V]."""
+        assert self.start is not None  # noqa: S101 - the caller's branch
+        V = self.passed
+        rows = independent_rows(V)
+        target = Matrix.block([[self.start, self.reference @ V]])
+        Z = V.select(rows, range(V.shape[1])).solve(target.select(rows, range(target.shape[1])))
+        inside = e.extended_by(values={"Z": Z, "x_d0": target})
+        yield Claim(
+            relation(letter("V_d", inside) @ letter("Z", inside), letter("x_d0", inside)),
+            inside,
+            "V*Z = [x_d(0), A_d*V]",
+        )
+
+    @cached_property
+    def passed(self) -> Matrix:
+        """V: a basis of the space spanned by the trajectory; I for every trajectory."""
+        return trajectory(self.reference, self.start)
+
+    @property
+    def has_gains(self) -> bool:
+        """Whether K and L exist, and the control law can be solved for u."""
+        return self.loop.exists
+
+    @property
+    def all_certificates(self) -> tuple[Certificate, ...]:
+        """The certificates of the loop and of K_d."""
+        return (*self.loop.all_certificates, *self.certificates)
+
+    @cached_property
+    def matrix_of_errors(self) -> Matrix:
+        """[A − BK, −BK; 0, A − LC] in (e_d, e), or [A − BK, −BK₂; 0, F] in (e_d, e₂)."""
+        whole, order = self.loop.error_coordinates, self.plant.order
+        first, second = range(order), range(order, whole.shape[0])
+        return Matrix.block(
+            [
+                [whole.select(first, first), -whole.select(first, second)],
+                [whole.select(second, first), whole.select(second, second)],
+            ]
+        )
+
+    @property
+    def verdict(self) -> str:
+        """`no` where a gain or K_d does not exist; as the loop's where there is none."""
+        if not self.has_gains:
+            return self.loop.verdict
+        return "no" if self.answer["K_d"] is None else super().verdict
+
+    @cached_property
+    def holds_where(self) -> tuple[Condition, ...]:
+        """The conditions of the gains and of K_d."""
+        own = super().holds_where
+        known = {condition.expression for condition in own}
+        return (*own, *(condition for condition in self.loop.holds_where if condition.expression not in known))
+
+    @cached_property
+    def case_tree(self) -> tuple[Case, ...]:
+        """The strata of the gains, and where a reference that cannot be followed otherwise can."""
+
+        def on(plant: StateSpace, values: dict[str, Scalar]) -> Result:
+            start = None if self.start is None else self.start.substitute(values)
+            loop, reference = self.loop.on(plant, values), self.reference.substitute(values)
+            found: Result = plant.once(
+                (type(self), self.method, reference, start, *loop.asked_for),
+                lambda: type(self).of(loop, reference, start, self.method),
+            )
+            return found
+
+        return solved(self.plant, self._places, on)
+
+    @property
+    def _places(self) -> tuple[Place, ...]:
+        """The strata of the gains, and where K_d is another one or a reference can be followed after all."""
+        if self.answer["w"] is None:
+            known = {condition.expression for condition in self.loop.holds_where}
+            own = [c.expression for c in super().holds_where if c.kind == "claim" and c.expression not in known]
+            found = (*self.loop.gain_places, *places(self.plant, own))
+            return tuple({place.when: place for place in found}.values())
+        left = (self.answer["w"] @ (self.plant.matrices.A - self.reference) @ self.passed).normal()
+        obstacles = [entry.numerator for entry in left.entries if not entry.is_zero]
+        if any(entry.is_constant for entry in obstacles):
+            return self.loop.gain_places
+        return (*self.loop.gain_places, *common_places(self.plant, obstacles))
+
+    @cached_property
+    def fields(self) -> Mapping[str, Any]:
+        """The fields of the contract, and L."""
+        loop = self.loop
+        found = {"K": loop.answer["K"], "K_d": self.answer["K_d"], "solvable": self.answer["K_d"] is not None}
+        found |= {"L": loop.answer["L"]}
+        if not self.has_gains:
+            found |= {"error_matrix": None, "polynomial": None}
+            return found | {"fixed_modes": loop.feedback.unmoved_modes + loop.estimator.unmoved_modes}
+        return found | {"error_matrix": self.matrix_of_errors, "polynomial": loop.loop_polynomial}
+
+    @property
+    def free_signals(self) -> Mapping[str, int]:
+        """The reference, and the free signals of the loop."""
+        return {"x_d": self.plant.order, **self.loop.free_signals}
+
+
+def trajectory(reference: Matrix, start: Matrix | None) -> Matrix:
+    """Return independent columns among x_d(0), A_d x_d(0), …; I where no start is given."""
+    order = reference.shape[0]
+    if start is None:
+        return Matrix.identity(order)
+    columns = [start]
+    for _ in range(order - 1):
+        columns.append((reference @ columns[-1]).normal())
+    every = Matrix.block([columns])
+    return every.select(range(order), independent_rows(every.T))
+
+
+def placed(rows: Matrix, places: tuple[int, ...] | list[int], height: int) -> Matrix:
+    """Return the matrix with these rows in these places and zeros elsewhere."""
+    found = {place: rows.rows[i] for i, place in enumerate(places)}
+    nothing = [Scalar.of(0)] * rows.shape[1]
+    return Matrix.of([list(found.get(i, nothing)) for i in range(height)], rows.shape[1])
+
+
+@method("tracking/reference_model", source="francis1976")
+def reference_model(loop: OutputFeedback, reference: Matrix, start: Matrix | None) -> TrackingDesign:
+    """B K_d = A − A_d, solved in independent rows and columns of B."""
+    return TrackingDesign.of(loop, reference, start, "reference_model")
+
+
+@task
+@poles_of(observer_poles=observer_order)
+def tracking(
+    plant: StateSpace,
+    *,
+    control_poles: Poles = None,
+    control_polynomial: PolynomialText = None,
+    observer_poles: Poles = None,
+    observer_polynomial: PolynomialText = None,
+    reference_matrix: MatrixText = None,
+    reference_start: MatrixText = None,
+    observer: Name = "minimal",
+    method: Name = "auto",
+) -> Result:
+    """Track ẋ_d = A_d x_d by u = K (x_d − x̂) − K_d x_d, where A_d − A + BK_d = 0 has a solution.
+
+    plant                                   n states, m inputs, p outputs, D allowed
+    control_poles or control_polynomial     the n poles of A − BK
+    observer_poles or observer_polynomial   the n − p poles of the observer, or n with observer = `full`
+    reference_matrix                        A_d, n×n; the plant's own A where it is left out
+    reference_start                         x_d(0): then only this trajectory is to be followed
+    observer                                `minimal` or `full`
+    Returns K, K_d (m×n), solvable (rank [B, A − A_d] = rank B), error_matrix in (e_d, e₂) or (e_d, e), polynomial
+    (control times observer) and L.  Raises `InputError` for wrong poles or shapes.
+    Source: B. A. Francis and W. M. Wonham (1976).
+    """
+    plant = plant.knowing(reference_matrix, reference_start)
+    order = plant.order
+    m = plant.matrices
+    reference = (
+        m.A if reference_matrix is None else read_gain(reference_matrix, plant, "reference_matrix", (order, order))
+    )
+    start = None if reference_start is None else read_gain(reference_start, plant, "reference_start", (order, 1))
+    if start is not None and not any(start.entries):
+        message = "reference_start is 0, where the reference stays for ever"
+        raise InputError(
+            message, where="specification.reference_start", repair="give a start that is not 0, or leave it out"
+        )
+    loop = observer_based(
+        plant,
+        task="tracking",
+        control=(control_poles, control_polynomial),
+        estimate=(observer_poles, observer_polynomial),
+        observer=observer,
+    )
+    found: Result = choose("tracking", method, "reference_model").solve(loop, reference, start)
+    return found.asked(method)

@@ -1,0 +1,38 @@
+"""Results that own their claims, and the registries of tasks, methods and formats."""
+
+from symobs.tasks.result.registry import (
+    Method,
+    Task,
+    choose,
+    method,
+    methods,
+    poles_of,
+    task,
+    task_in_time,
+    task_named,
+    tasks,
+)
+from symobs.tasks.result.result import Case, Document, Result, Stratum
+from symobs.tasks.result.writers import format_named, formats, output_format, page_of, render
+
+__all__ = [
+    "Case",
+    "Document",
+    "Method",
+    "Result",
+    "Stratum",
+    "Task",
+    "choose",
+    "format_named",
+    "formats",
+    "method",
+    "methods",
+    "output_format",
+    "page_of",
+    "poles_of",
+    "render",
+    "task",
+    "task_in_time",
+    "task_named",
+    "tasks",
+]

@@ -1,0 +1,459 @@
+"""The audit: equations in the letters of a source, what is wrong with them, and the reason."""
+
+from __future__ import annotations
+
+import decimal
+import json
+from fractions import Fraction
+from typing import TYPE_CHECKING
+
+import pytest
+from hypothesis import assume, given, settings
+from hypothesis import strategies as st
+
+from symobs.applications.audit import audit, report
+from symobs.applications.audit.equations.grammar import read_relation
+from symobs.exact.algebraic.rounded_decimals import PrintedDecimal
+from symobs.formula.expression.syntax_tree import every
+from symobs.ground.errors import BudgetExceeded, CertificateRejected, ProblemErrors, SymobsError
+from symobs.problem import read
+from tests.support.paths import ROOT
+from tests.support.problems.printed import finding, findings, problem
+from tests.support.tools.command_line import SERVO, inside
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from symobs.formula.expression.syntax_tree import SyntaxNode
+
+# Of the servo 1/(s (s + 1)) with observer poles -10, -10, worked out by hand: L = [19; 81].
+RIGHT = [
+    "L = [19; 81]",
+    "A - L C = [-19 1; -81 -1]",
+    "[A B; C 0] = [0 1 0; 0 -1 1; 1 0 0]",
+    "V^-1 = [0 1; 1 -1]",
+    "ctrb(A', C') = [1 0; 0 1]",
+    "(s I - A + L C)^-1 = [s+1 1; -81 s+19]/(s + 10)^2",
+    "adj(s I - A + L C) = [s+1 1; -81 s+19]",
+    "x_hat' = [-19 1; -81 -1] x_hat + [0; 1] u + [19; 81] y",
+    "e' = [-19 1; -81 -1] e",
+    "x_hat_2' = -81 x_hat_1 - x_hat_2 + u + 81 y",
+    "eigenvalues(A - L C) = [-10, -10]",
+    "det(s I - A + L C) = s^2 + 20 s + 100",
+    "trace(A) + rank(O) = 1",
+    "P = 1/(s (s + 1))",
+    "L' = place(A', C', (s + 10)^2)",
+    "rref([1 2; 2 4]) = [1 2; 0 0]",
+    "[I 0; I -I] [x; x_hat] = [x; e]",
+    "y'' = -x_2 + u",
+    "A - A = 0",
+    "sqrt(4) exp(t) exp(-t) = 2 sin(t)^2 + 2 cos(t)^2",
+]
+
+
+@pytest.mark.parametrize("relation", RIGHT)
+def test_what_is_right_is_not_reported(relation: str) -> None:
+    assert findings(relation) == []
+
+
+@pytest.mark.parametrize(
+    ("relation", "right", "reason"),
+    [
+        ("A - L C = [-19 1; 81 -1]", "A - L C = [-19 1; -81 -1]", "entry (2, 1) is -81, not 81: the sign is wrong"),
+        ("L = [-19; -81]", "L = [19; 81]", "all signs are wrong"),
+        ("L = [81; 19]", "L = [19; 81]", "the entries (1, 1) and (2, 1) are exchanged"),
+        ("A = [0 0; 1 -1]", "A = [0 1; 0 -1]", "the transpose is printed"),
+        ("A - L C = [-81 -1; -19 1]", "A - L C = [-19 1; -81 -1]", "the rows 1 and 2 are exchanged"),
+        ("A - L C = [1 -19; -1 -81]", "A - L C = [-19 1; -81 -1]", "the columns 1 and 2 are exchanged"),
+        ("L = [38; 162]", "L = [19; 81]", "every entry is multiplied by 2; entry (1, 1) is 19, not 38"),
+        ("L = [1.9; 81]", "L = [19.0; 81]", "entry (1, 1) is 19.0, not 1.9: the decimal point is 1 place off"),
+        ("L = [19 81]", "L = [19; 81]", "the sizes do not fit: the left side is 2x1, the right side is 1x2"),
+        ("V = [0 1; 1 -1]", "V = [1 1; 1 0]", "the inverse is printed"),
+        ("L' = [100 19] V", "L' = [100 19] V^-1", "V is printed for V^-1"),
+        ("A + L C = [-19 1; -81 -1]", "A - L C = [-19 1; -81 -1]", "the sign of L C is wrong"),
+        ("det(s I - A + L C) = s^2 + 20 s + 90", "det(s I - A + L C) = s^2 + 20*s + 100", "constant term is 100"),
+        ("det(s I - A + L C) = s^2 - 20 s + 100", "det(s I - A + L C) = s^2 + 20*s + 100", "the sign is wrong"),
+        ("eigenvalues(A) = [0, 1]", "eigenvalues(A) = [0, -1]", "the eigenvalues are others"),
+        ("eigenvalues(A) = [0, 1+i]", "eigenvalues(A) = [0, -1]", "lacks a complex conjugate"),
+        (
+            "eigenvalues([0 1; 1 1]) = [1, 2]",
+            "eigenvalues([0 1; 1 1]) = [1/2+sqrt(5)/2, 1/2-sqrt(5)/2]",
+            "the eigenvalues are others",
+        ),
+        ("rank(O) = 1", "rank(O) = 2", "rank(O) is 2, not 1"),
+        ("e' = (A + L C) e", "e' = (A - L C) e", "the sign of L C is wrong"),
+        ("e' = (A - L C) x", "e' = (A - L C) e", "x is printed for e"),
+        ("x_hat' = A x_hat + B u", "x' = A x + B u", "x_hat is printed for x throughout"),
+        (
+            "x_hat' = [-19 1; -81 -1] x_hat + [0; 1] u",
+            "x_hat' = [-19 1; -81 -1] x_hat + [0; 1] u + [19; 81] y",
+            "term [19; 81] y is missing",
+        ),
+        ("x_hat' = A x_hat + B u + L y", "x_hat' = A x_hat + B u + L y - L C x_hat", "term -L C x_hat is missing"),
+        ("A - C L = [-19 1; -81 -1]", "", "the sizes do not fit: A is 2x2, but C L is 1x1"),
+        ("A A^-1 = I", "", "A has no inverse"),
+        ("A^-1 = [1 0; 0 1]", "", "A has no inverse"),  # not: A is printed for O, whose inverse that is
+        ("det(L) = 19", "", "det takes a square matrix"),  # not: L is printed for a number that is 19
+        ("y''' = u", "", "the derivative of y' is not known here"),
+    ],
+)
+def test_what_is_wrong_is_named_with_what_is_right(relation: str, right: str, reason: str) -> None:
+    found = finding(relation)
+    assert found.right == right
+    assert reason in found.reason
+
+
+def test_each_link_of_a_chain_is_checked() -> None:
+    left, right = findings("A - L C = [-19 1; -81 1] = [-19 1; -81 -1]")
+    assert left.right == "A - L C = [-19 1; -81 -1]"
+    assert "entry (2, 2)" in left.reason
+    assert right.printed == "[-19 1; -81 1] = [-19 1; -81 -1]"
+
+
+# -- every convention in its letters -----------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("convention", "relation"),
+    [
+        ("standard", "A - L C = [-19 1; -81 -1]"),
+        ("S0", "x_hat' = (A - L C) x_hat + B u + L y"),
+        ("S1", "A + M C = [-19 1; -81 -1]"),
+        ("S1", "x_hat' = (A + M C) x_hat + B u - M y"),
+        ("S1", "x_bar' = (A + M C) x_bar"),
+        ("S3", "A - L C = [-19 1; -81 -1]"),
+        ("S4", "A - H C = [-19 1; -81 -1]"),
+        ("S4", "F = A - H C"),
+    ],
+)
+def test_a_convention_has_its_own_letters_and_signs(convention: str, relation: str) -> None:
+    assert findings(relation, convention=convention) == []
+
+
+@pytest.mark.parametrize(
+    ("convention", "law", "closed"),
+    [
+        ("S0", "u = -K x_hat", "x' = (A - B K) x + B K e"),
+        ("S1", "u = K x_hat", "x' = (A + B K) x - B K x_bar"),
+        ("S3", "u = -K x_hat", "x' = (A - B K) x + B K e"),
+        ("S4", "u = K x_hat", "x' = (A + B K) x - B K e"),
+    ],
+)
+def test_the_sign_of_the_law_is_the_convention_s(convention: str, law: str, closed: str) -> None:
+    servo = {"tasks": ["compensator"], "specification": {"control_poles": [-2, -2], "observer_poles": [-10, -10]}}
+    assert findings(law, closed, convention=convention, **servo) == []
+    turned = law.replace("= -", "= ") if "-" in law else law.replace("= ", "= -")
+    assert finding(turned, convention=convention, **servo).right == law
+
+
+@pytest.mark.parametrize(
+    ("tasks", "C", "estimate", "observer"),
+    [
+        ("full", "[1 0]", "x_0", "x_0' = A x_0 + B u + L (y - [1 0] x_0)"),
+        ("full", "[0 1]", "x_0", "x_0' = A x_0 + B u + L (y - C x_0)"),
+        ("minimal", "[0 1]", "x_0", ""),
+        ("minimal", "[0 1]", "x_hat", ""),
+    ],
+)
+def test_the_law_of_every_observer_is_known(tasks: str, C: str, estimate: str, observer: str) -> None:
+    """A full-order observer where the states are measured in part, and one whose measured states are not the first."""
+    plant = {"A": "[0 1; 0 -1]", "B": "[0; 1]", "C": C} if C == "[1 0]" else {"A": "[-1 0; 1 0]", "B": "[1; 0]", "C": C}
+    gain = "K = [4 3]" if C == "[1 0]" else "K = [3 4]"
+    poles = {"control_poles": [-2, -2], "observer_poles": [-10, -10] if tasks == "full" else [-10], "observer": tasks}
+    asked = {"tasks": ["compensator"], "specification": poles, "plant": plant}
+    convention = "S2" if estimate == "x_0" else "standard"
+    equations = (f"u = -K {estimate}", gain, *filter(None, [observer]))
+    assert findings(*equations, convention=convention, **asked) == []
+    assert finding(f"u = K {estimate}", convention=convention, **asked).right == f"u = -K {estimate}"
+
+
+def test_the_matrices_of_input_and_measurement_are_exchanged_between_two_sources() -> None:
+    minimal = {"tasks": ["reduced_order_observer"], "specification": {"poles": [-10]}}
+    assert findings("z' = F z + G u + H y", "H = -90", convention="S0", **minimal) == []
+    assert findings("z' = F z + H u + G y", "G = -90", convention="S2", **minimal) == []
+    assert len(findings("z' = F z + G u + H y", convention="S2", **minimal)) == 1
+
+
+# -- spoiled values ------------------------------------------------------------------------------------------------
+
+
+SPOILED = [each for each in RIGHT[:5] if each != RIGHT[0]] + ["L = [19; 81]"]
+
+
+@given(st.data())
+@settings(deadline=None, max_examples=40)
+def test_exactly_the_entry_that_is_spoiled_is_reported(data: st.DataObject) -> None:
+    relation = data.draw(st.sampled_from(SPOILED))
+    left, _, matrix = relation.partition(" = ")
+    rows = [[Fraction(cell) for cell in row.split()] for row in matrix.strip("[]").split(";")]
+    i, j = data.draw(st.integers(0, len(rows) - 1)), data.draw(st.integers(0, len(rows[0]) - 1))
+    right = rows[i][j]
+    rows[i][j] = data.draw(st.fractions(-200, 200, max_denominator=9))
+    assume(rows[i][j] != right)
+    printed = "; ".join(" ".join(map(str, row)) for row in rows)
+    found = finding(f"{left} = [{printed}]")
+    assert found.right == relation
+    assert found.reason.startswith(f"entry ({i + 1}, {j + 1}) is {right}, not {rows[i][j]}")
+    assert ";" not in found.reason
+    assert found.reason.endswith("the sign is wrong") == (rows[i][j] == -right)
+
+
+@given(
+    value=st.fractions(-(10**6), 10**6, max_denominator=10**4),
+    places=st.integers(0, 4),
+    power=st.integers(-3, 5),
+)
+@settings(deadline=None, max_examples=60)
+def test_decimals_may_be_rounded_but_not_truncated(value: Fraction, places: int, power: int) -> None:
+    shifted = decimal.Context(prec=60).divide(decimal.Decimal(value.numerator), decimal.Decimal(value.denominator))
+    shifted = shifted.scaleb(-power)
+    unit = decimal.Decimal(1).scaleb(-places)
+    context = decimal.Context(prec=60)
+    rounded = shifted.quantize(unit, decimal.ROUND_HALF_EVEN, context)
+    truncated = shifted.quantize(unit, decimal.ROUND_DOWN, context)
+    dot = "" if places else "."
+    assert findings(f"[7 x_0] = [7 {rounded:f}{dot}e{power}]".replace("x_0", f"({value})")) == []
+    if truncated != rounded and abs(shifted - truncated) * 2 != unit:  # of a half either neighbour will do
+        (found,) = findings(f"[7 ({value})] = [7 {truncated:f}{dot}e{power}]")
+        assert found.reason.endswith("truncated, not rounded")
+        assert decimal.Decimal(found.right.split()[-1].strip("]")) == rounded.scaleb(power)
+
+
+def test_both_neighbours_of_a_half_are_rounded() -> None:
+    assert findings("[7 1/8] = [7 0.12]", "[7 1/8] = [7 0.13]") == []
+    assert len(findings("[7 1/8] = [7 0.11]")) == 1
+
+
+@pytest.mark.parametrize("text", ["12", "1.", ".5", "0.50e-3", "3e2"])
+def test_a_decimal_is_a_number_with_a_point_or_a_power(text: str) -> None:
+    ((node,),) = [read_relation(text, "")]
+    assert (PrintedDecimal.of(node.text) is not None) == any(sign in text for sign in ".e")
+
+
+# -- whatever is printed -----------------------------------------------------------------------------------------------
+
+
+LETTERS = ["A", "B", "C", "L", "V", "O", "x", "e", "u", "y", "x_hat", "x_1", "I", "0", "1", "2.5", "s", "phi_o", "t"]
+SHAPES = ["{}'", "-{}", "{}^-1", "{}^2", "det({})", "rank({})", "size({})", "({} + {})", "{} {}", "[{} {}]", "[{}; {}]"]
+SHAPES += ["{} - {}", "{}/{}", "ctrb({}, {})", "obsv({}, {})", "eigenvalues({})", "rref({})", "place({}, {}, {})"]
+
+
+@st.composite
+def expressions(draw: st.DrawFn, depth: int = 3) -> str:
+    if depth == 0 or draw(st.booleans()):
+        return draw(st.sampled_from(LETTERS))
+    shape = draw(st.sampled_from(SHAPES))
+    return shape.format(*(f"({draw(expressions(depth=depth - 1))})" for _ in range(shape.count("{}"))))
+
+
+@pytest.mark.slow
+@given(expressions(), expressions())
+@settings(deadline=None, max_examples=60)
+def test_nothing_that_is_printed_breaks_the_audit(left: str, right: str) -> None:
+    try:
+        found = findings(f"{left} = {right}")
+    except SymobsError:
+        return
+    assert all(each.printed and (each.right or each.reason) for each in found)
+    assert findings(*(each.right for each in found if each.right)) == []  # what is said to be right is right
+
+
+@given(expressions(), expressions())
+@settings(deadline=None, max_examples=80)
+def test_an_equation_is_written_as_it_is_read(left: str, right: str) -> None:
+    members = read_relation(f"{left} = {right}", "")
+    assert read_relation(" = ".join(map(str, members)), "") == members
+
+
+def test_of_a_long_equation_the_entries_are_told_all_the_same() -> None:
+    found = finding("A = " + " + ".join(["A"] * 90))
+    assert found.right == "A = [0 1; 0 -1]"
+    assert "every entry is multiplied by 90" in found.reason
+
+
+@pytest.mark.parametrize(
+    "relation",
+    [
+        "((((s^12)^12)^12)^12)^12 = 1",
+        "((((((2^12)^12)^12)^12)^12)^12)^12 = 1",
+        "L = [" + "1 " * 900 + "]",
+        "[" * 101 + "1" + "]" * 101 + " = 1",
+        "(" * 900 + "A" + ")" * 900 + " = A",
+        "A = " + "A+" * 400 + "A",
+        "A = A^99",
+    ],
+)
+def test_what_would_build_too_much_is_refused(relation: str) -> None:
+    with pytest.raises(ProblemErrors):
+        findings(relation)
+
+
+def test_a_false_equation_is_never_said_to_be_right(monkeypatch: pytest.MonkeyPatch) -> None:
+    def lie(left: SyntaxNode, _right: SyntaxNode, *_: object) -> tuple[SyntaxNode, SyntaxNode, str]:
+        return left, left.parts[0], "no reason"
+
+    monkeypatch.setattr("symobs.applications.audit.equation_auditor.found_slip", lie)
+    with pytest.raises(ProblemErrors, match="does not hold") as raised:
+        findings("A + L C = A - B C")
+    assert isinstance(raised.value.errors[0], CertificateRejected)
+
+
+# -- files that cannot be read -----------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("entry", "says"),
+    [
+        ({}, "printed[0]: one of relation and expect"),
+        ({"relation": "L = [19; 81]", "expect": {"L": "[19; 81]"}}, "printed[0]: one of relation and expect"),
+        ({"relation": 3}, "printed[0].relation: a text is expected"),
+        ({"relation": "L = 1", "were": "slide"}, "printed[0].were: unknown key; did you mean where?"),
+        ({"relation": "L"}, "printed[0].relation: an equation is expected"),
+        ({"relation": "L = [19; 81"}, 'printed[0].relation: this "[" is never closed'),
+        ({"relation": "L = M"}, 'printed[0]: the letter "M" means nothing'),
+        ({"relation": "x_het = x"}, 'did you mean "x_hat"?'),
+        ({"relation": "L = 1", "where": "p. \x1b[2J"}, "printed[0].where: the character U+001B cannot be printed"),
+        ({"relation": "L = 1", "convention": "S9"}, "printed[0].convention"),
+        ({"relation": "L = 1", "let": 3}, "printed[0].let: a table is expected"),
+        ({"relation": "L = W", "let": {"W": "A = B"}}, "printed[0].let.W: one expression is expected"),
+        ({"relation": "L = W", "let": {"W": 3}}, "printed[0].let.W: a text is expected"),
+        ({"relation": "A^T = A"}, "A' for the transpose"),
+        ({"relation": "det(A, B) = 1"}, "det takes 1 argument"),
+        ({"expect": {"zork": 1}}, "known fields are"),
+    ],
+)
+def test_an_entry_that_cannot_be_read_says_where_and_what_to_write(entry: dict[str, object], says: str) -> None:
+    with pytest.raises(ProblemErrors) as raised:
+        audit(read(problem(printed=[entry])))
+    assert says in str(raised.value)
+
+
+@pytest.mark.parametrize("relation", ["A" + "'" * 1990, "2*" + "-" * 1990 + "A", "A" + "^2" * 990, "1" + "-1" * 990])
+def test_a_deep_equation_is_refused(relation: str) -> None:
+    with pytest.raises(BudgetExceeded, match="more than 200 parts"):
+        read_relation(relation, "")
+
+
+def test_all_entries_that_cannot_be_read_are_told_together() -> None:
+    entries = [{"relation": "L = "}, {"relation": "L = [19; 81]"}, {"relation": "= A"}]
+    with pytest.raises(ProblemErrors) as raised:
+        audit(read(problem(printed=entries)))
+    assert [error.where for error in raised.value.errors] == ["printed[0].relation", "printed[2].relation"]
+
+
+def test_solving_does_not_look_at_what_is_printed() -> None:
+    plain, broken = read(problem()), read(problem("L = [", "zork = 1"))
+    assert [result.answer["L"] for result in plain.solve()] == [result.answer["L"] for result in broken.solve()]
+
+
+# -- letters of an entry, and answers as they are expected -------------------------------------------------------------
+
+
+def test_an_entry_may_have_letters_of_its_own() -> None:
+    entry = {"let": {"rate": "[0 1] x", "W": "A - L C"}, "relation": "rate' = -rate + u"}
+    assert audit(read(problem(printed=[entry]))).findings == ()
+    entry["relation"] = "W = [-19 1; -81 1]"
+    (found,) = audit(read(problem(printed=[entry]))).findings
+    assert found.right == "W = [-19 1; -81 -1]"
+
+
+def test_answers_that_are_no_equation_are_printed_as_they_are_expected() -> None:
+    right, wrong = {"expect": {"stable": "yes"}}, {"expect": {"stable": "no"}, "where": "page 3"}
+    (found,) = audit(read(problem(printed=[right, wrong]))).findings
+    assert (found.where, found.printed, found.right) == ("page 3", "no", "yes")
+
+
+# -- the command -------------------------------------------------------------------------------------------------------
+
+
+@pytest.fixture
+def files(tmp_path: Path) -> dict[str, str]:
+    texts = {
+        "right": problem("L = [19; 81]"),
+        "wrong": problem("L = [19; 82]"),
+        "bad": problem("L = ", "zork = "),
+        "worse": '{"title": 3}',
+    }
+    for name, text in texts.items():
+        (tmp_path / f"{name}.json").write_text(text, encoding="utf-8")
+    return {name: str(tmp_path / f"{name}.json") for name in texts}
+
+
+def test_nothing_wrong_is_0_and_findings_are_4(files: dict[str, str]) -> None:
+    fine, found = inside("audit", files["right"]), inside("audit", files["right"], files["wrong"])
+    assert (fine.code, fine.out, fine.err) == (0, "1 printed equation, nothing wrong.\n", "")
+    assert (found.code, found.err) == (4, "")
+    assert files["wrong"] in found.out
+    assert files["right"] not in found.out
+    assert "entry (2, 1) is 81, not 82" in found.out
+    assert found.out.endswith("2 printed equations, 1 wrong.\n")
+
+
+def test_errors_of_all_files_are_told_together(files: dict[str, str]) -> None:
+    run = inside("audit", files["bad"], files["wrong"], files["worse"], "nowhere.toml")
+    assert (run.code, run.out) == (3, "")
+    assert all(any(line.startswith(name) for line in run.lines) for name in (files["bad"], files["worse"], "nowhere"))
+    assert sum(line.startswith(files["bad"]) for line in run.lines) == 2
+
+
+def test_a_convention_of_the_user_s_own_lies_beside_the_file(tmp_path: Path) -> None:
+    own = 'name = "lecture"\nfeedback = "u = K x_hat"\nobserver = "A + N C"\n[letters]\ne = "x_bar"\n'
+    (tmp_path / "lecture.toml").write_text(own, encoding="utf-8")
+    relations = ("N = [-19; -81]", "A + N C = [-19 1; -81 -1]", "x_bar' = (A + N C) x_bar", "N = [19; 81]")
+    printed = [{"relation": relation} for relation in relations]
+    (tmp_path / "file.json").write_text(problem(convention="lecture", printed=printed), encoding="utf-8")
+    run = inside("audit", "file.json", folder=tmp_path)
+    assert run.code == 4
+    assert "all signs are wrong" in run.out
+    assert run.out.endswith("4 printed equations, 1 wrong.\n")
+
+
+def test_a_problem_without_printed_equations_has_nothing_wrong(tmp_path: Path) -> None:
+    assert inside("audit", str(ROOT / "worked_examples" / "bridge_circuit.toml"), folder=tmp_path).code == 0
+
+
+@pytest.mark.parametrize("name", ["text", "markdown", "json"])
+def test_every_format_says_what_is_wrong(name: str, files: dict[str, str], tmp_path: Path) -> None:
+    target = tmp_path / "found"
+    assert inside("audit", files["wrong"], "--format", name, "-o", str(target)).code == 4
+    written = target.read_text(encoding="utf-8")
+    assert "L = [19; 82]" in written
+    assert "L = [19; 81]" in written
+    assert "entry (2, 1) is 81, not 82" in written
+    if name == "json":
+        (entry,) = json.loads(written)["files"]
+        assert (entry["checked"], len(entry["findings"])) == (1, 1)
+
+
+def test_an_unknown_format_is_a_wrong_command_line(files: dict[str, str]) -> None:
+    assert inside("audit", files["wrong"], "--format", "pdf").code == 2
+
+
+def test_a_bar_in_a_table_does_not_end_its_cell() -> None:
+    entry = {"relation": "L = [19; 82]", "where": "a | b"}
+    found = audit(read(problem(printed=[entry])))
+    row = report({"x": found}, "markdown").splitlines()[2]
+    assert row.replace("\\|", "").count("|") == 6
+
+
+def test_a_report_shows_texts_and_does_nothing_else() -> None:
+    entry = {
+        "relation": "L = [19; 82]",
+        "where": "<script>x</script>\n# [a](javascript:b) \u202e`c`",
+        "erratum": "**E**",
+    }
+    found = audit(read(problem(printed=[entry], title="\u202e<b>")))
+    row = report({"x_<b>.json": found}, "markdown").splitlines()[2]
+    shown = r"| &lt;script&gt;x&lt;/script&gt; \# \[a\](javascript:b) \`c\`, x\_&lt;b&gt;.json | \*\*E\*\* |"
+    assert row.startswith(shown)
+    assert row.endswith(" |")
+    assert "\u202e" not in report({"x": found}, "text")
+
+
+def test_the_servo_of_the_first_source_has_nothing_wrong() -> None:
+    assert inside("audit", str(SERVO)).code == 0
+
+
+def test_the_parts_of_an_equation_are_counted() -> None:
+    (left, right) = read_relation("A + B = C", "")
+    assert (len(list(every(left))), len(list(every(right)))) == (3, 1)

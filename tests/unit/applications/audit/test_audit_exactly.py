@@ -1,0 +1,339 @@
+"""The audit, exactly: where an equation holds, what a decimal says, and which letter is meant."""
+
+from __future__ import annotations
+
+import json
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+from symobs.applications.audit import audit, report
+from symobs.ground.errors import ProblemErrors
+from symobs.problem import read
+from tests.support.problems.printed import finding, findings, problem
+from tests.support.tools.command_line import inside
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+# O = [c 0; 0 c], so det O = c^2.
+CHAIN: dict[str, Any] = {"plant": {"A": "[0 1; 0 0]", "B": "[0; 1]", "C": "[c 0]"}, "symbols": {"c": "real"}}
+DEADBEAT = {
+    "plant": {"A": "[0 1; 0 -1]", "B": "[0; 1]", "C": "[1 0]", "dt": True},
+    "specification": {"poles": [0, 0]},
+}
+# Eigenvalues sqrt(2) and -sqrt(2); roots of s^2 + s + 1.
+SURDS = {"plant": {"A": "[0 1; 2 0]", "C": "[1 0]"}}
+TURNING = {"plant": {"A": "[0 1; -1 -1]", "C": "[1 0]"}}
+
+
+# -- powers ------------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    "relation",
+    ["(2 I)^2 = 4 I", "A^0 = I", "A^0 = [1 0; 0 1]", "A (2 I)^-1 = A/2", "(-I)^2 = I", "(2 I)^0 A = A", "5^0 = 1"],
+)
+def test_a_power_of_the_identity_is_right(relation: str) -> None:
+    assert findings(relation) == []
+
+
+@pytest.mark.parametrize("relation", ["(2 I)^2 = 2 I", "(-I)^2 = -I", "A (2 I)^-1 = 2 A", "A^0 = A", "A (0 I)^-1 = A"])
+def test_a_power_of_the_identity_is_wrong(relation: str) -> None:
+    assert len(findings(relation)) == 1
+
+
+# -- where an equation holds -------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("relation", "where", "reason"),
+    [
+        ("rank(O) = 2", "c != 0", "rank(O) is less where c = 0"),
+        ("rref(O) = I", "c != 0", "rref(O) is another where c = 0"),
+        ("O^-1 O = I", "c != 0", "O has no inverse where c = 0"),
+        ("c/c = 1", "c != 0", "c is 0 where c = 0"),
+        ("P/P = 1", "c != 0", "P is 0 where c = 0"),
+        ("1/(c^2 - 1) = 1/((c - 1) (c + 1))", "c + 1 != 0, c - 1 != 0", "where c + 1 = 0 or c - 1 = 0"),
+        ("rank([c; c^2+c]) = 1", "c != 0", "where c = 0"),
+        ("sqrt(c)^2 = c", "c >= 0", "sqrt(c) is not real where c < 0"),
+    ],
+)
+def test_what_fails_at_some_values_is_said_to_hold_in_general_only(relation: str, where: str, reason: str) -> None:
+    found = finding(relation, **CHAIN)
+    assert (found.holds, found.right) == ("in general", f"{relation} where {where}")
+    assert reason in found.reason
+    assert findings(found.right, **CHAIN) == []
+
+
+def test_two_polynomials_that_vanish_together_are_one_exception() -> None:
+    pair: dict[str, Any] = {"symbols": {"c": "real", "d": "real"}, "plant": {**CHAIN["plant"], "A": "[0 1; d 0]"}}
+    found = finding("rank([c d]) = 1", **pair)
+    assert found.right == "rank([c d]) = 1 where c != 0 or d != 0"
+    assert "rank([c d]) is less where c = 0 and d = 0" in found.reason
+    assert findings(found.right, "rank([c d]) = 1 where c != 0", "rank([c d^2+1]) = 1", **pair) == []
+
+
+@pytest.mark.parametrize("sign", ["positive", "negative", "nonzero"])
+@pytest.mark.parametrize("relation", ["rank(O) = 2", "rref(O) = I", "O^-1 O = I", "c/c = 1"])
+def test_what_a_sign_excludes_is_no_exception(relation: str, sign: str) -> None:
+    assert findings(relation, **{**CHAIN, "symbols": {"c": sign}}) == []
+
+
+@pytest.mark.parametrize(
+    "relation", ["rank(O) = 2 where c > 0", "O^-1 O = I where c < 0", "c/c = 1 where c^2 != 0", "L = L"]
+)
+def test_what_is_said_with_its_conditions_is_plainly_true(relation: str) -> None:
+    assert findings(relation, **CHAIN) == []
+
+
+def test_conditions_are_conditions_on_the_symbols() -> None:
+    for condition, says in (
+        ("c", "a condition is expected"),
+        ("c = 0", "a condition is expected"),
+        ("d != 0", '"d" is not declared'),
+        ("", "a condition is expected"),
+    ):
+        with pytest.raises(ProblemErrors, match=says):
+            findings(f"rank(O) = 2 where {condition}", **CHAIN)
+
+
+@pytest.mark.parametrize(
+    ("relation", "where"),
+    [
+        ("sqrt(c^2) = c", "c >= 0"),
+        ("sqrt(4 c^2) = 2 c", "c >= 0"),
+        ("sqrt(c^2) = -c", "c <= 0"),
+        ("sqrt((c - 1)^2) = 1 - c", "c - 1 <= 0"),
+    ],
+)
+def test_the_root_of_a_square_is_not_negative(relation: str, where: str) -> None:
+    found = finding(relation, **CHAIN)
+    assert (found.holds, found.right) == ("", f"{relation} where {where}")
+    assert findings(found.right, **CHAIN) == []
+    positive = {**CHAIN, "symbols": {"c": "positive"}}
+    assert len(findings(relation, **positive)) == (relation not in {"sqrt(c^2) = c", "sqrt(4 c^2) = 2 c"})
+
+
+def test_the_root_of_a_square_has_a_square() -> None:
+    assert findings("sqrt(c^2)^2 = c^2", "sqrt(c^4) = c^2", "sqrt(c^2) = sqrt(c^2)", **CHAIN) == []
+
+
+def test_an_equation_true_in_general_is_not_wrong(tmp_path: Path) -> None:
+    (tmp_path / "file.json").write_text(problem("rank(O) = 2", **CHAIN), encoding="utf-8")
+    run = inside("audit", "file.json", folder=tmp_path)
+    assert (run.code, run.err) == (0, "")
+    assert "in general" in run.out
+    assert run.out.endswith("1 printed equation, nothing wrong, 1 true in general only.\n")
+
+
+# -- eigenvalues -------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("relation", "plant"),
+    [
+        ("eigenvalues(A) = [sqrt(2), -sqrt(2)]", SURDS),
+        ("eigenvalues(A) = [1.414, -1.414]", SURDS),
+        ("eigenvalues(A) = [1.4, -1.41421]", SURDS),
+        ("eigenvalues(A) = [-0.5+0.866i, -0.5-0.866i]", TURNING),
+        ("eigenvalues(A) = [-1/2+0.866i, -1/2-0.866i]", TURNING),
+        ("eigenvalues(A) = [-1/2+sqrt(3)/2*i, -1/2-sqrt(3)/2*i]", TURNING),
+        ("eigenvalues(A - L C) = [0, 0]", DEADBEAT),
+    ],
+)
+def test_eigenvalues_may_be_roots_and_decimals(relation: str, plant: dict[str, object]) -> None:
+    assert findings(relation, **plant) == []
+
+
+@pytest.mark.parametrize(
+    ("relation", "plant", "right"),
+    [
+        ("eigenvalues(A) = [1.415, -1.414]", SURDS, "eigenvalues(A) = [sqrt(2), -sqrt(2)]"),
+        ("eigenvalues(A) = [sqrt(2), -1]", SURDS, "eigenvalues(A) = [sqrt(2), -sqrt(2)]"),
+        ("eigenvalues(A) = [1.414, 1.414]", SURDS, "eigenvalues(A) = [sqrt(2), -sqrt(2)]"),
+        (
+            "eigenvalues(A) = [-0.5+0.867i, -0.5-0.867i]",
+            TURNING,
+            "eigenvalues(A) = [-1/2+sqrt(3)*I/2, -1/2-sqrt(3)*I/2]",
+        ),
+        ("eigenvalues(A - L C) = [0, 1/2]", DEADBEAT, "eigenvalues(A - L C) = [0, 0]"),
+    ],
+)
+def test_eigenvalues_that_are_others_are_told(relation: str, plant: dict[str, object], right: str) -> None:
+    found = finding(relation, **plant)
+    assert found.right == right
+    assert "the eigenvalues are others" in found.reason
+
+
+# -- decimals ----------------------------------------------------------------------------------------------------------
+
+# Of x' = [0 1; 0 -1] x, K = [4 3] by hand; P = 1/(s^2 + s), 1/3 and 2/3 are no decimals.
+THIRDS = {"plant": {"A": "[-1/3 1; -2/3 0]", "B": "[2/7; 1/7]", "C": "[1 0]"}}
+# P = (2/7 s + 1/7)/(s^2 + 1/3 s + 2/3) = (0.2857 s + 0.1429)/(s^2 + 0.3333 s + 0.6667)
+
+
+@pytest.mark.parametrize(
+    "relation",
+    [
+        "P = (0.2857 s + 0.1429)/(s^2 + 0.3333 s + 0.6667)",
+        "P = 0.2857 (s + 0.5)/(s^2 + 0.3333 s + 0.6667)",
+        "P = (0.857 s + 0.429)/(3 s^2 + s + 2)",
+        "P = (0.571 s + 0.286)/(2.00 s^2 + 0.667 s + 1.33)",
+        "det(s I - A) = s^2 + 0.333 s + 0.667",
+        "A = [-0.33 1; -0.67 0]",
+        "2 A/3 = 0.1*[-2.2 6.7; -4.4 0]",
+        "trace(A) = -0.33 = -1/3",
+    ],
+)
+def test_decimals_are_compared_as_printed(relation: str) -> None:
+    assert findings(relation, **THIRDS) == []
+
+
+@pytest.mark.parametrize(
+    ("relation", "reason"),
+    [
+        ("P = (0.2857 s + 0.1429)/(s^2 + 0.3333 s + 0.6666)", ""),
+        ("P = (0.857 s + 0.429)/(3.1 s^2 + s + 2)", ""),
+        ("det(s I - A) = s^2 + 0.333 s + 0.666", "the constant term is 0.667, not 0.666: truncated, not rounded"),
+        ("A = [-0.33 1; -0.66 0]", "truncated"),
+        ("A - 0.33 I = A - 1/3 I", ""),  # used, not compared
+    ],
+)
+def test_decimals_that_are_no_rounding_are_told(relation: str, reason: str) -> None:
+    assert reason in finding(relation, **THIRDS).reason
+
+
+# The roots of s^2 + 3 s + 1 are -0.381966... and -2.618033..., those of s^3 - 2 are 1.2599... and -0.62996 +- 1.0911 i.
+GOLDEN = {"plant": {"A": "[0 1; -1 -3]", "C": "[1 0]"}}
+CUBE = {"plant": {"A": "[0 1 0; 0 0 1; 2 0 0]", "C": "[1 0 0]"}, "specification": {"poles": [-1, -1, -1]}}
+
+
+@pytest.mark.parametrize(
+    ("relation", "plant", "true"),
+    [
+        ("det(s I - A) = (s + 0.382) (s + 2.618)", GOLDEN, True),
+        ("det(s I - A) = (s + 0.382) (s + 2.619)", GOLDEN, False),
+        ("det(s I - A)^2 = (s + 0.382)^2 (s + 2.618)^2", GOLDEN, True),
+        ("det(s I - A) = (s - 1.26) (s^2 + 1.26 s + 1.587)", CUBE, True),
+        ("det(s I - A) = (s - 1.26) (s^2 + 1.26 s + 1.588)", CUBE, False),
+        ("eigenvalues(A) = [1.26, -0.63+1.091i, -0.63-1.091i]", CUBE, True),
+        ("eigenvalues(A) = [1.26, -0.63+1.092i, -0.63-1.092i]", CUBE, False),
+    ],
+)
+def test_factors_with_decimals_are_compared_by_their_roots(
+    relation: str, plant: dict[str, object], *, true: bool
+) -> None:
+    assert (findings(relation, **plant) == []) is true
+
+
+# Ogata, Modern Control Engineering, 5th edition, section 10-6 (page 777): A = [0 1; 20.6 0], C = [1 0], K = [29.6 3.6],
+# L = [16; 84.6]; the controller is (778.2 s + 3690.7)/(s^2 + 19.6 s + 151.2).
+OGATA: dict[str, Any] = {
+    "plant": {"A": "[0 1; 20.6 0]", "B": "[0; 1]", "C": "[1 0]"},
+    "tasks": ["compensator"],
+    "specification": {"control_poles": "-1.8+2.4i, -1.8-2.4i", "observer_poles": [-8, -8]},
+}
+
+
+def test_ogata_s_controller_is_right_as_printed() -> None:
+    printed = "(778.2 s + 3690.7)/(s^2 + 19.6 s + 151.2)"
+    right, wrong = {"expect": {"F": printed}}, {"expect": {"F": printed.replace("3690.7", "3690.8")}}
+    assert findings(f"F(s) = {printed}", **OGATA) == []
+    assert len(findings(f"F = {printed.replace('778.2', '778.1')}", **OGATA)) == 1
+    found = audit(read(problem(printed=[right, wrong], **OGATA))).findings
+    assert [each.printed for each in found] == [wrong["expect"]["F"]]
+
+
+def test_expected_decimals_are_compared_as_printed(tmp_path: Path) -> None:
+    expected = {"F": "(778.2 s + 3690.7)/(s^2 + 19.6 s + 151.2)", "K": "[29.6 3.60]", "L": "[16.0; 85.]"}
+    for expect, code in ((expected, 0), ({**expected, "L": "[16.0; 85]"}, 4), ({**expected, "K": "[29.5 3.6]"}, 4)):
+        (tmp_path / "file.json").write_text(problem(**OGATA, expect=expect), encoding="utf-8")
+        assert inside("solve", "file.json", folder=tmp_path).code == code
+
+
+# -- letters -----------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    "relation",
+    [
+        "P(s) = 1/(s (s + 1))",
+        "P(s)/(1 + P(s)) = 1/(s^2 + s + 1)",
+        "P(1) = 1/2",
+        "P(2 s) = 1/(2 s (2 s + 1))",
+        "1/P(s) = s (s + 1)",
+        "P(s)^2 = 1/(s (s + 1))^2",
+        "phi_o(s) = (s + 10)^2",
+        "phi_o(A) = [100 19; 0 81]",
+        "e'(t) = (A - L C) e(t)",
+        "x'(t) = A x(t) + B u(t)",
+        "A(t) = A",
+        "C(s I - A)^-1 B = P",
+    ],
+)
+def test_a_letter_before_its_argument_is_a_function(relation: str) -> None:
+    assert findings(relation) == []
+
+
+def test_a_transfer_function_at_a_pole_has_no_value() -> None:
+    assert "has no value" in finding("P(0) = 1").reason
+
+
+@pytest.mark.parametrize("symbol", ["L", "x", "tau"])
+def test_a_symbol_that_shadows_a_letter_is_said(symbol: str) -> None:
+    own: dict[str, Any] = {
+        "plant": {"A": f"[0 1; 0 -{symbol}]", "B": "[0; 1]", "C": "[1 0]"},
+        "symbols": {symbol: "real"},
+    }
+    audited = audit(read(problem(f"A = [0 1; 0 -{symbol}]", **own)))
+    assert audited.findings == ()
+    (note,) = audited.notes
+    assert f"{symbol} is the file's own symbol" in note
+    for name in ("text", "markdown", "json"):
+        assert note in report({"x": audited}, name).replace("\\", "")
+    assert audit(read(problem("trace(B B') = 1", **own))).notes == ()
+
+
+@pytest.mark.parametrize(
+    ("expected", "true"),
+    [
+        ({"stable_if": ["h > 0.618"]}, True),
+        ({"stable_if": ["2 h > 1.24"]}, True),
+        ({"stable_if": ["h > 0.619"]}, False),
+        ({"stable_if": ["h < 0.618"]}, False),
+    ],
+)
+def test_expected_conditions_are_compared_as_printed(expected: dict[str, object], true: object) -> None:
+    """Of (s + 1)(s + h - 0.618), stable where h > 0.618."""
+    region = {
+        "task": "stability_region",
+        "symbols": {"h": "real"},
+        "specification": {"polynomial": "s^2 + (h + 191/500) s + h - 309/500", "parameters": ["h"]},
+    }
+    given = json.dumps({"title": "region", **region, "printed": [{"expect": expected}]})
+    assert (audit(read(given)).findings == ()) is true
+
+
+@pytest.mark.parametrize(
+    ("expected", "true"),
+    [
+        ({"modes": [{"eigenvalue": "1.414", "stable": False}, {"eigenvalue": "-1.414", "stable": True}]}, True),
+        ({"modes": [{"eigenvalue": "-1.414", "stable": False}, {"eigenvalue": "1.414", "stable": True}]}, False),
+        ({"fixed_polynomial": "1.0"}, True),
+    ],
+)
+def test_expected_modes_are_compared_as_printed(expected: dict[str, object], true: object) -> None:
+    surds = {"task": "detectability", "plant": {"A": "[0 1; 2 0]", "C": "[1 0]"}}
+    given = json.dumps({"title": "modes", **surds, "printed": [{"expect": expected}]})
+    assert (audit(read(given)).findings == ()) is true
+
+
+def test_expected_roots_are_compared_as_printed() -> None:
+    turning = {"task": "characteristic_polynomial", "plant": {"A": "[0 1; -1 -1]"}}
+    printed = [
+        {"expect": {"roots": ["-0.5+0.866i", "-0.5-0.866i"]}},
+        {"expect": {"roots": ["-0.5+0.867i", "-0.5-0.867i"]}},
+    ]
+    (found,) = audit(read(json.dumps({"title": "roots", **turning, "printed": printed}))).findings
+    assert "0.867" in found.printed

@@ -1,0 +1,213 @@
+"""Margins at the points of a sweep: held to python-control, and to the roots of numpy on both sides of every end."""
+
+from __future__ import annotations
+
+import csv
+import math
+import random
+from fractions import Fraction
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+import symobs
+from symobs.applications.batch.sweep import margins
+from symobs.applications.batch.sweep.plan import Plan
+from symobs.applications.batch.sweep.program import MARGINS, Program
+from symobs.exact.algebraic.loop_distances import Loop, slowest_root
+from symobs.ground.errors import UsageError
+from symobs.problem import parse
+from tests.support.tools.command_line import inside
+from tests.unit.applications.batch.test_sweep import problem
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+control = pytest.importorskip("control")
+np = pytest.importorskip("numpy")
+pytestmark = pytest.mark.slow
+
+#: By kind of time: the poles of K, those of L, and the slowest of each.
+POLES = {
+    False: {"K": ("-1/2, -2+i, -2-i", "-1/2"), "L": ("-4, -5+3i, -5-3i", "-4")},
+    True: {"K": ("1/2, 1/3+1/2i, 1/3-1/2i", "sqrt(13)/6"), "L": ("-1/5, 1/8+1/4i, 1/8-1/4i", "sqrt(5)/8")},
+}
+TASKS = {"state_feedback": ("K",), "observer": ("L",), "compensator": ("K", "L")}
+HALF = {"K": "control_", "L": "observer_"}
+
+
+class Design:
+    """A design for a random plant of third order: our margins, and the loop as others have it."""
+
+    def __init__(self, task: str, drawn: random.Random, *, discrete: bool) -> None:
+        gains, A, B, C = TASKS[task], self.drawn(drawn, 3, 3), self.drawn(drawn, 3, 1), self.drawn(drawn, 1, 3)
+        plant = {"A": A, **({"B": B} if "K" in gains else {}), **({"C": C} if "L" in gains else {})}
+        lines = [f"{name} = {value}" for name, value in plant.items()] + (["dt = 1"] if discrete else [])
+        asked = [f'{HALF[g] if len(gains) == 2 else ""}poles = "{POLES[discrete][g][0]}"' for g in gains]
+        self.program = Program(parse(problem(task, "", "\n".join(lines), "\n".join(asked))), (), None)
+        row = self.program.alone((), None)
+        self.is_there = row.status == "done"
+        if self.is_there:
+            self.entries = dict(zip(self.program.columns(), map(str, row.values), strict=True))
+            self._loop(np.array(A), np.array(B), np.array(C), int(discrete), gains)
+
+    @staticmethod
+    def drawn(drawn: random.Random, rows: int, columns: int) -> list[list[int]]:
+        return [[drawn.randint(-3, 3) for _ in range(columns)] for _ in range(rows)]
+
+    def _loop(self, A: Any, B: Any, C: Any, dt: int, gains: tuple[str, ...]) -> None:
+        K, L = (np.array([float(Fraction(text)) for name, text in self.entries.items() if name[0] == g]) for g in "KL")
+        if gains == ("K",):
+            self.system, self.open, self.closed = control.ss(A, B, [K], 0, dt), np.poly(A), np.poly(A - B * K)
+        elif gains == ("L",):
+            L = L.reshape(3, 1)
+            self.system, self.open, self.closed = control.ss(A, L, C, 0, dt), np.poly(A), np.poly(A - L * C)
+        else:
+            L = L.reshape(3, 1)
+            own = A - B * K - L * C
+            self.system = control.ss(own, L, [K], 0, dt) * control.ss(A, B, C, 0, dt)
+            self.open = np.polymul(np.poly(A), np.poly(own))
+            self.closed = np.polymul(np.poly(A - B * K), np.poly(A - L * C))
+
+    @property
+    def at_the_fastest(self) -> list[float]:
+        """The gain that brings a root to z = −1, which python-control leaves out."""
+        if not self.system.dt:
+            return []
+        opened, closed = np.polyval(self.open, -1), np.polyval(self.closed, -1)
+        return [float(opened / (opened - closed))] if opened / (opened - closed) > 0 else []
+
+    def is_stable(self, k: float) -> bool:
+        """Whether numpy finds all roots inside at a gain k."""
+        roots = np.roots(self.open + k * (self.closed - self.open))
+        return bool((abs(roots) < 1).all() if self.system.dt else (roots.real < 0).all())
+
+
+@pytest.mark.parametrize("discrete", [False, True])
+@pytest.mark.parametrize("task", TASKS)
+def test_random_designs_agree_with_python_control_and_numpy(task: str, *, discrete: bool) -> None:
+    drawn, seen = random.Random(f"{task} {discrete}"), 0  # noqa: S311
+    while seen < 8:
+        design = Design(task, drawn, discrete=discrete)
+        if not design.is_there:
+            continue
+        seen += 1
+        cells, nearest = margins.cells_at(design.program, (), design.entries)
+        found = {name: nearest[name] if name in nearest else value_of(cells[name]) for name in MARGINS}
+        assert cells["margins_status"] == "done"
+        assert cells["slowest"] == POLES[discrete][TASKS[task][0]][1]
+        low, high = found["gain_down"], found["gain_up"]
+        gain, phase, modulus, *_ = control.stability_margins(design.system)
+        wanted = min(max(each, 1 / each) for each in (gain, *design.at_the_fastest))
+        assert min(1 / low if low else math.inf, high) == pytest.approx(wanted, rel=1e-5)
+        assert found["phase_deg"] == pytest.approx(abs(phase), abs=1e-4)
+        assert found["modulus"] <= modulus + 1e-4
+        assert found["modulus"] == pytest.approx(least_distance(design), abs=1e-3)
+        inside_it = [low + (1 - low) * 1e-4, (low + 1) / 2, 1.0, 1e3 if high == math.inf else high - (high - 1) * 1e-4]
+        assert all(map(design.is_stable, inside_it))
+        assert not low or not design.is_stable(low - (1 - low) * 1e-4)
+        assert high == math.inf or not design.is_stable(high + (high - 1) * 1e-4)
+
+
+def value_of(text: str) -> float:
+    return math.inf if text == "oo" else float(Fraction(text))
+
+
+def least_distance(design: Design) -> float:
+    """The least of |1 + N/P| on many points of the boundary."""
+    at = np.exp(1j * np.linspace(0, np.pi, 40_001)) if design.system.dt else 1j * np.logspace(-5, 5, 40_001)
+    with np.errstate(divide="ignore"):  # an integrator
+        distances = abs(np.polyval(design.closed, at) / np.polyval(design.open, at))
+    return float(min([*distances, *([] if design.system.dt else [1.0])]))
+
+
+def test_slowest_roots_of_any_polynomial_are_exact() -> None:
+    """Real parts and moduli of roots without a closed form: x³ + x + 1 has one pair, of real part −r/2 for its root r."""
+    cases: list[tuple[list[int], bool, str]] = [
+        ([1, 0, 1, 1], False, "CRootOf(8*x**3 + 2*x - 1, 0)"),
+        ([1, 3, 3, 2], False, "-1/2"),
+        ([1, 2, 2], True, "sqrt(2)"),
+        ([1, 0, 0, 0, 4], False, "1"),
+        ([1, 1, 0], True, "1"),
+    ]
+    for coefficients, discrete, wanted in cases:
+        assert slowest_root([Fraction(c) for c in coefficients], discrete=discrete).text() == wanted
+        roots = np.roots(coefficients)
+        size = max(abs(roots)) if discrete else max(roots.real)
+        assert value_near(slowest_root([Fraction(c) for c in coefficients], discrete=discrete)) == pytest.approx(size)
+
+
+def value_near(number: Any) -> float:
+    low, high = number.interval()
+    return float((low + high) / 2)
+
+
+SPRING = problem(
+    "state_feedback", "c:positive", 'A = "[0 1; -c 0]"\nB = "[0; 1]"', 'poles = "-1, -2"'
+)  # K = [2 − c, 3]: P + kN = s² + 3ks + c + k(2 − c)
+
+
+def test_margins_are_columns_of_the_table(tmp_path: Path) -> None:
+    """By hand: where c ≤ 2 every k > 0 is stable, beyond it those below c/(c − 2)."""
+    (tmp_path / "spring.toml").write_text(SPRING, encoding="utf-8")
+    words = ["--columns", "K, margins", "--decimals", "--in-process", "--quiet"]
+    over = ["--over", "c=[1, 2, 3, 4]", "--out", "t.csv"]
+    assert inside("sweep", "spring.toml", *over, *words, folder=tmp_path).code == 0
+    with (tmp_path / "t.csv").open(encoding="utf-8", newline="") as stream:
+        lines = list(csv.DictReader(stream))
+    assert [line["gain_down"] for line in lines] == ["0"] * 4
+    assert [line["gain_up"] for line in lines] == ["oo", "oo", "3", "2"]
+    assert [line["gain_up.d"] for line in lines] == ["inf", "inf", "3.0", "2.0"]
+    assert {line["slowest"] for line in lines} == {"-1"}
+    assert {line["margins_status"] for line in lines} == {"done"}
+    assert all(line["phase_deg.d"] == str(float(line["phase_deg"])) for line in lines)
+
+
+def test_of_several_intervals_it_is_the_one_around_the_design() -> None:
+    """P + kN = s³ + (1 + k)s² + (1 + k)s + 7/8 + 11/4 k is stable where (k − 1/4)(k − 1/2) > 0."""
+    text = problem(
+        "state_feedback",
+        "",
+        'A = "[0 1 0; 0 0 1; -7/8 -1 -1]"\nB = "[0; 0; 1]"',
+        'polynomial = "s^3 + 2 s^2 + 2 s + 29/8"',
+    )
+    program = Program(parse(text), (), None)
+    entries = dict(zip(program.columns(), map(str, program.alone((), None).values), strict=True))
+    cells, _ = margins.cells_at(program, (), entries)
+    assert (cells["gain_down"], cells["gain_up"]) == ("1/2", "oo")
+
+
+#: P + N and P of loops whose |N/P| reaches 1 at an end of the boundary alone, where N/P = 1: half a turn from −1.
+AT_AN_END = {
+    "s = 0": ("1, 2", "1, 1", False),
+    "z = 1": ("1, -1/2", "1, -3/4", True),
+    "z = -1": ("1, 1/2", "1, 3/4", True),
+}
+
+
+@pytest.mark.parametrize("end", AT_AN_END)
+def test_a_loop_that_reaches_one_at_an_end_is_half_a_turn_away(end: str) -> None:
+    closed, opened, discrete = AT_AN_END[end]
+    p, q = ([Fraction(part) for part in text.split(",")] for text in (closed, opened))
+    x = Fraction(end[4:])
+    assert (p[0] * x + p[1]) / (q[0] * x + q[1]) - 1 == 1
+    assert Loop.of(p, q, discrete=discrete).phase(6) == "180"
+
+
+def test_what_is_not_stable_has_no_margins_and_what_takes_long_is_undecided(monkeypatch: pytest.MonkeyPatch) -> None:
+    program = Program(parse(SPRING.replace("-1, -2", "1, -2")), ("c",), None)
+    entries = dict(zip(program.columns(), map(str, program.alone((Fraction(1),), None).values), strict=True))
+    cells, _ = margins.cells_at(program, (Fraction(1),), entries)
+    assert cells == {"slowest": "1", "margins_status": "unstable"}
+    monkeypatch.setattr(margins, "_SECONDS", 0.0001)
+    design = Design("compensator", random.Random(3), discrete=False)  # noqa: S311
+    assert margins.cells_at(design.program, (), design.entries) == ({"margins_status": "undecided"}, {})
+
+
+def test_single_margins_may_be_asked_for_and_two_inputs_have_none() -> None:
+    assert Plan(SPRING, "c=1", "gain_up, K[1,2]", way="each").columns == ["K[1,2]", "gain_up", "margins_status"]
+    (row,) = symobs.sweep(SPRING, "c=5/2", columns="gain_up, phase_deg", workers=1)
+    assert (row["gain_up"], type(row["phase_deg"])) == (5, str)
+    two = problem("state_feedback", "c:positive", 'A = "[0 1; -c 0]"\nB = "[0 1; 1 0]"', 'poles = "-1, -2"')
+    with pytest.raises(UsageError, match="one input, and there are 2"):
+        Plan(two, "c=1", "margins", way="each")

@@ -1,0 +1,214 @@
+"""What a run is given: folders, files and numbers as people have them, and what a run says of them when it goes on."""
+
+from __future__ import annotations
+
+import json
+import shutil
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+import symobs
+from symobs.applications.batch.engine import Settings, work
+from symobs.applications.batch.executors import InProcess, Workforce
+from symobs.applications.batch.jobs import job, row_text
+from symobs.applications.batch.run import batch, verified
+from symobs.applications.batch.store import Store
+from symobs.ground.errors import UsageError
+from tests.support.problems.batches import design
+from tests.support.tools.command_line import SERVO, inside
+from tests.unit.applications.batch.test_sweep import CART
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from pathlib import Path
+
+
+@pytest.fixture(name="folder")
+def folder_of_problems(tmp_path: Path) -> Path:
+    """Two problems, of which one is none."""
+    folder = tmp_path / "problems"
+    folder.mkdir()
+    (folder / "good.toml").write_text(design(7), encoding="utf-8")
+    (folder / "bad.toml").write_text("nothing", encoding="utf-8")
+    return folder
+
+
+def test_a_run_that_goes_on_says_of_its_problems_what_it_said_before(folder: Path, tmp_path: Path) -> None:
+    words = ["batch", folder.name, "--out", "out", "--in-process"]
+    for _ in range(2):  # the second time from the index of keys
+        left = inside(*words, folder=tmp_path)
+        assert (left.code, left.err) == (4, "1 done, 1 unreadable\n")
+    (tmp_path / "out" / "keys.bin").unlink()
+    assert inside(*words, folder=tmp_path).code == 4
+
+
+def test_what_a_problem_was_before_it_was_changed_counts_no_more(folder: Path, tmp_path: Path) -> None:
+    words = ["batch", folder.name, "--out", "out", "--in-process"]
+    assert inside(*words, folder=tmp_path).code == 4
+    (folder / "bad.toml").write_text(design(8), encoding="utf-8")
+    assert inside(*words, "--dry-run", folder=tmp_path).err == "2 problems, 1 to be done, 1 done already\n"
+    for _ in range(2):
+        left = inside(*words, folder=tmp_path)
+        assert (left.code, left.err) == (0, "2 done\n")
+    assert len(list(Store(tmp_path / "out").rows())) == 3
+    assert batch(folder, out=tmp_path / "out").failed == []
+
+
+def test_the_manifest_counts_the_problems_of_the_run(folder: Path, tmp_path: Path) -> None:
+    words = ["batch", folder.name, "--out", "out", "--in-process"]
+    for number in (4, 5, 6):
+        (folder / f"p{number}.toml").write_text(design(number), encoding="utf-8")
+    assert inside(*words, folder=tmp_path).err == "4 done, 1 unreadable\n"
+    (folder / "p4.toml").write_text(design(9), encoding="utf-8")
+    (folder / "p5.toml").unlink()
+    shutil.copy(folder / "good.toml", folder / "bad.toml")
+    for _ in range(2):
+        assert inside(*words, folder=tmp_path).err == "3 done, 1 equal to others\n"
+        manifest = json.loads((tmp_path / "out" / "manifest.json").read_text(encoding="utf-8"))
+        assert manifest["counts"] == {"done": 3, "no": 0, "unreadable": 0, "undecided": 0, "failed": 0}
+        assert list(manifest["names"].values()) == [["good.toml"]]
+
+
+def _shortened(text: bytes) -> bytes:
+    return text[:-20]
+
+
+def _emptied(_: bytes) -> bytes:
+    return b""
+
+
+def _of_another_kind(text: bytes) -> bytes:
+    return text + b"[]\n"
+
+
+def _without_its_end(text: bytes) -> bytes:
+    return text[:-20] + b"\n"
+
+
+@pytest.mark.parametrize("damage", [_shortened, _emptied, _of_another_kind, _without_its_end])
+def test_damaged_rows_are_named_set_aside_and_done_again(
+    damage: Callable[[bytes], bytes], folder: Path, tmp_path: Path
+) -> None:
+    words, out = ["batch", folder.name, "--out", "out", "--in-process"], tmp_path / "out"
+    assert inside(*words, folder=tmp_path).code == 4
+    (path, *_), before = Store(out).chunks(), sorted(map(json.dumps, Store(out).rows()))
+    damaged, line = damage(path.read_bytes()), 2 if damage is _of_another_kind else 1
+    path.write_bytes(damaged)
+    found = inside("batch", "--verify", "out", folder=tmp_path)
+    assert found.code == 4
+    place = path.relative_to(tmp_path)
+    assert found.err.startswith(f"{place}, line {line}: this line is no whole row, the file was damaged; rename it to ")
+    assert inside(*words, "--dry-run", folder=tmp_path).err == "2 problems, 1 to be done, 1 done already\n"
+    assert path.read_bytes() == damaged
+    again = inside(*words, folder=tmp_path)
+    assert (again.code, again.err.splitlines()[-1]) == (4, "1 done, 1 unreadable")
+    assert again.err.startswith(f"{place} was damaged: it is kept as {path.name}.damaged")
+    assert path.with_name(f"{path.name}.damaged").read_bytes() == damaged
+    assert sorted(map(json.dumps, Store(out).rows())) == before
+    assert inside("batch", "--verify", "out", folder=tmp_path).err == "2 results hold\n"
+    assert inside(*words, folder=tmp_path).err == "1 done, 1 unreadable\n"
+
+
+def test_damage_that_the_size_does_not_show_is_repaired_as_it_is_told(folder: Path, tmp_path: Path) -> None:
+    words, out = ["batch", folder.name, "--out", "out", "--in-process"], tmp_path / "out"
+    assert inside(*words, folder=tmp_path).code == 4
+    path = Store(out).chunks()[0]
+    path.write_bytes(path.read_bytes()[:-20] + b"\0" * 20)
+    told = inside("batch", "--verify", "out", folder=tmp_path)
+    assert (told.code, f"rename it to {path.name}.damaged and run the same command again" in told.err) == (4, True)
+    path.rename(path.with_name(f"{path.name}.damaged"))
+    assert inside(*words, folder=tmp_path).err == "1 done, 1 unreadable\n"
+    assert inside("batch", "--verify", "out", folder=tmp_path).err == "2 results hold\n"
+
+
+def test_a_damaged_index_is_made_anew(folder: Path, tmp_path: Path) -> None:
+    words, index = ["batch", folder.name, "--out", "out", "--in-process"], tmp_path / "out" / "keys.bin"
+    assert inside(*words, folder=tmp_path).code == 4
+    whole = index.read_bytes()
+    for damaged in (whole[:-25], whole.replace(b"\0" * 9, b"\x63" + b"\0" * 8), b"", b"\xff"):
+        assert damaged != whole
+        index.write_bytes(damaged)
+        assert inside(*words, "--dry-run", folder=tmp_path).err == "2 problems, 0 to be done, 2 done already\n"
+        assert inside(*words, folder=tmp_path).err == "1 done, 1 unreadable\n"
+        assert index.read_bytes() == whole
+
+
+def test_equal_problems_are_done_once_and_said(folder: Path, tmp_path: Path) -> None:
+    shutil.copy(folder / "good.toml", folder / "bad.toml")
+    left = inside("batch", "problems", "--out", "out", "--in-process", folder=tmp_path)
+    assert (left.code, left.err) == (0, "1 done, 1 equal to others\n")
+
+
+def test_a_file_that_cannot_be_read_loses_no_other(folder: Path, tmp_path: Path) -> None:
+    (folder / "a.toml").symlink_to("nowhere")
+    (folder / "bytes.toml").write_bytes(b"\xff\xfe\x00")
+    (folder / "folder.toml").mkdir()
+    (folder / "loop").symlink_to(folder)
+    left = inside("batch", "problems", "--out", "out", "--in-process", folder=tmp_path)
+    assert (left.code, left.err) == (4, "1 done, 3 unreadable\n")
+    told = {row["name"]: row["error"][0] for row in Store(tmp_path / "out").rows() if row["status"] == "unreadable"}
+    assert told.keys() == {"a.toml", "bytes.toml", "bad.toml"}
+    assert "a.toml: No such file or directory" in told["a.toml"]
+    assert "bytes.toml: byte 0 is not UTF-8" in told["bytes.toml"]
+    assert verified(tmp_path / "out") == 4
+
+
+def test_names_are_what_they_are(tmp_path: Path) -> None:
+    names = ["a b.toml", "new\nline.toml", "ünï\N{GRINNING FACE}.toml", "-o.toml", "a'\"$.toml", "\udcff.toml"]
+    folder, out = tmp_path / "prob lems\n", tmp_path / "out ü\n"
+    folder.mkdir()
+    for number, name in enumerate(names):
+        (folder / name).write_text(design(number), encoding="utf-8")
+    (folder / "link.toml").symlink_to(SERVO)
+    left = inside("batch", str(folder), "--out", str(out), "--in-process", folder=tmp_path)
+    assert (left.code, left.err) == (0, "7 done\n")
+    assert {row["name"] for row in Store(out).rows()} == {*names, "link.toml"}
+    assert json.loads((out / "manifest.json").read_text(encoding="utf-8"))["counts"]["done"] == 7
+
+
+@pytest.mark.parametrize("count", [1, 5, 118, 1000])
+def test_the_last_chunks_are_small(count: int) -> None:
+    """A tenth of a second a job, so that chunks of two seconds have twenty: but no worker has more than its share left."""
+    sizes: list[int] = []
+
+    def rows(orders: Any, *_: object) -> tuple[list[str], float]:
+        sizes.append(len(orders))
+        return [row_text(key, kind, {"status": "done"}) for key, kind, _ in orders], len(orders) / 10
+
+    jobs = [job("solve", {"number": number}, str(number)) for number in range(count)]
+    chunks = work(jobs, Workforce(InProcess(), 8, rows), Settings(recheck=0))
+    assert [row["name"] for chunk in chunks for row in chunk.rows] == [str(number) for number in range(count)]
+    left = [count - sum(sizes[:k]) for k in range(len(sizes))]
+    assert all(size <= max(1, here / 16) for size, here in zip(sizes, left, strict=True))
+    assert max(sizes) == {1: 1, 5: 1, 118: 5, 1000: 20}[count]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "code", "says"),
+    [
+        (["batch", "problems", "--out", ""], 2, "--out: no folder for the results is named"),
+        (["batch", "problems", "--out", "problems"], 2, "--out: problems is the folder of the problems; name a folder"),
+        (["batch", "empty", "missing.toml", "--out", "x"], 3, "empty: there is no problem file in this folder"),
+        (["batch", "empty", "missing.toml", "--out", "x"], 3, "missing.toml: No such file or directory"),
+        (["sweep", "problems", "--over", "l=1", "--out", "x.csv"], 3, "problems: Is a directory; give a problem file"),
+        (["sweep", "cart.toml", "--over", "l=1, m=1", "--out", ""], 2, "--out: no table is named"),
+    ],
+)
+def test_what_cannot_be_used_is_said_and_nothing_is_made(
+    arguments: list[str], code: int, says: str, folder: Path, tmp_path: Path
+) -> None:
+    (tmp_path / "empty").mkdir()
+    (tmp_path / "cart.toml").write_text(CART, encoding="utf-8")
+    left = inside(*arguments, folder=tmp_path)
+    assert left.code == code, left.err
+    assert says in left.err
+    assert {path.name for path in tmp_path.iterdir()} == {"problems", "empty", "cart.toml"}
+    assert len(list(folder.iterdir())) == 2
+
+
+@pytest.mark.parametrize("workers", [0, -1, 1.5, "2", True, 10**6])
+def test_a_number_of_workers_is_a_number(workers: Any, tmp_path: Path) -> None:
+    with pytest.raises(UsageError, match=r"workers: .* is no number of workers; give a whole number from 1 to 1024"):
+        symobs.batch(design(4), out=tmp_path / "out", workers=workers)
+    assert not list(tmp_path.iterdir())

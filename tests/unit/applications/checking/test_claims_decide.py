@@ -1,0 +1,248 @@
+"""What a claim leaves open and what it does not: each test here fails if one comparison of the judgement is left out."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+import sympy as sp
+
+from symobs.applications.checking import Checked, check
+from symobs.applications.checking.judgement.parts import asked_of
+from tests.support.paths import ROOT
+from tests.support.problems.answered import SERVO, S, text
+
+EXAMPLES = ROOT / "worked_examples"
+
+HIDDEN = 'task = "observer"\n[plant]\nA = "[1 0; 0 2]"\nC = "[1 0]"\n[specification]\npoles = "-1, -2"\n'
+
+
+def verdicts(problem: str, answer: dict[str, Any]) -> dict[str, str]:
+    return {part.letter: part.verdict for part in check(problem, answer).parts if part.letter in answer}
+
+
+def test_a_gain_where_there_is_none_is_wrong() -> None:
+    for given, reason in (("[3; 0]", ""), ("[1 2]", "L is 2x1 here, yours is 1x2")):
+        part = check(HIDDEN + '[marking]\nasked = ["observer.verdict"]\n', {"L": given, "verdict": "no"}).parts
+        assert [(each.letter, each.verdict) for each in part] == [("verdict", "right"), ("L", "wrong")]
+        assert reason in part[1].reason
+
+
+def test_another_compensator_is_right_only_where_no_gain_is_given() -> None:
+    a, b, c, d, e = sp.symbols("a b c d e")
+    loop = sp.Poly(S * (S + 1) * (S**2 + d * S + e) + a * S**2 + b * S + c - (S + 2) ** 2 * (S + 10) ** 2, S)
+    found = sp.solve([equation.subs(a, 5) for equation in loop.all_coeffs()], [b, c, d, e])
+    F = f"(5 s^2 + {found[b]} s + {found[c]})/(s^2 + {found[d]} s + {found[e]})"
+    assert verdicts(SERVO, {"F": F}) == {"F": "right"}
+    two = FEEDFORWARD.replace("feedforward", "compensator")
+    assert verdicts(two, {"F": [["1/s", "0"]]}) == {"F": "wrong"}
+    assert verdicts(SERVO, {"F": F, "K": "[4 3]"})["F"] == "wrong"
+    assert verdicts(SERVO, {"F": F, "L": "[19; 80]"})["F"] == "wrong"
+    assert verdicts(SERVO, {"F": F, "L": "[19 81]"})["F"] == "wrong"
+    for wrong in ("(5 s^3 + 1)/(s^2 + 1)", f"({F})*(s + 1)/(s + 1) + 1"):
+        assert verdicts(SERVO, {"F": wrong})["F"] == "wrong"
+    # one more pole and zero: (s + 3) in both loops, of order 3
+    assert verdicts(SERVO, {"F": "(638 s + 800)/(2 s^2 + 46 s + 322)"})["F"] == "right"
+
+
+def test_minus_F_is_right_only_where_the_file_says_so() -> None:
+    opposite = {"F": "-(319 s + 400)/(s^2 + 23 s + 161)", "K": "[4 3]", "L": "[19; 81]"}
+    assert verdicts(SERVO, opposite)["F"] == "wrong"
+    assert verdicts(SERVO + '[marking]\nsign_of_F = "either"\n', opposite)["F"] == "right"
+    either = SERVO + '[marking]\nsign_of_F = "either"\n'
+    assert verdicts(either, {"K": "[-4 -3]", "L": "[19; 81]"})["K"] == "wrong"
+
+
+REGION = (
+    'task = "stability_region"\n[specification]\npolynomial = "s^3 + s^2 + 3 s + h"\nparameters = "h"\n'  # 0 < h < 3
+)
+
+
+@pytest.mark.parametrize(
+    ("conditions", "verdict"),
+    [
+        ("(h > 0) and (h < 3)", "right"),
+        ("((h > 0) and (3 - h > 0))", "right"),
+        ("(0 < h < 3)", "right"),
+        ("1/h >= 0 and h < 3", "right"),
+        ("h >= 0 and h < 3", "wrong"),
+        ("h/(3 - h) > 0", "right"),
+        ("h (3 - h) >= 0 and h != 0 and 3 != h", "right"),
+    ],
+)
+def test_what_conditions_say_at_their_boundary(conditions: str, verdict: str) -> None:
+    assert verdicts(REGION, {"stable_if": conditions})["stable_if"] == verdict
+
+
+@pytest.mark.parametrize(
+    ("conditions", "verdict"),
+    [
+        ("h < 3", "right"),
+        ("h >= 0 and h < 3", "right"),
+        ("h > 0 and h < 3", "right"),
+        ("h <= 3", "wrong"),
+        ("h < 4", "wrong"),
+    ],
+)
+def test_a_declared_sign_leaves_out_its_boundary(conditions: str, verdict: str) -> None:
+    positive = REGION.replace("[specification]", '[symbols]\nh = "positive"\n[specification]')
+    assert verdicts(positive, {"stable_if": conditions})["stable_if"] == verdict
+
+
+def test_columns_of_a_block_may_be_permuted_and_others_not() -> None:
+    problem = 'task = "controllability"\n[plant]\nA = "[0 1; 0 0]"\nB = "[0 1; 1 2]"\n'
+    problem += '[marking]\nasked = ["controllability.matrix"]\n'
+    # [B AB] = [0 1 1 2; 1 2 0 0]
+    for matrix, verdict in (
+        ("[0 1 1 2; 1 2 0 0]", "right"),
+        ("[1 0 2 1; 2 1 0 0]", "right"),
+        ("[1 2 0 1; 0 0 1 2]", "wrong"),
+        ("[1 0 2 1; 2 1 0 1]", "wrong"),
+    ):
+        assert verdicts(problem, {"matrix": matrix}) == {"matrix": verdict}
+
+
+@pytest.mark.parametrize(
+    ("given", "verdict"),
+    [
+        ("yes", "right"),
+        (' "Yes" ', "right"),
+        ("no", "wrong"),
+        ("yes!", "unreadable"),
+        ("ja", "right"),
+        (False, "wrong"),
+    ],
+)
+def test_a_verdict_is_a_word(given: object, verdict: str) -> None:
+    problem = 'task = "detectability"\n[plant]\nA = "[0 1; 0 0]"\nC = "[1 0]"\n'
+    assert verdicts(problem, {"verdict": given}) == {"verdict": verdict}
+
+
+def test_a_closed_loop_is_right_in_either_coordinates() -> None:
+    """(x, x − x̂) and (x, x̂) of the servo with K = [4 3] and L = [19; 81]."""
+    A, B, C = sp.Matrix([[0, 1], [0, -1]]), sp.Matrix([0, 1]), sp.Matrix([[1, 0]])
+    K, L = sp.Matrix([[4, 3]]), sp.Matrix([19, 81])
+    error = sp.Matrix(sp.BlockMatrix([[A - B * K, B * K], [sp.zeros(2), A - L * C]]))
+    estimate = sp.Matrix(sp.BlockMatrix([[A, -B * K], [L * C, A - B * K - L * C]]))
+    asked = SERVO + '[marking]\nasked = ["compensator.closed_loop_matrix"]\n'
+    for matrix, verdict in ((error, "right"), (estimate, "right"), (error.T, "wrong"), (2 * error, "wrong")):
+        assert verdicts(asked, {"closed_loop_matrix": text(matrix)}) == {"closed_loop_matrix": verdict}
+
+
+@pytest.mark.parametrize(
+    ("given", "verdict"),
+    [
+        ("[x10; x20]", "right"),
+        ("[x10 x20]", "right"),
+        ("{x10, x20}", "right"),
+        ("[x20; x10]", "wrong"),
+        ("[x10]", "wrong"),
+    ],
+)
+def test_a_text_writes_a_list_in_brackets(given: str, verdict: str) -> None:
+    problem = (EXAMPLES / "servo_initial_state.toml").read_text(encoding="utf-8")
+    report = Checked.of(problem).report(f"x0 = {given}\n")
+    assert [part.verdict for part in report.parts] == [verdict]
+    assert report.lines == ()  # x0 is an answer here, and no letter of the derivation
+
+
+def test_sizes_in_a_text_and_matrices_that_are_none() -> None:
+    problem = (EXAMPLES / "four_parts.toml").read_text(encoding="utf-8")
+    report = Checked.of(problem).report("sizes = [1 1 1 1]\nT = [1 0; 0 1]\n")
+    found = {part.letter: (part.verdict, part.reason) for part in report.parts if part.given}
+    assert found == {"sizes": ("right", ""), "T": ("wrong", "T is 4x4 here, yours is 2x2")}
+    (part,) = (part for part in Checked.of(problem).report({"T": [[1] * 4] * 4}).parts if part.given)
+    assert (part.verdict, part.reason) == ("wrong", "T has no inverse")
+
+
+def test_parts_of_one_letter_are_told_apart() -> None:
+    problem = 'tasks = ["observability", "controllability"]\n[plant]\nA = "[0 1; 0 0]"\nB = "[0; 1]"\nC = "[1 0]"\n'
+    report = check(problem, {"observability": {"rank": 1}, "controllability": {"rank": 2}})
+    for written in (report.to_text(), report.to_markdown(), report.to_html()):
+        assert all(f"{task}.rank" in written.replace("\\", "") for task in ("observability", "controllability"))
+
+
+def test_what_is_said_of_a_gain_and_which_claim_was_tried() -> None:
+    checked = Checked.of(SERVO)
+    (claim, holds, how), *_ = checked.report({"L": "[19; 80]"}).certificates
+    assert (claim.startswith("det("), holds, how) == (True, False, "exact")
+    assert [holds for _, holds, _ in checked.report({"L": "[19; 81]", "K": "[4 3]"}).certificates] == [True, True]
+    assert checked.report({"L": "[a b; c d]"}).parts[1].reason.count("is not declared") == 3
+    assert checked.report({"F": "1/s"}).parts[2].reason == ""
+    assert checked.report({"F": "1/s", "K": "[4 3]"}).parts[2].reason == "this is not the F of your gains"
+    assert checked.report({"F": "1/s"}).parts[2].slip is None
+
+
+def test_what_each_task_asks_for() -> None:
+    asked = """canonical_form T A B C; characteristic_polynomial polynomial; compensator K L F; controllability rank;
+        decomposition T sizes; detectability verdict; disturbance_observer L_x L_w;
+        dual A B C; feedforward F; gramian matrix; initial_state x0;
+        initial_state_covariance covariance; integral_action K k_I; matrix_exponential matrix; observability rank;
+        observer L; pbh verdict; pole_advice poles; reduced_order_observer F G H M; response state; state_feedback K;
+        stability_region stable_if; stabilizability verdict; time_varying_observability verdict; tracking K_d;
+        transfer_function transfer_function; unknown_input_observer H L"""
+    rows = [row.split() for row in asked.split(";")]
+    assert len(rows) == 27
+    for task, *names in rows:
+        found = SimpleNamespace(task=task, fields=dict.fromkeys(names, 1))
+        assert asked_of(found) == tuple(names)  # type: ignore[arg-type]
+        assert asked_of(SimpleNamespace(task=task, fields={})) == ("verdict",)  # type: ignore[arg-type]
+
+
+def test_a_gain_that_is_right_on_a_smaller_domain_says_where_it_is_not() -> None:
+    problem = 'task = "observer"\n[symbols]\nalpha = "real"\n[plant]\nA = "[0 alpha; 0 0]"\nC = "[1 0; 0 1]"\n'
+    checked = Checked.of(problem + '[specification]\npoles = "-1, -2"\n')
+    (part,) = checked.report({"L": "[1 alpha-1/alpha; 0 2]"}).parts
+    assert (part.verdict, part.hints) == ("right", ("not defined where alpha = 0",))
+    assert checked.report({"L": "[1 alpha-1; 0 2]"}).parts[0].hints == ()
+    reason = checked.report({"L": "[1 alpa; 0 2]"}).parts[0].reason
+    assert reason.endswith('; did you mean "alpha"? write it with the letters known here: alpha')
+
+
+def test_what_follows_in_the_other_coordinates_says_so() -> None:
+    """[A, -BK; LC, A - BK - LC] of the servo with K = [4 3] and the wrong L = [19; 80]."""
+    asked = Checked.of(SERVO + '[marking]\nasked = ["compensator.closed_loop_matrix_estimate"]\n')
+    estimate = "[0 1 0 0; 0 -1 -4 -3; 19 0 -19 1; 80 0 -84 -4]"
+    error = "[0 1 0 0; -4 -4 4 3; 0 0 -19 1; 0 0 -80 -1]"
+    for matrix, hints in ((estimate, ()), (error, ("in the state and the error",))):
+        part = asked.report({"K": "[4 3]", "L": "[19; 80]", "closed_loop_matrix_estimate": matrix}).parts[0]
+        assert (part.verdict, part.hints, part.origins) == ("follows", hints, ("compensator.L",))
+
+
+def test_what_does_not_exist_is_wrong_in_any_form() -> None:
+    problem = 'task = "compensator"\n[plant]\nA = "[1 0; 0 2]"\nB = "[1; 1]"\nC = "[1 0]"\n'
+    problem += '[specification]\ncontrol_poles = "-1, -2"\nobserver_poles = "-1, -2"\n'
+    parts = {part.letter: part for part in check(problem, {"F": "1/s", "L": ["3", "0"]}).parts}
+    assert (parts["F"].verdict, parts["F"].reason) == ("wrong", "there is no F here")
+    assert (parts["L"].verdict, "yours is" in parts["L"].reason) == ("wrong", False)
+
+
+FEEDFORWARD = 'task = "feedforward"\n[plant]\nA = "[0 0; 0 0]"\nB = "[1 0; 0 1]"\nC = "[1 0; 0 1]"\n'
+FEEDFORWARD += '[specification]\ncontrol_poles = "-1, -2"\nobserver_poles = "-3, -4"\n'
+
+
+def test_a_feedforward_belongs_to_its_feedback() -> None:
+    """G(0) = C (BK - A)^-1 B: 1/4 of the servo with K = [4 3], K^-1 of two integrators."""
+    servo = Checked.of((EXAMPLES / "servo_feedforward.toml").read_text(encoding="utf-8"))
+    parts: list[Any] = []
+    for answer, expected in (
+        ({"F": "4"}, ["right"]),
+        ({"F": "5"}, ["wrong"]),
+        ({"F": "5", "K": "[5 3]"}, ["follows", "wrong"]),
+        ({"F": "4", "K": "[-4 -3]"}, ["right", "wrong"]),
+    ):
+        parts = [part for part in servo.report(answer).parts if part.given]
+        assert [part.verdict for part in parts] == expected
+    assert (parts[1].slip, parts[1].effect["stable"]) == ("sign", "no")
+    for F, verdict in (("[1 0; 0 2]", "right"), ("[1 0; 0 3]", "wrong"), ("[2 0; 0 1]", "wrong")):
+        assert verdicts(FEEDFORWARD, {"K": "[1 0; 0 2]", "F": F}) == {"K": "right", "F": verdict}
+
+
+def test_tracking_does_not_depend_on_a_wrong_gain() -> None:
+    problem = Checked.of((EXAMPLES / "servo_tracking.toml").read_text(encoding="utf-8"))
+    for K_d, verdict in (("[omega^2 -1]", "right"), ("[omega^2 1]", "wrong")):
+        parts = {part.letter: part for part in problem.report({"K": "[5 3]", "L": "[-9]", "K_d": K_d}).parts}
+        assert (parts["K_d"].verdict, parts["K"].verdict, parts["L"].slip) == (verdict, "wrong", "sign")
+    given = {"K": "[5 3]", "error_matrix": "[0 1 0; -5 -4 -3; 0 0 -10]"}
+    assert {part.letter: part.verdict for part in problem.report(given).parts}["error_matrix"] == "follows"

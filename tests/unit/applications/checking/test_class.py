@@ -1,0 +1,264 @@
+"""A class: every submission has a verdict, nothing of one harms another, and what a spreadsheet would run is disarmed."""
+
+from __future__ import annotations
+
+import csv
+import hashlib
+import io
+import json
+import subprocess
+import sys
+from typing import TYPE_CHECKING
+
+import pytest
+from jsonschema import Draft202012Validator  # type: ignore[import-untyped]
+
+from symobs.applications.checking import SHOW, Checked, CheckReport
+from symobs.applications.checking.classes.row import report_of_row
+from symobs.applications.checking.classes.summary import safe
+from symobs.applications.checking.report.schema import schema
+from tests.support.problems.answered import SERVO
+from tests.support.problems.batches import children_of, eventually
+from tests.support.tools.command_line import Run, environment, inside
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+F = "(319 s + 400)/(s^2 + 23 s + 161)"
+ROWS = [
+    ["s1", "[4 3]", "[19; 81]", F],
+    ["s2", "[4, 3]", "[-19; -81]", ""],
+    ["s1", "[4 3]", "[19; 80]", F],  # hands in again: this one counts
+    ["s3", "[9 9]", "[7; 7]", "1/s"],
+    ["s4", "[9 9]", "[7; 7]", "1/s"],
+    ["=cmd()", "\u22124", "[19; 81]", F],
+    ["big", "[" + "1 " * 35_000 + "]", "[19; 81]", F],
+    ["../../etc", "__import__('os')", "[19; 81]", F],
+]
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    """A folder with a problem and the table of a class: a byte-order mark, semicolons, a foreign column."""
+    stream = io.StringIO()
+    writer = csv.writer(stream, delimiter=";", lineterminator="\r\n")
+    writer.writerow(["Email address", "Time", "K", "L", "compensator.F"])
+    writer.writerows([row[0], "12:00", *row[1:]] for row in ROWS)
+    (tmp_path / "class.csv").write_text(stream.getvalue(), encoding="utf-8-sig")
+    (tmp_path / "problem.toml").write_text(SERVO, encoding="utf-8")
+    return tmp_path
+
+
+def run(folder: Path, *more: str) -> Run:
+    return inside("check", "problem.toml", "--submissions", "class.csv", "-o", "RESULTS", *more, folder=folder)
+
+
+def test_a_class_is_marked_and_counted(folder: Path) -> None:
+    found = run(folder, "--map", "Email address=student", "--feedback")
+    assert (found.code, found.err) == (0, "")
+    results = folder / "RESULTS"
+    reports = [json.loads(line) for line in (results / "results.jsonl").read_text(encoding="utf-8").splitlines()]
+    validator = Draft202012Validator(schema())
+    for report in reports:
+        validator.validate(report)
+    verdicts = {report["student"]: report["verdict"] for report in reports}
+    assert verdicts == {
+        "s2": "wrong",
+        "s1": "wrong",
+        "s3": "wrong",
+        "s4": "wrong",
+        "=cmd()": "wrong",
+        "big": "unreadable",
+        "../../etc": "unreadable",
+    }
+    marks = list(csv.reader(io.StringIO((results / "marks.csv").read_text(encoding="utf-8"))))
+    assert marks[0] == ["student", "variant", "verdict", "score", *(f"part:compensator.{name}" for name in "KLF")]
+    assert marks[1] == ["s2", "", "wrong", "1.50", "right", "wrong", "missing"]
+    assert marks[5][0] == "'=cmd()"
+    summary = json.loads((results / "summary.json").read_text(encoding="utf-8"))
+    assert summary["superseded"] == [{"student": "s1", "place": "line 2"}]
+    assert summary["verdicts"] == {"unreadable": 2, "wrong": 5}
+    assert summary["slips"]["compensator.L"][0] == {"slip": "entry", "count": 1, "students": ["s1"]}
+    assert {"given": "[7; 7]", "count": 2, "students": ["s3", "s4"]} in summary["agreement"]["compensator.L"]
+    assert "larger than 64 kB" in summary["unreadable"][0]["message"]
+    pages = {path.name for path in (results / "feedback").iterdir()}
+    assert pages == {hashlib.sha256(name.encode()).hexdigest()[:16] + ".html" for name in verdicts}
+
+
+def test_the_same_bytes_whatever_was_there_before(folder: Path) -> None:
+    run(folder, "--map", "Email address=student")
+    first = {path.name: path.read_bytes() for path in (folder / "RESULTS").iterdir()}
+    (folder / "RESULTS" / "marks.csv").write_text("half", encoding="utf-8")
+    run(folder, "--map", "Email address=student")
+    assert {path.name: path.read_bytes() for path in (folder / "RESULTS").iterdir()} == first
+
+
+@pytest.mark.slow
+def test_the_same_bytes_whoever_works_and_after_an_end_in_the_middle(folder: Path) -> None:
+    rows = [["student", "K", "L", "compensator.F"]]
+    rows += [[f"s{n}", "[4 3]", f"[19; {n + 60}]", "" if n % 3 else F] for n in range(40)]
+    (folder / "class.csv").write_text("\n".join(",".join(row) for row in rows), encoding="utf-8")
+    command = [sys.executable, "-m", "symobs", "check", "problem.toml", "--submissions", "class.csv", "-o", "KILLED"]
+    with subprocess.Popen([*command, "--workers", "2"], cwd=folder, env=environment()) as process:
+        assert eventually(lambda: list(folder.glob("KILLED.work/rows/*/*.jsonl")))
+        process.kill()
+    assert eventually(lambda: not children_of(process.pid))
+    assert not (folder / "KILLED").exists()
+    found = {}
+    for name, workers in (("ONE", "1"), ("KILLED", "2")):
+        arguments = ["check", "problem.toml", "--submissions", "class.csv", "-o", name, "--workers", workers]
+        assert inside(*arguments, folder=folder).code == 0
+        found[name] = {path.name: path.read_bytes() for path in (folder / name).iterdir()}
+        assert not (folder / f"{name}.work").exists()
+    assert found["KILLED"] == found["ONE"]
+    reports = [json.loads(line) for line in found["ONE"]["results.jsonl"].splitlines()]
+    assert [report["student"] for report in reports] == [row[0] for row in rows[1:]]
+    assert [report["student"] for report in reports if report["verdict"] == "right"] == ["s21"]
+
+
+def test_what_ended_its_process_is_undecided() -> None:
+    report = report_of_row({"status": "undecided", "error": ["4 seconds were not enough"]}, SERVO, "", "reason")
+    assert (report.verdict, report.score) == ("undecided", None)
+    assert {part.reason for part in report.parts} == {"4 seconds were not enough"}
+
+
+@pytest.mark.parametrize("show", SHOW)
+def test_a_report_is_read_back_as_it_was(show: str) -> None:
+    steps = ["det(s*I - A + L*C) = s^2 + 19*s + 81", "L = [19; 80]"]
+    for answer in ({"K": "[4 3]", "L": "[19; 80]", "F": "1/s"}, {"L": "[-19; -81]"}, f"L = [19; 81]\n{steps[0]}"):
+        report = Checked.of(SERVO).report(answer, show)
+        read = CheckReport.from_data({**json.loads(json.dumps(report.as_data())), "page": report.page})
+        assert (read.to_html(), read.to_text(), read.as_data()) == (
+            report.to_html(),
+            report.to_text(),
+            report.as_data(),
+        )
+
+
+@pytest.mark.parametrize(
+    ("table", "mapped", "message"),
+    [
+        ("name,K\na,1\n", [], "there is no column student"),
+        ("student,X\na,1\n", [], "no column is a part of the answer"),
+        ("student,K\na\n", [], "line 2: 1 cells, but 2 columns"),
+        ("student,K,K\na,1,1\n", [], "the column K stands twice"),
+        ("student,K\na,1\n", ["Mail=student"], 'there is no column "Mail"'),
+        ("student,K\na,1\n", ["student=Q"], "Q is no part"),
+        ("", [], "the table is empty"),
+        ("\n \n", [], "the table is empty"),
+        ("student,K\n,[4 3]\n ,[4 4]\n", [], "line 3: no student is named"),
+        ("student,K,compensator.K\na,1,1\n", [], "the columns K and compensator.K are one part"),
+        ('\nstudent,K\na,"[4\n3]"\na\n', [], "line 5: 1 cells, but 2 columns"),
+    ],
+)
+def test_a_table_that_cannot_be_used_is_refused(folder: Path, table: str, mapped: list[str], message: str) -> None:
+    (folder / "class.csv").write_text(table, encoding="utf-8")
+    found = run(folder, *(part for entry in mapped for part in ("--map", entry)))
+    assert found.code == 3
+    assert message in found.err
+    assert not (folder / "RESULTS").exists()
+
+
+def test_what_nobody_could_hand_in_is_said(folder: Path) -> None:
+    (folder / "class.csv").write_text("student,K,M,F\na,[4 3],[19; 81],0\n", encoding="utf-8")
+    found = run(folder)
+    assert (found.code, found.err.strip()) == (0, "no column holds L; unused: M (did you mean L?)")
+    (folder / "class.csv").write_text("student,K,L,F\n", encoding="utf-8")
+    found = run(folder)
+    assert (found.code, "no student in class.csv" in found.err) == (3, True)
+
+
+def test_a_spreadsheet_may_say_what_sets_its_cells_apart(folder: Path) -> None:
+    table = '\ufeffsep=;\r\n"Student, whole name";K;note\r\nA;[4,3];";;;"\r\nB;[3,4];x\r\n'
+    (folder / "class.csv").write_bytes(table.encode())
+    assert run(folder, "--map", "Student, whole name=student").code == 0
+    marks = (folder / "RESULTS" / "marks.csv").read_text(encoding="utf-8").splitlines()
+    assert [line.split(",")[4] for line in marks[1:]] == ["right", "wrong"]
+
+
+def test_what_cannot_be_read_is_told_of_the_part_that_it_is(folder: Path) -> None:
+    (folder / "class.csv").write_text("student,K,L\na,[4 3],[19; q]\n", encoding="utf-8")
+    run(folder)
+    (found,) = json.loads((folder / "RESULTS" / "summary.json").read_text(encoding="utf-8"))["unreadable"]
+    assert (found["student"], '"q" is not declared' in found["message"]) == ("a", True)
+
+
+def test_a_verdict_of_a_text_is_no_line_of_a_derivation(tmp_path: Path) -> None:
+    plant = 'plant = { A = "[0 1; 0 0]", C = "[1 0]" }\n'
+    (tmp_path / "p.toml").write_text(f'task = "observability"\n{plant}', encoding="utf-8")
+    (tmp_path / "a.txt").write_text("verdict = yes\n", encoding="utf-8")
+    found = inside("check", "p.toml", "a.txt", "--format", "json", folder=tmp_path)
+    data = json.loads(found.out)
+    assert [part["verdict"] for part in data["parts"] if part["part"] == "observability.verdict"] == ["right"]
+    assert data["lines"] == []
+
+
+def test_json_lines_and_a_folder_of_files_say_the_same(folder: Path) -> None:
+    (folder / "class.jsonl").write_text(
+        '{"student": "a", "L": "[19; 81]"}\n{"student": "b", "answer": {"K": "[4 3]"}}\n'
+    )
+    (folder / "answers").mkdir()
+    (folder / "answers" / "a.txt").write_text("L = [19; 81]\n")
+    (folder / "answers" / "b.toml").write_text('[answer]\nK = "[4 3]"\n')
+    marks = []
+    for name in ("class.jsonl", "answers"):
+        found = inside("check", "problem.toml", "--submissions", name, "-o", "OUT", folder=folder)
+        assert (found.code, found.err) == (0, "")
+        marks.append((folder / "OUT" / "marks.csv").read_text())
+    assert marks[0] == marks[1]
+    assert marks[0].splitlines()[1:] == [
+        "a,,incomplete,1.00,missing,right,missing",
+        "b,,incomplete,1.00,right,missing,missing",
+    ]
+
+
+@pytest.mark.parametrize("cell", ["=1+1", "+A1", "-A1", "@x", "\tx", "\rx"])
+def test_no_cell_is_a_formula(cell: str) -> None:
+    assert safe(cell) == f"'{cell}"
+    assert [safe(number) for number in ("-3", "+4.5", "s1")] == ["-3", "+4.5", "s1"]
+
+
+@pytest.mark.parametrize(
+    ("answer", "code"),
+    [
+        (f"K = [4 3]\nL = [19; 81]\nF = {F}", 0),
+        ("K = [4 3]", 4),
+        ("K = [4 4]\nL = [19; 81]", 4),
+        ("K = [4 3", 3),
+        ("nothing", 3),
+    ],
+)
+def test_the_exit_code_of_one_answer(folder: Path, answer: str, code: int) -> None:
+    found = inside("check", "problem.toml", "-", folder=folder, stdin=answer.encode())
+    assert found.code == code
+    assert found.out or found.err
+
+
+@pytest.mark.parametrize(
+    ("target", "begins"),
+    [("r.html", "<!DOCTYPE"), ("r.json", "{"), ("r.md", "**A servo**"), ("r.txt", "K  right"), ("r", "K  right")],
+)
+def test_the_suffix_of_a_report_names_its_format(folder: Path, target: str, begins: str) -> None:
+    assert inside("check", "problem.toml", "-", "-o", target, folder=folder, stdin=b"K = [4 3]").code == 4
+    assert (folder / target).read_text(encoding="utf-8").lstrip().startswith(begins)
+
+
+def test_how_the_command_is_used(folder: Path) -> None:
+    for arguments, message in (
+        (["problem.toml"], "one thing is to be done at a time"),
+        (["-", "-"], "standard input holds one file"),
+        (["problem.toml", "-", "--show", "all"], "is nothing to show"),
+        (["problem.toml", "-", "--format", "pdf"], "is not a format of this command"),
+        (["problem.toml", "--submissions", "class.csv"], "the results of a class need a folder"),
+        (
+            ["problem.toml", "-", "-o", "report.pdf"],
+            'the suffix ".pdf" names no format of this command; end it in .txt, .md,',
+        ),
+        (["problem.toml", "-", "--format", "json", "-o", "a.html"], 'the suffix ".html" is that of html, not of json'),
+    ):
+        found = inside("check", *arguments, folder=folder)
+        assert (found.code, message in found.err) == (2, True), found.err
+    printed = inside("check", "problem.toml", "--asked", folder=folder)
+    assert (printed.code, printed.out.count("# a ")) == (0, 3)
+    assert json.loads(inside("schema", "check", folder=folder).out)["title"] == "symobs check"
+    assert inside("schema", "nothing", folder=folder).code == 2

@@ -1,0 +1,81 @@
+"""Answers that are functions of time: their names, the lines that state them, and why one is wrong."""
+
+from __future__ import annotations
+
+import re
+
+import pytest
+
+from symobs.applications.checking import Checked, check
+from symobs.ground.errors import ProblemErrors
+
+# x1' = x2, x2' = -a x2 + 1 from rest: x2 = (1 - e^(-a t))/a, and x1 is its integral; checked in both equations by hand.
+STEP = Checked.of(
+    'task = "response"\n[symbols]\na = "positive"\n[plant]\nA = "[0 1; 0 -a]"\nB = "[0; 1]"\nC = "[1 0]"\n'
+    '[specification]\ninput = "1"\n[marking]\nasked = ["response.state", "response.output"]\n'
+)
+EXPONENTIAL = Checked.of('task = "matrix_exponential"\n[plant]\nA = "[0 1; 0 -1]"\n')
+FIRST = "t/a - 1/a^2 + exp(-a t)/a^2"
+STATE = f"[{FIRST}; 1/a - exp(-a*t)/a]"
+
+
+@pytest.mark.parametrize(("x", "y"), [("x", "y"), ("x(t)", "y(t)"), ("state", "output")])
+def test_the_letters_of_the_page_name_the_parts(x: str, y: str) -> None:
+    report = STEP.report(f"{x} = {STATE}\n{y} = {FIRST}")
+    assert (report.verdict, report.first_false) == ("right", None)
+    assert STEP.report({x: STATE, y: FIRST}).verdict == "right"
+    assert STEP.report({"response": {x: STATE, y: FIRST}}).verdict == "right"
+
+
+@pytest.mark.parametrize("name", ["exp(A t)", "exp(A*t)", "exp(At)", "matrix"])
+def test_the_matrix_exponential_is_called_as_on_the_page(name: str) -> None:
+    report = EXPONENTIAL.report(f"{name} = [1 1 - exp(-t); 0 exp(-t)]")
+    assert (report.verdict, report.first_false) == ("right", None)
+    report = EXPONENTIAL.report(f"{name} = [1 1 + exp(-t); 0 exp(-t)]")
+    assert (report.parts[0].verdict, report.parts[0].slip) == ("wrong", "entry")
+
+
+@pytest.mark.parametrize(
+    ("line", "verdict"),
+    [
+        (f"y(t) = C x(t) = {FIRST}", "true"),
+        (f"x(t) = {STATE}", "true"),
+        (f"y(t) = [{FIRST}]", "true"),
+        ("y(t) = B x(t)", "false"),
+        ("y(t) = t/a", "false"),
+        ("x(t) = [1; 2]", "false"),
+        ("x(t) = 1", "false"),
+        ("x(t) = exp(A t) x(0)", "undecided"),
+    ],
+)
+def test_lines_that_state_a_function_of_time(line: str, verdict: str) -> None:
+    (found,) = STEP.report({"answer": {}, "step": [{"relation": line}]}).lines
+    assert found.verdict == verdict
+
+
+def test_a_function_of_time_that_is_wrong_is_not_given_away() -> None:
+    report = STEP.report("output = t/a - 1/a^2\ny(t) = t/a - 1/a^2\nx(t) = [1; 2]", "solution")
+    (part,) = [part for part in report.parts if part.part == "response.output"]
+    assert (part.verdict, part.slip, part.reason) == ("wrong", None, "")
+    assert "exp(-t*a)" in str(part.right)
+    assert [line.reason for line in report.lines[-2:]] == [
+        "its sides are not equal",
+        "not right: entry (1, 1), entry (2, 1)",
+    ]
+    assert all("exp" in (line.right or "") for line in report.lines[-2:])
+
+
+def test_powers_of_e_are_told_how_they_are_written() -> None:
+    said = "write exp(-a*t) for e^(-a*t)"
+    report = STEP.report("output = t/a - 1/a^2 + e^(-a t)/a^2\ndet(A) = e^(-a t)")
+    assert said in next(part.reason for part in report.parts if part.part == "response.output")
+    assert said in report.lines[-1].reason
+    with pytest.raises(ProblemErrors, match=re.escape(said)):
+        Checked.of('task = "response"\n[plant]\nA = "[-1]"\nB = "[1]"\n[specification]\ninput = "e^(-t)"\n')
+
+
+def test_a_function_of_time_beside_another_task() -> None:
+    """A² = 0, so that exp(A t) = I + A t."""
+    plant = '[plant]\nA = "[0 1; 0 0]"\nC = "[1 0]"\n'
+    report = check(f'tasks = ["observability", "matrix_exponential"]\n{plant}', {"exp(A t)": "[1 t; 0 1]", "rank": 2})
+    assert {part.verdict for part in report.parts if part.given} == {"right"}

@@ -1,0 +1,336 @@
+"""The check of answers: claims decide, so any valid answer is right and nothing else is."""
+
+from __future__ import annotations
+
+import itertools
+from typing import Any
+
+import pytest
+import sympy as sp
+
+from symobs.applications.checking import Checked, CheckReport, check
+from symobs.ground.errors import InputError, ProblemErrors
+from symobs.problem import read
+from symobs.problem.expect import found_in, mismatches
+from symobs.tasks.result.conversions import to_json
+from tests.support.paths import ROOT
+from tests.support.problems.answered import SERVO, THIRD_ORDER, TWO_OUTPUTS, A, F, K, L, S, text
+
+EXAMPLES = ROOT / "worked_examples"
+#: One worked example a task; with the others every task is asked (the slow test takes all files).
+ONE_A_TASK = [
+    "canonical_form_servo",
+    "detectable",
+    "pendulum_observer_existence",
+    "dual_servo",
+    "four_parts",
+    "servo_feedforward",
+    "servo_tracking",
+    "servo_gramian",
+    "servo_initial_state",
+    "double_integrator_noise",
+    "eigenvalue_test_servo",
+    "dominant_pair_pole_advice",
+    "tanks_minimal_observer",
+    "region_nonconvex",
+    "time_varying_rotation",
+    "output_feedback_servo",
+    "two_inputs_feedback",
+]
+CANONICAL = """
+task = "canonical_form"
+[plant]
+A = "[1 2; 3 4]"
+B = "[1; 1]"
+C = "[1 0]"
+[specification]
+kind = "controllable"
+"""
+
+
+def one(report: CheckReport, name: str) -> Any:
+    """The part of this field."""
+    return next(part for part in report.parts if part.part.endswith(f".{name}"))
+
+
+def own_answer(checked: Checked) -> dict[str, dict[str, Any]]:
+    """The answers of symobs itself, in the letters of the file."""
+    answer: dict[str, dict[str, Any]] = {}
+    for view, name in checked.asked(checked.views()):
+        letter = next((own for own, (standard, _) in view.names.items() if standard == name), name)
+        answer.setdefault(view.task, {})[letter] = to_json(found_in(view, letter))
+    return answer
+
+
+@pytest.mark.parametrize("name", ONE_A_TASK)
+def test_our_own_answer_is_right(name: str) -> None:
+    checked = Checked.of(read((EXAMPLES / f"{name}.toml").read_text(encoding="utf-8"), name, EXAMPLES))
+    report = checked.report(own_answer(checked))
+    assert (report.verdict, report.score) == ("right", report.total), report.to_text()
+
+
+@pytest.mark.slow
+def test_our_own_answer_is_right_in_every_worked_example() -> None:
+    tasks = set()
+    for path in sorted(EXAMPLES.glob("*.toml")):
+        checked = Checked.of(read(path.read_text(encoding="utf-8"), path.name, EXAMPLES))
+        tasks |= {result.task for result in checked.results}
+        report = checked.report(own_answer(checked))
+        too_long = path.stem == "cart_pole"  # its F has 35,615 characters
+        assert report.verdict == ("unreadable" if too_long else "right"), (path.name, report.to_text())
+    assert len(tasks) == 28
+
+
+# -- gains: the claim decides -----------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("gain", ["[45/7 4/49; 793/21 -10/49; 382/3 -3/7]", "[0 1; 0 2; 0 6]"])
+def test_any_member_of_the_family_is_right(gain: str) -> None:
+    matrix = sp.Matrix([[0, 1, 0], [0, 0, 1], [1, 2, 3]]) - sp.Matrix(
+        [[sp.Rational(entry) for entry in row.split()] for row in gain.strip("[]").split(";")]
+    ) * sp.Matrix([[1, 0, 0], [0, 0, 1]])
+    assert sp.factor(matrix.charpoly(S).as_expr()) == (S + 1) ** 3
+    assert check(TWO_OUTPUTS, {"L": gain}).verdict == "right"
+
+
+@pytest.mark.parametrize("number", range(3))
+@pytest.mark.parametrize("step", [1, -1])
+def test_a_changed_entry_is_right_only_if_the_poles_are(number: int, step: int) -> None:
+    checked = Checked.of(TWO_OUTPUTS)
+    base = sp.Matrix([[0, 1], [0, 2], [0, 6]])
+    for column in range(2):
+        changed = base.copy()
+        changed[number, column] += step
+        closed = sp.Matrix([[0, 1, 0], [0, 0, 1], [1, 2, 3]]) - changed * sp.Matrix([[1, 0, 0], [0, 0, 1]])
+        placed = sp.expand(closed.charpoly(S).as_expr() - (S + 1) ** 3) == 0
+        assert (checked.report({"L": text(changed)}).verdict == "right") is placed
+
+
+def test_all_forms_of_a_value_are_read_exactly() -> None:
+    for gain in (
+        [[19], [81]],
+        "[19; 81]",
+        "[38/2; 9^2]",
+        "[19.0; 81.00]",
+        [["19"], [81]],
+        "[19; 8.1e1]",
+        sp.Matrix([19, 81]),
+    ):
+        assert one(check(SERVO, {"L": gain}), "L").verdict == "right"
+    assert one(check(SERVO, {"L": "[19; 81.0001]"}), "L").verdict == "wrong"
+    part = one(check(SERVO, {"L": [[19.5], [81]]}), "L")
+    assert (part.verdict, part.reason) == (
+        "unreadable",
+        '19.5 is a float; write an exact value such as "39/2", or give the plant or the task floats="decimal"',
+    )
+
+
+def test_a_single_value_is_the_one_part_that_is_asked_for() -> None:
+    problem = '[plant]\nA = "[0 1; 0 -1]"\nC = "[1 0]"\n[specification]\npoles = "-10, -10"\n'
+    assert check(f'task = "observer"\n{problem}', sp.Matrix([19, 81])).verdict == "right"
+    with pytest.raises(InputError, match="3 parts are asked for"):
+        check(SERVO, sp.Matrix([19, 81]))
+
+
+def test_what_no_task_has_is_an_error_with_the_known_fields() -> None:
+    with pytest.raises(ProblemErrors, match=r"answer\.M: no task here has such a field; known: .*K, L, F"):
+        check(SERVO, {"M": "[19; 81]"})
+
+
+def test_in_the_letters_and_signs_of_a_convention() -> None:
+    plant = 'task = "observer"\nconvention = "S1"\n[plant]\nA = "[0 1; 0 -1]"\nC = "[1 0]"\n'
+    plant += '[specification]\npoles = "-10, -10"\n'
+    assert check(plant, {"M": "[-19; -81]"}).verdict == "right"
+    part = one(check(plant, {"M": "[19; 81]"}), "L")
+    assert (part.verdict, part.slip, part.letter) == ("wrong", "sign", "M")
+    assert part.reason == "the sign of M: with A + M C, yours is the gain of A - M C"
+    assert check(plant, {"L": "[19; 81]"}, convention="standard").verdict == "right"
+
+
+def test_both_gains_of_integral_action_have_the_sign_of_the_convention() -> None:
+    report = check(read(TWO_INTEGRATORS), {"K": "[-3 -1; 0 -3]", "k_I": "[2 0; 0 2]"}, convention="plusK-plusMC")
+    assert [part.verdict for part in report.parts] == ["right", "right"]
+
+
+def test_decimals_are_exact() -> None:
+    plant = 'task = "transfer_function"\n[plant]\nA = "[-1/3]"\nB = "[1]"\nC = "[1/3]"\n'
+    wrong = check(plant, {"transfer_function": "0.333/(s + 0.333)"}).parts[0]
+    assert (wrong.verdict, wrong.slip, wrong.credit) == ("wrong", "rounded", sp.Rational(1, 2))
+    assert check(plant, {"transfer_function": "1/(3 s + 1)"}).verdict == "right"
+    one_percent_off = check(plant, {"transfer_function": "1.01/(3 s + 1)"}).parts[0]
+    assert (one_percent_off.verdict, one_percent_off.slip) == ("wrong", "one_coefficient")
+    accepted = f'{plant}[marking]\ndecimals = "accept"\n'
+    assert check(accepted, {"transfer_function": "0.333/(s + 0.333)"}).verdict == "right"
+
+
+# -- what follows -----------------------------------------------------------------------------------------------------
+
+
+def test_what_follows_from_a_wrong_gain() -> None:
+    wrong = L + sp.Matrix([1, 0, 0])
+    R = S * sp.eye(3) - A
+    B, C = sp.Matrix([1, 0, 2]), sp.Matrix([[1, 1, 0]])
+    followed = sp.cancel((K * (R + B * K + wrong * C).inv() * wrong)[0])
+    report = check(THIRD_ORDER, {"K": text(K), "L": text(wrong), "F": str(followed)})
+    part = one(report, "F")
+    assert (part.verdict, part.origins, part.credit) == ("follows", ("compensator.L",), 1)
+    assert (report.verdict, report.score) == ("wrong", sp.Rational(5, 2))  # K 1, L 1/2 for one entry, F 1
+    right_all_the_same = check(THIRD_ORDER, {"K": text(K), "L": text(wrong), "F": str(F)})
+    assert one(right_all_the_same, "F").verdict == "right"
+
+
+@pytest.mark.parametrize("easy", [sp.zeros(3, 1), sp.Matrix([0, 1, 0])])
+def test_a_wrong_gain_that_makes_the_rest_easy_earns_nothing(easy: sp.Matrix) -> None:
+    B, C = sp.Matrix([1, 0, 2]), sp.Matrix([[1, 1, 0]])
+    followed = sp.cancel((K * (S * sp.eye(3) - A + B * K + easy * C).inv() * easy)[0])
+    answer = {"K": text(K), "L": text(easy), "F": str(followed)}
+    part = one(check(THIRD_ORDER, answer), "F")
+    assert (part.verdict, part.credit) == ("follows", 0)
+    assert "too easy" in part.hints[0]
+    unguarded = one(check(f"{THIRD_ORDER}[marking]\nguard = false\n", answer), "F")
+    assert unguarded.credit == 1
+
+
+def test_an_F_alone_is_judged_by_the_closed_loop() -> None:
+    assert one(check(SERVO, {"F": "(638 s + 800)/(2 s^2 + 46 s + 322)"}), "F").verdict == "right"
+    # s (s + 1) (s^2 + 23 s + 161 - e s ...): one zero pole is moved, so the loop is another one
+    assert one(check(SERVO, {"F": "(319 s + 401)/(s^2 + 23 s + 161)"}), "F").verdict == "wrong"
+
+
+def test_another_compensator_with_the_same_closed_loop_is_right() -> None:
+    """F = (a s² + b s + c)/(s² + d s + e) closes s (s + 1) to (s + 2)²(s + 10)² for every a: a proper one, too."""
+    a, b, c, d, e = sp.symbols("a b c d e")
+    loop = sp.Poly(S * (S + 1) * (S**2 + d * S + e) + a * S**2 + b * S + c - (S + 2) ** 2 * (S + 10) ** 2, S)
+    found = sp.solve([equation.subs(a, 5) for equation in loop.all_coeffs()], [b, c, d, e])
+    proper = f"(5 s^2 + {found[b]} s + {found[c]})/(s^2 + {found[d]} s + {found[e]})"
+    part = one(check(SERVO, {"F": proper}), "F")
+    assert (part.verdict, part.hints) == ("right", ("another compensator with the same closed-loop polynomial",))
+
+
+@pytest.mark.parametrize("entry", ["exp(-t/100000000)", "cos(1001 t) + cos(t)", "sinh(3) + sinh(796.14 - 936680)"])
+def test_functions_far_apart_are_compared(entry: str) -> None:
+    problem = 'task = "matrix_exponential"\n[plant]\nA = "[0 1; -2 -3]"\n'
+    part = check(problem, {"matrix": f"[({entry}) 0; 0 1]"}).parts[0]
+    assert part.verdict == "wrong"
+    expected = read(f'{problem}[expect]\nmatrix = "[({entry}) 0; 0 1]"\n')
+    assert mismatches(expected.viewed(expected.solve()), expected.expect)
+
+
+def test_the_root_of_a_fraction_of_pi_is_read() -> None:
+    problem = 'task = "canonical_form"\n[plant]\nA = "[0 1; -2 -3]"\nB = "[0; 1]"\n[specification]\nkind = "modal"\n'
+    for entry in ("sqrt(1/pi)", "sqrt(2/pi)", "sqrt(pi)", "sqrt(4/pi^2)"):
+        assert one(check(problem, {"A": f"[{entry} 0; 0 1]"}), "A").verdict == "wrong"
+
+
+# -- coordinates ------------------------------------------------------------------------------------------------------
+
+
+def layouts() -> dict[str, tuple[sp.Matrix, sp.Matrix, sp.Matrix]]:
+    """(T, Ā, B̄) in the four layouts, made here: rows of 𝒞⁻¹, the companion form, and both reversed."""
+    A, B = sp.Matrix([[1, 2], [3, 4]]), sp.Matrix([1, 1])
+    reach = sp.Matrix.hstack(B, A * B)
+    column = reach.inv()
+    q = column[1, :]
+    row = sp.Matrix.vstack(q, q * A)
+    turn = sp.Matrix([[0, 1], [1, 0]])
+    made = {"last row": row, "first row": turn * row, "last column": column, "first column": turn * column}
+    return {name: (T, T * A * T.inv(), T * B) for name, T in made.items()}
+
+
+@pytest.mark.parametrize("name", layouts())
+def test_a_canonical_form_in_any_layout_is_right(name: str) -> None:
+    T, Abar, Bbar = layouts()[name]
+    Cbar = sp.Matrix([[1, 0]]) * T.inv()
+    answer = dict(zip("TABC", map(text, (T, Abar, Bbar, Cbar)), strict=True))
+    report = check(CANONICAL, answer)
+    assert report.verdict == "right"
+    assert name == "last row" or name in report.parts[0].hints[0]
+    inverse = check(CANONICAL, answer | {"T": text(T.inv())})
+    layout = "" if name == "last row" else f"the coefficients stand in the {name} here; "
+    assert one(inverse, "T").hints == (f"{layout}you gave T^-1: here the new state is T x",)
+    changed = Abar.copy()
+    changed[0, 0] += 1
+    assert one(check(CANONICAL, answer | {"A": text(changed)}), "A").verdict == "wrong"
+
+
+def test_a_reduced_order_observer_for_another_estimate_is_right() -> None:
+    """ż = F z + G u + H y with z for 2 P x: F the same, G and H doubled, the column of M halved."""
+    problem = 'task = "reduced_order_observer"\n[plant]\nA = "[0 1; 0 -1]"\nB = "[0; 1]"\nC = "[1 0]"\n'
+    problem += '[specification]\npoles = "-10"\n'
+    # P = [-9 1], F = -10: P A - F P = [-90 0] = H C, G = P B = 1, [1 0; -9 1]^-1 = [1 0; 9 1]
+    single = {"F": "[-10]", "G": "[1]", "H": "[-90]", "M": "[1 0; 9 1]"}
+    double = {"F": "[-10]", "G": "[2]", "H": "[-180]", "M": "[1 0; 9 1/2]"}
+    assert check(problem, single).verdict == check(problem, double).verdict == "right"
+    mixed = check(problem, single | {"G": "[2]"})
+    assert [part.verdict for part in mixed.parts] == ["right", "wrong", "right", "right"]
+    without_M = check(problem, {name: double[name] for name in "FGH"})
+    assert [part.verdict for part in without_M.parts] == ["right", "right", "right", "missing"]
+
+
+def test_a_modal_form_in_any_order_and_scaling_is_right() -> None:
+    problem = 'task = "canonical_form"\n[plant]\nA = "[0 1; -2 -3]"\nB = "[0; 1]"\nC = "[1 0]"\n'
+    problem += '[specification]\nkind = "modal"\n'
+    A, B, C = sp.Matrix([[0, 1], [-2, -3]]), sp.Matrix([0, 1]), sp.Matrix([[1, 0]])
+    vectors = {-1: sp.Matrix([1, -1]), -2: sp.Matrix([1, -2])}
+    for order, (first, second) in itertools.product([(-1, -2), (-2, -1)], [(1, 1), (3, sp.Rational(-1, 2))]):
+        T = sp.Matrix.hstack(first * vectors[order[0]], second * vectors[order[1]]).inv()
+        answer = dict(zip("TABC", map(text, (T, T * A * T.inv(), T * B, C * T.inv())), strict=True))
+        assert check(problem, answer).verdict == "right"
+        for names in ("ABC", "AB", "AC", "A", "BC"):
+            given = {name: answer[name] for name in names if names != "BC" or order == (-1, -2)}
+            assert {part.verdict for part in check(problem, given).parts if part.given} <= {"right"}, names
+        # of -1 and -2 in turn B̄ C̄ are the residues 1 and -1 of 1/(s² + 3 s + 2): no scaling makes them two others
+        wrong = {"A": answer["A"], "B": answer["B"], "C": text(C * T.inv() * sp.diag(1, 2))}
+        found = {part.letter: part.verdict for part in check(problem, wrong).parts if part.given}
+        assert found == {"A": "right", "B": "right", "C": "wrong"}
+
+
+def test_rows_of_a_block_may_be_permuted_and_kernels_have_any_basis() -> None:
+    problem = 'task = "observability"\n[plant]\nA = "[0 1 0; 0 0 0; 0 0 0]"\nC = "[1 0 0; 1 1 0]"\n'
+    problem += '[marking]\nasked = ["observability.matrix", "observability.kernel"]\n'
+    report = check(problem, {"matrix": "[1 1 0; 1 0 0; 0 1 0; 0 1 0; 0 0 0; 0 0 0]", "kernel": ["[0; 0; -7]"]})
+    assert report.verdict == "right"
+    assert "another order" in report.parts[0].hints[0]
+    assert check(problem, {"kernel": ["[0; 1; 0]"]}).parts[1].verdict == "wrong"
+
+
+SERVO_WITH_INTEGRAL = """
+task = "integral_action"
+plant = { A = "[0 1; 0 -1]", B = "[0; 1]", C = "[1 0]" }
+specification = { poles = "-1, -2, -3" }
+"""
+TWO_INTEGRATORS = """
+task = "integral_action"
+plant = { A = "[0 0; 0 0]", B = "[1 0; 0 1]", C = "[1 0; 0 1]" }
+specification = { poles = "-1, -1, -2, -2" }
+"""
+
+
+@pytest.mark.parametrize(
+    ("problem", "answer", "verdicts"),
+    [  # s³ + (1 + K₂) s² + K₁ s + k_I = (s + 1)(s + 2)(s + 3); s² + 3s + 2 for each of the two outputs
+        (SERVO_WITH_INTEGRAL, {"K": "[11 5]", "k_I": "6"}, "right right"),
+        (SERVO_WITH_INTEGRAL, {"K": "[11 5]", "k_I": "-6"}, "right wrong"),
+        (SERVO_WITH_INTEGRAL, {"K": "[11 6]", "k_I": "6"}, "wrong right"),
+        (SERVO_WITH_INTEGRAL, {"K": "[11 5]"}, "right missing"),
+        (SERVO_WITH_INTEGRAL, {"K": "[11 5", "k_I": "6"}, "unreadable right"),
+        (SERVO_WITH_INTEGRAL, {"K": "[11 5 1]", "k_I": "6"}, "wrong right"),
+        (TWO_INTEGRATORS, {"K": "[3 1; 0 3]", "k_I": "[2 0; 0 2]"}, "right right"),
+        (TWO_INTEGRATORS, {"K": "[3 1; 1 3]", "k_I": "[2 0; 0 2]"}, "wrong wrong"),
+        (TWO_INTEGRATORS, {"K": "[3 1; 0 3]"}, "undecided missing"),
+    ],
+)
+def test_the_gains_of_integral_action_are_judged_together(problem: str, answer: dict[str, str], verdicts: str) -> None:
+    report = check(read(problem), answer)
+    assert " ".join(one(report, name).verdict for name in ("K", "k_I")) == verdicts
+    if "undecided" in verdicts:
+        part = one(report, "K")
+        assert (part.given, part.reason) == ("[3 1; 0 3]", "K and k_I are right together: give both")
+
+
+def test_a_loop_with_integral_action_follows_from_wrong_gains() -> None:
+    """u = -K x + k_I z with z' = r - y, K = [11 6] in place of [11 5]."""
+    asked = f'{SERVO_WITH_INTEGRAL}marking = {{ asked = ["integral_action.closed_loop_matrix"] }}\n'
+    given = {"K": "[11 6]", "k_I": "6", "closed_loop_matrix": "[0 1 0; -11 -7 6; -1 0 0]"}
+    part = check(read(asked), given).parts[0]
+    assert (part.verdict, part.origins) == ("follows", ("integral_action.K",))

@@ -1,0 +1,263 @@
+"""Derivations: the first false line, what follows from it, and letters that stand for unknowns."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+
+import pytest
+
+from symobs.applications.checking import Checked
+from symobs.problem import read
+from tests.support.paths import ROOT
+from tests.support.problems.answered import SERVO, TWO_OUTPUTS
+
+# Of the servo A = [0 1; 0 -1], B = [0; 1], C = [1 0], worked out by hand: K = [4 3], L = [19; 81],
+# A - L C = [-19 1; -81 -1], A - B K = [0 1; -4 -4], det(s I - A) = s^2 + s, O = I.
+SERVO_CHECKED = Checked.of(SERVO)
+LETTERS = {"standard": ("L", "-"), "S0": ("L", "-"), "S1": ("M", "+"), "S4": ("L", "-")}
+
+
+def lines(
+    text: str, convention: str | None = None, checked: Checked = SERVO_CHECKED
+) -> list[tuple[str, tuple[str, ...]]]:
+    """The verdicts on lines, with the lines that they follow from."""
+    return [(line.verdict, line.origins) for line in checked.report(text, "reason", convention).lines]
+
+
+TRUE = [
+    "A - L C = [-19 1; -81 -1]",
+    "det(s I - A) = s^2 + s = s (s + 1)",
+    "det(s I - A + L C) = s^2 + 20 s + 100 = (s + 10)^2",
+    "A - B K = [0 1; -4 -4]",
+    "eigenvalues(A) = [0 -1]",
+    "rank(O) = 2",
+    "K = [4 3]",
+    "F = (319 s + 400)/(s^2 + 23 s + 161)",
+]
+FALSE = [
+    "A - L C = [-19 1; -81 1]",
+    "det(s I - A) = s^2 - s",
+    "det(s I - A + L C) = s^2 + 20 s + 10",
+    "A - B K = [0 1; -4 -2]",
+    "rank(O) = 1",
+    "det(s I - A + B K) = s^2 + 4 s + 5",
+    "K = [4 4]",
+    "L = [-19; -81]",
+    "F = (319 s + 400)/(s^2 + 23 s + 160)",
+    "A L = [81; 81]",
+]
+
+
+@pytest.mark.parametrize("line", TRUE)
+def test_a_true_line(line: str) -> None:
+    assert lines(line) == [("true", ())]
+
+
+@pytest.mark.parametrize("place", range(1, 4))
+@pytest.mark.parametrize("line", FALSE)
+def test_the_first_false_line_is_named(line: str, place: int) -> None:
+    before = TRUE[: place - 1]
+    report = SERVO_CHECKED.report("\n".join([*before, line, "A B = [1; -1]"]))
+    assert report.first_false == f"line {place}"
+    assert [each.verdict for each in report.lines] == ["true"] * (place - 1) + ["false", "true"]
+
+
+@pytest.mark.parametrize(
+    ("convention", "right", "wrong"),
+    [
+        ("S0", "A - L C = [-19 1; -81 -1]", "A + L C = [-19 1; -81 -1]"),
+        ("S1", "A + M C = [-19 1; -81 -1]", "A - M C = [-19 1; -81 -1]"),
+        ("S1", "M = [-19; -81]", "M = [19; 81]"),
+        ("S2", "A_22 = -1", "A_22 = 1"),
+        ("S3", "det(s I - A + B K) = (s + 2)^2", "det(s I - A + B K) = (s - 2)^2"),
+        ("S4", "F = [-19 1; -81 -1]", "F = [-19 1; 81 -1]"),
+    ],
+)
+def test_lines_in_the_letters_of_a_convention(convention: str, right: str, wrong: str) -> None:
+    observer = SERVO.replace('task = "compensator"', 'task = "observer"').replace('control_poles = "-2, -2"\n', "")
+    checked = SERVO_CHECKED if convention != "S4" else Checked.of(observer)
+    assert [verdict for verdict, _ in lines(f"{right}\n{wrong}", convention, checked)] == ["true", "false"]
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("L = [19; 80]\nA - L C = [-19 1; -80 -1]", ["false", "follows"]),
+        ("L = [19; 80]\ndet(s I - A + L C) = s^2 + 20 s + 99", ["false", "follows"]),
+        ("L = [19; 80]\nA - L C = [-19 1; -80 1]", ["false", "false"]),
+        ("L = [19; 80]\nF = (316 s + 396)/(s^2 + 23 s + 160)", ["false", "follows"]),
+        ("L = [19; 80]\nF = (316 s + 400)/(s^2 + 23 s + 160)", ["false", "false"]),
+        ("L = [19; 80]\nF = (316 s + 396)/(s^2 + 23 s + 160)\nK = [4 3]", ["false", "follows", "true"]),
+        ("K = [4 2]\nA - B K = [0 1; -4 -3]", ["false", "follows"]),
+        ("K = [4 2]\ndet(s I - A + B K) = s^2 + 3 s + 4", ["false", "follows"]),
+        ("K = [4 2]\nA - B K = [0 1; -4 -3]\nA - B K = [0 1; -4 -4]", ["false", "follows", "true"]),
+        ("A = [0 1; 0 1]\nA B = [1; 1]", ["false", "follows"]),
+        ("A = [0 1; 0 1]\nA^2 = [0 1; 0 1]", ["false", "follows"]),
+        ("C = [0 1]\nC B = 1", ["false", "follows"]),
+        ("L = [19; 80]\nL = [19; 81]\nA - L C = [-19 1; -81 -1]", ["false", "true", "true"]),
+        ("L = [19; 81]\nL = [19; 80]\nA - L C = [-19 1; -80 -1]", ["true", "false", "follows"]),
+    ],
+)
+def test_what_follows_from_a_false_line_is_no_error(text: str, expected: list[str]) -> None:
+    found = lines(text)
+    assert [verdict for verdict, _ in found] == expected
+    assert all((origins != ()) is (verdict == "follows") for verdict, origins in found)
+
+
+def test_F_follows_from_a_wrong_gain() -> None:
+    # K adj(s I - A + B K + L C) L = 4 (19 (s + 4) + 80) + 3 (80 (s + 19) - 19 (4 + 80)), over (s + 19)(s + 4) + 4 + 80
+    found = lines("L = [19; 80]\nF = (316 s + 396)/(s^2 + 23 s + 160)\nF = (316 s + 396)/(s^2 + 23 s + 161)")
+    assert found == [("false", ()), ("follows", ("line 1",)), ("false", ())]
+
+
+@pytest.mark.parametrize(
+    ("let", "text", "expected"),
+    [
+        ("[l1; l2]", "A - X C = [-l1 1; -l2 -1]", "true"),
+        ("[l1; l2]", "det(s I - A + X C) = s^2 + (1 + l1) s + l1 + l2", "true"),
+        ("[l1; l2]", "det(s I - A + X C) = s^2 + (1 - l1) s + l1 + l2", "false"),
+        ("[l1; l1]", "det(s I - A + X C) = s^2 + (1 + l1) s + 2 l1", "true"),
+        ("[2*l1; l2]", "X C = [2*l1 0; l2 0]", "true"),
+    ],
+)
+def test_letters_that_stand_for_unknowns(let: str, text: str, expected: str) -> None:
+    answer = {
+        "symbols": ["l1", "l2"],
+        "let": {"X": let},
+        "answer": {"L": "[19; 81]"},
+        "step": [{"relation": text}],
+    }
+    (line,) = SERVO_CHECKED.report(answer).lines
+    assert line.verdict == expected
+
+
+def test_a_member_of_the_family_takes_the_place_of_the_right_gain() -> None:
+    checked = Checked.of(TWO_OUTPUTS)
+    text = "L = [0 1; 0 2; 0 6]\nA - L C = [0 1 -1; 0 0 -1; 1 2 -3]\nL = [0 1; 0 2; 0 5]\nA - L C = [0 1 -1; 0 0 -1; 1 2 -2]"
+    assert [verdict for verdict, _ in lines(text, None, checked)] == ["true", "true", "false", "follows"]
+
+
+def test_a_false_line_beside_a_right_answer_is_said_so() -> None:
+    report = SERVO_CHECKED.report("K = [4 3]\nL = [19; 81]\ndet(s I - A) = s^2\nF = (319 s + 400)/(s^2 + 23 s + 161)")
+    assert (report.verdict, report.first_false) == ("right", "line 3")
+    assert report.hints == ("line 3 does not lead to your (right) result",)
+
+
+def test_a_correction_from_a_wrong_gain_says_so() -> None:
+    report = SERVO_CHECKED.report("K = [4 4]\nL = [19; 81]\nF = 1/s\ndet(s I - A) = s^2 - s", "solution")
+    # K (s I - A + B K + L C)^-1 L of K = [4 4] and L = [19; 81], by SymPy
+    assert report.lines[2].right == "F = (400*s + 400)/(s^2 + 24*s + 180)"
+    assert [line.reason.endswith("with your K") for line in report.lines] == [False, False, True, False]
+    (line,) = SERVO_CHECKED.report("F = 1/s", "solution").lines
+    assert (line.right, "with your" in line.reason) == ("F = (319*s + 400)/(s^2 + 23*s + 161)", False)
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("x_hat' = A x_hat + B u + [1; 5] (y - C x_hat)", ["in the coefficient of x_hat", "in the coefficient of y"]),
+        ("K = [1 1]\nu = K x", ["a term in x_hat is missing"]),
+    ],
+)
+def test_no_renaming_is_offered_under_which_any_gain_would_be_right(text: str, said: list[str]) -> None:
+    # With y = C x the correction of A x + B u vanishes; and K x' = x_2 - x_2 + u = u is true of the plant alone.
+    line = SERVO_CHECKED.report(text).lines[-1]
+    assert line.verdict == "false"
+    assert "is printed for" not in line.reason
+    assert all(place in line.reason for place in said)
+
+
+def test_a_line_too_long_to_be_checked_is_said_so_where_its_part_is_read() -> None:
+    report = SERVO_CHECKED.report(f"F = {'+'.join(['s'] * 200)}")
+    (part,) = (part for part in report.parts if part.given)
+    assert (part.verdict, [line.verdict for line in report.lines]) == ("wrong", ["undecided"])
+    assert "the equation has more than 200 parts" in report.to_text()
+    assert report.first_false is None
+
+
+@pytest.mark.parametrize(
+    ("text", "verdicts"),
+    [("K = [4,0 3,0]", []), ("K = [4 3", []), ("K = [1 1]\nK = [4,0 3,0]\nrank(O) = 2", ["false", "true"])],
+)
+def test_an_answer_that_cannot_be_read_is_no_false_line(text: str, verdicts: list[str]) -> None:
+    report = SERVO_CHECKED.report(text)
+    assert report.parts[0].verdict == "unreadable"
+    assert [line.verdict for line in report.lines] == verdicts
+
+
+def test_what_cannot_be_read_does_not_stop_the_rest() -> None:
+    report = SERVO_CHECKED.report("A + = 3\nQ L = [1; 2]\nK = [4 3]\nh1 > 3")
+    assert [line.verdict for line in report.lines] == ["unreadable", "unreadable", "true", "unreadable"]
+    assert 'the letter "Q" means nothing' in report.lines[1].reason
+
+
+def test_a_false_line_without_a_cause_is_false_all_the_same() -> None:
+    """The search for a slip meets products of signals here, which have no value."""
+    checked = Checked.of(TWO_OUTPUTS)
+    assert lines("det(s I - A - + + C) = (s L 1)^3", None, checked) == [("false", ())]
+
+
+def test_a_line_that_cannot_be_read_says_nothing_of_places_in_a_file() -> None:
+    (line,) = Checked.of(SERVO).report("a =").lines
+    assert (line.verdict, "printed" in line.reason) == ("unreadable", False)
+    assert line.reason
+
+
+def test_milestones() -> None:
+    problem = f'{SERVO}[[marking.milestone]]\nrelation = "rank(O) = 2"\npoints = 1\n'
+    problem += '[[marking.milestone]]\nrelation = "K = [4 3]"\npoints = 2\n'
+    checked = Checked.of(problem)
+    report = checked.report("K = [4 3]\nrank(O) = 2")
+    assert [met for _, _, met in report.milestones] == [True, True]
+    assert (report.score, report.total) == (Fraction(4), Fraction(6))
+    assert [met for _, _, met in checked.report("rank(O) = 1").milestones] == [False, False]
+
+
+def test_lines_of_a_region_are_true_where_it_implies_them() -> None:
+    name = "region_third_order_loop"
+    checked = Checked.of(
+        read((ROOT / "worked_examples" / f"{name}.toml").read_text(encoding="utf-8"), name, ROOT / "worked_examples")
+    )
+    conditions = checked.results[0].fields["stable_if"]
+    text = "\n".join([conditions[0], f"{conditions[0]} and {conditions[-1]}"])
+    assert {verdict for verdict, _ in lines(text, None, checked)} == {"true"}
+
+
+# A = [0 1; -2 -3], B = [0; 1], C = [1 0] has in T = [2 1; 1 1] its modal form diag(-1, -2), [1; 1], [1 -1] (by hand).
+MODAL = (
+    'task = "canonical_form"\n[plant]\nA = "[0 1; -2 -3]"\nB = "[0; 1]"\nC = "[1 0]"\n[specification]\nkind = "modal"\n'
+)
+DUAL = 'task = "dual"\n[plant]\nA = "[0 1; -2 -3]"\nB = "[0; 1]"\nC = "[1 0]"\n'
+PARTED = 'task = "decomposition"\n[plant]\nA = "[1 0; 0 -1]"\nB = "[1; 0]"\nC = "[0 1]"\n'
+
+
+@pytest.mark.parametrize(
+    ("problem", "answer"),
+    [
+        (MODAL, "A = [-1 0; 0 -2]\nT = [2 1; 1 1]\nB = [1; 1]\nC = [1 -1]"),
+        (DUAL, "A = [0 -2; 1 -3]\nB = [1; 0]\nC = [0 1]"),
+        (PARTED, "T = [0 1; 1 0]\nA = [-1 0; 0 1]\nB = [0; 1]\nC = [1 0]\nsizes = [0 1 1 0]"),
+    ],
+    ids=["canonical_form", "dual", "decomposition"],
+)
+def test_a_part_of_the_answer_that_has_a_letter_of_the_plant_is_no_line(problem: str, answer: str) -> None:
+    report = Checked.of(problem).report(answer)
+    assert (report.first_false, report.hints) == (None, ())
+    assert "false" not in {line.verdict for line in report.lines}
+    said = {"answer": {"A": "[9 9; 9 9]"}, "step": [{"relation": "A = [9 9; 9 9]"}, {"relation": "A = [0 0; 0 0]"}]}
+    assert [line.where for line in Checked.of(problem).report(said).lines] == ["line 2"]
+
+
+def test_a_line_on_the_matrix_of_the_plant_is_judged_beside_a_part_of_that_name() -> None:
+    report = Checked.of(MODAL).report("A = [0 1; -2 -4]\nA = [-1 0; 0 -2]\nT = [2 1; 1 1]")
+    assert report.first_false == "line 1"
+
+
+def test_a_false_line_has_a_reason_and_a_long_one_is_shown_by_its_beginning() -> None:
+    report = SERVO_CHECKED.report("K = [4 3]\nF = 319 (s + 1.254)/(s^2 + 23 s + 161)")
+    assert report.lines[1].verdict == "false"
+    assert report.lines[1].reason
+    long = SERVO_CHECKED.report(f"K = [4 3]\nrank(O) = {'+'.join(['1'] * 500)}\nL = [{'q ' * 500}]")
+    for page in (long.to_text(), long.to_html().rpartition("</style>")[2]):
+        assert "…" in page
+        assert len(page) < 3_500

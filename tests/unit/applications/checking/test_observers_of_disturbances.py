@@ -1,0 +1,111 @@
+"""Answers to observers with disturbances: gains that are right together, and every H that decouples."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+import sympy as sp
+
+from symobs.applications.checking import check
+
+#: The error of (x, w) has the matrix [-l11, 1 - l12, 0; -l21, -l22, 1; -l31, -l32, 0].
+CONSTANT = """task = "disturbance_observer"
+[plant]
+A = "[0 1; 0 0]"
+C = "[1 0; 0 1]"
+[specification]
+E = "[0; 1]"
+poles = "-1, -2, -3"
+"""
+UNKNOWN = """task = "unknown_input_observer"
+[plant]
+A = "[0 1 0; 0 0 1; -1 -2 -3]"
+C = "[1 0 0; 0 0 1]"
+[specification]
+E = "[1; 0; 0]"
+poles = "-2, -3, -4"
+"""
+HIDDEN = """task = "unknown_input_observer"
+[plant]
+A = "[0 1; 0 0]"
+C = "[1 0]"
+[specification]
+E = "[0; 1]"
+poles = "-1, -2"
+"""
+
+
+def verdicts(problem: str, answer: Any) -> dict[str, str]:
+    return {part.letter: part.verdict for part in check(problem, answer).parts}
+
+
+def test_both_gains_of_a_disturbance_observer_place_the_poles_together() -> None:
+    A = sp.Matrix([[0, 1, 0], [0, 0, 1], [0, 0, 0]])
+    for L in (
+        sp.Matrix([[1, 1], [0, 5], [0, 6]]),
+        sp.Matrix([[3, 1], [0, 3], [0, 2]]),
+        sp.Matrix([[1, 1], [0, 5], [0, 7]]),
+    ):
+        error = A - L * sp.Matrix([[1, 0, 0], [0, 1, 0]])
+        is_right = sp.factor(error.charpoly().as_expr()) == sp.factor(
+            sp.prod(sp.Symbol("lambda") + k for k in (1, 2, 3))
+        )
+        found = verdicts(CONSTANT, {"L_x": L[:2, :].tolist(), "L_w": L[2:, :].tolist()})
+        assert (set(found.values()) == {"right"}) is is_right
+    half = check(CONSTANT, {"L_w": "[0 6]"}).parts[1]
+    assert (half.verdict, half.reason) == ("undecided", "L_x and L_w are right together: give both")
+
+
+@pytest.mark.parametrize("rows", [[[1, 0], [0, 0], [0, 0]], [[1, 1], [0, 2], [0, 3]]])
+@pytest.mark.parametrize("given", ["L", ""])
+def test_any_H_that_decouples_is_right_and_the_gain_is_one_for_it(rows: list[list[int]], given: str) -> None:
+    """With L, or with F = T A - L C alone; L is chosen so that F has the eigenvalues -2, -3, -4."""
+    A, C = sp.Matrix([[0, 1, 0], [0, 0, 1], [-1, -2, -3]]), sp.Matrix([[1, 0, 0], [0, 0, 1]])
+    H = sp.Matrix(rows)
+    assert H * C * sp.Matrix([1, 0, 0]) == sp.Matrix([1, 0, 0])
+    TA = (sp.eye(3) - H * C) * A
+    a, b, c, lam = sp.symbols("a b c lambda")
+    L = sp.Matrix([[3, 0], [0, a], [b, c]]) if H[0, 1] == 0 else sp.Matrix([[a, 0], [b, 0], [c, 0]])
+    wanted = sp.Poly((lam + 2) * (lam + 3) * (lam + 4), lam)
+    equations = (sp.Poly((TA - L * C).charpoly(lam).as_expr(), lam) - wanted).all_coeffs()
+    (values, *_) = [
+        each for each in sp.solve(equations, [a, b, c], dict=True) if all(v.is_rational for v in each.values())
+    ]
+    L = L.subs(values).subs({a: 0, b: 5, c: 0})
+    F = TA - L * C
+    assert sp.Poly(F.charpoly(lam).as_expr(), lam) == wanted
+    answer = {"H": H, "F": F, "B_y": L + F * H} | ({"L": L} if given else {})
+    asked = UNKNOWN + "[marking]\nasked = [" + ", ".join(f'"unknown_input_observer.{n}"' for n in answer) + "]\n"
+    assert set(verdicts(asked, answer).values()) == {"right"}
+    wrong = answer | {"F": F + sp.eye(3)}
+    assert verdicts(asked, wrong)["F"] == "wrong"
+
+
+def test_what_is_asked_for_and_what_is_said_where_nothing_exists() -> None:
+    assert list(verdicts(UNKNOWN, {})) == ["H", "L"]
+    assert verdicts(UNKNOWN, {"H": "[2 1; 0 2; 0 3]"})["H"] == "wrong"
+    for said, verdict in (("yes", "wrong"), ("false", "right"), (False, "right"), ("perhaps", "unreadable")):
+        assert verdicts(HIDDEN, {"solvable": said})["solvable"] == verdict
+    report = check(HIDDEN, {"verdict": "no", "L": "[1; 2]", "H": "[1; 0]"})
+    assert [(part.letter, part.verdict) for part in report.parts] == [
+        ("verdict", "right"),
+        ("L", "wrong"),
+        ("H", "wrong"),
+    ]
+
+
+def test_a_right_answer_that_is_not_unique_is_no_false_line() -> None:
+    feedforward = """task = "feedforward"
+[plant]
+A = "[0 1; 0 0]"
+B = "[1 0; 0 1]"
+C = "[1 0]"
+[specification]
+control_poles = "-1, -2"
+observer_poles = "-3, -4"
+"""
+    report = check(feedforward, "F = [1; 0]")
+    assert report.verdict == "right"
+    assert [line.verdict for line in report.lines] == ["true"]
+    assert not report.hints

@@ -1,0 +1,408 @@
+"""Reports: marks, formats, what is given away, and answers that cannot be read."""
+
+from __future__ import annotations
+
+import json
+import pickle
+import re
+from dataclasses import replace
+from fractions import Fraction
+from typing import Any
+
+import pytest
+from jsonschema import Draft202012Validator  # type: ignore[import-untyped]
+
+import symobs
+from symobs.applications.checking import SHOW, Checked, CheckReport, check
+from symobs.applications.checking.answers.answer_file import read_answer
+from symobs.applications.checking.asked import answer_file
+from symobs.applications.checking.derivations.line_auditor import without_solution
+from symobs.applications.checking.report.schema import schema
+from symobs.ground.errors import ProblemErrors, UsageError
+from symobs.problem import read
+from symobs.problem.marking import SLIPS
+from tests.programs.teaching.classes import answers, lines
+from tests.support.paths import ROOT
+from tests.support.problems.answered import SERVO, THIRD_ORDER, TWO_OUTPUTS, F, K, L
+
+RIGHT = {"K": "[4 3]", "L": "[19; 81]", "F": "(319 s + 400)/(s^2 + 23 s + 161)"}
+ANSWERS: list[Any] = [
+    RIGHT,
+    {"K": "[4 3"},
+    {"K": "[4 4]", "L": "[-19; -81]", "F": "1/s"},
+    {},
+    "K = [4 3]\nL = [19; 80]\nA - L C = [-19 1; -80 -1]\ndet(s I - A) = s^2",
+]
+CHECKED = Checked.of(SERVO)
+VALID = Draft202012Validator(schema())
+
+
+@pytest.mark.parametrize("show", SHOW)
+@pytest.mark.parametrize("answer", ANSWERS, ids=str)
+def test_every_report_keeps_its_schema_and_its_width(answer: Any, show: str) -> None:
+    report = CHECKED.report(answer, show)
+    VALID.validate(json.loads(report.to_json()))
+    assert max(map(len, report.to_text().split("\n"))) <= 100
+    assert "\x1b" not in report.to_text()
+    assert pickle.loads(pickle.dumps(report)) == report  # noqa: S301 - our own bytes
+    for page in (report.to_markdown(), report.to_html()):
+        assert report.verdict in page
+
+
+def test_the_schema_refuses_another_document() -> None:
+    whole = json.loads(CHECKED.report(RIGHT).to_json())
+    Draft202012Validator.check_schema(schema())
+    assert not VALID.is_valid(whole | {"verdict": "perhaps"})
+    assert not VALID.is_valid({key: value for key, value in whole.items() if key != "score"})
+
+
+# -- what is given away -----------------------------------------------------------------------------------------------
+
+
+def _body(page: str) -> str:
+    """A page without its styles, and without numbers in attributes."""
+    return re.sub(r"<[a-z][^>]*>", lambda tag: tag[0].split()[0] + ">", page.rpartition("</style>")[2])
+
+
+_POLYNOMIAL = re.compile(r"\bs\*\*|\bs\^[0-9]|<msup>")
+
+
+def _given_away(report: CheckReport, right: str, handed_in: str) -> list[str]:
+    """The numbers of more than a digit of the right answers that a student did not write, and powers of s, in a report."""
+    found = []
+    for written in (report.to_json(), report.to_text(), report.to_markdown(), _body(report.to_html())):
+        secret = set(re.findall(r"[0-9]{2,}", right)) - set(re.findall(r"[0-9]+", handed_in))
+        found += [number for number in secret if re.search(rf"(?<![0-9#]){number}(?![0-9])", written)]
+        found += [] if _POLYNOMIAL.search(handed_in) else _POLYNOMIAL.findall(written)
+    return found
+
+
+@pytest.mark.parametrize(
+    ("problem", "right", "wrong"),
+    [
+        (SERVO, str(RIGHT), {"K": "[1 1]", "L": "[-19; 5]", "F": "1/s"}),
+        (SERVO, str(RIGHT), "K = [1 1]\nL = [1; 5]\ndet(s I - A + L C) = s + 7\nF = 3"),
+        (SERVO, str(RIGHT), {"K": "[4 3 5]", "L": "[q; 5]", "F": "1/S"}),
+        (THIRD_ORDER, f"{K}{L}{F}", {"K": "[1 1 1]", "L": "[1; 1; 1]", "F": "7"}),
+        (TWO_OUTPUTS, "", {"L": "[1 1; 1 1; 1 1]"}),
+    ],
+)
+def test_without_reasons_no_right_value_and_no_polynomial_is_given_away(problem: str, right: str, wrong: Any) -> None:
+    for show in ("verdict", "place"):
+        report = Checked.of(problem).report(wrong, show)
+        assert _given_away(report, right, str(wrong)) == []
+    report = report.bounded("verdict")
+    assert (report.lines, report.certificates, report.parts[0].slip) == ((), (), None)
+
+
+def test_a_reason_is_not_the_solution() -> None:
+    wrong = (
+        "K = [1 1]\nL = [1; 5]\nA - B K = [0 7; -1 -2]\nA - L C = [-2 1; -7 -1]\nF = (3 s + 7)/(s + 2)\nrank(O) = 1\n"
+    )
+    written, secret = {}, r"(?<![0-9#])(?:19|81|319|400|161)(?![0-9])"
+    report = CHECKED.report(wrong, "solution")
+    for show in ("reason", "solution"):
+        report = CHECKED.report(wrong, show)
+        written[show] = [report.to_json(), report.to_text(), report.to_markdown(), _body(report.to_html())]
+    assert not any(re.search(secret, page) for page in written["reason"])
+    assert all(re.search(secret, page) for page in written["solution"])
+    assert [line.reason for line in report.lines][1:] == [
+        "",  # of a gain its part says why
+        "entry (1, 2) is 1, not 7, with your K",
+        "not right: entry (1, 1), entry (2, 1), with your L",
+        "its sides are not equal, with your K and L",
+        "its sides are not equal",
+    ]
+
+
+@pytest.mark.parametrize(
+    ("line", "place"),
+    [
+        ("u = -[1 1] x", "a term in x_hat is missing; a term in x does not belong there"),
+        ("u = [5 6] x", "a term in x_hat is missing; a term in x does not belong there"),
+        ("u = K x", "a term in x_hat is missing; a term in x does not belong there"),
+        ("u = 0", "a term in x_hat is missing"),
+        ("u = -[1 1] x_hat", "not right: in the coefficient of x_hat entry (1, 1), entry (1, 2)"),
+        ("x_hat' = A x_hat + B u + [1; 5] y", ""),
+        ("K B = [1 1 1] C'", "the sizes do not fit: [1 1 1] is 1x3 and C' is 2x1"),
+    ],
+)
+def test_a_line_on_signals_does_not_tell_the_gains(line: str, place: str) -> None:
+    report = CHECKED.report(line)
+    (judged,) = report.lines
+    assert judged.verdict == "false"
+    assert place in judged.reason
+    assert not re.search(r"\b(?:4|3|19|81)\b", judged.reason)
+    for page in (report.to_text(), report.to_markdown(), _body(report.to_html())):
+        assert not re.search(r"\[-?4 -?3\]|\[-?19; -?81\]", page)
+
+
+@pytest.mark.parametrize("said", ["K is [4 3]", "with [4 3] it holds", "the gain [4 3] is asked for; and more"])
+def test_of_a_wording_that_nobody_knows_nothing_is_told(said: str) -> None:
+    assert without_solution(said) == ""
+
+
+def test_an_empty_answer_is_not_filled_in() -> None:
+    """The one entry that is wrong in a gain of order 1, in K_d = 0 and in a line is all that there is to find."""
+    alone = 'task = "observer"\n[plant]\nA = "[2]"\nC = "[1]"\n[specification]\npoles = "-15"\n'
+    for answer in ({"L": "0"}, "L = [0]\n"):  # L = 17
+        report = Checked.of(alone).report(answer)
+        assert (report.parts[0].verdict, report.parts[0].slip) == ("wrong", "one_coefficient")
+        assert _given_away(report, "17", "s^2") == []
+    tracking = ROOT / "worked_examples" / "cart_tracking_angle.toml"  # K_d = [0 -539/50 0 0]
+    report = Checked.of(read(tracking.read_text(encoding="utf-8"), tracking.name, tracking.parent)).report(
+        "K_d = [0 0 0 0]\n"
+    )
+    assert report.parts[0].reason == report.lines[0].reason == "entry (1, 2) is wrong"
+
+
+def test_nothing_is_given_away_to_any_student_of_a_class() -> None:
+    checked, seen = Checked.of(THIRD_ORDER), set()
+    for number, answer in enumerate(answers(9, "feedback")):
+        steps = [{"relation": line} for line in lines(answer, number).splitlines()[:4]]
+        whole = checked.report({"answer": {name: answer[name] for name in "KLF"}, "step": steps})
+        seen |= {part.slip for part in whole.parts} | {line.verdict for line in whole.lines}
+        for show in ("place", "verdict"):
+            bounded = whole.bounded(show)
+            ours = replace(bounded, lines=(), parts=tuple(replace(part, given="") for part in bounded.parts))
+            assert _given_away(ours, f"{K}{L}{F}", "") == []
+        assert not any(line.reason or line.right for line in whole.bounded("place").lines)
+        assert _given_away(whole, f"{K}{L}{F}", "") != []
+    assert {"sign", "entry", "false"} <= seen
+
+
+def test_why_a_line_cannot_be_read_is_always_said() -> None:
+    report = CHECKED.report("K = [4 3\nL = [19; 80]\ndet(s I - A = s\nw = 3\n", "place")
+    assert [bool(line.reason) for line in report.lines] == [False, True, True]
+    assert "declare" not in report.lines[-1].reason
+    assert report.parts[0].reason
+
+
+def test_each_level_shows_more() -> None:
+    answer = {"L": "[19; 80]"}
+    by_level = {show: CHECKED.report(answer, show).parts[1] for show in SHOW}
+    assert [part.place for part in by_level.values()] == [None, [2, 1], [2, 1], [2, 1]]
+    assert [bool(part.reason) for part in by_level.values()] == [False, False, True, True]
+    assert [part.right for part in by_level.values()] == [None, None, None, "[19; 81]"]
+    assert "<math" in CHECKED.report(answer, "solution").to_html()
+
+
+def test_marks_are_exact_fractions() -> None:
+    marking = '[marking]\ntotal = 10\nparts = { "compensator.F" = 4 }\n[marking.credit]\nentry = "1/3"\n'
+    report = check(SERVO + marking, {"K": "[4 3]", "L": "[19; 80]"})
+    assert (report.score, report.total) == (Fraction(10) * (1 + Fraction(1, 3)) / 6, Fraction(10))
+    assert json.loads(report.to_json())["score_decimal"] == "2.22"
+    asked = check(
+        f'{SERVO}[marking]\nasked = ["compensator.K", "compensator.closed_loop_polynomial"]\n', {"K": "[4 3]"}
+    )
+    assert [part.part for part in asked.parts] == ["compensator.K", "compensator.closed_loop_polynomial"]
+    assert (asked.verdict, asked.score) == ("incomplete", Fraction(1))
+
+
+@pytest.mark.parametrize(
+    ("marking", "message"),
+    [
+        ("total = -1", "marking.total: -1 is negative"),
+        ("credit = { sign = 2 }", "marking.credit.sign: 2 is not between 0 and 1"),
+        ('credit = { sgn = "1/2" }', "marking.credit.sgn: no slip has this name; did you mean sign"),
+        ('asked = ["observer.L"]', r"marking.asked\[0\]: observer is not a task of this file"),
+        ("guard = 1", "marking.guard: true or false is expected"),
+        ("extra = 1", "marking.extra: unknown key"),
+        ('decimals = "sometimes"', "marking.decimals: this is no choice"),
+        ("milestone = [{ relation = 1, points = 1 }]", r"marking.milestone\[0\].relation: a text is expected"),
+    ],
+)
+def test_a_wrong_marking_is_refused(marking: str, message: str) -> None:
+    with pytest.raises(ProblemErrors, match=message):
+        read(f"{SERVO}[marking]\n{marking}\n")
+
+
+def test_a_part_that_does_not_exist_is_named() -> None:
+    with pytest.raises(
+        ProblemErrors,
+        match=r"marking.asked\[0\]: there is no compensator.Q; did you mean compensator.L\? known: compensator.verdict",
+    ):
+        check(f'{SERVO}[marking]\nasked = ["compensator.Q"]\n', RIGHT)
+
+
+def test_all_of_a_marking_that_would_never_count_is_named_at_once() -> None:
+    marking = '[marking]\nasked = ["compensator.Q"]\nparts = { "compensator.X" = 2 }\n'
+    marking += '[[marking.milestone]]\nrelation = "a ="\npoints = 1\n'
+    marking += '[[marking.milestone]]\nrelation = "h >"\npoints = 1\n'
+    with pytest.raises(ProblemErrors) as raised:
+        check(SERVO + marking, RIGHT)
+    places = ["asked[0]", "parts.compensator.X", "milestone[0].relation", "milestone[1].relation"]
+    assert [error.where for error in raised.value.errors] == [f"marking.{place}" for place in places]
+    assert all(error.repair for error in raised.value.errors)
+
+
+# L = [2 1; 0 2] and L = [1 1; 0 3] both place -1, -2 for x' = [1 1; 0 1] x, y = x (A - L triangular, by hand).
+_TWO_OUTPUTS = (
+    'task = "observer"\n[plant]\nA = "[1 1; 0 1]"\nC = "[1 0; 0 1]"\n[specification]\npoles = "-1, -2"\n[marking]\n'
+)
+
+
+@pytest.mark.parametrize(
+    ("problem", "relation", "refusal"),
+    [
+        (SERVO, "A - L C = [-19 1; -81 -2]", "entry (2, 2) is -1, not -2; write A - L C = [-19 1; -81 -1]"),
+        (SERVO, "L = [19; 80]", "entry (2, 1) is 81, not 80; write L = [19; 81]"),
+        (SERVO, "rank(O) = 1", "write rank(O) = 2"),
+        (SERVO, "A - L C = [-19 1; -81 -1]", ""),
+        (SERVO, "Q = A - L C", ""),  # Q is a letter that a student may declare
+        (_TWO_OUTPUTS, "rank(O) = 1", "write rank(O) = 2"),
+        (_TWO_OUTPUTS, "L = [3 1; 0 2]", ""),
+        (_TWO_OUTPUTS, "A - L C = [-2 0; 0 -1]", ""),
+    ],
+)
+def test_a_milestone_that_is_false_for_every_right_answer_is_refused(problem: str, relation: str, refusal: str) -> None:
+    text = f'{problem}[[marking.milestone]]\nrelation = "{relation}"\npoints = 1\n'
+    if not refusal:
+        assert Checked.of(text).problem.marking.milestones
+        return
+    with pytest.raises(ProblemErrors) as raised:
+        Checked.of(text)
+    (error,) = raised.value.errors
+    assert error.where == "marking.milestone[0].relation"
+    assert refusal in str(error)
+
+
+def test_the_slips_that_have_a_credit_are_those_that_are_found() -> None:
+    folder = ROOT / "symobs" / "applications" / "checking"
+    paths = [*(folder / "faults").glob("*.py"), folder / "judgement" / "regions.py"]
+    text = "".join(path.read_text(encoding="utf-8") for path in paths)
+    said = re.findall(r'(?:Fault|Explained)\(\s*f?"(\w+)"|_of\([^"]*"(\w+)"|yield "(\w+)", |slip="(\w+)"', text)
+    of_matrices = re.search(r"_SAID = (\{.*\})", text)
+    assert of_matrices is not None
+    slips = {name for found in said for name in found if name} | set(json.loads(of_matrices[1]).values())
+    assert slips | {"sign_convention", "sign"} == set(SLIPS)
+
+
+# -- the answer file --------------------------------------------------------------------------------------------------
+
+
+def test_the_three_forms_of_an_answer_say_the_same() -> None:
+    lines = "# by hand\nL = [1; 2]\nK = [4 3]\n\nL = [19; 81]   # better\n"
+    toml = 'student = "s1"\n[answer]\nK = "[4 3]"\nL = "[19; 81]"\n'
+    as_json = json.dumps({"answer": {"K": [[4, 3]], "L": [["19"], [81]]}})
+    for form in (lines, toml, as_json, {"K": "[4 3]", "L": "[19; 81]"}):
+        assert [part.verdict for part in CHECKED.report(form).parts] == ["right", "right", "missing"]
+    assert CHECKED.report(toml).student == "s1"
+    assert [step.where for step in read_answer(lines).steps] == ["line 2", "line 3", "line 5"]
+
+
+@pytest.mark.parametrize(
+    ("answer", "message"),
+    [
+        ("no relation here\n", 'line 1: "no relation here" is no relation'),
+        ("[answer]\nK = 1\nK = 2", "this is not TOML"),
+        ('[answer]\nK = "1"\n[extra]\n', "extra: unknown key"),
+        ('symbols = "a"\n[answer]\n', "symbols: a list of names is expected"),
+        ('[answer]\n[[step]]\nwhere = "x"\n', r"step\[0\]: a table with relation is expected"),
+        ("K = 1\n" * 201, "201 lines, more than 200"),
+        ("K = " + "1" * 70_000, "the answer is larger than 64 kB"),
+        ("one\ntwo\n", 'line 2: "two" is no relation'),
+        ('{"answer": {"Q": 1}}', r"answer\.Q: no task here has such a field"),
+    ],
+)
+def test_an_answer_that_cannot_be_read_is_refused_with_its_place(answer: str, message: str) -> None:
+    with pytest.raises(ProblemErrors, match=message):
+        CHECKED.report(answer)
+
+
+@pytest.mark.parametrize(
+    ("value", "message"),
+    [
+        ("[4 q]", 'the name "q" is not declared'),
+        ("[4 3", "never closed"),
+        ("__import__('os')", ""),
+        ("[1/0 3]", "division by zero"),
+        ("[4 9^9^9]", ""),
+    ],
+)
+def test_a_value_that_cannot_be_read_leaves_the_others(value: str, message: str) -> None:
+    report = CHECKED.report({"K": value, "L": "[19; 81]"})
+    assert [part.verdict for part in report.parts] == ["unreadable", "right", "missing"]
+    assert report.verdict == "unreadable"
+    assert message in report.parts[0].reason
+
+
+@pytest.mark.parametrize(
+    "given",
+    [
+        {"L": "[[19],[81]]", "K": "[[4, 3]]"},  # NumPy, JSON
+        {"L": "np.array([[19.],\n [81.]])", "K": "array([[4, 3]])"},
+        {"L": "Matrix([[19], [81]])", "K": "Matrix([[4, 3]])"},  # SymPy
+        {"L": "[19\n81];", "K": "[4,3];"},  # MATLAB
+        {"L": "[19; 80 \u2212 \u20111]", "K": "\ufeff[4\u200b\u00a03]"},
+        "L = [19\n     81];   % by place\nK = [4 3];\n",
+        "# mine\nso:\nL = [[19],[81]]\nK = [4 3]\nK =\n",
+    ],
+    ids=range(7),
+)
+def test_what_is_pasted_from_elsewhere_is_read(given: Any) -> None:
+    assert [part.verdict for part in CHECKED.report(given).parts] == ["right", "right", "missing"]
+
+
+def test_rows_in_brackets_are_rows_and_blocks_are_blocks() -> None:
+    for column, row in (("[[19],[81]]", "[[19];[81]]"), ("[[19] [81]]", "[[19 81]]")):
+        verdicts = [CHECKED.report({"L": given}).parts[1].slip for given in (column, row)]
+        assert verdicts == [None, None if ";" in row else "transposed"]
+
+
+def test_a_function_of_s_is_an_answer_and_nothing_is_missing() -> None:
+    report = CHECKED.report(f"F(s) = {RIGHT['F']}\n")
+    assert (report.parts[2].verdict, report.lines[0].verdict) == ("right", "true")
+    assert CHECKED.report(f"F (s) = 1/s\nF(s) = {RIGHT['F']}\n").parts[2].verdict == "right"
+
+
+def test_a_line_of_words_harms_no_other_one() -> None:
+    report = CHECKED.report("Anna Example\nK = [4 3]\nL = [19\nF = 1/s\n")
+    assert [part.verdict for part in report.parts] == ["right", "unreadable", "wrong"]
+    assert [line.verdict for line in report.lines] == ["unreadable", "true", "false"]
+
+
+def test_what_stands_below_no_task_is_refused_in_a_text_too() -> None:
+    with pytest.raises(ProblemErrors, match=r"answer\.observer: no task here"):
+        CHECKED.report("observer.L = [19; 81]\n")
+
+
+def test_a_decimal_comma_is_told_so() -> None:
+    problem = 'task = "characteristic_polynomial"\n[plant]\nA = "[-1/2]"\n'
+    part = check(problem, {"polynomial": "s + 0,5"}).parts[0]
+    assert (part.verdict, "write 0.5 with a decimal point" in part.reason) == ("unreadable", True)
+    for given in (
+        {"K": "[4,0 3,0]"},
+        {"L": "[19,5; 81]"},
+        {"closed_loop_matrix": "[" + "; ".join(["0,5 1,0 2 3"] * 4) + "]"},
+    ):
+        (part,) = (part for part in CHECKED.report(given).parts if part.given)
+        assert (part.verdict, "with a decimal point" in part.reason) == ("unreadable", True)
+    assert CHECKED.report({"K": "[4,3,1]"}).parts[0].verdict == "wrong"
+
+
+def test_letters_that_nobody_knows_are_named_with_those_that_are() -> None:
+    reasons = [part.reason for part in CHECKED.report({"K": "[k1 k2]", "F": "1/S"}).parts]
+    assert all(f'"{name}" is not declared' in reasons[0] for name in ("k1", "k2"))
+    assert reasons[0].endswith("write numbers alone")
+    assert reasons[2].endswith("write it with the letters known here: s")
+    for given in (r"\frac{1}{s}", "$1/s$", "{1}"):
+        assert re.search("LaTeX|write \\( \\)", CHECKED.report({"F": given}).parts[2].reason)
+
+
+def test_the_empty_answer_file_is_one() -> None:
+    empty = answer_file(CHECKED)
+    assert '# L = ""    # a 2x1 matrix' in empty
+    assert [part.verdict for part in CHECKED.report(empty).parts] == ["missing"] * 3
+    filled = empty.replace('# K = ""', 'K = "[4 3]"')
+    assert CHECKED.report(filled).parts[0].verdict == "right"
+    assert "81" not in empty
+
+
+def test_in_python() -> None:
+    result = symobs.observer(symobs.StateSpace("[0 1; 0 -1]", None, "[1 0]"), poles="-10, -10")
+    report = symobs.check(result, {"L": "[19; 81]"})
+    assert (report.verdict, report.score, report.total) == ("right", Fraction(1), Fraction(1))
+    assert set(report._repr_mimebundle_()) == {"text/plain", "text/markdown", "text/html"}
+    with pytest.raises(UsageError, match="is nothing to show"):
+        symobs.check(result, {"L": "[19; 81]"}, show="all")

@@ -1,0 +1,576 @@
+"""The grader of exported questions, line by line: verdict, slip, reason and credit worked out by hand or by SymPy."""
+
+from __future__ import annotations
+
+import random
+from fractions import Fraction
+from functools import cache
+from typing import Any
+
+import pytest
+import sympy as sp
+
+from symobs.applications.export.grader import claims
+from symobs.applications.export.grader.claims import judge, score, written
+from symobs.applications.export.grader.values import ONE, number, points, poly
+
+S = sp.Symbol("s")
+HALF, QUARTER = Fraction(1, 2), Fraction(1, 4)
+MARKS: dict[str, Any] = {
+    "credit": {
+        "entry": "1/2",
+        "other_half": "1/4",
+        "rounded": "1/3",
+        "sign": "1/2",
+        "sign_convention": "1/5",
+        "transposed": "2/3",
+    },
+    "follow_through": "3/4",
+    "guard": True,
+    "decimals": "exact",
+    "sign_of_F": "convention",
+}
+PLANT = {"A": [["0", "1"], ["0", "-1"]], "B": [["0"], ["1"]], "C": [["1", "0"]], "D": [["0"]]}
+
+
+def gain(
+    name: str, A: list[list[str]], C: list[list[str]], phi: str, right: list[list[str]], **more: Any
+) -> dict[str, Any]:
+    """A gain as an export describes it."""
+    usual = {
+        "name": name,
+        "part": f"compensator.{name}",
+        "letter": name,
+        "weight": "1",
+        "function": False,
+        "variable": "s",
+    }
+    usual |= {
+        "kind": "gain",
+        "A": A,
+        "C": C,
+        "phi": phi.split(),
+        "right": right,
+        "zero": [],
+        "turned": False,
+        "other": None,
+    }
+    return {**usual, "transposed": name == "K", **more}
+
+
+# A − LC = [-a 1; -b -1] has s² + (a + 1) s + a + b;  A − BK = [0 1; -a -b-1] has s² + (b + 1) s + a
+OBSERVER = gain("L", PLANT["A"], PLANT["C"], "1 20 100", [["19"], ["81"]], other=["1", "4", "4"])
+FEEDBACK = gain("K", [["0", "0"], ["1", "-1"]], [["0", "1"]], "1 4 4", [["4", "3"]], other=["1", "20", "100"])
+F = {"name": "F", "part": "compensator.F", "letter": "F", "weight": "2", "function": True, "variable": "s"}
+F |= {"kind": "compensator", "order": 2, "phi": ["1", "24", "184", "480", "400"], **PLANT}
+F |= {"right_K": [["4", "3"]], "right_L": [["19"], ["81"]]}
+THIRDS = gain("L", PLANT["A"], [["3", "0"]], "1 20 100", [["19/3"], ["27"]])
+SQUARE = gain("K", [["0", "2"], ["1", "3"]], [["1", "0"], ["0", "1"]], "1 5 6", [["2", "1"], ["2", "6"]])
+
+
+def question(*parts: dict[str, Any], names: tuple[str, ...] = (), **marks: Any) -> dict[str, Any]:
+    return {"names": list(names), "marks": {**MARKS, **marks}, "parts": list(parts)}
+
+
+def outcome(asked: dict[str, Any], name: str, given: dict[str, Any]) -> Any:
+    found = judge(asked, given)[name]
+    return found["verdict"], found["slip"], found["reason"], found["credit"]
+
+
+def rows(text: str) -> list[list[str]]:
+    return [row.split() for row in text.split(";")]
+
+
+# -- gains ------------------------------------------------------------------------------------------------------------
+
+
+def other_polynomial(letter: str, polynomial: str) -> tuple[str, str, str, int]:
+    return "wrong", "", f"with your {letter} the polynomial is {polynomial}, not the one asked for", 0
+
+
+@pytest.mark.parametrize(
+    ("given", "expected"),
+    [
+        ("19; 81", ("right", "", "", 1)),
+        ("38/2; 80+1", ("right", "", "", 1)),
+        ("-19; -81", ("wrong", "sign", "the sign of L", HALF)),
+        ("19 81", ("wrong", "transposed", "the transpose of L is right", Fraction(2, 3))),
+        ("19 80", ("wrong", "", "L is 2x1 here, yours is 1x2", 0)),
+        ("19; 81; 0", ("wrong", "", "L is 2x1 here, yours is 3x1", 0)),
+        ("19; 80", ("wrong", "entry", "entry (2,1) should be 81 with the others as they are", HALF)),
+        ("3; 1", ("wrong", "other_half", "L places the poles of the other half", QUARTER)),
+        ("3; 2", other_polynomial("L", "s^2 + 4 s + 5")),
+        ("20; 80", other_polynomial("L", "s^2 + 21 s + 100")),
+        ("0; 0", other_polynomial("L", "s^2 + s")),
+        ("-2; 2", other_polynomial("L", "s^2 - s")),
+        ("-1; 0", other_polynomial("L", "s^2 - 1")),
+        ("-1; 1", other_polynomial("L", "s^2")),
+        ("1/2; -4/3", other_polynomial("L", "s^2 + 3/2 s - 5/6")),
+        ("-4; 5", other_polynomial("L", "s^2 - 3 s + 1")),
+    ],
+)
+def test_what_is_said_of_a_gain(given: str, expected: tuple[str, str, str, Fraction]) -> None:
+    assert outcome(question(OBSERVER), "L", {"L": rows(given)}) == expected
+    turned = {"turned": True, "letter": "M"}
+    opposite = [[f"-({entry})" for entry in row] for row in rows(given)]
+    verdict, slip, reason, credit = outcome(question({**OBSERVER, **turned}), "L", {"L": opposite})
+    mirrored = expected[2].replace("of L", "of M").replace("your L", "your M").replace("should be 81", "should be -81")
+    mirrored = f"M{mirrored[1:]}" if mirrored.startswith("L") else mirrored
+    assert (verdict, slip, reason, credit) == (expected[0], expected[1], mirrored, expected[3])
+
+
+def test_the_dual_gain_has_the_dual_claim() -> None:
+    assert outcome(question(FEEDBACK), "K", {"K": rows("4 3")})[0] == "right"
+    assert outcome(question(FEEDBACK), "K", {"K": rows("4; 3")})[1] == "transposed"
+    assert (
+        outcome(question(FEEDBACK), "K", {"K": rows("4 4")})[2] == "entry (1,2) should be 3 with the others as they are"
+    )
+    assert outcome(question(FEEDBACK), "K", {"K": rows("100 19")})[1] == "other_half"
+    assert outcome(question(FEEDBACK), "K", {"K": rows("0 -1")}) == other_polynomial("K", "s^2")
+
+
+def test_a_square_gain_may_be_transposed_and_its_sign_comes_first() -> None:
+    # A' − K' I with A' = [0 1; 2 3]' has the rows of A − K: [0 1; 2 3] − [2 2; 1 6] etc.
+    closed = sp.Matrix([[0, 2], [1, 3]]) - sp.Matrix([[2, 1], [2, 6]]).T
+    assert sp.expand(closed.charpoly(S).as_expr() - (S + 2) * (S + 3)) == 0
+    assert outcome(question(SQUARE), "K", {"K": rows("2 1; 2 6")})[:2] == ("right", "")
+    assert (
+        sp.expand((sp.Matrix([[0, 2], [1, 3]]) - sp.Matrix([[2, 1], [2, 6]])).charpoly(S).as_expr() - (S + 2) * (S + 3))
+        != 0
+    )
+    assert outcome(question(SQUARE), "K", {"K": rows("2 2; 1 6")})[:2] == ("wrong", "transposed")
+    assert outcome(question(SQUARE), "K", {"K": rows("-2 -1; -2 -6")})[1] == "sign"
+
+
+def test_of_several_entries_that_may_be_mended_none_is_named() -> None:
+    """Both outputs are the same: A − LC depends on the sums of the rows of L alone."""
+    twins = gain("L", [["0", "1"], ["0", "0"]], [["1", "0"], ["1", "0"]], "1 3 2", [["3", "0"], ["2", "0"]])
+    assert outcome(question(twins), "L", {"L": rows("1 2; 0 2")})[0] == "right"
+    found = outcome(question(twins), "L", {"L": rows("1 1; 2 0")})
+    assert found == ("wrong", "entry", "one of several slips in a single entry", HALF)
+
+
+def test_what_does_not_tell_is_not_told() -> None:
+    """One coefficient alone is no other half, and an entry without any effect is no slip."""
+    near = {**OBSERVER, "other": ["1", "21", "100"]}
+    assert outcome(question(near), "L", {"L": rows("20; 80")}) == other_polynomial("L", "s^2 + 21 s + 100")
+    far = {**OBSERVER, "other": ["1", "21", "90"]}
+    assert outcome(question(far), "L", {"L": rows("20; 70")})[1] == "other_half"
+    harmless = gain("L", [["0", "1"], ["0", "0"]], [["1", "0"], ["0", "0"]], "1 3 2", [["3", "0"], ["2", "0"]])
+    assert outcome(question(harmless), "L", {"L": rows("4 5; 9 7")}) == other_polynomial("L", "s^2 + 4 s + 9")
+
+
+def test_zeros_that_are_asked_for_must_be_there() -> None:
+    twins = gain(
+        "L", [["0", "1"], ["0", "0"]], [["1", "0"], ["1", "0"]], "1 3 2", [["0", "3"], ["2", "0"]], zero=[[0, 0]]
+    )
+    assert outcome(question(twins), "L", {"L": rows("0 3; 1 1")})[0] == "right"
+    assert outcome(question(twins), "L", {"L": rows("1 2; 1 1")}) == other_polynomial("L", "s^2 + 3 s + 2")
+    # An entry without any effect: the second state is not measured by the second output.
+    harmless = gain(
+        "L", [["0", "1"], ["0", "0"]], [["1", "0"], ["0", "0"]], "1 3 2", [["3", "0"], ["2", "0"]], zero=[[0, 1]]
+    )
+    assert outcome(question(harmless), "L", {"L": rows("3 0; 2 7")})[0] == "right"
+    assert outcome(question(harmless), "L", {"L": rows("3 5; 2 0")})[0] == "wrong"
+
+
+@pytest.mark.parametrize(
+    ("given", "rounds"),
+    [
+        ("6.33; 27", True),
+        ("6.3; 27", True),
+        ("6.333; 27.0", True),
+        ("6.33; 54/2", True),
+        ("0.63e1; 27", True),
+        ("633e-2; 27", True),
+        (".633e1; 27", True),
+        ("6.34; 27", False),
+        ("6.334; 27", False),
+        ("6.4; 27", False),
+        ("6.33; 26", False),
+        ("6.33; 27.1", False),
+        ("6; 27", False),
+        ("63/10; 27", False),
+    ],
+)
+def test_a_rounded_gain_is_named_so(given: str, rounds: bool) -> None:  # noqa: FBT001 - a table
+    said = ("wrong", "rounded", "L is rounded, and its exact value is asked for", Fraction(1, 3))
+    found = outcome(question(THIRDS), "L", {"L": rows(given)})
+    assert (found == said) is rounds
+    opposite = [[f"-{entry}" for entry in row] for row in rows(given)]
+    assert (outcome(question({**THIRDS, "turned": True}), "L", {"L": opposite}) == said) is rounds
+    assert outcome(question(THIRDS, decimals="accept"), "L", {"L": rows(given)})[0] == "wrong"
+    assert rows(given) != [["6.5"], ["27"]]
+
+
+@pytest.mark.parametrize(
+    ("given", "slip"), [("0.67 0.67; -0.33 1.33", "rounded"), ("0.67 0.68; -0.33 1.33", ""), ("0.67 1; -0.33 1.33", "")]
+)
+def test_every_column_of_a_row_is_rounded(given: str, slip: str) -> None:
+    square = ([["0", "0"], ["0", "0"]], [["1", "0"], ["0", "1"]])
+    thirds = gain("L", *square, "10/9 2 1", rows("2/3 2/3; -1/3 4/3"))
+    assert outcome(question(thirds), "L", {"L": rows(given)})[1] == slip
+
+
+def test_coefficients_are_written_with_their_sign() -> None:
+    half = Fraction(1, 2)
+    assert written(poly([half, half, 1]), "s") == "s^2 + 1/2 s + 1/2"
+    assert written(poly([-half, 0, -1, 1]), "z") == "z^3 - z^2 - 1/2"
+
+
+def test_half_a_unit_of_the_last_place_is_rounding() -> None:
+    halves = gain("L", PLANT["A"], [["8", "0"]], "1 20 100", [["19/8"], ["81/8"]])  # 2.375, 10.125
+    for given, slip in (("2.38; 10.12", "rounded"), ("2.37; 10.13", "rounded"), ("2.36; 10.12", ""), ("2.4; 10", "")):
+        assert outcome(question(halves), "L", {"L": rows(given)})[1] == slip
+    assert outcome(question(halves), "L", {"L": rows("2.375; 10.125")})[0] == "right"
+
+
+def test_a_polynomial_is_asked_for_and_not_a_gain() -> None:
+    """Random gains of a plant with two outputs: right if and only if SymPy finds the polynomial."""
+    A, C = sp.Matrix([[0, 1, 0], [0, 0, 1], [1, 2, 3]]), sp.Matrix([[1, 0, 0], [0, 0, 1]])
+    texts = [[list(map(str, M.row(i))) for i in range(M.rows)] for M in (A, C)]
+    asked = question(gain("L", texts[0], texts[1], "1 3 3 1", rows("0 1; 0 2; 0 6")))
+    draw, right = random.Random(3), 0  # noqa: S311 - repeatable by design
+    for _ in range(30):
+        # l₁, l₂, l₃ of the first output at random; the second column then solves three linear equations, if it can.
+        L = sp.Matrix(3, 2, lambda _i, _j: draw.randrange(-2, 3))
+        unknown = sp.symbols("u v w")
+        if draw.random() < 0.6:
+            column = sp.Matrix(unknown)
+            equations = sp.Poly(
+                (A - sp.Matrix.hstack(L[:, 0], column) * C).charpoly(S).as_expr() - (S + 1) ** 3, S
+            ).all_coeffs()
+            solved = sp.solve(equations, unknown, dict=True)
+            if solved:
+                L[:, 1] = column.subs(solved[0]).subs(dict.fromkeys(unknown, 1))
+        true = sp.expand((A - L * C).charpoly(S).as_expr() - (S + 1) ** 3) == 0
+        right += true
+        given = [[str(entry) for entry in L.row(i)] for i in range(3)]
+        assert (outcome(asked, "L", {"L": given})[0] == "right") is true
+    assert right > 7
+
+
+# -- the compensator --------------------------------------------------------------------------------------------------
+
+
+def function(K: tuple[str, str], L: tuple[str, str], D: int = 0) -> str:
+    """K (sI − A + BK + LC − LDK)⁻¹ L, by SymPy."""
+    A, B, C = sp.Matrix([[0, 1], [0, -1]]), sp.Matrix([0, 1]), sp.Matrix([[1, 0]])
+    feedback, observer = sp.Matrix([list(map(sp.Rational, K))]), sp.Matrix(list(map(sp.Rational, L)))
+    inner = S * sp.eye(2) - A + B * feedback + observer * C - observer * D * feedback
+    return str(sp.cancel((feedback * inner.inv() * observer)[0]))
+
+
+WHOLE = question(FEEDBACK, OBSERVER, F)
+RIGHT = {"K": rows("4 3"), "L": rows("19; 81"), "F": [[function(("4", "3"), ("19", "81"))]]}
+
+
+@cache
+def another() -> str:
+    """(5 s² + …)/(s² + …) with the same closed loop."""
+    b, c, d, e = sp.symbols("b c d e")
+    loop = sp.Poly(S * (S + 1) * (S**2 + d * S + e) + 5 * S**2 + b * S + c - (S + 2) ** 2 * (S + 10) ** 2, S)
+    found = sp.solve(loop.all_coeffs(), [b, c, d, e])
+    return f"(5 s^2 + ({found[b]}) s + ({found[c]}))/(s^2 + ({found[d]}) s + ({found[e]}))"
+
+
+MORE = {
+    "all right": ({}, ("right", "", "", 1)),
+    "the sign": (
+        {"F": [[f"-({RIGHT['F'][0][0]})"]]},
+        ("wrong", "sign_convention", "-F is right with positive feedback", Fraction(1, 5)),
+    ),
+    "not of these gains": ({"F": [["1/s"]]}, ("wrong", "", "this is not the F of your gains", 0)),
+    "from a wrong L": (
+        {"L": rows("19; 80"), "F": [[function(("4", "3"), ("19", "80"))]]},
+        ("follows", "", "it follows from your earlier result", Fraction(3, 4)),
+    ),
+    "from a wrong K": (
+        {"K": rows("4 4"), "F": [[function(("4", "4"), ("19", "81"))]]},
+        ("follows", "", "it follows from your earlier result", Fraction(3, 4)),
+    ),
+    "from both": (
+        {"K": rows("4 4"), "L": rows("19; 80"), "F": [[function(("4", "4"), ("19", "80"))]]},
+        ("follows", "", "it follows from your earlier result", Fraction(3, 4)),
+    ),
+    "right in spite of a wrong L": ({"L": rows("19; 80")}, ("right", "", "", 1)),
+    "from nothing of both": (
+        {"L": rows("19; 80"), "F": [[function(("4", "5"), ("19", "80"))]]},
+        ("wrong", "", "this is not the F of your gains", 0),
+    ),
+    "from zero": (
+        {"L": rows("0; 0"), "F": [["0"]]},
+        ("follows", "", "it follows from your earlier result, which makes this part too easy to count", 0),
+    ),
+    "from one entry": (
+        {"L": rows("0; 7"), "F": [[function(("4", "3"), ("0", "7"))]]},
+        ("follows", "", "it follows from your earlier result, which makes this part too easy to count", 0),
+    ),
+    "of a gain that does not fit": (
+        {"L": rows("19 81 0"), "F": [["1/s"]]},
+        ("wrong", "", "this is not the F of your gains", 0),
+    ),
+    "alone": ({"K": [], "L": []}, ("right", "", "", 1)),
+    "another one alone": (
+        {"K": [], "L": [], "F": [[another()]]},
+        ("right", "", "another compensator with the same closed-loop polynomial", 1),
+    ),
+    "another one with gains": ({"F": [[another()]]}, ("wrong", "", "this is not the F of your gains", 0)),
+    "wrong alone": ({"K": [], "L": [], "F": [["1/(s + 1)"]]}, ("wrong", "", "", 0)),
+    "improper alone": ({"K": [], "L": [], "F": [["s^3/(s^2 + 1)"]]}, ("wrong", "", "", 0)),
+    "opposite alone": (
+        {"K": [], "L": [], "F": [[f"-({RIGHT['F'][0][0]})"]]},
+        ("wrong", "sign_convention", "-F is right with positive feedback", Fraction(1, 5)),
+    ),
+    "with K alone": ({"L": []}, ("right", "", "", 1)),
+}
+
+
+@pytest.mark.parametrize("name", MORE)
+def test_what_is_said_of_a_compensator(name: str) -> None:
+    changed, expected = MORE[name]
+    given = {part: value for part, value in {**RIGHT, **changed}.items() if value}  # type: ignore[dict-item]
+    assert outcome(WHOLE, "F", given) == expected
+
+
+def test_the_marks_of_a_compensator_are_those_of_the_file() -> None:
+    easy = {**RIGHT, "L": rows("0; 7"), "F": [[function(("4", "3"), ("0", "7"))]]}
+    unguarded = question(FEEDBACK, OBSERVER, F, guard=False)
+    assert outcome(unguarded, "F", easy) == ("follows", "", "it follows from your earlier result", Fraction(3, 4))
+    either = question(FEEDBACK, OBSERVER, F, sign_of_F="either")
+    assert outcome(either, "F", {**RIGHT, "F": [[f"-({RIGHT['F'][0][0]})"]]}) == ("right", "", "", 1)
+    wrong = {**RIGHT, "L": rows("19; 80"), "F": [[f"-({function(('4', '3'), ('19', '80'))})"]]}
+    assert outcome(either, "F", wrong)[0] == "follows"
+    assert outcome(WHOLE, "F", wrong)[0] == "wrong"
+
+
+def test_one_empty_gain_of_two_wrong_ones_makes_the_rest_easy() -> None:
+    A, B, C = sp.Matrix([[0, 1], [0, -1]]), sp.Matrix([0, 1]), sp.Matrix([[1, 0]])
+    for K, L, credit in (([4, 0], [19, 80], 0), ([4, 2], [19, 80], Fraction(3, 4))):
+        mine, other = sp.Matrix([K]), sp.Matrix(L)
+        found = str(sp.cancel((mine * (S * sp.eye(2) - A + B * mine + other * C).inv() * other)[0]))
+        given = {"K": [list(map(str, K))], "L": [[str(entry)] for entry in L], "F": [[found]]}
+        assert outcome(WHOLE, "F", given)[::3] == ("follows", credit)
+
+
+def test_a_constant_that_follows_is_too_easy() -> None:
+    """With K = 0 wrong and L right nothing is left of F; with L of full size it is not the gain that is empty."""
+    given = {**RIGHT, "K": rows("0 0"), "F": [["0"]]}
+    assert outcome(WHOLE, "F", given)[3] == 0
+    # K L = 0 and (A - BK - LC) L = -2 L: nothing passes, though no entry of a gain is 0
+    assert outcome(WHOLE, "F", {"K": rows("-1 -1"), "L": rows("1; -1"), "F": [["0"]]})[::3] == ("follows", 0)
+    first = gain("L", [["-1"]], [["1"]], "1 5", [["4"]], part="compensator.L")
+    second = gain("K", [["-1"]], [["1"]], "1 3", [["2"]], part="compensator.K")
+    assert outcome(question(first), "L", {"L": rows("5")}) == other_polynomial(
+        "L", "s + 6"
+    )  # nothing beside it is right
+    matrices = {"A": [["-1"]], "B": [["1"]], "C": [["1"]], "D": [["1"]], "right_K": [["2"]], "right_L": [["4"]]}
+    # s + 1 + k + l − l k = s + 1 + 2 + 5 − 10 is still of degree 1 with l = 5
+    asked = question(second, first, {**F, **matrices, "order": 1, "phi": ["1", "8", "15"]})
+    assert outcome(asked, "F", {"K": rows("2"), "L": rows("5"), "F": [["10/(s - 2)"]]}) == (
+        "follows",
+        "",
+        "it follows from your earlier result",
+        Fraction(3, 4),
+    )
+    assert outcome(asked, "F", {"K": rows("2"), "L": rows("4"), "F": [["8/(s - 1)"]]})[0] == "right"
+    # s + 1 + 2 + 4 − 8 = s − 1; the closed loop: (s + 1)(s − 1) + 8 (1 + s + 1) = s² + 8 s + 15
+    assert outcome(asked, "F", {"F": [["8/(s - 1)"]]})[0] == "right"
+    assert outcome(asked, "F", {"F": [["8/(s - 2)"]]})[0] == "wrong"
+
+
+def test_a_compensator_alone_is_held_to_the_closed_loop_and_its_order() -> None:
+    """A mode that F does not reach stays: (s + 2) · ((s + 1)(s + 5) + 3) = (s + 2)² (s + 4)."""
+    hidden = {"A": rows("-1 0; 0 -2"), "B": rows("1; 0"), "C": rows("1 0"), "phi": ["1", "8", "20", "16"]}
+    asked = question({**F, **hidden, "right_K": rows("9 9"), "right_L": rows("9; 9")})
+    said = ("right", "", "another compensator with the same closed-loop polynomial", 1)
+    assert outcome(asked, "F", {"F": [["3/(s + 5)"]]}) == said
+    assert outcome(asked, "F", {"F": [["4/(s + 5)"]]})[0] == "wrong"
+    for order, verdict in ((1, "right"), (0, "wrong")):
+        bounded = question({**asked["parts"][0], "order": order})
+        assert outcome(bounded, "F", {"F": [["3/(s + 5)"]]})[0] == verdict
+    # 1/s closed by s is a loop of degree 1 too, but s is improper: s · 1 + 1 · s = 2 s is not monic, 1 + (s + 1) is
+    integrator = {
+        "A": rows("0"),
+        "B": rows("1"),
+        "C": rows("1"),
+        "right_K": rows("9"),
+        "right_L": rows("9"),
+        "order": 1,
+    }
+    improper = question({**F, **integrator, "phi": ["2", "1"]})
+    assert outcome(improper, "F", {"F": [["s + 1"]]})[0] == "wrong"
+
+
+def test_F_belongs_to_the_right_gains_that_were_given() -> None:
+    """A mode that no input reaches and no output shows leaves an entry of K and of L free: F is that of the ones given."""
+    A, B, C = sp.diag(-1, -2), sp.Matrix([1, 0]), sp.Matrix([[1, 0]])
+    plant = {"A": rows("-1 0; 0 -2"), "B": rows("1; 0"), "C": rows("1 0"), "D": rows("0")}
+    first = gain("K", plant["A"], plant["C"], "1 5 6", rows("2 0"))
+    second = gain("L", plant["A"], plant["C"], "1 7 10", rows("4; 0"))
+    asked = question(first, second, {**F, **plant, "right_K": rows("2 0"), "right_L": rows("4; 0")})
+    K, L = sp.Matrix([[2, 5]]), sp.Matrix([4, 7])
+    found = str(sp.cancel((K * (S * sp.eye(2) - A + B * K + L * C).inv() * L)[0]))
+    given = {"K": rows("2 5"), "L": rows("4; 7"), "F": [[found]]}
+    assert [told["verdict"] for told in judge(asked, given).values()] == ["right"] * 3
+    assert outcome(asked, "F", {**given, "K": rows("2 6")})[0] == "wrong"
+    assert outcome(asked, "F", {**given, "K": rows("2 0"), "L": rows("4; 0"), "F": [["8/(s + 7)"]]})[0] == "right"
+
+
+@pytest.mark.parametrize(
+    ("mine", "right", "easy"),
+    [
+        ("0; 0; 0", "1; 1; 1", True),
+        ("0; 1; 0", "1; 1; 1", True),
+        ("0; 1; 0", "0; 2; 0", False),
+        ("1; 1; 0", "1; 1; 1", False),
+        ("1 0; 0 1; 0 0", "1 1; 1 1; 0 0", False),
+        ("1 0; 0 1; 0 0", "1 1; 1 1; 1 0", True),
+        ("0; 0", "0; 0", True),
+        ("0; 5", "1; 1", True),
+        ("1 1; 1 0; 0 0", "1 1; 1 1; 1 1", False),
+    ],
+)
+def test_when_a_wrong_gain_makes_the_rest_easy(mine: str, right: str, easy: bool) -> None:  # noqa: FBT001 - a table
+    read_as = ([[Fraction(cell) for cell in row] for row in rows(text)] for text in (mine, right))
+    assert claims.is_degenerate(*read_as) is easy
+
+
+# -- other values -----------------------------------------------------------------------------------------------------
+
+
+def value(right: str, **more: Any) -> dict[str, Any]:
+    usual = {"name": "M", "part": "gramian.matrix", "letter": "W", "weight": "1", "function": False, "variable": "s"}
+    return {**usual, "kind": "value", "exact": False, "right": rows(right), **more}
+
+
+@pytest.mark.parametrize(
+    ("right", "given", "expected"),
+    [
+        ("1 2; 3 4", "1 2; 3 4", ("right", "", "", 1)),
+        ("1 2; 3 4", "-1 -2; -3 -4", ("wrong", "sign", "-W is right", HALF)),
+        ("1 2; 3 4", "1 3; 2 4", ("wrong", "transposed", "the transpose of W is right", Fraction(2, 3))),
+        ("1; 2", "1 2", ("wrong", "transposed", "the transpose of W is right", Fraction(2, 3))),
+        ("1; 2", "1 3", ("wrong", "", "", 0)),
+        ("1; 2", "1; 2; 3", ("wrong", "", "", 0)),
+        ("1 2; 3 4", "1 2; 5 4", ("wrong", "entry", "entry (2,1) is wrong", HALF)),
+        ("1 2; 3 4", "1 9; 3 4", ("wrong", "entry", "entry (1,2) is wrong", HALF)),
+        ("1 2; 3 4", "1 9; 9 4", ("wrong", "", "", 0)),
+        ("1/3", "0.33", ("wrong", "rounded", "W is rounded, and its exact value is asked for", Fraction(1, 3))),
+        ("1/3", "0.3", ("wrong", "rounded", "W is rounded, and its exact value is asked for", Fraction(1, 3))),
+        ("1/3", "0.4", ("wrong", "", "", 0)),
+        ("1/3", "-1/3", ("wrong", "sign", "-W is right", HALF)),
+        ("1/3", "2/6", ("right", "", "", 1)),
+        ("5", "6", ("wrong", "", "", 0)),
+    ],
+)
+def test_what_is_said_of_a_value(right: str, given: str, expected: tuple[str, str, str, Fraction]) -> None:
+    assert outcome(question(value(right)), "M", {"M": rows(given)}) == expected
+
+
+def test_a_rounded_value_is_right_where_decimals_are_accepted_and_no_count_is_rounded() -> None:
+    assert outcome(question(value("1/3"), decimals="accept"), "M", {"M": [["0.33"]]}) == (
+        "right",
+        "rounded",
+        "W is rounded, and its exact value is asked for",
+        1,
+    )
+    assert outcome(question(value("1/3"), decimals="accept"), "M", {"M": [["0.4"]]})[0] == "wrong"
+    assert outcome(question(value("12", exact=True)), "M", {"M": [["1e1"]]})[1] == ""
+    assert outcome(question(value("12")), "M", {"M": [["1e1"]]})[1] == "rounded"
+    assert outcome(question(value("2", exact=True)), "M", {"M": [["2.0"]]})[0] == "right"
+
+
+def test_functions_are_equal_as_functions() -> None:
+    asked = question(value("1/(s^2+1)", function=True))
+    for given, verdict in (("(s+1)/((s^2+1)*(s+1))", "right"), ("1/(s^2+2)", "wrong"), ("0.5", "wrong")):
+        assert outcome(asked, "M", {"M": [[given]]})[0] == verdict
+    asked["parts"][0]["variable"] = "z"
+    asked["parts"][0]["right"] = [["z"]]
+    assert outcome(asked, "M", {"M": [["z"]]})[0] == "right"
+    assert outcome(asked, "M", {"M": [["s"]]})[:3] == ("unreadable", "", "s is not a letter of this question (z)")
+
+
+@pytest.mark.parametrize(
+    ("given", "means"),
+    [
+        *((word, "yes") for word in ("yes", ' "Yes" ', "true", "Ja")),
+        *((word, "no") for word in ("no", "False", "nein")),
+        ("conditional", "conditional"),
+        *((word, "") for word in ("yess", "'yes'")),
+    ],
+)
+def test_a_word_is_right_or_wrong(given: str, means: str) -> None:
+    word = {"name": "v", "part": "pbh.verdict", "letter": "verdict", "weight": "1", "function": False, "kind": "word"}
+    for right in ("yes", "no", "conditional"):
+        found = outcome(question({**word, "right": right}), "v", {"v": [[given]]})
+        if means:
+            assert found == ("right" if means == right else "wrong", "", "", int(means == right))
+        else:
+            assert found == ("unreadable", "", "write yes, no or conditional", 0)
+
+
+# -- the whole answer -------------------------------------------------------------------------------------------------
+
+
+def test_parts_are_told_in_the_order_of_the_question_and_weighed() -> None:
+    asked = question(F, OBSERVER, FEEDBACK)
+    found = judge(asked, {**RIGHT, "L": rows("-19; -81")})
+    assert list(found) == ["F", "L", "K"]
+    wrong = {**RIGHT, "L": rows("19; 80"), "F": [["(316 s + 396)/(s^2 + 23 s + 160)"]]}
+    assert judge(asked, wrong)["F"]["verdict"] == "follows"
+    assert score(asked, found) == (2 + HALF + 1) / 4
+    assert score(asked, judge(asked, {})) == 0
+    assert {each["verdict"] for each in judge(asked, {"K": [[" ", ""]], "L": [], "F": [[""]]}).values()} == {"missing"}
+    assert judge(asked, {})["K"] == {"verdict": "missing", "slip": "", "reason": "", "credit": 0}
+
+
+def test_what_cannot_be_read_says_why_and_harms_no_other_part(monkeypatch: pytest.MonkeyPatch) -> None:
+    found = judge(WHOLE, {**RIGHT, "L": [["19"], ["81", "1"]]})
+    assert (found["K"]["verdict"], found["L"]["verdict"]) == ("right", "unreadable")
+    assert (found["L"]["reason"], found["L"]["credit"]) == ("the rows have different lengths", 0)
+    assert outcome(WHOLE, "L", {"L": [["19"], [""]]})[::2] == ("unreadable", "a value is missing")
+    assert outcome(WHOLE, "L", {"L": [["19"], ["s"]]})[2] == "s is not a letter of this question"
+    assert outcome(WHOLE, "F", {"F": [["1/x"]]})[2] == "x is not a letter of this question (s)"
+
+    def broken(*_: object) -> None:
+        raise KeyError("a bug")
+
+    monkeypatch.setattr(claims, "judge_gain", broken)
+    assert outcome(WHOLE, "L", RIGHT) == ("unreadable", "", "this could not be read", 0)
+
+
+def test_symbols_are_drawn_twice_and_both_must_agree(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A − LC = [-a 1; -b 0] has s² + a s + b; p and q are asked for."""
+    part = gain("L", rows("0 1; 0 0"), rows("1 0"), "1 p q", rows("p; q"), other=["1", "q", "p"])
+    asked = question(part, names=("p", "q"))
+    assert outcome(asked, "L", {"L": rows("p; q")}) == ("right", "", "", 1)
+    assert outcome(asked, "L", {"L": rows("p+q-q; 2*q/2")})[0] == "right"
+    assert outcome(asked, "L", {"L": rows("p; 3")}) == ("wrong", "entry", "entry (2,1) is wrong", HALF)
+    assert outcome(asked, "L", {"L": rows("q; p")})[1] == "other_half"
+    wrong = "with your L the polynomial is not the one asked for"
+    assert outcome(asked, "L", {"L": rows("2; 3")}) == ("wrong", "", wrong, 0)
+    fixed = [{"p": (poly([k]), ONE), "q": (poly([3]), ONE)} for k in (2, 5)]
+    monkeypatch.setattr(claims, "points", lambda *_: fixed)
+    assert outcome(asked, "L", {"L": rows("2; 3")}) == ("wrong", "", "", 0)
+    monkeypatch.setattr(claims, "points", lambda *_: fixed[:1])
+    assert outcome(asked, "L", {"L": rows("2; 3")})[0] == "right"
+
+
+def test_a_function_has_the_symbols_of_its_question() -> None:
+    asked = question(value("s^2+p*s+1", function=True), names=("p",))
+    for given, verdict in (("(s+p)*s+1", "right"), ("s^2+s+1", "wrong"), ("s^2+q*s+1", "unreadable")):
+        assert outcome(asked, "M", {"M": [[given]]})[0] == verdict
+
+
+def test_points_are_drawn_from_the_answer() -> None:
+    asked = question(names=("p", "q"))
+    first, second = points(asked, {"L": "1"})
+    assert first != second
+    assert first["p"] != first["q"]
+    assert points(asked, {"L": "1"}) == [first, second]
+    assert points(asked, {"L": "2"}) != [first, second]
+    assert points({**asked, "parts": [F]}, {"L": "1"}) != [first, second]
+    assert points(asked, {"K": "1", "L": "2"}) == points(asked, {"L": "2", "K": "1"})
+    assert all(2 <= number(entry) < 2**60 + 2 for point in (first, second) for entry in point.values())
+    assert points(question(), {"L": "1"}) == [{}]

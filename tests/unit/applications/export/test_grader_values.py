@@ -1,0 +1,182 @@
+"""What the grader of exported questions reads: texts to exact values, held against Python's own arithmetic and SymPy."""
+
+from __future__ import annotations
+
+import random
+import re
+from fractions import Fraction
+from typing import Any, cast
+
+import pytest
+import sympy as sp
+
+from symobs.applications.export.grader import values
+from symobs.applications.export.grader.values import ONE, UnreadableError, number, poly, read, times
+
+S = sp.Symbol("s")
+
+TEXTS = {
+    "-2^2": "-4",
+    "--2": "2",
+    "+-3": "-3",
+    "2^-1": "1/2",
+    "2**3": "8",
+    "2^3^2": "512",
+    "(1 + 2)(3)": "9",
+    "2(3)": "6",
+    "6/2*3": "9",
+    "6/(2*3)": "1",
+    "1.5e1": "15",
+    ".5": "1/2",
+    "2.": "2",
+    "1e-2": "1/100",
+    "\N{MINUS SIGN}3": "-3",
+    "3 - -2": "5",
+    "2\N{NO-BREAK SPACE}+\N{EN DASH}1": "1",
+    "\N{NON-BREAKING HYPHEN}3\N{ZERO WIDTH SPACE};": "-3",
+    "0^0": "1",
+    "1-2-3": "-4",
+    "8/2/2": "2",
+    "2^0": "1",
+    "-3^2*2": "-18",
+    "2*-3": "-6",
+}
+
+
+@pytest.mark.parametrize("text", TEXTS)
+def test_a_number_is_read_as_one_means_it(text: str) -> None:
+    assert number(read(text, {})) == Fraction(TEXTS[text])
+
+
+REFUSED = {
+    "": "a value is missing",
+    "1 +": "a value is missing",
+    "(1": "a parenthesis is not closed",
+    "1)": "')' stands in a wrong place",
+    "*2": "'*' stands in a wrong place",
+    "2 3": "a number follows a number",
+    "1..2": "'1' cannot stand in a value",
+    "2^(1/2)": "an exponent is an integer up to 1000",
+    "2^1001": "an exponent is an integer up to 1000",
+    "2^s": "an exponent is an integer up to 1000",
+    "2^(1/s)": "an exponent is an integer up to 1000",
+    "1/0": "a division by zero",
+    "0^-1": "a division by zero",
+    "1/(s-s)": "a division by zero",
+    "x": "x is not a letter of this question (s)",
+    "1/2 s": "a product without its sign follows a division: write the sign, or parentheses",
+    "1_0": "'_' cannot stand in a value",
+    "a.b": "'.' cannot stand in a value",
+    "1e": "e is not a letter of this question (s)",
+    "[1]": "'[' cannot stand in a value",
+    "9" * 2001: "this is too long",
+    "(" * 51 + "1" + ")" * 51: "brackets are nested too deeply",
+    "1^" * 51 + "1": "brackets are nested too deeply",
+    "2^-1001": "an exponent is an integer up to 1000",
+    "1+2 3": "a number follows a number",
+    "'3": '"\'" cannot stand in a value',
+    "*".join(["1e999"] * 6) + "*2^89": "this is too large",
+    "(1/(s+2^1000))^30": "this is too large",
+    "2^1000^1000": "an exponent is an integer up to 1000",
+    "s^60": "this is too large",
+    "(s+1)^30*(s+2)^30": "this is too large",
+    "10^999*10^999*10^999*10^999*10^999*10^999*10^999": "this is too large",
+}
+
+
+@pytest.mark.parametrize("text", REFUSED, ids=range(len(REFUSED)))
+def test_what_is_no_value_is_refused_with_its_reason(text: str) -> None:
+    with pytest.raises(UnreadableError) as raised:
+        read(text, {"s": (poly([0, 1]), ONE)})
+    assert str(raised.value) == REFUSED[text]
+
+
+def test_bounds_are_where_they_are_said_to_be() -> None:
+    s = {"s": (poly([0, 1]), ONE)}
+    assert len(read("s^59", s)[0]) == 60
+    assert number(read("1" * 2000, {})) == int("1" * 2000)
+    assert number(read("(" * 50 + "1" + ")" * 50, {})) == 1
+    assert number(read("1^" * 50 + "1", {})) == 1
+    assert number(read("*".join(["1e999"] * 6) + "*2^88", {})) == 10**5994 * 2**88  # of 20,000 bits
+    with pytest.raises(UnreadableError, match=r"x is not a letter of this question \(p, s\)"):
+        read("x", {**s, "p": s["s"]})
+    assert number(read("2^1000", {})) == 2**1000
+    assert number(read("2^-1000", {})) == Fraction(1, 2**1000)
+    assert number(read("1e999", {})) == 10**999
+    for wrong in ("s", "1/s"):
+        with pytest.raises(UnreadableError, match="a number is expected here"):
+            number(read(wrong, s))
+    assert number(read("s - s", s)) == 0
+
+
+def test_a_random_expression_has_the_value_that_python_finds() -> None:
+    """Trees of sums, products, quotients and powers with their text; both evaluated at points, and in lowest terms."""
+    reasons: set[str] = set()
+    draw, read_ones = random.Random(11), 0  # noqa: S311 - repeatable by design
+    for _ in range(200):
+        text = _expression(draw, 4)
+        try:
+            above, below = read(text, {"s": (poly([0, 1]), ONE)})
+        except UnreadableError as error:
+            reasons.add(str(error))
+            continue
+        read_ones += 1
+        assert below[-1] == 1
+        p, q = (
+            sp.Poly([sp.Rational(c.numerator, c.denominator) for c in reversed(part)] or [0], S)
+            for part in (above, below)
+        )
+        assert sp.gcd(p, q).degree() <= 0 or p.is_zero
+        for at in (Fraction(3), Fraction(-7, 5), Fraction(11, 2)):
+            try:
+                expected = _at(text, at)
+            except ZeroDivisionError:
+                continue
+            assert sum(c * at**k for k, c in enumerate(above)) == expected * sum(c * at**k for k, c in enumerate(below))
+    assert read_ones > 120
+    assert reasons <= {"a division by zero", "this is too large"}
+
+
+def _expression(draw: random.Random, depth: int) -> str:
+    if not depth or draw.random() < 0.2:
+        return draw.choice(["s", "s", str(draw.randrange(6)), f"{draw.randrange(4)}.{draw.randrange(10)}", "2e-1"])
+    left, right = _expression(draw, depth - 1), _expression(draw, depth - 1)
+    return draw.choice(
+        [
+            f"({left}) + {right}",
+            f"({left}) - ({right})",
+            f"({left})*({right})",
+            f"({left})/({right})",
+            f"-({left})",
+            f"({left})^{draw.randrange(-2, 4)}",
+        ]
+    )
+
+
+def _at(text: str, at: Fraction) -> Fraction:
+    """The value by Python's own arithmetic: every number a fraction."""
+    numbers = re.sub(r"[0-9]+(\.[0-9]+)?(e-?[0-9]+)?", lambda found: f"Fraction('{found[0]}')", text)
+    powers = re.sub(r"\^Fraction\('(\d+)'\)", r"**\1", numbers.replace("^-", "^~"))
+    powers = re.sub(r"\^~Fraction\('(\d+)'\)", r"**-\1", powers)
+    found = eval(powers, {"Fraction": Fraction, "s": at})  # noqa: S307 - the text above
+    return Fraction(found)
+
+
+def test_polynomials_have_no_zeros_behind_their_degree() -> None:
+    poly, divided_by = cast("Any", values.poly), cast("Any", values.divided_by)
+    plus, divided = cast("Any", values.plus), cast("Any", values.divided)
+    assert poly([1, 2, 0, 0]) == (1, 2)
+    assert poly([0, 0]) == ()
+    assert plus((Fraction(1), Fraction(2)), (Fraction(3), Fraction(-2))) == (4,)
+    assert (
+        plus((Fraction(1),), (Fraction(0), Fraction(2))) == plus((Fraction(0), Fraction(2)), (Fraction(1),)) == (1, 2)
+    )
+    assert times((), (Fraction(1),)) == ()
+    quotient, rest = divided(poly([1, 0, 0, 1]), poly([1, 1]))  # s³ + 1 = (s + 1)(s² − s + 1)
+    assert (quotient, rest) == ((1, -1, 1), ())
+    assert divided(poly([1]), poly([1, 1])) == ((), (1,))
+    assert divided_by(poly([0, 2]), poly([0, 0, 4])) == ((Fraction(1, 2),), (0, 1))
+    assert divided_by((), poly([3, 1])) == ((), ONE)
+    assert divided_by(poly([4])) == ((4,), ONE)
+    with pytest.raises(UnreadableError, match="a division by zero"):
+        divided_by(ONE, ())

@@ -1,0 +1,182 @@
+"""The PrairieLearn export: its server run as it is, in a bare Python, beside `check`."""
+
+from __future__ import annotations
+
+import json
+import random
+import re
+import subprocess
+import sys
+from fractions import Fraction
+from typing import TYPE_CHECKING, Any
+from xml.etree.ElementTree import fromstring
+
+import pytest
+
+from symobs.applications.export import export
+from symobs.applications.export.grader.claims import judge, score
+from tests.support.tools.exported import BY_HAND, HELD, OTHER_HALF, checked, held, random_answer
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from symobs.applications.export import ExerciseSet
+
+#: The runtime as far as a server uses it, and a loop that grades what comes on standard input.
+RUNTIME = """
+def set_weighted_score_data(data):
+    parts = data["partial_scores"].values()
+    data["score"] = sum(p["score"] * p["weight"] for p in parts) / sum(p["weight"] for p in parts)
+"""
+DRIVER = """
+import json, sys
+sys.path.insert(0, ".")
+import server
+for line in sys.stdin:
+    asked = json.loads(line)
+    data = {"options": {"question_path": "."}, "variant_seed": asked["seed"], "params": {}}
+    data |= {"raw_submitted_answers": asked["raw"],
+            "format_errors": {}, "partial_scores": {}, "feedback": {}, "score": 0, "correct_answers": {}}
+    if "test" in asked:
+        data["test_type"] = asked["test"]
+        server.test(data)
+    else:
+        server.generate(data)
+        server.parse(data)
+        if not data["format_errors"]:
+            server.grade(data)
+    print(json.dumps(data))
+"""
+
+
+def installed(each: ExerciseSet, folder: Path) -> dict[str, str]:
+    """Write an export into a folder, with the stand-in beside it; return the files of the question."""
+    files = {name.split("/")[-1]: str(text) for name, text in export("prairielearn", [each]).items()}
+    for name, text in {**files, "prairielearn.py": RUNTIME, "driver.py": DRIVER}.items():
+        (folder / name).write_text(text, encoding="utf-8")
+    return files
+
+
+def graded(folder: Path, asked: list[dict[str, Any]]) -> list[dict[str, Any]]:
+    """What the server makes of submissions: a Python without packages, that knows nothing of symobs."""
+    lines = "\n".join(map(json.dumps, asked))
+    command = [sys.executable, "-S", "-E", "driver.py"]
+    done = subprocess.run(command, input=lines, capture_output=True, text=True, cwd=folder, timeout=120, check=False)
+    assert done.returncode == 0, done.stderr
+    return [json.loads(line) for line in done.stdout.splitlines()]
+
+
+def raw(each: ExerciseSet, given: dict[str, list[list[str]]]) -> dict[str, str]:
+    """What the inputs of the page send."""
+    found: dict[str, str] = {}
+    for part in each.first.parts:
+        cells = [cell for row in given[part.name] for cell in row]
+        alone = part.shape == (1, 1) and part.kind != "gain"
+        found |= {part.name if alone else f"{part.name}{k}": cell for k, cell in enumerate(cells, 1)}
+    return found
+
+
+def agree(name: str, count: int) -> None:
+    """Verdicts and credits of the grader are those of `check`."""
+    exercise, draw = held(name).first, random.Random(name)  # noqa: S311
+    for _ in range(count):
+        given = random_answer(exercise, draw)
+        found = {part: (told["verdict"], told["credit"]) for part, told in judge(exercise.question, given).items()}
+        assert found == checked(exercise, given), given
+
+
+@pytest.mark.parametrize("name", [*HELD, *BY_HAND])
+def test_the_grader_gives_the_verdicts_of_check(name: str) -> None:
+    agree(name, 5)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", [*HELD, *BY_HAND])
+def test_the_grader_gives_the_verdicts_of_check_on_many_answers(name: str) -> None:
+    agree(name, 20)
+
+
+@pytest.mark.parametrize("name", ["output_feedback_servo", "triple_pole_two_outputs"])
+def test_the_server_gives_the_credits_of_check(name: str, tmp_path: Path) -> None:
+    each, draw = held(name), random.Random(name)  # noqa: S311
+    installed(each, tmp_path)
+    given = [random_answer(each.first, draw) for _ in range(15)]
+    for answer, data in zip(given, graded(tmp_path, [{"seed": "7", "raw": raw(each, g)} for g in given]), strict=True):
+        told = checked(each.first, answer)
+        unreadable = {part for part, (verdict, _) in told.items() if verdict == "unreadable"}
+        assert set(data["format_errors"]) == unreadable
+        if not unreadable:
+            assert {part: found["score"] for part, found in data["partial_scores"].items()} == {
+                part: float(credit or 0) for part, (_, credit) in told.items()
+            }
+
+
+@pytest.mark.parametrize(
+    ("name", "given"),
+    [
+        ("zeros", {"L": [["45/7", "4/49"], ["793/21", "-10/49"], ["382/3", "-3/7"]]}),  # places the poles, has no zero
+        ("output_feedback_servo", {"L": [["19"], ["80"]], "F": [["(316 s + 396)/(s^2 + 23 s + 160)"]]}),
+        ("output_feedback_servo", {"K": [["4", "4"]], "F": [["(400 + 319 s)/(s^2 + 23 s + 161)"]]}),
+        ("output_feedback_servo", {"F": [["(400 + 319 s)/(s^2 + 23 s + 161)"]]}),
+    ],
+)
+def test_what_is_nearly_right_has_the_verdict_of_check(name: str, given: dict[str, list[list[str]]]) -> None:
+    exercise = held(name).first
+    found = {part: (told["verdict"], told["credit"]) for part, told in judge(exercise.question, given).items()}
+    assert found == checked(exercise, given)
+
+
+def test_the_other_half_has_the_credit_of_check() -> None:
+    exercise = held("other signs").first
+    found = {part: (told["slip"], told["credit"]) for part, told in judge(exercise.question, OTHER_HALF).items()}
+    assert {part: credit for part, (_, credit) in found.items()} == {
+        part: credit for part, (_, credit) in checked(exercise, OTHER_HALF).items()
+    }
+    assert found["K"] == found["M"] == ("other_half", Fraction(1, 4))
+
+
+def test_what_the_platform_asks_of_a_question(tmp_path: Path) -> None:
+    each = held("output_feedback_servo")
+    files = installed(each, tmp_path)
+    info = json.loads(files["info.json"])
+    required = {"uuid", "type", "title", "topic"}
+    assert required <= set(info) <= required | {"tags", "partialCredit", "singleVariant"}
+    html = re.sub(r"\{\{\{params.question\}\}\}|\{\{[#/]", "", files["question.html"])
+    page = fromstring(f"<div>{html}</div>")  # noqa: S314
+    assert [found.get("answers-name") for found in page.iter() if found.tag.endswith("-input")] == ["K", "L", "F"]
+    kinds = ("correct", "incorrect", "invalid")
+    told = graded(tmp_path, [{"seed": "1", "raw": {}, "test": kind} for kind in kinds])
+    assert [data["score"] for data in told] == [1, 0, 0]
+    assert [bool(data["format_errors"]) for data in told] == [False, False, True]
+
+
+def test_a_valid_gain_counts_and_one_that_is_nearly_right_does_not() -> None:
+    exercise = held("triple_pole_two_outputs").first
+    (part,) = exercise.parts
+    near = [[f"({entry})*991/1000" for entry in row] for row in part.right]
+    other = [["0", "1"], ["0", "2"], ["0", "6"]]
+    found = [judge(exercise.question, {"L": rows})["L"]["verdict"] for rows in (other, near)]
+    assert (part.free, found) == (3, ["right", "wrong"])
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["9" * 1999, "(" * 500, "2^" * 300 + "2", "s^1000^1000", "1e999", "1e9999", "\0", "\ud800", "(1)(2)", "''", "--" * 900 + "1",  # noqa: E501
+     "(s+1)^60*(s+2)^60", "1/0", "0^-1", "1/(s-s)", "__import__('os').system('touch hacked')", "{" * 99, "\N{ARABIC-INDIC DIGIT ONE}"],  # noqa: E501
+)  # fmt: skip
+def test_nothing_that_is_typed_raises_or_is_executed(text: str) -> None:
+    exercise = held("output_feedback_servo").first
+    for name in ("F", "K", "L"):
+        given = {part.name: [[text] * part.shape[1]] * part.shape[0] for part in exercise.parts if part.name == name}
+        found = judge(exercise.question, given)[name]
+        assert found["verdict"] in {"unreadable", "wrong"}
+        assert found["credit"] < 1
+
+
+def test_the_score_is_the_weighted_mean() -> None:
+    exercise = held("output_feedback_servo").first
+    given = {
+        part.name: [[str(entry) for entry in row] for row in part.right] for part in exercise.parts if part.name != "L"
+    }
+    outcomes = judge(exercise.question, given)
+    assert (outcomes["L"]["verdict"], score(exercise.question, outcomes)) == ("missing", Fraction(2, 3))

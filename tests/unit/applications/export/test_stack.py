@@ -1,0 +1,129 @@
+"""The STACK export, run in Maxima: its variables, and its response trees walked node by node."""
+
+from __future__ import annotations
+
+import random
+import re
+import shutil
+import subprocess
+from fractions import Fraction
+from typing import TYPE_CHECKING, Any
+from xml.etree.ElementTree import Element, fromstring
+
+import pytest
+
+from symobs.applications.export import export
+from tests.support.tools.exported import checked, held, random_answer
+
+if TYPE_CHECKING:
+    from symobs.applications.export import ExerciseSet
+
+pytestmark = pytest.mark.skipif(shutil.which("maxima") is None, reason="maxima is not installed")
+
+
+def question_of(each: ExerciseSet) -> Element:
+    """The question of an export."""
+    quiz = fromstring(str(export("stack", [each])[""]))  # noqa: S314
+    return next(found for found in quiz if found.get("type") == "stack")
+
+
+def text_of(element: Element, path: str) -> str:
+    found = element.find(path)
+    assert found is not None
+    return found.text or ""
+
+
+def as_maxima(rows: list[list[str]], *, is_matrix: bool) -> str:
+    return f"matrix({', '.join(f'[{inside}]' for inside in map(', '.join, rows))})" if is_matrix else f"({rows[0][0]})"
+
+
+def run(question: Element, answers: list[dict[str, str]], seed: int = 1) -> list[list[int]]:
+    """The verdict of every tree for every answer, in one Maxima."""
+    trees = question.findall("prt")
+    lines = [
+        f"stack_seed: {seed}$",
+        text_of(question, "questionvariables/text").replace(";\n", "$\n").rstrip(";") + "$",
+    ]
+    for answer in answers:
+        lines += [f"{name}: {value}$" for name, value in answer.items()]
+        for tree in trees:
+            code = text_of(tree, "feedbackvariables/text").replace(";\n", "$\n").rstrip(";")
+            lines += [code + "$", 'print("VERDICT", sy_k)$']
+    done = subprocess.run(
+        ["maxima", "--very-quiet"], input="\n".join(lines), capture_output=True, text=True, timeout=200, check=True
+    )
+    found = [int(number) for number in re.findall(r"VERDICT (\S+)", done.stdout)]
+    assert len(found) == len(answers) * len(trees), done.stdout[-3000:]
+    return [found[i : i + len(trees)] for i in range(0, len(found), len(trees))]
+
+
+def walked(tree: Element, verdict: int) -> tuple[Fraction, str]:
+    """Score and answer note at the end of a response tree."""
+    nodes = {text_of(node, "name"): node for node in tree.findall("node")}
+    place, score, note = "0", Fraction(0), ""
+    while place != "-1":
+        node = nodes[place]
+        assert text_of(node, "answertest") == "AlgEquiv"
+        side = "true" if int(text_of(node, "tans")) == verdict else "false"
+        score, note = Fraction(text_of(node, f"{side}score")), text_of(node, f"{side}answernote")
+        place = text_of(node, f"{side}nextnode")
+    return score, note
+
+
+def answered(each: ExerciseSet, given: dict[str, list[list[str]]]) -> dict[str, str]:
+    found = {}
+    for k, part in enumerate(each.first.parts, 1):
+        is_matrix = part.kind == "gain" or part.shape != (1, 1)
+        rows = given[part.name]
+        found[f"ans{k}"] = f"sy_{rows[0][0]}" if part.kind == "word" else as_maxima(rows, is_matrix=is_matrix)
+    return found
+
+
+def agree(name: str, count: int) -> None:
+    """Scores of the trees are the credits of `check`."""
+    each, draw = held(name), random.Random(name)  # noqa: S311
+    given = [random_answer(each.first, draw, exact=True) for _ in range(count)]
+    question = question_of(each)
+    trees = question.findall("prt")
+    found = run(question, [answered(each, answer) for answer in given])
+    for answer, verdicts in zip(given, found, strict=True):
+        told = checked(each.first, answer)
+        scores = [walked(tree, verdict)[0] for tree, verdict in zip(trees, verdicts, strict=True)]
+        assert scores == [told[part.name][1] for part in each.first.parts], (answer, told, verdicts)
+
+
+def test_the_trees_give_the_credits_of_check() -> None:
+    agree("output_feedback_servo", 10)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    "name",
+    [
+        "other signs",
+        "either sign",
+        "zeros",
+        "square",
+        "two_inputs_feedback",
+        "tanks_observer_parametric",
+        "third_order_plant",
+        "detectable",
+    ],
+)
+def test_the_trees_give_the_credits_of_check_in_more_examples(name: str) -> None:
+    agree(name, 25)
+
+
+def test_the_tests_of_the_question_pass() -> None:
+    each = held("third_order_matching")
+    question = question_of(each)
+    tests = question.findall("qtest")
+    answers: list[dict[str, Any]] = [
+        {text_of(given, "name"): text_of(given, "value") for given in test.findall("testinput")} for test in tests
+    ]
+    for test, verdicts in zip(tests, run(question, answers), strict=True):
+        for expected, tree, verdict in zip(test.findall("expected"), question.findall("prt"), verdicts, strict=True):
+            score, note = walked(tree, verdict)
+            assert score == Fraction(text_of(expected, "expectedscore"))
+            assert note == text_of(expected, "expectedanswernote")
+    assert len(tests) == 2

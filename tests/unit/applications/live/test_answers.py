@@ -1,0 +1,436 @@
+"""The protocol: what every want returns, what is refused, and that an answer is the one of `symobs solve`."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+import tomllib
+from fractions import Fraction
+from typing import TYPE_CHECKING, Any
+from urllib.parse import parse_qsl
+
+import mpmath
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from jsonschema import Draft202012Validator  # type: ignore[import-untyped]
+
+from symobs.applications.live import answer
+from symobs.applications.live.assets import MOST_BYTES
+from symobs.applications.live.links import SHORT
+from symobs.applications.live.request import parsed
+from symobs.applications.live.views import VIEWS
+from symobs.pages.formats.json import result_object
+from symobs.problem import validate
+from tests.support.sampling import every
+from tests.support.tools.command_line import EXAMPLES, SAFETY, environment
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+SERVO: dict[str, Any] = {
+    "task": "compensator",
+    "plant": {"A": "[0 1; 0 -1]", "B": "[0; 1]", "C": "[1 0]"},
+    "specification": {"control_poles": "-2, -2", "observer_poles": "-10, -10"},
+}
+DETECTABLE: dict[str, Any] = {
+    "task": "observability",
+    "plant": {"A": "[0 1; -2 -3]", "C": "[1 c]"},
+    "symbols": {"c": "real"},
+}
+SMALL = [path for path in EXAMPLES if path.stem not in {"cart_pole", "region_three_gains"}]
+_TEXT = {"type": "string"}
+_CARD = {
+    "type": "object",
+    "properties": {"name": _TEXT, "mathml": _TEXT, "latex": _TEXT, "says": _TEXT},
+    "required": ["name", "mathml", "latex", "says"],
+}
+_ERROR = {"type": "object", "required": ["where", "message", "repair"], "additionalProperties": _TEXT}
+_LINE = {
+    "type": "object",
+    "required": ["signal", "component", "dashed", "heights"],
+    "properties": {"heights": {"type": "array", "items": {"type": "integer"}}},
+}
+SCHEMA = Draft202012Validator(
+    {
+        "type": "object",
+        "required": ["schema", "id", "status"],
+        "properties": {
+            "schema": {"const": "symobs-live/1"},
+            "status": {"enum": ["done", "no", "bad", "undecided", "bug"]},
+            "errors": {"type": "array", "minItems": 1, "items": _ERROR},
+            "cards": {"type": "array", "items": _CARD},
+            "claims": {"type": "integer"},
+            "courses": {
+                "type": ["object", "null"],
+                "required": ["end", "parts", "window", "lines"],
+                "properties": {"lines": {"type": "array", "items": _LINE}},
+            },
+        },
+    }
+)
+
+
+def asked(problem: object, want: str = "answer", **more: object) -> dict[str, Any]:
+    """The response to a request, which keeps the schema and is JSON."""
+    found = answer({"schema": "symobs-live/1", "id": 7, "want": want, "problem": problem, **more})
+    SCHEMA.validate(json.loads(json.dumps(found)))
+    assert found["id"] == 7
+    return found
+
+
+def data_of(path: Path) -> dict[str, Any]:
+    return tomllib.loads(path.read_text(encoding="utf-8"), parse_float=str)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("path", SMALL, ids=lambda path: path.stem)
+def test_an_answer_is_that_of_solve(path: Path) -> None:
+    data = data_of(path)
+    name = data["tasks"][-1] if "tasks" in data else data["task"]
+    found = asked(data, courses={"count": 9}, cases=True)
+    (result,) = validate({**data, "expect": {}}, name).solve()
+    own = result_object(result)
+    assert found["status"] == (result.verdict if result.verdict in {"no", "undecided"} else "done")
+    assert found["verdict"] == own["verdict"]
+    assert found["claims"] == len(own["certificates"])
+    assert [each["text"] for each in found["conditions"]] == own["conditions"]
+    assert {key: own[key] for key in found["result"]} == found["result"]
+    assert len(found["cases"]) == len(own["cases"])
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("path", every(3, SMALL), ids=lambda path: path.stem)
+def test_every_want_is_answered(path: Path) -> None:
+    data = data_of(path)
+    for detail in ("full", "outline", "answer"):
+        assert '<div class="symobs">' in asked(data, "page", detail=detail)["html"]
+    view = asked(data, "view")["view"]
+    assert view["panels"]
+    for form in ("latex", "toml", "python", "json", "html"):
+        assert asked(data, "export", **{"as": form})["text"]
+    again = asked(tomllib.loads(asked(data, "export", **{"as": "toml"})["text"], parse_float=str))
+    assert again["result"] == asked(data)["result"]
+
+
+def test_the_servo() -> None:
+    found = asked(SERVO, cards=["K", "L", "F"], courses={"start": "1, 1", "estimate": "0, 0", "count": 129})
+    assert found["result"]["K"] == [["4", "3"]]
+    assert found["result"]["L"] == [["19"], ["81"]]
+    assert [card["latex"] for card in found["cards"][:2]] == [
+        r"K=\begin{bmatrix}4&3\end{bmatrix}",
+        r"L=\begin{bmatrix}19\\81\end{bmatrix}",
+    ]
+    assert [card["says"] for card in found["cards"][:1]] == ["K equals [4 3]"]
+    # ω = 2 and ζ = 1; ln 50 / 2 = 1.956.
+    assert found["readouts"][0] == {
+        "handle": "control_poles.0", "exact": "ωₙ = 2", "damping": "1", "settles": "1.96",
+    }  # fmt: skip
+
+
+def test_responses_are_within_their_bound() -> None:
+    found = asked(SERVO, courses={"start": "1, -1/2", "estimate": "1/4, 0", "end": "3", "count": 33})
+    parts, lines = found["courses"]["parts"], found["courses"]["lines"]
+    loop = mpmath.matrix([[0, 1, 0, 0], [0, -1, -4, -3], [19, 0, -19, 1], [81, 0, -85, -4]])  # (x, x̂) by hand
+    with mpmath.workdps(50):
+        count = len(lines[0]["heights"])
+        assert (count - 1) % 32 == 0
+        for k in range(count):
+            state = mpmath.expm(loop * mpmath.mpf(3 * k) / (count - 1)) * mpmath.matrix([1, -0.5, 0.25, 0])
+            for place, line in enumerate(lines):
+                assert abs(line["heights"][k] - parts * state[place]) <= 1
+    assert [(line["signal"], line["component"], line["dashed"]) for line in lines] == [
+        ("x", 1, False), ("x", 2, False), ("x_hat", 1, True), ("x_hat", 2, True),
+    ]  # fmt: skip
+
+
+def test_responses_of_an_observer_of_minimal_order_are_within_their_bound() -> None:
+    # ẋ = (x₂, −x₂ + u), y = x₁, z = x₂ − 9 x₁ with pole −10: x̂₂ = z + 9 x₁, e₂ = x₂ − x̂₂ falls as e^{−10 t}.
+    problem = {**SERVO, "specification": {"control_poles": "-2, -2", "observer_poles": "-10", "observer": "minimal"}}
+    found = asked(problem, courses={"start": "1, 1", "estimate": "0, 1/2", "end": "1", "count": 11})
+    parts, lines = found["courses"]["parts"], {(x["signal"], x["component"]): x for x in found["courses"]["lines"]}
+    last = len(lines["x", 2]["heights"]) - 1
+    for k in range(last + 1):
+        error = mpmath.exp(mpmath.mpf(-10 * k) / last) / 2
+        x, seen = (lines["x", 2]["heights"][k], lines["x_hat", 2]["heights"][k])
+        assert abs(x - seen - parts * error) <= 2
+        assert abs(lines["x", 1]["heights"][k] - lines["x_hat", 1]["heights"][k]) <= 1
+
+
+@pytest.mark.parametrize("poles", ["-1, -20, -20", "-1, -40, -40", "-1/10+10i, -1/10-10i, -1", "-1, -1, -1"])
+def test_peak_and_settling_are_those_of_the_whole_response(poles: str) -> None:
+    chain = {"A": "[0 1 0; 0 0 1; 0 0 0]", "C": "[1 0 0]"}
+    found = asked({"task": "observer", "plant": chain, "specification": {"poles": poles}}, courses={})
+    error = np.array([[float(Fraction(entry)) for entry in row] for row in found["result"]["A"]])
+    end, count = float(found["courses"]["end"]), 40_001
+    times = np.linspace(0, 2 * end, count)
+    step = np.array(mpmath.expm(mpmath.matrix(error * times[1])).tolist(), float)
+    states = [np.ones(3)]
+    for _ in times[1:]:
+        states.append(step @ states[-1])
+    for line, values in zip(found["courses"]["lines"], np.array(states).T, strict=True):
+        seen = values[: count // 2 + 1]
+        peak = seen[np.argmax(np.abs(seen))]
+        settled = times[np.nonzero(np.abs(values) > 0.02 * abs(peak))[0][-1]]
+        assert float(line["peak"]) == pytest.approx(peak, rel=6e-3)
+        drawn = end / (len(line["heights"]) - 1)
+        assert ("settles" in line) == (settled < end)
+        if settled < end:
+            assert -1e-3 * end <= float(line["settles"]) - settled <= drawn + 1e-2 * settled
+
+
+def test_a_response_that_comes_back_after_the_picture_has_not_settled_in_it() -> None:
+    # e₁ = (t − 6) t³ e^(−t), the other errors by eₖ₊₁ = ėₖ + Lₖ e₁: 0 at the end, t = 6, and then 7 % of its peak again.
+    chain = {"A": "[0 1 0 0 0; 0 0 1 0 0; 0 0 0 1 0; 0 0 0 0 1; 0 0 0 0 0]", "C": "[1 0 0 0 0]"}
+    one = {"task": "observer", "plant": chain, "specification": {"poles": "-1, -1, -1, -1, -1"}}
+    start = "0, 0, 0, -36, -12"
+    first = asked(one, courses={"start": start})["courses"]["lines"][0]
+    assert first["heights"][-1] == 0
+    assert "settles" not in first
+
+
+@pytest.mark.parametrize("poles", ["-1, -200, -200", "-1/10+134i, -1/10-134i, -1"])
+def test_what_changes_too_fast_to_be_seen_is_left_out(poles: str) -> None:
+    # The second component goes down to −L₁/e ≈ −74 within 1/200 of the first second; the other turns 10 times between instants.
+    chain = {"A": "[0 1 0; 0 0 1; 0 0 0]", "C": "[1 0 0]"}
+    found = asked({"task": "observer", "plant": chain, "specification": {"poles": poles}}, courses={})
+    assert (found["status"], found["courses"]) == ("done", None)
+    assert (
+        found["note"] == "The responses are left out: they change too fast for a picture that shows them to their end."
+    )
+
+
+def test_discrete_responses_are_exact() -> None:
+    plant = {"A": "[1 1; 0 1]", "C": "[1 0]", "dt": 1}
+    found = asked({"task": "observer", "plant": plant, "specification": {"poles": "0, 0"}}, courses={})
+    assert [line["heights"][:4] for line in found["courses"]["lines"]] == [[1000, 0, 0, 0], [1000, 0, 0, 0]]
+
+
+def test_where_there_is_no_design_there_is_no_response() -> None:
+    # Two outputs that are both −x and x cannot follow two references: there is no feedforward.
+    plant = {"A": "[-b]", "B": "[2, 0]", "C": "[-1; 1]"}
+    poles = {"control_poles": "-p", "observer_poles": "-10"}
+    problem = {
+        "task": "feedforward",
+        "plant": plant,
+        "specification": poles,
+        "symbols": {"b": "nonzero", "p": "nonzero"},
+    }
+    found = asked(problem, courses={})
+    assert (found["status"], found["courses"]) == ("no", None)
+
+
+def test_values_too_large_to_draw_are_left_out() -> None:
+    for start in ("1e400, 1", "1e13, 0"):
+        found = asked(SERVO, courses={"start": start})
+        assert (found["status"], found["courses"]) == ("done", None)
+        assert found["note"] == "A response is left out: its values are too large to draw."
+    assert asked(SERVO, courses={"start": "1e9, 1"})["courses"]["parts"] == 1000
+
+
+def test_a_value_takes_the_place_of_its_symbol() -> None:
+    general = asked(DETECTABLE, cases=True)
+    assert general["verdict"] == "conditional"
+    assert [case["at"] for case in general["cases"]] == [{"c": "1/2"}, {"c": "1"}]
+    there = asked(DETECTABLE, at={"c": "1"}, cards_at=True)
+    assert there["status"] == "no"
+    kernel = next(card for card in there["cards"] if card["name"] == "kernel")
+    assert kernel["says"] == "N equals [-1; 1]"  # C x = x₁ + x₂ = 0
+    assert asked(DETECTABLE, at={"c": "1"}, cards_at=True, cases=True)["cases"] == general["cases"]
+
+
+@pytest.mark.parametrize(
+    ("at", "where", "message"),
+    [
+        ({"q": "1"}, "at.q", "no symbol of the problem"),
+        ({"c": "1) + (2"}, "at.c", ""),
+        ({"c": "zz"}, "at.c", ""),
+        ({"c": ""}, "at.c", "an exact value is expected"),
+        ({"c": True}, "at.c", "an exact value is expected"),
+        ({"c": "1" * 201}, "at.c", "an exact value is expected"),
+        ({"__class__": "1"}, "at.__class__", "no name of a symbol"),
+    ],
+)
+def test_a_value_that_cannot_be_is_refused(at: dict[str, object], where: str, message: str) -> None:
+    found = asked(DETECTABLE, at=at)
+    assert found["status"] == "bad"
+    assert found["errors"][0]["where"].startswith(where)
+    assert message in found["errors"][0]["message"]
+
+
+def test_a_value_keeps_the_declared_sign() -> None:
+    problem = {**DETECTABLE, "symbols": {"c": "positive"}}
+    found = asked(problem, at={"c": "-1"}, cards_at=True)
+    assert [error["message"] for error in found["errors"]] == ["c is positive"]
+    assert asked(problem, at={"c": "2"}, cards_at=True)["status"] == "done"
+
+
+def test_what_is_wrong_with_a_field_of_the_page_is_said_in_its_language() -> None:
+    german = {**DETECTABLE, "symbols": {"c": "positive"}, "language": "de"}
+    (error,) = asked(german, at={"c": "-1"}, cards_at=True)["errors"]
+    assert error == {
+        "where": "at.c",
+        "message": "c ist als „positive“ vereinbart",
+        "repair": "wählen Sie einen anderen Wert, oder vereinbaren Sie das Symbol als real",
+    }
+    (error,) = asked(german, at={"c": "1) + (2"})["errors"]
+    assert error["lang"] == "en"
+
+
+def test_the_stability_of_a_point_is_exact() -> None:
+    # s³ + 2 s² + 3 s + k is stable exactly for 0 < k < 6; at 6 it is (s + 2)(s² + 3).
+    specification = {"polynomial": "s^3 + 2 s^2 + 3 s + k", "parameters": ["k"]}
+    problem = {"task": "stability_region", "specification": specification, "symbols": {"k": "real"}}
+    verdicts = {k: asked(problem, "point", at={"k": k})["verdict"] for k in ("0", "1/1000000", "6", "5999999/1000000")}
+    assert verdicts == {"0": "boundary", "1/1000000": "stable", "6": "boundary", "5999999/1000000": "stable"}
+    edge = asked(problem, "point", at={"k": "6"})
+    assert edge["boundary"][0]["latex"] == "k-6=0"
+    for root, true in zip(sorted(edge["roots"], key=lambda r: float(r["re"][0])), (-2, 0, 0), strict=True):
+        assert float(root["re"][0]) <= true <= float(root["re"][1])
+    pair = [root for root in edge["roots"] if float(root["im"][0]) > 0]
+    assert len(pair) == 1
+    assert float(pair[0]["im"][0]) ** 2 <= 3 <= float(pair[0]["im"][1]) ** 2
+    assert asked(problem, "point", at={})["errors"][0]["message"] == "a value is missing for k"
+
+
+def test_a_region_has_its_checked_picture() -> None:
+    plant = {"A": "[0 1; 9 0]", "C": "[0 1]"}
+    problem = {
+        "task": "stability_region",
+        "plant": plant,
+        "specification": {"L": "[h1; h2]", "parameters": ["h1", "h2"]},
+        "symbols": {"h1": "real", "h2": "real"},
+    }
+    region = asked(problem, "view")["view"]["region"]
+    assert region["parameters"] == ["h1", "h2"]
+    assert region["svg"].startswith("<svg")
+    point = dict(zip(region["parameters"], region["handle"], strict=True))
+    assert asked(problem, "point", at=point)["verdict"] == "stable"
+
+
+def test_no_gain_is_said_with_its_reason() -> None:
+    plant = {"A": "[1 0; 0 -1]", "B": "[0; 1]", "C": "[1 1]"}
+    found = asked({"task": "state_feedback", "plant": plant, "specification": {"poles": "-2, -2"}})
+    assert found["status"] == "no"
+    assert found["note"] == "No gain moves the mode 1 of (A, B)."
+
+
+def test_an_answer_is_pure() -> None:
+    request = {"schema": "symobs-live/1", "id": 1, "problem": SERVO, "courses": {}, "cases": True}
+    assert json.dumps(answer(request)) == json.dumps(answer(json.loads(json.dumps(request))))
+
+
+@pytest.mark.parametrize(
+    ("change", "where"),
+    [
+        ({"schema": "symobs-live/2"}, "schema"),
+        ({"want": "everything"}, "want"),
+        ({"extra": 1}, "extra"),
+        ({"cards_at": 1}, "cards_at"),
+        ({"cards": "K"}, "cards"),
+        ({"courses": {"count": 10**9}}, "courses.count"),
+        ({"courses": {"count": True}}, "courses.count"),
+        ({"courses": {"start": "1"}}, "courses.start"),
+        ({"courses": {"end": "-1"}}, "courses.end"),
+        ({"courses": []}, "courses"),
+        ({"at": {"c": 0.5}}, "at.c"),
+        ({"problem": {**SERVO, "plant": {"A": [[0.5]]}}}, "problem.plant.A[0][0]"),
+        ({"problem": {**SERVO, "task": "observer "}}, "task"),
+        ({"problem": {**SERVO, "convention": "../../etc/passwd"}}, "convention"),
+        ({"problem": {**SERVO, "convention": "/etc/passwd.toml"}}, "convention"),
+        ({"problem": {**SERVO, "open": 1}}, "open"),
+        ({"task": "import os"}, "task"),
+    ],
+)
+def test_a_request_that_cannot_be_is_refused_at_its_place(change: dict[str, Any], where: str) -> None:
+    found = asked(SERVO, **{"courses": {}, **change}) if "problem" not in change else asked(change["problem"])
+    if "schema" in change or "want" in change:
+        found = answer({"schema": "symobs-live/1", "id": 7, "problem": SERVO, **change})
+    assert found["status"] == "bad"
+    assert where in [error["where"] for error in found["errors"]]
+
+
+def test_all_errors_are_said_at_once() -> None:
+    found = answer({"schema": "x", "want": "y", "cards": 1, "problem": SERVO})
+    assert {error["where"] for error in found["errors"]} == {"schema", "want", "cards"}
+    wrong = {
+        **SERVO,
+        "plant": {"A": "[0 1; q 0]", "B": "[0; 1", "C": "[1 0]"},
+        "specification": {"control_poles": "-2, ("},
+    }
+    assert len(asked(wrong)["errors"]) >= 3
+
+
+def test_the_size_of_a_request_is_bounded() -> None:
+    for body in (b" " * (MOST_BYTES + 1), b"[" * 5000, b"\xff", b"{", b'{"a": 1' + b"0" * 5000 + b"}"):
+        with pytest.raises(Exception, match=r"longer|JSON|UTF-8"):
+            parsed(body)
+    deep: Any = "x"
+    for _ in range(30):
+        deep = [deep]
+    assert "nested" in asked({**SERVO, "text": deep})["errors"][0]["message"]
+
+
+_LEAVES = st.none() | st.booleans() | st.integers() | st.floats() | st.text(max_size=30)
+_ANY = st.recursive(_LEAVES, lambda s: st.lists(s, max_size=4) | st.dictionaries(st.text(max_size=12), s, max_size=4))
+_KEYS = st.sampled_from(["want", "problem", "task", "at", "cards", "courses", "detail", "as", "cases", "id", "format"])
+
+
+@settings(max_examples=100, deadline=None)
+@given(_ANY | st.dictionaries(_KEYS, _ANY, max_size=6))
+def test_no_request_is_a_bug(request: Any) -> None:
+    whole = {"schema": "symobs-live/1", "problem": SERVO, **request} if isinstance(request, dict) else request
+    found = answer(whole)
+    assert found["status"] in {"bad", "done", "no"}
+    SCHEMA.validate(json.loads(json.dumps(found, allow_nan=False)))
+
+
+@settings(max_examples=60, deadline=None)
+@given(
+    st.sampled_from(["A", "B", "C", "control_poles", "observer_poles"]), st.text("01a-+*/^()[];, .i'\"\\", max_size=14)
+)
+def test_no_text_of_a_user_is_a_bug(key: str, text: str) -> None:
+    table = "plant" if len(key) == 1 else "specification"
+    found = answer({"schema": "symobs-live/1", "problem": {**SERVO, table: {**SERVO[table], key: text}}, "courses": {}})
+    assert found["status"] in {"bad", "done", "no", "undecided"}
+
+
+def test_an_answer_imports_nothing_heavy() -> None:
+    code = f"""
+import sys
+from symobs.applications.live import answer
+found = answer({{"schema": "symobs-live/1", "problem": {SERVO!r}, "courses": {{}}}})
+assert found["status"] == "done", found
+print(*sys.modules, sep="\\n")
+"""
+    run = subprocess.run(
+        [sys.executable, "-c", code], env=environment(), capture_output=True, text=True, timeout=SAFETY, check=True
+    )
+    heavy = {"sympy", "numpy", "jinja2", "click", "mpmath", "http.server", "multiprocessing", "matplotlib"}
+    assert set(run.stdout.split()) & heavy == set()
+
+
+def test_the_start_names_tasks_and_examples() -> None:
+    found = answer({"schema": "symobs-live/1", "want": "start"})
+    assert len(json.dumps(found)) < 2**20
+    assert {"compensator", "observer"} <= found["tasks"].keys()
+    names = {example["name"] for example in found["examples"]}
+    assert "output_feedback_servo" in names
+    assert VIEWS.keys() - {"controllability"} <= {example["task"] for example in found["examples"]}
+    for example in found["examples"]:
+        told = dict(parse_qsl(example["link"]))
+        assert told.pop("task") == example["task"]
+        assert told.keys() - {SHORT.get(key, key) for key in found["tasks"][example["task"]]} <= {
+            "v", "A", "B", "C", "D", "transfer_function", "dt", "symbols", "convention", "H",
+        }  # fmt: skip  # H is L in the letters of one convention
+
+
+def test_integral_action_shows_both_gains() -> None:
+    plant = {"A": "[0 1; 0 -1]", "B": "[0; 1]", "C": "[1 0]"}
+    found = asked({"task": "integral_action", "plant": plant, "specification": {"poles": "-1, -2, -3"}})
+    assert {card["name"]: card["says"] for card in found["cards"][:2]} == {
+        "K": "K equals [11 5]",
+        "k_I": "k_I equals 6",
+    }

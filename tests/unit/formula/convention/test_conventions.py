@@ -1,0 +1,459 @@
+"""One mathematics in the letters and signs of several books: pages, input, expected answers, JSON."""
+
+from __future__ import annotations
+
+import json
+import tomllib
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from symobs.exact import Matrix
+from symobs.formula.convention import STANDARD, Convention, convention_named, conventions
+from symobs.formula.convention.builtin import ALIASES
+from symobs.formula.convention.convention_file import read_convention
+from symobs.formula.tree import (
+    Apply,
+    Block,
+    Environment,
+    Exact,
+    Formula,
+    Letter,
+    Literal,
+    Negative,
+    Power,
+    Product,
+    Relation,
+    SignReversal,
+    Sum,
+    Transpose,
+    evaluate,
+)
+from symobs.ground.errors import DerivationRejected, InputError, ProblemErrors, UsageError
+from symobs.problem import parse, read, validate
+from symobs.problem.expect import mismatches
+from symobs.proof.derivation import convention_signs, translated
+from symobs.tasks.result import Document, render
+from tests.support.sampling import every
+from tests.support.tools.command_line import EXAMPLES, inside
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from symobs.problem import Problem
+
+#: The table that opens the catalogue: the law, the observer matrix, the pair (a dash there: as in the standard).
+TABLE = {
+    "standard": ("u = -K x_hat", "A - L C", "(C, A)"),
+    "S0": ("u = -K x_hat", "A - L C", "(C, A)"),
+    "S1": ("u = K x_hat", "A + M C", "{A, C}"),
+    "S2": ("u = -K x_hat", "A - L C", "(A, C)"),
+    "S3": ("u = -K x_hat", "A - L C", "(A, C)"),
+    "S4": ("u = K x_hat", "A - H C", "[A, C]"),
+}
+#: The gains of the double integrator with poles −1 ± i and −1, −2: S1 prints M = [−3; −2] and u = Kx with K = [−2 −2].
+GAINS = {
+    "standard": {"K": "[2 2]", "L": "[3; 2]"},
+    "S0": {"K": "[2 2]", "L": "[3; 2]"},
+    "S1": {"K": "[-2 -2]", "M": "[-3; -2]"},
+    "S2": {"K": "[2 2]", "L": "[3; 2]"},
+    "S3": {"K": "[2 2]", "L": "[3; 2]"},
+    "S4": {"K": "[-2 -2]", "H": "[3; 2]"},
+}
+PLANT = """
+[plant]
+A = "[0 1; 0 0]"
+B = "[0; 1]"
+C = "[1 0]"
+"""
+DESIGN = (
+    'task = "compensator"\n' + PLANT + '[specification]\ncontrol_polynomial = "s^2+2s+2"\nobserver_poles = [-1, -2]\n'
+)
+
+
+def problem(text: str, convention: str, expect: dict[str, Any] | None = None) -> Problem:
+    """The problem of a text, in a convention, with these expected answers."""
+    return validate({**parse(text), "convention": convention, "expect": expect or {}})
+
+
+def page(found: Problem, format_name: str = "text") -> str:
+    return str(render(found.document(found.solve()), format_name))
+
+
+def unmet(found: Problem) -> list[str]:
+    return mismatches(found.viewed(found.solve()), found.expect)
+
+
+def test_the_profiles_are_those_of_the_table() -> None:
+    written = {name: (found.law, found.observer_matrix, found.pair) for name, found in conventions().items()}
+    assert written == {ALIASES.get(name, name): laws for name, laws in TABLE.items()}
+    assert {name: convention_named(name).name for name in ALIASES} == ALIASES
+
+
+def test_a_convention_is_named_by_its_law() -> None:
+    assert convention_named("u = K x_hat, A + M C").name == "plusK-plusMC"
+    assert convention_named("u = -K x_hat, A - L C") is STANDARD
+    own = convention_named("u = -R x_hat, A + G C")
+    assert (own.law, own.observer_matrix) == ("u = -R x_hat", "A + G C")
+    with pytest.raises(
+        UsageError, match=r"not a control law and an observer matrix: law, observer: this cannot be read"
+    ):
+        convention_named("u = K x_hat, A")
+
+
+@pytest.mark.parametrize("name", TABLE)
+def test_one_problem_in_all_conventions(name: str) -> None:
+    found = problem(DESIGN, name, GAINS[name])
+    assert unmet(found) == []
+    (result,) = found.solve()
+    assert (str(result.answer["K"]), str(result.answer["L"])) == ("[2 2]", "[3; 2]")
+    for letter, text in GAINS[name].items():
+        spoiled = problem(DESIGN, name, {**GAINS[name], letter: text.replace("2", "7")})
+        assert [line.split(":")[0] for line in unmet(spoiled)] == [f"expect.{letter}"]
+
+
+LINES = {
+    "standard": [
+        "u = -K x̂",
+        "A - L C",
+        "the pair (C, A) is observable",
+        "u = -K x + K e",
+        "dx̂/dt = A x̂ + B u + L(y - C x̂)",
+    ],
+    "S0": ["r_o(s) = (s + 1)(s + 2)", "the pair (C, A) is observable"],
+    "S1": [
+        "u = K x̂",
+        "A + M C",
+        "the pair {A, C} is observable",
+        "dx̂/dt = A x̂ + B u - M(y - C x̂)",
+        "u = K x - K x̄",
+        "dx̂/dt = A_c x̂ - M y",
+        "det(sI - A_cl) = det(sI - A - B K)det(sI - A - M C)",
+        "⎡A + B K     -B K⎤",
+        "u = [-2 -2] x̂",
+    ],
+    "S2": [
+        "the pair (A, C) is observable",
+        "u = -K x₀",
+        "e₀ = x - x₀",
+        "dx₀/dt = A x₀ + B u + L(y - C x₀)",
+    ],
+    "S3": ["the pair (A, C) is observable", "u = -K x̂"],
+    "S4": ["u = K x̂", "A - H C", "the pair [A, C] is observable", "u = K x - K e", "H(y - C x̂)", "u = [-2 -2] x̂"],
+}
+
+
+@pytest.mark.parametrize("name", TABLE)
+def test_pages_speak_the_letters_of_their_book(name: str) -> None:
+    """S1's slides at 25:11 and 28:08 and S4's last section print these lines."""
+    told = " ".join(page(problem(DESIGN, name)).split())
+    for line in LINES[name]:
+        assert " ".join(line.split()) in told
+    if name in {"S1", "S4"}:
+        assert "L C" not in told
+        assert "(C, A)" not in told
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("path", every(2, EXAMPLES), ids=lambda path: path.stem)
+def test_every_page_holds_in_every_convention(path: Path) -> None:
+    """Each translated line is checked again before it is told."""
+    found = read(path.read_text(encoding="utf-8"))
+    results = found.solve()
+    for name in ("S1", "S2", "S4"):
+        assert render(Document(found.title, found.source, results, convention_named(name)), "text")
+
+
+def test_the_reduced_order_observer_of_the_slides() -> None:
+    """S2: for y = 2 x₁ and the pole −10, L = 9/2, F = −10, H = 1, G = −45."""
+    plant = '[plant]\nA = "[0 1; 0 -1]"\nB = "[0; 1]"\nC = "[2 0]"\n'
+    text = f'task = "reduced_order_observer"\n{plant}[specification]\npoles = [-10]\n'
+    answers = {"L": "[9/2]", "F": "[-10]", "H": "[1]", "G": "[-45]"}
+    found = problem(text, "S2", answers)
+    assert unmet(found) == []
+    assert unmet(problem(text, "S0", {**answers, "G": "[1]", "H": "[-45]"})) == []
+    assert len(unmet(problem(text, "S0", answers))) == 2
+    assert "ż = F z + H u + G y" in page(found)
+    assert unmet(problem(text, "S1", {"M": "[-9/2]", "S": "[1/2 0; 9/2 1]"})) == unmet(
+        problem(text, "S1", {"L": "[9/2]"})
+    )
+
+
+def test_given_gains_are_read_in_the_file_s_letters() -> None:
+    observer = 'task = "observer"\n' + PLANT + "[specification]\n"
+    polynomial = {"polynomial": "s^2 + 3 s + 2"}
+    for name, gain in (
+        ("S1", 'M = "[-3; -2]"'),
+        ("S1", 'L = "[3; 2]"'),
+        ("S4", 'H = "[3; 2]"'),
+        ("S0", 'L = "[3; 2]"'),
+    ):
+        assert unmet(problem(observer + gain, name, polynomial)) == []
+    feedback = 'task = "state_feedback"\n' + PLANT + '[specification]\nK = "[-2 -2]"\n'
+    assert unmet(problem(feedback, "S4", {"polynomial": "s^2 + 2 s + 2", "K": "[-2 -2]"})) == []
+    assert len(unmet(problem(feedback, "S0", {"polynomial": "s^2 + 2 s + 2"}))) == 1
+
+
+def test_open_gains_of_a_region() -> None:
+    """S4: the hanging pendulum with u = Kx is stable where k2 < b and k1 < ω²."""
+    text = """
+    task = "stability_region"
+    symbols = { omega = "positive", b = "positive" }
+    [plant]
+    A = "[0 1; -omega^2 -b]"
+    B = "[0; 1]"
+    [specification]
+    K = "[k1 k2]"
+    parameters = ["k1", "k2"]
+    """
+    assert unmet(problem(text, "S4", {"stable_if": ["k2 < b", "k1 < omega^2"]})) == []
+    assert unmet(problem(text, "S0", {"stable_if": ["k2 > -b", "k1 > -omega^2"]})) == []
+
+
+def test_json_and_python_stay_standard() -> None:
+    (shown,) = json.loads(page(problem(DESIGN, "S1"), "json"))["results"]
+    assert (shown["K"], shown["L"]) == ([["2", "2"]], [["3"], ["2"]])
+    own = shown["in_convention"]
+    assert (own["name"], own["K"], own["M"]) == ("plusK-plusMC", [["-2", "-2"]], [["-3"], ["-2"]])
+    assert "L" not in own
+    (result,) = problem(DESIGN, "S1").solve()
+    assert "A + M C" in str(result.to("text", convention="S1"))
+    assert "A - L C" in str(result.to("text"))
+
+
+def test_unknown_entries_are_called_after_their_letter() -> None:
+    text = 'task = "observer"\n' + PLANT + '[specification]\npoles = [-1, -2]\nmethod = "coefficient_matching"\n'
+    assert "m₁" in page(problem(text, "S1"))
+    assert "l₁" not in page(problem(text, "S1"))
+    assert "h₁" in page(problem(text, "S4"))
+    told = page(
+        validate({**parse(text.replace("[0; 1]", "[0; m1]")), "convention": "S1", "symbols": {"m1": "positive"}})
+    )
+    assert "-l₁" in told  # m₁ is a mass here
+
+
+# -- the same in other letters ----------------------------------------------------------------------------------------
+
+
+def matrices(rows: int, columns: int) -> st.SearchStrategy[Matrix]:
+    entries = st.lists(st.integers(-3, 3), min_size=rows * columns, max_size=rows * columns)
+    return entries.map(lambda found: Matrix.of([found[i * columns : (i + 1) * columns] for i in range(rows)]))
+
+
+SQUARE: st.SearchStrategy[Formula] = st.recursive(
+    st.sampled_from([Letter("A"), Letter("K"), Letter("L"), Literal(Matrix.of([[1, 2], [3, 4]]))]),
+    lambda inner: st.one_of(
+        st.builds(Negative, inner),
+        st.builds(Transpose, inner),
+        st.builds(lambda *terms: Sum(terms), inner, inner, inner),
+        st.builds(lambda *factors: Product(factors), inner, inner),
+        st.builds(Power, inner, st.integers(2, 3)),
+        st.builds(lambda one: Apply("adj", one), inner),
+        st.builds(lambda one: Product((Apply("det", one), one)), inner),
+    ),
+    max_leaves=8,
+)
+
+
+@given(SQUARE, matrices(2, 2), matrices(2, 2), matrices(2, 2))
+def test_a_formula_is_worth_the_same_in_other_signs(formula: Formula, A: Matrix, K: Matrix, L: Matrix) -> None:
+    before = Environment(values={"A": A, "K": K, "L": L})
+    for names in (frozenset({"L"}), frozenset({"K", "L"})):
+        after = Environment(values={"A": A, "K": -K if "K" in names else K, "L": -L})
+        turned = SignReversal(names, (L, L.T, K)).whole(formula)
+        assert evaluate(turned, after, Exact(after)) == evaluate(formula, before, Exact(before))
+
+
+@given(SQUARE, matrices(2, 2), matrices(2, 2))
+def test_a_true_relation_stays_true(formula: Formula, A: Matrix, L: Matrix) -> None:
+    before = Environment(values={"A": A, "K": A, "L": L})
+    after = Environment(values={"A": A, "K": A, "L": -L})
+    value = Literal(evaluate(formula, before, Exact(before)))
+    for chain in (
+        (formula, value),
+        (Letter("L"), Literal(L), Sum((Literal(L), Block(((Literal(Matrix.zeros(2, 2)),),))))),
+    ):
+        turned = SignReversal(frozenset({"L"}), (L,)).relation(Relation(chain, ("=",) * (len(chain) - 1)))
+        values = {evaluate(member, after, Exact(after)) for member in turned.members}
+        assert len(values) == 1
+
+
+def test_signs_are_set_as_a_book_sets_them() -> None:
+    A, C, L, M = Letter("A"), Letter("C"), Letter("L"), Matrix.column([3, 2])
+    turned = SignReversal(frozenset({"L"}), (M,))
+    assert turned.whole(Sum((A, Negative(Product((L, C)))))) == Sum((A, Product((L, C))))
+    assert turned.relation(Relation((L, Literal(M)), ("=",))) == Relation((L, Literal(-M)), ("=",))
+    assert turned.formula(L) == L
+    assert turned.whole(Product((L, L))) == Product((L, L))
+    x, z = Letter("x"), Letter("z")
+    written = Relation((Letter("u"), Negative(Product((Literal(M), x)))), ("=",))
+    assert turned.relation(written) == Relation((Letter("u"), Product((Literal(-M), x))), ("=",))
+    assert turned.relation(Relation((z, Product((Literal(M), x))), ("=",))).members[1] == Product((Literal(M), x))
+    both = Sum((Product((L, x)), Product((L, z))))
+    turned_sum = Sum((Negative(Product((L, x))), Negative(Product((L, z)))))
+    assert turned.relation(Relation((A, both), ("=",))).members[1] == turned_sum
+    assert turned.whole(Sum((A, Negative(both)))) == Sum((A, both))
+    assert turned.whole(Product((Sum((L, Negative(A))), x))) == Negative(Product((Sum((L, A)), x)))
+
+
+def test_a_translation_that_changes_a_meaning_is_rejected(monkeypatch: pytest.MonkeyPatch) -> None:
+    (result,) = problem(DESIGN, "standard").solve()
+    monkeypatch.setattr(SignReversal, "relation", lambda _, relation: relation)
+    monkeypatch.setattr(SignReversal, "formula", lambda _, formula: formula)
+    monkeypatch.setattr(SignReversal, "whole", lambda _, formula: formula)
+    with pytest.raises(DerivationRejected, match="in another convention"):
+        translated(result.derivation, convention_named("S1"))
+
+
+def test_a_letter_that_is_forgotten_is_rejected() -> None:
+    (result,) = problem(DESIGN, "standard").solve()
+    before = result.derivation.check()
+    with pytest.raises(DerivationRejected, match="the line L in another convention"):
+        convention_signs._hold_against(before, before.extended_by(values={"L": before.values["K"]}), frozenset())
+    dynamics = {name: Letter("x") for name in before.dynamics}
+    with pytest.raises(DerivationRejected, match="the line x in another convention"):
+        convention_signs._hold_against(before, replace(before, dynamics=dynamics), frozenset())
+
+
+# -- a user's own -----------------------------------------------------------------------------------------------------
+
+OWN = """
+name = "lecture"
+title = "our lecture"
+feedback = "u = R x_hat"
+observer = "A + N C"
+pair = "[A, C]"
+[letters]
+e = "epsilon"
+phi_o = "p_o"
+"""
+
+
+def test_a_convention_of_one_s_own(tmp_path: Path) -> None:
+    (tmp_path / "lecture.toml").write_text(OWN, encoding="utf-8")
+    file = tmp_path / "problem.toml"
+    expect = '[expect]\nR = "[-2 -2]"\nN = "[-3; -2]"\n'
+    file.write_text('convention = "lecture"\n' + DESIGN + expect, encoding="utf-8")
+    run = inside("solve", str(file), "--format", "text")
+    assert (run.code, run.err) == (0, "")
+    for line in ("u = R x̂", "A + N C", "ε = x - x̂", "the pair [A, C]", "p_o(s)"):
+        assert line in run.out
+    latex = inside("solve", str(file), "--convention", str(tmp_path / "lecture.toml")).out
+    assert r"\varepsilon" in latex or r"\epsilon" in latex
+    assert inside("solve", str(file), "--convention", "S1", "--format", "text").out.count("A + M C") > 1
+
+
+def test_a_parameter_printed_like_a_letter_is_set_apart() -> None:
+    """With the mass M and S1's gain M on one page, the mass is set sans-serif, and the page says so."""
+    mass = DESIGN.replace("[0; 1]", "[0; 1/M]")
+    told = page(validate({**parse(mass), "convention": "S1", "symbols": {"M": "positive"}}))
+    assert "\N{MATHEMATICAL SANS-SERIF CAPITAL M}" in told
+    assert "sans-serif" in told
+    assert "\N{MATHEMATICAL SANS-SERIF CAPITAL M}" not in page(validate({**parse(mass), "symbols": {"M": "positive"}}))
+
+
+def test_no_page_writes_two_things_alike(tmp_path: Path) -> None:
+    path = tmp_path / "same.toml"
+    path.write_text('name = "same"\n[letters]\nA_c = "V_o"\nV_o = "A_c"\nx_1 = "z"\n', encoding="utf-8")
+    assert inside("solve", str(EXAMPLES[0].parent / "output_feedback_servo.toml"), "--convention", str(path)).code == 0
+    run = inside("solve", str(EXAMPLES[0].parent / "servo_minimal_order.toml"), "--convention", str(path))
+    assert (run.code, "writes z for two things of this page" in run.err) == (2, True)
+    with pytest.raises(ProblemErrors, match="F would stand for L and for F"):
+        read_convention({"name": "b", "observer": "A + F C"}, "book.toml")
+    assert inside("conventions", str(path)).out.startswith('name = "same"')
+
+
+def test_data_equal_to_a_gain_keep_their_sign() -> None:
+    """C = [1 0] is written as it is given, though Lᵀ is the same."""
+    plant = '[plant]\nA = "[0 1; 0 -3]"\nB = "[0; 1]"\nC = "[1 0]"\n[specification]\n'
+    text = 'task = "compensator"\n' + plant + 'control_polynomial = "s^2+3s+1"\nobserver_polynomial = "s^2 + 4 s + 3"\n'
+    (result,) = problem(text, "S1").solve()
+    assert str(result.answer["L"]) == "[1; 0]"
+    shown = page(problem(text, "S1")).split("A_c = ")[1].split("that is,")[0]
+    assert "[1  0]" in shown
+    assert "[-1  0]" not in shown
+
+
+def test_every_error_of_a_convention_is_told_at_once() -> None:
+    wrong = """
+    name = "my book"
+    feedback = "u = x_hat"
+    observer = "A - L"
+    pair = "[A, C)"
+    colour = "red"
+    [letters]
+    ee = "x"
+    e = "2"
+    """
+    with pytest.raises(ProblemErrors) as caught:
+        read_convention(tomllib.loads(wrong), "book.toml")
+    places = [error.where.removeprefix("book.toml, ") for error in caught.value.errors]
+    assert places == ["colour", "name", "feedback", "observer", "pair", "letters.ee", "letters.e"]
+    assert all(error.repair for error in caught.value.errors)
+    with pytest.raises(ProblemErrors, match="C would stand for L and for C"):
+        read_convention({"name": "b", "observer": "A + C C"}, "book.toml")
+
+
+def test_a_convention_that_does_not_exist(tmp_path: Path) -> None:
+    with pytest.raises(UsageError, match="use one of standard, minusK-minusLC"):
+        convention_named("S9")
+    with pytest.raises(ProblemErrors, match='convention: "S9" is not a convention'):
+        read('convention = "S9"\n' + DESIGN)
+    with pytest.raises(ProblemErrors, match="a name is expected"):
+        read("convention = 4\n" + DESIGN)
+    with pytest.raises(ProblemErrors, match="no convention can be read"):
+        convention_named(str(tmp_path / "none.toml"))
+    assert inside("solve", str(EXAMPLES[0]), "--convention", "S9").code == 2
+    (tmp_path / "evil.toml").write_text("x = " + "[" * 10_000, encoding="utf-8")
+    with pytest.raises(
+        ProblemErrors, match=r"evil\.toml: no convention can be read: line 1: brackets are nested more than 100"
+    ):
+        convention_named(str(tmp_path / "evil.toml"))
+    (tmp_path / "dots.toml").write_text("a." * 9_000 + "a = 1", encoding="utf-8")
+    with pytest.raises(ProblemErrors, match="a dotted key has more than 10 parts"):  # tomllib would take 400 MB
+        convention_named(str(tmp_path / "dots.toml"))
+    (tmp_path / "secret.toml").write_text(OWN, encoding="utf-8")
+    for named in ("../secret", f"{tmp_path}/secret.toml.toml", "../secret.toml"):
+        with pytest.raises(ProblemErrors, match="is not a convention"):
+            read(f'convention = "{named}"\n' + DESIGN, folder=tmp_path / "inner")
+
+
+@pytest.mark.parametrize(
+    "law",
+    [
+        {"feedback": "u = K\N{GREEK SMALL LETTER LAMDA} x_hat"},
+        {"feedback": f"u = {'K' * 41} x_hat"},
+        {"observer": "A - K__ C"},
+        {"observer": "A - 2 C"},
+        {"observer": "A - \N{FULLWIDTH LATIN CAPITAL LETTER L} C"},
+    ],
+)
+def test_the_letter_of_a_gain_is_a_letter(law: dict[str, str]) -> None:
+    """What TeX cannot set, and what would not fit on a line, is no letter in a law either."""
+    with pytest.raises(ProblemErrors, match="this cannot be read"):
+        read_convention({"name": "own"} | law, "own.toml")
+
+
+def test_messages_name_the_letter_of_the_file() -> None:
+    with pytest.raises(ProblemErrors) as caught:
+        problem('task = "observer"\n' + PLANT + '[specification]\nM = "[1 2 3]"\n', "S1").solve()
+    assert caught.value.errors[0].where == "specification.M"
+    with pytest.raises(ProblemErrors, match="L and M are the same gain"):
+        problem('task = "observer"\n' + PLANT + '[specification]\nM = "[1; 2]"\nL = "[1; 2]"\n', "S1")
+    with pytest.raises(InputError, match="unknown key"):
+        problem('task = "observer"\n' + PLANT + '[specification]\nM = "[1; 2]"\n', "S0")
+
+
+def test_the_lists() -> None:
+    listed = inside("conventions").out
+    for name, found in conventions().items():
+        assert f"{name}: {found.title}" in listed
+    assert read_convention(tomllib.loads(inside("conventions", "S1").out), "S1.toml") == convention_named("S1")
+    assert replace(read_convention(tomllib.loads(inside("conventions", "standard").out), "x"), title="") == replace(
+        STANDARD, title=""
+    )
+    assert inside("conventions", "S9").code == 2
+    assert Convention("x") != STANDARD

@@ -1,0 +1,146 @@
+"""The order of computation, held against Python's, which reads numbers, signs, parentheses and powers alike."""
+
+from __future__ import annotations
+
+import ast
+import re
+from fractions import Fraction
+from typing import TYPE_CHECKING
+
+import pytest
+from hypothesis import assume, example, given, reject
+from hypothesis import strategies as st
+
+from symobs.formula.expression import parse_matrix, parse_scalar, tokenizer
+from symobs.formula.expression.names import Scope
+from symobs.formula.expression.source import Source, Token
+from symobs.formula.expression.syntax_parser import parse
+from symobs.formula.expression.syntax_tree import SyntaxNode, every, operands_first
+from symobs.ground.errors import InputError
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+PIECES = ["1", "2.5", "a", "b ", "sqrt(", "(", ")", "[", "]", ",", ";", "\n", " ", "+", "-", "*", "/", "^", "**"]
+MOST = 10**6
+OPERATIONS: dict[type, Callable[[Fraction, Fraction], Fraction]] = {
+    ast.Add: lambda a, b: a + b,
+    ast.Sub: lambda a, b: a - b,
+    ast.Mult: lambda a, b: a * b,
+    ast.Div: lambda a, b: a / b,
+}
+
+
+def by_python(node: ast.AST) -> Fraction:
+    """Return what Python's own tree of a text is worth."""
+    match node:
+        case ast.Expression(body):
+            return by_python(body)
+        case ast.Constant(int(value)):
+            return Fraction(value)
+        case ast.UnaryOp(ast.USub(), operand):
+            return -by_python(operand)
+        case ast.UnaryOp(_, operand):
+            return by_python(operand)
+        case ast.BinOp(left, ast.Pow(), right):
+            base, exponent = by_python(left), by_python(right)
+            assume(exponent.denominator == 1 and abs(exponent) <= 6)
+            assume(abs(base.numerator) <= MOST and base.denominator <= MOST)
+            return base ** int(exponent)
+        case ast.BinOp(left, operator, right):
+            return OPERATIONS[type(operator)](by_python(left), by_python(right))
+    raise TypeError(node)
+
+
+SIGNS = st.sampled_from(["+", "-", "*", "/", "**", "*-", "**-", "/+", " + ", " - ", "--", "*--"])
+
+
+def _joined(parts: st.SearchStrategy[str]) -> st.SearchStrategy[str]:
+    return st.one_of(
+        st.tuples(parts, SIGNS, parts).map("".join),
+        parts.map("({})".format),
+        parts.map("-{}".format),
+        parts.map("+{}".format),
+    )
+
+
+@given(st.recursive(st.sampled_from(["1", "2", "3", "7"]), _joined, max_leaves=14))
+@example("-2**2*3")
+@example("2**-2**2")
+@example("7-3-2/3/2*-3**2")
+@example("--+2 + (4)**2 - 1")
+def test_numbers_are_worth_what_python_finds(text: str) -> None:
+    try:
+        expected = by_python(ast.parse(text, mode="eval"))
+    except ZeroDivisionError:
+        reject()
+    assert parse_scalar(text).fraction() == expected
+
+
+def tokens_of(text: str) -> list[Token] | None:
+    """Return the tokens of a text, None where it is refused before its order is asked for."""
+    try:
+        return tokenizer.Tokeniser(Source(text, ""), Scope.of(None, None, "")).run()
+    except InputError:
+        return None
+
+
+@given(st.lists(st.sampled_from(PIECES), min_size=1, max_size=14).map("".join))
+@example("[1 -2; a, (b + 1)^2]*3")
+@example("a^-2^3*b")
+def test_a_tree_has_every_operand_in_its_place_or_its_fault(text: str) -> None:
+    made = tokens_of(text)
+    if made is None:
+        return
+    operands = [token.start for token in made if token.type == "VALUE"]
+    try:
+        found = parse(made, Source(text, ""))
+    except InputError:
+        return
+    leaves = [part for entry in found for part in every(entry) if part.kind == "number"]
+    assert [leaf.places[0] for leaf in leaves] == operands
+    for entry in found:
+        assert set(operands_first(entry)) == set(every(entry))
+        for part in every(entry):
+            wanted = len(part.parts) - 1 if part.kind in {"sum", "product"} else 1
+            assert part.kind == "row" or len(part.places) == wanted
+
+
+@pytest.mark.parametrize(
+    ("text", "says"),
+    [
+        ("1 +", 'a number, a name or "(" is expected at the end, at column 4'),
+        ("2 * ", "at the end, at column 5"),
+        ("[1,]", 'before "]", at column 4'),
+        ("*1", 'before "*", at column 1'),
+        ("(*2)", 'before "*", at column 2'),
+        ("[;]", 'before "]", at column 3'),
+        ("2^", "at the end, at column 3"),
+        ("()", 'before ")", at column 2'),
+        ("1 2", "a number follows a number, at column 3"),
+        ("[1 2; 3]", "row 2 has 1 entry, but row 1 has 2, at column 1"),
+    ],
+)
+def test_what_is_missing_is_said_with_its_place(text: str, says: str) -> None:
+    with pytest.raises(InputError, match=re.escape(says)):
+        parse_matrix(text)
+
+
+def test_a_thousand_signs_are_read() -> None:
+    text = "-" * 5_000 + "1" + "^1" * 2_000
+    made = tokens_of(text)
+    assert made is not None
+    (tree,) = parse(made, Source(text, ""))
+    assert sum(1 for _ in every(tree)) == 5_000 + 1 + 2 * 2_000
+    assert parse_scalar(text).fraction() == 1
+
+
+def test_a_sign_before_a_product_is_that_of_the_product() -> None:
+    def tree(text: str) -> SyntaxNode:
+        made = tokens_of(text)
+        assert made is not None
+        return parse(made, Source(text, ""))[0]
+
+    assert tree("-a b") == tree("-(a b)")
+    assert tree("a*-b c").kind == "product"
+    assert [part.kind for part in tree("a*-b c").parts] == ["number", "negative", "number"]

@@ -1,0 +1,176 @@
+"""Classes of named parts behave as those of the standard library: each case is made both ways and asked the same."""
+
+from __future__ import annotations
+
+import copy
+import dataclasses
+import pickle
+from functools import cached_property, partial
+from typing import Any, ClassVar
+
+import pytest
+
+import symobs.ground.dataclass as ours
+from tests.contracts.test_floors import SOURCES
+
+MAKERS = {"symobs": ours.dataclass, "library": dataclasses.dataclass}
+
+
+def made(by: Any) -> dict[str, Any]:
+    """Return classes of every kind the project has, made by one of the two."""
+
+    @by(frozen=True)
+    class Point:
+        x: int
+        y: int = 2
+        kind: ClassVar[str] = "point"
+
+        @cached_property
+        def total(self) -> int:
+            return self.x + self.y
+
+    @by(frozen=True)
+    class Named(Point):
+        name: str = dataclasses.field(default="p", kw_only=True)
+        seen: dict[str, int] = dataclasses.field(default_factory=dict, hash=False)
+        note: str = dataclasses.field(default="", compare=False, repr=False)
+
+    @by(frozen=True)
+    class Finished:
+        value: int
+        doubled: int = dataclasses.field(init=False)
+
+        def __post_init__(self) -> None:
+            if self.value < 0:
+                raise ValueError("negative")
+            object.__setattr__(self, "doubled", 2 * self.value)
+
+    @by()
+    class Open:
+        items: list[int] = dataclasses.field(default_factory=list)
+
+    @by(frozen=True, eq=False, repr=False)
+    class Single:
+        value: int
+
+    @by(frozen=True)
+    class Own:  # noqa: PLW1641 - frozen gives it the hash of its parts
+        value: int
+
+        def __eq__(self, other: object) -> bool:
+            return isinstance(other, Own) and self.value % 3 == other.value % 3
+
+        def __repr__(self) -> str:
+            return "own"
+
+    @by(frozen=True)
+    class Empty:
+        pass
+
+    return {kind.__name__: kind for kind in (Point, Named, Finished, Open, Single, Own, Empty)}
+
+
+CALLS: list[tuple[str, tuple[Any, ...], dict[str, Any]]] = [
+    ("Point", (1,), {}),
+    ("Point", (1, 2), {}),
+    ("Point", (), {"y": 3, "x": 1}),
+    ("Point", (1, 3), {}),
+    ("Point", (), {}),
+    ("Point", (1,), {"x": 1}),
+    ("Point", (1, 2, 3), {}),
+    ("Point", (1,), {"z": 1}),
+    ("Named", (1,), {}),
+    ("Named", (1, 2), {"name": "q", "note": "n"}),
+    ("Named", (1, 2), {"seen": {"a": 1}}),
+    ("Named", (1, 2, {}, "n", "q"), {}),
+    ("Finished", (2,), {}),
+    ("Finished", (-1,), {}),
+    ("Finished", (2, 4), {}),
+    ("Finished", (), {"doubled": 1, "value": 1}),
+    ("Open", (), {}),
+    ("Open", ([1],), {}),
+    ("Single", (1,), {}),
+    ("Own", (1,), {}),
+    ("Own", (4,), {}),
+    ("Empty", (), {}),
+    ("Empty", (1,), {}),
+]
+
+
+def result(call: Any) -> Any:
+    """Return what a call gives, or the type of what it raises."""
+    try:
+        return call()
+    except (TypeError, ValueError, AttributeError) as raised:
+        return type(raised)
+
+
+def told(item: Any) -> Any:
+    """Return what can be seen of an object, without its place in memory."""
+    if isinstance(item, type):
+        return item
+    parts = [(part.name, getattr(item, part.name), part.init, part.kw_only) for part in dataclasses.fields(item)]
+    seen = None if type(item).__name__ == "Single" else repr(item)
+    hashed = isinstance(result(lambda: hash(item)), int)
+    return type(item).__name__, parts, seen, type(item).__match_args__, hashed
+
+
+def test_objects_are_made_and_seen_alike() -> None:
+    ours, theirs = (made(by) for by in MAKERS.values())
+    for name, values, named in CALLS:
+        pair = [told(result(partial(kind, *values, **named))) for kind in (ours[name], theirs[name])]
+        assert pair[0] == pair[1], (name, values, named)
+
+
+def test_objects_are_compared_alike() -> None:
+    def relations(classes: dict[str, Any]) -> list[Any]:
+        items = [result(partial(classes[name], *values, **named)) for name, values, named in CALLS]
+        objects = [item for item in items if not isinstance(item, type)]
+        equal = [[a == b for b in objects] for a in objects]
+        hashes = [[result(lambda a=a, b=b: hash(a) == hash(b)) if a == b else None for b in objects] for a in objects]
+        return [equal, hashes]
+
+    ours, theirs = (relations(made(by)) for by in MAKERS.values())
+    assert ours == theirs
+    assert any(any(row) for row in ours[0])
+
+
+@pytest.mark.parametrize("by", MAKERS)
+def test_what_is_frozen_stays(by: str) -> None:
+    point = made(MAKERS[by])["Point"](1)
+    with pytest.raises(dataclasses.FrozenInstanceError):
+        point.x = 5
+    with pytest.raises(dataclasses.FrozenInstanceError):
+        del point.x
+    assert point.total == 3
+    assert (point.x, point.kind) == (1, "point")
+
+
+@pytest.mark.parametrize("by", MAKERS)
+def test_parts_are_replaced_and_copied(by: str) -> None:
+    named = made(MAKERS[by])["Named"](1, name="q")
+    changed = dataclasses.replace(named, y=7)
+    assert (changed.x, changed.y, changed.name) == (1, 7, "q")
+    assert changed == copy.copy(changed) == copy.deepcopy(changed) != named
+    with pytest.raises(TypeError):
+        dataclasses.replace(named, z=1)
+
+
+@ours.dataclass(frozen=True)
+class Kept:
+    """At the top of a module, since only such a class is pickled."""
+
+    value: int
+    text: str = "t"
+
+
+def test_objects_are_pickled_and_matched() -> None:
+    assert pickle.loads(pickle.dumps(Kept(3))) == Kept(3)  # noqa: S301 - our own bytes
+    match Kept(3, "u"):
+        case Kept(value, text):
+            assert (value, text) == (3, "u")
+
+
+def test_every_class_of_parts_is_made_this_way() -> None:
+    wrong = [path for path in SOURCES if "from dataclasses import dataclass" in path.read_text("utf-8")]
+    assert [path.name for path in wrong] == ["dataclass.py"]

@@ -1,0 +1,224 @@
+"""HTML: the pages are well-formed and closed to the outside, and hostile text stays text."""
+
+from __future__ import annotations
+
+import random
+import re
+import xml.etree.ElementTree as ET
+from typing import TYPE_CHECKING
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from symobs.exact import Scalar
+from symobs.exact.algebraic.polynomial_roots import roots_of
+from symobs.formula.phrases import PHRASES
+from symobs.formula.tree import Letter, Roots
+from symobs.pages.formats.html import Html, HtmlFragment, HtmlWriter, page, plain, style
+from symobs.pages.page.blocks import Display, Heading, Paragraph, Title, Verified, every
+from symobs.pages.page.narrator import narrate
+from symobs.pages.page.sheet import Sheet, SheetEntry
+from symobs.pages.printers.mathml.mathml_printer import MathmlPrinter
+from tests.support.problems import render_examples as example
+from tests.support.problems.render_examples import document
+from tests.unit.pages.test_printers import polynomial
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+s = Scalar.symbol("s")
+MATHEMATICS = {"math", "mrow", "mi", "mn", "mo", "mtext", "mspace", "msqrt", "mtable", "mtr", "mtd", "mfrac"}
+MATHEMATICS |= {"msub", "msup", "msubsup", "mover", "munder"}
+DRAWN = {"svg", "title", "style", "path", "circle", "rect", "line", "text", "tspan", "g"}
+WORDS = {"html", "head", "meta", "body", "main", "div", "h1", "h2", "h3", "h4", "p", "strong", "pre", "table", "tr"}
+WORDS |= {"th", "td", "figure", "figcaption", "nav", "ol", "li", "a", "span"}
+ATTRIBUTES = {"class", "id", "style", "display", "displaystyle", "scriptlevel", "mathvariant", "accent", "stretchy"}
+ATTRIBUTES |= {"form", "fence", "separator", "symmetric", "minsize", "maxsize", "lspace", "rspace", "width", "height"}
+ATTRIBUTES |= {"depth", "scope", "role", "aria-label", "lang", "charset", "content", "name", "http-equiv", "href"}
+
+
+@pytest.fixture(autouse=True)
+def _phrases(monkeypatch: pytest.MonkeyPatch) -> None:
+    for key, phrase in example.PHRASES.items():
+        monkeypatch.setitem(PHRASES, key, phrase)
+
+
+def local(node: ET.Element) -> str:
+    return node.tag.rpartition("}")[2]
+
+
+def parsed(html: str) -> ET.Element:
+    return ET.fromstring(html)  # noqa: S314 - our own output
+
+
+def faults(html: str) -> Iterator[str]:
+    """What does not belong on a page of ours: an element or attribute that could load, run or submit anything."""
+    drawn: set[ET.Element] = set()
+    for node in parsed(html).iter():
+        tag = local(node)
+        if tag == "svg":
+            drawn |= set(node.iter())
+        if tag not in MATHEMATICS | WORDS | DRAWN:
+            yield f"element {tag}"
+        for name, value in node.attrib.items():
+            goes_out = "href" in name and not (tag == "a" and value.startswith("#"))
+            if name.startswith("on") or goes_out or name in {"src", "srcset", "action"} or "url(" in value:
+                yield f"attribute {name}={value}"
+            if node not in drawn and name not in ATTRIBUTES:
+                yield f"attribute {name}"
+
+
+def words_of(node: ET.Element) -> str:
+    return "".join(node.itertext())
+
+
+# -- text from outside ------------------------------------------------------------------------------------------------
+
+HOSTILE = [
+    "</title><script>alert(1)</script>",
+    "<img src=x onerror=alert(1)>",
+    "</style><style>*{display:none}</style>",
+    "$body $style ${title} $$ %s {0} {{ 7*7 }}",
+    "]]> <!-- <![CDATA[ &lt; &amp;amp; &#x3c;",
+    '" onload=\'x\' style="position:fixed"',
+    "\x00\x07\x1b[31m \u202ereversed\u202c \ufffe",
+    "Łódź, 東京, 😀, x\u0302, −1 ≤ ½",
+]
+
+
+@pytest.mark.parametrize("text", HOSTILE, ids=range(len(HOSTILE)))
+@pytest.mark.parametrize("kind", [Html, HtmlFragment])
+def test_hostile_text_is_shown_and_does_nothing(text: str, kind: type[Html | HtmlFragment]) -> None:
+    html = kind().render(document(example.with_a_case(), title=text, source=text))
+    assert list(faults(html)) == []
+    plain_page = kind().render(document(example.with_a_case(), title="A", source="A"))
+    assert [local(node) for node in parsed(html).iter()] == [local(node) for node in parsed(plain_page).iter()]
+    heading = next(node for node in parsed(html).iter() if local(node) in {"h1", "h2"})
+    shown = words_of(heading).replace("“", '"').replace("”", '"').replace("\N{RIGHT SINGLE QUOTATION MARK}", "'")
+    assert shown == re.sub("[\x00-\x1f\u202a-\u202e\ufffe]", "", text).strip()
+
+
+@given(st.text())
+def test_any_text_can_stand_on_a_page(text: str) -> None:
+    assert "<" not in plain(text)
+    parsed(page(text, f"<p>{plain(text)}</p>"))
+
+
+# -- pages ------------------------------------------------------------------------------------------------------------
+
+
+def test_the_page_to_aim_at() -> None:
+    root = parsed(html := Html().render(example.target_document()))
+    assert list(faults(html)) == []
+    headings = [(local(node), words_of(node)) for node in root.iter() if re.fullmatch("h[1-4]", local(node))]
+    assert headings == [
+        ("h1", "Output feedback of 1/(s(s+1)) with a full-order observer"),
+        ("h2", "Given"),
+        ("h2", "1. State feedback"),
+        ("h2", "2. Observer"),
+        ("h2", "3. Compensator"),
+        ("h2", "4. Closed loop"),
+    ]
+    kinds = [node.get("class") for node in root.iter()]
+    assert kinds.count("verified") == 2
+    assert kinds.count("caution") == 1
+    assert kinds.count("answer") == 4
+    drawing = next(node for node in root.iter() if node.get("role") == "img")
+    assert words_of(drawing[0]) == "Block diagram"
+
+
+def test_a_page_says_its_language_and_forbids_itself_the_network() -> None:
+    root = parsed(Html().render(document(title="A page")))
+    assert root.get("lang") == "en"
+    assert next(words_of(node) for node in root.iter() if local(node) == "title") == "A page"
+    policy = next(node.get("content") for node in root.iter() if node.get("http-equiv") == "Content-Security-Policy")
+    assert policy == "default-src 'none'; style-src 'unsafe-inline'"
+    assert "prefers-color-scheme: dark" in Html().render(document())
+    assert "@media print" in style()
+
+
+def test_a_fragment_restyles_nothing_around_it() -> None:
+    rules = re.sub(r"@media print \{(.*)\}\s*$", r"\1", style(), flags=re.DOTALL)
+    selectors = [part for rule in re.findall(r"([^{}]+)\{", rules) for part in re.split(r",(?![^(]*\))", rule)]
+    assert len(selectors) > 20
+    assert [selector for selector in selectors if not selector.strip().startswith(".symobs")] == []
+    fragment = HtmlFragment().render(example.target_document())
+    assert fragment.startswith('<div class="symobs">')
+    assert "<html" not in fragment
+    assert "<h1" not in fragment
+    assert " id=" not in fragment
+
+
+def test_parts_of_one_page_have_ids_of_their_own() -> None:
+    blocks = narrate(document(*example.target_document().derivations, example.with_a_case()))
+    parts = [HtmlWriter(MathmlPrinter(), prefix=f"p{k}-", level=2).body(blocks) for k in (1, 2)]
+    root = parsed(page("Two", "\n".join(parts)))
+    ids = [node.get("id") for node in root.iter() if node.get("id")]
+    assert len(ids) == len(set(ids)) == 2 * sum(isinstance(block, Heading) for block in every(blocks))
+    assert all(re.fullmatch(r"p[12]-[\w-]+", found) for found in ids if found)
+    assert {local(node) for node in root.iter() if re.fullmatch("h[1-6]", local(node))} == {"h3"}
+
+
+def test_a_case_is_set_in() -> None:
+    root = parsed(Html().render(document(example.with_a_case())))
+    (case,) = (node for node in root.iter() if node.get("class") == "case")
+    assert words_of(case[0]) == "Case b=0."
+    assert [node.get("class") for node in case[1:]][-1] == "display"
+
+
+def test_rendering_is_deterministic() -> None:
+    once, again = (Html().render(example.target_document()) for _ in range(2))
+    assert once == again
+
+
+def test_roots_are_mathematics() -> None:
+    wanted = {
+        (s + 2) ** 2: ["−2", "−2"],
+        s**2 + 40 * s + 800: ["−20±20i"],
+        s**2 + 2 * s - 1: ["−1±2"],
+        s**2 + 4: ["±2i"],
+        s**5 - s - 1: ["{s:s5−s−1=0}"],
+    }
+    for value, roots in wanted.items():
+        sentence = HtmlWriter(MathmlPrinter()).sentence((Roots(Letter("phi"), roots_of(value, "s")),))
+        root = parsed(f"<p>{sentence}</p>")
+        assert list(faults(f"<p>{sentence}</p>")) == []
+        assert ["".join(words_of(node).split()) for node in root] == roots
+    surd = HtmlWriter(MathmlPrinter()).sentence((Roots(Letter("phi"), roots_of(s**2 + 2 * s - 1, "s")),))
+    assert "<msqrt><mn>2</mn></msqrt>" in surd
+
+
+def test_lines_in_a_case_are_shorter() -> None:
+    wide = example.equals(Letter("A"), example.number(polynomial(random.Random(3), 12)))  # noqa: S311
+    heights = [HtmlWriter(MathmlPrinter(), inset=inset).block(Display((wide,))).count("<mtr>") for inset in (0, 25)]
+    assert heights[0] < heights[1]
+
+
+def test_what_a_reader_cannot_see_is_told() -> None:
+    writer = HtmlWriter(MathmlPrinter())
+    assert writer.block(Verified(("as required.",))) == '<p class="verified">as required.</p>'
+    assert writer.block(Title("", "", ())) == ""
+    assert writer.block(Paragraph(("a < b",))) == "<p>a &lt; b</p>"
+
+
+# -- sheets -----------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("text", HOSTILE, ids=range(len(HOSTILE)))
+def test_a_sheet_links_its_contents_to_its_parts(text: str) -> None:
+    part = Html().part(document(*example.target_document().derivations, title=text, source=text))
+    entries = [SheetEntry(k, f"{k}.toml", text, part, part) for k in range(1, 8)]
+    html = Html().sheet(Sheet(text, (*entries, SheetEntry(8, "8.toml", text, None, None, text))))
+    assert list(faults(html)) == []
+    nodes = list(parsed(html).iter())
+    ids = [node.get("id") for node in nodes if node.get("id")]
+    links = [str(node.get("href")).removeprefix("#") for node in nodes if node.get("href")]
+    assert len(ids) == len(set(ids)) == 2 * 8 + 2 + 14 * 5
+    assert len(links) == 16
+    assert set(links) <= set(ids)
+    headings = {local(node) for node in nodes if re.fullmatch("h[1-6]", local(node))}
+    assert headings == {"h1", "h2", "h3", "h4"}
+    assert [words_of(node) for node in nodes if local(node) == "h3"].count(
+        f"8. {words_of(parsed(f'<p>{plain(text)}</p>'))}"
+    ) == 2

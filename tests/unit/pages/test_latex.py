@@ -1,0 +1,296 @@
+r"""LaTeX and terminal text: what is escaped, what TeX makes of it, and how a user changes the page."""
+
+from __future__ import annotations
+
+import re
+import subprocess
+import unicodedata
+from typing import TYPE_CHECKING
+
+import pytest
+
+import symobs
+from symobs.exact import Matrix, Scalar
+from symobs.exact.algebraic.polynomial_roots import roots_of
+from symobs.formula.phrases import PHRASES
+from symobs.formula.tree import Block, Environment, Formula, Letter, Literal, Negative, Numeral, Roots
+from symobs.pages.formats.latex import LatexArticle, LatexFragment, LatexWriter, typeset
+from symobs.pages.formats.templates import fill, template_folder
+from symobs.pages.formats.text import WIDTH, Text
+from symobs.pages.page.blocks import Display, Paragraph
+from symobs.pages.printers.latex_escape import LETTERS, escape
+from symobs.pages.printers.latex_printer import LatexPrinter
+from symobs.proof.derivation import Define, Derivation, Diagram, Equal, Note
+from tests.support.problems import render_examples as example
+from tests.support.problems.render_examples import document, equals, number, say
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from pathlib import Path
+s = Scalar.symbol("s")
+FAULTS = re.compile(
+    r"^(?:! .*|(?:LaTeX|Package|Class).*Warning.*|(?:Over|Under)full .*|Missing character.*)", re.MULTILINE
+)
+
+
+@pytest.fixture(autouse=True)
+def _phrases(monkeypatch: pytest.MonkeyPatch) -> None:
+    for key, phrase in example.PHRASES.items():
+        monkeypatch.setitem(PHRASES, key, phrase)
+    monkeypatch.setitem(PHRASES, "test_roots", "The poles are {roots}, all of them.")
+
+
+@pytest.fixture(name="faults")
+def faults_in_log(require_tool: Callable[[str], str], tmp_path: Path) -> Callable[[str], list[str]]:
+    """Typeset a document; what TeX finds wrong with it."""
+    pdflatex = require_tool("pdflatex")
+
+    def run(source: str) -> list[str]:
+        (tmp_path / "page.tex").write_text(source, encoding="utf-8")
+        command = [pdflatex, "-interaction=nonstopmode", "-no-shell-escape", "page.tex"]
+        subprocess.run(command, cwd=tmp_path, capture_output=True, check=False)
+        log = (tmp_path / "page.log").read_text(encoding="latin-1")
+        assert "Output written" in log
+        return FAULTS.findall(log)
+
+    return run
+
+
+def a_loop(plant: Scalar, compensator: Scalar) -> list[Define | Equal | Diagram | Note]:
+    """Both letters, and the loop drawn with what they stand for."""
+    labels: dict[str, Formula] = {
+        "r": Letter("r_in"),
+        "u": Letter("u"),
+        "y": Letter("y"),
+        "P": Literal(plant),
+        "F": Negative(Literal(compensator)),
+        "response": Literal(plant / (1 + plant * compensator)),
+    }
+    known = (
+        Define(equals(Letter(name), number(value)), silent=True)
+        for name, value in zip("PF", (plant, compensator), strict=True)
+    )
+    return [*known, Diagram("loop", tuple(labels.items()))]
+
+
+def page_with(*steps: Define | Equal | Diagram | Note, title: str = "") -> example.HandWritten:
+    return document(Derivation(steps, Environment(signals={"u": None, "y": None})), title=title)
+
+
+# -- text from outside ------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("text", "latex"),
+    [
+        (r"\input{x}", r"\textbackslash{}input\{x\}"),
+        ("50% of $x_1^2$ & #~", r"50\% of \symbol{36}x\_1\textasciicircum{}2\symbol{36} \& \#\textasciitilde{}"),
+        ("a < b | c > d", r"a \textless{} b \textbar{} c \textgreater{} d"),
+        ('say "yes"', "say ``yes''"),
+        ("a -- b", "a -{}- b"),
+        ("?`!`", r"?\`{}!\`{}"),
+        ("two\nlines\t\x00and\x07 \x1b[31mmore", "two lines and [31mmore"),
+        ("Schrödinger, Łukasiewicz", "Schrödinger, Łukasiewicz"),
+        ("o\u0308", "ö"),
+        ("state x\u0302 and ẋ of ω", r"state $\hat x$ and $\dot x$ of $\omega$"),
+        ("1 − 2 – 3", "1 $-$ 2 -- 3"),
+        ("a\N{NO-BREAK SPACE}[1]", "a~[1]"),
+        ("漢 \ud800 \U0001f600", "? ? ?"),
+        ("\u202eright to left\u200b", "right to left"),
+        ("a\u0301\u0302\u0303", "?"),
+    ],
+)
+def test_escape(text: str, latex: str) -> None:
+    assert escape(text) == latex
+
+
+def test_a_long_word_may_break() -> None:
+    assert escape("x" * 60) == r"\allowbreak{}".join(["x" * 20] * 3)
+
+
+def test_every_letter_kept_is_typeset(faults: Callable[[str], list[str]]) -> None:
+    characters = [*sorted(LETTERS), *map(chr, range(0x20, 0x7F))]
+    shown = [chr(code) for code in range(0xA1, 0x2300) if escape(chr(code)) not in {"", "?"}]
+    words = "\n".join(escape(character) for character in [*characters, *shown])
+    for style in ("", r"\bfseries "):
+        values = {"title": "", "source": "", "conventions": "", "body": style + words, "drawings": False, "babel": ""}
+        source = fill("article.tex", values)
+        assert faults(source) == []
+
+
+def test_letters_are_normal() -> None:
+    assert all(unicodedata.normalize("NFC", letter) == letter for letter in LETTERS)
+
+
+# -- pages ------------------------------------------------------------------------------------------------------------
+
+
+def test_the_page_to_aim_at_is_typeset_without_a_fault(faults: Callable[[str], list[str]]) -> None:
+    assert faults(LatexArticle().render(example.target_document())) == []
+
+
+def test_a_page_in_another_language_is_typeset_without_a_fault(faults: Callable[[str], list[str]]) -> None:
+    """With the hyphenation of the language or, where TeX has none, without any: never with the English one, its first."""
+    plant = symobs.StateSpace("[0 1; 0 -1]", "[0; 1]", "[1 0]")
+    source = symobs.compensator(plant, control_poles=[-2, -2], observer_poles=[-10, -10]).to_latex(language="de")
+    assert "ngerman" in source
+    english = r"\ifnum\language=0 \ifnum\hyphenpenalty<10000 \errmessage{hyphenated as English}\fi\fi"
+    assert faults(source.replace(r"\end{document}", f"{english}\n\\end{{document}}")) == []
+
+
+def test_a_case_is_set_in_and_typeset(faults: Callable[[str], list[str]]) -> None:
+    latex = LatexArticle().render(document(example.with_a_case()))
+    assert r"\begin{inset}" in latex
+    assert faults(latex) == []
+
+
+def test_the_fragment_stands_in_a_plain_document(faults: Callable[[str], list[str]]) -> None:
+    fragment = LatexFragment().render(document(*example.target_document().derivations, example.with_a_case()))
+    preamble = r"""\documentclass[11pt,a4paper]{article}
+\usepackage{amsmath,amssymb,tikz}
+\usepackage[margin=27mm]{geometry}
+\usetikzlibrary{arrows.meta}"""
+    assert faults(rf"{preamble}\begin{{document}}{fragment}\end{{document}}") == []
+
+
+def test_nothing_is_loaded_for_a_drawing_that_is_not_there() -> None:
+    assert "tikz" not in LatexArticle().render(document(example.with_a_case()))
+    assert "tikz" in LatexArticle().render(example.target_document())
+
+
+def test_rendering_is_deterministic() -> None:
+    once, again = (LatexArticle().render(example.target_document()) for _ in range(2))
+    assert once == again
+
+
+def test_an_empty_document_is_a_page(faults: Callable[[str], list[str]]) -> None:
+    assert faults(LatexArticle().render(document(title="Nothing"))) == []
+
+
+@pytest.mark.parametrize("degree", [1, 4, 8, 14])
+def test_a_loop_fits_its_page_whatever_its_labels(degree: int, faults: Callable[[str], list[str]]) -> None:
+    long = sum((Scalar.of(10**5 + k) * s**k for k in range(degree)), s**degree)
+    for plant, compensator in ((1 / s, 1 / long), (1 / long, 1 / s), (1 / long, 1 / long)):
+        assert faults(LatexArticle().render(page_with(*a_loop(plant, compensator)))) == []
+
+
+def test_roots_in_a_sentence() -> None:
+    polynomial = (s + 2) ** 2 * (s**2 + 40 * s + 800) * (s**2 + 2 * s - 1) * (s**2 + 1) * (s**3 + s + 1)
+    known = Define(equals(Letter("chi"), number(polynomial)), silent=True)
+    page = page_with(known, Note(say("roots", roots=Roots(Letter("chi"), roots_of(polynomial, "s")))))
+    body = r"$-2$, $-2$, $\pm i$, $-1\pm \sqrt{2}$, $-20\pm 20i$, $\{s:s^3+s+1=0\}$, all of them."
+    assert body in LatexFragment().render(page)
+    assert "-2, -2, ± i, -1 ± √2, -20 ± 20i, {s: s³ + s + 1 = 0}, all" in " ".join(Text().render(page).split())
+
+
+# -- templates --------------------------------------------------------------------------------------------------------
+
+
+def test_a_user_replaces_one_block(tmp_path: Path, faults: Callable[[str], list[str]]) -> None:
+    own = r"""\BLOCK{extends "article.tex"}
+\BLOCK{block preamble}
+\VAR{super()}
+\usepackage{fancyhdr}
+\BLOCK{endblock}
+\BLOCK{block end}
+%# not on the page
+\textit{\VAR{title}: the end}
+\BLOCK{endblock}
+"""
+    (tmp_path / "sheet.tex").write_text(own, encoding="utf-8")
+    latex = typeset(document(example.with_a_case(), title="100 %"), "sheet.tex", folder=tmp_path)
+    assert r"\textit{100 \%: the end}" in latex
+    assert latex.count("fancyhdr") == 1
+    assert "not on the page" not in latex
+    assert faults(latex) == []
+
+
+def test_marks_of_templates_in_a_title_mean_nothing() -> None:
+    latex = LatexArticle().render(document(title=r"\VAR{body} \BLOCK{raw} %% x"))
+    assert r"\textbackslash{}VAR\{body\} \textbackslash{}BLOCK\{raw\} \%\% x" in latex
+
+
+def test_an_installed_package_has_its_templates_inside(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    (tmp_path / "symobs").mkdir()
+    monkeypatch.setattr("symobs.pages.formats.templates._PACKAGE", tmp_path / "symobs")
+    assert template_folder() == tmp_path / "latex_templates"
+    (tmp_path / "symobs" / "latex_templates").mkdir()
+    assert template_folder() == tmp_path / "symobs" / "latex_templates"
+
+
+def test_templates_are_found() -> None:
+    assert {path.name for path in template_folder().iterdir()} >= {"article.tex", "fragment.tex"}
+
+
+# -- terminals --------------------------------------------------------------------------------------------------------
+
+
+def test_text_keeps_to_its_width() -> None:
+    text = Text().render(document(*example.target_document().derivations, example.with_a_case(), title="word " * 60))
+    assert max(len(line) for line in text.splitlines()) <= WIDTH
+    assert text.endswith("\n")
+
+
+def test_text_has_headings_checks_and_a_drawing() -> None:
+    text = Text().render(example.target_document())
+    assert "1. State feedback\n-----------------\n" in text
+    assert "✓ det(" in text
+    assert "! Remark." in text
+    assert " r ───▶○─" in text
+
+
+def test_nothing_in_a_title_steers_the_terminal() -> None:
+    text = Text().render(document(title="\x1b[2J\x1b]0;x\x07clear\u202e\r\nnext \ud800"))
+    assert text.splitlines()[0] == "[2J]0;xclear next ?"
+
+
+def test_a_wide_drawing_falls_back_to_letters() -> None:
+    long = 1 / sum((Scalar.of(10**5 + k) * s**k for k in range(9)), s**9)
+    text = Text().render(page_with(*a_loop(long, long)))
+    assert "P(s)" in text
+    assert "F(s)" in text
+
+
+def test_relations_are_shown() -> None:
+    assert "1 = 1" in Text().render(page_with(Equal((equals(number(1), number(1)),))))
+
+
+# -- matrices and the words between displays --------------------------------------------------------------------------
+
+
+def test_blocks_of_numbers_in_decimals_are_one_matrix_with_lines_between_them() -> None:
+    third = Numeral(Scalar.of(1) / 3, "0.33333")
+    rows = (
+        (Literal(Matrix.of([[1, 2]])), Block(((third,),))),
+        (Literal(Matrix.of([[3, 4]])), Block(((Negative(third),),))),
+    )
+    assert LatexPrinter().typeset(Block(rows)).source == (
+        r"\left[\begin{array}{cc|c}1&2&0.33333\\\hline\rule{0pt}{2.4ex}3&4&-0.33333\end{array}\right]"
+    )
+    names = (Block(((Letter("A"),),)), Block(((Letter("B"),),)))
+    assert r"\hline" not in LatexPrinter().typeset(Block((names, names))).source
+
+
+def test_the_fractions_of_a_matrix_are_of_one_size() -> None:
+    half, a = Scalar.of(1) / 2, Scalar.symbol("a")
+    numbers = LatexPrinter().typeset(Literal(Matrix.of([[half, -half]]))).source
+    assert r"\frac{1}{2}" in numbers
+    assert r"\dfrac" not in numbers
+    mixed = LatexPrinter().typeset(Literal(Matrix.of([[half, 1 / a + 1], [1 / a, -half]]))).source
+    assert r"\frac" not in mixed.replace(r"\dfrac", "")
+    assert mixed.count(r"\dfrac") >= 4
+
+
+def test_a_few_words_between_two_displays_stand_on_the_line_of_the_second() -> None:
+    one = equals(number(1), number(1))
+    writer = LatexWriter(LatexPrinter())
+    blocks: list[Display | Paragraph] = [
+        Display((one,), closing=","),
+        Paragraph(("hence",), continues=True),
+        Display((one,), closing="."),
+    ]
+    assert writer.body(blocks) == "\\[ 1=1, \\postdisplaypenalty=5000 \\]\n\\[ \\text{hence}\\qquad 1=1. \\]"
+    blocks[1] = Paragraph(("and, for every value of the gain, we have",), continues=True)
+    assert "\n\\[ 1=1. \\]" in writer.body(blocks)
+    blocks[1] = Paragraph(("The gain is",))
+    assert "\nThe gain is\n" in writer.body(blocks)

@@ -1,0 +1,283 @@
+"""Claims are checked exactly or at random points; both tell true from false, and the stated bounds are bounds."""
+
+from __future__ import annotations
+
+import itertools
+import random
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+from symobs.exact import Matrix, Scalar
+from symobs.exact.core.modular import Point, VanishingDenominator
+from symobs.formula.tree import (
+    Apply,
+    Block,
+    Derivative,
+    Environment,
+    Identity,
+    Letter,
+    Literal,
+    Negative,
+    Power,
+    Product,
+    Quotient,
+    Relation,
+    Sum,
+    Transpose,
+)
+from symobs.ground.errors import CertificateRejected
+from symobs.proof.certificate import claims
+from symobs.proof.certificate.claims import ERROR_GOAL, Claim, check, check_all, verify
+
+if TYPE_CHECKING:
+    from symobs.formula.tree import Formula
+
+A, L, C, S = Letter("A"), Letter("L"), Letter("C"), Letter("s")
+s, a, b, c = (Scalar.symbol(name) for name in "sabc")
+
+
+def said(*members: Formula | Scalar | Matrix | int | str) -> Relation:
+    operators = [member for member in members if isinstance(member, str)]
+    formulas = [literal(m) for m in members if not isinstance(m, str)]
+    return Relation(tuple(formulas), tuple(operators or ["="] * (len(formulas) - 1)))
+
+
+def literal(member: Formula | Scalar | Matrix | int) -> Formula:
+    if isinstance(member, int):
+        return Literal(Scalar.of(member))
+    return Literal(member) if isinstance(member, (Scalar, Matrix)) else member
+
+
+@pytest.fixture(params=["exactly", "at points"])
+def way(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> str:
+    """Check small claims in the way large ones are checked too."""
+    if request.param == "at points":
+        monkeypatch.setattr(claims, "EXACT_UP_TO", -1)
+    return str(request.param)
+
+
+# -- true and false -----------------------------------------------------------------------------------------------------
+
+SERVO: dict[str, Scalar | Matrix] = {
+    "A": Matrix.of([[0, 1], [0, -1]]),
+    "C": Matrix.of([[1, 0]]),
+    "L": Matrix.of([[19], [81]]),
+    "phi": (s + 10) ** 2,
+    "M": Matrix.of([[a, 1], [b / c, 2]]),
+    "F": (319 * s + 400) / (s**2 + 23 * s + 161),
+}
+PENCIL = Sum((Product((S, Identity(2))), Negative(A), Product((L, C))))
+M, DEPENDENT = Letter("M"), Literal(Matrix.of([[a, b], [2 * a, 2 * b]]))
+
+TRUE = [
+    said(Apply("det", PENCIL), Letter("phi"), (s + 10) * (s + 10)),
+    said(Apply("phi_at", Sum((A, Negative(Product((L, C)))))), Matrix.zeros(2, 2)),
+    said(Product((M, Power(M, -1))), Identity(2)),
+    said(Product((M, Apply("adj", M))), Product((Apply("det", M), Identity(2)))),
+    said(Apply("det", Power(M, 2)), Power(Apply("det", M), 2)),
+    said(Apply("rank", DEPENDENT), 1),
+    said(Transpose(Transpose(M)), M),
+    said(Block(((M, Identity(2)),)), Block(((M, Literal(Matrix.identity(2))),))),
+    said(Quotient(literal(a), literal(b)), a / b),
+    said(Block(((literal(a),),)), a),
+    said(Power(Letter("F"), -1), (s**2 + 23 * s + 161) / (319 * s + 400)),
+    said(Sum((literal(a), Block(((literal(1),),)))), a + 1),
+    said(a, "!==", b),
+    said(M, "!==", Transpose(M)),
+]
+FALSE = [
+    said(Apply("det", PENCIL), Letter("phi"), (s + 10) * (s + 11)),
+    said(Apply("det", PENCIL), Power(literal(s + 10), 3)),
+    said(Apply("phi_at", A), Matrix.zeros(2, 2)),
+    said(Product((M, M)), Identity(2)),
+    said(Apply("rank", DEPENDENT), 2),
+    said(Transpose(M), M),
+    said(M, Matrix.of([[a, 1]])),
+    said(M, a),
+    said(a, "!==", a),
+    said(M, "!==", Matrix.identity(3)),
+    said(Sum((M, Identity(3))), M),
+    said(Power(Literal(Matrix.of([[a, b], [a, b]])), -1), M),
+    said(Letter("absent"), a),
+    said(Quotient(literal(1), literal(0)), 1),
+]
+
+
+@pytest.mark.parametrize("relation", TRUE)
+def test_a_true_claim_has_a_certificate(relation: Relation, way: str) -> None:
+    found = check(Claim(relation, Environment(values=SERVO)))
+    assert found.how == "exact" if way == "exactly" else "random point" in found.how
+    assert found.bound == "0" if way == "exactly" else 0 < float(found.bound) < ERROR_GOAL
+    assert check(Claim(relation, Environment(values=dict(SERVO)))) == found, "a claim is checked the same way twice"
+
+
+@pytest.mark.usefixtures("way")
+@pytest.mark.parametrize("relation", FALSE)
+def test_a_false_claim_has_none(relation: Relation) -> None:
+    with pytest.raises(CertificateRejected, match="does not hold"):
+        check_all([Claim(relation, Environment(values=SERVO))])
+
+
+def test_a_claim_is_called_what_it_says_or_what_it_is() -> None:
+    relation = said(Apply("det", PENCIL), Letter("phi"))
+    assert str(Claim(relation, Environment(variable="z"))) == "det(z*I - A + L*C) = phi(z)"
+    assert str(Claim(relation, Environment(), "as asked")) == "as asked"
+
+
+# -- signals ------------------------------------------------------------------------------------------------------------
+
+X, ESTIMATE, E, Y = (Letter(name) for name in ("x", "x_hat", "e", "y"))
+LOOP = Environment(
+    values={**SERVO, "D": Matrix.of([[2]])},
+    signals={"x": None, "x_hat": None, "u": None, "y": Product((C, X)), "e": Sum((X, Negative(ESTIMATE)))},
+    sizes={"x": 2, "x_hat": 2, "u": 1},
+    dynamics={
+        "x": Sum((Product((A, X)), Product((Literal(Matrix.of([[0], [1]])), Letter("u"))))),
+        "x_hat": Sum(
+            (
+                Product((A, ESTIMATE)),
+                Product((Literal(Matrix.of([[0], [1]])), Letter("u"))),
+                Product((L, Sum((Y, Negative(Product((C, ESTIMATE))))))),
+            )
+        ),
+    },
+)
+CLOSED = Sum((A, Negative(Product((L, C)))))
+
+
+@pytest.mark.usefixtures("way")
+def test_signals_agree_in_every_free_signal() -> None:
+    assert verify(said(Derivative(E), Product((CLOSED, E))), LOOP)[0]
+    assert verify(said(Block(((Y,), (E,))), Block(((Product((C, X)),), (E,)))), LOOP)[0]
+    for other in (Product((A, E)), Product((CLOSED, X)), CLOSED, Product((literal(2), CLOSED, E)), Y):
+        assert not verify(said(Derivative(E), other), LOOP)[0]
+    assert not verify(said(CLOSED, E), LOOP)[0]
+    assert not verify(said(E, "!==", X), LOOP)[0], "signals are compared by equations only"
+
+
+# -- different, and different everywhere --------------------------------------------------------------------------------
+
+SIGNED = Environment(signs={"a": "positive", "b": "nonnegative", "c": "real"}, nonzero=(c - 1,))
+
+
+@pytest.mark.parametrize(
+    ("relation", "expected"),
+    [
+        (said(c, "!==", 2), True),
+        (said(c, "!=", 2), False),
+        (said(c, "!=", 1), True),
+        (said(a * (2 - 2 * c), "!=", 0), True),
+        (said((c - 1) * (c - 2), "!=", 0), False),
+        (said(a, "!=", 0), True),
+        (said(b, "!=", 0), False),
+        (said(c**2 + 1, "!=", 0), True),
+        (said(c, "!=", c), False),
+        (said(a, ">", 0), True),
+        (said(b, ">", 0), False),
+        (said(b, ">=", 0), True),
+        (said(c, ">=", c), True),
+        (said(c, ">=", 0), False),
+        (said(-a, "<", 0), True),
+        (said(-b, "<", 0), False),
+        (said(-b, "<=", 0), True),
+        (said(c, "<=", c), True),
+        (said(-c, "<=", 0), False),
+        (said(0, "<", a, "<", a + 1), True),
+        (said(0, "<", a + 1, "<", a), False),
+        (said(Block(((literal(a),),)), ">", 0), True),
+        (said(Literal(Matrix.of([[a, b]])), ">", 0), False),
+        (said(Literal(Matrix.of([[0, 1]])), "!=", Literal(Matrix.of([[0, 0]]))), True),
+        (said(Literal(Matrix.of([[0, c]])), "!=", Literal(Matrix.of([[0, 0]]))), False),
+        (said(Literal(Matrix.of([[0, 1]])), "!=", Literal(Matrix.of([[0]]))), False),
+        (said(Letter("x"), "!=", 0), False),
+    ],
+)
+def test_inequalities_follow_from_signs_and_assumptions(relation: Relation, expected: bool) -> None:  # noqa: FBT001
+    environment = Environment(signs=SIGNED.signs, nonzero=SIGNED.nonzero, signals={"x": None}, sizes={"x": 1})
+    assert (verify(relation, environment)[0] == "exact") == expected
+
+
+# -- named coefficients -------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.usefixtures("way")
+def test_named_coefficients_stand_for_their_meaning() -> None:
+    d = Scalar.symbol("d")
+    named = Environment(coefficients={"b": 2 * c, "d": b + 1})
+    assert verify(said(b + 1, 2 * c + 1), named)[0]
+    assert verify(said(d, 2 * c + 1), named)[0]
+    assert verify(said(b * b - b * b, 0), named)[0]
+    assert not verify(said(b, c), named)[0]
+    assert not verify(said(b, "!==", 2 * c), named)[0], "different letters for the same thing"
+    assert verify(said(b, "!==", c), named)[0]
+    assert not verify(said(b, "!=", 0), named)[0]
+    assert verify(said(b**2 + 1, ">", 0), named)[0]
+
+
+# -- random points ------------------------------------------------------------------------------------------------------
+
+
+def test_every_name_of_a_polynomial_at_a_matrix_is_drawn(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(claims, "EXACT_UP_TO", -1)
+    environment = Environment(values={"A": Matrix.of([[a]]), "phi": s + c})
+    assert verify(said(Apply("phi_at", A), Matrix.of([[a + c]])), environment)[0]
+    assert not verify(said(Apply("phi_at", A), Matrix.of([[a]])), environment)[0]
+
+
+def test_a_point_without_a_value_for_a_name_is_an_error() -> None:
+    with pytest.raises(KeyError):
+        Point({"a"}, random.Random(0)).scalar(a * b)  # noqa: S311 - any point will do
+    with pytest.raises(KeyError):
+        Point({"a"}, random.Random(0)).matrix(Matrix.of([[a, b]]))  # noqa: S311
+
+
+def test_points_where_a_denominator_vanishes_are_drawn_again(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(claims, "EXACT_UP_TO", -1)
+    meet, draws = claims._holds_at, itertools.count()
+
+    def unlucky(*arguments: Any) -> bool:
+        if next(draws) < 3:
+            raise VanishingDenominator
+        return meet(*arguments)
+
+    monkeypatch.setattr(claims, "_holds_at", unlucky)
+    assert verify(said(a / b, Quotient(literal(a), literal(b))), Environment())[0]
+
+    def hopeless(*_: Any) -> bool:
+        raise VanishingDenominator
+
+    monkeypatch.setattr(claims, "_holds_at", hopeless)
+    assert verify(said(a, a), Environment()) == ("", 0.0)
+
+
+def test_a_denominator_that_is_zero_at_the_point_is_noticed(monkeypatch: pytest.MonkeyPatch) -> None:
+    point = Point({"a"}, random.Random(0))  # noqa: S311
+    monkeypatch.setitem(point.values, "a", 5)
+    with pytest.raises(VanishingDenominator):
+        point.scalar(1 / (a - 5))
+
+
+def test_a_weak_point_is_followed_by_others(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(claims, "EXACT_UP_TO", -1)
+    monkeypatch.setattr(claims, "_error_bound", lambda *_: 2.0**-20)
+    assert verify(said(a, a), Environment()) == ("at 3 random points modulo 64-bit primes", 2.0**-60)
+
+
+# -- rows that span the same space ----------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("left", "right", "same"),
+    [
+        ([[2, 4], [1, 3]], [[1, 0], [0, 1]], True),
+        ([[1, 2, 3], [2, 4, 6]], [[1, 2, 3]], True),
+        ([[a, 1, 0], [0, b, 1]], [[1, 0, -1 / (a * b)], [0, 1, 1 / b]], True),
+        ([[1, 2, 3], [2, 4, 6]], [[1, 2, 4]], False),
+        ([[1, 0, 0], [0, 1, 0]], [[1, 0, 0]], False),
+        ([[1, 0]], [[1, 0], [0, 1]], False),
+    ],
+)
+def test_matrices_are_equivalent_where_their_rows_span_the_same_space(left: Any, right: Any, *, same: bool) -> None:
+    relation = said(Matrix.of(left), "~", Matrix.of(right))
+    assert (verify(relation, Environment())[0] == "exact") == same

@@ -1,0 +1,169 @@
+"""What a block diagram says, node by node: the equations are those that one reads off the figure by hand."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TypeAlias
+
+import pytest
+
+from symobs.exact import Scalar
+from symobs.formula.figures.block_diagram import Wire, figure_of
+from symobs.formula.tree import (
+    Conjunction,
+    Derivative,
+    Environment,
+    Formula,
+    Letter,
+    Literal,
+    Negative,
+    Product,
+    Relation,
+    Sum,
+)
+from symobs.formula.tree.plain_text import plain_relation
+from symobs.ground.errors import DerivationRejected
+from symobs.proof.derivation import Derivation, Diagram
+from symobs.proof.derivation.figures.block_diagram_check import equations_of
+
+A, B, C, D, F, G, H, K, L, M, P, Q, T = map(Letter, "ABCDFGHKLMPQT")
+x, x_hat, u, v, y, y_hat, z = (Letter(name) for name in ("x", "x_hat", "u", "v_r", "y", "y_hat", "z_o"))
+MINUS = Negative(Literal(Scalar.of(1)))
+Labels: TypeAlias = dict[str, Formula | Conjunction]
+KNOWN = Environment(signals=dict.fromkeys(("x", "x_hat", "u", "y", "v_r", "e", "w"), None), sizes={"u": 2, "x": 2})
+
+
+def said(name: str, **labels: Formula | Conjunction) -> list[str]:
+    return [plain_relation(relation, "s") for relation in equations_of(name, labels, KNOWN)]
+
+
+def equal(left: Formula, right: Formula) -> Relation:
+    return Relation((left, right), ("=",))
+
+
+RATE = equal(Derivative(x), Sum((Product((A, x)), Product((B, u)))))
+PLANT = Conjunction((RATE, equal(y, Product((C, x)))))
+
+
+def test_a_loop_of_transfer_functions() -> None:
+    loop: Labels = {"P": P, "F": F, "response": T}
+    assert said("loop", **loop) == ["P(s) = P(s)", "F(s) = F(s)", "T = P(s)*(I + F(s)*T)", "T = T"]
+    unity = said("unity_loop", U=MINUS, **loop)
+    assert unity == ["P(s) = P(s)", "F(s) = F(s)", "T = P(s)*F(s)*(I + (-1)*T)", "T = T"]
+    (_, _, around, _) = equations_of("loop", loop, KNOWN)
+    assert "Identity(order=2)" in str(around)
+    (_, _, around, _) = equations_of("loop", loop, Environment())
+    assert "Identity(order=1)" in str(around)
+    negative: Labels = {**loop, "F": Negative(F)}
+    assert said("loop", **negative)[1:3] == ["F(s) = F(s)", "T = P(s)*(I + (-F(s))*T)"]
+
+
+def test_an_integrator_takes_in_the_sum_of_its_wires() -> None:
+    gains: Labels = {"A": A, "L": L, "x": x_hat, "u": u, "y": y}
+    assert said("observer_closed", B=B, **gains) == ["d/dt x_hat = B*u + L*y + A*x_hat", "x_hat = x_hat"]
+    assert said("observer_closed", **gains) == ["d/dt x_hat = L*y + A*x_hat", "x_hat = x_hat"]
+    copy = said("observer_copy", B=B, C=C, U=MINUS, **gains)
+    assert copy == ["d/dt x_hat = B*u + L*(y + (-1)*C*x_hat) + A*x_hat", "x_hat = x_hat"]
+    through = said("observer_copy", B=B, C=C, D=D, U=MINUS, w=y_hat, **gains)
+    assert through == ["y_hat = C*x_hat", "d/dt x_hat = B*u + L*(y + (-1)*y_hat + D*u) + A*x_hat", "x_hat = x_hat"]
+
+
+def test_a_box_may_be_drawn_twice() -> None:
+    """A′, B′ and C′ are the model's A, B and C."""
+    gains: Labels = {"A": A, "B": B, "C": C, "K": K, "L": L, "U": MINUS}
+    signals: Labels = {"u": u, "x": x, "y": y, "w": x_hat, "v": y_hat}
+    assert said("observer_compensator", **gains, **signals) == [
+        "d/dt x = B*u + A*x",
+        "y = C*x",
+        "y = y",
+        "u = K*x_hat",
+        "d/dt x_hat = B*u + A*x_hat + L*((-1)*y_hat + y)",
+        "y_hat = C*x_hat",
+    ]
+
+
+def test_a_loop_without_end_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    figure = figure_of("loop")
+    wires = (*figure.wires, Wire("u", ">", "a"), Wire("a", ">", "u"))
+    endless = replace(figure, places=(*figure.places, ("a", (0, 2))), wires=wires)
+    monkeypatch.setattr("symobs.proof.derivation.figures.block_diagram_check.figure_of", lambda _: endless)
+    start = Environment(values={"P": 1 / Scalar.symbol("s"), "F": Scalar.of(1), "T": 1 / (Scalar.symbol("s") - 1)})
+    diagram = Diagram("loop", (("P", P), ("F", F), ("response", T)))
+    with pytest.raises(DerivationRejected, match="Diagram cannot be read"):
+        Derivation((diagram,), start).check()
+    monkeypatch.undo()
+    Derivation((diagram,), start).check()
+
+
+def test_a_box_may_take_in_several_signals() -> None:
+    found = said("minimal_order_observer", F=F, G=G, H=H, M=M, x=x_hat, u=u, y=y, z=z)
+    assert found == ["d/dt z_o = G*u + H*y + F(s)*z_o", "x_hat = M*[y; z_o]"]
+
+
+def test_a_whole_system_says_its_equations() -> None:
+    observer: Labels = {"A": A, "B": B, "K": K, "L": L, "x": x_hat, "u": u, "y": y}
+    rest = ["u = K*x_hat", "d/dt x_hat = L*y + A*x_hat + B*u"]
+    said_by = ["d/dt x = A*x + B*u", "y = C*x"]
+    assert said("observer_controller", Plant=PLANT, **observer) == [*said_by, "y = y", *rest]
+    assert said("observer_controller", Plant=P, **observer) == ["y = P(s)*u", "y = y", *rest]
+
+
+@pytest.mark.parametrize(
+    "equations",
+    [
+        (RATE,),
+        (RATE, equal(y, Product((C, x_hat)))),
+        (equal(Derivative(x), Product((A, x))), equal(y, Product((C, x)))),
+        (RATE, equal(y, Product((C, x))), equal(v, v)),
+        (equal(x, u), equal(y, Product((C, x)))),
+    ],
+)
+def test_a_whole_system_speaks_of_the_signals_at_its_box(equations: tuple[Relation, ...]) -> None:
+    observer: Labels = {"A": A, "B": B, "K": K, "L": L, "x": x_hat, "u": u, "y": y}
+    with pytest.raises(ValueError, match="the box Plant, whose equations do not speak of the signals around it"):
+        said("observer_controller", Plant=Conjunction(equations), **observer)
+
+
+def test_signals_at_a_whole_system_are_letters() -> None:
+    observer: Labels = {"A": A, "B": B, "K": K, "L": L, "x": x_hat, "u": Product((G, v)), "y": y}
+    with pytest.raises(ValueError, match="the box Plant, around which not all signals are letters"):
+        said("observer_controller", Plant=PLANT, **observer)
+    observer |= {"u": u, "y": Product((C, x))}
+    with pytest.raises(ValueError, match="the box Plant, around which not all signals are letters"):
+        said("observer_controller", Plant=PLANT, **observer)
+
+
+def test_two_systems_share_what_lies_between_them() -> None:
+    equation = equal(Derivative(x_hat), Sum((Product((A, x_hat)), Product((B, u)), Product((L, y)))))
+    labels: Labels = {"Plant": PLANT, "Observer": Conjunction((equation,)), "K": K, "v": v, "x": x_hat, "u": u, "y": y}
+    found = said("estimated_state_feedback", **labels)
+    system = ["d/dt x = A*x + B*u", "y = C*x", "y = y", "d/dt x_hat = A*x_hat + B*u + L*y"]
+    assert found == ["u = K*x_hat", *system]
+    deaf = Conjunction((equal(Derivative(x_hat), Product((A, x_hat))),))
+    with pytest.raises(ValueError, match="the box Observer, whose equations do not speak"):
+        said("estimated_state_feedback", **{**labels, "Observer": deaf})
+
+
+@pytest.mark.parametrize(
+    ("name", "labels", "match"),
+    [
+        ("loop", {"P": P, "F": F}, "no formula for response"),
+        ("loop", {"P": P, "response": T}, "no formula for F"),
+        ("loop", {"P": P, "F": PLANT, "response": T}, "no formula for F"),
+        ("loop", {"P": P, "F": F, "response": T, "Q": Q}, "a label Q, which is not in the figure"),
+        ("loop", {"P": P, "F": F, "response": T, "U": MINUS}, "a label U, which is not in the figure"),
+        ("unity_loop", {"P": P, "F": F, "response": T, "U": P}, "a gain on a wire, where only a sign is drawn"),
+        ("unity_loop", {"P": P, "F": F, "response": T, "U": Negative(P)}, "where only a sign is drawn"),
+        ("unity_loop", {"P": P, "F": F, "response": T}, "no formula for U"),
+        ("observer_closed", {"A": A, "L": L, "u": u, "y": y}, "no formula for x"),
+        ("observer_closed", {"A": A, "L": L, "x": x_hat, "u": u}, "no formula for y"),
+    ],
+)
+def test_what_cannot_be_read_is_refused(name: str, labels: Labels, match: str) -> None:
+    with pytest.raises(ValueError, match=match):
+        said(name, **labels)
+
+
+def test_names_of_signals_need_not_be_used() -> None:
+    loop: Labels = {"P": P, "F": F, "response": T}
+    assert said("loop", r=v, u=u, y=y, **loop) == said("loop", **loop)

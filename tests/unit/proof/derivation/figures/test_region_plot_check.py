@@ -1,0 +1,724 @@
+"""What the check of a drawn region or line is made of, part by part, with values found by hand."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from fractions import Fraction
+from itertools import product
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+from symobs.exact import Matrix, Scalar
+from symobs.exact.algebraic.rational_points import vanishes_near
+from symobs.exact.cad.decomposition import PlaneCurve
+from symobs.exact.core.generators import square_root
+from symobs.formula.figures.plot import Curve, End, LinePicture, MarkedPoint, RegionPicture
+from symobs.formula.tree import Environment, Letter
+from symobs.proof.derivation.figures import plot_check, region_plot_check
+from symobs.proof.derivation.figures.plot_check import faults, is_faithful, relations_of
+from symobs.proof.derivation.figures.plot_points import Stability
+from tests.support.problems.steps import said
+from tests.support.regions.drawn_by_hand import h1, h2, k, s
+
+if TYPE_CHECKING:
+    from symobs.formula.figures.plot import Picture, Place
+
+CHI, z = Letter("chi"), Scalar.symbol("z")
+AXES = ("h1", "h2")
+
+
+def at(x: Any, y: Any) -> Place:
+    return Fraction(x), Fraction(y)
+
+
+def told(picture: Picture, chi: Scalar, *, discrete: bool = False, **signs: str) -> list[str]:
+    known = Environment(variable="z" if discrete else "s", values={"chi": chi}, signs=signs)
+    return list(faults(picture, CHI, known, discrete=discrete))
+
+
+# -- a polynomial at a place --------------------------------------------------------------------------------------------
+
+
+def asked(polynomial: Scalar, *axes: str, discrete: bool = False, **signs: str) -> Stability:
+    declared = tuple(signs.get(name, "real") for name in axes)
+    return Stability(polynomial, "z" if discrete else "s", axes, declared, discrete)
+
+
+def test_a_place_is_stable_or_not() -> None:
+    test = asked(h2 * s**2 + (h1 + 1) * s + h2, "h1", "h2", h1="positive")
+    for place, expected in (((1, 1), True), ((1, -1), False), ((1, 0), False), (("-1/2", 1), False), ((0, 1), False)):
+        assert test.is_stable(*at(*place)) is expected
+    assert asked(s + 1 / h1, "h1").is_stable(Fraction(0)) is False
+    assert asked(s + 1 / h1, "h1").is_stable(Fraction(1)) is True
+    for value, expected in (("1/2", True), ("-1/2", True), (1, False), (-2, False)):
+        assert asked(z + h1, "h1", discrete=True).is_stable(Fraction(value)) is expected
+    assert len({asked(s + h1, "h1"), asked(h1 + s, "h1"), asked(s + h1, "h1", h1="positive")}) == 2  # plain values
+    dropped = asked(h2 * s**2 + s + 1, "h2")
+    assert dropped.is_stable(Fraction(1)) is True
+    assert dropped.is_stable(Fraction(0)) is False  # a root has gone to infinity
+
+
+def test_a_point_that_is_taken_out_is_all_but_unstable() -> None:
+    """s + h² − …: at the place the condition is a 16th of what it is around, or less."""
+    test = asked(s + h1**2, "h1")
+    around = [(Fraction(-4),), (Fraction(5),)]
+    assert test.is_excluded((Fraction(0),), around)
+    assert test.is_excluded((Fraction(1),), around)  # 16 · 1 ≤ min(16, 25)
+    assert not test.is_excluded((Fraction("1.01"),), around)
+    assert not test.is_excluded((Fraction(1),), [(Fraction("3.99"),), (Fraction(5),)])
+    leading = asked(h1**2 * s + 1, "h1")
+    assert leading.is_excluded((Fraction(1),), around)
+    assert not leading.is_excluded((Fraction("1.01"),), around)
+    for sign in (1, -1):  # the leading coefficient alone, which 30 − h² hides in the condition
+        assert asked(sign * (h1**2 * s + 30 - h1**2), "h1").is_excluded((Fraction(1),), around)
+        assert not asked(sign * (h1**2 * s + 30 - h1**2), "h1").is_excluded((Fraction("1.01"),), around)
+    second = asked(s**2 + s + h1**2, "h1")
+    assert second.is_excluded((Fraction(1),), around)
+    assert not second.is_excluded((Fraction("1.01"),), around)
+    assert asked(s - 1, "h1").is_excluded((Fraction(1),), around)
+    drawn = asked(z + 1 - h1**2, "h1", discrete=True)  # h² (2 − h²) > 0
+    near = [(Fraction("-0.1"),), (Fraction("0.1"),)]
+    assert drawn.is_excluded((Fraction("0.01"),), near)
+    assert not drawn.is_excluded((Fraction("0.03"),), near)
+
+
+# -- curves ---------------------------------------------------------------------------------------------------------------
+
+
+def difference(left: Any, right: Any, *operator: str, **numbers: int) -> Scalar:
+    values = {name: Scalar.of(value) for name, value in numbers.items()}
+    known = Environment(values={"P": h1 * h2})
+    return plot_check._difference(said(left, right, *operator), known, values)
+
+
+def test_an_equation_is_a_polynomial_without_double_factors() -> None:
+    b = Scalar.symbol("b")
+    assert difference(h1, 1) in {h1 - 1, 1 - h1}
+    assert difference((h1 - h2) ** 3 * h1, 0) in {(h1 - h2) * h1, (h2 - h1) * h1}
+    assert difference(h2, 1 / h1) in {h1 * h2 - 1, 1 - h1 * h2}
+    assert difference(Letter("P"), 1) == difference(Matrix.of([[h1 * h2]]), 1) in {h1 * h2 - 1, 1 - h1 * h2}
+    assert difference(h1, b, b=3) in {h1 - 3, 3 - h1}
+    for constant in (difference(h1, h1), difference(1, 2), difference(h1, 1, ">")):
+        assert constant == Scalar.of(1)
+    assert relations_of(RegionPicture(AXES, SQUARE, (), (Curve((), said(h1, 1)), Curve((), said(h2, 2))))) == (
+        said(h1, 1),
+        said(h2, 2),
+    )
+    assert relations_of(LinePicture("k", SQUARE[0], ())) == ()
+
+
+SQUARE = ((Fraction(-1), Fraction(1)), (Fraction(-1), Fraction(1)))
+
+
+@pytest.mark.parametrize(
+    ("value", "place", "expected"),
+    [
+        (h1 - 1, ("0.9", 5), True),
+        (h1 - 1, ("1.1", 5), True),
+        (h1 - 1, ("0.89", 5), False),
+        (h1 - 1, ("1.11", 5), False),
+        (h2 - 1, (5, "0.8"), True),
+        (h2 - 1, (5, "1.2"), True),
+        (h2 - 1, (5, "0.79"), False),
+        (h2 - 1, (5, "1.21"), False),
+        (h1 * h2, (5, 0), True),
+        ((h1 - 1) ** 2, ("1.05", 5), True),  # no sign changes
+        ((h1 - 1) ** 2, ("0.95", 5), True),
+        ((h1 - 1) ** 2, ("1.11", 5), False),
+        ((h2 - 1) ** 2, (5, "1.1"), True),
+        ((h2 - 1) ** 2, (5, "0.9"), True),
+        ((h2 - 1) ** 2, (5, "1.21"), False),
+        ((h1 - Fraction(1, 20)) * (h1 - Fraction(1, 30)), (0, 0), True),  # two branches within one arm
+        (h1**2 + h2**2, ("0.01", "0.01"), False),  # the point is not on the cross
+        (h1**2 + h2**2 + 1, (0, 0), False),
+        (h1**2 + 1, (0, 0), False),
+        (Scalar.of(1), (0, 0), False),
+    ],
+)
+def test_a_curve_passes_where_it_meets_a_cross(value: Scalar, place: tuple[Any, Any], *, expected: bool) -> None:
+    """Of a place, 0.1 to the sides and 0.2 up and down."""
+    assert region_plot_check.passes(value, AXES, at(*place), at("0.1", "0.2")) is expected
+
+
+def test_a_polynomial_vanishes_near_a_number_or_not() -> None:
+    cubic = PlaneCurve((h1 - 1) * (h1 - 2) * (h1 + 5) + 0 * h2, AXES).on_horizontal(Fraction(0))
+    for middle, off, expected in (
+        ("3/2", "1/2", True),  # both ends are roots
+        ("3/2", "0.49", False),
+        ("3/2", "0.51", True),  # two roots and no change of sign: by Sturm's theorem
+        (0, 1, True),
+        (0, "0.99", False),
+        (-5, "0.01", True),
+        (-4, "0.9", False),
+        (10, 100, True),
+    ):
+        assert vanishes_near(cubic, Fraction(middle), Fraction(off)) is expected
+    double = PlaneCurve((h1 - 1) ** 2 + h2, AXES).on_horizontal
+    assert vanishes_near(double(Fraction(0)), Fraction("9/10"), Fraction("1/5"))
+    assert not vanishes_near(double(Fraction(1, 10**12)), Fraction("9/10"), Fraction("1/5"))
+
+
+def test_an_arm_that_lies_in_a_curve_meets_it() -> None:
+    for value, along, expected in ((h2 * (h2 - 3), 0, True), (h2 - 3, 0, False), (h1, 1, True), (h1 - 3, 1, False)):
+        curve = PlaneCurve(value, AXES)
+        arm = (curve.on_horizontal, curve.on_vertical)[along](Fraction(0))
+        assert vanishes_near(arm, Fraction(0), Fraction(1)) is expected
+
+
+@pytest.mark.parametrize("discrete", [False, True])
+def test_a_polynomial_of_numbers_is_stable_by_its_roots(*, discrete: bool) -> None:
+    """Products of factors whose roots are known: s + 1 is stable, s − 1 and s² + 1 are not; z/2 ± … likewise."""
+    known = (
+        (2 * s + 1, True, True),
+        (3 * s - 1, False, True),
+        (s - 2, False, False),
+        (s**2 + 1, False, False),
+        (3 * s**2 + s + 1, True, True),
+        (s**2 + 5 * s + 9, True, False),
+        (s, False, True),
+        (s + 1, True, False),
+    )
+    for (one, *first), (other, *second), (third, *last) in product(known, repeat=3):
+        wanted = first[discrete] and second[discrete] and last[discrete]
+        value = -(one * other * third).substitute({"s": z if discrete else s}) + 0 * h1
+        assert asked(value, "h1", discrete=discrete).is_stable(Fraction(1)) is wanted
+
+
+def test_edges_that_slope_are_parts_of_curves() -> None:
+    area = (at(0, 0), at(4, 0), at(4, 2), at(2, 3), at(0, 3))
+    assert list(region_plot_check._sloping(area, at("0.1", "0.1"))) == [(at(4, 2), at(2, 3))]
+    assert list(region_plot_check._sloping(area, at("1.99", "0.99"))) == [(at(4, 2), at(2, 3))]
+    for near in (at(2, "0.1"), at("0.1", 1)):
+        assert list(region_plot_check._sloping(area, near)) == []
+    triangle = (at(0, 0), at(1, 0), at(1, 1))
+    assert list(region_plot_check._sloping(triangle, at("0.1", "0.1"))) == [(at(1, 1), at(0, 0))]
+
+
+def test_places_all_over_a_window() -> None:
+    places = list(region_plot_check._grid(((Fraction(0), Fraction(679)), (Fraction(-679), Fraction(0)))))
+    assert len(places) == 49
+    assert places[:2] == [at(41, 43 - 679), at(41, 97 + 43 - 679)]
+    assert places[7] == at(97 + 41, 43 - 679)
+    assert places[-1] == at(6 * 97 + 41, 6 * 97 + 43 - 679)
+    shifted = list(region_plot_check._grid(((Fraction(1), Fraction(680)), (Fraction(2), Fraction(681)))))
+    assert shifted[0] == at(42, 45)
+
+
+def test_a_boundary_has_something_stable_beside_it() -> None:
+    """h1 > 0 is stable, whatever h2 is."""
+    test = asked(s + h1 + 0 * h2, *AXES)
+
+    def may_be(*points: Place) -> set[bool]:
+        return region_plot_check._are_boundaries(Curve(points, said(h1, 0)), SQUARE, test)
+
+    upright = tuple(at(0, Fraction(j, 10)) for j in range(-9, 10))
+    assert may_be(*upright) == may_be(*upright[::-1]) == {True}
+    assert may_be(upright[0], upright[-1]) == {True}
+    assert may_be(*(at("-1/2", y) for _, y in upright)) == {False}
+    assert may_be(*(at("1/2", y) for _, y in upright)) == {True}
+    assert may_be(*(at(Fraction(j, 10), 0) for j in range(1, 9))) == {True}
+    assert may_be(*(at(Fraction(-j, 10), 0) for j in range(1, 9))) == {False}
+    assert may_be(*(at(3, y) for _, y in upright)) == {True, False}  # out of sight
+    assert may_be(at(0, 0), at(0, 1), at(0, 0)) == {True, False}  # it turns back
+    # The border of the window is looked at from inside alone.
+    assert may_be(*(at(-1, y) for _, y in upright)) == {False}
+    assert may_be(*(at(1, y) for _, y in upright)) == {True}
+
+
+def test_a_boundary_is_asked_for_close_beside_it() -> None:
+    """10 000 parts of the window: what is stable only farther away does not lie beside."""
+    wide = ((Fraction(0), Fraction(10**4)), (Fraction(0), Fraction(2 * 10**4)))
+    points = tuple(at(100, j) for j in range(1, 40))
+    for limit, expected in ((100, True), ("100.99", True), ("101.01", False)):
+        test = asked(s + h1 - Scalar.of(Fraction(limit)), *AXES)
+        assert region_plot_check._are_boundaries(Curve(points, said(h1, 0)), wide, test) == {expected}
+    level = tuple(at(j, 100) for j in range(1, 40))
+    for limit, expected in ((100, True), ("101.99", True), ("102.01", False)):
+        test = asked(s + h2 - Scalar.of(Fraction(limit)), *AXES)
+        assert region_plot_check._are_boundaries(Curve(level, said(h2, 0)), wide, test) == {expected}
+
+
+def test_some_points_of_a_curve_are_asked_about(monkeypatch: pytest.MonkeyPatch) -> None:
+    places: list[Place] = []
+    monkeypatch.setattr(Stability, "is_stable", lambda _, *place: places.append(place))
+    points = tuple(at(0, Fraction(j, 100)) for j in range(24))
+    assert region_plot_check._are_boundaries(Curve(points, said(h1, 0)), SQUARE, asked(s, *AXES)) == {False}
+    assert [y for _, y in places[::2]] == [Fraction(j, 100) for j in range(1, 23, 3)]
+    assert {x for x, _ in places} == {Fraction(-2, 10**4), Fraction(2, 10**4)}
+    places.clear()
+    region_plot_check._are_boundaries(Curve(points[:21], said(h1, 0)), SQUARE, asked(s, *AXES))
+    assert [y for _, y in places[::2]] == [Fraction(j, 100) for j in range(1, 20, 2)]
+    places.clear()
+    region_plot_check._are_boundaries(Curve(points[:5], said(h1, 0)), SQUARE, asked(s, *AXES))
+    assert [y for _, y in places[::2]] == [Fraction(j, 100) for j in (1, 2, 3)]
+
+
+def test_the_places_beside_a_curve_lie_across_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    """As it is seen: the window is a square to the eye, however many units it has."""
+    places: list[Place] = []
+    monkeypatch.setattr(Stability, "is_stable", lambda _, *place: places.append(place))
+    wide = ((Fraction(0), Fraction(10**4)), (Fraction(0), Fraction(2 * 10**4)))
+    slope = tuple(at(100 + j, 100 + j) for j in range(3))
+    region_plot_check._are_boundaries(Curve(slope, said(h1, h2)), wide, asked(s, *AXES))
+    assert places == [at("100.5", 103), at("101.5", 99)]
+    places.clear()
+    bent = at(0, "-1/2"), at(0, 0), at(0, "1/2"), at("9/10", "9/10")
+    region_plot_check._are_boundaries(Curve(bent, said(h1, 0)), SQUARE, asked(s, *AXES))
+    assert places[:2] == [at("-1/5000", 0), at("1/5000", 0)]
+
+
+def test_places_on_a_segment() -> None:
+    assert region_plot_check._along(at(0, 0), at(252, -504)) == (
+        at(0, 0),
+        at(72, -144),
+        at(140, -280),
+        at(189, -378),
+        at(252, -504),
+    )
+    assert region_plot_check._along(at(1, 2), at(253, 2))[1] == at(73, 2)
+
+
+def test_the_border_of_a_window() -> None:
+    near = at("0.1", "0.2")
+    for place in (("-0.9", 0), ("0.9", 0), (0, "-0.8"), (0, "0.8"), (1, 1), (-2, 0)):
+        assert region_plot_check._on_border(at(*place), SQUARE, near)
+    for place in (("-0.89", 0), ("0.89", 0), (0, "-0.79"), (0, "0.79")):
+        assert not region_plot_check._on_border(at(*place), SQUARE, near)
+
+
+L_SHAPE = (at(0, 0), at(4, 0), at(4, 1), at(1, 1), at(1, 4), at(0, 4))
+
+
+def test_what_lies_inside_of_an_area() -> None:
+    assert sorted(region_plot_check._crossings(L_SHAPE, Fraction(2))) == [0, 1]
+    assert sorted(region_plot_check._crossings(L_SHAPE, Fraction(1, 2))) == [0, 4]
+    assert sorted(region_plot_check._crossings((at(0, 0), at(3, 0), at(0, 6)), Fraction(2))) == [0, 2]
+    assert sorted(region_plot_check._crossings(L_SHAPE, Fraction(1))) == [0, 1]  # its upper side is not of it
+    for inside in ((2, "1/2"), ("1/2", 3), ("1/2", "1/2")):
+        assert region_plot_check.within_area(L_SHAPE, [at(*inside)]) == [at(*inside)]
+    for outside in ((2, 2), (5, "1/2"), (-1, "1/2"), ("1/2", 5), (2, -1)):
+        assert region_plot_check.within_area(L_SHAPE, [at(*outside)]) == []
+
+
+def test_edges_to_the_left_are_counted() -> None:
+    horseshoe = (at(0, 0), at(30, 0), at(30, 9), at(20, 9), at(20, 5), at(10, 5), at(10, 9), at(0, 9))
+    for x, expected in ((-5, False), (5, True), (15, False), (25, True), (35, False)):
+        assert region_plot_check.within_area(horseshoe, [at(x, 7)]) == [at(x, 7)] * expected
+    for x, expected in ((0, False), (10, True), (20, False), (30, True)):  # an edge is of what lies to its left
+        assert region_plot_check.within_area(horseshoe, [at(x, 7)]) == [at(x, 7)] * expected
+
+
+def test_places_inside_of_an_area() -> None:
+    places = list(region_plot_check._inside((at(0, 0), at(10, 0), at(10, 388), at(0, 388)), Fraction(1)))
+    assert places == [at(x, y) for y in (101, 198, 295) for x in (1, 5, 9)]
+    moved = list(region_plot_check._inside((at(5, 388), at(15, 388), at(15, 776), at(5, 776)), Fraction(1)))
+    assert moved == [at(x + 5, y + 388) for x, y in places]
+    assert list(region_plot_check._inside((at(0, 0), at(10, 0), at(10, 388), at(0, 388)), Fraction(5))) == []
+    assert len(list(region_plot_check._inside((at(0, 0), at(10, 0), at(10, 388), at(0, 388)), Fraction("4.99")))) == 9
+    horseshoe = (at(0, 0), at(30, 0), at(30, 388), at(20, 388), at(20, 50), at(10, 50), at(10, 388), at(0, 388))
+    assert [x for x, _ in region_plot_check._inside(horseshoe, Fraction(1))][:6] == [1, 5, 9, 21, 25, 29]
+
+
+# -- regions ----------------------------------------------------------------------------------------------------------------
+
+WINDOW = ((Fraction(-500), Fraction(500)), (Fraction(-1000), Fraction(1000)))
+RIGHT = (at(0, -1000), at(500, -1000), at(500, 1000), at(0, 1000))
+WALL = Curve((at(0, -1000), at(0, 1000)), said(h1, 0))
+#: s + h1 is stable on the right; what is near may be 2 off to the side and 4 up or down, between points 20 and 40.
+HALF = RegionPicture(
+    AXES, WINDOW, (RIGHT,), (WALL,), (MarkedPoint(at(100, 3), "stable"), MarkedPoint(at(-100, 3), "unstable"))
+)
+STABLE = s + h1 + 0 * h2
+
+
+def shifted(index: int, x: int, y: int) -> tuple[Place, ...]:
+    place = RIGHT[index][0] + x, RIGHT[index][1] + y
+    return (*RIGHT[:index], place, *RIGHT[index + 1 :])
+
+
+def test_a_half_plane_is_drawn_as_it_is() -> None:
+    assert told(HALF, STABLE) == []
+    assert told(replace(HALF, areas=()), STABLE)[0] == "(100, 3) is stable"
+    assert "(-100, 3) is unstable" in told(HALF, s - h1)
+    other = replace(
+        HALF,
+        marks=(
+            MarkedPoint(at(100, 3), "unstable"),
+            MarkedPoint(at(-100, 3), "stable"),
+            MarkedPoint(at(0, 3), "excluded"),
+        ),
+    )
+    assert told(other, STABLE) == ["(100, 3) is unstable", "(-100, 3) is stable"]
+    assert told(replace(HALF, marks=(MarkedPoint(at(100, 3), "excluded"),)), STABLE) == ["(100, 3) is excluded"]
+    assert told(replace(HALF, marks=(MarkedPoint(at(100, 3), "other"),)), STABLE) == ["(100, 3) is other"]
+
+
+def test_a_curve_is_drawn_where_it_is() -> None:
+    def drawn(*points: Place, **more: Any) -> list[str]:
+        return told(replace(HALF, curves=(replace(WALL, points=points, **more),)), STABLE)
+
+    assert drawn(at(2, -1000), at(0, 1000)) == drawn(at(0, -1000), at(2, 1000)) == []
+    on_the_left = ["h1 = 0 is a boundary"]  # of nothing: on both sides of it nothing is stable
+    assert drawn(at(-2, -1000), at(0, 1000)) == drawn(at(0, -1000), at(-2, 1000)) == on_the_left
+    for off in (Fraction("2.001"), Fraction("-2.001")):
+        assert drawn(at(off, -1000), at(0, 1000)) == drawn(at(0, -1000), at(off, 1000)) == ["h1 = 0"]
+    assert drawn(at(0, -1000), at(0, 1000), boundary=False) == ["h1 = 0 is no boundary"]
+    # Its middle lies out of sight, or is looked at.
+    square = said(h1**2, h1 * 600)
+    chi = s + h1 * (h1 - 600)
+    empty = replace(HALF, marks=(), areas=((at(-500, -1000), at(0, -1000), at(0, 1000), at(-500, 1000)),))
+    assert told(replace(empty, curves=(WALL,)), chi) == []
+    assert told(replace(empty, curves=(WALL, Curve((at(0, 0), at(600, 0)), square, boundary=True))), chi) != []
+    far = Curve((at(600, 0), at(600, 1)), square)
+    assert told(replace(empty, curves=(WALL, far)), chi) == []
+
+
+def test_the_middle_of_a_segment_may_lie_farther_off() -> None:
+    """h2 = h1²/k: between −100 and 100 the middle lies 10 000/k off."""
+    for scale, is_near in ((250, True), (249, False)):
+        curve = Curve((at(-100, Fraction(10**4, scale)), at(100, Fraction(10**4, scale))), said(scale * h2, h1**2))
+        found = told(replace(HALF, curves=(WALL, replace(curve, boundary=True)), marks=()), STABLE)
+        assert (found == []) == is_near
+        assert is_near or len(found) == 1
+
+
+def test_a_middle_out_of_sight_is_not_looked_at() -> None:
+    curve = Curve((at(-600, 1440), at(600, 1440)), said(250 * h2, h1**2))
+    assert told(replace(HALF, curves=(WALL, curve)), STABLE) == []
+
+
+def test_a_window_has_an_inside() -> None:
+    for window in (
+        ((Fraction(0), Fraction(0)), WINDOW[1]),
+        ((Fraction(1), Fraction(0)), WINDOW[1]),
+        (WINDOW[0], (Fraction(0), Fraction(0))),
+        (WINDOW[0], (Fraction(1), Fraction(0))),
+    ):
+        assert told(replace(HALF, window=window), STABLE) == ["the window is empty"]
+
+
+def test_an_equation_is_of_the_axes_and_not_constant() -> None:
+    for relation in (said(h1, h1), said(1, 2), said(h1, k), said(h1, ">", 0)):
+        found = told(replace(HALF, curves=(replace(WALL, equation=relation), WALL)), STABLE)
+        assert len(found) == 1
+        assert found[0].endswith("is the equation of a curve")
+    wrong = replace(WALL, points=(at(9, 0), at(9, 1)))
+    assert told(replace(HALF, curves=(WALL, wrong, replace(WALL, boundary=False))), STABLE) == [
+        "h1 = 0",
+        "h1 = 0 is no boundary",
+    ]
+
+
+def test_an_area_has_its_edges_on_curves_or_on_the_border() -> None:
+    for index, x, y in ((0, 2, 0), (0, -2, 0), (1, 2, 0), (1, -2, 0), (1, 0, 4), (2, 0, -4), (2, 0, 4), (3, 0, 3)):
+        assert told(replace(HALF, areas=(shifted(index, x, y),), marks=()), STABLE) == [], (index, x, y)
+    beyond = told(replace(HALF, areas=(shifted(1, 3, 0),), marks=()), STABLE)
+    assert beyond[0] == "an edge at (503, -1000), outside of the window"
+    above = told(replace(HALF, areas=(shifted(2, 0, 5),), marks=()), STABLE)
+    assert above[0] == "an edge at (500, 1005), outside of the window"
+    five = (*RIGHT, at(3, 0))
+    assert told(replace(HALF, areas=(five,), marks=()), STABLE)[0] == "an edge at (3, 0)"
+    assert told(replace(HALF, areas=((*RIGHT, at(2, 0)),), marks=()), STABLE) == []
+    sloping = (*RIGHT[:3], at(100, 1000))
+    assert "an edge at (50, 0)" in told(replace(HALF, areas=(sloping,), marks=()), STABLE)
+    for index, x, y in ((3, 3, 1000), (3, 40, 1000), (0, 3, -1000), (0, 40, -1000)):  # where a curve meets the border
+        moved = (*RIGHT[:index], at(x, y), *RIGHT[index + 1 :])
+        assert told(replace(HALF, areas=(moved,), marks=()), STABLE) == [f"an edge at ({x}, {y})"]
+
+
+def test_a_corner_inside_of_the_window_lies_on_a_curve() -> None:
+    """A notch whose edges are parallel to the axes."""
+    notch = at(0, 500), at(50, 500), at(50, 400), at(0, 400)
+    found = told(replace(HALF, areas=((*RIGHT, *notch),), marks=()), STABLE)
+    assert found == ["an edge at (50, 500)", "an edge at (50, 400)"]
+
+
+def test_the_middle_of_every_edge_is_asked_for() -> None:
+    """Those of a parabola cut short: the second edge lies too far off, beside the first, which does not."""
+    high, c = ((Fraction(-500), Fraction(500)), (Fraction(0), Fraction(1000))), 190
+    places = [at(Fraction(c * k * k, 9), Fraction(1000 * k, 3)) for k in range(4)]
+    bent = Curve(tuple(places), said(h1 * 10**6, c * h2**2))
+    area = (*places[:2], places[3], at(500, 1000), at(500, 0))
+    drawn = RegionPicture(AXES, high, (area,), (bent,))
+    found = told(drawn, s + h1 - h2**2 * Fraction(c, 10**6))
+    assert [text for text in found if "edge" in text] == ["an edge at (950/9, 2000/3)"]
+
+
+def test_the_middle_of_an_edge_may_lie_farther_off() -> None:
+    """h1 = c (h2 / 1000)² from (0, 0) to (c, 1000): the middle of the edge lies c / 4 beside the curve."""
+    high = ((Fraction(-500), Fraction(500)), (Fraction(0), Fraction(1000)))
+    for c, expected in ((80, []), (81, ["an edge at (81/2, 500)"])):
+        bent = Curve((at(0, 0), at(Fraction(c, 9), "1000/3"), at(c, 1000)), said(h1 * 10**6, c * h2**2))
+        area = (at(0, 0), at(500, 0), at(500, 1000), at(c, 1000))
+        drawn = RegionPicture(AXES, high, (area,), (bent,))
+        assert told(drawn, s + h1 - h2**2 * Fraction(c, 10**6)) == expected
+
+
+def test_every_edge_of_every_area_is_on_some_curve() -> None:
+    second = Curve((at(100, 500), at(400, 500)), said(h2, 500))
+    assert told(replace(HALF, areas=((*RIGHT, at(2, 0)),), curves=(WALL, second)), STABLE) == []
+    assert told(replace(HALF, areas=((*RIGHT[:3], at(2, 1000)),), curves=(second, WALL), marks=()), STABLE) == []
+    sloping = at(2, 1000), at(0, -1000), at(500, -1000), at(400, 1000)
+    assert "an edge at (450, 0)" in told(replace(HALF, areas=(sloping,), marks=()), STABLE)
+    below, above = (*RIGHT[:2], at(500, 0), at(0, 0)), (at(0, 0), at(500, 0), *RIGHT[2:])
+    for areas in ((below, (*above, at(3, 500))), ((*above, at(3, 500)), below)):
+        assert "an edge at (3, 500)" in told(replace(HALF, areas=areas, marks=()), STABLE)
+
+
+def test_what_is_shaded_is_stable_and_what_is_stable_is_shaded() -> None:
+    whole = (at(-500, -1000), at(500, -1000), at(500, 1000), at(-500, 1000))
+    found = told(replace(HALF, areas=(whole,), marks=()), STABLE)
+    assert found[0] == "(-400, -46500/97) is stable"
+    assert len(found) == 6 + 28  # of nine places inside, and of all over the window
+    assert all(fault.endswith(" is stable") for fault in found)
+    bare = told(replace(HALF, areas=(), marks=()), STABLE)
+    assert bare
+    assert all(fault.endswith("is not stable") for fault in bare)
+    assert told(replace(HALF, areas=(), marks=(), curves=()), s - 1) == []
+    halves = ((at(0, -1000), at(500, -1000), at(500, 0), at(0, 0)), (at(0, 0), at(500, 0), at(500, 1000), at(0, 1000)))
+    assert told(replace(HALF, areas=halves), STABLE) == []
+    assert told(replace(HALF, areas=halves[:1]), STABLE)[0] == "(100, 3) is stable"
+
+
+def test_a_mark_speaks_of_its_place_and_of_the_shade_there() -> None:
+    whole = (at(-500, -1000), at(500, -1000), at(500, 1000), at(-500, 1000))
+    for kind in ("stable", "unstable"):
+        marks = (MarkedPoint(at(-100, 3), kind),)
+        assert f"(-100, 3) is {kind}" in told(replace(HALF, areas=(whole,), marks=marks), STABLE)
+
+
+def test_a_place_beside_a_curve_may_be_shaded_or_not() -> None:
+    """Of the places all over the window seven have h1 = −11.04, between where it ends and where it is drawn to end."""
+    right = tuple((x - 10 if x == 0 else x, y) for x, y in RIGHT)
+    wall = Curve((at(-12, -1000), at(-12, 1000)), said(h1, -12))
+    assert told(replace(HALF, areas=(right,), curves=(wall,), marks=()), STABLE + 12) == []
+
+
+def test_what_is_too_narrow_to_be_seen_is_not_asked_for() -> None:
+    for width, is_seen in ((4, False), (5, True)):
+        strip = at(-100, -1000), at(width - 100, -1000), at(width - 100, 1000), at(-100, 1000)
+        found = told(replace(HALF, areas=(RIGHT, strip), marks=()), STABLE)
+        assert len(found) == 9 * is_seen
+
+
+def test_a_place_that_is_taken_out_is_not_asked_for() -> None:
+    """Where the samples of an area meet a hole, which is marked."""
+    height = Fraction(-1000) + 2000 * (Fraction(2, 4) + Fraction(1, 97))
+    hole = at(0, height)
+    chi = s + h1**2 + (h2 - Scalar.of(height)) ** 2
+    whole = (at(-500, -1000), at(500, -1000), at(500, 1000), at(-500, 1000))
+    picture = RegionPicture(AXES, WINDOW, (whole,), (), (MarkedPoint(hole, "excluded"),))
+    assert told(picture, chi) == []
+    assert told(replace(picture, marks=()), chi) == [f"({hole[0]}, {hole[1]}) is stable"]
+    assert told(replace(picture, marks=(MarkedPoint(hole, "unstable"),)), chi)[0].endswith("is stable")
+
+
+def test_a_hole_that_is_drawn_roughly_is_seen_from_around() -> None:
+    """(h1 − x)² + (h2 − y)²/4 is at the place a 16th of what it is 2 to the sides and 4 up and down, or less."""
+    whole = (at(-500, -1000), at(500, -1000), at(500, 1000), at(-500, 1000))
+    picture = RegionPicture(AXES, WINDOW, (whole,), (), (MarkedPoint(at(0, 0), "excluded"),))
+    for off in ("0.4", "-0.4", "0.41", "-0.41"):
+        for x, y in ((Fraction(off), Fraction(0)), (Fraction(0), 2 * Fraction(off))):
+            chi = s + (h1 - Scalar.of(x)) ** 2 + (h2 - Scalar.of(y)) ** 2 / 4
+            assert (told(picture, chi) == []) is off.endswith("4"), (x, y)
+
+
+# -- lines ------------------------------------------------------------------------------------------------------------------
+
+LINE = (Fraction(-500), Fraction(500))
+
+
+def end(place: Any, label: Any = None) -> End:
+    return End(Fraction(place), Scalar.of(Fraction(place)) if label is None else label)
+
+
+def on_line(*pieces: Any, chi: Scalar = s + k, window: Any = LINE, **more: Any) -> list[str]:
+    return told(LinePicture("k", window, pieces, **more), chi)
+
+
+def test_an_end_lies_where_stability_ends() -> None:
+    assert on_line((end(0), None)) == on_line((None, end(0)), chi=s - k) == []
+    assert on_line((end(1), None)) == on_line((end(2), None)) == on_line((end(-1), None)) == []
+    assert on_line((end("2.01"), None)) == ["201/100 is an end"]
+    assert on_line((end("-2"), None)) == ["-2 is an end"]
+    assert on_line((end("-1.99"), None)) == []
+    assert on_line((None, end("-2.01")), chi=s - k) == ["-201/100 is an end"]
+    assert on_line((None, end(2)), chi=s - k) == ["2 is an end"]
+    assert on_line((None, end("1.99")), chi=s - k) == []
+
+
+def test_a_piece_that_is_short_is_asked_for_within() -> None:
+    """Stable between 0 and 3, where 2 is near: a third of it is asked for."""
+    chi = s + k * (3 - k)
+    assert on_line((end(0), end(3)), chi=chi) == []
+    assert on_line((end(0), end("2.9")), chi=chi) == []
+
+
+def test_how_far_inside_of_its_piece_an_end_is_asked_for(monkeypatch: pytest.MonkeyPatch) -> None:
+    steps: list[Fraction] = []
+
+    def kept(_: End, step: Fraction, *__: Any) -> list[str]:
+        steps.append(step)
+        return []
+
+    monkeypatch.setattr(plot_check, "_of_end", kept)
+    for width, step in ((3, 1), (6, 2), (60, 2)):
+        steps.clear()
+        assert on_line((end(0), end(width)), chi=s + k * (width - k)) == []
+        assert steps == [step, -step]
+
+
+def test_an_end_has_an_outer_side() -> None:
+    assert on_line((end(1), end(4)), chi=s + k * (4 - k)) == []
+    assert on_line((end(5), end(5)), chi=s + k - 4).count("5 is an end") == 2
+
+
+def test_every_piece_and_every_mark_is_looked_at() -> None:
+    assert on_line((None, end(0)), (end(100), None), chi=s - k)[0] == "150 is stable"
+    marks = ((Fraction(100), "stable"), (Fraction(-100), "stable"), (Fraction(50), "unstable"))
+    assert on_line((end(0), None), marks=marks) == ["-100 is stable", "50 is unstable"]
+
+
+def test_what_cannot_be_seen_between_pieces_is_not_asked_for() -> None:
+    wide = (Fraction(-1000), Fraction(1000))
+    for width, is_seen in ((8, False), (9, True)):
+        found = on_line((None, end(0)), (end(width), None), chi=s + 1, window=wide)
+        assert any(fault.endswith("is not stable") for fault in found) is is_seen
+
+
+def test_stretches_are_asked_for_at_seven_places() -> None:
+    assert list(plot_check._between(Fraction(0), Fraction(8))) == [1, 2, 3, 4, 5, 6, 7]
+    assert next(plot_check._between(Fraction(8), Fraction(16))) == 9
+    assert on_line((end(0), None), chi=s - k)[:7] == [f"{Fraction(125 * j, 2)} is stable" for j in range(1, 8)]
+    assert on_line(chi=s + 1) == [f"{-500 + 125 * j} is not stable" for j in range(1, 8)]
+    assert on_line((None, None), chi=s - 1) == [f"{-500 + 125 * j} is stable" for j in range(1, 8)]
+    assert on_line((None, None), chi=s + 1) == on_line(chi=s - 1) == []
+    pieces = (None, end(-100)), (end(100), None)
+    assert on_line(*pieces, chi=s + 1)[:7] == [f"{-100 + 25 * j} is not stable" for j in range(1, 8)]
+
+
+def test_pieces_follow_one_another() -> None:
+    chi = s + k**2 * (k - 100) ** 2
+    assert on_line((None, end(0)), (end(0), end(100)), (end(100), None), chi=chi) == []
+    assert on_line((end(0), end(100)), (None, end(0)), (end(100), None), chi=chi)[0] == "the pieces follow one another"
+    for window in ((Fraction(1), Fraction(1)), (Fraction(1), Fraction(0))):
+        assert on_line(window=window) == ["the window is empty"]
+
+
+def test_marks_on_a_line() -> None:
+    chi = s + k**2
+    pieces = (None, end(0)), (end(0), None)
+    for place, kind, expected in (
+        (100, "stable", True),
+        (0, "stable", False),
+        (0, "unstable", True),
+        (100, "unstable", False),
+        (0, "excluded", True),
+        ("0.4", "excluded", True),
+        ("0.41", "excluded", False),
+        ("-0.4", "excluded", True),
+        ("-0.41", "excluded", False),
+        (100, "other", False),
+    ):
+        found = on_line(*pieces, chi=chi, marks=((Fraction(place), kind),))
+        assert found == ([] if expected else [f"{Fraction(place)} is {kind}"]), (place, kind)
+
+
+def test_a_point_that_is_taken_out_is_an_end_of_both_sides() -> None:
+    for off, is_end in (("0.4", True), ("0.41", False), ("-0.4", True), ("-0.41", False)):
+        chi = s + (k - Scalar.of(Fraction(off))) ** 2
+        found = on_line((None, end(0)), (end(0), None), chi=chi)
+        assert found == ([] if is_end else ["0 is an end"] * 2), off
+
+
+def test_what_is_written_at_an_end_is_its_place() -> None:
+    for label, is_so in (
+        ("2", True),
+        ("-2", True),
+        ("−2", True),
+        ("≈ 1.999…", True),
+        ("2.01", False),
+        ("-2.01", False),
+        ("", False),
+        ("'2", False),
+        (Scalar.of(2), True),
+        (Scalar.of(-3), False),
+        (square_root(Scalar.of(3)), True),
+        (-square_root(Scalar.of(3)), True),
+        (square_root(Scalar.of(5)), False),
+        (-square_root(Scalar.of(5)), False),
+        (Scalar.symbol("b"), True),
+        (Scalar.symbol("b") * 3, False),
+    ):
+        numbers = {"b": Scalar.of(1)}
+        assert plot_check._is_labelled(End(Fraction(0), label), Fraction(2), numbers) is is_so, label
+        found = on_line((End(Fraction(0), label), None), drawn_for=tuple(numbers.items()))
+        assert found == ([] if is_so else [f"{label} = 0"]), label
+
+
+# -- what was seen is not looked at again -------------------------------------------------------------------------------------
+
+
+def test_a_picture_is_looked_at_once_for_one_polynomial(monkeypatch: pytest.MonkeyPatch) -> None:
+    picture = LinePicture("k", LINE, ((end(0), None),))
+    known = Environment(values={"chi": s + k})
+    monkeypatch.setattr(plot_check, "_FAITHFUL", plot_check._FAITHFUL.copy())
+
+    def found(one: LinePicture, **changes: Any) -> list[str]:
+        discrete = changes.pop("discrete", False)
+        return list(faults(one, CHI, replace(known, **changes), discrete=discrete))
+
+    assert found(picture) == []
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(plot_check, "_of_line", lambda *_: iter(["it was looked at"]))
+        assert found(picture) == []
+        assert found(replace(picture)) == ["it was looked at"]
+        for others in (
+            {"values": {"chi": s + 2 * k}},
+            {"values": {"chi": z + k}, "variable": "z"},
+            {"signs": {"k": "real"}},
+            {"discrete": True},
+        ):
+            assert found(picture, **others) == ["it was looked at"]
+            assert found(picture, **others) == ["it was looked at"]  # what was false is not kept
+        assert found(picture) == []
+
+
+def test_an_equation_that_means_another_thing_is_looked_at_anew(monkeypatch: pytest.MonkeyPatch) -> None:
+    picture = replace(HALF, curves=(replace(WALL, equation=said(Letter("P"), 0)),))
+    monkeypatch.setattr(plot_check, "_FAITHFUL", plot_check._FAITHFUL.copy())
+    known = Environment(values={"chi": STABLE, "P": h1})
+    assert list(faults(picture, CHI, known, discrete=False)) == []
+    other = replace(known, values={"chi": STABLE, "P": h2})
+    assert list(faults(picture, CHI, other, discrete=False)) != []
+
+
+def test_the_last_four_pictures_are_remembered() -> None:
+    known = Environment(values={"chi": s + k})
+
+    def found(picture: LinePicture) -> list[str]:
+        return list(faults(picture, CHI, known, discrete=False))
+
+    seen = [LinePicture("k", LINE, ((end(0), None),)) for _ in range(5)]
+    assert [found(picture) for picture in seen] == [[]] * 5
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(plot_check, "_of_line", lambda *_: iter(["it was looked at"]))
+        assert [found(picture) for picture in seen] == [["it was looked at"], [], [], [], []]
+
+
+def test_the_polynomial_may_stand_in_a_matrix_of_one_entry() -> None:
+    picture = LinePicture("k", LINE, ((end(0), None),))
+    known = Environment(values={"chi": Matrix.of([[s + k]])})
+    assert list(faults(picture, CHI, known, discrete=False)) == []
+    assert is_faithful(picture, CHI, known, discrete=False) is True
+    assert is_faithful(picture, Letter("phi"), known, discrete=False) is False
+
+
+def test_every_number_that_is_drawn_for_is_allowed() -> None:
+    numbers = (("a", Scalar.of(1)), ("b", Scalar.of(-1)), ("c", Scalar.of(0)))
+    chi = s + k + Scalar.symbol("b") + Scalar.symbol("a") + Scalar.symbol("c")
+    assert on_line((end(0), None), chi=chi, drawn_for=numbers) == []
+    assert told(
+        LinePicture("k", LINE, ((end(0), None),), drawn_for=numbers), chi, a="positive", b="positive", c="nonzero"
+    ) == ["b = -1", "c = 0"]

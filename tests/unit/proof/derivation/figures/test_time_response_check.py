@@ -1,0 +1,317 @@
+"""Courses of errors and estimates over time: true, shown only where they can be read, and refused where spoiled."""
+
+from __future__ import annotations
+
+import xml.etree.ElementTree as ET
+from dataclasses import replace
+from fractions import Fraction
+from math import exp
+from typing import TYPE_CHECKING
+
+import mpmath
+import pytest
+
+import symobs
+from symobs.exact import Matrix, Scalar
+from symobs.exact.time_functions.state_response import spectral_abscissae, state_response
+from symobs.formula.figures.plot import TimeResponse
+from symobs.formula.tree import Exact, Literal, evaluate
+from symobs.ground.errors import DerivationRejected
+from symobs.pages.drawings.svg import svg, svg_scene
+from symobs.pages.drawings.text import sketch
+from symobs.pages.drawings.tikz import tikz, tikz_scene
+from symobs.pages.printers.latex_printer import LatexPrinter
+from symobs.pages.printers.text_printer import TextPrinter
+from symobs.proof.derivation import Derivation, Plot, Section
+from symobs.system import StateSpace
+from tests.support.independent_algebra.responses import untrue_responses
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+
+    from symobs.proof.derivation import Step
+    from symobs.tasks.result import Result
+
+SERVO = StateSpace("[0 1; 0 -1]", "[0; 1]", "[1 0]")
+PAGES: dict[str, Callable[[], Result]] = {
+    "observer": lambda: symobs.observer(SERVO, poles=[-10, -10]),
+    "oscillating": lambda: symobs.observer(SERVO, poles="-1+2i, -1-2i"),
+    "two outputs": lambda: symobs.observer(
+        StateSpace("[0 1 0; 0 0 1; 1 2 3]", None, "[1 0 0; 0 1 1]"), poles=[-1, -2, -3]
+    ),
+    "compensator": lambda: symobs.compensator(SERVO, control_poles=[-2, -2], observer_poles=[-10, -10]),
+    "minimal-order compensator": lambda: symobs.compensator(
+        SERVO, control_poles=[-2, -2], observer_poles=[-10], observer="minimal"
+    ),
+    "reduced-order observer": lambda: symobs.reduced_order_observer(
+        StateSpace("[-7 1 15; -2 0 5; -2 0 4]", "[65; -5; 30]", "[1 0 -2]"), poles=[-5, -6]
+    ),
+}
+SAMPLED = StateSpace("[1 1; 0 1]", "[1/2; 1]", "[1 0]", dt=True)
+PAGES |= {
+    "deadbeat": lambda: symobs.observer(SAMPLED, poles=[0, 0]),
+    "sampled": lambda: symobs.reduced_order_observer(SAMPLED, poles=["-1/2"]),
+    "sampled compensator": lambda: symobs.compensator(
+        SAMPLED, control_poles="1/2 + i/4, 1/2 - i/4", observer_poles="1/4, 0"
+    ),
+}
+DRIVEN = StateSpace("[0 1; -2 -3]", "[0; 1]", "[1 1]", "[1/2]")
+PAGES |= {
+    "step": lambda: symobs.response(DRIVEN, input=1),
+    "ramp and waves": lambda: symobs.response(DRIVEN, input="t - exp(-t)*sin(2*t)", initial=[1, 0]),
+    "two inputs": lambda: symobs.response(StateSpace("[-1 1; 0 -2]", "[1 0; 0 1]"), input=["cos(t)", 2]),
+    "impulse": lambda: symobs.response(SERVO, impulse=2, initial=[0, 1]),
+    "growth": lambda: symobs.response(StateSpace("[0 1; 1 0]"), initial=[1, 0]),
+}
+every_page = pytest.mark.parametrize("page", PAGES.values(), ids=PAGES.keys())
+
+
+def within(steps: tuple[Step, ...]) -> Iterator[Step]:
+    for step in steps:
+        yield step
+        if isinstance(step, Section):
+            yield from within(step.steps)
+
+
+def plots(result: Result) -> list[tuple[Plot, TimeResponse]]:
+    found = (step for step in within(result.derivation.steps) if isinstance(step, Plot))
+    return [(step, step.picture) for step in found if isinstance(step.picture, TimeResponse)]
+
+
+def test_the_error_of_the_servo_by_its_formula() -> None:
+    """The double pole -10: e(t) = exp(-10 t) (I + (A - LC + 10 I) t) e(0), worked out by hand for e(0) = (1, 1)."""
+    ((_, picture),) = plots(PAGES["observer"]())
+    first, second = picture.responses
+    assert (first.signal, first.component, second.component) == ("e", 1, 2)
+    for (t, one), (_, two) in zip(picture.points(first), picture.points(second), strict=True):
+        assert float(one) == pytest.approx(exp(-10 * t) * (1 - 8 * t), abs=1e-5)
+        assert float(two) == pytest.approx(exp(-10 * t) * (1 - 72 * t), abs=1e-5)
+
+
+@every_page
+def test_courses_are_those_of_another_matrix_exponential(page: Callable[[], Result]) -> None:
+    result = page()
+    known = result.derivation.check()
+    ((step, picture),) = plots(result)
+    value = evaluate(step.subject, known, Exact(known))
+    assert list(untrue_responses(picture, [[entry.fraction() for entry in row] for row in value.rows])) == []
+
+
+def test_a_deadbeat_observer_is_dead_after_as_many_instants_as_states() -> None:
+    """A - LC = [-1 1; -1 1]: e(0) = (1, 1) is in its kernel, and the square is 0."""
+    ((_, picture),) = plots(PAGES["deadbeat"]())
+    assert picture.discrete
+    assert [[y for _, y in picture.points(course)] for course in picture.responses] == [[1, 0, 0, 0, 0, 0]] * 2
+    assert "instants 0, 1, 2" in " ".join(str(PAGES["deadbeat"]().to("text")).split())
+
+
+def test_a_spoiled_value_of_discrete_time_is_refused_however_near() -> None:
+    derivation = PAGES["sampled"]().derivation
+    ((step, picture),) = plots(PAGES["sampled"]())
+    (step,) = [other for other in within(derivation.steps) if other == step]
+    (course,) = picture.responses
+    finer = picture.parts * 10**30
+    exact = [height * 10**30 for height in course.heights]
+    exact[2] += 1
+    near = replace(course, heights=tuple(exact))
+    with pytest.raises(DerivationRejected, match="the line the response of e_2, in a picture,"):
+        replaced(derivation, step, replace(step, picture=replace(picture, responses=(near,), parts=finer))).check()
+    with pytest.raises(DerivationRejected, match="the line another time, in a picture,"):
+        replaced(derivation, step, replace(step, picture=replace(picture, discrete=False))).check()
+
+
+def test_estimate_and_state_meet() -> None:
+    for name in ("compensator", "minimal-order compensator"):
+        ((_, picture),) = plots(PAGES[name]())
+        state, estimate = ([c for c in picture.responses if c.signal == signal] for signal in ("x", "x_hat"))
+        assert [course.dashed for course in (*state, *estimate)] == [False, False, True, True]
+        assert all(picture.points(course)[0] == (Fraction(0), Fraction(1)) for course in state)
+        for one, other in zip(state, estimate, strict=True):
+            ends = [picture.points(course)[-1][1] for course in (one, other)]
+            assert abs(ends[0] - ends[1]) < Fraction(1, 1000)
+            assert abs(ends[0]) < Fraction(1, 10)
+        starts = [float(picture.points(course)[0][1]) for course in estimate]
+        assert starts == ([0, 0] if name == "compensator" else [1, 0])  # what is measured is known from the start
+
+
+def test_a_picture_is_left_out_where_it_would_show_nothing() -> None:
+    parametric = StateSpace("[0 1; 0 -a]", "[0; 1]", "[1 0]")
+    assert plots(symobs.observer(parametric, poles=[-1, -2])) == []
+    assert plots(symobs.observer(SERVO, poles=["-p", "-q"])) == []
+    assert plots(symobs.observer(SAMPLED, poles="9/10, 1/2")) == []  # it takes too long
+    assert plots(symobs.observer(SAMPLED, poles="1, 1/2")) == []
+    assert plots(symobs.observer(SAMPLED, poles="p, q")) == []
+    assert plots(symobs.observer(SERVO, poles=[-1, -16])) == []  # the fast mode would be a vertical line
+    assert plots(symobs.observer(SERVO, poles=[-1, -15])) != []
+    assert plots(symobs.observer(SERVO, poles=[0, -1])) == []  # nothing converges
+    assert plots(symobs.observer(SERVO, poles=[1, -1])) == []
+
+
+# -- what is refused --------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.slow
+@every_page
+def test_no_spoiled_course_is_accepted(page: Callable[[], Result]) -> None:
+    derivation = page().derivation
+    derivation.check()
+    ((step, picture),) = plots(page())
+    (step,) = [other for other in within(derivation.steps) if other == step]
+    for spoiled in spoilt(picture):
+        with pytest.raises(DerivationRejected):
+            replaced(derivation, step, replace(step, picture=spoiled)).check()
+    value = evaluate(step.subject, derivation.check(), Exact(derivation.check()))
+    for subject in (Literal(value), Literal(value * Scalar.of(2))):
+        with pytest.raises(DerivationRejected):
+            replaced(derivation, step, replace(step, subject=subject)).check()
+
+
+def spoilt(picture: TimeResponse) -> Iterator[TimeResponse]:
+    course, *others = picture.responses
+    end, (bottom, top) = picture.window[0][1], picture.window[1]
+    height = top - bottom
+    middle = len(course.heights) // 2
+    for moved in (height / 100, -height / 100):
+        wrong = course.heights[middle] + (int(moved * picture.parts) or 1)
+        heights = (*course.heights[:middle], wrong, *course.heights[middle + 1 :])
+        yield replace(picture, responses=(replace(course, heights=heights), *others))
+    for fewer in (course.heights[:-1], course.heights[1:], course.heights[:: len(course.heights) - 1], ()):
+        yield replace(picture, responses=(replace(course, heights=fewer), *others))
+        yield replace(picture, responses=(replace(course, heights=fewer),))
+    yield replace(picture, responses=(replace(course, row=tuple(-part for part in course.row)), *others))
+    yield replace(picture, responses=(replace(course, component=course.component + 1), *others))
+    yield replace(picture, responses=(replace(course, signal="u"), *others))
+    yield replace(picture, responses=())
+    yield replace(picture, starts=tuple(tuple(2 * part for part in start) for start in picture.starts))
+    yield replace(picture, starts=(picture.starts[0][1:], *picture.starts[1:]))
+    yield replace(picture, states=("u", *picture.states[1:]))
+    yield replace(picture, window=((Fraction(0), 2 * end), (bottom, top)))
+    yield replace(picture, window=((Fraction(0), end), (bottom, bottom + height / 2)))
+    yield replace(picture, window=((Fraction(0), end / 2), (bottom, top)))
+    yield replace(picture, window=((end / 1000, end), (bottom, top)))
+    yield replace(picture, window=((Fraction(0), -end), (bottom, top)))
+    yield replace(picture, window=((Fraction(0), end), (top, bottom)))
+    for parts in (picture.parts // 2, 2 * picture.parts, 0, -picture.parts):
+        yield replace(picture, parts=parts)
+
+
+def replaced(derivation: Derivation, old: Plot, new: Plot) -> Derivation:
+    def through(steps: tuple[Step, ...]) -> tuple[Step, ...]:
+        return tuple(
+            replace(step, steps=through(step.steps)) if isinstance(step, Section) else new if step is old else step
+            for step in steps
+        )
+
+    return Derivation(through(derivation.steps), derivation.start, derivation.symbols, derivation.discrete)
+
+
+# -- the kernel -------------------------------------------------------------------------------------------------------
+
+
+def test_enclosures_are_rounded_to_the_nearest_part() -> None:
+    spin = Matrix.of([[0, 1], [-1, 0]])
+    found = state_response(spin, [Fraction(0), Fraction(1)], Fraction(1, 2), 7, 10**9)
+    assert len(found) == 7
+    assert [found[k] for k in (0, 1, 6)] == [[0, 10**9], [479425539, 877582562], [141120008, -989992497]]
+
+
+def test_rates_are_the_real_parts_farthest_right_and_left() -> None:
+    assert spectral_abscissae(Matrix.of([[0, 1], [-5, -2]])) == pytest.approx((-1, -1))
+    assert spectral_abscissae(Matrix.of([[-3, 0], [0, Fraction(1, 2)]])) == pytest.approx((0.5, -3))
+
+
+def test_what_takes_too_many_bits_is_not_drawn() -> None:
+    with pytest.raises(ArithmeticError):
+        state_response(Matrix.of([[200]]), [Fraction(1)], Fraction(1), 100, 10**9)
+    steep = StateSpace([[0, 10**9], [-(10**9), -1]], None, [[1, 0]])
+    assert plots(symobs.observer(steep, L=[[0], [0]])) == []
+
+
+def test_errors_that_grow_on_the_way_are_not_seen() -> None:
+    """A matrix whose powers are far larger than its exponential: (M + I)² = 0 with entries of a thousand."""
+    shear = Matrix.of([[-1 + 1000, -1000], [1000, -1 - 1000]])
+    found = state_response(shear, [Fraction(1), Fraction(0)], Fraction(1, 100), 601, 10**6)
+    for k in (100, 300, 600):
+        decay = exp(-k / 100) * 10**6
+        assert found[k] == pytest.approx([decay * (1 + 10 * k), decay * 10 * k], abs=1)
+
+
+#: Two loops of order six whose gains are large beside their modes, so that e^{‖M‖t} is beyond 10¹⁰⁰⁰.
+LOOPS = (
+    ("-33/5, -179/20, -33/4", "-43/20, -8/5, -5/4"),
+    ("-7.35+4.2i, -7.35-4.2i, -5.95", "-9.9+1.9i, -9.9-1.9i, -0.75"),
+)
+
+
+@pytest.mark.parametrize(("control", "observer"), LOOPS)
+def test_bits_are_lost_to_what_grows_and_not_to_large_entries(
+    control: str, observer: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    from symobs.exact.time_functions import state_response as writer  # noqa: PLC0415
+    from symobs.proof.derivation.figures import time_response_check as trusted  # noqa: PLC0415 - the only test that sets its bits
+
+    plant = StateSpace("[1 -1 0; 2 2 1; -3 2 0]", "[0; 1; -1]", "[0 -2 -1]")
+    design = symobs.compensator(plant, control_poles=control, observer_poles=observer)
+    A, B, C = Matrix.of([[1, -1, 0], [2, 2, 1], [-3, 2, 0]]), Matrix.of([[0], [1], [-1]]), Matrix.of([[0, -2, -1]])
+    fed, corrected = B @ design.answer["K"], design.answer["L"] @ C
+    loop = Matrix.block([[A - fed, fed], [Matrix.zeros(3, 3), A - corrected]])
+    ones, step = (Fraction(1),) * 6, Fraction(1, 100)
+    monkeypatch.setattr(writer, "_BITS", (128,))
+    monkeypatch.setattr(trusted, "_KEPT", (256,))
+    found = state_response(loop, ones, step, 801, 10**6)
+    again = trusted._stepped(loop, ones, step, 801)
+    with mpmath.workdps(60):
+        table = mpmath.matrix([[mpmath.mpf(x.numerator) / x.denominator for x in row] for row in numbers(loop)])
+        for k in (0, 1, 10, 100, 800):
+            true = mpmath.expm(table * k / 100) * mpmath.matrix([1] * 6)
+            assert all(abs(part - 10**6 * value) <= 1 for part, value in zip(found[k], true, strict=True))
+            assert all(abs(part - 2**64 * value) <= 1 for part, value in zip(again[k], true, strict=True))
+
+
+def numbers(table: Matrix) -> list[list[Fraction]]:
+    return [[entry.fraction() for entry in row] for row in table.rows]
+
+
+# -- what is written --------------------------------------------------------------------------------------------------
+
+
+@every_page
+def test_every_course_has_its_name_in_every_format(page: Callable[[], Result]) -> None:
+    ((_, picture),) = plots(page())
+    text, latex = TextPrinter(), LatexPrinter()
+    sketched = sketch(picture, text, 76)
+    drawn = tikz(tikz_scene(picture, latex), latex)
+    written = svg(svg_scene(picture, text), text)
+    ET.fromstring(written)  # noqa: S314 - our own text
+    assert max(map(len, sketched.splitlines())) <= 76
+    names: dict[str, tuple[str, str]] = {
+        "e": ("e", "e"),
+        "x": ("x", "x"),
+        "y": ("y", "y"),
+        "x_hat": ("x̂", r"\hat x"),
+        "e_2": ("e₂", "e_2"),
+    }
+    for course in picture.responses:
+        in_text, in_latex = names[course.signal]
+        index = "₁₂₃"[course.component - 1] if course.component else ""
+        comma = "," if course.signal == "e_2" and index else ""
+        assert f" {in_text}{comma}{index}" in sketched
+        below = f"_{{2,{course.component}}}" if comma else f"_{course.component}" if index else ""
+        assert f"${in_latex.removesuffix('_2' if comma else '')}{below}$" in drawn
+    peaks = [max(map(abs, course.heights)) for course in picture.responses]
+    apart = not any(course.dashed for course in picture.responses) and max(peaks) > 4 * min(peaks)  # an axis each
+    dashes = (
+        len(picture.responses) > 1 and not picture.discrete and not apart
+    )  # on one, each has a line style of its own
+    if picture.discrete:
+        assert drawn.count("circle[radius=") >= sum(len(course.heights) for course in picture.responses)
+    assert ("stroke-dasharray" in written) == dashes
+    assert ("dash" in drawn) == dashes
+
+
+def test_an_estimate_that_catches_up_at_once_is_drawn_with_more_segments() -> None:
+    """With observer poles ten times as fast, x̂ has gone half of its way within the first of 400 segments."""
+    plant = symobs.StateSpace("[0 1 0; 0 0 1; -6 -11 -5]", "[0; 0; 1]", "[1 0 0]")
+    design = symobs.compensator(plant, control_poles=[-1, -2, -3], observer_poles=[-10, -12, -14])
+    ((_, picture),) = plots(design)
+    assert [len(response.heights) for response in picture.responses] == [801] * 6

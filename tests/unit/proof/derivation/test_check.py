@@ -1,0 +1,360 @@
+"""Every kind of step is checked: a false line, a letter nobody introduced, a case off its stratum are rejected."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import pytest
+
+from symobs import StateSpace, observer
+from symobs.exact import Matrix, Scalar
+from symobs.formula.tree import (
+    Apply,
+    Conjunction,
+    Derivative,
+    Evaluated,
+    Formula,
+    HoldsExactlyWhere,
+    Identity,
+    Letter,
+    Literal,
+    Negative,
+    Power,
+    Predicate,
+    Product,
+    Quotient,
+    Relation,
+    Roots,
+    Sum,
+    Transpose,
+)
+from symobs.proof.derivation import (
+    CaseStep,
+    Conclude,
+    Define,
+    Derivation,
+    Diagram,
+    Equal,
+    Given,
+    Note,
+    Section,
+    Sentence,
+    Step,
+)
+from symobs.tasks.result import Result
+from tests.support.problems.steps import (
+    A_IS,
+    C_IS,
+    CHI,
+    COMPANION,
+    ESTIMATE,
+    START,
+    A,
+    B,
+    C,
+    E,
+    F,
+    L,
+    S,
+    U,
+    X,
+    Y,
+    a,
+    b,
+    c,
+    checked,
+    literal,
+    refused,
+    s,
+    said,
+    slot,
+)
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from symobs.proof.certificate.claims import Claim
+
+
+pytestmark = pytest.mark.usefixtures("own_phrases")
+
+
+# -- what is introduced ------------------------------------------------------------------------------------------------
+
+
+def test_letters_mean_what_they_were_introduced_as() -> None:
+    known = checked(A_IS, CHI, Define(said(Letter("F"), Quotient(Literal(s), Letter("chi")))))
+    assert known.values["A"] == COMPANION
+    assert known.values["chi"] == s**2 + 3 * s + 2
+    assert known.values["F"] == s / (s**2 + 3 * s + 2)
+
+
+def test_a_letter_nobody_introduced_is_refused_wherever_it_stands() -> None:
+    strange = Letter("O")
+    one = said(1, 1)
+    for step in (
+        Given((said(A, strange),)),
+        Given((said(strange, "!=", 0),)),
+        Define(said(A, strange)),
+        Equal((said(strange, strange),)),
+        Conclude(None, (Predicate("stable", strange),)),
+        Conclude(None, (Roots(strange, ()),)),
+        Conclude(None, (HoldsExactlyWhere(Predicate("stable", strange), ()),)),
+        Conclude(None, (Conjunction((one, said(strange, 1))),)),
+        Conclude(slot(strange)),
+        Note(slot(Evaluated(strange, literal(1)))),
+        Diagram("loop", (("P", strange), ("F", strange), ("response", strange))),
+        Section(slot(strange), ()),
+        CaseStep(said(strange, 0), (), ()),
+    ):
+        refused(step)
+
+
+def test_links_after_the_first_are_checked_and_what_is_written_anew_must_agree() -> None:
+    checked(Define(said(F, Power(literal(a), 2), a * a)))
+    refused(Define(said(F, Power(literal(a), 2), a)), match="is not true")
+    checked(A_IS, A_IS)
+    refused(A_IS, Given((said(A, Matrix.identity(2)),)))
+
+
+@pytest.mark.parametrize("operator", ["!=", "!==", "<", ">="])
+def test_only_an_equation_introduces(operator: str) -> None:
+    refused(Define(said(F, operator, 1)))
+    refused(Given((said(F, operator, 1),)))
+
+
+@pytest.mark.parametrize("target", [Transpose(A), Literal(a * b), Literal(Scalar.of(2)), Literal(COMPANION)])
+def test_only_letters_derivatives_and_new_names_can_be_introduced(target: Formula) -> None:
+    refused(Define(Relation((target, literal(1)), ("=",))))
+
+
+def test_a_named_coefficient_is_a_new_name_that_stands_for_one_thing() -> None:
+    d = Scalar.symbol("d")
+    known = checked(Define(said(d, a + 1)), Equal((said(d, a + 1), said(d * d, (a + 1) ** 2))))
+    assert known.coefficients == {"d": a + 1}
+    refused(Define(said(2 * d, a + 1)))
+    refused(Define(said(d + 1, a + 1)))
+    refused(Define(said(d, a + 1)), Equal((said(d, a),)))
+    refused(Define(said(d, a + 1)), Define(said(d, a + 2)))
+    refused(Define(said(a, 5)), match="means something already")
+    refused(C_IS, Define(said(c, 5)), match="means something already")
+    refused(Given((said(C, Matrix.of([[b, 1]])),)), Define(said(b, 5)), match="means something already")
+    refused(Define(said(d, b)), Define(said(b, 5)), match="means something already")
+
+
+# -- conditions --------------------------------------------------------------------------------------------------------
+
+
+def test_an_assumption_holds_from_there_on() -> None:
+    distinct = said(c, "!=", 1)
+    refused(Equal((distinct,)))
+    assert checked(Given((distinct,)), Equal((distinct, said(2 - 2 * c, "!=", 0)))).nonzero == (c - 1,)
+    refused(Equal((distinct,)), Given((distinct,)))
+    refused(Given((distinct,)), Equal((said(c, "!=", 2),)))
+    refused(Given((said(c, "!=", c),)), match="c != c")  # nothing is different from itself
+    refused(CaseStep(said(c, 1), (), (Given((distinct,)),)), match="c != 1")  # nor from what it is here
+
+
+def test_an_assumption_is_the_one_that_is_said() -> None:
+    first, second = said(c, "!=", 1), said(c, "!=", 2)
+    checked(Given((first,), slot(first)))
+    checked(Given((first, second), slot(Conjunction((first, second)))))
+    refused(Given((first,), slot(Conjunction((first, second)))))
+    refused(Given((first, second), slot(first)))
+    refused(Given((second,), Sentence("test_plain")))
+
+
+# -- signals -----------------------------------------------------------------------------------------------------------
+
+
+def loop(estimate: Formula) -> tuple[Step, ...]:
+    return (
+        A_IS,
+        C_IS,
+        Given((said(B, Matrix.of([[0], [1]])), said(L, Matrix.of([[a], [1]])))),
+        Given((said(Derivative(X), Sum((Product((A, X)), Product((B, U))))), said(Y, Product((C, X))))),
+        Define(said(Derivative(ESTIMATE), estimate)),
+        Define(said(E, Sum((X, Negative(ESTIMATE))))),
+    )
+
+
+INNOVATION = Sum((Y, Negative(Product((C, ESTIMATE)))))
+OBSERVER = loop(Sum((Product((A, ESTIMATE)), Product((B, U)), Product((L, INNOVATION)))))
+WRONG_SIGN = loop(Sum((Product((A, ESTIMATE)), Product((B, U)), Negative(Product((L, INNOVATION))))))
+ERROR = said(Derivative(E), Product((Sum((A, Negative(Product((L, C))))), E)))
+
+
+def test_an_error_equation_is_checked_on_signals() -> None:
+    checked(*OBSERVER, Equal((ERROR,)))
+    refused(*WRONG_SIGN, Equal((ERROR,)))
+    refused(*OBSERVER, Equal((said(Derivative(E), Product((A, E))),)))
+    refused(
+        *OBSERVER[:-2], Define(said(E, Sum((X, Negative(ESTIMATE))))), Equal((ERROR,)), match="cannot be read|not true"
+    )
+
+
+def test_a_signal_is_defined_or_given_a_derivative_once() -> None:
+    again = Define(said(E, Sum((ESTIMATE, Negative(X)))))
+    other_rate = Define(said(Derivative(X), Product((A, X))))
+    for step in (again, other_rate, Define(said(X, ESTIMATE)), Define(said(Derivative(E), E)), Define(said(U, 1))):
+        refused(*OBSERVER, step)
+    refused(Define(said(S, 1)))
+    refused(Define(said(Derivative(Letter("absent")), X)))
+
+
+def test_a_free_signal_ceases_to_be_free() -> None:
+    known = checked(*OBSERVER, Define(said(U, Negative(Product((Transpose(B), ESTIMATE))))), Equal((ERROR,)))
+    assert known.signals["u"] is not None
+    assert START.signals["u"] is None
+
+
+# -- cases -------------------------------------------------------------------------------------------------------------
+
+
+def case(*steps: Step, when: Relation | None = None, at: int = 1) -> CaseStep:
+    return CaseStep(when or said(c - 1, 0), (("c", Scalar.of(at)),), steps)
+
+
+def test_a_case_lies_on_its_stratum_and_nothing_of_it_stays() -> None:
+    rank = said(Apply("det", Apply("adj", Product((Transpose(C), C)))), 0)
+    known = checked(A_IS, C_IS, case(Equal((said(C, Matrix.of([[1, 1]])),)), Define(said(F, 1))), Equal((rank,)))
+    assert "F" not in known.values
+    assert known.values["C"] == Matrix.of([[1, c]])
+    refused(C_IS, case(Equal((said(C, Matrix.of([[1, c]]), Matrix.of([[1, 2]])),))))
+    refused(C_IS, case(at=2))
+    refused(C_IS, case(when=said(c, "!==", 2)))
+    refused(C_IS, case(when=said(c, 0)))
+    refused(C_IS, case(when=said(0, 0)))
+    refused(C_IS, case(when=said((c - 1) * (c - 3), 0)))
+    refused(C_IS, case(when=said((c - 1) * b, 0)))
+    checked(C_IS, case(when=said(2 * a * (c - 1), 0)))
+    refused(C_IS, case(when=said(b, 0)))
+    refused(C_IS, CaseStep(said(c - 1, 0), (("c", Scalar.of(1)), ("b", Scalar.of(0))), ()))
+    refused(C_IS, case(Equal((said(1, 2),))))
+
+
+def test_a_case_without_substitution_knows_its_equation_and_no_more() -> None:
+    here = said(C, Matrix.of([[1, 1]]))
+    checked(C_IS, CaseStep(said(c, 1), (), (Equal((here,)),)))
+    refused(C_IS, CaseStep(said(c, 1), (), (Equal((said(C, Matrix.of([[1, 2]])),)),)))
+    refused(C_IS, CaseStep(said(c, 1), (), ()), Equal((here,)))
+    refused(C_IS, CaseStep(said(1, 0), (), (Equal((here,)),)))
+    refused(C_IS, CaseStep(said(c, "!==", 1), (), (Equal((here,)),)))
+
+
+def test_a_letter_anew_in_a_case_has_no_meaning_before() -> None:
+    other = Define(said(C, Matrix.of([[1, 5]])))
+    refused(C_IS, CaseStep(said(c, 1), (("c", Scalar.of(1)),), (other,)))
+    checked(C_IS, CaseStep(said(c, 1), (("c", Scalar.of(1)),), (other,), anew=("C",)))
+    refused(C_IS, CaseStep(said(c, 1), (("c", Scalar.of(1)),), (Equal((said(C, C),)),), anew=("C",)))
+
+
+def test_values_written_out_in_a_case_are_on_its_stratum_too() -> None:
+    checked(case(Equal((said(c, 1), said(c * c + a, a + 1)))))
+    refused(case(Equal((said(c, 2),))))
+    checked(Define(said(Scalar.symbol("d"), c + a)), case(Equal((said(Scalar.symbol("d"), a + 1),))))
+
+
+def test_what_was_assumed_outside_does_not_hold_in_a_case() -> None:
+    distinct = said(c, "!=", 1)
+    refused(Given((distinct,)), case(Equal((distinct,))))
+
+
+def test_a_letter_that_means_nothing_on_the_stratum_may_not_be_used_there() -> None:
+    pole = Given((said(L, Matrix.of([[1 / (c - 1)], [0]])),))
+    checked(pole, case())
+    refused(pole, case(Equal((said(L, L),))), match="before it is established")
+    checked(pole, case(Define(said(L, Matrix.zeros(2, 1)))))
+
+
+# -- derivations -------------------------------------------------------------------------------------------------------
+
+
+def test_sections_share_what_is_established() -> None:
+    inner = Section(Sentence("test_plain"), (A_IS, Section(Sentence("test_plain"), (CHI,))))
+    assert checked(inner, Equal((said(Letter("chi"), s**2 + 3 * s + 2),))).defines("chi")
+    refused(Section(Sentence("test_plain"), (CHI,)), A_IS)
+    refused(Section(slot(said(1, 2)), ()))
+
+
+def test_only_steps_are_steps() -> None:
+    refused("a line of prose", match="cannot be read")  # type: ignore[arg-type]
+
+
+def test_a_derivation_is_checked_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    derivation = Derivation((A_IS, CHI), START)
+    known = derivation.check()
+    monkeypatch.setattr("symobs.proof.derivation.check._walk", None)
+    assert derivation.check() is known
+    with pytest.raises(TypeError):
+        replace(derivation).check()
+    assert (derivation.variable, derivation.discrete) == ("s", False)
+
+
+@pytest.mark.parametrize(
+    "formula",
+    [
+        Sum((A, Identity(3))),
+        Product((A, Literal(Matrix.of([[1, 2, 3]])))),
+        Quotient(literal(1), literal(0)),
+        Derivative(U),
+        Derivative(A),
+        Apply("phi_at", A),
+        Power(Literal(Matrix.zeros(2, 2)), -1),
+    ],
+)
+def test_a_formula_that_makes_no_sense_is_refused(formula: Formula) -> None:
+    refused(A_IS, Equal((Relation((formula, formula), ("=",)),)))
+    refused(A_IS, Define(Relation((F, formula), ("=",))))
+    refused(A_IS, Conclude(None, (Predicate("stable", Product((formula, A))),)))
+
+
+def test_a_signal_in_terms_of_itself_is_refused() -> None:
+    refused(Define(Relation((U, Sum((U, U))), ("=",))), Equal((said(U, U),)))
+
+
+# -- a result and its page ---------------------------------------------------------------------------------------------
+
+
+class Claimless(Result):
+    """A result of whom nothing is said."""
+
+    task = "claimless"
+
+
+class Bare(Claimless):
+    """A result that claims nothing and has no page."""
+
+    def claims(self) -> Iterator[Claim]:
+        yield from ()
+
+
+def test_a_result_must_say_what_it_claims_and_how_its_page_reads() -> None:
+    plant = StateSpace("[0 1; 0 -1]")
+    with pytest.raises(NotImplementedError):
+        Claimless(plant, "none", {"number": 1})
+    bare = Bare(plant, "none", {"number": 1, "missing": None})
+    with pytest.raises(
+        NotImplementedError,
+        match=r"no page is registered for Bare: write tests/unit/proof/derivation/test_check_page\.py",
+    ):
+        _ = bare.derivation
+    assert (bare.existence, dict(bare.fields), bare.verdict) == ((), dict(bare.answer), "yes")
+    assert repr(bare) == "Bare(number=1, verdict='yes')"
+
+
+def test_every_face_of_a_result_shows_one_page() -> None:
+    result = observer(StateSpace("[0 1; 0 -1]", "[0; 1]", "[1 0]"), poles=[-10, -10])
+    bundle = result._repr_mimebundle_()
+    assert result.to_latex() == result.to("latex")
+    assert result.to_json() == result.to("json")
+    assert (result.to_html(), result.to_markdown()) == (result.to("html"), result.to("markdown"))
+    assert bundle == {
+        "text/plain": result.to("text"),
+        "text/markdown": result.to("markdown"),
+        "text/latex": result._repr_latex_(),
+        "text/html": result.to("html_fragment"),
+    }
+    assert {"L", "poles", "conditions", "derivation"} <= set(dir(result))
+    assert repr(result).startswith("ObserverDesign(L=[19; 81], polynomial=s**2 + 20*s + 100, verdict='yes')")

@@ -1,0 +1,433 @@
+"""A derivation in another convention, line by line: what it says there was written down by hand."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import pytest
+
+from symobs.exact import Matrix, Scalar
+from symobs.formula.convention import STANDARD, Convention
+from symobs.formula.tree import (
+    Conjunction,
+    Environment,
+    Evaluated,
+    Formula,
+    HoldsExactlyWhere,
+    Letter,
+    Literal,
+    Negative,
+    Predicate,
+    Product,
+    Roots,
+    SignReversal,
+    Sum,
+    SymbolList,
+    Transpose,
+)
+from symobs.ground.errors import DerivationRejected, UsageError
+from symobs.proof.derivation import (
+    CaseStep,
+    Conclude,
+    Define,
+    Derivation,
+    Diagram,
+    Equal,
+    Given,
+    Inequalities,
+    Note,
+    Plot,
+    RegionSummary,
+    Section,
+    Sentence,
+    Tabulate,
+    convention_signs,
+    sign_translation,
+    translated,
+)
+from symobs.proof.derivation.convention_signs import set_apart
+from symobs.proof.derivation.steps import everything_in, literals, relations
+from tests.support.problems.steps import START, literal, said
+
+pytestmark = pytest.mark.usefixtures("own_phrases")
+
+A, B, C, K, L, P, U, X, ESTIMATE = (Letter(name) for name in ("A", "B", "C", "K", "L", "P", "u", "x", "x_hat"))
+a, h1, k1, l1, l2, m1, m2, r1, s = (
+    Scalar.symbol(name) for name in ("a", "h1", "k1", "l1", "l2", "m1", "m2", "r1", "s")
+)
+GAIN = Matrix.column([5, 7])
+PLANT = Given((said(A, Matrix.of([[0, 1], [-2, -3]])), said(C, Matrix.of([[1, 0]]))), silent=True)
+L_IS = Define(said(L, GAIN))
+ERROR = said(Sum((A, Negative(Product((L, C))))), Matrix.of([[-5, 1], [-9, -3]]))
+
+#: u = K x̂ and A + M C; A + L C; other letters alone.
+PLUS = Convention("plus", feedback_sign=1, observer_sign=1, letters={"L": "M_s"})
+ONLY_SIGNS = Convention("signs", observer_sign=1)
+ONLY_LETTERS = Convention("letters", letters={"L": "H", "K": "R"})
+
+
+def plain_words(key: str = "test_plain", **slots: Any) -> Sentence:
+    return Sentence(key, tuple(slots.items()))
+
+
+def steps_in(convention: Convention, *steps: Any, start: Environment = START) -> tuple[Any, ...]:
+    return translated(Derivation(steps, start), convention).steps
+
+
+# -- signs ---------------------------------------------------------------------------------------------------------------
+
+
+def test_a_page_stays_as_it_is_where_no_sign_and_no_letter_of_an_entry_changes() -> None:
+    derivation = Derivation((PLANT, L_IS), START)
+    assert translated(derivation, STANDARD) is derivation
+    assert translated(derivation, ONLY_LETTERS) == derivation
+    wrong = Derivation((PLANT, Define(said(L, GAIN, Matrix.column([5, 8])))), START)
+    for convention in (STANDARD, PLUS):
+        with pytest.raises(DerivationRejected, match=r"the line L = \[5; 7\] = \[5; 8\]"):
+            translated(wrong, convention)
+
+
+def test_a_gain_that_means_the_negative() -> None:
+    assert steps_in(PLUS, PLANT, L_IS, Equal((ERROR,))) == (
+        PLANT,
+        Define(said(L, Matrix.column([-5, -7]))),
+        Equal((said(Sum((A, Product((L, C)))), Matrix.of([[-5, 1], [-9, -3]])),)),
+    )
+
+
+def test_data_that_are_equal_to_a_gain_keep_their_sign() -> None:
+    plant = Given((said(A, Matrix.of([[0, 1], [-2, -3]])), said(C, Matrix.of([[5, 7]]))), silent=True)
+    written = Product((literal(Matrix.of([[5, 7]])), literal(GAIN)))
+    turned = Product((literal(Matrix.of([[5, 7]])), literal(-GAIN)))
+    product = Define(said(Letter("P"), Product((C, L)), written))
+    found = steps_in(PLUS, plant, L_IS, product)
+    assert found[2] == Define(said(Letter("P"), Negative(Product((C, L))), written))
+    (other,) = sign_translation.in_signs((product,), SignReversal(frozenset({"L"}), {GAIN}))
+    assert other == Define(said(Letter("P"), Negative(Product((C, L))), Negative(turned)))
+    scalar = Define(said(Letter("D"), 3))
+    assert steps_in(PLUS, plant, scalar, L_IS)[1] == scalar
+    # Where no data are equal to it the gain that is written out is the new one.
+    plant = Given((said(A, Matrix.of([[0, 1], [-2, -3]])), said(C, Matrix.of([[5, 8]]))), silent=True)
+    written = Product((literal(Matrix.of([[5, 8]])), literal(GAIN)))
+    product = Define(said(Letter("P"), Product((C, L)), written))
+    turned = Product((literal(Matrix.of([[5, 8]])), literal(-GAIN)))
+    assert steps_in(PLUS, plant, L_IS, product)[2] == Define(
+        said(Letter("P"), Negative(Product((C, L))), Negative(turned))
+    )
+
+
+LEFT, TURNED_LEFT = (
+    said(Product((L, C)), Matrix.of([[5, 0], [7, 0]])),
+    said(Product((L, C)), Matrix.of([[-5, 0], [-7, 0]])),
+)
+LAW, TURNED_LAW = said(U, Negative(Product((K, ESTIMATE)))), said(U, Product((K, ESTIMATE)))
+
+
+@pytest.mark.parametrize(
+    ("before", "after"),
+    [
+        (LAW, TURNED_LAW),
+        (Evaluated(*LEFT.members), Evaluated(*TURNED_LEFT.members)),
+        ("L", "L"),
+        (7, 7),
+        (L, L),
+        (Transpose(L), Transpose(L)),
+        (Sum((A, Negative(Product((L, C))))), Sum((A, Product((L, C))))),
+        ((LAW, (LEFT,)), (TURNED_LAW, (TURNED_LEFT,))),
+        (
+            Diagram("observer", (("L", L), ("C", C), ("P", Conjunction((LAW,))))),
+            Diagram("observer", (("L", Negative(L)), ("C", C), ("P", Conjunction((TURNED_LAW,))))),
+        ),
+    ],
+)
+def test_signs_of_what_a_page_is_made_of(before: Any, after: Any) -> None:
+    assert sign_translation.in_signs(before, SignReversal(frozenset({"K", "L"}), {GAIN, GAIN.T})) == after
+
+
+def test_the_sentence_of_a_figure_is_turned_too() -> None:
+    turned = SignReversal(frozenset({"K", "L"}), {GAIN, GAIN.T})
+    before, after = (plain_words("test_slot", it=relation) for relation in (LAW, TURNED_LAW))
+    assert sign_translation.in_signs(Diagram("loop", (), before), turned) == Diagram("loop", (), after)
+
+
+# -- what is held against what ------------------------------------------------------------------------------------------
+
+
+def test_a_translation_that_turns_nothing_is_rejected(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(convention_signs, "in_signs", lambda steps, _: steps)
+    with pytest.raises(DerivationRejected, match="L in another convention"):
+        steps_in(PLUS, PLANT, L_IS)
+
+
+def test_a_letter_that_is_left_out_is_rejected(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(convention_signs, "in_signs", lambda _, __: (PLANT,))
+    with pytest.raises(DerivationRejected, match="L in another convention"):
+        steps_in(PLUS, PLANT, L_IS)
+
+
+def test_every_line_is_checked_again(monkeypatch: pytest.MonkeyPatch) -> None:
+    one_more = Equal((said(A, Matrix.of([[0, 1], [-2, -4]])),))
+    monkeypatch.setattr(convention_signs, "in_signs", lambda _, __: (PLANT, Define(said(L, -GAIN)), one_more))
+    with pytest.raises(DerivationRejected, match="is not true"):
+        steps_in(PLUS, PLANT, L_IS)
+
+
+BEFORE = Environment(
+    values={"A": Matrix.of([[1]]), "K": Matrix.of([[2]]), "L": Matrix.of([[3]])},
+    signals={"x": None, "x_hat": None, "u": Negative(Product((K, X)))},
+    sizes={"x": 1, "x_hat": 1},
+    dynamics={"x": Product((A, X)), "x_hat": Product((Sum((A, Negative(L))), ESTIMATE))},
+)
+AFTER = replace(
+    BEFORE,
+    values={"A": Matrix.of([[1]]), "K": Matrix.of([[-2]]), "L": Matrix.of([[-3]])},
+    signals={"x": None, "x_hat": None, "u": Product((K, X))},
+    dynamics={"x": Product((A, X)), "x_hat": Product((Sum((A, L)), ESTIMATE))},
+)
+GAINS = frozenset({"K", "L"})
+
+
+def test_every_letter_means_what_it_meant_or_its_negative() -> None:
+    convention_signs._hold_against(BEFORE, AFTER, GAINS)
+    convention_signs._hold_against(BEFORE, BEFORE, frozenset())
+    lost = {name: value for name, value in AFTER.values.items() if name != "K"}
+    for values in (
+        BEFORE.values,
+        AFTER.values | {"A": Matrix.of([[-1]])},  # type: ignore[operator]
+        AFTER.values | {"K": Matrix.of([[2]])},  # type: ignore[operator]
+        AFTER.values | {"L": Matrix.of([[4]])},  # type: ignore[operator]
+        lost,
+    ):
+        with pytest.raises(DerivationRejected):
+            convention_signs._hold_against(BEFORE, replace(AFTER, values=values), GAINS)
+    with pytest.raises(DerivationRejected, match="the line L in another convention"):
+        convention_signs._hold_against(BEFORE, AFTER, frozenset({"K"}))
+
+
+def test_every_signal_means_what_it_meant() -> None:
+    for signals in (
+        {**AFTER.signals, "u": Negative(Product((K, X)))},
+        {**AFTER.signals, "u": None},
+        {**AFTER.signals, "x_hat": X},
+        {"x": None, "x_hat": None},
+    ):
+        with pytest.raises(DerivationRejected, match="in another convention"):
+            convention_signs._hold_against(BEFORE, replace(AFTER, signals=signals), GAINS)
+    free = replace(BEFORE, dynamics={})
+    convention_signs._hold_against(free, replace(AFTER, dynamics={}), GAINS)
+    for signals in ({**AFTER.signals, "x_hat": X}, {**AFTER.signals, "u": None}):
+        with pytest.raises(DerivationRejected, match="in another convention"):
+            convention_signs._hold_against(free, replace(AFTER, signals=signals, dynamics={}), GAINS)
+    for dynamics in (
+        {**AFTER.dynamics, "x": Product((L, X))},
+        {**AFTER.dynamics, "x_hat": BEFORE.dynamics["x_hat"]},
+        {"x": AFTER.dynamics["x"]},
+    ):
+        with pytest.raises(DerivationRejected, match="in another convention"):
+            convention_signs._hold_against(BEFORE, replace(AFTER, dynamics=dynamics), GAINS)
+
+
+def test_the_values_of_a_gain_are_what_relations_say_it_is() -> None:
+    def values(*items: Any) -> list[Matrix]:
+        return list(convention_signs._values(said(*items), GAINS))
+
+    assert values(L, GAIN) == [GAIN, GAIN.T]
+    assert values(Transpose(L), GAIN.T) == [GAIN.T, GAIN]
+    assert values(L, A, GAIN, 2 * GAIN) == [GAIN, GAIN.T, 2 * GAIN, 2 * GAIN.T]
+    for items in ((A, GAIN), (Product((L, C)), GAIN), (L, A), (L, 3), (L, Matrix.zeros(2, 1)), (GAIN, L)):
+        assert values(*items) == []
+
+
+# -- letters ---------------------------------------------------------------------------------------------------------------
+
+
+def test_no_page_writes_two_things_alike() -> None:
+    two = (PLANT, L_IS, Define(said(P, Product((C, L)))))
+    for letters in (
+        {"L": "A"},
+        {"A": "L"},
+        {"L": "x"},
+        {"x_hat": "A"},
+        {"x_hat": "x"},
+        {"L": "Q", "A": "Q"},
+        {"A": "Q", "L": "C"},
+    ):
+        with pytest.raises(UsageError, match="for two things of this page"):
+            steps_in(Convention("book", letters=letters), *two)
+    for fine in ({"L": "K"}, {"L": "L"}, {"x_hat": "q"}, {"K": "A"}, {"L": "A", "A": "L"}):
+        assert steps_in(Convention("book", letters=fine), *two) == two
+    message = "the convention book writes A for two things of this page: (.*gain.* and .*matrix|.*matrix.* and .*gain)"
+    with pytest.raises(UsageError, match=message):
+        steps_in(Convention("book", letters={"L": "A"}), *two)
+    equal = (PLANT, Define(said(L, C)))
+    assert steps_in(Convention("book", letters={"L": "C"}), *equal) == equal
+    own = (*two, Define(said(Letter("no_letter_of_ours"), 7)))
+    assert steps_in(Convention("book", letters={"L": "N"}), *own) == own
+
+
+def test_two_letters_for_the_gain_that_is_sought_may_be_written_alike() -> None:
+    book = Convention("book", letters={"L": "H", "A": "V"})
+    sought = (PLANT, L_IS, Define(said(Letter("H_x"), Matrix.column([h1, 7]))))
+    assert steps_in(book, *sought)[:2] == sought[:2]
+    with pytest.raises(UsageError, match="writes H for two things"):
+        steps_in(Convention("book", letters={"A": "H"}), *sought)
+
+
+def test_some_letters_differ_on_pages_of_reduced_order_only() -> None:
+    book = Convention("book", reduced={"L": "A"})
+    assert steps_in(book, PLANT, L_IS) == (PLANT, L_IS)
+    with pytest.raises(UsageError, match="writes A for two things"):
+        steps_in(book, PLANT, L_IS, Define(said(Letter("F_z"), Matrix.of([[1]]))))
+    sought = Conclude(None, (said(L, Matrix.column([l1, l2])),))
+    entries = Convention("book", reduced={"L": "H"})
+    final = Environment()
+    assert sign_translation.with_own_unknowns((sought,), final, entries, reduced=False) == (sought,)
+    assert sign_translation.with_own_unknowns((sought,), final, entries, reduced=True) == (
+        Conclude(None, (said(L, Matrix.column([h1, Scalar.symbol("h2")])),)),
+    )
+
+
+def test_parameters_that_are_printed_like_a_letter_are_set_apart() -> None:
+    mass, matrix = Scalar.symbol("M"), Scalar.symbol("A")
+    plant = Given((said(A, Matrix.of([[mass, 1], [matrix, -3]])), said(C, Matrix.of([[1, 0]]))), silent=True)
+    derivation = Derivation((plant, L_IS), START)
+    both = translated(derivation, PLUS)
+    told = [Note(plain_words("without_serifs", parameter=SymbolList((name,)))) for name in "AM"]
+    assert both.steps == (plant, Define(said(L, -GAIN)))
+    assert both.symbols == {"A": r"\mathsf{A}"}
+    alike = replace(PLUS, letters={"L": "M"})
+    assert translated(derivation, alike).symbols == {"A": r"\mathsf{A}", "M": r"\mathsf{M}"}
+    already = replace(derivation, symbols={"M": "mass"})
+    assert translated(already, alike).symbols == {"A": r"\mathsf{A}", "M": "mass"}
+    section = Section(plain_words(), (plant, L_IS))
+    first, last = translated(Derivation((section, Equal((said(L, GAIN),))), START), alike).steps
+    assert isinstance(first, Section)
+    assert first.steps == (plant, Define(said(L, -GAIN)), *told)
+    assert last == Equal((said(L, -GAIN),))
+    assert set_apart(derivation, [], {}) is derivation
+
+
+def test_the_variable_of_polynomials_is_no_parameter() -> None:
+    start = Environment(variable="z", signals={"x_hat": None}, sizes={"x_hat": 1})
+    z = Scalar.symbol("z")
+    derivation = Derivation((Define(said(Letter("chi"), z**2 + z + a)),), start, discrete=True)
+    assert translated(derivation, Convention("book", letters={"x_hat": "z"})) == derivation
+
+
+# -- unknown entries --------------------------------------------------------------------------------------------------------
+
+
+def own(convention: Convention, *steps: Any, final: Environment | None = None, reduced: bool = False) -> Any:
+    found = final or Environment()
+    return sign_translation.with_own_unknowns(steps, found, convention, reduced=reduced)
+
+
+def sought(letter: Formula, *entries: Scalar) -> Conclude:
+    return Conclude(None, (said(letter, Matrix.column(list(entries))),))
+
+
+def test_unknown_entries_are_called_after_their_letter() -> None:
+    assert own(PLUS, sought(L, l1, l2)) == (sought(L, -m1, -m2),)
+    assert own(ONLY_LETTERS, sought(L, l1)) == (sought(L, h1),)
+    assert own(ONLY_LETTERS, sought(K, k1)) == (sought(K, r1),)
+    assert own(ONLY_SIGNS, sought(L, l1, l2)) == (sought(L, -l1, -l2),)
+    assert own(ONLY_SIGNS, sought(K, k1)) == (sought(K, k1),)
+    assert own(PLUS, sought(L, l1), sought(A, l1, l2)) == (sought(L, -m1), sought(A, -m1, l2))
+    both = own(replace(PLUS, letters={"L": "M", "K": "R"}), sought(K, k1), sought(L, l1))
+    assert both == (sought(K, -r1), sought(L, -m1))
+
+
+@pytest.mark.parametrize("other", ["m1", "m_1"])
+def test_an_entry_is_not_called_like_a_parameter(other: str) -> None:
+    steps = sought(L, l1, l2), sought(A, Scalar.symbol(other))
+    assert own(PLUS, *steps) == steps
+    assert own(PLUS, steps[0], final=Environment(signs={other: "real"})) == steps[:1]
+    underlined = sought(L, Scalar.symbol("l_1")), steps[1]
+    assert own(PLUS, *underlined) == underlined
+    assert own(PLUS, sought(A, Scalar.symbol("m3")), steps[0]) == (sought(A, Scalar.symbol("m3")), sought(L, -m1, -m2))
+
+
+def test_what_an_unknown_entry_is() -> None:
+    def unknown(*items: Any, final: Environment | None = None, letter: str = "L") -> list[str]:
+        return list(sign_translation._unknowns((Conclude(None, (said(*items),)),), letter, final or Environment()))
+
+    entries = Matrix.column([l1, a, l1 + 1, 2 * l2, 3])
+    assert unknown(L, entries) == ["l1", "a"]
+    assert unknown(L, A, entries) == ["l1", "a"]
+    assert unknown(L, entries, final=Environment(signs={"a": "real"})) == ["l1"]
+    assert unknown(L, entries, final=Environment(values={"L": Matrix.column([a])})) == ["l1"]
+    assert unknown(L, entries, final=Environment(values={"K": Matrix.column([a])})) == ["l1", "a"]
+    assert unknown(L, entries, letter="K") == []
+    assert unknown(entries, L) == []
+    assert unknown(L, l1, A) == []
+
+
+def test_symbols_are_replaced_wherever_they_stand() -> None:
+    meant = {"l1": -m1, "l2": m2}
+
+    def replaced(item: Any) -> Any:
+        return sign_translation._substituted(item, meant)
+
+    assert replaced(Literal(l1 + a)) == Literal(a - m1)
+    assert replaced(SymbolList(("l1", "l2", "a"))) == SymbolList(("m1", "m2", "a"))
+    assert replaced(Sum((Literal(l1), A))) == Sum((Literal(-m1), A))
+    assert replaced((said(P, l2), "l1", l1)) == (said(P, m2), "l1", l1)
+    define = Define(said(l1, 5, a, ">", "="), plain_words("test_slot", it=Literal(l2)))
+    turned = Define(said(m1, -5, -a, ">", "="), plain_words("test_slot", it=Literal(m2)))
+    assert replaced(define) == turned
+    assert replaced(Define(said(l2, 5))) == Define(said(m2, 5))
+    assert replaced(Define(said(P, l1))) == Define(said(P, -m1))
+
+
+def test_the_minus_of_unknown_entries_goes_into_the_matrix_before_them() -> None:
+    def replaced(item: Formula) -> Any:
+        return sign_translation._substituted(item, {"l1": -m1, "l2": -m2})
+
+    table, minus = literal(Matrix.of([[1, 2]])), literal(Matrix.of([[-1, -2]]))
+    assert replaced(Product((table, literal(Matrix.column([l1, l2]))))) == Product(
+        (minus, literal(Matrix.column([m1, m2])))
+    )
+    mixed = Product((table, literal(Matrix.column([l1, a]))))
+    assert replaced(mixed) == Product((table, literal(Matrix.column([-m1, a]))))
+    doubled = Product((table, literal(Matrix.column([2 * l1, l2]))))
+    assert replaced(doubled) == Product((table, literal(Matrix.column([-2 * m1, -m2]))))
+    as_given = Product((table, literal(Matrix.column([-a, -k1]))))
+    assert replaced(as_given) is as_given
+    three = Product((A, table, literal(Matrix.column([l1, l2]))))
+    assert replaced(three) == Product((A, table, literal(Matrix.column([-m1, -m2]))))
+
+
+ENTRY = said(P, l1)
+MADE_OF: list[Any] = [
+    Given((ENTRY,)),
+    Define(ENTRY),
+    Equal((ENTRY,)),
+    Conclude(None, (ENTRY,)),
+    Plot(None, literal(l1)),  # type: ignore[arg-type]
+    Tabulate(literal(l1), None, "s"),  # type: ignore[arg-type]
+    Inequalities(HoldsExactlyWhere(Predicate("stable", P), (ENTRY,))),
+    RegionSummary(literal(l1), ("l1",)),
+    CaseStep(ENTRY, (), ()),
+    Diagram("loop", (("P", literal(l1)),)),
+    Evaluated(P, literal(l1)),
+    Predicate("stable", literal(l1)),
+    Roots(literal(l1), ()),
+    HoldsExactlyWhere(Predicate("stable", literal(l1)), ()),
+    Conjunction((ENTRY,)),
+    Sum((A, Product((A, literal(l1))))),
+]
+
+
+@pytest.mark.parametrize("part", MADE_OF, ids=lambda part: type(part).__name__)
+def test_everything_is_seen_in_every_kind_of_step(part: Any) -> None:
+    for item in (part, (part, 7), Section(plain_words(), (part,)), Note(plain_words(), (part,)), "l1"):
+        found = [value for value in literals(item) if value == l1]
+        assert len(found) == (item != "l1")
+        equations = [relation for relation in relations(item) if relation == ENTRY]
+        assert len(equations) == (item != "l1" and "Relation" in repr(part) and ENTRY in everything_in(part))
+        changed = sign_translation._substituted(item, {"l1": m1})
+        assert [value for value in literals(changed) if value in {l1, m1}] == [m1] * len(found)
+    spoken = Note(Sentence("test_slot", (("it", part),)))
+    assert l1 in literals(spoken)
+    assert m1 in literals(sign_translation._substituted(spoken, {"l1": m1}))

@@ -1,0 +1,69 @@
+"""What a writer leaves out since its check failed is told by a warning, which is an error in these tests."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+import symobs
+from symobs.exact import Matrix, Scalar
+from symobs.formula.tree import Environment, Literal
+from symobs.formula.tree.term import Term
+from symobs.ground.errors import NotShown, SymobsWarning, WrongKind
+from symobs.proof.certificate.claims import EVALUATION_ERRORS, can_be_shown, verify
+from symobs.proof.derivation.builder import relation, shows
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+a, b = Scalar.symbol("a"), Scalar.symbol("b")
+
+
+def rank_is(rows: Sequence[Sequence[Scalar | int]], rank: int, relations: tuple[Scalar, ...]) -> Any:
+    e = Environment(relations=relations)
+    return relation(Term(Literal(Matrix.of(rows)), e).apply("rank"), rank), e
+
+
+def test_a_false_line_is_left_out_with_a_warning() -> None:
+    fact, e = rank_is([[1, 0], [0, 1]], 1, ())
+    assert can_be_shown(fact, e)
+    with pytest.warns(SymobsWarning, match="the line rank.* is left out: its check failed"):
+        assert not shows([fact], e)
+
+
+def test_a_true_line_is_written() -> None:
+    fact, e = rank_is([[1, a], [0, 1]], 2, (a - b,))
+    assert shows([fact], e)
+
+
+def test_a_line_beyond_the_reach_of_the_check_is_left_out_by_decision() -> None:
+    """diag(a, b) has rank 1 where a b = 0 but for the origin, which the ideal of a b does not leave out."""
+    fact, e = rank_is([[a, 0], [0, b]], 1, (a * b,))
+    assert verify(fact, e) == ("", 0.0)
+    assert not can_be_shown(fact, e)
+    assert not shows([fact], e)
+
+
+def test_a_picture_that_is_not_faithful_is_left_out_with_a_warning(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(
+        "symobs.proof.derivation.figures.plot_check.faults", lambda *_, **__: iter(["a curve that is not there"])
+    )
+    with pytest.warns(SymobsWarning, match="a picture of kind .* is left out: its check failed"):
+        symobs.stability_region("s^2 + 2 s + k", parameters=["k"]).to("latex")
+
+
+def test_a_bug_of_evaluation_is_no_false_claim(monkeypatch: pytest.MonkeyPatch) -> None:
+    def broken(*_: Any) -> Any:
+        message = "a bug"
+        raise AttributeError(message)
+
+    monkeypatch.setattr("symobs.proof.certificate.claims.evaluate", broken)
+    fact, e = rank_is([[1, a], [0, 1]], 2, (a - b,))
+    with pytest.raises(AttributeError, match="a bug"):
+        verify(fact, e)
+
+
+def test_errors_of_evaluation_are_told_from_bugs() -> None:
+    assert all(issubclass(error, EVALUATION_ERRORS) for error in (WrongKind, NotShown, ZeroDivisionError))
+    assert not any(issubclass(bug, EVALUATION_ERRORS) for bug in (AssertionError, AttributeError, TypeError))

@@ -1,0 +1,299 @@
+"""What a page may say of a region: worked out by hand here, and every other sentence or part is refused."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+
+from symobs.exact import Scalar
+from symobs.exact.core.generators import square_root
+from symobs.formula.phrases.languages import ENGLISH
+from symobs.formula.phrases.spoken import Counted
+from symobs.formula.tree import Environment, Letter, Literal, Relation
+from symobs.formula.tree.plain_text import plain_relation
+from symobs.proof.derivation import region_check
+from symobs.proof.derivation.region_check import (
+    are_the_parts,
+    findings_of_conditions,
+    findings_of_region,
+    holds_exactly,
+    interval_relations,
+    is_survey,
+    region_of,
+)
+from symobs.proof.derivation.steps import RegionSummary, Sentence
+from symobs.stability.regions.interval_region import LineRegion
+from symobs.stability.regions.plane_region import PlaneRegion
+from tests.support.problems.steps import said
+
+s, z, h, k, m, a = (Scalar.symbol(name) for name in "szhkma")
+IN_S = Environment(signs={"a": "positive"})
+CHI = Letter("chi")
+
+
+def words(sentence: Sentence) -> tuple[str, ...]:
+    """Return the key of a sentence, and what stands in its slots."""
+    return (sentence.key, *(written(slot) for _, slot in sentence.slots))
+
+
+def written(slot: object) -> str:
+    """Return what stands in a slot as plain text."""
+    return (
+        str(slot.value)
+        if isinstance(slot, Literal)
+        else ENGLISH.put(slot)
+        if isinstance(slot, Counted)
+        else plain_relation(slot, "s")
+        if isinstance(slot, Relation)
+        else str(slot)
+    )
+
+
+def found(polynomial: Scalar, known: Environment = IN_S) -> list[tuple[str, ...]]:
+    region = region_of(polynomial, known, discrete=known.variable == "z")
+    assert region is not None
+    return [words(sentence) for sentence in findings_of_region(region)]
+
+
+ROOT_OF_TWO = square_root(Scalar.of(2))
+CUT = s**2 + s + (h - 1) ** 2 * (2 - h)
+ROOT = ("number_is_root", "CRootOf(h**3 - 2, 0)", "the only real root", "h**3 - 2 = 0")
+ON_A_LINE = {
+    "half": (s + h, [("point_decides", "one interval")], ["h > 0"]),
+    "empty": ((s - 1) * (s + h), [("region_empty",)], []),
+    "cut": (
+        CUT,
+        [("points_decide", "two points", "two intervals"), ("point_missing", "h", "1")],
+        ["h < 1", "1 < h < 2"],
+    ),
+    "root": (s + h**3 - 2, [("point_decides", "one interval"), ROOT], ["h > CRootOf(h**3 - 2, 0)"]),
+    "three": (
+        s + (h**2 - 1) * (h**2 - 4),
+        [("points_decide", "four points", "three intervals")],
+        ["h < -2", "-1 < h < 1", "h > 2"],
+    ),
+    "whole": (s + h**2 + 1, [("region_everywhere", "SymbolList(names=('h',))")], [""]),
+    "never": (s**2 - h, [("region_empty",)], []),
+    "two cuts": (
+        s**2 + s + (h - 1) ** 2 * (h - 2) ** 2,
+        [
+            ("points_decide", "two points", "three intervals"),
+            ("point_missing", "h", "1"),
+            ("point_missing", "h", "2"),
+        ],
+        ["h < 1", "1 < h < 2", "h > 2"],
+    ),
+    "two roots": (
+        s + (h**3 - 2) * (5 - h**3),
+        [
+            ("points_decide", "two points", "one interval"),
+            ROOT,
+            ("number_is_root", "CRootOf(h**3 - 5, 0)", "the only real root", "h**3 - 5 = 0"),
+        ],
+        ["CRootOf(h**3 - 2, 0) < h < CRootOf(h**3 - 5, 0)"],
+    ),
+}
+
+
+@pytest.mark.parametrize(("polynomial", "findings", "intervals"), ON_A_LINE.values(), ids=ON_A_LINE)
+def test_what_is_said_of_intervals(polynomial: Scalar, findings: list[tuple[str, ...]], intervals: list[str]) -> None:
+    assert found(polynomial) == findings
+    region = region_of(polynomial, IN_S, discrete=False)
+    assert isinstance(region, LineRegion)
+    parts = interval_relations(region)
+    assert [", ".join(plain_relation(relation, "s") for relation in part) for part in parts] == intervals
+    step = RegionSummary(CHI, ("h",), findings_of_region(region), tuple(parts))
+    assert is_survey(step, polynomial, IN_S, discrete=False)
+    assert is_survey(replace(step, parts=()), polynomial, IN_S, discrete=False)
+    assert is_survey(replace(step, findings=()), polynomial, IN_S, discrete=False)
+    for lie in (Sentence("region_empty"), Sentence("connected_bounded"), Sentence("box_bounded")):
+        if lie not in step.findings:
+            assert not is_survey(replace(step, findings=(*step.findings, lie)), polynomial, IN_S, discrete=False)
+    for other in ((*parts, (said(h, ">", 7),)), parts[1:], [(said(h, ">", 7),)]):
+        if other:
+            assert not is_survey(replace(step, parts=tuple(other)), polynomial, IN_S, discrete=False)
+
+
+def test_what_is_said_of_pieces_of_a_plane() -> None:
+    quadrant = found(s**2 + h * s + k)
+    assert quadrant == [("cells_decide", "h", "four open pieces", "one of them is"), ("connected_unbounded",)]
+    assert ("pieces", "two pieces", "none of them is") in found(s**2 + s + h * k)
+    without_origin = found(s**2 + s + h**2 + k**2)
+    assert ("hole", "0", "0", "h", "k") in without_origin
+    assert ("connected_unbounded",) in without_origin
+    circle = found(s**2 + s + (h**2 + k**2 - 1) ** 2)
+    assert ("pieces", "two pieces", "one of them is") in circle
+    assert ("curve_missing", "h**2 + k**2 - 1 = 0") in circle
+    assert ("connected_bounded",) in found(s**2 + s + 1 - h**2 - k**2)
+    assert found((s - 1) * (s + h + k)) == [("region_empty",)]
+    assert found(s**2 - h * k) == [("region_empty",)]
+    for polynomial in (s**2 + (h**3 - 2) * s + k, s**2 + (2 - h**3) * s + k):
+        assert found(polynomial)[2:] == [ROOT]
+    holes = [one for one in found(s**2 + s + (h**2 - 1) ** 2 + k**2) if one[0] == "hole"]
+    assert holes == [("hole", "-1", "0", "h", "k"), ("hole", "1", "0", "h", "k")]
+    assert not any(one[0] == "hole" for one in found(s**2 + s + h**2 + (k**3 - 2) ** 2))  # ∛2 is not written
+    assert found(s**2 + s + h**2 * k**2)[2:] == [("curve_missing", "k = 0"), ("curve_missing", "h = 0")]
+
+
+def test_the_lines_of_a_division_are_those_over_whose_points_its_pieces_are_stacked() -> None:
+    """With the lines h = ±2, 0 there would be sixteen pieces of Jury's triangle; with k = ±1 there are nine."""
+    triangle, in_z = z**2 + h * z + k, Environment(variable="z")
+    region = region_of(triangle, in_z, discrete=True)
+    assert isinstance(region, PlaneRegion)
+    first, *others = findings_of_region(region)
+    assert words(first) == ("cells_decide", "k", "nine open pieces", "one of them is")
+    lines = dict(first.slots) | {"lines": Literal(h)}
+    step = RegionSummary(CHI, ("h", "k"), (Sentence("cells_decide", tuple(lines.items())), *others), ())
+    assert is_survey(replace(step, findings=(first, *others)), triangle, in_z, discrete=True)
+    assert not is_survey(step, triangle, in_z, discrete=True)
+
+
+def test_only_pieces_that_the_signs_allow_are_counted() -> None:
+    known = Environment(signs={"a": "positive", "k": "positive"})
+    assert found(s**2 + h * s + a, known) == [
+        ("cells_decide", "a", "two open pieces", "one of them is"),
+        ("connected_unbounded",),
+    ]
+    assert found(s + a + k, known) == [("region_everywhere", "SymbolList(names=('a', 'k'))")]
+    assert found(s + (a - k) ** 2, known)[-1] == ("curve_missing", "a - k = 0")
+
+
+def test_parts_of_a_plane_are_its_own() -> None:
+    polynomial = s**2 + h * s + k
+    region = region_of(polynomial, IN_S, discrete=False)
+    assert isinstance(region, PlaneRegion)
+    right = ((said(h, ">", 0), said(k, ">", 0)),)
+    assert are_the_parts(region, right)
+    step = RegionSummary(CHI, ("h", "k"), (), right)
+    assert is_survey(step, polynomial, IN_S, discrete=False)
+    wrong: tuple[tuple[tuple[Relation, ...], ...], ...] = (
+        ((said(h, ">", 0),),),
+        ((said(k, ">", 0), said(h, ">", 0)),),
+        ((said(h, ">", 1), said(k, ">", 0)),),
+        (*right, *right),
+    )
+    for parts in wrong:
+        assert not are_the_parts(region, parts)
+        assert not is_survey(replace(step, parts=parts), polynomial, IN_S, discrete=False)
+    for check in ("are_parts", "are_whole"):
+        with pytest.MonkeyPatch.context() as patch:
+            patch.setattr(region_check, check, lambda *_: False)
+            assert not are_the_parts(region, right)
+
+
+def test_a_region_is_of_its_own_parameters_and_kind_of_time() -> None:
+    given: tuple[tuple[str, ...], ...] = ((), ("h",), ("h", "k"))
+    for names in given:
+        assert region_of(s + h, IN_S, discrete=False, names=names) is not None
+    others: tuple[tuple[str, ...], ...] = (("k",), ("h", "s"))
+    for names in others:
+        assert region_of(s + h, IN_S, discrete=False, names=names) is None
+        assert not is_survey(RegionSummary(CHI, names, (), ((said(h, ">", 0),),)), s + h, IN_S, discrete=False)
+    both = region_of(s**2 + h * s + k, IN_S, discrete=False, names=("k", "h"))
+    assert isinstance(both, PlaneRegion)
+    assert both.names == ("k", "h")
+    assert region_of((s + h) * (s + k) * (s + m), IN_S, discrete=False) is None
+    assert found(z + h, Environment(variable="z")) == [("points_decide", "two points", "one interval")]
+
+
+def test_a_region_that_is_not_proved_is_not_told(monkeypatch: pytest.MonkeyPatch) -> None:
+    step = RegionSummary(CHI, ("h",), (), ((said(h, ">", 0),),))
+    monkeypatch.setattr(region_check, "is_region", lambda *_: False)
+    assert not is_survey(step, s + h, IN_S, discrete=False)
+    assert not is_survey(replace(step, parts=()), s + h, IN_S, discrete=False)
+
+
+def test_what_is_known_by_inequalities_only() -> None:
+    names = ("h", "k", "m")
+
+    def said_of(polynomial: Scalar, known: Environment = IN_S) -> list[str]:
+        told = findings_of_conditions(polynomial, known, names, discrete=known.variable == "z")
+        return [sentence.key for sentence in told]
+
+    open_box = (s + h) * (s + k) * (s + m)
+    assert said_of(open_box) == ["box_unbounded"]
+    assert said_of((s - 1) * open_box) == ["region_empty"]
+    assert said_of((s + h - m) * (s + k) * (s + h + m)) == []
+    closed = (s + h) * (s + 1 - h) * (s + k) * (s + 2 - k) * (s + m) * (s + 3 - m)
+    assert said_of(closed) == ["box_bounded"]
+    bound = Scalar.symbol("b")
+    assert said_of((s + h) * (s + bound - h) * (s + k) * (s + m)) == []  # there is such an h only where b > 0
+    assert said_of((s + h) * (s + k) * (s + m), Environment(signs=dict.fromkeys(names, "positive"))) == []
+    assert said_of((z + h) * (z + k) * (z + m), Environment(variable="z")) == ["box_bounded"]
+    step = RegionSummary(CHI, names, (Sentence("box_unbounded"),))
+    assert is_survey(replace(step, findings=()), open_box, IN_S, discrete=False) is False
+    assert is_survey(step, open_box, IN_S, discrete=False)
+    for findings in (
+        (),
+        (Sentence("box_bounded"),),
+        (Sentence("region_empty"),),
+        (*step.findings, Sentence("region_empty")),
+    ):
+        assert not is_survey(replace(step, findings=findings), open_box, IN_S, discrete=False)
+    assert not is_survey(replace(step, parts=((said(h, ">", 0),),)), open_box, IN_S, discrete=False)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(region_check, "is_stable_where", lambda *_, **__: False)
+        assert said_of(open_box) == []
+        assert said_of((s - 1) * open_box) == []
+
+
+@pytest.mark.parametrize(
+    ("polynomial", "where", "expected"),
+    [
+        (s + h, ((h, ">"),), True),
+        (s + h, ((h - 1, ">"),), False),
+        (s + h, ((h, ">"), (h + 1, ">")), False),  # what follows from the rest is not said
+        (s + h, ((h, "!="),), False),
+        (s + h, ((k, ">"),), False),
+        (s + h, ((1 / h, ">"),), True),
+        (s + h, (), False),
+        (s - h, (), False),
+        (s**2 + s * (h - 1) + 2 - h, ((h - 1, ">"), (2 - h, ">")), True),
+        (s**2 + s * (h - 1) + 2 - h, ((2 - h, ">"),), False),
+        (s**2 + s * (h - 1) + 2 - h, ((h - 1, ">"),), False),
+        (CUT, ((2 - h, ">"), (h - 1, "!=")), True),
+        (CUT, ((2 - h, ">"),), False),
+        (s + h**2 + 1, (), True),
+        ((s - 1) * (s + h), ((h, ">"), (-h, ">")), True),
+        (s**2 - h, ((h, ">"),), False),
+        (s + 2 - h**2, ((ROOT_OF_TWO - h, ">"), (h + ROOT_OF_TWO, ">")), True),
+        (s + 2 - h**2, ((h + ROOT_OF_TWO, ">"), (ROOT_OF_TWO - h, ">")), True),
+        (s + 2 - h**2, ((ROOT_OF_TWO - h, ">"),), False),
+        (s + 2 - h**2, ((ROOT_OF_TWO - h, ">"), (h - ROOT_OF_TWO, ">")), False),
+        (s + 2 - h**2, ((ROOT_OF_TWO - h, "!="), (h + ROOT_OF_TWO, ">")), False),
+        (s**2 + h * s + k, ((h, ">"), (k, ">")), True),
+        (s**2 + h * s + k, ((h, ">"),), False),
+        (s**2 + h * s + k, ((h, ">"), (k, ">"), (m, ">")), False),
+    ],
+)
+def test_inequalities_describe_the_region(
+    polynomial: Scalar, where: tuple[tuple[Scalar, str], ...], *, expected: bool
+) -> None:
+    region = region_of(polynomial, IN_S, discrete=False)
+    assert region is not None
+    assert holds_exactly(region, where) == expected
+
+
+def test_what_the_sign_of_a_parameter_says_need_not_be_said() -> None:
+    for sign, polynomial, inequality, more in (
+        ("positive", s**2 + s * (h + 1) + 2 - h, 2 - h, h),
+        ("negative", s**2 + s * (1 - h) + 2 + h, 2 + h, -h),
+    ):
+        region = region_of(polynomial, Environment(signs={"h": sign}), discrete=False)
+        assert isinstance(region, LineRegion)
+        assert holds_exactly(region, ((inequality, ">"),))
+        assert holds_exactly(region, ((inequality, ">"), (more, ">")))
+        assert not holds_exactly(region, ((inequality - 1, ">"),))
+
+
+def test_nor_where_the_other_end_is_irrational() -> None:
+    for sign, kept, left_out in (("positive", ROOT_OF_TWO - h, h), ("negative", h + ROOT_OF_TWO, -h)):
+        region = region_of(s + 2 - h**2, Environment(signs={"h": sign}), discrete=False)
+        assert isinstance(region, LineRegion)
+        assert holds_exactly(region, ((kept, ">"),))
+        assert not holds_exactly(region, ((left_out, ">"),))
+        assert not holds_exactly(region, ((kept + 1, ">"),))
+        with pytest.MonkeyPatch.context() as patch:
+            patch.setattr(region_check, "is_region", lambda *_: False)
+            assert not holds_exactly(region, ((kept, ">"),))

@@ -1,0 +1,170 @@
+"""Which relations and facts the words of a sentence accept: each test fails where one of the demands is weaker."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+
+import pytest
+
+from symobs.exact import Matrix, Scalar, roots_of
+from symobs.exact.core.generators import PI, function
+from symobs.formula.tree import Apply, Environment, Letter, Literal, Predicate, Product, Relation, Roots
+from symobs.proof.derivation.wording_check import fits, rests
+
+E = Environment(
+    values={
+        "sigma_d": Scalar.of(2),
+        "omega_d": Scalar.of(Fraction(52, 25)),
+        "T_s": Scalar.of(3),
+        "O": Matrix.of([[Scalar.of(entry) for entry in row] for row in ([1, 0], [0, 1], [1, 1])]),
+        "Ctr": Matrix.of([[Scalar.of(entry) for entry in row] for row in ([1, 2, 0], [2, 4, 0])]),
+    }
+)
+
+
+def compared(first: Scalar | str, *rest: object) -> Relation:
+    """Return a relation of a number, or of the rank of a letter, with what follows."""
+    start = Apply("rank", Letter(first)) if isinstance(first, str) else Literal(first)
+    return Relation((start, *(Literal(Scalar.of(part)) for part in rest[1::2])), rest[::2])  # type: ignore[arg-type]
+
+
+def exp(exponent: Fraction | int, *, of_pi: bool = True) -> Scalar:
+    return function("exp", Scalar.of(exponent) * (Scalar.symbol(PI) if of_pi else 1))
+
+
+def test_a_mode_decays_by_its_own_rate() -> None:
+    assert fits("decayed", compared(exp(-6, of_pi=False), "<=", 1), E)
+    for other in (exp(-5, of_pi=False), exp(6, of_pi=False), exp(-6), -exp(-6, of_pi=False), Scalar.of(0)):
+        assert not fits("decayed", compared(other, "<=", 1), E)
+
+
+def test_a_pair_overshoots_by_its_own_ratio() -> None:
+    assert fits("overshoot_held", compared(exp(Fraction(-25, 26)), "<=", 1), E)
+    for other in (exp(Fraction(-26, 25)), exp(Fraction(25, 26)), exp(Fraction(-25, 26), of_pi=False), Scalar.of(0)):
+        assert not fits("overshoot_held", compared(other, "<=", 1), E)
+
+
+@pytest.mark.parametrize(
+    ("ratio", "higher"),
+    [
+        ("26/25", "21/20"),
+        ("1", "101/100"),
+        ("10", "101/10"),
+        ("999/1000", "1"),
+        ("12345", "12445"),
+        ("100", "101"),
+        ("1000", "1010"),
+    ],
+)
+def test_a_third_digit_is_one_higher(ratio: str, higher: str) -> None:
+    """One unit in the third digit of 1.04 is 0.01, of 10 it is 0.1, of 0.999 it is 0.001 and of 12345 it is 100."""
+    e = E.extended_by(values={"omega_d": 2 * Scalar.of(Fraction(ratio))})
+    assert fits("overshoot_close", compared(exp(-1 / Fraction(higher)), ">", 0), e)
+    assert not fits("overshoot_close", compared(exp(-1 / Fraction(ratio)), ">", 0), e)
+
+
+@pytest.mark.parametrize("ratio", [0, -1])
+def test_only_a_positive_number_has_a_third_digit(ratio: int) -> None:
+    with pytest.raises(ValueError, match=str(ratio)):
+        fits("overshoot_close", compared(exp(-1), ">", 0), E.extended_by(values={"omega_d": Scalar.of(2 * ratio)}))
+
+
+FULL = compared("O", "=", 2)
+LOW, OF_TWO = compared("Ctr", "=", 1), compared("Ctr", "=", 1, "<", 2)
+NO_RANKS = (compared(Scalar.of(2), "=", 2), Relation((Apply("det", Letter("O")), Literal(Scalar.of(2))), ("=",)))
+
+
+@pytest.mark.parametrize("key", ["stack_yes", "case_stack_yes"])
+def test_a_full_rank_is_that_of_the_smaller_side(key: str) -> None:
+    assert fits(key, FULL, E)
+    for other in (LOW, OF_TWO, compared("O", "=", 3), compared("O", "=", 1), compared("O", "=", 2, "<", 3), *NO_RANKS):
+        assert not fits(key, other, E)
+    assert not fits(key, compared("O", "=", 2, "=", 2), E)
+    assert not fits(key, compared("O", "!=", 2), E)
+
+
+@pytest.mark.parametrize("key", ["stack_no", "case_stack"])
+def test_a_rank_is_low_below_the_smaller_side(key: str) -> None:
+    assert fits(key, OF_TWO, E)
+    assert fits(key, LOW, E)
+    assert fits(key, compared("Ctr", "<", 2), E)
+    others = (compared("Ctr", "=", 1, "<", 3), compared("Ctr", "<", 3), compared("Ctr", "=", 1, "=", 2))
+    for other in (FULL, compared("O", "=", 2, "<", 2), compared("Ctr", "!=", 1), *others, *NO_RANKS):
+        assert not fits(key, other, E)
+
+
+def test_other_sentences_take_any_relation() -> None:
+    assert fits("case_rank", compared("O", "=", 1), E)
+    assert rests("kernel_observability", (), E)
+
+
+@pytest.mark.parametrize("of", ["observability", "controllability"])
+def test_a_test_of_ranks_rests_on_a_rank(of: str) -> None:
+    for full in (f"pbh_yes_{of}", f"no_fixed_modes_{of}"):
+        assert rests(full, (Predicate("stable", Letter("chi")), FULL), E)
+        for facts in ((), (LOW,), (compared("Ctr", "<", 2),), (Predicate("stable", Letter("chi")),), NO_RANKS):
+            assert not rests(full, facts, E)
+    assert rests(f"pbh_no_{of}", (compared("Ctr", "<", 2),), E)
+    for facts in ((), (FULL,), (compared("Ctr", "<", 3),), (Predicate("unstable", Letter("chi")),)):
+        assert not rests(f"pbh_no_{of}", facts, E)
+
+
+def test_a_verdict_rests_on_the_hidden_modes() -> None:
+    stable, marginal, unstable = (Predicate(name, Letter("chi")) for name in ("stable", "marginal", "unstable"))
+    for key in ("yes_detectability", "yes_stabilizability"):
+        assert all(rests(key, (fact,), E) for fact in (stable, marginal, FULL))
+        assert not any(
+            rests(key, facts, E) for facts in ((), (unstable,), (LOW,), (Predicate("beyond", Letter("chi")),))
+        )
+    for key in ("no_detectability", "no_stabilizability"):
+        assert rests(key, (unstable,), E)
+        assert not any(rests(key, facts, E) for facts in ((), (stable,), (marginal,), (LOW,), (FULL,)))
+
+
+def test_a_pole_is_defective_where_it_has_fewer_eigenvectors_than_places() -> None:
+    s = Scalar.symbol("s")
+    chain = Matrix.of([[0, 1, 0], [0, 0, 0], [0, 0, -1]])  # -2, -2 in one chain and -3, each moved by 2
+    apart = Matrix.of([[0, 0, 0], [0, 0, 0], [0, 0, -1]])
+    values: dict[str, Scalar | Matrix] = {"phi_c": (s + 2) * (s + 2) * (s + 3), "M": chain, "N": apart, "O": chain * 2}
+    here = Environment(values=values)
+
+    def held(letter: str, pole: Scalar, *more: Relation) -> bool:
+        poles = Roots(Literal(pole), roots_of(pole, "s"))
+        return rests("defective", [compared(letter, "=", 2), *more, poles], here)
+
+    assert held("M", s + 2)
+    assert not held("N", s + 2)  # two eigenvectors
+    assert not held("O", s + 2)  # another matrix
+    assert not held("M", s + 3)  # another pole
+    assert not held("M", (s + 2) * (s + 3))  # which of them?
+    assert not held("M", s + 2, compared("N", "=", 1))  # rank of which?
+    assert not rests("defective", [Roots(Literal(s + 2), roots_of(s + 2, "s"))], here)
+    assert not rests("defective", [compared("M", "=", 2)], here)
+    poles = Roots(Literal(s + 2), roots_of(s + 2, "s"))
+    assert not rests("defective_instead", [compared("M", "=", 2), poles], Environment(values={"M": chain}))
+    assert not rests("defective", [compared(Scalar.of(1), "=", 1), poles], here)
+
+
+def test_a_loop_is_stable_where_both_its_polynomials_are() -> None:
+    s = Scalar.symbol("s")
+    here = Environment(values={"phi_c": s + 2, "phi_o": s + 10})
+    whole = Product((Letter("phi_c"), Letter("phi_o")))
+    for key in ("compensator_unstable_alone", "compensator_unstable_low_alone", "minimal_unstable_alone"):
+        assert rests(key, [Predicate("strictly_proper", Letter("F")), Predicate("stable", whole)], here)
+        for fact in (
+            Predicate("stable", Letter("phi_c")),
+            Predicate("stable", Letter("phi_o")),
+            Predicate("unstable", whole),
+            Predicate("stable", Product((Letter("phi_c"), Letter("phi_c")))),
+        ):
+            assert not rests(key, [fact], here)
+        assert not rests(key, [], here)
+        assert not rests(key, [compared("O", "=", 1)], here)
+        assert not rests(key, [Predicate("stable", Letter("phi_c"))], Environment(values={"phi_c": s + 2}))
+        assert not rests(key, [Predicate("stable", Letter("phi_o"))], Environment(values={"phi_o": s + 2}))
+
+
+def test_a_zero_is_named_only_beside_a_full_rank() -> None:
+    assert rests("no_feedforward_zero", [FULL], E)
+    assert not rests("no_feedforward_zero", [LOW], E)
+    assert not rests("no_feedforward_zero", [], E)

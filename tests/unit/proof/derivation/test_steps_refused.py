@@ -1,0 +1,654 @@
+"""What the check of a derivation refuses, one check at a time: each fails where one check is left out or weaker."""
+
+from __future__ import annotations
+
+from dataclasses import MISSING, FrozenInstanceError, fields, replace
+from typing import Any, get_args
+
+import pytest
+
+from symobs.exact import Matrix, Scalar, roots_of
+from symobs.exact.core.generators import square_root
+from symobs.formula.tree import (
+    Apply,
+    Conjunction,
+    Environment,
+    Evaluated,
+    HoldsExactlyWhere,
+    Letter,
+    Literal,
+    Negative,
+    Predicate,
+    Product,
+    Quotient,
+    Relation,
+    Roots,
+    Sum,
+    SymbolList,
+)
+from symobs.ground.errors import DerivationRejected
+from symobs.proof.derivation import (
+    CaseStep,
+    Conclude,
+    Define,
+    Derivation,
+    Diagram,
+    Equal,
+    Given,
+    Inequalities,
+    Note,
+    Plot,
+    RegionSummary,
+    Section,
+    Sentence,
+    Step,
+    Tabulate,
+)
+from symobs.stability.criteria.routh_table import routh_table
+from tests.support.problems.steps import (
+    A_IS,
+    C_IS,
+    CHI,
+    START,
+    A,
+    C,
+    F,
+    X,
+    a,
+    b,
+    c,
+    checked,
+    literal,
+    refused,
+    s,
+    said,
+    slot,
+)
+from tests.support.regions import drawn_by_hand as hand
+
+pytestmark = pytest.mark.usefixtures("own_phrases")
+
+chi, phi = Letter("chi"), Letter("phi")
+one, two = said(1, 1), said(1, 2)
+h, k = Scalar.symbol("h"), Scalar.symbol("k")
+
+
+def test_what_cannot_be_read_is_refused_with_its_line() -> None:
+    strange = Equal((said(Letter("A"), Quotient(literal(1), literal(0))),))
+    with pytest.raises(DerivationRejected, match=r"a step of kind Equal cannot be read|is not true"):
+        checked(A_IS, strange)
+    with pytest.raises(DerivationRejected, match="a step of kind str cannot be read") as caught:
+        checked("prose")  # type: ignore[arg-type]
+    assert caught.value.facts["line"] == "prose"
+    assert caught.value.repair == "please report this: it is a bug of symobs"
+    with pytest.raises(FrozenInstanceError):
+        Derivation((), START).steps = ()  # type: ignore[misc]
+
+
+KINDS = get_args(Step)
+
+
+@pytest.mark.parametrize("kind", KINDS, ids=lambda kind: kind.__name__)
+def test_a_step_stays_what_it_was_and_is_a_plain_one_unless_told(kind: type[Any]) -> None:
+    given = Sentence("test_plain")
+    step = kind(*[given for part in fields(kind) if part.default is MISSING])
+    assert {getattr(step, part.name) for part in fields(kind)} <= {given, None, (), False}
+    for part in fields(kind):
+        with pytest.raises(FrozenInstanceError):
+            setattr(step, part.name, None)
+
+
+def test_data_mean_nothing_where_a_denominator_vanishes() -> None:
+    n = Scalar.symbol("n")
+
+    def domain(*values: Any) -> tuple[Scalar, ...]:
+        return checked(*(Given((said(Letter("P"), value),)) for value in values)).domain
+
+    assert domain(1 / h) == (h,)
+    assert domain(Matrix.of([[1, 1 / h], [k / n, 1]])) == (h, n)
+    assert domain(Sum((literal(1), Sum((literal(1 / h), literal(1 / k))), literal(1 / n)))) == (h, k, n)
+    assert domain(h / a) == domain(h) == ()  # a is positive
+    two = checked(Given((said(Letter("P"), 1 / h), said(Letter("Q"), 1 / k)))).domain
+    assert two == checked(Given((said(Letter("P"), 1 / h),)), Given((said(Letter("Q"), 1 / h / k),))).domain == (h, k)
+
+
+@pytest.mark.parametrize("terms", [(A, Letter("Q")), (Letter("Q"), A)])
+def test_every_letter_of_a_formula_is_established(terms: tuple[Letter, ...]) -> None:
+    refused(A_IS, Equal((said(Sum(terms), A),)), match="Q is used before it is established")
+
+
+# -- every part of a step is read ---------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("relations", [(one, two), (two, one), (one, two, one)])
+def test_every_relation_of_a_step_is_checked(relations: tuple[Relation, ...]) -> None:
+    for step in (
+        Equal(relations),
+        Conclude(None, relations),
+        Note(Sentence("test_plain"), relations),
+        Equal((one,), slot(Conjunction(relations))),
+        Conclude(None, (Conjunction(relations),)),
+    ):
+        refused(step)
+    refused(Section(Sentence("test_plain"), tuple(Equal((relation,)) for relation in relations)))
+    refused(*(Equal((relation,)) for relation in relations))
+
+
+def test_every_relation_given_is_introduced() -> None:
+    known = checked(Given((said(A, 1), said(F, 2), said(C, 3))))
+    assert [known.values[name] for name in "AFC"] == [Scalar.of(1), Scalar.of(2), Scalar.of(3)]
+    known = checked(Given((said(c, "!=", 1), said(F, 2))), Given((said(c, "!=", 2),)))
+    assert (known.nonzero, known.values["F"]) == ((c - 1, c - 2), Scalar.of(2))
+
+
+def test_every_slot_of_every_sentence_is_read() -> None:
+    false: tuple[Any, ...] = (
+        two,
+        Conjunction((one, two)),
+        Evaluated(literal(1), literal(2)),
+        Predicate("stable", chi),
+        Roots(chi, ()),
+        HoldsExactlyWhere(Predicate("stable", chi), ()),
+        SymbolList(("q",)),
+        Letter("absent"),
+        Literal(Scalar.of(2)),
+        Sum((chi, Literal(Scalar.of(2)))),
+    )
+    start = replace(START, values={"chi": s - 1, "F": Scalar.of(1)})
+    for lie in false:
+        for step in (
+            Given((said(A, 1),), slot(lie)),
+            Define(said(A, 1), slot(lie)),
+            Equal((one,), slot(lie)),
+            Conclude(slot(lie)),
+            Note(slot(lie)),
+            Section(slot(lie), ()),
+        ):
+            if isinstance(lie, SymbolList):
+                checked(step, start=start)
+            else:
+                refused(step, start=start)
+    both = Sentence("routh_changes_axis", (("changes", "words"), ("right", two), ("axis", "words")))
+    refused(Note(both), start=start)
+    checked(Note(replace(both, slots=(("changes", "words"), ("right", chi), ("axis", one)))), start=start)
+
+
+def test_what_is_shown_is_so() -> None:
+    start = replace(START, values={"chi": s - 1, "phi": s, "F": Scalar.of(1)})
+    determinant = Apply("det", A)
+    for told in (Evaluated(determinant, literal(2)), said(determinant, 2), A, Sum((A, A)), Quotient(A, F)):
+        for step in (Note(slot(told)), Section(slot(told), ()), Equal((one,), slot(told))):
+            checked(A_IS, step, start=start)
+    refused(A_IS, Note(slot(Evaluated(determinant, literal(3)))), start=start)
+
+
+def test_no_root_of_what_may_be_negative_is_written_anywhere() -> None:
+    root = Product((literal(0), Literal(square_root(c))))
+    for relation in (said(root, 0), said(0, root), said(0, 0, root)):
+        refused(Equal((relation,)), match=">= 0")
+        refused(
+            Define(replace(relation, members=(F, *relation.members), operators=("=", *relation.operators))),
+            match=">= 0",
+        )
+    refused(Note(slot(SymbolList(("a", str(square_root(c)))))), match=">= 0")
+    refused(Note(slot(SymbolList((str(square_root(c)), "a")))), match=">= 0")
+    checked(Note(slot(SymbolList(("a", str(square_root(a)))))))
+    real = Product((literal(0), *(Literal(square_root(k * a)) for k in range(1, 9) if k != 4)))
+    checked(Equal((said(real, 0),)))
+    refused(Equal((said(Product((real, Literal(square_root(c)))), 0),)), match=">= 0")
+
+
+def test_a_sentence_may_name_a_value_only_where_it_claims_nothing_of_it() -> None:
+    limit = Literal(Scalar.of(-2))
+    checked(Note(Sentence("sought_margin", (("names", SymbolList(("h",))), ("limit", limit)))))
+    refused(Note(slot(limit)), match="a value in a sentence without what it is the value of")
+    refused(Note(slot(Negative(Literal(a)))), match="a value in a sentence")
+    checked(A_IS, Note(slot(A)))
+
+
+def test_a_sentence_rests_on_its_facts() -> None:
+    start = replace(START, values={"chi": s + 1, "phi": s - 1})
+    for sentence, right, wrong in (
+        (Sentence("stable_continuous"), Predicate("stable", chi), Predicate("unstable", phi)),
+        (Sentence("unstable_continuous"), Predicate("unstable", phi), Predicate("stable", chi)),
+    ):
+        checked(Conclude(sentence, (right,)), start=start)
+        checked(Conclude(sentence, (one, wrong, right)), start=start)
+        for facts in ((), (wrong,), (one,)):
+            refused(Conclude(sentence, facts), start=start, match="which rests on")
+    refused(Conclude(None, (Predicate("stable", phi),)), start=start, match="stable")
+
+
+# -- what a boundary is moved by ----------------------------------------------------------------------------------------
+
+NAMES = ("names", SymbolList(("h",)))
+
+
+def moving(key: str, by: Scalar, value: Scalar, *, at: Scalar) -> Define:
+    return Define(said(Letter("q_s"), Apply("chi_at", Literal(at)), value), Sentence(key, (("by", Literal(by)),)))
+
+
+def test_a_boundary_is_moved_to_the_limit_that_is_sought() -> None:
+    start = replace(START, values={"chi": s + 3})
+    sought = Note(Sentence("sought_margin", (NAMES, ("limit", Literal(Scalar.of(-2))))))
+    shift = Sum((Letter("s"), Negative(literal(2))))
+    move = Define(said(Letter("q_s"), Apply("chi_at", shift), s + 1), Sentence("moved_right", (("by", literal(2)),)))
+    known = checked(sought, move, start=start)
+    assert known.values["sought margin"] == Scalar.of(-2)
+    refused(move, start=start, match="moved_right by 2")
+    elsewhere = replace(sought, sentence=Sentence("sought_margin", (NAMES, ("limit", Literal(Scalar.of(-1))))))
+    refused(elsewhere, move, start=start, match="moved_right by 2")
+    other = replace(sought, sentence=Sentence("sought_margin", (NAMES, ("limit", Literal(Scalar.of(2))))))
+    refused(other, move, start=start, match="moved_right by 2")
+    told = replace(move, sentence=Sentence("moved_right", (("by", literal(3)),)))
+    refused(sought, told, start=start, match="moved_right by 3")
+    hidden = replace(move, relation=said(Letter("q_s"), s + 1))
+    refused(sought, hidden, start=start, match="moved_right by 2")
+    enlarged = Note(Sentence("sought_radius", (NAMES, ("limit", Literal(Scalar.of(-2))))))
+    refused(enlarged, move, start=start, match="moved_right by 2")
+    refused(Conclude(None), move, start=start, match="moved_right by 2")
+
+
+def test_a_disc_is_enlarged_to_the_radius_that_is_sought() -> None:
+    start = Environment(variable="z", values={"chi": Scalar.symbol("z") + 3})
+    sought = Note(Sentence("sought_radius", (NAMES, ("limit", Literal(Scalar.of(2))))))
+    scale = Product((Letter("s"), literal(2)))
+    value = 2 * Scalar.symbol("z") + 3
+    move = Define(said(Letter("q_s"), Apply("chi_at", scale), value), Sentence("enlarged", (("by", literal(2)),)))
+    known = checked(sought, move, start=start, discrete=True)
+    assert known.values["sought radius"] == Scalar.of(2)
+    refused(move, start=start, match="enlarged by 2", discrete=True)
+    for limit in (-2, 3):
+        other = Note(Sentence("sought_radius", (NAMES, ("limit", Literal(Scalar.of(limit))))))
+        refused(other, move, start=start, match="enlarged by 2", discrete=True)
+    margin = Note(Sentence("sought_margin", (NAMES, ("limit", Literal(Scalar.of(2))))))
+    refused(margin, move, start=start, match="enlarged by 2", discrete=True)
+    facts = replace(move, sentence=Sentence("enlarged", (("by", one),)))
+    refused(sought, facts, start=start, match="where a formula stands", discrete=True)
+
+
+@pytest.mark.parametrize("key", ["mapped", "mapped_from_v"])
+def test_a_map_is_the_one_applied(key: str) -> None:
+    start = replace(START, values={"chi": s + 3})
+    image = Sum((Letter("s"), literal(1)))
+    move = Define(said(Letter("q_w"), Apply("chi_at", image), s + 4), Sentence(key, (("image", image),)))
+    checked(move, start=start)
+    other = Sentence(key, (("image", Sum((Letter("s"), literal(2)))),))
+    refused(replace(move, sentence=other), start=start, match=f"{key} by")
+    refused(Note(Sentence(key, (("image", image),))), start=start, match=f"{key} by")
+    checked(Define(said(Letter("q_w"), s + 4), slot("words")), start=start)
+
+
+OWING = {
+    "asserts": (Sentence("only_stable"), "which rests on stable"),
+    "needs": (Sentence("yes_detectability"), "which rests on another fact"),
+}
+
+
+@pytest.mark.parametrize(("sentence", "why"), OWING.values(), ids=OWING)
+def test_a_sentence_owes_the_same_in_a_step_of_any_kind(sentence: Sentence, why: str) -> None:
+    start = replace(START, values={"chi": s + 3})
+    relation, fact = said(Letter("chi"), s + 3), Predicate("stable", Letter("chi"))
+    checked(Conclude(sentence, (fact,)), start=start)
+    for step in (
+        Conclude(sentence),
+        Note(sentence),
+        Equal((relation,), sentence),
+        Given((said(Letter("q_s"), s + 1),), sentence),
+        Define(said(Letter("q_s"), s + 1), sentence),
+        Section(sentence, (Conclude(None, (fact,)),)),
+    ):
+        refused(step, start=start, match=why)
+
+
+# -- tables, regions, pictures ------------------------------------------------------------------------------------------
+
+
+def test_a_table_is_that_of_its_letter() -> None:
+    start = replace(START, values={"chi": s**2 + h * s + 2})
+    table = Tabulate(chi, routh_table([Scalar.of(1), h, Scalar.of(2)]), "s")
+    known = checked(table, start=start)
+    assert known.values["Delta_1"] == h
+    told = replace(table, sentence=Sentence("routh_table", (("polynomial", chi),)))
+    checked(told, start=start)
+    refused(replace(told, sentence=Sentence("routh_table", (("polynomial", A),))), A_IS, start=start)
+    refused(A_IS, replace(told, sentence=Sentence("routh_table", (("polynomial", A),))), start=start)
+    refused(replace(table, table=routh_table([Scalar.of(1), h, Scalar.of(3)])), start=start, match="the table of chi")
+    refused(replace(table, polynomial=Literal(s**2 + h * s + 2)), start=start, match="no letter's")
+    refused(replace(table, sentence=slot(two)), start=start)
+    refused(table, match="before it is established")
+    refused(replace(told, sentence=Sentence("routh_table", (("polynomial", "words"),))), start=start)
+    checked(A_IS, replace(table, sentence=slot(A)), start=start)
+    checked(table, start=replace(start, values={"chi": Matrix.of([[s**2 + h * s + 2]])}))
+
+
+def test_inequalities_say_where_a_letter_s_polynomial_is_stable() -> None:
+    start = replace(START, values={"chi": s**2 + h * s + k, "phi": s + 1})
+    stable = Predicate("stable", chi)
+    where = (said(h, ">", 0), said(k, ">", 0))
+    checked(Inequalities(HoldsExactlyWhere(stable, where)), start=start)
+    checked(Conclude(None, (HoldsExactlyWhere(stable, where),)), start=start)
+    for other in (
+        where[:1],
+        where[1:],
+        (),
+        (said(h, ">", 1), where[1]),
+        (said(h, "<", 0), where[1]),
+        (said(h, ">=", 0), where[1]),
+    ):
+        refused(Inequalities(HoldsExactlyWhere(stable, other)), start=start)
+        refused(Conclude(None, (HoldsExactlyWhere(stable, other),)), start=start)
+        refused(Note(slot(HoldsExactlyWhere(stable, other))), start=start)
+    refused(
+        Inequalities(HoldsExactlyWhere(Predicate("stable", Literal(s**2 + h * s + k)), where)),
+        start=start,
+        match="no letter's",
+    )
+    refused(Inequalities(HoldsExactlyWhere(stable, where), slot(two)), start=start)
+    refused(Inequalities(HoldsExactlyWhere(stable, (*where, said(phi, "=", s + 1)))), start=start)
+
+
+def test_a_region_is_that_of_its_letter() -> None:
+    start = replace(START, values={"chi": s + h})
+    right = (said(h, ">", 0),)
+    checked(RegionSummary(chi, ("h",), (), (right,)), start=start)
+    for parts in (((said(h, ">", 1),),), ((said(h, "<", 0),),), (right, right)):
+        refused(RegionSummary(chi, ("h",), (), parts), start=start, match="the region of chi")
+    refused(RegionSummary(chi, ("h",), (Sentence("region_empty"),), ()), start=start, match="the region of chi")
+    refused(RegionSummary(Literal(s + h), ("h",), (), (right,)), start=start, match="no letter's")
+    refused(RegionSummary(phi, ("h",), (), (right,)), start=start, match="before it is established")
+    refused(RegionSummary(chi, ("h",), (), (right,), slot(two)), start=start)
+    checked(RegionSummary(chi, ("h",), (), (right,)), start=replace(start, values={"chi": Matrix.of([[s + h]])}))
+    discrete = Environment(variable="z", values={"chi": Scalar.symbol("z") + h})
+    inside = (said(-1, "<", h, "<", 1),)
+    checked(RegionSummary(chi, ("h",), (), (inside,)), start=discrete, discrete=True)
+    refused(RegionSummary(chi, ("h",), (), (right,)), start=discrete, discrete=True)
+    refused(RegionSummary(chi, ("h",), (), (inside,)), start=start)
+
+
+def test_a_picture_is_looked_at() -> None:
+    picture, polynomial = hand.hyperbola(), hand.HYPERBOLA
+    start = replace(START, values={"chi": polynomial, "phi": polynomial + 1})
+    checked(Plot(picture, chi), start=start)
+    checked(Plot(picture, Apply("chi_at", Letter("s"))), start=start)
+    refused(Plot(picture, phi), start=start, match="in a picture")
+    refused(Plot(picture, Literal(polynomial)), start=start, match="which is no letter's")
+    refused(Plot(picture, Sum((Letter("s"), Literal(polynomial - s)))), start=start, match="which is no letter's")
+    refused(Plot(picture, F), start=start, match="F is used before it is established")
+    refused(Plot(picture, chi, slot(two)), start=start)
+    unknown = replace(picture.curves[0], equation=said(Letter("h1"), 1))
+    refused(Plot(replace(picture, curves=(*picture.curves, unknown)), chi), start=start, match="h1 is used before")
+    refused(Plot(replace(picture, curves=(unknown, *picture.curves)), chi), start=start, match="h1 is used before")
+
+
+def test_every_equation_of_a_diagram_is_checked() -> None:
+    start = replace(START, values={"P": 1 / s, "F": Scalar.of(1), "chi": 1 / (s + 1), "phi": 1 / (s + 2)})
+    labels = (("P", Letter("P")), ("F", Letter("F")), ("response", chi))
+    refused(Diagram("loop", (*labels[:2], ("response", phi))), start=start)
+
+
+# -- properties ---------------------------------------------------------------------------------------------------------
+
+
+def test_properties_are_of_letters_and_hold_whatever_coefficients_stand_for() -> None:
+    d = Scalar.symbol("d")
+    start = replace(START, values={"chi": s + a, "phi": s + d, "F": 1 / (s + a)}, coefficients={"d": a + 1})
+    checked(Conclude(None, (Predicate("stable", chi),)), start=start)
+    checked(Conclude(None, (Predicate("stable", F),)), start=start)
+    refused(Conclude(None, (Predicate("stable", phi),)), start=start)
+    refused(Conclude(None, (Predicate("beautiful", chi),)), start=start, match="beautiful")
+    refused(Conclude(None, (Predicate("stable", Literal(s + a)),)), start=start, match="no letter's")
+    refused(Conclude(None, (Predicate("stable", Sum((Letter("s"), Literal(a)))),)), start=start, match="no letter's")
+    refused(Conclude(None, (Predicate("unstable", chi),)), start=start)
+    proper, not_proper = Matrix.of([[1 / s, 1 / s**2]]), Matrix.of([[1 / s, s]])
+    checked(Conclude(None, (Predicate("strictly_proper", F),)), start=replace(start, values={"F": proper}))
+    refused(Conclude(None, (Predicate("strictly_proper", F),)), start=replace(start, values={"F": not_proper}))
+
+
+def test_roots_are_those_of_a_letter() -> None:
+    start = replace(START, values={"chi": s**2 + 3 * s + 2, "F": (s + 7) / (2 * s**2 + 6 * s + 4)})
+    roots = roots_of(s**2 + 3 * s + 2, "s")
+    for subject in (chi, F):
+        checked(Conclude(None, (Roots(subject, roots),)), start=start)
+        for others in (roots[:1], (), (*roots, roots[0]), (roots[0], roots[0]), roots_of(s**2 + 3 * s, "s")):
+            refused(Conclude(None, (Roots(subject, others),)), start=start, match="the roots of")
+    refused(Conclude(None, (Roots(Literal(s**2 + 3 * s + 2), roots),)), start=start, match="no letter's")
+    table = replace(start, values={"chi": Matrix.of([[s**2 + 3 * s + 2]]), "F": 2 * s**2 + 6 * s + 4})
+    checked(Conclude(None, (Roots(chi, roots),)), start=table)
+    refused(Conclude(None, (Roots(F, roots),)), start=table, match="the roots of")
+
+
+def test_a_root_is_of_what_is_not_negative() -> None:
+    checked(Define(said(F, square_root(a))))
+    refused(Define(said(F, square_root(c))), match=">= 0")
+    refused(Equal((said(square_root(c), square_root(c)),)), match=">= 0")
+
+
+def test_names_are_established_and_nothing_more() -> None:
+    checked(Note(slot(SymbolList(("a", "c")))))
+
+
+# -- what is introduced -------------------------------------------------------------------------------------------------
+
+
+def test_what_is_introduced_is_named_by_an_equation() -> None:
+    for operator in ("!=", "<", "~", "!=="):
+        refused(Define(Relation((F, literal(1), literal(1)), (operator, "="))))
+    refused(Define(Relation((F, literal(1), literal(2)), ("=", "="))))
+    checked(Define(Relation((F, literal(1), literal(2)), ("=", "<"))))
+    refused(Define(Relation((F, literal(2), literal(1)), ("=", "<"))))
+
+
+def test_a_letter_means_the_last_value_written_out() -> None:
+    known = checked(A_IS, CHI, Define(said(F, chi, s**2 + 3 * s + 2)), Define(said(Letter("H"), chi)))
+    assert known.values["F"] == known.values["H"] == s**2 + 3 * s + 2
+    known = checked(Define(said(F, Scalar.of(2), Sum((literal(1), literal(1))))))
+    assert known.values["F"] == Scalar.of(2)
+
+
+def test_a_written_value_stands_as_it_is_written() -> None:
+    """A named coefficient in what is written out stays a name."""
+    d = Scalar.symbol("d")
+    known = checked(Define(said(d, a + 1)), Define(said(F, d * d)))
+    assert known.values["F"] == d * d
+    product = Product((Literal(d), Literal(d)))
+    for members in ((product, d * d), (d * d, product), ((a + 1) ** 2, d * d)):
+        assert checked(Define(said(d, a + 1)), Define(said(F, *members))).values["F"] == d * d
+    assert checked(Define(said(d, a + 1)), Define(said(F, d * d, (a + 1) ** 2))).values["F"] == (a + 1) ** 2
+    known = checked(Define(said(d, a + 1)), Define(said(Scalar.symbol("e"), d * 2)))
+    assert known.coefficients["e"] == 2 * d
+
+
+def test_a_condition_is_of_one_number() -> None:
+    start = replace(START, values={"F": Matrix.of([[c]]), "C": Matrix.of([[c, c]])})
+    assert checked(Given((said(F, "!=", 0),)), start=start).nonzero == (c,)
+    refused(Given((said(C, "!=", 0),)), start=start)
+
+
+def test_a_letter_of_a_signal_is_no_value() -> None:
+    refused(Define(said(X, 1)))
+    refused(Define(said(Letter("s"), 1)), match="stands for something else")
+    refused(Define(said(Letter("s"), s)))
+
+
+def test_a_case_may_narrow_and_starts_anew() -> None:
+    distinct = CaseStep(said(c, "!=", 1), (), (Equal((said(C, C),)),))
+    checked(C_IS, distinct)
+    refused(C_IS, replace(distinct, steps=(Equal((two,)),)))
+    refused(C_IS, replace(distinct, sentence=slot(two)))
+    refused(C_IS, replace(distinct, anew=("C",)))
+    refused(C_IS, CaseStep(said(c, "!=", 1), (), ()), Equal((said(c, "!=", 1),)))
+
+
+@pytest.mark.parametrize("step", [Equal((two,)), Conclude(None, (two,))])
+def test_what_stands_inside_is_checked(step: Step) -> None:
+    refused(Section(Sentence("test_plain"), (step,)))
+    refused(Section(Sentence("test_plain"), (Equal((one,)), step)))
+    refused(C_IS, CaseStep(said(c - 1, 0), (("c", Scalar.of(1)),), (step,)))
+
+
+# -- strata -------------------------------------------------------------------------------------------------------------
+
+ON = Environment(signs={"a": "positive", "b": "real", "c": "real", "h": "real", "k": "real"})
+
+
+def test_what_was_assumed_is_not_known_on_a_stratum() -> None:
+    nonzero, used = Given((said(h, "!=", 0),)), Equal((said(h, "!=", 0),))
+    checked(nonzero, used)
+    for when in (said(h * (h - 1), 0), said(k * k, 2)):
+        refused(nonzero, CaseStep(when, (), (used,)))
+        checked(nonzero, CaseStep(when, (), ()), used)
+
+
+def case(when: Relation | Conjunction, *steps: Step, **put_in: Scalar | int) -> CaseStep:
+    values = tuple((name, v if isinstance(v, Scalar) else Scalar.of(v)) for name, v in put_in.items())
+    return CaseStep(when, values, steps)
+
+
+def equal(*relations: Relation) -> Equal:
+    return Equal(relations)
+
+
+def test_a_case_may_say_which_of_two_is_larger() -> None:
+    above, below = case(said(c, ">", 1), equal(said(c, ">", 1))), case(said(c, "<", 1), equal(said(1, ">", c)))
+    for right in (above, below):
+        checked(right, start=ON)
+        refused(replace(right, steps=(equal(said(c, ">", 2)),)), start=ON)
+        refused(replace(right, steps=(equal(said(c, "<", 0)),)), start=ON)
+        refused(replace(right, steps=()), *right.steps, start=ON)
+        refused(replace(right, when=said(1, 1)), start=ON)
+        refused(replace(right, substitution=(("c", Scalar.of(2)),)), start=ON)
+        refused(replace(right, substitution=(("c", Scalar.of(2)),), steps=()), start=ON)
+    checked(case(said(c, ">", 1), case(said(b, ">", 2), equal(said(c, ">", 1), said(b, ">", 2)))), start=ON)
+    checked(case(said(b, ">", c), case(said(c, 1), equal(said(b, ">", 1)), c=1)), start=ON)
+    refused(case(said(b, ">", c), case(said(c, 1), equal(said(b, ">", 2)), c=1)), start=ON)
+    for operator in ("<=", ">=", "!==", "~"):
+        refused(case(said(c, operator, 1)), start=ON)
+    for operator in ("<", ">", "!="):
+        refused(case(said(c, "!=", 1), equal(said(c, operator, 1))), start=ON)
+
+
+def test_where_the_data_mean_something_is_the_same_on_a_stratum() -> None:
+    given = Given((said(F, 1 / (b + c)),))
+    checked(given, equal(said(b + c, "!=", 0)), start=ON)
+    checked(given, case(said(c, 1), equal(said(b + 1, "!=", 0)), c=1), start=ON)
+    for other in (b, b + 2):
+        refused(given, case(said(c, 1), equal(said(other, "!=", 0)), c=1), start=ON)
+    refused(case(said(c, 1), equal(said(b + 1, "!=", 0)), c=1), start=ON)
+    checked(given, case(said(b + c, 0), equal(said(b, b)), c=-b), start=ON)  # no plant is there
+
+
+def test_a_sentence_speaks_of_its_own_relation() -> None:
+    low, high = literal(Matrix.of([[1, 2, 3], [2, 4, 6]])), literal(Matrix.of([[1, 0], [0, 1]]))
+    full, lower = said(Apply("rank", high), 2), said(Apply("rank", low), "<", 2)
+    for key, right, wrong in (("stack_yes", full, lower), ("stack_no", lower, full)):
+        checked(Conclude(Sentence(key, (("rank", right),))))
+        for other in (wrong, said(1, 1), literal(2)):
+            refused(Conclude(Sentence(key, (("rank", other),))), match=f"which is not what {key} speaks of")
+
+
+def test_a_verdict_rests_on_a_fact_of_its_step() -> None:
+    verdict, stable = Sentence("yes_detectability"), Predicate("stable", chi)
+    checked(A_IS, CHI, Conclude(verdict, (stable,)))
+    checked(A_IS, CHI, Conclude(None, (stable,)))
+    for facts in ((), (said(1, 1),)):
+        refused(Conclude(verdict, facts), match="yes_detectability, which rests on")
+
+
+def test_a_stratum_has_a_point() -> None:
+    """Where nothing is everything is true."""
+    nowhere = Conjunction((said(c, 1), said(c, 2)))
+    for steps in ((), (equal(said(1, 2)),)):
+        refused(case(nowhere, *steps), start=ON, match="can be")
+        refused(case(nowhere, *steps, c=1), start=ON, match="can be")
+    refused(case(Conjunction((said(c, 1), said(c, "!=", 1)))), start=ON, match="can be")
+    checked(case(Conjunction((said(c, 1), said(b, "!=", 1)))), start=ON)
+
+
+def test_equations_of_cases_within_cases_hold_together() -> None:
+    within = case(said(b, 2), equal(said(c, 1), said(b, 2), said(b * c, 2)))
+    checked(case(said(c, 1), within), start=ON)
+    checked(case(said(c * b, 1), case(said(c, 1), equal(said(b, 1)), c=1)), start=ON)
+    refused(case(said(c * b, 1), case(said(c, 1), equal(said(b, 2)), c=1)), start=ON)
+    refused(case(said(c, 1), case(said(c, 2))), start=ON)
+    different = (Given((said(b, "!=", 0),)), equal(said(b, "!=", 0)))
+    checked(case(said(c, 1), case(said(c, 1), *different, c=1)), start=ON)
+    checked(case(Conjunction((said(c, 1),)), *different, c=1), start=ON)
+    nonzero = Given((said(b * c, "!=", 1),))
+    for where in (case(said(b, 2), *different[1:]), case(Conjunction((said(b, 2),)), equal(said(b * c, "!=", 1)), b=2)):
+        refused(nonzero, replace(where, steps=(equal(said(b * c, "!=", 1)),)), start=ON)
+
+
+def test_both_sides_of_a_case_are_read() -> None:
+    checked(case(said(c, -c), equal(said(c, 0)), c=0), start=ON)
+    refused(case(said(c, -c), equal(said(c, 1)), c=1), start=ON)
+    one_by_one = replace(ON, values={"F": Matrix.of([[c]])})
+    for operator in ("=", ">"):
+        checked(case(said(F, operator, 1), equal(said(c, operator, 1))), start=one_by_one)
+    checked(case(said(F, 1), equal(said(c, 1)), c=1), start=one_by_one)
+    checked(case(Conjunction((said(F, 1),)), equal(said(c, 1)), c=1), start=one_by_one)
+
+
+def test_named_coefficients_are_on_the_stratum_too() -> None:
+    d, e = Scalar.symbol("d"), Scalar.symbol("e")
+    named = (Define(said(d, c + a)), Define(said(e, d + 2)))
+    checked(*named, case(said(c, 1), equal(said(d, a + 1), said(e, a + 3)), c=1), start=ON)
+    refused(*named, case(said(c, 1), equal(said(e, a + 2)), c=1), start=ON)
+    poles = (Define(said(d, 1 / (c - 1))), Define(said(e, d + 2)), Define(said(F, 2 * e)), Define(said(A, c)))
+    checked(*poles, case(said(c, 1), equal(said(A, 1)), c=1), start=ON)
+    refused(*poles, case(said(c, 1), equal(said(F, F)), c=1), start=ON, match="before it is established")
+    checked(*poles, case(said(c, 2), equal(said(F, 6)), c=2), start=ON)
+
+
+def test_what_is_put_in_follows_from_the_equations() -> None:
+    both = Conjunction((said(b, 1), said(c, 2)))
+    checked(case(both, equal(said(b + c, 3)), b=1, c=2), start=ON)
+    for wrong in ({"b": 2, "c": 2}, {"b": 1, "c": 3}, {"b": 1, "c": 2, "k": 0}):
+        refused(case(both, **wrong), start=ON)
+    checked(case(both, equal(said(c, 2)), b=1), start=ON)
+    checked(case(both, equal(said(b, 1), said(c, 2))), start=ON)
+    refused(case(both, equal(said(c, 3)), b=1), start=ON)
+    for operator in (">", "<", "~", "!=="):
+        refused(case(Conjunction((said(b, 1), said(c, operator, 0))), b=1), start=ON)
+    apart = Conjunction((said(b, 1), said(c, "!=", 2)))
+    checked(case(apart, equal(said(c, "!=", 2)), b=1), start=ON)
+    refused(case(apart, equal(said(c, "!=", 3)), b=1), start=ON)
+    moved = Conjunction((said(b, 1), said(c, "!=", b)))
+    checked(case(moved, equal(said(c, "!=", 1)), b=1), start=ON)
+    refused(case(moved, equal(said(c, "!=", 2)), b=1), start=ON)
+    narrowed = Conjunction((said(b * (c - 1), 0), said(c, "!=", 1)))
+    checked(case(narrowed, equal(said(b, 0)), b=0), start=ON)
+    refused(case(Conjunction(narrowed.relations[:1]), b=0), start=ON)
+    checked(case(said(c, b), case(Conjunction((said(b, 1),)), equal(said(c, 1)), b=1, c=1)), start=ON)
+    refused(case(Conjunction((said(b, 1),)), b=1, c=1), start=ON)
+
+
+def test_what_is_put_in_follows_for_real_parameters_of_their_signs() -> None:
+    for equation in ((b - 1) ** 2, a * (b - 1), (b - 1) * (b**2 + b + 1), (b - 1) ** 2 + (c - 2) ** 2):
+        checked(case(Conjunction((said(equation, 0),)), b=1), start=ON)
+    for equation in ((b - 1) * (b - 2), c * (b - 1), (b - 1) ** 2 - (c - 2) ** 2):
+        refused(case(Conjunction((said(equation, 0),)), b=1), start=ON)
+
+
+def test_a_polynomial_has_lost_roots_on_a_stratum_where_its_leading_coefficient_vanishes() -> None:
+    start = replace(ON, values={"F": 1 / ((c**2 - b) * s**2 + s + c)})
+    curve = Conjunction((said(c**2, b),))
+    checked(case(curve, Conclude(None, (Roots(F, roots_of(s + c, "s")),))), start=start)
+    checked(case(said(k, 1), Conclude(None, (Roots(F, roots_of((c**2 - b) * s**2 + s + c, "s")),))), start=start)
+    refused(case(curve, Conclude(None, (Roots(F, roots_of(s + b, "s")),))), start=start)
+    refused(case(said(k, 1), Conclude(None, (Roots(F, roots_of(s + c, "s")),))), start=start)
+
+
+def test_what_is_put_in_has_a_value_everywhere_there() -> None:
+    product = said(b * c, h)
+    refused(case(Conjunction((product,)), b=h / c), start=ON)
+    checked(case(Conjunction((product, said(c, "!=", 0))), equal(said(c * h, c * h)), b=h / c), start=ON)
+    checked(case(Conjunction((product, said(c * k, 1))), b=h / c), start=ON)
+    checked(case(Conjunction((said(b * a, h),)), equal(said(h, h)), b=h / a), start=ON)
+    refused(case(Conjunction((product, said(k, 1))), b=h / c), start=ON)
+
+
+def test_properties_of_one_by_one_matrices_are_of_their_entry() -> None:
+    for name, value in (("stable", s + 1), ("unstable", s - 1), ("strictly_proper", 1 / s), ("polynomial", s)):
+        start = replace(START, values={"chi": Matrix.of([[value]])})
+        checked(Conclude(None, (Predicate(name, chi),)), start=start)

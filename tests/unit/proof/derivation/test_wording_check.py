@@ -1,0 +1,296 @@
+"""What the relation in a sentence must say so that the sentence speaks of it, and the facts that a verdict rests on."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from fractions import Fraction
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+import symobs
+from symobs.exact import Matrix, Scalar
+from symobs.exact.core.generators import PI, function
+from symobs.formula.phrases import PHRASES
+from symobs.formula.phrases.spoken import Counted, StateChoice
+from symobs.formula.tree import Apply, Environment, Letter, Literal, Predicate, Relation
+from symobs.ground.errors import DerivationRejected
+from symobs.proof.certificate.pointwise import Pointwise
+from symobs.proof.derivation.wording_check import _one_higher, fits, rests
+from tests.support.problems.steps import said
+from tests.support.tampering.mutations import lines_of
+
+if TYPE_CHECKING:
+    from symobs.proof.derivation import Derivation
+
+#: Two rows of rank 1, and three rows of rank 2.
+LOW, HIGH = Literal(Matrix.of([[1, 2, 3], [2, 4, 6]])), Literal(Matrix.of([[1, 0], [0, 1], [1, 1]]))
+HERE = Environment()
+
+
+def rank(of: Literal, *more: Any) -> Relation:
+    return said(Apply("rank", of), *more)
+
+
+FULL = rank(HIGH, 2)
+LOWER = (rank(LOW, "<", 2), rank(LOW, 1), rank(LOW, 1, 2, "=", "<"))
+#: True, but of no rank, of another number, or with more behind it.
+BESIDE = (
+    said(1, 1),
+    said(1, "<", 2),
+    said(Apply("det", Literal(Matrix.of([[1]]))), 1),
+    said(Apply("det", Literal(Matrix.of([[0]]))), "<", 1),
+    rank(HIGH, "<", 3),
+    rank(LOW, "<", 3),
+    rank(HIGH, 2, 2),
+    rank(HIGH, 2, 3, "=", "<"),
+    rank(LOW, 1, 1),
+    rank(LOW, 1, 3, "=", "<"),
+    rank(LOW, ">", 0),
+    rank(LOW, "!=", 2),
+    rank(LOW, 1, 2, 3, "=", "<", "<"),
+)
+
+SAID_OF_FULL = ["stack_yes", "case_stack_yes"]
+SAID_OF_LOWER = ["stack_no", "case_stack"]
+
+
+@pytest.mark.parametrize("key", SAID_OF_FULL)
+def test_a_full_rank_is_said_to_be_full(key: str) -> None:
+    assert fits(key, FULL, HERE) is True
+    assert fits(key, rank(HIGH, Matrix.of([[2]])), HERE) is True
+    for other in (*LOWER, *BESIDE):
+        assert fits(key, other, HERE) is False
+
+
+@pytest.mark.parametrize("key", SAID_OF_LOWER)
+def test_a_lower_rank_is_said_to_be_lower(key: str) -> None:
+    for lower in LOWER:
+        assert fits(key, lower, HERE) is True
+    for other in (FULL, *BESIDE):
+        assert fits(key, other, HERE) is False
+
+
+def pair(of: str, A: Matrix, row: list[Any], *more: Any) -> tuple[Relation, Environment]:
+    """The rank of the test matrix [C; CA] of a pair, or [B, AB] of its dual, and the environment of the pair."""
+    C = Matrix.of([row])
+    O = Matrix.block([[C], [C @ A]])
+    if of == "observability":
+        return rank(Literal(O), *more), Environment(values={"A": A, "C": C})
+    return rank(Literal(O.T), *more), Environment(values={"A": A.T, "B": C.T})
+
+
+@pytest.mark.parametrize("of", ["observability", "controllability"])
+def test_a_rank_that_is_said_of_a_pair_is_that_of_its_own_test_matrix(of: str) -> None:
+    h, I = Scalar.symbol("h"), Matrix.identity(2)
+    full, here = pair(of, Matrix.of([[0, 1], [0, 0]]), [1, 0], 2)
+    for key in (f"full_rank_{of}", f"generic_rank_{of}"):
+        assert fits(key, full, here)
+        assert not fits(key, full, HERE)
+        assert not fits(key, rank(Literal(I * 2), 2), here)  # the rank of another matrix
+    assert rests(f"yes_{of}", (full,), here)
+    assert not rests(f"yes_{of}", (rank(Literal(I * 2), 2),), here)
+    low, generic = f"no_{of}", f"generic_low_{of}"
+    for A, row in ((I * 2, [1, h]), (I * h, [h, 1])):  # of rank 1 for all h
+        assert fits(low, *pair(of, A, row, "<", 2))
+        assert not fits(low, pair(of, A, row, "<", 2)[0], here)
+    falls = pair(of, I * 0, [h, 0], "<", 2)  # of rank 0 at h = 0
+    assert not fits(low, *falls)
+    assert fits(generic, *falls)
+    assert not fits(generic, full, here)
+
+
+def test_a_fact_about_one_matrix_is_not_carried_to_another_without_its_ground() -> None:
+    A, C = Matrix.of([[-2, 1, 0], [0, 1, 2], [0, 0, 0]]), Matrix.of([[0, -1, 2]])
+    rows = [C, C @ A, C @ A @ A]
+    M = Matrix.block([[row] for row in rows]).T @ Matrix.block([[row] for row in rows])
+    W = Matrix.of([[0, 0, 0], [0, 2, 0], [0, 0, 8]])  # C'C + A'C'C A
+    v = Matrix.column([1, 0, 0])
+    data: dict[str, Any] = {"A": A, "C": C, "M": M, "W": W, "v": v}
+    here = Environment(variable="z", values=data)
+    flow = Environment(values=data | {"exp_At": A})
+    assert rests("finite_sum_is", (), here)
+    assert not rests("finite_sum_is", (), here.extended_by(values={"M": W}))
+    assert not rests("kernel_none", (), here)  # a sum of two powers is neither an integral nor over all time
+    assert not rests("kernel_shared", (), here)
+    assert rests("kernel_shared", (), flow)
+    assert not rests("kernel_shared", (), flow.extended_by(values={"M": W}))
+    assert rests("steps_kernel_observability", (), here)
+    assert not rests("steps_kernel_observability", (), here.extended_by(values={"v": Matrix.column([0, 1, 0])}))
+    assert not rests("steps_kernel_observability", (), here.extended_by(values={"W": W * 0}))  # more than v is in it
+    assert not rests("steps_nonsingular_observability", (), here)
+    assert rests("steps_nonsingular_observability", (), here.extended_by(values={"W": Matrix.identity(3)}))
+
+
+def test_other_sentences_may_speak_of_any_relation() -> None:
+    assert fits("routh_epsilon", said(1, 1), HERE) is True
+    assert PHRASES.keys() >= {*SAID_OF_FULL, *SAID_OF_LOWER}
+
+
+# -- exponentials ---------------------------------------------------------------------------------------------------------
+
+POLES = Environment(values={"sigma_d": Scalar.of(2), "omega_d": Scalar.of(3), "T_s": Scalar.of(5)})
+EXPONENTS = {
+    "decayed": Scalar.of(-10),
+    "overshoot_held": Scalar.symbol(PI) * Fraction(-2, 3),
+    "overshoot_close": -Scalar.symbol(PI) / Fraction(151, 100),  # of 3/2, its third digit one higher
+}
+
+
+@pytest.mark.parametrize("key", EXPONENTS)
+def test_an_exponential_is_that_of_the_letters(key: str) -> None:
+    assert fits(key, said(function("exp", EXPONENTS[key]), "<", 1), POLES) is True
+    for other in (*{*EXPONENTS.values()} - {EXPONENTS[key]}, -EXPONENTS[key], Scalar.of(-1)):
+        assert fits(key, said(function("exp", other), "<", 1), POLES) is False
+    assert fits(key, said(0, "<", 1), POLES) is False
+
+
+def test_the_third_digit_is_one_higher() -> None:
+    for value, higher in (
+        ("1.5", "1.51"),
+        ("1", "1.01"),
+        ("9.99", "10"),
+        ("10", "10.1"),
+        ("99.9", "100"),
+        ("100", "101"),
+        ("999", "1000"),
+        ("1000", "1010"),
+        ("123456", "124456"),
+        ("0.5", "0.501"),
+        ("0.1", "0.101"),
+        ("0.01", "0.0101"),
+    ):
+        assert _one_higher(Fraction(value)) == Fraction(higher)
+    for value in ("0", "-1"):
+        with pytest.raises(ValueError, match=value):
+            _one_higher(Fraction(value))
+
+
+@pytest.mark.parametrize("key", [*SAID_OF_FULL, *SAID_OF_LOWER, *EXPONENTS])
+def test_a_relation_is_said_and_no_letter(key: str) -> None:
+    for other in (Letter("omega_d"), "words", Literal(Scalar.of(2))):
+        assert fits(key, other, POLES) is False
+
+
+# -- facts ------------------------------------------------------------------------------------------------------------------
+
+
+def property_of(name: str) -> Predicate:
+    return Predicate(name, Letter("chi"))
+
+
+STABLE, MARGINAL, UNSTABLE = (property_of(name) for name in ("stable", "marginal", "unstable"))
+NOTHING = (property_of("never_zero"), said(1, 1))
+KINDS, VERDICTS = ("observability", "controllability"), ("detectability", "stabilizability")
+RESTS: dict[str, tuple[Any, ...]] = {
+    **{f"{key}_{kind}": (FULL,) for key in ("pbh_yes", "no_fixed_modes") for kind in KINDS},
+    **{f"pbh_no_{kind}": LOWER for kind in KINDS},
+    **{f"yes_{verdict}": (FULL, STABLE, MARGINAL) for verdict in VERDICTS},
+    **{f"no_{verdict}": (UNSTABLE,) for verdict in VERDICTS},
+}
+
+
+@pytest.mark.parametrize(("key", "grounds"), RESTS.items(), ids=RESTS)
+def test_a_verdict_rests_on_a_fact_of_its_step(key: str, grounds: tuple[Any, ...]) -> None:
+    assert key in PHRASES
+    assert rests(key, (), HERE) is False
+    assert rests(key, NOTHING, HERE) is False
+    for fact in (FULL, *LOWER, STABLE, MARGINAL, UNSTABLE):
+        for facts in ((fact,), (*NOTHING, fact), (fact, *NOTHING)):
+            assert rests(key, facts, HERE) is (fact in grounds)
+
+
+def test_other_sentences_rest_on_anything() -> None:
+    for facts in ((), NOTHING, (UNSTABLE,)):
+        assert rests("routh_epsilon", facts, HERE) is True
+
+
+def test_a_rank_that_is_too_much_to_follow_is_not_told_for_all(monkeypatch: pytest.MonkeyPatch) -> None:
+    def too_large(*_: Any) -> None:
+        raise ArithmeticError
+
+    monkeypatch.setattr(Pointwise, "apply", too_large)
+    h = Scalar.symbol("h")
+    assert fits("no_observability", rank(Literal(Matrix.of([[1, h], [2, 2 * h]])), "<", 2), HERE) is False
+
+
+@pytest.mark.parametrize("sets", [((2,),), ((1,), (2,)), ((1, 2),)])
+def test_other_states_than_those_whose_rows_were_added_are_rejected(sets: tuple[tuple[int, ...], ...]) -> None:
+    """With C = [0 1 1] and A = diag(1, 2, 3) state 1 has to be measured, and no other."""
+    result: Any = symobs.observability(symobs.StateSpace("[1 0 0; 0 2 0; 0 0 3]", None, "[0 1 1]"))
+
+    def changed(step: Any) -> Any:
+        if hasattr(step, "steps"):
+            return replace(step, steps=tuple(map(changed, step.steps)))
+        words = getattr(step, "sentence", None)
+        if words is None or not words.key.startswith("repair"):
+            return step
+        return replace(step, sentence=replace(words, slots=(("states", StateChoice(sets)),)))
+
+    result.derivation.check()
+    with pytest.raises(DerivationRejected, match="of other states"):
+        replace(result.derivation, steps=tuple(map(changed, result.derivation.steps))).check()
+
+
+CHAIN = "[0 1 0 0 0; 0 0 1 0 0; 0 0 0 1 0; 0 0 0 0 1; 0 0 -12 -4 -3]", "[0; 0; 0; 0; 1]"
+ADVICE: dict[str, Any] = {"settling_time": 2, "overshoot": "1/20"}
+COUNTING: dict[str, tuple[Any, set[str]]] = {
+    "some_on_circle": (lambda: symobs.pole_advice(symobs.StateSpace(*CHAIN, "[2 1 0 0 0]"), radius=10), {"count"}),
+    "one_on_circle": (lambda: symobs.pole_advice(symobs.StateSpace("[0 1; 0 0]", "[0; 1]", "[2 1]"), radius=10), set()),
+    "one_from_settling": (lambda: symobs.pole_advice(symobs.StateSpace("[1]", "[1]", "[1]"), **ADVICE), set()),
+    "pair_remains": (
+        lambda: symobs.pole_advice(symobs.StateSpace("[0 1; 0 0]", "[0; 1]", "[1 0]"), **ADVICE),
+        {"count"},
+    ),
+    "pair_dominates": (
+        lambda: symobs.pole_advice(symobs.StateSpace(*CHAIN, "[10 11 1 0 0]"), **ADVICE),
+        {"count", "factor"},
+    ),
+    "crossing": (
+        lambda: symobs.stability_region(
+            symobs.StateSpace("[0 1; -2 -3]", C="[1 0]"), L="[h1; h2]", parameters="h1, h2"
+        ),
+        {"vary"},
+    ),
+}
+
+
+def line_saying(key: str, derivation: Derivation) -> tuple[Any, Any]:
+    """Return the line with a sentence, and its step."""
+    lines = lines_of(derivation)
+    (line,) = [each for each in lines if getattr(getattr(each.step, "sentence", None), "key", "") == key]
+    line.told(line.step).check()
+    return line, line.step
+
+
+@pytest.mark.parametrize("key", COUNTING)
+def test_what_is_counted_in_words_is_counted_in_the_step(key: str) -> None:
+    asked, counting = COUNTING[key]
+    line, step = line_saying(key, asked().derivation)
+    slots = dict(step.sentence.slots)
+    assert {name for name, slot in slots.items() if isinstance(slot, Counted)} == counting
+    for name in counting:
+        for other in (slots[name].count - 1, slots[name].count + 1):
+            told = tuple({**slots, name: replace(slots[name], count=other)}.items())
+            with pytest.raises(DerivationRejected, match="of another number"):
+                line.told(replace(step, sentence=replace(step.sentence, slots=told))).check()
+
+
+@pytest.mark.parametrize(
+    ("said", "instead"), [("some_on_circle", "one_on_circle"), ("pair_remains", "one_from_settling")]
+)
+def test_several_poles_are_not_told_as_one(said: str, instead: str) -> None:
+    asked, _ = COUNTING[said]
+    line, step = line_saying(said, asked().derivation)
+    with pytest.raises(DerivationRejected, match="of another number"):
+        line.told(replace(step, sentence=replace(step.sentence, key=instead, slots=()))).check()
+
+
+def test_the_equations_that_are_substituted_are_those_of_the_input_and_of_the_observer() -> None:
+    plant = symobs.StateSpace("[0 1; 0 -1]", "[0; 1]", "[1 0]")
+    derivation = symobs.compensator(plant, control_poles=[-2, -2], observer_poles=[-10, -10]).derivation
+    line, step = line_saying("observer_closed_matrix", derivation)
+    slots = dict(step.sentence.slots)
+    told = {"law": slots["rate"], "rate": slots["law"]}
+    with pytest.raises(DerivationRejected, match="or equation"):
+        line.told(replace(step, sentence=replace(step.sentence, slots=tuple(told.items())))).check()

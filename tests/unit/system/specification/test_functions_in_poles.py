@@ -1,0 +1,155 @@
+"""Functions of parameters in poles, polynomials and transfer functions, held to NumPy at values of the parameters."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from random import Random
+from typing import Any
+
+import numpy as np
+import pytest
+import sympy
+
+import symobs
+from symobs.ground.errors import InputError
+from symobs.problem import validate
+from symobs.problem.file_tables import parse
+from symobs.problem.question import question_of
+from symobs.tasks.result import render
+
+SERVO = ("[0 1; 0 -1]", "[0; 1]", "[1 0]")
+SAMPLED = ("[1 1-exp(-T); 0 exp(-T)]", "[T-1+exp(-T); 1-exp(-T)]", "[1 0]")
+PAIR = "-a*cos(theta) + a*sin(theta)*i, -a*cos(theta) - a*sin(theta)*i"
+SPIRAL = "exp(-a*T)*cos(theta) + i*exp(-a*T)*sin(theta), exp(-a*T)*cos(theta) - i*exp(-a*T)*sin(theta)"
+Wanted = Callable[[float, float, float], Any]
+#: What is asked for, and the polynomial that it means at values of T, a and theta.
+ASKED: dict[str, tuple[symobs.StateSpace, dict[str, str], Wanted]] = {
+    "pair": (symobs.StateSpace(*SERVO), {"poles": PAIR}, lambda _, a, theta: [1, 2 * a * np.cos(theta), a**2]),
+    "root of a function": (
+        symobs.StateSpace(*SERVO),
+        {"poles": "-1 + i*sqrt(cosh(a)), -1 - i*sqrt(cosh(a))"},
+        lambda _, a, __: [1, 2, 1 + np.cosh(a)],
+    ),
+    "numbers": (symobs.StateSpace(*SERVO), {"poles": "-2^(1/3), -pi"}, lambda *_: np.poly([-(2 ** (1 / 3)), -np.pi])),
+    "sampled": (
+        symobs.StateSpace(*SAMPLED, dt=True),
+        {"poles": "exp(-T), exp(-2*T)"},
+        lambda T, *_: np.poly([np.exp(-T), np.exp(-2 * T)]),
+    ),
+    "spiral": (
+        symobs.StateSpace(*SAMPLED, dt=True),
+        {"poles": SPIRAL},
+        lambda T, a, theta: [1, -2 * np.exp(-a * T) * np.cos(theta), np.exp(-2 * a * T)],
+    ),
+    "finer angle": (
+        symobs.StateSpace("[0 1; -sin(2*theta) 0]", "[0; 1]", "[1 0]"),
+        {"polynomial": "s^2 + 2 cos(theta) s + a^2"},
+        lambda _, a, theta: [1, 2 * np.cos(theta), a**2],
+    ),
+    "multiple angle": (
+        symobs.StateSpace(*SERVO),
+        {"polynomial": "s^2 + 2 a cos(3 theta) s + 3^(1/3)"},
+        lambda _, a, theta: [1, 2 * a * np.cos(3 * theta), 3 ** (1 / 3)],
+    ),
+}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", ASKED)
+def test_both_gains_place_the_poles_at_values_of_the_parameters(name: str) -> None:
+    system, asked, wanted = ASKED[name]
+    observer, feedback = symobs.observer(system, **asked), symobs.state_feedback(system, **asked)
+    random = Random(name)  # noqa: S311 - test data
+    for _ in range(3):
+        point = {letter: random.uniform(0.2, 1.2) for letter in ("T", "a", "theta")}
+        values = (part.subs(point).evalf() for part in (system.A, system.B, system.C, feedback.K, observer.L))
+        A, B, C, K, L = (np.array(value, dtype=float) for value in values)
+        expected = pytest.approx(np.array(wanted(*point.values()), dtype=float), rel=1e-8)
+        assert np.poly(A - B @ K) == expected
+        assert np.poly(A - L @ C) == expected
+    if name != "spiral":
+        assert "as required" in feedback.to("text")
+
+
+def test_cosine_and_sine_of_one_angle_leave_no_sum_of_squares() -> None:
+    design = symobs.observer(symobs.StateSpace(*SERVO), poles=PAIR)
+    a, theta = sympy.symbols("a theta")
+    assert list(design.L) == [2 * a * sympy.cos(theta) - 1, a**2 - 2 * a * sympy.cos(theta) + 1]
+    assert list(design.at(a=2, theta="pi/3").L) == [1, 3]
+
+
+def test_the_three_kinds_of_design_know_what_vanishes() -> None:
+    plant = symobs.StateSpace("[0 1 0; 0 0 1; 0 0 0]", "[0; 0; 1]", "[1 0 0]")
+    pair = "s^2 + 2 cos(theta) s + cos(theta)^2 + sin(theta)^2"
+    reduced = symobs.reduced_order_observer(plant, polynomial=pair)
+    assert "sin" not in str(reduced.polynomial)
+    loop = symobs.compensator(
+        plant, control_polynomial=f"(s + 1) ({pair})", observer_polynomial=pair, observer="minimal"
+    )
+    assert "sin" not in str(loop.closed_loop_polynomial)
+    assert "sin θ" not in loop.to("text")
+
+
+@pytest.mark.parametrize(
+    ("keyword", "value", "reason"),
+    [
+        ("polynomial", "s^2 + exp(s) s + 1", r"exp\(s\) is a function of s"),
+        ("poles", "-exp(i*w), -exp(-i*w)", "exp of a complex number"),
+        ("poles", "-cos(theta) + i, -1", "not closed under conjugation: .* is missing"),
+        ("polynomial", "s^2 + sqrt(cos(theta)) s + 1", "has no exact value here"),
+        ("polynomial", "s^2 + 2^(1/3) s + 3^(1/3)", "roots that may depend on each other"),
+    ],
+)
+def test_what_no_algebra_decides_is_refused_with_the_reason(keyword: str, value: str, reason: str) -> None:
+    with pytest.raises(InputError, match=reason) as raised:
+        symobs.observer(symobs.StateSpace(*SERVO), **{keyword: value})
+    assert raised.value.where == f"specification.{keyword}"
+
+
+def test_a_transfer_function_has_functions_of_parameters() -> None:
+    a, theta = sympy.symbols("a theta", real=True)
+    s = sympy.Symbol("s", real=True)
+    text = symobs.StateSpace.from_transfer_function("(s + cos(theta))/(s^2 + 2 a cos(theta) s + a^2)")
+    same = symobs.StateSpace.from_transfer_function(
+        (s + sympy.cos(theta)) / (s**2 + 2 * a * sympy.cos(theta) * s + a**2)
+    )
+    assert text.matrices == same.matrices
+    A, B, C = text.A, text.B, text.C
+    found = (C * (sympy.Symbol("s") * sympy.eye(2) - A).inv() * B)[0]
+    point: dict[Any, float] = {"s": 0.7, "a": 1.3, "theta": 0.4}
+    wanted = (0.7 + np.cos(0.4)) / (0.7**2 + 2 * 1.3 * np.cos(0.4) * 0.7 + 1.3**2)
+    assert float(found.subs(point)) == pytest.approx(wanted)
+
+
+@pytest.mark.parametrize(
+    ("given", "reason"),
+    [
+        ("(s + cos(2*theta))/(s + 1)/(s + 2 cos(theta)^2 - 1)", "have a common factor, for all values"),
+        ("exp(-s)/(s + 1)", r"exp\(-s\) is a function of s"),
+        ("[cos(theta)/s sin(theta)/s]", "depend on each other"),
+    ],
+)
+def test_a_transfer_function_that_is_no_plant_is_refused(given: str, reason: str) -> None:
+    with pytest.raises(InputError, match=reason):
+        symobs.StateSpace.from_transfer_function(given)
+
+
+def test_a_question_names_poles_with_functions() -> None:
+    text = 'task = "observer"\nplant = { A = "[0 1; 0 -1]", C = "[1 0]" }\n[symbols]\ntheta = "real"\n'
+    problem = validate(parse(text + '[specification]\npoles = ["-cosh(theta)", "-2"]\n'))
+    assert "Design an observer with the poles" in str(render(question_of(problem), "text"))
+
+
+#: Divisors that vanish for all values of T and θ.
+ZEROS = ["exp(-2*T) - exp(-T)^2", "sin(2*theta) - 2*sin(theta)*cos(theta)", "cos(theta)^2 + sin(theta)^2 - 1"]
+
+
+@pytest.mark.parametrize("zero", ZEROS)
+def test_a_coefficient_that_divides_by_what_vanishes_is_refused(zero: str) -> None:
+    for asked in ({"poles": f"-exp(-T)/({zero}), -1"}, {"polynomial": f"s^2 + s/({zero}) + 1"}):
+        with pytest.raises(InputError, match="a coefficient divides by 0") as raised:
+            symobs.state_feedback(symobs.StateSpace(*SERVO), **asked)
+        assert raised.value.where == "specification"
+    for function in (f"1/(s^2 + s/({zero}) + 1)", f"(s + 1/({zero}))/(s^2 + 1)", f"[1/(s + 1/({zero})) 1/s]"):
+        with pytest.raises(InputError, match="a coefficient divides by 0"):
+            symobs.StateSpace.from_transfer_function(function)

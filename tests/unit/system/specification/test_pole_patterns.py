@@ -1,0 +1,288 @@
+"""Poles by what they are to do: the polynomials of SciPy and of the tables, and what is refused."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from fractions import Fraction
+from typing import Any
+
+import numpy as np
+import pytest
+import scipy.signal  # type: ignore[import-untyped]
+import sympy
+
+import symobs
+from symobs.exact import Scalar
+from symobs.ground.errors import DerivationRejected, InputError, ProblemErrors
+from symobs.problem import validate
+from symobs.problem.file_tables import parse
+from symobs.problem.question import question_of
+from symobs.system.specification import PolePattern
+from symobs.tasks.result import Document, render
+
+
+def integrators(order: int, **symbols: str) -> symobs.StateSpace:
+    """A chain of integrators: the gain is the row of the coefficients, constant first."""
+    A = [[int(column == row + 1) for column in range(order)] for row in range(order)]
+    return symobs.StateSpace(A, [[0]] * (order - 1) + [[1]], [[1] + [0] * (order - 1)], symbols=symbols or None)
+
+
+def polynomial(order: int, poles: object) -> list[float]:
+    """The coefficients of the polynomial that is assigned, as floats."""
+    K = symobs.state_feedback(integrators(order), poles=poles).K
+    return [1.0, *(float(entry) for entry in reversed(list(K)))]
+
+
+@pytest.mark.parametrize("order", [1, 2, 3, 4, 5, 6, 7, 8])
+def test_a_butterworth_polynomial_is_that_of_scipy(order: int) -> None:
+    denominator = scipy.signal.butter(order, 1.7, analog=True)[1]
+    assert polynomial(order, {"butterworth": "1.7"}) == pytest.approx(denominator.tolist(), rel=1e-9)
+
+
+@pytest.mark.parametrize("order", [1, 2, 3, 4, 7])
+def test_a_bessel_polynomial_is_that_of_scipy_for_a_delay(order: int) -> None:
+    denominator = scipy.signal.bessel(order, 3, analog=True, norm="delay")[1]
+    assert polynomial(order, "bessel = 3") == pytest.approx(denominator.tolist(), rel=1e-9)
+
+
+#: Poles for ω₀ = 1 as Franklin, Powell and Emami-Naeini tabulate them, with the accuracy of their four digits.
+ITAE = {2: [-0.7071 + 0.7071j], 3: [-0.7081, -0.5210 + 1.068j], 4: [-0.4240 + 1.2630j, -0.6260 + 0.4141j]}
+
+
+@pytest.mark.parametrize("order", ITAE)
+def test_an_itae_polynomial_has_the_tabulated_poles(order: int) -> None:
+    poles = [root for pole in ITAE[order] for root in ({pole, complex(pole).conjugate()} if pole.imag else {pole})]
+    assert polynomial(order, {"itae": 1}) == pytest.approx(np.poly(poles).real.tolist(), abs=0.015)
+
+
+def test_a_pair_by_damping_and_frequency_beside_another_pole() -> None:
+    s = sympy.Symbol("s")
+    zeta, omega = sympy.symbols("zeta omega", positive=True)
+    poles = {"damping": zeta, "natural_frequency": omega, "others": ["-5"]}
+    found = symobs.state_feedback(integrators(3), poles=poles)
+    assert sympy.expand(found.polynomial - (s**2 + 2 * zeta * omega * s + omega**2) * (s + 5)) == 0
+    assert found.verdict == "yes"
+
+
+@pytest.mark.parametrize("overshoot", ["0.05", "0.163", "1e-4"])
+def test_a_pair_by_settling_time_and_overshoot_has_both_and_hardly_less(overshoot: str) -> None:
+    _, twice, square = polynomial(2, f"settling_time = 2, overshoot = {overshoot}")
+    sigma, omega = twice / 2, math.sqrt(square - twice**2 / 4)
+    assert sigma == 4 / 2
+    assert 0.97 * float(overshoot) < math.exp(-math.pi * sigma / omega) <= float(overshoot)
+
+
+def test_damping_and_settling_time_leave_no_choice() -> None:
+    assert polynomial(2, "damping = 1/2, settling_time = 2") == [1, 4, 16]
+
+
+def test_values_move_what_poles_are_to_do_and_their_page_is_checked() -> None:
+    observer = "damping = 0.8, settling_time = T"
+    plant = integrators(2, w="positive", T="positive")
+    design = symobs.compensator(plant, control_poles={"bessel": "w"}, observer_poles=observer)
+    there = design.at(w=3, T="1/2")
+    assert (list(there.K), list(there.L)) == ([27, 9], [16, 100])
+    assert "Bessel" in there.to("text")
+
+
+#: The filters of order two for ω₀ = e⁻ᵀ: s² + c ω₀ s + d ω₀².
+OF_AN_EXPONENTIAL = [
+    ("damping = exp(-T), natural_frequency = 2", 2 * math.exp(-1) * 2, 4),
+    ("damping = 1/2, natural_frequency = exp(-T)", math.exp(-1), math.exp(-2)),
+    ("butterworth = exp(-T)", math.sqrt(2) * math.exp(-1), math.exp(-2)),
+    ("bessel = exp(-T)", 3 * math.exp(-1), 3 * math.exp(-2)),
+    ("settling_time = 4 exp(T), overshoot = 0.05", 2 * math.exp(-1), None),
+]
+
+
+@pytest.mark.parametrize(("poles", "twice", "square"), OF_AN_EXPONENTIAL)
+def test_a_pattern_of_an_exponential_has_its_page(poles: str, twice: float, square: float | None) -> None:
+    found = symobs.state_feedback(integrators(2, T="positive"), poles=poles)
+    assert "u = -K x" in found.to("text")
+    constant, linear = map(float, found.K.subs(dict.fromkeys(found.K.free_symbols, 1)))
+    assert linear == pytest.approx(twice)
+    assert square is None or constant == pytest.approx(square)
+
+
+FILE = """
+task = "compensator"
+plant = { A = "[0 1 0; 0 0 1; 0 0 0]", B = "[0; 0; 1]", C = "[1 0 0]" }
+[symbols]
+w = "positive"
+[specification]
+observer = "minimal"
+control_poles = { damping = 0.5, natural_frequency = "w", others = [-4] }
+observer_poles = "butterworth = 2 w"
+"""
+
+
+def test_a_file_asks_in_the_same_words_and_its_question_names_the_polynomials() -> None:
+    problem = validate(parse(FILE))
+    (found,) = problem.solve()
+    assert str(found.closed_loop_polynomial) == "(s + 4)*(s**2 + s*w + w**2)*(s**2 + 2*sqrt(2)*s*w + 4*w**2)"
+    page = str(render(question_of(problem), "text"))
+    assert "s² + 2√2 w s + 4w²" in page
+
+
+WRONG = FILE.replace("damping", "dampness").replace("2 w", "2 v")
+
+
+def test_all_errors_of_a_file_are_told_at_once() -> None:
+    with pytest.raises(ProblemErrors) as raised:
+        validate(parse(WRONG)).solve()
+    places = [error.where for error in raised.value.errors]
+    assert places == ["specification.control_poles", "specification.observer_poles.butterworth"]
+
+
+def test_a_page_with_another_pattern_is_rejected() -> None:
+    found = symobs.observer(integrators(2), poles={"itae": 2})
+    desired: Any = found.desired
+    lie = replace(desired.pattern, factors=(desired.pattern.factors[0] + Scalar.of(Fraction(1, 10)),))
+    false = replace(found.kind, desired=replace(desired, pattern=lie))
+    with pytest.raises(DerivationRejected, match="is not true"):
+        replace(found, kind=false).to("text")
+
+
+@pytest.mark.parametrize("damping", ["1/100", "1/2", "0.999"])
+def test_the_amplitude_of_a_pair_is_below_two_percent_at_the_settling_time(damping: str) -> None:
+    rates = -np.roots(polynomial(2, {"damping": damping, "settling_time": "3"})).real
+    assert rates.tolist() == pytest.approx([4 / 3] * 2)
+    assert max(np.exp(-rates * 3)) < 0.02
+
+
+def test_a_damping_that_signs_keep_below_one_has_its_page() -> None:
+    plant = integrators(2, a="positive")
+    found = symobs.state_feedback(plant, poles={"damping": "1/(1 + a)", "settling_time": "a"})
+    assert list(found.at(a=1).K) == [64, 8]  # ζ = 1/2, σ = 4
+    assert "less than 2 %" in found.to("text")
+
+
+def test_a_page_that_says_a_real_pair_settles_is_rejected() -> None:
+    """Poles −2 ± √3: at 2 s the slower mode is still at 58.5 %."""
+    found = symobs.state_feedback(integrators(2), polynomial="s^2 + 4 s + 1")
+    desired: Any = found.desired
+    (factor,) = desired.factors
+    lie = PolePattern("s", (("damping", Scalar.of(2)), ("settling_time", Scalar.of(2))), (factor,))
+    kind: Any = found.kind
+    false = replace(kind, desired=replace(desired, pattern=lie))
+    with pytest.raises(DerivationRejected, match="is not true"):
+        replace(found, kind=false).to("text")
+
+
+LATE = "does not decay like"
+UNSIGNED = [
+    ("damping = 2, settling_time = 2", f"damping is 2, which is 1 or more, and such a pair {LATE}"),
+    ("damping = 1, settling_time = 2", f"damping is 1, which is 1 or more, and such a pair {LATE}"),
+    ("damping = p, settling_time = 2", f"damping is p, which may be 1 or more, and such a pair {LATE}"),
+    ("damping = exp(-p), settling_time = 2", "which may be 1 or more"),
+    ("damping = 1/2, settling_time = a", "settling_time is a, which need not be positive; declare a positive"),
+    ("damping = a, natural_frequency = p", "damping is a, which need not be positive; declare a positive"),
+    ("damping = 1/2, natural_frequency = a*p", "which need not be positive; declare a positive in symbols"),
+    ("damping = cos(a), natural_frequency = 1", "damping is cos(a), which need not be positive; give a positive"),
+    ("butterworth = a", "butterworth is a, which need not be positive"),
+    ("bessel = p - 1", "which need not be positive; give a positive bessel"),
+    ("itae = sin(p)", "which need not be positive; give a positive itae"),
+]
+
+
+@pytest.mark.parametrize(("poles", "reason"), UNSIGNED)
+def test_what_need_not_be_positive_or_less_than_one_is_refused(poles: str, reason: str) -> None:
+    with pytest.raises(InputError) as raised:
+        symobs.state_feedback(integrators(2, a="real", p="positive"), poles=poles)
+    assert reason in str(raised.value)
+
+
+REFUSED = [
+    ("bessel = w", "bessel is w, which need not be positive; declare w positive in symbols"),
+    ("bessel = cos(w)", "bessel is cos(w), which need not be positive"),
+    ({"damping": "1/2"}, "damping given, which does not say where the poles are"),
+    ("damping = 1/2, overshoot = 0.1", "which does not say where the poles are"),
+    ({"damping": "1/2", "frequency": 3}, "poles have no 'frequency'"),
+    ("damping = -1/2, natural_frequency = 3", "damping is -1/2, which is not positive"),
+    ("-1, butterworth = 2", "'-1' has no name"),
+    ("itae = 1, itae = 2", "'itae' is given twice"),
+    ("damping = 1/2, natural_frequency = 3, others = -1, -2", "a pair of poles given, but 1 is to be placed so"),
+    ("bessel = 1, others = -1, -2, -3", "no pole is left for bessel"),
+    ("settling_time = 1, overshoot = m, others = -9", "the overshoot is m, which is not a number between"),
+    ("settling_time = 1, overshoot = 5, others = -9", "the overshoot is 5, which is not between"),
+    ("bessel = s", "contains s, the variable of the polynomials"),
+    ({}, "nothing given"),
+]
+
+
+@pytest.mark.parametrize(("poles", "reason"), REFUSED)
+def test_what_does_not_say_where_poles_are_is_refused_with_the_reason(poles: object, reason: str) -> None:
+    with pytest.raises(InputError) as raised:
+        symobs.observer(integrators(3), poles=poles)
+    assert reason in str(raised.value)
+    assert raised.value.where.startswith("specification.poles")
+
+
+@pytest.mark.parametrize(
+    ("order", "poles", "reason"), [(7, "itae = 1", "up to degree 6"), (13, "butterworth = 1", "have degree 12 or less")]
+)
+def test_filters_that_are_not_tabulated_are_refused(order: int, poles: str, reason: str) -> None:
+    with pytest.raises(InputError, match=reason):
+        symobs.state_feedback(integrators(order), poles=poles)
+
+
+def test_in_discrete_time_they_are_refused() -> None:
+    with pytest.raises(InputError, match="continuous time"):
+        symobs.observer(symobs.StateSpace("[0 1; 0 1]", None, "[1 0]", dt=True), poles={"itae": 1})
+
+
+def test_floats_in_a_table_are_read_as_decimals_on_request() -> None:
+    poles = {"damping": 0.7, "natural_frequency": 4, "others": [-2.5]}
+    found = symobs.state_feedback(integrators(3), poles=poles, floats="decimal")
+    s = sympy.Symbol("s")
+    asked = (s**2 + sympy.Rational(28, 5) * s + 16) * (s + sympy.Rational(5, 2))
+    assert sympy.expand(found.polynomial - asked) == 0
+    assert "K = [40 - 0 30 - 0 8.1 - 0] = │ [40 30 8.1] │" in " ".join(found.to("text").split())
+    with pytest.raises(InputError, match=r"0\.7"):
+        symobs.state_feedback(integrators(3), poles=poles)
+
+
+def test_decimals_in_a_table_make_a_page_of_decimals() -> None:
+    plant = 'task = "state_feedback"\nplant = { A = "[0 1; 0 0]", B = "[0; 1]" }\n'
+    problem = validate(parse(f"{plant}specification.poles = {{ damping = 0.7, natural_frequency = 1.3 }}\n"))
+    document = Document("", "", problem.solve())
+    assert "s² + 1.82 s + 1.69" in str(render(document, "text"))
+
+
+@pytest.mark.parametrize(
+    ("poles", "says", "is_silent_of"),
+    [
+        ({"damping": "1/2", "settling_time": 2}, "within the specified settling time 2:", "natural frequency"),
+        ({"settling_time": 2, "overshoot": "1/20"}, "≤ 1/20", "damping ratio"),
+        ({"itae": 1}, "tabulated ITAE polynomial [1] of its degree.", "degree: "),
+    ],
+)
+def test_a_page_says_what_was_specified_and_nothing_else(
+    poles: dict[str, str | int], says: str, is_silent_of: str
+) -> None:
+    text = " ".join(symobs.state_feedback(integrators(2), poles=poles).to("text").split())
+    assert says in text
+    assert is_silent_of not in text
+
+
+@pytest.mark.parametrize(
+    ("order", "asked", "said"),
+    [
+        (2, {"poles": "damping 0.7, natural_frequency 4"}, "damping is no letter of a pole; write what the poles are"),
+        (2, {"poles": "bessel = 3, others = -1, -2"}, "no pole is left for bessel; leave 1 of the others out"),
+        (2, {"poles": "damping = 0.7, natural_frequency = 4, others = -1, -2"}, "placed so; leave the others out"),
+        (3, {"poles": "damping = 0.7, natural_frequency = 4, others = -1, -2"}, "but 1 is to be placed so; leave 1 of"),
+        (2, {"polynomial": "bessel = 3"}, "what poles are to do came; give it as poles"),
+        (2, {"poles": "butterworth = -3"}, "give a positive natural frequency ω₀"),
+    ],
+)
+def test_what_is_wrong_with_a_pattern_is_said_with_its_repair(order: int, asked: dict[str, str], said: str) -> None:
+    with pytest.raises(InputError) as refused:
+        symobs.state_feedback(integrators(order), **asked)
+    assert said in str(refused.value)
+
+
+def test_a_table_of_a_file_is_read_as_a_text_too() -> None:
+    table = '{ damping = "1/2", natural_frequency = 2, others = ["-5", "-3"] }'
+    assert polynomial(4, table) == [1, 10, 35, 62, 60]  # (s² + 2s + 4)(s + 5)(s + 3)

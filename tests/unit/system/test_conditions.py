@@ -1,0 +1,211 @@
+"""What declared signs imply: every verdict of the sign rules held against values that have those signs."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from itertools import product
+from typing import TYPE_CHECKING
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from symobs.exact import Scalar
+from symobs.exact.core.generators import function
+from symobs.system.conditions import (
+    SIGNS,
+    Condition,
+    _power_sign,
+    _product_sign,
+    _sum_sign,
+    never_zero,
+    opposite,
+    sign_of,
+    vanishing_factors,
+)
+from tests.support.independent_algebra.plain import has_sign, random_fraction, seeded, value_at
+from tests.support.problems.strategies import Twin, polynomials, rational_functions
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping
+
+a, b, c = (Scalar.symbol(name) for name in "abc")
+grown = function("exp", a)
+
+ALL = [*SIGNS, "zero"]
+#: Values of each sign, enough to tell the signs apart in sums and products.
+VALUES = {sign: [x for x in (-3, -2, -1, 0, 1, 2, 3) if has_sign(Fraction(x), sign)] for sign in ALL}
+
+
+def tightest(values: Iterable[int]) -> str:
+    """Return the strongest sign that all values have."""
+    found = list(values)
+    order = ["zero", "positive", "negative", "nonnegative", "nonpositive", "nonzero", "real"]
+    return next(sign for sign in order if all(has_sign(Fraction(x), sign) for x in found))
+
+
+class TestRules:
+    @pytest.mark.parametrize(("left", "right"), list(product(ALL, ALL)))
+    def test_a_product_has_the_strongest_sign_that_is_certain(self, left: str, right: str) -> None:
+        assert _product_sign(left, right) == tightest(x * y for x in VALUES[left] for y in VALUES[right])
+
+    @pytest.mark.parametrize(("left", "right"), list(product(ALL, ALL)))
+    def test_a_sum_has_the_strongest_sign_that_is_certain(self, left: str, right: str) -> None:
+        assert _sum_sign(left, right) == tightest(x + y for x in VALUES[left] for y in VALUES[right])
+
+    @pytest.mark.parametrize(("sign", "exponent"), list(product(SIGNS, [-3, -2, -1, 1, 2, 3, 4])))
+    def test_a_power_has_the_strongest_sign_that_is_certain(self, sign: str, exponent: int) -> None:
+        values = [Fraction(x) ** exponent for x in VALUES[sign] if x or exponent > 0]
+        found = _power_sign(sign, exponent)
+        assert all(has_sign(Fraction(value), found) for value in values)
+        if exponent > 0:
+            assert found == tightest(int(value) for value in values)
+
+    @pytest.mark.parametrize("sign", SIGNS)
+    def test_the_opposite_is_the_sign_of_the_negative(self, sign: str) -> None:
+        assert opposite(sign) == tightest(-x for x in VALUES[sign])
+
+
+signs_of_names = st.fixed_dictionaries({name: st.sampled_from(SIGNS) for name in "abs"})
+
+
+def points(signs: Mapping[str, str], seed: object, count: int = 25) -> list[dict[str, Fraction]]:
+    """Random points with the declared signs; the first has 0 and ±1 wherever the signs allow."""
+    generator = seeded(seed)
+    simple = {
+        name: Fraction(0 if has_sign(Fraction(0), sign) else 1 if has_sign(Fraction(1), sign) else -1)
+        for name, sign in signs.items()
+    }
+    return [simple, *({n: random_fraction(generator, sign) for n, sign in signs.items()} for _ in range(count))]
+
+
+def values_at(scalar: Scalar, signs: Mapping[str, str]) -> list[tuple[dict[str, Fraction], Fraction]]:
+    """Return the values where the scalar is defined."""
+    return [(p, value_at(scalar, p)) for p in points(signs, scalar) if value_at(scalar.denominator, p)]
+
+
+class TestValues:
+    @given(rational_functions(), signs_of_names)
+    @settings(max_examples=60)
+    def test_what_is_certain_is_true_at_every_point(self, x: Twin, signs: dict[str, str]) -> None:
+        found = sign_of(x.scalar, signs)
+        for point, value in values_at(x.scalar, signs):
+            assert has_sign(Fraction(value), found), (x.scalar, signs, point)
+            assert not never_zero(x.scalar, signs) or value != 0
+
+    @given(polynomials(degree=2, most=2), polynomials(degree=1, most=2), signs_of_names)
+    @settings(max_examples=60)
+    def test_what_is_certain_of_a_product_of_factors_is_true(self, x: Twin, y: Twin, signs: dict[str, str]) -> None:
+        value = x.scalar**2 * y.scalar * (a - b)
+        found = sign_of(value, signs)
+        for point, number in values_at(value, signs):
+            assert has_sign(Fraction(number), found), (value, signs, point)
+
+    @given(polynomials(degree=1, most=2), polynomials(degree=2, most=2), signs_of_names)
+    @settings(max_examples=60)
+    def test_where_a_value_vanishes_one_of_its_vanishing_factors_does(
+        self, x: Twin, y: Twin, signs: dict[str, str]
+    ) -> None:
+        value = x.scalar * y.scalar * a / (b + 7)
+        factors = vanishing_factors([value, Scalar.of(3)], signs)
+        assert len(set(factors)) == len(factors)
+        for factor in factors:
+            assert not (value / factor).denominator.names & (factor.names - {"b"})
+        for point, number in values_at(value, signs):
+            if number == 0 and not value.is_zero:
+                assert any(value_at(factor, point) == 0 for factor in factors), (value, signs, point)
+
+    @pytest.mark.parametrize(
+        ("value", "signs", "expected"),
+        [
+            (a - a, {}, "zero"),
+            (Scalar.rational(-2, 3), {}, "negative"),
+            (a, {}, "real"),
+            (a**2, {}, "nonnegative"),
+            (-(a**2) * b**4, {}, "nonpositive"),
+            (a**2 + 1, {}, "positive"),
+            (a**2, {"a": "nonzero"}, "positive"),
+            (-(a**3), {"a": "nonzero"}, "nonzero"),
+            (a * b, {"a": "positive", "b": "negative"}, "negative"),
+            (a + b, {"a": "positive", "b": "nonnegative"}, "positive"),
+            (a + b, {"a": "nonnegative", "b": "nonnegative"}, "nonnegative"),
+            (a - b, {"a": "positive", "b": "positive"}, "real"),
+            (a - b, {"a": "positive", "b": "negative"}, "positive"),
+            (a / b, {"a": "negative", "b": "negative"}, "positive"),
+            (1 / a**2, {"a": "nonzero"}, "positive"),
+            # the terms say nothing, the factors do
+            (a**2 - 2 * a * b + b**2, {}, "nonnegative"),
+            ((a - b) ** 2 * (a + 1), {"a": "positive"}, "nonnegative"),
+            (a * (b - a) ** 2, {"a": "negative"}, "nonpositive"),
+            (a * b * (a + b) - a**2 * b, {"a": "nonzero"}, "real"),
+            ((a + 1) * (b - 2), {"a": "positive", "b": "nonpositive"}, "negative"),
+            # nor do they, the roots do
+            (a**3 - a + 1, {"a": "positive"}, "positive"),
+            (a**3 - a + 1, {"a": "negative"}, "real"),
+            (a**3 - 4 * a + 1, {"a": "positive"}, "real"),
+            (1 - a - a**4 - 2 * a**2, {"a": "nonpositive"}, "real"),
+            (a**4 - 5 * a**2 + 5, {"a": "nonzero"}, "real"),
+            (3 * a - a**2 - 3, {"a": "real"}, "negative"),
+            # an exponential is above 1 where its exponent is positive
+            (grown - 1, {"a": "positive"}, "positive"),
+            (b * grown**2 - b * grown, {"a": "positive", "b": "negative"}, "negative"),
+            (grown - 2, {"a": "positive"}, "real"),
+            (grown - 1, {}, "real"),
+            (1 - grown, {"a": "negative"}, "real"),
+            (a * grown - grown + 1, {"a": "positive"}, "real"),  # it is positive, but no sum of positive terms
+            (function("cos", Scalar.of(2)), {}, "negative"),
+            (function("sin", Scalar.of(2)) - function("cos", Scalar.of(2)), {}, "positive"),
+        ],
+        ids=str,
+    )
+    def test_known_signs(self, value: Scalar, signs: dict[str, str], expected: str) -> None:
+        assert sign_of(value, signs) == expected
+        assert never_zero(value, signs) == (expected in {"positive", "negative", "nonzero"})
+
+    @pytest.mark.parametrize("word", ["positiv", "complex"])
+    def test_a_word_that_is_no_sign_says_nothing(self, word: str) -> None:
+        signs = {"a": word, "b": "positive"}
+        assert {sign_of(value, signs) for value in (a, a * b, -a, a + b, 1 / a, a**3)} == {"real"}
+        assert not never_zero(a, signs)
+        assert vanishing_factors([a * b], signs) == (a,)
+
+    def test_vanishing_factors_leave_out_what_the_signs_exclude(self) -> None:
+        value = a**2 * (a - b) ** 3 * (b**2 + 1) / (c + 1)
+        assert set(vanishing_factors([value], {})) == {a, a - b}
+        assert vanishing_factors([value], {"a": "positive"}) == (a - b,)
+        assert vanishing_factors([value], {"a": "positive", "b": "nonpositive"}) == ()
+        assert vanishing_factors([Scalar.of(5), 1 / a], {}) == ()
+        assert vanishing_factors([a * b, b * c], {"a": "nonzero"}) == (b, c)
+
+    def test_a_condition_is_printed_as_a_relation_with_zero(self) -> None:
+        assert str(Condition("claim", 2 * c - 1)) == "2*c - 1 != 0"
+        assert str(Condition("existence", c, "==")) == "c == 0"
+
+
+#: Irreducible polynomials, and their sign for each that is declared of a; "real" where one has a root there.
+WITHOUT_ROOTS: list[tuple[Scalar, dict[str, str]]] = [
+    (a**2 - a + 1, dict.fromkeys(SIGNS, "positive")),
+    (-(a**4) + a - 1, dict.fromkeys(SIGNS, "negative")),
+    (a**3 - 2 * a**2 + a + 5, {"positive": "positive", "nonnegative": "positive"}),
+    (a**3 + a - 1, {"negative": "negative", "nonpositive": "negative"}),
+    (a**2 - a - 1, {}),
+    (a**4 - 3 * a**2 + a + 1, {}),
+]
+
+
+@pytest.mark.parametrize(("polynomial", "expected"), WITHOUT_ROOTS, ids=str)
+def test_a_polynomial_in_one_parameter_has_a_sign_where_it_has_no_root(
+    polynomial: Scalar, expected: dict[str, str]
+) -> None:
+    for declared in SIGNS:
+        sign = expected.get(declared, "real")
+        assert sign_of(polynomial, {"a": declared}) == sign
+        assert bool(vanishing_factors([polynomial], {"a": declared})) == (sign == "real")
+        held = [x / 4 for x in map(Fraction, range(-20, 21)) if has_sign(x, declared)]
+        if sign != "real":
+            assert all(has_sign(value_at(polynomial, {"a": x}), sign) for x in held)
+
+
+def test_what_may_be_complex_has_no_sign() -> None:
+    assert sign_of(a**2 - a + 1, {}) == "real"  # nobody declared it
+    assert sign_of(a**2 - a * b + b**2, {"a": "real", "b": "real"}) == "real"

@@ -1,0 +1,137 @@
+"""Strata that pass through points where the data have no value: nothing is said of those points."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+import symobs
+from symobs import StateSpace, compensator, controllability, state_feedback
+from symobs.exact import Matrix, Scalar
+from symobs.exact.core.generators import square_root
+from symobs.formula.tree import Apply, Environment, Letter, Literal, Relation
+from symobs.ground.errors import DerivationRejected
+from symobs.proof.certificate.claims import verify
+from symobs.proof.certificate.pointwise import never_together_zero
+from symobs.proof.derivation import Derivation
+from symobs.proof.derivation.steps import CaseStep, Conclude, Define, Given
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+k, m = (Scalar.symbol(name) for name in "km")
+CURVE = k**2 - k * m**2 - m**2  # without a rational parametrisation, and through k = m = 0
+
+
+def test_what_vanishes_only_where_the_data_mean_nothing_does_not_vanish() -> None:
+    assert not never_together_zero([-k, m], (CURVE,), {})
+    assert never_together_zero([-k, m], (CURVE,), {}, (m,))
+    assert never_together_zero([m**2 * k], (CURVE,), {}, (m,)), "k = 0 gives m = 0"
+    assert not never_together_zero([k - 3], (CURVE,), {}, (m,)), "k = 3 and m = 3/2"
+
+
+def rank_on_the_curve(given: Matrix, says: int) -> None:
+    """Check a page that gives B, and on the curve says the rank of [-k; m]."""
+    kernel = Matrix.of([[-k], [m]])
+    here = Relation((Literal(CURVE), Literal(Scalar.of(0))), ("=",))
+    rank = Relation((Apply("rank", Letter("N")), Literal(Scalar.of(says))), ("=",))
+    inside = (Define(Relation((Letter("N"), Literal(kernel)), ("=",))), Conclude(None, facts=(rank,)))
+    data = Given((Relation((Letter("B"), Literal(given)), ("=",)),))
+    Derivation((data, CaseStep(here, (), inside)), Environment()).check()
+
+
+def test_denominators_of_data_do_not_vanish_on_a_stratum() -> None:
+    """At k = m = 0 the rank would be 0; only where B has no value there is it 1 on the whole curve."""
+    one = Scalar.of(1)
+    rank_on_the_curve(Matrix.of([[one], [k / m]]), 1)
+    for given, says in (
+        (Matrix.of([[one], [k]]), 1),
+        (Matrix.of([[one], [one / (k + 1)]]), 1),
+        (Matrix.of([[k / m]]), 2),
+    ):
+        with pytest.raises(DerivationRejected, match=r"the line rank\(N\) = 1|the line rank\(N\) = 2"):
+            rank_on_the_curve(given, says)
+
+
+def test_the_page_of_a_gain_holds_on_such_a_curve() -> None:
+    plant = StateSpace("[0 1; 1 m]", "[1; k/m]", "[-3 -2]")
+    assert "k**2" in str(state_feedback(plant, poles=[-1, -2]).conditions)
+    state_feedback(plant, poles=[-1, -2]).derivation.check()
+    compensator(plant, control_poles=[-3, -1], observer_poles=[-3], observer="minimal").derivation.check()
+
+
+def test_a_rank_is_shown_by_minors_where_the_kernel_found_vanishes_somewhere() -> None:
+    """On a d = b c, [-b; a] is a kernel of [a b; c d], and 0 where a = b = 0; with c = 1 the rank is 1 there too."""
+    a, b, d = (Scalar.symbol(name) for name in "abd")
+    here = Environment(relations=(a * d - b,))
+    for matrix, says, holds in (
+        (Matrix.of([[a, b], [Scalar.of(1), d]]), 1, True),
+        (Matrix.of([[a, b], [Scalar.of(1), d]]), 2, False),
+        (Matrix.of([[a, b], [a, b]]), 1, False),  # 0 at a = b = 0
+        (Matrix.of([[a, b, b], [a, b, b], [Scalar.of(1), d, d]]), 1, True),
+    ):
+        relation = Relation((Apply("rank", Literal(matrix)), Literal(Scalar.of(says))), ("=",))
+        assert (verify(relation, here)[0] == "exact") is holds
+
+
+def test_the_page_of_a_long_stratum_holds() -> None:
+    """There the kernel of the controllability matrix vanishes at some points, the matrix of rank 2 at none."""
+    A = "[2, omega^2, 0; 0.1, a, omega^2; 1/2, 1/a, 1/2]"
+    plant = StateSpace(A, "[1; -3; -3]", "[0.1, -1, 0]", symbols={"a": "positive", "omega": "real"})
+    controllability(plant).derivation.check()
+
+
+def test_what_a_page_says_of_the_other_root_proves_nothing() -> None:
+    # sqrt(q) and sqrt(-q) both real leave no point, and every inequality was true: 1 != 1 among them.
+    q = m**2 - k**2 / 4
+    roots = tuple((square_root(value) ** 2 - value).numerator for value in (q, -q))
+    known = (square_root(q),)
+    assert not never_together_zero([Scalar.of(0)], roots, {}, known)
+    assert not never_together_zero([k - 3], roots, {}, known)
+    assert never_together_zero([square_root(q) ** 2 - q + 1], roots, {}, known), "its own root is known"
+
+
+@pytest.mark.parametrize(
+    ("task", "plant", "asked"),
+    [
+        # The basis [a; -b - 1] of what the input does not move vanishes at a point of the case's curve.
+        ("gramian", {"A": "[0 a; 0 b]", "B": "[b+1; a]"}, {"of": "controllability", "horizon": "inf"}),
+        # What a case excludes is excluded within it too, though nothing is left of its equations.
+        ("detectability", {"A": "[b 0 0; 0 a-1 b^2-a; 0 0 0]", "C": "[1 1 0]"}, {}),
+        # The polynomial of the fixed modes is shorter by the equations of the case than as a determinant.
+        (
+            "detectability",
+            {"A": "[b+1 2 b; -a a*b 0; a+b -1 0]", "C": "[2 a-b 2]"},
+            {},
+        ),
+        ("transfer_function", {"A": "[0 0; b 0]", "B": "[b; 1]", "C": "[b 1/a]"}, {}),
+        ("pole_advice", {"A": "[0 0; b 0]", "B": "[b; 1]", "C": "[b 1/a]"}, {"radius": "2"}),
+    ],
+)
+def test_an_answer_with_cases_has_a_page(task: str, plant: dict[str, Any], asked: dict[str, Any]) -> None:
+    result = getattr(symobs, task)(StateSpace(**plant, symbols={"a": "real", "b": "real"}), **asked)
+    assert result.to_json()
+    assert result.to_latex()
+    assert not list(_impossible(result))
+
+
+def _impossible(result: Any, known: tuple[Any, ...] = ()) -> Iterator[Any]:
+    """Yield nested cases whose single equation is what a case around them excludes."""
+    for case in result.case_tree:
+        if len(case.when) == 1 and case.when[0].operator == "==" and case.when[0].expression in known:
+            yield case
+        excluded = (c.expression.substitute(case.substitution).numerator for c in case.when if c.operator == "!=")
+        if case.result is not None:
+            yield from _impossible(case.result, (*known, *excluded))
+
+
+def test_an_output_that_vanishes_still_needs_observability() -> None:
+    """x₀ = 0 explains y = 0 always, and alone exactly where the pair is observable: det 𝒪 = −(a + 1)·1."""
+    plant = symobs.StateSpace("[0 0; 0 -1]", C="[a+1 -1]")
+    found = symobs.initial_state(plant, output="0")
+    assert found.verdict == "conditional"
+    assert [str(condition) for condition in found.conditions] == ["T > 0", "Ne(a + 1, 0)"]
+    (case,) = found.cases
+    assert [str(condition) for condition in case.when] == ["Eq(a + 1, 0)"]
+    assert (case.result.verdict, case.result.kernel) == ("no", ((1, 0),))

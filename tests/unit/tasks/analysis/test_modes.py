@@ -1,0 +1,473 @@
+"""Single modes, duality, decomposition: identities that hold for every plant, and another system's opinion (PARI)."""
+
+from __future__ import annotations
+
+import random
+import shutil
+import subprocess
+from itertools import product
+from typing import Any
+
+import pytest
+import sympy
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import symobs
+from symobs.exact import EIGENVALUE, AlgebraicExtension, Matrix, Scalar, stable_roots
+from symobs.ground.errors import CertificateRejected, DerivationRejected, InputError
+from symobs.stability.criteria.stability import is_beyond, is_marginal, on_boundary
+from symobs.tasks.result import render
+from tests.support.independent_algebra.second_reader import sympy_scalar
+from tests.support.problems.strategies import Sample, plants, unimodular
+from tests.support.sampling import FULL
+
+numeric = plants(("dense", "hidden", "defective"))
+s = sympy.Symbol("s")
+
+
+def plant_of(sample: Sample) -> Any:
+    return symobs.StateSpace(sample.A, sample.B, sample.C)
+
+
+def by_eigenvalue(result: Any) -> dict[str, tuple[int, Any]]:
+    return {str(mode["eigenvalue"]): (mode["rank"], mode["stable"]) for mode in result.fields["modes"]}
+
+
+# -- identities ----------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.slow
+@given(numeric, st.data())
+@settings(max_examples=25)
+def test_modes_do_not_depend_on_coordinates_nor_on_output_injection(sample: Sample, data: st.DataObject) -> None:
+    """(T A T⁻¹, C T⁻¹) has the same ranks; A + L C the same unobservable modes and the same rank of 𝒪."""
+    drawn, back = data.draw(unimodular(sample.order))
+    T, inverse, plant = sympy.Matrix(drawn), sympy.Matrix(back), plant_of(sample)
+    L = sympy.Matrix(data.draw(st.lists(st.integers(-2, 2), min_size=sample.order, max_size=sample.order)))
+    here = symobs.pbh(plant)
+    moved = symobs.pbh(symobs.StateSpace(T * plant.A * inverse, None, plant.C * inverse))
+    assert by_eigenvalue(moved) == by_eigenvalue(here)
+    injected = symobs.StateSpace(plant.A + L * plant.C, None, plant.C)
+    assert symobs.pbh(injected).fields["fixed_polynomial"] == here.fields["fixed_polynomial"]
+    assert symobs.detectability(injected).verdict == symobs.detectability(plant).verdict
+    assert symobs.observability(injected).fields["rank"] == symobs.observability(plant).fields["rank"]
+
+
+@given(numeric, st.sampled_from([1, -1]))
+@settings(max_examples=25)
+def test_dual_pairs_have_the_same_ranks(sample: Sample, sign: int) -> None:
+    plant = plant_of(sample)
+    found: Any = symobs.dual(plant, sign=sign)
+    dual = symobs.StateSpace(found.A, found.B, found.C, found.D)
+    assert symobs.controllability(dual).fields["rank"] == symobs.observability(plant).fields["rank"]
+    assert symobs.observability(dual).fields["rank"] == symobs.controllability(plant).fields["rank"]
+    assert found.dual_controllability_rank == found.observability_rank == symobs.observability(plant).fields["rank"]
+    again: Any = symobs.dual(dual, sign=sign)
+    assert (again.A, again.B, again.C, again.D) == (plant.A, plant.B, plant.C, plant.D)
+    if sign == 1:
+        assert symobs.stabilizability(dual).verdict == symobs.detectability(plant).verdict
+        assert (
+            symobs.pbh(dual, of="controllability").fields["fixed_polynomial"]
+            == (symobs.pbh(plant).fields["fixed_polynomial"])
+        )
+
+
+@given(numeric)
+@settings(max_examples=25)
+def test_the_parts_have_the_zeros_and_the_spectra_they_should(sample: Sample) -> None:
+    plant = plant_of(sample)
+    found: Any = symobs.decomposition(plant)
+    sizes = [found.sizes[name] for name in ("co", "c_no", "nc_o", "nc_no")]
+    kind = [k for k, size in enumerate(sizes) for _ in range(size)]
+    order = sample.order
+    allowed = {(0, 0), (0, 2), (1, 0), (1, 1), (1, 2), (1, 3), (2, 2), (3, 2), (3, 3)}
+    for i, j in product(range(order), repeat=2):
+        assert found.A[i, j] == 0 or (kind[i], kind[j]) in allowed
+    assert all(found.B[i, 0] == 0 for i in range(order) if kind[i] > 1)
+    assert all(found.C[0, j] == 0 for j in range(order) if kind[j] in {1, 3})
+    polynomials = []
+    for k in range(4):
+        there = [i for i in range(order) if kind[i] == k]
+        block = found.A.extract(there, there) if there else sympy.zeros(0, 0)
+        polynomials.append(block.charpoly(s).as_expr() if there else sympy.Integer(1))
+    hidden = symobs.pbh(plant).fixed_polynomial
+    unmoved = symobs.pbh(plant, of="controllability").fixed_polynomial
+    assert sympy.expand(polynomials[1] * polynomials[3] - hidden) == 0
+    assert sympy.expand(polynomials[2] * polynomials[3] - unmoved) == 0
+    assert sympy.expand(sympy.prod(polynomials) - plant.A.charpoly(s).as_expr()) == 0
+    expected = (plant.C * (s * sympy.eye(order) - plant.A).adjugate() * plant.B)[0] / plant.A.charpoly(s).as_expr()
+    assert sympy.cancel(found.transfer_function - expected) == 0
+    assert sympy.degree(sympy.fraction(sympy.cancel(expected))[1], s) == found.minimal_order
+
+
+@given(plants(("dense", "hidden", "defective", "parametric"), largest=4))
+@settings(max_examples=30)
+def test_the_modal_form_is_similar_and_block_diagonal(sample: Sample) -> None:
+    plant = plant_of(sample)
+    found: Any = symobs.canonical_form(plant, kind="modal")
+    T, n = found.T, sample.order
+    assert all(sympy.cancel(entry) == 0 for entry in found.A * T - T * plant.A)
+    assert sympy.cancel(T.det()) != 0
+    rows = [{i, j} for i in range(n) for j in range(n) if found.A[i, j] != 0]
+    largest = max((len(component) for component in components(n, rows)), default=1)
+    factors = sympy.factor_list(plant.A.charpoly(s).as_expr(), s)[1]
+    assert largest <= max(sympy.degree(factor, s) * power for factor, power in factors if factor.has(s))
+
+
+def components(n: int, edges: list[set[int]]) -> list[set[int]]:
+    found = [{i} for i in range(n)]
+    for edge in edges:
+        joined = set().union(*(part for part in found if part & edge))
+        found = [part for part in found if not part & edge] + [joined]
+    return found
+
+
+# -- another system ------------------------------------------------------------------------------------------------------
+
+COUNT = 10_000 if FULL else 150
+#: For each plant: the rank of 𝒪, the dimension of its kernel, and the polynomial of A on the kernel, highest power first.
+SCRIPT = """
+obs(A,C)={my(R=C,K=C);for(k=1,matsize(A)[1]-1,K=K*A;R=matconcat([R;K]));R};
+fixed(A,N)={my(X);if(matsize(N)[2]==0,return([1]));X=matinverseimage(N,A*N);Vec(charpoly(X))};
+say(A,C)={my(O=obs(A,C),N=matker(O));print(matrank(O)," ",matsize(N)[2]," ",fixed(A,N))};
+"""
+
+
+def random_pair(generator: random.Random) -> tuple[list[list[int]], list[list[int]]]:
+    """Return a pair of order 2 to 4 with one or two outputs, often with something hidden."""
+    n, p = generator.randint(2, 4), generator.randint(1, 2)
+    A = [[generator.randint(-2, 2) for _ in range(n)] for _ in range(n)]
+    C = [[generator.randint(-1, 1) for _ in range(n)] for _ in range(p)]
+    if generator.random() < 0.7:
+        hidden = generator.randint(1, n - 1)
+        for row in A[hidden:]:
+            row[:hidden] = [0] * hidden
+        for row in C:
+            row[:hidden] = [0] * hidden
+        i, j = generator.sample(range(n), 2)
+        factor = generator.choice([-1, 1, 2])
+        for row in (*A, *C):  # x = T x̄ with T = I + factor eᵢeⱼᵀ
+            row[j] += factor * row[i]
+        A[i] = [x - factor * y for x, y in zip(A[i], A[j], strict=True)]
+    return A, C
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(shutil.which("gp") is None, reason="PARI is not installed")
+def test_random_plants_agree_with_pari(record_property: Any) -> None:
+    generator = random.Random(20)  # noqa: S311 - the same plants in every run
+    pairs = [random_pair(generator) for _ in range(COUNT)]
+    matrices = [
+        "say(" + ",".join(f"[{';'.join(','.join(map(str, r)) for r in M)}]" for M in pair) + ");" for pair in pairs
+    ]
+    told = subprocess.run(
+        ["gp", "-q", "-f"],
+        input="\n".join([*(line for line in SCRIPT.strip().splitlines()), *matrices]),
+        text=True,
+        capture_output=True,
+        check=True,
+    ).stdout.split("\n")[:COUNT]
+    deficient = 0
+    for (A, C), line in zip(pairs, told, strict=True):
+        rank, hidden, polynomial = line.split(" ", 2)
+        plant = symobs.StateSpace(A, None, C)
+        found = symobs.observability(plant)
+        assert (found.fields["rank"], len(found.fields["kernel"])) == (int(rank), int(hidden)), (A, C)
+        coefficients = tuple(sympy.Rational(x) for x in polynomial.strip("[] ").split(","))
+        fixed: Any = symobs.pbh(plant)
+        assert tuple(sympy.Poly(fixed.fixed_polynomial, s).all_coeffs()) == coefficients, (A, C)
+        unseen = sympy.Poly(fixed.fixed_polynomial, s)
+        for mode in fixed.fields["modes"]:
+            root = mode["eigenvalue"].factor
+            shared = unseen.rem(sympy.Poly(sympy_scalar(root, {}), s)).is_zero
+            assert mode["observable"] == (not shared), (A, C)
+        deficient += int(hidden) > 0
+    record_property("deficient", deficient)
+    assert deficient > COUNT / 2
+
+
+# -- eigenvalues of every kind -------------------------------------------------------------------------------------------
+
+CUBIC = "[0 1 0 0; 0 0 1 0; 1 1 0 0; 0 0 0 -1]"
+
+
+def test_eigenvalues_without_closed_form_are_named_and_told_apart() -> None:
+    """x³ − x − 1 has one positive root and two of negative real part −0.66."""
+    modes = symobs.pbh(symobs.StateSpace(CUBIC, None, "[0 0 0 1]")).fields["modes"]
+    assert [str(mode["eigenvalue"]) for mode in modes] == ["-1", *(f"CRootOf(s**3 - s - 1, {k})" for k in range(3))]
+    assert [mode["stable"] for mode in modes] == [True, False, True, True]
+    assert [(mode["rank"], mode["observable"]) for mode in modes] == [(4, True), *[(3, False)] * 3]
+    assert str(modes[1]["matrix"][0][0]) == "-CRootOf(s**3 - s - 1, 0)"
+
+
+def test_roots_that_sympy_gives_as_multiples_of_others_are_told_apart() -> None:
+    """The roots of s⁴ + 2 s³ + 4 s² − 8 s + 16 are twice those of s⁴ + s³ + s² − s + 1, two on either side."""
+    modes = symobs.pbh(symobs.StateSpace("[0 1 0 0; 0 0 1 0; 0 0 0 1; -16 8 -4 -2]", None, "[1 0 0 0]")).fields["modes"]
+    found = [mode["stable"] for mode in modes]
+    roots = [sympy.CRootOf(s**4 + 2 * s**3 + 4 * s**2 - 8 * s + 16, k) for k in range(4)]
+    assert found == [bool(sympy.re(root.evalf()) < 0) for root in roots]
+    assert found.count(True) == 2
+
+
+@pytest.mark.parametrize(
+    ("A", "stable"),
+    [
+        ("[0 1; 1 1]", {"1/2 + sqrt(5)/2": False, "1/2 - sqrt(5)/2": True}),
+        ("[0 1; -1 -3]", {"-3/2 + sqrt(5)/2": True, "-3/2 - sqrt(5)/2": True}),
+        ("[0 1; 2 0]", {"sqrt(2)": False, "-sqrt(2)": True}),
+        ("[0 1; -2 -2]", {"-1 + I": True, "-1 - I": True}),
+        ("[0 1; -1 0]", {"I": False, "-I": False}),
+        ("[0 0; 0 -1]", {"0": False, "-1": True}),
+    ],
+)
+def test_each_eigenvalue_is_stable_or_not(A: str, stable: dict[str, bool]) -> None:
+    modes = symobs.pbh(symobs.StateSpace(A, None, "[1 0]")).fields["modes"]
+    assert {str(mode["eigenvalue"]): mode["stable"] for mode in modes} == stable
+
+
+@pytest.mark.parametrize(
+    ("A", "stable"),
+    [
+        ("[1/2 0; 0 -1]", {"1/2": True, "-1": False}),
+        ("[0 1; -1 0]", {"I": False, "-I": False}),
+        ("[0 1; -1/2 0]", {"sqrt(2)*I/2": True, "-sqrt(2)*I/2": True}),
+        ("[0 1; 1 1]", {"1/2 + sqrt(5)/2": False, "1/2 - sqrt(5)/2": True}),
+    ],
+)
+def test_each_mode_is_inside_the_unit_circle_or_not(A: str, stable: dict[str, bool]) -> None:
+    modes = symobs.pbh(symobs.StateSpace(A, None, "[1 0]", dt=1)).fields["modes"]
+    assert {str(mode["eigenvalue"]): mode["stable"] for mode in modes} == stable
+
+
+@given(st.lists(st.integers(-5, 5), min_size=3, max_size=5), st.booleans())
+@settings(max_examples=12)
+def test_modes_without_closed_form_agree_with_numeric_roots(coefficients: list[int], discrete: bool) -> None:  # noqa: FBT001
+    n = len(coefficients)
+    A = [[int(j == i + 1) for j in range(n)] for i in range(n - 1)] + [[-c for c in reversed(coefficients)]]
+    plant = symobs.StateSpace(A, None, [[1] + [0] * (n - 1)], dt=int(discrete))
+    symbol = sympy.Symbol("z" if discrete else "s")
+    told: dict[Any, list[bool]] = {}
+    for mode in symobs.pbh(plant).fields["modes"]:
+        if not mode["eigenvalue"].is_closed:
+            told.setdefault(mode["eigenvalue"].factor, []).append(mode["stable"])
+    for factor, stable in told.items():
+        polynomial = sympy.Poly(sympy_scalar(factor, {}), symbol)
+        roots = polynomial.nroots(n=20)
+        margins = [float(abs(r) - 1 if discrete else sympy.re(r)) for r in roots]
+        real = sorted(r for r in roots if r.is_real)
+        if min(map(abs, margins)) < 1e-9:
+            continue
+        assert [stable[k] for k in range(len(real))] == [bool(abs(r) < 1 if discrete else r < 0) for r in real]
+        assert stable.count(True) == stable_count(margins) * (len(stable) // polynomial.degree())
+
+
+def stable_count(margins: list[float]) -> int:
+    return sum(margin < 0 for margin in margins)
+
+
+# -- detectability -------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("A", "C", "meaning", "verdict"),
+    [
+        ("[-1 0; 0 1]", "[0 1]", "asymptotic", "yes"),
+        ("[1 0; 0 -1]", "[0 1]", "asymptotic", "no"),
+        ("[0 1; 0 -b]", "[0 1]", "asymptotic", "no"),
+        ("[0 1; 0 -b]", "[0 1]", "lyapunov", "yes"),
+        ("[0 1 0; 0 0 0; 0 0 1]", "[0 0 1]", "lyapunov", "no"),  # a double integrator hidden: it grows
+        ("[0 0 0; 0 0 0; 0 0 1]", "[0 0 1]", "lyapunov", "yes"),  # two integrators apart do not
+        ("[0 1 0; -4 0 0; 0 0 1]", "[0 0 1]", "lyapunov", "yes"),
+        ("[0 1 0; -4 0 0; 0 0 1]", "[0 0 1]", "asymptotic", "no"),
+        ("[0 1; -2 -3]", "[1 c]", "asymptotic", "yes"),  # whatever is hidden for some c is stable
+        ("[0 1; 2 1]", "[1 c]", "asymptotic", "conditional"),  # at c = −1/2 the mode 2 is hidden
+        ("[a 0; 0 1]", "[0 1]", "asymptotic", "conditional"),
+        ("[a 0; 0 1]", "[0 1]", "lyapunov", "conditional"),
+    ],
+)
+def test_detectable_or_not(A: str, C: str, meaning: str, verdict: str) -> None:
+    result = symobs.detectability(symobs.StateSpace(A, None, C), meaning=meaning)
+    assert result.verdict == verdict
+    dual = symobs.StateSpace(symobs.StateSpace(A).A.T, symobs.StateSpace(A, None, C).C.T)
+    assert symobs.stabilizability(dual, meaning=meaning).verdict == verdict
+    assert result.derivation.check() is not None
+
+
+def test_conditions_of_detectability() -> None:
+    at = symobs.StateSpace("[a 0; 0 1]", None, "[0 1]")
+    assert list(map(str, symobs.detectability(at).holds_where)) == ["-a > 0"]
+    assert list(map(str, symobs.detectability(at, meaning="lyapunov").holds_where)) == ["-a >= 0"]
+    lost = symobs.detectability(symobs.StateSpace("[0 1; 2 1]", None, "[1 c]"))
+    assert [str(c) for c in lost.holds_where] == ["2*c + 1 != 0"]
+
+
+def test_discrete_detectability_looks_at_the_unit_circle() -> None:
+    for mode, verdict in (("1/2", "yes"), ("-1", "no"), ("2", "no")):
+        plant = symobs.StateSpace(f"[{mode} 0; 0 3]", None, "[0 1]", dt=1)
+        assert symobs.detectability(plant).verdict == verdict
+    assert (
+        symobs.detectability(symobs.StateSpace("[-1 0; 0 3]", None, "[0 1]", dt=1), meaning="lyapunov").verdict == "yes"
+    )
+
+
+x = Scalar.symbol("s")
+
+
+@pytest.mark.parametrize(
+    ("polynomial", "discrete", "boundary", "marginal", "beyond"),
+    [
+        (x, False, True, True, False),
+        (x**2, False, None, False, False),
+        (x**2 * (x + 1), False, None, False, False),
+        (x**2 + 4, False, True, True, False),
+        (x**4 + x**2 * 3 + 1, False, True, True, False),
+        (x**4 - x**2 - 1, False, False, False, True),
+        (x**4 + 1, False, False, False, True),
+        (x**3 - x - 1, False, False, False, True),
+        (x - 1, True, True, True, False),
+        (x**2 + x + 1, True, True, True, False),
+        (x**2 + x * 3 + 1, True, False, False, True),
+        (x * 2 - 1, True, False, True, False),
+    ],
+)
+def test_what_lies_on_the_boundary_and_beyond(
+    polynomial: Scalar,
+    discrete: bool,  # noqa: FBT001
+    boundary: bool | None,  # noqa: FBT001
+    marginal: bool,  # noqa: FBT001
+    beyond: bool,  # noqa: FBT001
+) -> None:
+    if boundary is not None:
+        assert on_boundary(polynomial, "s", {}, discrete=discrete) == boundary
+    assert is_marginal(polynomial, "s", {}, discrete=discrete) == marginal
+    assert is_beyond(polynomial, "s", {}, discrete=discrete) == beyond
+
+
+# -- the field of an eigenvalue --------------------------------------------------------------------------------------------
+
+
+@given(st.lists(st.integers(-3, 3), min_size=3, max_size=3), st.lists(st.integers(-3, 3), min_size=3, max_size=3))
+def test_inverses_in_a_cubic_field(left: list[int], right: list[int]) -> None:
+    root = Scalar.symbol(EIGENVALUE)
+    field = AlgebraicExtension(root**3 - root - 1, EIGENVALUE)
+    x, y = (sum((root**k * c for k, c in enumerate(part)), Scalar.of(0)) for part in (left, right))
+    assert field.reduce(x * y) == field.reduce(field.reduce(x) * field.reduce(y))
+    if any(left):
+        assert field.reduce(x * field.inverse(x)).is_one
+
+
+# -- nothing false gets through ------------------------------------------------------------------------------------------
+
+
+def test_a_wrong_rank_at_an_eigenvalue_is_rejected() -> None:
+    result = symobs.pbh(symobs.StateSpace(CUBIC, None, "[0 0 0 1]"))
+    for ranks in ((3, 3), (4, 4), (4, 2), (4,)):
+        with pytest.raises((CertificateRejected, ValueError)):
+            result.with_answer("ranks", ranks)
+
+
+def test_a_page_cannot_give_a_wrong_rank_at_an_eigenvalue() -> None:
+    from dataclasses import replace  # noqa: PLC0415
+
+    from symobs.proof.derivation import CaseStep  # noqa: PLC0415
+    from symobs.proof.derivation.builder import relation  # noqa: PLC0415
+
+    derivation: Any = symobs.pbh(symobs.StateSpace("[0 -1 0; 1 0 1; 0 0 0]", None, "[1 0 0]")).derivation
+    *before, section = derivation.steps
+    at = [k for k, step in enumerate(section.steps) if isinstance(step, CaseStep)]
+    assert len(at) == 2
+    for k in at:
+        case = section.steps[k]
+        (line,) = case.steps[0].relations
+        for other in (
+            replace(line, members=(*line.members[:-1], relation(2).members[0])),
+            replace(line, members=(line.members[0], relation(Matrix.zeros(4, 3)).members[0], line.members[2])),
+        ):
+            wrong = replace(case, steps=(replace(case.steps[0], relations=(other,)),))
+            steps = (*section.steps[:k], wrong, *section.steps[k + 1 :])
+            with pytest.raises(DerivationRejected):
+                replace(derivation, steps=(*before, replace(section, steps=steps))).check()
+
+
+@pytest.mark.parametrize("call", [
+    lambda p: symobs.pbh(p, of="beauty"),
+    lambda p: symobs.detectability(p, meaning="somehow"),
+    lambda p: symobs.dual(p, sign=2),
+    lambda p: symobs.canonical_form(p, kind="normal"),
+])  # fmt: skip
+def test_what_is_not_known_is_refused_with_the_repair(call: Any) -> None:
+    with pytest.raises(InputError) as caught:
+        call(symobs.StateSpace("[0 1; 0 -1]", "[0; 1]", "[1 0]"))
+    assert caught.value.where.startswith("specification.")
+    assert caught.value.repair.startswith("write ")
+
+
+def test_pages_of_every_kind_render() -> None:
+    from symobs.tasks.result import Document  # noqa: PLC0415
+
+    plant = symobs.StateSpace("[0 1; 0 -b]", "[0; 1]", "[0 1]", symbols={"b": "positive"})
+    results = (
+        symobs.pbh(plant),
+        symobs.pbh(plant, of="controllability"),
+        symobs.detectability(plant, meaning="lyapunov"),
+        symobs.dual(plant, sign=-1),
+        symobs.decomposition(plant),
+        symobs.canonical_form(plant, kind="controllable"),
+    )
+    for name in ("latex", "text", "json"):
+        assert render(Document("all", "", results), name)
+
+
+@pytest.mark.parametrize(
+    ("A", "rest"), [("[m 0; 0 -2]", "[0; k]"), ("[m 0; 0 -2]", "[0; 1]"), ("[1 0; 0 -k]", "[0; 1]")]
+)
+def test_pages_of_plants_that_are_never_controllable_or_observable(A: str, rest: str) -> None:
+    """What the input never moves has a letter of its own in the rank test, and the page speaks of both."""
+    result = symobs.stabilizability(symobs.StateSpace(A, rest))
+    assert result.derivation.check().defines("N")
+    dual = symobs.detectability(symobs.StateSpace(A, None, rest.replace(";", "")))
+    assert dual.derivation.check().defines("N")
+    assert dual.verdict == result.verdict
+
+
+# -- which root is stable ---------------------------------------------------------------------------------------------
+
+#: Irreducible, lowest coefficient first, with roots on both sides of the axis or on it; the last two are self-reciprocal.
+MIXED = ((3606, -36, 106, -12, 1), (1, 0, 3, 0, 1), (1, 0, 0, 0, 1), (5, 1, 0, 1), (3, 1, -5, 1, 3), (3, 1, 5, 1, 3))
+
+
+@pytest.mark.parametrize("coefficients", MIXED)
+@pytest.mark.parametrize("discrete", [False, True])
+def test_roots_are_told_apart_in_the_order_of_sympy(coefficients: tuple[int, ...], *, discrete: bool) -> None:
+    x = sympy.Symbol("s")
+    polynomial = sympy.Poly(coefficients[::-1], x)
+    assert polynomial.is_irreducible
+    wanted = []
+    for k in range(polynomial.degree()):
+        value = sympy.CRootOf(polynomial, k).evalf(12)
+        wanted.append(bool((abs(value) - 1 if discrete else sympy.re(value)) < -1e-9))
+    factor = sum((Scalar.symbol("s") ** k * c for k, c in enumerate(coefficients)), Scalar.of(0))
+    assert stable_roots(factor, "s", discrete=discrete) == tuple(wanted)
+
+
+def test_roots_are_told_apart_without_sympy_s_own_refinement(monkeypatch: pytest.MonkeyPatch) -> None:
+    """SymPy isolates them quickly and takes seconds to enclose them."""
+    monkeypatch.delattr(sympy.CRootOf, "eval_rational")
+    s = Scalar.symbol("s")
+    assert stable_roots(s**4 - 12 * s**3 + 106 * s**2 - 36 * s + 3606, "s", discrete=False) == (
+        True,
+        True,
+        False,
+        False,
+    )
+
+
+def test_a_root_beside_the_boundary_is_told_from_one_on_it() -> None:
+    """Parts of 10⁻⁴⁰ decide."""
+    s = Scalar.symbol("s")
+    assert stable_roots(10**40 * (s**2 + 1) + s, "s", discrete=False) == (True, True)
+    assert stable_roots(10**40 * (s**2 + 1) - s, "s", discrete=False) == (False, False)
+    assert stable_roots(s**2 + 1, "s", discrete=False) == (False, False)
+    assert stable_roots(10**40 * s**2 + s + 10**40 - 1, "s", discrete=True) == (True, True)
+    assert stable_roots(10**40 * s**2 + s + 10**40, "s", discrete=True) == (False, False)

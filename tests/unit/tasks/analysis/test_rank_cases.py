@@ -1,0 +1,515 @@
+"""Rank with cases: the exact exception sets of named plants, and ranks at a thousand points of each by plain fractions.
+
+Expected strata are those of the literature and of hand computation; points on every stratum are found by formulas
+written here, and the rank at every point by elimination of fractions.
+"""
+
+from __future__ import annotations
+
+import itertools
+from dataclasses import dataclass, field, replace
+from fractions import Fraction
+from functools import cache
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+import symobs
+from symobs.exact import Ideal, Matrix, Scalar
+from symobs.formula.expression import parse_scalar
+from symobs.formula.tree import Conjunction, Letter, Literal, Relation
+from symobs.ground.errors import CertificateRejected, DerivationRejected
+from symobs.proof.derivation import CaseStep, Given
+from symobs.system.conditions import real_consequences
+from symobs.tasks.analysis.rank.rank_test import RankResult
+from symobs.tasks.analysis.strata.loci import Region, loci
+from tests.support.claims.claims import Setting, applicable, conditions_hold, rank_holds
+from tests.support.independent_algebra.plain import (
+    has_sign,
+    matrix_at,
+    observability_rows,
+    random_fraction,
+    rank_of,
+    seeded,
+    value_at,
+)
+from tests.support.sampling import FULL
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator, Mapping
+
+pytestmark = pytest.mark.slow
+
+
+POINTS, ON_EACH = (1_000, 25) if FULL else (300, 10)
+Point = dict[str, Fraction]
+
+
+@dataclass(frozen=True)
+class Plant:
+    """A plant, the signs of its parameters, its exceptions (equations → rank) and ways onto each of them."""
+
+    A: str
+    C: str
+    signs: Mapping[str, str]
+    rank: int
+    exceptions: Mapping[str, int] = field(default_factory=dict)
+    onto: tuple[Callable[[Point], Mapping[str, Any]], ...] = ()
+
+
+def real(names: str) -> dict[str, str]:
+    return dict.fromkeys(names.split(), "real")
+
+
+def positive(names: str) -> dict[str, str]:
+    return dict.fromkeys(names.split(), "positive")
+
+
+PENDULUM, DAMPED = "[0 1; -w^2 -b]", positive("w b")
+MASSES = "[0 1 0 0; -(k1+k)/m1 0 k/m1 0; 0 0 0 1; k/m2 0 -(k2+k)/m2 0]"
+SPRINGS = positive("m1 m2 k1 k2") | {"k": "nonnegative"}
+CART = "[0 1 0 0; 0 0 -m*g/M 0; 0 0 0 1; 0 0 (M+m)*g/(M*l) 0]"
+CHAIN = (
+    "[0 1 0 0 0 0; -(k1+ka)/m1 0 ka/m1 0 0 0; 0 0 0 1 0 0; ka/m2 0 -(ka+kb)/m2 0 kb/m2 0; 0 0 0 0 0 1;"
+    " 0 0 kb/m3 0 -kb/m3 0]"
+)
+THREE = positive("m1 m2 m3 k1 ka kb")
+
+PLANTS = {
+    "C = [a 0]": Plant(PENDULUM, "[a 0]", DAMPED | real("a"), 2, {"a": 0}, (lambda _: {"a": 0},)),
+    "C = [a c]": Plant(
+        PENDULUM,
+        "[a c]",
+        DAMPED | real("a c"),
+        2,
+        {"a^2 - a b c + w^2 c^2": 1, "a, c": 0},
+        (lambda p: {"b": (p["a"] ** 2 + p["w"] ** 2 * p["c"] ** 2) / (p["a"] * p["c"])}, lambda _: {"a": 0, "c": 0}),
+    ),
+    "C = [0 1]": Plant(PENDULUM, "[0 1]", DAMPED, 2),
+    "4×2 without common root": Plant(PENDULUM, "[a 0; 1-a 0]", DAMPED | real("a"), 2),
+    "4×2 with common root": Plant(
+        "[0 1; 0 0]", "[a 0; b 0]", real("a b"), 2, {"a, b": 0}, (lambda _: {"a": 0, "b": 0},)
+    ),
+    "two masses, one position": Plant(MASSES, "[1 0 0 0]", SPRINGS, 4, {"k": 2}, (lambda _: {"k": 0},)),
+    "two masses, other position": Plant(MASSES, "[0 0 1 0]", SPRINGS, 4, {"k": 2}, (lambda _: {"k": 0},)),
+    "two masses, sum": Plant(
+        MASSES,
+        "[1 0 1 0]",
+        SPRINGS,
+        4,
+        {"m2 k1 - m1 k2 + 2 k (m2 - m1)": 2},
+        (lambda p: {"k1": (p["m1"] * p["k2"] - 2 * p["k"] * (p["m2"] - p["m1"])) / p["m2"]},),
+    ),
+    "two masses, combination": Plant(
+        MASSES,
+        "[c1 0 c2 0]",
+        SPRINGS | real("c1 c2"),
+        4,
+        {"m2 k c1^2 + (m2 k1 - m1 k2 - m1 k + m2 k) c1 c2 - m1 k c2^2": 2, "c1, c2": 0, "c2, k": 2},
+        (
+            lambda _: {"c1": 0, "c2": 0},
+            lambda _: {"c2": 0, "k": 0},
+            lambda _: {"c1": 0, "k": 0},
+            lambda p: {
+                "k1": (
+                    p["m1"] * p["k"] * p["c2"] ** 2
+                    - p["m2"] * p["k"] * p["c1"] ** 2
+                    - (p["m2"] * p["k"] - p["m1"] * p["k"] - p["m1"] * p["k2"]) * p["c1"] * p["c2"]
+                )
+                / (p["m2"] * p["c1"] * p["c2"])
+            },
+        ),
+    ),
+    "free masses, difference": Plant(
+        "[0 1 0 0; -k/m1 0 k/m1 0; 0 0 0 1; k/m2 0 -k/m2 0]", "[1 0 -1 0]", positive("m1 m2 k"), 2
+    ),
+    "cart-pole, position": Plant(CART, "[1 0 0 0]", positive("m M g l"), 4),
+    "cart-pole, velocity": Plant(CART, "[0 1 0 0]", positive("m M g l"), 3),
+    "cart-pole, angle": Plant(CART, "[0 0 1 0]", positive("m M g l"), 2),
+    "cart-pole, rate": Plant(CART, "[0 0 0 1]", positive("m M g l"), 2),
+    "cart-pole, combination": Plant(
+        CART,
+        "[c1 0 c2 0]",
+        positive("m M g l") | real("c1 c2"),
+        4,
+        {"c1": 2, "m l c1 - (M + m) c2": 2, "c1, c2": 0},
+        (
+            lambda _: {"c1": 0},
+            lambda p: {"c1": (p["M"] + p["m"]) * p["c2"] / (p["m"] * p["l"])},
+            lambda _: {"c1": 0, "c2": 0},
+        ),
+    ),
+    "cart-pole, two outputs": Plant(
+        CART,
+        "[c1 0 0 0; 0 0 c2 0]",
+        positive("m M g l") | real("c1 c2"),
+        4,
+        {"c1": 2, "c1, c2": 0},
+        (lambda _: {"c1": 0}, lambda _: {"c1": 0, "c2": 0}, lambda _: {"c2": 0}),
+    ),
+    "bridge": Plant(
+        "[-1/(R1*C1) 0; 0 -1/(R2*C2)]",
+        "[1 -1]",
+        positive("R1 R2 C1 C2"),
+        2,
+        {"R1 C1 - R2 C2": 1},
+        (lambda p: {"R1": p["R2"] * p["C2"] / p["C1"]},),
+    ),
+    "two outputs a, b": Plant(
+        "[0 1 0; 0 0 a; b 0 0]",
+        "[1 0 0; 0 a b]",
+        real("a b"),
+        3,
+        {"a, b": 2},
+        (lambda _: {"a": 0, "b": 0}, lambda _: {"a": 0}, lambda _: {"b": 0}),
+    ),
+    "diag(a, b, 1)": Plant(
+        "[a 0 0; 0 b 0; 0 0 1]",
+        "[1 1 0; 0 1 1]",
+        real("a b"),
+        3,
+        {"a - 1, b - 1": 2},
+        (lambda _: {"a": 1, "b": 1}, lambda _: {"a": 1}, lambda p: {"a": p["b"]}),
+    ),
+    "diag(a, b, c)": Plant(
+        "[a 0 0; 0 b 0; 0 0 c]",
+        "[1 1 1]",
+        real("a b c"),
+        3,
+        {"a - b": 2, "a - c": 2, "b - c": 2, "a - c, b - c": 1},
+        (
+            lambda p: {"a": p["b"]},
+            lambda p: {"a": p["c"]},
+            lambda p: {"b": p["c"]},
+            lambda p: {"a": p["c"], "b": p["c"]},
+        ),
+    ),
+    "rank 2 at one value of k": Plant(  # sympy issue 24613
+        "[0 0 0; 0 0 0; 0 0 0]",
+        "[2 -1 7; 1 2 2; 0 5 -3; 5 0 5+k]",
+        real("k"),
+        3,
+        {"k - 11": 2},
+        (lambda _: {"k": 11},),
+    ),
+    "for which k": Plant("[0 1; -2 k]", "[1 1]", real("k"), 2, {"k + 3": 1}, (lambda _: {"k": -3},)),
+    "a row of three": Plant(
+        "[0 0 0; 0 0 0; 0 0 0]",
+        "[a b c]",
+        real("a b c"),
+        1,
+        {"a, b, c": 0, "a": 1},
+        (lambda _: {"a": 0}, lambda _: {"a": 0, "b": 0}, lambda _: {"a": 0, "b": 0, "c": 0}),
+    ),
+    "a circle": Plant(  # not linear in a parameter; 3² + 4² = 5²
+        "[0 1; 0 0]",
+        "[a^2 + b^2 - 25 0]",
+        real("a b"),
+        2,
+        {"a^2 + b^2 - 25": 0},
+        (lambda _: {"a": 3, "b": 4}, lambda _: {"a": -5, "b": 0}),
+    ),
+    "squares": Plant("[0 1; 0 0]", "[a^2 + b^2 0]", real("a b"), 2, {"a, b": 0}, (lambda _: {"a": 0, "b": 0},)),
+    "never zero": Plant("[0 1; 0 0]", "[a^2 + a*b + b^2 + 1 0]", real("a b"), 2),
+    "two points": Plant(
+        "[0 1; 0 0]",
+        "[a*b-1 0; a-b 0]",
+        real("a b"),
+        2,
+        {"a - 1, b - 1": 0, "a + 1, b + 1": 0},
+        (lambda _: {"a": 1, "b": 1}, lambda _: {"a": -1, "b": -1}),
+    ),
+    "an elliptic curve": Plant(  # no equation can be solved rationally
+        "[a 0 0; 0 b 0; 0 0 0]",
+        "[1 1 0; 0 0 b^2 - a^3 - a^2 - 4]",
+        real("a b"),
+        3,
+        {"b^2 - a^3 - a^2 - 4": 2, "a - b": 2, "a - b, b^3 + 4": 1},
+        (lambda _: {"a": 0, "b": 2}, lambda p: {"a": p["b"]}, lambda _: {"a": 2, "b": 4}, lambda _: {"a": 0, "b": 0}),
+    ),
+    "chain of three masses": Plant(
+        CHAIN,
+        "[0 0 1 0 0 0]",
+        THREE,
+        6,
+        {"m3 k1 + m3 ka - m1 kb": 4},
+        (lambda p: {"kb": p["m3"] * (p["k1"] + p["ka"]) / p["m1"]},),
+    ),
+    "chain, two outputs": Plant(
+        CHAIN,
+        "[0 0 1 0 0 0; c1 0 0 0 c3 0]",
+        THREE | real("c1 c3"),
+        6,
+        {"m3 k1 + m3 ka - m1 kb, kb c1 - ka c3": 4},
+        (
+            lambda p: {
+                "kb": p["m3"] * (p["k1"] + p["ka"]) / p["m1"],
+                "c1": p["ka"] * p["c3"] * p["m1"] / (p["m3"] * (p["k1"] + p["ka"])),
+            },
+            lambda p: {"kb": p["m3"] * (p["k1"] + p["ka"]) / p["m1"]},
+        ),
+    ),
+}
+every_plant = pytest.mark.parametrize("name", PLANTS)
+
+
+@cache
+def result(name: str) -> RankResult:
+    plant = PLANTS[name]
+    found = symobs.observability(symobs.StateSpace(plant.A, None, plant.C, symbols=plant.signs))
+    assert isinstance(found, RankResult)
+    return found
+
+
+def points(name: str) -> Iterator[Point]:
+    """Yield random points, small integers too, then points on every stratum; all respect the declared signs."""
+    plant, generator = PLANTS[name], seeded(name)
+    for count in range(POINTS):
+        if count % 2:
+            yield {n: random_fraction(generator, sign) for n, sign in plant.signs.items()}
+        else:
+            least = {"positive": 1, "nonnegative": 0}
+            yield {n: Fraction(generator.randint(least.get(sign, -2), 2)) for n, sign in plant.signs.items()}
+    for onto in plant.onto:
+        for _ in range(ON_EACH):
+            point = {n: random_fraction(generator, sign) for n, sign in plant.signs.items()}
+            moved = {**point, **{n: Fraction(value) for n, value in onto(point).items()}}
+            if all(has_sign(value, plant.signs[n]) for n, value in moved.items()):
+                yield moved
+
+
+@every_plant
+def test_the_exceptions_are_the_expected_ones(name: str) -> None:
+    plant, found = PLANTS[name], result(name)
+    assert found.fields["rank"] == plant.rank
+    expected = {
+        (ideal_of([parse_scalar(text, plant.signs) for text in texts.split(",")]), rank)
+        for texts, rank in plant.exceptions.items()
+    }
+    told = {
+        (ideal_of([c.expression for c in case.when if c.operator == "=="]), case.result.fields["rank"])
+        for case in found.case_tree
+        if case.result is not None
+    }
+    assert told == expected
+    assert len(found.case_tree) == len(expected)
+    drops = any(rank < plant.rank for rank in plant.exceptions.values())
+    full = plant.rank == found.plant.order
+    assert found.verdict == ("no" if not full else "conditional" if drops else "yes")
+    assert not [c for c in found.holds_where if c.kind == "existence"] or (full and drops)
+
+
+def ideal_of(equations: list[Scalar]) -> frozenset[str]:
+    """Return what two systems of equations have in common exactly when they generate the same ideal."""
+    signless = (g if g.factors()[0].fraction() > 0 else -g for g in Ideal.of(equations).generators)
+    return frozenset(map(str, signless))
+
+
+@every_plant
+def test_rank_and_kernel_at_every_point(name: str) -> None:
+    """At each point exactly what applies there is right, and `conditions` hold exactly where the rank is n."""
+    found, special = result(name), 0
+    for point in points(name):
+        at = Setting.of(found.plant, {}, point)
+        rank = rank_of(observability_rows(at.A, at.C))
+        parts = list(applicable(found, point))
+        here = [case for case in found.case_tree if conditions_hold(case.when, point)]
+        if rank < PLANTS[name].rank:
+            assert here, point
+        special += bool(here)
+        for part in parts:
+            rank_holds(part, at)
+            assert matrix_at(part.plant.matrices.A, point) == at.A
+        if found.verdict == "conditional":
+            assert conditions_hold(found.holds_where, point) == (rank == len(at.A))
+        assert parts or rank < len(at.A)
+    assert special >= (ON_EACH if PLANTS[name].onto else 0) // 2
+
+
+@every_plant
+def test_what_is_missing_repairs_it(name: str) -> None:
+    """With a set of states measured too the rank is n at random points of the case; no smaller set does it there."""
+    found = result(name)
+    for point in itertools.islice(points(name), POINTS - 20, None):
+        at = Setting.of(found.plant, {}, point)
+        for part in applicable(found, point):
+            sets = part.fields["missing_measurements"]
+            order = len(at.A)
+            assert bool(sets) == (part.fields["rank"] < order)
+            for numbers in sets:
+                rows = [[Fraction(int(i + 1 == number)) for i in range(order)] for number in numbers]
+                assert rank_of(observability_rows(at.A, [*at.C, *rows])) == order
+
+
+@pytest.mark.parametrize(
+    ("name", "case", "sets"),
+    [
+        ("cart-pole, angle", None, [[1]]),
+        ("cart-pole, rate", None, [[1]]),
+        ("free masses, difference", None, [[1], [3]]),
+        ("bridge", 0, [[1], [2]]),
+        ("two masses, one position", 0, [[3], [4]]),
+        ("diag(a, b, c)", 3, [[1, 2], [1, 3], [2, 3]]),
+        ("C = [0 1]", None, []),
+    ],
+)
+def test_which_states_are_missing(name: str, case: int | None, sets: list[list[int]]) -> None:
+    found: Any = result(name) if case is None else result(name).case_tree[case].result
+    assert found.fields["missing_measurements"] == sets
+
+
+def test_the_dual_says_the_same() -> None:
+    for name in ("diag(a, b, c)", "C = [a c]", "cart-pole, angle"):
+        seen = result(name)
+        dual = symobs.StateSpace(seen.plant.A.T, seen.plant.C.T, symbols=dict(PLANTS[name].signs))
+        moved: Any = symobs.controllability(dual)
+        assert [case.when for case in moved.case_tree] == [case.when for case in seen.case_tree]
+        assert moved.fields["missing_inputs"] == seen.fields["missing_measurements"]
+        assert moved.to("text")
+
+
+@every_plant
+def test_every_page_is_checked(name: str) -> None:
+    result(name).derivation.check()
+    assert result(name).to("text")
+    assert result(name).to("json")
+
+
+# -- nothing else is accepted -------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("name", ["a circle", "an elliptic curve", "diag(a, b, c)", "C = [a c]"])
+def test_a_kernel_on_a_stratum_cannot_be_another_one(name: str) -> None:
+    for case in result(name).case_tree:
+        part: Any = case.result
+        kernel = part.answer["kernel"]
+        if part.answer["rank"]:
+            bent = kernel + Matrix.of([[int(i == j) for j in range(kernel.shape[1])] for i in range(kernel.shape[0])])
+            with pytest.raises(CertificateRejected):
+                part.with_answer("kernel", bent)
+        with pytest.raises(CertificateRejected):
+            part.with_answer("kernel", kernel * 0)
+        wrong = replace(part.piece, conditions=())
+        if any(c.operator == "==" for c in part.piece.conditions):
+            with pytest.raises(CertificateRejected):
+                replace(part, piece=wrong)
+
+
+def test_a_minor_must_not_vanish_anywhere_on_its_stratum() -> None:
+    """On a = c of diag(a, b, c) the rank is 2 only where b ≠ c: without that inequation the claim is refused."""
+    (part,) = (c.result for c in result("diag(a, b, c)").case_tree if str(c.when[0]) == "a - b == 0")
+    with pytest.raises(CertificateRejected):
+        replace(part, piece=replace(part.piece, conditions=()))  # type: ignore[type-var, union-attr]
+
+
+def test_a_case_says_no_more_than_its_equations() -> None:
+    page = symobs.observability(symobs.StateSpace("[a 0; 0 b]", None, "[1 c]")).derivation
+    a, b = Scalar.symbol("a"), Scalar.symbol("b")
+
+    def told(when: tuple[Relation, ...], substitution: dict[str, Scalar]) -> None:
+        given = Given((Relation((Letter("A"), Literal(Matrix.of([[a, 0], [0, b]]))), ("=",)),), silent=True)
+        replace(page, steps=(given, CaseStep(Conjunction(when), tuple(substitution.items()), ()))).check()
+
+    equal, zero = Relation((Literal(a), Literal(b)), ("=",)), Relation((Literal(b), Literal(Scalar.of(0))), ("=",))
+    told((equal, zero), {"a": Scalar.of(0), "b": Scalar.of(0)})
+    told((equal,), {"a": b})
+    told((equal,), {})
+    for wrong in ({"a": Scalar.of(0)}, {"a": b + 1}, {"a": b, "b": Scalar.of(1)}):
+        with pytest.raises(DerivationRejected):
+            told((equal,), wrong)
+
+
+# -- limits --------------------------------------------------------------------------------------------------------------
+
+
+def generic(order: int) -> symobs.StateSpace:
+    A = [[f"a{i}{j}" for j in range(order)] for i in range(order)]
+    return symobs.StateSpace(A, None, [[f"c{j}" for j in range(order)]])
+
+
+def test_a_generic_plant_keeps_its_determinant_unfactored() -> None:
+    found: Any = symobs.observability(generic(4))
+    assert (found.verdict, len(found.holds_where)) == ("conditional", 1)
+    assert found.holds_where[0].expression in {found.test_determinant, -found.test_determinant}
+    assert [case.result for case in found.case_tree] == [None]
+    assert "is not decided here" in " ".join(found.to("text").split())
+
+
+def test_what_cannot_be_written_down_is_undecided() -> None:
+    found: Any = symobs.observability(generic(5))
+    assert (found.verdict, found.fields["rank"], found.fields["determinant"]) == ("undecided", 5, None)
+    assert found.holds_where == ()
+    assert "too long to display" in " ".join(found.to("text").split())
+
+
+def test_a_chain_with_three_outputs_mixed_is_decided_everywhere() -> None:
+    """With c orthogonal to one mode v of the chain that mode is hidden, with cᵢ = mᵢ vᵢ the two others are.
+
+    v and the stiffness k1 follow from a rational eigenvalue μ by the rows of the chain from below.
+    """
+    signs = THREE | real("c1 c2 c3")
+    found: Any = symobs.observability(symobs.StateSpace(CHAIN, None, "[c1 0 c2 0 c3 0]", symbols=signs))
+    assert found.verdict == "conditional"
+    assert sorted(case.result.rank for case in found.cases) == [0, 2, 4, 4]
+    (condition,) = found.holds_where
+    generator = seeded("chain")
+    met: list[int] = []
+    while len(met) < 60:
+        p = {n: random_fraction(generator, sign) for n, sign in signs.items()}
+        mu, kind = -random_fraction(generator, "positive"), len(met) % 4
+        v2 = 1 + mu * p["m3"] / p["kb"]
+        v1 = (mu * p["m2"] * v2 + (p["ka"] + p["kb"]) * v2 - p["kb"]) / p["ka"]
+        if not v1 or not p["c1"]:
+            continue
+        p["k1"] = p["ka"] * v2 / v1 - mu * p["m1"] - p["ka"]
+        if p["k1"] <= 0:
+            continue
+        if kind == 1:
+            p["c3"] = -p["c1"] * v1 - p["c2"] * v2
+        elif kind:
+            p |= (
+                {"c1": p["m1"] * v1, "c2": p["m2"] * v2, "c3": p["m3"]}
+                if kind == 2
+                else dict.fromkeys(("c1", "c2", "c3"), Fraction(0))
+            )
+        at = Setting.of(found.plant, {}, p)
+        rank = rank_of(observability_rows(at.A, at.C))
+        (part,) = applicable(found, p)
+        rank_holds(part, at)
+        assert part.fields["rank"] == rank
+        assert (rank == 6) == (value_at(condition.expression, p) != 0)
+        met.append(rank)
+    assert set(met) == {0, 2, 4, 6}
+
+
+# -- loci -----------------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("equations", "signs", "expected"),
+    [
+        (["a^2 + b^2"], {}, ["a, b"]),
+        (["(a - b)^2 + c^2"], {}, ["a - b, c"]),
+        (["a^2 + 1"], {}, []),
+        (["a + b"], {"a": "positive", "b": "nonnegative"}, []),
+        (["a + b"], {"a": "nonnegative", "b": "nonnegative"}, ["a, b"]),
+        (["a^2 b"], {"a": "positive"}, ["b"]),
+        (["a b", "a c"], {}, ["a", "b, c"]),
+        (["a b - 1", "a"], {}, []),
+        (["a^2 - 1"], {}, ["a - 1", "a + 1"]),
+        (["a^2 - 1"], {"a": "positive"}, ["a - 1"]),
+        (["a^2 + a b + b^2"], {}, ["a, b"]),
+    ],
+)
+def test_loci(equations: list[str], signs: dict[str, str], expected: list[str]) -> None:
+    names = real("a b c") | signs
+    found = loci([parse_scalar(text, names) for text in equations], Region(names))
+    wanted = {ideal_of([parse_scalar(text, names) for text in texts.split(",")]) for texts in expected}
+    assert {ideal_of(list(locus.equations)) for locus in found} == wanted
+
+
+def test_consequences_are_for_real_parameters_only() -> None:
+    a, b = Scalar.symbol("a"), Scalar.symbol("b")
+    assert real_consequences(a**2 - b**2, {}) == ()
+    assert real_consequences(a * b + 1, {}) == ()
+    assert set(real_consequences(a**2 * b**2 + b**4, {})) == {a * b, b}

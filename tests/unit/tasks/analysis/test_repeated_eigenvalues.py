@@ -1,0 +1,382 @@
+"""Modes where eigenvalues meet: what is told of each is true at every point, computed anew in SymPy's rational matrices.
+
+Plants are drawn so that their eigenvalues are simple in the parameters, and points so that many of them meet.
+"""
+
+from __future__ import annotations
+
+import ast
+import json
+from collections import Counter
+from dataclasses import replace
+from fractions import Fraction
+from itertools import product
+from typing import Any
+
+import pytest
+import sympy
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import symobs
+from symobs.exact import EIGENVALUE, Scalar
+from symobs.exact.ideals import ideal
+from symobs.formula.tree import Conjunction, Environment
+from symobs.ground.errors import CertificateRejected, DerivationRejected
+from symobs.proof.certificate.claims import Claim, verify
+from symobs.proof.derivation import CaseStep, Derivation, Equal, Section
+from symobs.proof.derivation.builder import relation
+from symobs.proof.derivation.facts.properties import PREDICATES
+from symobs.stability.criteria.stability import meetings
+from symobs.tasks.analysis.strata.repeated_eigenvalues import distances
+from tests.programs.campaign.points import answer_at, holds
+from tests.support.problems.strategies import unimodular
+
+pytestmark = pytest.mark.slow
+
+s = sympy.Symbol("s")
+NAMES = ("a", "b")
+
+
+@st.composite
+def hidden_plants(draw: st.DrawFn) -> tuple[Any, Any]:
+    """Triangular matrices, or with a pair ± √(q r) on the diagonal, in other coordinates; C sees some states, or none."""
+    n = draw(st.integers(2, 3))
+    a, b = sympy.symbols(NAMES)
+    numbers = [sympy.Integer(k) for k in (0, 0, 1, -1, 2)]
+    entry = st.sampled_from([*numbers, a, b, a + b, 1 - a, a * b, a - 1])
+    A = sympy.zeros(n, n)
+    for i, j in product(range(n), repeat=2):
+        if i <= j:
+            A[i, j] = draw(entry)
+    if draw(st.booleans()):
+        A[1, 1], A[1, 0] = A[0, 0], draw(entry)
+    seen = draw(st.integers(0, n - 1))
+    C = sympy.Matrix(1, n, lambda _, j: draw(entry) if j >= n - seen else 0)
+    T, inverse = draw(unimodular(n))
+    return sympy.Matrix(T) * A * sympy.Matrix(inverse), C * sympy.Matrix(inverse)
+
+
+def told(task: str, A: Any, C: Any, **specification: str) -> dict[str, Any]:
+    """Return the JSON of an answer about (C, A), or about its dual."""
+    plant = symobs.StateSpace(A, None, C) if task in {"pbh", "detectability"} else symobs.StateSpace(A.T, C.T)
+    found: dict[str, Any] = json.loads(getattr(symobs, task)(plant, **specification).to_json())["results"][0]
+    return found
+
+
+def at_point(matrix: Any, point: dict[str, Fraction]) -> Any:
+    return matrix.subs({name: sympy.Rational(v.numerator, v.denominator) for name, v in point.items()})
+
+
+def hidden_map(A: Any, C: Any) -> Any:
+    """Return A on ker 𝒪."""
+    basis = sympy.Matrix.vstack(*(C * A**k for k in range(A.shape[0]))).nullspace()
+    if not basis:
+        return sympy.zeros(0, 0)
+    N = sympy.Matrix.hstack(*basis)
+    return (N.T * N).inv() * N.T * A * N
+
+
+def number(text: str, point: dict[str, Fraction]) -> Any:
+    """Read an expression at a point, by Python's grammar: a number, or a polynomial in s."""
+    values = {"s": s, "I": sympy.I} | {name: sympy.Rational(v.numerator, v.denominator) for name, v in point.items()}
+    operations = {
+        ast.Add: "__add__",
+        ast.Sub: "__sub__",
+        ast.Mult: "__mul__",
+        ast.Div: "__truediv__",
+        ast.Pow: "__pow__",
+    }
+
+    def read(node: ast.expr) -> Any:
+        match node:
+            case ast.Constant(value=int(found)):
+                return sympy.Integer(found)
+            case ast.Name(id=name):
+                return values[name]
+            case ast.UnaryOp(op=ast.USub(), operand=inner):
+                return -read(inner)
+            case ast.Call(func=ast.Name(id="sqrt"), args=[inner]):
+                return sympy.sqrt(read(inner))
+            case ast.BinOp(left=left, op=operation, right=right):
+                return getattr(read(left), operations[type(operation)])(read(right))
+        raise ValueError(text)
+
+    return read(ast.parse(text, mode="eval").body)
+
+
+def check_modes(answer: dict[str, Any], A: Any, C: Any, point: dict[str, Fraction]) -> None:
+    """Hold what an answer says of every mode at a point against matrices of numbers."""
+    branch = answer_at(answer, point)
+    assert branch is not None
+    if branch["verdict"] == "undecided":
+        return
+    A, C = at_point(A, point), at_point(C, point)
+    n, seen = A.shape[0], "observable" if "observable" in branch["modes"][0] else "controllable"
+    fixed = number(branch["fixed_polynomial"], point)
+    X = hidden_map(A, C)
+    assert sympy.expand(fixed - (X.charpoly(s).as_expr() if X.shape[0] else 1)) == 0
+    values: list[Any] = []
+    for mode in branch["modes"]:
+        values.append(number(mode["eigenvalue"], point))
+        assert mode["conditions"] is not None
+        assert all(holds(condition, point) for condition in mode["conditions"]), (mode, point)
+        if values[-1].is_rational:
+            rank = sympy.Matrix.vstack(A - values[-1] * sympy.eye(n), C).rank()
+            assert (mode["rank"], mode[seen]) == (rank, rank == n), (mode, point)
+    if all(value.is_rational for value in values):
+        assert Counter(values) == Counter(sympy.roots(A.charpoly(s).as_expr(), s, multiple=True))
+
+
+POINTS = [dict(zip(NAMES, map(Fraction, pair), strict=True)) for pair in product((-1, 0, 1, 2), repeat=2)]
+
+
+@given(hidden_plants(), st.sampled_from(["pbh", "detectability", "stabilizability"]))
+@settings(max_examples=25)
+def test_what_is_told_of_a_mode_is_true_at_every_point(plant: tuple[Any, Any], task: str) -> None:
+    A, C = plant
+    answer = told(task, A, C)
+    for point in POINTS:
+        check_modes(answer, A, C, point)
+
+
+@given(hidden_plants())
+@settings(max_examples=20)
+def test_the_weaker_reading_is_decided_at_every_point(plant: tuple[Any, Any]) -> None:
+    """Stable in the sense of Lyapunov: no hidden eigenvalue beyond the axis, and as many eigenvectors on it as roots."""
+    A, C = plant
+    answer = told("detectability", A, C, meaning="lyapunov")
+    for point in POINTS:
+        branch = answer_at(answer, point)
+        assert branch is not None
+        if branch["verdict"] == "undecided":
+            continue
+        X = hidden_map(at_point(A, point), at_point(C, point))
+        roots = sympy.roots(X.charpoly(s).as_expr(), s) if X.shape[0] else {}
+        bounded = all(
+            sympy.re(root) < 0
+            or (sympy.re(root) == 0 and (X - root * sympy.eye(X.shape[0])).rank() == X.shape[0] - count)
+            for root, count in roots.items()
+        )
+        assert (branch["verdict"] == "yes") == bounded, (point, branch["verdict"])
+
+
+# -- named plants --------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("A", "C", "ranks", "meeting", "there"),
+    [
+        # the campaign's: two hidden modes are one at a = 2, with two eigenvectors
+        ("[1-a 0; 0 -1]", "[0 0]", {"-1": 1, "-a + 1": 1}, ["a - 2 == 0"], {"-1": 0}),
+        # a seen mode meets a hidden one
+        ("[a 0; 0 -1]", "[1 0]", {"-1": 1, "a": 2}, ["a + 1 == 0"], {"-1": 1}),
+        # no eigenvalues meet, but a chain breaks
+        ("[-1 a; 0 -1]", "[0 0]", {"-1": 1}, ["a == 0"], {"-1": 0}),
+        # both roots of one factor
+        ("[0 a; b 0]", "[0 0]", {"sqrt(a*b)": 1, "-sqrt(a*b)": 1}, ["a == 0", "b == 0"], {"0": 0}),
+    ],
+)
+def test_where_eigenvalues_meet_is_a_case(
+    A: str, C: str, ranks: dict[str, int], meeting: list[str], there: dict[str, int]
+) -> None:
+    found = symobs.pbh(symobs.StateSpace(A, None, C))
+    answer = json.loads(found.to_json())["results"][0]
+    assert {mode["eigenvalue"]: mode["rank"] for mode in answer["modes"]} == ranks
+    (case,) = answer["cases"]
+    assert case["when"] == meeting
+    assert {mode["eigenvalue"]: mode["rank"] for mode in case["modes"]} == there
+    assert all(not mode["conditions"] for mode in case["modes"])
+    assert "In this case a rank drops below its generic value." in found.to("text").replace("\n    ", " ")
+    assert "In this case a rank drops below its generic value." in found.to("latex").replace("\n", " ")
+
+
+def test_the_condition_of_a_rank_is_met_in_python_and_on_the_page() -> None:
+    found: Any = symobs.pbh(symobs.StateSpace("[a 0; 0 -1]", None, "[1 0]"))
+    a = sympy.Symbol("a")
+    by_value = {mode["eigenvalue"]: mode["conditions"] for mode in found.modes}
+    assert by_value == {a: (sympy.Ne(a + 1, 0),), sympy.Integer(-1): ()}
+    (case,) = found.cases
+    assert case.when == (sympy.Eq(a + 1, 0),)
+    assert [mode["rank"] for mode in case.result.modes] == [1, 1]
+    assert "Case λ = a, a + 1 ≠ 0." in found.to("text")
+
+
+def test_modes_that_meet_without_losing_rank_need_no_condition() -> None:
+    found = symobs.pbh(symobs.StateSpace("[a 1; 0 b]", None, "[1 0]"))
+    assert found.verdict == "yes"
+    assert not found.case_tree
+    assert not any(mode["conditions"] for mode in found.fields["modes"])
+
+
+def test_signs_keep_eigenvalues_apart() -> None:
+    signs = {"a": "positive", "b": "negative"}
+    found = symobs.pbh(symobs.StateSpace("[a 0; 0 b]", None, "[0 0]", symbols=signs))
+    assert not found.case_tree
+    assert [mode["conditions"] for mode in found.fields["modes"]] == [[], []]
+
+
+# -- the weaker reading --------------------------------------------------------------------------------------------------
+
+
+def test_an_integrator_grows_where_a_chain_holds_it() -> None:
+    # It was said not to be detectable whatever a is.
+    found = symobs.detectability(symobs.StateSpace("[0 a; 0 0]", None, "[0 0]"), meaning="lyapunov")
+    assert (found.verdict, [str(c) for c in found.holds_where]) == ("conditional", ["a == 0"])
+    (case,) = found.case_tree
+    assert case.result is not None
+    assert case.result.verdict == "yes"
+    assert "Hence the pair (C, A) is detectable." in " ".join(found.to("text").split())
+
+
+def test_two_oscillators_in_a_chain_grow_where_they_meet() -> None:
+    # They were said to be detectable whatever their frequencies are.
+    A = "[0 1 0 0; -w^2 0 1 0; 0 0 0 1; 0 0 -v^2 0]"
+    signs = {"w": "positive", "v": "positive"}
+    found = symobs.detectability(symobs.StateSpace(A, None, "[0 0 0 0]", symbols=signs), meaning="lyapunov")
+    assert (found.verdict, [str(c) for c in found.holds_where]) == ("conditional", ["v - w != 0"])
+    (case,) = found.case_tree
+    assert case.result is not None
+    assert case.result.verdict == "no"
+    assert "The modes on the boundary are distinct provided that v - w ≠ 0." in " ".join(found.to("text").split())
+
+
+def test_two_oscillators_are_marginal_only_where_they_do_not_meet() -> None:
+    signs = {"w": "positive", "v": "positive"}
+    z, v, w = (Scalar.symbol(name) for name in ("s", "v", "w"))
+    both = (z**2 + w**2) * (z**2 + v**2)
+    apart = meetings([z**2 + w**2, z**2 + v**2], "s", signs)
+    assert [str(value) for value in apart] == ["v - w"]
+    here = Environment(variable="s", signs=signs)
+    marginal, discrete = PREDICATES["marginal"], False
+    assert not marginal(both, here, discrete)
+    assert marginal(both, replace(here, nonzero=apart), discrete)
+
+
+def test_a_drop_on_several_equations_is_excluded_as_one() -> None:
+    # The first of them alone was given as the condition: a ≠ 0, though (0, b) sees the mode as well.
+    found = symobs.detectability(symobs.StateSpace("[1]", None, "[a; b]"))
+    assert [str(c) for c in found.holds_where] == ["a**2 + b**2 != 0"]
+
+
+def test_a_system_beyond_the_limits_is_kept_apart_as_it_stands(monkeypatch: pytest.MonkeyPatch) -> None:
+    a, b, c = (Scalar.symbol(name) for name in "abc")
+    system, point = (a * b - 17, a**2 - b + 19), (c - 1,)
+    within = distances([system, point])
+    monkeypatch.setattr(ideal, "TERMS", 1)
+    ideal._ideal.cache_clear()
+    assert set(distances([system, point])) == {(a * b - 17) ** 2 + (a**2 - b + 19) ** 2, c - 1}
+    assert within != distances([system, point])  # a basis of it is another system
+
+
+@pytest.mark.parametrize("meaning", ["asymptotic", "lyapunov"])
+def test_no_limit_leaves_a_verdict_as_an_exception(monkeypatch: pytest.MonkeyPatch, meaning: str) -> None:
+    plants = [
+        symobs.StateSpace("[0 a 0; 0 b^2-a 0; 0 a b]", None, "[0 b a+b]"),
+        symobs.StateSpace("[0 a; 0 b]", None, "[0 0]"),
+    ]
+    monkeypatch.setattr(ideal, "TERMS", 1)
+    ideal._ideal.cache_clear()
+    for plant in plants:
+        found = symobs.detectability(plant, meaning=meaning)
+        assert found.verdict in {"no", "conditional", "undecided"}
+        _ = found.conditions, found.cases, found.grows_where
+        endless = symobs.gramian(plant, horizon="inf")
+        assert endless.verdict in {"yes", "no", "conditional", "undecided"}
+        _ = endless.conditions, endless.cases
+
+
+# -- the claims ----------------------------------------------------------------------------------------------------------
+
+
+def test_a_rank_told_without_its_condition_is_rejected() -> None:
+    found = symobs.detectability(symobs.StateSpace("[1-a 0; 0 -1]", None, "[0 0]"))
+    silent = tuple(replace(where, systems=()) for where in found.answer["constancy"])
+    with pytest.raises(CertificateRejected):
+        found.with_answer("constancy", silent)
+
+
+def test_a_condition_that_is_never_met_is_rejected() -> None:
+    found = symobs.detectability(symobs.StateSpace("[1-a 0; 0 -1]", None, "[0 0]"))
+    for system in ((Scalar.of(0),), ()):
+        nowhere = tuple(replace(where, systems=(system,)) for where in found.answer["constancy"])
+        with pytest.raises(CertificateRejected):
+            found.with_answer("constancy", nowhere)
+
+
+def test_minors_of_another_order_are_rejected() -> None:
+    found = symobs.detectability(symobs.StateSpace("[1-a 0; 0 -1]", None, "[0 0]"))
+    smaller = tuple(replace(where, minors=(((), ()),)) for where in found.answer["constancy"])
+    with pytest.raises(CertificateRejected):
+        found.with_answer("constancy", smaller)
+
+
+def test_a_rank_about_which_nothing_is_claimed_leaves_an_open_case() -> None:
+    found = symobs.detectability(symobs.StateSpace("[1-a 0; 0 -1]", None, "[0 0]"))
+    silent = found.with_answer("constancy", (None, None))
+    assert [mode["conditions"] for mode in silent.fields["modes"]] == [None, None]
+    assert [(case.when, case.result) for case in silent.case_tree] == [((), None)]
+
+
+def test_an_eigenvalue_may_be_complex() -> None:
+    # λ² + 1 = 0 has solutions, though no real number is one: signs say nothing of an eigenvalue.
+    square = Scalar.symbol(EIGENVALUE) ** 2 + 1
+    e = Environment(relations=(square,))
+    assert verify(Claim(relation(square, "!=", 0), e).relation, e)[0] == ""
+    assert verify(relation(square + 1, "!=", 0), e)[0] == "exact"
+
+
+def test_what_an_eigenvalue_leaves_to_the_parameters_is_real() -> None:
+    # λ² = −a² − 1 and λ = b: then a² + b² + 1 = 0, which no real parameters solve.
+    x, a, b = (Scalar.symbol(name) for name in (EIGENVALUE, "a", "b"))
+    e = Environment(relations=(x**2 + a**2 + 1,))
+    assert verify(relation(x - b, "!=", 0), e)[0] == "exact"
+    e = Environment(relations=(x**2 + a**2 - 1,))
+    assert verify(relation(x - b, "!=", 0), e)[0] == ""
+
+
+def _with_cases(steps: tuple[Any, ...], change: Any) -> tuple[Any, ...]:
+    """Return steps with the conditions of cases changed."""
+    found: list[Any] = []
+    for step in steps:
+        if isinstance(step, Section):
+            found.append(replace(step, steps=_with_cases(step.steps, change)))
+        elif isinstance(step, CaseStep):
+            found.append(replace(step, when=change(step.when)))
+        else:
+            found.append(step)
+    return tuple(found)
+
+
+def test_a_page_that_tells_a_rank_without_its_condition_is_rejected() -> None:
+    written: Derivation = symobs.pbh(symobs.StateSpace("[a 0; 0 -1]", None, "[1 0]")).derivation
+
+    def silenced(when: Any) -> Any:
+        return when.relations[0] if isinstance(when, Conjunction) else when
+
+    steps = _with_cases(written.steps, silenced)
+    assert steps != written.steps
+    with pytest.raises(DerivationRejected, match="rank"):
+        Derivation(steps, written.start, written.symbols, written.discrete).check()
+
+
+def test_a_case_that_cannot_be_is_rejected() -> None:
+    written: Derivation = symobs.pbh(symobs.StateSpace("[a 0; 0 -1]", None, "[1 0]")).derivation
+
+    def impossible(when: Any) -> Any:
+        return (
+            Conjunction((*when.relations, relation(Scalar.of(0), "!=", 0))) if isinstance(when, Conjunction) else when
+        )
+
+    with pytest.raises(DerivationRejected, match="can be"):
+        Derivation(_with_cases(written.steps, impossible), written.start, written.symbols, written.discrete).check()
+
+
+def test_a_vector_that_vanishes_somewhere_is_not_called_an_eigenvector() -> None:
+    # [λ; b] is zero where λ = b = 0 and a ≠ 0.
+    page = symobs.pbh(symobs.StateSpace("[0 a; b 0]", None, "[0 0]")).derivation
+    section = next(step for step in page.steps if isinstance(step, Section) and step.title.key == "pbh")
+    first, second = (step for step in section.steps if isinstance(step, CaseStep))
+    assert len([step for step in first.steps if isinstance(step, Equal)]) == 1
+    (inner,) = (step for step in second.steps if isinstance(step, CaseStep))
+    assert len([step for step in inner.steps if isinstance(step, Equal)]) == 3

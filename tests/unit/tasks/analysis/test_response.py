@@ -1,0 +1,239 @@
+"""The response to an initial state and an input: python-control, resonance, what is refused."""
+
+from __future__ import annotations
+
+import random
+from typing import Any
+
+import control  # type: ignore[import-untyped]
+import numpy as np
+import pytest
+import sympy
+
+import symobs
+from symobs import StateSpace
+from symobs.formula.figures.plot import TimeResponse
+from symobs.ground.errors import CertificateRejected, InputError, ShapeMismatch
+from symobs.proof.derivation.steps import Plot
+
+t, a, c = sympy.symbols("t a c")
+INPUTS: dict[str, Any] = {
+    "1": np.ones_like,
+    "t": lambda s: s,
+    "2*exp(-3*t) - t*cos(2*t)": lambda s: 2 * np.exp(-3 * s) - s * np.cos(2 * s),
+    "sin(t)^2": lambda s: np.sin(s) ** 2,
+}
+
+
+def heights(function: Any, times: Any) -> Any:
+    """The values of a SymPy expression in t."""
+    return [float(function.evalf(15, subs={t: time})) for time in times]
+
+
+@pytest.mark.parametrize("seed", [3, 4, *(pytest.param(k, marks=pytest.mark.slow) for k in range(5, 10))])
+def test_responses_of_designs_are_those_of_python_control(seed: int) -> None:
+    """Plant, error of the observer and loop with compensator, at random: exact functions beside simulated ones."""
+    chance = random.Random(seed)  # noqa: S311 - repeats
+    n = chance.choice([2, 3])
+    A = [[chance.randint(-3, 3) for _ in range(n)] for _ in range(n)]
+    B, C = [[chance.randint(-2, 2) or 1] for _ in range(n)], [[chance.randint(-2, 2) or 1 for _ in range(n)]]
+    plant = StateSpace(A, B, C)
+    poles = ["-1+2i", "-1-2i", "-2"][:n], ["-3", "-3", "-4"][-n:]
+    design = symobs.compensator(plant, control_poles=poles[0], observer_poles=poles[1])
+    if design.verdict != "yes":
+        pytest.skip("not controllable or not observable")
+    moved = StateSpace(plant.A - plant.B * design.K, B, C)
+    whole = StateSpace(design.closed_loop_matrix, C=sympy.Matrix([[*plant.C, *([0] * n)]]))
+    error = StateSpace(plant.A - design.L * plant.C, C=sympy.eye(n))
+    times = np.linspace(0, 4, 21)
+    signal = chance.choice([*INPUTS])
+    for system, u in ((moved, signal), (whole, None), (error, None)):
+        x0 = [chance.randint(-2, 2) for _ in range(system.order)]
+        found = symobs.response(system, initial=x0, input=u)
+        M = np.array(system.A.tolist(), float)
+        driven = np.array(system.B.tolist(), float) if u else np.zeros((system.order, 1))
+        by_control = control.ss(M, driven, np.eye(system.order), 0)
+        fine = np.linspace(0, 4, 8001)
+        values = INPUTS[u](fine) if u else np.zeros_like(fine)
+        wanted = control.forced_response(by_control, fine, values, np.array(x0, float)).outputs[:, ::400]
+        state = np.array([heights(entry, times) for entry in found.state])
+        assert np.allclose(state, wanted, rtol=1e-5, atol=1e-6 * (1 + np.abs(wanted).max()))
+        seen = np.array([heights(entry, times) for entry in sympy.Matrix([found.output])])
+        assert np.allclose(seen, np.array(system.C.tolist(), float) @ state)
+
+
+def pictures(result: Any) -> list[TimeResponse]:
+    """The pictures on the page of a response, which stand in its last section."""
+    steps = [step for section in result.derivation.steps for step in getattr(section, "steps", ())]
+    return [step.picture for step in steps if isinstance(step, Plot) and isinstance(step.picture, TimeResponse)]
+
+
+@pytest.mark.parametrize(("u", "signal"), [*INPUTS.items(), ("exp(-t)*cos(3*t)", lambda s: np.exp(-s) * np.cos(3 * s))])
+def test_drawn_courses_are_those_that_python_control_simulates(u: str, signal: Any) -> None:
+    """State and output of a plant with feedthrough, at every drawn instant, to a thousandth of the window."""
+    (picture,) = pictures(
+        symobs.response(StateSpace("[0 1; -2 -2]", "[0; 1]", "[1 1]", "[1/2]"), initial=[1, 0], input=u)
+    )
+    end = float(picture.window[0][1])
+    fine = np.linspace(0, end, 16001)
+    plant = control.ss([[0, 1], [-2, -2]], [[0], [1]], [[1, 0], [0, 1], [1, 1]], [[0], [0], [0.5]])
+    wanted = control.forced_response(plant, fine, signal(fine), [1.0, 0.0]).outputs
+    low, high = map(float, picture.window[1])
+    assert [(course.signal, course.component) for course in picture.responses] == [("x", 1), ("x", 2), ("y", 0)]
+    for course, values in zip(picture.responses, wanted, strict=True):
+        drawn = [float(height) for _, height in picture.points(course)]
+        assert np.abs(np.array(drawn) - values[:: 16000 // (len(drawn) - 1)]).max() < (high - low) / 1000
+
+
+def test_what_is_drawn_and_how_long() -> None:
+    """Six time constants, three periods, growth to e^3; parameters, irrational data and rest have no picture."""
+    servo, double = StateSpace("[0 1; 0 -1]", "[0; 1]", "[1 0]"), StateSpace("[0 1; 0 0]", "[0; 1]")
+    swing = StateSpace("[0 1; -4 0]", "[0; 1]")
+    ends: list[tuple[StateSpace, dict[str, Any], int]] = [
+        (servo, {"input": 1}, 6),
+        (double, {"input": 1}, 10),
+        (swing, {"impulse": 1}, 10),
+    ]
+    ends += [(StateSpace("[3]", "[1]"), {"initial": [1]}, 1), (servo, {"input": "exp(-t/100)"}, 600)]
+    for plant, asked, end in ends:
+        (picture,) = pictures(symobs.response(plant, **asked))
+        assert picture.window[0][1] == end
+        assert all(course.signal == "x" for course in picture.responses)  # the output is a component of the state
+    undrawn: list[tuple[StateSpace, dict[str, Any]]] = [
+        (StateSpace("[0 1; 0 -a]", "[0; 1]"), {"input": 1}),
+        (servo, {"input": "a"}),
+        (servo, {"input": "sqrt(2)*t"}),
+        (servo, {"initial": [0, 0]}),
+        (StateSpace("[-1 0; 0 -10000]", "[1; 1]"), {"input": 1}),
+    ]
+    for plant, asked in undrawn:
+        assert pictures(symobs.response(plant, **asked)) == []
+
+
+def test_irrational_waves_with_rational_derivatives_are_drawn() -> None:
+    """The derivatives of sqrt(2) sin(sqrt(2) t) at 0 are 0, 2, 0, -4, …"""
+    (picture,) = pictures(symobs.response(StateSpace("[-1]", "[1]"), input="sqrt(2)*sin(sqrt(2)*t)"))
+    assert [list(map(int, start)) for start in picture.starts] == [[0], [0, 2]]
+
+
+@pytest.mark.parametrize("strength", [1, -3])
+def test_impulses_are_those_of_python_control(strength: int) -> None:
+    A, B, C = [[0, 1], [-2, -3]], [[1], [1]], [[1, 2]]
+    found = symobs.response(StateSpace(A, B, C), impulse=strength)
+    times = np.linspace(0, 4, 21)
+    wanted = control.impulse_response(control.ss(A, B, C, 0), times).outputs
+    assert np.allclose(heights(sympy.Matrix([found.output])[0], times), strength * wanted)
+    assert found.state.subs(t, 0) == sympy.Matrix([strength, strength])
+    moved = symobs.response(StateSpace(A, B, C), impulse="v", initial=["p", 0], input=1)
+    whole = sum(
+        (symobs.response(StateSpace(A, B, C), **each).state for each in ({"input": 1}, {"impulse": "v"})),
+        sympy.zeros(2, 1),
+    )
+    whole += symobs.response(StateSpace(A, B, C), initial=["p", 0]).state
+    assert (moved.state - whole).expand() == sympy.zeros(2, 1)
+
+
+def test_an_impulse_without_effect_and_a_wrong_one() -> None:
+    plant = StateSpace("[-1]", "[1]", "[1]")
+    assert "x₀ = B·0 = 0" in symobs.response(plant, impulse=0).to("text")
+    found = symobs.response(plant, impulse=1)
+    wrong = {**found.answer, "impulse": found.answer["impulse"] * 2}
+    with pytest.raises(CertificateRejected, match="x0 is the initial state and what the impulse adds"):
+        type(found)(found.plant, found.method, wrong)
+
+
+def test_feedthrough_and_several_inputs() -> None:
+    plant = StateSpace("[-1 0; 0 -2]", "[1 0; 0 1]", "[1 1]", "[0 3]")
+    found = symobs.response(plant, input=["1", "exp(-t)"], initial=["p", 0])
+    p = sympy.Symbol("p")
+    x = sympy.Matrix([1 + (p - 1) * sympy.exp(-t), sympy.exp(-t) - sympy.exp(-2 * t)])
+    assert sympy.simplify(found.state - x) == sympy.zeros(2, 1)
+    assert sympy.simplify(sympy.Matrix([found.output])[0] - (x[0] + x[1] + 3 * sympy.exp(-t))) == 0
+
+
+def test_what_is_in_resonance_is_a_case() -> None:
+    """x' = −a x + e^{−ct}: (e^{−ct} − e^{−at})/(a − c), and t e^{−ct} where a = c."""
+    found = symobs.response(StateSpace("[-a]", "[1]", "[1]"), input="exp(-c*t)")
+    assert sympy.simplify(found.state[0] - (sympy.exp(-c * t) - sympy.exp(-a * t)) / (a - c)) == 0
+    (case,) = found.cases
+    assert case.when == (sympy.Eq(a - c, 0),)
+    assert sympy.simplify(case.result.state[0].subs(a, c) - t * sympy.exp(-c * t)) == 0
+    page = " ".join(found.to("text").split())
+    assert "Case a - c = 0." in page
+    assert "t exp(-c t)" in page
+
+
+#: y = output with this input for ẋ = −a x + u: where there is an initial state, and which, by hand.
+REFUTED = [
+    ({"output": "exp(-c*t)"}, sympy.Eq(a - c, 0), (1,)),
+    ({"output": "exp(-c*t)", "input": "exp(-c*t)"}, sympy.Eq(a - c - 1, 0), (1,)),
+    ({"output": "p*t"}, sympy.Eq(sympy.Symbol("p"), 0), (0,)),
+]
+
+
+@pytest.mark.parametrize(("data", "where", "x0"), REFUTED)
+def test_an_output_that_no_state_explains_in_general_is_explained_where_it_is(data: Any, where: Any, x0: Any) -> None:
+    found = symobs.initial_state(StateSpace("[-a]", "[1]", "[1]"), **data)
+    cases = {case.when: case.result for case in found.cases}
+    assert found.verdict == "no"
+    assert cases[(where,)].x0 == x0
+    assert all(result.verdict == "no" for when, result in cases.items() if when != (where,))
+    assert "The Gramian is nonsingular" in found.to("text")
+
+
+def test_outputs_that_contradict_each_other_agree_somewhere() -> None:
+    p, q = sympy.symbols("p q")
+    found = symobs.initial_state(StateSpace("[0 1; 0 0]", C="[1 0; 0 1]"), output=["p*t", "q"])
+    (case,) = found.cases
+    assert (found.verdict, case.when, case.result.x0) == ("no", (sympy.Eq(p - q, 0),), (0, q))
+
+
+def test_modes_without_a_closed_form_are_undecided_and_another_answer_is_rejected() -> None:
+    cubic = symobs.response(StateSpace("[0 1 0; 0 0 1; -1 -1 -3]", "[0; 0; 1]"), input=1)
+    assert (cubic.verdict, cubic.state) == ("undecided", None)
+    for language, said in (("en", "the response is not given"), ("de", "die Zeitantwort nicht angegeben")):
+        assert said in cubic.to("text", language=language)
+    found = symobs.response(StateSpace("[-1]", "[1]"), input=1)
+    wrong = {**found.answer, "state": found.answer["state"] * 2}
+    with pytest.raises(CertificateRejected, match=r"the claim x = exp\(A\*t\)\*x0 \+ x_f"):
+        type(found)(found.plant, found.method, wrong)
+
+
+@pytest.mark.parametrize(
+    ("plant", "asked", "kind", "said"),
+    [
+        (StateSpace("[-1]", "[1]"), {}, InputError, "neither an initial state nor an input is given"),
+        (
+            StateSpace("[-1]", "[1]"),
+            {"impulse": "t"},
+            InputError,
+            "strength of the impulse does not depend on the time t",
+        ),
+        (StateSpace("[-1]", "[1]", "[1]", "[1]"), {"impulse": 1}, InputError, "goes through D to the output"),
+        (StateSpace("[-1]", "[1]"), {"impulse": [1, 2]}, ShapeMismatch, "impulse"),
+        (StateSpace("[-1]"), {"impulse": 1}, InputError, "B"),
+        (StateSpace("[-1]", "[1]", dt=1), {"input": 1}, InputError, "response belongs to continuous time"),
+        (StateSpace("[-1]", "[1]"), {"initial": "t"}, InputError, "does not depend on the time t"),
+        (StateSpace("[-1]"), {"input": 1}, InputError, "B"),
+        (StateSpace("[-1]", "[1]"), {"initial": [1, 2]}, ShapeMismatch, "initial"),
+        (StateSpace("[-1]", "[1]"), {"input": "sqrt(t)"}, InputError, "a root of t; write sums of exponentials"),
+        (StateSpace("[-1]", "[1]"), {"input": "1/(t + 1)"}, InputError, "sums of exponentials"),
+    ],
+)
+def test_what_has_no_response_is_refused(plant: StateSpace, asked: Any, kind: type[Exception], said: str) -> None:
+    with pytest.raises(kind, match=said):
+        symobs.response(plant, **asked)
+
+
+def test_what_roots_and_functions_leave_open_is_not_told_as_no() -> None:
+    """On a = sqrt(c) the state (1, a) explains y = exp(a t), and where exp(a) = 1 the zero state explains y = 0."""
+    plant = StateSpace("[0 1; c 0]", C="[1 0]", symbols={"a": "real", "c": "real"})
+    found = symobs.initial_state(plant, output="exp(a*t)", horizon="1")
+    (above,) = (case.result for case in found.cases if case.when == (c > 0,))
+    assert above.verdict == "no"
+    assert {str(case.when[0].lhs): case.result for case in above.cases} == {"a - sqrt(c)": None, "a + sqrt(c)": None}
+    assert (found.at(a=2, c=4).verdict, found.at(a=2, c=4).x0) == ("yes", (1, 2))
+    assert "is not decided here" in found.to("text")
+    lag = StateSpace("[-1]", C="[1]", symbols={"a": "real"})
+    (case,) = symobs.initial_state(lag, output="(exp(a) - 1)*exp(-2*t)", horizon="1").cases
+    assert (str(case.when[0].lhs), case.result) == ("exp(a) - 1", None)

@@ -1,0 +1,305 @@
+"""Stability regions: odd questions and their answers by hand, what is refused, what a list may not leave out."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+from fractions import Fraction
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+import symobs
+from symobs.exact import Scalar
+from symobs.exact.algebraic.real_algebraic import real_roots, roots_of_scalar
+from symobs.exact.cad import decomposition_check
+from symobs.formula.figures.plot import LinePicture, PoleMap
+from symobs.ground.errors import CertificateRejected, InputError
+from symobs.stability.criteria.critical_polynomials import CriticalPolynomials, StabilityBoundary
+from symobs.stability.regions import region_check
+from symobs.stability.regions.interval_region import LineRegion
+from symobs.stability.regions.plane_region import PlaneRegion, plane_region
+from symobs.stability.regions.region_check import is_region
+from symobs.stability.regions.short_list import RegionInequality, short_list
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+s, h1, h2 = (Scalar.symbol(name) for name in ("s", "h1", "h2"))
+
+
+def region(text: Any, **keywords: Any) -> Any:
+    """Ask, and let every face speak."""
+    result = symobs.stability_region(text, **keywords)
+    json.loads(result.to_json())
+    assert result.to("text")
+    return result
+
+
+#: Questions with the exact answers, worked by hand: polynomial, signs, verdict, stable_if.
+BY_HAND: list[tuple[str, Mapping[str, str] | None, str, list[str]]] = [
+    ("s + h", None, "conditional", ["h > 0"]),
+    ("h s + 1", None, "conditional", ["h > 0"]),
+    ("s^2 + s/h + 1", None, "conditional", ["h > 0"]),
+    ("s + 1 - k", {"k": "positive"}, "conditional", ["k < 1"]),
+    ("s^2 + (1 + h1) s + 1 + h2", {"h1": "positive", "h2": "positive"}, "yes", []),
+    ("s + h1", {"h1": "nonnegative"}, "conditional", ["h1 > 0"]),
+    ("s + 1 + h1", {"h1": "nonnegative"}, "yes", []),
+    ("s^2 + s + h1^2 + h2^2", {"h1": "nonnegative", "h2": "nonnegative"}, "conditional", ["h1**2 + h2**2 > 0"]),
+    ("s + h1 - 10^17", None, "conditional", ["h1 > 100000000000000000"]),
+    ("s^2 + (h1 - 10000) s + h2 - 1/10000", None, "conditional", ["h2 > 1/10000", "h1 > 10000"]),
+    ("s^3 + s + h", None, "no", ["False"]),
+    ("s^2 + s + 1", None, "yes", []),
+    ("s^2 + s + (h1 - h2)^2", None, "conditional", ["h1 != h2"]),
+]
+
+
+@pytest.mark.parametrize(("text", "signs", "verdict", "inequalities"), BY_HAND)
+def test_answers_worked_by_hand(
+    text: str, signs: Mapping[str, str] | None, verdict: str, inequalities: list[str]
+) -> None:
+    found = region(text, symbols=signs)
+    assert (found.verdict, list(found.stable_if)) == (verdict, inequalities)
+
+
+def test_holes_are_where_they_are() -> None:
+    assert region("s^2 + s + (h1 - 1)^2 + (h2 - 3)^2").excluded_points == ({"h1": "1", "h2": "3"},)
+    places = [point["h2"] for point in region("s^2 + s + (h1^3 - 2)^2 + (h2^2 - 3)^2").excluded_points]
+    assert places == ["about -1.73205", "about 1.73205"]
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "s^2 + (h1 - 10000) s + h2 - 1/10000",  # samples nearer to a wall than the first node
+        "s + h1 h2 (h1 - h2) (h1 + h2)",
+        "(s + h2) (s + 1 - h1^2 h2) (s + 1 - h1^2)",  # curves that end in a corner of the region
+        "s + h1^2 - 2*10^24",
+        "(s + h1) (s + 2 h1) (s + 1/1000 - h1^2 + 3 h1) (s + 1 - h2)",  # curves that run along a boundary
+        "(s + h2^2 - 3 h1) (s + h2^2 - 2 h1 h2 + 2) (s + 1000 + h2 + 3 h2^2)",  # a sample too near to its wall
+    ],
+)
+def test_the_picture_of_a_region_with_narrow_corners_is_on_its_page(text: str) -> None:
+    """A picture that is not faithful is left out with a warning, which is an error here."""
+    found = region(text, symbols=dict.fromkeys(["h1", "h2"], "real"))
+    assert found.verdict == "conditional"
+    assert "<figure>" in found.to("html")
+
+
+def test_close_numbers_are_told_apart_and_many_digits_are_right() -> None:
+    root = real_roots(_polynomial([-2, 0, 1]))[1]
+    low, high = root.interval(1024)
+    assert high - low < Fraction(1, 2**900)
+    assert root.decimal(30) == "1.41421356237309504880168872421"
+    near = (h1**2 - 2) * (10**18 * h1 - 1414213562373095048)
+    assert len(roots_of_scalar(near, "h1")) == 3
+    assert len(LineRegion(CriticalPolynomials(s + near, StabilityBoundary("s")), "h1").intervals) == 2
+
+
+def _polynomial(coefficients: list[int]) -> Any:
+    from flint import fmpz_poly  # noqa: PLC0415 - the kernel's own type, in this test only
+
+    return fmpz_poly(coefficients)
+
+
+def quadratic() -> PlaneRegion:
+    """Return h1 > 0, h2 > 0."""
+    return plane_region(CriticalPolynomials(s**2 + h1 * s + h2, StabilityBoundary("s")), ("h1", "h2"))
+
+
+@pytest.mark.parametrize(
+    "more",
+    [
+        RegionInequality(h2 - h1, "!="),
+        RegionInequality((h2 - h1) ** 2),
+        RegionInequality((h1 - 1) ** 2 + (h2 - 1) ** 2),
+        RegionInequality(h1 - 1),
+        RegionInequality(-h1),
+        RegionInequality(h1 + h2 + 1, "!="),
+    ],
+)
+def test_a_list_cannot_cut_a_curve_or_a_point_out_of_a_region(more: RegionInequality) -> None:
+    found = quadratic()
+    bounds = short_list(found)
+    assert is_region(found, bounds)
+    assert not is_region(found, (*bounds, more))
+    result = symobs.stability_region("s^2 + h1 s + h2")
+    with pytest.raises(CertificateRejected):
+        replace(result, answer={**result.answer, "bounds": (*result.answer["bounds"], more)})
+
+
+def test_a_list_cannot_leave_a_condition_out_nor_an_empty_region_be_called_so() -> None:
+    found = quadratic()
+    for bound in short_list(found):
+        assert not is_region(found, (bound,))
+    assert not is_region(found, None)
+    assert not is_region(found, ())
+
+
+def test_a_numbered_root_is_not_claimed_on_a_wall() -> None:
+    """At h1 = 0 the root −1 of (h2 + 1)² (h2 − 1) is new: the bound is another root there."""
+    (component,) = region("s + ((h2 + 1)^2 + h1^2) (h2 - 1) + h1^4", symbols={"h1": "real", "h2": "real"}).components
+    assert not component["parts_are_whole"]
+
+
+@pytest.mark.parametrize(
+    ("keywords", "place"),
+    [
+        ({"margin": "h1", "parameters": ["h1", "h2"]}, "margin"),
+        ({"margin": -1}, "margin"),
+        ({"radius": "1/2"}, "radius"),
+        ({"parameters": ["h1", "h1"]}, "parameters"),
+        ({"K": "[1 2]"}, "K"),
+    ],
+)
+def test_questions_that_do_not_fit_are_refused_at_their_place(keywords: Mapping[str, Any], place: str) -> None:
+    with pytest.raises(InputError) as refused:
+        symobs.stability_region("s^2 + h1 s + h2", **keywords)
+    assert refused.value.where == f"specification.{place}"
+    assert refused.value.repair
+
+
+def test_a_radius_beyond_the_unit_circle_is_refused() -> None:
+    with pytest.raises(InputError, match="between 0 and 1"):
+        symobs.stability_region("z^2 + h", dt=True, radius=2)
+
+
+def test_the_sign_of_a_coefficient_makes_cases() -> None:
+    found = region("s^2 + 2 s + 1 + a h", parameters=["h"], symbols={"a": "real"})
+    assert [(str(case.when[0]), list(case.result.stable_if)) for case in found.cases] == [
+        ("a > 0", ["h > -1/a"]),
+        ("a < 0", ["h < -1/a"]),
+        ("Eq(a, 0)", []),
+    ]
+
+
+def test_a_margin_moves_with_its_symbol() -> None:
+    found = region("s + h", margin="alpha", parameters=["h"], symbols={"alpha": "positive"})
+    assert list(found.stable_if) == ["h > alpha"]
+
+
+@pytest.mark.parametrize(
+    ("dt", "limit", "said"),
+    [(0, {"margin": "1/2"}, "real part less than -1/2"), (True, {"radius": "1/2"}, "modulus less than 1/2")],
+)
+def test_a_moved_boundary_is_told_where_nothing_is_open(dt: Any, limit: Any, said: str) -> None:
+    plant = symobs.StateSpace("[0 1; -1/8 1/2]" if dt else "[0 1; -2 -3]", dt=dt)
+    found = symobs.stability_region(plant, **limit)
+    assert found.verdict == "yes"
+    assert said in " ".join(found.to("text").split())
+
+
+@pytest.mark.parametrize("sign", ["positive", "negative", "nonzero"])
+@pytest.mark.parametrize("parameters", [["h"], ["h", "k"]])
+def test_the_sign_of_a_parameter_outside_of_the_polynomial_empties_nothing(sign: str, parameters: list[str]) -> None:
+    signs = dict.fromkeys(parameters, "real") | {"h": sign}
+    assert region("s + 1", parameters=parameters, symbols=signs).verdict == "yes"
+    assert region("s - 1", parameters=parameters, symbols=signs).verdict == "no"
+    found = region("s^2 + k s + 1", parameters=["h", "k"], symbols=signs | {"k": "real"})
+    assert (found.verdict, list(found.stable_if)) == ("conditional", ["k > 0"])
+    assert all(point["h"] != "0" for point in found.sample_points)
+
+
+def test_a_region_whose_cells_hold_allowed_and_forbidden_values_is_none() -> None:
+    critical = CriticalPolynomials(Scalar.symbol("s") + 1, StabilityBoundary("s"), {"h": "positive"})
+    blind = LineRegion(critical, "h")
+    assert blind.empty
+    assert not is_region(blind, None)
+    assert is_region(LineRegion(replace(critical, asked=("h",)), "h"), ())
+
+
+def test_control_and_observer_gains_together_give_the_product() -> None:
+    plant = symobs.StateSpace("[0 1; -1 -1]", "[0; 1]", "[1 0]")
+    found = region(plant, K="[k 0]", L="[l; 0]")
+    assert set(found.stable_if) == {"k > -1", "l > -1"}
+
+
+#: Regions with turning branches, crossings, holes, slivers, vertical lines and several pieces.
+TWO_WAYS = [
+    s**3 + (2 + h1) * s**2 + (h1**2 + h2**2 - 4) * s + h1 * h2 + 1,
+    s**2 + (5 - h1**2 - h2**2) * s + h1**2 + h2**2 - 1,
+    s**2 + (h1**2 - 1) * s + 1 - h2**2,
+    s**2 + s + h1**2 + h2**2,
+    s**2 + s + (h1**2 - 2) ** 2 + (h2**2 - 3) ** 2,
+    s**2 + s + (h1**2 - h2**3) ** 2,
+    s + h1**2 * (h1 + 1) - h2**2,
+    s + (h1 * h2 - 1) * (h1**2 - 2),
+    s**4 + 3 * s**3 + h1 * s**2 + h2 * s + 1,
+    s**4 + (2 + h1) * s**3 + (3 + h2**2) * s**2 + (2 + h1 * h2) * s + 1 + h1 - h2,
+    h1 * s**2 + (h1 - h2) * s + h2**2 - 2,
+]
+
+
+@pytest.mark.parametrize("polynomial", TWO_WAYS, ids=str)
+def test_pieces_bounds_and_holes_do_not_depend_on_which_parameter_is_across(polynomial: Scalar) -> None:
+    critical = CriticalPolynomials(polynomial, StabilityBoundary("s"))
+    one, other = (PlaneRegion(critical, names) for names in (("h1", "h2"), ("h2", "h1")))
+    assert sorted(c.bounded for c in one.components) == sorted(c.bounded for c in other.components)
+    assert len(one.holes) == len(other.holes)
+    assert set(one.surrounded()) == set(other.surrounded())
+    bounds = None if one.empty else short_list(one)
+    assert is_region(one, bounds)
+    assert is_region(other, bounds)
+
+
+@pytest.mark.parametrize(
+    ("text", "sign", "kind"),
+    [
+        ("s^2 + (2 - a) s + 1/a", "positive", LinePicture),  # at a = 0, where the window begins, there is no polynomial
+        ("s^2 + (2 - a) s + 1/a", "real", LinePicture),
+        ("s^2 + (2 - a) s + 1/(a^2 + 1)", "real", PoleMap),
+    ],
+)
+def test_roots_are_not_drawn_where_a_denominator_vanishes(text: str, sign: str, kind: type) -> None:
+    result = region(text, parameters=["a"], symbols={"a": sign})
+    assert type(result.picture) is kind
+    assert result.critical.is_stable({"a": Fraction(1)})  # s² + s + 1
+    assert not result.critical.is_stable({"a": Fraction(3)})  # s² − s + 1/3
+
+
+def test_a_division_is_proved_once_where_the_list_adds_no_curve(monkeypatch: pytest.MonkeyPatch) -> None:
+    """s³ + x s² + y s + 1: the condition x y > 1 is critical, and x > 0 divides the plane anew."""
+    proved: list[object] = []
+    holds = decomposition_check.holds
+
+    def noted(plane: Any) -> bool:
+        proved.append(plane)
+        return holds(plane)
+
+    monkeypatch.setattr(region_check, "holds", noted)
+    symobs.stability_region("s^2 + (x1d + 1) s + y1d - 1", parameters=["x1d", "y1d"]).to_json()
+    assert len(proved) == 1
+    proved.clear()
+    symobs.stability_region("s^3 + x1d s^2 + y1d s + 1", parameters=["x1d", "y1d"]).to_json()
+    assert len(proved) == len(set(map(id, proved))) == 2
+
+
+def test_a_case_in_which_inequalities_contradict_each_other_is_told_to_be_empty() -> None:
+    plant = symobs.StateSpace("[a 0 a; a 1/2 -1; -1 -b 1/10]", symbols={"a": "real", "b": "nonzero"})
+    page = " ".join(symobs.stability_region(plant).to("text").split())
+    assert "Case b > 0. The stability region is empty. Case b < 0. All roots are stable if and only if" in page
+
+    def is_stable(
+        a: Fraction, b: Fraction
+    ) -> bool:  # Routh's criterion of order three for s³ + p s² + q s + r, by hand
+        p, q, r = (
+            -a - Fraction(3, 5),
+            Fraction(8, 5) * a - b + Fraction(1, 20),
+            a * a * b + a * b - Fraction(11, 20) * a,
+        )
+        return p > 0 and r > 0 and p * q > r
+
+    values = [Fraction(k, 7) for k in range(-100, 101, 9)]
+    assert not any(is_stable(a, b) for a in values for b in values if b > 0)
+    assert is_stable(Fraction(-1), Fraction(-10000))
+
+
+def test_an_interval_that_begins_at_the_declared_sign_is_printed() -> None:
+    """By Routh's criterion 3 − 2a, a² − 6a + 3/10 and their product less 3a² − 3a/10 + 3/100 are positive."""
+    plant = symobs.StateSpace("[a 0.1 0; -3 -3 0.1; -3 0 a]", symbols={"a": "positive"})
+    found = symobs.stability_region(plant)
+    assert "0 < a < " in found.to("text")
+    for a, stable in ((Fraction(1, 25), True), (Fraction(1, 20), False), (Fraction(6), False)):
+        p, q, r = 3 - 2 * a, a * a - 6 * a + Fraction(3, 10), 3 * a * a - Fraction(3, 10) * a + Fraction(3, 100)
+        assert (p > 0 and q > 0 and r > 0 and p * q > r) is stable
+        assert (found.at(a=a).verdict == "yes") is stable

@@ -1,0 +1,494 @@
+"""Time-varying plants: values worked out by hand and by SymPy's calculus, pages read by SymPy, and no lie survives.
+
+Pages are read by the second reader, with SymPy's `diff` and `integrate`; the witness of an integral is not looked at there.
+"""
+
+from __future__ import annotations
+
+import itertools
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+import mpmath
+import pytest
+import sympy
+from hypothesis import assume, given, settings
+from hypothesis import strategies as st
+
+import symobs
+from symobs.exact import Matrix, Scalar, antiderivative, derivative, exponential_of_integral
+from symobs.formula.expression import parse_scalar
+from symobs.ground.errors import BudgetExceeded, CertificateRejected, DerivationRejected, InputError
+from symobs.problem import read
+from symobs.tasks.result import tasks
+from tests.support.independent_algebra.second_reader import Reader, numeric, sympy_scalar
+from tests.support.independent_algebra.truth import still_true
+from tests.support.paths import ROOT
+from tests.support.problems.problems_by_hand import is_zero
+from tests.support.sampling import FULL
+from tests.support.tampering.mutations import answer_changes, changes, lines_of
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+pytestmark = pytest.mark.slow
+
+t, t0, t1, T, a, b = sympy.symbols("t t0 t1 T a b")
+EXAMPLE = ROOT / "worked_examples" / "time_varying_integrator.toml"
+
+#: name → (A, C, rank, verdict, Φ where it is rational)
+PLANTS: dict[str, tuple[str, str, int, str, str | None]] = {
+    "integrator": ("[0 t; 0 0]", "[1 0]", 2, "yes", "[[1, (t**2 - t0**2)/2], [0, 1]]"),
+    "strictly_triangular": (
+        "[0 t 1; 0 0 t^2; 0 0 0]",
+        "[1 0 0]",
+        3,
+        "yes",
+        "[[1, (t**2-t0**2)/2, t - t0 + t**5/15 - t0**3*t**2/6 + t0**5/10], [0, 1, (t**3-t0**3)/3], [0, 0, 1]]",
+    ),
+    "commuting": (
+        "[t -t; t -t]",
+        "[1 0]",
+        2,
+        "yes",
+        "[[1 + (t**2-t0**2)/2, -(t**2-t0**2)/2], [(t**2-t0**2)/2, 1 - (t**2-t0**2)/2]]",
+    ),
+    "triangular": ("[1/t 1; 0 2/t]", "[1 0]", 2, "yes", "[[t/t0, (t**3 - t*t0**2)/(2*t0**2)], [0, t**2/t0**2]]"),
+    "direction": (
+        "[0 1/t; 2/t 1/t]",
+        "[1 1]",
+        1,
+        "no",
+        "[[(t**3+2*t0**3)/(3*t*t0**2), (t**3-t0**3)/(3*t*t0**2)], [2*(t**3-t0**3)/(3*t*t0**2), (2*t**3+t0**3)/(3*t*t0**2)]]",
+    ),
+    "frozen_misleads_no": ("[0 1; 0 0]", "[1 -t]", 1, "no", "[[1, t - t0], [0, 1]]"),
+    "frozen_misleads_yes": ("[0 0; 0 0]", "[1 t]", 2, "yes", "[[1, 0], [0, 1]]"),
+    "airy": ("[0 1; -t 0]", "[1 0]", 2, "yes", None),
+    "exponential_hidden": ("[t 0; 0 t]", "[1 1]", 1, "no", "[[exp(t^2/2 - t0^2/2), 0], [0, exp(t^2/2 - t0^2/2)]]"),
+    "decaying": ("[-1 t; 0 -1]", "[1 0]", 2, "yes", "[[exp(t0-t), exp(t0-t)*(t^2-t0^2)/2], [0, exp(t0-t)]]"),
+    "turning": (
+        "[0 t; -t 0]",
+        "[1 0]",
+        2,
+        "yes",
+        "[[cos(t^2/2-t0^2/2), sin(t^2/2-t0^2/2)], [-sin(t^2/2-t0^2/2), cos(t^2/2-t0^2/2)]]",
+    ),
+    "two_rates": (
+        "[-1 0; t -2]",
+        "[0 1]",
+        2,
+        "yes",
+        "[[exp(t0-t), 0], [(t-1)*exp(t0-t) - (t0-1)*exp(2*t0-2*t), exp(2*t0-2*t)]]",
+    ),
+    "error_function": ("[-1 1; 0 -2*t]", "[1 0]", 2, "yes", None),
+    "parametric": ("[0 a*t; 0 0]", "[1 0]", 2, "conditional", "[[1, a*(t**2 - t0**2)/2], [0, 1]]"),
+}
+
+
+def solved(name: str, **specification: Any) -> Any:
+    A, C, *_ = PLANTS[name]
+    return symobs.time_varying_observability(symobs.StateSpace(A, None, C), **specification)
+
+
+every_plant = pytest.mark.parametrize("name", PLANTS)
+
+
+def zero(expression: Any) -> bool:
+    """Whether a SymPy expression or matrix is 0."""
+    if expression.has(sympy.exp, sympy.cos, sympy.sin):
+        expression = sympy.simplify(expression.rewrite(sympy.exp))
+    return all(map(is_zero, expression)) if isinstance(expression, sympy.MatrixBase) else is_zero(expression)
+
+
+# -- answers -----------------------------------------------------------------------------------------------------------
+
+
+@every_plant
+def test_stack_and_rank_are_those_of_sympy(name: str) -> None:
+    result = solved(name)
+    expected = result.plant.C
+    for row in result.stack:
+        assert zero(row - expected)
+        expected = row * result.plant.A + row.diff(t)
+    point = {t: sympy.Rational(7, 3), a: sympy.Rational(5, 11)}
+    assert sympy.Matrix.vstack(*result.stack).subs(point).rank() == result.rank == PLANTS[name][2]
+    assert result.verdict == PLANTS[name][3]
+
+
+@every_plant
+def test_transition_matrices_are_those_worked_out_by_hand(name: str) -> None:
+    result, wanted = solved(name), PLANTS[name][4]
+    if wanted is None:
+        assert "transition_matrix" not in result.fields
+        assert "gramian" not in result.fields
+        return
+    names = {"t": t, "t0": t0, "a": a}
+    expected = sympy.Matrix(eval_rows(wanted, names))
+    assert zero(result.transition_matrix - expected)
+    assert zero(result.transition_matrix.diff(t) - result.plant.A * expected)
+
+
+def eval_rows(text: str, names: dict[str, Any]) -> Any:
+    """Read nested lists of this file's own expressions."""
+    return [
+        [sympy_scalar(parse_scalar(entry, functions=True), names) for entry in row.split(",")]
+        for row in (part.strip(" [],") for part in text.split("],"))
+    ]
+
+
+@pytest.mark.parametrize("name", ["integrator", "commuting", "frozen_misleads_no", "frozen_misleads_yes", "decaying"])
+def test_gramians_are_integrals_of_sympy(name: str) -> None:
+    result = solved(name, interval="1, 1 + T" if name == "commuting" else "0, T")
+    start = 1 if name == "commuting" else 0
+    seen = result.plant.C * result.transition_matrix.subs(t0, start)
+    expected = (seen.T * seen).applyfunc(lambda entry: sympy.integrate(sympy.expand(entry), (t, start, start + T)))
+    assert zero(result.gramian - expected)
+    assert zero(result.determinant - expected.det())
+    assert (result.determinant == 0) == (result.verdict == "no")
+
+
+@pytest.mark.parametrize("name", ["direction", "frozen_misleads_no"])
+def test_what_is_never_seen_gives_no_output(name: str) -> None:
+    result = solved(name)
+    (v,) = result.kernel
+    assert zero(result.plant.C * result.transition_matrix * sympy.Matrix(v))
+    assert any(v)
+
+
+def test_hidden_states_without_a_transition_matrix() -> None:
+    result = solved("exponential_hidden")
+    V, X = result.answer["hidden"], result.answer["restricted"]
+    assert [str(e) for e in V.entries] == ["-1", "1"]
+    assert [str(e) for e in X.entries] == ["t"]
+
+
+def test_the_gramian_of_a_start_where_the_kernel_moves() -> None:
+    """With y = x₁ − t x₂ the hidden direction at t₀ is (t₀, 1), also at t₀ = 0."""
+    for start, wanted in (("0, T", (0, 1)), ("2, 5", (2, 1))):
+        (v,) = solved("frozen_misleads_no", interval=start).kernel
+        assert v[0] * wanted[1] == v[1] * wanted[0]
+
+
+def test_a_parameter_on_which_it_depends_becomes_a_case() -> None:
+    result = solved("parametric")
+    assert [str(c) for c in result.holds_where] == ["a != 0"]
+    (case,) = result.case_tree
+    assert [str(c) for c in case.when] == ["a == 0"]
+    assert case.result is not None
+    assert (case.result.verdict, case.result.answer["rank"]) == ("no", 1)
+
+
+def test_two_outputs_that_are_never_both_blind() -> None:
+    plant = symobs.StateSpace("[0 a*t; 0 0]", None, "[1 0; 0 1 - a]")
+    result = symobs.time_varying_observability(plant)
+    assert result.verdict == "yes"
+    assert result.case_tree == ()
+
+
+# -- initial states ----------------------------------------------------------------------------------------------------
+
+
+def test_the_initial_state_of_the_catalogue() -> None:
+    """The integral of the input's part up to t gives x₀ exactly; up to the end of the interval, a misprint, it does not."""
+    (result,) = read(EXAMPLE.read_text(encoding="utf-8")).solve()
+    assert list(result.x0) == [a, b]
+    C, W = sympy.Matrix([[1, 0]]), sympy.Matrix(result.gramian)
+    Phi = sympy.Matrix([[1, t**2 / 2], [0, 1]])
+    wrong = a + b * t**2 / 2 + t**3 / 3 - T**3 / 3
+    moment = (Phi.T * C.T * wrong).applyfunc(lambda entry: sympy.integrate(sympy.expand(entry), (t, 0, T)))
+    assert not zero(W.inv() * moment - sympy.Matrix([a, b]))
+
+
+@given(st.lists(st.integers(-4, 4), min_size=2, max_size=2), st.lists(st.integers(-3, 3), min_size=3, max_size=3))
+@settings(max_examples=15, deadline=None)
+def test_an_initial_state_is_found_again(x0: list[int], u: list[int]) -> None:
+    """Simulated by SymPy's integrals for x₁' = t x₂ + u, x₂' = u, y = x₁ + u."""
+    driven = u[0] + u[1] * t + u[2] * t**2
+    x2 = x0[1] + sympy.integrate(driven, (t, 1, t))
+    x1 = x0[0] + sympy.integrate(sympy.expand(t * x2 + driven), (t, 1, t))
+    plant = symobs.StateSpace("[0 t; 0 0]", "[1; 1]", "[1 0]", "[1]")
+    output = str(sympy.expand(x1 + driven))
+    result = symobs.time_varying_observability(plant, interval="1, 3", output=output, input=str(driven))
+    assert list(result.x0) == x0
+    spoiled = symobs.time_varying_observability(plant, interval="1, 3", output=f"{output} + t^7", input=str(driven))
+    assert spoiled.fields["x0"] is None
+    assert "No initial state" in spoiled.to("text")
+
+
+def test_an_initial_state_behind_exponentials() -> None:
+    """By hand for x₁' = t x₂ − x₁, x₂' = 1 − x₂ from (4, 2) at t = 1: x₂ = 1 + e^{1−t}."""
+    plant = symobs.StateSpace("[-1 t; 0 -1]", "[0; 1]", "[1 0]")
+    output = "t - 1 + exp(1 - t)*(4 + (t^2 - 1)/2)"
+    result = symobs.time_varying_observability(plant, interval="1, 3", output=output, input="1")
+    assert list(result.x0) == [4, 2]
+    spoiled = symobs.time_varying_observability(plant, interval="1, 3", output=f"{output} + exp(-2*t)", input="1")
+    assert spoiled.fields["x0"] is None
+
+
+def test_that_no_state_explains_an_output_is_proved() -> None:
+    result = solved("integrator", interval="1, 3", output="t^7")
+    candidate = result.answer["candidate"]
+    assert result.x0 is None
+    for value in (candidate * 2, candidate * 0):
+        with pytest.raises(CertificateRejected):
+            result.with_answer("candidate", value)
+    right = solved("integrator", interval="1, 3", output="2 + t^2/2")
+    with pytest.raises(CertificateRejected):
+        replace(
+            right,
+            answer={**right.answer, "x0": None, "candidate": right.answer["x0"], "moment": result.answer["moment"]},
+        )
+
+
+def test_the_interval_said_is_the_one_asked_for() -> None:
+    result = solved("integrator", interval="1, 3")
+    other = result.derivation
+    liar = object.__new__(type(result))
+    liar.__dict__.update({k: v for k, v in result.__dict__.items() if k != "derivation"})
+    liar.__dict__["write"] = lambda page: setattr(page, "steps", list(other.steps))
+    assert liar.derivation.steps == other.steps
+    liar.__dict__.pop("derivation")
+    liar.__dict__["asked_for"] = replace(result.asked_for, interval=(Scalar.of(1), Scalar.of(4)))
+    with pytest.raises(DerivationRejected, match="another t_end"):
+        _ = liar.derivation
+
+
+# -- what is refused ---------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("task", sorted(set(tasks()) - {"time_varying_observability"}))
+def test_every_other_task_refuses_the_time_and_names_this_one(task: str) -> None:
+    plant = symobs.StateSpace("[0 t; 0 0]", "[0; 1]", "[1 0]", symbols={})
+    with pytest.raises(InputError, match="time_varying_observability") as caught:
+        tasks()[task].function(plant)
+    assert task in caught.value.message
+
+
+@pytest.mark.parametrize(
+    ("plant", "specification", "said"),
+    [
+        (("[1/t]", None, "[1]"), {"interval": "-1, 1"}, "pole"),
+        (("[1/(t^2 - 3*t + 2)]", None, "[1]"), {"interval": "0, 5"}, "pole"),
+        (("[1/(t^2 - 2)]", None, "[1]"), {"interval": "-2, 2"}, "pole"),
+        (("[t]", None, "[1]"), {"interval": "1, 1"}, "no length"),
+        (("[t]", None, "[1]"), {"interval": "0, t"}, "contain the time"),
+        (("[t]", None, "[1]"), {"interval": "0, 1, 2"}, "two real ends"),
+        (("[t]", None, "[1]"), {"output": "[t; 1]"}, "expected a column of 1"),
+        (("[t]", None, "[1]"), {"output": "t", "input": "1"}, "needs B"),
+        (("[t]",), {}, "needs C"),
+        (("[t0*t]", None, "[1]"), {}, "instant"),
+    ],
+)
+def test_wrong_input_is_refused(plant: Any, specification: Any, said: str) -> None:
+    with pytest.raises(InputError, match=said):
+        symobs.time_varying_observability(symobs.StateSpace(*plant), **specification)
+
+
+def test_what_would_grow_too_long_is_refused() -> None:
+    A = [[f"{i + 1}*t + a{i}{j}" for j in range(5)] for i in range(5)]
+    with pytest.raises(BudgetExceeded, match="terms"):
+        symobs.time_varying_observability(symobs.StateSpace(A, None, [[1, 0, 0, 0, 0]]))
+
+
+def test_no_pole_where_there_is_none() -> None:
+    plant = symobs.StateSpace("[1/(t^2 - 2*t + 2)]", None, "[1]")
+    assert symobs.time_varying_observability(plant, interval="0, 5").verdict == "yes"
+
+
+def test_a_condition_is_assumed_beside_functions_of_time() -> None:
+    """On such a page cos² + sin² = 1 is known; what is assumed from here on is assumed all the same."""
+    plant = symobs.StateSpace("[1/2 -b; 0 1/10]", "[1; 1]", "[1/10 1/10]")
+    result = symobs.time_varying_observability(plant, output="sin(2 t)")
+    assert [str(condition) for condition in result.conditions] == ["Ne(5*b + 2, 0)"]
+    assert "5b + 2 ≠ 0" in result.to("text")
+
+
+def test_discrete_time_has_no_t() -> None:
+    with pytest.raises(InputError, match="discrete time"):
+        symobs.StateSpace("[t]", None, "[1]", dt=True)
+    with pytest.raises(InputError, match="discrete time"):
+        symobs.time_varying_observability(symobs.StateSpace("[1]", None, "[1]", dt=True))
+
+
+# -- calculus ----------------------------------------------------------------------------------------------------------
+
+COEFFICIENTS = st.lists(st.integers(-5, 5), min_size=1, max_size=4)
+
+
+def rational(above: list[int], below: list[int]) -> tuple[Scalar, Any]:
+    s = Scalar.symbol("t")
+    values = [sum((s**k * c for k, c in enumerate(part)), Scalar.of(0)) for part in (above, below)]
+    images = [sum(c * t**k for k, c in enumerate(part)) for part in (above, below)]
+    assume(not values[1].is_zero)
+    return values[0] / values[1], images[0] / images[1]
+
+
+@given(COEFFICIENTS, COEFFICIENTS)
+@settings(max_examples=150 if FULL else 12, deadline=None)
+def test_derivatives_and_antiderivatives(above: list[int], below: list[int]) -> None:
+    value, image = rational(above, below)
+    slope = derivative(value, "t")
+    assert zero(sympy_scalar(slope, {"t": t}) - sympy.diff(image, t))
+    found = antiderivative(slope, "t")
+    assert found is not None
+    assert derivative(found, "t") == slope
+    again = antiderivative(value, "t")
+    has_logarithm = sympy.integrate(sympy.cancel(image), t).has(sympy.log, sympy.atan, sympy.RootSum)
+    assert (again is None) == has_logarithm
+
+
+@given(COEFFICIENTS, st.integers(-3, 3))
+@settings(max_examples=40, deadline=None)
+def test_exponentials_of_integrals(factor: list[int], power: int) -> None:
+    value, _ = rational(factor, [1])
+    assume(not value.is_zero)
+    logarithmic = derivative(value, "t") / value * power
+    found = exponential_of_integral(logarithmic, "t")
+    assert found is not None
+    assert derivative(found, "t") == logarithmic * found
+    grown = exponential_of_integral(logarithmic + 1, "t")
+    assert grown is not None
+    assert sympy.exp(t) in sympy_scalar(grown / found, {"t": t}).atoms(sympy.exp)
+    assert derivative(grown, "t") == (logarithmic + 1) * grown
+    assert exponential_of_integral(Scalar.rational(1, 2) / Scalar.symbol("t"), "t") is None
+
+
+@given(*[st.lists(st.integers(-3, 3), min_size=3, max_size=3)] * 4)
+@settings(max_examples=40, deadline=None)
+def test_antiderivatives_of_waves(above: list[int], below: list[int], growth: list[int], turn: list[int]) -> None:
+    """What SymPy differentiates is integrated back, up to a constant."""
+    c, d, p, q = (sum(k * t**i for i, k in enumerate(part)) for part in (above, below, growth, turn))
+    whole = sympy.exp(p) * (c * sympy.cos(q) + d * sympy.sin(q))
+    integrand = parse_scalar(str(sympy.diff(whole, t)), functions=True)
+    found = antiderivative(integrand, "t")
+    assert found is not None
+    rest = sympy_scalar(found, {"t": t}) - whole
+    with mpmath.workdps(60):
+        values = [numeric(rest, {t: mpmath.mpf(k) / 7}) for k in range(1, 4)]
+        assert max(abs(value - values[0]) for value in values) < mpmath.mpf(10) ** -30
+
+
+@pytest.mark.parametrize(
+    "text", ["exp(t^2)", "cos(t^2)", "t^2*exp(-t^2)", "exp(t)/t", "cos(t^2/2)^2", "t*sin(t^3)", "1/cos(t)"]
+)
+def test_what_has_no_elementary_antiderivative(text: str) -> None:
+    """The classical ones: error function, Fresnel's integrals, the exponential integral."""
+    assert antiderivative(parse_scalar(text, functions=True), "t") is None
+
+
+def test_an_integral_without_closed_form_is_named() -> None:
+    assert "integral of exp(-t² + t) over t" in " ".join(solved("error_function").to("text").split())
+    page = " ".join(solved("turning").to("text").split())
+    assert "contains the integral of" in page
+    assert "gramian" not in solved("turning").fields
+
+
+def test_a_zero_of_a_denominator_is_a_case() -> None:
+    """For A = [-a t; 0 -b] the closed form divides by a - b; at a = b it is another one."""
+    result = symobs.time_varying_observability(symobs.StateSpace("[-a t; 0 -b]", None, "[1 0]"))
+    assert [(c.kind, str(c)) for c in result.holds_where if "a - b" in str(c)] == [("claim", "a - b != 0")]
+    case = next(case for case in result.case_tree if [str(c) for c in case.when] == ["a - b == 0"])
+    assert case.result is not None
+    Phi = sympy_scalar(case.result.answer["transition_matrix"][0, 1], {"t": t, "t0": t0})
+    (left,) = Phi.free_symbols - {t, t0}
+    assert zero(Phi - sympy.exp(-left * (t - t0)) * (t**2 - t0**2) / 2)
+
+
+# -- pages -------------------------------------------------------------------------------------------------------------
+
+
+def samples() -> Iterator[dict[Any, Any]]:
+    for k in range(1, 7):
+        yield {symbol: sympy.Rational(k + n, 3) for n, symbol in enumerate((T, a, b, t, t0, t1))}
+
+
+@every_plant
+def test_every_line_of_every_page_holds_in_sympy(name: str) -> None:
+    result, wanted = solved(name), PLANTS[name][4]
+    rows = [result.plant.C]
+    for _ in range(result.plant.A.rows - 1):
+        rows.append(rows[-1] * result.plant.A + rows[-1].diff(t))
+    known = {f"N_{k}": row for k, row in enumerate(rows)} | {"O": sympy.Matrix.vstack(*rows)}
+    known |= {"A": result.plant.A, "C": result.plant.C}
+    known |= {"Phi": sympy.Matrix(eval_rows(wanted, {"t": t, "t0": t0, "a": a}))} if wanted else {}
+    tally = Reader(result.derivation, known, samples).read()
+    assert set(tally.unknown) <= {"x'", "y", "M", "W", "V", "X", "v", "Phi_1", "Phi_2", "A_1", "C_1"}
+    assert tally.compared >= 12
+
+
+@pytest.mark.parametrize("name", ["frozen_misleads_no", "airy", "strictly_triangular"])
+def test_no_lie_survives_on_a_page(name: str) -> None:
+    """Change one thing in a line: it is rejected, or it says another thing that is true as well."""
+    tried = rejected = 0
+    for line in lines_of(solved(name).derivation):
+        found = list(changes(line.step))
+        for change in found[:: max(1, len(found) // 12)]:
+            told = line.told(change.value)
+            tried += 1
+            try:
+                told.check()
+            except DerivationRejected:
+                rejected += 1
+            else:
+                assert still_true(told, line.told(line.step)), change.where
+    assert rejected > 0.8 * tried
+
+
+@pytest.mark.parametrize("name", [*PLANTS, "example"])
+def test_a_changed_answer_is_rejected(name: str) -> None:
+    result = read(EXAMPLE.read_text(encoding="utf-8")).solve()[0] if name == "example" else solved(name)
+    tried = 0
+    scaled = {"hidden", "kernel"}  # another basis of the same space is an answer as well
+    chosen = {"point", "rows", "columns", "free"}  # another minor or instant shows the same
+    for key, value in result.answer.items():
+        for change in itertools.islice(answer_changes(value), 40):
+            if change.value is None or (key in scaled and _same_space(value, change.value)) or key in chosen:
+                continue
+            tried += 1
+            with pytest.raises(CertificateRejected):
+                result.with_answer(key, change.value)
+    assert tried >= 20
+
+
+def _same_space(one: Matrix, other: Matrix) -> bool:
+    tables = [sympy.Matrix(*m.shape, [sympy_scalar(e, {}) for e in m.entries]) for m in (one, other)]
+    if tables[0].shape != tables[1].shape:
+        return False
+    return bool(sympy.Matrix.hstack(*tables).rank() == tables[0].rank() == tables[1].rank())
+
+
+def test_constant_matrices_with_long_entries_are_plants_whose_time_does_not_matter() -> None:
+    """The stack of a plant without t is its observability matrix, though a constant of many terms is derived on the way."""
+    given = "[-b -b a+1; a*b 1/a 1/10; -b 1/2 2]", "[2 0 0; 1/10 1 2]"
+    plant = symobs.StateSpace(A=given[0], C=given[1], symbols={"a": "real", "b": "real"})
+    A = sympy.Matrix([[-b, -b, a + 1], [a * b, 1 / a, sympy.Rational(1, 10)], [-b, sympy.Rational(1, 2), 2]])
+    C = sympy.Matrix([[2, 0, 0], [sympy.Rational(1, 10), 1, 2]])
+    found = symobs.time_varying_observability(plant)
+    names = {symbol.name: symbol for symbol in (a, b)}
+    stack = found.matrix.subs({symbol: names[symbol.name] for symbol in found.matrix.free_symbols})
+    assert all(is_zero(entry) for entry in stack - sympy.Matrix.vstack(C, C * A, C * A * A))
+    assert found.verdict == symobs.observability(plant).verdict
+
+
+def test_a_rank_on_a_stratum_is_said_outside_its_own_cases() -> None:
+    """On the curve where the minors of the first rows vanish the rank is 3, but for where another one vanishes, too."""
+    plant = symobs.StateSpace(
+        "[omega^2, a, -3; 2, a*b, -b; 1/10, a + 1, 1/a]",
+        None,
+        "[2, 1, 1; 2, -3, 1/10]",
+        symbols={"a": "nonzero", "b": "real", "omega": "positive"},
+    )
+    found = symobs.time_varying_observability(plant)
+    (case,) = found.cases
+    assert [each.result is None for each in case.result.cases] == [True]
+    page = " ".join(found.to("text").split())
+    assert "≠ 0. In this case rank 𝒪 = 3 for almost all t." in page
+
+
+def test_a_rank_that_drops_where_two_parameters_vanish_is_conditional_on_them() -> None:
+    """det 𝒪 = a t³ + (b² − 2a) t² + a t − b vanishes identically at a = b = 0 alone."""
+    plant = symobs.StateSpace("[0 1; -a*t 0]", C="[b*t 1-t]")
+    found = symobs.time_varying_observability(plant)
+    a, b = sympy.symbols("a b")
+    assert (found.verdict, found.conditions) == ("conditional", (sympy.Ne(a**2 + b**2, 0),))
+    assert "Case a = 0" in found.to("text")

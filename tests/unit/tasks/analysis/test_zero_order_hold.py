@@ -1,0 +1,134 @@
+"""The plant behind a zero-order hold: textbooks, python-control, designs for the sampled plant, what is refused."""
+
+from __future__ import annotations
+
+import random
+from typing import Any
+
+import control  # type: ignore[import-untyped]
+import numpy as np
+import pytest
+import sympy
+from sympy import cos, exp, sin
+
+import symobs
+from symobs import StateSpace
+from symobs.ground.errors import CertificateRejected, InputError
+
+T, a, omega = sympy.symbols("T a omega")
+
+#: K. J. Åström and B. Wittenmark, Computer-Controlled Systems, 3rd ed., ch. 2 and Table 2.1; G. F. Franklin, J. D. Powell
+#: and M. Workman, Digital Control of Dynamic Systems, 3rd ed., sec. 4.3: A, B and the sampled matrices.
+TEXTBOOK: list[tuple[str, str, Any, Any]] = [
+    ("[0 1; 0 0]", "[0; 1]", [[1, T], [0, 1]], [[T**2 / 2], [T]]),
+    ("[-1 0; 1 0]", "[1; 0]", [[exp(-T), 0], [1 - exp(-T), 1]], [[1 - exp(-T)], [T - 1 + exp(-T)]]),
+    ("[0]", "[1]", [[1]], [[T]]),
+    ("[-a]", "[a]", [[exp(-a * T)]], [[1 - exp(-a * T)]]),
+    (
+        "[0 omega; -omega 0]",
+        "[0; omega]",
+        [[cos(omega * T), sin(omega * T)], [-sin(omega * T), cos(omega * T)]],
+        [[1 - cos(omega * T)], [sin(omega * T)]],
+    ),
+]
+
+
+@pytest.mark.parametrize(("A", "B", "A_d", "B_d"), TEXTBOOK)
+def test_sampled_plants_of_textbooks(A: str, B: str, A_d: Any, B_d: Any) -> None:
+    signs = {"a": "positive", "omega": "positive", "T": "positive"}
+    found = symobs.zero_order_hold(StateSpace(A, B, symbols=signs), sampling_period="T")
+    assert found.verdict == "yes"
+    assert sympy.simplify(found.A - sympy.Matrix(A_d)) == sympy.zeros(*found.A.shape)
+    assert sympy.simplify(found.B - sympy.Matrix(B_d)) == sympy.zeros(*found.B.shape)
+    found.derivation.check()
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_sampled_plants_are_those_of_python_control(seed: int) -> None:
+    chance = random.Random(seed)  # noqa: S311 - repeats
+    n = chance.choice([1, 2, 2, 3])
+    A = [[chance.randint(-3, 3) for _ in range(n)] for _ in range(n)]
+    if n == 3:
+        A[2] = [0, 0, chance.randint(-3, 3)]  # so that the modes have a closed form
+    B = [[chance.randint(-2, 2) for _ in range(2)] for _ in range(n)]
+    C, D = [[1] * n], [[0, chance.randint(0, 1)]]
+    period = sympy.Rational(chance.randint(1, 9), 4)
+    plant = StateSpace(A, B, C, D)
+    found = symobs.zero_order_hold(plant, sampling_period=str(period))
+    wanted = control.sample_system(control.ss(A, B, C, D), float(period), "zoh")
+    for name in "ABCD":
+        mine = np.array(getattr(found, name).evalf().tolist(), float)
+        assert np.allclose(mine, getattr(wanted, name), rtol=1e-9, atol=1e-9)
+    sampled = found.sampled
+    assert (sampled.is_discrete, sampled.dt) == (True, period)
+
+
+def test_the_sampled_plant_is_a_plant_for_designs() -> None:
+    """Deadbeat control of the double integrator: K = [1/T², 3/(2T)] (Åström and Wittenmark, ch. 4)."""
+    plant = symobs.zero_order_hold(StateSpace("[0 1; 0 0]", "[0; 1]", "[1 0]"), sampling_period="T").sampled
+    assert sympy.Matrix([[1 / T**2, 3 / (2 * T)]]) == symobs.state_feedback(plant, poles=[0, 0]).K
+    motor = symobs.zero_order_hold(StateSpace("[0 1; 0 -1]", "[0; 1]", "[1 0]"), sampling_period="T").sampled
+    found = symobs.observer(motor, poles="1/2, 1/4")
+    closed = motor.A - found.L * motor.C
+    assert sympy.simplify(closed.trace() - sympy.Rational(3, 4)) == 0
+    assert sympy.simplify(closed.det() - sympy.Rational(1, 8)) == 0
+
+
+def test_an_oscillator_sampled_at_half_its_period_is_not_controllable() -> None:
+    swing = StateSpace("[0 1; -1 0]", "[0; 1]", "[1 0]")
+    assert symobs.controllability(symobs.zero_order_hold(swing, sampling_period="pi").sampled).verdict == "no"
+    assert symobs.controllability(symobs.zero_order_hold(swing, sampling_period=1).sampled).verdict == "yes"
+
+
+def test_what_vanishes_is_a_case_and_values_go_in() -> None:
+    found = symobs.zero_order_hold(StateSpace("[-a]", "[1]"), sampling_period="T")
+    (case,) = found.cases
+    assert case.when == (sympy.Eq(a, 0),)
+    assert (sympy.Matrix([[1]]), sympy.Matrix([[T]])) == (case.result.A, case.result.B)
+    there = found.at(a=2, T="1/2")
+    assert sympy.Matrix([[(1 - exp(-1)) / 2]]) == there.B
+    assert there.sampled.dt == sympy.Rational(1, 2)
+
+
+def test_a_plant_that_depends_on_an_open_sign_is_not_taken_for_one() -> None:
+    found = symobs.zero_order_hold(StateSpace("[0 1; -a -2]", "[0; 1]"), sampling_period=1)
+    assert found.verdict == "conditional"
+    with pytest.raises(InputError, match="the sampled plant is another one for each sign of"):
+        _ = found.sampled
+    assert found.at(a=1).sampled.order == 2
+    cubic = symobs.zero_order_hold(StateSpace("[0 1 0; 0 0 1; -1 -1 -3]", "[0; 0; 1]"))
+    assert (cubic.verdict, cubic.A) == ("undecided", None)
+    with pytest.raises(InputError, match="no sampled plant in closed form: what is open is the roots of"):
+        _ = cubic.sampled
+    for language, said in (("en", "the sampled plant is not given"), ("de", "die abgetastete Strecke nicht angegeben")):
+        assert said in " ".join(cubic.to("text", language=language).split())
+
+
+@pytest.mark.parametrize(
+    ("name", "said"),
+    [
+        ("A_d", r"A_d = exp\(A\*T\)"),
+        ("B_d", r"B_d = integral of exp\(A\*t\)\*B from 0 to T"),
+        ("exponential", r"d/dt exp|exp\(A\*0\)"),
+        ("driven", r"B_d = integral|driven is 0"),
+    ],
+)
+def test_another_answer_is_rejected(name: str, said: str) -> None:
+    found = symobs.zero_order_hold(StateSpace("[-1 0; 1 0]", "[1; 0]"), sampling_period="T")
+    with pytest.raises(CertificateRejected, match=said):
+        type(found)(found.plant, found.method, {**found.answer, name: found.answer[name] * 2})
+
+
+@pytest.mark.parametrize(
+    ("plant", "period", "said"),
+    [
+        (StateSpace("[-1]", "[1]", dt=1), 1, "zero_order_hold belongs to continuous time"),
+        (StateSpace("[-1]", "[1]"), "inf", "the sampling period inf is no number"),
+        (StateSpace("[-1]", "[1]"), 0, "the sampling period 0 is not positive"),
+        (StateSpace("[-1]", "[1]"), "exp(T)", "the sampling period .* is no rational expression"),
+        (StateSpace("[-1]"), 1, "B"),
+    ],
+)
+def test_what_cannot_be_sampled_is_refused(plant: StateSpace, period: Any, said: str) -> None:
+    with pytest.raises(InputError, match=said):
+        symobs.zero_order_hold(plant, sampling_period=period)

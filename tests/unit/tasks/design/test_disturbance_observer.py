@@ -1,0 +1,93 @@
+"""Disturbance observers held to simulations in plain arithmetic, and to the zeros of the plant; lies are rejected."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import pytest
+import sympy
+
+import symobs
+from symobs.exact import Matrix
+from symobs.ground.errors import CertificateRejected, InputError
+
+if TYPE_CHECKING:
+    from symobs.tasks.design.disturbance.disturbance_observer import DisturbanceObserver
+
+A, B, C, D, E = (sympy.Matrix(rows) for rows in ([[0, 1], [-2, -3]], [[0], [1]], [[1, 0]], [[2]], [[1], [1]]))
+SINUSOID = sympy.Matrix([[sympy.Rational(3, 5), sympy.Rational(4, 5)], [sympy.Rational(-4, 5), sympy.Rational(3, 5)]])
+
+
+@pytest.mark.parametrize("S", [None, SINUSOID], ids=["constant", "sinusoid"])
+def test_deadbeat_finds_state_and_disturbance_whatever_the_input(S: Any) -> None:
+    model = sympy.eye(1) if S is None else S
+    plant = symobs.StateSpace(A, B, C, D, dt=True)
+    n = 2 + model.rows
+    found = symobs.disturbance_observer(plant, E=E, S=S, polynomial=f"z^{n}")
+    x, w, estimate = sympy.Matrix([3, -1]), sympy.ones(model.rows, 1), sympy.zeros(n, 1)
+    for k in range(n):  # all poles at 0: after so many steps the estimates are right
+        u = sympy.Matrix([k**2 - 1])
+        estimate = found.A * estimate + found.B_u * u + found.B_y * (C * x + D * u)
+        x, w = A * x + B * u + E * w[0], model * w
+    assert estimate == x.col_join(w)
+
+
+def test_the_frequency_of_a_sampled_sinusoid_may_be_an_angle() -> None:
+    """At 60 degrees it is (z - 1/2)^2 + 3/4; in general cos^2 + sin^2 = 1 is used, and names for the two serve as well."""
+    plant = symobs.StateSpace("[1 1; 0 1]", "[1/2; 1]", "[1 0]", dt=True, symbols={"theta": "real"})
+    found = symobs.disturbance_observer(
+        plant, E="[1/2; 1]", S="[cos(theta) sin(theta); -sin(theta) cos(theta)]", polynomial="z^4"
+    )
+    cosine, sine = sympy.Rational(1, 2), sympy.sqrt(3) / 2
+    there = found.at(theta="pi/3")
+    gain = there.L_x.col_join(there.L_w)
+    model = sympy.Matrix([[1, 1, sympy.Rational(1, 2), 0], [0, 1, 1, 0], [0, 0, cosine, sine], [0, 0, -sine, cosine]])
+    assert (model - gain * sympy.Matrix([[1, 0, 0, 0]])).charpoly().all_coeffs() == [1, 0, 0, 0, 0]
+    assert {case.result.verdict for case in found.cases} == {"no"}  # sin = 0: w is not seen
+
+
+def test_a_zero_at_an_eigenvalue_of_the_exosystem_is_a_case_and_a_reason() -> None:
+    """From d to y the plant has the transfer function (s + c)/((s + 1) (s + 2)), which at s = 0 is c/2."""
+    plant = symobs.StateSpace("[0 1; -2 -3]", C="[c 1]")
+    found = symobs.disturbance_observer(plant, E="[0; 1]", poles="-3, -4, -5")
+    c = sympy.Symbol("c")
+    assert sympy.Ne(c, 0) in found.conditions
+    verdicts = {case.when: case.result.verdict for case in found.cases}
+    assert verdicts == {(sympy.Eq(c, 0),): "no", (sympy.Eq(c - 1, 0),): "no", (sympy.Eq(c - 2, 0),): "no"}
+    text = " ".join(found.to("text").split())
+    assert "The plant has a zero at the origin from the disturbance to the output" in text
+    assert found.at(c=0).verdict == "no"
+    assert found.at(c=3).fixed_modes == ()
+
+
+def test_modes_that_cannot_be_moved_may_be_desired() -> None:
+    plant = symobs.StateSpace("[0 1; -2 -3]", C="[1 1]")  # the mode -1 is not observable
+    found = symobs.disturbance_observer(plant, E="[0; 1]", poles="-1, -4, -5")
+    assert (found.verdict, found.fixed_modes) == ("yes", (-1,))
+    assert "but it is among the desired poles" in " ".join(found.to("text").split())
+
+
+@pytest.mark.parametrize(
+    ("name", "value"),
+    [("L_x", Matrix.column([5, 12])), ("L_w", Matrix.column([5])), ("L_w", None), ("L_x", None)],
+)
+def test_a_wrong_answer_is_rejected(name: str, value: Any) -> None:
+    plant = symobs.StateSpace("[0 1; 0 0]", "[0; 1]", "[1 0]")
+    design: DisturbanceObserver = symobs.disturbance_observer(plant, E="[0; 1]", poles="-1, -2, -3")
+    with pytest.raises(CertificateRejected):
+        design.with_answer(name, value)
+
+
+@pytest.mark.parametrize(
+    ("given", "said"),
+    [
+        ({"poles": "-1, -2"}, "2 poles given, 3 needed"),
+        ({"poles": "-1, -2, -3, -4", "S": "[0 1 0; 0 0 1]"}, "S is 2×3, and must be square"),
+        ({"poles": "-1, -2, -3", "E": "[1 0; 0 1]", "S": "[0]"}, "S has fewer states, 1, than E has columns, 2"),
+        ({"poles": "-1, -2, -3", "S": "[0]", "V": "[1 0]"}, "V is 1×2, expected 1×1"),
+        ({"poles": "-1, -2, -3, -4", "S": "[0 s; 1 0]"}, "S contains a name that stands for the time"),
+    ],
+)
+def test_what_does_not_fit_is_refused(given: dict[str, str], said: str) -> None:
+    with pytest.raises(InputError, match=said):
+        symobs.disturbance_observer(symobs.StateSpace("[0 1; 0 0]", C="[1 0]"), **{"E": "[0; 1]", **given})

@@ -1,0 +1,100 @@
+"""What a gain can be: each kind where it is reached, and no answer beside a kind that it does not fit."""
+
+from __future__ import annotations
+
+import pickle
+from dataclasses import replace
+from typing import Any
+
+import pytest
+
+import symobs
+from symobs.ground.errors import CertificateRejected
+from symobs.tasks.design.gain.gain_design import GainDesign
+from symobs.tasks.design.gain.gain_kind import (
+    AssignedGain,
+    DecoupledGain,
+    GainWithZeros,
+    GivenGain,
+    NoGainWithZeros,
+    UnassignableGain,
+)
+
+CHAIN = symobs.StateSpace("[0 1 0; 0 0 1; 0 0 0]", "[0 0; 1 0; 0 1]", "[1 0 0; 0 1 0]")
+#: The mode at 1 is neither seen nor moved.
+HIDDEN = symobs.StateSpace("[0 1 0; 0 0 0; 0 0 1]", "[0; 1; 0]", "[1 0 0]")
+THREE = [-1, -1, -1]
+ASKED: dict[str, tuple[type, symobs.StateSpace, dict[str, Any], str]] = {
+    "given": (GivenGain, CHAIN, {"L": "[1 0; 0 1; 0 0]"}, "yes"),
+    "assigned": (AssignedGain, CHAIN, {"poles": THREE}, "yes"),
+    "decoupled": (DecoupledGain, CHAIN, {"poles": THREE, "member": "decoupled"}, "yes"),
+    "with zeros": (GainWithZeros, CHAIN, {"poles": THREE, "zero": "(3, 1)"}, "yes"),
+    # without its first column L moves no eigenvalue of the first state: s divides the polynomial
+    "zeros excluded": (NoGainWithZeros, CHAIN, {"poles": THREE, "zero": "[0 *; 0 *; 0 *]"}, "no"),
+    "unassignable": (UnassignableGain, HIDDEN, {"poles": THREE}, "no"),
+    "unassignable, zeros": (UnassignableGain, HIDDEN, {"poles": THREE, "zero": "(1, 1)"}, "no"),
+}
+
+
+def asked(name: str) -> GainDesign:
+    _, plant, specification, _ = ASKED[name]
+    found = symobs.observer(plant, **specification)
+    assert isinstance(found, GainDesign)
+    return found
+
+
+@pytest.mark.parametrize("name", ASKED)
+def test_a_gain_is_of_the_kind_that_was_asked_for_and_found(name: str) -> None:
+    kind, _, specification, verdict = ASKED[name]
+    found = asked(name)
+    assert type(found.kind) is kind
+    assert found.verdict == verdict
+    assert (found.answer["L"] is None) == (verdict == "no")
+    assert ("zero" in found.fields) == ("zero" in specification)
+
+
+@pytest.mark.parametrize("name", ASKED)
+def test_a_design_survives_pickling_with_its_kind(name: str) -> None:
+    found = asked(name)
+    again = pickle.loads(pickle.dumps(found))  # noqa: S301 - our own
+    assert again == found
+    assert again.kind == found.kind
+    assert again.fields.keys() == found.fields.keys()
+
+
+def test_designs_of_one_gain_and_two_kinds_differ() -> None:
+    found = asked("assigned")
+    assert replace(found, kind=GivenGain()) != found
+
+
+@pytest.mark.parametrize("name", [name for name, (*_, verdict) in ASKED.items() if verdict == "yes"])
+def test_a_gain_beside_a_kind_without_one_is_rejected(name: str) -> None:
+    found, denied = asked(name), asked("unassignable").kind
+    with pytest.raises(CertificateRejected, match="exactly where its kind says so"):
+        replace(found, kind=denied)
+    with pytest.raises(CertificateRejected, match="exactly where its kind says so"):
+        found.with_answer("L", None)
+
+
+def test_a_gain_that_exists_cannot_be_called_unassignable() -> None:
+    found = asked("assigned")
+    assert found.desired is not None
+    for kind in (UnassignableGain(found.desired), NoGainWithZeros(found.desired, ())):
+        with pytest.raises(
+            CertificateRejected, match=r"a gain L with these zeros is found|the claim X has the order of the kernel"
+        ):
+            replace(found, answer={**found.answer, "L": None}, kind=kind)
+
+
+def test_another_gain_cannot_be_called_decoupled_or_be_said_to_have_zeros() -> None:
+    dense = symobs.observer(CHAIN, poles=THREE, zero="(3, 1)")
+    assert dense.desired is not None
+    with pytest.raises(CertificateRejected, match="zeros in L"):
+        replace(dense, kind=GainWithZeros(dense.desired, ((0, 0), (1, 0), (2, 0))))
+    plant = symobs.StateSpace("[0 1; 0 0]", None, "[1 0; 0 1]")
+    given = symobs.observer(plant, L="[2 0; 1 0]")
+    wanted = symobs.observer(plant, poles=[-1, -1])
+    assert wanted.desired is not None
+    coupled = replace(given, kind=AssignedGain(wanted.desired))
+    with pytest.raises(CertificateRejected, match="orders of the output errors"):
+        replace(coupled, kind=DecoupledGain(wanted.desired))

@@ -1,0 +1,124 @@
+"""Compensators with given gains: the loop is the one they make, and its poles are found."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import control  # type: ignore[import-untyped]
+import numpy as np
+import pytest
+import sympy
+
+import symobs
+from symobs import StateSpace
+from symobs.ground.errors import CertificateRejected, InputError
+
+s = sympy.Symbol("s")
+SERVO = StateSpace("[0 1; 0 -1]", "[0; 1]", "[1 0]")
+SEVERAL = StateSpace("[0 1 0; 0 0 1; 1 -2 3]", "[1 0; 0 0; 0 1]", "[1 0 0; 0 1 0]")
+THROUGH = StateSpace("[0 1; -2 k]", "[0; 1]", "[1 0]", "[3]")
+
+
+def loop_of(plant: StateSpace, K: sympy.Matrix, L: sympy.Matrix) -> sympy.Matrix:
+    """Plant and observer with u = -K x_hat, put together by hand in (x, x_hat)."""
+    A, B, C = plant.A, plant.B, plant.C
+    return sympy.Matrix(sympy.BlockMatrix([[A, -B * K], [L * C, A - B * K - L * C]]))
+
+
+@pytest.mark.parametrize(
+    ("plant", "K", "L"),
+    [
+        (SERVO, [1, 2], [3, 4]),
+        (SERVO, ["k", 2], [3, "k^2"]),
+        (SEVERAL, [[1, 2, 3], [4, 5, 6]], [[1, 2], [3, 4], [5, 6]]),
+        (THROUGH, ["1/2", 2], [3, 4]),
+    ],
+    ids=["servo", "parametric", "several", "feedthrough"],
+)
+def test_the_loop_of_given_gains(plant: StateSpace, K: object, L: object) -> None:
+    found = symobs.compensator(plant, K=K, L=L)
+    own = plant.A - plant.B * found.K - found.L * plant.C + found.L * plant.D * found.K
+    F = found.K * (s * sympy.eye(plant.order) - own).inv() * found.L
+    assert (
+        (sympy.Matrix([[found.F]]) - F if F.shape == (1, 1) else found.F - F).applyfunc(sympy.simplify).is_zero_matrix
+    )
+    wanted = loop_of(plant, found.K, found.L).charpoly(s).as_expr()
+    assert sympy.expand(found.closed_loop_polynomial - wanted) == 0
+    assert found.closed_loop_matrix_estimate == loop_of(plant, found.K, found.L)
+    assert "asked for" not in str(found.to("text")).split("Compensator\n")[1]
+    assert found.verdict == "yes"
+
+
+def test_gains_of_lqr_and_of_a_kalman_filter() -> None:
+    """The poles of the loop are the eigenvalues of A - BK and of A - LC, as NumPy finds them."""
+    A, B, C = (np.array(M, dtype=float) for M in (SEVERAL.A, SEVERAL.B, SEVERAL.C))
+    K, _, _ = control.lqr(A, B, np.eye(3), np.eye(2))
+    L, _, _ = control.lqe(A, np.eye(3), C, np.eye(3), np.eye(2))
+    K, L = K.round(3), L.round(3)
+    found = symobs.compensator(SEVERAL, K=K, L=L, floats="decimal")
+    wanted = np.concatenate([np.linalg.eigvals(A - B @ K), np.linalg.eigvals(A - L @ C)])
+    assert np.allclose(np.sort_complex([complex(pole) for pole in found.poles]), np.sort_complex(wanted), atol=1e-9)
+    assert found.stable == "yes"
+
+
+@pytest.mark.parametrize(("time", "said"), [(0, "open left half-plane"), (1, "inside the unit circle")])
+def test_an_unstable_loop_is_said(time: int, said: str) -> None:
+    plant = StateSpace(SERVO.A, SERVO.B, SERVO.C, dt=time)
+    found = symobs.compensator(plant, K=[-5, 2], L=[3, 4])
+    assert found.stable == "no"
+    assert f"{said}: with these gains the closed loop is unstable" in " ".join(str(found.to("text")).split())
+    stable = symobs.compensator(SERVO, K=[1, 2], L=[3, 4])
+    assert "it is unstable" not in stable.to("text")
+
+
+def test_where_a_loop_with_a_parameter_is_stable() -> None:
+    """(s² + 3 s + k)(s² + 4 s + 7) is stable for k > 0 alone."""
+    found = symobs.compensator(SERVO, K=["k", 2], L=[3, 4])
+    assert found.stable == "conditional"
+    for value in (-20, -1, 5, 100):
+        holds = [eval(condition, {"k": value}) for condition in found.stable_if]  # noqa: S307 - of our own making
+        assert all(holds) == (value > 0), value
+
+
+def test_one_gain_is_given_and_the_other_placed() -> None:
+    found = symobs.compensator(SERVO, K=[1, 2], observer_poles=[-3, -4])
+    assert sympy.expand(found.closed_loop_polynomial - (s**2 + 3 * s + 1) * (s + 3) * (s + 4)) == 0
+    other = symobs.compensator(SERVO, control_poles=[-1, -1], L=[3, 4])
+    assert sympy.expand(other.closed_loop_polynomial - (s + 1) ** 2 * (s**2 + 4 * s + 7)) == 0
+    minimal = symobs.compensator(SERVO, K=[1, 2], observer_poles=[-3], observer="minimal")
+    assert sympy.expand(minimal.closed_loop_polynomial - (s**2 + 3 * s + 1) * (s + 3)) == 0
+    assert "asked for" not in str(minimal.to("text")).split("Compensator\n")[1]
+
+
+def test_what_is_not_observable_has_its_cases() -> None:
+    """At k = 0 the second state is not seen, and its mode -1 stays; at k = 1 it is not moved."""
+    plant = StateSpace("[-2 k; 0 -1]", "[1; 1]", "[1 0]", symbols={"k": "real"})
+    found = symobs.compensator(plant, K=[1, 1], L=[1, 1])
+    tree: Any = found.case_tree
+    for case, stays in zip(tree, ({"k": 1, "mode": -2}, {"k": 0, "mode": -1}), strict=True):
+        assert case.result.plant.A[0, 1] == stays["k"]
+        assert sympy.expand(case.result.closed_loop_polynomial).subs(s, stays["mode"]) == 0
+
+
+def test_a_wrong_answer_for_given_gains_does_not_exist() -> None:
+    found = symobs.compensator(SERVO, K=[1, 2], L=[3, 4])
+    with pytest.raises(CertificateRejected, match=r"the claim F\(s\) = K\*\(s\*I - A \+ B\*K \+ L\*C\)\*\*\(-1\)\*L"):
+        type(found)(
+            found.plant, "separation", {**found.answer, "F": found.answer["F"] * 2}, found.feedback, found.estimator
+        )
+
+
+@pytest.mark.parametrize(
+    ("specification", "said"),
+    [
+        ({"K": [1, 2], "control_poles": [-1, -2], "L": [1, 2]}, "both K and control_poles are given"),
+        ({"K": [1, 2]}, "observer_poles are missing"),
+        ({"K": [1, 2, 3], "L": [1, 2]}, "K is 1×3, expected 1×2"),
+        ({"L": [1, 2], "control_poles": [-1, -2], "observer": "minimal"}, "depends on its coordinates"),
+        ({"K": [1, 2], "L": [1, 2], "method": "duality"}, "the method duality places poles"),
+        ({"K": [0.5, 2], "L": [1, 2]}, "0.5 is a float"),
+    ],
+)
+def test_gains_that_have_no_place_are_refused(specification: dict[str, Any], said: str) -> None:
+    with pytest.raises(InputError, match=said):
+        symobs.compensator(SERVO, **specification)

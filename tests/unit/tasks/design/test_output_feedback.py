@@ -1,0 +1,341 @@
+"""Compensators for several inputs and outputs, with either observer: the loop's polynomial, F(s), refusals."""
+
+from __future__ import annotations
+
+import pickle
+from fractions import Fraction
+from typing import TYPE_CHECKING, Any
+
+import pytest
+import sympy
+
+import symobs
+from symobs import StateSpace
+from symobs.exact import Matrix
+from symobs.ground.errors import CertificateRejected, InputError
+from tests.support.independent_algebra.plain import (
+    at_number,
+    characteristic,
+    matrix_at,
+    multiply,
+    observability_rows,
+    product,
+    rank_of,
+    seeded,
+    subtract,
+    transposed,
+)
+from tests.support.independent_algebra.plain_fractions import determinant, identity, inverse, plus, times
+from tests.support.sampling import FULL
+
+if TYPE_CHECKING:
+    import random
+
+    from tests.support.independent_algebra.plain import Rows
+
+DRAWS = 400 if FULL else 40
+#: order, inputs, outputs
+SIZES = ((2, 1, 1), (3, 1, 2), (3, 2, 1), (3, 2, 2), (4, 2, 2), (4, 1, 3), (4, 2, 3))
+
+
+def drawn(generator: random.Random, rows: int, columns: int, *, sparse: bool = False) -> Rows:
+    entries = (0, 0, 1) if sparse else (-2, -1, 0, 0, 1, 1, 2, 3)
+    return [[Fraction(generator.choice(entries)) for _ in range(columns)] for _ in range(rows)]
+
+
+def plant(generator: random.Random, order: int, inputs: int, outputs: int, *, feedthrough: bool) -> list[Rows]:
+    """Draw a controllable and observable plant whose outputs are independent."""
+    while True:
+        A, B, C = drawn(generator, order, order), drawn(generator, order, inputs), drawn(generator, outputs, order)
+        D = drawn(generator, outputs, inputs) if feedthrough else [[Fraction(0)] * inputs for _ in range(outputs)]
+        seen = rank_of(observability_rows(A, C)) == order == rank_of(observability_rows(transposed(A), transposed(B)))
+        if seen and rank_of(C) == outputs:
+            return [A, B, C, D]
+
+
+def wanted(generator: random.Random, degree: int) -> tuple[list[str], list[Fraction]]:
+    """Draw poles, repeated ones and a complex pair among them, and their polynomial."""
+    poles: list[str] = []
+    factors: list[list[Fraction]] = []
+    while len(poles) < degree:
+        if degree - len(poles) > 1 and generator.random() < 0.3:
+            real, imaginary = generator.randint(1, 4), generator.randint(1, 3)
+            poles += [f"-{real} + {imaginary}i", f"-{real} - {imaginary}i"]
+            factors.append([Fraction(1), Fraction(2 * real), Fraction(real**2 + imaginary**2)])
+        else:
+            real = generator.randint(1, 4)
+            poles.append(f"-{real}")
+            factors.append([Fraction(1), Fraction(real)])
+    return poles, product(factors)
+
+
+def texts(rows: Rows) -> list[list[str]]:
+    return [[str(entry) for entry in row] for row in rows]
+
+
+@pytest.mark.parametrize("feedthrough", [False, True], ids=["", "feedthrough"])
+@pytest.mark.parametrize("observer", ["full", "minimal"])
+@pytest.mark.parametrize("size", SIZES, ids=str)
+def test_the_loop_has_the_poles_of_control_and_observer(
+    size: tuple[int, int, int], observer: str, *, feedthrough: bool
+) -> None:
+    """Det(I + P F) χ_P χ_F = φ_c φ_o det(I + D F(∞)) at numbers s, F read off the answer entry by entry."""
+    order, inputs, outputs = size
+    met = 0
+    for draw in range(max(1, DRAWS // (4 * len(SIZES)))):
+        generator = seeded((size, observer, feedthrough, draw))
+        A, B, C, D = plant(generator, order, inputs, outputs, feedthrough=feedthrough)
+        control, phi_c = wanted(generator, order)
+        estimated, phi_o = wanted(generator, order - (outputs if observer == "minimal" else 0))
+        found = symobs.compensator(
+            StateSpace(texts(A), texts(B), texts(C), texts(D)),
+            control_poles=control,
+            observer_poles=estimated,
+            observer=observer,
+        )
+        if found.answer["F"] is None:  # ill-posed: said so, with the determinant that vanishes
+            assert observer == "minimal"
+            assert feedthrough
+            assert any("det(I - N*D) = 0" in certificate.claim for certificate in found.certificates)
+            continue
+        met += 1
+        own = matrix_at(found.fields["compensator_matrix"], {})
+        direct = matrix_at(found.fields["direct_term"], {}) if observer == "minimal" else drawn_zero(inputs, outputs)
+        whole = product([phi_c, phi_o])
+        for s in (Fraction(7, 3), Fraction(-9, 4), Fraction(11)):
+            F = function_at(found.answer["F"], s)
+            P = plus(multiply(multiply(C, inverse(subtract(times(s, identity(order)), A))), B), D)
+            loop = determinant(plus(identity(outputs), multiply(P, F)))
+            own_chi = at_number(characteristic(own), s)
+            expected = at_number(whole, s) * determinant(plus(identity(outputs), multiply(D, direct)))
+            assert loop * at_number(characteristic(A), s) * own_chi == expected
+            G = [[entry_at(entry, s) for entry in row] for row in rows_of(found.fields["closed_loop"])]
+            assert multiply(plus(identity(outputs), multiply(P, F)), G) == P
+        large = Fraction(10**60)
+        for row, limits in zip(function_at(found.answer["F"], large), direct, strict=True):
+            assert all(abs(entry - limit) < Fraction(1, 10**6) for entry, limit in zip(row, limits, strict=True))
+    assert met
+
+
+def drawn_zero(rows: int, columns: int) -> Rows:
+    return [[Fraction(0)] * columns for _ in range(rows)]
+
+
+def function_at(F: Any, s: Fraction) -> Rows:
+    return matrix_at(F if isinstance(F, Matrix) else Matrix.of([[F]]), {"s": s})
+
+
+def rows_of(value: Any) -> Any:
+    return value if isinstance(value, tuple) else ((value,),)
+
+
+def entry_at(entry: Any, s: Fraction) -> Fraction:
+    return matrix_at(Matrix.of([[entry.value]]), {"s": s})[0][0]
+
+
+def test_the_ill_posed_loop_is_refused_with_its_reason() -> None:
+    """S0, Example 4.4 with D = 1/31: the direct term of the control law meets that of the plant."""
+    found = symobs.compensator(
+        StateSpace("[0 1; 0 -1]", "[0; 1]", "[1 0]", "1/31"),
+        control_poles=[-2, -2],
+        observer_poles=[-10],
+        observer="minimal",
+    )
+    assert found.verdict == "no"
+    assert found.answer["K"] is not None
+    assert "cannot be solved for u" in found.to("text")
+    with pytest.raises(
+        CertificateRejected,
+        match=r"the claim F\(s\) = \(I \+ K_2",
+    ):
+        found.with_answer("F", symobs.compensator(SERVO, **ASKED).answer["F"])
+
+
+SERVO = StateSpace("[0 1; 0 -1]", "[0; 1]", "[1 0]")
+ASKED: dict[str, Any] = {"control_poles": [-2, -2], "observer_poles": [-10], "observer": "minimal"}
+
+
+def test_of_many_gains_one_that_leaves_the_law_unsolved_rules_out_no_other() -> None:
+    """The law with the gains chosen cannot be solved for u; with another K of the same poles it can."""
+    plant = StateSpace("[-2 -1 0; 1 1 -1; 1 2 -2]", "[0 0; 0 0; -2 -2]", "[1 1 1]", "[1 -1]")
+    asked: dict[str, Any] = {"control_poles": [-1, -2, -3], "observer_poles": [-4, -5], "observer": "minimal"}
+    found = symobs.compensator(plant, **asked)
+    assert (found.verdict, found.answer["F"]) == ("undecided", None)
+    assert "Other gains with the same poles were not tried" in " ".join(found.to("text").split())
+    zero = "[0 0 0; 0 0 0; 0 0 0]"
+    assert symobs.feedforward(plant, **asked).verdict == "undecided"
+    assert symobs.tracking(plant, **asked, reference_matrix=zero).verdict == "undecided"
+    M = sympy.Matrix([[str(entry) for entry in row] for row in found.estimator.answer["M"].rows])  # x̂ = M [y − D u; z]
+    D, K = sympy.Matrix([[1, -1]]), sympy.Matrix(found.K)
+    other = K + sympy.Matrix([[1], [-1]]) * sympy.Matrix([[1, 0, 0]])  # B (1, -1) = 0, so this moves no pole
+    ill, well = ((sympy.eye(2) - gain * M[:, :1] * D).det() for gain in (K, other))
+    assert ill == 0
+    assert well != 0
+
+
+def test_a_well_posed_compensator_cannot_be_called_ill_posed() -> None:
+    found = symobs.compensator(SERVO, **ASKED)
+    with pytest.raises(CertificateRejected, match=r"the claim det\(I - N\*D\) = 0"):
+        found.with_answer("F", None)
+
+
+@pytest.mark.parametrize(
+    ("keywords", "where", "words"),
+    [
+        ({"observer": "reduced", "observer_poles": [-1, -2]}, "specification.observer", '"full" or "minimal"'),
+        ({"observer": "minimum", "observer_poles": [-1]}, "specification.observer", '"full" or "minimal"'),
+        ({"observer": "minimal", "method": "separation"}, "specification.method", "leave the method out"),
+        ({"observer": "minimal", "observer_poles": [-1, -2]}, "specification.observer_poles", "1"),
+    ],
+)
+def test_what_does_not_fit_together_is_refused_with_the_repair(keywords: Any, where: str, words: str) -> None:
+    with pytest.raises(InputError) as caught:
+        symobs.compensator(SERVO, **{**ASKED, **keywords})
+    assert caught.value.where == where
+    assert words in caught.value.repair
+
+
+def test_nothing_is_left_to_estimate_where_the_outputs_show_the_state() -> None:
+    with pytest.raises(InputError, match="nothing is left to estimate"):
+        symobs.compensator(
+            StateSpace("[0 1; 0 -1]", "[0; 1]", "[1 0; 0 1]"),
+            control_poles=[-2, -2],
+            observer_poles=[],
+            observer="minimal",
+        )
+
+
+def test_the_method_alone_asks_for_the_minimal_observer() -> None:
+    asked = {name: value for name, value in ASKED.items() if name != "observer"}
+    assert symobs.compensator(SERVO, method="minimal_order", **asked).F == symobs.compensator(SERVO, **ASKED).F
+
+
+# -- what a reading of the whole found ------------------------------------------------------------------------------------
+
+
+def test_what_uses_the_estimate_needs_a_law_that_can_be_solved() -> None:
+    """With D = 1/31 the control law of S0, Example 4.4 cannot be solved for u, whatever is added to it."""
+    ill_posed = ("[0 1; 0 -1]", "[0; 1]", "[1 0]", "1/31")
+    asked: dict[str, Any] = {"control_poles": [-2, -2], "observer_poles": [-10]}
+    for task in (symobs.feedforward, symobs.tracking):
+        found = task(StateSpace(*ill_posed), observer="minimal", **asked)
+        assert found.verdict == "no"
+        assert "cannot be solved for u" in found.to("text")
+    parametric = symobs.feedforward(StateSpace(*ill_posed[:3], "d"), observer="minimal", **asked)
+    assert [str(condition) for condition in parametric.conditions] == ["Ne(31*d - 1, 0)"]
+    assert [case.result.verdict for case in parametric.case_tree if case.result is not None] == ["no"]
+
+
+def test_a_parametric_output_that_may_depend_on_another_is_no_refusal() -> None:
+    found = symobs.reduced_order_observer(StateSpace("[0 1 0; 0 0 1; 1 2 3]", C="[1 0 0; 0 a 0]"), poles=[-1])
+    assert found.verdict == "conditional"
+    assert "Ne(a, 0)" in map(str, found.conditions)
+
+
+@pytest.mark.parametrize(
+    ("plant", "control", "observer"),
+    [
+        (("[1 0; 0 2]", "[1; 0]", "[0 1]"), ["-1", "-2"], ["-3", "-4"]),
+        (("[-1 0 0; 0 2 0; 0 0 -5]", "[0; 1; 1]", "[1 1 0]"), ["-1", "-2", "-3"], ["-5", "-4", "-3"]),
+        (("[-1 0; 0 -2]", "[1/2 -1; 1/2 0]", "[0 1]"), ["-1", "-1"], ["-1", "-2"]),
+    ],
+    ids=["both_sides_impossible", "both_sides_keep_modes", "no_compensator_needed"],
+)
+def test_pages_of_plants_that_are_hidden_on_both_sides(plant: Any, control: list[str], observer: list[str]) -> None:
+    assert symobs.compensator(StateSpace(*plant), control_poles=control, observer_poles=observer).to("text")
+
+
+def test_a_pole_three_times_in_discrete_time_has_a_page() -> None:
+    plant = StateSpace("[-1 2 1; -2 -1 0; 2 1 2]", "[-2; 0; 0]", "[1 0 0]", dt=True)
+    found = symobs.compensator(plant, control_poles=["-1/2"] * 3, observer_poles=[-2] * 3)
+    assert "Remark." in found.to("text")
+
+
+@pytest.mark.slow
+def test_a_compensator_whose_stability_is_undecided_has_a_page_that_is_silent_about_it() -> None:
+    plant = symobs.StateSpace(
+        "[1 -1 0; 0 0 1/2; -1 1/2 1]", "[2; 0; 0]", "[1 2 -1; 0 -1 1]", dt="1/10", symbols={"p": "nonzero"}
+    )
+    design = symobs.compensator(plant, control_poles="-p, -p, -p", observer_poles="-10, -6, -8")
+    assert design.F_stable == "undecided"
+    text = " ".join(design.to("text").split())
+    assert "It is strictly proper. 4." in text
+    assert "if and only if ." not in text
+
+
+def test_outputs_that_see_nothing_leave_the_modes_where_they_are() -> None:
+    assert symobs.observer(StateSpace("3", C="[0; 0]"), poles=[3]).verdict == "yes"
+    hidden = StateSpace("[1 0 0; 0 2 0; 0 0 3]", C="[1 1 0; 0 1 0]")
+    assert symobs.reduced_order_observer(hidden, poles=[3]).fixed_modes == (3,)
+
+
+def test_the_time_is_no_name_for_a_parameter_of_the_coordinates() -> None:
+    with pytest.raises(InputError, match="another name"):
+        symobs.reduced_order_observer(StateSpace("[0 1; 0 -1]", C="[1 0]"), poles=[-1], T="[1 0; 0 t]")
+
+
+def test_where_an_impossible_reference_can_be_followed_is_said() -> None:
+    plant = StateSpace("[0 1; 0 -1]", "[b; 1]", "[1 0]")
+    found = symobs.tracking(plant, control_poles=[-2, -2], observer_poles=[-10], reference_matrix="[0 1; -1 0]")
+    assert found.verdict == "no"
+    (followed,) = [case for case in found.case_tree if case.result is not None and case.result.verdict == "yes"]
+    assert [str(condition.expression) for condition in followed.when] == ["b"]
+    assert followed.result is not None
+    assert str(followed.result.answer["K_d"]) == "[1 -1]"
+
+
+def test_several_outputs_have_their_cases_in_the_reduced_order_too() -> None:
+    plant = StateSpace("[1 0 0; 0 2 0; 0 0 3]", C="[1 1 0; 0 1 e]")
+    found = symobs.reduced_order_observer(plant, poles=[-5])
+    assert [
+        (str(case.when[0].expression), case.result.verdict) for case in found.case_tree if case.result is not None
+    ] == [("e", "no")]
+
+
+@pytest.mark.parametrize("keywords", [{"zero": "(1, 1)"}, {"member": "decoupled"}])
+def test_a_given_gain_is_not_also_chosen(keywords: Any) -> None:
+    with pytest.raises(InputError, match="both L and"):
+        symobs.observer(StateSpace("[0 1; -2 -3]", C="[1 0; 0 1]"), L="[1 2; 3 4]", **keywords)
+
+
+def test_the_closed_loop_has_a_value_wherever_the_conditions_hold() -> None:
+    """No factor is divided by a leading coefficient that a parameter can make vanish, here d (46 d − 1)."""
+    plant = StateSpace("[0 1 0; 0 0 1; 1 2 3]", "[0 1; 0 0; 1 0]", "[1 0 0; 0 1 0]", "[1 0; d 0]")
+    found = symobs.compensator(plant, control_poles=[-1, -2, -3], observer_poles=[-4], observer="minimal")
+    assert [str(condition) for condition in found.conditions] == ["Ne(46*d - 1, 0)"]
+    assert not found.closed_loop.subs("d", 0).has(sympy.nan, sympy.zoo)
+
+
+def test_a_plant_of_negative_gain_keeps_its_sign_in_the_box() -> None:
+    plant = StateSpace("[0 1; 0 -1]", "[0; 1]", "[-2 0]")
+    page = str(symobs.compensator(plant, control_poles=[-2, -3], observer_poles=[-10, -11]).to("text"))
+    assert "│ -2/(s(s + 1)) │" in page
+
+
+@pytest.mark.parametrize(
+    ("A", "B", "C"),
+    [("[0 1; 0 -a]", "[0; b]", "[1 0]"), ("[0 1; 0 -1/a]", "[0; 1/a]", "[1 0]"), ("[0 1; 0 -a]", "[0; 1]", "[c 1/b]")],
+)
+def test_the_unity_loop_divides_by_no_parameter_that_stands_in_front(A: str, B: str, C: str) -> None:
+    """Its factored form is PF/(1 + PF), and no factor of it has a denominator."""
+    plant = symobs.StateSpace(A, B, C)
+    found = symobs.compensator(plant, control_poles=[-1, -2], observer_poles=[-3, -4])
+    form = found.unity_loop
+    s = sympy.Symbol("s")
+    P = (plant.C * (s * sympy.eye(2) - plant.A).inv() * plant.B)[0]
+    assert sympy.simplify(found.closed_loop_unity - P * found.F / (1 + P * found.F)) == 0
+    assert all(factor.denominator.is_constant for factor, _ in form.factors)
+
+
+@pytest.mark.parametrize("observer", ["full", "minimal"])
+def test_what_follows_from_the_gains_is_a_mapping_found_when_it_is_asked_for(observer: str) -> None:
+    plant = symobs.StateSpace("[a 1; 0 b]", "[0; 1]", "[1 0]")
+    poles = [-3, -4] if observer == "full" else [-3]
+    found = symobs.compensator(plant, control_poles=[-1, -2], observer_poles=poles, observer=observer)
+    assert "loop" not in vars(found)
+    fields: Any = found.fields
+    assert {"closed_loop", "F_stable"} <= set(fields)
+    assert "loop" not in vars(found)
+    assert fields["closed_loop"] is found.loop is fields["closed_loop"]
+    assert pickle.loads(pickle.dumps(fields)) == dict(fields)  # noqa: S301 - our own
+    assert (fields | {"K": 1})["K"] == ({"K": 1, "x": 2} | fields)["x"] - 1 == 1

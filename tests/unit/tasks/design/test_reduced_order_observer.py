@@ -1,0 +1,324 @@
+"""The reduced-order observer: printed values, the equations it must satisfy in plain SymPy, what is refused, its page."""
+
+from __future__ import annotations
+
+import pickle
+from typing import TYPE_CHECKING, Any
+
+import pytest
+import sympy
+from hypothesis import assume, given
+from hypothesis import strategies as st
+from sympy import Matrix, Rational
+
+import symobs
+from symobs import StateSpace
+from symobs.exact import Ideal, Scalar
+from symobs.exact import Matrix as Exact
+from symobs.ground.errors import CertificateRejected, InputError
+from symobs.pages.formats.json import result_object
+from symobs.tasks.design.reduced_order.partition import completed
+
+if TYPE_CHECKING:
+    from fractions import Fraction
+
+s = sympy.Symbol("s")
+
+SERVO = StateSpace("[0 1; 0 -1]", "[0; 1]", "[1 0]")
+THIRD_ORDER = StateSpace("[-7 1 15; -2 0 5; -2 0 4]", "[65; -5; 30]", "[1 0 -2]")
+CART = StateSpace("[0 0 0 1; 0 0 1 0; 0 10.78 0 0; 0 -0.98 0 0]", "[0; 0; -1; 1]", "[1 0 0 0]")
+
+#: plant, poles, and what the sources print (or what follows from it exactly).
+PRINTED: dict[str, tuple[StateSpace, str, dict[str, Any]]] = {
+    "S0-Ex4.3": (
+        StateSpace("[0 -1 0; 1 0 1; 0 0 0]", C="[1 0 0]"),
+        "-1, -1",
+        {
+            "L": Matrix([-2, -1]),
+            "F": Matrix([[-2, 1], [-1, 0]]),
+            "G": None,
+            "H": Matrix([4, 2]),
+            "M": Matrix([[1, 0, 0], [-2, 1, 0], [-1, 0, 1]]),
+        },
+    ),
+    "S0-Ex4.4": (SERVO, "-10", {"L": Matrix([9]), "F": Matrix([-10]), "G": Matrix([1]), "H": Matrix([-90])}),
+    "S0-MIN-GENC": (
+        THIRD_ORDER,
+        "-5, -6",
+        {
+            "T": Matrix([[1, 0, -2], [0, 1, 0], [0, 0, 1]]),
+            "L": Matrix([-19, 30]),
+            "F": Matrix([[19, 20], [-30, -30]]),
+            "G": Matrix([90, -120]),
+            "H": Matrix([180, -242]),
+            "M": Matrix([[61, 0, 2], [-19, 1, 0], [30, 0, 1]]),
+        },
+    ),
+    "S2-FHG": (
+        StateSpace("[0 1; 0 -1]", "[0; 1]", "[2 0]"),
+        "-10",
+        {"L": Matrix([Rational(9, 2)]), "F": Matrix([-10]), "G": Matrix([1]), "H": Matrix([-45])},
+    ),
+    "S2-EX-PEND": (
+        CART,
+        "-20, -20+20i, -20-20i",
+        {
+            "L": Matrix([-Rational(80539, 49), -Rational(832340, 49), 60]),
+            "F": Matrix(
+                [
+                    [0, 1, Rational(80539, 49)],
+                    [Rational(539, 50), 0, Rational(832340, 49)],
+                    [-Rational(49, 50), 0, -60],
+                ]
+            ),
+            "G": Matrix([0, -1, 1]),
+            "H": Matrix([Rational(4000000, 49), Rational(2453609479, 2450), -Rational(99461, 50)]),
+        },
+    ),
+}
+
+
+@pytest.mark.parametrize("row", PRINTED)
+def test_printed_values(row: str) -> None:
+    plant, poles, values = PRINTED[row]
+    found = symobs.reduced_order_observer(plant, poles=poles)
+    assert found.verdict == "yes"
+    for name, value in values.items():
+        assert getattr(found, name) == value, name
+
+
+def holds(found: Any, A: Any, B: Any, C: Any, D: Any, phi: Any) -> None:
+    """Hold an observer against its equations, in SymPy alone."""
+    T, L, F, G, H, M = (getattr(found, name) for name in "TLFGHM")
+    measured = C.rows
+    P = T[measured:, :] - L * T[:measured, :]
+    assert T[:measured, :] == C
+    zero = P * A - F * P - H * C
+    assert zero.applyfunc(sympy.cancel) == sympy.zeros(*zero.shape)
+    if B is not None:
+        driven = G - P * B + H * D
+        assert driven.applyfunc(sympy.cancel) == sympy.zeros(*driven.shape)
+    assert (M * C.col_join(P)).applyfunc(sympy.cancel) == sympy.eye(A.rows)
+    assert sympy.cancel((s * sympy.eye(F.rows) - F).det() - phi) == 0
+
+
+entries = st.integers(-4, 4)
+
+
+@st.composite
+def plants(draw: st.DrawFn) -> tuple[Any, Any, Any, Any]:
+    order = draw(st.integers(2, 4))
+    rows = [[draw(entries) for _ in range(order)] for _ in range(order)]
+    column, output = [draw(entries) for _ in range(order)], [draw(entries) for _ in range(order)]
+    return Matrix(rows), Matrix(column), Matrix([output]), Matrix([[draw(entries)]])
+
+
+@pytest.mark.slow
+@given(plants(), st.lists(st.fractions(-5, 5, max_denominator=3), min_size=3, max_size=3))
+def test_the_equations_hold_for_any_plant(drawn: tuple[Any, Any, Any, Any], poles: list[Fraction]) -> None:
+    A, B, C, D = drawn
+    assume(any(C))
+    order = A.rows
+    wanted = poles[: order - 1]
+    found = symobs.reduced_order_observer(StateSpace(A, B, C, D), poles=wanted)
+    rank = Matrix.vstack(*[C * A**k for k in range(order)]).rank()
+    if rank == order:
+        assert found.verdict == "yes"
+    if found.verdict == "yes":
+        phi = sympy.prod(s - Rational(p.numerator, p.denominator) for p in wanted)
+        holds(found, A, B, C, D, phi)
+    else:
+        assert rank < order
+        assert found.fixed_modes
+
+
+def test_other_coordinates_give_the_same_estimate() -> None:
+    T = Matrix([[1, 0, -2], [1, 1, 0], [0, 2, 1]])
+    first = symobs.reduced_order_observer(THIRD_ORDER, poles="-5, -6")
+    second = symobs.reduced_order_observer(THIRD_ORDER, poles="-5, -6", T=T)
+    assert second.T == T
+    holds(second, THIRD_ORDER.A, THIRD_ORDER.B, THIRD_ORDER.C, Matrix([[0]]), (s + 5) * (s + 6))
+
+    def response(found: Any) -> Any:
+        return found.M * sympy.Matrix([[1]]).col_join((s * sympy.eye(2) - found.F).inv() * found.H)
+
+    assert (response(first) - response(second)).applyfunc(sympy.cancel) == sympy.zeros(3, 1)
+
+
+def test_the_exceptions_of_a_parameter_are_cases() -> None:
+    a, b, p = sympy.symbols("a b p")
+    plant = StateSpace("[0 1; -2 -3]", "[0; 1]", "[a b]")
+    found = symobs.reduced_order_observer(plant, poles=["-p"])
+    holds(found, plant.A, plant.B, plant.C, Matrix([[0]]), s + p)
+    assert found.verdict == "conditional"
+    assert {sympy.factor(c.lhs) for c in found.conditions} == {a, a - b, a - 2 * b}
+    cases = {case.when[0].lhs: case.result for case in found.cases}
+    assert set(cases) == {a, a - b, a - 2 * b}
+    assert [cases[value].verdict for value in (a - b, a - 2 * b)] == ["no", "no"]
+    there = cases[a]
+    assert Matrix([[0, b], [1, 0]]) == there.T
+    holds(there, plant.A, plant.B, Matrix([[0, b]]), Matrix([[0]]), s + p)
+
+
+@pytest.mark.parametrize("name", ["L", "F", "G", "H", "M", "T"])
+def test_no_entry_can_be_changed(name: str) -> None:
+    found = symobs.reduced_order_observer(THIRD_ORDER, poles="-5, -6")
+    value = found.answer[name]
+    with pytest.raises(CertificateRejected):
+        found.with_answer(name, value + value)
+
+
+def test_discrete_time_with_feedthrough() -> None:
+    plant = StateSpace("[1 1; 0 1]", "[0; 1]", "[1 0]", "[3]", dt=True)
+    found = symobs.reduced_order_observer(plant, poles=[0])
+    assert (Matrix([1]), Matrix([0]), Matrix([-1]), Matrix([4])) == (found.L, found.F, found.H, found.G)
+    text = found.to("text")
+    assert "wₖ₊₁" in text
+    assert "contains the output one step ahead" in text
+
+
+@pytest.mark.parametrize(
+    ("arguments", "where"),
+    [
+        ({"poles": "-5"}, "specification.poles"),
+        ({"poles": "-5, -6, -7"}, "specification.poles"),
+        ({"poles": "-5+i, -6"}, "specification.poles"),
+        ({"poles": "-5, -6", "T": "[1 0 0; 0 1 0; 0 0 1]"}, "specification.T"),
+        ({"poles": "-5, -6", "T": "[1 0 -2; 0 1 0; 1 1 -2]"}, "specification.T"),
+        ({"poles": "-5, -6", "T": "[1 0; 0 1]"}, "specification.T"),
+    ],
+)
+def test_what_does_not_fit_is_refused(arguments: dict[str, str], where: str) -> None:
+    with pytest.raises(InputError) as caught:
+        symobs.reduced_order_observer(THIRD_ORDER, **arguments)
+    assert caught.value.where == where
+    assert caught.value.repair
+
+
+def test_nothing_left_to_estimate() -> None:
+    with pytest.raises(InputError, match="nothing is left to estimate"):
+        symobs.reduced_order_observer(StateSpace("[-1]", "[1]", "[2]"), poles=[])
+    with pytest.raises(InputError, match="depend on each other"):
+        symobs.reduced_order_observer(StateSpace("[0 1; 0 0]", "[0; 1]", "[0 0]"), poles=[-1])
+
+
+def test_the_page_follows_the_book() -> None:
+    text = " ".join(symobs.reduced_order_observer(THIRD_ORDER, poles="-5, -6").to("text").split())
+    order = [
+        "T A T⁻¹",
+        "separate into",
+        "is observable because",
+        "dx̂₂/dt",
+        "de₂/dt",
+        "Equating coefficients",
+        "as required",
+    ]
+    order += ["derivative of the output", "ż = F z + G u + H y", "x̂ ="]
+    places = [text.index(part) for part in order]
+    assert places == sorted(places)
+
+
+SLIDES = StateSpace("[0 1; 0 -1]", "[0; 1]", "[2 0]")
+
+
+def test_open_matrices_are_found_from_the_error() -> None:
+    """S2: F, H and G are what is left when the coefficients of x₁, x₂ and u in the error are 0."""
+    found = symobs.reduced_order_observer(SLIDES, poles=[-10], method="undetermined")
+    assert [found.L[0], found.F[0], found.G[0], found.H[0]] == [Rational(9, 2), -10, 1, -45]
+    text = " ".join(found.to("text").split())
+    order = ["does not work here", "Let the estimate be x̂₂ = z + L x₁", "ż = F z + G u + H y"]
+    order += ["(A₂₁ - L A₁₁ + F L - H)x₁ + (A₂₂ - L A₁₂ - F)x₂ + (B₂ - L B₁ - G)u", "which requires"]
+    order += [
+        "F = A₂₂ - L A₁₂, G = B₂ - L B₁, H = F L + A₂₁ - L A₁₁",
+        "the error dynamics reduce to de₂/dt = F e₂",
+        "as required",
+        "-10z + u - 45y",
+    ]
+    places = [text.index(part) for part in order]
+    assert places == sorted(places)
+    assert "derivative of the output" not in text
+
+
+@pytest.mark.parametrize(
+    ("plant", "poles"),
+    [
+        (THIRD_ORDER, "-5, -6"),
+        (StateSpace("[0 1; 0 -1]", "[0; 1]", "[1 0]", "[2]"), "-10"),
+        (StateSpace("[0 1; 0 -1]", None, "[1 0]"), "-10"),
+        (StateSpace("[1 1; 0 1]", "[0; 1]", "[1 0]", "[3]", dt=True), "0"),
+        (StateSpace("[0 1 0; 0 0 1; 1 2 3]", "[0; 0; 1]", "[1 0 0; 0 0 1]"), "-2"),
+        (StateSpace("[0 1; 0 -b]", "[0; 1]", "[c 1]"), "-p"),
+    ],
+)
+def test_both_ways_lead_to_the_same_observer(plant: StateSpace, poles: str) -> None:
+    there, here = (symobs.reduced_order_observer(plant, poles=poles, method=m) for m in ("partition", "undetermined"))
+    assert dict(there.answer) == dict(here.answer)
+    assert "which requires" in " ".join(here.to("text").split())
+    assert "which requires" not in " ".join(there.to("text").split())
+
+
+def test_the_output_s_derivative_is_shown_before_it_goes() -> None:
+    """S0, Example 4.4: −(1 + L) x̂₂ + u + L ẋ₁; Example 4.3: (4.43), (4.44)."""
+    servo = " ".join(
+        symobs.reduced_order_observer(StateSpace("[0 1; 0 -1]", "[0; 1]", "[1 0]"), poles=[-10]).to("text").split()
+    )
+    assert "dx̂₂/dt = (-l₁ - 1)x̂₂ + u + l₁ dx₁/dt" in servo
+    assert "= -10x̂₂ + u + 9 dx₁/dt The right-hand side" in servo
+
+
+def test_why_the_mere_copy_fails() -> None:
+    """S2: 0 and ±7√22/10 are the eigenvalues of A₂₂ of the pendulum on the cart, whose copy does not die out."""
+    plant, poles, _ = PRINTED["S2-EX-PEND"]
+    assert "the eigenvalues 0, ± (7/10)√22." in " ".join(
+        symobs.reduced_order_observer(plant, poles=poles).to("text", exact=True).split()
+    )
+    with_b = StateSpace("[0 1; 0 b]", "[0; 1]", "[1 0]", symbols={"b": "positive"})
+    assert "since A₂₂ is not stable." in " ".join(symobs.reduced_order_observer(with_b, poles=[-3]).to("text").split())
+
+
+DEPENDENT = StateSpace(
+    "[0 a-1 0; 0 a-1 -1; a*b 1 1]", "[1; 0; -1]", "[0 0 b; 0 b b+1]", symbols={"a": "real", "b": "real"}
+)
+
+
+def test_where_outputs_depend_on_each_other_there_is_no_observer_of_that_order() -> None:
+    """Rank C is 1 for b = 0 and 2 elsewhere; with any one row P the three rows of [C; P] depend on each other."""
+    found = symobs.reduced_order_observer(DEPENDENT, poles=[-4])
+    (case,) = (case for case in found.case_tree if [str(c) for c in case.when] == ["b == 0"])
+    assert case.result is not None
+    there = result_object(case.result)
+    assert there["verdict"] == "no"
+    assert [there[name] for name in "LTFGHM"] == [None] * 6
+    assert there["cases"] == []
+    w = case.result.answer["w"]
+    assert not w.is_zero
+    assert (w @ case.result.plant.matrices.C).is_zero
+    assert "one output is a linear combination of the others" in " ".join(case.result.to("text").split())
+    assert pickle.loads(pickle.dumps(case.result)) == case.result  # noqa: S301 - our own
+
+
+def test_a_row_that_shows_nothing_is_no_proof_that_outputs_depend_on_each_other() -> None:
+    found = symobs.reduced_order_observer(DEPENDENT, poles=[-4])
+    (there,) = (case.result for case in found.case_tree if [str(c) for c in case.when] == ["b == 0"])
+    assert there is not None
+    row = type(there.answer["w"]).of
+    for wrong in (row([[0, 0]]), row([[0, 1]])):
+        with pytest.raises(CertificateRejected, match=r"the claim w is not 0|the claim w\*C = 0"):
+            there.with_answer("w", wrong)
+    with pytest.raises(CertificateRejected, match="outputs that depend on each other leave no observer of order n - p"):
+        there.with_answer("M", row([[0, 0], [1, 0], [0, 1]]))
+
+
+def test_a_compensator_of_minimal_order_needs_independent_outputs() -> None:
+    found = symobs.compensator(DEPENDENT, control_poles=[-1, -2, -3], observer_poles=[-4], observer="minimal")
+    (there,) = (case.result for case in found.case_tree if [str(c) for c in case.when] == ["b == 0"])
+    assert there is not None
+    assert (there.verdict, there.answer["F"], there.answer["L"]) == ("no", None, None)
+
+
+def test_coordinates_on_a_stratum_are_regular_there() -> None:
+    """The first entry of C vanishes on the curve a² = a + 1: there another column is completed."""
+    a = Scalar.symbol("a")
+    curve, C = Ideal.of([a**2 - a - 1]), Exact.of([[a**2 - a - 1, a, 0]])
+    assert completed(C).determinant() in curve
+    assert completed(C, curve).determinant() not in curve

@@ -1,0 +1,144 @@
+"""Unknown-input observers held to signals: the error of a simulation does not depend on d; where there is none, and why."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from random import Random
+from typing import TYPE_CHECKING, Any
+
+import pytest
+import sympy
+
+import symobs
+from symobs.exact import Matrix
+from symobs.ground.errors import CertificateRejected, InputError
+
+if TYPE_CHECKING:
+    from symobs.tasks.design.disturbance.unknown_input_observer import UnknownInputObserver
+
+
+def drawn(random: Random, rows: int, columns: int) -> Any:
+    return sympy.Matrix(rows, columns, lambda *_: random.randint(-3, 3))
+
+
+def pencil(A: Any, E: Any, C: Any) -> Any:
+    """Return [zI − A, −E; C, 0]."""
+    upper = sympy.Matrix.hstack(sympy.Symbol("z") * sympy.eye(A.rows) - A, -E)
+    return sympy.Matrix.vstack(upper, sympy.Matrix.hstack(C, sympy.zeros(C.rows, E.cols)))
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_the_error_of_two_steps_is_free_of_u_and_d_and_the_zeros_are_poles(seed: int) -> None:
+    random = Random(seed)  # noqa: S311 - test data
+    n, p, q = [(2, 1, 1), (3, 2, 1), (3, 2, 2), (4, 2, 1)][seed]
+    A, B, C, D, E = (drawn(random, *size) for size in ((n, n), (n, 1), (p, n), (p, 1), (n, q)))
+    plant = symobs.StateSpace(A, B, C, D, dt=True)
+    found = symobs.unknown_input_observer(plant, E=E, polynomial=f"z^{n}")
+    assert found.solvable == ((C * E).rank() == E.rank())
+    if found.solvable and p == q:  # the zeros are the roots of a determinant
+        fixed = sympy.Mul(*(sympy.Symbol("z") - root for root in found.fixed_modes))
+        assert sympy.rem(pencil(A, E, C).det(method="berkowitz"), sympy.expand(fixed), sympy.Symbol("z")) == 0
+        assert len(found.fixed_modes) == n - q
+    elif found.solvable:
+        assert all(pencil(A, E, C).subs("z", root).rank() < n + q for root in found.fixed_modes)
+    if found.L is None:
+        assert found.verdict == "no"
+        return
+    x, z = drawn(random, n, 1), drawn(random, n, 1)
+    for _ in range(n):  # all poles at 0: after n steps the estimate is the state, whatever u and d were
+        u, d = drawn(random, 1, 1), drawn(random, q, 1)
+        x, z = A * x + B * u + E * d, found.F * z + found.B_u * u + found.B_y * (C * x + D * u)
+    u = drawn(random, 1, 1)
+    assert z + found.H * (C * x + D * u - D * u) == x
+
+
+def test_conditions_and_cases_are_those_of_the_rank_and_of_the_zeros() -> None:
+    """C E = a, and the zero is -3 - b/a: it is a desired pole for b = 0 and for b = -a, and for E = 0 there is none."""
+    plant = symobs.StateSpace("[0 1; -2 -3]", "[0; 1]", "[1 0]")
+    found = symobs.unknown_input_observer(plant, E="[a; b]", poles="-2, -3")
+    a, b = sympy.symbols("a b")
+    assert (found.verdict, found.conditions) == ("no", (sympy.Ne(a, 0),))
+    verdicts = {frozenset(case.when): case.result.verdict for case in found.cases}
+    assert verdicts == {
+        frozenset({sympy.Eq(a, 0)}): "no",
+        frozenset({sympy.Eq(b, 0), sympy.Ne(a, 0)}): "yes",
+        frozenset({sympy.Eq(a + b, 0), sympy.Ne(a, 0)}): "yes",
+    }
+    ((when, undisturbed),) = found.cases[0].result.cases
+    assert (when, undisturbed.verdict, undisturbed.H) == ((sympy.Eq(b, 0),), "yes", sympy.zeros(2, 1))
+    assert found.at(a=1, b=-1).verdict == "yes"
+    assert found.at(a=0, b=1).solvable is False
+    assert "Case b = 0" in found.to("text")
+
+
+@pytest.mark.parametrize(
+    ("C", "poles", "said"),
+    [
+        ("[1 1]", "-2, -3", "an observer with a convergent error exists"),
+        ("[-1 1]", "-2, -3", "no observer of this kind has an error that converges"),
+        ("[1 0]", "-2, -3", "no such observer exists"),
+    ],
+)
+def test_why_there_is_no_observer_is_said(C: str, poles: str, said: str) -> None:
+    found = symobs.unknown_input_observer(symobs.StateSpace("[0 1; -2 -3]", C=C), E="[0; 1]", poles=poles)
+    assert found.verdict == "no"
+    assert said in " ".join(found.to("text").split())
+
+
+def test_dependent_columns_of_a_disturbance_count_once() -> None:
+    plant = symobs.StateSpace("[0 1 0; 0 0 1; -1 -2 -3]", None, "[1 0 0; 0 1 0]")
+    found = symobs.unknown_input_observer(plant, E="[1 2; 0 0; 2 4]", poles="-1, -2, -3")
+    assert found.H == symobs.unknown_input_observer(plant, E="[1; 0; 2]", poles="-1, -2, -3").H
+    assert "rank E = 1" in found.to("text")
+
+
+@pytest.mark.parametrize(
+    ("name", "value"),
+    [
+        ("H", Matrix.of([[1, 0], [1, 0], [0, 0]])),
+        ("T", Matrix.identity(3)),
+        ("L", Matrix.of([[2, 0], [0, -12], [0, 7]])),
+        ("F", Matrix.of([[-2, 0, 0], [-1, 0, 12], [0, -1, -8]])),
+        ("B_u", Matrix.column([1, 1, 0])),
+        ("B_y", Matrix.of([[1, 0], [-1, -12], [0, 6]])),
+        ("w", Matrix.column([1])),
+    ],
+)
+def test_a_wrong_answer_is_rejected(name: str, value: Matrix) -> None:
+    plant = symobs.StateSpace("[-1 1 0; -1 0 0; 0 -1 -1]", "[0; 1; 0]", "[1 0 0; 0 0 1]")
+    design: UnknownInputObserver = symobs.unknown_input_observer(plant, E="[-1; 0; 0]", poles="-2, -3, -4")
+    with pytest.raises(CertificateRejected):
+        design.with_answer(name, value)
+
+
+def test_a_direction_that_is_seen_is_no_reason_for_a_no() -> None:
+    design = symobs.unknown_input_observer(symobs.StateSpace("[0 1; 0 0]", C="[1 0]"), E="[0; 1]", poles="-1, -2")
+    with pytest.raises(CertificateRejected):
+        design.with_answer("w", Matrix.zeros(1, 1))
+
+
+@pytest.mark.parametrize(
+    ("E", "said"),
+    [(None, "E is missing"), ("[1; 0; 0]", "E has 3 rows, A has 2"), ("[s; 1]", "stands for the time"), ("[1", "E")],
+)
+def test_a_wrong_disturbance_input_is_refused(E: Any, said: str) -> None:
+    with pytest.raises(InputError, match=said):
+        symobs.unknown_input_observer(symobs.StateSpace("[0 1; 0 0]", C="[1 0]"), E=E, poles="-1, -2")
+
+
+def test_a_direction_may_be_an_angle() -> None:
+    """With E = (cos, sin) and C = I the projection is H = E Eᵀ, since Eᵀ E = 1."""
+    plant = symobs.StateSpace("[0 1; -2 -3]", C="[1 0; 0 1]", symbols={"theta": "real"})
+    found = symobs.unknown_input_observer(plant, E="[cos(theta); sin(theta)]", poles="-2, -3")
+    (theta,) = found.H.free_symbols
+    E = sympy.Matrix([sympy.cos(theta), sympy.sin(theta)])
+    assert (found.H - E * E.T).applyfunc(sympy.simplify) == sympy.zeros(2, 2)
+    assert (found.H * E - E).applyfunc(sympy.simplify) == sympy.zeros(2, 1)
+
+
+def test_a_flat_list_is_a_column_and_the_observer_comes_out() -> None:
+    plant = symobs.StateSpace("[0 1; -2 -3]", "[0; 1]", "[1 0; 0 1]")
+    found = symobs.unknown_input_observer(plant, E=[0, Fraction(1, 2)], poles="-2, -3")
+    observer = found.systems["observer"]  # (u, y) to z + H y
+    assert (observer.B.shape, observer.D.shape) == ((2, 3), (2, 3))
+    assert observer.D[1, 2].is_one

@@ -1,0 +1,203 @@
+"""A result at values of its parameters is that of the plant with these numbers, and its gains have the values they had."""
+
+from __future__ import annotations
+
+import random
+from fractions import Fraction
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+import pytest
+import sympy
+
+import symobs
+from symobs.ground.errors import CertificateRejected, InexactInput, InputError, ProblemErrors
+from symobs.problem import read
+from symobs.system.specification import KINDS
+from symobs.tasks.result import tasks
+from tests.support.paths import ROOT
+
+if TYPE_CHECKING:
+    from symobs.tasks.result import Result
+
+HIDDEN = symobs.StateSpace("[0 1; -2 -3]", "[0; 1]", "[1 c]")
+WIDE = symobs.StateSpace("[0 1 0; 0 0 k; 1 0 a]", "[0 1; 1 0; 0 1]", "[1 0 0; 0 1 0]")
+#: Whose symbolic answers take seconds, here asked many times.
+LARGE = {"cart_pole", "pendulum_on_cart"}
+
+
+def with_letters() -> list[str]:
+    files = sorted((ROOT / "worked_examples").glob("*.toml"))
+    return [f.stem for f in files if "[symbols]" in f.read_text(encoding="utf-8") and f.stem not in LARGE]
+
+
+def drawn(result: Result, chosen: random.Random) -> dict[str, Fraction]:
+    found = {}
+    for name, sign in result.symbols.items():
+        size = Fraction(chosen.randint(1, 40), chosen.randint(1, 9))
+        found[name] = -size if sign in {"negative", "nonpositive"} else size
+    return found
+
+
+@pytest.mark.parametrize("name", with_letters())
+def test_gains_of_worked_examples_have_the_values_that_sympy_finds(name: str) -> None:
+    path = ROOT / "worked_examples" / f"{name}.toml"
+    for result in read(path.read_text(encoding="utf-8"), name, path.parent).solve():
+        if result.task not in {"observer", "state_feedback", "compensator", "reduced_order_observer"}:
+            continue
+        values = drawn(result, random.Random(name))  # noqa: S311 - a seeded draw
+        there = result.at(values)
+        assert type(there) is type(result)
+        assert there.symbols == {}
+        assert there.all_certificates
+        numbers = {key: sympy.Rational(value) for key, value in values.items()}
+        for letter in {"K", "L"} & {key for key, value in result.answer.items() if value is not None}:
+            gain = getattr(result, letter)
+            assert getattr(there, letter) == gain.subs({s: numbers[s.name] for s in gain.free_symbols})
+
+
+def test_the_case_that_applies_is_the_answer() -> None:
+    result = symobs.observer(HIDDEN, poles="-k, -5")
+    for c, k, verdict in ((3, 7, "yes"), ("1/2", 1, "no"), ("1/2", 2, "yes"), (1, 7, "no"), (1, 1, "yes")):
+        there = result.at(c=c, k=k)
+        assert there.verdict == verdict
+        assert there == symobs.observer(HIDDEN.substitute({"c": c}), poles=f"-{k}, -5").in_place_of(there)
+
+
+def test_some_parameters_stay() -> None:
+    result = symobs.observer(HIDDEN, poles="-k, -5")
+    c, k = sympy.symbols("c k")
+    there = result.at({c: 3})
+    assert there.symbols == {"k": "real"}
+    assert sympy.simplify(there.L - result.L.subs(c, 3)) == sympy.zeros(2, 1)
+    assert there.at(k=2) == result.at({"c": 3, k: 2})
+    assert result.at(c="2*k").L.subs(k, 3) == result.at(c=6, k=3).L
+
+
+def test_a_gain_that_is_not_unique_is_kept_and_its_page_speaks_of_it() -> None:
+    """With two inputs; for the numbers alone another member of the family would be chosen."""
+    A, B = "[1 2 0 k; 0 0 0 2; 0 -1 1 -1; 0 2 1 -1]", "[0 1; k 1; 1 0; k 0]"
+    result = symobs.state_feedback(symobs.StateSpace(A, B), poles="-1, -2, -3, -4")
+    there = result.at(k=3)
+    direct = symobs.state_feedback(symobs.StateSpace(A, B).substitute({"k": 3}), poles="-1, -2, -3, -4")
+    assert there.K == result.K.subs(sympy.Symbol("k"), 3) != direct.K
+    s = sympy.Symbol("s")
+    closed = (s * sympy.eye(4) - there.plant.A + there.plant.B * there.K).det()
+    assert sympy.expand(closed - (s + 1) * (s + 2) * (s + 3) * (s + 4)) == 0
+    assert "-49" in there.to("text")
+
+
+_s = sympy.Symbol("s")
+
+
+@pytest.mark.parametrize(
+    ("result", "values", "field", "expected"),
+    [
+        (
+            symobs.gramian(symobs.StateSpace("[-a]", None, "[1]"), horizon="T"),
+            {"a": 1, "T": 2},
+            "determinant",
+            (1 - sympy.exp(-4)) / 2,
+        ),
+        (
+            symobs.gramian(symobs.StateSpace("[-1]", None, "[1]")),
+            {"T": 1},
+            "determinant",
+            (1 - sympy.exp(-2)) / 2,
+        ),
+        (
+            symobs.state_feedback(symobs.StateSpace("[0 1; 0 0]", "[0; 1]"), K="[k 2]"),
+            {"k": 5},
+            "polynomial",
+            _s**2 + 2 * _s + 5,
+        ),
+        (symobs.observer(HIDDEN, polynomial="s^2 + q s + 4"), {"q": 4, "c": 0}, "polynomial", _s**2 + 4 * _s + 4),
+        (
+            symobs.pole_advice(symobs.StateSpace("[0 1; 0 0]", "[0; 1]", "[1 0]"), radius="w"),
+            {"w": 2},
+            "polynomial",
+            symobs.pole_advice(symobs.StateSpace("[0 1; 0 0]", "[0; 1]", "[1 0]"), radius=2).polynomial,
+        ),
+    ],
+)
+def test_what_is_asked_for_moves_too(result: Any, values: dict[str, Any], field: str, expected: Any) -> None:
+    there = result.at(values)
+    assert there.symbols == {}
+    assert sympy.simplify(getattr(there, field) - expected) == 0
+
+
+def test_a_parameter_that_is_set_is_no_parameter_of_a_region() -> None:
+    result = symobs.stability_region(polynomial="s^3 + k s^2 + h s + 1", parameters="k, h")
+    there = result.at(k=2)
+    assert there.specification["parameters"] == ["h"]
+    assert there.intervals == (("1/2", "oo"),)
+
+
+def test_a_transfer_function_stays_one() -> None:
+    plant = symobs.StateSpace.from_transfer_function("(s + b)/(s^2 + a s)")
+    result = symobs.observability(plant)
+    assert str(result.at(a=2, b=3).plant.origin) == "(s + 3)/(s**2 + 2*s)"
+    cancelled = result.at(a=2, b=2)
+    assert (cancelled.plant.order, cancelled.plant.origin, cancelled.rank) == (2, None, 1)
+
+
+@pytest.mark.parametrize(
+    ("values", "kind", "message"),
+    [
+        ({"q": 1}, InputError, r"values\.q: q is no parameter of the problem; use c, k"),
+        ({"k": 0.5}, InexactInput, r'values\.k: 0\.5 is a float; write an exact value such as "1/2"'),
+        ({"s": 1}, InputError, r"values\.s: s is no parameter"),
+        ({"q": 1, "k": 0.5}, ProblemErrors, r"(?s)values\.q.*values\.k"),
+        ({"k": "1/0"}, InputError, r"values\.k"),
+    ],
+)
+def test_refusals(values: dict[str, Any], kind: type[Exception], message: str) -> None:
+    with pytest.raises(kind, match=message):
+        symobs.observer(HIDDEN, poles="-k, -5").at(values)
+
+
+def test_where_there_is_no_plant_and_where_a_sign_is_another() -> None:
+    result = symobs.observer(
+        symobs.StateSpace("[0 1; -k/m 0]", None, "[1 0]", symbols={"k": "positive", "m": "real"}), poles="-1, -2"
+    )
+    with pytest.raises(InputError, match=r"there is no plant at k = 1, m = 0: a denominator of its data is 0"):
+        result.at(k=1, m=0)
+    with pytest.raises(InputError, match=r"values\.k: -1 is not positive, as k is declared"):
+        result.at(k=-1)
+    with pytest.raises(InputError, match="holds in one case of a result; give the values to the result itself"):
+        symobs.observer(HIDDEN, poles="-k, -5").cases[0].result.at(k=1)
+
+
+def test_a_wrong_value_of_a_gain_is_rejected_by_the_constructor(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A substitution that is wrong by one gives the gain of the plant itself, never a wrong one."""
+    result = symobs.compensator(WIDE, control_poles="-1, -2, -k", observer_poles="-3, -4, -5")
+    module: Any = import_module("symobs.tasks.result.at_values")
+    right, rejected = module.substitute, []
+
+    def wrong(value: Any, values: Any) -> Any:
+        found = right(value, values)
+        return found + type(found).of([[1] * found.shape[1]] * found.shape[0]) if hasattr(found, "shape") else found
+
+    own = type(result).with_answer
+
+    def watched(self: Any, name: str, value: object) -> Any:
+        try:
+            return own(self, name, value)
+        except CertificateRejected:
+            rejected.append(name)
+            raise
+
+    monkeypatch.setattr(module, "substitute", wrong)
+    monkeypatch.setattr(type(result), "with_answer", watched)
+    there = result.at(k=2, a=1)
+    assert rejected == ["K", "L"]
+    s = sympy.Symbol("s")
+    assert (s * sympy.eye(3) - there.plant.A + there.plant.B * there.K).det().expand() == (
+        (s + 1) * (s + 2) ** 2
+    ).expand()
+
+
+def test_every_kind_of_keyword_is_read_or_has_no_parameters() -> None:
+    module: Any = import_module("symobs.tasks.result.at_values")
+    assert module._READERS.keys() | {"Name", "Sign", "Entries"} == KINDS.keys()
+    assert {kind for task in tasks().values() for kind in task.keywords.values()} <= KINDS.keys()

@@ -1,0 +1,141 @@
+"""What leaves the library of large answers: the same as SymPy and the plain encoders would make, bounded and made once."""
+
+from __future__ import annotations
+
+import json
+import pickle
+import random
+from typing import Any
+
+import pytest
+import sympy
+
+import symobs
+from symobs.exact import Scalar
+from symobs.exact.core.canonical_text import scalar_text
+from symobs.exact.sympy_bridge.conversion import scalar_to_sympy
+from symobs.ground.errors import UsageError
+from symobs.pages.formats.json import _written
+
+NAMES = ["a", "b", "x_1", "zeta", "A", "s"]
+
+
+def polynomial(rng: random.Random, names: list[str], terms: int, degree: int) -> Scalar:
+    total = Scalar.of(0)
+    for _ in range(terms):
+        term = Scalar.of(rng.choice([1, -1, 2, -3, 7, 12]))
+        for _ in range(rng.randrange(degree + 1)):
+            term = term * Scalar.symbol(rng.choice(names))
+        total = total + term
+    return total
+
+
+def by_sympy(value: Scalar, objects: dict[str, sympy.Symbol]) -> sympy.Expr:
+    """The expression as SymPy's own operators build it."""
+
+    def built(part: Scalar) -> sympy.Expr:
+        powers = ([objects.get(name, sympy.Symbol(name)) ** k for name, k in pairs] for _, pairs in part.terms())
+        numbers = (sympy.Integer(number) for number, _ in part.terms())
+        return sympy.Add(*(sympy.Mul(number, *factors) for number, factors in zip(numbers, powers, strict=True)))
+
+    return built(value.numerator) / built(value.denominator)
+
+
+@pytest.mark.parametrize("seed", range(24))
+def test_long_expressions_are_those_of_sympy(seed: int) -> None:
+    rng = random.Random(seed)  # noqa: S311 - only for variety
+    names = NAMES[: rng.randrange(2, 7)]
+    objects = [{}, {"a": sympy.Symbol("a", positive=True)}, {"b": sympy.Dummy("b")}][seed % 3]
+    value = polynomial(rng, names, rng.choice([60, 120, 200]), 6)
+    below = [Scalar.of(1), Scalar.of(6), polynomial(rng, names, 3, 4), polynomial(rng, names, 90, 4)][seed % 4]
+    value = value / below
+    found, expected = scalar_to_sympy(value, objects), by_sympy(value, objects)
+    assert found == expected
+    assert sympy.srepr(found) == sympy.srepr(expected)
+    assert str(found - expected) == "0"
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_long_texts_mean_the_value(seed: int) -> None:
+    rng = random.Random(seed)  # noqa: S311 - only for variety
+    value = polynomial(rng, NAMES, 80, 5) / polynomial(rng, NAMES, 1 + 10 * seed, 3)
+    text = scalar_text(value)
+    assert "^" not in text
+    assert sympy.parse_expr(text, {name: sympy.Symbol(name) for name in NAMES}) == by_sympy(value, {})  # noqa: TID251 - ours
+
+
+def test_an_answer_is_converted_once() -> None:
+    design = symobs.observer(symobs.StateSpace("[0 1; -k/m -2]", C="[1 c]"), poles=["-p", "-q"])
+    assert design.L is design.L
+    assert design.polynomial is design.polynomial
+
+
+def test_what_is_shown_of_a_large_answer_is_short() -> None:
+    entries = [[f"a{row}{column}" for column in range(3)] for row in range(3)]
+    design = symobs.observer(symobs.StateSpace(entries, C=[["c0", "c1", "c2"]]), poles=["p0", "p1", "p2"])
+    terms = sum(entry.numerator.size + entry.denominator.size for entry in design.answer["L"].entries)
+    assert terms > 500
+    assert repr(design).startswith("ObserverDesign(L=<")
+    assert len(repr(design)) < 300
+    assert "holds_where" not in vars(design)  # nothing was worked out for it
+
+
+def test_json_says_an_answer_once() -> None:
+    plant = symobs.StateSpace("[0 1; 0 -1]", "[0; 1]", "[1 0]")
+    design = symobs.observer(plant, poles=[-10, -10])
+    assert json.loads(design.to_json())["results"][0]["in_convention"] == {"name": "standard"}
+    other = json.loads(str(design.to("json", convention="plusK-plusMC")))["results"][0]["in_convention"]
+    assert other == {"name": "plusK-plusMC", "M": [["-19"], ["-81"]]}
+
+
+@pytest.mark.parametrize(
+    "value",
+    [{}, {"a": []}, {"a": [1, [], {"b": None}], "c": 'ä\n"', "d": {"e": True, "f": [["1", "2"], [1.5]]}}, {"k": ()}],
+)
+def test_json_is_written_as_the_plain_encoder_would(value: dict[str, object]) -> None:
+    assert _written(value) == json.dumps(value, indent=2, ensure_ascii=False) + "\n"
+
+
+def test_json_says_what_was_asked() -> None:
+    plant = symobs.StateSpace("[0 1; 0 -b]", "[0; 1]", "[1 0]", dt=sympy.Rational(1, 10), symbols={"b": "positive"})
+    asked: dict[str, Any] = {"poles": [sympy.Rational(1, 2), "1/4"], "method": "auto"}
+    (found,) = json.loads(symobs.observer(plant, **asked).to_json())["results"]
+    assert found["plant"] == {
+        "A": [["0", "1"], ["0", "-b"]],
+        "B": [["0"], ["1"]],
+        "C": [["1", "0"]],
+        "D": [["0"]],
+        "dt": "1/10",
+        "symbols": {"b": "positive"},
+    }
+    assert found["specification"] == {"poles": ["1/2", "1/4"], "method": "auto"}
+    without_input = symobs.observability(symobs.StateSpace("[0 1; 0 -1]", C="[1 0]"))
+    (found,) = json.loads(without_input.to_json())["results"]
+    assert found["plant"] == {"A": [["0", "1"], ["0", "-1"]], "C": [["1", "0"]], "dt": 0, "symbols": {}}
+    assert found["specification"] == {}
+
+
+def test_what_was_asked_is_kept() -> None:
+    asked = {"polynomial": "(s+1)^2"}
+    design = symobs.observer(symobs.StateSpace("[0 1; 0 -1]", C="[1 0]"), **asked)
+    kept = [
+        design,
+        pickle.loads(pickle.dumps(design)),  # noqa: S301 - our own bytes
+        design.asked("matching"),
+        design.with_answer("L", design.answer["L"]),
+    ]
+    assert [dict(one.specification) for one in kept] == [asked] * 4
+
+
+def test_a_polynomial_alone_is_the_data() -> None:
+    region = symobs.stability_region(polynomial="s^2 + k*s + 1", parameters=["k"])
+    (found,) = json.loads(region.to_json())["results"]
+    assert found["plant"] == {"polynomial": "s**2 + s*k + 1", "dt": 0, "symbols": {"k": "real"}}
+
+
+def test_options_that_no_page_has_are_refused_with_those_that_it_has() -> None:
+    result = symobs.observability(symobs.StateSpace("[0 1; 0 0]", C="[1 0]"))
+    with pytest.raises(UsageError, match=r"^details: no page has this option; known options are convention, detail, "):
+        result.to("html", details=True)  # type: ignore[call-overload]
+    with pytest.raises(UsageError, match=r"^language: '3' is not a language of pages; use one of en, "):
+        result.to_html(language=3)  # type: ignore[arg-type]
