@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 
 FOLDER = ROOT / "worked_examples" / "variants"
 NAMES = sorted(path.stem for path in FOLDER.glob("*.toml"))
-GOLDEN = json.loads((ROOT / "tests" / "unit" / "variation" / "golden.json").read_text(encoding="utf-8"))
+GOLDEN = json.loads((ROOT / "tests" / "unit" / "applications" / "variants" / "golden.json").read_text(encoding="utf-8"))
 OBSERVER = (FOLDER / "observer.toml").read_text(encoding="utf-8")
 
 

@@ -231,7 +231,9 @@ def test_what_roots_and_functions_leave_open_is_not_told_as_no() -> None:
     found = symobs.initial_state(plant, output="exp(a*t)", horizon="1")
     (above,) = (case.result for case in found.cases if case.when == (c > 0,))
     assert above.verdict == "no"
-    assert {str(case.when[0].lhs): case.result for case in above.cases} == {"a - sqrt(c)": None, "a + sqrt(c)": None}
+    explained, *others = above.cases
+    assert (str(explained.when[0].lhs), explained.result.x0) == ("a**2 - c", (1, sympy.Symbol("a")))
+    assert {str(case.when[0].lhs): case.result for case in others} == {"a - sqrt(c)": None, "a + sqrt(c)": None}
     assert (found.at(a=2, c=4).verdict, found.at(a=2, c=4).x0) == ("yes", (1, 2))
     assert "is not decided here" in found.to("text")
     lag = StateSpace("[-1]", C="[1]", symbols={"a": "real"})
