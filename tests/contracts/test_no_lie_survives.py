@@ -20,7 +20,7 @@ from symobs.proof.derivation import Diagram
 from symobs.proof.derivation.builder import Builder
 from symobs.tasks.design.compensator.output_feedback import OutputFeedback
 from symobs.tasks.design.gain.gain_design import GainDesign
-from tests.programs.mutation.claims import drawn
+from tests.programs.lies import drawn
 from tests.support.independent_algebra.truth import is_true, still_true
 from tests.support.paths import ROOT
 from tests.support.sampling import every

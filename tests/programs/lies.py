@@ -1,9 +1,9 @@
-"""Lies about random designs: `python -m tests.programs.mutation.claims --designs 1000 [--lines 60] [--log PATH]`.
+"""Lies about random designs: `python -m tests.programs.lies --designs 1000 [--lines 60] [--log PATH]`.
 
 With `--examples` about the worked examples instead; with `--match NAME` about some of them.
-Every entry of every answer and witness is changed in every way of `tests.support.tampering.mutations`, and
-of the lines of the page as many
-as are asked for, at even distances (all with `--lines 0`).  What is not rejected must be true as well by other means.
+Every entry of every answer and witness is changed in every way of `tests.support.tampering.mutations`, and of the lines of
+the page as many as are asked for, at even distances (all with `--lines 0`).  What is not rejected must be true as well by
+other means.
 """
 
 from __future__ import annotations
@@ -162,7 +162,7 @@ def tried_examples(match: str, most_lines: int) -> Iterator[tuple[str, Count, Co
 
 def main(arguments: Sequence[str]) -> int:
     """Tell lies about random designs; 1 where one survives."""
-    parser = argparse.ArgumentParser(prog="python -m tests.programs.mutation.claims", description=__doc__)
+    parser = argparse.ArgumentParser(prog="python -m tests.programs.lies", description=__doc__)
     parser.add_argument("--designs", type=int, default=1000)
     parser.add_argument("--first", type=int, default=0)
     parser.add_argument("--examples", action="store_true", help="the worked examples instead")
