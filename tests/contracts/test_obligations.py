@@ -31,14 +31,12 @@ DEMANDED = {
     "needs_modes_stable": "yes_detectability yes_stabilizability",
     "needs_modes_unstable": "no_detectability no_stabilizability",
     "needs_pole_defective": "defective defective_instead",
-    "needs_controllable": "yes_controllability",
+    "needs_controllable": "no_fixed_modes_controllability pbh_yes_controllability yes_controllability",
     "needs_nonsingular": "steps_nonsingular_controllability steps_nonsingular_observability",
-    "needs_observable": "yes_observability",
-    "needs_rank_full": """
-        no_feedforward_zero no_fixed_modes_controllability no_fixed_modes_observability
-        pbh_yes_controllability pbh_yes_observability
-    """,
-    "needs_rank_low": "pbh_no_controllability pbh_no_observability",
+    "needs_observable": "no_fixed_modes_observability pbh_yes_observability yes_observability",
+    "needs_rank_full": "no_feedforward_zero",
+    "needs_uncontrollable": "pbh_no_controllability",
+    "needs_unobservable": "pbh_no_observability",
     "says_decay": "decayed",
     "says_overshoot": "overshoot_held",
     "says_overshoot_above": "overshoot_close",

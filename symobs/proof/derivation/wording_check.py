@@ -191,8 +191,8 @@ def _has_rank(facts: Sequence[Fact], environment: Environment, *, is_full: bool)
     return any(_is_of_rank(fact, environment, is_full=is_full) for fact in facts if isinstance(fact, Relation))
 
 
-def _has_test_rank(letter: str, facts: Sequence[Fact], environment: Environment) -> bool:
-    is_said = _of_pair(letter, is_full=True)
+def _has_test_rank(letter: str, facts: Sequence[Fact], environment: Environment, *, is_full: bool = True) -> bool:
+    is_said = _of_pair(letter, is_full=is_full)
     return any(is_said(fact, environment) for fact in facts if isinstance(fact, Relation))
 
 
@@ -273,7 +273,8 @@ _OF_SLOTS: dict[str, Callable[[Relation, Environment], bool]] = {
 #: What must be among the facts of the step in which a sentence stands.
 _OF_FACTS: dict[str, Callable[[Sequence[Fact], Environment], bool]] = {
     "needs_rank_full": lambda facts, environment: _has_rank(facts, environment, is_full=True),
-    "needs_rank_low": lambda facts, environment: _has_rank(facts, environment, is_full=False),
+    "needs_unobservable": lambda facts, environment: _has_test_rank("C", facts, environment, is_full=False),
+    "needs_uncontrollable": lambda facts, environment: _has_test_rank("B", facts, environment, is_full=False),
     "needs_observable": lambda facts, environment: _has_test_rank("C", facts, environment),
     "needs_controllable": lambda facts, environment: _has_test_rank("B", facts, environment),
     "sums_powers": lambda _, environment: any(_sums_powers(letter, environment) for letter in ("C", "B")),

@@ -77,12 +77,12 @@ ASSERTS: dict[str, tuple[str, ...]] = {
 }
 
 DEMANDS: dict[str, str] = {
-    "pbh_yes_observability": "needs_rank_full",
-    "pbh_yes_controllability": "needs_rank_full",
-    "no_fixed_modes_observability": "needs_rank_full",
-    "no_fixed_modes_controllability": "needs_rank_full",
-    "pbh_no_observability": "needs_rank_low",
-    "pbh_no_controllability": "needs_rank_low",
+    "pbh_yes_observability": "needs_observable",
+    "pbh_yes_controllability": "needs_controllable",
+    "no_fixed_modes_observability": "needs_observable",
+    "no_fixed_modes_controllability": "needs_controllable",
+    "pbh_no_observability": "needs_unobservable",
+    "pbh_no_controllability": "needs_uncontrollable",
     "yes_detectability": "needs_modes_stable",
     "yes_stabilizability": "needs_modes_stable",
     "no_detectability": "needs_modes_unstable",

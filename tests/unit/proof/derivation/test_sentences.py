@@ -98,17 +98,6 @@ def test_other_sentences_take_any_relation() -> None:
     assert rests("kernel_observability", (), E)
 
 
-@pytest.mark.parametrize("of", ["observability", "controllability"])
-def test_a_test_of_ranks_rests_on_a_rank(of: str) -> None:
-    for full in (f"pbh_yes_{of}", f"no_fixed_modes_{of}"):
-        assert rests(full, (Predicate("stable", Letter("chi")), FULL), E)
-        for facts in ((), (LOW,), (compared("Ctr", "<", 2),), (Predicate("stable", Letter("chi")),), NO_RANKS):
-            assert not rests(full, facts, E)
-    assert rests(f"pbh_no_{of}", (compared("Ctr", "<", 2),), E)
-    for facts in ((), (FULL,), (compared("Ctr", "<", 3),), (Predicate("unstable", Letter("chi")),)):
-        assert not rests(f"pbh_no_{of}", facts, E)
-
-
 def test_a_verdict_rests_on_the_hidden_modes() -> None:
     stable, marginal, unstable = (Predicate(name, Letter("chi")) for name in ("stable", "marginal", "unstable"))
     for key in ("yes_detectability", "yes_stabilizability"):

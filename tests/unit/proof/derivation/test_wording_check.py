@@ -88,8 +88,14 @@ def test_a_rank_that_is_said_of_a_pair_is_that_of_its_own_test_matrix(of: str) -
         assert fits(key, full, here)
         assert not fits(key, full, HERE)
         assert not fits(key, rank(Literal(I * 2), 2), here)  # the rank of another matrix
-    assert rests(f"yes_{of}", (full,), here)
-    assert not rests(f"yes_{of}", (rank(Literal(I * 2), 2),), here)
+    for key in (f"yes_{of}", f"pbh_yes_{of}", f"no_fixed_modes_{of}"):
+        assert rests(key, (full,), here)
+        for facts in ((), (rank(Literal(I * 2), 2),), (Predicate("stable", Letter("chi")),), LOWER):
+            assert not rests(key, facts, here)
+    falling, there = pair(of, I * 2, [1, 0], "<", 2)
+    assert rests(f"pbh_no_{of}", (falling,), there)
+    assert not rests(f"pbh_no_{of}", (full,), here)
+    assert not rests(f"pbh_no_{of}", (falling,), here)
     low, generic = f"no_{of}", f"generic_low_{of}"
     for A, row in ((I * 2, [1, h]), (I * h, [h, 1])):  # of rank 1 for all h
         assert fits(low, *pair(of, A, row, "<", 2))
@@ -181,10 +187,8 @@ def property_of(name: str) -> Predicate:
 
 STABLE, MARGINAL, UNSTABLE = (property_of(name) for name in ("stable", "marginal", "unstable"))
 NOTHING = (property_of("never_zero"), said(1, 1))
-KINDS, VERDICTS = ("observability", "controllability"), ("detectability", "stabilizability")
+VERDICTS = ("detectability", "stabilizability")
 RESTS: dict[str, tuple[Any, ...]] = {
-    **{f"{key}_{kind}": (FULL,) for key in ("pbh_yes", "no_fixed_modes") for kind in KINDS},
-    **{f"pbh_no_{kind}": LOWER for kind in KINDS},
     **{f"yes_{verdict}": (FULL, STABLE, MARGINAL) for verdict in VERDICTS},
     **{f"no_{verdict}": (UNSTABLE,) for verdict in VERDICTS},
 }
