@@ -59,10 +59,10 @@ def _address(_: click.Context, __: click.Parameter, value: str | None) -> str:
     return address
 
 
-def _names(_: click.Context, __: click.Parameter, value: str | None) -> tuple[str, ...]:
-    """Return the names of --print; raises `UsageError` where there is none."""
-    names = tuple(name for part in (value or "").split(",") if (name := part.strip()))
-    if value is not None and not names:
+def _names(_: click.Context, __: click.Parameter, value: tuple[str, ...]) -> tuple[str, ...]:
+    """Return the names of every --print; raises `UsageError` where there is none."""
+    names = tuple(name for part in ",".join(value).split(",") if (name := part.strip()))
+    if value and not names:
         raise UsageError("no answer is named", where="--print", repair="write for example --print K,L")
     return names
 
@@ -214,7 +214,9 @@ OPTIONS: dict[str, Callable[[Any], Any]] = {
         "--print",
         "printed",
         metavar="NAMES",
-        help="Print these answers alone, for example K,L: exact, or as numbers with --format matlab, numpy or csv.",
+        multiple=True,
+        help="Print these answers alone, for example K,L, also verdict and conditions: exact, or as numbers with "
+        "--format matlab, numpy or csv.",
         callback=_names,
     ),
     "period": click.option("--period", metavar="TIME", help="For a program: the sampling period, for example 1/100."),

@@ -139,7 +139,7 @@ def solved(
     def begins(name: str, so_far: tuple[Any, ...]) -> None:
         if format_name == "json":
             report_progress(partial(_as_far_as, found, so_far, convention, target))
-        elif so_far and format_name != "pdf":  # which would take TeX's time for every task
+        elif so_far and format_name != "pdf" and not page.get("printed"):  # TeX's time; answers of tasks not yet begun
             report_progress(lambda: Outcome(((rendered(so_far), target),), (), EXIT_UNDECIDED))
         report_progress(name)
 

@@ -39,6 +39,29 @@ def test_print_writes_the_answers_alone(folder: Path) -> None:
     assert (run.code, run.out, run.err) == (0, "K = [4 -k+4]\nL = [-k+20; k**2-20*k+100]\n", "")
 
 
+def test_print_of_an_answer_that_does_not_exist_says_why() -> None:
+    """The mode 2 of diag(1, 2) with C = [1 0] is fixed, so -1, -2 cannot be assigned."""
+    plant = ["--A", "[1 0; 0 2]", "--C", "[1 0]", "--poles=-1, -2"]
+    run = inside("observer", *plant, "--print", "L,verdict", "--print", "conditions")
+    assert (run.code, run.out) == (4, "L: none, verdict = no, fixed_modes = [2]\nverdict = no\nconditions = []\n")
+    assert inside("observer", *plant, "--print", "L", "--format", "csv").code == 4
+    modes = inside("detectability", "--A", "[0 1; 0 0]", "--C", "[0 0]", "--print", "verdict")
+    assert (modes.code, modes.out) == (4, "verdict = no\n")
+    run = inside("observer", "--A", "[0 1; 0 -a]", "--C", "[1 a]", "--poles=-1, -2", "--print", "conditions")
+    assert (run.code, run.out) == (0, "conditions = [a + 1 != 0]\n")
+
+
+def test_print_names_every_task_that_has_the_answer(folder: Path) -> None:
+    """F = K(sI - A + LC + BK)⁻¹L of the compensator and F = 4, unit gain at rest, of the feedforward."""
+    text = FILE.replace('task = "compensator"', 'tasks = ["compensator", "feedforward"]')
+    (folder / "servo.toml").write_text(text, encoding="utf-8")
+    lines = inside("solve", "servo.toml", "--set", "k=1", "--print", "F", folder=folder).out.splitlines()
+    assert [line.partition(" = ")[0] for line in lines] == ["compensator.F", "feedforward.F"]
+    assert lines[1].endswith(" = 4")
+    run = inside("solve", "servo.toml", "--set", "k=1", "--print", "K", "--format", "matlab", folder=folder)
+    assert run.out == "compensator_K = [4.0 3.0];\nfeedforward_K = [4.0 3.0];\n"
+
+
 def test_set_gives_values_exactly(folder: Path) -> None:
     run = inside("solve", "servo.toml", "--print", "K, L", "--set", "k=1/3", folder=folder)
     assert run.out == "K = [4 11/3]\nL = [59/3; 841/9]\n"
