@@ -130,9 +130,15 @@ class TypesettingError(SymobsError):
 
 
 class CertificateRejected(SymobsError):
-    """A result does not meet its own claim: always a bug of symobs, never of the input."""
+    """A result does not meet its own claim: a bug of symobs, never of the input, unless it is `Undecided`."""
 
     exit_code = 1
+
+
+class Undecided(CertificateRejected):
+    """A result is beyond the limits of what can be computed or checked; the message is the reason."""
+
+    exit_code = 5
 
 
 class DerivationRejected(SymobsError):

@@ -13,7 +13,7 @@ from symobs.formula.expression import comma_between_digits, declared_name, parse
 from symobs.formula.expression.source import shown
 from symobs.formula.phrases.languages import ENGLISH, language_named
 from symobs.ground.dataclass import dataclass
-from symobs.ground.errors import ProblemErrors, UsageError
+from symobs.ground.errors import ProblemErrors, Undecided, UsageError
 from symobs.problem.constants import with_constants
 from symobs.problem.expect import unreadable
 from symobs.problem.file_tables import Decimal, came
@@ -62,23 +62,30 @@ class Problem:
     def solve(self, report: Callable[[str, tuple[Result, ...]], None] | None = None) -> tuple[Result, ...]:
         """Run every task; `report` receives the name of the next one and the results so far.
 
-        All errors of all tasks are raised together.
+        All errors of all tasks are raised together; else the first `Undecided`, with the results of the other tasks.
         """
         results: list[Result] = []
         errors = Errors()
+        undecided: list[Undecided] = []
         for task in self.tasks:
             if report is not None:
                 report(task.name, tuple(results))
             own, keys = Errors(), keys_of(task, self.specification)
             with own:
-                found = task.function(self.plant, **{name: self.specification[keys[name]] for name in keys})
-                results.append(found.at(self.values) if self.values else found)
+                try:
+                    found = task.function(self.plant, **{name: self.specification[keys[name]] for name in keys})
+                    results.append(found.at(self.values) if self.values else found)
+                except Undecided as error:
+                    undecided.append(error)
             own.move({f"specification.{name}": f"specification.{key}" for name, key in keys.items()})
             errors.found += own.found
         if errors.found:
             known = self.plant.symbols, self.plant.variable
             _read_alone(self.specification, _kinds(self.tasks), self.expect, *known, errors)
             raise errors.together(self.convention)
+        if undecided:
+            undecided[0].facts["results"] = tuple(results)
+            raise undecided[0]
         return tuple(results)
 
     def viewed(self, results: tuple[Result, ...]) -> tuple[ResultInConvention, ...]:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 from symobs.cli.shared.output import check_target
 from symobs.ground.child_processes.budget import Budget
 from symobs.ground.dataclass import dataclass
-from symobs.ground.errors import InputError, OutOfBudget, ProblemErrors, UsageError
+from symobs.ground.errors import InputError, OutOfBudget, ProblemErrors, Undecided, UsageError
 from symobs.tasks.result.web_page import PLAIN, WebPage
 
 if TYPE_CHECKING:
@@ -143,7 +143,14 @@ def solved(
             report_progress(lambda: Outcome(((rendered(so_far), target),), (), EXIT_UNDECIDED))
         report_progress(name)
 
-    results = found.solve(begins)
+    try:
+        results = found.solve(begins)
+    except Undecided as error:
+        done = error.facts["results"]
+        if format_name == "json":
+            return replace(_as_far_as(found, done, convention, target, str(error)), messages=(str(error),))
+        outputs = ((rendered(done), target),) if done and not page.get("printed") else ()
+        return Outcome(outputs, (str(error),), EXIT_UNDECIDED)
     viewed = found.viewed(results)
     expect = applicable(viewed, found.expect) if only_some_tasks else found.expect
     unmet = mismatches(viewed, expect)
@@ -181,13 +188,13 @@ def _at(results: tuple[Any, ...], settings: Mapping[str, str]) -> tuple[Any, ...
         raise
 
 
-def _as_far_as(found: Any, so_far: tuple[Any, ...], convention: Any, target: str | None) -> Outcome:
+def _as_far_as(found: Any, so_far: tuple[Any, ...], convention: Any, target: str | None, reason: str = "") -> Outcome:
     """Return what is left where the work ends now: the results so far, every other task undecided."""
     from symobs.pages.formats.json import given_up  # noqa: PLC0415 - only with --format json
 
     names, method = [task.name for task in found.tasks], str(found.specification.get("method", "auto"))
     document = found.document(so_far, convention)
-    whole = given_up(document, names, method, found.plant.symbols.signs)
+    whole = given_up(document, names, method, found.plant.symbols.signs, reason)
     return Outcome(((whole, target),), (), EXIT_UNDECIDED)
 
 

@@ -28,6 +28,8 @@ if TYPE_CHECKING:
 _PRIME_BITS = 128
 #: The highest multiple of an angle whose cosine is written by that of the angle, and power of an exponential.
 _MOST_MULTIPLE, _MOST_POWER = 1000, 100_000
+#: Many exponents that are related have a small common measure; higher powers take too long.
+_LARGEST_POWER = 1_000_000
 #: Relations of angles and of exponents with larger multiples need polynomials of a higher degree than claims have.
 _RELATED_ANGLES, _RELATED_POWERS = 30, 100
 ZERO, ONE = Scalar.of(0), Scalar.of(1)
@@ -381,7 +383,7 @@ def _in_base(f: Function, steps: Steps, below: Scalar) -> Scalar:
     for monomial, coefficient in _coordinates(f.argument, below).items():
         for step, multiple in steps[turns, monomial][abs(coefficient)]:
             count = multiple if coefficient > 0 else -multiple
-            if abs(count) > (_MOST_MULTIPLE if turns else _MOST_POWER):
+            if abs(count) > (_MOST_MULTIPLE if turns else _LARGEST_POWER):
                 raise NotWritten(f"{f.text} is too far from the other {'angles' if turns else 'exponents'}")
             if not turns:
                 real = real * function("exp", monomial * step) ** count

@@ -70,12 +70,13 @@ class Json:
         return _written({"schema": SCHEMA, "title": sheet.title, **head, "problems": problems})
 
 
-def given_up(document: Document, tasks: Sequence[str], method: str, signs: Mapping[str, str]) -> str:
-    """Return the JSON of tasks of which some are beyond their budget: those are undecided, without claims."""
+def given_up(document: Document, tasks: Sequence[str], method: str, signs: Mapping[str, str], reason: str = "") -> str:
+    """Return the JSON of tasks of which some are beyond their budget or the limits: those are undecided, without claims."""
     empty: dict[str, list[str]] = {"conditions": [], "condition_kinds": [], "cases": [], "certificates": []}
     names = {"symbols": dict(sorted(signs.items())), "in_convention": {"name": document.convention.name}}
     found = {result.task: result_object(result, document.convention) for result in document.results}
     undecided = {"method": method, "verdict": "undecided", **empty, **names}
+    undecided |= {"reason": reason} if reason else {}
     results = [found.get(task, {"task": task, **undecided}) for task in tasks]
     return _written({"schema": SCHEMA, "title": document.title, "results": results})
 

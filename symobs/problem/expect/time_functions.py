@@ -29,7 +29,7 @@ def agrees(expected: Scalar | Matrix, found: Scalar | Matrix) -> bool:
 def functions_agree(left: Scalar | Matrix, right: Scalar | Matrix) -> bool:
     """Return whether two values are equal as functions, by common exponentials, sines and cosines.
 
-    Decimals of the one on the left may be rounded.  Raises `TooLarge` where their exponents or angles are too far apart.
+    Decimals of the one on the left may be rounded.  Raises `TooLarge` where common ones would have too high a degree.
     """
     if decimals_in(left):
         return agrees(left, right)

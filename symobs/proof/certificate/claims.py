@@ -16,7 +16,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from symobs.exact import Matrix, Scalar, TooLarge, is_rounding
-from symobs.exact.core.generators import symbols_named
+from symobs.exact.core.generators import NotWritten, symbols_named
 from symobs.exact.core.modular import POINT_BITS, PRIME_BITS, PRIMES_BELOW, Point, VanishingDenominator, squares_of
 from symobs.formula.tree import (
     Apply,
@@ -43,7 +43,7 @@ from symobs.formula.tree import (
 from symobs.formula.tree.calculus import TIME
 from symobs.formula.tree.plain_text import plain_relation
 from symobs.ground.dataclass import dataclass
-from symobs.ground.errors import CertificateRejected, NotShown, WrongKind
+from symobs.ground.errors import CertificateRejected, NotShown, Undecided, WrongKind
 from symobs.proof.certificate.error_bounds import Bounds, SizeBound
 from symobs.proof.certificate.pointwise import Pointwise, never_together_zero
 from symobs.system.conditions import sign_where, vanishing_factors
@@ -59,6 +59,8 @@ _DRAWS = 20
 #: What evaluation raises where a formula makes no sense: shapes or kinds that do not fit, division by zero, a missing
 #: letter.  An AttributeError, a TypeError of Python's own or a failed assertion is a bug, and stays one.
 EVALUATION_ERRORS = (ArithmeticError, LookupError, RecursionError, ValueError)
+#: What evaluation raises where it gives up: the truth of the formula is undecided.
+BEYOND_LIMITS = (NotShown, NotWritten, TooLarge)
 #: What reading an answer or a step of any kind whatever may raise: it is refused, with this as the cause.
 UNREADABLE = (*EVALUATION_ERRORS, AssertionError, AttributeError, TypeError)
 #: What a random point can decide: equal, and not identically equal.  `!=` is more: different at every point.
@@ -101,6 +103,8 @@ def check(claim: Claim | Statement) -> Certificate:
     else:
         (how, error), says = verify(claim.relation, claim.environment), str(claim)
     if how == "":
+        if isinstance(claim, Claim) and not can_be_shown(claim.relation, claim.environment):
+            raise Undecided(f"whether {says} is undecided: it is beyond the limits of a check", claim=says)
         message = f"the claim {says} does not hold"
         raise CertificateRejected(message, repair="please report this: it is a bug of symobs", claim=says)
     return Certificate(says, how, "0" if error == 0 else f"{error:.1e}")
@@ -130,7 +134,7 @@ def can_be_shown(relation: Relation, environment: Environment) -> bool:
     """Return whether `verify` can decide a relation: no rank or basis in it is too large."""
     try:
         _verified(relation, environment)
-    except (NotShown, TooLarge):
+    except BEYOND_LIMITS:
         return False
     except EVALUATION_ERRORS:
         return True

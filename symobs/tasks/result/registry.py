@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Any, TypeVar, get_args
 
 import symobs
 from symobs.ground.dataclass import dataclass
-from symobs.ground.errors import InputError
+from symobs.ground.errors import InputError, SymobsError, Undecided
+from symobs.proof.certificate.claims import BEYOND_LIMITS
 from symobs.system import StateSpace, as_plant, read_floats
 from symobs.tasks.result.writers import discover, import_named
 
@@ -112,7 +113,12 @@ def _of_plants(function: Callback) -> Callback:
                 raise InputError(message, where=f"specification.{name}", repair="write it in quotes")
         came = {name: value for name, value in keywords.items() if name != "plant" and value is not None}
         asked = {name: read_floats(value, floats, f"specification.{name}") for name, value in came.items()}
-        result: Result = function(*arguments, **keywords | asked)
+        try:
+            result: Result = function(*arguments, **keywords | asked)
+        except BEYOND_LIMITS as error:
+            if isinstance(error, SymobsError):
+                raise
+            raise Undecided(f"{function.__name__} is undecided: {error}") from error
         if any(asked[name] is not value for name, value in came.items()):
             result.plant.is_from_floats = True  # the plant of this result alone: the page says how they were read
         return result.specified(asked)

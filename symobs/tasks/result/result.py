@@ -14,8 +14,8 @@ from typing import TYPE_CHECKING, Any, ClassVar, Literal, NamedTuple, NoReturn, 
 from symobs.exact.linear_algebra.realisation import Realisation
 from symobs.formula.convention import STANDARD
 from symobs.ground.dataclass import dataclass
-from symobs.ground.errors import CertificateRejected, DerivationRejected
-from symobs.proof.certificate.claims import UNREADABLE, Certificate, Claim, Statement, check_all
+from symobs.ground.errors import CertificateRejected, DerivationRejected, Undecided
+from symobs.proof.certificate.claims import BEYOND_LIMITS, UNREADABLE, Certificate, Claim, Statement, check_all
 from symobs.proof.derivation import translated
 from symobs.proof.derivation.builder import Builder
 from symobs.system.conditions import Condition, vanishing_factors
@@ -82,6 +82,9 @@ class Result(OutputMethods):
         object.__setattr__(self, "answer", MappingProxyType(dict(self.answer)))
         try:
             object.__setattr__(self, "certificates", check_all(self.claims(), self.plant.relations))
+        except BEYOND_LIMITS as error:
+            message = f"{self.task} is undecided, its answer cannot be checked: {error}"
+            raise Undecided(message) from error
         except UNREADABLE as error:
             message = f"the answer of {self.task} is no answer: {error}"
             raise CertificateRejected(message, repair="please report this: it is a bug of symobs") from error

@@ -447,3 +447,19 @@ def test_version_and_conventions(tmp_path: Path) -> None:
     assert run.out.startswith("symobs ")
     assert "\nstandard " in inside("conventions").out
     assert "pdf" in formats()
+
+
+def test_what_is_beyond_the_limits_of_a_check_is_undecided_with_its_reason(tmp_path: Path) -> None:
+    """Seven decay rates of eight digits are related by small whole numbers: one measure, with multiples of ten digits."""
+    rates = ("8.1051234", "4.2329123", "3.1234561", "7.7654321", "1.0541699", "5.8731139", "2.2222223")
+    rows = ("[" + ", ".join(f'"-{rate}"' if i == j else "0" for j in range(7)) + "]" for i, rate in enumerate(rates))
+    plant = f'[symbols]\nT = "positive"\n[plant]\nA = [{", ".join(rows)}]\nC = "[1 1 1 1 1 1 1]"\n'
+    text = f'tasks = ["gramian", "observability"]\n{plant}[specification]\nhorizon = "T"\n'
+    (tmp_path / "rates.toml").write_text(text, encoding="utf-8")
+    run = inside("solve", "rates.toml", "--format", "json", folder=tmp_path)
+    results = json.loads(run.out)["results"]
+    assert (run.code, [result["verdict"] for result in results]) == (5, ["undecided", "yes"])
+    assert "too far from the other exponents" in results[0]["reason"]
+    assert "bug" not in run.err
+    page = inside("solve", "rates.toml", "--format", "text", folder=tmp_path)
+    assert (page.code, "observable" in page.out, page.err) == (5, True, run.err)
