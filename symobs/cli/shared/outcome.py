@@ -149,8 +149,8 @@ def solved(
         done = error.facts["results"]
         if format_name == "json":
             return replace(_as_far_as(found, done, convention, target, str(error)), messages=(str(error),))
-        outputs = ((rendered(done), target),) if done and not page.get("printed") else ()
-        return Outcome(outputs, (str(error),), EXIT_UNDECIDED)
+        partial_page = done and not page.get("printed")
+        return Outcome(((rendered(done), target),) if partial_page else (), (str(error),), EXIT_UNDECIDED)
     viewed = found.viewed(results)
     expect = applicable(viewed, found.expect) if only_some_tasks else found.expect
     unmet = mismatches(viewed, expect)
