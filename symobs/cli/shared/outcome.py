@@ -146,7 +146,7 @@ def solved(
     try:
         results = found.solve(begins)
     except Undecided as error:
-        done = error.facts["results"]
+        done: Any = error.facts["results"]
         if format_name == "json":
             return replace(_as_far_as(found, done, convention, target, str(error)), messages=(str(error),))
         partial_page = done and not page.get("printed")

@@ -28,7 +28,8 @@ _SETS, _MINORS, _TERMS = 200, 60, 400
 def smallest_sets(N: Matrix, X: Matrix, e: Environment) -> tuple[tuple[int, ...], ...] | None:
     """Return the smallest sets of states whose measurement repairs every point where the relations of `e` hold.
 
-    States are counted from 1.  None where there are too many sets, or too long entries, to try them all.
+    States are counted from 1.  None where there are too many sets, or too long entries, to try them all, and where
+    whether one of them repairs every point is beyond the limits.
     """
     order, hidden = N.shape
     if not hidden:
@@ -38,21 +39,26 @@ def smallest_sets(N: Matrix, X: Matrix, e: Environment) -> tuple[tuple[int, ...]
     for count in range(1, order + 1):
         if math.comb(order, count) > _SETS:
             return None
-        sets = itertools.combinations(range(order), count)
-        found = tuple(tuple(i + 1 for i in chosen) for chosen in sets if _repairs(chosen, N, X, e))
+        tried = {chosen: _repairs(chosen, N, X, e) for chosen in itertools.combinations(range(order), count)}
+        if None in tried.values():
+            return None
+        found = tuple(tuple(i + 1 for i in chosen) for chosen, repairs in tried.items() if repairs)
         if found:
             return found
     return None
 
 
-def _repairs(chosen: tuple[int, ...], N: Matrix, X: Matrix, e: Environment) -> bool:
+def _repairs(chosen: tuple[int, ...], N: Matrix, X: Matrix, e: Environment) -> bool | None:
+    """Return whether measuring these states repairs every point, None where that is beyond the limits."""
     seen = seen_through(chosen, N, X)
     if rank(seen) < X.shape[0]:
         return False
     try:
-        return never_together_zero(_minors(seen), e.relations, e.signs)
+        if never_together_zero(minors := _minors(seen), e.relations, e.signs):
+            return True
     except TooLarge:
-        return False
+        return None
+    return False if len(minors) < _MINORS else None
 
 
 def seen_through(chosen: tuple[int, ...], N: Matrix, X: Matrix) -> Matrix:

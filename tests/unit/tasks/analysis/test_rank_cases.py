@@ -15,12 +15,13 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 import symobs
-from symobs.exact import Ideal, Matrix, Scalar
+from symobs.exact import Ideal, Matrix, Scalar, TooLarge
 from symobs.formula.expression import parse_scalar
-from symobs.formula.tree import Conjunction, Letter, Literal, Relation
+from symobs.formula.tree import Conjunction, Environment, Letter, Literal, Relation
 from symobs.ground.errors import CertificateRejected, DerivationRejected
 from symobs.proof.derivation import CaseStep, Given
 from symobs.system.conditions import real_consequences
+from symobs.tasks.analysis.rank import missing_measurements
 from symobs.tasks.analysis.rank.rank_test import RankResult
 from symobs.tasks.analysis.strata.loci import Region, loci
 from tests.support.claims.claims import Setting, applicable, conditions_hold, rank_holds
@@ -513,3 +514,18 @@ def test_consequences_are_for_real_parameters_only() -> None:
     assert real_consequences(a**2 - b**2, {}) == ()
     assert real_consequences(a * b + 1, {}) == ()
     assert set(real_consequences(a**2 * b**2 + b**4, {})) == {a * b, b}
+
+
+def test_a_set_beyond_the_limits_leaves_the_smallest_sets_undecided(monkeypatch: pytest.MonkeyPatch) -> None:
+    """With the first state alone undecided, the second alone is not known to be among the smallest."""
+    asked = iter([TooLarge("too many terms")])
+
+    def undecided_at_first(*_: object) -> bool:
+        for error in asked:
+            raise error
+        return True
+
+    monkeypatch.setattr(missing_measurements, "never_together_zero", undecided_at_first)
+    N, X = Matrix.of([[1, 0], [0, 1]]), Matrix.of([[1, 1], [1, 2]])
+    assert missing_measurements.smallest_sets(N, X, Environment()) is None
+    assert missing_measurements.smallest_sets(N, X, Environment()) == ((1,), (2,))
