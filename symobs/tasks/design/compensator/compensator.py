@@ -28,6 +28,7 @@ from symobs.tasks.design.full_order.observer import ObserverDesign
 from symobs.tasks.design.full_order.state_feedback import StateFeedbackDesign
 from symobs.tasks.design.gain.gain_cases import half_of, places_where
 from symobs.tasks.design.gain.gain_design import letters_of
+from symobs.tasks.design.reduced_order.partition import completed
 from symobs.tasks.result import Result, choose, method, poles_of, task
 
 if TYPE_CHECKING:
@@ -281,6 +282,7 @@ def _require_kind(observer: str, plant: StateSpace, method_name: str) -> None:
             message, where="specification.method", repair='leave the method out, or write observer = "full"'
         )
     if _is_minimal(observer, method_name) and plant.order == plant.outputs:
+        completed(plant.matrices.C)  # raises where C is singular
         message = "the outputs show the whole state, nothing is left to estimate"
         raise InputError(message, where="specification.observer", repair="use state_feedback with x = C⁻¹ (y − D u)")
 

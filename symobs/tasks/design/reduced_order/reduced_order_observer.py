@@ -327,6 +327,7 @@ def reduced_order_observer(
     plant = plant.knowing(poles, polynomial, T)
     plant.require("C", task="reduced_order_observer")
     if plant.order == plant.outputs:
+        completed(plant.matrices.C)  # raises where C is singular
         message = "the outputs show the whole state, nothing is left to estimate"
         raise InputError(message, where="plant.C", repair="use x = C⁻¹ (y − D u)")
     desired = desired_polynomial(plant, poles, polynomial, degree=unmeasured(plant))

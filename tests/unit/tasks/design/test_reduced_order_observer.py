@@ -200,6 +200,8 @@ def test_nothing_left_to_estimate() -> None:
         symobs.reduced_order_observer(StateSpace("[-1]", "[1]", "[2]"), poles=[])
     with pytest.raises(InputError, match="depend on each other"):
         symobs.reduced_order_observer(StateSpace("[0 1; 0 0]", "[0; 1]", "[0 0]"), poles=[-1])
+    with pytest.raises(InputError, match="depend on each other"):  # as many outputs as states, and C is singular
+        symobs.reduced_order_observer(StateSpace("[0 1; 0 0]", "[0; 1]", "[1 2; 2 4]"), poles=[])
 
 
 def test_the_page_follows_the_book() -> None:
