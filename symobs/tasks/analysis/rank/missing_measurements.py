@@ -54,11 +54,9 @@ def _repairs(chosen: tuple[int, ...], N: Matrix, X: Matrix, e: Environment) -> b
     if rank(seen) < X.shape[0]:
         return False
     try:
-        if never_together_zero(minors := _minors(seen), e.relations, e.signs):
-            return True
+        return never_together_zero(_minors(seen), e.relations, e.signs)
     except TooLarge:
         return None
-    return False if len(minors) < _MINORS else None
 
 
 def seen_through(chosen: tuple[int, ...], N: Matrix, X: Matrix) -> Matrix:
