@@ -60,8 +60,10 @@ _MOST_OF_LOGO = 2 << 20  # bytes
 _BEGINNINGS = {"png": b"\x89PNG\r\n\x1a\n", "jpg": b"\xff\xd8\xff", "pdf": b"%PDF-"}
 _SAFE_PATH = re.compile(r"[A-Za-z0-9._/-]+")
 _OWN = "|".join(key for key in SHEET if key not in {"title", "text", "language", "convention"})
-_SHEET_KEY = re.compile(rf"""^\s*(?:\[\[\s*"?problem"?\s*\]\]|"?(?:{_OWN})"?\s*=)""", re.MULTILINE)
-_PROBLEM_KEY = re.compile(r"""^\s*(?:"?tasks?"?\s*=|\[\s*"?(?:plant|specification|symbols)"?\s*\])""", re.MULTILINE)
+_SHEET_KEY = re.compile(rf"""^[^\S\n]*(?:\[\[\s*"?problem"?\s*\]\]|"?(?:{_OWN})"?\s*=)""", re.MULTILINE)
+_PROBLEM_KEY = re.compile(
+    r"""^[^\S\n]*(?:"?tasks?"?\s*=|\[\s*"?(?:plant|specification|symbols)"?\s*\])""", re.MULTILINE
+)
 _IN_JSON = re.compile(rf'"(?:{_OWN})"\s*:'), re.compile(r'"(?:tasks?|plant|specification)"\s*:')
 
 

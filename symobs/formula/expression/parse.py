@@ -46,7 +46,7 @@ _LONGEST_REPAIR = 30
 _NUMBERS, _SMALL = {int, Fraction}, 128
 #: What else to do about floats.
 FLOATS = ', or give the plant or the task floats="decimal"'
-_PLAIN = r"(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:/[0-9]+)?"
+_PLAIN = r"(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:/[0-9]+)?"
 #: Numbers with nothing but a blank and a sign between them.
 _SIGNED_APART = re.compile(rf"\s*[-+]?{_PLAIN}(?:\s+[-+]{_PLAIN})+\s*")
 #: The imaginary unit directly before a number or a frequency: j2.4, jw.
@@ -148,7 +148,7 @@ def parse_poles(
 
 def comma_between_digits(value: object) -> str:
     """Return the first number of a text that has a decimal comma, or the two that a comma without a space sets apart."""
-    found = re.search(r"[0-9]+,[0-9]+", value) if isinstance(value, str) else None
+    found = re.search(r"(?<![0-9])[0-9]+,[0-9]+", value) if isinstance(value, str) else None
     return found[0] if found else ""
 
 

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import json
 import re
+from contextlib import suppress
+from time import process_time
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -11,7 +13,12 @@ import pytest
 import sympy
 
 import symobs
-from symobs.ground.errors import InexactInput, InputError, ShapeMismatch
+from symobs.applications.checking.answers.answer_file import read_answer
+from symobs.formula.expression import comma_between_digits, parse_matrix, parse_poles, parse_polynomial, parse_scalar
+from symobs.ground.errors import InexactInput, InputError, ShapeMismatch, SymobsError
+from symobs.problem.expect.roots import read_roots
+from symobs.problem.expect.structure import relation
+from symobs.problem.sheet_file import is_sheet
 from tests.support.tools.command_line import Run, fresh, inside
 
 if TYPE_CHECKING:
@@ -414,3 +421,36 @@ def test_shapes_are_refused_as_such() -> None:
         symobs.StateSpace([[1, 2], [3]])
     with pytest.raises(ShapeMismatch, match="1×2, expected 2×1"):
         symobs.observer(servo(), L="[1 2]")
+
+
+# -- long texts -----------------------------------------------------------------------------------------------------
+
+READERS: dict[str, Callable[[str], object]] = {
+    "scalar": parse_scalar,
+    "matrix": parse_matrix,
+    "poles": parse_poles,
+    "list of poles": lambda text: parse_poles([text]),
+    "polynomial": lambda text: parse_polynomial(text, "s"),
+    "decimal comma": comma_between_digits,
+    "plant": lambda text: symobs.StateSpace(text, "[1]", symbols={"a": text}),
+    "sheet": is_sheet,
+    "answer": read_answer,
+    "value of an answer": lambda text: read_answer(f"K = {text}"),
+    "relation": lambda text: relation(text, None, ""),
+    "roots": lambda text: read_roots([text], None, "s", ""),
+}
+
+
+def seconds(read: Callable[[str], object], text: str) -> float:
+    begin = process_time()
+    with suppress(SymobsError):
+        read(text)
+    return process_time() - begin
+
+
+@pytest.mark.parametrize("piece", ["1", "1.", "1 -", "1,", " ", "\n", "[", "]", "(", "-", "a", "j1", ";", "=", '"'])
+@pytest.mark.parametrize("read", READERS.values(), ids=READERS)
+def test_the_time_to_read_a_text_grows_no_faster_than_its_length(read: Callable[[str], object], piece: str) -> None:
+    short, long = (piece * (length // len(piece)) for length in (12_500, 100_000))
+    spent = min(seconds(read, short) for _ in range(2))
+    assert any(seconds(read, long) < 25 * max(spent, 0.001) for _ in range(3)), "quadratic time would be 64 times that"

@@ -1000,12 +1000,6 @@ def test_the_short_way_reads_what_the_grammar_reads(text: str, names: dict[str, 
         assert [outcome(read) for read in readers] == found
 
 
-def test_poles_that_are_too_long_are_refused_before_a_pattern_is_tried(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("symobs.formula.expression.parse._SIGNED_APART", None)
-    with pytest.raises(BudgetExceeded):
-        parse_poles("1" * 100_000)
-
-
 @pytest.mark.parametrize("names", [None, {}])
 def test_the_imaginary_unit_stands_before_a_number_in_poles(names: dict[str, str] | None) -> None:
     assert parse_poles("-2+j2, -2-j2.4", names) == parse_poles("-2+2*j, -2-12/5*j", names)
