@@ -73,7 +73,7 @@ def _complex_numbers(cells: list[str], scope: Scope) -> tuple[list[list[Number]]
 
 def _is_symbol(name: str, scope: Scope) -> bool:
     """Return whether a name is declared, or may be a symbol where every name may."""
-    if name in FUNCTIONS or scope.is_imaginary_unit(name) or refusal(name):
+    if name in FUNCTIONS or scope.is_imaginary_unit(name) or refusal(name) or (scope.poles and scope.unit_first(name)):
         return False
     return scope.names is None or (scope.declares(name) and scope.constant(name) is None)
 

@@ -28,6 +28,11 @@ IMAGINARY = ("i", "j", "I")
 LONGEST_NAME = 64
 
 NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
+#: The imaginary unit directly before a number or a frequency: j2.4, jw_d.
+UNIT_FIRST = re.compile(
+    r"(?P<unit>[ij])(?:(?P<size>[0-9]+(?:\.[0-9]+)?(?:[eE][+-]?[0-9]+)?)|(?P<frequency>(?:w|omega)[A-Za-z0-9_]*))(?![\w.])",
+    re.ASCII,
+)
 _MOST_COMPARED = 1_000
 
 
@@ -59,7 +64,10 @@ def refusal(name: str) -> tuple[str, str] | None:
 
 @dataclass(frozen=True)
 class Scope:
-    """The names, the budget and the context of the texts of one call."""
+    """The names, the budget and the context of the texts of one call.
+
+    In `poles` an undeclared j2 is 2 j, unless it is one of the `letters` that are in use.
+    """
 
     names: Names
     variable: str | None
@@ -68,6 +76,8 @@ class Scope:
     functions: bool = False
     rounding: bool = False
     roots: bool = False
+    poles: bool = False
+    letters: frozenset[str] = frozenset()
 
     @staticmethod
     def of(
@@ -97,6 +107,11 @@ class Scope:
     def is_imaginary_unit(self, name: str) -> bool:
         """Return whether the name stands for the imaginary unit here."""
         return name in IMAGINARY and (name in RESERVED or not self.declares(name))
+
+    def unit_first(self, text: str, at: int = 0) -> re.Match[str] | None:
+        """Return the imaginary unit before a number or a frequency, j2 or jw, where this is no declared name."""
+        found = UNIT_FIRST.match(text, at)
+        return found if found and self.is_imaginary_unit(found["unit"]) and not self.declares(found[0]) else None
 
     def declared(self) -> list[str]:
         """Return all declared names, for messages."""

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import numbers
 import re
+from dataclasses import replace
 from decimal import Decimal
 from fractions import Fraction
 from math import lcm
@@ -26,7 +27,7 @@ from symobs.formula.expression.tokenizer import MOST_DIGITS, sharing
 from symobs.ground.errors import BudgetExceeded, ExpressionError, InexactInput, InputError, ShapeMismatch
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterable, Sequence
     from typing import TypeGuard
 
     from symobs.formula.expression.size_limits import Number
@@ -49,11 +50,6 @@ FLOATS = ', or give the plant or the task floats="decimal"'
 _PLAIN = r"(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:/[0-9]+)?"
 #: Numbers with nothing but a blank and a sign between them.
 _SIGNED_APART = re.compile(rf"\s*[-+]?{_PLAIN}(?:\s+[-+]{_PLAIN})+\s*")
-#: The imaginary unit directly before a number or a frequency: j2.4, jw.
-_UNIT_BEFORE = re.compile(
-    r"(?<![A-Za-z0-9_.])(?P<unit>[ij])(?:(?P<size>[0-9]+(?:\.[0-9]+)?)|(?P<name>w|omega))"
-    r"(?![A-Za-z0-9_.])(?=\s*(?P<power>\^|\*\*)?)"
-)
 #: Beyond it a float stands for several integers.
 _WHOLE_UP_TO = 2**53
 _KINDS = {bool: "a truth value (bool)", dict: "a table (dict)", int: "a number", list: "a list", str: "a text"}
@@ -119,23 +115,26 @@ def parse_poles(
     functions: bool = False,
     rounding: bool = False,
     roots: bool = False,
+    letters: Iterable[str] = (),
 ) -> tuple[Complex, ...]:
     """Return the poles of a text with commas or semicolons between them, `-20+20i, -20-20i`, or of a list of numbers and texts.
 
     Semicolons and a comma between digits, `-1,5; -2`, are an error: its writer means a decimal, which has a point.
+    i and j directly before a number are the imaginary unit, unless that name is declared; an error if the name is one of
+    the `letters` that are in use.
     With `functions`, or with `roots` alone, square roots are read as generators; where there are names, the values stand in
     one context with `variable`, that of the polynomial to be made of them.  Raises as `parse_scalar` does.
     """
     scope = Scope.of(names, None, where, functions=functions, rounding=rounding, roots=roots)
+    scope = replace(scope, poles=True, letters=frozenset(letters))
     if isinstance(value, str):
-        value = _with_unit_behind(_with_commas(value, where), scope, where)
+        value = _with_commas(value, where)
         scope = sharing(scope, [value], variable)
         return tuple(Complex.of(pole) for pole in _numbers_of_text(value, scope, where))
     listed = _as_list(value)
     if listed is None:
         repair = 'write [-1, -2] or "-1, -2"'
         raise InputError(f"a list of poles is expected, but {_kind(value)} came", where=where, repair=repair)
-    listed = [_with_unit_behind(pole, scope, where) if isinstance(pole, str) else pole for pole in listed]
     scope = sharing(scope, listed, variable)
     texts = [pole for pole in listed if isinstance(pole, str)]
     for text in texts:
@@ -285,21 +284,6 @@ def _numbers_of_text(text: str, scope: Scope, where: str) -> list[Number]:
     if len(entries) == 1 and isinstance(entries[0], MatrixRows) and 1 in entries[0].shape:
         return [number for row in entries[0].rows for number in row]
     return [_single(entry, where) for entry in entries]
-
-
-def _with_unit_behind(text: str, scope: Scope, where: str) -> str:
-    """Return poles with 2j for j2, the imaginary unit before a number; raises ExpressionError for jw and 1/j2."""
-
-    def behind(match: re.Match[str]) -> str:
-        whole, unit, size = match.group(), match["unit"], match["size"]
-        if scope.declares(whole) or not scope.is_imaginary_unit(unit):
-            return whole
-        if match["name"] or match["power"] or text[: match.start()].rstrip().endswith("/"):
-            repair = f"write {unit}*{match['name'] or size}, in parentheses where it is divided by or raised to a power"
-            raise ExpressionError(f'"{shown(whole)}" may be a name or a product', where=where, repair=repair)
-        return f"{size}{unit}"
-
-    return text if len(text) > MOST_CHARACTERS else _UNIT_BEFORE.sub(behind, text)
 
 
 def _refuse_blanks_for_commas(text: str, where: str) -> None:

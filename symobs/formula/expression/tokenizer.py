@@ -39,6 +39,12 @@ _TOKEN = re.compile(
 )
 _CLOSING = {"(": ")", "[": "]"}
 _CALL = re.compile(r"[ \t\r\n]*\(")
+_POWER = re.compile(r"[ \t\r\n]*(?:\*\*|\^)")
+#: What is a function or a command elsewhere, and no symbol that anybody means to declare.
+_FUNCTIONS_ELSEWHERE = re.compile(
+    r"abs|a(?:rc)?(?:cos|sin|tan|cot)h?|atan2|conj|coth?|csch?|sech?|l[gn]|log(?:2|10)?|det|diag|eye|floor|imag|inv|max|min|ones"
+    r"|rank|real|root|round|sat|sgn|sign|sinc|step|sum|trace|transpose|zeros"
+)
 _OPERAND_STARTS = ("NUMBER", "NAME", "OPEN")
 
 
@@ -87,6 +93,10 @@ class Tokeniser:
         """
         position = 0
         while position < len(self.text):
+            if self.scope.poles and (unit := self.scope.unit_first(self.text, position)):
+                self._unit_first(unit, position)
+                position = unit.end()
+                continue
             match = self.pattern.match(self.text, position)
             if match is None:
                 message, repair = _unreadable(self.text[position])
@@ -214,6 +224,16 @@ class Tokeniser:
         digits, shift = int(whole + decimals), int(power or 0) - len(decimals)
         return Scalar.of(digits * 10**shift) if shift >= 0 else Scalar.rational(digits, 10**-shift)
 
+    def _unit_first(self, found: re.Match[str], at: int) -> None:
+        """Add j2 as the number 2 j; raises ExpressionError for jw, 1/j2, j2^2, 3j2, and where j2 is a letter in use."""
+        self._imply("NAME", at)
+        self.spaced = False
+        whole, size = found[0], found["size"]
+        apart = not self.text[max(at - 1, 0) : at].isalnum() and not (self.tokens and self.tokens[-1] == "/")
+        if not size or whole in self.scope.letters or not apart or _POWER.match(self.text, found.end()):
+            raise self.source.error(f'"{shown(whole)}" may be a name or a product', at, _unit_apart(found))
+        self._add("VALUE", whole, at, Complex(Scalar.of(0), self._decimal(size, at)))
+
     def _name(self, name: str, at: int) -> None:
         end = at + len(name)
         called = self.text.startswith("(", end) if self._in_brackets() else bool(_CALL.match(self.text, end))
@@ -260,6 +280,11 @@ class Tokeniser:
         declared, nearest = self.scope.declared(), self.scope.nearest(name, called=called)
         question = f'did you mean "{nearest}"? ' if nearest else ""
         declare = f'add {name} = "real" to [symbols], or --symbol {name}=real to a command'
+        unit = self.scope.unit_first(name)
+        if unit:
+            declare = _unit_apart(unit)
+        elif _FUNCTIONS_ELSEWHERE.fullmatch(name.lower()):
+            declare = f"it is no function here; the functions are {', '.join(FUNCTIONS)}"
         listed = f"declared: {shown(', '.join(declared), 200)}{'' if question else f'; {declare}'}"
         if set(self.scope.names or ()) <= {"t"}:  # the variable and the time alone are none that anybody declared
             listed = f"no name is declared; {declare}"
@@ -268,6 +293,12 @@ class Tokeniser:
         message = f'the name "{name}" is not declared{EXPONENTIAL if name == "e" else ""}'
         facts = {"name": name, "nearest": nearest, "declared": tuple(declared)}
         return self.source.error(message, at, question + listed, UnknownName, **facts)
+
+
+def _unit_apart(found: re.Match[str]) -> str:
+    """Return the repair for j2 or jw where it may be a name."""
+    product = f"{found['unit']}*{found['frequency'] or found['size']}"
+    return f"write {product} for the imaginary number, in parentheses where it is divided by or raised to a power"
 
 
 #: What is said of e^(-a t), which is a power of a name here.

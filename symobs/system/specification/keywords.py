@@ -7,7 +7,7 @@ the name of a kind, and the problem file, the command line and Python all read t
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from functools import cached_property
 from typing import Annotated, Any, TypeAlias
 
@@ -183,7 +183,7 @@ def desired_polynomial(
     if is_pattern(poles):
         found = _from_pattern(poles, plant, degree, first)
     elif poles is not None:
-        read = read_poles(poles, plant.symbols, first, plant.variable)
+        read = read_poles(poles, plant.symbols, first, plant.variable, letters=plant.field.names)
         if len(read) != degree:
             raise _miscounted(poles, len(read), degree, first)
         found = _from_poles(read, plant.variable, first)
@@ -194,13 +194,24 @@ def desired_polynomial(
 
 
 def read_poles(
-    value: Any, symbols: Symbols, where: str, variable: str | None = None, *, functions: bool = True
+    value: Any,
+    symbols: Symbols,
+    where: str,
+    variable: str | None = None,
+    *,
+    functions: bool = True,
+    letters: Iterable[str] = (),
 ) -> tuple[Complex, ...]:
-    """Return exact poles from a text or a list of numbers, texts and SymPy expressions; `variable` is that of φ."""
+    """Return exact poles from a text or a list of numbers, texts and SymPy expressions.
+
+    `variable` is that of φ, `letters` are names in use.
+    """
     if functions:
         refuse_names_of_patterns(value, symbols.signs, where)
     if isinstance(value, str):
-        return parse_poles(value, symbols.names, variable=variable, where=where, roots=True, functions=functions)
+        return parse_poles(
+            value, symbols.names, variable=variable, where=where, roots=True, functions=functions, letters=letters
+        )
     if is_sympy(value) and (hasattr(value, "tolist") or type(value).__name__ == "Tuple"):
         value = list(value)  # a Matrix, or a Tuple
     listed = value.tolist() if hasattr(value, "tolist") else value  # a NumPy array
@@ -208,7 +219,9 @@ def read_poles(
     read = [
         read_complex(entry, f"{where}[{index}]") if is_sympy(entry) else entry for index, entry in enumerate(entries)
     ]
-    return parse_poles(read, symbols.names, variable=variable, where=where, roots=True, functions=functions)
+    return parse_poles(
+        read, symbols.names, variable=variable, where=where, roots=True, functions=functions, letters=letters
+    )
 
 
 def _miscounted(poles: object, count: int, degree: int, where: str) -> InputError:
@@ -262,7 +275,9 @@ def read_pattern(value: object, plant: StateSpace, where: str) -> tuple[dict[str
         )
         for name, part in parts.items()
     }
-    return named, read_poles(others, plant.symbols, f"{where}.{OTHERS}", plant.variable) if others else ()
+    return named, read_poles(
+        others, plant.symbols, f"{where}.{OTHERS}", plant.variable, letters=plant.field.names
+    ) if others else ()
 
 
 def _not_closed(waiting: Sequence[Complex], where: str) -> InputError:

@@ -1004,6 +1004,24 @@ def test_the_short_way_reads_what_the_grammar_reads(text: str, names: dict[str, 
 def test_the_imaginary_unit_stands_before_a_number_in_poles(names: dict[str, str] | None) -> None:
     assert parse_poles("-2+j2, -2-j2.4", names) == parse_poles("-2+2*j, -2-12/5*j", names)
     assert parse_poles(["i3", "-i3"], names) == parse_poles(["3*i", "-3*i"], names)
-    for text in ("-1+jw", "jomega", "1/j2", "j2^2"):
+    assert parse_poles("2 j3", names) == parse_poles("6*j", names)
+    for text in ("-1+jw", "jomega", "jw0", "-jomega_d", "1/j2", "j2 ^2", "2j3", "[-1; jw]"):
         with pytest.raises(ExpressionError, match="may be a name or a product"):
             parse_poles(text, names)
+
+
+def test_a_name_like_an_imaginary_number_is_one_only_where_it_is_declared() -> None:
+    assert parse_poles("-j2", {"j2": "real"}) == (Complex.of(-Scalar.symbol("j2")),)
+    with pytest.raises(ExpressionError, match="may be a name or a product"):
+        parse_poles("-2+j2, -2-j2", letters={"j2"})
+    with pytest.raises(ExpressionError, match=r'at column 8 of "-2\+j2, \?"'):
+        parse_poles("-2+j2, ?", {})
+
+
+@pytest.mark.parametrize("name", ["j2", "i3", "jw0", "abs", "log"])
+def test_a_name_that_means_something_elsewhere_is_not_to_be_declared(name: str) -> None:
+    for names in ({}, {"omega": "real"}):
+        with pytest.raises(UnknownName) as caught:
+            parse_matrix(f"[0 1; {name} 2]", names)
+        assert "add" not in caught.value.repair
+        assert name not in caught.value.repair
