@@ -10,7 +10,15 @@ from typing import Any
 
 from symobs.exact import Complex, Ideal, Matrix, Scalar
 from symobs.exact.algebraic.real_algebraic import RealRoot
-from symobs.exact.core.generators import Function, NotWritten, all_roots, function_named, functions_in, identities
+from symobs.exact.core.generators import (
+    Function,
+    NotWritten,
+    all_roots,
+    function_named,
+    functions_in,
+    identities,
+    symbols_in,
+)
 from symobs.formula.expression import parse_matrix, parse_scalar
 from symobs.formula.expression.parse import FLOATS
 from symobs.formula.expression.source import shown
@@ -112,6 +120,18 @@ def read_values(values: Mapping[Any, Any], symbols: Symbols, names: Collection[s
             message = f"{read[name]} is not {sign}, as {name} is declared"
             raise InputError(message, where=where, repair="give a value of that sign, or declare another")
     return read
+
+
+def inserted(values: Mapping[str, Scalar]) -> dict[str, Scalar]:
+    """Return values with those inserted that depend on no other: k = 1/c and c = 2 give k = 1/2.
+
+    Values that depend on each other, as those that exchange two parameters, stay.
+    """
+    found = dict(values)
+    for _ in values:
+        settled = {name: value for name, value in found.items() if not symbols_in(value) & found.keys()}
+        found = {name: value if name in settled else value.substitute(settled) for name, value in found.items()}
+    return found
 
 
 def _from_numpy(value: Any, where: str) -> object:

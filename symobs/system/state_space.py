@@ -14,7 +14,7 @@ from symobs.system.control_system import exact_of, read_control_system
 from symobs.system.findings import Findings
 from symobs.system.floats import read_floats
 from symobs.system.matrices import Matrices, as_rows, shape_errors
-from symobs.system.reading import has_decimals, over_a_base, read_matrix, read_values
+from symobs.system.reading import has_decimals, inserted, over_a_base, read_matrix, read_values
 from symobs.system.symbols import Symbols
 from symobs.system.time_domain import Continuous, Discrete, TimeVarying, read_time
 from symobs.system.transfer_function_text import WrittenTransferFunction, read_characteristic
@@ -235,7 +235,8 @@ class StateSpace:
         Raises `InputError` for what is no parameter or cannot have the value, ZeroDivisionError where no plant is left.
         """
         m, symbols = self.matrices, self.symbols.seen(list(values.values()))
-        values = read_values(values, symbols, {*m.symbols, *symbols.signs})
+        read = read_values(values, symbols, {*m.symbols, *symbols.signs})
+        values = read if all(isinstance(value, Scalar) for value in values.values()) else inserted(read)
         try:
             A, *others = (substitute(part, values) for part in (m.A, m.B, m.C, m.D))
         except NotWritten as error:

@@ -45,6 +45,8 @@ _FUNCTIONS_ELSEWHERE = re.compile(
     r"abs|a(?:rc)?(?:cos|sin|tan|cot)h?|atan2|conj|coth?|csch?|sech?|l[gn]|log(?:2|10)?|det|diag|eye|floor|imag|inv|max|min|ones"
     r"|rank|real|root|round|sat|sgn|sign|sinc|step|sum|trace|transpose|zeros"
 )
+#: What follows the 0 of a number in base 16, 8 or 2, and what is a power of ten in Fortran.
+_OTHER_BASE, _POWER_OF_TEN = re.compile(r"[xX][0-9A-Fa-f]+|[oO][0-7]+|[bB][01]+"), re.compile(r"[dD][0-9]+")
 _OPERAND_STARTS = ("NUMBER", "NAME", "OPEN")
 
 
@@ -248,6 +250,7 @@ class Tokeniser:
 
     def _symbol(self, name: str, at: int, *, called: bool) -> Scalar:
         """Return the symbol `name`; raises the error with the reason if there is none."""
+        self._require_product(name, at)
         if name == PI and (self.scope.functions or self.open):  # what it is an argument of takes it, or refuses it
             return Scalar.symbol(PI)
         reasons = refusal(name)
@@ -263,6 +266,19 @@ class Tokeniser:
             raise self.source.error(f"more than {MOST_NAMES} different names", at, repair, kind=BudgetExceeded)
         shared = name in self.field.position  # not the e of 2e3e, which follows a number
         return self.symbols.setdefault(name, Scalar.generator(self.field, name) if shared else Scalar.symbol(name))
+
+    def _require_product(self, name: str, at: int) -> None:
+        """Raise ExpressionError for 0x10, which is 16 elsewhere, and for 1d3, 1000 in Fortran, where d3 is not declared."""
+        number = self.tokens[-2] if len(self.tokens) > 1 else ""
+        if number[:1] not in {*".0123456789"} or not self.text.startswith(number, at - len(number)):
+            return
+        if number == "0" and _OTHER_BASE.fullmatch(name):
+            repair = "write the integer in decimal digits"
+        elif _POWER_OF_TEN.fullmatch(name) and not self.scope.declares(name):
+            repair = f"write {number}e{name[1:]} for the power of ten, {number}*{name} for the product"
+        else:
+            return
+        raise self.source.error(f'"{number}{shown(name)}" may be a number or a product', at - len(number), repair)
 
     def _require_admitted(self, name: str, at: int, *, called: bool) -> None:
         if called and name == "CRootOf":

@@ -16,7 +16,7 @@ from symobs.formula.expression import parse_matrix, parse_polynomial
 from symobs.formula.expression.source import shown
 from symobs.ground.errors import CertificateRejected, InputError, ProblemErrors, together
 from symobs.system import StateSpace, read_matrix, read_scalar
-from symobs.system.reading import has_decimals, read_values
+from symobs.system.reading import has_decimals, inserted, read_values
 from symobs.system.specification import is_pattern, parse_signal, read_names, read_pattern, read_poles
 from symobs.system.specification.pole_patterns import OTHERS
 
@@ -62,7 +62,7 @@ def _values(given: Mapping[Any, Any], plant: StateSpace, asked: set[str]) -> dic
             error.where = error.where.replace("substitute.", "values.")
             error.message = error.message.replace("no parameter of the plant", "no parameter of the problem")
         raise
-    return {name: value for one in read for name, value in one.items()}
+    return inserted({name: value for one in read for name, value in one.items()})
 
 
 def _plant(plant: StateSpace, values: dict[str, Scalar]) -> StateSpace:

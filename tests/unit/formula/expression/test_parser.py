@@ -1025,3 +1025,12 @@ def test_a_name_that_means_something_elsewhere_is_not_to_be_declared(name: str) 
             parse_matrix(f"[0 1; {name} 2]", names)
         assert "add" not in caught.value.repair
         assert name not in caught.value.repair
+
+
+def test_the_notation_of_numbers_of_other_programs_is_no_product() -> None:
+    for text in ("0x10", "0b1", "[0XfF 0; 0 1]", "0o17", "1d3", "[1 2.5D3]", "-1.D4"):
+        with pytest.raises(ExpressionError, match="may be a number or a product"):
+            parse_matrix(text)
+    assert parse_scalar("2d1 + 3x1 + 10x10", {"d1": "real", "x1": "real", "x10": "real"}) == parse_scalar(
+        "2*d1 + 3*x1 + 10*x10"
+    )

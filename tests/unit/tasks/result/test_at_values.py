@@ -201,3 +201,11 @@ def test_every_kind_of_keyword_is_read_or_has_no_parameters() -> None:
     module: Any = import_module("symobs.tasks.result.at_values")
     assert module._READERS.keys() | {"Name", "Sign", "Entries"} == KINDS.keys()
     assert {kind for task in tasks().values() for kind in task.keywords.values()} <= KINDS.keys()
+
+
+def test_a_value_may_contain_a_parameter_that_has_a_value_too() -> None:
+    gain = symobs.state_feedback(symobs.StateSpace("[0 1; -k -c]", "[0; 1]"), poles="-1, -2")
+    for values in ({"k": "1/c", "c": 2}, {"c": 2, "k": "1/c"}):
+        assert sympy.Matrix([[sympy.Rational(3, 2), 1]]) == gain.at(values).K
+        assert sympy.Matrix([[0, 1], [-sympy.Rational(1, 2), -2]]) == gain.plant.substitute(values).A
+    assert sympy.Matrix([[2 - 5, 3 - 7]]) == gain.at(k="c", c="k").at(c=5, k=7).K
