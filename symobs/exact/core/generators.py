@@ -356,7 +356,8 @@ def identities(
     for f in moving:
         for monomial, coefficient in _coordinates(f.argument, below).items():
             found_in.setdefault((f.kind in {"cos", "sin"}, monomial), set()).add(abs(coefficient))
-    degree = highest_power(values, {f.name for f in moving})
+    several = any(len(coefficients) > 1 for coefficients in found_in.values())
+    degree = highest_power(values, {f.name for f in moving}) if several else 1
     steps: Steps = {}
     for key, coefficients in found_in.items():
         most, related = (_MOST_MULTIPLE, _RELATED_ANGLES) if key[0] else (_MOST_POWER, _RELATED_POWERS)

@@ -22,10 +22,14 @@ def from_coefficients(coefficients: Sequence[Scalar], variable: str) -> Scalar:
 
 
 def highest_power(values: Iterable[Scalar | Matrix], names: Collection[str]) -> int:
-    """Return the highest power of one of these names in numerators and denominators, at least 1."""
-    entries = [entry for value in values for entry in ([value] if isinstance(value, Scalar) else value.entries)]
-    parts = [part for entry in entries for part in (entry.numerator, entry.denominator)]
-    return max((part.degree(name) for part in parts for name in part.names if name in names), default=1)
+    """Return a bound for the powers of these names in numerators and denominators, in lowest terms or not, at least 1."""
+    found = 1
+    for value in values:
+        for entry in [value] if isinstance(value, Scalar) else value.entries:
+            places = [entry.field.position[name] for name in names if name in entry.field.position]
+            degrees = [part.degrees() for part in (entry.numerator_part, entry.denominator_part)] if places else []
+            found = max([found, *(int(each[place]) for each in degrees for place in places)])
+    return found
 
 
 def coefficients_over(value: Scalar, names: Collection[str]) -> list[Scalar]:

@@ -319,7 +319,7 @@ class Scalar:
 
         Raises ZeroDivisionError where a denominator vanishes, and `NotWritten` for a function that has no value there.
         """
-        relevant = {name: value for name, value in values.items() if name in self.field.position}
+        relevant = {name: v for name, v in values.items() if name in self.field.position and name in self.names}
         for name, function in self.field.functions.items():
             if name not in values and name in self.names and function.symbols & values.keys():
                 relevant[name] = function.moved(values)
