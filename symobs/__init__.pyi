@@ -8,6 +8,28 @@ from typing import Any, TypeAlias
 from sympy import Expr, ImmutableMatrix
 from sympy.matrices import MatrixBase
 
+from symobs.applications.batch import batch as batch
+from symobs.applications.batch.sweep import sweep as sweep
+from symobs.applications.checking import check as check
+from symobs.applications.variants import variants as variants
+from symobs.cli.shared.time_and_memory import bounded as bounded
+from symobs.ground.errors import BudgetExceeded as BudgetExceeded
+from symobs.ground.errors import CertificateRejected as CertificateRejected
+from symobs.ground.errors import DerivationRejected as DerivationRejected
+from symobs.ground.errors import ExpressionError as ExpressionError
+from symobs.ground.errors import InexactInput as InexactInput
+from symobs.ground.errors import InputError as InputError
+from symobs.ground.errors import OutOfBudget as OutOfBudget
+from symobs.ground.errors import ProblemErrors as ProblemErrors
+from symobs.ground.errors import ShapeMismatch as ShapeMismatch
+from symobs.ground.errors import SymobsError as SymobsError
+from symobs.ground.errors import TypesettingError as TypesettingError
+from symobs.ground.errors import Undecided as Undecided
+from symobs.ground.errors import UnknownName as UnknownName
+from symobs.ground.errors import UsageError as UsageError
+from symobs.live import live as live
+from symobs.system import StateSpace as StateSpace
+from symobs.system.linearisation.linearize import linearize as linearize
 from symobs.tasks.analysis.modes.detectability import Detectability as _Detectability
 from symobs.tasks.analysis.modes.detectability import Stabilizability as _Stabilizability
 from symobs.tasks.analysis.modes.pbh import PopovBelevitchHautus as _PopovBelevitchHautus
@@ -27,10 +49,6 @@ from symobs.tasks.analysis.time_response.initial_state_covariance import Initial
 from symobs.tasks.analysis.time_response.matrix_exponential import MatrixExponential as _MatrixExponential
 from symobs.tasks.analysis.time_varying.time_varying_observability import TimeVaryingObservability as _TimeVaryingObservability
 from symobs.tasks.analysis.zero_order_hold.zero_order_hold import ZeroOrderHold as _ZeroOrderHold
-from symobs.applications.batch import batch as batch
-from symobs.applications.batch.sweep import sweep as sweep
-from symobs.applications.checking import check as check
-from symobs.cli.shared.time_and_memory import bounded as bounded
 from symobs.tasks.design.compensator.output_feedback import OutputFeedback as _OutputFeedback
 from symobs.tasks.design.disturbance.disturbance_observer import DisturbanceObserver as _DisturbanceObserver
 from symobs.tasks.design.disturbance.unknown_input_observer import UnknownInputObserver as _UnknownInputObserver
@@ -41,23 +59,6 @@ from symobs.tasks.design.reduced_order.reduced_order_observer import ReducedOrde
 from symobs.tasks.design.reference.feedforward import FeedforwardDesign as _FeedforwardDesign
 from symobs.tasks.design.reference.integral_action import IntegralAction as _IntegralAction
 from symobs.tasks.design.reference.tracking import TrackingDesign as _TrackingDesign
-from symobs.ground.errors import BudgetExceeded as BudgetExceeded
-from symobs.ground.errors import CertificateRejected as CertificateRejected
-from symobs.ground.errors import DerivationRejected as DerivationRejected
-from symobs.ground.errors import ExpressionError as ExpressionError
-from symobs.ground.errors import InexactInput as InexactInput
-from symobs.ground.errors import InputError as InputError
-from symobs.ground.errors import OutOfBudget as OutOfBudget
-from symobs.ground.errors import ProblemErrors as ProblemErrors
-from symobs.ground.errors import ShapeMismatch as ShapeMismatch
-from symobs.ground.errors import SymobsError as SymobsError
-from symobs.ground.errors import TypesettingError as TypesettingError
-from symobs.ground.errors import UnknownName as UnknownName
-from symobs.ground.errors import UsageError as UsageError
-from symobs.applications.live import live as live
-from symobs.system import StateSpace as StateSpace
-from symobs.system.linearisation.linearize import linearize as linearize
-from symobs.applications.variants import variants as variants
 
 _Number: TypeAlias = str | float | complex | Fraction | Decimal | Expr
 _Plant: TypeAlias = StateSpace | tuple[Sequence[_Number], Sequence[_Number]]

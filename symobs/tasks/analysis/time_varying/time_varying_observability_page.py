@@ -12,6 +12,7 @@ from symobs.proof.derivation import CaseStep, Conclude, Equal
 from symobs.proof.derivation.builder import relation, sentence
 from symobs.system.conditions import never_zero
 from symobs.tasks.analysis.page_parts import determinant_form, given, stratum_of, undecided
+from symobs.tasks.analysis.rank.rank_page import outside_cases
 from symobs.tasks.analysis.strata.repeated_eigenvalues import distances, systems_of
 from symobs.tasks.analysis.time_varying.time_varying_observability import TimeVaryingObservability
 from symobs.tasks.analysis.time_varying.time_varying_solution import dependences, has_functions
@@ -265,12 +266,17 @@ def _case(page: Builder, case: Case) -> Step:
         hidden = case.result.answer["hidden"]
         zero = Matrix.zeros(page["O"].value.shape[0], hidden.shape[1])
         steps.append(Equal((relation(page["O"] @ page.value(hidden), zero),)))
-    steps = _outside(case.result, steps) + [_case(page, inner) for inner in case.result.case_tree]
+    steps = _outside(page, case.result, steps) + [_case(page, inner) for inner in case.result.case_tree]
     return CaseStep(stratum_of(case), tuple(case.substitution.items()), tuple(steps))
 
 
-def _outside(result: Result, steps: list[Step]) -> list[Step]:
-    """Return steps as a case of what holds outside of the cases: its rank is told for almost all t, not for each."""
+def _outside(page: Builder, result: Result, steps: list[Step]) -> list[Step]:
+    """Return steps as a case of what holds outside of the cases: its rank is told for almost all t.
+
+    Where equations hold modulo which it is seen, what is outside has to be known with them.
+    """
+    if result.plant.equations:
+        return outside_cases(page, result, steps)
     systems = systems_of(result.case_tree)
     if not systems:
         return [] if systems is None else steps
