@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from symobs.exact import Matrix, Scalar, antiderivative, product_of, rank
 from symobs.exact.core.generators import substitute
-from symobs.formula.tree import Evaluated, Integral, Literal
+from symobs.formula.tree import Conjunction, Evaluated, Integral, Literal
 from symobs.formula.tree.term import Term, block
 from symobs.proof.derivation import CaseStep, Conclude, Equal
 from symobs.proof.derivation.builder import relation, sentence
@@ -256,7 +256,7 @@ def _hidden(page: Builder, result: TimeVaryingObservability) -> None:
     page.equal(stays, say="stack_invariant", unseen=unseen)
 
 
-def _case(page: Builder, case: Case) -> Step:
+def _case(page: Builder, case: Case, *, modulo: bool = False) -> Step:
     if case.result is None:
         return undecided(page, case)
     found = relation(page["O"].apply("rank"), case.result.answer["rank"])
@@ -266,17 +266,16 @@ def _case(page: Builder, case: Case) -> Step:
         hidden = case.result.answer["hidden"]
         zero = Matrix.zeros(page["O"].value.shape[0], hidden.shape[1])
         steps.append(Equal((relation(page["O"] @ page.value(hidden), zero),)))
-    steps = _outside(page, case.result, steps) + [_case(page, inner) for inner in case.result.case_tree]
-    return CaseStep(stratum_of(case), tuple(case.substitution.items()), tuple(steps))
+    where = stratum_of(case)
+    # where equations or inequations hold, modulo which a rank is seen, what is outside has to be known with them
+    modulo = modulo or isinstance(where, Conjunction) or bool(case.result.plant.equations)
+    steps = outside_cases(page, case.result, steps) if modulo else _outside(case.result, steps)
+    steps += [_case(page, inner, modulo=modulo) for inner in case.result.case_tree]
+    return CaseStep(where, tuple(case.substitution.items()), tuple(steps))
 
 
-def _outside(page: Builder, result: Result, steps: list[Step]) -> list[Step]:
-    """Return steps as a case of what holds outside of the cases: its rank is told for almost all t.
-
-    Where equations hold modulo which it is seen, what is outside has to be known with them.
-    """
-    if result.plant.equations:
-        return outside_cases(page, result, steps)
+def _outside(result: Result, steps: list[Step]) -> list[Step]:
+    """Return steps as a case of what holds outside of the cases: its rank is told for almost all t, not for each."""
     systems = systems_of(result.case_tree)
     if not systems:
         return [] if systems is None else steps
