@@ -14,7 +14,7 @@ from symobs.exact.core.generators import NotWritten, substitute, symbols_in
 from symobs.exact.floating.array_functions import ArrayFunction, at_points, evaluated, nested, shortest, sizes
 from symobs.exact.floating.doubles import nearest_double
 from symobs.formula.expression.source import shown
-from symobs.ground.errors import InputError, SymobsError, UsageError
+from symobs.ground.errors import InputError, SymobsError
 from symobs.system.conditions import sign_of
 
 if TYPE_CHECKING:
@@ -49,11 +49,8 @@ _FAILS, _OPEN, _HOLDS = -1, 0, 1
 
 def evaluate(result: Any, points: Mapping[Any, Any]) -> dict[str, Any]:
     """Return one array for each field of numbers at arrays of points, as `Result.evaluate` says."""
-    try:
-        import numpy as np
-    except ImportError:
-        message = "evaluating at arrays of points needs NumPy, which is not installed"
-        raise UsageError(message, repair="pip install numpy, or use .at(...) for one point") from None
+    import numpy as np
+
     fields = _fields(result)
     if not fields:
         words = "its answers are functions of t" if result.in_time else "its answers are polynomials or words"

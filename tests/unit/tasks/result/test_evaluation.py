@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from fractions import Fraction
 from typing import Any
 
@@ -11,7 +10,7 @@ import pytest
 import sympy
 
 import symobs
-from symobs.ground.errors import InputError, UsageError
+from symobs.ground.errors import InputError
 
 HIDDEN = symobs.StateSpace("[0 1; -2 -3]", "[0; 1]", "[1 c]")
 CART = symobs.StateSpace("[0 1 0 0; 0 0 -m*g/M 0; 0 0 0 1; 0 0 (M+m)*g/(M*l) 0]", "[0; 1/M; 0; -1/(M*l)]", "[1 0 0 0]")
@@ -113,12 +112,6 @@ def test_ranks_and_functions_of_parameters() -> None:
 def test_refusals(points: dict[str, Any], message: str) -> None:
     with pytest.raises(InputError, match=message):
         symobs.observer(HIDDEN, poles="-k, -5").evaluate(points)
-
-
-def test_without_numpy_the_error_says_what_to_do(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setitem(sys.modules, "numpy", None)
-    with pytest.raises(UsageError, match=r"needs NumPy, which is not installed; pip install .* or use \.at\(\.\.\.\)"):
-        symobs.observer(HIDDEN, poles="-k, -5").evaluate({"c": 1, "k": 1})
 
 
 @pytest.mark.parametrize(
