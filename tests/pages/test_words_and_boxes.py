@@ -43,10 +43,10 @@ def test_no_condition_beside_one_that_implies_it(A: str, conditions: str) -> Non
 @pytest.mark.parametrize(
     ("A", "roots"),
     [
-        ("[0 w; -w 0]", "± wi."),
-        ("[0 1; -4*w^2 0]", "± 2wi."),
+        ("[0 w; -w 0]", "± w i."),
+        ("[0 1; -4*w^2 0]", "± 2w i."),
         ("[0 1; -w 0]", "± √(-w)."),
-        ("[-1 w; -w -1]", "-1 ± wi."),
+        ("[-1 w; -w -1]", "-1 ± w i."),
     ],
 )
 def test_roots_on_a_vertical_line_are_written_with_i(A: str, roots: str) -> None:

@@ -28,6 +28,11 @@ class Complex:
         """Whether the imaginary part is 0."""
         return self.imaginary.is_zero
 
+    @property
+    def names(self) -> frozenset[str]:
+        """The symbols of both parts."""
+        return self.real.names | self.imaginary.names
+
     def conjugate(self) -> Complex:
         """Return real − imaginary·i."""
         return Complex(self.real, -self.imaginary)
@@ -68,10 +73,16 @@ class Complex:
         size = self.imaginary
         negative = str(size).startswith("-")
         text = str(-size if negative else size)
-        part = "I" if text == "1" else f"{text}*I" if _is_atom(text) else f"({text})*I"
+        unit = imaginary_unit(self.real, self.imaginary)
+        part = unit if text == "1" else f"{text}*{unit}" if _is_atom(text) else f"({text})*{unit}"
         if self.real.is_zero:
             return f"-{part}" if negative else part
         return f"{self.real} {'-' if negative else '+'} {part}"
+
+
+def imaginary_unit(*beside: Scalar) -> str:
+    """Return i as a text beside these values, of which one may contain a symbol I."""
+    return "sqrt(-1)" if any("I" in value.names for value in beside) else "I"
 
 
 def _is_atom(text: str) -> bool:

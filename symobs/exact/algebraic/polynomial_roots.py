@@ -7,7 +7,7 @@ from fractions import Fraction
 from math import isqrt
 from typing import TYPE_CHECKING
 
-from symobs.exact.algebraic.complex import Complex
+from symobs.exact.algebraic.complex import Complex, imaginary_unit
 from symobs.exact.core.generators import leads_with_minus, normal_form, roots_in
 from symobs.exact.core.scalar import Scalar
 from symobs.ground.dataclass import dataclass
@@ -104,6 +104,11 @@ class Root:
         """Whether the root has a closed form: centre ± √radicand."""
         return self.index < 0
 
+    @property
+    def names(self) -> frozenset[str]:
+        """The symbols of the factor."""
+        return self.factor.names - {self.variable}
+
     def exact(self) -> Complex | None:
         """Return the root as a complex number with rational parts, where it is one."""
         if not self.is_closed:
@@ -133,7 +138,7 @@ class Root:
             return str(known)
         if self.radicand.is_constant:
             outside, inside, imaginary = self.surd()
-            text = f"sqrt({inside})" + ("*I" if imaginary else "")
+            text = f"sqrt({inside})" + f"*{imaginary_unit(self.centre)}" * imaginary
             if outside.numerator != 1:
                 text = f"{outside.numerator}*{text}"
             if outside.denominator != 1:
@@ -152,6 +157,11 @@ class Shifted:
 
     value: Scalar
     root: Root
+
+    @property
+    def names(self) -> frozenset[str]:
+        """The symbols of both."""
+        return self.value.names | self.root.names
 
     @property
     def closed(self) -> Root | None:

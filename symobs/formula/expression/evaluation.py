@@ -128,20 +128,31 @@ class Evaluator:
                 return grid.rows[0][0] if grid.shape == (1, 1) else grid
             case "sum" | "product":
                 sign = "+" if node.kind == "sum" else "*"
-                total = self._number(parts[0])
+                total = parts[0]
                 for part, place in zip(parts[1:], node.places, strict=True):
-                    total = self._combined(total, place, self._number(part), sign)
+                    total = self._joined(total, place, part, sign)
                 return total
+            case "negative" if isinstance(parts[0], MatrixRows):
+                return self._joined(Scalar.of(-1), node.places[0], parts[0], "*")
+            case "quotient":
+                return self._joined(parts[0], node.places[0], parts[1], "/")
         numbers = [self._number(part) for part in parts]
         match node.kind:
             case "negative":
                 return -numbers[0]
-            case "quotient":
-                return self._combined(numbers[0], node.places[0], numbers[1], "/")
             case "power":
                 return self._power(numbers[0], node.places[0], numbers[1])
             case _:
                 return self._call(node, numbers[0])
+
+    def _joined(self, left: Entry, place: int, right: Entry, sign: str) -> Entry:
+        """Return the result of one operation with numbers, or of a matrix and a number that multiplies or divides it."""
+        if isinstance(left, MatrixRows) and sign in "*/" and not isinstance(right, MatrixRows):
+            rows = [[self._combined(entry, place, right, sign) for entry in row] for row in left.rows]
+            return MatrixRows(rows, left.position)
+        if isinstance(right, MatrixRows) and sign == "*" and not isinstance(left, MatrixRows):
+            return self._joined(right, place, left, sign)
+        return self._combined(self._number(left), place, self._number(right), sign)
 
     def _power(self, base: Number, place: int, value: Number) -> Number:
         if self.functions and isinstance(base, Scalar) and (degree := _degree_of_root(base, value)):

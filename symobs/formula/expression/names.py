@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 Names: TypeAlias = "Mapping[str, object] | None"
 
 FUNCTIONS = ("sqrt", "exp", "sin", "cos", "tan", "sinh", "cosh", "tanh")
-RESERVED = ("I", "oo", "inf", "nan", "pi")
+RESERVED = ("oo", "inf", "nan", "pi")
 IMAGINARY = ("i", "j", "I")
 LONGEST_NAME = 64
 
@@ -106,7 +106,7 @@ class Scope:
 
     def is_imaginary_unit(self, name: str) -> bool:
         """Return whether the name stands for the imaginary unit here."""
-        return name in IMAGINARY and (name in RESERVED or not self.declares(name))
+        return name in IMAGINARY and not self.declares(name)
 
     def unit_first(self, text: str, at: int = 0) -> re.Match[str] | None:
         """Return the imaginary unit before a number or a frequency, j2 or jw, where this is no declared name."""

@@ -20,6 +20,7 @@ from symobs.exact import Complex, Matrix, Scalar, matrix_of_numbers
 from symobs.formula.expression.evaluation import MOST_CHARACTERS, MatrixRows, read
 from symobs.formula.expression.fast_path import plain_rows
 from symobs.formula.expression.names import Names, Scope, declared_name
+from symobs.formula.expression.printed_glyphs import pairs
 from symobs.formula.expression.size_limits import common_denominator_excess
 from symobs.formula.expression.source import shown
 from symobs.formula.expression.syntax_parser import EQUAL_ROWS, unequal_row
@@ -128,13 +129,14 @@ def parse_poles(
     scope = Scope.of(names, None, where, functions=functions, rounding=rounding, roots=roots)
     scope = replace(scope, poles=True, letters=frozenset(letters))
     if isinstance(value, str):
-        value = _with_commas(value, where)
+        value = ",".join(str(one) for pole in _with_commas(value, where).split(",") for one in pairs(pole))
         scope = sharing(scope, [value], variable)
         return tuple(Complex.of(pole) for pole in _numbers_of_text(value, scope, where))
     listed = _as_list(value)
     if listed is None:
         repair = 'write [-1, -2] or "-1, -2"'
         raise InputError(f"a list of poles is expected, but {_kind(value)} came", where=where, repair=repair)
+    listed = [one for pole in listed for one in pairs(pole)]
     scope = sharing(scope, listed, variable)
     texts = [pole for pole in listed if isinstance(pole, str)]
     for text in texts:

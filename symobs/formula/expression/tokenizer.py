@@ -17,6 +17,7 @@ from symobs.exact.algebraic.rounded_decimals import as_generator
 from symobs.exact.core.generators import PI
 from symobs.formula.expression.ambiguous_products import OPERAND_ENDS, division_before, two_readings
 from symobs.formula.expression.names import FUNCTIONS, LONGEST_NAME, NAME, Scope, refusal
+from symobs.formula.expression.printed_glyphs import BLANK, MINUS, PRINTED_NAME, SUPERSCRIPTS, ascii_of, spellings
 from symobs.formula.expression.source import Source, Token, shown
 from symobs.ground.errors import BudgetExceeded, InputError, ProblemErrors, UnknownName
 
@@ -30,13 +31,16 @@ MOST_DIGITS = 1_000
 MOST_POWER_OF_TEN = 1_000
 MOST_NAMES = 400
 
-_TOKEN = re.compile(
+#: What a token looks like; the implied signs are those of `Tokeniser`.
+TOKENS = (
     r"(?P<NUMBER>(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?)"
-    r"|(?P<NAME>[A-Za-z][A-Za-z0-9_]*)"
-    r"|(?P<POWER>\*\*|\^)|(?P<MULTIPLY>[*/])|(?P<ADD>[+-])"
+    rf"|(?P<NAME>{PRINTED_NAME})"
+    rf"|(?P<POWER>\*\*|\^)|(?P<MULTIPLY>[*/·⋅×])|(?P<ADD>[+{re.escape(MINUS)}])"
     r"|(?P<OPEN>[(\[])|(?P<CLOSE>[)\]])|(?P<COMMA>,)|(?P<END>;)"
-    r"|(?P<SPACE>[ \t\r\n]+)"
+    rf"|(?P<RAISED>⁻?[{SUPERSCRIPTS}]+)|(?P<ROOT>√(?P<RADICAND>[0-9]+|{PRINTED_NAME})?)"
+    rf"|(?P<SPACE>[ \t\r\n{BLANK}]+)"
 )
+_ROW = re.compile(r"[^][;\r\n]*")
 _CLOSING = {"(": ")", "[": "]"}
 _CALL = re.compile(r"[ \t\r\n]*\(")
 _POWER = re.compile(r"[ \t\r\n]*(?:\*\*|\^)")
@@ -69,8 +73,7 @@ class Tokeniser:
     Invariant: `tokens` says what the text read so far means, `open` holds the brackets still to be closed.
     """
 
-    #: What a token looks like.
-    pattern = _TOKEN
+    pattern = re.compile(TOKENS)
 
     def __init__(self, source: Source, scope: Scope) -> None:
         """Take the text, and the names it may use."""
@@ -82,6 +85,8 @@ class Tokeniser:
         self.symbols: dict[str, Scalar] = {}
         self.unknown: list[InputError] = []
         self.spaced = False
+        #: Of each open bracket, whether commas set the entries of its present row apart.
+        self.commas: list[bool] = []
 
     @cached_property
     def field(self) -> Field:
@@ -128,11 +133,15 @@ class Tokeniser:
             case "NUMBER":
                 self._add("VALUE", text, at, self._decimal(text, at))
             case "NAME":
-                self._name(text, at)
+                self._name(text if text.isascii() else self._spelt(text), at, at + len(text))
             case "OPEN":
                 self._open(text, at)
             case "CLOSE":
                 self._close(text, at)
+            case "RAISED":
+                self._raised(ascii_of(text), at)
+            case "ROOT":
+                self._root(text[1:], at)
             case "COMMA" | "END" if self.open and not self._in_brackets():
                 raise self.source.error(f'"{text}" stands inside parentheses', at, 'close them with ")" first')
             case "COMMA":
@@ -140,13 +149,14 @@ class Tokeniser:
             case "END":
                 self._end_row(text, at)
             case _:
-                self._add(kind, text, at)
+                self._add(kind, ascii_of(text), at)
 
     def _imply(self, kind: str, at: int) -> None:
         """Insert the product or comma implied between the last operand and the token `kind`."""
         if not self._after(OPERAND_ENDS):
             return
-        apart = self.spaced and self._in_brackets()
+        kind = "NAME" if kind == "ROOT" else kind
+        apart = self.spaced and self._in_brackets() and not (self.commas[-1] and kind == "NAME")
         signs_entry = kind == "ADD" and bool(self.text[at + 1 : at + 2].strip())  # [1 -2] is two entries, [1 - 2] one
         if apart and (signs_entry or kind in _OPERAND_STARTS):
             self._add("_COMMA", " ", at)
@@ -189,6 +199,7 @@ class Tokeniser:
             message, repair = f"brackets are nested deeper than {MOST_NESTING}", "write it with fewer brackets"
             raise self.source.error(message, at, repair, kind=BudgetExceeded)
         self.open.append(self._add("LEFT" if text == "[" else "_OPEN", text, at))
+        self.commas.append(self._has_commas(at + 1))
 
     def _close(self, text: str, at: int) -> None:
         if not self.open:
@@ -200,6 +211,7 @@ class Tokeniser:
             self.tokens.pop()
         self._add("_RIGHT" if text == "]" else "_CLOSE", text, at)
         self.open.pop()
+        self.commas.pop()
 
     def _end_row(self, text: str, at: int) -> None:
         """End a row; semicolons and newlines in a run, or beside a bracket, end one row together."""
@@ -207,6 +219,12 @@ class Tokeniser:
             raise self.source.error('";" ends a row, but no "[" is open', at, "write the rows in brackets: [1; 2]")
         if not self._after(("_END", "LEFT")):
             self._add("_END", text, at)
+        self.commas[-1] = self._has_commas(at + len(text))
+
+    def _has_commas(self, at: int) -> bool:
+        """Return whether commas set the entries of the row from here apart, so that a blank before a name is a product."""
+        row = _ROW.match(self.text, at)
+        return row is not None and "," in row[0]
 
     # -- operands -------------------------------------------------------------------------------------------------
 
@@ -226,6 +244,23 @@ class Tokeniser:
         digits, shift = int(whole + decimals), int(power or 0) - len(decimals)
         return Scalar.of(digits * 10**shift) if shift >= 0 else Scalar.rational(digits, 10**-shift)
 
+    def _raised(self, power: str, at: int) -> None:
+        """Add a power that is written above the line."""
+        self._add("POWER", "^", at)
+        if power.startswith("-"):
+            self._add("ADD", "-", at)
+        self._add("VALUE", power, at, self._decimal(power.lstrip("-"), at))
+
+    def _root(self, radicand: str, at: int) -> None:
+        """Add the root of a number, of a name, or of what stands in the parentheses that follow."""
+        self._add("FUNCTION", "sqrt", at)
+        if radicand:
+            self._add("_OPEN", "(", at)
+            self._take("NUMBER" if radicand.isdecimal() else "NAME", radicand, at + 1)
+            self._add("_CLOSE", ")", at)
+        elif not self.text.startswith("(", at + 1):
+            raise self.source.error("a root is followed by a number, a name or (", at, "write sqrt( )")
+
     def _unit_first(self, found: re.Match[str], at: int) -> None:
         """Add j2 as the number 2 j; raises ExpressionError for jw, 1/j2, j2^2, 3j2, and where j2 is a letter in use."""
         self._imply("NAME", at)
@@ -236,8 +271,13 @@ class Tokeniser:
             raise self.source.error(f'"{shown(whole)}" may be a name or a product', at, _unit_apart(found))
         self._add("VALUE", whole, at, Complex(Scalar.of(0), self._decimal(size, at)))
 
-    def _name(self, name: str, at: int) -> None:
-        end = at + len(name)
+    def _spelt(self, printed: str) -> str:
+        """Return the name that is printed like this, one that is declared or in use where there are several."""
+        names = spellings(printed)
+        known = (name for name in names if self.scope.declares(name) or name in self.scope.letters)
+        return next(known, names[0])
+
+    def _name(self, name: str, at: int, end: int) -> None:
         called = self.text.startswith("(", end) if self._in_brackets() else bool(_CALL.match(self.text, end))
         if self.scope.is_imaginary_unit(name):
             self._add("VALUE", name, at, Complex(Scalar.of(0), Scalar.of(1)))
@@ -332,10 +372,7 @@ _OF_OTHER_TIME = {
 _INSTEAD = {
     "SUPERSCRIPT": "write a power with ^, such as s^2",
     "GREEK": "spell the letter out, such as omega or lam",
-    "MINUS": "write the ASCII minus -",
     "DASH": "write the ASCII minus -",
-    "HYPHEN": "write the ASCII minus -",
-    "MULTIPLICATION": "write the ASCII star *",
     "DOT": "write the ASCII star *",
     "ASTERISK": "write the ASCII star *",
     "BULLET": "write the ASCII star *",

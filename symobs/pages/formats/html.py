@@ -37,7 +37,7 @@ from symobs.pages.page.blocks import (
 from symobs.pages.page.detail_level import DETAILS
 from symobs.pages.page.narrator import narrate, printer_for
 from symobs.pages.printers.latex_printer import LatexPrinter
-from symobs.pages.printers.mathml.mathml_elements import MINUS, PLUS
+from symobs.pages.printers.mathml.mathml_elements import MINUS, PLUS, THIN
 from symobs.pages.printers.mathml.mathml_printer import MathmlPrinter
 from symobs.pages.printers.root_lists import RootGlyphs, listed
 from symobs.pages.printers.text_printer import TextPrinter
@@ -69,6 +69,7 @@ _ROOTS = RootGlyphs(
     plus=f"<mo>{PLUS}</mo>",
     about="<mo>≈</mo>",
     imaginary="<mi>i</mi>",
+    space=THIN,
     written=lambda printer, item: printer.running_box(item).source,
 )
 

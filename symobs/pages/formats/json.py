@@ -110,9 +110,9 @@ def result_object(result: Result, convention: Convention = STANDARD) -> dict[str
     fields = result.fields
     # What stands under two names, as a gain and its input matrix, is written out once: a long one takes half a second.
     different = {id(value): value for value in fields.values()}
-    written = {number: to_json(value) for number, value in different.items()}
+    written = {number: to_json(value, result.symbols) for number, value in different.items()}
     answers = {name: written[id(value)] for name, value in fields.items()}
-    differing = {name: to_json(value) for name, value in own.items() if value is not fields.get(name)}
+    differing = {name: to_json(value, result.symbols) for name, value in own.items() if value is not fields.get(name)}
     in_convention = {name: value for name, value in differing.items() if name not in answers or answers[name] != value}
     return {
         "task": result.task,
@@ -140,7 +140,7 @@ def answer_object(result: Result) -> dict[str, Any]:
         "verdict": result.verdict,
         "conditions": [to_json(condition) for condition in result.holds_where],
         "certificates": [{"claim": c.claim, "how": c.how, "bound": c.bound} for c in result.all_certificates],
-        **{name: to_json(value) for name, value in result.asked_fields.items()},
+        **{name: to_json(value, result.symbols) for name, value in result.asked_fields.items()},
     }
 
 
@@ -206,7 +206,7 @@ def _case_object(case: Case, outer: dict[str, Any]) -> dict[str, Any]:
     when = [to_json(condition) for condition in case.when]
     if case.result is None:
         return {"when": when, "verdict": "undecided"}
-    inner = {name: to_json(value) for name, value in case.result.fields.items()}
+    inner = {name: to_json(value, case.result.symbols) for name, value in case.result.fields.items()}
     # What the stratum does not have is said to be missing: a reader would take it from around the case.
     missing = dict.fromkeys(name for name, value in outer.items() if name not in inner and value is not None)
     differing = missing | {name: value for name, value in inner.items() if outer.get(name) != value}

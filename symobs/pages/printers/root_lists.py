@@ -34,6 +34,7 @@ class RootGlyphs:
     minus: str = "-"
     plus: str = "+"
     imaginary: str = "i"
+    space: str = " "
     about: str = "≈ "
     fraction: Callable[[str], str] = str
     written: Callable[[Any, Formula | Relation], str] = lambda printer, item: printer.inline(item)
@@ -44,9 +45,10 @@ LATEX = RootGlyphs(
     r"\pm ",
     lambda s, equation: rf"\{{{s}:{equation}\}}",
     about=r"\approx ",
+    space=r"\,",
 )
 TEXT = RootGlyphs(
-    lambda inside: f"√{inside}" if inside.isalnum() else f"√({inside})",
+    lambda inside: f"√{inside}" if inside.isdecimal() or len(inside) == 1 else f"√({inside})",
     " ± ",
     lambda s, equation: f"{{{s}: {equation}}}",
     fraction="({})".format,
@@ -150,7 +152,8 @@ def _distance(root: Root, printer: Printer[Any], glyphs: RootGlyphs) -> str:
     if not root.radicand.is_constant:
         size = _size_of_imaginary(root.radicand)
         if size is not None:
-            return glyphs.written(printer, Literal(size)) + glyphs.imaginary
+            # p i, not pi, which is another number
+            return glyphs.written(printer, Literal(size)) + glyphs.space + glyphs.imaginary
         whole, below = root.radicand, root.radicand.denominator
         half = isqrt(below.fraction().numerator) if below.is_constant else 0
         if half > 1 and half**2 == below.fraction():

@@ -184,6 +184,8 @@ class TextPrinter(Printer[TextBox]):
             written = (" ".join(_tight(entry.line) for entry in row) for row in rows)
             return text_box(f"[{'; '.join(written)}]")
         widths = [max(row[j].width for row in rows) for j in range(len(rows[0]))]
+        if len(rows) == 1 and rules == NO_RULES and any("·" in _tight(entry.line) for entry in rows[0]):
+            return text_box(f"[{', '.join(entry.line for entry in rows[0])}]")
         lines: list[str] = []
         between = [1 if number in rules[1] else 0 for number in range(1, len(widths))]
         for number, row in enumerate(rows):

@@ -28,6 +28,8 @@ if TYPE_CHECKING:
 
 #: What an observer is assumed to do with the output, and the gain it turns out to be; a convention may call both H.
 _ANSATZ = {"L", "H_x"}
+#: The identity matrix and the imaginary unit, which a page writes as letters.
+_MARKS = {"I", "i"}
 
 
 def translated(derivation: Derivation, convention: Convention) -> Derivation:
@@ -56,7 +58,8 @@ def set_apart(derivation: Derivation, letters: Iterable[str], forms: Mapping[str
     The parameters are those of all values written out, be they of the plant or of what is asked of it.
     """
     named = {name for literal in literals(derivation.steps) for name in literal.names}
-    shared = printed_alike(letters, forms, named - {derivation.variable, *derivation.symbols})
+    named -= {derivation.variable, *derivation.symbols}
+    shared = sorted({*printed_alike(letters, forms, named), *_MARKS & named})
     if not shared:
         return derivation
     notes = [Note(Sentence("without_serifs", (("parameter", SymbolList((name,))),))) for name in shared]

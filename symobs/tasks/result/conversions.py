@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import TYPE_CHECKING, Any
 
 from symobs.exact import Complex, Factored, Matrix, Root, Scalar, Shifted
@@ -9,10 +10,11 @@ from symobs.exact.core.generators import PI, symbols_named
 from symobs.system.conditions import Condition
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
+    from collections.abc import Container, Iterable, Mapping
 
     from symobs.system import StateSpace
 
+_IMAGINARY = re.compile(r"\bI\b")
 _RELATIONS = {"!=": "!=", "=": "==", "==": "==", ">": ">", ">=": ">=", "<": "<", "<=": "<="}
 
 
@@ -23,18 +25,23 @@ def signs(plant: StateSpace, values: Iterable[Any] = ()) -> dict[str, str]:
     return {name: plant.symbols.sign(name) for name in sorted(names)}
 
 
-def to_json(value: Any) -> Any:
-    """Return JSON of a value: exact strings, nested lists, JSON integers and booleans."""
+def to_json(value: Any, symbols: Container[str] = ()) -> Any:
+    """Return JSON of a value: exact strings, nested lists, JSON integers and booleans.
+
+    Beside a symbol I the imaginary unit is sqrt(-1).
+    """
     if isinstance(value, Matrix):
         return [[str(entry) for entry in row] for row in value.rows]
+    if isinstance(value, (Complex, Root, Shifted)) and "I" in symbols and "sqrt(-1)" not in str(value):
+        return _IMAGINARY.sub("sqrt(-1)", str(value)) if "I" not in value.names else str(value)
     if isinstance(value, (Scalar, Complex, Factored, Root, Shifted)):
         return str(value)
     if isinstance(value, Condition):
         return f"{value.expression} {_RELATIONS[value.operator]} 0"
     if isinstance(value, (list, tuple)):
-        return [to_json(entry) for entry in value]
+        return [to_json(entry, symbols) for entry in value]
     if isinstance(value, dict):
-        return {key: to_json(entry) for key, entry in value.items()}
+        return {key: to_json(entry, symbols) for key, entry in value.items()}
     return value
 
 

@@ -16,7 +16,7 @@ from symobs.formula.expression.names import Scope
 from symobs.formula.expression.source import Source
 from symobs.formula.expression.syntax_parser import parse
 from symobs.formula.expression.syntax_tree import every, exponent_of
-from symobs.formula.expression.tokenizer import EXPONENTIAL, Tokeniser
+from symobs.formula.expression.tokenizer import EXPONENTIAL, TOKENS, Tokeniser
 from symobs.ground.errors import BudgetExceeded
 
 if TYPE_CHECKING:
@@ -85,14 +85,7 @@ def _require_known(part: SyntaxNode, source: Source) -> None:
 class _Printed(Tokeniser):
     """Cuts a printed equation into tokens; a letter is a VALUE without a value."""
 
-    pattern = re.compile(
-        r"(?P<NUMBER>(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?)"
-        r"|(?P<NAME>[A-Za-z][A-Za-z0-9_]*)"
-        r"|(?P<POWER>\*\*|\^)|(?P<MULTIPLY>[*/])|(?P<ADD>[+-])"
-        r"|(?P<OPEN>[(\[])|(?P<CLOSE>[)\]])|(?P<COMMA>,)|(?P<END>;)"
-        r"|(?P<PRIME>')|(?P<EQUAL>=)"
-        r"|(?P<SPACE>[ \t\r\n]+)"
-    )
+    pattern = re.compile(rf"{TOKENS}|(?P<PRIME>['ᵀ])|(?P<EQUAL>=)")
 
     def __init__(self, source: Source, functions: Collection[str], symbols: Collection[str]) -> None:
         super().__init__(source, Scope.of(None, None, source.where))
@@ -127,8 +120,8 @@ class _Printed(Tokeniser):
             return False
         return letter in self.applied or _OF_ITS_VARIABLE.match(self.text, at) is not None
 
-    def _name(self, name: str, at: int) -> None:
-        called = self.text.startswith("(", at + len(name))
+    def _name(self, name: str, at: int, end: int) -> None:
+        called = self.text.startswith("(", end)
         if name in _ARGUMENTS and called:
             self._add("FUNCTION", name, at)
         elif len(name) > 64:
