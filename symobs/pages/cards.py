@@ -30,51 +30,6 @@ if TYPE_CHECKING:
     from symobs.pages.printers.printer import Printer
     from symobs.tasks.result import Result
 
-_A_BK = Sum((Letter("A"), Negative(Product((Letter("B"), Letter("K"))))))
-_A_LC = Sum((Letter("A"), Negative(Product((Letter("L"), Letter("C"))))))
-_B_LD = Sum((Letter("B"), Negative(Product((Letter("L"), Letter("D"))))))
-_RANK_O, _RANK_C = Apply("rank", Letter("O")), Apply("rank", Letter("Ctr"))
-#: How the fields of each task are called; a text is the name of a letter.
-NAMES: dict[str, dict[str, str | Formula]] = {
-    "observability": {"matrix": "O", "rank": _RANK_O, "determinant": Apply("det", Letter("O")), "kernel": "N"},
-    "controllability": {"matrix": "Ctr", "rank": _RANK_C, "determinant": Apply("det", Letter("Ctr")), "kernel": "N_K"},
-    "detectability": {"polynomial": "chi", "fixed_polynomial": "mu", "rank": _RANK_O},
-    "stabilizability": {"polynomial": "chi", "fixed_polynomial": "mu", "rank": _RANK_C},
-    "pbh": {"polynomial": "chi", "fixed_polynomial": "mu"},
-    "characteristic_polynomial": {"polynomial": "chi", "roots": "chi"},
-    "transfer_function": {"transfer_function": "P", "poles": "P"},
-    "canonical_form": {"T": "T", "A": "A_bar", "B": "B_bar", "C": "C_bar", "D": "D", "polynomial": "chi"},
-    "decomposition": {"T": "T", "A": "A_bar", "B": "B_bar", "C": "C_bar", "D": "D", "transfer_function": "P"},
-    "dual": {"A": "A_dual", "B": "B_dual", "C": "C_dual", "D": "D_dual"},
-    "matrix_exponential": {"matrix": "exp_At"},
-    "response": {"state": "x_t", "output": "y_t"},
-    "gramian": {"matrix": "W", "determinant": Apply("det", Letter("W")), "finite_sum": "M", "kernel": "N"},
-    "initial_state": {"x0": "x_0"},
-    "initial_state_covariance": {"covariance": "Cov", "input_part": "Cov_Q", "output_part": "Cov_R"},
-    "time_varying_observability": {"matrix": "O", "rank": _RANK_O, "transition_matrix": "Phi_", "gramian": "W"},
-    "state_feedback": {"K": "K", "polynomial": "chi_K", "closed_loop_matrix": _A_BK, "poles": "chi_K"},
-    "observer": {"L": "L", "polynomial": "chi_L", "A": _A_LC, "B_u": _B_LD, "poles": "chi_L"},
-    "reduced_order_observer": {
-        "L": "L", "F": "F_z", "G": "G_z", "H": "H_z", "M": "M_z", "T": "T", "polynomial": "phi", "poles": "phi",
-    },
-    "compensator": {
-        "K": "K", "L": "L", "F": "F", "closed_loop_polynomial": "chi_cl", "closed_loop": "G_cl",
-        "closed_loop_matrix": "A_cl", "compensator_matrix": "A_c", "T": "T",
-    },
-    "feedforward": {
-        "F": "F_v", "transfer_function": "T_v", "K": "K", "L": "L", "polynomial": "chi_cl", "closed_loop_matrix": "A_cl",
-    },
-    "tracking": {"K": "K", "K_d": "K_d", "L": "L", "error_matrix": "A_e", "polynomial": "chi_cl"},
-    "integral_action": {"K": "K", "k_I": "k_I", "polynomial": "chi_cl", "closed_loop_matrix": "A_cl"},
-    "disturbance_observer": {"L_x": "L_x", "L_w": "L_w", "polynomial": "phi", "poles": "phi"},
-    "unknown_input_observer": {
-        "H": "H_d", "T": "T_d", "L": "L", "F": "F_d", "B_y": "L_y", "polynomial": "phi", "poles": "phi",
-    },
-    "pole_advice": {"polynomial": "phi", "sigma": "sigma_d", "omega_d": "omega_d"},
-    "stability_region": {"polynomial": "chi_p"},
-    "zero_order_hold": {"A_d": "A_zoh", "B_d": "B_zoh"},
-}  # fmt: skip
-
 
 @dataclass(frozen=True)
 class Card:
@@ -141,7 +96,7 @@ class CardPrinter:
 
 def cards(result: Result, names: Iterable[str], convention: Convention = STANDARD) -> tuple[Card, ...]:
     """Return the cards of these fields, those left out that the result does not have."""
-    known, fields = NAMES.get(result.task, {}), result.fields
+    known, fields = result.letters, result.fields
     there = (name for name in dict.fromkeys(names) if name in known and name in fields and _is_shown(fields[name]))
     return tuple(_card(result, name, convention) for name in there)
 
@@ -153,14 +108,23 @@ def _is_shown(value: Any) -> bool:
 
 
 def _card(result: Result, name: str, convention: Convention) -> Card:
-    called, value = NAMES[result.task][name], result.fields[name]
-    left: Formula = Letter(called) if isinstance(called, str) else called
+    called, value = result.letters[name], result.fields[name]
+    left = _formula(called)
     if isinstance(value, tuple) and isinstance(value[0], Root):
         return Card(name, Roots(left, value), value)
     gains: Mapping[str, Any] = result.fields
     known = [gains[letter] for letter in ("K", "L") if isinstance(gains.get(letter), Matrix)]
     relation = Relation((left, _written(value)), ("=",))
     return Card(name, SignReversal(convention.turned, known).relation(relation), value)
+
+
+def _formula(name: str) -> Formula:
+    """Return the formula of a letter, of det O or rank O, or of A - B K."""
+    function, _, of = name.partition(" ")
+    if function in {"det", "rank"}:
+        return Apply(function, Letter(of))
+    first, *rest = (tuple(map(Letter, term.split())) for term in name.split(" - "))
+    return Sum((first[0], *(Negative(Product(term)) for term in rest))) if rest else first[0]
 
 
 def _written(value: Any) -> Formula:

@@ -9,7 +9,7 @@ from symobs.formula.convention import conventions
 from symobs.problem.marking import MARKING
 from symobs.system.conditions import SIGNS
 from symobs.system.specification import CHOICES, KINDS
-from symobs.tasks.result import tasks
+from symobs.tasks.result import result_type, tasks
 from symobs.tasks.result.digits_of_page import MOST_DIGITS
 from symobs.tasks.result.in_convention import names_in
 
@@ -69,12 +69,12 @@ PRINTED: dict[str, dict[str, Any]] = {
 NONLINEAR = ("f", "h", "states", "inputs", "equilibrium")
 PLANT = ("A", "B", "C", "D", "transfer_function", *NONLINEAR, "dt")
 #: A compensator has poles for each of its halves; a task that is one half reads them where nothing else is said of it.
-_HALVES = {"state_feedback": "control", "observer": "observer", "reduced_order_observer": "observer"}
+_HALVES: dict[tuple[str, ...], str] = {("K",): "control", ("L",): "observer"}
 
 
 def kinds_of(task: Task) -> dict[str, str]:
     """Return the kinds of the keys of a specification that a task reads."""
-    half = _HALVES.get(task.name)
+    half = _HALVES.get(result_type(task.name).gains)
     shared = {f"{half}_{name}": task.keywords[name] for name in ("poles", "polynomial")} if half else {}
     return {**task.keywords, **shared}
 
@@ -82,7 +82,7 @@ def kinds_of(task: Task) -> dict[str, str]:
 def keys_of(task: Task, specification: Mapping[str, Any]) -> dict[str, str]:
     """Return the keywords of a task that a specification gives, each with the key it stands under."""
     found = {name: name for name in task.keywords if name in specification}
-    if not found.keys() & {"poles", "polynomial", "K", "L"} and (half := _HALVES.get(task.name)):
+    if not found.keys() & {"poles", "polynomial", "K", "L"} and (half := _HALVES.get(result_type(task.name).gains)):
         shared = {name: f"{half}_{name}" for name in ("poles", "polynomial")}
         found |= {name: key for name, key in shared.items() if key in specification}
     return found

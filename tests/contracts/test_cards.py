@@ -17,11 +17,10 @@ from symobs.exact import Factored, Matrix, Scalar
 from symobs.formula.convention import conventions
 from symobs.formula.expression import parse_matrix, parse_poles, parse_scalar
 from symobs.formula.tree import Environment, Exact, Literal, Relation, Roots, evaluate
-from symobs.pages.cards import NAMES, Card, CardPrinter, cards
+from symobs.pages.cards import Card, CardPrinter, cards
 from symobs.pages.printers.root_lists import TEXT, listed
 from symobs.pages.printers.text_printer import TextPrinter
 from symobs.problem import read
-from symobs.tasks.result import tasks
 from symobs.tasks.result.conversions import to_json
 from tests.support.tools.command_line import EXAMPLES
 
@@ -108,10 +107,6 @@ def test_a_turned_gain_is_shown_with_its_own_sign() -> None:
         assert isinstance(written, Literal)
         sign = -1 if "L" in convention.turned else 1
         assert written.value == Matrix.of([[19 * sign], [81 * sign]])
-
-
-def test_only_fields_that_exist_have_a_name_of_their_own() -> None:
-    assert NAMES.keys() <= tasks().keys()
 
 
 def test_a_pair_with_a_letter_is_no_multiple_of_pi_and_a_parameter_may_be_called_i() -> None:

@@ -27,7 +27,7 @@ from symobs.tasks.result import Result
 from symobs.tasks.result.in_convention import ResultInConvention
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Sequence
+    from collections.abc import Sequence
 
     from symobs.applications.checking.judgement.judge import TaskJudgement
 
@@ -200,10 +200,10 @@ def _given(answer: Answer, views: Sequence[ResultInConvention]) -> dict[str, dic
     found: dict[str, dict[str, Any]] = {view.task: {} for view in views}
     errors: list[SymobsError] = []
     tasks = {view.task: view for view in views}
-    for key, value in [*answer.values.items(), *_functions_of_time(answer, tasks)]:
+    for key, value in [*answer.values.items(), *_functions_of_time(answer, views)]:
         if key in tasks and isinstance(value, Mapping):
             known = available(tasks[key])
-            called = {field_called(key, name): (name, entry) for name, entry in value.items()}
+            called = {field_called(tasks[key].result, name): (name, entry) for name, entry in value.items()}
             errors += [
                 _unknown(f"{key}.{name}", [tasks[key]]) for field, (name, _) in called.items() if field not in known
             ]
@@ -211,7 +211,7 @@ def _given(answer: Answer, views: Sequence[ResultInConvention]) -> dict[str, dic
                 field: entry for field, (_, entry) in called.items() if field in known and not _is_empty(entry)
             }
             continue
-        having = [(view.task, field_called(view.task, key)) for view in views]
+        having = [(view.task, field_called(view.result, key)) for view in views]
         having = [(task, field) for task, field in having if field in available(tasks[task])]
         for task, field in having:
             if field not in found[task] and not _is_empty(value):
@@ -223,10 +223,11 @@ def _given(answer: Answer, views: Sequence[ResultInConvention]) -> dict[str, dic
     return found
 
 
-def _functions_of_time(answer: Answer, tasks: Collection[str]) -> list[tuple[str, Any]]:
+def _functions_of_time(answer: Answer, views: Sequence[ResultInConvention]) -> list[tuple[str, Any]]:
     """Return exp(A t) and its value, the last one, where a text of lines defines it: it is no letter."""
     sides = [step.relation.rpartition("=") for step in answer.steps if answer.loose]
-    named = {left.strip(): as_value(right) for left, _, right in sides if is_of_time(tasks, left.strip())}
+    results = [view.result for view in views]
+    named = {left.strip(): as_value(right) for left, _, right in sides if is_of_time(results, left.strip())}
     return [(left, right) for left, right in named.items() if left not in answer.values]
 
 

@@ -11,8 +11,6 @@ from symobs.applications.checking.faults.compensators import other_values
 from symobs.applications.checking.faults.fault import Explained
 from symobs.applications.checking.faults.gains import explain_gain
 from symobs.applications.checking.faults.values import explain_value
-from symobs.applications.checking.judgement.gains import design_with
-from symobs.applications.checking.judgement.parts import GAINS, IN_COORDINATES, TOGETHER
 from symobs.applications.checking.report.data import Part
 from symobs.exact import Factored, Matrix, Scalar
 from symobs.formula.expression import parse_matrix
@@ -95,9 +93,9 @@ def _is_degenerate(judgement: TaskJudgement, name: str) -> bool:
 
 
 def _effect(view: ResultInConvention, judgement: TaskJudgement, judged: Judged) -> dict[str, str]:
-    if judged.name not in GAINS.get(view.task, ()):
+    if judged.name not in view.result.gains:
         return {}
-    design = design_with(judgement.right, judged.name)
+    design = judgement.right.design_of(judged.name)
     return {"polynomial": str(design.answer["polynomial"]), "stable": design.stability.verdict}
 
 
@@ -134,11 +132,11 @@ def _explanation(view: ResultInConvention, judgement: TaskJudgement, judged: Jud
     """Return why a value is wrong, as far as it is a matrix or a number."""
     if judged.value is None:
         return Explained()
-    is_part = view.task in TOGETHER
+    is_part = view.result.gains_are_one
     if is_part and view.standard(judged.letter)[1] < 0:
         return Explained()  # what is said of a value has its standard sign
-    if judged.name in GAINS.get(view.task, ()) and isinstance(judged.value, Matrix) and not is_part:
-        design = design_with(judgement.right, judged.name)
+    if judged.name in view.result.gains and isinstance(judged.value, Matrix) and not is_part:
+        design = judgement.right.design_of(judged.name)
         turned = view.standard(judged.letter)[1] < 0
         right = design.answer[design.letter]
         rounded = right is not None and _rounds(judged, right, turned=turned)
@@ -148,7 +146,7 @@ def _explanation(view: ResultInConvention, judgement: TaskJudgement, judged: Jud
     value = judged.value
     if right is None:
         return Explained()
-    if judged.name in IN_COORDINATES.get(view.task, ()) and view.task != "reduced_order_observer":
+    if judged.name in view.result.in_coordinates and view.task != "reduced_order_observer":
         return _without_coordinates(value, right, judged.letter) if isinstance(right, Matrix) else Explained()
     if isinstance(right, Scalar) and isinstance(value, Matrix) and value.shape == (1, 1):
         value = value[0, 0]
@@ -194,7 +192,7 @@ def other_polynomial(result: Result, name: str) -> Scalar | None:
     loop = result if isinstance(result, OutputFeedback) else getattr(result, "loop", None)
     if not isinstance(loop, OutputFeedback):
         return None
-    own, other = design_with(loop, name), design_with(loop, "L" if name == "K" else "K")
+    own, other = loop.design_of(name), loop.design_of("L" if name == "K" else "K")
     phi, second = own.answer["polynomial"], other.answer["polynomial"]
     variable = result.plant.variable
     return second if second != phi and second.degree(variable) == phi.degree(variable) else None

@@ -13,7 +13,7 @@ from symobs.applications.live.page import export_object, page_object
 from symobs.applications.live.point import card_object, point_object, region_object
 from symobs.applications.live.request import FieldError, Request, put_in, read
 from symobs.applications.live.time_responses import NoResponse, readout, responses_of
-from symobs.applications.live.views import view_object, view_of
+from symobs.applications.live.views import pole_sets, view_object
 from symobs.exact import Scalar
 from symobs.exact.algebraic.root_location import complex_roots
 from symobs.formula.phrases.languages import language_named
@@ -166,7 +166,7 @@ def _answer(asked: Request) -> dict[str, Any]:
     there = _there(asked)
     shown = there if asked.cards_at or not asked.at else _as_given(asked)
     result, convention = shown.result, shown.problem.convention
-    names = view_of(result.task).cards if asked.names is None else asked.names
+    names = (result.cards or result.letters) if asked.names is None else asked.names
     language = language_named(shown.problem.language)
     printer, found = CardPrinter(result, convention, language), cards(result, names, convention)
     notes, responses = [], None
@@ -287,7 +287,7 @@ def _case(case: Case, printer: CardPrinter) -> dict[str, Any]:
 def _readouts(solved: Solved) -> list[dict[str, str]]:
     """Return frequency, damping and settling time of every pole that was given as a number, a pair once."""
     found, plant, designs = [], solved.result.plant, _designs(solved.result)
-    for group in view_of(solved.result.task).sets:
+    for group in pole_sets(solved.result.task):
         for key in (group.key, *(f"{half}_{group.key}" for half in ("control", "observer"))):
             given = solved.problem.specification.get(key)
             if given is None or is_pattern(given):
@@ -313,7 +313,7 @@ def _marks(result: Result) -> list[dict[str, str]]:
     """Return what stands fixed in the plane: the plant's poles, and those of F; decimals for drawing alone."""
     plant = result.plant
     known: list[tuple[str, Any]] = []
-    if plant.polynomial is None and not plant.is_time_varying and view_of(result.task).sets:
+    if plant.polynomial is None and not plant.is_time_varying and pole_sets(result.task):
         known.append(("plant", plant.matrices.A))
         known.append(("F", result.fields.get("compensator_matrix")))
     found = []

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from symobs.applications.live.links import link_of
-from symobs.applications.live.views import VIEWS
+from symobs.tasks.result import result_type
 
 _PLACES = tuple(Path(__file__).parents[up] / "worked_examples" for up in (2, 3))
 #: One of a few hundred kilobytes takes longer to look at than to solve.
@@ -23,7 +23,7 @@ def examples() -> list[dict[str, Any]]:
     for path in sorted(folder.glob("*.toml")) if folder is not None else []:
         data = tomllib.loads(path.read_text(encoding="utf-8"), parse_float=str)
         names = data.get("tasks", [data.get("task")])
-        task = next((name for name in reversed(names) if name in VIEWS), names[-1])
+        task = next((name for name in reversed(names) if result_type(name).panels), names[-1])
         if path.stem in _LARGE:
             continue
         told = {key: entry for key, entry in data.items() if key != "language"} | {"tasks": [*names, task]}

@@ -1,11 +1,12 @@
-"""What each task shows and what can be moved in it: panels, sets of poles, cards."""
+"""What a task shows and what can be moved in it: panels, sets of poles, cards."""
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from symobs.ground.dataclass import dataclass
-from symobs.pages.cards import NAMES
+from symobs.tasks.result import result_type, tasks
 
 if TYPE_CHECKING:
     from symobs.tasks.result import Result
@@ -20,59 +21,38 @@ class PoleSet:
     mark: str
 
 
-@dataclass(frozen=True)
-class View:
-    """A task on the screen: what is moved, the panels, and the cards that are open at first."""
-
-    sets: tuple[PoleSet, ...] = ()
-    panels: tuple[str, ...] = ("cards", "page")
-    cards: tuple[str, ...] = ()
+_SETS = (
+    PoleSet("control_poles", "control_pole", "cross"),
+    PoleSet("observer_poles", "observer_pole", "ring"),
+)
 
 
-_CONTROL = PoleSet("control_poles", "control_pole", "cross")
-_OBSERVER = PoleSet("observer_poles", "observer_pole", "ring")
-_DESIGN = ("plane", "responses", "cards", "page")
-_RANK = ("cases", "cards", "page")
-VIEWS: dict[str, View] = {
-    "compensator": View((_CONTROL, _OBSERVER), _DESIGN, ("K", "L", "F", "closed_loop_polynomial")),
-    "feedforward": View((_CONTROL, _OBSERVER), _DESIGN, ("F", "K", "L", "transfer_function")),
-    "tracking": View((_CONTROL, _OBSERVER), ("plane", "cards", "page"), ("K", "K_d", "L")),
-    "observer": View((PoleSet("poles", "observer_pole", "ring"),), _DESIGN, ("L", "polynomial", "A")),
-    "reduced_order_observer": View(
-        (PoleSet("poles", "observer_pole", "ring"),), _DESIGN, ("L", "F", "G", "H", "M", "polynomial")
-    ),
-    "state_feedback": View(
-        (PoleSet("poles", "control_pole", "cross"),), _DESIGN, ("K", "polynomial", "closed_loop_matrix")
-    ),
-    "stability_region": View((), ("region", "cards", "page"), ("polynomial",)),
-    "observability": View((), _RANK, ("matrix", "rank", "determinant", "kernel")),
-    "controllability": View((), _RANK, ("matrix", "rank", "determinant", "kernel")),
-    "detectability": View((), _RANK, ("rank", "polynomial", "fixed_polynomial")),
-    "stabilizability": View((), _RANK, ("rank", "polynomial", "fixed_polynomial")),
-    "pbh": View((), _RANK, ("polynomial", "fixed_polynomial")),
-}
-
-
-def view_of(task: str) -> View:
-    """Return the view of a task; one without handles shows its answers and its page."""
-    return VIEWS.get(task) or View(cards=tuple(NAMES.get(task, ())))
+def pole_sets(task: str) -> tuple[PoleSet, ...]:
+    """Return the poles that can be moved: of a task with one gain they are called poles."""
+    keywords, kind = tasks()[task].keywords, result_type(task)
+    if "plane" not in kind.panels:
+        return ()
+    control, observer = _SETS
+    if "poles" in keywords:
+        return (replace(control if kind.gains == ("K",) else observer, key="poles"),)
+    return tuple(found for found in _SETS if found.key in keywords)
 
 
 def view_object(result: Result, specification: Any) -> dict[str, Any]:
     """Return what the front-end builds a task from."""
-    view, plant = view_of(result.task), result.plant
+    plant = result.plant
     sets = [
         {"key": _key_in(specification, found.key), "label": found.label, "mark": found.mark}
-        for found in view.sets
+        for found in pole_sets(result.task)
         if not _gives_polynomial(specification, found.key)
     ]
     return {
         "task": result.task,
         "discrete": plant.is_discrete,
         "order": plant.order,
-        "panels": list(view.panels),
+        "panels": [*result.panels, "cards", "page"],
         "sets": sets,
-        "cards": list(view.cards),
+        "cards": list(result.cards or result.letters),
     }
 
 

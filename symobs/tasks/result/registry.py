@@ -5,17 +5,15 @@ from __future__ import annotations
 import inspect
 from collections.abc import Callable, Mapping
 from functools import wraps
-from typing import TYPE_CHECKING, Any, TypeVar, get_args
+from typing import Any, TypeVar, get_args
 
 import symobs
 from symobs.ground.dataclass import dataclass
 from symobs.ground.errors import InputError, SymobsError, Undecided
 from symobs.proof.certificate.claims import BEYOND_LIMITS
 from symobs.system import StateSpace, as_plant, read_floats
+from symobs.tasks.result.result import Result
 from symobs.tasks.result.writers import discover, import_named
-
-if TYPE_CHECKING:
-    from symobs.tasks.result.result import Result
 
 Callback = TypeVar("Callback", bound=Callable[..., Any])
 
@@ -183,6 +181,15 @@ def task_named(name: str) -> Task | None:
         for package in symobs.TASK_PACKAGES:
             import_named(package, name)
     return _TASKS.get(name) or tasks().get(name)
+
+
+def result_type(task_name: str) -> type[Result]:
+    """Return the type of a task's results."""
+    task_named(task_name)
+    kinds = [Result]
+    for kind in kinds:
+        kinds += kind.__subclasses__()
+    return next(kind for kind in kinds[1:] if kind.__dict__.get("task") == task_name)
 
 
 def methods(of: str | None = None) -> Mapping[str, Method]:

@@ -21,7 +21,7 @@ from symobs.proof.derivation.builder import Builder
 from symobs.system.conditions import Condition, vanishing_factors
 from symobs.tasks.result.conversions import to_sympy
 from symobs.tasks.result.digits_of_page import document_options
-from symobs.tasks.result.output_methods import OutputMethods
+from symobs.tasks.result.task_traits import TaskTraits
 from symobs.tasks.result.web_page import PLAIN, WebPage
 from symobs.tasks.result.writers import render, writer_of
 
@@ -61,7 +61,7 @@ class Stratum(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Result(OutputMethods):
+class Result(TaskTraits):
     """An answer with its certificates.  Subclasses own the claims; tampering with an answer makes construction fail."""
 
     plant: StateSpace

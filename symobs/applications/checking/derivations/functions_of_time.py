@@ -26,8 +26,8 @@ def of_function_of_time(
 ) -> Line | None:
     """Return the line x(t) = ... = ... with its verdict, None for any other line; members with letters are `audited`."""
     name, *members = (side.strip() for side in step.relation.split("="))
-    view = next((view for view in views if is_of_time([view.task], name)), None)
-    if view is None or not members or not exists(view.result, field_called(view.task, name)):
+    view = next((view for view in views if is_of_time([view.result], name)), None)
+    if view is None or not members or not exists(view.result, field_called(view.result, name)):
         return None
     found = [
         _of_member(step, name, member, view) or audited(replace(step, relation=f"{name} = {member}"))
@@ -39,7 +39,7 @@ def of_function_of_time(
 
 def _of_member(step: Step, name: str, member: str, view: ResultInConvention) -> Line | None:
     """Return whether a function equals a member that is written out in t; None for a member in letters."""
-    field = field_called(view.task, name)
+    field = field_called(view.result, name)
     try:
         if met(view, field, as_value(member), step.where):
             return Line(step.where, step.relation, "true")

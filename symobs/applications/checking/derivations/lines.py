@@ -18,8 +18,7 @@ from symobs.applications.checking.answers.answer_file import Answer, Step
 from symobs.applications.checking.derivations.functions_of_time import of_function_of_time
 from symobs.applications.checking.derivations.line_auditor import LineAuditor, auditor, place_alone
 from symobs.applications.checking.judgement.conditions import read_conditions
-from symobs.applications.checking.judgement.gains import from_gains, with_gain
-from symobs.applications.checking.judgement.parts import CLAIMED, GAINS, IN_COORDINATES, OF_THE_PLANT, exists
+from symobs.applications.checking.judgement.parts import OF_THE_PLANT, exists
 from symobs.applications.checking.judgement.regions import compare
 from symobs.applications.checking.report.data import Line
 from symobs.exact import Matrix, Scalar, TooLarge
@@ -71,10 +70,10 @@ class _Derivation:
             gains = {
                 view.standard(letter)[0]: -value if view.standard(letter)[1] < 0 else value
                 for letter, (value, _) in self.bound.items()
-                if view.standard(letter)[0] in GAINS.get(view.task, ()) and isinstance(value, Matrix)
+                if view.standard(letter)[0] in result.gains and isinstance(value, Matrix)
             }
             try:
-                results.append(from_gains(result, gains) if gains else result)
+                results.append(result.following_from(gains) if gains else result)
             except (SymobsError, ArithmeticError, ValueError, AttributeError, TypeError):
                 results.append(result)
         own = {letter: value for letter, (value, _) in self.bound.items()}
@@ -87,20 +86,20 @@ class _Derivation:
 
     def is_gain(self, letter: str) -> bool:
         """Return whether a letter is that of a gain, of which the part of the answer says why it is wrong."""
-        return any(view.standard(letter)[0] in GAINS.get(view.task, ()) for view in self.views)
+        return any(view.standard(letter)[0] in view.result.gains for view in self.views)
 
     def takes(self, letter: str, value: Any) -> bool:
         """Return whether a value of a gain meets its claim; then it takes the place of the right one."""
         for view in self.views:
             name, sign = view.standard(letter)
             right = self.right.get(view.task)
-            if right is None or name not in GAINS.get(view.task, ()) or not isinstance(value, Matrix):
+            if right is None or name not in right.gains or not isinstance(value, Matrix):
                 continue
             known = right.fields.get(name)
             if not isinstance(known, Matrix) or known.shape != value.shape:
                 continue
             try:
-                self.right[view.task] = with_gain(right, name, -value if sign < 0 else value)
+                self.right[view.task] = right.with_gains({name: -value if sign < 0 else value})
             except CertificateRejected:
                 continue
             return True
@@ -120,15 +119,15 @@ def judge_lines(
     if not answer.loose:
         for each in judged.values():
             for part in each.parts:
-                if part.verdict == "wrong" and part.name in GAINS.get(each.right.task, ()) and part.value is not None:
+                if part.verdict == "wrong" and part.name in each.right.gains and part.value is not None:
                     view = next(view for view in views if view.task == each.right.task)
                     value = -part.value if view.standard(part.letter)[1] < 0 else part.value
                     state.bound[part.letter] = (value, "the answer")
     chosen = {
         part.letter
-        for task, each in judged.items()
+        for each in judged.values()
         for part in each.parts
-        if part.verdict == "right" and part.name in IN_COORDINATES.get(task, ())
+        if part.verdict == "right" and part.name in each.right.in_coordinates
     }
     lines = tuple(
         _judged(state, step, answer) for step in answer.steps if not _states_a_part(step, answer, views, chosen)
@@ -153,10 +152,9 @@ def judge_milestone(problem: Problem, views: Sequence[ResultInConvention], miles
 
 def _is_unique(result: Result) -> bool:
     """Return whether only one answer is right: no coordinates are chosen, and one signal alone is fed back to all modes."""
-    task = result.task
-    if task in _CHOSEN or task in IN_COORDINATES or any(task == claimed for claimed, _ in CLAIMED):
+    if result.task in _CHOSEN or result.in_coordinates or result.claimed:
         return False
-    plant, gains = result.plant, GAINS.get(task, ())
+    plant = result.plant
     shapes = {"K": (1, plant.order), "L": (plant.order, 1)}
     whole = {"K": controllability_rank, "L": observability_rank}
     return all(
@@ -164,7 +162,7 @@ def _is_unique(result: Result) -> bool:
         and isinstance(gain := result.fields.get(name), Matrix)
         and gain.shape == shapes[name]
         and whole[name](plant).answer["rank"] == plant.order
-        for name in gains
+        for name in result.gains
     )
 
 

@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, Any
 from symobs.applications.checking.answers.definitions import value_of
 from symobs.applications.checking.answers.lists import as_kernel, as_list, in_a_line
 from symobs.applications.checking.answers.values import as_value
-from symobs.applications.checking.judgement.parts import GAINS
 from symobs.exact import Complex, Matrix, Root, Scalar
 from symobs.ground.errors import InputError
 
@@ -26,7 +25,7 @@ def as_asked(view: ResultInConvention, letter: str, value: Any) -> Any:
     if name == "kernel":
         return as_kernel(value, view.plant.order)
     right = view.result.fields.get(name)
-    shape = shape_of(view.result, name) if name in GAINS.get(view.task, ()) else getattr(right, "shape", None)
+    shape = shape_of(view.result, name) if name in view.result.gains else getattr(right, "shape", None)
     return value if shape is None else in_a_line(value, shape)
 
 

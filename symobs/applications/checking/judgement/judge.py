@@ -17,9 +17,8 @@ from symobs.applications.checking.answers.values import (
 )
 from symobs.applications.checking.judgement.as_asked import as_asked, is_listed, shape_of, two_readings
 from symobs.applications.checking.judgement.coordinates import in_coordinates
-from symobs.applications.checking.judgement.gains import design_with, from_gains, with_claimed, with_gain, with_gains
 from symobs.applications.checking.judgement.other_compensators import closes_the_loop
-from symobs.applications.checking.judgement.parts import CLAIMED, GAINS, IN_COORDINATES, OF_GAIN, TOGETHER, exists
+from symobs.applications.checking.judgement.parts import exists
 from symobs.applications.checking.judgement.regions import region_verdict
 from symobs.exact import Matrix, Scalar, TooLarge
 from symobs.formula.expression import parse_matrix
@@ -95,7 +94,7 @@ class TaskJudgement:
     @property
     def has_gains(self) -> bool:
         """Whether a gain is given from which others of the task follow."""
-        return any(part.name in GAINS[self.right.task] and part.value is not None for part in self.parts)
+        return any(part.name in self.right.gains and part.value is not None for part in self.parts)
 
 
 @dataclass()
@@ -126,20 +125,20 @@ def judge_task(
     ]
     asked = {part.name: part for part in each}
     parts: dict[str, Judged] = {}
-    if view.task in TOGETHER:
-        task.is_half = view.fields["family"] is not None and not asked.keys() >= {*GAINS[view.task]}
+    if task.right.gains_are_one:
+        task.is_half = view.fields["family"] is not None and not asked.keys() >= {*task.right.gains}
         task.right = _together(task, task.right, asked)
-    if view.task == "unknown_input_observer" and "H" in asked:  # which the gain is one for
+    if "H" in asked and "H" in task.right.claimed:  # which the gain is one for
         parts["H"] = _judged(task, asked["H"])
     for name, part in asked.items():
-        if name in GAINS.get(view.task, ()):
+        if name in task.right.gains:
             parts[name] = _gain(task, part)
-    if "L" not in asked and (name := OF_GAIN.get(view.task, "")) in asked:
+    if "L" not in asked and (name := task.right.shows_gain) in asked:
         task.right = _with_gain_behind(task, asked[name])
     if task.wrong:
         with suppress(SymobsError, ArithmeticError, ValueError, AttributeError, TypeError):
-            task.own = from_gains(task.right, task.gains)
-    parts |= _in_coordinates(task, [part for part in each if part.name in IN_COORDINATES.get(view.task, ())])
+            task.own = task.right.following_from(task.gains)
+    parts |= _in_coordinates(task, [part for part in each if part.name in task.right.in_coordinates])
     parts |= {name: _judged(task, part) for name, part in asked.items() if name not in parts}
     return TaskJudgement(tuple(parts[name] for name in asked), task.right, task.own)
 
@@ -187,11 +186,11 @@ def _gain(task: _Task, part: Judged) -> Judged:
     task.gains[name] = value
     try:
         own = task.right.fields.get(name)
-        other = task.right if value == own else with_gain(task.right, name, value)
+        other = task.right if value == own else task.right.with_gains({name: value})
     except CertificateRejected as rejected:
         if task.is_half:
             return replace(
-                part, verdict="undecided", reason=f"{' and '.join(GAINS[task.view.task])} are right together: give both"
+                part, verdict="undecided", reason=f"{' and '.join(task.right.gains)} are right together: give both"
             )
         task.wrong = (*task.wrong, name)
         claim = rejected.facts.get("claim")
@@ -214,22 +213,22 @@ def _gain_in(task: _Task, part: Judged) -> Matrix:
 
 def _together(task: _Task, right: Any, given: Mapping[str, Judged]) -> Any:
     """Return the result with the student's two gains where their claim holds for both, else what is right."""
-    if right.answer[GAINS[right.task][0]] is None or not given.keys() >= {*GAINS[right.task]}:
+    if right.answer[right.gains[0]] is None or not given.keys() >= {*right.gains}:
         return right
     with suppress(SymobsError, *UNDECIDED):
-        gains = {name: _gain_in(task, given[name]) for name in GAINS[right.task]}
+        gains = {name: _gain_in(task, given[name]) for name in right.gains}
         if all(gain.shape == shape_of(right, name) for name, gain in gains.items()):
-            return with_gains(right, gains)
+            return right.with_gains(gains)
     return right
 
 
 def _with_gain_behind(task: _Task, part: Judged) -> Result:
     """Return the result with the L in the student's A − L C, where that places the poles; else what is right."""
     with suppress(SymobsError, ArithmeticError, ValueError):
-        value, pair = _value(task, part), design_with(task.right, "L").plant.matrices
+        value, pair = _value(task, part), task.right.design_of("L").plant.matrices
         if isinstance(value, Matrix) and value.shape == pair.A.shape:
             L = (pair.A - value) @ pair.C.T @ (pair.C @ pair.C.T).inverse()
-            return with_gain(task.right, "L", L.normal())
+            return task.right.with_gains({"L": L.normal()})
     return task.right
 
 
@@ -287,11 +286,11 @@ def _value(task: _Task, part: Judged) -> Matrix | Scalar | None:
 
 def _holds(task: _Task, result: Result, part: Judged) -> tuple[str, ...] | None:
     """Return the hints on a value that is right for a result, None where it is not."""
-    if (task.view.task, part.name) in CLAIMED:
+    if part.name in result.claimed:
         matrix = Matrix.of([[part.value]]) if isinstance(part.value, Scalar) else part.value
         assert isinstance(matrix, Matrix)  # noqa: S101 - the right value exists, and is read like it
         try:
-            found = with_claimed(result, part.name, matrix)
+            found = result.with_answer(part.name, matrix)
         except CertificateRejected:
             return None
         task.right = found if result is task.right else task.right

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from symobs.applications.checking.judgement.gains import design_with
-from symobs.applications.checking.judgement.parts import GAINS, TOGETHER
 from symobs.applications.checking.marks import other_polynomial
 from symobs.exact import Factored, Matrix, Scalar
 from symobs.ground.dataclass import dataclass
@@ -91,10 +89,10 @@ def exported_part(view: ResultInConvention, field: str, name: str, weight: str) 
         if word == "undecided":
             raise _refused(made["part"], "what is right is undecided")
         return _part(made | {"kind": "word", "symbolic": False, "right": word}, ((word,),))
-    if view.task in TOGETHER and field in GAINS[view.task]:
-        both = " and ".join(GAINS[view.task])
+    if view.result.gains_are_one and field in view.result.gains:
+        both = " and ".join(view.result.gains)
         raise _refused(made["part"], f"an exported grader does not hold {both}, which are right together")
-    if field in GAINS.get(view.task, ()):
+    if field in view.result.gains:
         return _gain(view, field, made)
     if isinstance(view.result, CompensatorDesign) and field == "F":
         return _compensator(view, made)
@@ -116,7 +114,7 @@ def _refused(part: str, why: str) -> InputError:
 
 def _gain(view: ResultInConvention, field: str, made: dict[str, Any]) -> ExportedPart:
     """Return a gain: right where det(sI − A + LC) of its observer problem is the polynomial."""
-    design = design_with(view.result, field)
+    design = view.result.design_of(field)
     gain = design.answer[design.letter]
     if gain is None or not isinstance(design.kind, (AssignedGain, GainWithZeros)) or design.pair.equations:
         raise _refused(made["part"], "no gain is asked for that its polynomial alone makes right")

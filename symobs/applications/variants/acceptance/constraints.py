@@ -21,8 +21,6 @@ if TYPE_CHECKING:
     from symobs.system import StateSpace
     from symobs.tasks.result import Result
 
-#: The verdict of these tasks says whether there is an answer at all.
-_DESIGNS = {"compensator", "feedforward", "observer", "reduced_order_observer", "state_feedback", "tracking"}
 #: The constraints that name matrices of the plant, or answers.
 _NAMING = ("integer", "answers_nonzero", "digits", "denominators")
 _OF_PLANT = ("A", "B", "C", "D")
@@ -33,7 +31,7 @@ def broken(constraints: Mapping[str, Any], results: Sequence[Result]) -> str | N
     for result in results:
         if result.verdict == "undecided":
             return f"{result.task} is undecided"
-        if result.task in _DESIGNS and result.verdict != "yes":
+        if result.gains and result.verdict != "yes":
             return "the poles cannot be placed"
     plant = results[0].plant
     for key, test in _FLAGS.items():

@@ -191,6 +191,9 @@ class Detectability(HiddenStability):
     """Detectability: stability of the unobservable modes."""
 
     task: ClassVar[str] = "detectability"
+    letters = {"polynomial": "chi", "fixed_polynomial": "mu", "rank": "rank O"}
+    panels = ("cases",)
+    cards = ("rank", "polynomial", "fixed_polynomial")
 
     @property
     def kind(self) -> str:
@@ -203,6 +206,9 @@ class Stabilizability(HiddenStability):
     """Stabilizability: stability of the uncontrollable modes."""
 
     task: ClassVar[str] = "stabilizability"
+    letters = {"polynomial": "chi", "fixed_polynomial": "mu", "rank": "rank Ctr"}
+    panels = ("cases",)
+    cards = ("rank", "polynomial", "fixed_polynomial")
 
     @property
     def kind(self) -> str:

@@ -31,6 +31,8 @@ class PopovBelevitchHautus(ModeResult):
     of: str
 
     task: ClassVar[str] = "pbh"
+    letters = {"polynomial": "chi", "fixed_polynomial": "mu"}
+    panels = ("cases",)
 
     @property
     def kind(self) -> str:

@@ -39,6 +39,9 @@ class Observability(RankResult):
     """𝒪, its rank, ker 𝒪 and the unobservable modes."""
 
     task: ClassVar[str] = "observability"
+    answered_by = ("rank",)
+    letters = {"matrix": "O", "rank": "rank O", "determinant": "det O", "kernel": "N"}
+    panels = ("cases",)
     repaired_by: ClassVar[str] = "measured"
 
     @staticmethod
@@ -74,6 +77,14 @@ class Controllability(RankResult):
     """𝒞, its rank and the uncontrollable modes."""
 
     task: ClassVar[str] = "controllability"
+    answered_by = ("rank",)
+    letters = {
+        "matrix": "Ctr",
+        "rank": "rank Ctr",
+        "determinant": "det Ctr",
+        "kernel": "N_K",
+    }
+    panels = ("cases",)
     repaired_by: ClassVar[str] = "actuated"
 
     @staticmethod

@@ -50,6 +50,16 @@ class CanonicalForm(Result):
     kind: str
 
     task: ClassVar[str] = "canonical_form"
+    answered_by = ("T", "A", "B", "C")
+    in_coordinates = ("T", "A", "B", "C")
+    letters = {
+        "T": "T",
+        "A": "A_bar",
+        "B": "B_bar",
+        "C": "C_bar",
+        "D": "D",
+        "polynomial": "chi",
+    }
 
     @cached_property
     def test(self) -> RankResult | None:

@@ -28,6 +28,8 @@ class CharacteristicPolynomial(Result):
     """χ with det(sI − A) = χ(s) and the product of the factors equal to χ."""
 
     task: ClassVar[str] = "characteristic_polynomial"
+    answered_by = ("polynomial",)
+    letters = {"polynomial": "chi", "roots": "chi"}
 
     def claims(self) -> Iterator[Claim]:
         """Yield det(sI − A) = χ(s) = product of the factors."""

@@ -45,6 +45,8 @@ class Dual(Result):
     sign: int
 
     task: ClassVar[str] = "dual"
+    answered_by = ("A", "B", "C")
+    letters = {"A": "A_dual", "B": "B_dual", "C": "C_dual", "D": "D_dual"}
 
     def claims(self) -> Iterator[Claim]:
         """Yield the transpositions, the equality of the test matrices up to signs, the ranks."""

@@ -44,6 +44,16 @@ class Decomposition(Result):
     """
 
     task: ClassVar[str] = "decomposition"
+    answered_by = ("T", "sizes")
+    in_coordinates = ("T", "A", "B", "C", "sizes")
+    letters = {
+        "T": "T",
+        "A": "A_bar",
+        "B": "B_bar",
+        "C": "C_bar",
+        "D": "D",
+        "transfer_function": "P",
+    }
 
     @property
     def dimensions(self) -> tuple[int, ...]:

@@ -30,6 +30,8 @@ class TransferFunction(Result):
     """P with P(s) = C (sI − A)⁻¹ B + D."""
 
     task: ClassVar[str] = "transfer_function"
+    answered_by = ("transfer_function",)
+    letters = {"transfer_function": "P", "poles": "P"}
 
     def claims(self) -> Iterator[Claim]:
         """Yield the definition; where equations hold, that no realisation is smaller: the fraction is in lowest terms."""

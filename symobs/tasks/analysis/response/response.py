@@ -47,6 +47,9 @@ class Response(DampingCases):
     """x(t) with x′ = A x + B u and x(0) = x₀, which has one solution, and y = C x + D u."""
 
     task: ClassVar[str] = "response"
+    answered_by = ("state",)
+    functions_of_time = {"x": "state", "x(t)": "state", "y": "output", "y(t)": "output"}
+    letters = {"state": "x_t", "output": "y_t"}
     main: ClassVar[str] = "state"
     asked_for: ClassVar[tuple[str, ...]] = ("initial", "input", "impulse")
 

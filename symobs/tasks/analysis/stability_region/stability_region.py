@@ -57,6 +57,9 @@ class StabilityRegion(Result):
     question: RegionQuestion
 
     task: ClassVar[str] = "stability_region"
+    answered_by = ("stable_if",)
+    letters = {"polynomial": "chi_p"}
+    panels = ("region",)
 
     @classmethod
     def of(cls, question: RegionQuestion, method_name: str) -> StabilityRegion:

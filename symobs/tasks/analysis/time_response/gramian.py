@@ -94,6 +94,8 @@ class Gramian(DampingCases):
     """W with W = ∫ of its integrand (checked by differentiation), its determinant, Σ (Aᵀ)ᵏ Cᵀ C Aᵏ, and the kernel."""
 
     task: ClassVar[str] = "gramian"
+    answered_by = ("matrix",)
+    letters = {"matrix": "W", "determinant": "det W", "finite_sum": "M", "kernel": "N"}
     asked_for: ClassVar[tuple[str, ...]] = ("horizon",)
 
     @classmethod

@@ -66,6 +66,8 @@ class InitialState(OfTheInitialState):
     """x₀ with y = C (e^{At} x₀ + x_f) + D u, where x_f′ = A x_f + B u and x_f(0) = 0; or the proof that there is none."""
 
     task: ClassVar[str] = "initial_state"
+    answered_by = ("x0",)
+    letters = {"x0": "x_0"}
     main: ClassVar[str] = "x0"
     asked_for: ClassVar[tuple[str, ...]] = ("output", "input", "horizon")
 

@@ -63,6 +63,8 @@ class InitialStateCovariance(OfTheInitialState):
     """Σ = Σ_R + Σ_Q with W Σ_R W = S_R and W Σ_Q W = S_Q, the two integrals checked by differentiation."""
 
     task: ClassVar[str] = "initial_state_covariance"
+    answered_by = ("covariance",)
+    letters = {"covariance": "Cov", "input_part": "Cov_Q", "output_part": "Cov_R"}
     main: ClassVar[str] = "covariance"
     asked_for: ClassVar[tuple[str, ...]] = ("Q", "R", "horizon")
 
@@ -114,9 +116,9 @@ class InitialStateCovariance(OfTheInitialState):
         yield from self.observability_claims()
         if self.answer["covariance"] is None:
             return
-        yield from self._about_parts(time_environment(self.plant, self.letters()))
+        yield from self._about_parts(time_environment(self.plant, self.values_by_letter()))
 
-    def letters(self) -> dict[str, Any]:
+    def values_by_letter(self) -> dict[str, Any]:
         """Return the values of the letters of claims and page."""
         m, answer = self.plant.matrices, self.answer
         names = {"exp_At": "exponential", "Phi_m": "backwards", "W_t": "gramian", "W": "W", "S_R": "S_R", "S_Q": "S_Q"}

@@ -53,7 +53,7 @@ def _write_branch(page: Builder, result: InitialStateCovariance) -> None:
         return
     found, _ = closed_form(result.plant, {**answer["taken"], **answer["chosen"]})
     tell_exponential(page, found, answer["exponential"])
-    values = {name: _entry(value) for name, value in result.letters().items()}
+    values = {name: _entry(value) for name, value in result.values_by_letter().items()}
     horizon = answer["horizon"]
     has_input = answer["Q"] is not None
     Phi, C, R = page["exp_At"], page["C"], page["R"]

@@ -71,6 +71,9 @@ class MatrixExponential(DampingCases):
     """Φ(t) with Φ′ = A Φ and Φ(0) = I, which has one solution."""
 
     task: ClassVar[str] = "matrix_exponential"
+    answered_by = ("matrix",)
+    functions_of_time = {"exp(At)": "matrix"}
+    letters = {"matrix": "exp_At"}
 
     @classmethod
     def of(cls, plant: StateSpace, method_name: str, _: Mapping[str, Any], taken: Signs) -> Self:

@@ -65,6 +65,12 @@ class TimeVaryingObservability(Result):
     asked_for: TimeVaryingRequest
 
     task: ClassVar[str] = "time_varying_observability"
+    letters = {
+        "matrix": "O",
+        "rank": "rank O",
+        "transition_matrix": "Phi_",
+        "gramian": "W",
+    }
 
     # -- construction ------------------------------------------------------------------------------------------------
 

@@ -61,6 +61,20 @@ class OutputFeedback(Result):
     estimator: ObserverDesign | ReducedOrderObserver
 
     task: ClassVar[str] = "compensator"
+    answered_by = ("K", "L", "F")
+    gains = ("K", "L")
+    letters = {
+        "K": "K",
+        "L": "L",
+        "F": "F",
+        "closed_loop_polynomial": "chi_cl",
+        "closed_loop": "G_cl",
+        "closed_loop_matrix": "A_cl",
+        "compensator_matrix": "A_c",
+        "T": "T",
+    }
+    panels = ("plane", "responses")
+    cards = ("K", "L", "F", "closed_loop_polynomial")
 
     # -- what a subclass says ----------------------------------------------------------------------------------------
 
@@ -114,6 +128,15 @@ class OutputFeedback(Result):
         feedback = self.feedback.with_answer(name, value) if name == "K" else self.feedback
         estimator = self.estimator.with_answer(name, value) if name == "L" else self.estimator
         return type(self).of(feedback, estimator, self.method).in_place_of(self)
+
+    def following_from(self, gains: Mapping[str, Matrix]) -> Self:
+        """Return the compensator of given gains."""
+        halves = self.feedback.following_from(gains), self.estimator.following_from(gains)
+        return self.of(*halves, self.method)
+
+    def design_of(self, gain: str) -> GainDesign:
+        """Return the state feedback for K, the observer for L."""
+        return self.feedback if gain == "K" else self.estimator.design_of(gain)
 
     @property
     def exists(self) -> bool:

@@ -7,6 +7,7 @@ is observable.  For a constant d (S = 0, V = I) that is: (C, A) is observable an
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
@@ -20,12 +21,13 @@ from symobs.proof.certificate.claims import Certificate, Claim
 from symobs.proof.derivation.builder import relation
 from symobs.system import StateSpace
 from symobs.system.conditions import Condition, vanishing_factors
-from symobs.system.specification import desired_polynomial, over_common_data
+from symobs.system.specification import DesiredPolynomial, desired_polynomial, over_common_data
 from symobs.tasks.analysis.strata.strata import solved
 from symobs.tasks.design.disturbance.disturbance_input import Exosystem, read_disturbance_input, read_exosystem
 from symobs.tasks.design.full_order.observer import ObserverDesign
 from symobs.tasks.design.gain.gain_cases import design_of, places_beside
 from symobs.tasks.design.gain.gain_design import letters_of
+from symobs.tasks.design.gain.gain_kind import AssignedGain
 from symobs.tasks.result import Case, Result, choose, method, poles_of, task
 from symobs.tasks.result.control_systems import Controller
 
@@ -33,7 +35,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
     from symobs.exact import Scalar
-    from symobs.system.specification import DesiredPolynomial, MatrixText, Name, Poles, PolynomialText
+    from symobs.system.specification import MatrixText, Name, Poles, PolynomialText
 
 #: The matrices of the model, by the letters of the page.
 _LETTERS = {"E_d": "E", "S_w": "S", "V_w": "V"}
@@ -50,6 +52,10 @@ class DisturbanceObserver(Result):
     inner: ObserverDesign
 
     task: ClassVar[str] = "disturbance_observer"
+    answered_by = ("L_x", "L_w")
+    gains = ("L_x", "L_w")
+    gains_are_one = True
+    letters = {"L_x": "L_x", "L_w": "L_w", "polynomial": "phi", "poles": "phi"}
 
     @classmethod
     def of(cls, plant: StateSpace, exosystem: Exosystem, desired: DesiredPolynomial, method_name: str) -> Self:
@@ -68,6 +74,29 @@ class DisturbanceObserver(Result):
             "polynomial": inner.answer["polynomial"],
         }
         return cls(plant, method_name, answer, exosystem, inner)
+
+    def with_gains(self, gains: Mapping[str, Matrix]) -> Self:
+        """Return the design with other gains; one that is not given stays."""
+        design = self.inner.with_answer(self.inner.letter, self._whole(gains))
+        return self.of_inner(self.plant, self.exosystem, design, self.method)
+
+    def following_from(self, gains: Mapping[str, Matrix]) -> Self:
+        """Return the design of given gains; one that is not given stays."""
+        given = self.inner.of_given(self.inner.plant, self._whole(gains))
+        placed = DesiredPolynomial(self.plant.variable, (given.answer["polynomial"],))
+        design = replace(given, kind=AssignedGain(placed))
+        return self.of_inner(self.plant, self.exosystem, design, self.method)
+
+    def design_of(self, gain: str) -> ObserverDesign:  # noqa: ARG002 - one for both
+        """Return the observer of plant and exosystem together."""
+        return self.inner
+
+    def _whole(self, gains: Mapping[str, Matrix]) -> Matrix:
+        first, second = (gains.get(name, self.answer[name]) for name in self.gains)
+        if first is None or second is None:
+            message = "there are no such gains"
+            raise CertificateRejected(message, repair="please report this: it is a bug of symobs")
+        return Matrix.block([[first], [second]])
 
     def claims(self) -> Iterator[Claim]:
         """Yield that the observer of plant and exosystem has the desired poles, and that it is theirs."""

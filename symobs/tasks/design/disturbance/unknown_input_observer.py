@@ -20,7 +20,7 @@ from symobs.proof.certificate.claims import Certificate, Claim
 from symobs.proof.derivation.builder import relation
 from symobs.system import StateSpace
 from symobs.system.conditions import Condition, vanishing_factors
-from symobs.system.specification import desired_polynomial, over_common_data
+from symobs.system.specification import DesiredPolynomial, desired_polynomial, over_common_data
 from symobs.tasks.analysis.strata.rank_stratification import maximal_minors
 from symobs.tasks.analysis.strata.strata import common_places, solved
 from symobs.tasks.design.disturbance.disturbance_input import read_disturbance_input, with_disturbance
@@ -33,7 +33,7 @@ from symobs.tasks.result.control_systems import Controller, observer_of
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
-    from symobs.system.specification import DesiredPolynomial, MatrixText, Name, Poles, PolynomialText
+    from symobs.system.specification import MatrixText, Name, Poles, PolynomialText
     from symobs.tasks.analysis.strata.strata import Place
 
 #: The matrices of the observer.
@@ -52,6 +52,19 @@ class UnknownInputObserver(Result):
     inner: ObserverDesign | None
 
     task: ClassVar[str] = "unknown_input_observer"
+    answered_by = ("H", "L")
+    gains = ("L",)
+    claimed = ("H",)
+    shows_gain = "F"
+    letters = {
+        "H": "H_d",
+        "T": "T_d",
+        "L": "L",
+        "F": "F_d",
+        "B_y": "L_y",
+        "polynomial": "phi",
+        "poles": "phi",
+    }
 
     @classmethod
     def of(cls, plant: StateSpace, E: Matrix, desired: DesiredPolynomial, method_name: str) -> Self:
@@ -98,6 +111,19 @@ class UnknownInputObserver(Result):
         """Return the observer with another gain for (C, T A), which places the roots of a polynomial."""
         E, H = self.disturbance_input, self.answer["H"]
         return type(self).assembled(self.plant, E, H, inner, desired, self.method).in_place_of(self)
+
+    def following_from(self, gains: Mapping[str, Matrix]) -> Self:
+        """Return the observer of a given L."""
+        if "L" not in gains or self.inner is None:
+            return self
+        inner = ObserverDesign.of_given(self.inner.plant, gains["L"])
+        return self.with_gain(inner, DesiredPolynomial(self.plant.variable, (inner.answer["polynomial"],)))
+
+    def design_of(self, gain: str) -> ObserverDesign:
+        """Return the gain of the pair (C, T A); raises `KeyError` where there is none."""
+        if self.inner is None:
+            raise KeyError(gain)
+        return self.inner
 
     @property
     def has_reduced_observer(self) -> bool:

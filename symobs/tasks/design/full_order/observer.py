@@ -40,6 +40,18 @@ class ObserverDesign(GainDesign):
     """An observer gain: det(sI − A + LC) = φ(s)."""
 
     task: ClassVar[str] = "observer"
+    answered_by = ("L",)
+    gains = ("L",)
+    shows_gain = "A"
+    letters = {
+        "L": "L",
+        "polynomial": "chi_L",
+        "A": "A - L C",
+        "B_u": "B - L D",
+        "poles": "chi_L",
+    }
+    panels = ("plane", "responses")
+    cards = ("L", "polynomial", "A")
     letter: ClassVar[str] = "L"
     rank_test: ClassVar[type[RankResult]] = Observability
 

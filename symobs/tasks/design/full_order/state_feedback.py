@@ -35,6 +35,16 @@ class StateFeedbackDesign(GainDesign):
     """A feedback gain: det(sI − A + BK) = φ(s)."""
 
     task: ClassVar[str] = "state_feedback"
+    answered_by = ("K",)
+    gains = ("K",)
+    letters = {
+        "K": "K",
+        "polynomial": "chi_K",
+        "closed_loop_matrix": "A - B K",
+        "poles": "chi_K",
+    }
+    panels = ("plane", "responses")
+    cards = ("K", "polynomial", "closed_loop_matrix")
     letter: ClassVar[str] = "K"
     rank_test: ClassVar[type[RankResult]] = Controllability
 

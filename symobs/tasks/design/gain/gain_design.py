@@ -179,6 +179,14 @@ class GainDesign(Result):
 
     # -- claims ------------------------------------------------------------------------------------------------------
 
+    def following_from(self, gains: Mapping[str, Matrix]) -> Self:
+        """Return the design that a given gain is."""
+        return self.of_given(self.plant, gains[self.letter]) if self.letter in gains else self
+
+    def design_of(self, gain: str) -> Self:  # noqa: ARG002 - it has one
+        """Return this design."""
+        return self
+
     def claims(self) -> Iterator[Claim | Statement]:
         """Yield det(sI − A + LC) = φ(s) for the gain and its family, or the proof that no gain exists."""
         gain, phi, own, kind = (

@@ -62,6 +62,8 @@ class AdvisedPoles(Result):
     taken: tuple[Scalar, ...] = ()
 
     task: ClassVar[str] = "pole_advice"
+    answered_by = ("poles",)
+    letters = {"polynomial": "phi", "sigma": "sigma_d", "omega_d": "omega_d"}
 
     @classmethod
     def of(cls, plant: StateSpace, request: PoleRequest, method_name: str, taken: tuple[Scalar, ...] = ()) -> Self:

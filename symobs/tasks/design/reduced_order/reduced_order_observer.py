@@ -54,6 +54,21 @@ class ReducedOrderObserver(Result):
     inner: ObserverDesign
 
     task: ClassVar[str] = "reduced_order_observer"
+    answered_by = ("F", "G", "H", "M")
+    gains = ("L",)
+    in_coordinates = ("F", "G", "H", "M")
+    letters = {
+        "L": "L",
+        "F": "F_z",
+        "G": "G_z",
+        "H": "H_z",
+        "M": "M_z",
+        "T": "T",
+        "polynomial": "phi",
+        "poles": "phi",
+    }
+    panels = ("plane", "responses")
+    cards = ("L", "F", "G", "H", "M", "polynomial")
     letter: ClassVar[str] = "L"
 
     @classmethod
@@ -95,6 +110,18 @@ class ReducedOrderObserver(Result):
         inner = self.inner.with_answer("L", value)
         remade = type(self).assembled(self.plant, inner, self.desired, self.answer["T"], self.method)
         return remade.in_place_of(self)
+
+    def following_from(self, gains: Mapping[str, Matrix]) -> Self:
+        """Return the observer of a given L."""
+        if "L" not in gains:
+            return self
+        inner = ObserverDesign.of_given(self.inner.plant, gains["L"])
+        placed = DesiredPolynomial(self.plant.variable, (inner.answer["polynomial"],))
+        return self.assembled(self.plant, inner, placed, self.answer["T"], self.method)
+
+    def design_of(self, gain: str) -> ObserverDesign:  # noqa: ARG002 - it has one
+        """Return the gain of the pair (A₁₂, A₂₂)."""
+        return self.inner
 
     @property
     def has_reduced_observer(self) -> bool:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
@@ -27,6 +28,7 @@ if TYPE_CHECKING:
     from symobs.system.specification import Name, Poles, PolynomialText
     from symobs.tasks.analysis.strata.strata import Place
     from symobs.tasks.design.compensator.output_feedback import OutputFeedback
+    from symobs.tasks.design.gain.gain_design import GainDesign
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -41,6 +43,19 @@ class FeedforwardDesign(Result):
     loop: OutputFeedback
 
     task: ClassVar[str] = "feedforward"
+    answered_by = ("F",)
+    gains = ("K", "L")
+    claimed = ("F",)
+    letters = {
+        "F": "F_v",
+        "transfer_function": "T_v",
+        "K": "K",
+        "L": "L",
+        "polynomial": "chi_cl",
+        "closed_loop_matrix": "A_cl",
+    }
+    panels = ("plane", "responses")
+    cards = ("F", "K", "L", "transfer_function")
 
     @classmethod
     def of(cls, loop: OutputFeedback, method_name: str) -> Self:
@@ -61,6 +76,28 @@ class FeedforwardDesign(Result):
                 single = F.shape == (1, 1)
                 answer |= {"F": F[0, 0] if single else F, "transfer_function": T[0, 0] if single else T}
         return cls(plant, method_name, answer, loop)
+
+    def with_answer(self, name: str, value: object) -> Self:
+        """Return the design with another F, and what v does to y then."""
+        if name != "F" or not isinstance(value, Matrix):
+            return super().with_answer(name, value)
+        single, T = value.shape == (1, 1), response(self.loop, value).function(self.plant.variable)
+        answer = {"F": value[0, 0] if single else value, "transfer_function": T[0, 0] if single else T}
+        return replace(self, answer={**self.answer, **answer})
+
+    def with_gains(self, gains: Mapping[str, Matrix]) -> Self:
+        """Return the design whose loop has other gains."""
+        loop = self.loop.with_gains(gains)
+        return self.of(loop, self.method)
+
+    def following_from(self, gains: Mapping[str, Matrix]) -> Self:
+        """Return the design whose loop has given gains."""
+        loop = self.loop.following_from(gains)
+        return self.of(loop, self.method)
+
+    def design_of(self, gain: str) -> GainDesign:
+        """Return the design of one half of the loop."""
+        return self.loop.design_of(gain)
 
     @property
     def has_reduced_observer(self) -> bool:

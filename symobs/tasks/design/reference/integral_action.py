@@ -23,7 +23,7 @@ from symobs.proof.certificate.claims import Certificate, Claim
 from symobs.proof.derivation.builder import relation
 from symobs.system import StateSpace
 from symobs.system.conditions import Condition, vanishing_factors
-from symobs.system.specification import desired_polynomial, over_common_data
+from symobs.system.specification import DesiredPolynomial, desired_polynomial, over_common_data
 from symobs.tasks.analysis.strata.loci import distance_from, loci
 from symobs.tasks.analysis.strata.rank_cases import outside
 from symobs.tasks.analysis.strata.rank_stratification import maximal_minors
@@ -31,12 +31,13 @@ from symobs.tasks.analysis.strata.strata import region_of, solved
 from symobs.tasks.design.full_order.state_feedback import StateFeedbackDesign
 from symobs.tasks.design.gain.gain_cases import design_of, places_where
 from symobs.tasks.design.gain.gain_design import letters_of
+from symobs.tasks.design.gain.gain_kind import AssignedGain
 from symobs.tasks.result import Case, Result, choose, method, poles_of, task
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
-    from symobs.system.specification import DesiredPolynomial, Name, Poles, PolynomialText
+    from symobs.system.specification import Name, Poles, PolynomialText
 
 #: What is reported of the feedback of plant and integrator.
 _REPORTED = ("poles", "stable", "stable_if", "fixed_modes", "family")
@@ -53,6 +54,15 @@ class IntegralAction(Result):
     loop: StateFeedbackDesign
 
     task: ClassVar[str] = "integral_action"
+    answered_by = ("K", "k_I")
+    gains = ("K", "k_I")
+    gains_are_one = True
+    letters = {
+        "K": "K",
+        "k_I": "k_I",
+        "polynomial": "chi_cl",
+        "closed_loop_matrix": "A_cl",
+    }
 
     @classmethod
     def of(cls, plant: StateSpace, desired: DesiredPolynomial, method_name: str) -> Self:
@@ -74,6 +84,29 @@ class IntegralAction(Result):
             "w": left.select(range(left.shape[0]), [0]).T if left.shape[1] else None,
         }
         return cls(plant, method_name, answer, loop)
+
+    def with_gains(self, gains: Mapping[str, Matrix]) -> Self:
+        """Return the design with other gains; one that is not given stays."""
+        design = self.loop.with_answer(self.loop.letter, self._whole(gains))
+        return self.of_loop(self.plant, design, self.method)
+
+    def following_from(self, gains: Mapping[str, Matrix]) -> Self:
+        """Return the design of given gains; one that is not given stays."""
+        given = self.loop.of_given(self.loop.plant, self._whole(gains))
+        placed = DesiredPolynomial(self.plant.variable, (given.answer["polynomial"],))
+        design = replace(given, kind=AssignedGain(placed))
+        return self.of_loop(self.plant, design, self.method)
+
+    def design_of(self, gain: str) -> StateFeedbackDesign:  # noqa: ARG002 - one for both
+        """Return the feedback of plant and integrator together."""
+        return self.loop
+
+    def _whole(self, gains: Mapping[str, Matrix]) -> Matrix:
+        first, second = (gains.get(name, self.answer[name]) for name in self.gains)
+        if first is None or second is None:
+            message = "there are no such gains"
+            raise CertificateRejected(message, repair="please report this: it is a bug of symobs")
+        return Matrix.block([[first, -second]])
 
     def claims(self) -> Iterator[Claim]:
         """Yield the polynomial of the closed loop, that it is at rest where y = r, and the rank of [A B; C D]."""

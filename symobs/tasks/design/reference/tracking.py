@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from symobs.system.specification import MatrixText, Name, Poles, PolynomialText
     from symobs.tasks.analysis.strata.strata import Place
     from symobs.tasks.design.compensator.output_feedback import OutputFeedback
+    from symobs.tasks.design.gain.gain_design import GainDesign
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -44,6 +45,18 @@ class TrackingDesign(Result):
     start: Matrix | None
 
     task: ClassVar[str] = "tracking"
+    answered_by = ("K_d",)
+    gains = ("K", "L")
+    claimed = ("K_d",)
+    letters = {
+        "K": "K",
+        "K_d": "K_d",
+        "L": "L",
+        "error_matrix": "A_e",
+        "polynomial": "chi_cl",
+    }
+    panels = ("plane",)
+    cards = ("K", "K_d", "L")
 
     @classmethod
     def of(cls, loop: OutputFeedback, reference: Matrix, start: Matrix | None, method_name: str) -> Self:
@@ -65,6 +78,20 @@ class TrackingDesign(Result):
             index = next(i for i in range(free.shape[0]) if not free.select([i], range(free.shape[1])).is_zero)
             answer["w"] = left.select(range(B.shape[0]), [index]).T
         return cls(loop.plant, method_name, answer, loop, reference, start)
+
+    def with_gains(self, gains: Mapping[str, Matrix]) -> Self:
+        """Return the design whose loop has other gains."""
+        loop = self.loop.with_gains(gains)
+        return self.of(loop, self.reference, self.start, self.method)
+
+    def following_from(self, gains: Mapping[str, Matrix]) -> Self:
+        """Return the design whose loop has given gains."""
+        loop = self.loop.following_from(gains)
+        return self.of(loop, self.reference, self.start, self.method)
+
+    def design_of(self, gain: str) -> GainDesign:
+        """Return the design of one half of the loop."""
+        return self.loop.design_of(gain)
 
     @property
     def has_reduced_observer(self) -> bool:

@@ -10,6 +10,7 @@ import sympy as sp
 
 from symobs.applications.checking import Checked, check
 from symobs.applications.checking.judgement.parts import asked_of
+from symobs.tasks.result import result_type
 from tests.support.paths import ROOT
 from tests.support.problems.answered import SERVO, S, text
 
@@ -185,9 +186,10 @@ def test_what_each_task_asks_for() -> None:
     rows = [row.split() for row in asked.split(";")]
     assert len(rows) == 27
     for task, *names in rows:
-        found = SimpleNamespace(task=task, fields=dict.fromkeys(names, 1))
+        kind = result_type(task)
+        found = SimpleNamespace(answered_by=kind.answered_by, fields=dict.fromkeys(names, 1))
         assert asked_of(found) == tuple(names)  # type: ignore[arg-type]
-        assert asked_of(SimpleNamespace(task=task, fields={})) == ("verdict",)  # type: ignore[arg-type]
+        assert asked_of(SimpleNamespace(answered_by=kind.answered_by, fields={})) == ("verdict",)  # type: ignore[arg-type]
 
 
 def test_a_gain_that_is_right_on_a_smaller_domain_says_where_it_is_not() -> None:

@@ -9,9 +9,10 @@ import pytest
 import symobs
 from symobs import StateSpace
 from symobs.applications.checking import Checked, check
-from symobs.applications.checking.judgement import judge
 from symobs.ground.errors import NotShown
 from symobs.problem import read
+from symobs.tasks.design.compensator.output_feedback import OutputFeedback
+from symobs.tasks.design.reference.integral_action import IntegralAction
 from tests.support.paths import ROOT
 from tests.support.problems.answered import SERVO
 
@@ -147,10 +148,10 @@ def test_a_gain_whose_claim_is_too_large_is_left_to_a_human(monkeypatch: pytest.
     def raising(*_: object) -> None:
         raise NotShown("too large")
 
-    monkeypatch.setattr(judge, "with_gain", raising)
+    monkeypatch.setattr(OutputFeedback, "with_gains", raising)
     part = judged(SERVO, {"L": "[19; 82]"})["L"]
     assert (part.verdict, part.credit, part.reason, part.given) == ("undecided", None, "too large", "[19; 82]")
-    monkeypatch.setattr(judge, "with_gains", raising)
+    monkeypatch.setattr(IntegralAction, "with_gains", raising)
     assert judged(TWO_INTEGRALS, {"K": "[3 1; 0 3]", "k_I": "[2 0; 0 2]"})["K"].verdict == "undecided"
 
 
@@ -161,7 +162,7 @@ def test_where_nothing_follows_from_a_wrong_gain_the_rest_is_wrong(
     def raising(*_: object) -> None:
         raise error("nothing follows")
 
-    monkeypatch.setattr(judge, "from_gains", raising)
+    monkeypatch.setattr(OutputFeedback, "following_from", raising)
     found = judged(SERVO, {"L": "[19; 82]", "F": "1/s"})
     assert [part.verdict for part in found.values()] == ["wrong", "wrong"]
 

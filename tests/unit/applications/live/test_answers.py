@@ -21,9 +21,9 @@ from symobs.applications.live import answer
 from symobs.applications.live.assets import MOST_BYTES
 from symobs.applications.live.links import SHORT
 from symobs.applications.live.request import parsed
-from symobs.applications.live.views import VIEWS
 from symobs.pages.formats.json import result_object
 from symobs.problem import validate
+from symobs.tasks.result import result_type, tasks
 from tests.support.sampling import every
 from tests.support.tools.command_line import EXAMPLES, SAFETY, environment
 
@@ -418,7 +418,8 @@ def test_the_start_names_tasks_and_examples() -> None:
     assert {"compensator", "observer"} <= found["tasks"].keys()
     names = {example["name"] for example in found["examples"]}
     assert "output_feedback_servo" in names
-    assert VIEWS.keys() - {"controllability"} <= {example["task"] for example in found["examples"]}
+    panelled = {name for name in tasks() if result_type(name).panels}
+    assert panelled - {"controllability"} <= {example["task"] for example in found["examples"]}
     for example in found["examples"]:
         told = dict(parse_qsl(example["link"]))
         assert told.pop("task") == example["task"]

@@ -8,7 +8,7 @@ import pytest
 
 from symobs.applications.live import answer
 from symobs.applications.live.assets import ASSETS, script, words
-from symobs.applications.live.views import VIEWS
+from symobs.applications.live.views import pole_sets
 from symobs.formula.phrases.languages import languages
 from symobs.tasks.result import tasks
 from tests.support.paths import ROOT
@@ -32,7 +32,7 @@ def test_every_word_that_is_shown_is_there_in_every_language() -> None:
 
 
 def test_no_word_is_kept_that_is_not_shown() -> None:
-    labels = {pole.label for view in VIEWS.values() for pole in view.sets}
+    labels = {pole.label for name in tasks() for pole in pole_sets(name)}
     known = {*labels, *(f"{label}s" for label in labels)}
     assert {"verdict_", "case_", "point_", "pole_of_", "detail_", "kind_", "save_", "task_", "field_"} == set(MADE)
     for key in words()["en"]:

@@ -1,0 +1,54 @@
+"""What checking, the screen, variants and export ask of a task: it stands on the type of its results, and nowhere else."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, ClassVar, Self
+
+from symobs.tasks.result.output_methods import OutputMethods
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from symobs.exact import Matrix
+
+
+class TaskTraits(OutputMethods):
+    """The fields of a task that are asked for, its gains, its letters, and what follows from other gains."""
+
+    #: The fields that answer the task; none means its verdict.
+    answered_by: ClassVar[tuple[str, ...]] = ()
+    #: The gains: each is right where its claim holds, those that are one only together, and the other fields follow.
+    gains: ClassVar[tuple[str, ...]] = ()
+    gains_are_one: ClassVar[bool] = False
+    #: Fields besides gains that many values meet, given the gains: their claim decides.
+    claimed: ClassVar[tuple[str, ...]] = ()
+    #: A field A − L C, or T A − L C, from which a gain L follows.
+    shows_gain: ClassVar[str] = ""
+    #: Fields that are right in many coordinates.
+    in_coordinates: ClassVar[tuple[str, ...]] = ()
+    #: What a page calls a function of time, without spaces and signs of products, and its field.
+    functions_of_time: ClassVar[Mapping[str, str]] = {}
+    #: What a field with a card is called, a letter, det O or A - B K; the cards open at first, all where none are named.
+    letters: ClassVar[Mapping[str, str]] = {}
+    cards: ClassVar[tuple[str, ...]] = ()
+    #: What the screen shows above the cards.
+    panels: ClassVar[tuple[str, ...]] = ()
+
+    def with_answer(self, name: str, value: object) -> Self:
+        """Return the same result with one answer replaced; raises `CertificateRejected` unless it holds too."""
+        raise NotImplementedError
+
+    def with_gains(self, gains: Mapping[str, Matrix]) -> Self:
+        """Return the result with other gains; raises `CertificateRejected` unless they meet their claim."""
+        found = self
+        for name, gain in gains.items():
+            found = found.with_answer(name, gain)
+        return found
+
+    def following_from(self, gains: Mapping[str, Matrix]) -> Self:  # noqa: ARG002 - for those that have gains
+        """Return what follows from given gains, wherever they place the poles."""
+        return self
+
+    def design_of(self, gain: str) -> Any:
+        """Return the design that owns the claim of a gain."""
+        raise KeyError(gain)
