@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, TypeAlias, assert_never
 
 from symobs.exact import Ideal, Matrix, Scalar, product_of
 from symobs.formula.phrases import ASSERTS, NAMING
-from symobs.formula.phrases.spoken import SPOKEN, StateChoice
+from symobs.formula.phrases.spoken import SPOKEN
 from symobs.formula.tree import (
     Apply,
     Conjunction,
@@ -60,11 +60,10 @@ from symobs.proof.derivation.steps import (
     literals,
 )
 from symobs.proof.derivation.wording_check import (
-    are_added,
+    Said,
     fits,
     formula_in,
     reject_other_map,
-    reject_other_slots,
     rests,
     with_limit,
 )
@@ -212,14 +211,11 @@ def _owed(sentence: Sentence, step: Step, environment: Environment) -> None:
     asserted = ASSERTS.get(sentence.key, ())
     if not {fact.name for fact in facts if isinstance(fact, Predicate)}.issuperset(asserted):
         reject(f"{sentence.key}, which rests on {', '.join(asserted)},")
-    roots = (slot for _, slot in sentence.slots if isinstance(slot, Roots))
-    if not rests(sentence.key, (*facts, *roots), environment):
-        reject(f"{sentence.key}, which rests on another fact,")
-    if not all(are_added(slot, facts) for _, slot in sentence.slots if isinstance(slot, StateChoice)):
-        reject(f"{sentence.key}, of other states,")
     introduced = step.relation if isinstance(step, Define) else None
+    shown = step.relations if isinstance(step, Equal) else ()
+    if not rests(sentence.key, Said((*facts, *shown), environment, dict(sentence.slots), introduced)):
+        reject(f"{sentence.key}, which rests on another fact, number or equation,")
     reject_other_map(sentence, introduced, environment)
-    reject_other_slots(sentence, introduced, environment)
 
 
 def _about_letters(formula: Formula, environment: Environment) -> None:

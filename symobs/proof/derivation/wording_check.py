@@ -2,51 +2,88 @@
 
 A pair of poles overshoots by exp(−π σ/ω), and by no other number below a bound; a pair is observable because the rank is
 that of a matrix of full rank, and not because of 1 = 1.  Which sentence owes what is declared beside its words, in the
-`DEMANDS` of `phrases`; what an obligation means is defined here, without a name of any phrase.
+`DEMANDS` of `phrases`; what an obligation means is defined here, without a name of any phrase.  It is a name, with the
+letters it is about, `observable C A` or of the dual `observable Bᵀ Aᵀ`; what it asserts of them is evaluated where the
+sentence stands.
 """
 
 from __future__ import annotations
 
+from dataclasses import field, replace
 from fractions import Fraction
 from itertools import dropwhile, takewhile
 from typing import TYPE_CHECKING, Any, TypeAlias
 
-from symobs.exact import Matrix, Scalar, from_coefficients, rank, unit_rows
+from symobs.exact import Ideal, Scalar, echelon, from_coefficients, independent_rows, rank, unit_rows
 from symobs.exact.core.generators import PI, function
 from symobs.formula.phrases import DEMANDS
-from symobs.formula.phrases.spoken import Counted
+from symobs.formula.phrases.spoken import Counted, StateChoice
 from symobs.formula.tree import (
     Apply,
+    At,
     Block,
     Derivative,
+    Evaluated,
     Exact,
     Formula,
+    HoldsExactlyWhere,
+    Identity,
     Letter,
     Literal,
     Negative,
+    Power,
     Predicate,
     Product,
+    Quotient,
     Relation,
     Roots,
+    Sum,
     SymbolList,
-    agree,
+    Transpose,
     evaluate,
+    letters,
 )
+from symobs.formula.tree.calculus import TIME
 from symobs.formula.tree.plain_text import plain
-from symobs.proof.certificate.claims import as_scalar, verify
+from symobs.ground.dataclass import dataclass
+from symobs.proof.certificate.claims import UNREADABLE, as_scalar, verify
 from symobs.proof.certificate.pointwise import Pointwise
 from symobs.proof.derivation.facts.properties import PREDICATES
 from symobs.proof.derivation.facts.rejection import reject
-from symobs.proof.derivation.steps import everything_in
+from symobs.proof.derivation.steps import everything_in, literals
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
-    from symobs.formula.phrases.spoken import StateChoice
     from symobs.formula.tree import Environment, Fact
     from symobs.proof.derivation.steps import Sentence
 
 _Slots: TypeAlias = "Mapping[str, Formula | Fact | Counted | StateChoice | str]"
+
+#: The name under which it is remembered that stability is meant in the sense of Lyapunov from here on.
+_WEAKER = "stable in the sense of Lyapunov"
+
+
+@dataclass(frozen=True)
+class Said:
+    """Where a sentence stands: the facts and relations of its step, and what fills its slots."""
+
+    facts: Sequence[Fact]
+    environment: Environment
+    slots: _Slots = field(default_factory=dict)
+    introduced: Relation | None = None
+
+    def subjects(self, *names: str) -> list[Formula]:
+        """Return what has one of these properties, or any, also what has it exactly where something holds."""
+        facts = [fact.property if isinstance(fact, HoldsExactlyWhere) else fact for fact in self.of(*_PROPERTIES)]
+        return [fact.subject for fact in facts if isinstance(fact, Predicate) and (not names or fact.name in names)]
+
+    def of(self, *kinds: type) -> list[Any]:
+        """Return the facts and the slots of some kinds."""
+        return [part for part in (*self.facts, *self.slots.values()) if isinstance(part, kinds)]
+
+
+_PROPERTIES = (Predicate, HoldsExactlyWhere)
 
 
 def _one_higher(value: Fraction) -> Fraction:
@@ -82,133 +119,340 @@ def _rank(*, is_full: bool, everywhere: bool = False) -> Callable[[Relation, Env
     return is_said
 
 
-def _of_pair(letter: str, **says: bool) -> Callable[[Relation, Environment], bool]:
+def _of_pair(**says: bool) -> Callable[..., bool]:
     """Return the check of a rank that is said of a pair: it is that of the pair's own test matrix."""
     is_such = _rank(**says)
 
-    def is_said(relation: Relation, environment: Environment) -> bool:
-        return is_such(relation, environment) and _is_test_matrix(letter, relation, environment)
+    def is_said(relation: Relation, environment: Environment, row: str, of: str) -> bool:
+        matrix, stack = _ranked(relation), _stack(row, of, environment)
+        if matrix is None or not is_such(relation, environment):
+            return False
+        return _holds(environment, Transpose(matrix) if row.endswith("ᵀ") else matrix, "=", stack)
 
     return is_said
 
 
-def _is_test_matrix(letter: str, relation: Relation, environment: Environment) -> bool:
-    """Return whether the matrix whose rank is said is [C; CA; …; CAⁿ⁻¹], or [B, AB, …, Aⁿ⁻¹B]."""
-    matrix, pair = _ranked(relation), _pair(letter, environment)
-    if matrix is None or pair is None:
+# -- what is asserted, in letters --------------------------------------------------------------------------------------
+
+
+def _letter(text: str) -> Formula:
+    """Return the formula of a letter, or of its transpose."""
+    return Transpose(Letter(text[:-1])) if text.endswith("ᵀ") else Letter(text)
+
+
+def _number(value: int) -> Formula:
+    return Literal(Scalar.of(value))
+
+
+def _sizes(of: str, environment: Environment) -> tuple[int, int]:
+    """Return the rows and columns of a letter; raises TypeError where it stands for no matrix."""
+    return evaluate(_letter(of), environment, Exact(environment)).shape  # type: ignore[no-any-return]
+
+
+def _holds(environment: Environment, left: Formula, operator: str, right: Formula) -> bool:
+    same = operator == "=" and left == right
+    return same or verify(Relation((left, right), (operator,)), environment)[0] != ""
+
+
+def _vanishes(environment: Environment, formula: Formula) -> bool:
+    return _holds(environment, formula, "=", Product((_number(0), formula)))
+
+
+def _differs(environment: Environment, formula: Formula) -> bool:
+    """Return whether a formula is not 0: nowhere, or where that cannot be seen not everywhere."""
+    return _holds(environment, formula, "!==", Product((_number(0), formula)))
+
+
+def _stack(row: str, of: str, environment: Environment) -> Formula:
+    """Return [C; CA; …; CAⁿ⁻¹]; where A and C depend on time, each block is the last one times A plus its derivative."""
+    first, A, order = _letter(row), _letter(of), _sizes(of, environment)[0]
+    if environment.variable != TIME:
+        powers = [A, *(Power(A, k) for k in range(2, order))][: order - 1]
+        return Block(((first,), *((Product((first, power)),) for power in powers)))
+    blocks = [first]
+    while len(blocks) < order:
+        blocks.append(Sum((Product((blocks[-1], A)), Derivative(blocks[-1]))))
+    return Block(tuple((block,) for block in blocks))
+
+
+def _is_observable(said: Said, row: str, of: str) -> bool:
+    """Return whether the pair is observable for all parameters; where it varies, at almost every time."""
+    here, stack = said.environment, _stack(row, of, said.environment)
+    order = _sizes(of, here)[0]
+    if here.variable == TIME:
+        value = evaluate(stack, here, Exact(here))
+        rows = independent_rows(value, Ideal.where(here.relations))
+        return len(rows) == order and _differs(here, Apply("det", Literal(value.select(rows, range(order)))))
+    rank_is = Relation((Apply("rank", stack), _number(order)), ("=",))
+    return verify(rank_is, here)[0] != "" and _is_everywhere(rank_is, here)
+
+
+def _is_unobservable(said: Said, row: str, of: str) -> bool:
+    here = said.environment
+    stack = evaluate(_stack(row, of, here), here, Exact(here))
+    vectors = map(Literal, echelon(stack, Ideal.where(here.relations))[1])
+    return any(_vanishes(here, Product((Literal(stack), vector))) and _differs(here, vector) for vector in vectors)
+
+
+def _is_regular_at(relation: Relation, environment: Environment, row: str, of: str) -> bool:
+    """Return whether a relation is that the determinant of the test matrix at an instant is not 0."""
+    first, last = relation.members[0], relation.members[-1]
+    matrix = first.argument if isinstance(first, Apply) and first.function == "det" else first
+    if not isinstance(matrix, At) or matrix.name != TIME or (relation.operators[-1], last) != ("!=", _number(0)):
         return False
-    A, C = pair
-    found = evaluate(matrix, environment, Exact(environment))
-    X = found if letter == "C" else found.T
-    outputs, order = C.shape
-    if X.shape != (outputs * order, order):
+    return _holds(environment, matrix.operand, "=", _stack(row, of, environment))
+
+
+def _characteristic(of: str, environment: Environment) -> Formula:
+    """Return det(sI − A)."""
+    unknown = Product((Letter("s"), Identity(_sizes(of, environment)[0])))
+    return Apply("det", Sum((unknown, Negative(_letter(of)))))
+
+
+def _is_part(here: Environment, row: str, of: str, N: str, X: str) -> bool:
+    """Return whether the columns of N are independent, C N = 0 and A N = N X: they span unobservable states."""
+    basis = Letter(N)
+    moved, within = Product((_letter(of), basis)), Product((basis, Letter(X)))
+    independent = _holds(here, Apply("rank", basis), "=", _number(_sizes(N, here)[1]))
+    return independent and _vanishes(here, Product((_letter(row), basis))) and _holds(here, moved, "=", within)
+
+
+def _is_whole(here: Environment, row: str, of: str, N: str, X: str) -> bool:
+    """Return whether the columns of N are a basis of the unobservable subspace, on which A is X."""
+    seen = _sizes(N, here)[0] - _sizes(N, here)[1]
+    return _is_part(here, row, of, N, X) and _holds(here, Apply("rank", _stack(row, of, here)), "=", _number(seen))
+
+
+def _fixes(said: Said, row: str, of: str, N: str, X: str, phi: str) -> bool:
+    """Return whether no gain moves the modes told, and what is said of the quotient of φ by their polynomial is said of it.
+
+    A quotient that is a polynomial nowhere is φ's; one that is one nowhere but where a remainder vanishes is that of the
+    remainder.
+    """
+    here, fixed, wanted = said.environment, _characteristic(X, said.environment), _letter(phi)
+    told = [roots.polynomial for roots in said.of(Roots)]
+    told += [slot.formula for name, slot in said.slots.items() if name == "fixed" and isinstance(slot, Evaluated)]
+    rest = said.slots.get("rest")
+    if isinstance(rest, Evaluated):
+        whole = Quotient(Sum((wanted, Negative(rest.formula))), fixed)
+        if not _is(here, "polynomial", whole):
+            return False
+        wanted = rest.formula
+    return (
+        _is_part(here, row, of, N, X)
+        and all(_holds(here, polynomial, "=", fixed) for polynomial in told)
+        and all(_holds(here, Product((subject, fixed)), "=", wanted) for subject in said.subjects())
+    )
+
+
+def _is(here: Environment, name: str, formula: Formula) -> bool:
+    """Return whether a formula has a property, whatever the names of coefficients stand for."""
+    value = as_scalar(evaluate(formula, here, Exact(here)))
+    return PREDICATES[name](value, replace(here, coefficients={}), here.variable == "z")
+
+
+def _are_modes(said: Said, row: str, of: str, *letters_of: str) -> bool:
+    """Return whether the unobservable modes are the eigenvalues of X, and are those told."""
+    here, told = said.environment, [roots.polynomial for roots in said.of(Roots)]
+    return any(
+        N in here.values
+        and _is_whole(here, row, of, N, X)
+        and all(_holds(here, polynomial, "=", _characteristic(X, here)) for polynomial in told)
+        for N, X in zip(letters_of[::2], letters_of[1::2], strict=True)
+    )
+
+
+def _exhausts(said: Said, row: str, of: str, N: str, X: str, phi: str) -> bool:
+    """Return whether φ is the polynomial of modes that no gain moves."""
+    here = said.environment
+    return _is_part(here, row, of, N, X) and _holds(here, Letter(phi), "=", _characteristic(X, here))
+
+
+def _are_seen(said: Said, row: str, of: str, N: str, X: str) -> bool:
+    """Return whether a property is said of the polynomial of all observable modes."""
+    here, chi = said.environment, _characteristic(of, said.environment)
+    if N in here.values:
+        return _is_whole(here, row, of, N, X) and _are_about(said, Quotient(chi, _characteristic(X, here)))
+    full = _holds(here, Apply("rank", _stack(row, of, here)), "=", _number(_sizes(of, here)[0]))
+    return full and _are_about(said, chi)
+
+
+def _are_stable(said: Said, row: str, of: str, N: str, X: str, mu: str) -> bool:
+    """Return whether there are no unobservable modes, or all are stable, in the sense in which it is meant."""
+    here = said.environment
+    if N not in here.values:
+        return _is_observable(said, row, of)
+    told = said.subjects("stable")
+    stable = any(_holds(here, subject, "=", _characteristic(X, here)) for subject in told)
+    weaker = _WEAKER in here.values and Letter(mu) in said.subjects("marginal")
+    return _is_whole(here, row, of, N, X) and (stable or (weaker and _is_bounded(said, X, mu)))
+
+
+def _are_unstable(said: Said, row: str, of: str, N: str, X: str, mu: str) -> bool:
+    """Return whether an unobservable mode is not stable, in the sense in which it is meant."""
+    here, weaker = said.environment, _WEAKER in said.environment.values
+    told = said.subjects("beyond" if weaker else "unstable")
+    beyond = any(_holds(here, subject, "=", _characteristic(X, here)) for subject in told)
+    return _is_part(here, row, of, N, X) and (beyond or (weaker and _is_chained(said, X, mu)))
+
+
+def _is_bounded(said: Said, X: str, mu: str) -> bool:
+    """Return whether μ(X) = 0, and all repeated roots of μ are stable: modes on the boundary are semisimple."""
+    here = said.environment
+    factors = as_scalar(here.values[mu]).numerator.factors()[1]
+    repeated = [factor for factor, power in factors if power > 1 and factor.degree(here.variable)]
+    stable = all(_is(here, "stable", Literal(factor)) for factor in repeated)
+    return stable and _vanishes(here, Apply(f"{mu}_at", Letter(X)))
+
+
+def _is_chained(said: Said, X: str, mu: str) -> bool:
+    """Return whether μ(X) is not 0, though no root of χ/μ is stable: one of them is in a chain."""
+    here, zero = said.environment, Product((_number(0), Letter(X)))
+    left = as_scalar(evaluate(Quotient(_characteristic(X, here), Letter(mu)), here, Exact(here)))
+    factors = [factor for factor, _ in left.numerator.factors()[1] if factor.degree(here.variable)]
+    unstable = left.is_polynomial_in(here.variable) and all(_is(here, "unstable", Literal(f)) for f in factors)
+    return unstable and _holds(here, Apply(f"{mu}_at", Letter(X)), "!=", zero)
+
+
+def _are_unseen(said: Said, row: str, of: str, *, all_of_them: bool = False) -> bool:
+    """Return whether the vectors on which products end, transposed those with which they begin, are unobservable."""
+    here, products = said.environment, [fact.members[0] for fact in said.facts if isinstance(fact, Relation)]
+    ends = [product.factors for product in products if isinstance(product, Product)]
+    vectors = [
+        first.operand if isinstance(first, Transpose) and isinstance(first.operand, Literal) else last
+        for first, *_, last in ends
+    ]
+    stack = _stack(row, of, here)
+    for vector in vectors:
+        order, count = evaluate(vector, here, Exact(here)).shape
+        ranks = [(vector, count), (stack, order - count)] if all_of_them else []
+        whole = all(_holds(here, Apply("rank", matrix), "=", _number(value)) for matrix, value in ranks)
+        if not (whole and _vanishes(here, Product((stack, vector))) and _differs(here, vector)):
+            return False
+    return 0 < len(ends) == len(products)
+
+
+def _repairs(said: Said, row: str, of: str) -> bool:
+    """Return whether the facts are, set by set, that the test matrix has full rank with these states measured too."""
+    here, (choice,) = said.environment, said.of(StateChoice)
+    order, A = _sizes(of, here)[0], _letter(of)
+    for numbers, fact in zip(choice.sets, said.facts, strict=True):
+        rows = Literal(unit_rows(order, tuple(number - 1 for number in numbers)))
+        below = [rows, *(Product((rows, Power(A, k))) for k in range(1, order))]
+        wanted = Block(((_stack(row, of, here),), *((each,) for each in below)))
+        matrix = _ranked(fact) if isinstance(fact, Relation) else None
+        if matrix is None or not (_is_of_rank(fact, here, is_full=True) and _holds(here, matrix, "=", wanted)):
+            return False
+    return True
+
+
+def _vanishes_of(said: Said, *names: str) -> bool:
+    """Return whether the step has a product of these letters alone, the last one's columns independent, that is 0."""
+    basis = _letter(names[-1] if names[-1] in said.environment.values else "N")
+    here, relations = said.environment, said.of(Relation)
+    products = [first for first in (relation.members[0] for relation in relations) if isinstance(first, Product)]
+    wanted = {*names[:-1], *letters(basis)}
+    found = [each for each in products if letters(each) == wanted and next(literals(each), None) is None]
+    columns = Apply("rank", basis), _number(evaluate(basis, here, Exact(here)).shape[1])
+    return any(_vanishes(here, each) for each in found) and _holds(here, columns[0], "=", columns[1])
+
+
+def _annuls(said: Said, *names: str) -> bool:
+    """Return whether a row times a matrix is 0, the row is not, nor is its product with the matrices that follow."""
+    here, (row, *others) = said.environment, map(_letter, names)
+    left = [Product((row, other)) for other in others[1:]]
+    return _vanishes(here, Product((row, others[0]))) and all(_differs(here, each) for each in (row, *left))
+
+
+def _have_one_rank(said: Said, C: str, E: str, *, same: bool) -> bool:
+    """Return whether C E has the rank of E, at all parameters, or a lower one."""
+    here, image = said.environment, Product((_letter(C), _letter(E)))
+    ranks = Relation((Apply("rank", image), Apply("rank", _letter(E))), ("=" if same else "<",))
+    return verify(ranks, here)[0] != "" and (not same or _is_everywhere(ranks, here))
+
+
+def _are_duals(said: Said, *pairs: str) -> bool:
+    """Return whether one pair is (C, A), the other (B_dualᵀ, A_dualᵀ) up to the sign of A, and the ranks are theirs."""
+    here, (row, of, other, by) = said.environment, pairs
+    image, A = _letter(by), _letter(of)
+    ranks = [_ranked(Relation((part,), ())) for slot in said.of(Relation) for part in slot.members[:2]]
+    own = (
+        Transpose(_stack(row, of, here)),
+        _stack(row, of, here),
+        Transpose(_stack(other, by, here)),
+        _stack(other, by, here),
+    )
+    return (
+        _holds(here, _letter(row), "=", _letter(other))
+        and (_holds(here, image, "=", A) or _holds(here, image, "=", Negative(A)))
+        and len(ranks) == 2
+        and all(rank is not None and any(_holds(here, rank, "=", stack) for stack in own) for rank in ranks)
+    )
+
+
+def _sums(said: Said, letter: str, count: int | None = None) -> bool:
+    """Return whether a letter is Σ (Aᵀ)ᵏ Cᵀ C Aᵏ, or that of the dual, over so many powers: all n where none is given."""
+    return any(_is_sum(said.environment, letter, row, of, count) for row, of in (("C", "A"), ("Bᵀ", "Aᵀ")))
+
+
+def _is_sum(here: Environment, letter: str, row: str, of: str, count: int | None = None) -> bool:
+    if not {letter, row.rstrip("ᵀ")} <= here.values.keys():
         return False
-    first, above, below = (X.select(rows, range(order)) for rows in _blocks(outputs, outputs * order))
-    return _equal(first, C, environment) and _equal(below, above @ A, environment)
+    A, C, order = _letter(of), _letter(row), _sizes(of, here)[0]
+    powers = [Product((C, Power(A, k))) if k else C for k in range(order if count is None else count)]
+    return _holds(here, Letter(letter), "=", Sum(tuple(Product((Transpose(power), power)) for power in powers)))
 
 
-def _blocks(size: int, height: int) -> tuple[range, range, range]:
-    """Return the rows of the first block, of all blocks but the last, and of all but the first."""
-    return range(size), range(height - size), range(size, height)
-
-
-def _matrix(letter: str, environment: Environment) -> Matrix | None:
-    """Return the matrix that a letter stands for, None where it is not established or a number."""
-    value = environment.values.get(letter)
-    return value if isinstance(value, Matrix) else None
-
-
-def _pair(letter: str, environment: Environment) -> tuple[Matrix, Matrix] | None:
-    """Return (A, C), or (Aᵀ, Bᵀ), where its letters are established."""
-    A, other = _matrix("A", environment), _matrix(letter, environment)
-    if A is None or other is None:
-        return None
-    return (A, other) if letter == "C" else (A.T, other.T)
-
-
-def _sums_powers(letter: str, environment: Environment) -> bool:
-    """Return whether M = Σ (Aᵀ)ᵏ Cᵀ C Aᵏ with all n powers, as its theorem demands."""
-    pair, M = _pair(letter, environment), _matrix("M", environment)
-    if pair is None or M is None:
-        return False
-    A, row = pair
-    total = row.T @ row
-    for _ in range(A.shape[0] - 1):
-        row = row @ A
-        total = total + row.T @ row
-    return _equal(M, total, environment)
-
-
-def _shares_kernel(letter: str, environment: Environment) -> bool:
+def _shares_kernel(said: Said, row: str, of: str) -> bool:
     """Return whether W has the kernel of M, the sum over n powers: as an integral, or as a sum over all steps.
 
     An integral over any time has it; a sum has it where it solves W − AᵀWA = CᵀC, and not over every number of steps.
     """
-    pair, W = _pair(letter, environment), _matrix("W", environment)
-    if pair is None or not _sums_powers(letter, environment):
+    here, A, C, W = said.environment, _letter(of), _letter(row), Letter("W")
+    if not _is_sum(here, "M", row, of):
         return False
-    A, C = pair
-    return environment.variable != "z" or (W is not None and _equal(A.T @ W @ A - W, -(C.T @ C), environment))
+    moved = Sum((Product((Transpose(A), W, A)), Negative(W)))
+    return here.variable != "z" or _holds(here, moved, "=", Negative(Product((Transpose(C), C))))
 
 
-def _is_nonsingular(environment: Environment) -> bool:
-    """Return whether det W ≠ 0 here."""
-    letter = Letter("W")
-    return "W" in environment.values and _is_true(Apply("det", letter), "!=", 0, environment)
+def _is_nonsingular(said: Said, letter: str) -> bool:
+    return _holds(said.environment, Apply("det", Letter(letter)), "!=", _number(0))
 
 
-def _spans_kernel(environment: Environment) -> bool:
+def _spans_kernel(said: Said) -> bool:
     """Return whether the columns of v (or N) are a basis of the kernel of W."""
-    W, N = _matrix("W", environment), _matrix("v" if "v" in environment.values else "N", environment)
-    if W is None or N is None:
-        return False
-    order, vectors = N.shape
-    return (
-        _equal(W @ N, N * 0, environment)
-        and _is_true(Apply("rank", Literal(N)), "=", vectors, environment)
-        and _is_true(Apply("rank", Letter("W")), "=", order - vectors, environment)
+    here = said.environment
+    W, N = Letter("W"), Letter("v" if "v" in here.values else "N")
+    order, vectors = _sizes(N.name, here)
+    ranks = ((W, order - vectors), (N, vectors))
+    whole = all(_holds(here, Apply("rank", matrix), "=", _number(value)) for matrix, value in ranks)
+    return whole and _vanishes(here, Product((W, N)))
+
+
+def _has_rank(said: Said, *, is_full: bool) -> bool:
+    return any(
+        _is_of_rank(fact, said.environment, is_full=is_full) for fact in said.facts if isinstance(fact, Relation)
     )
 
 
-def _equal(left: Matrix, right: Matrix, environment: Environment) -> bool:
-    """Return whether two matrices are equal, if need be modulo what is known here."""
-    if agree(left, right, Exact(environment)):
-        return True
-    return (
-        bool(environment.relations) and verify(Relation((Literal(left), Literal(right)), ("=",)), environment)[0] != ""
-    )
+def _are_about(said: Said, formula: Formula, *names: str) -> bool:
+    """Return whether all properties with these names are said of a formula, and there are some."""
+    found = said.subjects(*names)
+    return bool(found) and all(_holds(said.environment, subject, "=", formula) for subject in found)
 
 
-def _is_true(formula: Formula, operator: str, value: int, environment: Environment) -> bool:
-    return verify(Relation((formula, Literal(Scalar.of(value))), (operator,)), environment)[0] != ""
+def _is_of_loop(said: Said) -> bool:
+    """Return whether the stability of the loop's polynomial φ_c φ_o is among the facts."""
+    here, loop = said.environment, Product((Letter("phi_c"), Letter("phi_o")))
+    return any(_holds(here, subject, "=", loop) for subject in said.subjects("stable"))
 
 
-def _properties(facts: Sequence[Fact]) -> set[str]:
-    return {fact.name for fact in facts if isinstance(fact, Predicate)}
-
-
-def _has_rank(facts: Sequence[Fact], environment: Environment, *, is_full: bool) -> bool:
-    return any(_is_of_rank(fact, environment, is_full=is_full) for fact in facts if isinstance(fact, Relation))
-
-
-def _has_test_rank(letter: str, facts: Sequence[Fact], environment: Environment, *, is_full: bool = True) -> bool:
-    is_said = _of_pair(letter, is_full=is_full)
-    return any(is_said(fact, environment) for fact in facts if isinstance(fact, Relation))
-
-
-def _is_of_loop(fact: Predicate, environment: Environment) -> bool:
-    """Return whether a predicate is the stability of the loop's polynomial φ_c φ_o."""
-    if fact.name != "stable" or not {"phi_c", "phi_o"} <= environment.values.keys():
-        return False
-    exact, loop = Exact(environment), Product((Letter("phi_c"), Letter("phi_o")))
-    return agree(evaluate(fact.subject, environment, exact), evaluate(loop, environment, exact), exact)
-
-
-def _is_defective(facts: Sequence[Fact], environment: Environment) -> bool:
+def _is_defective(said: Said) -> bool:
     """Return whether a pole of φ_c is met more often than a matrix X lacks in rank, φ_c(s + pole) being det(sI − X)."""
-    ranked = [_ranked(fact) for fact in facts if isinstance(fact, Relation)]
+    ranked = [_ranked(fact) for fact in said.facts if isinstance(fact, Relation)]
     matrices = [formula for formula in ranked if formula is not None]
-    poles = [root.centre for fact in facts if isinstance(fact, Roots) for root in fact.values]
+    poles = [root.centre for told in said.of(Roots) for root in told.values]
+    environment = said.environment
     if len(matrices) != 1 or len(poles) != 1 or "phi_c" not in environment.values:
         return False
     (matrix,), (pole,), variable = matrices, poles, environment.variable
@@ -253,46 +497,6 @@ def _is_of_rank(relation: Relation, environment: Environment, *, is_full: bool) 
     return ranks[0] < full and (relation.operators, ranks[1:]) in [(("=",), []), (("=", "<"), [full])]
 
 
-#: What every slot of a sentence must be: a relation of which this is true.
-_OF_SLOTS: dict[str, Callable[[Relation, Environment], bool]] = {
-    "says_rank_full": _rank(is_full=True),
-    "says_rank_low": _rank(is_full=False),
-    "says_observable": _of_pair("C", is_full=True),
-    "says_controllable": _of_pair("B", is_full=True),
-    "says_unobservable": _of_pair("C", is_full=False),
-    "says_uncontrollable": _of_pair("B", is_full=False),
-    "says_unobservable_everywhere": _of_pair("C", is_full=False, everywhere=True),
-    "says_uncontrollable_everywhere": _of_pair("B", is_full=False, everywhere=True),
-    "says_decay": _exponential(lambda of: -of["sigma_d"] * of["T_s"]),
-    "says_overshoot": _exponential(lambda of: -Scalar.symbol(PI) * of["sigma_d"] / of["omega_d"]),
-    "says_overshoot_above": _exponential(
-        lambda of: -Scalar.symbol(PI) / _one_higher((of["omega_d"] / of["sigma_d"]).fraction())
-    ),
-}
-
-#: What must be among the facts of the step in which a sentence stands.
-_OF_FACTS: dict[str, Callable[[Sequence[Fact], Environment], bool]] = {
-    "needs_rank_full": lambda facts, environment: _has_rank(facts, environment, is_full=True),
-    "needs_unobservable": lambda facts, environment: _has_test_rank("C", facts, environment, is_full=False),
-    "needs_uncontrollable": lambda facts, environment: _has_test_rank("B", facts, environment, is_full=False),
-    "needs_observable": lambda facts, environment: _has_test_rank("C", facts, environment),
-    "needs_controllable": lambda facts, environment: _has_test_rank("B", facts, environment),
-    "sums_powers": lambda _, environment: any(_sums_powers(letter, environment) for letter in ("C", "B")),
-    "shares_kernel_observability": lambda _, environment: _shares_kernel("C", environment),
-    "shares_kernel_controllability": lambda _, environment: _shares_kernel("B", environment),
-    "needs_nonsingular": lambda _, environment: _is_nonsingular(environment),
-    "spans_kernel": lambda _, environment: _spans_kernel(environment),
-    "needs_modes_stable": lambda facts, environment: (
-        bool(_properties(facts) & {"stable", "marginal"}) or _has_rank(facts, environment, is_full=True)
-    ),
-    "needs_modes_unstable": lambda facts, _: "unstable" in _properties(facts),
-    "needs_loop_stable": lambda facts, environment: any(
-        _is_of_loop(fact, environment) for fact in facts if isinstance(fact, Predicate)
-    ),
-    "needs_pole_defective": _is_defective,
-}
-
-
 def _degree(relation: Relation | None, environment: Environment) -> int | None:
     """Return the degree of the polynomial that a definition introduces, None where there is no such."""
     if relation is None:
@@ -301,14 +505,14 @@ def _degree(relation: Relation | None, environment: Environment) -> int | None:
     return len(value.coefficients(environment.variable)) - 1
 
 
-def _counts_degree(slots: _Slots, relation: Relation | None, environment: Environment) -> bool:
-    return slots["count"] == Counted("number", _degree(relation, environment) or 0)
+def _counts_degree(said: Said) -> bool:
+    return said.slots["count"] == Counted("number", _degree(said.introduced, said.environment) or 0)
 
 
-def _counts_dominant(slots: _Slots, relation: Relation | None, environment: Environment) -> bool:
+def _counts_dominant(said: Said) -> bool:
     """Return whether beside the pair −σ ± iω the nearest root has the real part −factor σ."""
-    factor = slots["factor"]
-    if not _counts_degree(slots, relation, environment) or relation is None or not isinstance(factor, Counted):
+    factor, relation, environment = said.slots["factor"], said.introduced, said.environment
+    if not _counts_degree(said) or relation is None or not isinstance(factor, Counted):
         return False
     whole = as_scalar(evaluate(relation.members[0], environment, Exact(environment)))
     sigma, omega = (as_scalar(environment.values[name]) for name in ("sigma_d", "omega_d"))
@@ -320,29 +524,83 @@ def _counts_dominant(slots: _Slots, relation: Relation | None, environment: Envi
     return factor == Counted("number", factor.count) and len(left) < len(moved) and is_stable
 
 
-def _counts_names(slots: _Slots, _: Relation | None, __: Environment) -> bool:
-    names = slots["names"]
-    return isinstance(names, SymbolList) and slots["vary"] == Counted("varies", len(names.names))
+def _counts_names(said: Said) -> bool:
+    names = said.slots["names"]
+    return isinstance(names, SymbolList) and said.slots["vary"] == Counted("varies", len(names.names))
 
 
-def _substitutes_law(slots: _Slots, _: Relation | None, __: Environment) -> bool:
+def _counts_steps(said: Said) -> bool:
+    steps = said.slots["steps"]
+    return isinstance(steps, Counted) and steps == Counted("step", steps.count) and _sums(said, "W", steps.count)
+
+
+def _substitutes_law(said: Said) -> bool:
     """Return whether the slots are equations for the input and for the rate of the estimate."""
-    law, rate = slots["law"], slots["rate"]
-    firsts = [slot.members[0] for slot in (law, rate) if isinstance(slot, Relation)]
+    firsts = [slot.members[0] for slot in (said.slots["law"], said.slots["rate"]) if isinstance(slot, Relation)]
     return firsts == [Letter("u"), Derivative(Letter("x_hat"))]
 
 
-#: What the slots of a sentence must be together, some of them by the definition in which it stands.
-_OF_STEP: dict[str, Callable[[_Slots, Relation | None, Environment], bool]] = {
+#: What every slot of a sentence must be: a relation of which this is true.
+_OF_SLOTS: dict[str, Callable[..., bool]] = {
+    "says_rank_full": _rank(is_full=True),
+    "says_rank_low": _rank(is_full=False),
+    "says_observable": _of_pair(is_full=True),
+    "says_observable_everywhere": _of_pair(is_full=True, everywhere=True),
+    "says_unobservable": _of_pair(is_full=False),
+    "says_unobservable_everywhere": _of_pair(is_full=False, everywhere=True),
+    "says_regular_at": _is_regular_at,
+    "says_decay": _exponential(lambda of: -of["sigma_d"] * of["T_s"]),
+    "says_overshoot": _exponential(lambda of: -Scalar.symbol(PI) * of["sigma_d"] / of["omega_d"]),
+    "says_overshoot_above": _exponential(
+        lambda of: -Scalar.symbol(PI) / _one_higher((of["omega_d"] / of["sigma_d"]).fraction())
+    ),
+}
+
+#: What must be so where a sentence stands, of its facts, its slots and the letters that the obligation names.
+_OF_STEP: dict[str, Callable[..., bool]] = {
+    "observable": _is_observable,
+    "unobservable": _is_unobservable,
+    "unseen": _are_unseen,
+    "spans_unseen": lambda said, *names: _are_unseen(said, *names, all_of_them=True),
+    "repairs": _repairs,
+    "modes": _are_modes,
+    "exhausts": _exhausts,
+    "seen": _are_seen,
+    "bounded": _is_bounded,
+    "chained": _is_chained,
+    "modes_stable": _are_stable,
+    "modes_unstable": _are_unstable,
+    "fixes": _fixes,
+    "eigenvalues_of": lambda said, of: all(
+        _holds(said.environment, told.polynomial, "=", _characteristic(of, said.environment)) for told in said.of(Roots)
+    ),
+    "spectrum": lambda said, of: _are_about(said, _characteristic(of, said.environment)),
+    "about": lambda said, letter, *names: _are_about(said, Letter(letter), *names),
+    "zero": lambda said, *names: any(
+        name in said.environment.values and _vanishes(said.environment, Letter(name)) for name in names
+    ),
+    "vanishes": _vanishes_of,
+    "annuls": _annuls,
+    "one_rank": lambda said, *names: _have_one_rank(said, *names, same=True),
+    "lower_rank": lambda said, *names: _have_one_rank(said, *names, same=False),
+    "nonsingular": _is_nonsingular,
+    "duals": _are_duals,
+    "sums_powers": lambda said: _sums(said, "M"),
+    "shares_kernel": _shares_kernel,
+    "spans_kernel": _spans_kernel,
+    "needs_rank_full": lambda said: _has_rank(said, is_full=True),
+    "loop_stable": _is_of_loop,
+    "pole_defective": _is_defective,
     "counts_degree": _counts_degree,
     "counts_dominant": _counts_dominant,
     "counts_names": _counts_names,
+    "counts_steps": _counts_steps,
     "substitutes_law": _substitutes_law,
-    "introduces_degree_one": lambda _, relation, environment: _degree(relation, environment) == 1,
+    "introduces_degree_one": lambda said: _degree(said.introduced, said.environment) == 1,
 }
 
-#: Sentences that set the limit to which a boundary is moved, and the name under which it is remembered.
-_SETS = {"sets_margin": "sought margin", "sets_radius": "sought radius"}
+#: Sentences that set the limit to which a boundary is moved, or what stability means, and the name of what is remembered.
+_SETS = {"sets_margin": "sought margin", "sets_radius": "sought radius", "sets_meaning": _WEAKER}
 
 #: What the definition in which a sentence stands must apply: the slot, and the limit that it must move the boundary to.
 _APPLIES: dict[str, tuple[str, str]] = {
@@ -351,13 +609,20 @@ _APPLIES: dict[str, tuple[str, str]] = {
     "applies_image": ("image", ""),
 }
 
-#: Every obligation that a phrase may declare in its `DEMANDS`.
-OBLIGATIONS = frozenset({*_OF_SLOTS, *_OF_FACTS, *_OF_STEP, *_SETS, *_APPLIES})
+#: Every obligation that a phrase may declare in its `DEMANDS`, several of them parted by commas.
+OBLIGATIONS = frozenset({*_OF_SLOTS, *_OF_STEP, *_SETS, *_APPLIES})
+
+
+def obligations(demanded: str) -> list[list[str]]:
+    """Return the names of obligations, each with its letters."""
+    return [each.split() for each in demanded.split(",") if each]
 
 
 def require_known(demands: Mapping[str, str]) -> None:
     """Refuse obligations that nothing here checks; raises ValueError naming the phrases."""
-    unknown = {key: name for key, name in demands.items() if name not in OBLIGATIONS}
+    unknown = {
+        key: each for key, each in demands.items() if not OBLIGATIONS.issuperset(n for n, *_ in obligations(each))
+    }
     if unknown:
         message = f"no check is known for what these phrases demand: {unknown}; write it in {__name__}"
         raise ValueError(message)
@@ -366,62 +631,45 @@ def require_known(demands: Mapping[str, str]) -> None:
 require_known(DEMANDS)
 
 
+def _owed(key: str, table: Mapping[str, Any]) -> list[tuple[Any, list[str]]]:
+    """Return what a table has for the obligations of a phrase, with their letters."""
+    return [(table[name], names) for name, *names in obligations(DEMANDS.get(key, "")) if name in table]
+
+
 def fits(key: str, relation: object, environment: Environment) -> bool:
     """Return whether the true relation of a sentence is the one its words state."""
-    is_said = _OF_SLOTS.get(DEMANDS.get(key, ""))
-    return is_said is None or (isinstance(relation, Relation) and is_said(relation, environment))
+    owed = _owed(key, _OF_SLOTS)
+    return not owed or (isinstance(relation, Relation) and _are_met(owed, relation, environment))
 
 
-def rests(key: str, facts: Sequence[Fact], environment: Environment) -> bool:
-    """Return whether the facts of a step, which are true, are such as its sentence rests on."""
-    is_held = _OF_FACTS.get(DEMANDS.get(key, ""))
-    return is_held is None or is_held(facts, environment)
+def rests(key: str, said: Said) -> bool:
+    """Return whether what a sentence asserts is so where it stands."""
+    return _are_met(_owed(key, _OF_STEP), said)
 
 
-def are_added(choice: StateChoice, facts: Sequence[Fact]) -> bool:
-    """Return whether the facts are, set by set, the full rank of a test matrix with these states' unit rows below it."""
-    if len(facts) != len(choice.sets):
+def _are_met(owed: list[tuple[Any, list[str]]], *where: object) -> bool:
+    """Return whether obligations are met; one that cannot be evaluated is not."""
+    try:
+        return all(is_met(*where, *names) for is_met, names in owed)
+    except UNREADABLE:
         return False
-    for numbers, fact in zip(choice.sets, facts, strict=True):
-        match fact:
-            case Relation(
-                (Apply("rank", Block(((_,), (Literal(Matrix() as rows),), *_))), Literal(Scalar() as order)), ("=",)
-            ):
-                wanted = unit_rows(rows.shape[1], tuple(number - 1 for number in numbers))
-                if rows != wanted or order != Scalar.of(rows.shape[1]):
-                    return False
-            case _:
-                return False
-    return True
-
-
-def reject_other_slots(sentence: Sentence, relation: Relation | None, environment: Environment) -> None:
-    """Reject a sentence that counts otherwise than its slots or the definition around it, or names other equations."""
-    is_said = _OF_STEP.get(DEMANDS.get(sentence.key, ""))
-    if is_said is not None and not is_said(dict(sentence.slots), relation, environment):
-        reject(f"{sentence.key}, of another number or equation,")
 
 
 def with_limit(sentence: Sentence, environment: Environment) -> Environment:
-    """Remember the limit that a sentence sets: where the boundary is moved, it is moved to this one."""
-    name = _SETS.get(DEMANDS.get(sentence.key, ""))
-    if name is None:
-        return environment
-    return environment.extended_by(
-        values={name: evaluate(formula_in(sentence, "limit"), environment, Exact(environment))}
-    )
+    """Remember the limit that a sentence sets, or that stability is meant otherwise from here on."""
+    for name, _ in _owed(sentence.key, _SETS):
+        limit = formula_in(sentence, "limit") if name != _WEAKER else _number(1)
+        environment = environment.extended_by(values={name: evaluate(limit, environment, Exact(environment))})
+    return environment
 
 
 def reject_other_map(sentence: Sentence, relation: Relation | None, environment: Environment) -> None:
     """Reject a map that the definition does not apply, or that does not move the boundary to the limit set."""
-    applied = _APPLIES.get(DEMANDS.get(sentence.key, ""))
-    if applied is None:
-        return
-    slot, limit = applied
-    mapping = formula_in(sentence, slot)
-    is_there = relation is not None and any(mapping in everything_in(member) for member in relation.members)
-    if not is_there or (limit and not _moves_to(limit, mapping, environment)):
-        reject(f"{sentence.key} by {plain(mapping, environment.variable)}")
+    for (slot, limit), _ in _owed(sentence.key, _APPLIES):
+        mapping = formula_in(sentence, slot)
+        is_there = relation is not None and any(mapping in everything_in(member) for member in relation.members)
+        if not is_there or (limit and not _moves_to(limit, mapping, environment)):
+            reject(f"{sentence.key} by {plain(mapping, environment.variable)}")
 
 
 def _moves_to(limit: str, mapping: Formula, environment: Environment) -> bool:

@@ -106,7 +106,10 @@ def _judge(page: Builder, result: HiddenStability, about: Term) -> None:
         page.conclude(f"stable_{time}", fact)
     elif result.meaning == "lyapunov" and found.verdict == "no":
         _beyond_or_marginal(page, result, about)
-        fact = predicate("marginal", page["mu"]) if result.hidden.verdict == "yes" else fact
+        if result.hidden.verdict == "yes":
+            fact = predicate("marginal", page["mu"])
+        elif result.hidden.annuls is None:
+            fact = predicate("beyond", about)
     elif found.verdict == "conditional":
         _where(page, result, about)
         return

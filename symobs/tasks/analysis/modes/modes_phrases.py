@@ -77,16 +77,27 @@ ASSERTS: dict[str, tuple[str, ...]] = {
 }
 
 DEMANDS: dict[str, str] = {
-    "pbh_yes_observability": "needs_observable",
-    "pbh_yes_controllability": "needs_controllable",
-    "no_fixed_modes_observability": "needs_observable",
-    "no_fixed_modes_controllability": "needs_controllable",
-    "pbh_no_observability": "needs_unobservable",
-    "pbh_no_controllability": "needs_uncontrollable",
-    "yes_detectability": "needs_modes_stable",
-    "yes_stabilizability": "needs_modes_stable",
-    "no_detectability": "needs_modes_unstable",
-    "no_stabilizability": "needs_modes_unstable",
+    "eigenvalues": "eigenvalues_of A",
+    "pbh_low_observability": "unseen C A",
+    "pbh_low_controllability": "unseen Bᵀ Aᵀ",
+    "pbh_yes_observability": "observable C A",
+    "pbh_yes_controllability": "observable Bᵀ Aᵀ",
+    "pbh_no_observability": "unobservable C A",
+    "pbh_no_controllability": "unobservable Bᵀ Aᵀ",
+    "no_fixed_modes_observability": "observable C A",
+    "no_fixed_modes_controllability": "observable Bᵀ Aᵀ",
+    "fixed_modes_observability": "modes C A N X",
+    "fixed_modes_controllability": "modes Bᵀ Aᵀ N X",
+    "on_kernel_observability": "modes C A N X",
+    "on_kernel_controllability": "modes Bᵀ Aᵀ N X",
+    "only_stable": "spectrum A",
+    "yes_detectability": "modes_stable C A N X mu",
+    "yes_stabilizability": "modes_stable Bᵀ Aᵀ N X mu",
+    "no_detectability": "modes_unstable C A N X mu",
+    "no_stabilizability": "modes_unstable Bᵀ Aᵀ N X mu",
+    "means_lyapunov": "sets_meaning",
+    "semisimple": "bounded X mu",
+    "grows": "chained X mu",
 }
 
 RESTS_ON: dict[str, str] = {

@@ -23,6 +23,11 @@ QUESTIONS: dict[str, str] = {
     "ask dual sign=-1": "Form the dual plant with the state matrix $- Aᵀ$. Which ranks are equal by duality?",
 }
 
+DEMANDS: dict[str, str] = {
+    "dual_ranks_observing": "duals C A B_dualᵀ A_dualᵀ",
+    "dual_ranks_controlling": "duals Bᵀ Aᵀ C_dual A_dual",
+}
+
 RESTS_ON: dict[str, str] = {
     "dual_ranks_observing": "duality",
     "dual_ranks_controlling": "duality",

@@ -116,13 +116,23 @@ ASSERTS: dict[str, tuple[str, ...]] = {
 
 DEMANDS: dict[str, str] = {
     "finite_sum_is": "sums_powers",
-    "kernel_none": "shares_kernel_observability",
-    "kernel_none_controllability": "shares_kernel_controllability",
-    "kernel_shared": "shares_kernel_observability",
-    "steps_nonsingular_observability": "needs_nonsingular",
-    "steps_nonsingular_controllability": "needs_nonsingular",
+    "kernel_none": "shares_kernel C A, nonsingular M",
+    "kernel_none_of_sum": "nonsingular M",
+    "kernel_none_controllability": "shares_kernel Bᵀ Aᵀ, nonsingular M",
+    "kernel_shared": "shares_kernel C A",
+    "kernel_unseen": "vanishes C exp_At v",
+    "kernel_unseen_several": "vanishes C exp_At v",
+    "steps_nonsingular_observability": "nonsingular W",
+    "steps_nonsingular_controllability": "nonsingular W",
     "steps_kernel_observability": "spans_kernel",
     "steps_kernel_controllability": "spans_kernel",
+    "gramian_steps": "counts_steps",
+    "gramian_infinite_observability": "seen C A N X",
+    "gramian_infinite_controllability": "seen Bᵀ Aᵀ N_K X_K",
+    "gramian_diverges_observability": "seen C A N X",
+    "gramian_diverges_controllability": "seen Bᵀ Aᵀ N_K X_K",
+    "initial_found": "observable C A",
+    "initial_not_unique": "unobservable C A",
 }
 
 RESTS_ON: dict[str, str] = {

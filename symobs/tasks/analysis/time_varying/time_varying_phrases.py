@@ -69,10 +69,20 @@ QUESTIONS: dict[str, str] = {
 }
 
 DEMANDS: dict[str, str] = {
-    "stack_yes": "says_rank_full",
-    "case_stack_yes": "says_rank_full",
-    "stack_no": "says_rank_low",
-    "case_stack": "says_rank_low",
+    "gramian_regular": "nonsingular W",
+    "gramian_singular": "vanishes C Phi v",
+    "never_seen_start": "vanishes C Phi v",
+    "stack_yes": "says_observable C A",
+    "stack_yes_at": "says_regular_at C A",
+    "stack_yes_on": "says_regular_at C A",
+    "stack_yes_if": "observable C A",
+    "case_stack_yes": "says_observable C A",
+    "stack_no": "says_unobservable C A",
+    "case_stack": "says_unobservable C A",
+    "frozen_instant": "observable C A",
+    "frozen_misled_yes": "observable C A",
+    "frozen_misled_no": "unobservable C A",
+    "x0_not_unique": "unobservable C A",
 }
 
 RESTS_ON: dict[str, str] = {

@@ -81,12 +81,21 @@ ASSERTS: dict[str, tuple[str, ...]] = {
 }
 
 DEMANDS: dict[str, str] = {
-    "compensator_unstable_alone": "needs_loop_stable",
-    "compensator_unstable_low_alone": "needs_loop_stable",
-    "defective": "needs_pole_defective",
-    "defective_instead": "needs_pole_defective",
+    "compensator_stable": "about F",
+    "compensator_stable_low": "about F",
+    "compensator_unstable": "about F",
+    "compensator_unstable_low": "about F",
+    "compensator_proper": "about F",
+    "compensator_stable_if": "about F",
+    "compensator_unstable_alone": "about F strictly_proper unstable, loop_stable",
+    "compensator_unstable_low_alone": "about F strictly_proper unstable, loop_stable",
+    "defective": "pole_defective",
+    "defective_instead": "pole_defective",
     "observer_closed": "substitutes_law",
     "observer_closed_matrix": "substitutes_law",
+    "no_stable_compensator": "about P",
+    "any_observer": "observable C A",
+    "any_state_feedback": "observable Bᵀ Aᵀ",
 }
 
 RESTS_ON: dict[str, str] = {

@@ -31,7 +31,10 @@ ASSERTS: dict[str, tuple[str, ...]] = {
 }
 
 DEMANDS: dict[str, str] = {
-    "minimal_unstable_alone": "needs_loop_stable",
+    "minimal_stable": "about F stable",
+    "minimal_unstable": "about F unstable",
+    "minimal_unstable_alone": "about F unstable, loop_stable",
+    "minimal_stable_if": "about F stable",
 }
 
 RESTS_ON: dict[str, str] = {

@@ -39,6 +39,18 @@ QUESTIONS: dict[str, str] = {
     "also disturbance_observer V": "The output matrix of the exosystem is $V_w$.",
 }
 
+DEMANDS: dict[str, str] = {
+    "disturbance_observable": "says_observable_everywhere C_hat A_hat",
+    "disturbance_zeros_model": "observable C_hat A_hat",
+    "disturbance_zeros_origin": "says_rank_full, observable C_hat A_hat",
+    "disturbance_zeros_one": "says_rank_full, observable C_hat A_hat",
+    "disturbance_blocked_origin": "says_rank_low, unobservable C_hat A_hat",
+    "disturbance_blocked_one": "says_rank_low, unobservable C_hat A_hat",
+    "disturbance_fixed": "fixes C_hat A_hat N X phi_o",
+    "disturbance_impossible": "fixes C_hat A_hat N X phi_o",
+    "disturbance_unassignable": "fixes C_hat A_hat N X phi_o",
+}
+
 RESTS_ON: dict[str, str] = {
     "disturbance_constant": "exosystem",
     "disturbance_model": "exosystem",

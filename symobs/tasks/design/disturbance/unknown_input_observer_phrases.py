@@ -42,6 +42,18 @@ QUESTIONS: dict[str, str] = {
     "also unknown_input_observer E": "The term $E_d d$ with the unknown input $d$ is added to the state equation.",
 }
 
+DEMANDS: dict[str, str] = {
+    "uio_decoupled": "one_rank C E_d",
+    "uio_not_decoupled": "lower_rank C E_d",
+    "uio_not_decoupled_along": "lower_rank C E_d",
+    "uio_observable": "says_observable_everywhere C A_T",
+    "uio_zeros_desired": "fixes C A_T N X phi_o",
+    "uio_impossible": "fixes C A_T N X phi_o",
+    "uio_unassignable": "fixes C A_T N X phi_o",
+    "uio_zeros_stable": "modes_stable C A_T N X mu",
+    "uio_zeros_unstable": "modes_unstable C A_T N X mu",
+}
+
 RESTS_ON: dict[str, str] = {
     "uio_decoupled": "unknown_input",
     "uio_not_decoupled": "unknown_input",

@@ -96,6 +96,30 @@ ASSERTS: dict[str, tuple[str, ...]] = {
     "impossible_state_feedback": ("not_polynomial",),
 }
 
+DEMANDS: dict[str, str] = {
+    "assignable_observer": "observable C A",
+    "assignable_state_feedback": "observable Bᵀ Aᵀ",
+    "already_canonical": "observable Bᵀ Aᵀ",
+    "open_eigenvalues_observer": "eigenvalues_of A",
+    "open_eigenvalues_state_feedback": "eigenvalues_of A",
+    "fixed_but_wanted_observer": "fixes C A N X phi_o",
+    "fixed_but_wanted_state_feedback": "fixes Bᵀ Aᵀ N_K X_K phi_c",
+    "impossible_observer": "fixes C A N X phi_o",
+    "impossible_state_feedback": "fixes Bᵀ Aᵀ N_K X_K phi_c",
+    "unassignable_observer": "fixes C A N X phi_o",
+    "unassignable_state_feedback": "fixes Bᵀ Aᵀ N_K X_K phi_c",
+    "case_survives_observer": "fixes C A N X phi_o",
+    "case_survives_state_feedback": "fixes Bᵀ Aᵀ N_K X_K phi_c",
+    "case_same_observer": "fixes C A N X phi_o",
+    "case_same_state_feedback": "fixes Bᵀ Aᵀ N_K X_K phi_c",
+    "case_other_observer": "fixes C A N X phi_o",
+    "case_other_state_feedback": "fixes Bᵀ Aᵀ N_K X_K phi_c",
+    "case_no_observer": "fixes C A N X phi_o",
+    "case_no_state_feedback": "fixes Bᵀ Aᵀ N_K X_K phi_c",
+    "no_others_observer": "exhausts C A N X phi_o",
+    "no_others_state_feedback": "exhausts Bᵀ Aᵀ N_K X_K phi_c",
+}
+
 RESTS_ON: dict[str, str] = {
     "null_vectors_observer": "row_reduction",
     "null_vectors_state_feedback": "row_reduction",

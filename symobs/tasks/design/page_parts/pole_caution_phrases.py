@@ -48,3 +48,22 @@ ASSERTS: dict[str, tuple[str, ...]] = {
     "hides_continuous": ("unstable",),
     "hides_discrete": ("unstable",),
 }
+
+DEMANDS: dict[str, str] = {
+    "grows_observer_continuous": "about phi_o",
+    "grows_state_feedback_continuous": "about phi_c",
+    "grows_observer_discrete": "about phi_o",
+    "grows_state_feedback_discrete": "about phi_c",
+    "lasts_observer_continuous": "about phi_o",
+    "lasts_state_feedback_continuous": "about phi_c",
+    "lasts_observer_discrete": "about phi_o",
+    "lasts_state_feedback_discrete": "about phi_c",
+    "stays_observer_continuous": "about phi_o",
+    "stays_state_feedback_continuous": "about phi_c",
+    "stays_observer_discrete": "about phi_o",
+    "stays_state_feedback_discrete": "about phi_c",
+    "lasts_servo_continuous": "about phi_c",
+    "drifts_state_feedback_continuous": "about phi_c unstable marginal",
+    "lasts_servo_discrete": "about phi_c",
+    "drifts_state_feedback_discrete": "about phi_c unstable marginal",
+}

@@ -60,6 +60,17 @@ ASSERTS: dict[str, tuple[str, ...]] = {
     "reduced_all_fixed": ("polynomial",),
 }
 
+DEMANDS: dict[str, str] = {
+    "first_part_measures": "says_observable_everywhere A_12 A_22",
+    "mere_copy_fails": "spectrum A_22",
+    "mere_copy_grows": "eigenvalues_of A_22, spectrum A_22",
+    "outputs_dependent": "annuls w_0 C",
+    "reduced_impossible": "fixes A_12 A_22 N_2 X_2 phi_o",
+    "reduced_unassignable": "fixes A_12 A_22 N_2 X_2 phi_o",
+    "reduced_not_unique": "fixes A_12 A_22 N_2 X_2 phi_o",
+    "reduced_all_fixed": "fixes A_12 A_22 N_2 X_2 phi_o, exhausts A_12 A_22 N_2 X_2 phi_o",
+}
+
 RESTS_ON: dict[str, str] = {
     "first_part_measures": "reduced_pair",
     "reduced_observer": "reduced_order",

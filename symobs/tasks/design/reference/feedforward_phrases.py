@@ -24,7 +24,9 @@ QUESTIONS: dict[str, str] = {
 }
 
 DEMANDS: dict[str, str] = {
-    "no_feedforward_zero": "needs_rank_full",
+    "no_feedforward_single": "zero G_0",
+    "no_feedforward_zero": "needs_rank_full, annuls w_0 G_0",
+    "no_feedforward_low": "annuls w_0 G_0",
 }
 
 RESTS_ON: dict[str, str] = {

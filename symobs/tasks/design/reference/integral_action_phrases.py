@@ -37,6 +37,15 @@ QUESTIONS: dict[str, str] = {
     "ask integral_action polynomial": "Design state feedback with integral action, such that the output follows constant references and the closed loop has the characteristic polynomial {polynomial}.",
 }
 
+DEMANDS: dict[str, str] = {
+    "integral_possible_origin": "observable B_hatᵀ A_hatᵀ",
+    "integral_possible_one": "observable B_hatᵀ A_hatᵀ",
+    "integral_blocked": "unobservable B_hatᵀ A_hatᵀ",
+    "integral_uncontrollable": "says_unobservable Bᵀ Aᵀ",
+    "integral_impossible": "fixes B_hatᵀ A_hatᵀ N_K X_K phi_c",
+    "integral_unassignable": "fixes B_hatᵀ A_hatᵀ N_K X_K phi_c",
+}
+
 RESTS_ON: dict[str, str] = {
     "integral_state_continuous": "integral_action",
     "integral_state_discrete": "integral_action",

@@ -25,6 +25,11 @@ QUESTIONS: dict[str, str] = {
     "also tracking observer=full": "Use a full-order observer.",
 }
 
+DEMANDS: dict[str, str] = {
+    "tracking_impossible": "annuls w_d B",
+    "tracking_impossible_one": "annuls w_d B",
+}
+
 RESTS_ON: dict[str, str] = {
     "tracking_law": "tracking",
 }

@@ -13,15 +13,32 @@ from symobs.exact import Matrix, Scalar
 from symobs.exact.core.generators import PI, function
 from symobs.formula.phrases import PHRASES
 from symobs.formula.phrases.spoken import Counted, StateChoice
-from symobs.formula.tree import Apply, Environment, Letter, Literal, Predicate, Relation
+from symobs.formula.tree import (
+    Apply,
+    Environment,
+    Identity,
+    Letter,
+    Literal,
+    Negative,
+    Predicate,
+    Product,
+    Relation,
+    Sum,
+)
 from symobs.ground.errors import DerivationRejected
 from symobs.proof.certificate.pointwise import Pointwise
-from symobs.proof.derivation.wording_check import _one_higher, fits, rests
+from symobs.proof.derivation.wording_check import Said, _one_higher, fits
+from symobs.proof.derivation.wording_check import rests as rests_on
 from tests.support.problems.steps import said
 from tests.support.tampering.mutations import lines_of
 
 if TYPE_CHECKING:
     from symobs.proof.derivation import Derivation
+
+
+def rests(key: str, facts: tuple[Any, ...], here: Environment) -> bool:
+    return rests_on(key, Said(facts, here))
+
 
 #: Two rows of rank 1, and three rows of rank 2.
 LOW, HIGH = Literal(Matrix.of([[1, 2, 3], [2, 4, 6]])), Literal(Matrix.of([[1, 0], [0, 1], [1, 1]]))
@@ -51,8 +68,8 @@ BESIDE = (
     rank(LOW, 1, 2, 3, "=", "<", "<"),
 )
 
-SAID_OF_FULL = ["stack_yes", "case_stack_yes"]
-SAID_OF_LOWER = ["stack_no", "case_stack"]
+SAID_OF_FULL = ["disturbance_zeros_origin", "disturbance_zeros_one"]
+SAID_OF_LOWER = ["disturbance_blocked_origin", "disturbance_blocked_one"]
 
 
 @pytest.mark.parametrize("key", SAID_OF_FULL)
@@ -84,17 +101,19 @@ def pair(of: str, A: Matrix, row: list[Any], *more: Any) -> tuple[Relation, Envi
 def test_a_rank_that_is_said_of_a_pair_is_that_of_its_own_test_matrix(of: str) -> None:
     h, I = Scalar.symbol("h"), Matrix.identity(2)
     full, here = pair(of, Matrix.of([[0, 1], [0, 0]]), [1, 0], 2)
+    falling, there = pair(of, I * 2, [1, 0], "<", 2)
+    exceptional, somewhere = pair(of, Matrix.of([[0, 1], [0, 0]]), [h, 0], 2)  # not at h = 0
+    assert not fits(f"full_rank_{of}", exceptional, somewhere)
+    assert fits(f"generic_rank_{of}", exceptional, somewhere)
     for key in (f"full_rank_{of}", f"generic_rank_{of}"):
         assert fits(key, full, here)
         assert not fits(key, full, HERE)
         assert not fits(key, rank(Literal(I * 2), 2), here)  # the rank of another matrix
-    for key in (f"yes_{of}", f"pbh_yes_{of}", f"no_fixed_modes_{of}"):
-        assert rests(key, (full,), here)
-        for facts in ((), (rank(Literal(I * 2), 2),), (Predicate("stable", Letter("chi")),), LOWER):
-            assert not rests(key, facts, here)
-    falling, there = pair(of, I * 2, [1, 0], "<", 2)
-    assert rests(f"pbh_no_{of}", (falling,), there)
-    assert not rests(f"pbh_no_{of}", (full,), here)
+    gain = "observer" if of == "observability" else "state_feedback"
+    for key in (f"yes_{of}", f"pbh_yes_{of}", f"no_fixed_modes_{of}", f"assignable_{gain}", f"any_{gain}"):
+        assert rests(key, (), here)
+        assert not any(rests(key, (full,), e) for e in (there, somewhere, HERE))
+    assert rests(f"pbh_no_{of}", (), there)
     assert not rests(f"pbh_no_{of}", (falling,), here)
     low, generic = f"no_{of}", f"generic_low_{of}"
     for A, row in ((I * 2, [1, h]), (I * h, [h, 1])):  # of rank 1 for all h
@@ -187,21 +206,29 @@ def property_of(name: str) -> Predicate:
 
 STABLE, MARGINAL, UNSTABLE = (property_of(name) for name in ("stable", "marginal", "unstable"))
 NOTHING = (property_of("never_zero"), said(1, 1))
-VERDICTS = ("detectability", "stabilizability")
-RESTS: dict[str, tuple[Any, ...]] = {
-    **{f"yes_{verdict}": (FULL, STABLE, MARGINAL) for verdict in VERDICTS},
-    **{f"no_{verdict}": (UNSTABLE,) for verdict in VERDICTS},
-}
 
 
-@pytest.mark.parametrize(("key", "grounds"), RESTS.items(), ids=RESTS)
-def test_a_verdict_rests_on_a_fact_of_its_step(key: str, grounds: tuple[Any, ...]) -> None:
-    assert key in PHRASES
-    assert rests(key, (), HERE) is False
-    assert rests(key, NOTHING, HERE) is False
-    for fact in (FULL, *LOWER, STABLE, MARGINAL, UNSTABLE):
-        for facts in ((fact,), (*NOTHING, fact), (fact, *NOTHING)):
-            assert rests(key, facts, HERE) is (fact in grounds)
+@pytest.mark.parametrize(
+    ("verdict", "of"), [("detectability", "observability"), ("stabilizability", "controllability")]
+)
+def test_a_verdict_rests_on_the_unobservable_modes(verdict: str, of: str) -> None:
+    """State 1 is not seen: its mode, 1/2 or −1, has nothing to do with the mode that is."""
+    yes, no = f"yes_{verdict}", f"no_{verdict}"
+    for mode, seen in ((-1, 3), (1, -3)):
+        A, N, X = Matrix.of([[mode, 0], [0, seen]]), Matrix.column([1, 0]), Matrix.of([[mode]])
+        here = pair(of, A, [0, 1], 2)[1].extended_by(values={"N": N, "X": X, "chi": Scalar.symbol("s") - seen})
+        pencil = Sum((Product((Letter("s"), Identity(1))), Negative(Letter("X"))))
+        own = [Predicate(name, Apply("det", pencil)) for name in ("stable", "unstable")]
+        other = [property_of(name) for name in ("stable", "unstable", "marginal", "beyond")]
+        assert rests(yes, (own[0],), here)  # that it is stable is a fact of the step
+        assert rests(no, (own[1],), here)
+        for facts in ((), NOTHING, *((fact,) for fact in other)):
+            assert not rests(yes, facts, here)
+            assert not rests(no, facts, here)
+        for lie in ({"N": Matrix.column([0, 1])}, {"X": X * 2}, {"N": Matrix.zeros(2, 0), "X": Matrix.zeros(0, 0)}):
+            assert not rests(yes, (own[0],), here.extended_by(values=lie))
+    assert rests(yes, (), pair(of, Matrix.of([[0, 1], [0, 0]]), [1, 0], 2)[1])
+    assert not rests(yes, (STABLE,), pair(of, Matrix.identity(2), [1, 0], 2)[1])
 
 
 def test_other_sentences_rest_on_anything() -> None:
@@ -232,7 +259,7 @@ def test_other_states_than_those_whose_rows_were_added_are_rejected(sets: tuple[
         return replace(step, sentence=replace(words, slots=(("states", StateChoice(sets)),)))
 
     result.derivation.check()
-    with pytest.raises(DerivationRejected, match="of other states"):
+    with pytest.raises(DerivationRejected, match="rests on another fact"):
         replace(result.derivation, steps=tuple(map(changed, result.derivation.steps))).check()
 
 
@@ -276,7 +303,7 @@ def test_what_is_counted_in_words_is_counted_in_the_step(key: str) -> None:
     for name in counting:
         for other in (slots[name].count - 1, slots[name].count + 1):
             told = tuple({**slots, name: replace(slots[name], count=other)}.items())
-            with pytest.raises(DerivationRejected, match="of another number"):
+            with pytest.raises(DerivationRejected, match="number or equation"):
                 line.told(replace(step, sentence=replace(step.sentence, slots=told))).check()
 
 
@@ -286,7 +313,7 @@ def test_what_is_counted_in_words_is_counted_in_the_step(key: str) -> None:
 def test_several_poles_are_not_told_as_one(said: str, instead: str) -> None:
     asked, _ = COUNTING[said]
     line, step = line_saying(said, asked().derivation)
-    with pytest.raises(DerivationRejected, match="of another number"):
+    with pytest.raises(DerivationRejected, match="number or equation"):
         line.told(replace(step, sentence=replace(step.sentence, key=instead, slots=()))).check()
 
 
