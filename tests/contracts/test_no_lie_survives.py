@@ -10,17 +10,24 @@ from dataclasses import replace
 from functools import cache
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
 import pytest
 
 from symobs import StateSpace, compensator, observability, observer, state_feedback
 from symobs.exact import Matrix, Scalar
+from symobs.formula.phrases import DEMANDS, slots_of
+from symobs.formula.tree import Letter
 from symobs.ground.errors import CertificateRejected, DerivationRejected
 from symobs.problem import read
-from symobs.proof.derivation import Diagram
+from symobs.proof.derivation import Conclude, Diagram, Sentence
 from symobs.proof.derivation.builder import Builder
+from symobs.proof.derivation.steps import everything_in
+from symobs.proof.derivation.wording_check import obligations
 from symobs.tasks.design.compensator.output_feedback import OutputFeedback
 from symobs.tasks.design.gain.gain_design import GainDesign
 from tests.programs.lies import drawn
+from tests.support.independent_algebra.plain import multiply, observability_rows, rank_of, transposed
+from tests.support.independent_algebra.plain_fractions import World, determinant
 from tests.support.independent_algebra.truth import is_true, still_true
 from tests.support.paths import ROOT
 from tests.support.sampling import every
@@ -28,10 +35,13 @@ from tests.support.tampering.lies import Count, tampered, try_answers, try_lines
 from tests.support.tampering.mutations import changes, lines_of, parts_of
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterator
     from pathlib import Path
 
+    from symobs.formula.tree import Environment
+    from symobs.proof.derivation import Derivation, Step
     from symobs.tasks.result import Result
+    from tests.support.independent_algebra.plain import Rows
 
 pytestmark = pytest.mark.slow
 
@@ -137,6 +147,115 @@ def test_a_sign_before_a_gain_of_zero_may_be_any(stem: str, *, is_another: bool)
 )
 def test_every_line_of_a_random_design_holds_in_plain_fractions(number: int) -> None:
     assert is_true(drawn(number).solve().derivation)
+
+
+# -- sentences on another page -----------------------------------------------------------------------------------------
+
+
+def _table(world: World, letter: str) -> Rows:
+    found: Rows = world.value(Letter(letter.rstrip("ᵀ")))
+    return transposed(found) if letter.endswith("ᵀ") else found
+
+
+def _is_seen(world: World, row: str, of: str) -> bool:
+    A = _table(world, of)
+    return rank_of(observability_rows(A, _table(world, row))) == len(A)
+
+
+def _are_hidden(world: World, row: str, of: str, N: str, *_: str) -> bool:
+    A, basis = _table(world, of), _table(world, N)
+    rows = observability_rows(A, _table(world, row))
+    return not any(map(any, multiply(rows, basis))) and rank_of(basis) == len(basis[0])
+
+
+def _are_all_hidden(world: World, row: str, of: str, N: str, *_: str) -> bool:
+    A = _table(world, of)
+    count = len(A) - rank_of(observability_rows(A, _table(world, row)))
+    return _are_hidden(world, row, of, N) and len(_table(world, N)[0]) == count
+
+
+def _unstable_modes(world: World, row: str, of: str) -> int:
+    """Count the eigenvalues on or beyond the boundary at which [A − λI; C] has no full column rank, in floats."""
+    A, C = (np.array([[float(entry) for entry in line] for line in _table(world, name)]) for name in (of, row))
+    values = np.linalg.eigvals(A)
+    far = np.abs(values) - 1 if world.variable == "z" else values.real
+    pencils = [
+        np.vstack([A - value * np.eye(len(A)), C]) for value, side in zip(values, far, strict=True) if side > -1e-6
+    ]
+    return sum(1 for pencil in pencils if np.linalg.matrix_rank(pencil, 1e-6) < len(A))
+
+
+#: What obligations say of their letters, in plain fractions at a point.
+TRUTH: dict[str, Callable[..., bool]] = {
+    "observable": _is_seen,
+    "says_observable": _is_seen,
+    "says_observable_everywhere": _is_seen,
+    "unobservable": lambda world, *pair: not _is_seen(world, *pair),
+    "says_unobservable": lambda world, *pair: not _is_seen(world, *pair),
+    "says_unobservable_everywhere": lambda world, *pair: not _is_seen(world, *pair),
+    "modes": lambda world, row, of, *letters: any(
+        _are_all_hidden(world, row, of, N) for N in letters[::2] if N in world.letters
+    ),
+    "fixes": _are_hidden,
+    "exhausts": _are_hidden,
+    "modes_stable": lambda world, row, of, *_: _unstable_modes(world, row, of) == 0,
+    "modes_unstable": lambda world, row, of, *_: _unstable_modes(world, row, of) > 0,
+    "annuls": lambda world, row, by: (
+        any(map(any, _table(world, row))) and not any(map(any, multiply(_table(world, row), _table(world, by))))
+    ),
+    "one_rank": lambda world, C, E: rank_of(multiply(_table(world, C), _table(world, E))) == rank_of(_table(world, E)),
+    "lower_rank": lambda world, C, E: rank_of(multiply(_table(world, C), _table(world, E))) < rank_of(_table(world, E)),
+    "nonsingular": lambda world, letter: determinant(_table(world, letter)) != 0,
+}
+
+
+def _placed() -> Iterator[tuple[str, Step, Derivation]]:
+    """Yield the steps of all worked examples, of cases too, whose sentences owe something of TRUTH."""
+    for path in EXAMPLES:
+        for result in results(path):
+            for part in everything_in(result.derivation.steps):
+                key = getattr(getattr(part, "sentence", None), "key", "")
+                if {name for name, *_ in obligations(DEMANDS.get(key, ""))} & TRUTH.keys():
+                    yield key, part, result.derivation
+
+
+def test_a_sentence_on_the_page_of_another_plant_is_rejected_or_true() -> None:
+    """Every sentence that says something of the letters of its page is moved to every other page that has these letters.
+
+    So are the sentences of the dual, and those that no example has and that have no slots: theirs are the facts of others.
+    """
+    steps = {(key, type(step)): step for key, step, _ in _placed()}
+    said = {key for key, _ in steps}
+    steps |= {
+        (key, Conclude): Conclude(Sentence(key))
+        for key, owed in DEMANDS.items()
+        if key not in said and not slots_of(key) and {name for name, *_ in obligations(owed)} <= TRUTH.keys()
+    }
+    pages = [result.derivation for path in EXAMPLES for result in results(path)]
+    pages = [page for page in pages if page.variable != "t" and not page.start.relations]
+    accepted, rejected, lies = 0, 0, []
+    for page in pages:
+        here = page.check()
+        for (key, _), step in steps.items():
+            owed = [each for each in obligations(DEMANDS[key]) if each[0] in TRUTH]
+            if not {name.rstrip("ᵀ") for _, *pair in owed for name in pair[:2]} <= here.values.keys():
+                continue
+            try:
+                replace(page, steps=(step,), start=here).check()
+            except DerivationRejected:
+                rejected += 1
+                continue
+            accepted += 1
+            worlds = [World.of(here, seed) for seed in range(2)]
+            if not all(TRUTH[name](world, *letters) for name, *letters in owed for world in worlds):
+                lies.append(f"{key} where {plain_values(here)}")
+    assert not lies
+    assert accepted > 500
+    assert rejected > 1000
+
+
+def plain_values(here: Environment) -> str:
+    return ", ".join(f"{name} = {here.values[name]}" for name in "ABC" if name in here.values)
 
 
 # -- lies that agree with each other -----------------------------------------------------------------------------------

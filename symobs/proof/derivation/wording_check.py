@@ -364,11 +364,9 @@ def _annuls(said: Said, *names: str) -> bool:
     return _vanishes(here, Product((row, others[0]))) and all(_differs(here, each) for each in (row, *left))
 
 
-def _have_one_rank(said: Said, C: str, E: str, *, same: bool) -> bool:
-    """Return whether C E has the rank of E, at all parameters, or a lower one."""
-    here, image = said.environment, Product((_letter(C), _letter(E)))
-    ranks = Relation((Apply("rank", image), Apply("rank", _letter(E))), ("=" if same else "<",))
-    return verify(ranks, here)[0] != "" and (not same or _is_everywhere(ranks, here))
+def _ranks(C: str, E: str, operator: str) -> tuple[Formula, str, Formula]:
+    """Return that the rank of C E is that of E, or is lower."""
+    return Apply("rank", Product((_letter(C), _letter(E)))), operator, Apply("rank", _letter(E))
 
 
 def _are_duals(said: Said, *pairs: str) -> bool:
@@ -581,8 +579,8 @@ _OF_STEP: dict[str, Callable[..., bool]] = {
     ),
     "vanishes": _vanishes_of,
     "annuls": _annuls,
-    "one_rank": lambda said, *names: _have_one_rank(said, *names, same=True),
-    "lower_rank": lambda said, *names: _have_one_rank(said, *names, same=False),
+    "one_rank": lambda said, C, E: _holds(said.environment, *_ranks(C, E, "=")),
+    "lower_rank": lambda said, C, E: _holds(said.environment, *_ranks(C, E, "<")),
     "nonsingular": _is_nonsingular,
     "duals": _are_duals,
     "sums_powers": lambda said: _sums(said, "M"),

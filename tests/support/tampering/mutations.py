@@ -75,6 +75,14 @@ _OTHER_WORDS = [
     ("pbh_yes_controllability", "pbh_no_controllability"),
     ("stack_yes", "stack_no"),
     ("case_stack", "case_stack_yes"),
+    ("semisimple", "grows"),
+    ("frozen_misled_no", "frozen_misled_yes"),
+    ("gramian_infinite_observability", "gramian_diverges_observability"),
+    ("initial_found", "initial_not_unique"),
+    ("disturbance_zeros_origin", "disturbance_blocked_origin"),
+    ("disturbance_fixed", "disturbance_impossible"),
+    ("uio_zeros_desired", "uio_impossible"),
+    ("uio_zeros_stable", "uio_zeros_unstable"),
 ]
 #: Sentences that say of a value only that nothing is decided where it vanishes.
 _UNDECIDED = {"undecided_case", "undecided_together", "undecided_many"}

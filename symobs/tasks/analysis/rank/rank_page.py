@@ -44,33 +44,37 @@ def given_here(page: Builder, result: RankResult) -> None:
     given(page, where=where)
 
 
-def square_test(page: Builder, letter: str, result: RankResult, kind: str) -> None:
+def square_test(page: Builder, letter: str, result: RankResult, kind: str) -> bool:
     """Decide the test of a matrix: by its determinant where it is square, by its rank otherwise.
 
-    Factors of the determinant that can vanish become conditions from here on.
+    Factors of the determinant that can vanish become conditions from here on.  Return whether the rank is full for all
+    parameters from here on, not for generic ones.
     """
     determinant, order = result.test_determinant, page.plant.order
     if result.answer["rank"] < order:
         _deficient(page, letter, result, kind)
-        return
+        return False
     if determinant is None:
         _outside_drops(page, [c.expression for c in result.holds_where if c.kind == "existence"])
-        key = "full_rank" if result.verdict == "yes" or page.environment.relations else "generic_rank"
-        page.conclude(f"{key}_{kind}", rank=relation(page[letter].apply("rank"), result.answer["rank"]))
-        return
+        rank = relation(page[letter].apply("rank"), result.answer["rank"])
+        is_said = result.verdict == "yes" or bool(page.environment.relations)
+        is_full = is_said and fits(f"full_rank_{kind}", rank, page.environment)
+        page.conclude(f"{'full' if is_full else 'generic'}_rank_{kind}", rank=rank)
+        return is_full
     signs = page.plant.symbols.signs
     if determinant.size > WRITTEN_UP_TO:
         page.conclude(f"long_{kind}", count=str(determinant.numerator.size - 1))
-        return
+        return False
     det = page[letter].apply("det")
     shown = determinant_form(page, determinant)
     open_factors = vanishing_factors([determinant], signs)
     if not open_factors:
         page.equal(relation(det, shown, "!=", 0))
-        page.conclude(f"yes_{kind}", relation(page[letter].apply("rank"), order))
-        return
+        page.conclude(f"yes_{kind}")
+        return True
     page.equal(relation(det, shown))
     page.assume(f"provided_{kind}", *open_factors)
+    return True
 
 
 def rank_cases(page: Builder, letter: str, result: RankResult, kind: str) -> None:

@@ -9,6 +9,7 @@ from symobs.exact.core.generators import all_roots
 from symobs.formula.tree import Evaluated, Literal, Roots
 from symobs.formula.tree.term import Term, block
 from symobs.proof.derivation import CaseStep
+from symobs.proof.derivation.wording_check import Said, rests
 from symobs.proof.derivation.builder import Builder, predicate, relation
 from symobs.system.specification import DesiredPolynomial
 from symobs.tasks.analysis.factored_form import factored_form, formula_of_factored
@@ -125,10 +126,10 @@ def _test(page: Builder, design: GainDesign, side: PlacementProblem, style: str)
         return
     if not page.defines(side.matrix):
         define_test_matrix(page, side)
-        square_test(page, side.matrix, design.test, side.test)
-    elif not design.fixed_polynomial.is_one or design.answer[side.gain] is None:
-        return
-    if design.fixed_polynomial.is_one and design.answer[side.gain] is not None:
+        is_known = square_test(page, side.matrix, design.test, side.test)
+    else:
+        is_known = rests(f"assignable_{side.kind}", Said((), page.environment))
+    if is_known and design.fixed_polynomial.is_one and design.answer[side.gain] is not None:
         page.conclude(f"assignable_{side.kind}")
 
 
