@@ -258,7 +258,7 @@ def _is_so(obligation: Sequence[str], world: World) -> bool:
     name, *letters = obligation
     try:
         return TRUTH[name](world, *letters)
-    except (KeyError, ValueError):
+    except (KeyError, TypeError, ValueError):
         return False
 
 
