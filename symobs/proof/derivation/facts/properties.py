@@ -26,14 +26,19 @@ def polynomial_of(value: Scalar, environment: Environment) -> Scalar:
 
 
 def _lowered(polynomial: Scalar, environment: Environment) -> Scalar:
-    """Return a polynomial without the coefficients that vanish where the relations hold."""
+    """Return a polynomial without the coefficients that vanish where the relations hold.
+
+    Raises `TooLarge` where that is not known of the first, and so not the degree.
+    """
+    coefficients = polynomial.coefficients(environment.variable)
     if not environment.relations:
         return polynomial
     try:
         ideal = Ideal.where(environment.relations)
-        coefficients = polynomial.coefficients(environment.variable)
         kept = [c if c.numerator not in ideal or c.denominator in ideal else Scalar.of(0) for c in coefficients]
     except TooLarge:
+        if not coefficients[0].is_constant:
+            raise
         return polynomial
     return from_coefficients(kept, environment.variable) if any(kept) else polynomial
 

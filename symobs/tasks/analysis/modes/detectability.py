@@ -97,6 +97,8 @@ class HiddenStability(ModeResult):
         """
         verdicts = {self.hidden.verdict}
         verdicts |= {"undecided" if case.result is None else case.result.verdict for case in self.deciding_cases}
+        if self.grows_where is None or (self._lost is None and self.hidden.verdict != "no"):
+            return "undecided"
         if self.hidden.verdict == "no" and verdicts <= {"no", "undecided"} and not self._only_there:
             return "no"
         if len(verdicts) == 1:
@@ -141,7 +143,7 @@ class HiddenStability(ModeResult):
         """The plant's domain, what makes the fixed modes stable, and the strata on which others are not."""
         if self.hidden.verdict == "no":
             return (*self.domain, *self._only_there)
-        if self.hidden.verdict == "undecided":
+        if self.hidden.verdict == "undecided" or self._lost is None:
             return self.domain
         listed = {c.expression for c in self.domain}
         lost = (value for value in distances(self._lost) if value not in listed)
@@ -149,25 +151,30 @@ class HiddenStability(ModeResult):
         return (*self.domain, *self.hidden.where, *others)
 
     @cached_property
-    def _lost(self) -> tuple[tuple[Scalar, ...], ...]:
-        """The equations of the strata on which another verdict may hold."""
+    def _lost(self) -> tuple[tuple[Scalar, ...], ...] | None:
+        """The equations of the strata on which another verdict may hold; None where it is not known which these are."""
         differing = [case for case in self.deciding_cases if case.result is None or case.result.verdict != "yes"]
-        return systems_of(differing) or ()
+        return systems_of(differing)
 
     @property
-    def grows_where(self) -> tuple[Condition, ...]:
-        """What keeps away from the strata on which a mode that grows in general, under the weaker reading, may not."""
+    def grows_where(self) -> tuple[Condition, ...] | None:
+        """What keeps away from the strata on which a mode that grows in general, under the weaker reading, may not.
+
+        None where it is not known which these are.
+        """
         if self.hidden.annuls is None or self.hidden.verdict != "no":
             return ()
-        return tuple(Condition("existence", value) for value in distances(systems_of(self.meeting_cases) or ()))
+        systems = systems_of(self.meeting_cases)
+        return None if systems is None else tuple(Condition("existence", value) for value in distances(systems))
 
     @property
     def _only_there(self) -> tuple[Condition, ...]:
         """What must vanish where fixed modes grow in general: some of these strata, where they do not."""
         kept = [case for case in self.meeting_cases if case.result is None or case.result.verdict != "no"]
-        if not self.grows_where or not kept:
+        systems = systems_of(kept)
+        if not self.grows_where or not systems:
             return ()
-        return (Condition("existence", product_of(distances(systems_of(kept) or ())), "=="),)
+        return (Condition("existence", product_of(distances(systems)), "=="),)
 
     @cached_property
     def fields(self) -> Mapping[str, Any]:

@@ -114,7 +114,7 @@ def _judge(page: Builder, result: HiddenStability, about: Term) -> None:
         return
     else:
         page.conclude(f"unstable_{time}", fact)
-    if result.hidden.verdict == "yes" or (result.hidden.verdict == "no" and not result.grows_where):
+    if result.hidden.verdict == "yes" or (result.hidden.verdict == "no" and result.grows_where == ()):
         page.conclude(f"{result.hidden.verdict}_{result.task}", fact)
     elif result.grows_where:
         page.conclude(f"grows_{result.task}")
@@ -152,8 +152,8 @@ def _beyond_or_marginal(page: Builder, result: HiddenStability, about: Term) -> 
         return
     grows = relation(image, "!=", zero)
     words = Conclude(sentence("grows", {"polynomial": relation(mu, annuls)}), (grows,))
-    apart = [as_written(condition) for condition in result.grows_where]
-    if verify(grows, page.environment)[0]:
+    apart = [as_written(condition) for condition in result.grows_where or ()]
+    if result.grows_where is not None and verify(grows, page.environment)[0]:
         page.steps.append(words)
     elif apart and verify(grows, on_stratum(Conjunction(tuple(apart)), {}, page.environment))[0]:
         page.steps.append(CaseStep(Conjunction(tuple(apart)), (), (words,)))

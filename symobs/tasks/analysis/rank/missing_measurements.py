@@ -53,10 +53,12 @@ def _repairs(chosen: tuple[int, ...], N: Matrix, X: Matrix, e: Environment) -> b
     seen = seen_through(chosen, N, X)
     if rank(seen) < X.shape[0]:
         return False
+    minors = _minors(seen)
     try:
-        return never_together_zero(_minors(seen), e.relations, e.signs)
+        repairs = never_together_zero(minors, e.relations, e.signs)
     except TooLarge:
         return None
+    return None if not repairs and len(minors) == _MINORS else repairs  # others may not vanish where these do
 
 
 def seen_through(chosen: tuple[int, ...], N: Matrix, X: Matrix) -> Matrix:

@@ -8,6 +8,7 @@ cannot vanish but term by term is replaced by its terms, and systems without a s
 from __future__ import annotations
 
 import math
+from contextlib import suppress
 from dataclasses import field
 from functools import cached_property
 from typing import TYPE_CHECKING
@@ -94,13 +95,13 @@ class Locus:
         return Locus(tuple(sorted(positive, key=_simplicity)), ideal)
 
     def lies_in(self, other: Locus) -> bool:
-        """Return whether the equations of another locus are seen to follow from those of this one."""
+        """Return whether the equations of another locus follow from those of this one.
+
+        Raises `TooLarge` where that is not decided; where there is no ideal, only equations of its own are seen to.
+        """
         if self.ideal is None:
             return set(other.equations) <= set(self.equations)
-        try:
-            return all(equation in self.ideal for equation in other.equations)
-        except TooLarge:
-            return False
+        return all(equation in self.ideal for equation in other.equations)
 
     @cached_property
     def distance(self) -> Scalar:
@@ -134,11 +135,13 @@ def loci(equations: Iterable[Scalar], region: Region) -> tuple[Locus, ...]:
 
 
 def maximal(found: Iterable[Locus]) -> tuple[Locus, ...]:
-    """Return the loci that do not lie in another one, the simplest first."""
+    """Return the loci that are not seen to lie in another one, the simplest first."""
     kept: list[Locus] = []
     for locus in sorted(dict.fromkeys(found), key=lambda each: (len(each.equations), *_sizes(each))):
-        if not any(locus.lies_in(other) for other in kept):
-            kept.append(locus)
+        with suppress(TooLarge):  # a locus too many does no harm
+            if any(locus.lies_in(other) for other in kept):
+                continue
+        kept.append(locus)
     return tuple(kept)
 
 

@@ -167,9 +167,8 @@ class Gramian(DampingCases):
     @cached_property
     def holds_where(self) -> tuple[Condition, ...]:
         """Also the conditions for an integral over all time to exist."""
-        if self._kept:
-            there = product_of(distances(systems_of(self._kept) or ()))
-            return (*self.domain, Condition("existence", there, "=="))
+        if systems := systems_of(self._kept):
+            return (*self.domain, Condition("existence", product_of(distances(systems)), "=="))
         exists = self.decay.positive if self.answer["matrix"] is not None else ()
         beyond = [Condition("existence", value, ">") for value in exists]
         return (*super().holds_where, *beyond)

@@ -67,7 +67,7 @@ def excluded_claims(
     desired: DesiredPolynomial,
     places: Places,
     equations: Sequence[Scalar],
-    needed: Sequence[Scalar],
+    needed: Sequence[Scalar] | None,
     letter_of_gain: str,
 ) -> Iterator[Claim]:
     """Yield the claim that necessary conditions of such a gain lie in the ideal of the equations.
@@ -78,7 +78,7 @@ def excluded_claims(
         message = f"a gain {letter_of_gain} with these zeros is found"
         raise CertificateRejected(message, repair="please report this: it is a bug of symobs")
     e = Environment(variable=pair.variable, relations=tuple(equations))
-    for value in needed:
+    for value in needed or ():
         says = f"with zeros there, {value} lies in the ideal of the coefficients of det(s*I - A + L*C) - phi(s)"
         yield Claim(relation(value, 0), e, says if letter_of_gain == "L" else says.replace("L*C", "B*K"))
         if not value.is_constant:

@@ -41,7 +41,6 @@ from symobs.tasks.design.pole_placement.gain_family import Family
 from symobs.tasks.design.pole_placement.multiple_outputs import MultiOutputPair
 from symobs.tasks.design.pole_placement.zero_pattern import (
     RootGain,
-    contradict,
     equations_for,
     obstacles,
     unknown_gain,
@@ -291,9 +290,9 @@ class GainDesign(Result):
         return tuple(value for value in equations_for(self.pair, self.desired, general) if value)
 
     @cached_property
-    def needed(self) -> tuple[Scalar, ...]:
-        """The conditions on parameters under which a gain with zeros in the given places may exist; (1,) if none does."""
-        return (Scalar.of(1),) if contradict(self.equations) else obstacles(self.equations)
+    def needed(self) -> tuple[Scalar, ...] | None:
+        """What vanishes wherever there is a gain with zeros in the given places, (1,) if none exists; None if not known."""
+        return obstacles(self.equations)
 
     @property
     def existence(self) -> tuple[Scalar, ...]:

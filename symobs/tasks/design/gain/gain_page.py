@@ -9,8 +9,8 @@ from symobs.exact.core.generators import all_roots
 from symobs.formula.tree import Evaluated, Literal, Roots
 from symobs.formula.tree.term import Term, block
 from symobs.proof.derivation import CaseStep
-from symobs.proof.derivation.wording_check import Said, rests
 from symobs.proof.derivation.builder import Builder, predicate, relation
+from symobs.proof.derivation.wording_check import Said, rests
 from symobs.system.specification import DesiredPolynomial
 from symobs.tasks.analysis.factored_form import factored_form, formula_of_factored
 from symobs.tasks.analysis.page_parts import (

@@ -77,16 +77,17 @@ def _with_remainder(page: Builder, key: str, facts: Sequence[Relation], phi: Ter
 
 
 def _outside_lines(cases: Sequence[Case]) -> Conjunction:
-    """Return that parameters are outside the cases that have a gain; nothing where one has several equations."""
-    systems = systems_of(case for case in cases if not _is_unassignable(case)) or ()
-    if any(len(system) > 1 for system in systems):
+    """Return that parameters are outside the cases that have a gain; nothing where one has several equations, or none."""
+    systems = systems_of(case for case in cases if not _is_unassignable(case))
+    if systems is None or any(len(system) > 1 for system in systems):
         return Conjunction(())
     return Conjunction(tuple(relation(equation, "!=", 0) for (equation,) in dict.fromkeys(systems)))
 
 
 def _outside(cases: Sequence[Case]) -> Conjunction:
-    """Return that parameters are outside all cases."""
-    return Conjunction(tuple(relation(distance, "!=", 0) for distance in distances(systems_of(cases) or ())))
+    """Return that parameters are outside all cases; nothing where one of them is everywhere."""
+    systems = systems_of(cases)
+    return Conjunction(() if systems is None else tuple(relation(value, "!=", 0) for value in distances(systems)))
 
 
 def _is_unassignable(case: Case) -> bool:

@@ -53,26 +53,21 @@ def equations_for(pair: ObserverPair, desired: DesiredPolynomial, gain: Matrix) 
     )
 
 
-def contradict(equations: Sequence[Scalar]) -> bool:
-    """Return whether 1 lies in the ideal of the equations, so that they have no common solution."""
-    try:
-        return Ideal.of(equations).is_whole
-    except TooLarge:
-        return False
+def obstacles(equations: Sequence[Scalar]) -> tuple[Scalar, ...] | None:
+    """Return polynomials in the parameters alone that vanish wherever the equations have a solution; (1,) for nowhere.
 
-
-def obstacles(equations: Sequence[Scalar]) -> tuple[Scalar, ...]:
-    """Return polynomials in the parameters alone that vanish wherever the equations have a solution; (1) for nowhere.
-
-    They are what eliminating all unknowns leaves; nothing is returned where that is too much work.
+    They are what eliminating all unknowns leaves; None where that is too much work, and nothing is known.
     """
     from symobs.exact.ideals.triangular_basis import triangular  # noqa: PLC0415 - only patterns that are hard to meet pay for it
 
     unknowns = _unknowns_in(equations)
+    with suppress(TooLarge):
+        if Ideal.of(equations).is_whole:
+            return (Scalar.of(1),)
     try:
         found = triangular(equations, unknowns)
     except TooLarge:
-        return ()
+        return None
     return tuple(value for value in found if not value.names.intersection(unknowns))
 
 
@@ -107,8 +102,9 @@ def with_zeros(
     """
     general = unknown_gain(pair.A.shape[0], pair.c.shape[0], zero)
     equations = equations_for(pair, desired, general)
-    if contradict(equations):
-        return None
+    with suppress(TooLarge):
+        if Ideal.of(equations).is_whole:
+            return None
     unknowns = [name for name in general.field.names if name in general.names]
     rest = dict.fromkeys(unknowns, Scalar.of(0))
     for degree in DEGREES:

@@ -17,6 +17,7 @@ import symobs
 from symobs.exact import EIGENVALUE, AlgebraicExtension, Matrix, Scalar, stable_roots
 from symobs.ground.errors import CertificateRejected, DerivationRejected, InputError
 from symobs.stability.criteria.stability import is_beyond, is_marginal, on_boundary
+from symobs.tasks.analysis.modes import modes
 from symobs.tasks.result import render
 from tests.support.independent_algebra.second_reader import sympy_scalar
 from tests.support.problems.strategies import Sample, plants, unimodular
@@ -471,3 +472,13 @@ def test_a_root_beside_the_boundary_is_told_from_one_on_it() -> None:
     assert stable_roots(s**2 + 1, "s", discrete=False) == (False, False)
     assert stable_roots(10**40 * s**2 + s + 10**40 - 1, "s", discrete=True) == (True, True)
     assert stable_roots(10**40 * s**2 + s + 10**40, "s", discrete=True) == (False, False)
+
+
+def test_a_mode_that_grows_on_strata_that_are_not_known_is_undecided(monkeypatch: pytest.MonkeyPatch) -> None:
+    """x₁ grows like k t, but not at k = 0: where it is not known that this is the only exception, no is not said."""
+    plant, asked = ("[0 k; 0 0]", None, "[0 0]"), {"meaning": "lyapunov"}
+    assert symobs.detectability(symobs.StateSpace(*plant), **asked).verdict == "conditional"
+    monkeypatch.setattr(modes, "constancy", lambda *_: None)
+    found = symobs.detectability(symobs.StateSpace(*plant), **asked)
+    assert found.verdict == "undecided"
+    assert "is not detectable" not in found.to("text")

@@ -23,7 +23,7 @@ from symobs.proof.derivation import CaseStep, Given
 from symobs.system.conditions import real_consequences
 from symobs.tasks.analysis.rank import missing_measurements
 from symobs.tasks.analysis.rank.rank_test import RankResult
-from symobs.tasks.analysis.strata.loci import Region, loci
+from symobs.tasks.analysis.strata.loci import Locus, Region, loci, maximal
 from tests.support.claims.claims import Setting, applicable, conditions_hold, rank_holds
 from tests.support.independent_algebra.plain import (
     has_sign,
@@ -529,3 +529,30 @@ def test_a_set_beyond_the_limits_leaves_the_smallest_sets_undecided(monkeypatch:
     N, X = Matrix.of([[1, 0], [0, 1]]), Matrix.of([[1, 1], [1, 2]])
     assert missing_measurements.smallest_sets(N, X, Environment()) is None
     assert missing_measurements.smallest_sets(N, X, Environment()) == ((1,), (2,))
+
+
+# -- searches that give up -------------------------------------------------------------------------------------------------
+
+
+def too_large(*_: Any) -> Any:
+    raise TooLarge
+
+
+def test_a_set_of_measurements_is_not_refused_because_of_minors_that_were_not_looked_at(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """The first minor with states 1 and 2 is k; the next is 1."""
+    plant = symobs.StateSpace("[0 0 k; 0 0 1; 0 0 0]", C="[0 0 0]")
+    assert symobs.observability(plant).fields["missing_measurements"] == [[1, 2]]
+    monkeypatch.setattr(missing_measurements, "_MINORS", 1)
+    assert symobs.observability(symobs.StateSpace(plant.A, C=plant.C)).fields["missing_measurements"] is None
+
+
+def test_a_locus_of_which_it_is_not_decided_leaves_the_rank_undecided(monkeypatch: pytest.MonkeyPatch) -> None:
+    locus, other = (Locus.of(Ideal.of([Scalar.symbol(name)])) for name in "ab")
+    assert not locus.lies_in(other)
+    plant = ("[0 1 0; 0 0 a; 0 0 b]", None, "[a b 1]")
+    assert symobs.observability(symobs.StateSpace(*plant)).verdict == "conditional"
+    monkeypatch.setattr(Locus, "lies_in", too_large)
+    assert maximal([locus, other]) == (locus, other)
+    assert symobs.observability(symobs.StateSpace(*plant)).verdict == "undecided"

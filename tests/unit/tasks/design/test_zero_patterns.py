@@ -14,8 +14,11 @@ import pytest
 import sympy
 
 import symobs
+from symobs.exact import TooLarge
+from symobs.exact.ideals import triangular_basis
 from symobs.ground.errors import CertificateRejected
 from symobs.tasks.design.gain.gain_kind import AlgebraicGain, NoGainWithZeros
+from symobs.tasks.design.pole_placement import zero_pattern
 from symobs.tasks.result.conversions import to_sympy
 
 s, x = sympy.Symbol("s"), sympy.Symbol("x")
@@ -180,3 +183,19 @@ def test_a_pattern_may_have_no_gain_where_the_other_input_is_not_enough() -> Non
     assert (case.result.verdict, case.result.K) == ("no", None)
     assert plant.A.subs(sympy.Symbol("a"), -4) * plant.B.col(1) == sympy.zeros(2, 1)
     assert "In this case no such gain exists." in " ".join(found.to("text").split())
+
+
+def test_a_pattern_that_is_too_much_work_is_undecided(monkeypatch: pytest.MonkeyPatch) -> None:
+    """With L = [l; 0] the polynomial is s² − (a − l) s: no gain of this pattern has the poles −1, −2."""
+
+    def found() -> Any:
+        return symobs.observer(symobs.StateSpace("[a 1; 0 0]", C="[1 0]"), poles=[-1, -2], zero="(2, 1)")
+
+    def too_large(*_: Any) -> Any:
+        raise TooLarge
+
+    assert (found().needed, found().verdict) == ((1,), "no")
+    monkeypatch.setattr(triangular_basis, "triangular", too_large)
+    monkeypatch.setattr(zero_pattern.Ideal, "is_whole", property(too_large))
+    assert (found().needed, found().verdict) == (None, "undecided")
+    assert "whether one exists is undecided" in " ".join(found().to("text").split())
