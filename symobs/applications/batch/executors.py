@@ -4,24 +4,94 @@ from __future__ import annotations
 
 import logging
 import os
+import sys
 import time
 from concurrent.futures import Executor, Future, ThreadPoolExecutor
 from contextlib import contextmanager, suppress
 from functools import partial
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from symobs.applications.batch.kept import CHILD, identity, run_chunk, run_in_process
-from symobs.ground.child_processes.child import Kept
+from symobs.applications.batch.jobs import fingerprint, row_text
+from symobs.ground.child_processes.budget import Budget
+from symobs.ground.child_processes.child import Died, Kept
 from symobs.ground.errors import InputError, SymobsError, UsageError, reason_of
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Callable, Iterator, Sequence
 
+    #: What a worker is given of a job: its key, its kind and the text of its data.
+    Order = tuple[str, str, str]
+
+CHILD = "symobs.applications.batch.child"
+#: How often a job may end its process.
+_ATTEMPTS = 2
+#: The children of a worker whose run is elsewhere; they end with its process.
+_own = Kept(CHILD)
 #: Seconds that a connection takes at most, and after which one that was lost is given up.
 _CONNECT = 10.0
 _LOST_AFTER = 10.0
 _ASK = 5.0
 _CLOSE = 1.0
+
+
+def run_chunk(
+    orders: Sequence[Order], budget: tuple[float | None, float | None], expected: str, children: Kept = _own
+) -> tuple[list[str], float]:
+    """Return the rows of some jobs as JSON, made by a child of this process, and the seconds this took.
+
+    Raises `InputError` where this worker has other versions than expected.
+    """
+    began = time.monotonic()
+    if identity() != expected:
+        message = f"a worker has {identity()}, this process {expected}"
+        raise InputError(message, where="--scheduler", repair="install the same versions everywhere")
+    return [_row(order, Budget(*budget), children) for order in orders], time.monotonic() - began
+
+
+def run_in_process(orders: Sequence[Order], _: object, __: str) -> tuple[list[str], float]:
+    """Return the same rows without a child, and so without limits."""
+    from symobs.applications.batch.child import worked  # noqa: PLC0415 - it imports the kernel
+
+    began = time.monotonic()
+    return [worked(order) for order in orders], time.monotonic() - began
+
+
+def identity() -> str:
+    """Return the versions that must be the same wherever jobs of one run are done."""
+    return f"{fingerprint()}, Python {sys.version_info.major}.{sys.version_info.minor}"
+
+
+def _row(order: Order, limits: Budget, children: Kept) -> str:
+    """Return the row of one job; what ends its process is tried once more, in a fresh one."""
+    key, kind, _ = order
+    row: dict[str, Any] = {}
+    for attempt in range(1, _ATTEMPTS + 1):
+        try:
+            with children.one(kind, megabytes=limits.megabytes, fresh=attempt > 1) as child:
+                found: str = child.ask(order, limits.seconds)
+                return found
+        except TimeoutError:
+            row = {"status": "undecided", "error": [f"{limits.seconds:g} seconds were not enough"]}
+            break
+        except Died as death:
+            if death.for_memory:
+                row = {"status": "undecided", "error": [_too_much(limits)], "attempts": attempt}
+            else:
+                row = {"status": "failed", "error": [f"its process ended with {death}"], "attempts": attempt}
+    told = {"seconds": limits.seconds, "megabytes": limits.megabytes}
+    status, error = row.pop("status"), row.pop("error")
+    return row_text(key, kind, {"status": status, "error": error, "budget": told, **row})
+
+
+def _too_much(limits: Budget) -> str:
+    return (
+        "the memory there is was not enough"
+        if limits.megabytes is None
+        else f"{limits.megabytes:g} MB of memory were not enough"
+    )
+
+
+# -- executors ---------------------------------------------------------------------------------------------------------
 
 
 class Unfinished(SymobsError):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from contextlib import ExitStack
+from contextlib import ExitStack, nullcontext
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
@@ -60,7 +60,7 @@ class Batch:
         self.counts = dict.fromkeys(STATUSES, 0)
         #: The further names of jobs that stand twice in the input.
         self.names: dict[str, list[str]] = {}
-        self._seen: set[bytes] = set()
+        self._seen: set[str] = set()
         self.kept = 0
 
     def __iter__(self) -> Iterator[Row]:
@@ -90,11 +90,10 @@ class Batch:
         """Yield the jobs that are not done yet, each once; the names of those that stand twice are kept."""
         for job in self._jobs():
             kinds.add(job.kind)
-            short = bytes.fromhex(job.key[:32])
-            if short in self._seen:
+            if job.key in self._seen:
                 self.names.setdefault(job.key, []).append(job.name)
                 continue
-            self._seen.add(short)
+            self._seen.add(job.key)
             before = None if self.store is None else self.store.outcome(job.key, self.settings.budget, self._retry)
             if before is None:
                 yield job
@@ -116,10 +115,8 @@ class Batch:
 
     def told(self, total: int) -> str:
         """Return what would be done."""
-        if self.store is not None and self.store.folder.is_dir():
-            self.store.load()
-        kinds: set[str] = set()
-        count = sum(1 for _ in self._wanted(kinds))
+        with nullcontext() if self.store is None else self.store.reading():
+            count = sum(1 for _ in self._wanted(set()))
         return f"{total} problems, {count} to be done, {self.kept} done already{self.told_of_equals()}"
 
     def told_of_equals(self) -> str:
@@ -130,13 +127,13 @@ class Batch:
     @property
     def stored(self) -> int:
         """How many jobs have a row: more than this run has come to where it has not met all that were done before."""
-        return sum((self.counts if self.store is None else self.store.counts).values())
+        return sum(self.counts.values()) if self.store is None else self.store.count
 
     @property
     def failed(self) -> list[Row]:
         """The rows of what failed and of what could not be read, among the jobs of this run."""
         wrong = (row for row in self.rows() if row["status"] in {"failed", "unreadable"})
-        return [row for row in wrong if bytes.fromhex(row["key"][:32]) in self._seen]
+        return [row for row in wrong if row["key"] in self._seen]
 
     def retry(self, *statuses: str) -> Self:
         """Try the jobs again that came to this: `failed`, `undecided`."""
@@ -275,7 +272,7 @@ def require_own_folder(out: Path, problems: Iterable[Path]) -> None:
 def verified(folder: Path) -> int:
     """Return how many stored rows hold: key, hash, and the claims by other code than that which made them.
 
-    Raises `CertificateRejected` for the first one that does not, `Damaged` for the first that is no whole row.
+    Raises `CertificateRejected` for the first one that does not, `Damaged` for what is no whole row.
     """
     if not (folder / "manifest.json").is_file():
         raise InputError("there is no manifest.json", where=str(folder), repair="name the folder of a run")

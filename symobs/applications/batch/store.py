@@ -1,30 +1,27 @@
-"""The store of a run: a folder that holds every chunk of rows whole or not at all, and from which a run goes on.
+"""The store of a run: a folder from which the run goes on, whatever ended it.
 
-manifest.json              what the folder holds; written last
-rows/KK/CHUNK.jsonl        the rows of a chunk, named by the hash of their keys
-files/KK/KEY.SUFFIX        the pages of a job
-rows/KK/CHUNK.jsonl.damaged   a chunk that was not whole any more, set aside; its jobs are done again
-keys.bin                   the keys of all rows, to begin again quickly; made anew where it does not fit the rows
-log.jsonl                  times
-lock                       held while a run writes here
+rows.sqlite           the row of each job; a chunk is one transaction
+rows/all/rows.jsonl   the same rows as lines of JSON; written when a run ends
+files/KK/KEY.SUFFIX   the pages of a job
+manifest.json         what the jobs of the last run came to; written last
+log.jsonl             times
+lock                  a database that is locked while a run writes here
 """
 
 from __future__ import annotations
 
-import hashlib
 import json
 import os
-import re
 import shutil
 import socket
-import struct
+import sqlite3
 import time
-from contextlib import contextmanager, suppress
+from contextlib import ExitStack, closing, contextmanager, suppress
 from typing import TYPE_CHECKING, Any
 
 from symobs.applications.batch.jobs import SCHEMA, fingerprint
 from symobs.ground.child_processes.budget import Budget
-from symobs.ground.errors import CertificateRejected, InputError, reason_of
+from symobs.ground.errors import InputError, reason_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
@@ -35,9 +32,14 @@ if TYPE_CHECKING:
 #: What a job comes to that is not to be tried again.
 FINAL = ("done", "no", "unreadable")
 STATUSES = (*FINAL, "undecided", "failed")
-_RECORD = struct.Struct("<16sBff")
-_HEAD = re.compile(rb'\{"key":"([0-9a-f]{64})","status":"(%s)"' % "|".join(STATUSES).encode())
-_BUDGET = re.compile(rb'"budget":\{"seconds":([^,}]*),"megabytes":([^,}]*)\}')
+_ROWS = "rows.sqlite"
+_TABLES = """
+CREATE TABLE IF NOT EXISTS rows(
+    key TEXT PRIMARY KEY, status TEXT, seconds REAL, megabytes REAL, row BLOB
+);
+CREATE TABLE IF NOT EXISTS writer(name TEXT);
+"""
+_WORK = ".work"
 
 
 class Damaged(InputError):
@@ -51,213 +53,187 @@ class Store:
 
     def __init__(self, folder: Path) -> None:
         self.folder = folder
-        self.final: dict[bytes, str] = {}
-        self.others: dict[bytes, tuple[str, Budget]] = {}
-        self.counts = dict.fromkeys(STATUSES, 0)
-        #: The chunks that are not whole.
-        self.torn: list[Path] = []
-        self._is_indexed = False
+        self._listing = folder / "rows" / "all" / "rows.jsonl"
+        #: The connection that is held open, if one is.
+        self._held: sqlite3.Connection | None = None
+        #: What the jobs had come to when it was opened.
+        self._statuses: dict[str, str] = {}
+
+    @contextmanager
+    def _refusing(self) -> Iterator[None]:
+        """Raise what the folder or a database in it refuses as an error of the user."""
+        try:
+            yield
+        except (OSError, sqlite3.OperationalError) as error:
+            repair = "make room there, or name a folder that can be written with --out; what is stored stays"
+            raise InputError(reason_of(error), where=str(self.folder), repair=repair) from None
+        except sqlite3.DatabaseError as error:
+            raise self._damaged(str(error)) from None
+
+    @contextmanager
+    def _rows(self) -> Iterator[sqlite3.Connection]:
+        """Give the connection that is held, else one of its own; where nothing is stored, one to no rows."""
+        if self._held is not None:
+            yield self._held
+            return
+        place = self.folder / _ROWS
+        with self._refusing(), closing(_connected(place if place.exists() else ":memory:")) as rows:
+            rows.executescript(_TABLES)
+            yield rows
+
+    @contextmanager
+    def _holding(self, rows: sqlite3.Connection) -> Iterator[None]:
+        self._held, self._statuses = rows, dict(rows.execute("SELECT key, status FROM rows"))
+        try:
+            yield
+        finally:
+            self._held = None
 
     # -- reading -----------------------------------------------------------------------------------------------------
 
-    def chunks(self) -> list[Path]:
-        """Return the files of rows, sorted by name."""
-        return sorted(self.folder.glob("rows/*/*.jsonl"))
+    @contextmanager
+    def reading(self) -> Iterator[None]:
+        """Hold the rows open while many questions are asked."""
+        with self._rows() as rows, self._holding(rows):
+            yield
 
     def rows(self) -> Iterator[dict[str, Any]]:
-        """Yield the row of every job; of one that was tried again its last outcome.
-
-        Raises `Damaged` for what is no row, and `CertificateRejected` where two results of one job contradict each other.
-        """
-        several: dict[str, list[dict[str, Any]]] = {key: [] for key in self._keys_met_again()}
-        for path in self.chunks():
-            if not path.stat().st_size:
-                raise _damaged(path, 1)
-            with path.open("rb") as stream:
-                for number, line in enumerate(stream, 1):
-                    row = _row(line, path, number)
-                    if row["key"] in several:
-                        several[row["key"]].append(row)
-                    else:
-                        yield row
-        for key in sorted(several):
-            yield _settled(several[key], self.folder)
+        """Yield the row of every job; raises `Damaged` for what is no row."""
+        with self._rows() as rows:
+            for key, text in rows.execute("SELECT key, row FROM rows"):
+                yield self._row(key, text)
 
     def in_order(self, jobs: Iterable[Job]) -> Iterator[tuple[int, Any]]:
-        """Yield the first index and the result of blocks, in the order of their jobs; one chunk is in memory at a time.
+        """Yield the first index and the result of blocks, in the order of their jobs; one is in memory at a time.
 
         Raises `InputError` where one is missing, `Damaged` where it is no row.
         """
-        places = dict(self._places())
-        for job in jobs:
-            if job.key not in places:
-                raise InputError(f"{job.name} are missing", where=str(self.folder), repair="run the same command again")
-            path, number, start = places[job.key]
-            with path.open("rb") as stream:
-                stream.seek(start)
-                row = _row(stream.readline(), path, number)
-            if "result" not in row:
-                raise InputError(
-                    f"{job.name}: {'; '.join(row['error'])}",
-                    where=str(self.folder),
-                    repair="run again with more --timeout",
-                )
-            yield json.loads(job.payload)["first"], row["result"]
-
-    def _places(self) -> Iterator[tuple[str, tuple[Path, int, int]]]:
-        """Yield where the row of each key stands: the file, the number of the line, and where it begins."""
-        for path in self.chunks():
-            start = 0
-            with path.open("rb") as stream:
-                for number, line in enumerate(stream, 1):
-                    if head := _HEAD.match(line):
-                        yield head[1].decode(), (path, number, start)
-                    start += len(line)
-
-    def _keys_met_again(self) -> set[str]:
-        """Return the keys that stand in more than one row."""
-        seen: set[bytes] = set()
-        again: set[str] = set()
-        for path in self.chunks():
-            for head in filter(None, map(_HEAD.match, path.read_bytes().splitlines())):
-                if head[1] in seen:
-                    again.add(head[1].decode())
-                seen.add(head[1])
-        return again
-
-    def load(self) -> None:
-        """Read which jobs have rows; those of a chunk that is not whole have none."""
-        index, chunks = self.folder / "keys.bin", self.chunks()
-        with suppress(OSError, struct.error):
-            head, _, records = index.read_bytes().partition(b"\n")
-            if head == _head_of_index(chunks, records):
-                for key, status, seconds, megabytes in _RECORD.iter_unpack(records):
-                    self._note(key, STATUSES[status], Budget(seconds or None, megabytes or None))
-                self._is_indexed = True
-                return
-        for path in chunks:
-            data = path.read_bytes()
-            lines = data.splitlines()
-            heads = [_HEAD.match(line) if line.endswith(b"}") else None for line in lines]
-            if not data.endswith(b"\n") or None in heads:
-                self.torn.append(path)
-                continue
-            for line, found in zip(lines, filter(None, heads), strict=True):
-                key, status = bytes.fromhex(found[1].decode())[:16], found[2].decode()
-                self._note(key, status, Budget(None, None) if status in FINAL else _budget_of(line))
-
-    def _note(self, key: bytes, status: str, budget: Budget) -> None:
-        """Take note of a row; a later outcome of an open job takes the place of the earlier one."""
-        if key in self.final:
-            return
-        if key in self.others:
-            if status not in FINAL and self.others[key][1].exceeds(budget):
-                return
-            self.counts[self.others.pop(key)[0]] -= 1
-        self.counts[status] += 1
-        if status in FINAL:
-            self.final[key] = status
-        else:
-            self.others[key] = status, budget
+        with self._rows() as rows:
+            for job in jobs:
+                found = rows.execute("SELECT row FROM rows WHERE key = ?", (job.key,)).fetchone()
+                if found is None:
+                    message = f"{job.name} are missing"
+                    raise InputError(message, where=str(self.folder), repair="run the same command again")
+                row = self._row(job.key, found[0])
+                if "result" not in row:
+                    message = f"{job.name}: {'; '.join(row['error'])}"
+                    raise InputError(message, where=str(self.folder), repair="run again with more --timeout")
+                yield json.loads(job.payload)["first"], row["result"]
 
     def outcome(self, key: str, budget: Budget, retry: Sequence[str] = ()) -> str | None:
-        """Return what a job came to, None where it is to be done: it has no row, or met a smaller budget than this one."""
-        short = bytes.fromhex(key[:32])
-        if short in self.final:
-            return self.final[short]
-        if short not in self.others:
-            return None
-        status, allowed = self.others[short]
-        return None if status in retry or (status == "undecided" and budget.exceeds(allowed)) else status
+        """Return what a job came to, None where it is to be done: it has no row, or met a smaller budget than this one.
+
+        It is asked while the rows are held open.
+        """
+        status = self._statuses.get(key)
+        if status is None or status in FINAL:
+            return status
+        if status == "undecided":
+            with self._rows() as rows:
+                met = rows.execute("SELECT seconds, megabytes FROM rows WHERE key = ?", (key,)).fetchone()
+            if budget.exceeds(Budget(*met)):
+                return None
+        return None if status in retry else status
+
+    @property
+    def count(self) -> int:
+        """How many jobs have a row."""
+        with self._rows() as rows:
+            return int(rows.execute("SELECT count(*) FROM rows").fetchone()[0])
+
+    def _row(self, key: str, text: bytes) -> dict[str, Any]:
+        row: Any = None
+        with suppress(ValueError, RecursionError):
+            row = json.loads(text)
+        parts = ("key", "status", "kind", "name", "job")
+        if not isinstance(row, dict) or not all(isinstance(row.get(part), str) for part in parts):
+            raise self._damaged(f"what is stored of {str(key)[:16]} is no whole row")
+        return row
+
+    def _damaged(self, reason: str) -> Damaged:
+        repair = f"rename it to {_ROWS}.damaged and run the same command again: what it held is done again"
+        return Damaged(f"this file was damaged: {reason}", where=str(self.folder / _ROWS), repair=repair)
 
     # -- writing -----------------------------------------------------------------------------------------------------
 
     @contextmanager
     def writing(self) -> Iterator[None]:
         """Hold the folder for one run; raises `InputError` if another run holds it."""
-        try:
+        with self._refusing(), ExitStack() as held:
             self.folder.mkdir(parents=True, exist_ok=True)
-            with (self.folder / "lock").open("a+", encoding="utf-8") as stream:
-                self._take(stream)
-                for left in self.folder.glob("*/*/*.tmp"):
-                    left.unlink(missing_ok=True)
-                self.load()
-                for path in self.torn:
-                    path.replace(_aside(path))
+            (self.folder / "log.jsonl").touch()  # a folder that cannot be written says so better than a database
+            lock, rows = (held.enter_context(closing(_connected(self.folder / name))) for name in ("lock", _ROWS))
+            rows.execute("PRAGMA journal_mode = WAL")  # who reads does not keep this run from writing
+            rows.executescript(_TABLES)
+            self._lock(lock, rows)
+            with self._holding(rows):
                 yield
-        except OSError as error:
-            raise _refused(error, self.folder) from None
+            with suppress(sqlite3.OperationalError):  # somebody reads
+                rows.execute("PRAGMA journal_mode = DELETE")  # one file, which needs no writing to be read
 
-    def _take(self, stream: Any) -> None:
-        if not _locked(stream):
-            stream.seek(0)
-            repair = "wait for its end, or name another folder with --out"
-            raise InputError(
-                f"another run is at work here ({stream.read()[:100].strip()})", where=str(self.folder), repair=repair
-            )
-        stream.truncate(0)
-        stream.write(f"process {os.getpid()} on {socket.gethostname()}\n")
-        stream.flush()
-
-    def add(self, rows: Sequence[dict[str, Any]], seconds: float) -> None:
-        """Write a chunk of rows, and the pages that came with them: whole or not at all."""
-        self._is_indexed = False
+    def _lock(self, lock: sqlite3.Connection, rows: sqlite3.Connection) -> None:
+        """Lock the folder until the connection, or its process, ends."""
+        lock.execute("PRAGMA busy_timeout = 0")
         try:
-            for row in rows:
-                for name, content in row.pop("files", {}).items():
-                    row.setdefault("files", {})[name] = self._page(row["key"], name, content)
-            name = _name(sorted(row["key"] for row in rows))[:16]
-            lines = [json.dumps(row, ensure_ascii=False, separators=(",", ":")) + "\n" for row in rows]
-            write_whole(
-                self.folder / "rows" / name[:2] / f"{name}.jsonl", "".join(lines).encode("utf-8", "surrogatepass")
-            )
-            with (self.folder / "log.jsonl").open("a", encoding="utf-8") as log:
-                log.write(
-                    json.dumps({"time": time.time(), "chunk": name, "rows": len(rows), "seconds": seconds}) + "\n"
-                )
-        except OSError as error:
-            raise _refused(error, self.folder) from None
-        for row in rows:
-            self._note(bytes.fromhex(row["key"][:32]), row["status"], _budget_in(row))
+            lock.execute("BEGIN IMMEDIATE")
+        except sqlite3.OperationalError:
+            writer = next(rows.execute("SELECT name FROM writer"), ("",))[0]
+            repair = "wait for its end, or name another folder with --out"
+            raise InputError(f"another run is at work here ({writer})", where=str(self.folder), repair=repair) from None
+        with rows:
+            rows.execute("DELETE FROM writer")
+            rows.execute("INSERT INTO writer VALUES (?)", (f"process {os.getpid()} on {socket.gethostname()}",))
+
+    def add(self, chunk: Sequence[dict[str, Any]], seconds: float) -> None:
+        """Store the rows of a chunk, all or none, and the pages that came with them."""
+        for row in chunk:
+            for name, content in row.pop("files", {}).items():
+                row.setdefault("files", {})[name] = self._page(row["key"], name, content)
+        self._listing.unlink(missing_ok=True)
+        with self._rows() as rows, rows:
+            rows.executemany("INSERT OR REPLACE INTO rows VALUES (?, ?, ?, ?, ?)", map(_record, chunk))
+        with (self.folder / "log.jsonl").open("a", encoding="utf-8") as log:
+            log.write(json.dumps({"time": time.time(), "rows": len(chunk), "seconds": seconds}) + "\n")
 
     def _page(self, key: str, name: str, content: str) -> str:
         """Write a page and return its place in the folder."""
         from symobs.tasks.result import format_named  # noqa: PLC0415 - only with pages
 
         place = f"files/{key[:2]}/{key}{format_named(name).suffix}"
-        write_whole(self.folder / place, content.encode("utf-8", "surrogatepass"))
+        write_whole(self.folder / place, [content.encode("utf-8", "surrogatepass")])
         return place
 
     def close(self, kinds: Sequence[str], counts: dict[str, int], aliases: dict[str, list[str]]) -> None:
-        """Write the index of keys where it is not there, and last the manifest: what the jobs of this run came to."""
+        """Write the rows as lines for other programs, and last the manifest: what the jobs of this run came to."""
         manifest = {
             "schema": SCHEMA,
             "fingerprint": fingerprint(),
             "kinds": sorted(kinds),
             "counts": counts,
             "names": aliases,
-            "index": "keys.bin",
+            "index": _ROWS,
         }
-        try:
-            if not self._is_indexed:
-                write_whole(self.folder / "keys.bin", self._index())
-            text = json.dumps(manifest, indent=2, sort_keys=True, ensure_ascii=False) + "\n"
-            write_whole(self.folder / "manifest.json", text.encode())
-        except OSError as error:
-            raise _refused(error, self.folder) from None
+        if self.folder.suffix != _WORK and not self._listing.exists():
+            with self._rows() as rows:
+                found = rows.execute("SELECT row FROM rows")
+                write_whole(self._listing, (text + b"\n" for (text,) in found))
+        text = json.dumps(manifest, indent=2, sort_keys=True, ensure_ascii=False) + "\n"
+        write_whole(self.folder / "manifest.json", [text.encode()])
 
-    def _index(self) -> bytes:
-        """Return the index of keys: what says which chunks it is of, and a record of each key."""
-        records = [_RECORD.pack(key, STATUSES.index(status), 0, 0) for key, status in sorted(self.final.items())]
-        for key, (status, budget) in sorted(self.others.items()):
-            records.append(_RECORD.pack(key, STATUSES.index(status), budget.seconds or 0, budget.megabytes or 0))
-        joined = b"".join(records)
-        return _head_of_index(self.chunks(), joined) + b"\n" + joined
+
+def _connected(place: Path | str) -> sqlite3.Connection:
+    return sqlite3.connect(place, check_same_thread=False)  # a run may be iterated over by any thread
+
+
+def _record(row: dict[str, Any]) -> tuple[str, str, float | None, float | None, bytes]:
+    budget = row.get("budget") or {}
+    text = json.dumps(row, ensure_ascii=False, separators=(",", ":")).encode("utf-8", "surrogatepass")
+    return row["key"], row["status"], budget.get("seconds"), budget.get("megabytes"), text
 
 
 def work_folder(out: Path) -> Path:
     """Return where the rows of a run wait for what is made of them: beside it, so that a run that was ended goes on."""
-    return out.with_name(f"{out.name}.work")
+    return out.with_name(f"{out.name}{_WORK}")
 
 
 def discard_work(out: Path) -> None:
@@ -266,13 +242,13 @@ def discard_work(out: Path) -> None:
         shutil.rmtree(work_folder(out))
 
 
-def write_whole(place: Path, data: bytes) -> None:
+def write_whole(place: Path, parts: Iterable[bytes]) -> None:
     """Write a file that is there whole or not at all, also after a loss of power."""
     place.parent.mkdir(parents=True, exist_ok=True)
     temporary = place.with_name(f"{place.name}.tmp")
     try:
         with temporary.open("wb") as stream:
-            stream.write(data)
+            stream.writelines(parts)
             stream.flush()
             os.fsync(stream.fileno())
         temporary.replace(place)
@@ -286,82 +262,3 @@ def write_whole(place: Path, data: bytes) -> None:
             os.fsync(folder)
         finally:
             os.close(folder)
-
-
-def _locked(stream: Any) -> bool:
-    """Lock a file until its process ends, however it does; return whether nobody else holds it."""
-    try:
-        if os.name == "posix":
-            import fcntl  # noqa: PLC0415 - not on every system
-
-            fcntl.flock(stream, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        else:
-            import msvcrt  # noqa: PLC0415 - on Windows only
-
-            lock: Any = msvcrt
-            lock.locking(stream.fileno(), lock.LK_NBLCK, 1)
-    except OSError:
-        return False
-    return True
-
-
-def _settled(rows: Sequence[dict[str, Any]], folder: Path) -> dict[str, Any]:
-    """Return the outcome of a job that was tried several times."""
-    final = [row for row in rows if row["status"] in FINAL]
-    texts = {json.dumps([row["status"], row.get("result"), row.get("error")], sort_keys=True) for row in final}
-    if len(texts) > 1:
-        first, second, *_ = sorted(texts)
-        message = f"two results of one job: {first[:200]} and {second[:200]}"
-        raise CertificateRejected(message, where=str(folder), repair="please report this: it is a bug of symobs")
-    return (final or sorted(rows, key=lambda row: json.dumps(row.get("budget"))))[-1]
-
-
-def _row(line: bytes, path: Path, number: int) -> dict[str, Any]:
-    """Return the row that a line of a chunk holds; raises `Damaged` where it holds none."""
-    row: Any = None
-    with suppress(ValueError, RecursionError):
-        row = json.loads(line)
-    parts = ("key", "status", "kind", "name", "job")
-    if not isinstance(row, dict) or not all(isinstance(row.get(part), str) for part in parts):
-        raise _damaged(path, number)
-    return row
-
-
-def _damaged(path: Path, number: int) -> Damaged:
-    repair = f"rename it to {_aside(path).name} and run the same command again: what it held is done again"
-    return Damaged("this line is no whole row, the file was damaged", where=f"{path}, line {number}", repair=repair)
-
-
-def _aside(path: Path) -> Path:
-    """Return where a damaged chunk is kept."""
-    return path.with_name(f"{path.name}.damaged")
-
-
-def _head_of_index(chunks: Iterable[Path], records: bytes) -> bytes:
-    """Return what an index fits: the names and the sizes of its chunks, and its own records."""
-    sizes = [f"{chunk.stem} {chunk.stat().st_size}" for chunk in chunks]
-    return f"{_name(sizes)} {hashlib.sha256(records).hexdigest()}".encode()
-
-
-def _name(parts: Any) -> str:
-    return hashlib.sha256("\n".join(parts).encode()).hexdigest()
-
-
-def _budget_of(line: bytes) -> Budget:
-    """Return the budget that a row's text tells."""
-    found = _BUDGET.search(line)
-    return (
-        Budget(None, None)
-        if found is None
-        else Budget(*(None if part == b"null" else float(part) for part in found.groups()))
-    )
-
-
-def _budget_in(row: dict[str, Any]) -> Budget:
-    told = row.get("budget")
-    return Budget(None, None) if told is None else Budget(told["seconds"], told["megabytes"])
-
-
-def _refused(error: OSError, folder: Path) -> InputError:
-    repair = "make room there, or name a folder that can be written with --out; what is stored stays"
-    return InputError(reason_of(error), where=str(folder), repair=repair)

@@ -166,8 +166,6 @@ def finish(
     finally:
         signal.signal(signal.SIGTERM, usual)
         progress.clear()
-        for place in work.store.torn if work.store else ():
-            write_message(f"{place} was damaged: it is kept as {place.name}.damaged, and what it held is done again")
     told = done() if done is not None else _told(work.counts) + work.told_of_equals()
     if not quiet:
         write_message(told or "nothing to do")

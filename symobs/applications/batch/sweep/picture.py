@@ -93,7 +93,7 @@ def write_picture(table: SweepTable, out: Path) -> None:
     from symobs.applications.batch.store import write_whole  # noqa: PLC0415
     from symobs.pages.drawings.plot_file import sweep_file  # noqa: PLC0415 - only with pictures
 
-    write_whole(out, sweep_file(picture_of(table), str(out)))
+    write_whole(out, [sweep_file(picture_of(table), str(out))])
 
 
 def _name(column: str) -> Formula | str:

@@ -12,8 +12,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from symobs.applications.batch.engine import Settings
+from symobs.applications.batch.executors import CHILD
 from symobs.applications.batch.jobs import USUAL_BUDGET, job, read_payload, solve_job
-from symobs.applications.batch.kept import CHILD
 from symobs.applications.batch.run import Batch, one_problem
 from symobs.applications.batch.store import work_folder
 from symobs.applications.batch.sweep.grid import Grid, read_grid

@@ -233,7 +233,7 @@ def _write_parts(table: Swept, out: Path, *, decimals: bool) -> None:
         "columns": [*schema.names],
         "parts": parts,
     }
-    write_whole(out / "manifest.json", (json.dumps(told, indent=2, sort_keys=True) + "\n").encode())
+    write_whole(out / "manifest.json", [(json.dumps(told, indent=2, sort_keys=True) + "\n").encode()])
 
 
 def _taken(batches: Iterator[Any], rows: int) -> Iterator[Any]:

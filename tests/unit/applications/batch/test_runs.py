@@ -7,10 +7,12 @@ import json
 import os
 import random
 import signal
+import sqlite3
 import subprocess
 import sys
 import time
 from concurrent.futures import Future, ProcessPoolExecutor
+from contextlib import closing
 from functools import partial
 from multiprocessing import get_context
 from typing import TYPE_CHECKING, Any
@@ -20,9 +22,8 @@ import pytest
 import symobs
 from symobs.applications.batch import kinds
 from symobs.applications.batch.engine import Settings, work
-from symobs.applications.batch.executors import InProcess, Unfinished, Workforce, workforce
+from symobs.applications.batch.executors import InProcess, Unfinished, Workforce, run_chunk, run_in_process
 from symobs.applications.batch.jobs import Job, job, key_of, solve_job
-from symobs.applications.batch.kept import run_in_process
 from symobs.applications.batch.run import Batch, batch, verified
 from symobs.applications.batch.store import Store
 from symobs.ground.child_processes.budget import Budget
@@ -202,56 +203,24 @@ def test_a_second_run_in_one_folder_is_refused(hostile: Path, tmp_path: Path) ->
     assert run(orders(hostile, 3), out, workers=1).kept == 3
 
 
-def test_what_was_torn_is_done_again_and_what_contradicts_is_shown(hostile: Path, tmp_path: Path) -> None:
-    out, jobs = tmp_path / "out", orders(hostile, 6)
-    run(jobs, out, workers=1)
-    before, chunks = stored(out), Store(out).chunks()
-    chunks[0].write_bytes(chunks[0].read_bytes()[:-9])
-    (out / "keys.bin").unlink()
-    again = run(jobs, out, workers=1)
-    assert again.store is not None
-    assert again.store.torn == [chunks[0]]
-    assert stored(out) == before
-    row = json.loads(before[0])
-    twin = out / "rows" / "ff" / "ffffffffffffffff.jsonl"
-    twin.parent.mkdir(exist_ok=True)
-    twin.write_text(json.dumps(row, separators=(",", ":")) + "\n", encoding="utf-8")
-    assert stored(out) == before
-    row["result"] = {"square": 5}
-    twin.write_text(json.dumps(row, separators=(",", ":")) + "\n", encoding="utf-8")
-    with pytest.raises(CertificateRejected, match="two results of one job"):
-        stored(out)
-
-
 def test_a_full_disk_leaves_a_store_that_can_be_read(
     hostile: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    out, jobs = tmp_path / "out", orders(hostile, 12)
-    synced, left = os.fsync, iter(range(5))
+    out, jobs = tmp_path / "out", orders(hostile, 60)
+    opened = sqlite3.connect
 
-    def full(number: int) -> None:
-        if next(left, None) is None:
-            raise OSError(28, "No space left on device")
-        synced(number)
+    def small(*place: Any, **how: Any) -> sqlite3.Connection:
+        found = opened(*place, **how)
+        found.execute("PRAGMA max_page_count = 6")
+        return found
 
-    monkeypatch.setattr(os, "fsync", full)
-    with pytest.raises(InputError, match="No space left on device; make room there") as refused:
-        run(jobs, out, workers=1)
+    with monkeypatch.context() as patch:
+        patch.setattr(sqlite3, "connect", small)
+        with pytest.raises(InputError, match="database or disk is full; make room there") as refused:
+            run(jobs, out, workers=1)
     assert refused.value.where == str(out)
-    monkeypatch.undo()
-    assert 0 < len(stored(out)) < 12
-    assert not list(out.rglob("*.tmp"))
-
-
-def test_the_index_is_what_the_rows_say(hostile: Path, tmp_path: Path) -> None:
-    out = tmp_path / "out"
-    run(orders(hostile, 9, at2="abort"), out, workers=1)
-    quick, slow = Store(out), Store(out)
-    quick.load()
-    (out / "keys.bin").unlink()
-    slow.load()
-    assert (quick.final, quick.others, quick.counts) == (slow.final, slow.others, slow.counts)
-    assert len(quick.final) == 8
+    assert 0 < len(stored(out)) < 60
+    assert run(jobs, out, workers=1).counts["done"] == 60
 
 
 def test_what_a_lost_connection_leaves_without_an_answer_is_done_again() -> None:
@@ -298,7 +267,7 @@ def test_a_deadline_ends_a_run_that_goes_on_later(
 
 _CLIENT = """
 import sys
-from symobs.applications.batch.kept import run_in_process
+from symobs.applications.batch.executors import run_in_process
 from symobs.ground.child_processes.budget import Budget
 from symobs.applications.batch.jobs import job
 from symobs.applications.batch.engine import Settings
@@ -318,8 +287,8 @@ def client(log: Path, out: Path, count: int) -> subprocess.Popen[str]:
     return subprocess.Popen(command, cwd=ROOT, stderr=subprocess.PIPE, text=True)
 
 
-def _has_chunks(out: Path, wanted: int) -> bool:
-    return len(Store(out).chunks()) >= wanted
+def _has_rows(out: Path, wanted: int) -> bool:
+    return Store(out).count >= wanted
 
 
 def _has_ended(process: int) -> bool:
@@ -330,10 +299,10 @@ def killed_and_gone_on(hostile: Path, out: Path, count: int, kills: int) -> None
     """Kill a run again and again: what was stored stays, no child is left, and nothing is done twice in vain."""
     drawn, most = random.Random(7), 2 * 4 * 40  # noqa: S311
     for _ in range(kills):
-        before = len(Store(out).chunks())
+        before = Store(out).count
         with client(hostile, out, count) as process:
             wanted = before + drawn.randint(1, 4)
-            assert eventually(partial(_has_chunks, out, wanted))
+            assert eventually(partial(_has_rows, out, wanted))
             process.kill()
         assert eventually(partial(_has_ended, process.pid))
         assert len({json.loads(text)["key"] for text in stored(out)}) == len(stored(out))
@@ -370,7 +339,7 @@ def test_an_interrupted_run_keeps_what_it_has_and_leaves_nobody(number: int, hos
         "0.1",
     ]
     with subprocess.Popen(command, cwd=ROOT, env=environment(), stderr=subprocess.PIPE, text=True) as process:
-        assert eventually(lambda: len(Store(out).chunks()) > 1)
+        assert eventually(lambda: Store(out).count > 1)
         process.send_signal(number)
         assert process.communicate(timeout=SAFETY)[1].splitlines()[-1] == "interrupted"
     assert process.returncode == 130
@@ -404,29 +373,32 @@ def test_a_result_damaged_on_its_way_is_refused() -> None:
         run(jobs, None, executor=Tampering(jobs[1].key, unhashed))
 
 
+def changed(out: Path, row: dict[str, Any]) -> None:
+    """Put a row in the place of the only one."""
+    with closing(sqlite3.connect(out / "rows.sqlite")) as rows, rows:
+        rows.execute("UPDATE rows SET row = ?", (json.dumps(row).encode(),))
+
+
 def test_a_stored_result_that_was_changed_is_found(tmp_path: Path) -> None:
     (tmp_path / "p.toml").write_text(design(5), encoding="utf-8")
     out = tmp_path / "out"
     batch(tmp_path / "p.toml", out=out, workers=1)
     assert verified(out) == 1
-    (path,) = Store(out).chunks()
-    row = json.loads(path.read_text(encoding="utf-8"))
+    (row,) = Store(out).rows()
     for change, says in (({"sha256": "0"}, "hash"), ({"job": row["job"].replace("-3", "-4")}, "key")):
-        path.write_text(json.dumps({**row, **change}) + "\n", encoding="utf-8")
+        changed(out, {**row, **change})
         with pytest.raises(CertificateRejected, match=says):
             verified(out)
     moved = row["job"].replace('"control_poles":[-1,-2,-3]', '"control_poles":[-1,-2,-4]')
     assert moved != row["job"]
-    path.write_text(json.dumps({**row, "job": moved, "key": key_of("solve", moved)}) + "\n", encoding="utf-8")
+    changed(out, {**row, "job": moved, "key": key_of("solve", moved)})
     with pytest.raises(CertificateRejected, match="det"):
         verified(out)
 
 
-def test_other_versions_are_refused_before_any_work(monkeypatch: pytest.MonkeyPatch) -> None:
-    with workforce(workers=1) as force:
-        monkeypatch.setattr("symobs.applications.batch.executors.identity", lambda: "symobs 9")
-        with pytest.raises(InputError, match=r"a worker has symobs .* this process symobs 9"):
-            list(work([solve_job(design(4), "p")], force, Settings()))
+def test_other_versions_are_refused_before_any_work() -> None:
+    with pytest.raises(InputError, match=r"a worker has symobs .*, this process symobs 9"):
+        run_chunk([], (None, None), "symobs 9")
 
 
 # -- the command ------------------------------------------------------------------------------------------------------

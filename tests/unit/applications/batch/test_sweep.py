@@ -197,7 +197,7 @@ def test_a_sweep_killed_on_the_way_is_the_one_that_was_not(tmp_path: Path) -> No
     store = Store(work_folder(tmp_path / "killed.parquet"))
     for wanted in (2, 7):
         with subprocess.Popen(command, cwd=tmp_path, env=environment(), stderr=subprocess.DEVNULL) as process:
-            assert eventually(partial(_has_chunks, store, wanted))
+            assert eventually(partial(_has_blocks, store, wanted))
             process.kill()
     assert inside(*words, "--out", "killed.parquet", "--quiet", folder=tmp_path).code == 0
     whole, killed = (pq.read_table(tmp_path / f"{name}.parquet") for name in ("whole", "killed"))
@@ -205,8 +205,8 @@ def test_a_sweep_killed_on_the_way_is_the_one_that_was_not(tmp_path: Path) -> No
     assert killed.equals(whole)
 
 
-def _has_chunks(store: Store, wanted: int) -> bool:
-    return len(store.chunks()) >= wanted
+def _has_blocks(store: Store, wanted: int) -> bool:
+    return store.count >= wanted
 
 
 # -- grids and what cannot be done --------------------------------------------------------------------------------------

@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import json
+import re
 import shutil
+import sqlite3
+from contextlib import closing
 from typing import TYPE_CHECKING, Any
 
 import pytest
@@ -36,11 +39,9 @@ def folder_of_problems(tmp_path: Path) -> Path:
 
 def test_a_run_that_goes_on_says_of_its_problems_what_it_said_before(folder: Path, tmp_path: Path) -> None:
     words = ["batch", folder.name, "--out", "out", "--in-process"]
-    for _ in range(2):  # the second time from the index of keys
+    for _ in range(2):
         left = inside(*words, folder=tmp_path)
         assert (left.code, left.err) == (4, "1 done, 1 unreadable\n")
-    (tmp_path / "out" / "keys.bin").unlink()
-    assert inside(*words, folder=tmp_path).code == 4
 
 
 def test_what_a_problem_was_before_it_was_changed_counts_no_more(folder: Path, tmp_path: Path) -> None:
@@ -70,68 +71,45 @@ def test_the_manifest_counts_the_problems_of_the_run(folder: Path, tmp_path: Pat
         assert list(manifest["names"].values()) == [["good.toml"]]
 
 
-def _shortened(text: bytes) -> bytes:
-    return text[:-20]
+def _shortened(data: bytes) -> bytes:
+    return data[:-5000]
 
 
-def _emptied(_: bytes) -> bytes:
-    return b""
+def _of_another_kind(_: bytes) -> bytes:
+    return b"no database" * 1000
 
 
-def _of_another_kind(text: bytes) -> bytes:
-    return text + b"[]\n"
-
-
-def _without_its_end(text: bytes) -> bytes:
-    return text[:-20] + b"\n"
-
-
-@pytest.mark.parametrize("damage", [_shortened, _emptied, _of_another_kind, _without_its_end])
-def test_damaged_rows_are_named_set_aside_and_done_again(
-    damage: Callable[[bytes], bytes], folder: Path, tmp_path: Path
-) -> None:
-    words, out = ["batch", folder.name, "--out", "out", "--in-process"], tmp_path / "out"
+@pytest.mark.parametrize("damage", [_shortened, _of_another_kind])
+def test_damaged_rows_are_named_and_done_again(damage: Callable[[bytes], bytes], folder: Path, tmp_path: Path) -> None:
+    words, place = ["batch", folder.name, "--out", "out", "--in-process"], tmp_path / "out" / "rows.sqlite"
     assert inside(*words, folder=tmp_path).code == 4
-    (path, *_), before = Store(out).chunks(), sorted(map(json.dumps, Store(out).rows()))
-    damaged, line = damage(path.read_bytes()), 2 if damage is _of_another_kind else 1
-    path.write_bytes(damaged)
+    before = sorted(map(json.dumps, Store(tmp_path / "out").rows()))
+    place.write_bytes(damage(place.read_bytes()))
+    for each in (["batch", "--verify", "out"], [*words, "--dry-run"], words):
+        found = inside(*each, folder=tmp_path)
+        assert found.code == 4
+        assert re.match("out/rows.sqlite: this file was damaged: .*; rename it to rows.sqlite.damaged and", found.err)
+    place.rename(place.with_name("rows.sqlite.damaged"))
+    assert inside(*words, folder=tmp_path).err == "1 done, 1 unreadable\n"
+    assert sorted(map(json.dumps, Store(tmp_path / "out").rows())) == before
+
+
+def test_what_is_no_row_is_named(folder: Path, tmp_path: Path) -> None:
+    assert inside("batch", folder.name, "--out", "out", "--in-process", folder=tmp_path).code == 4
+    with closing(sqlite3.connect(tmp_path / "out" / "rows.sqlite")) as rows, rows:
+        rows.execute("UPDATE rows SET row = substr(row, 20)")
     found = inside("batch", "--verify", "out", folder=tmp_path)
     assert found.code == 4
-    place = path.relative_to(tmp_path)
-    assert found.err.startswith(f"{place}, line {line}: this line is no whole row, the file was damaged; rename it to ")
-    assert inside(*words, "--dry-run", folder=tmp_path).err == "2 problems, 1 to be done, 1 done already\n"
-    assert path.read_bytes() == damaged
-    again = inside(*words, folder=tmp_path)
-    assert (again.code, again.err.splitlines()[-1]) == (4, "1 done, 1 unreadable")
-    assert again.err.startswith(f"{place} was damaged: it is kept as {path.name}.damaged")
-    assert path.with_name(f"{path.name}.damaged").read_bytes() == damaged
-    assert sorted(map(json.dumps, Store(out).rows())) == before
-    assert inside("batch", "--verify", "out", folder=tmp_path).err == "2 results hold\n"
-    assert inside(*words, folder=tmp_path).err == "1 done, 1 unreadable\n"
+    assert re.match("out/rows.sqlite: this file was damaged: what is stored of [0-9a-f]{16} is no whole row", found.err)
 
 
-def test_damage_that_the_size_does_not_show_is_repaired_as_it_is_told(folder: Path, tmp_path: Path) -> None:
-    words, out = ["batch", folder.name, "--out", "out", "--in-process"], tmp_path / "out"
-    assert inside(*words, folder=tmp_path).code == 4
-    path = Store(out).chunks()[0]
-    path.write_bytes(path.read_bytes()[:-20] + b"\0" * 20)
-    told = inside("batch", "--verify", "out", folder=tmp_path)
-    assert (told.code, f"rename it to {path.name}.damaged and run the same command again" in told.err) == (4, True)
-    path.rename(path.with_name(f"{path.name}.damaged"))
-    assert inside(*words, folder=tmp_path).err == "1 done, 1 unreadable\n"
-    assert inside("batch", "--verify", "out", folder=tmp_path).err == "2 results hold\n"
-
-
-def test_a_damaged_index_is_made_anew(folder: Path, tmp_path: Path) -> None:
-    words, index = ["batch", folder.name, "--out", "out", "--in-process"], tmp_path / "out" / "keys.bin"
-    assert inside(*words, folder=tmp_path).code == 4
-    whole = index.read_bytes()
-    for damaged in (whole[:-25], whole.replace(b"\0" * 9, b"\x63" + b"\0" * 8), b"", b"\xff"):
-        assert damaged != whole
-        index.write_bytes(damaged)
-        assert inside(*words, "--dry-run", folder=tmp_path).err == "2 problems, 0 to be done, 2 done already\n"
-        assert inside(*words, folder=tmp_path).err == "1 done, 1 unreadable\n"
-        assert index.read_bytes() == whole
+def test_rows_are_there_as_lines_as_well(folder: Path, tmp_path: Path) -> None:
+    words, listing = ["batch", folder.name, "--out", "out", "--in-process"], tmp_path / "out" / "rows"
+    for number in (7, 8):
+        (folder / "bad.toml").write_text(design(number), encoding="utf-8")
+        assert inside(*words, folder=tmp_path).code == 0
+        lines = [line for path in listing.glob("*/*.jsonl") for line in path.read_text(encoding="utf-8").splitlines()]
+        assert [json.loads(line) for line in lines] == list(Store(tmp_path / "out").rows())
 
 
 def test_equal_problems_are_done_once_and_said(folder: Path, tmp_path: Path) -> None:

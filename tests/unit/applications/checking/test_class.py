@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 import pytest
 from jsonschema import Draft202012Validator  # type: ignore[import-untyped]
 
+from symobs.applications.batch.store import Store
 from symobs.applications.checking import SHOW, Checked, CheckReport
 from symobs.applications.checking.classes.row import report_of_row
 from symobs.applications.checking.classes.summary import safe
@@ -100,7 +101,7 @@ def test_the_same_bytes_whoever_works_and_after_an_end_in_the_middle(folder: Pat
     (folder / "class.csv").write_text("\n".join(",".join(row) for row in rows), encoding="utf-8")
     command = [sys.executable, "-m", "symobs", "check", "problem.toml", "--submissions", "class.csv", "-o", "KILLED"]
     with subprocess.Popen([*command, "--workers", "2"], cwd=folder, env=environment()) as process:
-        assert eventually(lambda: list(folder.glob("KILLED.work/rows/*/*.jsonl")))
+        assert eventually(lambda: Store(folder / "KILLED.work").count)
         process.kill()
     assert eventually(lambda: not children_of(process.pid))
     assert not (folder / "KILLED").exists()
