@@ -338,10 +338,10 @@ def _repairs(said: Said, row: str, of: str) -> bool:
     order, A = _sizes(of, here)[0], _letter(of)
     for numbers, fact in zip(choice.sets, said.facts, strict=True):
         rows = Literal(unit_rows(order, tuple(number - 1 for number in numbers)))
-        below = [rows, *(Product((rows, Power(A, k))) for k in range(1, order))]
-        wanted = Block(((_stack(row, of, here),), *((each,) for each in below)))
-        matrix = _ranked(fact) if isinstance(fact, Relation) else None
-        if matrix is None or not (_is_of_rank(fact, here, is_full=True) and _holds(here, matrix, "=", wanted)):
+        below: list[Formula] = [rows, *(Product((rows, Power(A, k))) for k in range(1, order))]
+        wanted = Block(tuple((each,) for each in (_stack(row, of, here), *below)))
+        matrix = _ranked(fact) if isinstance(fact, Relation) and _is_of_rank(fact, here, is_full=True) else None
+        if matrix is None or not _holds(here, matrix, "=", wanted):
             return False
     return True
 

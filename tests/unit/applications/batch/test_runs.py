@@ -210,7 +210,7 @@ def test_a_full_disk_leaves_a_store_that_can_be_read(
     opened = sqlite3.connect
 
     def small(*place: Any, **how: Any) -> sqlite3.Connection:
-        found = opened(*place, **how)
+        found: sqlite3.Connection = opened(*place, **how)
         found.execute("PRAGMA max_page_count = 6")
         return found
 
