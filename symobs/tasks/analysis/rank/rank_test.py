@@ -203,8 +203,11 @@ class RankResult(Result):
         """
         if self.piece is not None:
             return (*self.domain, *self.piece.conditions)
-        if self.answer["rank"] < self.plant.order or self._tree is None:
+        if self.answer["rank"] < self.plant.order:
             return self.domain
+        if self._tree is None:  # the determinant is known, though not what is true where it vanishes
+            factors = () if self.test_determinant is None else self._region.vanishing(self.test_determinant)
+            return (*self.domain, *(Condition("existence", value) for value in factors))
         lower = [node.locus for node in self._tree.strata if node.rank < self.plant.order]
         lost = Node(self._region.whole, self.answer["rank"], (), below=maximal([*lower, *self._tree.undecided]))
         try:

@@ -7,6 +7,7 @@ written here, and the rank at every point by elimination of fractions.
 from __future__ import annotations
 
 import itertools
+from copy import copy
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import cache
@@ -549,10 +550,19 @@ def test_a_set_of_measurements_is_not_refused_because_of_minors_that_were_not_lo
 
 
 def test_a_locus_of_which_it_is_not_decided_leaves_the_rank_undecided(monkeypatch: pytest.MonkeyPatch) -> None:
+    class Long(Ideal):
+        __contains__ = too_large
+
     locus, other = (Locus.of(Ideal.of([Scalar.symbol(name)])) for name in "ab")
     assert not locus.lies_in(other)
-    plant = ("[0 1 0; 0 0 a; 0 0 b]", None, "[a b 1]")
-    assert symobs.observability(symobs.StateSpace(*plant)).verdict == "conditional"
+    long = copy(locus.ideal)
+    object.__setattr__(long, "__class__", Long)
+    with pytest.raises(TooLarge):
+        Locus(locus.equations, long).lies_in(other)
+    square, wide = ("[a 0; 0 b]", None, "[c d]"), ("[a 0; 0 b]", None, "[c d; c c]")
+    known = symobs.observability(symobs.StateSpace(*square)).conditions
     monkeypatch.setattr(Locus, "lies_in", too_large)
     assert maximal([locus, other]) == (locus, other)
-    assert symobs.observability(symobs.StateSpace(*plant)).verdict == "undecided"
+    found = symobs.observability(symobs.StateSpace(*square))
+    assert (found.verdict, set(found.conditions)) == ("conditional", set(known))  # where det O = c d (b − a) is not 0
+    assert symobs.observability(symobs.StateSpace(*wide)).verdict == "undecided"
