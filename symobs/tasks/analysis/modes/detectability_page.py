@@ -29,7 +29,6 @@ from symobs.tasks.analysis.modes.modes_page import (
 from symobs.tasks.analysis.page_parts import (
     as_written,
     given,
-    hidden,
     hidden_polynomial,
     say_stability,
     set_anew,
@@ -183,7 +182,6 @@ def _generic(page: Builder, result: HiddenStability) -> None:
     if "N" not in page.environment.values:  # the rank test has another letter for what the input does not move
         page.set("N", result.test.answer["kernel"])
         page.set("X", result.test.answer["restricted"])
-        page.conclude_silently(*hidden(page, result.kind == "observability"))
     show_hidden(page, result, "on_kernel")
     _hidden_modes(page, result, hidden_ones)
 
@@ -207,7 +205,6 @@ def _case(page: Builder, letter: str, case: Case) -> Step:
     if test["kernel"].shape[1]:
         inner.set("N", test["kernel"])
         inner.set("X", test["restricted"])
-        inner.conclude_silently(*hidden(inner, found.kind == "observability"))
     _generic(inner, found)
     _cases(inner, letter, found)
     anew = set_anew(page.environment, inner.environment)

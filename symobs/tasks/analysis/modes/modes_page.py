@@ -12,7 +12,7 @@ from symobs.proof.derivation import CaseStep, Conclude, Equal, Step
 from symobs.proof.derivation.builder import Builder, relation, sentence, shows
 from symobs.proof.derivation.facts.restriction import on_stratum
 from symobs.tasks.analysis.factored_form import formula_of_factored
-from symobs.tasks.analysis.page_parts import as_written, conditions_of, hidden, set_anew, undecided
+from symobs.tasks.analysis.page_parts import as_written, conditions_of, set_anew, undecided
 from symobs.tasks.analysis.strata.rank_stratification import maximal_minors
 from symobs.tasks.analysis.strata.repeated_eigenvalues import holds_where
 
@@ -111,7 +111,6 @@ def fixed_modes(page: Builder, result: ModeResult) -> None:
     test = result.test
     page.set("N", test.answer["kernel"])
     page.set("X", test.answer["restricted"])
-    page.conclude_silently(*hidden(page, result.kind == "observability"))
     show_hidden(page, result, "fixed_modes")
 
 

@@ -9,7 +9,6 @@ from symobs.exact import roots_of
 from symobs.formula.tree import Roots
 from symobs.ground.dataclass import dataclass
 from symobs.ground.errors import InputError
-from symobs.proof.derivation.builder import Builder, relation
 from symobs.tasks.analysis.modes.modes import TESTS, ModeResult, has_open_cases
 from symobs.tasks.analysis.modes.modes_page import at_eigenvalues, fixed_modes, meeting_steps, show_spectrum, stack_of
 from symobs.tasks.analysis.page_parts import given, hidden_polynomial
@@ -19,6 +18,7 @@ from symobs.tasks.result import Case, Result, choose, method, task
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
+    from symobs.proof.derivation.builder import Builder
     from symobs.system import StateSpace
     from symobs.system.conditions import Condition
     from symobs.system.specification import Name
@@ -98,9 +98,9 @@ class PopovBelevitchHautus(ModeResult):
                 return
             rank, order = self.test.answer["rank"], self.plant.order
             if rank == order:
-                page.conclude(f"pbh_yes_{self.kind}", relation(stack.apply("rank"), order))
+                page.conclude(f"pbh_yes_{self.kind}")
                 return
-            page.conclude(f"pbh_no_{self.kind}", relation(stack.apply("rank"), "<", order))
+            page.conclude(f"pbh_no_{self.kind}")
             fixed_modes(page, self)
             whole = hidden_polynomial(page, order - rank)
             roots = roots_of(self.answer["fixed_polynomial"], self.plant.variable)

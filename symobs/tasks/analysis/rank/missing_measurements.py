@@ -21,8 +21,9 @@ if TYPE_CHECKING:
     from symobs.exact import Scalar
     from symobs.formula.tree import Environment
 
-#: The most sets that are tried, minors of one of them, and terms of the matrices.
-_SETS, _MINORS, _TERMS = 200, 60, 400
+#: The most sets that are tried, and terms of the matrices; the minors of a set that are tried first, and the most.
+_SETS, _TERMS = 200, 400
+_MINORS = (60, 500)
 
 
 def smallest_sets(N: Matrix, X: Matrix, e: Environment) -> tuple[tuple[int, ...], ...] | None:
@@ -53,12 +54,22 @@ def _repairs(chosen: tuple[int, ...], N: Matrix, X: Matrix, e: Environment) -> b
     seen = seen_through(chosen, N, X)
     if rank(seen) < X.shape[0]:
         return False
-    minors = _minors(seen)
     try:
-        repairs = never_together_zero(minors, e.relations, e.signs)
+        return _deciding_minors(seen, e) is not None
     except TooLarge:
         return None
-    return None if not repairs and len(minors) == _MINORS else repairs  # others may not vanish where these do
+
+
+def _deciding_minors(seen: Matrix, e: Environment) -> list[Scalar] | None:
+    """Return minors that never vanish together, None where all do somewhere; raises `TooLarge` where others may not."""
+    for most in _MINORS:
+        minors = _minors(seen, most)
+        if never_together_zero(minors, e.relations, e.signs):
+            return minors
+        if len(minors) < most:
+            return None
+    message = f"more than {_MINORS[-1]} minors decide whether these measurements are enough"
+    raise TooLarge(message)
 
 
 def seen_through(chosen: tuple[int, ...], N: Matrix, X: Matrix) -> Matrix:
@@ -69,11 +80,11 @@ def seen_through(chosen: tuple[int, ...], N: Matrix, X: Matrix) -> Matrix:
     return Matrix.block([[row] for row in rows]).normal()
 
 
-def _minors(matrix: Matrix) -> list[Scalar]:
-    """Return minors that use all columns, the independent-looking ones first, as many as are needed in practice."""
+def _minors(matrix: Matrix, most: int) -> list[Scalar]:
+    """Return minors that use all columns, the independent-looking ones first, up to so many."""
     count = matrix.shape[1]
     rows = [i for i in range(matrix.shape[0]) if any(matrix.rows[i])]
-    chosen = itertools.islice(itertools.combinations(rows, count), _MINORS)
+    chosen = itertools.islice(itertools.combinations(rows, count), most)
     return [matrix.select(minor, range(count)).determinant() for minor in chosen]
 
 
@@ -83,7 +94,7 @@ def repair_claims(
     """Yield that each set repairs the plant at every point, and that of the smaller sets none does in general."""
     for numbers in sets:
         seen = seen_through(tuple(number - 1 for number in numbers), N, X)
-        minors = Matrix.column(_minors(seen))
+        minors = Matrix.column(_deciding_minors(seen, e) or _minors(seen, 1))
         yield Claim(relation(minors, "!=", minors * 0), e, f"with states {numbers} {verb} too the rank is n")
     for chosen in itertools.combinations(range(N.shape[0]), len(sets[0]) - 1) if sets else ():
         most = rank(seen_through(chosen, N, X)) if chosen else 0

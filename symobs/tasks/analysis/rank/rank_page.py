@@ -19,7 +19,6 @@ from symobs.tasks.analysis.page_parts import (
     determinant_form,
     environment_on,
     given,
-    hidden,
     hidden_polynomial,
     undecided,
 )
@@ -141,7 +140,6 @@ def _deficient(page: Builder, letter: str, result: RankResult, kind: str) -> Non
     polynomial = result.answer["restricted"].characteristic_polynomial(page.plant.variable)
     page.conclude(
         f"modes_{kind}",
-        *hidden(page, kind == "observability", letters),
         modes=Roots(
             hidden_polynomial(page, len(result.kernel_vectors), letters[1]).formula,
             roots_of(polynomial, page.plant.variable),

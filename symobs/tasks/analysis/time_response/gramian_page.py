@@ -13,7 +13,7 @@ from symobs.proof.derivation import CaseStep, Conclude
 from symobs.proof.derivation.builder import predicate, relation, sentence
 from symobs.stability.inequalities.written_form import as_inequality
 from symobs.system.conditions import vanishing_factors
-from symobs.tasks.analysis.page_parts import HIDDEN, hidden, hidden_polynomial, stratum_of
+from symobs.tasks.analysis.page_parts import HIDDEN, hidden_polynomial, stratum_of
 from symobs.tasks.analysis.time_response.damping_cases import inside_case
 from symobs.tasks.analysis.time_response.gramian import Gramian
 from symobs.tasks.analysis.time_response.horizons import INFINITE, lyapunov
@@ -171,7 +171,6 @@ def define_seen(result: Gramian, page: Builder) -> Term:
     letters = HIDDEN[of]
     page.set(letters[0], kernel)
     X = page.set(letters[1], result.answer["rank"]["restricted"])
-    page.conclude_silently(*hidden(page, of == "observability", letters))
     seen = page.term(Quotient(page["chi"].formula, hidden_polynomial(page, X.value.shape[0], letters[1]).formula))
     shown = relation(seen, result.answer["seen"]), relation(page[letters[0]], kernel)
     page.equal(*shown, say=f"part_{of}")

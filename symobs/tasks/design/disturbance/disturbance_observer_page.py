@@ -91,17 +91,16 @@ def _design(page: Builder, design: DisturbanceObserver) -> None:
         _zeros(page, design)
     else:
         count = pair.kernel.shape[1]
-        N, X = page.set("N", pair.kernel), page.set("X", pair.restricted)
-        fixed = (page.s @ page.identity(count) - page["X"]).apply("det")
-        facts = [relation(C @ N, Matrix.zeros(plant.outputs, count)), relation(A @ N, N @ X)]
-        facts.append(relation(N.apply("rank"), count))
+        page.set("N", pair.kernel)
+        X = page.set("X", pair.restricted)
+        fixed = (page.s @ page.identity(count) - X).apply("det")
         roots = Roots(fixed.formula, roots_of(design.inner.fixed_polynomial, plant.variable))
         if design.answer["L_x"] is None:
             keys, polynomial = ("disturbance_impossible", "disturbance_unassignable"), design.desired.polynomial
-            say_unassignable(page, keys, facts, page["phi_o"], polynomial, fixed, design.case_tree, modes=roots)
+            say_unassignable(page, keys, page["phi_o"], polynomial, fixed, design.case_tree, modes=roots)
             _zeros(page, design)
             return
-        page.conclude("disturbance_fixed", *facts, predicate("polynomial", page["phi_o"] / fixed), modes=roots)
+        page.conclude("disturbance_fixed", predicate("polynomial", page["phi_o"] / fixed), modes=roots)
     L = page.define("L", page.value(design.inner.answer["L"]), say="disturbance_gain", closing=False, answer=True)
     pencil = (page.s @ page.identity(order) - A + L @ C).apply("det")
     say_as_required(page, design.desired, pencil, page.value(design.desired.polynomial))

@@ -109,16 +109,15 @@ def _zeros(page: Builder, design: UnknownInputObserver) -> None:
         page.conclude("uio_observable", rank=relation(tested.apply("rank"), plant.order))
         return
     count = pair.kernel.shape[1]
-    N, X = page.set("N", pair.kernel), page.set("X", pair.restricted)
+    page.set("N", pair.kernel)
+    X = page.set("X", pair.restricted)
     fixed = (page.s @ page.identity(count) - X).apply("det")
-    facts = [relation(C @ N, Matrix.zeros(plant.outputs, count)), relation(A @ N, N @ X)]
-    facts.append(relation(N.apply("rank"), count))
     zeros = Roots(fixed.formula, roots_of(design.inner.fixed_polynomial, plant.variable))
     if design.answer["L"] is not None:
-        page.conclude("uio_zeros_desired", *facts, predicate("polynomial", page["phi_o"] / fixed), zeros=zeros)
+        page.conclude("uio_zeros_desired", predicate("polynomial", page["phi_o"] / fixed), zeros=zeros)
         return
     keys, polynomial = ("uio_impossible", "uio_unassignable"), design.desired.polynomial
-    say_unassignable(page, keys, facts, page["phi_o"], polynomial, fixed, design.case_tree, zeros=zeros)
+    say_unassignable(page, keys, page["phi_o"], polynomial, fixed, design.case_tree, zeros=zeros)
     signs, discrete = plant.symbols.signs, plant.is_discrete
     found = stability(design.inner.fixed_polynomial, plant.variable, signs, discrete=discrete).verdict
     if found == "yes":

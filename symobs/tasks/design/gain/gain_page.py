@@ -16,7 +16,6 @@ from symobs.tasks.analysis.factored_form import factored_form, formula_of_factor
 from symobs.tasks.analysis.page_parts import (
     determinant_form,
     environment_on,
-    hidden,
     hidden_polynomial,
     say_stability,
     set_anew,
@@ -228,7 +227,7 @@ def _with_fixed_modes(page: Builder, design: GainDesign, side: PlacementProblem)
     fixed = _fixed(page, side, design.pair.kernel, design.pair.restricted)
     roots = Roots(fixed.formula, roots_of(polynomial, variable))
     divides = predicate("polynomial", page[side.phi] / fixed)
-    page.remark(f"fixed_but_wanted_{side.kind}", *hidden(page, side is OBSERVER, side.hidden), divides, roots=roots)
+    page.remark(f"fixed_but_wanted_{side.kind}", divides, roots=roots)
     if design.chart is not None:
         write_hidden_family(page, design, side)
         return
@@ -247,7 +246,6 @@ def _impossible(page: Builder, design: GainDesign, side: PlacementProblem) -> No
     say_unassignable(
         page,
         (f"impossible_{side.kind}", f"unassignable_{side.kind}"),
-        hidden(page, side is OBSERVER, side.hidden),
         page[side.phi],
         design.answer["polynomial"],
         fixed,
@@ -339,15 +337,14 @@ def _on_stratum(page: Builder, cases: tuple[Case, ...], result: GainDesign, side
     own, gain = _is_finite_on(cases, page, side), result.answer[side.gain]
     fixed = _fixed(page, side, result.pair.kernel, result.pair.restricted)
     modes = Roots(fixed.formula, roots_of(result.fixed_polynomial, page.plant.variable))
-    facts = hidden(page, side is OBSERVER, side.hidden)
     if gain is None:
         keys, polynomial = (f"case_no_{side.kind}", f"unassignable_{side.kind}"), result.answer["polynomial"]
-        say_unassignable(page, keys, facts, page[side.phi], polynomial, fixed, result.case_tree, modes=modes)
+        say_unassignable(page, keys, page[side.phi], polynomial, fixed, result.case_tree, modes=modes)
         return
     kept = "case_same" if (page.plant.outputs if side is OBSERVER else page.plant.inputs) > 1 else "case_survives"
     quotient, bound = over_fixed(page, page[side.phi], result.answer["polynomial"], fixed)
     key = f"{kept if own else 'case_other'}_{side.kind}"
-    page.conclude(key, *facts, *bound, predicate("polynomial", quotient), modes=modes)
+    page.conclude(key, *bound, predicate("polynomial", quotient), modes=modes)
     if not own:
         page.define(side.gain, gain)
     page.conclude_silently(relation(side.error_determinant(page), page[side.phi]))

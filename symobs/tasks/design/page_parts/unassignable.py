@@ -11,6 +11,7 @@ from symobs.proof.certificate.claims import verify
 from symobs.proof.derivation import CaseStep, Conclude
 from symobs.proof.derivation.builder import predicate, relation, sentence
 from symobs.proof.derivation.facts.properties import PREDICATES
+from symobs.proof.derivation.wording_check import Said, rests
 from symobs.tasks.analysis.page_parts import environment_on
 from symobs.tasks.analysis.strata.repeated_eigenvalues import distances, systems_of
 
@@ -36,7 +37,6 @@ def over_fixed(page: Builder, phi: Term, polynomial: Scalar, fixed: Term) -> tup
 def say_unassignable(
     page: Builder,
     keys: tuple[str, str],
-    facts: Sequence[Relation],
     phi: Term,
     polynomial: Scalar,
     fixed: Term,
@@ -51,8 +51,8 @@ def say_unassignable(
     """
     quotient, bound = over_fixed(page, phi, polynomial, fixed)
     never = predicate("not_polynomial", quotient)
-    said = Conclude(sentence(keys[0], slots), (*facts, *bound, never))
-    left = _with_remainder(page, keys[1], facts, phi, fixed)
+    said = Conclude(sentence(keys[0], slots), (*bound, never))
+    left = _with_remainder(page, keys[1], phi, fixed)
     everywhere, lines, others = None, _outside_lines(cases), _outside(cases)
     for step, where in ((said, everywhere), (said, lines), (left, everywhere), (said, others), (left, others)):
         if where is not None and not where.relations:
@@ -64,7 +64,7 @@ def say_unassignable(
     page.steps.append(said)
 
 
-def _with_remainder(page: Builder, key: str, facts: Sequence[Relation], phi: Term, fixed: Term) -> Conclude:
+def _with_remainder(page: Builder, key: str, phi: Term, fixed: Term) -> Conclude:
     """Return the statement that φ is a multiple only where its remainder vanishes."""
     whole, rest = remainder(phi.scalar, fixed.scalar, page.plant.variable)
     left = phi - page.value(whole) @ fixed
@@ -73,7 +73,7 @@ def _with_remainder(page: Builder, key: str, facts: Sequence[Relation], phi: Ter
         "polynomial": Evaluated(phi.formula, Literal(phi.scalar)),
         "rest": Evaluated(left.formula, Literal(rest)),
     }
-    return Conclude(sentence(key, slots), (*facts, predicate("strictly_proper", page.value(rest) / fixed)))
+    return Conclude(sentence(key, slots), (predicate("strictly_proper", page.value(rest) / fixed),))
 
 
 def _outside_lines(cases: Sequence[Case]) -> Conjunction:
@@ -105,4 +105,5 @@ def _holds(step: Conclude, environment: Environment) -> bool:
             value = Term(fact.subject, environment).scalar
             if not PREDICATES[fact.name](value, environment, False):  # noqa: FBT003 - it is of no time
                 return False
-    return True
+    said = step.sentence
+    return said is None or rests(said.key, Said(step.facts, environment, dict(said.slots)))

@@ -272,11 +272,11 @@ def write_inner_gain(page: Builder, design: ReducedOrderObserver) -> None:
 
 def _say_fixed_modes(page: Builder, design: ReducedOrderObserver) -> None:
     """State that the modes that A₁₂ does not show are among the desired poles."""
-    fixed, facts = _fixed_modes(page, design)
+    fixed = _fixed_modes(page, design)
     modes = Roots(fixed.formula, roots_of(design.inner.fixed_polynomial, page.plant.variable))
     rest = page["phi_o"] / fixed
     key = "reduced_all_fixed" if rest.value == 1 else "reduced_not_unique"
-    page.remark(key, *facts, predicate("polynomial", rest), relation(rest, rest.value), modes=modes)
+    page.remark(key, predicate("polynomial", rest), relation(rest, rest.value), modes=modes)
 
 
 def observer_state(page: Builder) -> str:
@@ -356,19 +356,17 @@ def _matrices(page: Builder, design: ReducedOrderObserver, say: str) -> None:
     )
 
 
-def _fixed_modes(page: Builder, design: ReducedOrderObserver) -> tuple[Term, tuple[Relation, ...]]:
-    """Introduce the part of x₂ that A₁₂ does not show; return its polynomial and what makes it that part."""
+def _fixed_modes(page: Builder, design: ReducedOrderObserver) -> Term:
+    """Introduce the part of x₂ that A₁₂ does not show; return its polynomial."""
     pair = design.inner.pair
-    N, X = page.set("N_2", pair.kernel), page.set("X_2", pair.restricted)
-    count = pair.kernel.shape[1]
-    hidden = relation(page["A_12"] @ N, Matrix.zeros(page.plant.outputs, count))
-    facts = (hidden, relation(page["A_22"] @ N, N @ X), relation(N.apply("rank"), count))
-    return (page.s @ page.identity(count) - X).apply("det"), facts
+    page.set("N_2", pair.kernel)
+    X = page.set("X_2", pair.restricted)
+    return (page.s @ page.identity(pair.kernel.shape[1]) - X).apply("det")
 
 
 def _impossible(page: Builder, design: ReducedOrderObserver) -> None:
     """Write that no gain moves the modes that A₁₂ does not show, and that they are not desired."""
-    fixed, facts = _fixed_modes(page, design)
+    fixed = _fixed_modes(page, design)
     modes = Roots(fixed.formula, roots_of(design.inner.fixed_polynomial, page.plant.variable))
     keys, polynomial = ("reduced_impossible", "reduced_unassignable"), design.desired.polynomial
-    say_unassignable(page, keys, facts, page["phi_o"], polynomial, fixed, design.case_tree, modes=modes)
+    say_unassignable(page, keys, page["phi_o"], polynomial, fixed, design.case_tree, modes=modes)

@@ -545,7 +545,7 @@ def test_a_set_of_measurements_is_not_refused_because_of_minors_that_were_not_lo
     """The first minor with states 1 and 2 is k; the next is 1."""
     plant = symobs.StateSpace("[0 0 k; 0 0 1; 0 0 0]", C="[0 0 0]")
     assert symobs.observability(plant).fields["missing_measurements"] == [[1, 2]]
-    monkeypatch.setattr(missing_measurements, "_MINORS", 1)
+    monkeypatch.setattr(missing_measurements, "_MINORS", (1, 1))
     assert symobs.observability(symobs.StateSpace(plant.A, C=plant.C)).fields["missing_measurements"] is None
 
 
