@@ -7,6 +7,7 @@ default a stratified sample of the changes is tried, the same in every run; with
 from __future__ import annotations
 
 from dataclasses import replace
+from fractions import Fraction
 from functools import cache
 from typing import TYPE_CHECKING, Any
 
@@ -27,7 +28,7 @@ from symobs.tasks.design.compensator.output_feedback import OutputFeedback
 from symobs.tasks.design.gain.gain_design import GainDesign
 from tests.programs.lies import drawn
 from tests.support.independent_algebra.plain import multiply, observability_rows, rank_of, transposed
-from tests.support.independent_algebra.plain_fractions import World, determinant
+from tests.support.independent_algebra.plain_fractions import World, determinant, plus, times
 from tests.support.independent_algebra.truth import is_true, still_true
 from tests.support.paths import ROOT
 from tests.support.sampling import every
@@ -153,6 +154,9 @@ def test_every_line_of_a_random_design_holds_in_plain_fractions(number: int) -> 
 
 
 def _table(world: World, letter: str) -> Rows:
+    if "−" in letter:
+        first, second = (_table(world, name) for name in letter.split("−"))
+        return plus(first, times(Fraction(-1), second))  # type: ignore[no-any-return]
     found: Rows = world.value(Letter(letter.rstrip("ᵀ")))
     return transposed(found) if letter.endswith("ᵀ") else found
 
@@ -200,11 +204,16 @@ TRUTH: dict[str, Callable[..., bool]] = {
     "exhausts": _are_hidden,
     "modes_stable": lambda world, row, of, *_: _unstable_modes(world, row, of) == 0,
     "modes_unstable": lambda world, row, of, *_: _unstable_modes(world, row, of) > 0,
-    "annuls": lambda world, row, by: (
-        any(map(any, _table(world, row))) and not any(map(any, multiply(_table(world, row), _table(world, by))))
+    "annuls": lambda world, row, by, *left: (
+        any(map(any, _table(world, row)))
+        and not any(map(any, multiply(_table(world, row), _table(world, by))))
+        and all(any(map(any, multiply(_table(world, row), _table(world, each)))) for each in left)
     ),
     "one_rank": lambda world, C, E: rank_of(multiply(_table(world, C), _table(world, E))) == rank_of(_table(world, E)),
     "lower_rank": lambda world, C, E: rank_of(multiply(_table(world, C), _table(world, E))) < rank_of(_table(world, E)),
+    "single": lambda world, row: len(_table(world, row)) == 1,
+    "not_unique": lambda world, row, of: len(_table(world, row)) > 1 or not _is_seen(world, row, of),
+    "zero": lambda world, *letters: not any(map(any, _table(world, next(n for n in letters if n in world.letters)))),
     "nonsingular": lambda world, letter: determinant(_table(world, letter)) != 0,
 }
 

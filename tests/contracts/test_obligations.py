@@ -26,14 +26,14 @@ DEMANDED = {
         compensator_unstable compensator_unstable_low
     """,
     "about F stable": "minimal_stable minimal_stable_if",
-    "about F strictly_proper unstable, loop_stable": "compensator_unstable_alone compensator_unstable_low_alone",
+    "about F strictly_proper unstable, loop stable": "compensator_unstable_alone compensator_unstable_low_alone",
     "about F unstable": "minimal_unstable",
-    "about F unstable, loop_stable": "minimal_unstable_alone",
+    "about F unstable, loop stable": "minimal_unstable_alone",
     "about P": "no_stable_compensator",
     "about phi_c": """
-        grows_state_feedback_continuous grows_state_feedback_discrete lasts_servo_continuous
-        lasts_servo_discrete lasts_state_feedback_continuous lasts_state_feedback_discrete
-        stays_state_feedback_continuous stays_state_feedback_discrete
+        grows_state_feedback_continuous grows_state_feedback_discrete integral_rest_stable
+        lasts_servo_continuous lasts_servo_discrete lasts_state_feedback_continuous
+        lasts_state_feedback_discrete stays_state_feedback_continuous stays_state_feedback_discrete
     """,
     "about phi_c unstable marginal": "drifts_state_feedback_continuous drifts_state_feedback_discrete",
     "about phi_o": """
@@ -42,7 +42,8 @@ DEMANDED = {
     """,
     "annuls w_0 C": "outputs_dependent",
     "annuls w_0 G_0": "no_feedforward_low",
-    "annuls w_d B": "tracking_impossible tracking_impossible_one",
+    "annuls w_d B": "tracking_impossible_one",
+    "annuls w_d B A−A_ref": "tracking_impossible",
     "applies_image": "mapped mapped_from_v",
     "bounded X mu": "semisimple",
     "chained X mu": "grows",
@@ -50,10 +51,14 @@ DEMANDED = {
     "counts_dominant": "pair_dominates",
     "counts_names": "crossing crossing_discrete crossing_infinite crossing_one crossing_one_discrete",
     "counts_steps": "gramian_steps",
+    "dimension Bᵀ Aᵀ": "dimension_state_feedback family_hidden_state_feedback",
+    "dimension C A": "dimension_observer family_hidden_observer",
     "duals Bᵀ Aᵀ C_dual A_dual": "dual_ranks_controlling",
     "duals C A B_dualᵀ A_dualᵀ": "dual_ranks_observing",
-    "eigenvalues_of A": "eigenvalues open_eigenvalues_observer open_eigenvalues_state_feedback",
+    "eigenvalues_of A": "eigenvalues its_roots open_eigenvalues_observer open_eigenvalues_state_feedback",
     "eigenvalues_of A_22, spectrum A_22": "mere_copy_grows",
+    "exactly Bᵀ Aᵀ N X": "exactly_there_stabilizability",
+    "exactly C A N X": "exactly_there_detectability",
     "exhausts Bᵀ Aᵀ N_K X_K phi_c": "no_others_state_feedback",
     "exhausts C A N X phi_o": "no_others_observer",
     "fixes A_12 A_22 N_2 X_2 phi_o": "reduced_impossible reduced_not_unique reduced_unassignable",
@@ -65,11 +70,12 @@ DEMANDED = {
     """,
     "fixes C A N X phi_o": """
         case_no_observer case_other_observer case_same_observer case_survives_observer
-        fixed_but_wanted_observer impossible_observer unassignable_observer
+        fixed_but_wanted_observer impossible_observer modes_missed unassignable_observer
     """,
     "fixes C A_T N X phi_o": "uio_impossible uio_unassignable uio_zeros_desired",
     "fixes C_hat A_hat N X phi_o": "disturbance_fixed disturbance_impossible disturbance_unassignable",
     "introduces_degree_one": "one_from_settling one_on_circle",
+    "loop unstable": "loop_unstable_continuous loop_unstable_discrete",
     "lower_rank C E_d": "uio_not_decoupled uio_not_decoupled_along",
     "modes Bᵀ Aᵀ N X": "fixed_modes_controllability on_kernel_controllability",
     "modes Bᵀ Aᵀ N_K X_K N X": "modes_controllability",
@@ -82,13 +88,20 @@ DEMANDED = {
     "modes_unstable C A_T N X mu": "uio_zeros_unstable",
     "moves_by_margin": "moved_right",
     "needs_rank_full, annuls w_0 G_0": "no_feedforward_zero",
+    "no_gain": "impossible_zero impossible_zero_unless",
     "nonsingular M": "kernel_none_of_sum",
     "nonsingular W": "gramian_regular steps_nonsingular_controllability steps_nonsingular_observability",
+    "not_unique B_hatᵀ A_hatᵀ": "integral_family",
+    "not_unique Bᵀ Aᵀ": "family_state_feedback",
+    "not_unique C A": "family_observer",
+    "not_unique C A_T": "uio_family",
+    "not_unique C_hat A_hat": "disturbance_family",
     "observable B_hatᵀ A_hatᵀ": "integral_possible_one integral_possible_origin",
     "observable Bᵀ Aᵀ": """
-        already_canonical any_state_feedback assignable_state_feedback no_fixed_modes_controllability
-        pbh_yes_controllability yes_controllability
+        any_state_feedback assignable_state_feedback no_fixed_modes_controllability pbh_yes_controllability
+        yes_controllability
     """,
+    "observable Bᵀ Aᵀ, canonical": "already_canonical",
     "observable C A": """
         any_observer assignable_observer frozen_instant frozen_misled_yes initial_found
         no_fixed_modes_observability pbh_yes_observability stack_yes_if yes_observability
@@ -96,6 +109,7 @@ DEMANDED = {
     "observable C_hat A_hat": "disturbance_zeros_model",
     "one_rank C E_d": "uio_decoupled",
     "pole_defective": "defective defective_instead",
+    "poles_of P": "its_poles",
     "repairs Bᵀ Aᵀ": "repair_one_controllability repair_several_controllability",
     "repairs C A": "repair_one_observability repair_several_observability",
     "says_decay": "decayed",
@@ -124,11 +138,19 @@ DEMANDED = {
     "shares_kernel Bᵀ Aᵀ, nonsingular M": "kernel_none_controllability",
     "shares_kernel C A": "kernel_shared",
     "shares_kernel C A, nonsingular M": "kernel_none",
+    "shown": """
+        stable_continuous stable_discrete stable_if_continuous stable_if_discrete unstable_continuous
+        unstable_discrete
+    """,
+    "single Bᵀ": "one_gain_only_state_feedback row_reduced_unique_state_feedback",
+    "single C": "one_gain_only_observer row_reduced_unique_observer",
     "spans_kernel": "steps_kernel_controllability steps_kernel_observability",
     "spans_unseen Bᵀ Aᵀ": "kernel_basis_controllability",
     "spans_unseen C A": "kernel_basis_observability",
     "spectrum A": "only_stable",
     "spectrum A_22": "mere_copy_fails",
+    "spectrum A_c": "law_unstable_continuous law_unstable_discrete",
+    "spectrum X": "marginal_if",
     "substitutes_law": "observer_closed observer_closed_matrix",
     "sums_powers": "finite_sum_is",
     "unobservable B_hatᵀ A_hatᵀ": "integral_blocked",
@@ -139,7 +161,9 @@ DEMANDED = {
     "vanishes C Phi v": "gramian_singular never_seen_start",
     "vanishes C exp_At v": "kernel_unseen kernel_unseen_several",
     "zero G_0": "no_feedforward_single",
+    "zero K_d": "tracking_no_feedforward",
     "zero O Ctr": "case_zero",
+    "zeros_of P": "its_zeros no_zero",
 }
 
 #: Properties, and the sentences that assert them.

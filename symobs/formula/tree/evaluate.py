@@ -55,6 +55,7 @@ class Environment:
     domain      factors of the denominators of the data, which vanish nowhere in the domain
     relations   polynomials that are 0 here: the equations of a stratum, the minimal polynomial of an eigenvalue
     positive    polynomials in the parameters that a stated inequality keeps above 0
+    shown       what a page displayed, or spoke of, last: what "it" and "the polynomial" in the next sentence mean
     """
 
     variable: str = "s"
@@ -68,6 +69,7 @@ class Environment:
     domain: tuple[Scalar, ...] = ()
     relations: tuple[Scalar, ...] = ()
     positive: tuple[Scalar, ...] = ()
+    shown: tuple[Any, ...] = field(default=(), compare=False)
 
     def defines(self, name: str) -> bool:
         """Return whether a letter is defined."""

@@ -159,11 +159,19 @@ def _after(step: Step, environment: Environment, discrete: bool) -> Environment:
         case _:
             assert_never(step)
     sentence = getattr(step, "sentence", None)
-    if sentence is None:
-        return environment
-    _sentence(sentence, environment, discrete)
-    _owed(sentence, step, environment)
-    return with_limit(sentence, environment)
+    if sentence is not None:
+        _sentence(sentence, environment, discrete)
+        _owed(sentence, step, environment)
+        environment = with_limit(sentence, environment)
+    shown = _displayed(step, sentence)
+    return replace(environment, shown=shown) if shown else environment
+
+
+def _displayed(step: Step, sentence: Sentence | None) -> tuple[Fact, ...]:
+    """Return the relations that a step displays, and the facts in its sentence."""
+    own = () if getattr(step, "silent", False) else getattr(step, "relations", (getattr(step, "relation", None),))
+    slots = () if sentence is None else (slot for _, slot in sentence.slots)
+    return tuple(part for part in (*slots, *own) if isinstance(part, (Relation, HoldsExactlyWhere)))
 
 
 def _tabulated(step: Tabulate, environment: Environment, discrete: bool) -> Environment:  # noqa: FBT001

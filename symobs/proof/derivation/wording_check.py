@@ -12,9 +12,10 @@ from __future__ import annotations
 from dataclasses import field, replace
 from fractions import Fraction
 from itertools import dropwhile, takewhile
+from re import findall
 from typing import TYPE_CHECKING, Any, TypeAlias
 
-from symobs.exact import Ideal, Scalar, echelon, from_coefficients, independent_rows, rank, unit_rows
+from symobs.exact import Ideal, Matrix, Scalar, companion, echelon, from_coefficients, independent_rows, rank, unit_rows
 from symobs.exact.core.generators import PI, function
 from symobs.formula.phrases import DEMANDS
 from symobs.formula.phrases.spoken import Counted, StateChoice
@@ -136,7 +137,10 @@ def _of_pair(**says: bool) -> Callable[..., bool]:
 
 
 def _letter(text: str) -> Formula:
-    """Return the formula of a letter, or of its transpose."""
+    """Return the formula of a letter, of its transpose, or of a difference of letters."""
+    if "−" in text:
+        first, second = text.split("−")
+        return Sum((Letter(first), Negative(Letter(second))))
     return Transpose(Letter(text[:-1])) if text.endswith("ᵀ") else Letter(text)
 
 
@@ -232,6 +236,7 @@ def _fixes(said: Said, row: str, of: str, N: str, X: str, phi: str) -> bool:
     here, fixed, wanted = said.environment, _characteristic(X, said.environment), _letter(phi)
     told = [roots.polynomial for roots in said.of(Roots)]
     told += [slot.formula for name, slot in said.slots.items() if name == "fixed" and isinstance(slot, Evaluated)]
+    told += [slot.members[0] for slot in said.slots.values() if isinstance(slot, Relation)]
     rest = said.slots.get("rest")
     if isinstance(rest, Evaluated):
         whole = Quotient(Sum((wanted, Negative(rest.formula))), fixed)
@@ -338,10 +343,12 @@ def _repairs(said: Said, row: str, of: str) -> bool:
     order, A = _sizes(of, here)[0], _letter(of)
     for numbers, fact in zip(choice.sets, said.facts, strict=True):
         rows = Literal(unit_rows(order, tuple(number - 1 for number in numbers)))
-        below: list[Formula] = [rows, *(Product((rows, Power(A, k))) for k in range(1, order))]
-        wanted = Block(tuple((each,) for each in (_stack(row, of, here), *below)))
-        matrix = _ranked(fact) if isinstance(fact, Relation) and _is_of_rank(fact, here, is_full=True) else None
-        if matrix is None or not _holds(here, matrix, "=", wanted):
+        below = [rows, *(Product((rows, Power(A, k))) for k in range(1, order))]
+        parts: list[Formula] = [_stack(row, of, here), *below]
+        wanted, matrix = Block(tuple((part,) for part in parts)), _ranked(fact) if isinstance(fact, Relation) else None
+        if not isinstance(fact, Relation) or matrix is None or not _is_of_rank(fact, here, is_full=True):
+            return False
+        if not _holds(here, matrix, "=", wanted):
             return False
     return True
 
@@ -439,10 +446,62 @@ def _are_about(said: Said, formula: Formula, *names: str) -> bool:
     return bool(found) and all(_holds(said.environment, subject, "=", formula) for subject in found)
 
 
-def _is_of_loop(said: Said) -> bool:
-    """Return whether the stability of the loop's polynomial φ_c φ_o is among the facts."""
+def _is_of_loop(said: Said, name: str) -> bool:
+    """Return whether a property of the loop's polynomial φ_c φ_o is among the facts."""
     here, loop = said.environment, Product((Letter("phi_c"), Letter("phi_o")))
-    return any(_holds(here, subject, "=", loop) for subject in said.subjects("stable"))
+    return any(_holds(here, subject, "=", loop) for subject in said.subjects(name))
+
+
+def _is_shown(said: Said) -> bool:
+    """Return whether the properties are of a polynomial that was displayed, or spoken of, last before."""
+    last = [member for fact in said.environment.shown if isinstance(fact, Relation) for member in fact.members]
+    return bool(said.subjects()) and all(subject in last for subject in said.subjects())
+
+
+def _is_exact(said: Said, row: str, of: str, N: str, X: str) -> bool:
+    """Return whether it was said last where the polynomial of the unobservable modes, all of them, is stable."""
+    here = said.environment
+    fixed = _characteristic(X, here)
+    found = [fact.property.subject for fact in here.shown if isinstance(fact, HoldsExactlyWhere)]
+    return bool(found) and _is_whole(here, row, of, N, X) and all(_holds(here, each, "=", fixed) for each in found)
+
+
+def _has_freedom(said: Said, row: str, of: str) -> int:
+    """Return of what dimension the gains are that place the same poles: n p, less the rank of the test matrix."""
+    here = said.environment
+    outputs, order = _sizes(row, here)
+    stack = evaluate(_stack(row, of, here), here, Exact(here))
+    return outputs * order - len(echelon(stack, Ideal.where(here.relations))[0])
+
+
+def _is_canonical(said: Said) -> bool:
+    """Return whether (A, B) is in controllable canonical form."""
+    A, B = (evaluate(Letter(name), said.environment, Exact(said.environment)) for name in "AB")
+    order, variable = A.shape[0], said.environment.variable
+    chi = A.characteristic_polynomial(variable).coefficients(variable)
+    return bool(companion(chi[1:]) == A and Matrix.unit(order, order - 1) == B)
+
+
+def _has_no_gain(said: Said) -> bool:
+    """Return whether what has to vanish, or 1, lies in the ideal of det(sI − A + LC) − φ, with zeros at the places of L."""
+    places = [tuple(int(part) - 1 for part in pair) for pair in findall(r"\((\d+), (\d+)\)", str(said.slots["places"]))]
+    value = said.slots.get("when", _number(1))
+    return isinstance(value, Formula) and any(
+        {row.rstrip("ᵀ"), phi} <= said.environment.values.keys() and _lacks_gain(said, value, row, of, phi, places)
+        for row, of, phi in (("C", "A", "phi_o"), ("Bᵀ", "Aᵀ", "phi_c"))
+    )
+
+
+def _lacks_gain(said: Said, value: Formula, row: str, of: str, phi: str, places: list[tuple[int, ...]]) -> bool:
+    here, variable = said.environment, said.environment.variable
+    A, C, wanted = (evaluate(_letter(name), here, Exact(here)) for name in (of, row, phi))
+    empty = {place[::-1] if row.endswith("ᵀ") else place for place in places}
+    rows = [
+        [Scalar.of(0) if (i, j) in empty else Scalar.symbol(f"_l{i}_{j}") for j in range(C.shape[0])]
+        for i in range(A.shape[0])
+    ]
+    chi = (A - Matrix.of(rows, C.shape[0]) @ C).normal().characteristic_polynomial(variable)
+    return _holds(here.with_relations((chi - wanted).coefficients(variable)), value, "=", _number(0))
 
 
 def _is_defective(said: Said) -> bool:
@@ -587,7 +646,18 @@ _OF_STEP: dict[str, Callable[..., bool]] = {
     "shares_kernel": _shares_kernel,
     "spans_kernel": _spans_kernel,
     "needs_rank_full": lambda said: _has_rank(said, is_full=True),
-    "loop_stable": _is_of_loop,
+    "loop": _is_of_loop,
+    "shown": _is_shown,
+    "exactly": _is_exact,
+    "canonical": _is_canonical,
+    "no_gain": _has_no_gain,
+    "not_unique": lambda said, row, of: _has_freedom(said, row, of) > 0,
+    "dimension": lambda said, row, of: said.slots["count"] == str(_has_freedom(said, row, of)),
+    "single": lambda said, row: _sizes(row, said.environment)[0] == 1,
+    "poles_of": lambda said, letter: all(told.polynomial == Letter(letter) for told in said.of(Roots)),
+    "zeros_of": lambda said, letter: all(
+        formula == Power(Letter(letter), -1) for formula in (*said.subjects(), *(t.polynomial for t in said.of(Roots)))
+    ),
     "pole_defective": _is_defective,
     "counts_degree": _counts_degree,
     "counts_dominant": _counts_dominant,

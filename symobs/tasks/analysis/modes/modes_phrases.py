@@ -98,6 +98,9 @@ DEMANDS: dict[str, str] = {
     "means_lyapunov": "sets_meaning",
     "semisimple": "bounded X mu",
     "grows": "chained X mu",
+    "exactly_there_detectability": "exactly C A N X",
+    "exactly_there_stabilizability": "exactly Bᵀ Aᵀ N X",
+    "marginal_if": "spectrum X",
 }
 
 RESTS_ON: dict[str, str] = {

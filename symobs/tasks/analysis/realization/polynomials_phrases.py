@@ -35,3 +35,16 @@ ASSERTS: dict[str, tuple[str, ...]] = {
     "unstable_continuous": ("unstable",),
     "unstable_discrete": ("unstable",),
 }
+
+DEMANDS: dict[str, str] = {
+    "its_roots": "eigenvalues_of A",
+    "its_poles": "poles_of P",
+    "its_zeros": "zeros_of P",
+    "no_zero": "zeros_of P",
+    "stable_continuous": "shown",
+    "stable_discrete": "shown",
+    "unstable_continuous": "shown",
+    "unstable_discrete": "shown",
+    "stable_if_continuous": "shown",
+    "stable_if_discrete": "shown",
+}

@@ -87,8 +87,8 @@ DEMANDS: dict[str, str] = {
     "compensator_unstable_low": "about F",
     "compensator_proper": "about F",
     "compensator_stable_if": "about F",
-    "compensator_unstable_alone": "about F strictly_proper unstable, loop_stable",
-    "compensator_unstable_low_alone": "about F strictly_proper unstable, loop_stable",
+    "compensator_unstable_alone": "about F strictly_proper unstable, loop stable",
+    "compensator_unstable_low_alone": "about F strictly_proper unstable, loop stable",
     "defective": "pole_defective",
     "defective_instead": "pole_defective",
     "observer_closed": "substitutes_law",
@@ -96,6 +96,8 @@ DEMANDS: dict[str, str] = {
     "no_stable_compensator": "about P",
     "any_observer": "observable C A",
     "any_state_feedback": "observable Bᵀ Aᵀ",
+    "loop_unstable_continuous": "loop unstable",
+    "loop_unstable_discrete": "loop unstable",
 }
 
 RESTS_ON: dict[str, str] = {

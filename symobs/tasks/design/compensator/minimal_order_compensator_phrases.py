@@ -33,7 +33,7 @@ ASSERTS: dict[str, tuple[str, ...]] = {
 DEMANDS: dict[str, str] = {
     "minimal_stable": "about F stable",
     "minimal_unstable": "about F unstable",
-    "minimal_unstable_alone": "about F unstable, loop_stable",
+    "minimal_unstable_alone": "about F unstable, loop stable",
     "minimal_stable_if": "about F stable",
 }
 

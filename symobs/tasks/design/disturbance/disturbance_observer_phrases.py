@@ -49,6 +49,7 @@ DEMANDS: dict[str, str] = {
     "disturbance_fixed": "fixes C_hat A_hat N X phi_o",
     "disturbance_impossible": "fixes C_hat A_hat N X phi_o",
     "disturbance_unassignable": "fixes C_hat A_hat N X phi_o",
+    "disturbance_family": "not_unique C_hat A_hat",
 }
 
 RESTS_ON: dict[str, str] = {

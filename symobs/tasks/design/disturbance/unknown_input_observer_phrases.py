@@ -52,6 +52,7 @@ DEMANDS: dict[str, str] = {
     "uio_unassignable": "fixes C A_T N X phi_o",
     "uio_zeros_stable": "modes_stable C A_T N X mu",
     "uio_zeros_unstable": "modes_unstable C A_T N X mu",
+    "uio_family": "not_unique C A_T",
 }
 
 RESTS_ON: dict[str, str] = {

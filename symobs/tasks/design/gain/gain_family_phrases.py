@@ -44,6 +44,17 @@ PHRASES: dict[str, str] = {
     "family_hidden_state_feedback": "The gain is not unique. The gains form a family of dimension {count}: on the controllable part there is the freedom of Sylvester's equation, and on the uncontrollable modes the gain is arbitrary.",
 }
 
+DEMANDS: dict[str, str] = {
+    "dimension_observer": "dimension C A",
+    "family_hidden_observer": "dimension C A",
+    "dimension_state_feedback": "dimension Bᵀ Aᵀ",
+    "family_hidden_state_feedback": "dimension Bᵀ Aᵀ",
+    "one_gain_only_observer": "single C",
+    "one_gain_only_state_feedback": "single Bᵀ",
+    "impossible_zero": "no_gain",
+    "impossible_zero_unless": "no_gain",
+}
+
 RESTS_ON: dict[str, str] = {
     "sylvester_observer": "sylvester",
     "sylvester_state_feedback": "sylvester",

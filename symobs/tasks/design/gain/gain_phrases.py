@@ -99,7 +99,7 @@ ASSERTS: dict[str, tuple[str, ...]] = {
 DEMANDS: dict[str, str] = {
     "assignable_observer": "observable C A",
     "assignable_state_feedback": "observable Bᵀ Aᵀ",
-    "already_canonical": "observable Bᵀ Aᵀ",
+    "already_canonical": "observable Bᵀ Aᵀ, canonical",
     "open_eigenvalues_observer": "eigenvalues_of A",
     "open_eigenvalues_state_feedback": "eigenvalues_of A",
     "fixed_but_wanted_observer": "fixes C A N X phi_o",
@@ -118,6 +118,10 @@ DEMANDS: dict[str, str] = {
     "case_no_state_feedback": "fixes Bᵀ Aᵀ N_K X_K phi_c",
     "no_others_observer": "exhausts C A N X phi_o",
     "no_others_state_feedback": "exhausts Bᵀ Aᵀ N_K X_K phi_c",
+    "family_observer": "not_unique C A",
+    "family_state_feedback": "not_unique Bᵀ Aᵀ",
+    "row_reduced_unique_observer": "single C",
+    "row_reduced_unique_state_feedback": "single Bᵀ",
 }
 
 RESTS_ON: dict[str, str] = {

@@ -66,4 +66,6 @@ DEMANDS: dict[str, str] = {
     "drifts_state_feedback_continuous": "about phi_c unstable marginal",
     "lasts_servo_discrete": "about phi_c",
     "drifts_state_feedback_discrete": "about phi_c unstable marginal",
+    "law_unstable_continuous": "spectrum A_c",
+    "law_unstable_discrete": "spectrum A_c",
 }

@@ -70,6 +70,7 @@ DEMANDS: dict[str, str] = {
     "some_on_circle": "counts_degree",
     "pair_remains": "counts_degree",
     "pair_dominates": "counts_dominant",
+    "modes_missed": "fixes C A N X phi_o",
 }
 
 RESTS_ON: dict[str, str] = {

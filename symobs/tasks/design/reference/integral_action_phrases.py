@@ -44,6 +44,8 @@ DEMANDS: dict[str, str] = {
     "integral_uncontrollable": "says_unobservable Bᵀ Aᵀ",
     "integral_impossible": "fixes B_hatᵀ A_hatᵀ N_K X_K phi_c",
     "integral_unassignable": "fixes B_hatᵀ A_hatᵀ N_K X_K phi_c",
+    "integral_rest_stable": "about phi_c",
+    "integral_family": "not_unique B_hatᵀ A_hatᵀ",
 }
 
 RESTS_ON: dict[str, str] = {

@@ -26,8 +26,9 @@ QUESTIONS: dict[str, str] = {
 }
 
 DEMANDS: dict[str, str] = {
-    "tracking_impossible": "annuls w_d B",
+    "tracking_impossible": "annuls w_d B A−A_ref",
     "tracking_impossible_one": "annuls w_d B",
+    "tracking_no_feedforward": "zero K_d",
 }
 
 RESTS_ON: dict[str, str] = {

@@ -208,11 +208,14 @@ def test_a_sentence_may_name_a_value_only_where_it_claims_nothing_of_it() -> Non
 
 
 def test_a_sentence_rests_on_its_facts() -> None:
-    start = replace(START, values={"chi": s + 1, "phi": s - 1})
+    start = replace(START, values={"chi": s + 1, "phi": s - 1}, shown=(said(chi, s + 1), said(phi, s - 1)))
     for sentence, right, wrong in (
         (Sentence("stable_continuous"), Predicate("stable", chi), Predicate("unstable", phi)),
         (Sentence("unstable_continuous"), Predicate("unstable", phi), Predicate("stable", chi)),
     ):
+        spoken_of = {chi: Equal((said(chi, s + 1),)), phi: Note(slot(said(phi, s - 1)))}
+        checked(spoken_of.pop(right.subject), Conclude(sentence, (right,)), start=start)
+        refused(*spoken_of.values(), Conclude(sentence, (right,)), start=start, match="which rests on")
         checked(Conclude(sentence, (right,)), start=start)
         checked(Conclude(sentence, (one, wrong, right)), start=start)
         for facts in ((), (wrong,), (one,)):

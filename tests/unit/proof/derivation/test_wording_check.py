@@ -325,3 +325,42 @@ def test_the_equations_that_are_substituted_are_those_of_the_input_and_of_the_ob
     told = {"law": slots["rate"], "rate": slots["law"]}
     with pytest.raises(DerivationRejected, match="or equation"):
         line.told(replace(step, sentence=replace(step.sentence, slots=tuple(told.items())))).check()
+
+
+# -- how many, and none ----------------------------------------------------------------------------------------------------
+
+
+def test_gains_are_as_many_as_the_sentence_says() -> None:
+    """Of n p entries the n coefficients leave n p − n free; a mode that is not seen leaves one more."""
+    A, two, one = Matrix.of([[0, 1], [0, 0]]), Matrix.identity(2), Matrix.of([[1, 0]])
+    seen = {C: Environment(values={"A": A, "C": C}) for C in (two, one)}
+    unseen = Environment(values={"A": A * 0, "C": one})
+    for here, count in ((seen[two], 2), (seen[one], 0), (unseen, 1)):
+        for told in range(4):
+            said_of = Said((), here, {"count": str(told)})
+            assert rests_on("dimension_observer", said_of) is (told == count)
+        assert rests("family_observer", (), here) is (count > 0)
+    assert rests("row_reduced_unique_observer", (), seen[one])
+    assert not rests("row_reduced_unique_observer", (), seen[two])
+
+
+def test_a_pattern_of_zeros_has_no_gain_only_where_the_coefficients_say_so() -> None:
+    """With L = [l; 0] det(sI − A + LC) is s² − (a − l) s, with L = [0; l] s² − a s + l; φ = s² + 3 s + 2."""
+    s, a = (Scalar.symbol(name) for name in "sa")
+    here = Environment(values={"A": Matrix.of([[a, 1], [0, 0]]), "C": Matrix.of([[1, 0]]), "phi_o": s**2 + 3 * s + 2})
+    dual = Environment(
+        values={"A": here.values["A"].T, "B": here.values["C"].T, "phi_c": here.values["phi_o"]}  # type: ignore[union-attr]
+    )
+
+    def held(places: str, e: Environment = here, **when: Any) -> bool:
+        return rests_on(
+            "impossible_zero_unless" if when else "impossible_zero", Said((), e, {"places": places, **when})
+        )
+
+    assert held("(2, 1)")
+    assert held("(1, 2)", dual)
+    assert not held("(1, 1)")
+    assert held("(1, 1)", when=Literal(a + 3))
+    for other in (a, a + 2):
+        assert not held("(1, 1)", when=Literal(other))
+    assert not held("")
