@@ -342,9 +342,8 @@ def _repairs(said: Said, row: str, of: str) -> bool:
     here, (choice,) = said.environment, said.of(StateChoice)
     order, A = _sizes(of, here)[0], _letter(of)
     for numbers, fact in zip(choice.sets, said.facts, strict=True):
-        rows = Literal(unit_rows(order, tuple(number - 1 for number in numbers)))
-        below = [rows, *(Product((rows, Power(A, k))) for k in range(1, order))]
-        parts: list[Formula] = [_stack(row, of, here), *below]
+        rows: Formula = Literal(unit_rows(order, tuple(number - 1 for number in numbers)))
+        parts = [_stack(row, of, here), rows, *(Product((rows, Power(A, k))) for k in range(1, order))]
         wanted, matrix = Block(tuple((part,) for part in parts)), _ranked(fact) if isinstance(fact, Relation) else None
         if not isinstance(fact, Relation) or matrix is None or not _is_of_rank(fact, here, is_full=True):
             return False

@@ -213,7 +213,7 @@ def test_a_sentence_rests_on_its_facts() -> None:
         (Sentence("stable_continuous"), Predicate("stable", chi), Predicate("unstable", phi)),
         (Sentence("unstable_continuous"), Predicate("unstable", phi), Predicate("stable", chi)),
     ):
-        spoken_of = {chi: Equal((said(chi, s + 1),)), phi: Note(slot(said(phi, s - 1)))}
+        spoken_of: dict[Any, Step] = {chi: Equal((said(chi, s + 1),)), phi: Note(slot(said(phi, s - 1)))}
         checked(spoken_of.pop(right.subject), Conclude(sentence, (right,)), start=start)
         refused(*spoken_of.values(), Conclude(sentence, (right,)), start=start, match="which rests on")
         checked(Conclude(sentence, (right,)), start=start)
