@@ -30,16 +30,19 @@ DEMANDED = {
     "about F unstable": "minimal_unstable",
     "about F unstable, loop stable": "minimal_unstable_alone",
     "about P": "no_stable_compensator",
-    "about phi_c": """
-        grows_state_feedback_continuous grows_state_feedback_discrete integral_rest_stable
-        lasts_servo_continuous lasts_servo_discrete lasts_state_feedback_continuous
-        lasts_state_feedback_discrete stays_state_feedback_continuous stays_state_feedback_discrete
+    "about phi_c": "integral_rest_stable",
+    "about phi_c unstable marginal, continuous_time": "drifts_state_feedback_continuous",
+    "about phi_c unstable marginal, discrete_time": "drifts_state_feedback_discrete",
+    "about phi_c, continuous_time": """
+        grows_state_feedback_continuous lasts_servo_continuous lasts_state_feedback_continuous
+        stays_state_feedback_continuous
     """,
-    "about phi_c unstable marginal": "drifts_state_feedback_continuous drifts_state_feedback_discrete",
-    "about phi_o": """
-        grows_observer_continuous grows_observer_discrete lasts_observer_continuous lasts_observer_discrete
-        stays_observer_continuous stays_observer_discrete
+    "about phi_c, discrete_time": """
+        grows_state_feedback_discrete lasts_servo_discrete lasts_state_feedback_discrete
+        stays_state_feedback_discrete
     """,
+    "about phi_o, continuous_time": "grows_observer_continuous lasts_observer_continuous stays_observer_continuous",
+    "about phi_o, discrete_time": "grows_observer_discrete lasts_observer_discrete stays_observer_discrete",
     "annuls w_0 C": "outputs_dependent",
     "annuls w_0 G_0": "no_feedforward_low",
     "annuls w_d B": "tracking_impossible_one",
@@ -47,12 +50,23 @@ DEMANDED = {
     "applies_image": "mapped mapped_from_v",
     "bounded X mu": "semisimple",
     "chained X mu": "grows",
+    "continuous_time": """
+        asks_detectability_continuous asks_stabilizability_continuous beyond_continuous equilibrium_continuous
+        hides_continuous integral_state_continuous lowest_terms_unstable_continuous marginal_continuous
+        nonlinear_continuous sought_continuous
+    """,
     "counts_degree": "pair_remains some_on_circle",
     "counts_dominant": "pair_dominates",
-    "counts_names": "crossing crossing_discrete crossing_infinite crossing_one crossing_one_discrete",
+    "counts_names": "crossing crossing_infinite crossing_one",
+    "counts_names, discrete_time": "crossing_discrete crossing_one_discrete",
     "counts_steps": "gramian_steps",
     "dimension Bᵀ Aᵀ": "dimension_state_feedback family_hidden_state_feedback",
     "dimension C A": "dimension_observer family_hidden_observer",
+    "discrete_time": """
+        asks_detectability_discrete asks_stabilizability_discrete beyond_discrete equilibrium_discrete
+        hides_discrete integral_state_discrete lowest_terms_unstable_discrete marginal_discrete
+        nonlinear_discrete sought_discrete
+    """,
     "duals Bᵀ Aᵀ C_dual A_dual": "dual_ranks_controlling",
     "duals C A B_dualᵀ A_dualᵀ": "dual_ranks_observing",
     "eigenvalues_of A": "eigenvalues its_roots open_eigenvalues_observer open_eigenvalues_state_feedback",
@@ -61,6 +75,13 @@ DEMANDED = {
     "exactly C A N X": "exactly_there_detectability",
     "exhausts Bᵀ Aᵀ N_K X_K phi_c": "no_others_state_feedback",
     "exhausts C A N X phi_o": "no_others_observer",
+    "finding": """
+        box_bounded box_unbounded cells_decide connected_bounded connected_unbounded curve_missing hole
+        number_is_root pieces point_decides point_missing points_decide region_empty region_everywhere
+        routh_changes routh_changes_axis routh_criterion_negative routh_criterion_positive
+        routh_criterion_where routh_divides routh_epsilon routh_misleads routh_negative routh_not_stable
+        routh_positive routh_zero_row
+    """,
     "fixes A_12 A_22 N_2 X_2 phi_o": "reduced_impossible reduced_not_unique reduced_unassignable",
     "fixes A_12 A_22 N_2 X_2 phi_o, exhausts A_12 A_22 N_2 X_2 phi_o": "reduced_all_fixed",
     "fixes B_hatᵀ A_hatᵀ N_K X_K phi_c": "integral_impossible integral_unassignable",
@@ -75,7 +96,13 @@ DEMANDED = {
     "fixes C A_T N X phi_o": "uio_impossible uio_unassignable uio_zeros_desired",
     "fixes C_hat A_hat N X phi_o": "disturbance_fixed disturbance_impossible disturbance_unassignable",
     "introduces_degree_one": "one_from_settling one_on_circle",
-    "loop unstable": "loop_unstable_continuous loop_unstable_discrete",
+    "is A_dual Aᵀ": "dual_positive",
+    "is_constant b_P": "no_zeros",
+    "is_constant phi_r": "none_remains",
+    "is_constant phi_z": "no_zeros_taken",
+    "is_negative A_dual Aᵀ": "dual_negative",
+    "loop unstable, continuous_time": "loop_unstable_continuous",
+    "loop unstable, discrete_time": "loop_unstable_discrete",
     "lower_rank C E_d": "uio_not_decoupled uio_not_decoupled_along",
     "modes Bᵀ Aᵀ N X": "fixed_modes_controllability on_kernel_controllability",
     "modes Bᵀ Aᵀ N_K X_K N X": "modes_controllability",
@@ -88,15 +115,19 @@ DEMANDED = {
     "modes_unstable C A_T N X mu": "uio_zeros_unstable",
     "moves_by_margin": "moved_right",
     "needs_rank_full, annuls w_0 G_0": "no_feedforward_zero",
+    "no_effect C A B": "nothing_remains",
+    "no_effect C A B, no_feedthrough": "no_feedforward_none no_response",
     "no_gain": "impossible_zero impossible_zero_unless",
     "nonsingular M": "kernel_none_of_sum",
     "nonsingular W": "gramian_regular steps_nonsingular_controllability steps_nonsingular_observability",
+    "not_unique A_12 A_22": "one_of_several",
     "not_unique B_hatᵀ A_hatᵀ": "integral_family",
     "not_unique Bᵀ Aᵀ": "family_state_feedback",
     "not_unique C A": "family_observer",
     "not_unique C A_T": "uio_family",
     "not_unique C_hat A_hat": "disturbance_family",
-    "observable B_hatᵀ A_hatᵀ": "integral_possible_one integral_possible_origin",
+    "observable B_hatᵀ A_hatᵀ, continuous_time": "integral_possible_origin",
+    "observable B_hatᵀ A_hatᵀ, discrete_time": "integral_possible_one",
     "observable Bᵀ Aᵀ": """
         any_state_feedback assignable_state_feedback no_fixed_modes_controllability pbh_yes_controllability
         yes_controllability
@@ -110,6 +141,8 @@ DEMANDED = {
     "one_rank C E_d": "uio_decoupled",
     "pole_defective": "defective defective_instead",
     "poles_of P": "its_poles",
+    "poles_of phi_c": "control_pole control_poles control_polynomial",
+    "poles_of phi_o": "observer_pole observer_poles observer_polynomial",
     "repairs Bᵀ Aᵀ": "repair_one_controllability repair_several_controllability",
     "repairs C A": "repair_one_observability repair_several_observability",
     "says_decay": "decayed",
@@ -122,8 +155,10 @@ DEMANDED = {
     "says_observable_everywhere C_hat A_hat": "disturbance_observable",
     "says_overshoot": "overshoot_held",
     "says_overshoot_above": "overshoot_close",
-    "says_rank_full, observable C_hat A_hat": "disturbance_zeros_one disturbance_zeros_origin",
-    "says_rank_low, unobservable C_hat A_hat": "disturbance_blocked_one disturbance_blocked_origin",
+    "says_rank_full, observable C_hat A_hat, continuous_time": "disturbance_zeros_origin",
+    "says_rank_full, observable C_hat A_hat, discrete_time": "disturbance_zeros_one",
+    "says_rank_low, unobservable C_hat A_hat, continuous_time": "disturbance_blocked_origin",
+    "says_rank_low, unobservable C_hat A_hat, discrete_time": "disturbance_blocked_one",
     "says_regular_at C A": "stack_yes_at stack_yes_on",
     "says_unobservable Bᵀ Aᵀ": "generic_low_controllability integral_uncontrollable",
     "says_unobservable C A": "case_stack generic_low_observability stack_no",
@@ -138,10 +173,8 @@ DEMANDED = {
     "shares_kernel Bᵀ Aᵀ, nonsingular M": "kernel_none_controllability",
     "shares_kernel C A": "kernel_shared",
     "shares_kernel C A, nonsingular M": "kernel_none",
-    "shown": """
-        stable_continuous stable_discrete stable_if_continuous stable_if_discrete unstable_continuous
-        unstable_discrete
-    """,
+    "shown, continuous_time": "stable_continuous stable_if_continuous unstable_continuous",
+    "shown, discrete_time": "stable_discrete stable_if_discrete unstable_discrete",
     "single Bᵀ": "one_gain_only_state_feedback row_reduced_unique_state_feedback",
     "single C": "one_gain_only_observer row_reduced_unique_observer",
     "spans_kernel": "steps_kernel_controllability steps_kernel_observability",
@@ -149,10 +182,15 @@ DEMANDED = {
     "spans_unseen C A": "kernel_basis_observability",
     "spectrum A": "only_stable",
     "spectrum A_22": "mere_copy_fails",
-    "spectrum A_c": "law_unstable_continuous law_unstable_discrete",
+    "spectrum A_c, continuous_time": "law_unstable_continuous",
+    "spectrum A_c, discrete_time": "law_unstable_discrete",
     "spectrum X": "marginal_if",
     "substitutes_law": "observer_closed observer_closed_matrix",
     "sums_powers": "finite_sum_is",
+    "tests B_dualᵀ A_dualᵀ": "dual_controllability",
+    "tests Bᵀ Aᵀ": "controllability_matrix plant_controllability",
+    "tests C A": "observability_matrix plant_observability",
+    "tests C_dual A_dual": "dual_observability",
     "unobservable B_hatᵀ A_hatᵀ": "integral_blocked",
     "unobservable Bᵀ Aᵀ": "pbh_no_controllability",
     "unobservable C A": "frozen_misled_no initial_not_unique pbh_no_observability x0_not_unique",

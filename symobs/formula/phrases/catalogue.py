@@ -82,6 +82,10 @@ ASSERTS: dict[str, tuple[str, ...]] = _table("ASSERTS")
 #: The obligation that the words of a phrase carry, by its name in `derivation.wording_check`: a step that says it is
 #: rejected where its relation, its facts or its definition do not meet it.
 DEMANDS: dict[str, str] = _table("DEMANDS")
+for _key in PHRASES:  # what is said of one kind of time is said of no other
+    for _time in ("continuous", "discrete"):
+        if _key.endswith(f"_{_time}"):
+            DEMANDS[_key] = ", ".join([*filter(None, [DEMANDS.get(_key)]), f"{_time}_time"])
 
 #: The theorem (a key of `THEOREMS`) that a phrase appeals to.
 RESTS_ON: dict[str, str] = _table("RESTS_ON")

@@ -457,6 +457,15 @@ def _is_shown(said: Said) -> bool:
     return bool(said.subjects()) and all(subject in last for subject in said.subjects())
 
 
+def _is_test(said: Said, row: str, of: str) -> bool:
+    """Return whether what is introduced or shown first is the test matrix of the pair."""
+    first = [said.introduced, *said.of(Relation)]
+    shown = next(relation.members[0] for relation in first if relation is not None)
+    return _holds(
+        said.environment, Transpose(shown) if row.endswith("ᵀ") else shown, "=", _stack(row, of, said.environment)
+    )
+
+
 def _is_exact(said: Said, row: str, of: str, N: str, X: str) -> bool:
     """Return whether it was said last where the polynomial of the unobservable modes, all of them, is stable."""
     here = said.environment
@@ -653,7 +662,23 @@ _OF_STEP: dict[str, Callable[..., bool]] = {
     "not_unique": lambda said, row, of: _has_freedom(said, row, of) > 0,
     "dimension": lambda said, row, of: said.slots["count"] == str(_has_freedom(said, row, of)),
     "single": lambda said, row: _sizes(row, said.environment)[0] == 1,
-    "poles_of": lambda said, letter: all(told.polynomial == Letter(letter) for told in said.of(Roots)),
+    "poles_of": lambda said, letter: all(
+        formula == Letter(letter)
+        for formula in (*(told.polynomial for told in said.of(Roots)), *(r.members[0] for r in said.of(Relation)))
+    ),
+    "no_effect": lambda said, C, A, B: _vanishes(
+        said.environment, Product((_stack(C, A, said.environment), Letter(B)))
+    ),
+    "no_feedthrough": lambda said: "D" not in said.environment.values or _vanishes(said.environment, Letter("D")),
+    "is": lambda said, left, right: _holds(said.environment, _letter(left), "=", _letter(right)),
+    "is_negative": lambda said, left, right: _holds(said.environment, _letter(left), "=", Negative(_letter(right))),
+    "is_constant": lambda said, letter: (
+        as_scalar(said.environment.values[letter]).degree(said.environment.variable) == 0
+    ),
+    "tests": _is_test,
+    "finding": lambda _: False,  # of a table or a region: it is said below one, where the check finds it itself
+    "continuous_time": lambda said: said.environment.variable != "z",
+    "discrete_time": lambda said: said.environment.variable == "z",
     "zeros_of": lambda said, letter: all(
         formula == Power(Letter(letter), -1) for formula in (*said.subjects(), *(t.polynomial for t in said.of(Roots)))
     ),

@@ -22,6 +22,21 @@ PHRASES: dict[str, str] = {
     "routh_misleads": "Here the signs of the first column for small {epsilon} do not give the number of right-half-plane roots; an exact count gives: {right} in the open right half-plane, and {axis} on the imaginary axis.",
 }
 
+DEMANDS: dict[str, str] = {
+    "routh_positive": "finding",
+    "routh_negative": "finding",
+    "routh_criterion_positive": "finding",
+    "routh_criterion_negative": "finding",
+    "routh_criterion_where": "finding",
+    "routh_epsilon": "finding",
+    "routh_zero_row": "finding",
+    "routh_divides": "finding",
+    "routh_not_stable": "finding",
+    "routh_changes": "finding",
+    "routh_changes_axis": "finding",
+    "routh_misleads": "finding",
+}
+
 RESTS_ON: dict[str, str] = {
     "routh_positive": "routh",
     "routh_negative": "routh",

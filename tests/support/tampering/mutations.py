@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 from symobs.exact import Factored, Matrix, Root, Scalar
 from symobs.formula.figures.plot import Curve, MarkedPoint, PlottedResponse, PoleMap
-from symobs.formula.phrases import slots_of
+from symobs.formula.phrases import PHRASES, slots_of
 from symobs.formula.phrases.spoken import SPOKEN, Counted
 from symobs.formula.tree import (
     Apply,
@@ -95,6 +95,18 @@ _MORE_WORDS = {
     "minimal_unstable": "minimal_unstable_alone",
 }
 OTHER_WORDS = dict(_OTHER_WORDS) | {second: first for first, second in _OTHER_WORDS} | _MORE_WORDS
+#: Where a sentence is changed into one that is true of no page of which it is.
+WORDS = ".words"
+
+
+def _other_words(key: str) -> Iterator[str]:
+    """Yield the sentences that say otherwise with the same slots: the opposite, and the same of the other kind of time."""
+    if key in OTHER_WORDS:
+        yield OTHER_WORDS[key]
+    for time, other in (("continuous", "discrete"), ("discrete", "continuous")):
+        sibling = f"{key.removesuffix(time)}{other}"
+        if key.endswith(f"_{time}") and sibling in PHRASES and slots_of(sibling) == slots_of(key):
+            yield sibling
 
 
 @dataclass(frozen=True)
@@ -141,8 +153,8 @@ def changes(item: Any) -> Iterator[Change]:
     elif isinstance(item, Root):
         yield from _of_root(item)
     elif isinstance(item, Sentence):
-        if item.key in OTHER_WORDS:
-            yield Change(".words", "words", replace(item, key=OTHER_WORDS[item.key]))
+        for key in _other_words(item.key):
+            yield Change(WORDS, "words", replace(item, key=key))
         yield from _of_counts(item)
         if item.key not in _UNDECIDED:
             yield from _of_parts(item)

@@ -56,4 +56,13 @@ ASSERTS: dict[str, tuple[str, ...]] = {
     "lowest_terms_unstable_discrete": ("unstable",),
 }
 
+DEMANDS: dict[str, str] = {
+    "control_pole": "poles_of phi_c",
+    "control_poles": "poles_of phi_c",
+    "control_polynomial": "poles_of phi_c",
+    "observer_pole": "poles_of phi_o",
+    "observer_poles": "poles_of phi_o",
+    "observer_polynomial": "poles_of phi_o",
+}
+
 NAMING = ("without_serifs",)

@@ -70,6 +70,8 @@ DEMANDS: dict[str, str] = {
     "case_zero": "zero O Ctr",
     "modes_observability": "modes C A N X",
     "modes_controllability": "modes Bᵀ Aᵀ N_K X_K N X",
+    "observability_matrix": "tests C A",
+    "controllability_matrix": "tests Bᵀ Aᵀ",
 }
 
 RESTS_ON: dict[str, str] = {

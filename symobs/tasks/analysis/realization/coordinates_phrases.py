@@ -31,6 +31,10 @@ QUESTIONS: dict[str, str] = {
     "ask decomposition": "Find the Kalman decomposition of the plant, its minimal part, and the transfer function of that part.",
 }
 
+DEMANDS: dict[str, str] = {
+    "nothing_remains": "no_effect C A B",
+}
+
 RESTS_ON: dict[str, str] = {
     "last_row_controllable": "canonical_form",
     "last_column_observable": "canonical_form",

@@ -26,6 +26,12 @@ QUESTIONS: dict[str, str] = {
 DEMANDS: dict[str, str] = {
     "dual_ranks_observing": "duals C A B_dualᵀ A_dualᵀ",
     "dual_ranks_controlling": "duals Bᵀ Aᵀ C_dual A_dual",
+    "plant_observability": "tests C A",
+    "plant_controllability": "tests Bᵀ Aᵀ",
+    "dual_controllability": "tests B_dualᵀ A_dualᵀ",
+    "dual_observability": "tests C_dual A_dual",
+    "dual_positive": "is A_dual Aᵀ",
+    "dual_negative": "is_negative A_dual Aᵀ",
 }
 
 RESTS_ON: dict[str, str] = {

@@ -82,6 +82,20 @@ DEMANDS: dict[str, str] = {
     "crossing_infinite": "counts_names",
     "crossing_discrete": "counts_names",
     "crossing_one_discrete": "counts_names",
+    "region_empty": "finding",
+    "region_everywhere": "finding",
+    "points_decide": "finding",
+    "point_decides": "finding",
+    "cells_decide": "finding",
+    "point_missing": "finding",
+    "box_bounded": "finding",
+    "box_unbounded": "finding",
+    "connected_bounded": "finding",
+    "connected_unbounded": "finding",
+    "pieces": "finding",
+    "hole": "finding",
+    "curve_missing": "finding",
+    "number_is_root": "finding",
 }
 
 RESTS_ON: dict[str, str] = {

@@ -71,6 +71,10 @@ DEMANDS: dict[str, str] = {
     "pair_remains": "counts_degree",
     "pair_dominates": "counts_dominant",
     "modes_missed": "fixes C A N X phi_o",
+    "no_response": "no_effect C A B, no_feedthrough",
+    "no_zeros": "is_constant b_P",
+    "no_zeros_taken": "is_constant phi_z",
+    "none_remains": "is_constant phi_r",
 }
 
 RESTS_ON: dict[str, str] = {

@@ -69,6 +69,7 @@ DEMANDS: dict[str, str] = {
     "reduced_unassignable": "fixes A_12 A_22 N_2 X_2 phi_o",
     "reduced_not_unique": "fixes A_12 A_22 N_2 X_2 phi_o",
     "reduced_all_fixed": "fixes A_12 A_22 N_2 X_2 phi_o, exhausts A_12 A_22 N_2 X_2 phi_o",
+    "one_of_several": "not_unique A_12 A_22",
 }
 
 RESTS_ON: dict[str, str] = {

@@ -27,6 +27,7 @@ DEMANDS: dict[str, str] = {
     "no_feedforward_single": "zero G_0",
     "no_feedforward_zero": "needs_rank_full, annuls w_0 G_0",
     "no_feedforward_low": "annuls w_0 G_0",
+    "no_feedforward_none": "no_effect C A B, no_feedthrough",
 }
 
 RESTS_ON: dict[str, str] = {

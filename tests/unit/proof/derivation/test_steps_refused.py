@@ -169,9 +169,9 @@ def test_every_slot_of_every_sentence_is_read() -> None:
                 checked(step, start=start)
             else:
                 refused(step, start=start)
-    both = Sentence("routh_changes_axis", (("changes", "words"), ("right", two), ("axis", "words")))
+    both = Sentence("parts", (("measured", "words"), ("unmeasured", two)))
     refused(Note(both), start=start)
-    checked(Note(replace(both, slots=(("changes", "words"), ("right", chi), ("axis", one)))), start=start)
+    checked(Note(replace(both, slots=(("measured", chi), ("unmeasured", one)))), start=start)
 
 
 def test_what_is_shown_is_so() -> None:

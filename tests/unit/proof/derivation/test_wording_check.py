@@ -148,7 +148,7 @@ def test_a_fact_about_one_matrix_is_not_carried_to_another_without_its_ground() 
 
 
 def test_other_sentences_may_speak_of_any_relation() -> None:
-    assert fits("routh_epsilon", said(1, 1), HERE) is True
+    assert fits("routh_where", said(1, 1), HERE) is True
     assert PHRASES.keys() >= {*SAID_OF_FULL, *SAID_OF_LOWER}
 
 
@@ -233,7 +233,7 @@ def test_a_verdict_rests_on_the_unobservable_modes(verdict: str, of: str) -> Non
 
 def test_other_sentences_rest_on_anything() -> None:
     for facts in ((), NOTHING, (UNSTABLE,)):
-        assert rests("routh_epsilon", facts, HERE) is True
+        assert rests("routh_where", facts, HERE) is True
 
 
 def test_a_rank_that_is_too_much_to_follow_is_not_told_for_all(monkeypatch: pytest.MonkeyPatch) -> None:
