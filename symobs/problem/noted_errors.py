@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Mapping
-from typing import Any
+from collections.abc import Callable, Collection, Mapping
+from difflib import get_close_matches
+from typing import Any, TypeGuard
 from unicodedata import category
 
 from symobs.formula.convention import STANDARD, Convention
 from symobs.formula.expression.source import shown
 from symobs.ground.errors import InputError, ProblemErrors, SymobsError
 from symobs.problem.file_tables import Decimal, came
-from symobs.problem.schema import repair_of
 from symobs.tasks.result.in_convention import names_in
 
 _MAX_TEXT = 2000
@@ -56,11 +56,27 @@ class Errors:
         return ProblemErrors(tuple({str(error): error for error in self.found}.values()))
 
 
-def report_unknown(table: Mapping[str, Any], known: Collection[str], where: str, errors: Errors) -> None:
+def nearest(key: str, known: Collection[str]) -> str | None:
+    """Return the known name that a key may have meant."""
+    return next(iter(get_close_matches(key[:64], known, 1)), None)
+
+
+def _meant(key: str, known: Collection[str], _where: str) -> str:
+    near = nearest(key, known)
+    return f"did you mean {near}?" if near else f"known keys are {', '.join(known)}"
+
+
+def report_unknown(
+    table: Mapping[str, Any],
+    known: Collection[str],
+    where: str,
+    errors: Errors,
+    repair: Callable[[str, Collection[str], str], str] = _meant,
+) -> None:
     """Note every key that is not known, with the key or the place that was meant."""
     unknown = [key for key in table if key not in known]
     for key in unknown[:_MAX_UNKNOWN]:
-        errors.note("unknown key", f"{where}.{shown(key, 40)}".lstrip("."), repair_of(key, known, where))
+        errors.note("unknown key", f"{where}.{shown(key, 40)}".lstrip("."), repair(key, known, where))
     if len(unknown) > _MAX_UNKNOWN:
         errors.note(f"{len(unknown) - _MAX_UNKNOWN} more unknown keys", where or "the file", "leave them out")
 
@@ -68,10 +84,17 @@ def report_unknown(table: Mapping[str, Any], known: Collection[str], where: str,
 def table_of(data: Mapping[str, Any], name: str, errors: Errors) -> Mapping[str, Any]:
     """Return a table of the file, an empty one where it is missing or no table."""
     value = data.get(name, {})
+    return value if is_table(value, name, errors) else {}
+
+
+def is_table(value: object, where: str, errors: Errors) -> TypeGuard[Mapping[str, Any]]:
+    """Return whether a value is a table, and note it if not."""
     if isinstance(value, Mapping):
-        return value
-    errors.note(f"a table is expected, but {came(value)} came", name, f"write [{name}] and its keys below")
-    return {}
+        return True
+    header = re.sub(r"^(.*)\[[0-9]+\]$", r"[\1]", where)
+    repair = "write { … }" if "]." in header else f"write [{header}] and its keys below"
+    errors.note(f"a table is expected, but {came(value)} came", where, repair)
+    return False
 
 
 def text_of(table: Mapping[str, Any], name: str, errors: Errors) -> str:

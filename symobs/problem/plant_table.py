@@ -7,7 +7,7 @@ from itertools import islice
 from typing import Any
 
 from symobs.problem.noted_errors import Errors, report_unknown, table_of
-from symobs.problem.schema import NONLINEAR, PLANT
+from symobs.problem.schema import NONLINEAR, PLANT, repair_of
 from symobs.system import StateSpace, Symbols, read_scalar
 from symobs.system.linearisation.linearize import linearize
 from symobs.system.time_domain import read_time
@@ -32,7 +32,7 @@ def plant_of(
     table = table_of(data, "plant", errors)
     if not isinstance(data.get("plant", {}), Mapping):
         return None
-    report_unknown(table, PLANT, "plant", errors)
+    report_unknown(table, PLANT, "plant", errors, repair_of)
     given = [name for name in "ABCD" if name in table]
     nonlinear = {name: table[name] for name in NONLINEAR if name in table}
     forms = [*given[:1], *(name for name in ("transfer_function",) if name in table), *list(nonlinear)[:1]]

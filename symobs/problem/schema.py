@@ -6,7 +6,9 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 from symobs.formula.convention import conventions
+from symobs.problem.fields import ANY_TABLE, TEXT, by_name, list_of, table
 from symobs.problem.marking import MARKING
+from symobs.problem.noted_errors import nearest
 from symobs.system.conditions import SIGNS
 from symobs.system.specification import CHOICES, KINDS
 from symobs.tasks.result import result_type, tasks
@@ -54,18 +56,15 @@ TOP: dict[str, dict[str, Any]] = {
     "variant": {"description": "the id of the variant that this problem is", "type": "string"},
 }
 #: What one entry of [[printed]] may say.
-PRINTED: dict[str, dict[str, Any]] = {
-    "where": {"description": "the place in the source", "type": "string"},
-    "erratum": {"description": "the id of the erratum, where it is a known one", "type": "string"},
-    "convention": {"description": "the convention of its letters, where it is not the file's", "type": "string"},
-    "relation": {"description": 'an equation: "A + M C = [-3 1; -2 0]"', "type": "string"},
-    "let": {
-        "description": "letters of this entry alone, and what they stand for",
-        "type": "object",
-        "additionalProperties": {"type": "string"},
-    },
-    "expect": {"description": "instead of relation: answers as in [expect]", "type": "object"},
+_PRINTED = {
+    "where": TEXT.about("the place in the source"),
+    "erratum": TEXT.about("the id of the erratum, where it is a known one"),
+    "convention": TEXT.about("the convention of its letters, where it is not the file's"),
+    "relation": TEXT.about('an equation: "A + M C = [-3 1; -2 0]"'),
+    "let": by_name(TEXT).about("letters of this entry alone, and what they stand for"),
+    "expect": ANY_TABLE.about("instead of relation: answers as in [expect]"),
 }
+PRINTED = list_of(table(_PRINTED), 200)
 NONLINEAR = ("f", "h", "states", "inputs", "equilibrium")
 PLANT = ("A", "B", "C", "D", "transfer_function", *NONLINEAR, "dt")
 #: A compensator has poles for each of its halves; a task that is one half reads them where nothing else is said of it.
@@ -90,11 +89,8 @@ def keys_of(task: Task, specification: Mapping[str, Any]) -> dict[str, str]:
 
 def repair_of(key: str, known: Collection[str], where: str) -> str:
     """Return what to do about a key that is not known where it stands: most are, elsewhere."""
-    from difflib import get_close_matches  # noqa: PLC0415 - needed for messages only
-
-    near = [name for name in known if len(key) > 2 and name.startswith(key.rstrip("s"))] or get_close_matches(
-        key[:64], known, 1
-    )
+    longer = (name for name in known if len(key) > 2 and name.startswith(key.rstrip("s")))
+    near = next(longer, None) or nearest(key, known)
     of = [task.name for task in tasks().values() if key in task.keywords]
     if key == "problem" and not where:
         return "the file of a sheet is for `symobs sheet`"
@@ -104,7 +100,7 @@ def repair_of(key: str, known: Collection[str], where: str) -> str:
         return f"it belongs to the task {of[0]}" if where == "specification" else "it belongs to [specification]"
     if key in TOP and where in {"plant", "specification"}:
         return "it belongs to the top of the file, above the first table"
-    return f"did you mean {near[0]}?" if near else f"known keys are {', '.join(known)}"
+    return f"did you mean {near}?" if near else f"known keys are {', '.join(known)}"
 
 
 def schema() -> dict[str, Any]:
@@ -159,13 +155,11 @@ def schema() -> dict[str, Any]:
             "additionalProperties": False,
         },
         "specification": {"type": "object", "properties": keywords, "additionalProperties": False},
-        "marking": {"type": "object", "properties": MARKING, "additionalProperties": False},
+        "marking": MARKING.schema,
         "printed": {
-            "type": "array",
+            **PRINTED.schema,
             "items": {
-                "type": "object",
-                "properties": PRINTED,
-                "additionalProperties": False,
+                **PRINTED.schema["items"],
                 "oneOf": [{"required": ["relation"]}, {"required": ["expect"]}],
             },
         },

@@ -16,11 +16,12 @@ from symobs.ground.dataclass import dataclass
 from symobs.ground.errors import ProblemErrors, Undecided, UsageError
 from symobs.problem.constants import with_constants
 from symobs.problem.expect import unreadable
+from symobs.problem.fields import FLAG, TEXT, list_of
 from symobs.problem.file_tables import Decimal, came
 from symobs.problem.marking import Marking, read_marking
 from symobs.problem.noted_errors import Errors, check_text, report_unknown, table_of, text_of
 from symobs.problem.plant_table import period_of, plant_of, read_cells
-from symobs.problem.schema import PRINTED, TOP, keys_of, kinds_of, missing_poles
+from symobs.problem.schema import PRINTED, TOP, keys_of, kinds_of, missing_poles, repair_of
 from symobs.system import StateSpace, Symbols, read_matrix, read_scalar
 from symobs.system.specification import is_pattern, parse_signal, read_poles
 from symobs.system.specification.pole_patterns import OTHERS, named_parts, require_positive
@@ -34,7 +35,6 @@ if TYPE_CHECKING:
 
 _MAX_SYMBOLS = 400
 _MAX_CELLS = 1000
-_MAX_PRINTED = 200
 
 #: In place of a table of symbols: every well-formed name is a real symbol, as on the command line without a file.
 OPEN = object()
@@ -105,9 +105,9 @@ def validate(data: Mapping[str, Any], only: str | None = None, folder: Path | No
     """
     _refuse_other_kinds(data)
     errors = Errors()
-    report_unknown(data, TOP, "", errors)
+    report_unknown(data, TOP, "", errors, repair_of)
     title, source, text = (text_of(data, name, errors) for name in ("title", "source", "text"))
-    ids = _ids(data.get("id", []), errors)
+    ids = list_of(TEXT).read(data.get("id", []), "id", errors)
     convention = read_convention(data, folder, errors)
     language = _language(data, errors)
     asked = _tasks(data, errors, required=only is None)
@@ -125,7 +125,7 @@ def validate(data: Mapping[str, Any], only: str | None = None, folder: Path | No
     printed = _printed(data.get("printed", []), errors)
     values = table_of(data, "values", errors)
     digits = _digits(data, errors)
-    marking = read_marking(data.get("marking", {}), [task.name for task in asked], errors.note)
+    marking = read_marking(data.get("marking", {}), [task.name for task in asked], errors)
     check_text(data.get("variant", ""), "variant", errors)
     if not errors.found and plant is not None:
         about = title, source, ids, wanted, plant, specification, expect, convention, text, printed, values, marking
@@ -153,20 +153,10 @@ def _refuse_other_kinds(data: Mapping[str, Any]) -> None:
         raise errors.together()
 
 
-def _ids(value: object, errors: Errors) -> tuple[str, ...]:
-    entries = value if isinstance(value, list) else [value]
-    for i, entry in enumerate(entries):
-        if not isinstance(entry, str) or isinstance(entry, Decimal):
-            where = f"id[{i}]" if isinstance(value, list) else "id"
-            errors.note(f"a text is expected, but {came(entry)} came", where, 'write id = ["Ex4.2"]')
-    return tuple(str(entry) for entry in entries)
-
-
 def _digits(data: Mapping[str, Any], errors: Errors) -> int | None:
     """Return the digits of the numbers on the page: 0 for exact ones, None by default."""
-    exact = data.get("exact", False)
-    if not isinstance(exact, bool):
-        errors.note(f"true or false is expected, but {came(exact)} came", "exact", "write exact = true")
+    exact = FLAG.read(data.get("exact", False), "exact", errors)
+    if exact is None:
         return None
     try:
         return digits_asked(data.get("digits"), exact=exact)
@@ -177,27 +167,12 @@ def _digits(data: Mapping[str, Any], errors: Errors) -> int | None:
 
 def _printed(value: object, errors: Errors) -> tuple[Mapping[str, Any], ...]:
     """Return what a source prints, of the right shape; its equations are read by the audit alone."""
-    entries = value if isinstance(value, list) else [value]
-    if len(entries) > _MAX_PRINTED:
-        errors.note(f"{len(entries)} entries, more than {_MAX_PRINTED}", "printed", "print less in one file")
-    for i, entry in enumerate(entries[:_MAX_PRINTED]):
-        where = f"printed[{i}]"
-        if not isinstance(entry, Mapping):
-            errors.note(f"a table is expected, but {came(entry)} came", where, "write [[printed]] and its keys below")
-            continue
-        report_unknown(entry, PRINTED, where, errors)
-        texts = {f"{where}.{key}": entry[key] for key in entry if PRINTED.get(key, {}).get("type") == "string"}
-        for key in [key for key in ("let", "expect") if key in entry]:
-            meanings = table_of(entry, key, errors) if isinstance(entry[key], Mapping) else None
-            if meanings is None:
-                errors.note(f"a table is expected, but {came(entry[key])} came", f"{where}.{key}", "write { … }")
-            elif key == "let":
-                texts |= {f"{where}.let.{shown(name, 40)}": meaning for name, meaning in meanings.items()}
-        for place, text in texts.items():
-            check_text(text, place, errors)
-        if ("relation" in entry) == ("expect" in entry):
-            errors.note("one of relation and expect is expected", where, 'write relation = "L = [19; 81]"')
-    return tuple(entry for entry in entries if isinstance(entry, Mapping))
+    found: tuple[Mapping[str, Any], ...] = PRINTED.read(value, "printed", errors)
+    for i, entry in enumerate(value if isinstance(value, list) else [value]):
+        if isinstance(entry, Mapping) and ("relation" in entry) == ("expect" in entry):
+            repair = 'write relation = "L = [19; 81]"'
+            errors.note("one of relation and expect is expected", f"printed[{i}]", repair)
+    return found
 
 
 def _tasks(data: Mapping[str, Any], errors: Errors, *, required: bool) -> tuple[Task, ...]:
@@ -281,7 +256,7 @@ def _specification(
     """Return the part of the specification that the tasks use, in standard letters and signs."""
     table, kinds = table_of(data, "specification", errors), _kinds(wanted)
     named = {own: pair for own, pair in names_in(convention).items() if pair[0] in kinds}
-    report_unknown(table, {**kinds, **dict.fromkeys(named, "GainText")}, "specification", errors)
+    report_unknown(table, {**kinds, **dict.fromkeys(named, "GainText")}, "specification", errors, repair_of)
     gains: dict[str, Any] = {}
     for own, (name, sign) in named.items():
         if own in table:

@@ -208,7 +208,12 @@ def test_marks_are_exact_fractions() -> None:
         ('asked = ["observer.L"]', r"marking.asked\[0\]: observer is not a task of this file"),
         ("guard = 1", "marking.guard: true or false is expected"),
         ("extra = 1", "marking.extra: unknown key"),
-        ('decimals = "sometimes"', "marking.decimals: this is no choice"),
+        ('decimals = "sometimes"', 'marking.decimals: "sometimes" is no choice; write one of exact, accept'),
+        ("milestone = [{ points = 1 }]", r"marking.milestone\[0\]: relation is missing; write relation and points"),
+        (
+            "asked = [3]\ntotal = true",
+            r"marking.total: a number is expected(.|\n)*marking.asked\[0\]: a part is expected",
+        ),
         ("milestone = [{ relation = 1, points = 1 }]", r"marking.milestone\[0\].relation: a text is expected"),
     ],
 )

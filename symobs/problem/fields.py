@@ -1,0 +1,161 @@
+"""What may stand under the keys of a file: the schema of a value and its reading, of which neither is written twice.
+
+A reading notes every error of the value and returns None for what is wrong; a table leaves such keys out, and has no
+others than those that stand in the file.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Any, NamedTuple
+
+from symobs.formula.expression import parse_scalar
+from symobs.formula.expression.source import shown
+from symobs.ground.errors import SymobsError
+from symobs.problem.file_tables import came
+from symobs.problem.noted_errors import Errors, check_text, is_table, report_unknown
+
+Reading = Callable[[Any, str, Errors], Any]
+
+
+class Field(NamedTuple):
+    """The schema of a value and its reading, which takes the value, its place, and the errors."""
+
+    schema: dict[str, Any]
+    read: Reading
+
+    def about(self, words: str) -> Field:
+        """Return the same with what it is for."""
+        return self._replace(schema={"description": words, **self.schema})
+
+
+def single(schema: dict[str, Any], is_right: Callable[[Any], bool], expected: str, repair: str) -> Field:
+    """Return a value that is right or not; `{came}` in what is expected is the kind that came, `{key}` its key."""
+
+    def read(value: object, where: str, errors: Errors) -> Any:
+        if is_right(value):
+            return value
+        errors.note(expected.format(came=came(value)), where, repair.format(key=where.rpartition(".")[2]))
+        return None
+
+    return Field(schema, read)
+
+
+FLAG = single(
+    {"type": "boolean"},
+    lambda value: isinstance(value, bool),
+    "true or false is expected, but {came} came",
+    "write {key} = true",
+)
+
+
+def whole(least: int, most: int, expected: str, repair: str) -> Field:
+    """Return a whole number between two."""
+    schema = {"type": "integer", "minimum": least, "maximum": most}
+    return single(schema, lambda value: is_integer(value) and least <= value <= most, expected, repair)
+
+
+def is_integer(value: object) -> bool:
+    """Return whether a value of a file is a whole number."""
+    return isinstance(value, int) and not isinstance(value, bool)
+
+
+def one_of(*known: str) -> Field:
+    """Return one of these words."""
+
+    def read(value: object, where: str, errors: Errors) -> str | None:
+        if isinstance(value, str) and value in known:
+            return value
+        given = f'"{shown(value, 40)}"' if isinstance(value, str) else came(value)
+        errors.note(f"{given} is no choice", where, f"write one of {', '.join(known)}")
+        return None
+
+    return Field({"enum": list(known)}, read)
+
+
+def _text(value: object, where: str, errors: Errors) -> str | None:
+    before = len(errors.found)
+    check_text(value, where, errors)
+    return str(value) if len(errors.found) == before else None
+
+
+TEXT = Field({"type": "string"}, _text)
+
+
+def number(most: int | None = None) -> Field:
+    """Return an exact number that is not negative, and not above `most`."""
+
+    def read(value: object, where: str, errors: Errors) -> Any:
+        found = fraction_of(value, where)
+        if found is None:
+            errors.note("a number is expected", where, 'write for example "1/2"')
+        elif found < 0 or (most is not None and found > most):
+            message = f"{found} is not between 0 and {most}" if most else f"{found} is negative"
+            errors.note(message, where, 'write "1/2"')
+        else:
+            return found
+        return None
+
+    return Field({"type": ["number", "string"]}, read)
+
+
+def fraction_of(value: Any, where: str) -> Any:
+    """Return a value of a file as a fraction, None where it is none."""
+    try:
+        return None if isinstance(value, bool) else parse_scalar(value, {}, where=where).fraction()
+    except (SymobsError, ArithmeticError, ValueError):
+        return None
+
+
+def list_of(
+    entry: Field, most: int | None = None, *, of: str = "entries", repair: str = "keep those that count"
+) -> Field:
+    """Return a list, for which a single entry may stand."""
+
+    def read(value: object, where: str, errors: Errors) -> tuple[Any, ...]:
+        entries = value if isinstance(value, list) else [value]
+        if most is not None and len(entries) > most:
+            errors.note(f"{len(entries)} {of}, more than {most}", where, repair)
+        found = (entry.read(each, f"{where}[{i}]", errors) for i, each in enumerate(entries[:most]))
+        return tuple(each for each in found if each is not None)
+
+    limit = {} if most is None else {"maxItems": most}
+    return Field({"type": "array", **limit, "items": entry.schema}, read)
+
+
+def by_name(entry: Field, check: Reading = lambda name, *_: name) -> Field:
+    """Return a table from names, which are checked, to values."""
+
+    def read(value: object, where: str, errors: Errors) -> dict[str, Any] | None:
+        if not is_table(value, where, errors):
+            return None
+        found = {}
+        for name, each in value.items():
+            place = f"{where}.{shown(name, 40)}"
+            check(name, place, errors)
+            found[name] = entry.read(each, place, errors)
+        return {name: each for name, each in found.items() if each is not None}
+
+    return Field({"type": "object", "additionalProperties": entry.schema}, read)
+
+
+ANY_TABLE = by_name(Field({}, lambda value, *_: value))._replace(schema={"type": "object"})
+
+
+def table(fields: Mapping[str, Field], *required: str) -> Field:
+    """Return a table that has these keys and no others."""
+
+    def read(value: object, where: str, errors: Errors) -> dict[str, Any] | None:
+        if not is_table(value, where, errors):
+            return None
+        report_unknown(value, fields, where, errors)
+        if missing := [key for key in required if key not in value]:
+            are = "are" if len(missing) > 1 else "is"
+            errors.note(f"{' and '.join(missing)} {are} missing", where, f"write {' and '.join(required)}")
+        there = {key: field for key, field in fields.items() if key in value}
+        found = {key: field.read(value[key], f"{where}.{key}".lstrip("."), errors) for key, field in there.items()}
+        return {key: each for key, each in found.items() if each is not None}
+
+    properties = {key: field.schema for key, field in fields.items()}
+    needed = {"required": list(required)} if required else {}
+    return Field({"type": "object", "properties": properties, **needed, "additionalProperties": False}, read)
