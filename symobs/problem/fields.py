@@ -7,7 +7,7 @@ others than those that stand in the file.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, TypeGuard
 
 from symobs.formula.expression import parse_scalar
 from symobs.formula.expression.source import shown
@@ -55,7 +55,7 @@ def whole(least: int, most: int, expected: str, repair: str) -> Field:
     return single(schema, lambda value: is_integer(value) and least <= value <= most, expected, repair)
 
 
-def is_integer(value: object) -> bool:
+def is_integer(value: object) -> TypeGuard[int]:
     """Return whether a value of a file is a whole number."""
     return isinstance(value, int) and not isinstance(value, bool)
 

@@ -11,7 +11,7 @@ import pytest
 
 from symobs.applications.variants.drawing.constructions import CONSTRUCTIONS
 from symobs.applications.variants.drawing.parameters import read_parameter
-from symobs.applications.variants.reading.constraint_table import BOUNDS, FLAGS, LISTS, PAGE
+from symobs.applications.variants.reading.constraint_table import CONSTRAINTS, PAGE
 from symobs.problem import parse
 from tests.support.paths import ROOT
 from tests.support.tools.command_line import inside
@@ -24,7 +24,7 @@ PAGE_TEXT = (ROOT / "docs" / "variants.md").read_text(encoding="utf-8")
 
 
 def test_the_page_names_all_there_is() -> None:
-    for name in (*CONSTRUCTIONS, *FLAGS, *LISTS, *BOUNDS, *PAGE):
+    for name in (*CONSTRUCTIONS, *CONSTRAINTS, *PAGE):
         assert re.search(rf"\b{name}\b", PAGE_TEXT), name
     *_, (_, _, parameters) = blocks("variants")
     for name, table in parse(parameters).items():

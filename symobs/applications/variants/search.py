@@ -16,7 +16,6 @@ from symobs.applications.variants.acceptance.candidates import Candidate, base_c
 from symobs.applications.variants.acceptance.cheap import Cheap, cheap, kind_of
 from symobs.applications.variants.acceptance.distinct import data_key, keys_of
 from symobs.applications.variants.acceptance.profile import UNLIKE, unlike
-from symobs.applications.variants.drawing.parameters import is_integer
 from symobs.applications.variants.drawing.stream import LARGEST_SEED
 from symobs.applications.variants.files import About, manifest, write_folder
 from symobs.applications.variants.reading.table import Table, read_table
@@ -24,6 +23,7 @@ from symobs.applications.variants.variant import Variant
 from symobs.formula.phrases.languages import ENGLISH, language_named
 from symobs.ground.errors import CertificateRejected, InputError, OutOfBudget, ProblemErrors, SymobsError, UsageError
 from symobs.problem import parse
+from symobs.problem.fields import is_integer
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping

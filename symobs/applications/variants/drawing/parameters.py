@@ -8,9 +8,8 @@ from fractions import Fraction
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from symobs.applications.variants.drawing.integers import Rows, rows_of, unimodular
-from symobs.formula.expression import parse_scalar
 from symobs.formula.expression.source import shown
-from symobs.ground.errors import SymobsError
+from symobs.problem.fields import fraction_of, is_integer
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -125,11 +124,6 @@ def interval(value: object, where: str, note: Note) -> tuple[int, int] | None:
     return None
 
 
-def is_integer(value: object) -> bool:
-    """Return whether a value of a file is a whole number."""
-    return isinstance(value, int) and not isinstance(value, bool)
-
-
 def count_of(
     table: Mapping[str, Any], key: str, where: str, note: Note, least: int = 1, most: int = _MOST_ORDER
 ) -> int:
@@ -164,11 +158,10 @@ def _set(table: Mapping[str, Any], where: str, note: Note) -> list[Fraction]:
 
 
 def _number(value: object, where: str, note: Note) -> Fraction | None:
-    try:
-        return parse_scalar(value, {}, where=where).fraction()
-    except (SymobsError, ArithmeticError, ValueError):
+    found: Fraction | None = fraction_of(value, where)
+    if found is None:
         note("a rational number is expected", where, 'write for example "1/2"')
-        return None
+    return found
 
 
 def _range(table: Mapping[str, Any], where: str, note: Note) -> list[Fraction]:

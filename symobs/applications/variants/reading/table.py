@@ -7,7 +7,7 @@ from fractions import Fraction
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from symobs.applications.variants.drawing.constructions import CONSTRUCTIONS
-from symobs.applications.variants.drawing.parameters import Parameter, count_of, interval, is_integer, read_parameter
+from symobs.applications.variants.drawing.parameters import Parameter, count_of, interval, read_parameter
 from symobs.applications.variants.drawing.stream import VERSION
 from symobs.applications.variants.reading.constraint_table import read_constraints
 from symobs.applications.variants.reading.substitution import RELATION, letters_in, letters_of, placeholders
@@ -15,12 +15,13 @@ from symobs.formula.expression import declared_name
 from symobs.formula.expression.source import shown
 from symobs.ground.errors import InputError, ProblemErrors, SymobsError
 from symobs.problem import parse
+from symobs.problem.fields import is_integer, one_of
+from symobs.problem.noted_errors import Errors, report_unknown
 
 if TYPE_CHECKING:
     from symobs.applications.variants.drawing.parameters import Note
 
 KEYS = ("construct", "distinct", "difficulty", "attempts", "version", "parameters", "constraints")
-DISTINCT = ("data", "answers", "both")
 LIKE = ("this", "base")
 ATTEMPTS = 20_000
 LOAD = Fraction(1, 5)
@@ -46,25 +47,20 @@ class Table(NamedTuple):
 def read_table(text: str, where: str = "problem") -> Table:
     """Return what a file with `[variants]` says; raises `ProblemErrors` with every error of that table."""
     data = parse(text, where)
-    errors: list[SymobsError] = []
-
-    def note(message: str, place: str, repair: str) -> None:
-        errors.append(InputError(message, where=place, repair=repair))
-
+    errors = Errors()
+    note = errors.note
     table = data.get("variants")
     if table is None:
         repair = 'write [variants] with construct = "compensator", or [variants.parameters]'
         raise InputError("the file has no table [variants]", where=where, repair=repair)
     if not isinstance(table, Mapping):
         raise InputError("a table is expected", where="variants", repair="write [variants] and its keys below")
-    for key in table:
-        if key not in KEYS:
-            note("unknown key", f"variants.{shown(key, 40)}", f"known keys are {', '.join(KEYS)}")
+    report_unknown(table, KEYS, "variants", errors)
     if table.get("version", VERSION) != VERSION:
         note("there is no such version", "variants.version", f"write version = {VERSION}")
     base = {key: value for key, value in data.items() if key != "variants"}
     construct, shape = _construct(table, note)
-    if construct is not None and not any(error.where.startswith("variants.construct") for error in errors):
+    if construct is not None and not any(error.where.startswith("variants.construct") for error in errors.found):
         _enough(construct, shape, note)
     like, load = _difficulty(table.get("difficulty", {}), note)
     _without_plant(base, construct, like, note)
@@ -77,16 +73,14 @@ def read_table(text: str, where: str = "problem") -> Table:
                 place,
                 f"declare {name} in [variants.parameters], or leave the braces out",
             )
-    if construct is None and not parameters and not errors:
+    if construct is None and not parameters and not errors.found:
         repair = f"give construct, one of {', '.join(CONSTRUCTIONS)}, or [variants.parameters]"
         note("nothing is drawn", "variants", repair)
-    distinct = table.get("distinct", "both")
-    if distinct not in DISTINCT:
-        note("this is no choice", "variants.distinct", f"write one of {', '.join(DISTINCT)}")
+    distinct = one_of("data", "answers", "both").read(table.get("distinct", "both"), "variants.distinct", errors)
     attempts = count_of({"attempts": ATTEMPTS, **table}, "attempts", "variants", note, most=10**7)
-    constraints = read_constraints(table.get("constraints", {}), note)
-    if errors:
-        raise ProblemErrors(tuple(errors))
+    constraints = read_constraints(table.get("constraints", {}), errors)
+    if errors.found:
+        raise ProblemErrors(tuple(errors.found))
     return Table(base, parameters, when, construct, shape, constraints, distinct, like, load, attempts)
 
 

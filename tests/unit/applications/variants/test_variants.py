@@ -195,6 +195,8 @@ integer = "L"
 digits = { L = 0 }
 page = { digit = 3 }
 colour = "red"
+plant_poles = "whole"
+discriminant_square = ["K"]
 """
 
 
@@ -208,9 +210,11 @@ def test_all_errors_of_the_table_come_together_with_place_and_repair() -> None:
         "variants.construct.ordre",
         "variants.constraints.colour",
         "variants.constraints.digits.L",
+        "variants.constraints.discriminant_square",
         "variants.constraints.integer",
         "variants.constraints.observable",
         "variants.constraints.page.digit",
+        "variants.constraints.plant_poles",
         "variants.difficulty.like",
         "variants.difficulty.load",
         "variants.distinct",
