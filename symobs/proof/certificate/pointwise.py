@@ -76,12 +76,18 @@ def _within(
 def _parts(ideal: Ideal, signs: Mapping[str, str], nonzero: tuple[Scalar, ...]) -> Iterator[Ideal]:
     """Yield ideals one of which vanishes at each real point of these signs where an ideal does.
 
-    Among finitely many points a polynomial of the ideal in one parameter alone tells those apart where different factors
-    of it vanish, and leaves out those where none can.
+    A polynomial of the ideal in one parameter alone tells points apart where different factors of it vanish, and leaves out
+    those where none can; among finitely many points there is one for each parameter.
     """
     quotient = ideal.quotient if EIGENVALUE not in ideal.field.position else None
     if quotient is None:
-        yield ideal
+        split = (vanishing_factors([g], signs) for g in ideal.generators if len(g.names) == 1)
+        several = next((factors for factors in split if len(factors) > 1), ())
+        if not several:
+            yield ideal
+        for factor in several:
+            for part in _implied([*ideal.generators, factor], signs, nonzero):
+                yield from _parts(part, signs, nonzero)
         return
     for name in ideal.field.names if quotient.dimension else ():
         alone = quotient.minimal_polynomial(Scalar.symbol(name), name)

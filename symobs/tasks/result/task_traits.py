@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Self
 from symobs.tasks.result.output_methods import OutputMethods
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Iterable, Mapping
 
     from symobs.exact import Matrix
 
@@ -33,6 +33,10 @@ class TaskTraits(OutputMethods):
     cards: ClassVar[tuple[str, ...]] = ()
     #: What the screen shows above the cards.
     panels: ClassVar[tuple[str, ...]] = ()
+
+    def __dir__(self) -> Iterable[str]:
+        """List what users ask for: these are of the task, and not of its answer."""
+        return [name for name in super().__dir__() if name not in TaskTraits.__annotations__]
 
     def with_answer(self, name: str, value: object) -> Self:
         """Return the same result with one answer replaced; raises `CertificateRejected` unless it holds too."""

@@ -76,6 +76,14 @@ def square_test(page: Builder, letter: str, result: RankResult, kind: str) -> bo
     return True
 
 
+def assume_rank(page: Builder, say: str, test: RankResult, known: Result) -> None:
+    """Assume that a rank is full where a design has no need of it: what is known are the conditions of the design."""
+    told = {condition.expression for condition in known.holds_where}
+    more = [c.expression for c in test.holds_where if c.kind != "domain" and c.expression not in told]
+    if more:
+        page.assume(say, *more)
+
+
 def rank_cases(page: Builder, letter: str, result: RankResult, kind: str) -> None:
     """Say what rank and kernel are on every stratum where they are not the generic ones."""
     page.steps += [_rank_case(page, letter, case, kind) for case in result.case_tree]

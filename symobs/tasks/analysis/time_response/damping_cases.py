@@ -178,13 +178,14 @@ class DampingCases(Result):
             return
         inner = inside_case(page, self.plant, {})
         write_branch(inner, self)
-        zeros = dict.fromkeys(_distance(case) for case in self.case_tree if case.when[0].operator == "==")
+        ruled_out = {condition.expression.numerator for condition in chosen}
+        found = dict.fromkeys(_distance(case) for case in self.case_tree if case.when[0].operator == "==")
+        zeros = [zero for zero in found if zero not in ruled_out and -zero not in ruled_out]
         steps = tuple(inner.steps)
-        if chosen:
-            page.steps += _narrowed(steps, chosen)
-        else:
+        if zeros:
             apart = relation(product_of(zeros), "!=", 0)
-            page.steps.append(CaseStep(Conjunction((apart,)), (), steps))  # inside, what is told rests on it
+            steps = (CaseStep(Conjunction((apart,)), (), steps),)  # inside, what is told rests on it
+        page.steps += _narrowed(steps, chosen)
         page.steps += [_case(page, case, self.answer["chosen"], write_branch) for case in self.case_tree]
 
 

@@ -7,6 +7,7 @@ from symobs.formula.tree import Roots
 from symobs.formula.tree.term import block
 from symobs.proof.derivation.builder import Builder, predicate, relation
 from symobs.tasks.analysis.page_parts import case_steps, given, say_stability
+from symobs.tasks.analysis.rank.rank_page import assume_rank
 from symobs.tasks.design.disturbance.disturbance_observer import DisturbanceObserver, extended
 from symobs.tasks.design.full_order.observer import model_and_innovation
 from symobs.tasks.design.gain.gain_page import say_as_required
@@ -87,6 +88,7 @@ def _design(page: Builder, design: DisturbanceObserver) -> None:
         page.assume("disturbance_provided", *conditions)
     tested = block([[C @ A**k if k else C] for k in range(order)])
     if pair.is_observable:
+        assume_rank(page, "disturbance_provided", design.inner.test, design)
         page.conclude("disturbance_observable", rank=relation(tested.apply("rank"), order))
         _zeros(page, design)
     else:

@@ -10,6 +10,7 @@ from symobs.formula.tree.term import block
 from symobs.proof.derivation.builder import Builder, predicate, relation
 from symobs.stability.criteria.stability import stability
 from symobs.tasks.analysis.page_parts import case_steps, given, say_stability
+from symobs.tasks.analysis.rank.rank_page import assume_rank
 from symobs.tasks.design.disturbance.unknown_input_observer import UnknownInputObserver, independent_columns
 from symobs.tasks.design.gain.gain_page import say_as_required
 from symobs.tasks.design.page_parts.component_equations import combination, summed
@@ -106,6 +107,7 @@ def _zeros(page: Builder, design: UnknownInputObserver) -> None:
     pair, plant, C, A = design.inner.pair, page.plant, page["C"], page["A_T"]
     tested = block([[C @ A**k if k else C] for k in range(plant.order)])
     if pair.is_observable:
+        assume_rank(page, "uio_provided", design.inner.test, design)
         page.conclude("uio_observable", rank=relation(tested.apply("rank"), plant.order))
         return
     count = pair.kernel.shape[1]

@@ -48,3 +48,12 @@ def test_a_sampled_oscillator_beside_a_lag_has_the_ranks_of_numpy(angle: float) 
     ranks = sorted(int(np.linalg.matrix_rank(np.vstack([A - e * np.eye(3), C]))) for e in np.linalg.eigvals(A))
     assert sorted(mode["rank"] for mode in result.modes) == ranks
     assert result.to("latex")
+
+
+def test_a_rank_that_drops_where_a_cosine_vanishes_has_a_page() -> None:
+    """Where cos b = 0 the sine is 1 or -1: two cases, of which the page has to know that they are all."""
+    found = symobs.observability(symobs.StateSpace("[a 0; b*exp(a) 0]", C="[cos(b) 0; 1-exp(b) -1]"))
+    assert [[str(relation.lhs) for relation in case.when] for case in found.cases] == [
+        ["cos(b)", f"sin(b) {sign} 1", "a*exp(b) - a + b*exp(a)"] for sign in "+-"
+    ]
+    assert found.to("text").count("Case ") == 2

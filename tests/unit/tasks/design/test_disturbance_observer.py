@@ -91,3 +91,10 @@ def test_a_wrong_answer_is_rejected(name: str, value: Any) -> None:
 def test_what_does_not_fit_is_refused(given: dict[str, str], said: str) -> None:
     with pytest.raises(InputError, match=said):
         symobs.disturbance_observer(symobs.StateSpace("[0 1; 0 0]", C="[1 0]"), **{"E": "[0; 1]", **given})
+
+
+def test_a_page_says_observable_where_the_gain_has_no_need_of_it() -> None:
+    """Where a**3*b + … = 0 a mode is fixed, and desired: the gain is the same there, and the pair is not observable."""
+    plant = symobs.StateSpace("[1+a -a 1+a; 0 -1 2; 1 0 0]", "[a; 0; 0]", "[a*b b a]", dt=True)
+    result = symobs.disturbance_observer(plant, E="[0; 1; a]", S="[0]", V="[1]", poles="0, 1/2, -1/2, 1/3")
+    assert "a³ b + a³ + a² b + 2a² + 3a b + b ≠ 0" in " ".join(result.to("text").split())
