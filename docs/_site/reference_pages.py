@@ -164,9 +164,8 @@ def _called(name: str) -> Any:
 
 def _class(name: str, kind: type) -> str:
     parts = [f"`````{{py:class}} {name}{_signature(kind)}\n:module: symobs\n\n{told(kind)}"]
-    for member, found in sorted(vars(kind).items()) + sorted(
-        (m, f) for base in kind.__mro__[1:-1] for m, f in vars(base).items() if m not in vars(kind)
-    ):
+    inherited = {m: f for base in kind.__mro__[-2:0:-1] for m, f in vars(base).items() if m not in vars(kind)}
+    for member, found in (*sorted(vars(kind).items()), *sorted(inherited.items())):
         plain = getattr(found, "__func__", found)
         if member.startswith("_") or not inspect.getdoc(found):
             continue

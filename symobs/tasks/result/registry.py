@@ -184,12 +184,12 @@ def task_named(name: str) -> Task | None:
 
 
 def result_type(task_name: str) -> type[Result]:
-    """Return the type of a task's results."""
+    """Return the type of a task's results, `Result` where it is that of another task."""
     task_named(task_name)
     kinds = [Result]
     for kind in kinds:
         kinds += kind.__subclasses__()
-    return next(kind for kind in kinds[1:] if kind.__dict__.get("task") == task_name)
+    return next((kind for kind in kinds[1:] if kind.__dict__.get("task") == task_name), Result)
 
 
 def methods(of: str | None = None) -> Mapping[str, Method]:
