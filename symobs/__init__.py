@@ -23,6 +23,24 @@ FUNCTIONS = {
     "variants": "symobs.applications.variants",
 }
 
+#: What other programs call a task.
+SYNONYMS = {
+    "acker": "state_feedback",
+    "c2d": "zero_order_hold",
+    "ctrb": "controllability",
+    "expm": "matrix_exponential",
+    "gram": "gramian",
+    "lsim": "response",
+    "minreal": "decomposition",
+    "obsv": "observability",
+    "place": "state_feedback",
+    "routh": "stability_region",
+    "ss2tf": "transfer_function",
+    "step": "response",
+    "tf": "transfer_function",
+    "zoh": "zero_order_hold",
+}
+
 
 def __getattr__(name: str) -> Any:
     """Return `StateSpace`, an error class, or the function of a task."""
@@ -45,6 +63,8 @@ def __getattr__(name: str) -> Any:
         if task is not None:
             return task.function
     message = f"module 'symobs' has no attribute {name!r}"
+    if name in SYNONYMS:
+        message += f"; it is called {SYNONYMS[name]} here"
     raise AttributeError(message)
 
 

@@ -96,8 +96,12 @@ class Tasks(click.Group):
         """Return the command, or raise an error that names the most similar one."""
         name = args[0]
         if not name.startswith("-") and self.get_command(ctx, name) is None:
+            import symobs  # noqa: PLC0415 - the package itself stands above all floors
+
             nearest = get_close_matches(name, self.list_commands(ctx), 1)
             meant = f'; did you mean "{nearest[0]}"?' if nearest else ""
+            if name in symobs.SYNONYMS:
+                meant = f"; it is called {symobs.SYNONYMS[name]} here"
             if Path(name).suffix in {".toml", ".json"}:
                 meant = f"; write symobs solve {name[:40]}"
             ctx.fail(f"there is no command {name[:40]!r}{meant}")

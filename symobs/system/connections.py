@@ -43,16 +43,22 @@ def parallel(first: Realisation, second: Realisation) -> Realisation:
 def connected(kind: str, plant: Plant, other: object) -> Plant:
     """Return the connection of a plant with another one, or with a gain; raises `InputError` where they do not fit."""
     first, second = _system(plant), _of_other(plant, other)
+    size = {"series": first.D.shape[1], "gain": first.D.shape[0]}.get(kind, 1)
+    if not isinstance(other, type(plant)) and second.D.shape == (1, 1) != (size, size):  # a number, for each of several
+        second = _gain(Matrix.identity(size) * second.D[0, 0])
     fits = {
         "series": (first.D.shape[1], second.D.shape[0]),
+        "gain": (first.D.shape[0], second.D.shape[1]),
         "parallel": (first.D.shape, second.D.shape),
     }.get(kind, (first.D.shape, second.D.shape[::-1]))
     if fits[0] != fits[1]:
         sizes = " and ".join(f"{D.shape[0]}×{D.shape[1]}" for D in (first.D, second.D))
-        message = f"plants of {sizes} outputs by inputs cannot be connected in {kind}"
+        message = f"plants of {sizes} outputs by inputs cannot be connected in {kind.replace('gain', 'series')}"
         raise ShapeMismatch(message, where="plant", repair="connect plants whose inputs and outputs fit")
     if kind == "series":
         found = series(second, first)
+    elif kind == "gain":
+        found = series(first, second)
     elif kind == "parallel":
         found = parallel(first, second)
     else:
@@ -79,7 +85,19 @@ def _of_other(plant: Any, other: Any) -> Realisation:
     """Return the other plant's matrices, or those of a gain."""
     if isinstance(other, type(plant)):
         return _system(other)
-    D = read_matrix(as_rows("D", other), plant.symbols.seen(other), "plant")
+    return _gain(read_matrix(as_rows("D", other), plant.symbols.seen(other), "plant", functions=True))
+
+
+def inverse_of(plant: Any, number: object) -> Matrix:
+    """Return 1/k as a gain; raises `InputError` for 0, and for what is no number."""
+    found = None if isinstance(number, type(plant)) else _of_other(plant, number).D
+    if found is None or found.shape != (1, 1) or found.is_zero:
+        message = "a plant is divided by a number that is not 0"
+        raise InputError(message, where="plant", repair="write P/2, or P.feedback(Q) for a closed loop")
+    return found.inverse()
+
+
+def _gain(D: Matrix) -> Realisation:
     rows, columns = D.shape
     return Realisation(Matrix.zeros(0, 0), Matrix.zeros(0, columns), Matrix.zeros(rows, 0), D)
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, cast
 from symobs.exact import Field, Ideal, Matrix, Scalar, apart_from_zero, companion, modulo
 from symobs.exact.core.generators import NotWritten, substitute
 from symobs.ground.errors import InputError, SymobsError, raise_all
-from symobs.system.connections import connected
+from symobs.system.connections import connected, inverse_of
 from symobs.system.control_system import exact_of, read_control_system
 from symobs.system.findings import Findings
 from symobs.system.floats import read_floats
@@ -300,9 +300,39 @@ class StateSpace:
         """Return the series connection y = P₁ P₂ u: the other plant comes first."""
         return connected("series", self, other)
 
+    def __rmul__(self, other: object) -> StateSpace:
+        """Return y = K P u for a number or a matrix K."""
+        return connected("gain", self, other)
+
+    def __neg__(self) -> StateSpace:
+        """Return y = −P u."""
+        return connected("gain", self, -1)
+
+    def __truediv__(self, other: object) -> StateSpace:
+        """Return y = P u/k for a number k; raises `InputError` for 0 and for a matrix."""
+        return connected("gain", self, inverse_of(self, other))
+
+    def __pow__(self, exponent: object) -> StateSpace:
+        """Return y = Pᵏ u, the series connection of k plants; raises `InputError` unless k is a positive integer."""
+        if isinstance(exponent, bool) or not isinstance(exponent, int) or exponent < 1:
+            raise InputError(f"{exponent!r} is no number of plants", where="plant", repair="write P**2, P**3, …")
+        return self if exponent == 1 else self * self ** (exponent - 1)
+
     def __add__(self, other: object) -> StateSpace:
         """Return the parallel connection y = (P₁ + P₂) u."""
         return connected("parallel", self, other)
+
+    __radd__ = __add__
+    #: NumPy's arrays leave the products with them to the plant.
+    __array_ufunc__ = None
+
+    def __sub__(self, other: object) -> StateSpace:
+        """Return y = (P₁ − P₂) u."""
+        return self + -other if isinstance(other, StateSpace) else -(-self + other)
+
+    def __rsub__(self, other: object) -> StateSpace:
+        """Return y = (K − P) u."""
+        return -self + other
 
     def feedback(self, other: object = 1, sign: int = -1) -> StateSpace:
         """Return y = (I − sign P₁ P₂)⁻¹ P₁ u, P₂ a plant or a gain in the feedback path."""

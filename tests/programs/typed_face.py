@@ -53,6 +53,7 @@ _Matrix: TypeAlias = str | Sequence[object] | MatrixBase
 TASK_PACKAGES: tuple[str, ...]
 FORMAT_PACKAGE: str
 FUNCTIONS: dict[str, str]
+SYNONYMS: dict[str, str]
 __version__: str
 """
 

@@ -211,6 +211,10 @@ def complex_from_sympy(expression: Any, where: str, *, roots: bool = False) -> C
         raise InexactInput(message, where=where, repair="write an exact value such as Rational(1, 10)")
     if expression is sympy.I:
         return Complex(Scalar.of(0), Scalar.of(1))
+    if roots and expression is sympy.pi:
+        return Complex.of(Scalar.symbol(functions.PI))
+    if roots and expression is sympy.E:
+        return Complex.of(functions.function("exp", Scalar.of(1)))
     if expression.is_Symbol:
         return Complex.of(Scalar.symbol(expression.name))
     arguments = expression.args

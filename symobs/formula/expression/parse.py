@@ -43,6 +43,9 @@ __all__ = [
     "parse_scalar",
 ]
 
+#: Rows in brackets of their own, as NumPy, SymPy and JSON print a matrix; [[1]; [2]] is a matrix of blocks.
+ROWS = re.compile(r"\[\s*(\[[^][;]*\](?:[\s,]*\[[^][;]*\])*)[\s,]*\]")
+ROW = re.compile(r"\[([^]]*)\]")
 _LONGEST_REPAIR = 30
 #: Numbers up to this many bits need no budget.
 _NUMBERS, _SMALL = {int, Fraction}, 128
@@ -136,6 +139,9 @@ def parse_poles(
     if listed is None:
         repair = 'write [-1, -2] or "-1, -2"'
         raise InputError(f"a list of poles is expected, but {_kind(value)} came", where=where, repair=repair)
+    rows = [pole for pole in listed if isinstance(pole, (list, tuple))]
+    if rows and len(rows) == len(listed) and 1 in (len(rows), max(map(len, rows))):  # a row or a column of NumPy
+        listed = [pole for row in rows for pole in row]
     listed = [one for pole in listed for one in pairs(pole)]
     scope = sharing(scope, listed, variable)
     texts = [pole for pole in listed if isinstance(pole, str)]
@@ -301,6 +307,8 @@ def _refuse_blanks_for_commas(text: str, where: str) -> None:
 
 
 def _rows_of_text(text: str, scope: Scope, where: str) -> Sequence[Sequence[Number]]:
+    if len(text) <= MOST_CHARACTERS and (rows := ROWS.fullmatch(text.strip())):
+        text = f"[{'; '.join(row.strip() for row in ROW.findall(rows[1]))}]"
     try:
         entries = read(text, scope, where)
     except ExpressionError as error:

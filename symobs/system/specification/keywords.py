@@ -349,7 +349,10 @@ def _monic_factors(polynomial: Scalar, variable: str) -> tuple[Scalar, ...]:
 def read_gain(value: object, plant: StateSpace, name: str, shape: tuple[int, int]) -> Matrix:
     """Return a given gain, a flat list where it is a row or a column; raises ShapeMismatch for another shape."""
     where = f"specification.{name}"
-    gain = read_matrix(as_rows("B" if shape[1] == 1 else "C", value), plant.symbols.seen(value), where)
+    if isinstance(value, str) and "[" not in value and "," in value:
+        value = f"[{value.replace(',', ';') if shape[1] == 1 else value}]"
+    rows = as_rows("B" if shape[1] == 1 else "C", value)
+    gain = read_matrix(rows, plant.symbols.seen(value), where, functions=True)
     if gain.shape != shape:
         message = f"{name} is {gain.shape[0]}×{gain.shape[1]}, expected {shape[0]}×{shape[1]}"
         raise ShapeMismatch(message, where=where, repair=f"write {name} as a {shape[0]}×{shape[1]} matrix")

@@ -16,6 +16,7 @@ from sympy.physics.control import TransferFunction, TransferFunctionMatrix
 import symobs
 from symobs import StateSpace
 from symobs.ground.errors import InexactInput, InputError, ShapeMismatch, SymobsError
+from symobs.tasks.result import tasks
 
 s, k = sympy.symbols("s k")
 SERVO = StateSpace("[0 1; 0 -1]", "[0; 1]", "[1 0]")
@@ -234,6 +235,25 @@ def test_connections_are_those_of_python_control(connect: Any) -> None:
         assert np.allclose(np.array(getattr(mine, name), dtype=float), getattr(theirs, name)), name
 
 
+@pytest.mark.parametrize(
+    "connect",
+    [
+        lambda ss: 2 * ss(SERVO),
+        lambda ss: 3 * ss(TWO),
+        lambda ss: -ss(LAG) / 2,
+        lambda ss: ss(TWO) / 4,
+        lambda ss: ss(LAG) - ss(SERVO),
+        lambda ss: 1 - ss(LAG),
+        lambda ss: 1 + ss(SERVO) - 2,
+        lambda ss: ss(LAG) ** 3,
+    ],
+)
+def test_sums_and_multiples_have_the_gains_of_python_control(connect: Any) -> None:
+    mine, theirs = of_control(connect(lambda plant: plant)), connect(of_control)
+    for s in (1j, 2 + 1j):
+        assert np.allclose(mine(s), theirs(s))
+
+
 def test_parameters_of_both_plants_are_those_of_the_connection() -> None:
     first = StateSpace([[-k]], 1, 1, symbols={k: "positive"})
     loop = (first * StateSpace([["-h"]], 1, 1)).feedback("[g]")
@@ -248,6 +268,9 @@ def test_parameters_of_both_plants_are_those_of_the_connection() -> None:
     [
         (lambda: TWO * SERVO, "plants of 1×2 and 1×1 outputs by inputs cannot be connected in series"),
         (lambda: TWO + SERVO, "cannot be connected in parallel"),
+        (lambda: SERVO / 0, "by a number that is not 0"),
+        (lambda: SERVO / LAG, "P.feedback"),
+        (lambda: SERVO**0, "is no number of plants"),
         (lambda: SERVO.feedback(TWO), "cannot be connected in feedback"),
         (lambda: SERVO * StateSpace([[0]], 1, 1, dt=1), "different sampling periods, 0 and 1"),
         (lambda: LAG.feedback(StateSpace([[0]], 1, 1, "-1/3")), "the loop is algebraic"),
@@ -349,3 +372,22 @@ def test_everything_comes_by_a_star() -> None:
     exec("from symobs import *", found)  # noqa: S102 - no other way within a function
     assert found["observer"] is symobs.observer
     assert {"StateSpace", "check", "InputError"} <= found.keys()
+
+
+def test_constants_of_sympy_are_numbers() -> None:
+    plant = StateSpace([[sympy.pi, 1], [0, sympy.E]], C=[[1, 0]])
+    assert sympy.Matrix([[sympy.pi, 1], [0, sympy.E]]) == plant.A
+    assert symobs.observability(plant).rank == 2
+
+
+def test_rows_in_brackets_and_flat_vectors_are_read() -> None:
+    plant = StateSpace("[[0, 1], [-2, -3]]", "[[0], [1]]", "[1 0]")
+    assert plant == StateSpace("[0 1; -2 -3]", "[0; 1]", "[1 0]")
+    assert symobs.state_feedback(plant, poles=np.array([[-1, -4]])).K == symobs.state_feedback(plant, K="2, 2").K
+    assert symobs.response(plant, initial="1, 0") == symobs.response(plant, initial="[1; 0]")
+
+
+def test_what_other_programs_call_a_task_is_told_its_name() -> None:
+    assert set(symobs.SYNONYMS.values()) <= set(tasks())
+    with pytest.raises(AttributeError, match="it is called state_feedback here"):
+        getattr(symobs, next(name for name in symobs.SYNONYMS if name == "place"))

@@ -10,6 +10,7 @@ from typing import Any
 
 from symobs.exact import Factored, Matrix, Scalar
 from symobs.formula.expression import parse_matrix, parse_scalar
+from symobs.formula.expression.parse import ROW, ROWS
 from symobs.ground.errors import SymobsError
 from symobs.problem.expect.structure import factored_table
 
@@ -26,8 +27,6 @@ _TYPED = str.maketrans(
     | {"\u00a0": " "}
     | {"\u2264": "<=", "\u2265": ">=", "\u2260": "!="}
 )
-#: Rows in brackets of their own, as NumPy and SymPy print a matrix; [[1]; [2]] is a matrix of blocks.
-_ROWS = re.compile(r"\[\s*(\[[^][;]*\](?:[\s,]*\[[^][;]*\])*)[\s,]*\]")
 #: What NumPy and SymPy call a matrix.
 _CALL = re.compile(
     r"(?:[A-Za-z]+\.)?(array|asarray|matrix|Matrix|ImmutableMatrix)\(\s*(\[.*\])\s*(?:,\s*dtype\s*=\s*[\w.]+\s*)?\)",
@@ -36,7 +35,6 @@ _CALL = re.compile(
 #: A matrix of SymPy by its size and the entries of its rows.
 _OF_SIZE = re.compile(r"(?:[A-Za-z]+\.)?(?:Immutable)?Matrix\(\s*(\d{1,2})\s*,\s*(\d{1,2})\s*,\s*\[([^][;]*)\]\s*\)")
 _FLAT = re.compile(r"\[([^][;]*)\]")
-_ROW = re.compile(r"\[([^]]*)\]")
 _QUOTED = re.compile(r"""(["'])([^"']*)\1""")
 _QUOTE, _ORDER = re.compile(r"[\"']"), re.compile(r"[<>]")
 
@@ -81,8 +79,8 @@ def as_value(text: str) -> str | list[str]:
     quote = _QUOTE.search(value)
     if quote and _ORDER.search(value, quote.end()):  # conditions in quotes
         return value
-    rows = _ROWS.fullmatch(called[2] if called else value)
-    return f"[{'; '.join(row.strip() for row in _ROW.findall(rows[1]))}]" if rows else value
+    rows = ROWS.fullmatch(called[2] if called else value)
+    return f"[{'; '.join(row.strip() for row in ROW.findall(rows[1]))}]" if rows else value
 
 
 def plain(value: Any) -> Any:
