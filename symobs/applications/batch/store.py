@@ -32,6 +32,8 @@ if TYPE_CHECKING:
 #: What a job comes to that is not to be tried again.
 FINAL = ("done", "no", "unreadable")
 STATUSES = (*FINAL, "undecided", "failed")
+#: How often the change to a log is tried, twenty times a second.
+_MOST_TRIES = 200
 _ROWS = "rows.sqlite"
 _TABLES = """
 CREATE TABLE IF NOT EXISTS rows(
@@ -77,8 +79,11 @@ class Store:
             yield self._held
             return
         place = self.folder / _ROWS
-        with self._refusing(), closing(_connected(place if place.exists() else ":memory:")) as rows:
-            rows.executescript(_TABLES)
+        with self._refusing(), ExitStack() as held:
+            rows = held.enter_context(closing(_connected(place if place.exists() else ":memory:")))
+            if not rows.execute("SELECT count(*) FROM sqlite_master WHERE name = 'rows'").fetchone()[0]:
+                rows = held.enter_context(closing(_connected(":memory:")))  # who reads writes nothing, not even tables
+                rows.executescript(_TABLES)
             yield rows
 
     @contextmanager
@@ -163,7 +168,7 @@ class Store:
             self.folder.mkdir(parents=True, exist_ok=True)
             (self.folder / "log.jsonl").touch()  # a folder that cannot be written says so better than a database
             lock, rows = (held.enter_context(closing(_connected(self.folder / name))) for name in ("lock", _ROWS))
-            rows.execute("PRAGMA journal_mode = WAL")  # who reads does not keep this run from writing
+            _log_ahead(rows)
             rows.executescript(_TABLES)
             self._lock(lock, rows)
             with self._holding(rows):
@@ -219,6 +224,16 @@ class Store:
                 write_whole(self._listing, (text + b"\n" for (text,) in found))
         text = json.dumps(manifest, indent=2, sort_keys=True, ensure_ascii=False) + "\n"
         write_whole(self.folder / "manifest.json", [text.encode()])
+
+
+def _log_ahead(rows: sqlite3.Connection) -> None:
+    """Let nobody who reads keep this run from writing; the change itself waits for them, which SQLite does not."""
+    for _ in range(_MOST_TRIES):
+        with suppress(sqlite3.OperationalError):
+            rows.execute("PRAGMA journal_mode = WAL")
+            return
+        time.sleep(0.05)
+    rows.execute("PRAGMA journal_mode = WAL")
 
 
 def _connected(place: Path | str) -> sqlite3.Connection:
