@@ -125,7 +125,7 @@ def parse_poles(
 
     Semicolons and a comma between digits, `-1,5; -2`, are an error: its writer means a decimal, which has a point.
     i and j directly before a number are the imaginary unit, unless that name is declared; an error if the name is one of
-    the `letters` that are in use.
+    the `letters` that are in use.  `-1 ± 2i` is two poles; a row or a column of lists is its entries.
     With `functions`, or with `roots` alone, square roots are read as generators; where there are names, the values stand in
     one context with `variable`, that of the polynomial to be made of them.  Raises as `parse_scalar` does.
     """

@@ -97,4 +97,8 @@ def test_a_page_says_observable_where_the_gain_has_no_need_of_it() -> None:
     """Where a**3*b + … = 0 a mode is fixed, and desired: the gain is the same there, and the pair is not observable."""
     plant = symobs.StateSpace("[1+a -a 1+a; 0 -1 2; 1 0 0]", "[a; 0; 0]", "[a*b b a]", dt=True)
     result = symobs.disturbance_observer(plant, E="[0; 1; a]", S="[0]", V="[1]", poles="0, 1/2, -1/2, 1/3")
+    a, b = sympy.symbols("a b")
+    A = sympy.Matrix([[1 + a, -a, 1 + a, 0], [0, -1, 2, 1], [1, 0, 0, a], [0, 0, 0, 0]])
+    rows = [sympy.Matrix([[a * b, b, a, 0]]) * A**k for k in range(4)]
+    assert sympy.rem(sympy.Matrix.vstack(*rows).det(), a**3 * b + a**3 + a**2 * b + 2 * a**2 + 3 * a * b + b, b) == 0
     assert "a³ b + a³ + a² b + 2a² + 3a b + b ≠ 0" in " ".join(result.to("text").split())
