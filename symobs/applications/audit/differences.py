@@ -5,7 +5,7 @@ from __future__ import annotations
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
-from symobs.applications.audit.equations.reading import text
+from symobs.applications.audit.equations.reading import text_of_value
 from symobs.exact import Matrix, Scalar
 from symobs.exact.algebraic.rounded_decimals import decimals_in, rounds_to, written_out
 from symobs.ground.dataclass import dataclass
@@ -62,7 +62,7 @@ def entry(place: str, printed: Scalar, right: Scalar) -> EntryDifference:
     """Return the message on a wrong value."""
     decimal, plain = single(printed), written_out(printed)
     if decimal is None or not right.is_constant:
-        return EntryDifference(place, text(plain), text(right), slip(plain, right))
+        return EntryDifference(place, text_of_value(plain), text_of_value(right), slip(plain, right))
     exact = right.fraction()
     sign, size = "-" if decimal.units < 0 else "", -decimal if decimal.units < 0 else decimal
     because = decimal.slip(exact) or slip(plain, right)
@@ -184,7 +184,7 @@ def value_text(value: Scalar | Matrix, printed: Scalar | Matrix | None = None) -
 
 def _number_text(value: Scalar, printed: Scalar | None) -> str:
     decimal = single(printed) if printed is not None and value.is_constant else None
-    return text(value) if decimal is None else decimal.rounded(value.fraction())
+    return text_of_value(value) if decimal is None else decimal.rounded(value.fraction())
 
 
 def term_text(value: Matrix, name: str) -> str:

@@ -12,7 +12,7 @@ from symobs.applications.audit.equations.evaluation import as_printed, holds, is
 from symobs.applications.audit.equations.grammar import read_relation
 from symobs.applications.audit.equations.letter_values import INSTANTS, values
 from symobs.applications.audit.equations.matrix_functions import Misfit, Unknown
-from symobs.applications.audit.equations.reading import EquationConditions, Gap, Reading, exceptions, text
+from symobs.applications.audit.equations.reading import EquationConditions, Gap, Reading, exceptions, text_of_value
 from symobs.applications.audit.equations.signals import signals, telling
 from symobs.applications.audit.equations.sizes import Flexible, Printed, common, equal, is_signal
 from symobs.applications.audit.equations.spectra import is_spectrum, spectral, spectrum_text
@@ -212,7 +212,7 @@ class EquationAuditor:
         true = [turned for turned in choices if self._true(left, right, self.reading(left, right, turned))]
         if not true or len(true) == len(choices):
             return None
-        needed = [f"{text(factor)} {'<=' if factor in true[0] else '>='} 0" for factor in squares]
+        needed = [f"{text_of_value(factor)} {'<=' if factor in true[0] else '>='} 0" for factor in squares]
         return Verdict(
             self._under(f"{left} = {right}", *needed), f"a root is not negative: true only where {' and '.join(needed)}"
         )

@@ -85,13 +85,13 @@ def _lets(table: Mapping[str, Any], where: str) -> dict[str, str]:
     if len(table) > _MOST_LETS:
         raise InputError(f"more than {_MOST_LETS} letters", where=where, repair="print less at once")
     found: dict[str, str] = {}
-    for name, text in table.items():
+    for name, written in table.items():
         place = f"{where}.{shown(name, 40)}"
         declared_name(name, place)
-        members = read_relation(text, place)
+        members = read_relation(written, place)
         if len(members) != 1:
             raise InputError("one expression is expected", where=place, repair='leave "=" out')
         if name in _FUNCTIONS or name in letters_of(*members):
             raise InputError(f"{name} cannot stand for this", where=place, repair="take another letter")
-        found[name] = text
+        found[name] = written
     return found

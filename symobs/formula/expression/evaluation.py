@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import operator
+from operator import add, mul, sub, truediv
 from typing import TYPE_CHECKING, Any
 
 from symobs.exact import Complex, Scalar
@@ -71,10 +71,10 @@ class MatrixRows:
 
 
 _OPERATIONS: dict[str, Callable[[Any, Any], Any]] = {
-    "+": operator.add,
-    "-": operator.sub,
-    "*": operator.mul,
-    "/": operator.truediv,
+    "+": add,
+    "-": sub,
+    "*": mul,
+    "/": truediv,
 }
 #: What one operation with complex numbers takes of operations with scalars.
 _SCALAR_OPERATIONS = 12

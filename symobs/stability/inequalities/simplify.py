@@ -10,6 +10,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, TypeAlias
 
 from symobs.exact import Scalar
+from symobs.exact.algebraic.rational_points import value_at
 from symobs.ground.dataclass import dataclass
 from symobs.stability.inequalities.factors import InequalitySystem, cleared, split_into_factors, split_products
 from symobs.stability.inequalities.proof import ZERO, Equivalence, ProvedByZ3, Step
@@ -21,7 +22,6 @@ from symobs.stability.inequalities.sample_points import (
     holds_at,
     point_where_zero,
     respects,
-    value_at,
 )
 from symobs.stability.inequalities.written_form import root_of_square
 from symobs.stability.inequalities.z3_backend import Resources, point_by_z3

@@ -175,12 +175,12 @@ def exceptions(reading: Reading, nonzero: tuple[Scalar, ...]) -> tuple[list[str]
     reasons: dict[str, None] = {}
     for gap in reading.gaps:
         if gap.below:
-            needed[f"{text(gap.values[0])} >= 0"] = None
-            reasons[f"{gap.says} where {text(gap.values[0])} < 0"] = None
+            needed[f"{text_of_value(gap.values[0])} >= 0"] = None
+            reasons[f"{gap.says} where {text_of_value(gap.values[0])} < 0"] = None
         elif not reading.where.excludes(gap.values, nonzero):
             groups = _parts(gap.values, reading.where, nonzero)
-            needed |= dict.fromkeys(" or ".join(f"{text(value)} != 0" for value in group) for group in groups)
-            places = " or ".join(" and ".join(f"{text(value)} = 0" for value in group) for group in groups)
+            needed |= dict.fromkeys(" or ".join(f"{text_of_value(value)} != 0" for value in group) for group in groups)
+            places = " or ".join(" and ".join(f"{text_of_value(value)} = 0" for value in group) for group in groups)
             reasons[f"{gap.says} where {places}"] = None
     return list(needed), list(reasons)
 
@@ -199,6 +199,6 @@ def _parts(values: Sequence[Scalar], where: EquationConditions, nonzero: tuple[S
     return groups
 
 
-def text(value: Any) -> str:
+def text_of_value(value: Any) -> str:
     """Return a value in the grammar of printed equations."""
     return str(value).replace("**", "^")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from symobs.applications.audit.equations.matrix_functions import Misfit
-from symobs.applications.audit.equations.reading import text
+from symobs.applications.audit.equations.reading import text_of_value
 from symobs.exact import Scalar, roots_of
 from symobs.exact.algebraic.rounded_decimals import polynomial_of
 from symobs.formula.expression import parse_poles
@@ -42,4 +42,4 @@ def spectrum_text(spectrum: SyntaxNode, polynomial: Scalar, variable: str) -> st
     if not any("CRootOf" in root for root in roots):
         return f"{spectrum} = [{', '.join(root.replace(' ', '') for root in roots)}]".replace("**", "^")
     pencil = SyntaxNode("sum", (SyntaxNode("letter", text=f"{variable} I"), SyntaxNode("negative", spectrum.parts)))
-    return f"{SyntaxNode('call', (pencil,), text='det')} = {text(polynomial)}"
+    return f"{SyntaxNode('call', (pencil,), text='det')} = {text_of_value(polynomial)}"

@@ -55,9 +55,9 @@ def at_eigenvalues(page: Builder, result: ModeResult, parts: Iterable[Eigenvalue
     With parameters they hold under the conditions that are told with the eigenvalue.
     """
     wanted = {part.factor for part in parts}
-    for part, rank, where in result.parts:
+    for part, found, where in result.parts:
         if part.factor in wanted and part.witness is not None and where is not None:
-            page.steps += _at(page, result, part, rank, holds_where(where))
+            page.steps += _at(page, result, part, found, holds_where(where))
 
 
 def _at(page: Builder, result: ModeResult, part: Eigenvalues, rank: int, conditions: list[Condition]) -> list[Step]:
