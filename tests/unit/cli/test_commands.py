@@ -18,6 +18,7 @@ from symobs.cli.commands import solve
 from symobs.formula.phrases.literature import written_out
 from symobs.ground.errors import CertificateRejected
 from symobs.tasks.result import formats, methods, tasks
+from tests.kit import tabled
 from tests.support.paths import ROOT
 from tests.support.tools.command_line import EXAMPLES, SAFETY, SERVO, environment, fresh, inside
 
@@ -70,20 +71,7 @@ def test_one_task_of_a_file_can_be_run() -> None:
 # -- exit codes -----------------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize(
-    ("text", "code", "said"),
-    [
-        (OBSERVER, 0, ""),
-        (NOT_OBSERVABLE, 4, "observer: no\n"),
-        (f'{OBSERVER}[expect]\nL = "[19; 81]"', 0, ""),
-        (f'{OBSERVER}[expect]\nL = "[19; 80]"', 4, "expect.L: expected [19; 80], found [19; 81]\n"),
-        (f'{NOT_OBSERVABLE}[expect]\nverdict = "no"', 0, ""),
-        (f'{NOT_OBSERVABLE}[expect]\nverdict = "yes"', 4, "expect.verdict: expected yes, found no\n"),
-        (f"{NOT_OBSERVABLE}[expect]\nfixed_modes = [0]", 0, ""),
-        (f'{NOT_OBSERVABLE}[expect]\nL = "[1; 2]"', 4, "expect.L: expected [1; 2], found none\n"),
-        ('task = "observability"\n[symbols]\nc = "real"\n[plant]\nA = "[0 1; -2 -3]"\nC = "[1 c]"', 0, ""),
-    ],
-)
+@tabled
 def test_verdict_or_expectation_decides(text: str, code: int, said: str) -> None:
     run = inside("solve", "-", "--format", "json", stdin=text.encode())
     assert (run.code, run.err) == (code, said)
@@ -118,24 +106,7 @@ def test_a_bug_is_said_as_such(monkeypatch: pytest.MonkeyPatch) -> None:
     assert inside("solve", str(SERVO)).code == 1
 
 
-@pytest.mark.parametrize(
-    "arguments",
-    [
-        ["solve"],
-        ["hug"],
-        ["solve", str(SERVO), "--hug", "x"],
-        ["solve", str(SERVO), "more"],
-        ["solve", str(SERVO), "--format"],
-        ["solve", str(SERVO), "--format", "hug"],
-        ["solve", str(SERVO), "--task", "hug"],
-        ["solve", str(SERVO), "-o", "page.docx"],
-        ["observer", "--A"],
-        ["observer", "--Q", "1"],
-        ["templates", "hug"],
-        ["templates", "copy"],
-        ["methods", "observer"],
-    ],
-)
+@tabled
 def test_wrong_usage_is_2(arguments: list[str], tmp_path: Path) -> None:
     run = inside(*arguments, folder=tmp_path)
     assert (run.code, run.out) == (2, "")
@@ -144,20 +115,7 @@ def test_wrong_usage_is_2(arguments: list[str], tmp_path: Path) -> None:
     assert not any(tmp_path.iterdir())
 
 
-@pytest.mark.parametrize(
-    ("arguments", "said"),
-    [
-        (["problem.toml"], "there is no command 'problem.toml'; write symobs solve problem.toml"),
-        (["solve", "a.toml", "b.toml"], "For several files there is `symobs sheet FILE...`."),
-        (["observer", "-A", "[0]"], "No such option '-A'.\nWrite --A."),
-        (["observer", "--a", "[0]"], "Write --A."),
-        (["observer", "--plant", "1/s"], 'The plant is --A, --B, --C and --D, or --transfer-function "1/(s*(s + 1))".'),
-        (["observer", "--A", "0", "1"], 'A value with spaces stands in quotes, as in --A "[0 1; 0 -1]"'),
-        (["observer", "--A", "[0]", "--poles", "-10,", "-10"], "A value with spaces stands in quotes"),
-        (["observer", "--transfer_functio", "1"], "--transfer_function"),
-        (["stability_region", "--polynomial", "s+k", "--Format", "text"], "Write --format."),
-    ],
-)
+@tabled
 def test_what_may_have_been_meant_is_said(arguments: list[str], said: str, tmp_path: Path) -> None:
     run = inside(*arguments, folder=tmp_path)
     assert (run.code, run.out) == (2, "")
@@ -282,7 +240,7 @@ def test_a_full_disk_is_said() -> None:
 # -- ends that come early -------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("arguments", [["solve", str(SERVO)], ["schema"], ["methods"]])
+@tabled
 def test_a_reader_may_stop_reading(arguments: list[str]) -> None:
     reading, writing = os.pipe()
     os.close(reading)
@@ -367,19 +325,7 @@ def test_a_task_and_its_file_give_the_same_page() -> None:
         assert other["specification"] == {"poles": [-10, -10]}
 
 
-@pytest.mark.parametrize(
-    ("options", "said"),
-    [
-        (["--A", "[0 1", "--C", "[1 0]"], '--A: this "[" is never closed'),
-        (["--C", "[1 0]"], "--A: the state matrix is missing"),
-        (["--A", "[0]", "--C", "[1]", "--poles", "1, 2"], "--poles: 2 poles given, 1 needed"),
-        (["--A", "[0]", "--C", "[1]", "--poles", "x,"], "--poles: "),
-        (["--A", "[0]", "--C", "[1]", "--poles", "1", "--dt", "h"], "--dt: h is not a sampling period"),
-        (["--A", "[0]", "--C", "[1]", "--poles", "1", "--method", "magic"], "--method: 'magic' is not a method"),
-        (["--A", "[0]", "--C", "[1]", "--poles", "1", "--symbol", "b=plus"], "--symbol b: 'plus' is not a sign"),
-        (["--A", "[0]", "--C", "[1]", "--poles", "1", "--symbol", "b[]"], '--symbol b[]: "b[]" is not a name'),
-    ],
-)
+@tabled
 def test_wrong_values_are_3_and_name_the_option(options: list[str], said: str) -> None:
     run = inside("observer", *options)
     assert (run.code, run.out) == (3, "")

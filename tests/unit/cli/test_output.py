@@ -12,6 +12,7 @@ import pytest
 
 from symobs.cli.shared.output import check_target, write_all
 from symobs.ground.errors import InputError
+from tests.kit import tabled
 from tests.support.paths import ROOT
 from tests.support.tools.command_line import SAFETY, SERVO, Run, environment, inside
 
@@ -137,7 +138,7 @@ def a_disk_of_sixteen_kilobytes(tmp_path: Path) -> Iterator[Path | None]:
         subprocess.run(["umount", str(place)], timeout=SAFETY, check=True)
 
 
-@pytest.mark.parametrize("budget", [[], ["--timeout", "900"]], ids=["free", "bounded"])
+@tabled
 def test_a_disk_that_is_full(small_disk: Path | None, budget: list[str], tmp_path: Path) -> None:
     if small_disk is None:
         return  # the limit on the size of files and /dev/full remain

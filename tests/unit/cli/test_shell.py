@@ -16,6 +16,7 @@ from symobs.cli.shared import common
 from symobs.ground.errors import InputError, OutOfBudget, UsageError
 from symobs.system.specification import CHOICES
 from symobs.tasks.result import formats, methods, tasks
+from tests.kit import tabled
 from tests.support.paths import ROOT
 from tests.support.tools.command_line import environment, inside
 
@@ -61,15 +62,7 @@ def test_help_shows_choices_as_choices() -> None:
         assert name.name in told
 
 
-@pytest.mark.parametrize(
-    ("task", "name"),
-    [
-        (task, name)
-        for task, found in sorted(tasks().items())
-        for name, kind in found.keywords.items()
-        if kind == "Name" and name != "method"
-    ],
-)
+@tabled
 def test_choices_are_those_that_the_task_takes(task: str, name: str) -> None:
     """No word of the table is refused as a word, and one outside of it is."""
     plant = symobs.StateSpace("[0 1; 0 -1]", "[0; 1]", "[1 0]")
@@ -90,19 +83,7 @@ def reason_of(task: str, plant: symobs.StateSpace, name: str, word: str) -> str:
 # -- completion -------------------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize(
-    ("words", "completed"),
-    [
-        (["symobs", "detect"], ["plain,detectability"]),
-        (["symobs", "exam"], ["plain,examples"]),
-        (["symobs", "observer", "--member", ""], ["plain,simple", "plain,decoupled"]),
-        (["symobs", "solve", "--format", "html"], ["plain,html", "plain,html_fragment"]),
-        (["symobs", "solve", "--task", "pb"], ["plain,pbh"]),
-        (["symobs", "solve", "serv"], ["file,serv"]),
-        (["symobs", "examples", "servo_trac"], ["plain,servo_tracking"]),
-        (["symobs", "reduced_order_observer", "--method", "part"], ["plain,partition"]),
-    ],
-)
+@tabled
 def test_the_shell_completes(words: list[str], completed: list[str]) -> None:
     asked = {"_SYMOBS_COMPLETE": "bash_complete", "COMP_WORDS": " ".join(words), "COMP_CWORD": str(len(words) - 1)}
     run = subprocess.run(
@@ -114,45 +95,19 @@ def test_the_shell_completes(words: list[str], completed: list[str]) -> None:
 # -- repairs ----------------------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize(
-    ("arguments", "said"),
-    [
-        (["--poles", "-1", "--poles", "-2"], '--poles: it is given 2 times; write them in one text: --poles "-1, -2"'),
-        (["--poles", "-1, -2", "--A", "[1]"], "--A: it is given 2 times; keep one of them"),
-        (["--poles", "-1, -2", "--symbol", "k=4"], "it declares a sign: a value is written in place of the letter"),
-        (["--poles", "-1, -2", "--format", "tex"], "'tex' is not an output format; did you mean latex?"),
-    ],
-)
+@tabled
 def test_what_is_wrong_with_an_option_is_said_with_its_repair(arguments: list[str], said: str) -> None:
     run = inside("observer", *PLANT, *arguments)
     assert run.code in {2, 3}
     assert said in run.err
 
 
-@pytest.mark.parametrize(
-    ("arguments", "said"),
-    [
-        (["1/(z - 1)"], "z is the variable in discrete time: give dt = true"),
-        (["1/(s - 1)", "--dt", "true"], "s is the variable in continuous time"),
-    ],
-)
+@tabled
 def test_the_variable_of_the_other_time_is_said(arguments: list[str], said: str) -> None:
     assert said in inside("observer", "--poles", "0", "--transfer-function", *arguments).err
 
 
-@pytest.mark.parametrize(
-    ("text", "said"),
-    [
-        (
-            'task = "observer"\n[plant]\nA = "[0]"\nC = "[1]"\n[spec]\npoles = [-1]\n',
-            "spec: unknown key; did you mean specification?",
-        ),
-        (
-            'task = "observer"\n[plant]\ntransfer_function = "1/(z-1)"\n[specification]\npoles = [0]\n',
-            'the name "z" is not declared, at column 4 of "1/(z-1)"; z is the variable in discrete time: give dt = true',
-        ),
-    ],
-)
+@tabled
 def test_what_is_wrong_in_a_file_is_said_with_its_repair(text: str, said: str) -> None:
     assert said in inside("solve", "-", stdin=text.encode()).err
 
@@ -240,7 +195,7 @@ def test_work_in_python_is_bounded() -> None:
         symobs.bounded(lambda: symobs.observer(plant), timeout=60)
 
 
-@pytest.mark.parametrize("bound", [{"timeout": 0}, {"memory": float("inf")}, {"timeout": -1.0}])
+@tabled
 def test_bounds_that_are_none_are_refused(bound: dict[str, float]) -> None:
     with pytest.raises(UsageError, match="is not a positive number; write for example"):
         symobs.bounded(lambda: 1, **bound)

@@ -22,6 +22,7 @@ from symobs.ground.child_processes.budget import Budget
 from symobs.ground.errors import InputError, OutOfBudget, ProblemErrors, ShapeMismatch, TypesettingError
 from symobs.pages.formats.pdf import compiled
 from symobs.tasks.result import registry
+from tests.kit import tabled
 from tests.support.paths import ROOT
 from tests.support.tools.command_line import SAFETY, SERVO, environment, inside
 from tests.unit.pages.test_pdf import ends, program
@@ -65,20 +66,7 @@ def hard_problem(tmp_path: Path) -> Path:
 # -- a budget that is enough changes nothing --------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize(
-    "arguments",
-    [
-        ["solve", str(SERVO)],
-        ["solve", str(SERVO), "--format", "json"],
-        ["solve", "-", "--format", "text"],
-        ["solve", "missing.toml"],
-        ["observer", "--A", "[0 1; 0 -1]", "--C", "[1 0]", "--poles", "-10, -10"],
-        ["observer", "--A", "[0 1", "--C", "[1 0]"],
-        ["audit", str(SERVO)],
-        ["sheet", str(SERVO), "-", "--format", "text"],
-    ],
-    ids=" ".join,
-)
+@tabled
 def test_a_budget_that_is_enough_changes_nothing(arguments: list[str]) -> None:
     without = inside(*arguments, stdin=NOT_OBSERVABLE.encode())
     assert inside(*arguments, "--timeout", f"{LONG:g}", "--memory", "4000", stdin=NOT_OBSERVABLE.encode()) == without
@@ -366,7 +354,7 @@ def signalled(
     return process.returncode, out, err
 
 
-@pytest.mark.parametrize("budget", [[], ["--timeout", "900", "--memory", "4000"]], ids=["free", "bounded"])
+@tabled
 def test_ctrl_c_while_computing(budget: list[str], tmp_path: Path) -> None:
     pipe, target = tmp_path / "problem.toml", tmp_path / "page.tex"
     os.mkfifo(pipe)
@@ -392,7 +380,7 @@ def test_ctrl_c_while_computing(budget: list[str], tmp_path: Path) -> None:
     assert {path.name for path in tmp_path.iterdir()} == {"problem.toml", "page.tex"}
 
 
-@pytest.mark.parametrize("budget", [[], ["--timeout", "900"]], ids=["free", "bounded"])
+@tabled
 def test_ctrl_c_while_writing(budget: list[str], tmp_path: Path) -> None:
     """The page is complete and waits for the picture, whose place is a pipe that nobody reads."""
     region, target, picture = ROOT / "worked_examples" / "region_nonconvex.toml", "page.tex", tmp_path / "picture.svg"

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pytest
 
+from tests.kit import tabled
 from tests.support.tools.command_line import EXAMPLES, inside
 
 if TYPE_CHECKING:
@@ -133,37 +134,7 @@ def test_a_program_is_written_to_a_file_by_its_suffix(folder: Path) -> None:
         assert (folder / target).read_text(encoding="utf-8").startswith(begins)
 
 
-@pytest.mark.parametrize(
-    ("arguments", "code", "message"),
-    [
-        (["--set", "k=-1"], 3, "--set k: -1 is not positive, as k is declared; give a value of that sign"),
-        (["--set", "q=1", "--set", "k=x"], 3, "--set q: q is no parameter of the problem; use k"),
-        (["--set", "k=4, m=2"], 2, "sets more than one name; write --set once for each name: --set k=4 --set m=2"),
-        (["--set", "k"], 2, '--set: "k" gives no value; write for example --set k=4'),
-        (["--set", "k=1", "--set", "k=2"], 2, '--set: "k" is set twice; keep one of them'),
-        (["--print", "M"], 2, "--print: there is no answer M; use K, L, F"),
-        (["--print", "closed_lop"], 2, "--print: there is no answer closed_lop; did you mean closed_loop?"),
-        (["--print", ","], 2, "--print: no answer is named; write for example --print K,L"),
-        (
-            ["--print", "K", "--format", "html"],
-            2,
-            "--print: html prints no answers alone; use --format with one of csv, matlab",
-        ),
-        (
-            ["--print", "F", "--set", "k=1", "--format", "csv"],
-            2,
-            "--print: F is not made of numbers; leave --format out",
-        ),
-        (
-            ["--print", "K", "--format", "numpy"],
-            3,
-            "values: a NumPy array needs numbers, and k has no value; set them: --set k=1",
-        ),
-        (["--format", "c", "--period", "1/100"], 3, "code needs numbers, and k has no value; set them: --set k=1"),
-        (["--format", "c", "--set", "k=1"], 2, "--period: a program runs in discrete time"),
-        (["--format", "c", "--set", "k=1", "--period", "9", "--hold", "x"], 2, "--hold: 'x' is no way to sample"),
-    ],
-)
+@tabled
 def test_refusals(folder: Path, arguments: list[str], code: int, message: str) -> None:
     run = inside("solve", "servo.toml", *arguments, folder=folder)
     assert (run.code, run.out) == (code, "")

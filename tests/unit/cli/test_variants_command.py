@@ -8,6 +8,7 @@ import pytest
 
 from symobs.applications.variants.files import assignment
 from symobs.ground.errors import InputError
+from tests.kit import tabled
 from tests.support.paths import ROOT
 from tests.support.tools.command_line import inside
 
@@ -16,7 +17,6 @@ if TYPE_CHECKING:
 
 OBSERVER = ROOT / "worked_examples" / "variants" / "observer.toml"
 PLAIN = ROOT / "worked_examples" / "servo_observer.toml"
-SHEET = ROOT / "worked_examples" / "sheets" / "observers.toml"
 FEW = """
 title = "a is {a}"
 task = "observability"
@@ -31,19 +31,7 @@ a = { set = [1, 2] }
 """
 
 
-@pytest.mark.parametrize(
-    ("arguments", "code", "message"),
-    [
-        ([], 2, "a folder or a list is expected"),
-        (["-o", "set", "--list"], 2, "a folder or a list is expected"),
-        (["--list", "--report"], 2, "nothing is written"),
-        (["--list", "--profile", "same"], 2, "is no profile"),
-        (["--list", "--seed", "-1"], 2, "is no seed"),
-        (["--list", "--count", "20000"], 2, "--count: 20000 variants cannot be made"),
-        (["-o", "set", "--assign", "nobody.csv"], 3, "give the path of a CSV file"),
-        (["-o", "set", "--assign", "strangers.csv"], 3, "there is no column student"),
-    ],
-)
+@tabled
 def test_what_it_refuses(tmp_path: Path, arguments: list[str], code: int, message: str) -> None:
     (tmp_path / "strangers.csv").write_text("name,mark\n", encoding="utf-8")
     run = inside("variants", str(OBSERVER), *arguments, folder=tmp_path)
@@ -116,18 +104,7 @@ def test_solve_takes_one_of_them(tmp_path: Path) -> None:
     assert "no table [variants]" in refused.err
 
 
-@pytest.mark.parametrize(
-    ("arguments", "message"),
-    [
-        (["solve", str(OBSERVER), "--variant", "20000"], "--variant: 20000 variants cannot be made; "),
-        (["solve", str(PLAIN), "--language", "xx"], "--language: 'xx' is not a language of pages; "),
-        (["solve", str(PLAIN), "--detail", "xx"], "--detail: 'xx' is not a level of detail; "),
-        (["check", str(PLAIN), "gone.toml"], "gone.toml: No such file or directory; give the path of an answer file"),
-        (["check", str(OBSERVER), "--asked"], "variants: this file stands for many problems; "),
-        (["solve", str(SHEET)], "problem: this file describes a sheet; "),
-        (["export", str(SHEET), "--to", "stack", "-o", "x.xml"], "problem: this file describes a sheet; "),
-    ],
-)
+@tabled
 def test_one_message_with_its_place(tmp_path: Path, arguments: list[str], message: str) -> None:
     refused = inside(*arguments, folder=tmp_path)
     assert refused.code in {2, 3}

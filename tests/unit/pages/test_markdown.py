@@ -14,6 +14,7 @@ from symobs.pages.formats.markdown import Markdown, MarkdownWriter, paragraph, p
 from symobs.pages.page.blocks import CaseBlock, Caution, Display, Paragraph, References
 from symobs.pages.printers.latex_printer import LatexPrinter
 from symobs.proof.derivation import Define, Derivation
+from tests.kit import tabled
 from tests.support.problems import render_examples as example
 from tests.support.problems.render_examples import document
 
@@ -73,32 +74,12 @@ def test_portable_mathematics_is_the_same_mathematics() -> None:
     assert portable(latex) == wanted
 
 
-@pytest.mark.parametrize(
-    ("text", "markdown"),
-    [
-        ("a_b_c *d* `e`", r"a\_b\_c \*d\* \`e\`"),
-        ("<b>&amp;</b>", "&lt;b&gt;&amp;amp;&lt;/b&gt;"),
-        (r"\frac $x$ [y](z) ~~ |", r"\\frac \$x\$ \[y\](z) \~\~ \|"),
-        ("two\nlines\x1b[0m", r"two lines\[0m"),
-        ("# a #1", r"\# a \#1"),
-    ],
-)
+@tabled
 def test_text_is_escaped(text: str, markdown: str) -> None:
     assert plain(text) == markdown
 
 
-@pytest.mark.parametrize(
-    ("line", "markdown"),
-    [
-        ("- a", r"\- a"),
-        ("12. a", r"12\. a"),
-        ("3) a", r"3\) a"),
-        ("=== a", r"\=== a"),
-        ("a - b. 1. c", "a - b. 1. c"),
-        ("$-2$ is", "$-2$ is"),
-        ("2 is", "2 is"),
-    ],
-)
+@tabled
 def test_a_paragraph_begins_no_list(line: str, markdown: str) -> None:
     assert paragraph(line) == markdown
 

@@ -30,6 +30,7 @@ from symobs.formula.tree import (
 )
 from symobs.pages.printers.mathml.latex_to_mathml import elements_of
 from symobs.pages.printers.mathml.mathml_printer import MathmlPrinter
+from tests.kit import tabled
 from tests.unit.pages.test_printers import (
     MATRICES,
     MATRIX_NAMES,
@@ -256,20 +257,7 @@ def test_every_declared_form_is_written_somehow(form: str) -> None:
     assert [fault for fault in faults(written) if not fault.startswith("empty")] == []
 
 
-@pytest.mark.parametrize(
-    ("form", "mathml"),
-    [
-        (r"h_{1}", "<msub><mi>h</mi><mn>1</mn></msub>"),
-        (r"\omega_0^2", "<msubsup><mi>ω</mi><mn>0</mn><mn>2</mn></msubsup>"),
-        (r"\mathcal O_{\mathrm d}", '<msub><mi>\U0001d4aa</mi><mi mathvariant="normal">d</mi></msub>'),
-        (r"A_{\mathrm{cl}}", "<msub><mi>A</mi><mi>cl</mi></msub>"),
-        (r"\mathsf{L}", "<mi>\U0001d5ab</mi>"),
-        (r"\mathit{th}", "<mi>\U0001d461\u210e</mi>"),
-        (r"\Sigma", '<mi mathvariant="normal">Σ</mi>'),
-        (r"\hat x", '<mover accent="true"><mi>x</mi><mo stretchy="false">\u02c6</mo></mover>'),
-        ("<script>", "<mo>&lt;</mo>" + "".join(f"<mi>{c}</mi>" for c in "script") + "<mo>&gt;</mo>"),
-    ],
-)
+@tabled
 def test_forms(form: str, mathml: str) -> None:
     assert "".join(elements_of(form)) == mathml
 

@@ -29,6 +29,7 @@ from symobs.pages.page.prose import filled, with_reference
 from symobs.problem.validation import validate
 from symobs.proof.derivation import Conclude, Define, Derivation, Equal, Given, Note, Section, Sentence, Step
 from symobs.tasks.result import render
+from tests.kit import tabled
 from tests.support.problems import render_examples as example
 from tests.support.problems.render_examples import document, equals, minus, number, plus, say, times, values
 
@@ -107,7 +108,7 @@ def test_sentences_in_a_row_are_one_paragraph() -> None:
     assert told(Conclude(say("large")), Note(say("small"))) == (Paragraph(("Now and so on",)),)
 
 
-@pytest.mark.parametrize(("key", "mark"), [("small", ","), ("large", ".")])
+@tabled
 def test_a_display_ends_as_the_sentence_after_it_asks(key: str, mark: str) -> None:
     display, _ = told(Equal((ONE,)), Conclude(say(key)))
     assert display == Display((ONE,), closing=mark)
@@ -206,7 +207,7 @@ def test_only_conventions_about_letters_used_are_stated() -> None:
     )
 
 
-@pytest.mark.parametrize(("source", "shown"), [("Chapter 4", "Chapter 4."), ("Chapter 4.", "Chapter 4."), (" ", "")])
+@tabled
 def test_the_source_is_a_sentence(source: str, shown: str) -> None:
     title = narrate(document(source=source))[0]
     assert title == Title("", shown, ())

@@ -11,6 +11,7 @@ import pytest
 from symobs.ground.errors import DerivationRejected
 from symobs.pages.drawings.plot_file import picture_file
 from symobs.tasks.analysis.rank.observability import Observability
+from tests.kit import tabled
 from tests.support.regions import drawn_by_hand as hand
 from tests.support.tools.command_line import inside
 
@@ -68,14 +69,7 @@ def test_without_a_picture_the_result_is_printed_and_the_reason_said(tmp_path: P
     assert not any(tmp_path.iterdir())
 
 
-@pytest.mark.parametrize(
-    ("path", "said"),
-    [
-        ("map.gif", "the suffix '.gif' names no format of pictures; name a file that ends in .svg, .png, .pdf, .tex"),
-        ("map", "a picture needs a suffix; name a file that ends in .svg, .png, .pdf, .tex"),
-        ("-", "a picture needs a suffix"),
-    ],
-)
+@tabled
 def test_a_file_of_no_format_is_refused_before_anything_is_solved(path: str, said: str, tmp_path: Path) -> None:
     run = inside("solve", "-", "--plot", path, folder=tmp_path, stdin=PROBLEM)
     assert (run.code, run.out) == (2, "")

@@ -36,6 +36,7 @@ from symobs.pages.page.plot_captions import caption
 from symobs.pages.printers.latex_printer import LatexPrinter
 from symobs.pages.printers.text_printer import TextPrinter
 from symobs.proof.derivation import Derivation, Plot
+from tests.kit import tabled
 from tests.support.problems.render_examples import document, say
 from tests.support.regions import drawn_by_hand as hand
 from tests.support.regions.drawn_by_hand import ALL, equation, h1, h2
@@ -83,7 +84,7 @@ def test_no_text_overlaps_another_or_leaves_the_picture(name: str) -> None:
         assert not any(a.meets(b) for a, b in combinations(boxes, 2))
 
 
-@pytest.mark.parametrize("name", [name for name in ALL if "RegionPicture" in ALL[name][0].__annotations__["return"]])
+@tabled
 def test_labels_stand_inside_the_frame_beside_every_line(name: str) -> None:
     for scene, measure in scenes(name):
         labels = [text for text in scene.texts if isinstance(text.content, Relation) or str(text.content)[0] == "("]
@@ -148,15 +149,7 @@ def test_long_windows_are_not_strips() -> None:
     assert poles.frame.top >= 100
 
 
-@pytest.mark.parametrize(
-    ("low", "high", "labels"),
-    [
-        (-1, 5, ["0", "2", "4"]),
-        (-3, 1, ["-3", "-2", "-1", "0", "1"]),
-        (0, 0.04, ["0", "0.01", "0.02", "0.03", "0.04"]),
-        (-2500, 700, ["-2000", "-1000", "0"]),
-    ],
-)
+@tabled
 def test_ticks_are_round(low: float, high: float, labels: list[str]) -> None:
     assert [label for _, label in ticks(low, high)] == labels
 
@@ -319,7 +312,7 @@ def test_the_sketch_of_a_hyperbola() -> None:
     assert rows[8] == "." * 10 + "#" * 31
 
 
-@pytest.mark.parametrize(("last", "line"), [("1", "#"), ("h^2", ".")])
+@tabled
 def test_a_line_is_drawn_as_it_is(last: str, line: str) -> None:
     """Both are stable where h k < 1, but on h = 0 s² + s + 1 is stable and s² + s is not."""
     result = symobs.stability_region(polynomial=f"s^2 + (1 - h k) s + {last}", parameters=("h", "k"))

@@ -14,6 +14,7 @@ from symobs.exact.floating import margin_search
 from symobs.exact.floating.sampled import Sampled
 from symobs.ground.errors import CertificateRejected, InexactInput, InputError, SymobsError, UsageError
 from symobs.tasks.result import formats
+from tests.kit import tabled
 
 LANGUAGES = ("c", "matlab", "modelica", "python")
 SERVO = symobs.StateSpace("[0 1; 0 -1]", "[0; 1]", "[1 0]")
@@ -88,13 +89,7 @@ def test_a_bad_rounding_is_refused(language: str, monkeypatch: pytest.MonkeyPatc
         design.to(language, period="1/100")
 
 
-@pytest.mark.parametrize(
-    ("A", "B", "control_poles", "observer_poles", "stable", "said"),
-    [
-        ("[2 1; 0 3]", "[0; 1]", "0, 0", "0, 0", "no", "In 1000 steps rounding errors may grow beyond any bound"),
-        ("[1 1/10; 0 9/10]", "[1/200; 1/10]", "1/2, 2/3", "0, 1/5", "yes", "u differs at every step by at most"),
-    ],
-)
+@tabled
 def test_what_rounding_does_to_a_program_that_is_unstable_by_itself(
     A: str, B: str, control_poles: str, observer_poles: str, stable: str, said: str
 ) -> None:

@@ -9,6 +9,7 @@ import pytest
 from symobs.ground.errors import InputError
 from symobs.pages.formats.latex import typeset
 from symobs.pages.formats.templates import template_folder
+from tests.kit import tabled
 from tests.support.paths import ROOT
 from tests.support.problems.render_examples import document
 from tests.support.tools.command_line import inside
@@ -30,17 +31,7 @@ def test_the_built_in_templates_are_known() -> None:
     assert inside("templates").out.split() == BUILT_IN
 
 
-@pytest.mark.parametrize(
-    ("name", "block", "command"),
-    [
-        ("article.tex", "title", ["solve"]),
-        ("fragment.tex", "title", ["solve", "--format", "fragment"]),
-        ("beamer.tex", "title", ["solve", "--format", "beamer"]),
-        ("sheet.tex", "title", ["sheet"]),
-        ("sheet.tex", "problem", ["sheet"]),
-        ("sheet.tex", "chapter", ["sheet"]),
-    ],
-)
+@tabled
 def test_one_block_replaced(name: str, block: str, command: list[str], tmp_path: Path) -> None:
     text = f'\\BLOCK{{extends "symobs/{name}"}}\n\\BLOCK{{block {block}}}\nMINE \\VAR{{super()}}\\BLOCK{{endblock}}\n'
     own(tmp_path, name, text)
@@ -72,20 +63,7 @@ def test_copied_templates_give_the_same_pages(tmp_path: Path) -> None:
         assert inside(*arguments, "--templates", str(tmp_path)) == inside(*arguments)
 
 
-@pytest.mark.parametrize(
-    ("text", "place", "reason"),
-    [
-        ("one\n\\VAR{titel}\n", "article.tex, line 2", "'titel' is undefined"),
-        ("one\ntwo\n\\BLOCK{if title}\n", "article.tex, line 3", "Unexpected end of template"),
-        ("\\BLOCK{nonsense}", "article.tex, line 1", "Encountered unknown tag 'nonsense'"),
-        ("\n\\VAR{title.__class__.__mro__}", "article.tex, line 2", "access to attribute '__class__'"),
-        ("\n\n\\VAR{1 // 0}", "article.tex, line 3", "by zero"),
-        ("\\VAR{title + 1}", "article.tex, line 1", "concatenate"),
-        ("\\BLOCK{for i in range(10**9)}x\\BLOCK{endfor}", "article.tex, line 1", "Range too big"),
-        ('\\BLOCK{include "nowhere.tex"}', "article.tex, line 1", "there is no template 'nowhere.tex'"),
-        ('\\BLOCK{extends "article.tex"}', "article.tex", "the template extends itself"),
-    ],
-)
+@tabled
 def test_a_broken_template_is_told_with_its_line(text: str, place: str, reason: str, tmp_path: Path) -> None:
     run = inside("solve", OBSERVER, "--templates", str(own(tmp_path, "article.tex", text)))
     assert (run.code, run.out) == (3, "")
@@ -117,17 +95,7 @@ def test_a_template_reads_no_file_outside_its_folder(name: str, tmp_path: Path) 
             typeset(document(title="x"), "article.tex", folder=folder)
 
 
-@pytest.mark.parametrize(
-    "expression",
-    [
-        "''.__class__.__base__.__subclasses__()",
-        "title.format.__globals__",
-        "'{0.__class__}'.format(title)",
-        "cycler.__init__.__globals__.os.popen('id').read()",
-        "lipsum.__globals__['os'].system('id')",
-        "self.__init__.__globals__.__builtins__.open('/etc/passwd').read()",
-    ],
-)
+@tabled
 def test_a_template_runs_no_code(expression: str, tmp_path: Path) -> None:
     own(tmp_path, "article.tex", f"\\VAR{{{expression}}}")
     with pytest.raises(InputError, match=r"unsafe|undefined|cannot be used"):

@@ -14,6 +14,7 @@ from hypothesis import strategies as st
 from symobs.ground.errors import InputError, ProblemErrors, SymobsError
 from symobs.problem import parse, read, validate
 from symobs.problem.expect import mismatches
+from tests.kit import tabled
 from tests.support.tools.command_line import EXAMPLES, SERVO
 
 if TYPE_CHECKING:
@@ -86,31 +87,7 @@ def test_a_byte_order_mark_is_no_part_of_the_text() -> None:
     assert parse('\ufeff{"a": 1}') == {"a": 1}
 
 
-@pytest.mark.parametrize(
-    ("text", "words"),
-    [
-        ("[plant\nA = 1", "file, line 1, column 7: this is not TOML"),
-        ("[plant]\nA = [0 1; 0 -1]", 'file, line 2, column 8: this is not TOML: … the matrix in quotes: "[0 1; 0 -1]"'),
-        ("poles = [-1+i, -2]", 'file, line 1, column 12: this is not TOML: … in quotes: [-2, "-1+i", "-omega"]'),
-        ("task = observer", "file, line 1, column 8: this is not TOML: … texts in quotes"),
-        ('task = "a"\ntask = "b"', "this is not TOML: … overwrite … keep one of them"),
-        ("[plant]\n[plant]", "line 2, … twice … keep one of them"),
-        ("task: observer\nplant:\n  A: 1", "file, line 1, … YAML is not read"),
-        ("---\ntask: observer", "file, line 1, … YAML is not read"),
-        ("# a list\n- observer", "file, line 2, … YAML is not read"),
-        ('[{"task": "observer"}]', "a problem in JSON begins with {"),
-        ("[1, 2]", "a problem in JSON begins with {"),
-        ("\0\1", "file, line 1, column 1: this is not TOML"),
-        ("a = 1979-02-31", "this is not TOML"),
-        ('{"task": "observer",}', "file, line 1, column 2 … this is not JSON"),
-        ('{"task": "observer"', "this is not JSON"),
-        ('{"a": 1} 2', "this is not JSON: Extra data"),
-        ('{"a": 1, "a": 2}', 'the key "a" stands twice'),
-        ('{"a": {"b": 1, "b": 1}}', 'the key "b" stands twice'),
-        ('{"a": NaN}', "NaN is not a number"),
-        ('{"a": -Infinity}', "-Infinity is not a number"),
-    ],
-)
+@tabled
 def test_what_is_neither_toml_nor_json_is_refused_at_its_place(text: str, words: str) -> None:
     said = complaint(text)
     for word in words.split(" … "):
@@ -213,42 +190,12 @@ def expecting(lines: str, text: str = OBSERVER) -> list[str]:
     return unmet(f"{text}\n[expect]\n{lines}")
 
 
-@pytest.mark.parametrize(
-    "line",
-    [
-        'L = "[19; 81]"',
-        "L = [[19], [81]]",
-        'L = [["38/2"], ["9^2"]]',
-        "L = [[19.0], [8.1e1]]",
-        'polynomial = "s^2 + 20 s + 100"',
-        'polynomial = "(s + 10)^2"',
-        'poles = "-10, -10"',
-        'poles = [-10, "-10"]',
-        'verdict = "yes"',
-        'stable = "yes"',
-        "conditions = []",
-        "fixed_modes = []",
-        "observer.L = [[19], [81]]",
-    ],
-)
+@tabled
 def test_expected_answers_are_compared_as_mathematics(line: str) -> None:
     assert expecting(line) == []
 
 
-@pytest.mark.parametrize(
-    ("line", "said"),
-    [
-        ('L = "[19; 82]"', "expect.L: expected [19; 82], found [19; 81]"),
-        ("L = [[19, 81]]", "expect.L: expected [[19, 81]], found [19; 81]"),
-        ('polynomial = "s^2 + 20 s + 101"', "expect.polynomial: expected s^2 + 20 s + 101, found s**2 + 20*s + 100"),
-        ("poles = [-10]", "expect.poles: expected [-10], found [-10, -10]"),
-        ("poles = []", "expect.poles: expected [], found [-10, -10]"),
-        ('verdict = "no"', "expect.verdict: expected no, found yes"),
-        ('conditions = ["2 != 0"]', "expect.conditions: expected [2 != 0], found []"),
-        ('observer.verdict = "no"', "expect.observer.verdict: expected no, found yes"),
-        ("verdict = 1", "expect.verdict: expected 1, found yes"),
-    ],
-)
+@tabled
 def test_an_answer_that_is_not_met_is_said_with_what_was_found(line: str, said: str) -> None:
     assert expecting(line) == [said]
 
@@ -273,66 +220,24 @@ L = "[0; 1]"
 """
 
 
-@pytest.mark.parametrize(
-    "line",
-    [
-        'observer.polynomial = "s^2 + (b + 1) s + omega^2"',
-        'observer.stable_if = ["b + 1 > 0"]',
-        'observer.stable_if = "0 > -2 b - 2"',
-        'observer.stable_if = ["-1/2 < b/2"]',
-        'characteristic_polynomial.roots = ["-b/2 + sqrt(b^2/4 - omega^2)", "-b/2 - sqrt(b^2/4 - omega^2)"]',
-        'characteristic_polynomial.roots = "-b/2 - sqrt(b^2 - 4 omega^2)/2, (sqrt(b^2 - 4 omega^2) - b)/2"',
-    ],
-)
+@tabled
 def test_relations_and_roots_are_compared_as_mathematics(line: str) -> None:
     assert expecting(line, PARAMETRIC) == []
 
 
-@pytest.mark.parametrize(
-    "line",
-    [
-        'observer.stable_if = ["b + 1 >= 0"]',
-        'observer.stable_if = ["b - 1 > 0"]',
-        'observer.stable_if = ["b + 1 < 0"]',
-        'observer.stable_if = ["False"]',
-        "observer.stable_if = []",
-        'characteristic_polynomial.roots = ["-b/2 + sqrt(b^2/4 - omega^2)", "-b/2 + sqrt(b^2/4 - omega^2)"]',
-        'characteristic_polynomial.roots = ["-b/2 + sqrt(b^2/4 + omega^2)", "-b/2 - sqrt(b^2/4 + omega^2)"]',
-    ],
-)
+@tabled
 def test_another_relation_or_root_is_not_met(line: str) -> None:
     assert len(expecting(line, PARAMETRIC)) == 1
 
 
-@pytest.mark.parametrize(
-    ("polynomial", "roots"),
-    [
-        ("s^2 - 2", ["sqrt(2)", "-sqrt(2)"]),
-        ("s^2 + 2 s + 19", ["-1 + 3*sqrt(2)*I", "-1 - 3 sqrt(2) i"]),
-        ("s^2 + 2 s + 19", ["-1 + sqrt(-18)", "-1 - sqrt(-18)"]),
-        ("s^2 - 4/9*s - 1/81", ["2/9 + sqrt(5)/9", "2/9 - sqrt(5)/9"]),
-        ("(s^2 + 1) (s - 3)", [3, "i", "-i"]),
-        ("s^3 - 2", ["CRootOf(s^3 - 2, 2)", "CRootOf(s**3 - 2, 1)", "CRootOf(s**3 - 2, 0)"]),
-        ("s^2 - 4", ["sqrt(4)", "-sqrt(4)"]),
-    ],
-)
+@tabled
 def test_irrational_roots_can_be_expected(polynomial: str, roots: list[Any]) -> None:
     text = f'task = "transfer_function"\n[plant]\ntransfer_function = "1/({polynomial})"\n'
     assert expecting(f"poles = {json.dumps(roots)}", text) == []
     assert len(expecting(f"poles = {json.dumps(roots[:-1] + roots[:1])}", text)) == 1
 
 
-@pytest.mark.parametrize(
-    ("line", "said"),
-    [
-        ('stable_if = ["b + 1"]', "is not a relation"),
-        ('roots = ["1/(1 + sqrt(2))"]', "is not of the form a + b sqrt(c)"),
-        ('roots = ["sqrt(2"]', "never closed"),
-        ('roots = ["omga"]', "did you mean"),
-        ("polynomial = [1]", "not an exact number"),
-        ("polynomial = 1979-05-27", "not an exact number"),
-    ],
-)
+@tabled
 def test_unreadable_expectations_are_refused(line: str, said: str) -> None:
     with pytest.raises(ProblemErrors, match=r"^expect") as refused:
         expecting(line, PARAMETRIC)
@@ -400,25 +305,7 @@ def test_a_word_that_two_tasks_read_differently_is_read_as_the_task_asked_for_do
         assert [error.where for error in caught.value.errors] == places
 
 
-@pytest.mark.parametrize(
-    ("text", "places"),
-    [
-        (  # the damping is right, and the frequency is on the wrong side
-            (
-                'task = "compensator"\n[plant]\ntransfer_function = "1/(s^2 + k s"\n[specification]\n'
-                'control_poles = "-1, -2"\nobserver_poles = { damping = "1/2", natural_frequency = -3 }\n'
-            ),
-            ["plant.transfer_function", "specification.observer_poles.natural_frequency"],
-        ),
-        (  # r has no value, and is declared all the same
-            (
-                'task = "observer"\n[constants]\nr = "sqrt(k)"\n[symbols]\nk = "real"\n[plant]\nA = "[0 1; 0 -r]"\n'
-                'C = "[1 0]"\n[specification]\npoles = "-1, q"\n'
-            ),
-            ["constants.r", "specification.poles"],
-        ),
-    ],
-)
+@tabled
 def test_an_error_hides_no_other_and_makes_none(text: str, places: list[str]) -> None:
     with pytest.raises(ProblemErrors) as raised:
         read(text)

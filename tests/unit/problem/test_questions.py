@@ -12,6 +12,7 @@ from symobs.ground.errors import InputError
 from symobs.problem import read
 from symobs.problem.question import question_of, sentences_for
 from symobs.tasks.result import Task, methods, render, tasks
+from tests.kit import tabled
 from tests.support.tools.command_line import EXAMPLES
 
 #: The words that a keyword of this name may be.
@@ -81,54 +82,7 @@ def asked(
     return " ".join(str(render(question_of(problem), "text")).split("----")[-1].split())
 
 
-@pytest.mark.parametrize(
-    ("task", "specification", "said"),
-    [
-        ("observer", "poles = [-10, -10]", "Design an observer with the poles -10, -10."),
-        (
-            "observer",
-            'polynomial = "(s + 1)(s + p)"',
-            "Design an observer with the characteristic polynomial (s + 1)(s + p).",
-        ),
-        ("observer", 'poles = [-1, -1]\nmethod = "ackermann"', "poles -1, -1. Use Ackermann's formula."),
-        ("reduced_order_observer", 'poles = "-p"', "Design a reduced-order observer with the pole -p."),
-        (
-            "compensator",
-            'control_poles = [-2, -2]\nobserver_polynomial = "s + 10"\nobserver = "minimal"',
-            "Place the control poles at -2, -2.",
-        ),
-        (
-            "compensator",
-            'control_poles = [-2, -2]\nobserver_poles = { bessel = 3 }\nmethod = "minimal_order"',
-            "Place the control poles at -2, -2. The desired observer polynomial is s + 3.",
-        ),
-        (
-            "compensator",
-            'control_poles = [-2, -2]\nobserver_poles = [-3]\nmethod = "minimal_order"',
-            "(state feedback with a reduced-order observer), and find the closed loop.",
-        ),
-        (
-            "tracking",
-            'control_poles = [-2, -2]\nobserver_poles = { bessel = 3 }\nreference_matrix = "[0 1; 0 0]"',
-            "The desired observer polynomial is s + 3.",
-        ),
-        ("gramian", 'horizon = "inf"', "the infinite-horizon observability Gramian"),
-        ("gramian", "horizon = 2", "the observability Gramian over the horizon 2 and its determinant"),
-        ("gramian", "", "the observability Gramian over the horizon T and its determinant"),
-        ("detectability", 'meaning = "lyapunov"', "stable in the sense of Lyapunov?"),
-        ("state_feedback", 'K = "[4 3]"', "Find the characteristic polynomial of the loop with the feedback gain K."),
-        (
-            "response",
-            'input = "t"\ninitial = "[1; 0]"',
-            "The initial state is [1; 0], and the input is t from t = 0 on. Find the response of the plant.",
-        ),
-        (
-            "initial_state",
-            'output = "1 + p*t"\ninput = "0"',
-            "The output p t + 1 was measured up to the time T, with the input 0.",
-        ),
-    ],
-)
+@tabled
 def test_the_question_states_what_was_asked(task: str, specification: str, said: str) -> None:
     assert said in asked(specification, task)
 
@@ -153,12 +107,6 @@ def test_a_specification_that_cannot_be_read_is_an_error() -> None:
         asked('poles = ["-1 + i", "-2"]')
 
 
-@pytest.mark.parametrize(
-    ("poles", "polynomial"),
-    [
-        ('bessel = "p"', "s³ + 6p s² + 15p² s + 15p³"),  # the third reverse Bessel polynomial
-        ('damping = 0.5, natural_frequency = 2, others = "-5"', "(s + 5)(s² + 2s + 4)"),
-    ],
-)
+@tabled
 def test_integral_action_asks_for_a_pole_of_each_integrator_too(poles: str, polynomial: str) -> None:
     assert f"the characteristic polynomial {polynomial}." in asked(f"poles = {{ {poles} }}", "integral_action")

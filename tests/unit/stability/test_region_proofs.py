@@ -23,6 +23,7 @@ from symobs.stability.inequalities.prover import prove, prove_by_opposite, refut
 from symobs.stability.inequalities.sample_points import find_point, point_where_zero
 from symobs.stability.inequalities.simplify import simplify
 from symobs.stability.inequalities.z3_backend import QUESTION, Resources, none_by_z3, point_by_z3
+from tests.kit import tabled
 from tests.support.independent_algebra.plain import has_sign, random_fraction, seeded, value_at
 from tests.support.paths import ROOT
 
@@ -417,7 +418,7 @@ def test_z3_is_bounded_by_its_own_count_and_by_no_clock(monkeypatch: pytest.Monk
     assert point_by_z3(easy, {}, resources=Resources(0)) == ("maybe", {})
 
 
-@pytest.mark.parametrize("folder", ["stability", "exact", "tasks/analysis", "tasks/design", "proof", "system"])
+@tabled
 def test_no_clock_and_no_program_decides_an_answer(folder: str) -> None:
     """The clock, other programs and PATH are for the border: budgets of the command line, and PDF."""
     paths = [*(ROOT / "symobs" / folder).rglob("*.py")]

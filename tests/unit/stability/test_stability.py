@@ -23,6 +23,7 @@ from symobs.stability.criteria.stability import (
     stable_somewhere,
 )
 from symobs.stability.inequalities.written_form import as_inequality
+from tests.kit import tabled
 from tests.support.independent_algebra.plain import (
     at_number,
     coefficients_at,
@@ -232,15 +233,7 @@ def test_the_pendulum_of_the_catalogue(polynomial: str, signs: dict[str, str], e
     assert set(stability(chi, "s", signs, discrete=False).inequalities(signs)) == expected
 
 
-@pytest.mark.parametrize(
-    ("polynomial", "discrete"),
-    [
-        ("(s - 1)*(s + h)", False),
-        ("(s - 1)*(s*h + s + 1)", False),
-        ("s*(s^2 + h*s + 1)", False),
-        ("(s - 1)*(s - h)", True),
-    ],
-)
+@tabled
 def test_one_unstable_factor_settles_what_the_coefficients_leave_open(polynomial: str, discrete: bool) -> None:  # noqa: FBT001
     value = parse_scalar(polynomial, variable="s")
     assert stability(value, "s", {}, discrete=discrete) == StabilityVerdict("no")

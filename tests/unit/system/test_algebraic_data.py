@@ -17,6 +17,7 @@ from symobs.formula.tree.term import letter
 from symobs.problem import read
 from symobs.proof.certificate.claims import verify
 from symobs.proof.derivation.builder import relation
+from tests.kit import tabled
 
 k = sympy.Symbol("k", real=True)
 
@@ -25,7 +26,7 @@ def _observability(C: str) -> Any:
     return so.observability(so.StateSpace("[0 1; 2 0]", C=C))
 
 
-@pytest.mark.parametrize(("C", "verdict"), [("[sqrt(2) 1]", "no"), ("[-sqrt(2) 1]", "no"), ("[sqrt(3) 1]", "yes")])
+@tabled
 def test_a_hidden_zero_decides_the_verdict(C: str, verdict: str) -> None:
     """With eigenvalues ±√2 the row [c 1] misses a mode if and only if c² = 2."""
     assert _observability(C).verdict == verdict
@@ -67,23 +68,13 @@ def test_a_result_reads_back() -> None:
     assert sympy.simplify(chi - sympy.expand((sympy.Symbol("s") + 1) * (sympy.Symbol("s") + 2))) == 0
 
 
-@pytest.mark.parametrize(
-    ("entry", "reason"),
-    [
-        ("sqrt(k)", "has no exact value here"),
-        ("sqrt(2 + sqrt(2))", "has no exact value here"),
-        ("sqrt(-2)", "sqrt of a negative number"),
-        ("cos(pi/7)", "is not written with square roots"),
-    ],
-)
+@tabled
 def test_what_is_no_number_is_refused(entry: str, reason: str) -> None:
     with pytest.raises(so.InputError, match=reason):
         so.StateSpace(f"[0 1; {entry} -1]", C="[1 0]")
 
 
-@pytest.mark.parametrize(
-    ("text", "same"), [("cos(pi/6)", "sqrt(3)/2"), ("sin(pi/4)^2", "1/2"), ("sqrt(3 + 2*sqrt(2))", "1 + sqrt(2)")]
-)
+@tabled
 def test_numbers_that_have_a_root(text: str, same: str) -> None:
     assert so.StateSpace(f"[{text}]").A == so.StateSpace(f"[{same}]").A
 
@@ -126,17 +117,7 @@ poles = "-2 + 2 r i, -2 - 2 r i"
 """
 
 
-@pytest.mark.parametrize(
-    ("constants", "reason"),
-    [
-        ('k = "sqrt(3)"', "declared as a symbol, too"),
-        ('r = "2 k"', "contains a symbol"),
-        ('r = "sqrt(-1)"', "sqrt of a negative number"),
-        ("r = true", "a number is expected"),
-        ('"1x" = 2', "is not a name"),
-        ('h = "r"\nr = 2', 'the name "r" is not declared'),
-    ],
-)
+@tabled
 def test_a_wrong_constant_is_told_at_its_place(constants: str, reason: str) -> None:
     with pytest.raises(so.ProblemErrors, match=rf"constants\..*{reason}"):
         read(_FILE.format(constants=constants))

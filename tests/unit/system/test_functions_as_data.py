@@ -14,6 +14,7 @@ from symobs.ground.errors import InputError
 from symobs.problem import validate
 from symobs.problem.expect.expectations import mismatches
 from symobs.problem.file_tables import parse
+from tests.kit import tabled
 
 SIGNS = {"theta": "real", "k": "positive", "T": "positive"}
 PLANTS = {
@@ -123,9 +124,7 @@ def test_constants_of_a_file_are_functions_or_roots() -> None:
         assert np.poly(A - L @ C) == pytest.approx([1, 5, 6], abs=1e-6)
 
 
-@pytest.mark.parametrize(
-    ("entry", "missed"), [("(3*omega - d)^2 - omega^2*cos(theta)", []), ("omega^2*cos(theta)", ["expect.L"])]
-)
+@tabled
 def test_expected_answers_are_read_with_functions(entry: str, missed: list[str]) -> None:
     text = f"""
         task = "observer"
@@ -142,21 +141,7 @@ def test_expected_answers_are_read_with_functions(entry: str, missed: list[str])
     assert [each.split(":")[0] for each in mismatches(problem.solve(), problem.expect)] == missed
 
 
-@pytest.mark.parametrize(
-    ("entry", "reason"),
-    [
-        ("exp(-t)", "function of t"),
-        ("sin(s)", "function of s"),
-        ("sqrt(a)", r"sqrt\(a\) has no exact value"),  # real for some a only, and sqrt(a^2) is not a
-        ("exp(sqrt(a))", r"sqrt\(a\) has no exact value"),
-        ("(-2)^(1/3)", "exponent"),
-        ("2^(1/3)*4^(1/3)", "depend on each other"),
-        ("2^(1/4) + sqrt(2)", "depend on each other"),
-        ("1/(cos(a)^2 + sin(a)^2 - 1)", "divides by 0"),
-        ("1/(exp(2*a) - exp(a)^2)", "divides by 0"),
-        ("cos(a + pi/7) + cos(a)", "not written with square roots"),
-    ],
-)
+@tabled
 def test_what_has_no_meaning_is_refused(entry: str, reason: str) -> None:
     with pytest.raises(InputError, match=reason):
         symobs.StateSpace(f"[0 1; {entry} -1]")
@@ -167,9 +152,7 @@ def test_a_region_is_of_polynomials() -> None:
         symobs.stability_region(plant("pendulum"), parameters=["k"])
 
 
-@pytest.mark.parametrize(
-    ("value", "reason"), [("theta + cos(theta)", "contains a symbol"), ("CRootOf(x^3 - x - 1, 1)", "1 real root")]
-)
+@tabled
 def test_a_constant_that_is_none_is_refused(value: str, reason: str) -> None:
     text = (
         f'task = "observability"\n[symbols]\ntheta = "real"\n[constants]\nc = "{value}"\n[plant]\nA = "[c]"\nC = "[1]"'

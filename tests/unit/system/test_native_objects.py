@@ -17,6 +17,7 @@ import symobs
 from symobs import StateSpace
 from symobs.ground.errors import InexactInput, InputError, ShapeMismatch, SymobsError
 from symobs.tasks.result import tasks
+from tests.kit import tabled
 
 s, k = sympy.symbols("s k")
 SERVO = StateSpace("[0 1; 0 -1]", "[0; 1]", "[1 0]")
@@ -335,7 +336,7 @@ def test_foreign_objects_are_refused_with_a_reason(ask: Any) -> None:
 # -- what may be meant in two ways, and what comes from SciPy ----------------------------------------------------------
 
 
-@pytest.mark.parametrize("rows", [[[0, 1], [-2, -3]], [["0", "1"], ["a", "1"]], [[0, 1, 0], [0, 0, 1], [1, 2, 3]]])
+@tabled
 def test_a_list_of_rows_is_no_pair_of_numerator_and_denominator(rows: Any) -> None:
     with pytest.raises(InputError, match=r"may be a matrix, or a numerator.*symobs\.StateSpace\(A, B, C\)"):
         symobs.characteristic_polynomial(rows)

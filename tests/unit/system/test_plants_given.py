@@ -14,6 +14,7 @@ from sympy.physics.control import StateSpace as SymPyStateSpace
 import symobs
 from symobs import StateSpace
 from symobs.ground.errors import InputError
+from tests.kit import tabled
 
 b, p, s, z = sympy.symbols("b p s z")
 
@@ -171,17 +172,7 @@ def test_parameters_are_replaced_by_expressions_in_others() -> None:
     assert StateSpace("[p 1; 0 b]").substitute({"p": "2 b"}).A[0, 0] == 2 * b
 
 
-@pytest.mark.parametrize(
-    ("values", "said"),
-    [
-        ({"q": 1}, "substitute.q: q is no parameter of the plant; use b, p"),
-        ({"p": 0.5}, 'substitute.p: 0.5 is a float; write an exact value such as "1/2"'),
-        ({"p": "1/"}, "substitute.p: .* is expected at the end"),
-        ({"p": "c"}, "substitute.p: .*c"),
-        ({"b": -1}, "substitute.b: -1 is not positive, as b is declared"),
-        ({"b": 0}, "substitute.b: 0 is not positive, as b is declared"),
-    ],
-)
+@tabled
 def test_values_that_cannot_be_are_refused(values: dict[Any, Any], said: str) -> None:
     plant = StateSpace("[p 1; 0 b]", symbols={"p": "real", "b": "positive"})
     with pytest.raises(InputError, match=said):

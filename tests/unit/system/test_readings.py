@@ -14,24 +14,14 @@ from symobs.exact.sympy_bridge.conversion import scalar_to_sympy
 from symobs.formula.expression import parse_matrix, parse_poles, parse_scalar
 from symobs.ground.errors import ExpressionError, InputError
 from symobs.system import Symbols
+from tests.kit import tabled
 
 a, b, c, d, s = sympy.symbols("a b c d s")
 
 # -- a product without its sign after a division ----------------------------------------------------------------------
 
 
-@pytest.mark.parametrize(
-    ("text", "from_the_left", "all_below"),
-    [
-        ("1/s(s+1)", "1/s*(s+1)", "1/(s*(s+1))"),
-        ("1/(s+1)(s+2)", "1/(s+1)*(s+2)", "1/((s+1)*(s+2))"),
-        ("a/b c", "a/b*c", "a/(b*c)"),
-        ("1/2(3)", "1/2*(3)", "1/(2*(3))"),
-        ("2 - 3 a/s^2 (s+1)^-2(s+3) + 4", "3 a/s^2*(s+1)^-2(s+3)", "3 a/(s^2*(s+1)^-2(s+3))"),
-        ("(1 + a/-b c)*s", "a/-b*c", "a/(-b*c)"),
-        ("[1 1/b(b+1) 3]", "1/b*(b+1)", "1/(b*(b+1))"),
-    ],
-)
+@tabled
 def test_a_product_without_its_sign_after_a_division_has_two_readings(
     text: str, from_the_left: str, all_below: str
 ) -> None:
@@ -63,9 +53,7 @@ def test_spaces_in_brackets_set_entries_apart_after_a_division_too() -> None:
     assert parse_matrix("[1/b (b+1)]").shape == (1, 2)
 
 
-@pytest.mark.parametrize(
-    ("text", "fraction"), [("-1 + 3/2 j", "3/2"), ("-1 + 52/25 I", "52/25"), ("-1 + 1/4 i", "1/4")]
-)
+@tabled
 def test_a_fraction_before_the_imaginary_unit_is_its_factor(text: str, fraction: str) -> None:
     """And no denominator: 1/(4 i) would be −i/4."""
     (pole,) = parse_poles(text)
@@ -161,15 +149,7 @@ def test_the_variable_of_the_polynomials_needs_no_assumption() -> None:
     assert sympy.Matrix([[-1]]) == symobs.StateSpace.from_transfer_function(1 / (variable + 1)).A
 
 
-@pytest.mark.parametrize(
-    "declared",
-    [
-        {"x1": "real", "x_1": "real"},
-        {"k": "real", "x": {"latex": "k"}},
-        {"omega": "real", "w": {"latex": r"\omega"}},
-        {"x1": {"latex": "x_{1}"}, "x_1": "real"},
-    ],
-)
+@tabled
 def test_two_names_that_print_alike_are_refused(declared: dict[str, Any]) -> None:
     one_name, another = sorted(declared)
     with pytest.raises(InputError, match=f"{one_name} and {another} are printed alike; give one of them another name"):

@@ -17,6 +17,7 @@ from symobs.exact.algebraic.rounded_decimals import PrintedDecimal
 from symobs.formula.expression.syntax_tree import every
 from symobs.ground.errors import BudgetExceeded, CertificateRejected, ProblemErrors, SymobsError
 from symobs.problem import read
+from tests.kit import tabled
 from tests.support.paths import ROOT
 from tests.support.problems.printed import finding, findings, problem
 from tests.support.tools.command_line import SERVO, inside
@@ -56,47 +57,7 @@ def test_what_is_right_is_not_reported(relation: str) -> None:
     assert findings(relation) == []
 
 
-@pytest.mark.parametrize(
-    ("relation", "right", "reason"),
-    [
-        ("A - L C = [-19 1; 81 -1]", "A - L C = [-19 1; -81 -1]", "entry (2, 1) is -81, not 81: the sign is wrong"),
-        ("L = [-19; -81]", "L = [19; 81]", "all signs are wrong"),
-        ("L = [81; 19]", "L = [19; 81]", "the entries (1, 1) and (2, 1) are exchanged"),
-        ("A = [0 0; 1 -1]", "A = [0 1; 0 -1]", "the transpose is printed"),
-        ("A - L C = [-81 -1; -19 1]", "A - L C = [-19 1; -81 -1]", "the rows 1 and 2 are exchanged"),
-        ("A - L C = [1 -19; -1 -81]", "A - L C = [-19 1; -81 -1]", "the columns 1 and 2 are exchanged"),
-        ("L = [38; 162]", "L = [19; 81]", "every entry is multiplied by 2; entry (1, 1) is 19, not 38"),
-        ("L = [1.9; 81]", "L = [19.0; 81]", "entry (1, 1) is 19.0, not 1.9: the decimal point is 1 place off"),
-        ("L = [19 81]", "L = [19; 81]", "the sizes do not fit: the left side is 2x1, the right side is 1x2"),
-        ("V = [0 1; 1 -1]", "V = [1 1; 1 0]", "the inverse is printed"),
-        ("L' = [100 19] V", "L' = [100 19] V^-1", "V is printed for V^-1"),
-        ("A + L C = [-19 1; -81 -1]", "A - L C = [-19 1; -81 -1]", "the sign of L C is wrong"),
-        ("det(s I - A + L C) = s^2 + 20 s + 90", "det(s I - A + L C) = s^2 + 20*s + 100", "constant term is 100"),
-        ("det(s I - A + L C) = s^2 - 20 s + 100", "det(s I - A + L C) = s^2 + 20*s + 100", "the sign is wrong"),
-        ("eigenvalues(A) = [0, 1]", "eigenvalues(A) = [0, -1]", "the eigenvalues are others"),
-        ("eigenvalues(A) = [0, 1+i]", "eigenvalues(A) = [0, -1]", "lacks a complex conjugate"),
-        (
-            "eigenvalues([0 1; 1 1]) = [1, 2]",
-            "eigenvalues([0 1; 1 1]) = [1/2+sqrt(5)/2, 1/2-sqrt(5)/2]",
-            "the eigenvalues are others",
-        ),
-        ("rank(O) = 1", "rank(O) = 2", "rank(O) is 2, not 1"),
-        ("e' = (A + L C) e", "e' = (A - L C) e", "the sign of L C is wrong"),
-        ("e' = (A - L C) x", "e' = (A - L C) e", "x is printed for e"),
-        ("x_hat' = A x_hat + B u", "x' = A x + B u", "x_hat is printed for x throughout"),
-        (
-            "x_hat' = [-19 1; -81 -1] x_hat + [0; 1] u",
-            "x_hat' = [-19 1; -81 -1] x_hat + [0; 1] u + [19; 81] y",
-            "term [19; 81] y is missing",
-        ),
-        ("x_hat' = A x_hat + B u + L y", "x_hat' = A x_hat + B u + L y - L C x_hat", "term -L C x_hat is missing"),
-        ("A - C L = [-19 1; -81 -1]", "", "the sizes do not fit: A is 2x2, but C L is 1x1"),
-        ("A A^-1 = I", "", "A has no inverse"),
-        ("A^-1 = [1 0; 0 1]", "", "A has no inverse"),  # not: A is printed for O, whose inverse that is
-        ("det(L) = 19", "", "det takes a square matrix"),  # not: L is printed for a number that is 19
-        ("y''' = u", "", "the derivative of y' is not known here"),
-    ],
-)
+@tabled
 def test_what_is_wrong_is_named_with_what_is_right(relation: str, right: str, reason: str) -> None:
     found = finding(relation)
     assert found.right == right
@@ -113,32 +74,12 @@ def test_each_link_of_a_chain_is_checked() -> None:
 # -- every convention in its letters -----------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize(
-    ("convention", "relation"),
-    [
-        ("standard", "A - L C = [-19 1; -81 -1]"),
-        ("S0", "x_hat' = (A - L C) x_hat + B u + L y"),
-        ("S1", "A + M C = [-19 1; -81 -1]"),
-        ("S1", "x_hat' = (A + M C) x_hat + B u - M y"),
-        ("S1", "x_bar' = (A + M C) x_bar"),
-        ("S3", "A - L C = [-19 1; -81 -1]"),
-        ("S4", "A - H C = [-19 1; -81 -1]"),
-        ("S4", "F = A - H C"),
-    ],
-)
+@tabled
 def test_a_convention_has_its_own_letters_and_signs(convention: str, relation: str) -> None:
     assert findings(relation, convention=convention) == []
 
 
-@pytest.mark.parametrize(
-    ("convention", "law", "closed"),
-    [
-        ("S0", "u = -K x_hat", "x' = (A - B K) x + B K e"),
-        ("S1", "u = K x_hat", "x' = (A + B K) x - B K x_bar"),
-        ("S3", "u = -K x_hat", "x' = (A - B K) x + B K e"),
-        ("S4", "u = K x_hat", "x' = (A + B K) x - B K e"),
-    ],
-)
+@tabled
 def test_the_sign_of_the_law_is_the_convention_s(convention: str, law: str, closed: str) -> None:
     servo = {"tasks": ["compensator"], "specification": {"control_poles": [-2, -2], "observer_poles": [-10, -10]}}
     assert findings(law, closed, convention=convention, **servo) == []
@@ -146,15 +87,7 @@ def test_the_sign_of_the_law_is_the_convention_s(convention: str, law: str, clos
     assert finding(turned, convention=convention, **servo).right == law
 
 
-@pytest.mark.parametrize(
-    ("tasks", "C", "estimate", "observer"),
-    [
-        ("full", "[1 0]", "x_0", "x_0' = A x_0 + B u + L (y - [1 0] x_0)"),
-        ("full", "[0 1]", "x_0", "x_0' = A x_0 + B u + L (y - C x_0)"),
-        ("minimal", "[0 1]", "x_0", ""),
-        ("minimal", "[0 1]", "x_hat", ""),
-    ],
-)
+@tabled
 def test_the_law_of_every_observer_is_known(tasks: str, C: str, estimate: str, observer: str) -> None:
     """A full-order observer where the states are measured in part, and one whose measured states are not the first."""
     plant = {"A": "[0 1; 0 -1]", "B": "[0; 1]", "C": C} if C == "[1 0]" else {"A": "[-1 0; 1 0]", "B": "[1; 0]", "C": C}
@@ -301,27 +234,7 @@ def test_a_false_equation_is_never_said_to_be_right(monkeypatch: pytest.MonkeyPa
 # -- files that cannot be read -----------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize(
-    ("entry", "says"),
-    [
-        ({}, "printed[0]: one of relation and expect"),
-        ({"relation": "L = [19; 81]", "expect": {"L": "[19; 81]"}}, "printed[0]: one of relation and expect"),
-        ({"relation": 3}, "printed[0].relation: a text is expected"),
-        ({"relation": "L = 1", "were": "slide"}, "printed[0].were: unknown key; did you mean where?"),
-        ({"relation": "L"}, "printed[0].relation: an equation is expected"),
-        ({"relation": "L = [19; 81"}, 'printed[0].relation: this "[" is never closed'),
-        ({"relation": "L = M"}, 'printed[0]: the letter "M" means nothing'),
-        ({"relation": "x_het = x"}, 'did you mean "x_hat"?'),
-        ({"relation": "L = 1", "where": "p. \x1b[2J"}, "printed[0].where: the character U+001B cannot be printed"),
-        ({"relation": "L = 1", "convention": "S9"}, "printed[0].convention"),
-        ({"relation": "L = 1", "let": 3}, "printed[0].let: a table is expected"),
-        ({"relation": "L = W", "let": {"W": "A = B"}}, "printed[0].let.W: one expression is expected"),
-        ({"relation": "L = W", "let": {"W": 3}}, "printed[0].let.W: a text is expected"),
-        ({"relation": "A^T = A"}, "A' for the transpose"),
-        ({"relation": "det(A, B) = 1"}, "det takes 1 argument"),
-        ({"expect": {"zork": 1}}, "known fields are"),
-    ],
-)
+@tabled
 def test_an_entry_that_cannot_be_read_says_where_and_what_to_write(entry: dict[str, object], says: str) -> None:
     with pytest.raises(ProblemErrors) as raised:
         audit(read(problem(printed=[entry])))

@@ -10,6 +10,7 @@ import pytest
 from symobs.applications.audit import audit, report
 from symobs.ground.errors import ProblemErrors
 from symobs.problem import read
+from tests.kit import tabled
 from tests.support.problems.printed import finding, findings, problem
 from tests.support.tools.command_line import inside
 
@@ -18,22 +19,12 @@ if TYPE_CHECKING:
 
 # O = [c 0; 0 c], so det O = c^2.
 CHAIN: dict[str, Any] = {"plant": {"A": "[0 1; 0 0]", "B": "[0; 1]", "C": "[c 0]"}, "symbols": {"c": "real"}}
-DEADBEAT = {
-    "plant": {"A": "[0 1; 0 -1]", "B": "[0; 1]", "C": "[1 0]", "dt": True},
-    "specification": {"poles": [0, 0]},
-}
-# Eigenvalues sqrt(2) and -sqrt(2); roots of s^2 + s + 1.
-SURDS = {"plant": {"A": "[0 1; 2 0]", "C": "[1 0]"}}
-TURNING = {"plant": {"A": "[0 1; -1 -1]", "C": "[1 0]"}}
 
 
 # -- powers ------------------------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize(
-    "relation",
-    ["(2 I)^2 = 4 I", "A^0 = I", "A^0 = [1 0; 0 1]", "A (2 I)^-1 = A/2", "(-I)^2 = I", "(2 I)^0 A = A", "5^0 = 1"],
-)
+@tabled
 def test_a_power_of_the_identity_is_right(relation: str) -> None:
     assert findings(relation) == []
 
@@ -46,19 +37,7 @@ def test_a_power_of_the_identity_is_wrong(relation: str) -> None:
 # -- where an equation holds -------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize(
-    ("relation", "where", "reason"),
-    [
-        ("rank(O) = 2", "c != 0", "rank(O) is less where c = 0"),
-        ("rref(O) = I", "c != 0", "rref(O) is another where c = 0"),
-        ("O^-1 O = I", "c != 0", "O has no inverse where c = 0"),
-        ("c/c = 1", "c != 0", "c is 0 where c = 0"),
-        ("P/P = 1", "c != 0", "P is 0 where c = 0"),
-        ("1/(c^2 - 1) = 1/((c - 1) (c + 1))", "c + 1 != 0, c - 1 != 0", "where c + 1 = 0 or c - 1 = 0"),
-        ("rank([c; c^2+c]) = 1", "c != 0", "where c = 0"),
-        ("sqrt(c)^2 = c", "c >= 0", "sqrt(c) is not real where c < 0"),
-    ],
-)
+@tabled
 def test_what_fails_at_some_values_is_said_to_hold_in_general_only(relation: str, where: str, reason: str) -> None:
     found = finding(relation, **CHAIN)
     assert (found.holds, found.right) == ("in general", f"{relation} where {where}")
@@ -98,15 +77,7 @@ def test_conditions_are_conditions_on_the_symbols() -> None:
             findings(f"rank(O) = 2 where {condition}", **CHAIN)
 
 
-@pytest.mark.parametrize(
-    ("relation", "where"),
-    [
-        ("sqrt(c^2) = c", "c >= 0"),
-        ("sqrt(4 c^2) = 2 c", "c >= 0"),
-        ("sqrt(c^2) = -c", "c <= 0"),
-        ("sqrt((c - 1)^2) = 1 - c", "c - 1 <= 0"),
-    ],
-)
+@tabled
 def test_the_root_of_a_square_is_not_negative(relation: str, where: str) -> None:
     found = finding(relation, **CHAIN)
     assert (found.holds, found.right) == ("", f"{relation} where {where}")
@@ -130,36 +101,12 @@ def test_an_equation_true_in_general_is_not_wrong(tmp_path: Path) -> None:
 # -- eigenvalues -------------------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize(
-    ("relation", "plant"),
-    [
-        ("eigenvalues(A) = [sqrt(2), -sqrt(2)]", SURDS),
-        ("eigenvalues(A) = [1.414, -1.414]", SURDS),
-        ("eigenvalues(A) = [1.4, -1.41421]", SURDS),
-        ("eigenvalues(A) = [-0.5+0.866i, -0.5-0.866i]", TURNING),
-        ("eigenvalues(A) = [-1/2+0.866i, -1/2-0.866i]", TURNING),
-        ("eigenvalues(A) = [-1/2+sqrt(3)/2*i, -1/2-sqrt(3)/2*i]", TURNING),
-        ("eigenvalues(A - L C) = [0, 0]", DEADBEAT),
-    ],
-)
+@tabled
 def test_eigenvalues_may_be_roots_and_decimals(relation: str, plant: dict[str, object]) -> None:
     assert findings(relation, **plant) == []
 
 
-@pytest.mark.parametrize(
-    ("relation", "plant", "right"),
-    [
-        ("eigenvalues(A) = [1.415, -1.414]", SURDS, "eigenvalues(A) = [sqrt(2), -sqrt(2)]"),
-        ("eigenvalues(A) = [sqrt(2), -1]", SURDS, "eigenvalues(A) = [sqrt(2), -sqrt(2)]"),
-        ("eigenvalues(A) = [1.414, 1.414]", SURDS, "eigenvalues(A) = [sqrt(2), -sqrt(2)]"),
-        (
-            "eigenvalues(A) = [-0.5+0.867i, -0.5-0.867i]",
-            TURNING,
-            "eigenvalues(A) = [-1/2+sqrt(3)*I/2, -1/2-sqrt(3)*I/2]",
-        ),
-        ("eigenvalues(A - L C) = [0, 1/2]", DEADBEAT, "eigenvalues(A - L C) = [0, 0]"),
-    ],
-)
+@tabled
 def test_eigenvalues_that_are_others_are_told(relation: str, plant: dict[str, object], right: str) -> None:
     found = finding(relation, **plant)
     assert found.right == right
@@ -173,54 +120,17 @@ THIRDS = {"plant": {"A": "[-1/3 1; -2/3 0]", "B": "[2/7; 1/7]", "C": "[1 0]"}}
 # P = (2/7 s + 1/7)/(s^2 + 1/3 s + 2/3) = (0.2857 s + 0.1429)/(s^2 + 0.3333 s + 0.6667)
 
 
-@pytest.mark.parametrize(
-    "relation",
-    [
-        "P = (0.2857 s + 0.1429)/(s^2 + 0.3333 s + 0.6667)",
-        "P = 0.2857 (s + 0.5)/(s^2 + 0.3333 s + 0.6667)",
-        "P = (0.857 s + 0.429)/(3 s^2 + s + 2)",
-        "P = (0.571 s + 0.286)/(2.00 s^2 + 0.667 s + 1.33)",
-        "det(s I - A) = s^2 + 0.333 s + 0.667",
-        "A = [-0.33 1; -0.67 0]",
-        "2 A/3 = 0.1*[-2.2 6.7; -4.4 0]",
-        "trace(A) = -0.33 = -1/3",
-    ],
-)
+@tabled
 def test_decimals_are_compared_as_printed(relation: str) -> None:
     assert findings(relation, **THIRDS) == []
 
 
-@pytest.mark.parametrize(
-    ("relation", "reason"),
-    [
-        ("P = (0.2857 s + 0.1429)/(s^2 + 0.3333 s + 0.6666)", ""),
-        ("P = (0.857 s + 0.429)/(3.1 s^2 + s + 2)", ""),
-        ("det(s I - A) = s^2 + 0.333 s + 0.666", "the constant term is 0.667, not 0.666: truncated, not rounded"),
-        ("A = [-0.33 1; -0.66 0]", "truncated"),
-        ("A - 0.33 I = A - 1/3 I", ""),  # used, not compared
-    ],
-)
+@tabled
 def test_decimals_that_are_no_rounding_are_told(relation: str, reason: str) -> None:
     assert reason in finding(relation, **THIRDS).reason
 
 
-# The roots of s^2 + 3 s + 1 are -0.381966... and -2.618033..., those of s^3 - 2 are 1.2599... and -0.62996 +- 1.0911 i.
-GOLDEN = {"plant": {"A": "[0 1; -1 -3]", "C": "[1 0]"}}
-CUBE = {"plant": {"A": "[0 1 0; 0 0 1; 2 0 0]", "C": "[1 0 0]"}, "specification": {"poles": [-1, -1, -1]}}
-
-
-@pytest.mark.parametrize(
-    ("relation", "plant", "true"),
-    [
-        ("det(s I - A) = (s + 0.382) (s + 2.618)", GOLDEN, True),
-        ("det(s I - A) = (s + 0.382) (s + 2.619)", GOLDEN, False),
-        ("det(s I - A)^2 = (s + 0.382)^2 (s + 2.618)^2", GOLDEN, True),
-        ("det(s I - A) = (s - 1.26) (s^2 + 1.26 s + 1.587)", CUBE, True),
-        ("det(s I - A) = (s - 1.26) (s^2 + 1.26 s + 1.588)", CUBE, False),
-        ("eigenvalues(A) = [1.26, -0.63+1.091i, -0.63-1.091i]", CUBE, True),
-        ("eigenvalues(A) = [1.26, -0.63+1.092i, -0.63-1.092i]", CUBE, False),
-    ],
-)
+@tabled
 def test_factors_with_decimals_are_compared_by_their_roots(
     relation: str, plant: dict[str, object], *, true: bool
 ) -> None:
@@ -255,23 +165,7 @@ def test_expected_decimals_are_compared_as_printed(tmp_path: Path) -> None:
 # -- letters -----------------------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize(
-    "relation",
-    [
-        "P(s) = 1/(s (s + 1))",
-        "P(s)/(1 + P(s)) = 1/(s^2 + s + 1)",
-        "P(1) = 1/2",
-        "P(2 s) = 1/(2 s (2 s + 1))",
-        "1/P(s) = s (s + 1)",
-        "P(s)^2 = 1/(s (s + 1))^2",
-        "phi_o(s) = (s + 10)^2",
-        "phi_o(A) = [100 19; 0 81]",
-        "e'(t) = (A - L C) e(t)",
-        "x'(t) = A x(t) + B u(t)",
-        "A(t) = A",
-        "C(s I - A)^-1 B = P",
-    ],
-)
+@tabled
 def test_a_letter_before_its_argument_is_a_function(relation: str) -> None:
     assert findings(relation) == []
 
@@ -295,15 +189,7 @@ def test_a_symbol_that_shadows_a_letter_is_said(symbol: str) -> None:
     assert audit(read(problem("trace(B B') = 1", **own))).notes == ()
 
 
-@pytest.mark.parametrize(
-    ("expected", "true"),
-    [
-        ({"stable_if": ["h > 0.618"]}, True),
-        ({"stable_if": ["2 h > 1.24"]}, True),
-        ({"stable_if": ["h > 0.619"]}, False),
-        ({"stable_if": ["h < 0.618"]}, False),
-    ],
-)
+@tabled
 def test_expected_conditions_are_compared_as_printed(expected: dict[str, object], true: object) -> None:
     """Of (s + 1)(s + h - 0.618), stable where h > 0.618."""
     region = {
@@ -315,14 +201,7 @@ def test_expected_conditions_are_compared_as_printed(expected: dict[str, object]
     assert (audit(read(given)).findings == ()) is true
 
 
-@pytest.mark.parametrize(
-    ("expected", "true"),
-    [
-        ({"modes": [{"eigenvalue": "1.414", "stable": False}, {"eigenvalue": "-1.414", "stable": True}]}, True),
-        ({"modes": [{"eigenvalue": "-1.414", "stable": False}, {"eigenvalue": "1.414", "stable": True}]}, False),
-        ({"fixed_polynomial": "1.0"}, True),
-    ],
-)
+@tabled
 def test_expected_modes_are_compared_as_printed(expected: dict[str, object], true: object) -> None:
     surds = {"task": "detectability", "plant": {"A": "[0 1; 2 0]", "C": "[1 0]"}}
     given = json.dumps({"title": "modes", **surds, "printed": [{"expect": expected}]})

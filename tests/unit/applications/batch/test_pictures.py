@@ -13,6 +13,7 @@ import symobs
 from symobs.applications.batch.sweep.picture import _level, _round_levels, picture_of
 from symobs.applications.batch.sweep.plan import SweepTable
 from symobs.formula.figures.plot import SweepCurves, SweepMap
+from tests.kit import tabled
 from tests.support.tools.command_line import inside
 from tests.unit.applications.batch.test_sweep import problem
 
@@ -106,15 +107,7 @@ def test_pictures_are_written_beside_tables_and_instead_of_them(tmp_path: Path) 
         assert all(abs(6 / (2 * (c + d) - 1) - float(level)) < 0.02 for run in runs for c, d in run)
 
 
-@pytest.mark.parametrize(
-    ("words", "says"),
-    [
-        (["--over", "c=1, d=1", "--plot", "p.svg"], "over one or two names with two values each"),
-        (["--over", "c=1:1:3, d=1:1:3", "--plot", "p.svg"], "shows 1 columns, and there are 2; name fewer"),
-        (["--over", "c=1:1:600, d=1:1:600", "--columns", "L[1,1]", "--plot", "p.svg"], "shows 250000 points"),
-        (["--over", "c=1:1:3, d=1", "--plot", "p.doc"], "names no format of pictures"),
-    ],
-)
+@tabled
 def test_what_no_picture_shows_is_said_before_any_work(words: list[str], says: str, tmp_path: Path) -> None:
     (tmp_path / "p.toml").write_text(PLANE, encoding="utf-8")
     left = inside("sweep", "p.toml", *words, "--each", folder=tmp_path)

@@ -28,6 +28,7 @@ from symobs.applications.batch.run import Batch, batch, verified
 from symobs.applications.batch.store import Store
 from symobs.ground.child_processes.budget import Budget
 from symobs.ground.errors import CertificateRejected, InputError, UsageError
+from tests.kit import tabled
 from tests.support.paths import ROOT
 from tests.support.problems.batches import Tampering, children_of, design, eventually, hostile_kind
 from tests.support.tools.command_line import SAFETY, SERVO, environment, inside
@@ -415,16 +416,7 @@ def test_the_command_says_what_it_did_and_goes_on(tmp_path: Path) -> None:
     assert inside("batch", "--verify", str(tmp_path / "out")).err == "2 results hold\n"
 
 
-@pytest.mark.parametrize(
-    ("arguments", "code", "says"),
-    [
-        (["batch"], 2, "no problem is named"),
-        (["batch", str(SERVO)], 2, "--out: no folder for the results is named"),
-        (["batch", str(SERVO), "--out", "x", "--format", "pdf"], 2, "pages in pdf are not written"),
-        (["batch", "missing.toml", "--out", "x"], 3, "missing.toml: No such file or directory"),
-        (["batch", "--verify", "missing"], 3, "missing: there is no manifest.json"),
-    ],
-)
+@tabled
 def test_what_cannot_be_done_is_said(arguments: list[str], code: int, says: str, tmp_path: Path) -> None:
     left = inside(*arguments, folder=tmp_path)
     assert left.code == code

@@ -22,6 +22,7 @@ from symobs.applications.batch.sweep import block
 from symobs.applications.batch.sweep.grid import read_grid
 from symobs.applications.batch.sweep.plan import Plan
 from symobs.ground.errors import CertificateRejected, InputError, ProblemErrors
+from tests.kit import tabled
 from tests.support.problems.batches import eventually
 from tests.support.tools.command_line import environment, inside
 
@@ -227,20 +228,7 @@ def test_grids_are_exact() -> None:
     assert read_grid({"a": [1, Fraction(1, 3)], "b": "0:2:4"}, signs).size == 6
 
 
-@pytest.mark.parametrize(
-    ("over", "where", "says"),
-    [
-        ("l=0.1:2", "over.l", "has neither a step nor a count"),
-        ("l=log(1e-3:1e3/61)", "over.l", "no fractions; write decade"),
-        ("l=1:0:2", "over.l", "steps of 0 do not lead"),
-        ("l=-1:1:5", "over.l", "declared positive, and -1 is not"),
-        ("q=1:1:5", "over.q", "not declared in [symbols]"),
-        ("l=1:1:5, l=2", "over.l", "stands twice"),
-        ("l=x", "over.l", "not an exact number"),
-        ("l", "over", "no name with values"),
-        ("l=1:1:100000, m=1:1:100000", "over", "10000000000 points"),
-    ],
-)
+@tabled
 def test_what_is_no_grid_is_said(over: str, where: str, says: str) -> None:
     with pytest.raises(InputError) as refused:
         read_grid(over, {"l": "positive", "m": "positive"})
@@ -251,20 +239,7 @@ def test_what_is_no_grid_is_said(over: str, where: str, says: str) -> None:
         read_grid({"l": [0.5]}, {"l": "positive"})
 
 
-@pytest.mark.parametrize(
-    ("arguments", "code", "says"),
-    [
-        (["--out", "t.xlsx"], 2, '".xlsx" names no kind of table'),
-        ([], 2, "--out table.parquet, or --plot picture.svg"),
-        (["--out", "t.csv", "--columns", "Q"], 2, "Q is no column; name some of K, L, F"),
-        (
-            ["--out", "t.csv", "--columns", "K[1,5], K"],
-            2,
-            "K[1,5] is no column; name some of K, L, F, margins, or entries such as K[",
-        ),
-        (["--out", "no/t.csv"], 3, "there is no folder"),
-    ],
-)
+@tabled
 def test_what_cannot_be_swept_is_said(arguments: list[str], code: int, says: str, tmp_path: Path) -> None:
     (tmp_path / "cart.toml").write_text(CART, encoding="utf-8")
     left = inside("sweep", "cart.toml", "--over", "l=1:1:3, m=1", *arguments, folder=tmp_path)

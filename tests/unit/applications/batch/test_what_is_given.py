@@ -18,6 +18,7 @@ from symobs.applications.batch.jobs import job, row_text
 from symobs.applications.batch.run import batch, verified
 from symobs.applications.batch.store import Store
 from symobs.ground.errors import UsageError
+from tests.kit import tabled
 from tests.support.problems.batches import design
 from tests.support.tools.command_line import SERVO, inside
 from tests.unit.applications.batch.test_sweep import CART
@@ -162,17 +163,7 @@ def test_the_last_chunks_are_small(count: int) -> None:
     assert max(sizes) == {1: 1, 5: 1, 118: 5, 1000: 20}[count]
 
 
-@pytest.mark.parametrize(
-    ("arguments", "code", "says"),
-    [
-        (["batch", "problems", "--out", ""], 2, "--out: no folder for the results is named"),
-        (["batch", "problems", "--out", "problems"], 2, "--out: problems is the folder of the problems; name a folder"),
-        (["batch", "empty", "missing.toml", "--out", "x"], 3, "empty: there is no problem file in this folder"),
-        (["batch", "empty", "missing.toml", "--out", "x"], 3, "missing.toml: No such file or directory"),
-        (["sweep", "problems", "--over", "l=1", "--out", "x.csv"], 3, "problems: Is a directory; give a problem file"),
-        (["sweep", "cart.toml", "--over", "l=1, m=1", "--out", ""], 2, "--out: no table is named"),
-    ],
-)
+@tabled
 def test_what_cannot_be_used_is_said_and_nothing_is_made(
     arguments: list[str], code: int, says: str, folder: Path, tmp_path: Path
 ) -> None:
@@ -185,7 +176,7 @@ def test_what_cannot_be_used_is_said_and_nothing_is_made(
     assert len(list(folder.iterdir())) == 2
 
 
-@pytest.mark.parametrize("workers", [0, -1, 1.5, "2", True, 10**6])
+@tabled
 def test_a_number_of_workers_is_a_number(workers: Any, tmp_path: Path) -> None:
     with pytest.raises(UsageError, match=r"workers: .* is no number of workers; give a whole number from 1 to 1024"):
         symobs.batch(design(4), out=tmp_path / "out", workers=workers)

@@ -8,6 +8,7 @@ from typing import Any
 import pytest
 
 from symobs.applications.checking import Checked
+from tests.kit import tabled
 from tests.support.problems.answered import SERVO
 
 
@@ -115,12 +116,12 @@ def test_no_kernel_but_zero(written: str) -> None:
     assert verdicts(UNOBSERVABLE, f"kernel = {written}\n") == {"kernel": "wrong"}
 
 
-@pytest.mark.parametrize("written", [[], [0, 0], [[0, 0]], [[0], [0]], ["[0; 0]"]])
+@tabled
 def test_no_kernel_but_zero_in_a_table(written: Any) -> None:
     assert verdicts(OBSERVABLE, {"kernel": written}) == {"kernel": "right"}
 
 
-@pytest.mark.parametrize("written", ["[1; 0]", "{[1; 0]}", [3, 0], [[3, 0]], [[3], [0]], ["[3; 0]"]])
+@tabled
 def test_a_kernel_is_right_in_any_notation(written: Any) -> None:
     assert verdicts(UNOBSERVABLE, {"kernel": written}) == {"kernel": "right"}
     assert verdicts(OBSERVABLE, {"kernel": written}) == {"kernel": "wrong"}
@@ -132,59 +133,12 @@ def test_no_zeros(written: str) -> None:
     assert verdicts(ONE_ZERO, f"zeros = {written}\n") == {"zeros": "wrong"}
 
 
-@pytest.mark.parametrize(
-    ("answer", "verdict"),
-    [
-        ("h1 > -1\nh2 > 0\n", "right"),
-        ("h1 > -1 and h2 > 0\n", "right"),
-        ("h1 > -1\nh2 > 1\n", "wrong"),
-        ("h1 > -1\nh2 \u2265 0\n", "wrong"),
-        ("h2 > 0\nstable_if = h2 > 0, h1 > -1\n", "right"),
-        ("h1 > -1\nh2 > 0\nstable_if = h2 > 0\n", "wrong"),
-        ("stable_if = h1 > -1, h2 > 0\n", "right"),
-        ("stable_if = [h1 > -1; h2 > 0]\n", "right"),
-        ('stable_if = ["h1 > -1", "h2 > 0"]\n', "right"),
-        ('stable_if = "h1 > -1", "h2 > 0"\n', "right"),
-        ("stable_if = {h1 > -1, h2 > 0}\n", "right"),
-        (f"stable_if = {'(' * 9}h1 > -1 and h2 > 0{')' * 9}\n", "right"),
-        (f"stable_if = {'(' * 12}h1 > -1 and h2 > 0{')' * 12}\n", "unreadable"),
-        ('stable_if = [["h1 > -1", "h2 > 0"]]\n', "right"),
-        ("stable_if = h1 > -1 = h2\n", "unreadable"),
-        ({"stable_if": "stable_if = h1 > -1, h2 > 0"}, "right"),
-        ({"stable_if": "h1 > -1, h2 \u2260 0"}, "wrong"),
-    ],
-)
+@tabled
 def test_a_region_in_lines(answer: Any, verdict: str) -> None:
     assert verdicts(REGION, answer) == {"stable_if": verdict}
 
 
-@pytest.mark.parametrize(
-    ("answer", "expected"),
-    [
-        ({"K": [4, 3], "L": [19, 81]}, {"K": "right", "L": "right"}),
-        ({"K": ["4", "2"]}, {"K": "wrong"}),
-        ("[answer]\nK = [4, 3]\nL = ['19', '81']\n", {"K": "right", "L": "right"}),
-        ({"K": "K = [4 3]", "F": "F(s) = (319 s + 400)/(s^2 + 23 s + 161)"}, {"K": "right", "F": "right"}),
-        ({"K": "K = [4 - 0, 3] = [4 3]"}, {"K": "right"}),
-        ({"K": "L = [4 3]"}, {"K": "unreadable"}),
-        ({"K": "K = [5 3]; L = [19; 81]"}, {"K": "unreadable"}),
-        ("K = np.array([4, 3])\nL = np.array([19, 81])\n", {"K": "right", "L": "right"}),
-        ("K = Matrix([4, 3])\nL = Matrix([19, 81])\n", {"K": "wrong", "L": "right"}),
-        ("K = \"[4 3]\"\nL = '[19; 82]'\n", {"K": "right", "L": "wrong"}),
-        ("K = matrix([[4, 3]])\nL = array([[19],[81]], dtype=float)\n", {"K": "right", "L": "right"}),
-        ("K =\n\n     4     3\n\nL =\n\n    19\n    80\n", {"K": "right", "L": "wrong"}),
-        ("L =\n[19]\n[81]\nK =\n[ 4, 3]\nF(s) =\n(319 s + 400)/(s^2 + 23 s + 161)\n", dict.fromkeys("KLF", "right")),
-        (
-            "F =\n \n  319 s + 400\n  ---------\n  s^2 + 23 s + 161\n \nContinuous-time transfer function.\n",
-            {"F": "right"},
-        ),
-        ("L =\n\n   1.0e+03 *\n\n    0.0190\n    0.0810\nK =\n", {"L": "unreadable"}),
-        ("K = Matrix(1, 2, [4, 3])\nL = sp.Matrix(2,1,[19, 81])\n", {"K": "right", "L": "right"}),
-        ("L = Matrix(2, 2, [19, 81])\n", {"L": "unreadable"}),
-        ("K = [4 3]; L = [19; 81]\n", {"K": "right", "L": "right"}),
-        ("K = [4 3] and L = [19; 80];\n", {"K": "right", "L": "wrong"}),
-    ],
-)
+@tabled
 def test_the_same_value_in_cells_tables_and_programs(answer: Any, expected: dict[str, str]) -> None:
     assert verdicts(LOOP, answer) == expected
 
@@ -194,7 +148,7 @@ def test_a_long_line_of_definitions_is_refused_at_once() -> None:
         LOOP.report("a=1;" * 16000)
 
 
-@pytest.mark.parametrize("again", ['"', "'", "[", "; a", "and ", "1,"])
+@tabled
 def test_a_long_text_of_one_character_is_read_soon(again: str) -> None:
     """The bound is ten times what the slowest takes on a slow machine: it says "not quadratic", and measures nothing."""
     start = time.process_time()

@@ -5,12 +5,12 @@ from __future__ import annotations
 from types import SimpleNamespace
 from typing import Any
 
-import pytest
 import sympy as sp
 
 from symobs.applications.checking import Checked, check
 from symobs.applications.checking.judgement.parts import asked_of
 from symobs.tasks.result import result_type
+from tests.kit import tabled
 from tests.support.paths import ROOT
 from tests.support.problems.answered import SERVO, S, text
 
@@ -60,32 +60,12 @@ REGION = (
 )
 
 
-@pytest.mark.parametrize(
-    ("conditions", "verdict"),
-    [
-        ("(h > 0) and (h < 3)", "right"),
-        ("((h > 0) and (3 - h > 0))", "right"),
-        ("(0 < h < 3)", "right"),
-        ("1/h >= 0 and h < 3", "right"),
-        ("h >= 0 and h < 3", "wrong"),
-        ("h/(3 - h) > 0", "right"),
-        ("h (3 - h) >= 0 and h != 0 and 3 != h", "right"),
-    ],
-)
+@tabled
 def test_what_conditions_say_at_their_boundary(conditions: str, verdict: str) -> None:
     assert verdicts(REGION, {"stable_if": conditions})["stable_if"] == verdict
 
 
-@pytest.mark.parametrize(
-    ("conditions", "verdict"),
-    [
-        ("h < 3", "right"),
-        ("h >= 0 and h < 3", "right"),
-        ("h > 0 and h < 3", "right"),
-        ("h <= 3", "wrong"),
-        ("h < 4", "wrong"),
-    ],
-)
+@tabled
 def test_a_declared_sign_leaves_out_its_boundary(conditions: str, verdict: str) -> None:
     positive = REGION.replace("[specification]", '[symbols]\nh = "positive"\n[specification]')
     assert verdicts(positive, {"stable_if": conditions})["stable_if"] == verdict
@@ -104,17 +84,7 @@ def test_columns_of_a_block_may_be_permuted_and_others_not() -> None:
         assert verdicts(problem, {"matrix": matrix}) == {"matrix": verdict}
 
 
-@pytest.mark.parametrize(
-    ("given", "verdict"),
-    [
-        ("yes", "right"),
-        (' "Yes" ', "right"),
-        ("no", "wrong"),
-        ("yes!", "unreadable"),
-        ("ja", "right"),
-        (False, "wrong"),
-    ],
-)
+@tabled
 def test_a_verdict_is_a_word(given: object, verdict: str) -> None:
     problem = 'task = "detectability"\n[plant]\nA = "[0 1; 0 0]"\nC = "[1 0]"\n'
     assert verdicts(problem, {"verdict": given}) == {"verdict": verdict}
@@ -131,16 +101,7 @@ def test_a_closed_loop_is_right_in_either_coordinates() -> None:
         assert verdicts(asked, {"closed_loop_matrix": text(matrix)}) == {"closed_loop_matrix": verdict}
 
 
-@pytest.mark.parametrize(
-    ("given", "verdict"),
-    [
-        ("[x10; x20]", "right"),
-        ("[x10 x20]", "right"),
-        ("{x10, x20}", "right"),
-        ("[x20; x10]", "wrong"),
-        ("[x10]", "wrong"),
-    ],
-)
+@tabled
 def test_a_text_writes_a_list_in_brackets(given: str, verdict: str) -> None:
     problem = (EXAMPLES / "servo_initial_state.toml").read_text(encoding="utf-8")
     report = Checked.of(problem).report(f"x0 = {given}\n")

@@ -18,6 +18,7 @@ from symobs.applications.checking import SHOW, Checked, CheckReport
 from symobs.applications.checking.classes.row import report_of_row
 from symobs.applications.checking.classes.summary import safe
 from symobs.applications.checking.report.schema import schema
+from tests.kit import tabled
 from tests.support.problems.answered import SERVO
 from tests.support.problems.batches import children_of, eventually
 from tests.support.tools.command_line import Run, environment, inside
@@ -136,22 +137,7 @@ def test_a_report_is_read_back_as_it_was(show: str) -> None:
         )
 
 
-@pytest.mark.parametrize(
-    ("table", "mapped", "message"),
-    [
-        ("name,K\na,1\n", [], "there is no column student"),
-        ("student,X\na,1\n", [], "no column is a part of the answer"),
-        ("student,K\na\n", [], "line 2: 1 cells, but 2 columns"),
-        ("student,K,K\na,1,1\n", [], "the column K stands twice"),
-        ("student,K\na,1\n", ["Mail=student"], 'there is no column "Mail"'),
-        ("student,K\na,1\n", ["student=Q"], "Q is no part"),
-        ("", [], "the table is empty"),
-        ("\n \n", [], "the table is empty"),
-        ("student,K\n,[4 3]\n ,[4 4]\n", [], "line 3: no student is named"),
-        ("student,K,compensator.K\na,1,1\n", [], "the columns K and compensator.K are one part"),
-        ('\nstudent,K\na,"[4\n3]"\na\n', [], "line 5: 1 cells, but 2 columns"),
-    ],
-)
+@tabled
 def test_a_table_that_cannot_be_used_is_refused(folder: Path, table: str, mapped: list[str], message: str) -> None:
     (folder / "class.csv").write_text(table, encoding="utf-8")
     found = run(folder, *(part for entry in mapped for part in ("--map", entry)))
@@ -213,32 +199,20 @@ def test_json_lines_and_a_folder_of_files_say_the_same(folder: Path) -> None:
     ]
 
 
-@pytest.mark.parametrize("cell", ["=1+1", "+A1", "-A1", "@x", "\tx", "\rx"])
+@tabled
 def test_no_cell_is_a_formula(cell: str) -> None:
     assert safe(cell) == f"'{cell}"
     assert [safe(number) for number in ("-3", "+4.5", "s1")] == ["-3", "+4.5", "s1"]
 
 
-@pytest.mark.parametrize(
-    ("answer", "code"),
-    [
-        (f"K = [4 3]\nL = [19; 81]\nF = {F}", 0),
-        ("K = [4 3]", 4),
-        ("K = [4 4]\nL = [19; 81]", 4),
-        ("K = [4 3", 3),
-        ("nothing", 3),
-    ],
-)
+@tabled
 def test_the_exit_code_of_one_answer(folder: Path, answer: str, code: int) -> None:
     found = inside("check", "problem.toml", "-", folder=folder, stdin=answer.encode())
     assert found.code == code
     assert found.out or found.err
 
 
-@pytest.mark.parametrize(
-    ("target", "begins"),
-    [("r.html", "<!DOCTYPE"), ("r.json", "{"), ("r.md", "**A servo**"), ("r.txt", "K  right"), ("r", "K  right")],
-)
+@tabled
 def test_the_suffix_of_a_report_names_its_format(folder: Path, target: str, begins: str) -> None:
     assert inside("check", "problem.toml", "-", "-o", target, folder=folder, stdin=b"K = [4 3]").code == 4
     assert (folder / target).read_text(encoding="utf-8").lstrip().startswith(begins)

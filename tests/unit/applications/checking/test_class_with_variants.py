@@ -14,6 +14,7 @@ from symobs.applications.batch.jobs import canonical, digest
 from symobs.applications.variants.responses import as_text, responses_of
 from symobs.ground.errors import InputError
 from symobs.problem import parse
+from tests.kit import tabled
 from tests.support.tools.command_line import Run, inside
 
 if TYPE_CHECKING:
@@ -118,20 +119,7 @@ def test_the_assignment_beside_the_manifest_says_who_has_which(folder: Path) -> 
     assert marks(folder) == {"a": ("v001", "wrong", "0.00")}
 
 
-@pytest.mark.parametrize(
-    ("written", "message"),
-    [
-        ("nothing", "SET/manifest.json: this is no manifest of variants; name what `symobs variants -o FOLDER` wrote"),
-        ("{}", "this is no manifest of variants"),
-        ('{"schema": "symobs-variants/1", "variants": [], "problem": "x"}', "this is no manifest of variants"),
-        ('{"schema": "symobs-variants/1", "variants": [{"file": "v1"}]}', "this is no manifest of variants"),
-        ('{"schema": "symobs-variants/2", "variants": [{"file": "a", "id": "b", "data": {}}]}', "this is no manifest"),
-        (
-            json.dumps({**manifest(), "problem": "0" * 64}),
-            "these are variants of another problem file, or it has changed since",
-        ),
-    ],
-)
+@tabled
 def test_a_manifest_that_cannot_be_used_is_refused(folder: Path, written: str, message: str) -> None:
     (folder / "SET" / "manifest.json").write_text(written, encoding="utf-8")
     found = run(folder, "student,variant,L\na,v001,[3; 2]\n")

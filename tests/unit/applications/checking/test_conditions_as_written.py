@@ -11,6 +11,7 @@ import pytest
 from symobs.applications.checking.judgement.conditions import read_conditions
 from symobs.exact.algebraic.rational_points import value_at
 from symobs.ground.errors import InputError
+from tests.kit import tabled
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -97,41 +98,12 @@ def test_a_quotient_that_may_vanish_below_is_not_there_at_all() -> None:
         assert [c.operator for part in read_conditions(given, NAMES) for c in part] == operators
 
 
-@pytest.mark.parametrize(
-    ("given", "union"),
-    [
-        ("True", [[]]),
-        ("", [[]]),
-        ([], [[]]),
-        ("False", []),
-        ("h > 0 and False", []),
-        (["h > 0", "True"], [["h > 0"]]),
-        ("False or h < 1", [["h < 1"]]),
-        ("1 < h <= 3", [["1 < h", "h <= 3"]]),
-    ],
-)
+@tabled
 def test_what_always_and_never_holds(given: Any, union: list[list[str]]) -> None:
     assert [[c.text for c in part] for part in read_conditions(given, NAMES)] == union
 
 
-@pytest.mark.parametrize(
-    ("given", "message", "repair"),
-    [
-        ("h", '"h" is no condition', 'write for example "h > 3" or "3 < h < 8"'),
-        ("h = 3", '"h = 3" is no condition', ""),
-        ("h == 3", '"h == 3" is no condition', ""),
-        ("1 < h == 3", '"1 < h == 3" is no condition', ""),
-        (7, "conditions are expected", 'write "h1 > 3 and h2 > 0"'),
-        (["h > 1", 7], "a condition is a text", 'write "h1 > 3"'),
-        ([["h > 1"], 7], "a condition is a text", 'write "h1 > 3"'),
-        ([7], "conditions are expected", 'write "h1 > 3 and h2 > 0"'),
-        (["h > 1 or k > 2", "h > 2"], 'a list with "or" has two readings', "write a list of lists"),
-        (["h > 1", "h > 2 | k > 3"], 'a list with "or" has two readings', "write a list of lists"),
-        (["h > 1"] * 41, "more than 40 conditions", "write fewer"),
-        ("(" * 12 + "h > 1" + ")" * 12, "brackets are nested too deeply", "write the conditions as a list"),
-        ("q > 1", 'the name "q" is not declared', ""),
-    ],
-)
+@tabled
 def test_what_is_no_condition_is_refused_with_its_repair(given: Any, message: str, repair: str) -> None:
     with pytest.raises(InputError) as refused:
         read_conditions(given, NAMES)

@@ -9,6 +9,7 @@ import pytest
 import sympy as sp
 
 from symobs.applications.checking import Checked, check
+from tests.kit import tabled
 from tests.support.paths import ROOT
 from tests.support.problems.answered import text
 
@@ -88,7 +89,7 @@ def test_a_modal_form_may_be_given_by_its_vectors_and_T_is_not_any_matrix() -> N
     assert verdicts(problem, {"A": "[-2 0; 0 -2]"}) == {"A": "wrong"}
 
 
-@pytest.mark.parametrize(("kind", "left_out"), [("controllable", 'C = "[1 0]"\n'), ("observable", 'B = "[1; 1]"\n')])
+@tabled
 def test_a_form_of_half_a_plant_and_without_T_is_judged_by_what_is_there(kind: str, left_out: str) -> None:
     problem = CANONICAL.format(kind).replace(left_out, "")
     # χ = s² − 5 s − 2 in the first row or column
@@ -173,7 +174,7 @@ def modal(A: sp.Matrix, B: sp.Matrix, C: sp.Matrix) -> str:
     return f'task = "canonical_form"\n{plant}[specification]\nkind = "modal"\n'
 
 
-@pytest.mark.parametrize("order", [(0, 1, 2), (1, 2, 0), (2, 0, 1), (2, 1, 0)])
+@tabled
 def test_a_modal_form_without_T_in_any_order_and_scaling(order: tuple[int, ...]) -> None:
     A, B, C = OF_FOUR
     problem = modal(MIXED * A * MIXED.inv(), MIXED * B, C * MIXED.inv())

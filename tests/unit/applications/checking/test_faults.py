@@ -10,6 +10,7 @@ import sympy as sp
 
 from symobs.applications.checking import Checked, check
 from symobs.formula.expression import parse_scalar
+from tests.kit import tabled
 from tests.support.problems.answered import (
     CONTROL,
     OBSERVER,
@@ -131,7 +132,7 @@ def test_a_forgotten_feedthrough_is_found() -> None:
     assert part.slip == "forgot_D"
 
 
-@pytest.mark.parametrize(("left", "reason"), [(True, "K B stands for B K"), (False, "C L stands for L C")])
+@tabled
 def test_products_in_the_wrong_order_are_found(left: bool, reason: str) -> None:  # noqa: FBT001 - a table
     """With as many inputs and outputs as states, K B and C L have the sizes of B K and L C."""
     A, B, C = sp.Matrix([[0, 1], [2, 3]]), sp.Matrix([[1, 2], [0, 1]]), sp.Matrix([[1, 0], [3, 1]])

@@ -8,6 +8,7 @@ import pytest
 
 from symobs.applications.checking import Checked, check
 from symobs.ground.errors import ProblemErrors
+from tests.kit import tabled
 
 # x1' = x2, x2' = -a x2 + 1 from rest: x2 = (1 - e^(-a t))/a, and x1 is its integral; checked in both equations by hand.
 STEP = Checked.of(
@@ -19,7 +20,7 @@ FIRST = "t/a - 1/a^2 + exp(-a t)/a^2"
 STATE = f"[{FIRST}; 1/a - exp(-a*t)/a]"
 
 
-@pytest.mark.parametrize(("x", "y"), [("x", "y"), ("x(t)", "y(t)"), ("state", "output")])
+@tabled
 def test_the_letters_of_the_page_name_the_parts(x: str, y: str) -> None:
     report = STEP.report(f"{x} = {STATE}\n{y} = {FIRST}")
     assert (report.verdict, report.first_false) == ("right", None)
@@ -35,19 +36,7 @@ def test_the_matrix_exponential_is_called_as_on_the_page(name: str) -> None:
     assert (report.parts[0].verdict, report.parts[0].slip) == ("wrong", "entry")
 
 
-@pytest.mark.parametrize(
-    ("line", "verdict"),
-    [
-        (f"y(t) = C x(t) = {FIRST}", "true"),
-        (f"x(t) = {STATE}", "true"),
-        (f"y(t) = [{FIRST}]", "true"),
-        ("y(t) = B x(t)", "false"),
-        ("y(t) = t/a", "false"),
-        ("x(t) = [1; 2]", "false"),
-        ("x(t) = 1", "false"),
-        ("x(t) = exp(A t) x(0)", "undecided"),
-    ],
-)
+@tabled
 def test_lines_that_state_a_function_of_time(line: str, verdict: str) -> None:
     (found,) = STEP.report({"answer": {}, "step": [{"relation": line}]}).lines
     assert found.verdict == verdict

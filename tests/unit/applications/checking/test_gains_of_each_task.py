@@ -13,6 +13,7 @@ from symobs.ground.errors import NotShown
 from symobs.problem import read
 from symobs.tasks.design.compensator.output_feedback import OutputFeedback
 from symobs.tasks.design.reference.integral_action import IntegralAction
+from tests.kit import tabled
 from tests.support.paths import ROOT
 from tests.support.problems.answered import SERVO
 
@@ -203,18 +204,7 @@ def test_what_is_rounded_is_accepted_only_if_it_is_near() -> None:
         assert (part.verdict, part.hints) == (verdict, hints)
 
 
-@pytest.mark.parametrize(
-    ("task", "given", "verdict"),
-    [
-        ("observability", "[1 0; 0 1]", "right"),
-        ("observability", "[1,0; 0,1]", "right"),
-        ("observability", "[1 0; 0 1; 0 0]", "wrong"),
-        ("observability", "[1,0 0; 0 1]", "unreadable"),
-        ("observability", "[1,0 0,0; 0,0 1,5]", "unreadable"),
-        ("matrix_exponential", "[1 t; 0 1]", "right"),
-        ("matrix_exponential", "[0 1; 1 t]", "wrong"),
-    ],
-)
+@tabled
 def test_rows_and_commas_of_a_matrix(task: str, given: str, verdict: str) -> None:
     plant = '[plant]\nA = "[0 1; 0 0]"\nC = "[1 0]"\n'
     found = judged(f'task = "{task}"\n{plant}[marking]\nasked = ["{task}.matrix"]\n', {"matrix": given})["matrix"]
@@ -243,31 +233,7 @@ def test_in_a_convention_that_exchanges_letters_each_value_is_that_of_its_own() 
     assert broken[letters["H"]].given == "[-90"
 
 
-#: ẋ = u and y = (x, x): s (s + e) + n₁ + n₂ = (s + 2)(s + 3) for F = [n₁ n₂]/(s + e).
-TWO_OUTPUTS_ONE_STATE = (
-    'task = "compensator"\n[plant]\nA = "[0]"\nB = "[1]"\nC = "[1; 1]"\n'
-    '[specification]\ncontrol_poles = "-2"\nobserver_poles = "-3"\n'
-)
-
-
-@pytest.mark.parametrize(
-    ("problem", "F", "verdict"),
-    [
-        (TWO_OUTPUTS_ONE_STATE, "[4*s/(s+1) 6/(s+1)]", "right"),
-        (TWO_OUTPUTS_ONE_STATE, "[(s + 6)/(s+1) 3*s/(s+1)]", "right"),
-        (TWO_OUTPUTS_ONE_STATE, "[4*s/(s+1) 5/(s+1)]", "wrong"),
-        (TWO_OUTPUTS_ONE_STATE, "[4*s/(s+1); 6/(s+1)]", "wrong"),
-        (TWO_OUTPUTS_ONE_STATE, "[s 4*s+6]", "wrong"),
-        # s (s + 1)(s² + 20 s + 1) + 3 s³ + 163 s² + 479 s + 400 = (s + 2)²(s + 10)², but F is improper
-        (SERVO, "(3 s^3 + 163 s^2 + 479 s + 400)/(s^2 + 20 s + 1)", "wrong"),
-        # y = x + u: s (s² + 2 s - 1) + (s + 1)(6 - s²) = (s + 2)(s + 3), where the loop has lost an order
-        (
-            TWO_OUTPUTS_ONE_STATE.replace('"[1; 1]"', '"[1]"\nD = "[1]"'),
-            "(6 - s^2)/(s^2 + 2 s - 1)",
-            "wrong",
-        ),
-    ],
-)
+@tabled
 def test_any_compensator_closes_the_loop_if_it_is_proper_and_of_no_larger_order(
     problem: str, F: str, verdict: str
 ) -> None:

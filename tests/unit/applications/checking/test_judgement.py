@@ -13,30 +13,11 @@ from symobs.ground.errors import InputError, ProblemErrors
 from symobs.problem import read
 from symobs.problem.expect import found_in, mismatches
 from symobs.tasks.result.conversions import to_json
+from tests.kit import tabled
 from tests.support.paths import ROOT
 from tests.support.problems.answered import SERVO, THIRD_ORDER, TWO_OUTPUTS, A, F, K, L, S, text
 
 EXAMPLES = ROOT / "worked_examples"
-#: One worked example a task; with the others every task is asked (the slow test takes all files).
-ONE_A_TASK = [
-    "canonical_form_servo",
-    "detectable",
-    "pendulum_observer_existence",
-    "dual_servo",
-    "four_parts",
-    "servo_feedforward",
-    "servo_tracking",
-    "servo_gramian",
-    "servo_initial_state",
-    "double_integrator_noise",
-    "eigenvalue_test_servo",
-    "dominant_pair_pole_advice",
-    "tanks_minimal_observer",
-    "region_nonconvex",
-    "time_varying_rotation",
-    "output_feedback_servo",
-    "two_inputs_feedback",
-]
 CANONICAL = """
 task = "canonical_form"
 [plant]
@@ -62,7 +43,7 @@ def own_answer(checked: Checked) -> dict[str, dict[str, Any]]:
     return answer
 
 
-@pytest.mark.parametrize("name", ONE_A_TASK)
+@tabled
 def test_our_own_answer_is_right(name: str) -> None:
     checked = Checked.of(read((EXAMPLES / f"{name}.toml").read_text(encoding="utf-8"), name, EXAMPLES))
     report = checked.report(own_answer(checked))
@@ -306,20 +287,7 @@ specification = { poles = "-1, -1, -2, -2" }
 """
 
 
-@pytest.mark.parametrize(
-    ("problem", "answer", "verdicts"),
-    [  # s³ + (1 + K₂) s² + K₁ s + k_I = (s + 1)(s + 2)(s + 3); s² + 3s + 2 for each of the two outputs
-        (SERVO_WITH_INTEGRAL, {"K": "[11 5]", "k_I": "6"}, "right right"),
-        (SERVO_WITH_INTEGRAL, {"K": "[11 5]", "k_I": "-6"}, "right wrong"),
-        (SERVO_WITH_INTEGRAL, {"K": "[11 6]", "k_I": "6"}, "wrong right"),
-        (SERVO_WITH_INTEGRAL, {"K": "[11 5]"}, "right missing"),
-        (SERVO_WITH_INTEGRAL, {"K": "[11 5", "k_I": "6"}, "unreadable right"),
-        (SERVO_WITH_INTEGRAL, {"K": "[11 5 1]", "k_I": "6"}, "wrong right"),
-        (TWO_INTEGRATORS, {"K": "[3 1; 0 3]", "k_I": "[2 0; 0 2]"}, "right right"),
-        (TWO_INTEGRATORS, {"K": "[3 1; 1 3]", "k_I": "[2 0; 0 2]"}, "wrong wrong"),
-        (TWO_INTEGRATORS, {"K": "[3 1; 0 3]"}, "undecided missing"),
-    ],
-)
+@tabled
 def test_the_gains_of_integral_action_are_judged_together(problem: str, answer: dict[str, str], verdicts: str) -> None:
     report = check(read(problem), answer)
     assert " ".join(one(report, name).verdict for name in ("K", "k_I")) == verdicts

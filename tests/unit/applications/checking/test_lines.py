@@ -8,13 +8,13 @@ import pytest
 
 from symobs.applications.checking import Checked
 from symobs.problem import read
+from tests.kit import tabled
 from tests.support.paths import ROOT
 from tests.support.problems.answered import SERVO, TWO_OUTPUTS
 
 # Of the servo A = [0 1; 0 -1], B = [0; 1], C = [1 0], worked out by hand: K = [4 3], L = [19; 81],
 # A - L C = [-19 1; -81 -1], A - B K = [0 1; -4 -4], det(s I - A) = s^2 + s, O = I.
 SERVO_CHECKED = Checked.of(SERVO)
-LETTERS = {"standard": ("L", "-"), "S0": ("L", "-"), "S1": ("M", "+"), "S4": ("L", "-")}
 
 
 def lines(
@@ -62,42 +62,14 @@ def test_the_first_false_line_is_named(line: str, place: int) -> None:
     assert [each.verdict for each in report.lines] == ["true"] * (place - 1) + ["false", "true"]
 
 
-@pytest.mark.parametrize(
-    ("convention", "right", "wrong"),
-    [
-        ("S0", "A - L C = [-19 1; -81 -1]", "A + L C = [-19 1; -81 -1]"),
-        ("S1", "A + M C = [-19 1; -81 -1]", "A - M C = [-19 1; -81 -1]"),
-        ("S1", "M = [-19; -81]", "M = [19; 81]"),
-        ("S2", "A_22 = -1", "A_22 = 1"),
-        ("S3", "det(s I - A + B K) = (s + 2)^2", "det(s I - A + B K) = (s - 2)^2"),
-        ("S4", "F = [-19 1; -81 -1]", "F = [-19 1; 81 -1]"),
-    ],
-)
+@tabled
 def test_lines_in_the_letters_of_a_convention(convention: str, right: str, wrong: str) -> None:
     observer = SERVO.replace('task = "compensator"', 'task = "observer"').replace('control_poles = "-2, -2"\n', "")
     checked = SERVO_CHECKED if convention != "S4" else Checked.of(observer)
     assert [verdict for verdict, _ in lines(f"{right}\n{wrong}", convention, checked)] == ["true", "false"]
 
 
-@pytest.mark.parametrize(
-    ("text", "expected"),
-    [
-        ("L = [19; 80]\nA - L C = [-19 1; -80 -1]", ["false", "follows"]),
-        ("L = [19; 80]\ndet(s I - A + L C) = s^2 + 20 s + 99", ["false", "follows"]),
-        ("L = [19; 80]\nA - L C = [-19 1; -80 1]", ["false", "false"]),
-        ("L = [19; 80]\nF = (316 s + 396)/(s^2 + 23 s + 160)", ["false", "follows"]),
-        ("L = [19; 80]\nF = (316 s + 400)/(s^2 + 23 s + 160)", ["false", "false"]),
-        ("L = [19; 80]\nF = (316 s + 396)/(s^2 + 23 s + 160)\nK = [4 3]", ["false", "follows", "true"]),
-        ("K = [4 2]\nA - B K = [0 1; -4 -3]", ["false", "follows"]),
-        ("K = [4 2]\ndet(s I - A + B K) = s^2 + 3 s + 4", ["false", "follows"]),
-        ("K = [4 2]\nA - B K = [0 1; -4 -3]\nA - B K = [0 1; -4 -4]", ["false", "follows", "true"]),
-        ("A = [0 1; 0 1]\nA B = [1; 1]", ["false", "follows"]),
-        ("A = [0 1; 0 1]\nA^2 = [0 1; 0 1]", ["false", "follows"]),
-        ("C = [0 1]\nC B = 1", ["false", "follows"]),
-        ("L = [19; 80]\nL = [19; 81]\nA - L C = [-19 1; -81 -1]", ["false", "true", "true"]),
-        ("L = [19; 81]\nL = [19; 80]\nA - L C = [-19 1; -80 -1]", ["true", "false", "follows"]),
-    ],
-)
+@tabled
 def test_what_follows_from_a_false_line_is_no_error(text: str, expected: list[str]) -> None:
     found = lines(text)
     assert [verdict for verdict, _ in found] == expected
@@ -110,16 +82,7 @@ def test_F_follows_from_a_wrong_gain() -> None:
     assert found == [("false", ()), ("follows", ("line 1",)), ("false", ())]
 
 
-@pytest.mark.parametrize(
-    ("let", "text", "expected"),
-    [
-        ("[l1; l2]", "A - X C = [-l1 1; -l2 -1]", "true"),
-        ("[l1; l2]", "det(s I - A + X C) = s^2 + (1 + l1) s + l1 + l2", "true"),
-        ("[l1; l2]", "det(s I - A + X C) = s^2 + (1 - l1) s + l1 + l2", "false"),
-        ("[l1; l1]", "det(s I - A + X C) = s^2 + (1 + l1) s + 2 l1", "true"),
-        ("[2*l1; l2]", "X C = [2*l1 0; l2 0]", "true"),
-    ],
-)
+@tabled
 def test_letters_that_stand_for_unknowns(let: str, text: str, expected: str) -> None:
     answer = {
         "symbols": ["l1", "l2"],
@@ -152,13 +115,7 @@ def test_a_correction_from_a_wrong_gain_says_so() -> None:
     assert (line.right, "with your" in line.reason) == ("F = (319*s + 400)/(s^2 + 23*s + 161)", False)
 
 
-@pytest.mark.parametrize(
-    ("text", "said"),
-    [
-        ("x_hat' = A x_hat + B u + [1; 5] (y - C x_hat)", ["in the coefficient of x_hat", "in the coefficient of y"]),
-        ("K = [1 1]\nu = K x", ["a term in x_hat is missing"]),
-    ],
-)
+@tabled
 def test_no_renaming_is_offered_under_which_any_gain_would_be_right(text: str, said: list[str]) -> None:
     # With y = C x the correction of A x + B u vanishes; and K x' = x_2 - x_2 + u = u is true of the plant alone.
     line = SERVO_CHECKED.report(text).lines[-1]
@@ -175,10 +132,7 @@ def test_a_line_too_long_to_be_checked_is_said_so_where_its_part_is_read() -> No
     assert report.first_false is None
 
 
-@pytest.mark.parametrize(
-    ("text", "verdicts"),
-    [("K = [4,0 3,0]", []), ("K = [4 3", []), ("K = [1 1]\nK = [4,0 3,0]\nrank(O) = 2", ["false", "true"])],
-)
+@tabled
 def test_an_answer_that_cannot_be_read_is_no_false_line(text: str, verdicts: list[str]) -> None:
     report = SERVO_CHECKED.report(text)
     assert report.parts[0].verdict == "unreadable"
@@ -227,19 +181,9 @@ def test_lines_of_a_region_are_true_where_it_implies_them() -> None:
 MODAL = (
     'task = "canonical_form"\n[plant]\nA = "[0 1; -2 -3]"\nB = "[0; 1]"\nC = "[1 0]"\n[specification]\nkind = "modal"\n'
 )
-DUAL = 'task = "dual"\n[plant]\nA = "[0 1; -2 -3]"\nB = "[0; 1]"\nC = "[1 0]"\n'
-PARTED = 'task = "decomposition"\n[plant]\nA = "[1 0; 0 -1]"\nB = "[1; 0]"\nC = "[0 1]"\n'
 
 
-@pytest.mark.parametrize(
-    ("problem", "answer"),
-    [
-        (MODAL, "A = [-1 0; 0 -2]\nT = [2 1; 1 1]\nB = [1; 1]\nC = [1 -1]"),
-        (DUAL, "A = [0 -2; 1 -3]\nB = [1; 0]\nC = [0 1]"),
-        (PARTED, "T = [0 1; 1 0]\nA = [-1 0; 0 1]\nB = [0; 1]\nC = [1 0]\nsizes = [0 1 1 0]"),
-    ],
-    ids=["canonical_form", "dual", "decomposition"],
-)
+@tabled
 def test_a_part_of_the_answer_that_has_a_letter_of_the_plant_is_no_line(problem: str, answer: str) -> None:
     report = Checked.of(problem).report(answer)
     assert (report.first_false, report.hints) == (None, ())

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from symobs.applications.checking import Checked
+from tests.kit import tabled
 
 # s^3 + 4 s^2 + h1 s + h2 is stable if and only if h2 > 0 and 4 h1 > h2 (Routh).
 CUBIC = 'task = "stability_region"\n[specification]\npolynomial = "s^3 + 4 s^2 + h1 s + h2"\nparameters = "h1, h2"\n'
@@ -23,20 +24,6 @@ SYMBOLIC = Checked.of(
     'polynomial = "s^3 + a s^2 + h s + k"\nparameters = "h, k"\n'
 )
 
-EQUAL: list[Any] = [
-    "h2 > 0 and 4 h1 > h2",
-    "8 h1 > 2 h2 and 3 h2 > 0",
-    "0 < h2 < 4 h1",
-    ["h2 > 0", "4*h1 - h2 > 0"],
-    "h1/h2 > 1/4 and h2 > 0",
-    "h2 > 0 and 4 h1 > h2 and h1 > 0",
-    "h2 > 0 and 4 h1 > h2 and h1 > -5",
-    "h2^3 > 0, h1 > 0.25 h2",
-    "h2 (4 h1 - h2) > 0 and h2 > 0",
-    "(-h2 < 0 and h2 - 4 h1 < 0)",
-    [["h2 > 0", "4 h1 > h2", "h1 < 1"], ["h2 > 0", "4 h1 > h2", "h1 >= 1"]],
-    "0 < h2 < 4 h1 or h2 > 0 and 4 h1 > h2 and h1 > 7",
-]
 WRONG: list[tuple[Any, str | None]] = [
     ("h2 > 0", "condition_missing"),
     ("4 h1 > h2", "condition_missing"),
@@ -47,19 +34,13 @@ WRONG: list[tuple[Any, str | None]] = [
     ("h2 > 0 and 3 h1 > h2", None),
     ("False", None),
 ]
-BOUNDARY: list[Any] = [
-    "h2 >= 0 and 4 h1 > h2",
-    "h2 > 0 and 4 h1 >= h2",
-    "h2 > 0 and 4 h1 > h2 and h1 != 3",
-    [["h2 > 0", "4 h1 > h2", "h1 < 1"], ["h2 > 0", "4 h1 > h2", "h1 > 1"]],
-]
 
 
 def part(checked: Checked, conditions: Any) -> Any:
     return checked.report({"stable_if": conditions}).parts[0]
 
 
-@pytest.mark.parametrize("conditions", EQUAL, ids=str)
+@tabled
 def test_every_form_of_the_region_is_right(conditions: Any) -> None:
     assert part(CHECKED, conditions).verdict == "right"
 
@@ -84,7 +65,7 @@ def test_a_wrong_region_comes_with_a_point_that_parts_both(conditions: Any, slip
     assert ("your conditions hold" in found.reason) is given
 
 
-@pytest.mark.parametrize("conditions", BOUNDARY, ids=str)
+@tabled
 def test_a_boundary_is_told_apart(conditions: Any) -> None:
     found = part(CHECKED, conditions)
     assert (found.verdict, found.slip, found.credit) == ("wrong", "boundary", Fraction(3, 4))
@@ -95,14 +76,7 @@ def test_a_margin_that_was_forgotten() -> None:
     assert part(checked, "h2 > 0 and 4 h1 > h2").slip == "margin_forgotten"
 
 
-@pytest.mark.parametrize(
-    ("dt", "conditions", "reason"),
-    [
-        # s² + a s + b: a > 0 and b > 0 by Hurwitz; |b| < 1 and |a| < 1 + b by Jury
-        ("false", "b < 1 and 1 + a + b > 0 and 1 - a + b > 0", "these are the conditions for all |z| < 1"),
-        ("true", "a > 0 and b > 0", "these are the conditions for all real parts < 0"),
-    ],
-)
+@tabled
 def test_the_other_kind_of_time(dt: str, conditions: str, reason: str) -> None:
     checked = Checked.of(
         f'task = "stability_region"\n[plant]\ndt = {dt}\n[specification]\npolynomial = "{"z" if dt == "true" else "s"}^2 + '
@@ -131,22 +105,14 @@ def test_one_parameter(conditions: str, verdict: str, slip: str | None) -> None:
     assert (found.verdict, found.slip) == (verdict, slip)
 
 
-@pytest.mark.parametrize(
-    ("conditions", "verdict"),
-    [
-        ("a h > k and k > 0", "right"),
-        ("a h - k > 0 and k > 0 and h > 0", "right"),
-        ("h > 0 and k > 0", "wrong"),
-        ("a h > k and k > 0 or k < -100", "undecided"),
-    ],
-)
+@tabled
 def test_with_other_symbols_equality_is_proved_or_a_point_found(conditions: str, verdict: str) -> None:
     found = part(SYMBOLIC, conditions)
     assert found.verdict == verdict
     assert found.credit == {"right": 1, "wrong": 0, "undecided": None}[verdict]
 
 
-@pytest.mark.parametrize("conditions", ["h1", "h1 = 3", "q > 1", ["h1 > 1 or h2 > 1", "h1 > 2"], 7, "h1 > 1 and"])
+@tabled
 def test_what_is_no_condition_is_unreadable(conditions: Any) -> None:
     found = part(CHECKED, conditions)
     if conditions == "h1 > 1 and":
@@ -310,9 +276,7 @@ def test_the_slip_and_the_reason(checked: Checked, conditions: Any, verdict: str
     assert bool(found.reason) is bool(reason)
 
 
-@pytest.mark.parametrize(
-    "conditions", ["a > 0", "c > a b and a > 0", "b > 5", "False", "True", "a < 0", "a > 2 and c > 0 and a b > c"]
-)
+@tabled
 def test_a_point_of_three_parameters_parts_both(conditions: str) -> None:
     """Roots by NumPy, the conditions by Python."""
     found = part(THREE, conditions)

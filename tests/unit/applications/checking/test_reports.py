@@ -21,6 +21,7 @@ from symobs.applications.checking.report.schema import schema
 from symobs.ground.errors import ProblemErrors, UsageError
 from symobs.problem import read
 from symobs.problem.marking import SLIPS
+from tests.kit import tabled
 from tests.programs.teaching.classes import answers, lines
 from tests.support.paths import ROOT
 from tests.support.problems.answered import SERVO, THIRD_ORDER, TWO_OUTPUTS, F, K, L
@@ -115,18 +116,7 @@ def test_a_reason_is_not_the_solution() -> None:
     ]
 
 
-@pytest.mark.parametrize(
-    ("line", "place"),
-    [
-        ("u = -[1 1] x", "a term in x_hat is missing; a term in x does not belong there"),
-        ("u = [5 6] x", "a term in x_hat is missing; a term in x does not belong there"),
-        ("u = K x", "a term in x_hat is missing; a term in x does not belong there"),
-        ("u = 0", "a term in x_hat is missing"),
-        ("u = -[1 1] x_hat", "not right: in the coefficient of x_hat entry (1, 1), entry (1, 2)"),
-        ("x_hat' = A x_hat + B u + [1; 5] y", ""),
-        ("K B = [1 1 1] C'", "the sizes do not fit: [1 1 1] is 1x3 and C' is 2x1"),
-    ],
-)
+@tabled
 def test_a_line_on_signals_does_not_tell_the_gains(line: str, place: str) -> None:
     report = CHECKED.report(line)
     (judged,) = report.lines
@@ -199,24 +189,7 @@ def test_marks_are_exact_fractions() -> None:
     assert (asked.verdict, asked.score) == ("incomplete", Fraction(1))
 
 
-@pytest.mark.parametrize(
-    ("marking", "message"),
-    [
-        ("total = -1", "marking.total: -1 is negative"),
-        ("credit = { sign = 2 }", "marking.credit.sign: 2 is not between 0 and 1"),
-        ('credit = { sgn = "1/2" }', "marking.credit.sgn: no slip has this name; did you mean sign"),
-        ('asked = ["observer.L"]', r"marking.asked\[0\]: observer is not a task of this file"),
-        ("guard = 1", "marking.guard: true or false is expected"),
-        ("extra = 1", "marking.extra: unknown key"),
-        ('decimals = "sometimes"', 'marking.decimals: "sometimes" is no choice; write one of exact, accept'),
-        ("milestone = [{ points = 1 }]", r"marking.milestone\[0\]: relation is missing; write relation and points"),
-        (
-            "asked = [3]\ntotal = true",
-            r"marking.total: a number is expected(.|\n)*marking.asked\[0\]: a part is expected",
-        ),
-        ("milestone = [{ relation = 1, points = 1 }]", r"marking.milestone\[0\].relation: a text is expected"),
-    ],
-)
+@tabled
 def test_a_wrong_marking_is_refused(marking: str, message: str) -> None:
     with pytest.raises(ProblemErrors, match=message):
         read(f"{SERVO}[marking]\n{marking}\n")
@@ -315,16 +288,7 @@ def test_an_answer_that_cannot_be_read_is_refused_with_its_place(answer: str, me
         CHECKED.report(answer)
 
 
-@pytest.mark.parametrize(
-    ("value", "message"),
-    [
-        ("[4 q]", 'the name "q" is not declared'),
-        ("[4 3", "never closed"),
-        ("__import__('os')", ""),
-        ("[1/0 3]", "division by zero"),
-        ("[4 9^9^9]", ""),
-    ],
-)
+@tabled
 def test_a_value_that_cannot_be_read_leaves_the_others(value: str, message: str) -> None:
     report = CHECKED.report({"K": value, "L": "[19; 81]"})
     assert [part.verdict for part in report.parts] == ["unreadable", "right", "missing"]
@@ -332,19 +296,7 @@ def test_a_value_that_cannot_be_read_leaves_the_others(value: str, message: str)
     assert message in report.parts[0].reason
 
 
-@pytest.mark.parametrize(
-    "given",
-    [
-        {"L": "[[19],[81]]", "K": "[[4, 3]]"},  # NumPy, JSON
-        {"L": "np.array([[19.],\n [81.]])", "K": "array([[4, 3]])"},
-        {"L": "Matrix([[19], [81]])", "K": "Matrix([[4, 3]])"},  # SymPy
-        {"L": "[19\n81];", "K": "[4,3];"},  # MATLAB
-        {"L": "[19; 80 \u2212 \u20111]", "K": "\ufeff[4\u200b\u00a03]"},
-        "L = [19\n     81];   % by place\nK = [4 3];\n",
-        "# mine\nso:\nL = [[19],[81]]\nK = [4 3]\nK =\n",
-    ],
-    ids=range(7),
-)
+@tabled
 def test_what_is_pasted_from_elsewhere_is_read(given: Any) -> None:
     assert [part.verdict for part in CHECKED.report(given).parts] == ["right", "right", "missing"]
 

@@ -13,6 +13,7 @@ import pytest
 
 from symobs.applications.export import FOLDERS, PLATFORMS, ExerciseSet, exercises, export
 from symobs.ground.errors import ProblemErrors
+from tests.kit import tabled
 from tests.support.paths import ROOT
 from tests.support.tools.command_line import Run, inside
 
@@ -122,22 +123,7 @@ def test_the_command_writes_complete_files(platform: str, tmp_path: Path) -> Non
     assert (written(target) if platform in FOLDERS else {"": target.read_bytes()}) == expected
 
 
-@pytest.mark.parametrize(
-    ("name", "platform", "reason"),
-    [
-        ("triple_pole_two_outputs", "moodle", "observer.L: it is not unique here: 3 free parameters; export to stack"),
-        ("triple_pole_two_outputs", "rexams", "observer.L: it is not unique here"),
-        ("output_feedback_servo", "moodle", "compensator.F: an expression is no number"),
-        ("output_feedback_servo", "qti", "compensator.F: an expression is no number"),
-        ("tanks_observer_parametric", "qti", "observer.L: its entries hold symbols"),
-        (
-            "region_nonconvex",
-            "stack",
-            "stability_region.stable_if: an exported grader does not hold what decides about it",
-        ),
-        ("third_order_gramian", "prairielearn", "its data hold"),
-    ],
-)
+@tabled
 def test_what_a_platform_cannot_hold_is_refused_and_nothing_is_written(
     name: str, platform: str, reason: str, tmp_path: Path
 ) -> None:

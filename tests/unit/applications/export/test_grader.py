@@ -13,6 +13,7 @@ import sympy as sp
 from symobs.applications.export.grader import claims
 from symobs.applications.export.grader.claims import judge, score, written
 from symobs.applications.export.grader.values import ONE, number, points, poly
+from tests.kit import tabled
 
 S = sp.Symbol("s")
 HALF, QUARTER = Fraction(1, 2), Fraction(1, 4)
@@ -174,25 +175,7 @@ def test_zeros_that_are_asked_for_must_be_there() -> None:
     assert outcome(question(harmless), "L", {"L": rows("3 5; 2 0")})[0] == "wrong"
 
 
-@pytest.mark.parametrize(
-    ("given", "rounds"),
-    [
-        ("6.33; 27", True),
-        ("6.3; 27", True),
-        ("6.333; 27.0", True),
-        ("6.33; 54/2", True),
-        ("0.63e1; 27", True),
-        ("633e-2; 27", True),
-        (".633e1; 27", True),
-        ("6.34; 27", False),
-        ("6.334; 27", False),
-        ("6.4; 27", False),
-        ("6.33; 26", False),
-        ("6.33; 27.1", False),
-        ("6; 27", False),
-        ("63/10; 27", False),
-    ],
-)
+@tabled
 def test_a_rounded_gain_is_named_so(given: str, rounds: bool) -> None:  # noqa: FBT001 - a table
     said = ("wrong", "rounded", "L is rounded, and its exact value is asked for", Fraction(1, 3))
     found = outcome(question(THIRDS), "L", {"L": rows(given)})
@@ -203,9 +186,7 @@ def test_a_rounded_gain_is_named_so(given: str, rounds: bool) -> None:  # noqa: 
     assert rows(given) != [["6.5"], ["27"]]
 
 
-@pytest.mark.parametrize(
-    ("given", "slip"), [("0.67 0.67; -0.33 1.33", "rounded"), ("0.67 0.68; -0.33 1.33", ""), ("0.67 1; -0.33 1.33", "")]
-)
+@tabled
 def test_every_column_of_a_row_is_rounded(given: str, slip: str) -> None:
     square = ([["0", "0"], ["0", "0"]], [["1", "0"], ["0", "1"]])
     thirds = gain("L", *square, "10/9 2 1", rows("2/3 2/3; -1/3 4/3"))
@@ -417,20 +398,7 @@ def test_F_belongs_to_the_right_gains_that_were_given() -> None:
     assert outcome(asked, "F", {**given, "K": rows("2 0"), "L": rows("4; 0"), "F": [["8/(s + 7)"]]})[0] == "right"
 
 
-@pytest.mark.parametrize(
-    ("mine", "right", "easy"),
-    [
-        ("0; 0; 0", "1; 1; 1", True),
-        ("0; 1; 0", "1; 1; 1", True),
-        ("0; 1; 0", "0; 2; 0", False),
-        ("1; 1; 0", "1; 1; 1", False),
-        ("1 0; 0 1; 0 0", "1 1; 1 1; 0 0", False),
-        ("1 0; 0 1; 0 0", "1 1; 1 1; 1 0", True),
-        ("0; 0", "0; 0", True),
-        ("0; 5", "1; 1", True),
-        ("1 1; 1 0; 0 0", "1 1; 1 1; 1 1", False),
-    ],
-)
+@tabled
 def test_when_a_wrong_gain_makes_the_rest_easy(mine: str, right: str, easy: bool) -> None:  # noqa: FBT001 - a table
     read_as = ([[Fraction(cell) for cell in row] for row in rows(text)] for text in (mine, right))
     assert claims.is_degenerate(*read_as) is easy
@@ -491,15 +459,7 @@ def test_functions_are_equal_as_functions() -> None:
     assert outcome(asked, "M", {"M": [["s"]]})[:3] == ("unreadable", "", "s is not a letter of this question (z)")
 
 
-@pytest.mark.parametrize(
-    ("given", "means"),
-    [
-        *((word, "yes") for word in ("yes", ' "Yes" ', "true", "Ja")),
-        *((word, "no") for word in ("no", "False", "nein")),
-        ("conditional", "conditional"),
-        *((word, "") for word in ("yess", "'yes'")),
-    ],
-)
+@tabled
 def test_a_word_is_right_or_wrong(given: str, means: str) -> None:
     word = {"name": "v", "part": "pbh.verdict", "letter": "verdict", "weight": "1", "function": False, "kind": "word"}
     for right in ("yes", "no", "conditional"):

@@ -16,6 +16,7 @@ from zipfile import ZipFile
 import pytest
 
 from symobs.applications.export import ExerciseSet, export
+from tests.kit import tabled
 from tests.support.tools.exported import checked, held, random_answer, right
 
 QTI = ("servo_observer", "triple_pole_two_outputs", "third_order_matching", "detectable", "two_inputs_feedback")
@@ -158,7 +159,7 @@ def processed(item: Element, responses: dict[str, Any]) -> dict[str, Any]:
     return values
 
 
-@pytest.mark.parametrize("name", QTI)
+@tabled
 def test_an_item_gives_full_marks_where_check_does(name: str) -> None:
     each, draw = held(name), random.Random(name)  # noqa: S311
     item = item_of(each)

@@ -15,6 +15,7 @@ import pytest
 
 from symobs.applications.export import export
 from symobs.applications.export.grader.claims import judge, score
+from tests.kit import tabled
 from tests.support.tools.exported import BY_HAND, HELD, OTHER_HALF, checked, held, random_answer
 
 if TYPE_CHECKING:
@@ -111,15 +112,7 @@ def test_the_server_gives_the_credits_of_check(name: str, tmp_path: Path) -> Non
             }
 
 
-@pytest.mark.parametrize(
-    ("name", "given"),
-    [
-        ("zeros", {"L": [["45/7", "4/49"], ["793/21", "-10/49"], ["382/3", "-3/7"]]}),  # places the poles, has no zero
-        ("output_feedback_servo", {"L": [["19"], ["80"]], "F": [["(316 s + 396)/(s^2 + 23 s + 160)"]]}),
-        ("output_feedback_servo", {"K": [["4", "4"]], "F": [["(400 + 319 s)/(s^2 + 23 s + 161)"]]}),
-        ("output_feedback_servo", {"F": [["(400 + 319 s)/(s^2 + 23 s + 161)"]]}),
-    ],
-)
+@tabled
 def test_what_is_nearly_right_has_the_verdict_of_check(name: str, given: dict[str, list[list[str]]]) -> None:
     exercise = held(name).first
     found = {part: (told["verdict"], told["credit"]) for part, told in judge(exercise.question, given).items()}

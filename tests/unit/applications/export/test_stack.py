@@ -13,6 +13,7 @@ from xml.etree.ElementTree import Element, fromstring
 import pytest
 
 from symobs.applications.export import export
+from tests.kit import tabled
 from tests.support.tools.exported import checked, held, random_answer
 
 if TYPE_CHECKING:
@@ -97,19 +98,7 @@ def test_the_trees_give_the_credits_of_check() -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(
-    "name",
-    [
-        "other signs",
-        "either sign",
-        "zeros",
-        "square",
-        "two_inputs_feedback",
-        "tanks_observer_parametric",
-        "third_order_plant",
-        "detectable",
-    ],
-)
+@tabled
 def test_the_trees_give_the_credits_of_check_in_more_examples(name: str) -> None:
     agree(name, 25)
 

@@ -24,6 +24,7 @@ from symobs.applications.live.request import parsed
 from symobs.pages.formats.json import result_object
 from symobs.problem import validate
 from symobs.tasks.result import result_type, tasks
+from tests.kit import tabled
 from tests.support.sampling import every
 from tests.support.tools.command_line import EXAMPLES, SAFETY, environment
 
@@ -241,18 +242,7 @@ def test_a_value_takes_the_place_of_its_symbol() -> None:
     assert asked(DETECTABLE, at={"c": "1"}, cards_at=True, cases=True)["cases"] == general["cases"]
 
 
-@pytest.mark.parametrize(
-    ("at", "where", "message"),
-    [
-        ({"q": "1"}, "at.q", "no symbol of the problem"),
-        ({"c": "1) + (2"}, "at.c", ""),
-        ({"c": "zz"}, "at.c", ""),
-        ({"c": ""}, "at.c", "an exact value is expected"),
-        ({"c": True}, "at.c", "an exact value is expected"),
-        ({"c": "1" * 201}, "at.c", "an exact value is expected"),
-        ({"__class__": "1"}, "at.__class__", "no name of a symbol"),
-    ],
-)
+@tabled
 def test_a_value_that_cannot_be_is_refused(at: dict[str, object], where: str, message: str) -> None:
     found = asked(DETECTABLE, at=at)
     assert found["status"] == "bad"
@@ -322,28 +312,7 @@ def test_an_answer_is_pure() -> None:
     assert json.dumps(answer(request)) == json.dumps(answer(json.loads(json.dumps(request))))
 
 
-@pytest.mark.parametrize(
-    ("change", "where"),
-    [
-        ({"schema": "symobs-live/2"}, "schema"),
-        ({"want": "everything"}, "want"),
-        ({"extra": 1}, "extra"),
-        ({"cards_at": 1}, "cards_at"),
-        ({"cards": "K"}, "cards"),
-        ({"courses": {"count": 10**9}}, "courses.count"),
-        ({"courses": {"count": True}}, "courses.count"),
-        ({"courses": {"start": "1"}}, "courses.start"),
-        ({"courses": {"end": "-1"}}, "courses.end"),
-        ({"courses": []}, "courses"),
-        ({"at": {"c": 0.5}}, "at.c"),
-        ({"problem": {**SERVO, "plant": {"A": [[0.5]]}}}, "problem.plant.A[0][0]"),
-        ({"problem": {**SERVO, "task": "observer "}}, "task"),
-        ({"problem": {**SERVO, "convention": "../../etc/passwd"}}, "convention"),
-        ({"problem": {**SERVO, "convention": "/etc/passwd.toml"}}, "convention"),
-        ({"problem": {**SERVO, "open": 1}}, "open"),
-        ({"task": "import os"}, "task"),
-    ],
-)
+@tabled
 def test_a_request_that_cannot_be_is_refused_at_its_place(change: dict[str, Any], where: str) -> None:
     found = asked(SERVO, **{"courses": {}, **change}) if "problem" not in change else asked(change["problem"])
     if "schema" in change or "want" in change:

@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import re
 
-import pytest
-
 from symobs.applications.live import answer
 from symobs.applications.live.assets import ASSETS, script, words
 from symobs.applications.live.views import pole_sets
 from symobs.formula.phrases.languages import languages
 from symobs.tasks.result import tasks
+from tests.kit import tabled
 from tests.support.paths import ROOT
 
 SITE = ROOT / "symobs" / "applications" / "live" / "site"
@@ -51,13 +50,7 @@ def test_the_script_has_its_words_before_it_is_asked_for_any() -> None:
     assert "Beobachterpole" in whole.splitlines()[-1]
 
 
-@pytest.mark.parametrize(
-    ("code", "note", "says"),
-    [
-        ("en", "No gain moves the mode 1 of (A, B).", "rank 𝒪 equals 2"),
-        ("de", "Keine Verstärkung verschiebt den Eigenwert 1 von (A, B).", "rang 𝒪 gleich 2"),
-    ],
-)
+@tabled
 def test_answers_speak_the_language_of_their_problem(code: str, note: str, says: str) -> None:
     plant = {"A": "[1 0; 0 -1]", "B": "[0; 1]", "C": "[1 1]"}
     problem = {"task": "state_feedback", "plant": plant, "specification": {"poles": "-2, -2"}, "language": code}

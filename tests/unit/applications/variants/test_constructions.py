@@ -11,6 +11,7 @@ import sympy as sp
 
 from symobs.applications.variants.drawing.constructions import CONSTRUCTIONS, Made
 from symobs.applications.variants.drawing.stream import Draws
+from tests.kit import tabled
 from tests.support.independent_algebra.plain_fractions import determinant, eliminate, identity, inverse, plus, times
 
 if TYPE_CHECKING:
@@ -81,7 +82,7 @@ def test_members_have_a_whole_gain_for_their_poles() -> None:
         assert asked["observer_poles"] == wanted["control_poles"]
 
 
-@pytest.mark.parametrize("sizes", [[1, 1, 1, 0], [2, 0, 0, 1], [1, 1, 1, 1]])
+@tabled
 def test_parts_are_hidden_where_the_sizes_say(sizes: list[int]) -> None:
     kept = 0
     for plant, _ in made("decomposition", 60, sizes=sizes):

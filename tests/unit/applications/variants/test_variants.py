@@ -25,13 +25,13 @@ from symobs.ground.errors import CertificateRejected, ProblemErrors, UsageError
 from symobs.problem import read
 from symobs.problem.expect import mismatches
 from symobs.tasks.result import render
+from tests.kit import tabled
 from tests.support.paths import ROOT
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
 FOLDER = ROOT / "worked_examples" / "variants"
-NAMES = sorted(path.stem for path in FOLDER.glob("*.toml"))
 GOLDEN = json.loads((ROOT / "tests" / "unit" / "applications" / "variants" / "golden.json").read_text(encoding="utf-8"))
 OBSERVER = (FOLDER / "observer.toml").read_text(encoding="utf-8")
 
@@ -70,7 +70,7 @@ def numbers_of_page(text: str) -> Iterator[str]:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", NAMES)
+@tabled
 def test_variants_of_the_examples(name: str) -> None:
     text = (FOLDER / f"{name}.toml").read_text(encoding="utf-8")
     variants = found(text, 4)
@@ -247,7 +247,7 @@ def test_relations_among_parameters_are_read_with_the_table() -> None:
     assert "variants.parameters.a.integers" in {error.where for error in raised.value.errors}
 
 
-@pytest.mark.parametrize("seed", [-1, 2**63, "abc", True, 1.5])
+@tabled
 def test_only_whole_seeds_are_taken(seed: Any) -> None:
     with pytest.raises(UsageError, match="is no seed"):
         Variants(OBSERVER, 1, seed)

@@ -11,6 +11,7 @@ from symobs.exact import Ideal, Scalar, apart_from_zero
 from symobs.exact.ideals.conjugate_points import conjugate_points, shortened
 from symobs.exact.ideals.ideal import FEW
 from symobs.formula.expression import parse_scalar
+from tests.kit import tabled
 
 a, b, c = (Scalar.symbol(name) for name in "abc")
 
@@ -56,17 +57,7 @@ def test_parts_of_the_points_where_two_curves_meet(one: Scalar, other: Scalar) -
             assert monic(found, "a", "b") == wanted
 
 
-@pytest.mark.parametrize(
-    "texts",
-    [
-        ["b^7 - b - 1", "2*a - 3*b^2"],
-        ["b^8 - 2", "a - b^9 + 1", "3*a*c - b*c - 1"],
-        ["b^7 - b - 1", "a*b - 1", "c - a^3"],
-        ["(b^3 - 2)*(b^4 + b + 1)", "a - b", "a^3 - 2"],
-        ["b^7 - b - 1", "a - b", "a^2 - 5"],
-        ["b^7 - b - 1", "(b^7 - b - 1)*a^2 + a - b^2"],
-    ],
-)
+@tabled
 def test_systems_that_one_coordinate_solves(texts: list[str]) -> None:
     equations = [parse_scalar(text) for text in texts]
     found = conjugate_points(equations)
@@ -76,7 +67,7 @@ def test_systems_that_one_coordinate_solves(texts: list[str]) -> None:
     assert monic(found[1], *names, "b") == basis(equations, *names, "b")
 
 
-@pytest.mark.parametrize("texts", [["b^8 - 2", "a^2 - b"], ["a*b - 1", "a - b"], ["b^8 - 2", "b^8*a - 2*a + c"]])
+@tabled
 def test_other_systems_are_left_alone(texts: list[str]) -> None:
     assert conjugate_points([parse_scalar(text) for text in texts]) is None
 

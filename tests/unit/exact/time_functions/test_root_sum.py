@@ -13,18 +13,11 @@ from symobs.exact import EIGENVALUE, AlgebraicExtension, Scalar
 from symobs.exact.core.generators import derivative, substitute
 from symobs.exact.sympy_bridge.conversion import scalar_to_sympy
 from symobs.exact.time_functions.root_sum import RootSum
+from tests.kit import tabled
 
 T = Scalar.symbol("t")
 LAMBDA = Scalar.symbol(EIGENVALUE)
 t = sympy.Symbol("t")
-
-PLANTS = (
-    "[0 1 0; 0 0 1; -1 -1 0]",  # one real root and a complex pair
-    "[0 1 0; 0 0 1; 1 3 0]",  # three real roots that radicals write with i only
-    "[0 1 0 0; 0 0 1 0; -1 -1 0 0; 1 0 0 -2]",  # beside a rational one
-    "[0 1 0 0; 0 0 1 0; 0 0 0 1; -1 -1 0 0]",  # a quartic
-    "[0 1 0 1 0 0; 0 0 1 0 1 0; -1 -1 0 0 0 1; 0 0 0 0 1 0; 0 0 0 0 0 1; 0 0 0 -1 -1 0]",  # each root twice
-)
 
 
 def numbers(matrix: Any, values: dict[str, Any], time: Any) -> mpmath.matrix:
@@ -39,7 +32,7 @@ def close(left: mpmath.matrix, right: mpmath.matrix) -> bool:
     return bool(mpmath.norm(left - right) < mpmath.mpf(10) ** -12)
 
 
-@pytest.mark.parametrize("A", PLANTS)
+@tabled
 def test_the_exponential_is_that_of_the_numbers(A: str) -> None:
     result: Any = symobs.matrix_exponential(symobs.StateSpace(A))
     assert (result.verdict, result.conditions) == ("yes", ())

@@ -22,6 +22,7 @@ from symobs.exact.time_functions.quasipolynomial import Key, Quasipolynomial, qu
 from symobs.ground.errors import CertificateRejected, DerivationRejected, InputError, ShapeMismatch
 from symobs.proof.derivation import CaseStep, Section
 from symobs.tasks.result.conversions import to_sympy
+from tests.kit import tabled
 from tests.support.paths import ROOT
 from tests.support.problems.problems_in_time import PROBLEMS_IN_TIME
 from tests.support.sampling import every
@@ -157,18 +158,7 @@ def test_the_covariance_of_four_integrators() -> None:
     assert result.covariance[0, 0] == 16 * sympy.Symbol("r") / T
 
 
-@pytest.mark.parametrize(
-    ("A", "C", "asked"),
-    [
-        ("[0 1; -k -c]", "[1 0]", "square roots of the parameters"),
-        ("[-1 0 0; 1 -2 0; 0 1 -3]", "[0 0 1]", "the inverse of the 3x3 Gramian, of "),
-        (
-            "[0 1 0 0 0; 0 0 1 0 0; 0 0 0 1 0; 0 0 0 0 1; 0 0 0 0 0]",
-            "[1 0 0 0 0]",
-            "the Gramian of 5 states, more than 4",
-        ),
-    ],
-)
+@tabled
 def test_what_stays_open_about_a_covariance_is_named(A: str, C: str, asked: str) -> None:
     plant = symobs.StateSpace(A, None, C, symbols={"k": "positive", "c": "positive"})
     result = symobs.initial_state_covariance(plant, R="1")
@@ -546,7 +536,7 @@ def test_lengths_against_sympy() -> None:
         assert 2 * ours <= 3 * theirs
 
 
-@pytest.mark.parametrize("asked", [{}, {"symbols": {"T": "real"}}, {"symbols": {"T": "nonnegative"}}])
+@tabled
 def test_a_horizon_that_may_be_zero_is_said_to_be_positive(asked: dict[str, Any]) -> None:
     """At T = 0 the Gramian is 0 and sees nothing, though the finite sum has rank 2."""
     plant = symobs.StateSpace("[0 1; 0 0]", C="[1 0]", **asked)

@@ -37,6 +37,7 @@ from symobs.problem import parse, read, validate
 from symobs.problem.expect import mismatches
 from symobs.proof.derivation import convention_signs, translated
 from symobs.tasks.result import Document, render
+from tests.kit import tabled
 from tests.support.sampling import every
 from tests.support.tools.command_line import EXAMPLES, inside
 
@@ -421,16 +422,7 @@ def test_a_convention_that_does_not_exist(tmp_path: Path) -> None:
             read(f'convention = "{named}"\n' + DESIGN, folder=tmp_path / "inner")
 
 
-@pytest.mark.parametrize(
-    "law",
-    [
-        {"feedback": "u = K\N{GREEK SMALL LETTER LAMDA} x_hat"},
-        {"feedback": f"u = {'K' * 41} x_hat"},
-        {"observer": "A - K__ C"},
-        {"observer": "A - 2 C"},
-        {"observer": "A - \N{FULLWIDTH LATIN CAPITAL LETTER L} C"},
-    ],
-)
+@tabled
 def test_the_letter_of_a_gain_is_a_letter(law: dict[str, str]) -> None:
     """What TeX cannot set, and what would not fit on a line, is no letter in a law either."""
     with pytest.raises(ProblemErrors, match="this cannot be read"):

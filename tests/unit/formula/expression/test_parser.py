@@ -31,6 +31,7 @@ from symobs.ground.errors import (
     SymobsError,
     UnknownName,
 )
+from tests.kit import tabled
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -165,15 +166,7 @@ def test_an_index_below_belongs_to_the_name_that_is_declared() -> None:
     assert parse_scalar("h₂ + x₁", {"h_2": "real", "x1": "real"}) == Scalar.symbol("h_2") + Scalar.symbol("x1")
 
 
-@pytest.mark.parametrize(
-    ("text", "expected"),
-    [
-        ("(1/3)[10; 8]", "[10/3; 8/3]"),
-        ("-[a 2]/a", "[-1 -2/a]"),
-        ("[a b, a + b; a², 2·b]", "[a*b a+b; a^2 2*b]"),  # commas set the entries of the first row apart
-        ("[a b 1, 2 -3]", "[a*b 1 2 -3]"),
-    ],
-)
+@tabled
 def test_matrices_are_read_as_they_are_printed(text: str, expected: str) -> None:
     assert parse_matrix(text) == parse_matrix(expected)
 
@@ -285,16 +278,7 @@ def test_matrix_of_nested_lists(value: object, expected: list[list[Fraction | in
     assert fractions_of(parse_matrix(value)) == expected
 
 
-@pytest.mark.parametrize(
-    ("value", "row", "message"),
-    [
-        ("[1 2; 3]", 2, "row 2 has 1 entry, but row 1 has 2"),
-        ("[1; 2; 3 4 5]", 3, "row 3 has 3 entries, but row 1 has 1"),
-        ("[1 -2; 1 - 2]", 2, "row 2 has 1 entry, but row 1 has 2"),
-        ([[1, 2], [3, 4, 5]], 2, "row 2 has 3 entries, but row 1 has 2"),
-        ([[], [1]], 2, "row 2 has 1 entry, but row 1 has 0"),
-    ],
-)
+@tabled
 def test_ragged_rows_name_the_row_and_both_lengths(value: object, row: int, message: str) -> None:
     with pytest.raises(ShapeMismatch) as caught:
         parse_matrix(value, where="plant.A")
@@ -377,20 +361,7 @@ def test_polynomial(text: str, variable: str, expected: Scalar) -> None:
     assert parse_polynomial(text, variable) == expected
 
 
-@pytest.mark.parametrize(
-    ("text", "message"),
-    [
-        ("1/s", "stands in a denominator"),
-        ("(s+1)/(s+2)", "stands in a denominator"),
-        ("5", "its degree in s is 0"),
-        ("b + 1", "its degree in s is 0"),
-        ("s - s", "its degree in s is 0"),
-        ("z^2 + 1", "its degree in s is 0"),
-        ("(s + i)^2", "complex coefficients"),
-        ("s, 1", "one expression is expected"),
-        ("[s 1]", "one number is expected, but a 1×2 matrix came"),
-    ],
-)
+@tabled
 def test_no_polynomial(text: str, message: str) -> None:
     with pytest.raises(ExpressionError, match=message):
         parse_polynomial(text, "s", where="observer_polynomial")
@@ -548,15 +519,7 @@ def assert_safe(error: SymobsError) -> None:
     assert len(str(error)) < 500
 
 
-@pytest.mark.parametrize(
-    ("text", "line", "column", "excerpt"),
-    [
-        ("a + * b", 1, 5, "a + * b"),
-        ("[1 2\n3 $]", 2, 3, "[1 2\\n3 $]"),
-        ("1 +", 1, 4, "1 +"),
-        ("a+" * 40 + "$" + "+a" * 40, 1, 81, "…a+a+a+a+a+a+a+a+a+a+a+a+$+a+a+a+a+a+a+…"),
-    ],
-)
+@tabled
 def test_error_points_into_the_text(text: str, line: int, column: int, excerpt: str) -> None:
     with pytest.raises(ExpressionError) as caught:
         parse_matrix(text)
@@ -574,14 +537,7 @@ def test_unknown_name_says_the_nearest_and_the_declared_ones() -> None:
     assert 'did you mean "omega"? declared: b, omega' in error.repair
 
 
-@pytest.mark.parametrize(
-    ("text", "repair"),
-    [
-        ("sqr(4)", 'did you mean "sqrt"?'),
-        ("b + system(1)", "declared: b, s"),
-        ("qqqqqq", "declared: b, s"),
-    ],
-)
+@tabled
 def test_unknown_name_among_declared_ones(text: str, repair: str) -> None:
     with pytest.raises(UnknownName) as caught:
         parse_scalar(text, {"b": "real"}, variable="s")
@@ -602,10 +558,7 @@ def test_a_matrix_without_its_brackets_is_told_so(text: str) -> None:
     assert parse_matrix("2 k", {"k": "real"}).shape == (1, 1)
 
 
-@pytest.mark.parametrize(
-    ("poles", "repair"),
-    [("-1 -2", '"-1, -2"'), ("-1/2  +3, -4", '"-1/2, +3, -4"'), (["-1 -2"], '"-1, -2"')],
-)
+@tabled
 def test_numbers_with_a_blank_and_a_sign_between_are_not_guessed_at(poles: object, repair: str) -> None:
     with pytest.raises(ExpressionError, match="may be several numbers or one sum") as raised:
         parse_poles(poles, where="specification.poles")
@@ -718,7 +671,7 @@ def test_place_of_a_bad_cell() -> None:
         parse_matrix("1, 2")
 
 
-@pytest.mark.parametrize("name", ["a", "i", "j", "omega_1", "Lam", "h1", "x" * 64, "match"])
+@tabled
 def test_declared_name(name: str) -> None:
     assert declared_name(name) == name
 
@@ -752,28 +705,13 @@ def test_name_that_cannot_be_declared(name: object, message: str) -> None:
     assert_safe(caught.value)
 
 
-@pytest.mark.parametrize(
-    ("text", "expected"),
-    [("sqrt(p^2)", "p"), ("sqrt(12 p^2 b)", "p*sqrt(12*b)"), ("sqrt(a^4)", "a**2"), ("sqrt(a^3)", "a*sqrt(a)")],
-)
+@tabled
 def test_a_root_of_a_square_has_the_sign_that_is_known(text: str, expected: str) -> None:
     found = parse_scalar(text, {"a": "real", "b": "real", "p": "positive"}, functions=True)
     assert found == parse_scalar(expected, functions=True)
 
 
-@pytest.mark.parametrize(
-    ("text", "message"),
-    [
-        ("sqrt(a^2)", "a may be negative"),
-        ("sqrt(-a^2)", "a may be negative"),
-        ("sqrt(b (a - p)^2)", "a - p may be negative"),
-        ("sqrt(b/a^2)", "a may be negative"),
-        ("sqrt(-p^2)", "sqrt of a negative number"),
-        ("sqrt(-4)", "sqrt of a negative number"),
-        ("1 + cos(pi/7)", "is not written with square roots here, at column 5"),
-        ("sin(2 pi/11)", "is not written with square roots here"),
-    ],
-)
+@tabled
 def test_functions_without_a_value_are_refused(text: str, message: str) -> None:
     with pytest.raises(ExpressionError, match=message) as caught:
         parse_scalar(text, {"a": "real", "b": "real", "p": "positive"}, functions=True)

@@ -17,6 +17,7 @@ from symobs.formula.expression.source import Source, Token
 from symobs.formula.expression.syntax_parser import parse
 from symobs.formula.expression.syntax_tree import SyntaxNode, every, operands_first
 from symobs.ground.errors import InputError
+from tests.kit import tabled
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -106,21 +107,7 @@ def test_a_tree_has_every_operand_in_its_place_or_its_fault(text: str) -> None:
             assert part.kind == "row" or len(part.places) == wanted
 
 
-@pytest.mark.parametrize(
-    ("text", "says"),
-    [
-        ("1 +", 'a number, a name or "(" is expected at the end, at column 4'),
-        ("2 * ", "at the end, at column 5"),
-        ("[1,]", 'before "]", at column 4'),
-        ("*1", 'before "*", at column 1'),
-        ("(*2)", 'before "*", at column 2'),
-        ("[;]", 'before "]", at column 3'),
-        ("2^", "at the end, at column 3"),
-        ("()", 'before ")", at column 2'),
-        ("1 2", "a number follows a number, at column 3"),
-        ("[1 2; 3]", "row 2 has 1 entry, but row 1 has 2, at column 1"),
-    ],
-)
+@tabled
 def test_what_is_missing_is_said_with_its_place(text: str, says: str) -> None:
     with pytest.raises(InputError, match=re.escape(says)):
         parse_matrix(text)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from symobs.exact import Matrix, Root, Scalar, roots_of
-from symobs.formula.phrases import ASSERTS, DEMANDS, PHRASES
+from symobs.formula.phrases import ASSERTS, PHRASES
 from symobs.formula.tree import (
     Apply,
     Conjunction,
@@ -29,6 +29,7 @@ from symobs.formula.tree import (
     Transpose,
 )
 from symobs.proof.derivation import CaseStep, Conclude, Define, Diagram, Equal, Given, Note, Sentence
+from tests.kit import tabled
 from tests.support.problems.steps import (
     A_IS,
     C_IS,
@@ -59,8 +60,6 @@ pytestmark = pytest.mark.usefixtures("own_phrases")
 
 
 # -- facts in sentences ------------------------------------------------------------------------------------------------
-
-UNSTABLE = Given((said(A, Matrix.of([[0, 1], [2, 1]])),), silent=True)
 
 
 @pytest.mark.parametrize(
@@ -168,7 +167,7 @@ def test_stability_is_that_of_the_time_domain() -> None:
     refused(slow, Conclude(None, (Predicate("stable", z),)), start=start, discrete=False)
 
 
-@pytest.mark.parametrize("key", sorted(ASSERTS.keys() - DEMANDS.keys()))
+@tabled
 def test_a_sentence_that_asserts_a_property_has_it_among_its_facts(key: str, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(PHRASES, key, "It is so.")
     facts: Mapping[str, Fact] = {

@@ -12,6 +12,7 @@ from symobs.exact.core.generators import PI, function
 from symobs.formula.tree import Apply, Environment, Letter, Literal, Predicate, Product, Relation, Roots
 from symobs.proof.derivation.wording_check import Said, fits
 from symobs.proof.derivation.wording_check import rests as rests_on
+from tests.kit import tabled
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -56,18 +57,7 @@ def test_a_pair_overshoots_by_its_own_ratio() -> None:
         assert not fits("overshoot_held", compared(other, "<=", 1), E)
 
 
-@pytest.mark.parametrize(
-    ("ratio", "higher"),
-    [
-        ("26/25", "21/20"),
-        ("1", "101/100"),
-        ("10", "101/10"),
-        ("999/1000", "1"),
-        ("12345", "12445"),
-        ("100", "101"),
-        ("1000", "1010"),
-    ],
-)
+@tabled
 def test_a_third_digit_is_one_higher(ratio: str, higher: str) -> None:
     """One unit in the third digit of 1.04 is 0.01, of 10 it is 0.1, of 0.999 it is 0.001 and of 12345 it is 100."""
     e = E.extended_by(values={"omega_d": 2 * Scalar.of(Fraction(ratio))})

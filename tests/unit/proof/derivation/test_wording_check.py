@@ -29,6 +29,7 @@ from symobs.ground.errors import DerivationRejected
 from symobs.proof.certificate.pointwise import Pointwise
 from symobs.proof.derivation.wording_check import Said, _one_higher, fits
 from symobs.proof.derivation.wording_check import rests as rests_on
+from tests.kit import tabled
 from tests.support.problems.steps import said
 from tests.support.tampering.mutations import lines_of
 
@@ -208,9 +209,7 @@ STABLE, MARGINAL, UNSTABLE = (property_of(name) for name in ("stable", "marginal
 NOTHING = (property_of("never_zero"), said(1, 1))
 
 
-@pytest.mark.parametrize(
-    ("verdict", "of"), [("detectability", "observability"), ("stabilizability", "controllability")]
-)
+@tabled
 def test_a_verdict_rests_on_the_unobservable_modes(verdict: str, of: str) -> None:
     """State 1 is not seen: its mode, 1/2 or −1, has nothing to do with the mode that is."""
     yes, no = f"yes_{verdict}", f"no_{verdict}"
@@ -245,7 +244,7 @@ def test_a_rank_that_is_too_much_to_follow_is_not_told_for_all(monkeypatch: pyte
     assert fits("no_observability", rank(Literal(Matrix.of([[1, h], [2, 2 * h]])), "<", 2), HERE) is False
 
 
-@pytest.mark.parametrize("sets", [((2,),), ((1,), (2,)), ((1, 2),)])
+@tabled
 def test_other_states_than_those_whose_rows_were_added_are_rejected(sets: tuple[tuple[int, ...], ...]) -> None:
     """With C = [0 1 1] and A = diag(1, 2, 3) state 1 has to be measured, and no other."""
     result: Any = symobs.observability(symobs.StateSpace("[1 0 0; 0 2 0; 0 0 3]", None, "[0 1 1]"))
@@ -307,9 +306,7 @@ def test_what_is_counted_in_words_is_counted_in_the_step(key: str) -> None:
                 line.told(replace(step, sentence=replace(step.sentence, slots=told))).check()
 
 
-@pytest.mark.parametrize(
-    ("said", "instead"), [("some_on_circle", "one_on_circle"), ("pair_remains", "one_from_settling")]
-)
+@tabled
 def test_several_poles_are_not_told_as_one(said: str, instead: str) -> None:
     asked, _ = COUNTING[said]
     line, step = line_saying(said, asked().derivation)

@@ -16,6 +16,7 @@ from symobs.problem import validate
 from symobs.problem.file_tables import parse
 from symobs.problem.question import question_of
 from symobs.tasks.result import render
+from tests.kit import tabled
 
 SERVO = ("[0 1; 0 -1]", "[0; 1]", "[1 0]")
 SAMPLED = ("[1 1-exp(-T); 0 exp(-T)]", "[T-1+exp(-T); 1-exp(-T)]", "[1 0]")
@@ -90,16 +91,7 @@ def test_the_three_kinds_of_design_know_what_vanishes() -> None:
     assert "sin θ" not in loop.to("text")
 
 
-@pytest.mark.parametrize(
-    ("keyword", "value", "reason"),
-    [
-        ("polynomial", "s^2 + exp(s) s + 1", r"exp\(s\) is a function of s"),
-        ("poles", "-exp(i*w), -exp(-i*w)", "exp of a complex number"),
-        ("poles", "-cos(theta) + i, -1", "not closed under conjugation: .* is missing"),
-        ("polynomial", "s^2 + sqrt(cos(theta)) s + 1", "has no exact value here"),
-        ("polynomial", "s^2 + 2^(1/3) s + 3^(1/3)", "roots that may depend on each other"),
-    ],
-)
+@tabled
 def test_what_no_algebra_decides_is_refused_with_the_reason(keyword: str, value: str, reason: str) -> None:
     with pytest.raises(InputError, match=reason) as raised:
         symobs.observer(symobs.StateSpace(*SERVO), **{keyword: value})
@@ -121,14 +113,7 @@ def test_a_transfer_function_has_functions_of_parameters() -> None:
     assert float(found.subs(point)) == pytest.approx(wanted)
 
 
-@pytest.mark.parametrize(
-    ("given", "reason"),
-    [
-        ("(s + cos(2*theta))/(s + 1)/(s + 2 cos(theta)^2 - 1)", "have a common factor, for all values"),
-        ("exp(-s)/(s + 1)", r"exp\(-s\) is a function of s"),
-        ("[cos(theta)/s sin(theta)/s]", "depend on each other"),
-    ],
-)
+@tabled
 def test_a_transfer_function_that_is_no_plant_is_refused(given: str, reason: str) -> None:
     with pytest.raises(InputError, match=reason):
         symobs.StateSpace.from_transfer_function(given)

@@ -20,6 +20,7 @@ from symobs.problem.file_tables import parse
 from symobs.problem.question import question_of
 from symobs.system.specification import PolePattern
 from symobs.tasks.result import Document, render
+from tests.kit import tabled
 
 
 def integrators(order: int, **symbols: str) -> symobs.StateSpace:
@@ -34,7 +35,7 @@ def polynomial(order: int, poles: object) -> list[float]:
     return [1.0, *(float(entry) for entry in reversed(list(K)))]
 
 
-@pytest.mark.parametrize("order", [1, 2, 3, 4, 5, 6, 7, 8])
+@tabled
 def test_a_butterworth_polynomial_is_that_of_scipy(order: int) -> None:
     denominator = scipy.signal.butter(order, 1.7, analog=True)[1]
     assert polynomial(order, {"butterworth": "1.7"}) == pytest.approx(denominator.tolist(), rel=1e-9)
@@ -170,48 +171,14 @@ def test_a_page_that_says_a_real_pair_settles_is_rejected() -> None:
         replace(found, kind=false).to("text")
 
 
-LATE = "does not decay like"
-UNSIGNED = [
-    ("damping = 2, settling_time = 2", f"damping is 2, which is 1 or more, and such a pair {LATE}"),
-    ("damping = 1, settling_time = 2", f"damping is 1, which is 1 or more, and such a pair {LATE}"),
-    ("damping = p, settling_time = 2", f"damping is p, which may be 1 or more, and such a pair {LATE}"),
-    ("damping = exp(-p), settling_time = 2", "which may be 1 or more"),
-    ("damping = 1/2, settling_time = a", "settling_time is a, which need not be positive; declare a positive"),
-    ("damping = a, natural_frequency = p", "damping is a, which need not be positive; declare a positive"),
-    ("damping = 1/2, natural_frequency = a*p", "which need not be positive; declare a positive in symbols"),
-    ("damping = cos(a), natural_frequency = 1", "damping is cos(a), which need not be positive; give a positive"),
-    ("butterworth = a", "butterworth is a, which need not be positive"),
-    ("bessel = p - 1", "which need not be positive; give a positive bessel"),
-    ("itae = sin(p)", "which need not be positive; give a positive itae"),
-]
-
-
-@pytest.mark.parametrize(("poles", "reason"), UNSIGNED)
+@tabled
 def test_what_need_not_be_positive_or_less_than_one_is_refused(poles: str, reason: str) -> None:
     with pytest.raises(InputError) as raised:
         symobs.state_feedback(integrators(2, a="real", p="positive"), poles=poles)
     assert reason in str(raised.value)
 
 
-REFUSED = [
-    ("bessel = w", "bessel is w, which need not be positive; declare w positive in symbols"),
-    ("bessel = cos(w)", "bessel is cos(w), which need not be positive"),
-    ({"damping": "1/2"}, "damping given, which does not say where the poles are"),
-    ("damping = 1/2, overshoot = 0.1", "which does not say where the poles are"),
-    ({"damping": "1/2", "frequency": 3}, "poles have no 'frequency'"),
-    ("damping = -1/2, natural_frequency = 3", "damping is -1/2, which is not positive"),
-    ("-1, butterworth = 2", "'-1' has no name"),
-    ("itae = 1, itae = 2", "'itae' is given twice"),
-    ("damping = 1/2, natural_frequency = 3, others = -1, -2", "a pair of poles given, but 1 is to be placed so"),
-    ("bessel = 1, others = -1, -2, -3", "no pole is left for bessel"),
-    ("settling_time = 1, overshoot = m, others = -9", "the overshoot is m, which is not a number between"),
-    ("settling_time = 1, overshoot = 5, others = -9", "the overshoot is 5, which is not between"),
-    ("bessel = s", "contains s, the variable of the polynomials"),
-    ({}, "nothing given"),
-]
-
-
-@pytest.mark.parametrize(("poles", "reason"), REFUSED)
+@tabled
 def test_what_does_not_say_where_poles_are_is_refused_with_the_reason(poles: object, reason: str) -> None:
     with pytest.raises(InputError) as raised:
         symobs.observer(integrators(3), poles=poles)
@@ -219,9 +186,7 @@ def test_what_does_not_say_where_poles_are_is_refused_with_the_reason(poles: obj
     assert raised.value.where.startswith("specification.poles")
 
 
-@pytest.mark.parametrize(
-    ("order", "poles", "reason"), [(7, "itae = 1", "up to degree 6"), (13, "butterworth = 1", "have degree 12 or less")]
-)
+@tabled
 def test_filters_that_are_not_tabulated_are_refused(order: int, poles: str, reason: str) -> None:
     with pytest.raises(InputError, match=reason):
         symobs.state_feedback(integrators(order), poles=poles)
@@ -250,14 +215,7 @@ def test_decimals_in_a_table_make_a_page_of_decimals() -> None:
     assert "s² + 1.82 s + 1.69" in str(render(document, "text"))
 
 
-@pytest.mark.parametrize(
-    ("poles", "says", "is_silent_of"),
-    [
-        ({"damping": "1/2", "settling_time": 2}, "within the specified settling time 2:", "natural frequency"),
-        ({"settling_time": 2, "overshoot": "1/20"}, "≤ 1/20", "damping ratio"),
-        ({"itae": 1}, "tabulated ITAE polynomial [1] of its degree.", "degree: "),
-    ],
-)
+@tabled
 def test_a_page_says_what_was_specified_and_nothing_else(
     poles: dict[str, str | int], says: str, is_silent_of: str
 ) -> None:
@@ -266,17 +224,7 @@ def test_a_page_says_what_was_specified_and_nothing_else(
     assert is_silent_of not in text
 
 
-@pytest.mark.parametrize(
-    ("order", "asked", "said"),
-    [
-        (2, {"poles": "damping 0.7, natural_frequency 4"}, "damping is no letter of a pole; write what the poles are"),
-        (2, {"poles": "bessel = 3, others = -1, -2"}, "no pole is left for bessel; leave 1 of the others out"),
-        (2, {"poles": "damping = 0.7, natural_frequency = 4, others = -1, -2"}, "placed so; leave the others out"),
-        (3, {"poles": "damping = 0.7, natural_frequency = 4, others = -1, -2"}, "but 1 is to be placed so; leave 1 of"),
-        (2, {"polynomial": "bessel = 3"}, "what poles are to do came; give it as poles"),
-        (2, {"poles": "butterworth = -3"}, "give a positive natural frequency ω₀"),
-    ],
-)
+@tabled
 def test_what_is_wrong_with_a_pattern_is_said_with_its_repair(order: int, asked: dict[str, str], said: str) -> None:
     with pytest.raises(InputError) as refused:
         symobs.state_feedback(integrators(order), **asked)

@@ -16,6 +16,7 @@ from symobs.proof.certificate.claims import verify
 from symobs.proof.certificate.pointwise import never_together_zero
 from symobs.proof.derivation import Derivation
 from symobs.proof.derivation.steps import CaseStep, Conclude, Define, Given
+from tests.kit import tabled
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -92,23 +93,7 @@ def test_what_a_page_says_of_the_other_root_proves_nothing() -> None:
     assert never_together_zero([square_root(q) ** 2 - q + 1], roots, {}, known), "its own root is known"
 
 
-@pytest.mark.parametrize(
-    ("task", "plant", "asked"),
-    [
-        # The basis [a; -b - 1] of what the input does not move vanishes at a point of the case's curve.
-        ("gramian", {"A": "[0 a; 0 b]", "B": "[b+1; a]"}, {"of": "controllability", "horizon": "inf"}),
-        # What a case excludes is excluded within it too, though nothing is left of its equations.
-        ("detectability", {"A": "[b 0 0; 0 a-1 b^2-a; 0 0 0]", "C": "[1 1 0]"}, {}),
-        # The polynomial of the fixed modes is shorter by the equations of the case than as a determinant.
-        (
-            "detectability",
-            {"A": "[b+1 2 b; -a a*b 0; a+b -1 0]", "C": "[2 a-b 2]"},
-            {},
-        ),
-        ("transfer_function", {"A": "[0 0; b 0]", "B": "[b; 1]", "C": "[b 1/a]"}, {}),
-        ("pole_advice", {"A": "[0 0; b 0]", "B": "[b; 1]", "C": "[b 1/a]"}, {"radius": "2"}),
-    ],
-)
+@tabled
 def test_an_answer_with_cases_has_a_page(task: str, plant: dict[str, Any], asked: dict[str, Any]) -> None:
     result = getattr(symobs, task)(StateSpace(**plant, symbols={"a": "real", "b": "real"}), **asked)
     assert result.to_json()

@@ -19,6 +19,7 @@ from symobs.ground.errors import CertificateRejected, DerivationRejected, InputE
 from symobs.stability.criteria.stability import is_beyond, is_marginal, on_boundary
 from symobs.tasks.analysis.modes import modes
 from symobs.tasks.result import render
+from tests.kit import tabled
 from tests.support.independent_algebra.second_reader import sympy_scalar
 from tests.support.problems.strategies import Sample, plants, unimodular
 from tests.support.sampling import FULL
@@ -211,31 +212,13 @@ def test_roots_that_sympy_gives_as_multiples_of_others_are_told_apart() -> None:
     assert found.count(True) == 2
 
 
-@pytest.mark.parametrize(
-    ("A", "stable"),
-    [
-        ("[0 1; 1 1]", {"1/2 + sqrt(5)/2": False, "1/2 - sqrt(5)/2": True}),
-        ("[0 1; -1 -3]", {"-3/2 + sqrt(5)/2": True, "-3/2 - sqrt(5)/2": True}),
-        ("[0 1; 2 0]", {"sqrt(2)": False, "-sqrt(2)": True}),
-        ("[0 1; -2 -2]", {"-1 + I": True, "-1 - I": True}),
-        ("[0 1; -1 0]", {"I": False, "-I": False}),
-        ("[0 0; 0 -1]", {"0": False, "-1": True}),
-    ],
-)
+@tabled
 def test_each_eigenvalue_is_stable_or_not(A: str, stable: dict[str, bool]) -> None:
     modes = symobs.pbh(symobs.StateSpace(A, None, "[1 0]")).fields["modes"]
     assert {str(mode["eigenvalue"]): mode["stable"] for mode in modes} == stable
 
 
-@pytest.mark.parametrize(
-    ("A", "stable"),
-    [
-        ("[1/2 0; 0 -1]", {"1/2": True, "-1": False}),
-        ("[0 1; -1 0]", {"I": False, "-I": False}),
-        ("[0 1; -1/2 0]", {"sqrt(2)*I/2": True, "-sqrt(2)*I/2": True}),
-        ("[0 1; 1 1]", {"1/2 + sqrt(5)/2": False, "1/2 - sqrt(5)/2": True}),
-    ],
-)
+@tabled
 def test_each_mode_is_inside_the_unit_circle_or_not(A: str, stable: dict[str, bool]) -> None:
     modes = symobs.pbh(symobs.StateSpace(A, None, "[1 0]", dt=1)).fields["modes"]
     assert {str(mode["eigenvalue"]): mode["stable"] for mode in modes} == stable
@@ -270,23 +253,7 @@ def stable_count(margins: list[float]) -> int:
 # -- detectability -------------------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize(
-    ("A", "C", "meaning", "verdict"),
-    [
-        ("[-1 0; 0 1]", "[0 1]", "asymptotic", "yes"),
-        ("[1 0; 0 -1]", "[0 1]", "asymptotic", "no"),
-        ("[0 1; 0 -b]", "[0 1]", "asymptotic", "no"),
-        ("[0 1; 0 -b]", "[0 1]", "lyapunov", "yes"),
-        ("[0 1 0; 0 0 0; 0 0 1]", "[0 0 1]", "lyapunov", "no"),  # a double integrator hidden: it grows
-        ("[0 0 0; 0 0 0; 0 0 1]", "[0 0 1]", "lyapunov", "yes"),  # two integrators apart do not
-        ("[0 1 0; -4 0 0; 0 0 1]", "[0 0 1]", "lyapunov", "yes"),
-        ("[0 1 0; -4 0 0; 0 0 1]", "[0 0 1]", "asymptotic", "no"),
-        ("[0 1; -2 -3]", "[1 c]", "asymptotic", "yes"),  # whatever is hidden for some c is stable
-        ("[0 1; 2 1]", "[1 c]", "asymptotic", "conditional"),  # at c = −1/2 the mode 2 is hidden
-        ("[a 0; 0 1]", "[0 1]", "asymptotic", "conditional"),
-        ("[a 0; 0 1]", "[0 1]", "lyapunov", "conditional"),
-    ],
-)
+@tabled
 def test_detectable_or_not(A: str, C: str, meaning: str, verdict: str) -> None:
     result = symobs.detectability(symobs.StateSpace(A, None, C), meaning=meaning)
     assert result.verdict == verdict
@@ -420,9 +387,7 @@ def test_pages_of_every_kind_render() -> None:
         assert render(Document("all", "", results), name)
 
 
-@pytest.mark.parametrize(
-    ("A", "rest"), [("[m 0; 0 -2]", "[0; k]"), ("[m 0; 0 -2]", "[0; 1]"), ("[1 0; 0 -k]", "[0; 1]")]
-)
+@tabled
 def test_pages_of_plants_that_are_never_controllable_or_observable(A: str, rest: str) -> None:
     """What the input never moves has a letter of its own in the rank test, and the page speaks of both."""
     result = symobs.stabilizability(symobs.StateSpace(A, rest))

@@ -25,6 +25,7 @@ from symobs.system.conditions import real_consequences
 from symobs.tasks.analysis.rank import missing_measurements
 from symobs.tasks.analysis.rank.rank_test import RankResult
 from symobs.tasks.analysis.strata.loci import Locus, Region, loci, maximal
+from tests.kit import tabled
 from tests.support.claims.claims import Setting, applicable, conditions_hold, rank_holds
 from tests.support.independent_algebra.plain import (
     has_sign,
@@ -487,22 +488,7 @@ def test_a_chain_with_three_outputs_mixed_is_decided_everywhere() -> None:
 # -- loci -----------------------------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize(
-    ("equations", "signs", "expected"),
-    [
-        (["a^2 + b^2"], {}, ["a, b"]),
-        (["(a - b)^2 + c^2"], {}, ["a - b, c"]),
-        (["a^2 + 1"], {}, []),
-        (["a + b"], {"a": "positive", "b": "nonnegative"}, []),
-        (["a + b"], {"a": "nonnegative", "b": "nonnegative"}, ["a, b"]),
-        (["a^2 b"], {"a": "positive"}, ["b"]),
-        (["a b", "a c"], {}, ["a", "b, c"]),
-        (["a b - 1", "a"], {}, []),
-        (["a^2 - 1"], {}, ["a - 1", "a + 1"]),
-        (["a^2 - 1"], {"a": "positive"}, ["a - 1"]),
-        (["a^2 + a b + b^2"], {}, ["a, b"]),
-    ],
-)
+@tabled
 def test_loci(equations: list[str], signs: dict[str, str], expected: list[str]) -> None:
     names = real("a b c") | signs
     found = loci([parse_scalar(text, names) for text in equations], Region(names))

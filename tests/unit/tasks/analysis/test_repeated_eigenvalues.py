@@ -29,6 +29,7 @@ from symobs.proof.derivation.builder import relation
 from symobs.proof.derivation.facts.properties import PREDICATES
 from symobs.stability.criteria.stability import meetings
 from symobs.tasks.analysis.strata.repeated_eigenvalues import distances
+from tests.kit import tabled
 from tests.programs.campaign.points import answer_at, holds
 from tests.support.problems.strategies import unimodular
 
@@ -164,19 +165,7 @@ def test_the_weaker_reading_is_decided_at_every_point(plant: tuple[Any, Any]) ->
 # -- named plants --------------------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize(
-    ("A", "C", "ranks", "meeting", "there"),
-    [
-        # the campaign's: two hidden modes are one at a = 2, with two eigenvectors
-        ("[1-a 0; 0 -1]", "[0 0]", {"-1": 1, "-a + 1": 1}, ["a - 2 == 0"], {"-1": 0}),
-        # a seen mode meets a hidden one
-        ("[a 0; 0 -1]", "[1 0]", {"-1": 1, "a": 2}, ["a + 1 == 0"], {"-1": 1}),
-        # no eigenvalues meet, but a chain breaks
-        ("[-1 a; 0 -1]", "[0 0]", {"-1": 1}, ["a == 0"], {"-1": 0}),
-        # both roots of one factor
-        ("[0 a; b 0]", "[0 0]", {"sqrt(a*b)": 1, "-sqrt(a*b)": 1}, ["a == 0", "b == 0"], {"0": 0}),
-    ],
-)
+@tabled
 def test_where_eigenvalues_meet_is_a_case(
     A: str, C: str, ranks: dict[str, int], meeting: list[str], there: dict[str, int]
 ) -> None:

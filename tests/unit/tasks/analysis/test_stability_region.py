@@ -21,6 +21,7 @@ from symobs.stability.regions.interval_region import LineRegion
 from symobs.stability.regions.plane_region import PlaneRegion, plane_region
 from symobs.stability.regions.region_check import is_region
 from symobs.stability.regions.short_list import RegionInequality, short_list
+from tests.kit import tabled
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -68,17 +69,7 @@ def test_holes_are_where_they_are() -> None:
     assert places == ["about -1.73205", "about 1.73205"]
 
 
-@pytest.mark.parametrize(
-    "text",
-    [
-        "s^2 + (h1 - 10000) s + h2 - 1/10000",  # samples nearer to a wall than the first node
-        "s + h1 h2 (h1 - h2) (h1 + h2)",
-        "(s + h2) (s + 1 - h1^2 h2) (s + 1 - h1^2)",  # curves that end in a corner of the region
-        "s + h1^2 - 2*10^24",
-        "(s + h1) (s + 2 h1) (s + 1/1000 - h1^2 + 3 h1) (s + 1 - h2)",  # curves that run along a boundary
-        "(s + h2^2 - 3 h1) (s + h2^2 - 2 h1 h2 + 2) (s + 1000 + h2 + 3 h2^2)",  # a sample too near to its wall
-    ],
-)
+@tabled
 def test_the_picture_of_a_region_with_narrow_corners_is_on_its_page(text: str) -> None:
     """A picture that is not faithful is left out with a warning, which is an error here."""
     found = region(text, symbols=dict.fromkeys(["h1", "h2"], "real"))
@@ -142,16 +133,7 @@ def test_a_numbered_root_is_not_claimed_on_a_wall() -> None:
     assert not component["parts_are_whole"]
 
 
-@pytest.mark.parametrize(
-    ("keywords", "place"),
-    [
-        ({"margin": "h1", "parameters": ["h1", "h2"]}, "margin"),
-        ({"margin": -1}, "margin"),
-        ({"radius": "1/2"}, "radius"),
-        ({"parameters": ["h1", "h1"]}, "parameters"),
-        ({"K": "[1 2]"}, "K"),
-    ],
-)
+@tabled
 def test_questions_that_do_not_fit_are_refused_at_their_place(keywords: Mapping[str, Any], place: str) -> None:
     with pytest.raises(InputError) as refused:
         symobs.stability_region("s^2 + h1 s + h2", **keywords)
@@ -178,10 +160,7 @@ def test_a_margin_moves_with_its_symbol() -> None:
     assert list(found.stable_if) == ["h > alpha"]
 
 
-@pytest.mark.parametrize(
-    ("dt", "limit", "said"),
-    [(0, {"margin": "1/2"}, "real part less than -1/2"), (True, {"radius": "1/2"}, "modulus less than 1/2")],
-)
+@tabled
 def test_a_moved_boundary_is_told_where_nothing_is_open(dt: Any, limit: Any, said: str) -> None:
     plant = symobs.StateSpace("[0 1; -1/8 1/2]" if dt else "[0 1; -2 -3]", dt=dt)
     found = symobs.stability_region(plant, **limit)

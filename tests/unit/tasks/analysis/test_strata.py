@@ -7,7 +7,6 @@ task says of the whole curve must be that.
 from __future__ import annotations
 
 from fractions import Fraction
-from itertools import product
 from typing import Any, NamedTuple
 
 import pytest
@@ -17,7 +16,7 @@ import symobs
 from symobs.exact import Scalar
 from symobs.exact.ideals import ideal
 from symobs.pages.formats.json import result_object
-from tests.support.sampling import every
+from tests.kit import tabled
 
 pytestmark = pytest.mark.slow
 
@@ -151,17 +150,7 @@ def test_the_decomposition_on_a_curve(name: str) -> None:
         assert order == degree
 
 
-@pytest.mark.parametrize(
-    ("name", "polynomial", "verdict"),
-    [
-        ("circle", "(s+1)*(s+2)*(s+3)", "no"),
-        ("circle", "s^3+3*s^2+2*s+1", "yes"),
-        ("cusp", "(s+1)*(s+2)", "no"),
-        ("cusp", "(s-1)*(s+3)", "yes"),
-        ("cone", "(s+1)*(s+2)", "no"),
-        ("cone", "s^2-c^2-1", "yes"),
-    ],
-)
+@tabled
 def test_the_observer_on_a_curve(name: str, polynomial: str, verdict: str) -> None:
     curve = CURVES[name]
     plant = symobs.StateSpace(curve.A, None, curve.C)
@@ -195,7 +184,7 @@ def verdicts(told: dict[str, Any]) -> list[str]:
     return [told["verdict"], *(verdict for case in told["cases"] for verdict in verdicts({"cases": [], **case}))]
 
 
-@pytest.mark.parametrize(("name", "task"), every(3, product(CURVES, TASKS)))
+@tabled
 def test_every_task_is_decided_on_the_curve_and_its_page_holds(name: str, task: str) -> None:
     """The page is checked when it is written; no case is undecided, however deep."""
     plant = plant_of(CURVES[name])

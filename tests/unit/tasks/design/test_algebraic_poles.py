@@ -6,6 +6,7 @@ import pytest
 import sympy
 
 import symobs as so
+from tests.kit import tabled
 
 s, zeta, omega, a = sympy.symbols("s zeta omega a")
 PLANT = so.StateSpace("[0 1; 20 0]", "[0; 1]", "[1 0]")
@@ -65,16 +66,7 @@ def test_advised_poles_go_into_the_observer(order: int, as_text: bool) -> None: 
     assert sympy.expand(phi * phi.subs(s, -s)).subs(radius, 1).simplify() == 1 + (-1) ** order * s ** (2 * order)
 
 
-@pytest.mark.parametrize(
-    ("poles", "reason"),
-    [
-        ("-1 + sqrt(a), -1", r"-sqrt\(a\) - 1 is missing beside"),
-        ("-2 + 2*sqrt(3)*i, -2", "is missing beside"),
-        ("-1 + sqrt(i), -1", "sqrt of a complex number"),
-        ("-sqrt(a^2), -1", "a may be negative"),
-        ("-sqrt(2 + sqrt(2)), -1", "not in the field of the data"),
-    ],
-)
+@tabled
 def test_what_is_no_polynomial_of_the_data_is_refused(poles: str, reason: str) -> None:
     with pytest.raises(so.InputError, match=reason):
         so.observer(PLANT, poles=poles)

@@ -10,6 +10,7 @@ import sympy
 import symobs
 from symobs.exact import Matrix
 from symobs.ground.errors import CertificateRejected, InputError
+from tests.kit import tabled
 
 if TYPE_CHECKING:
     from symobs.tasks.design.disturbance.disturbance_observer import DisturbanceObserver
@@ -78,16 +79,7 @@ def test_a_wrong_answer_is_rejected(name: str, value: Any) -> None:
         design.with_answer(name, value)
 
 
-@pytest.mark.parametrize(
-    ("given", "said"),
-    [
-        ({"poles": "-1, -2"}, "2 poles given, 3 needed"),
-        ({"poles": "-1, -2, -3, -4", "S": "[0 1 0; 0 0 1]"}, "S is 2×3, and must be square"),
-        ({"poles": "-1, -2, -3", "E": "[1 0; 0 1]", "S": "[0]"}, "S has fewer states, 1, than E has columns, 2"),
-        ({"poles": "-1, -2, -3", "S": "[0]", "V": "[1 0]"}, "V is 1×2, expected 1×1"),
-        ({"poles": "-1, -2, -3, -4", "S": "[0 s; 1 0]"}, "S contains a name that stands for the time"),
-    ],
-)
+@tabled
 def test_what_does_not_fit_is_refused(given: dict[str, str], said: str) -> None:
     with pytest.raises(InputError, match=said):
         symobs.disturbance_observer(symobs.StateSpace("[0 1; 0 0]", C="[1 0]"), **{"E": "[0; 1]", **given})

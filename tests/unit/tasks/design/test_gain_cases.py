@@ -16,6 +16,7 @@ from hypothesis import strategies as st
 import symobs
 from symobs.ground.errors import DerivationRejected
 from symobs.proof.derivation import Conclude, Section
+from tests.kit import tabled
 from tests.programs.campaign.points import answer_at, value
 from tests.support.problems.strategies import unimodular
 from tests.unit.tasks.analysis.test_repeated_eigenvalues import NAMES, at_point, hidden_map
@@ -70,14 +71,7 @@ def test_gains_and_fixed_modes_are_told_at_every_point(plant: tuple[Any, Any], t
             assert (A - L * here).charpoly(s) == phi, point
 
 
-@pytest.mark.parametrize(
-    ("C", "poles", "verdict", "there"),
-    [
-        ("[a 0 0]", "-5, -2, -3", "conditional", "no"),  # 4/a was told to hold for a ≠ 0, and nothing where a = 0
-        ("[a 0 0]", "-1, -2, -3", "yes", "yes"),  # −1 is a fixed mode too at a = 0, and was not named
-        ("[a 0 0]", "-5, -6, -7", "no", "no"),
-    ],
-)
+@tabled
 def test_modes_that_are_hidden_at_some_parameters_are_named_there(C: str, poles: str, verdict: str, there: str) -> None:
     plant = symobs.StateSpace("[-1 0 0; 0 -2 0; 0 0 -3]", None, C)
     found = symobs.observer(plant, poles=poles)

@@ -22,6 +22,7 @@ from symobs.ground.errors import CertificateRejected, InputError
 from symobs.tasks.design.pole_placement import decoupled
 from symobs.tasks.design.pole_placement.brunovsky_chains import split_polynomial
 from symobs.tasks.result import methods
+from tests.kit import tabled
 from tests.support.independent_algebra.plain import (
     characteristic,
     matrix_at,
@@ -243,17 +244,8 @@ def test_a_gain_outside_the_family_is_rejected() -> None:
 
 # -- zeros -----------------------------------------------------------------------------------------------------------------
 
-PATTERNS = [
-    "[* *; 0 0; 0 0]",
-    "[* 0; 0 0; 0 *]",
-    "[* 0; * 0; * 0]",
-    "[0 *; 0 *; 0 *]",
-    "[0 0; * *; * *]",
-    "[* *; 0 *; * 0]",
-]
 
-
-@pytest.mark.parametrize("pattern", PATTERNS)
+@tabled
 def test_zeros_are_met_where_they_can_be_and_refused_where_they_cannot(pattern: str) -> None:
     signs = [row.split() for row in pattern.strip("[]").split(";")]
     unknown = Matrix(3, 2, lambda i, j: sympy.Symbol(f"l{i}{j}") if signs[i][j] == "*" else 0)
@@ -282,7 +274,7 @@ def test_zeros_of_a_feedback_decouple_two_chains() -> None:
     assert symobs.state_feedback(CHAINS, poles=[-2, -2, -2], zero="[0 * *; 0 * *]").verdict == "no"
 
 
-@pytest.mark.parametrize("zero", ["(0, 1)", "(4, 1)", "[* 0; 0 *]", "[* 0; * x; * *]", "1, 2, 3", "L12", []])
+@tabled
 def test_what_is_no_entry_is_refused(zero: Any) -> None:
     with pytest.raises(InputError) as caught:
         symobs.observer(TRIPLE, poles=[-1, -1, -1], zero=zero)

@@ -19,6 +19,7 @@ from symobs.tasks.design.gain.gain_kind import (
     NoGainWithZeros,
     UnassignableGain,
 )
+from tests.kit import tabled
 
 CHAIN = symobs.StateSpace("[0 1 0; 0 0 1; 0 0 0]", "[0 0; 1 0; 0 1]", "[1 0 0; 0 1 0]")
 #: The mode at 1 is neither seen nor moved.
@@ -67,7 +68,7 @@ def test_designs_of_one_gain_and_two_kinds_differ() -> None:
     assert replace(found, kind=GivenGain()) != found
 
 
-@pytest.mark.parametrize("name", [name for name, (*_, verdict) in ASKED.items() if verdict == "yes"])
+@tabled
 def test_a_gain_beside_a_kind_without_one_is_rejected(name: str) -> None:
     found, denied = asked(name), asked("unassignable").kind
     with pytest.raises(CertificateRejected, match="exactly where its kind says so"):

@@ -12,6 +12,7 @@ import sympy
 import symobs
 from symobs import StateSpace
 from symobs.ground.errors import CertificateRejected, InputError
+from tests.kit import tabled
 
 s = sympy.Symbol("s")
 SERVO = StateSpace("[0 1; 0 -1]", "[0; 1]", "[1 0]")
@@ -61,7 +62,7 @@ def test_gains_of_lqr_and_of_a_kalman_filter() -> None:
     assert found.stable == "yes"
 
 
-@pytest.mark.parametrize(("time", "said"), [(0, "open left half-plane"), (1, "inside the unit circle")])
+@tabled
 def test_an_unstable_loop_is_said(time: int, said: str) -> None:
     plant = StateSpace(SERVO.A, SERVO.B, SERVO.C, dt=time)
     found = symobs.compensator(plant, K=[-5, 2], L=[3, 4])
@@ -108,17 +109,7 @@ def test_a_wrong_answer_for_given_gains_does_not_exist() -> None:
         )
 
 
-@pytest.mark.parametrize(
-    ("specification", "said"),
-    [
-        ({"K": [1, 2], "control_poles": [-1, -2], "L": [1, 2]}, "both K and control_poles are given"),
-        ({"K": [1, 2]}, "observer_poles are missing"),
-        ({"K": [1, 2, 3], "L": [1, 2]}, "K is 1×3, expected 1×2"),
-        ({"L": [1, 2], "control_poles": [-1, -2], "observer": "minimal"}, "depends on its coordinates"),
-        ({"K": [1, 2], "L": [1, 2], "method": "duality"}, "the method duality places poles"),
-        ({"K": [0.5, 2], "L": [1, 2]}, "0.5 is a float"),
-    ],
-)
+@tabled
 def test_gains_that_have_no_place_are_refused(specification: dict[str, Any], said: str) -> None:
     with pytest.raises(InputError, match=said):
         symobs.compensator(SERVO, **specification)

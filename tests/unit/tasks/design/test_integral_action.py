@@ -13,6 +13,7 @@ import sympy
 import symobs
 from symobs.exact import Matrix
 from symobs.ground.errors import CertificateRejected, DerivationRejected, InputError
+from tests.kit import tabled
 
 if TYPE_CHECKING:
     from symobs.tasks.design.reference.integral_action import IntegralAction
@@ -54,9 +55,7 @@ def test_poles_dc_gain_and_existence_are_those_of_other_systems(seed: int) -> No
     assert "as required" in found.to("text")
 
 
-@pytest.mark.parametrize(
-    ("A", "C", "dt"), [("[0 1; -2 -3]", "[0 1]", 0), ("[1 1; -2 -2]", "[0 1]", True), ("[0 0; 0 -1]", "[0 1]", 0)]
-)
+@tabled
 def test_outputs_that_cannot_follow_are_a_no_even_with_the_fixed_pole_desired(A: str, C: str, dt: int) -> None:
     """The plant has a zero at the origin (at 1): k_I would be 0 and ξ grow without bound for r ≠ 0."""
     found = symobs.integral_action(symobs.StateSpace(A, "[0; 1]", C, dt=dt), poles=f"{int(dt)}, -1/2, 0")
@@ -119,10 +118,7 @@ def test_signs_of_the_letters_of_the_specification_are_stated() -> None:
     assert "Throughout, we assume a > 0, k < 0." in symobs.state_feedback(plant, K="[1 k]").to("text")
 
 
-@pytest.mark.parametrize(
-    ("poles", "said"),
-    [("-1, -2, -3", "The control error vanishes"), ("-1, -2, 3", "If the closed loop is stable, the control error")],
-)
+@tabled
 def test_the_error_at_rest_is_no_matter_of_stability_that_was_shown(poles: str, said: str) -> None:
     found = symobs.integral_action(symobs.StateSpace("[0 1; 0 -1]", "[0; 1]", "[1 0]"), poles=poles)
     assert said in found.to("latex")

@@ -13,6 +13,7 @@ import symobs
 from symobs import StateSpace
 from symobs.exact import Matrix
 from symobs.ground.errors import CertificateRejected, InputError
+from tests.kit import tabled
 from tests.support.independent_algebra.plain import (
     at_number,
     characteristic,
@@ -179,15 +180,7 @@ def test_a_well_posed_compensator_cannot_be_called_ill_posed() -> None:
         found.with_answer("F", None)
 
 
-@pytest.mark.parametrize(
-    ("keywords", "where", "words"),
-    [
-        ({"observer": "reduced", "observer_poles": [-1, -2]}, "specification.observer", '"full" or "minimal"'),
-        ({"observer": "minimum", "observer_poles": [-1]}, "specification.observer", '"full" or "minimal"'),
-        ({"observer": "minimal", "method": "separation"}, "specification.method", "leave the method out"),
-        ({"observer": "minimal", "observer_poles": [-1, -2]}, "specification.observer_poles", "1"),
-    ],
-)
+@tabled
 def test_what_does_not_fit_together_is_refused_with_the_repair(keywords: Any, where: str, words: str) -> None:
     with pytest.raises(InputError) as caught:
         symobs.compensator(SERVO, **{**ASKED, **keywords})
@@ -292,7 +285,7 @@ def test_several_outputs_have_their_cases_in_the_reduced_order_too() -> None:
     ] == [("e", "no")]
 
 
-@pytest.mark.parametrize("keywords", [{"zero": "(1, 1)"}, {"member": "decoupled"}])
+@tabled
 def test_a_given_gain_is_not_also_chosen(keywords: Any) -> None:
     with pytest.raises(InputError, match="both L and"):
         symobs.observer(StateSpace("[0 1; -2 -3]", C="[1 0; 0 1]"), L="[1 2; 3 4]", **keywords)
@@ -312,10 +305,7 @@ def test_a_plant_of_negative_gain_keeps_its_sign_in_the_box() -> None:
     assert "│ -2/(s(s + 1)) │" in page
 
 
-@pytest.mark.parametrize(
-    ("A", "B", "C"),
-    [("[0 1; 0 -a]", "[0; b]", "[1 0]"), ("[0 1; 0 -1/a]", "[0; 1/a]", "[1 0]"), ("[0 1; 0 -a]", "[0; 1]", "[c 1/b]")],
-)
+@tabled
 def test_the_unity_loop_divides_by_no_parameter_that_stands_in_front(A: str, B: str, C: str) -> None:
     """Its factored form is PF/(1 + PF), and no factor of it has a denominator."""
     plant = symobs.StateSpace(A, B, C)

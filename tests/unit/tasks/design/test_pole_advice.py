@@ -23,6 +23,7 @@ from symobs.exact.core.generators import NotWritten, function, square_root
 from symobs.exact.time_functions.butterworth import twice_cosine
 from symobs.ground.errors import CertificateRejected, InputError
 from symobs.system.conditions import sign_of
+from tests.kit import tabled
 from tests.support.claims.claims import Setting, applicable
 from tests.support.claims.claims_of_advice import advice_holds, numerator
 from tests.support.independent_algebra.plain import has_sign
@@ -164,21 +165,8 @@ def test_zeros_slower_than_the_settling_time_are_not_used() -> None:
 
 # -- warnings ----------------------------------------------------------------------------------------------------------
 
-WARNED = [
-    ("s/(s^2 + s + 1)", "zero at the origin, s = 0. It is not used, since with an observer pole at 0"),
-    ("(s^2 + 4)/s^3", "Zeros lie on the imaginary axis, s**2 + 4 = 0"),
-    ("(s - 3)/(s + 1)^2", "A zero lies in the right half-plane, s = 3"),
-    ("(s^2 - 2 s + 5)/(s + 1)^3", "Zeros lie in the right half-plane, s**2 - 2*s + 5 = 0"),
-    ("(s^2 - 2)/(s + 1)^3", "A zero lies in the right half-plane, s = sqrt(2)"),
-    ("(s^3 + s^2 + s + 10)/(s^4 + 1)", "on both sides of the imaginary axis, s**3 + s**2 + s + 10 = 0"),
-    ("(s + c)/(s^2 + 1)", "The stability of a zero, s = -c, depends on the parameters"),
-    ("(s + 2)/((s + 201/100) (s + 1))", "nearly cancels a pole of the plant, s = -201/100"),
-    ("(s - 1)/(s (s - 2))", "Every stabilising compensator of this plant is itself unstable"),
-    ("1/(s + 1)^3", "An entry of the observer gain exceeds 300"),
-]
 
-
-@pytest.mark.parametrize(("transfer_function", "words"), WARNED)
+@tabled
 def test_warnings(transfer_function: str, words: str) -> None:
     result = advice(transfer_function, radius=100 if "exceeds" in words else 3)
     assert any(words in warning for warning in result.warnings)
@@ -268,21 +256,8 @@ def test_what_is_not_stable_cannot_be_taken_for_stable() -> None:
 
 # -- what is refused ---------------------------------------------------------------------------------------------------
 
-REFUSED: list[tuple[dict[str, Any], str, str]] = [
-    ({}, "specification.radius", "radius is missing"),
-    ({"radius": 0}, "specification.radius", "not positive"),
-    ({"radius": "s"}, "specification.radius", "the variable"),
-    ({"radius": 1, "overshoot": "1/2"}, "specification.radius", "beside"),
-    ({"settling_time": 1}, "specification", "belong together"),
-    ({"settling_time": 1, "overshoot": 5}, "specification.overshoot", "not between"),
-    ({"settling_time": "T", "overshoot": "1/2"}, "specification.settling_time", "not a number"),
-    ({"settling_time": -1, "overshoot": "1/2"}, "specification.settling_time", "not positive"),
-    ({"radius": 1, "method": "dominant_pair"}, "specification.settling_time", "needs"),
-    ({"settling_time": 1, "overshoot": "1/2", "method": "butterworth"}, "specification.radius", "needs"),
-]
 
-
-@pytest.mark.parametrize(("asked", "where", "words"), REFUSED)
+@tabled
 def test_what_is_refused_says_where_and_what_to_write(asked: dict[str, Any], where: str, words: str) -> None:
     with pytest.raises(InputError, match=words) as caught:
         advice("1/s^2", **asked)

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import symobs
+from tests.kit import tabled
 
 SERVO = ("[0 1; 0 -1]", "[0; 1]", "[1 0]")
 FALLING = ("[0 1; 4 -1]", "[0; 1]", "[2 1]")
@@ -22,27 +23,14 @@ def plant(dt: int = 0) -> symobs.StateSpace:
     return symobs.StateSpace(*SERVO, dt=dt)
 
 
-OBSERVERS = [
-    (0, "-1, 2", "the estimation error grows without bound"),
-    (0, "1 + i, 1 - i", "the estimation error grows without bound"),
-    (0, "0, -1", "A desired pole lies on the imaginary axis: a component of the estimation error does not decay"),
-    (0, "i, -i", "A desired pole lies on the imaginary axis"),
-    (0, "0, 0", "the estimation error need not decay"),
-    (1, "1/2, 2", "the estimation error grows without bound"),
-    (1, "1, 0", "A desired pole lies on the unit circle"),
-    (0, "-1, -2", ""),
-    (1, "0, 0", ""),
-]
-
-
-@pytest.mark.parametrize(("dt", "poles", "words"), OBSERVERS)
+@tabled
 def test_observers_of_full_order(dt: int, poles: str, words: str) -> None:
     found = page(symobs.observer(plant(dt), poles=poles))
     assert ("Remark." in found) == bool(words)
     assert words in found
 
 
-@pytest.mark.parametrize(("pole", "words"), [("0", "does not decay"), ("3", "grows without bound"), ("-3", "")])
+@tabled
 def test_observers_of_reduced_order(pole: str, words: str) -> None:
     found = page(symobs.reduced_order_observer(plant(), poles=pole))
     assert ("Remark." in found) == bool(words)
@@ -101,28 +89,7 @@ def test_parameters_that_leave_it_open_are_not_cautioned() -> None:
     assert "Remark." not in page(symobs.observer(plant(), poles="-p, -q"))
 
 
-HIDDEN = [
-    # the observer cannot move the mode 1, nor does K look at it: F = 2/(s + 4)
-    (("[1 0; 0 -1]", "[1; 1]", "[0 1]"), "1, -3", "1, -2", "no", "the cancelled mode 1 does not lie in"),
-    (
-        ("[a 0; 0 -1]", "[1; 1]", "[0 1]"),
-        "a, -3",
-        "a, -2",
-        "conditional",
-        "the cancelled mode a is stable if and only if a < 0",
-    ),
-    (("[-1 0; 0 -2]", "[1; 1]", "[0 1]"), "-1, -3", "-1, -4", "yes", ""),
-    (
-        ("[1 0 0; 0 -1 0; 0 0 -2]", "[1 0; 1 0; 0 1]", "[0 1 0; 0 0 1]"),
-        "1, -3, -4",
-        "1, -2, -5",
-        "no",
-        "does not lie in",
-    ),
-]
-
-
-@pytest.mark.parametrize(("matrices", "control", "observer", "stable", "words"), HIDDEN)
+@tabled
 def test_a_mode_that_F_does_not_show_is_told(
     matrices: tuple[str, str, str], control: str, observer: str, stable: str, words: str
 ) -> None:

@@ -18,6 +18,7 @@ from symobs.exact import Matrix as Exact
 from symobs.ground.errors import CertificateRejected, InputError
 from symobs.pages.formats.json import result_object
 from symobs.tasks.design.reduced_order.partition import completed
+from tests.kit import tabled
 
 if TYPE_CHECKING:
     from fractions import Fraction
@@ -160,7 +161,7 @@ def test_the_exceptions_of_a_parameter_are_cases() -> None:
     holds(there, plant.A, plant.B, Matrix([[0, b]]), Matrix([[0]]), s + p)
 
 
-@pytest.mark.parametrize("name", ["L", "F", "G", "H", "M", "T"])
+@tabled
 def test_no_entry_can_be_changed(name: str) -> None:
     found = symobs.reduced_order_observer(THIRD_ORDER, poles="-5, -6")
     value = found.answer[name]
@@ -177,17 +178,7 @@ def test_discrete_time_with_feedthrough() -> None:
     assert "contains the output one step ahead" in text
 
 
-@pytest.mark.parametrize(
-    ("arguments", "where"),
-    [
-        ({"poles": "-5"}, "specification.poles"),
-        ({"poles": "-5, -6, -7"}, "specification.poles"),
-        ({"poles": "-5+i, -6"}, "specification.poles"),
-        ({"poles": "-5, -6", "T": "[1 0 0; 0 1 0; 0 0 1]"}, "specification.T"),
-        ({"poles": "-5, -6", "T": "[1 0 -2; 0 1 0; 1 1 -2]"}, "specification.T"),
-        ({"poles": "-5, -6", "T": "[1 0; 0 1]"}, "specification.T"),
-    ],
-)
+@tabled
 def test_what_does_not_fit_is_refused(arguments: dict[str, str], where: str) -> None:
     with pytest.raises(InputError) as caught:
         symobs.reduced_order_observer(THIRD_ORDER, **arguments)

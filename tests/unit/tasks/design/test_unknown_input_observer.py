@@ -12,6 +12,7 @@ import sympy
 import symobs
 from symobs.exact import Matrix
 from symobs.ground.errors import CertificateRejected, InputError
+from tests.kit import tabled
 
 if TYPE_CHECKING:
     from symobs.tasks.design.disturbance.unknown_input_observer import UnknownInputObserver
@@ -71,14 +72,7 @@ def test_conditions_and_cases_are_those_of_the_rank_and_of_the_zeros() -> None:
     assert "Case b = 0" in found.to("text")
 
 
-@pytest.mark.parametrize(
-    ("C", "poles", "said"),
-    [
-        ("[1 1]", "-2, -3", "an observer with a convergent error exists"),
-        ("[-1 1]", "-2, -3", "no observer of this kind has an error that converges"),
-        ("[1 0]", "-2, -3", "no such observer exists"),
-    ],
-)
+@tabled
 def test_why_there_is_no_observer_is_said(C: str, poles: str, said: str) -> None:
     found = symobs.unknown_input_observer(symobs.StateSpace("[0 1; -2 -3]", C=C), E="[0; 1]", poles=poles)
     assert found.verdict == "no"

@@ -11,6 +11,7 @@ import sympy
 
 import symobs
 from symobs.ground.errors import InputError
+from tests.kit import tabled
 
 HIDDEN = symobs.StateSpace("[0 1; -2 -3]", "[0; 1]", "[1 c]")
 CART = symobs.StateSpace("[0 1 0 0; 0 0 -m*g/M 0; 0 0 0 1; 0 0 (M+m)*g/(M*l) 0]", "[0; 1/M; 0; -1/(M*l)]", "[1 0 0 0]")
@@ -99,16 +100,7 @@ def test_ranks_and_functions_of_parameters() -> None:
     np.testing.assert_allclose(found["matrix"][:, 0, 0], (1 - np.exp(-2 * a * T)) / (2 * a), rtol=1e-12)
 
 
-@pytest.mark.parametrize(
-    ("points", "message"),
-    [
-        ({}, r"c, k have no value; give one for each: evaluate\(\{\"c\": 1\.0, …\}\), or set it before: \.at\(c=1\)"),
-        ({"c": 1.0}, "k has no value"),
-        ({"c": 1.0, "k": 1.0, "q": 1.0}, "q is no parameter of the result; use c, k"),
-        ({"c": "one", "k": 1.0}, "the values of c are no array of real numbers"),
-        ({"c": [1.0, 2.0], "k": [1.0, 2.0, 3.0]}, r"the arrays do not fit together: c \(2,\), k \(3,\)"),
-    ],
-)
+@tabled
 def test_refusals(points: dict[str, Any], message: str) -> None:
     with pytest.raises(InputError, match=message):
         symobs.observer(HIDDEN, poles="-k, -5").evaluate(points)

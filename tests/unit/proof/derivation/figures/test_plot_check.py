@@ -29,6 +29,7 @@ from symobs.proof.derivation.figures.plot_points import within, written
 from symobs.proof.derivation.figures.root_locus_check import faults_of_poles
 from symobs.proof.derivation.figures.time_response_check import faults_of_response
 from symobs.proof.derivation.steps import Plot, Section, Sentence
+from tests.kit import tabled
 from tests.support.problems.steps import said
 from tests.support.regions import drawn_by_hand as hand
 from tests.support.regions.drawn_by_hand import equation, h1, h2, k, s
@@ -127,16 +128,7 @@ def test_all_is_shaded_or_nothing() -> None:
         assert told(replace(shaded, window=window), stable) == ["the window is empty"]
 
 
-@pytest.mark.parametrize(
-    ("kind", "shaded", "expected"),
-    [
-        ("stable", True, True),
-        ("stable", False, False),
-        ("unstable", True, False),
-        ("excluded", True, False),
-        ("other", True, False),
-    ],
-)
+@tabled
 def test_a_mark_says_what_is_so(kind: str, *, shaded: bool, expected: bool) -> None:
     picture = RegionPicture(
         ("h1", "h2"), WINDOW, (WHOLE,) if shaded else (), (), (MarkedPoint(at("1/3", "1/5"), kind),)
@@ -323,18 +315,7 @@ def test_values_that_all_paths_share_are_taken_from_the_middle_on() -> None:
     assert list(root_locus_check._common(SimpleNamespace(along=along))) == [3, 1, 4, 0]  # type: ignore[arg-type]
 
 
-@pytest.mark.parametrize(
-    ("places", "are_all"),
-    [
-        (("1", "-1"), True),
-        (("0.75", "-0.75"), True),
-        (("0.74", "-0.74"), True),
-        (("0.7", "-0.7"), False),
-        (("1", "0.99"), False),
-        (("0", "-1"), False),
-        (("1", "1"), False),
-    ],
-)
+@tabled
 def test_discs_that_hold_a_root_lie_apart(places: tuple[str, str], *, are_all: bool) -> None:
     """Of s² − 1: each disc has the square of its radius 4 |c₀/c₁|²."""
     drawn = SimpleNamespace(paths=[(at(x, 0),) for x in places], along=((Fraction(0),),) * 2, moved="k")

@@ -14,6 +14,7 @@ from symobs.formula.figures.plot import Curve, End, LinePicture, MarkedPoint, Po
 from symobs.formula.tree import Apply, Environment, Letter, Literal, Negative, Relation, Sum
 from symobs.ground.errors import DerivationRejected
 from symobs.proof.derivation import Derivation, Plot
+from tests.kit import tabled
 from tests.support.problems.steps import checked, refused
 from tests.support.regions import drawn_by_hand as hand
 from tests.support.regions.drawn_by_hand import ALL, equation, h1, h2, k, s
@@ -248,7 +249,7 @@ def test_a_point_is_taken_out_of_a_line() -> None:
     refuse(LinePicture("k", window, ((None, SIX), (SIX, None))), chi, "is an end|follow")
 
 
-@pytest.mark.parametrize(("place", "kind"), [(0, "unstable"), (65, "stable"), (0, "excluded"), (0, "nice")])
+@tabled
 def test_marks_on_a_line_say_what_is_so(place: int, kind: str) -> None:
     refuse(replace(hand.interval(), marks=((Fraction(place), kind),)), hand.INTERVAL, f"{place} is {kind}")
 

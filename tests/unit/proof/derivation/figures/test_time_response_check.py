@@ -24,6 +24,7 @@ from symobs.pages.printers.latex_printer import LatexPrinter
 from symobs.pages.printers.text_printer import TextPrinter
 from symobs.proof.derivation import Derivation, Plot, Section
 from symobs.system import StateSpace
+from tests.kit import tabled
 from tests.support.independent_algebra.responses import untrue_responses
 
 if TYPE_CHECKING:
@@ -236,14 +237,7 @@ def test_errors_that_grow_on_the_way_are_not_seen() -> None:
         assert found[k] == pytest.approx([decay * (1 + 10 * k), decay * 10 * k], abs=1)
 
 
-#: Two loops of order six whose gains are large beside their modes, so that e^{‖M‖t} is beyond 10¹⁰⁰⁰.
-LOOPS = (
-    ("-33/5, -179/20, -33/4", "-43/20, -8/5, -5/4"),
-    ("-7.35+4.2i, -7.35-4.2i, -5.95", "-9.9+1.9i, -9.9-1.9i, -0.75"),
-)
-
-
-@pytest.mark.parametrize(("control", "observer"), LOOPS)
+@tabled
 def test_bits_are_lost_to_what_grows_and_not_to_large_entries(
     control: str, observer: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
