@@ -156,48 +156,6 @@ def test_signals_agree_in_every_free_signal() -> None:
     assert not verify(said(E, "!==", X), LOOP)[0], "signals are compared by equations only"
 
 
-# -- different, and different everywhere --------------------------------------------------------------------------------
-
-SIGNED = Environment(signs={"a": "positive", "b": "nonnegative", "c": "real"}, nonzero=(c - 1,))
-
-
-@pytest.mark.parametrize(
-    ("relation", "expected"),
-    [
-        (said(c, "!==", 2), True),
-        (said(c, "!=", 2), False),
-        (said(c, "!=", 1), True),
-        (said(a * (2 - 2 * c), "!=", 0), True),
-        (said((c - 1) * (c - 2), "!=", 0), False),
-        (said(a, "!=", 0), True),
-        (said(b, "!=", 0), False),
-        (said(c**2 + 1, "!=", 0), True),
-        (said(c, "!=", c), False),
-        (said(a, ">", 0), True),
-        (said(b, ">", 0), False),
-        (said(b, ">=", 0), True),
-        (said(c, ">=", c), True),
-        (said(c, ">=", 0), False),
-        (said(-a, "<", 0), True),
-        (said(-b, "<", 0), False),
-        (said(-b, "<=", 0), True),
-        (said(c, "<=", c), True),
-        (said(-c, "<=", 0), False),
-        (said(0, "<", a, "<", a + 1), True),
-        (said(0, "<", a + 1, "<", a), False),
-        (said(Block(((literal(a),),)), ">", 0), True),
-        (said(Literal(Matrix.of([[a, b]])), ">", 0), False),
-        (said(Literal(Matrix.of([[0, 1]])), "!=", Literal(Matrix.of([[0, 0]]))), True),
-        (said(Literal(Matrix.of([[0, c]])), "!=", Literal(Matrix.of([[0, 0]]))), False),
-        (said(Literal(Matrix.of([[0, 1]])), "!=", Literal(Matrix.of([[0]]))), False),
-        (said(Letter("x"), "!=", 0), False),
-    ],
-)
-def test_inequalities_follow_from_signs_and_assumptions(relation: Relation, expected: bool) -> None:  # noqa: FBT001
-    environment = Environment(signs=SIGNED.signs, nonzero=SIGNED.nonzero, signals={"x": None}, sizes={"x": 1})
-    assert (verify(relation, environment)[0] == "exact") == expected
-
-
 # -- named coefficients -------------------------------------------------------------------------------------------------
 
 
@@ -216,20 +174,6 @@ def test_named_coefficients_stand_for_their_meaning() -> None:
 
 
 # -- random points ------------------------------------------------------------------------------------------------------
-
-
-def test_every_name_of_a_polynomial_at_a_matrix_is_drawn(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(claims, "EXACT_UP_TO", -1)
-    environment = Environment(values={"A": Matrix.of([[a]]), "phi": s + c})
-    assert verify(said(Apply("phi_at", A), Matrix.of([[a + c]])), environment)[0]
-    assert not verify(said(Apply("phi_at", A), Matrix.of([[a]])), environment)[0]
-
-
-def test_a_point_without_a_value_for_a_name_is_an_error() -> None:
-    with pytest.raises(KeyError):
-        Point({"a"}, random.Random(0)).scalar(a * b)  # noqa: S311 - any point will do
-    with pytest.raises(KeyError):
-        Point({"a"}, random.Random(0)).matrix(Matrix.of([[a, b]]))  # noqa: S311
 
 
 def test_points_where_a_denominator_vanishes_are_drawn_again(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -256,12 +200,6 @@ def test_a_denominator_that_is_zero_at_the_point_is_noticed(monkeypatch: pytest.
     monkeypatch.setitem(point.values, "a", 5)
     with pytest.raises(VanishingDenominator):
         point.scalar(1 / (a - 5))
-
-
-def test_a_weak_point_is_followed_by_others(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(claims, "EXACT_UP_TO", -1)
-    monkeypatch.setattr(claims, "_error_bound", lambda *_: 2.0**-20)
-    assert verify(said(a, a), Environment()) == ("at 3 random points modulo 64-bit primes", 2.0**-60)
 
 
 # -- rows that span the same space ----------------------------------------------------------------------------------------

@@ -9,7 +9,6 @@ from __future__ import annotations
 import random
 from typing import TYPE_CHECKING, Any
 
-import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -179,12 +178,6 @@ def test_what_a_formula_evaluates_to_is_bounded(formula: Formula) -> None:
 )
 def test_it_is_bounded_with_named_coefficients_too(formula: Formula, first: Scalar, second: Scalar) -> None:
     hold(formula, Environment(values={"A": A}, coefficients={"b": first, "c": second}))
-
-
-def test_sizes_are_not_compared() -> None:
-    bounds = Bounds(Environment(), Modular(Environment(), Point(NAMES, random.Random(0))))  # noqa: S311
-    with pytest.raises(AssertionError, match="not compared"):
-        bounds.equal(SizeBound(0, 0, 0, 0), SizeBound(0, 0, 0, 0))
 
 
 def test_several_named_coefficients_with_denominators_of_their_own() -> None:

@@ -3,9 +3,6 @@
 from __future__ import annotations
 
 import pytest
-import sympy
-from hypothesis import given
-from hypothesis import strategies as st
 
 from symobs.exact import EIGENVALUE, Ideal, Matrix, Scalar, TooLarge
 from symobs.formula.tree import Apply, Environment, Letter, Literal, Power, Product, Relation
@@ -62,32 +59,6 @@ def test_a_basis_beyond_the_limits_leaves_the_question_open() -> None:
     with pytest.raises(TooLarge):
         Ideal.of(dense)
     assert verify(said(dense[0], "=", Scalar.of(0)), Environment(relations=tuple(dense)))[0] == ""
-
-
-small = st.integers(-3, 3)
-
-
-@given(st.lists(st.tuples(small, small, small, small, small), min_size=1, max_size=3), st.tuples(small, small, small))
-def test_members_are_those_of_another_system(drawn: list[tuple[int, ...]], weights: tuple[int, ...]) -> None:
-    x, y = sympy.symbols("a b")
-    polynomials = [p * x**2 + q * x * y + r * y**2 + s * x + t for p, q, r, s, t in drawn]
-    ideal = Ideal.of([p * a**2 + q * a * b + r * b**2 + s * a + t for p, q, r, s, t in drawn])
-    nonzero = [p for p in polynomials if p != 0]
-    basis = sympy.groebner(nonzero, x, y, order="grevlex") if nonzero else None
-    u, v, w = weights
-    member = sum((u * x + v * y + w) * p for p in polynomials) + 0 * x
-    ours = sum(
-        ((u * a + v * b + w) * (p * a**2 + q * a * b + r * b**2 + s * a + t) for p, q, r, s, t in drawn), Scalar.of(0)
-    )
-    for probe, value in (
-        (member, ours),
-        (member + x, ours + a),
-        (x**2 * y, a**2 * b),
-        (sympy.Integer(1), Scalar.of(1)),
-    ):
-        expected = basis.contains(probe) if basis is not None else sympy.expand(probe) == 0
-        assert (value in ideal) == expected
-    assert ideal.is_whole == (basis is not None and basis.exprs == [1])
 
 
 def test_a_rank_is_that_of_every_point() -> None:

@@ -2,12 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-from typing import TYPE_CHECKING
-
 import pytest
 
-from symobs import StateSpace, observer
 from symobs.exact import Matrix, Scalar
 from symobs.formula.tree import (
     Apply,
@@ -33,7 +29,6 @@ from symobs.proof.derivation import (
     CaseStep,
     Conclude,
     Define,
-    Derivation,
     Diagram,
     Equal,
     Given,
@@ -42,7 +37,6 @@ from symobs.proof.derivation import (
     Sentence,
     Step,
 )
-from symobs.tasks.result import Result
 from tests.support.problems.steps import (
     A_IS,
     C_IS,
@@ -70,12 +64,6 @@ from tests.support.problems.steps import (
     said,
     slot,
 )
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-    from symobs.proof.certificate.claims import Claim
-
 
 pytestmark = pytest.mark.usefixtures("own_phrases")
 
@@ -116,12 +104,6 @@ def test_links_after_the_first_are_checked_and_what_is_written_anew_must_agree()
     refused(Define(said(F, Power(literal(a), 2), a)), match="is not true")
     checked(A_IS, A_IS)
     refused(A_IS, Given((said(A, Matrix.identity(2)),)))
-
-
-@pytest.mark.parametrize("operator", ["!=", "!==", "<", ">="])
-def test_only_an_equation_introduces(operator: str) -> None:
-    refused(Define(said(F, operator, 1)))
-    refused(Given((said(F, operator, 1),)))
 
 
 @pytest.mark.parametrize("target", [Transpose(A), Literal(a * b), Literal(Scalar.of(2)), Literal(COMPANION)])
@@ -250,17 +232,6 @@ def test_a_letter_anew_in_a_case_has_no_meaning_before() -> None:
     refused(C_IS, CaseStep(said(c, 1), (("c", Scalar.of(1)),), (Equal((said(C, C),)),), anew=("C",)))
 
 
-def test_values_written_out_in_a_case_are_on_its_stratum_too() -> None:
-    checked(case(Equal((said(c, 1), said(c * c + a, a + 1)))))
-    refused(case(Equal((said(c, 2),))))
-    checked(Define(said(Scalar.symbol("d"), c + a)), case(Equal((said(Scalar.symbol("d"), a + 1),))))
-
-
-def test_what_was_assumed_outside_does_not_hold_in_a_case() -> None:
-    distinct = said(c, "!=", 1)
-    refused(Given((distinct,)), case(Equal((distinct,))))
-
-
 def test_a_letter_that_means_nothing_on_the_stratum_may_not_be_used_there() -> None:
     pole = Given((said(L, Matrix.of([[1 / (c - 1)], [0]])),))
     checked(pole, case())
@@ -280,16 +251,6 @@ def test_sections_share_what_is_established() -> None:
 
 def test_only_steps_are_steps() -> None:
     refused("a line of prose", match="cannot be read")  # type: ignore[arg-type]
-
-
-def test_a_derivation_is_checked_once(monkeypatch: pytest.MonkeyPatch) -> None:
-    derivation = Derivation((A_IS, CHI), START)
-    known = derivation.check()
-    monkeypatch.setattr("symobs.proof.derivation.check._walk", None)
-    assert derivation.check() is known
-    with pytest.raises(TypeError):
-        replace(derivation).check()
-    assert (derivation.variable, derivation.discrete) == ("s", False)
 
 
 @pytest.mark.parametrize(
@@ -312,49 +273,3 @@ def test_a_formula_that_makes_no_sense_is_refused(formula: Formula) -> None:
 
 def test_a_signal_in_terms_of_itself_is_refused() -> None:
     refused(Define(Relation((U, Sum((U, U))), ("=",))), Equal((said(U, U),)))
-
-
-# -- a result and its page ---------------------------------------------------------------------------------------------
-
-
-class Claimless(Result):
-    """A result of whom nothing is said."""
-
-    task = "claimless"
-
-
-class Bare(Claimless):
-    """A result that claims nothing and has no page."""
-
-    def claims(self) -> Iterator[Claim]:
-        yield from ()
-
-
-def test_a_result_must_say_what_it_claims_and_how_its_page_reads() -> None:
-    plant = StateSpace("[0 1; 0 -1]")
-    with pytest.raises(NotImplementedError):
-        Claimless(plant, "none", {"number": 1})
-    bare = Bare(plant, "none", {"number": 1, "missing": None})
-    with pytest.raises(
-        NotImplementedError,
-        match=r"no page is registered for Bare: write tests/unit/proof/derivation/test_check_page\.py",
-    ):
-        _ = bare.derivation
-    assert (bare.existence, dict(bare.fields), bare.verdict) == ((), dict(bare.answer), "yes")
-    assert repr(bare) == "Bare(number=1, verdict='yes')"
-
-
-def test_every_face_of_a_result_shows_one_page() -> None:
-    result = observer(StateSpace("[0 1; 0 -1]", "[0; 1]", "[1 0]"), poles=[-10, -10])
-    bundle = result._repr_mimebundle_()
-    assert result.to_latex() == result.to("latex")
-    assert result.to_json() == result.to("json")
-    assert (result.to_html(), result.to_markdown()) == (result.to("html"), result.to("markdown"))
-    assert bundle == {
-        "text/plain": result.to("text"),
-        "text/markdown": result.to("markdown"),
-        "text/latex": result._repr_latex_(),
-        "text/html": result.to("html_fragment"),
-    }
-    assert {"L", "poles", "conditions", "derivation"} <= set(dir(result))
-    assert repr(result).startswith("ObserverDesign(L=[19; 81], polynomial=s**2 + 20*s + 100, verdict='yes')")

@@ -10,8 +10,8 @@ import symobs
 from symobs.exact import Matrix, Scalar
 from symobs.formula.tree import Environment, Literal
 from symobs.formula.tree.term import Term
-from symobs.ground.errors import NotShown, SymobsWarning, WrongKind
-from symobs.proof.certificate.claims import EVALUATION_ERRORS, can_be_shown, verify
+from symobs.ground.errors import SymobsWarning
+from symobs.proof.certificate.claims import can_be_shown, verify
 from symobs.proof.derivation.builder import relation, shows
 
 if TYPE_CHECKING:
@@ -30,11 +30,6 @@ def test_a_false_line_is_left_out_with_a_warning() -> None:
     assert can_be_shown(fact, e)
     with pytest.warns(SymobsWarning, match="the line rank.* is left out: its check failed"):
         assert not shows([fact], e)
-
-
-def test_a_true_line_is_written() -> None:
-    fact, e = rank_is([[1, a], [0, 1]], 2, (a - b,))
-    assert shows([fact], e)
 
 
 def test_a_line_beyond_the_reach_of_the_check_is_left_out_by_decision() -> None:
@@ -62,8 +57,3 @@ def test_a_bug_of_evaluation_is_no_false_claim(monkeypatch: pytest.MonkeyPatch) 
     fact, e = rank_is([[1, a], [0, 1]], 2, (a - b,))
     with pytest.raises(AttributeError, match="a bug"):
         verify(fact, e)
-
-
-def test_errors_of_evaluation_are_told_from_bugs() -> None:
-    assert all(issubclass(error, EVALUATION_ERRORS) for error in (WrongKind, NotShown, ZeroDivisionError))
-    assert not any(issubclass(bug, EVALUATION_ERRORS) for bug in (AssertionError, AttributeError, TypeError))

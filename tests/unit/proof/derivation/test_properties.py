@@ -90,24 +90,6 @@ def test_a_property_is_decided(name: str, value: Scalar, *, discrete: bool, expe
     assert has(name, value, discrete=discrete) is expected
 
 
-def test_no_compensator_is_judged_in_discrete_time() -> None:
-    assert not PREDICATES["no_stable_compensator"]((z - 2) / (z - 3), IN_Z, True)  # noqa: FBT003 - called as it is there
-
-
-def test_the_properties_are_these() -> None:
-    assert set(PREDICATES) == {
-        *("stable", "unstable", "strictly_proper", "polynomial", "not_polynomial"),
-        *("no_stable_compensator", "marginal", "beyond", "never_zero"),
-    }
-
-
-def test_the_polynomial_of_a_rational_function_is_its_denominator() -> None:
-    assert polynomial_of(s**2 + 1, IN_S) == s**2 + 1
-    assert polynomial_of((s + 2) / (s + 1), IN_S) == s + 1
-    assert polynomial_of(s / c, IN_S) == s / c
-    assert polynomial_of(1 / z, IN_S) == 1 / z
-
-
 def test_a_matrix_has_the_property_of_all_its_entries() -> None:
     table = Matrix.of([[1 / (s + 1), 1 / (s + 2)]])
     assert subjects("strictly_proper", table, "s") == (1 / (s + 1), 1 / (s + 2))
@@ -249,17 +231,6 @@ def test_limits_of_stability_are_not_strict() -> None:
     assert not exactly(z + h, said(h, ">=", 0), name="marginal", known=IN_Z, discrete=True)
 
 
-def test_in_discrete_time_the_disc_decides() -> None:
-    inside = said(-1, "<", h, "<", 1)
-    assert exactly(z + h, inside, known=IN_Z, discrete=True)
-    assert not exactly(z + h, said(h, ">", 0), known=IN_Z, discrete=True)
-    assert not exactly(s + h, inside)
-    polynomial = z**2 + h * z + k * a
-    conditions = (said(1 + h + k * a, ">", 0), said(1 - h + k * a, ">", 0), said(k * a, "<", 1))
-    assert exactly(polynomial, *conditions, known=IN_Z, discrete=True)
-    assert not exactly(polynomial, *conditions[:2], known=IN_Z, discrete=True)
-
-
 def test_what_is_above_zero_here_has_a_sign() -> None:
     """Where h > 0, s² + h s + k is stable exactly where k > 0; and so where −h < 0."""
     polynomial = s**2 + h * s + k
@@ -272,12 +243,6 @@ def test_what_is_above_zero_here_has_a_sign() -> None:
     assert exactly(s**2 - h * s + k, said(k, ">", 0), known=where(said(h, "<", 0)))
     for case in (said(h, "<", 0), said(h, ">", -1), said(2 * h + c, ">", 0)):
         assert not exactly(polynomial, said(k, ">", 0), known=where(case))
-
-
-def test_members_are_numbers() -> None:
-    known = replace(IN_S, values={"F": Matrix.of([[h]])})
-    assert exactly(s + h, said(Letter("F"), ">", 0), known=known)
-    assert exactly(s + h, said(0, "<", Letter("F")), known=known)
 
 
 def test_roots_on_the_axis_may_not_meet() -> None:

@@ -5,14 +5,10 @@ from __future__ import annotations
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
-import pytest
-
 from symobs.exact import Matrix, Scalar, roots_of
-from symobs.exact.core.generators import PI, function
 from symobs.formula.tree import Apply, Environment, Letter, Literal, Predicate, Product, Relation, Roots
-from symobs.proof.derivation.wording_check import Said, fits
+from symobs.proof.derivation.wording_check import Said
 from symobs.proof.derivation.wording_check import rests as rests_on
-from tests.kit import tabled
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -41,63 +37,8 @@ def compared(first: Scalar | str, *rest: object) -> Relation:
     return Relation((start, *(Literal(Scalar.of(part)) for part in rest[1::2])), rest[::2])  # type: ignore[arg-type]
 
 
-def exp(exponent: Fraction | int, *, of_pi: bool = True) -> Scalar:
-    return function("exp", Scalar.of(exponent) * (Scalar.symbol(PI) if of_pi else 1))
-
-
-def test_a_mode_decays_by_its_own_rate() -> None:
-    assert fits("decayed", compared(exp(-6, of_pi=False), "<=", 1), E)
-    for other in (exp(-5, of_pi=False), exp(6, of_pi=False), exp(-6), -exp(-6, of_pi=False), Scalar.of(0)):
-        assert not fits("decayed", compared(other, "<=", 1), E)
-
-
-def test_a_pair_overshoots_by_its_own_ratio() -> None:
-    assert fits("overshoot_held", compared(exp(Fraction(-25, 26)), "<=", 1), E)
-    for other in (exp(Fraction(-26, 25)), exp(Fraction(25, 26)), exp(Fraction(-25, 26), of_pi=False), Scalar.of(0)):
-        assert not fits("overshoot_held", compared(other, "<=", 1), E)
-
-
-@tabled
-def test_a_third_digit_is_one_higher(ratio: str, higher: str) -> None:
-    """One unit in the third digit of 1.04 is 0.01, of 10 it is 0.1, of 0.999 it is 0.001 and of 12345 it is 100."""
-    e = E.extended_by(values={"omega_d": 2 * Scalar.of(Fraction(ratio))})
-    assert fits("overshoot_close", compared(exp(-1 / Fraction(higher)), ">", 0), e)
-    assert not fits("overshoot_close", compared(exp(-1 / Fraction(ratio)), ">", 0), e)
-
-
-@pytest.mark.parametrize("ratio", [0, -1])
-def test_only_a_positive_number_has_a_third_digit(ratio: int) -> None:
-    assert not fits(
-        "overshoot_close", compared(exp(-1), ">", 0), E.extended_by(values={"omega_d": Scalar.of(2 * ratio)})
-    )
-
-
 FULL = compared("O", "=", 2)
 LOW, OF_TWO = compared("Ctr", "=", 1), compared("Ctr", "=", 1, "<", 2)
-NO_RANKS = (compared(Scalar.of(2), "=", 2), Relation((Apply("det", Letter("O")), Literal(Scalar.of(2))), ("=",)))
-
-
-@pytest.mark.parametrize("key", ["disturbance_zeros_origin"])
-def test_a_full_rank_is_that_of_the_smaller_side(key: str) -> None:
-    assert fits(key, FULL, E)
-    for other in (LOW, OF_TWO, compared("O", "=", 3), compared("O", "=", 1), compared("O", "=", 2, "<", 3), *NO_RANKS):
-        assert not fits(key, other, E)
-    assert not fits(key, compared("O", "=", 2, "=", 2), E)
-    assert not fits(key, compared("O", "!=", 2), E)
-
-
-@pytest.mark.parametrize("key", ["disturbance_blocked_origin"])
-def test_a_rank_is_low_below_the_smaller_side(key: str) -> None:
-    assert fits(key, OF_TWO, E)
-    assert fits(key, LOW, E)
-    assert fits(key, compared("Ctr", "<", 2), E)
-    others = (compared("Ctr", "=", 1, "<", 3), compared("Ctr", "<", 3), compared("Ctr", "=", 1, "=", 2))
-    for other in (FULL, compared("O", "=", 2, "<", 2), compared("Ctr", "!=", 1), *others, *NO_RANKS):
-        assert not fits(key, other, E)
-
-
-def test_other_sentences_take_any_relation() -> None:
-    assert fits("case_rank", compared("O", "=", 1), E)
 
 
 def test_a_pole_is_defective_where_it_has_fewer_eigenvectors_than_places() -> None:

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import MISSING, FrozenInstanceError, fields, replace
-from typing import Any, get_args
+from dataclasses import FrozenInstanceError, replace
+from typing import Any
 
 import pytest
 
@@ -32,12 +32,9 @@ from symobs.proof.derivation import (
     Conclude,
     Define,
     Derivation,
-    Diagram,
     Equal,
     Given,
-    Inequalities,
     Note,
-    Plot,
     RegionSummary,
     Section,
     Sentence,
@@ -65,7 +62,6 @@ from tests.support.problems.steps import (
     said,
     slot,
 )
-from tests.support.regions import drawn_by_hand as hand
 
 pytestmark = pytest.mark.usefixtures("own_phrases")
 
@@ -84,19 +80,6 @@ def test_what_cannot_be_read_is_refused_with_its_line() -> None:
     assert caught.value.repair == "please report this: it is a bug of symobs"
     with pytest.raises(FrozenInstanceError):
         Derivation((), START).steps = ()  # type: ignore[misc]
-
-
-KINDS = get_args(Step)
-
-
-@pytest.mark.parametrize("kind", KINDS, ids=lambda kind: kind.__name__)
-def test_a_step_stays_what_it_was_and_is_a_plain_one_unless_told(kind: type[Any]) -> None:
-    given = Sentence("test_plain")
-    step = kind(*[given for part in fields(kind) if part.default is MISSING])
-    assert {getattr(step, part.name) for part in fields(kind)} <= {given, None, (), False}
-    for part in fields(kind):
-        with pytest.raises(FrozenInstanceError):
-            setattr(step, part.name, None)
 
 
 def test_data_mean_nothing_where_a_denominator_vanishes() -> None:
@@ -135,13 +118,6 @@ def test_every_relation_of_a_step_is_checked(relations: tuple[Relation, ...]) ->
     refused(*(Equal((relation,)) for relation in relations))
 
 
-def test_every_relation_given_is_introduced() -> None:
-    known = checked(Given((said(A, 1), said(F, 2), said(C, 3))))
-    assert [known.values[name] for name in "AFC"] == [Scalar.of(1), Scalar.of(2), Scalar.of(3)]
-    known = checked(Given((said(c, "!=", 1), said(F, 2))), Given((said(c, "!=", 2),)))
-    assert (known.nonzero, known.values["F"]) == ((c - 1, c - 2), Scalar.of(2))
-
-
 def test_every_slot_of_every_sentence_is_read() -> None:
     false: tuple[Any, ...] = (
         two,
@@ -172,15 +148,6 @@ def test_every_slot_of_every_sentence_is_read() -> None:
     both = Sentence("parts", (("measured", "words"), ("unmeasured", two)))
     refused(Note(both), start=start)
     checked(Note(replace(both, slots=(("measured", chi), ("unmeasured", one)))), start=start)
-
-
-def test_what_is_shown_is_so() -> None:
-    start = replace(START, values={"chi": s - 1, "phi": s, "F": Scalar.of(1)})
-    determinant = Apply("det", A)
-    for told in (Evaluated(determinant, literal(2)), said(determinant, 2), A, Sum((A, A)), Quotient(A, F)):
-        for step in (Note(slot(told)), Section(slot(told), ()), Equal((one,), slot(told))):
-            checked(A_IS, step, start=start)
-    refused(A_IS, Note(slot(Evaluated(determinant, literal(3)))), start=start)
 
 
 def test_no_root_of_what_may_be_negative_is_written_anywhere() -> None:
@@ -226,10 +193,6 @@ def test_a_sentence_rests_on_its_facts() -> None:
 # -- what a boundary is moved by ----------------------------------------------------------------------------------------
 
 NAMES = ("names", SymbolList(("h",)))
-
-
-def moving(key: str, by: Scalar, value: Scalar, *, at: Scalar) -> Define:
-    return Define(said(Letter("q_s"), Apply("chi_at", Literal(at)), value), Sentence(key, (("by", Literal(by)),)))
 
 
 def test_a_boundary_is_moved_to_the_limit_that_is_sought() -> None:
@@ -327,32 +290,6 @@ def test_a_table_is_that_of_its_letter() -> None:
     checked(table, start=replace(start, values={"chi": Matrix.of([[s**2 + h * s + 2]])}))
 
 
-def test_inequalities_say_where_a_letter_s_polynomial_is_stable() -> None:
-    start = replace(START, values={"chi": s**2 + h * s + k, "phi": s + 1})
-    stable = Predicate("stable", chi)
-    where = (said(h, ">", 0), said(k, ">", 0))
-    checked(Inequalities(HoldsExactlyWhere(stable, where)), start=start)
-    checked(Conclude(None, (HoldsExactlyWhere(stable, where),)), start=start)
-    for other in (
-        where[:1],
-        where[1:],
-        (),
-        (said(h, ">", 1), where[1]),
-        (said(h, "<", 0), where[1]),
-        (said(h, ">=", 0), where[1]),
-    ):
-        refused(Inequalities(HoldsExactlyWhere(stable, other)), start=start)
-        refused(Conclude(None, (HoldsExactlyWhere(stable, other),)), start=start)
-        refused(Note(slot(HoldsExactlyWhere(stable, other))), start=start)
-    refused(
-        Inequalities(HoldsExactlyWhere(Predicate("stable", Literal(s**2 + h * s + k)), where)),
-        start=start,
-        match="no letter's",
-    )
-    refused(Inequalities(HoldsExactlyWhere(stable, where), slot(two)), start=start)
-    refused(Inequalities(HoldsExactlyWhere(stable, (*where, said(phi, "=", s + 1)))), start=start)
-
-
 def test_a_region_is_that_of_its_letter() -> None:
     start = replace(START, values={"chi": s + h})
     right = (said(h, ">", 0),)
@@ -369,68 +306,6 @@ def test_a_region_is_that_of_its_letter() -> None:
     checked(RegionSummary(chi, ("h",), (), (inside,)), start=discrete, discrete=True)
     refused(RegionSummary(chi, ("h",), (), (right,)), start=discrete, discrete=True)
     refused(RegionSummary(chi, ("h",), (), (inside,)), start=start)
-
-
-def test_a_picture_is_looked_at() -> None:
-    picture, polynomial = hand.hyperbola(), hand.HYPERBOLA
-    start = replace(START, values={"chi": polynomial, "phi": polynomial + 1})
-    checked(Plot(picture, chi), start=start)
-    checked(Plot(picture, Apply("chi_at", Letter("s"))), start=start)
-    refused(Plot(picture, phi), start=start, match="in a picture")
-    refused(Plot(picture, Literal(polynomial)), start=start, match="which is no letter's")
-    refused(Plot(picture, Sum((Letter("s"), Literal(polynomial - s)))), start=start, match="which is no letter's")
-    refused(Plot(picture, F), start=start, match="F is used before it is established")
-    refused(Plot(picture, chi, slot(two)), start=start)
-    unknown = replace(picture.curves[0], equation=said(Letter("h1"), 1))
-    refused(Plot(replace(picture, curves=(*picture.curves, unknown)), chi), start=start, match="h1 is used before")
-    refused(Plot(replace(picture, curves=(unknown, *picture.curves)), chi), start=start, match="h1 is used before")
-
-
-def test_every_equation_of_a_diagram_is_checked() -> None:
-    start = replace(START, values={"P": 1 / s, "F": Scalar.of(1), "chi": 1 / (s + 1), "phi": 1 / (s + 2)})
-    labels = (("P", Letter("P")), ("F", Letter("F")), ("response", chi))
-    refused(Diagram("loop", (*labels[:2], ("response", phi))), start=start)
-
-
-# -- properties ---------------------------------------------------------------------------------------------------------
-
-
-def test_properties_are_of_letters_and_hold_whatever_coefficients_stand_for() -> None:
-    d = Scalar.symbol("d")
-    start = replace(START, values={"chi": s + a, "phi": s + d, "F": 1 / (s + a)}, coefficients={"d": a + 1})
-    checked(Conclude(None, (Predicate("stable", chi),)), start=start)
-    checked(Conclude(None, (Predicate("stable", F),)), start=start)
-    refused(Conclude(None, (Predicate("stable", phi),)), start=start)
-    refused(Conclude(None, (Predicate("beautiful", chi),)), start=start, match="beautiful")
-    refused(Conclude(None, (Predicate("stable", Literal(s + a)),)), start=start, match="no letter's")
-    refused(Conclude(None, (Predicate("stable", Sum((Letter("s"), Literal(a)))),)), start=start, match="no letter's")
-    refused(Conclude(None, (Predicate("unstable", chi),)), start=start)
-    proper, not_proper = Matrix.of([[1 / s, 1 / s**2]]), Matrix.of([[1 / s, s]])
-    checked(Conclude(None, (Predicate("strictly_proper", F),)), start=replace(start, values={"F": proper}))
-    refused(Conclude(None, (Predicate("strictly_proper", F),)), start=replace(start, values={"F": not_proper}))
-
-
-def test_roots_are_those_of_a_letter() -> None:
-    start = replace(START, values={"chi": s**2 + 3 * s + 2, "F": (s + 7) / (2 * s**2 + 6 * s + 4)})
-    roots = roots_of(s**2 + 3 * s + 2, "s")
-    for subject in (chi, F):
-        checked(Conclude(None, (Roots(subject, roots),)), start=start)
-        for others in (roots[:1], (), (*roots, roots[0]), (roots[0], roots[0]), roots_of(s**2 + 3 * s, "s")):
-            refused(Conclude(None, (Roots(subject, others),)), start=start, match="the roots of")
-    refused(Conclude(None, (Roots(Literal(s**2 + 3 * s + 2), roots),)), start=start, match="no letter's")
-    table = replace(start, values={"chi": Matrix.of([[s**2 + 3 * s + 2]]), "F": 2 * s**2 + 6 * s + 4})
-    checked(Conclude(None, (Roots(chi, roots),)), start=table)
-    refused(Conclude(None, (Roots(F, roots),)), start=table, match="the roots of")
-
-
-def test_a_root_is_of_what_is_not_negative() -> None:
-    checked(Define(said(F, square_root(a))))
-    refused(Define(said(F, square_root(c))), match=">= 0")
-    refused(Equal((said(square_root(c), square_root(c)),)), match=">= 0")
-
-
-def test_names_are_established_and_nothing_more() -> None:
-    checked(Note(slot(SymbolList(("a", "c")))))
 
 
 # -- what is introduced -------------------------------------------------------------------------------------------------
@@ -495,14 +370,6 @@ def test_what_stands_inside_is_checked(step: Step) -> None:
 # -- strata -------------------------------------------------------------------------------------------------------------
 
 ON = Environment(signs={"a": "positive", "b": "real", "c": "real", "h": "real", "k": "real"})
-
-
-def test_what_was_assumed_is_not_known_on_a_stratum() -> None:
-    nonzero, used = Given((said(h, "!=", 0),)), Equal((said(h, "!=", 0),))
-    checked(nonzero, used)
-    for when in (said(h * (h - 1), 0), said(k * k, 2)):
-        refused(nonzero, CaseStep(when, (), (used,)))
-        checked(nonzero, CaseStep(when, (), ()), used)
 
 
 def case(when: Relation | Conjunction, *steps: Step, **put_in: Scalar | int) -> CaseStep:
@@ -645,9 +512,3 @@ def test_what_is_put_in_has_a_value_everywhere_there() -> None:
     checked(case(Conjunction((product, said(c * k, 1))), b=h / c), start=ON)
     checked(case(Conjunction((said(b * a, h),)), equal(said(h, h)), b=h / a), start=ON)
     refused(case(Conjunction((product, said(k, 1))), b=h / c), start=ON)
-
-
-def test_properties_of_one_by_one_matrices_are_of_their_entry() -> None:
-    for name, value in (("stable", s + 1), ("unstable", s - 1), ("strictly_proper", 1 / s), ("polynomial", s)):
-        start = replace(START, values={"chi": Matrix.of([[value]])})
-        checked(Conclude(None, (Predicate(name, chi),)), start=start)

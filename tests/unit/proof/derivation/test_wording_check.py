@@ -11,7 +11,6 @@ import pytest
 import symobs
 from symobs.exact import Matrix, Scalar
 from symobs.exact.core.generators import PI, function
-from symobs.formula.phrases import PHRASES
 from symobs.formula.phrases.spoken import Counted, StateChoice
 from symobs.formula.tree import (
     Apply,
@@ -26,7 +25,6 @@ from symobs.formula.tree import (
     Sum,
 )
 from symobs.ground.errors import DerivationRejected
-from symobs.proof.certificate.pointwise import Pointwise
 from symobs.proof.derivation.wording_check import Said, _one_higher, fits
 from symobs.proof.derivation.wording_check import rests as rests_on
 from tests.kit import tabled
@@ -148,11 +146,6 @@ def test_a_fact_about_one_matrix_is_not_carried_to_another_without_its_ground() 
     assert rests("steps_nonsingular_observability", (), here.extended_by(values={"W": Matrix.identity(3)}))
 
 
-def test_other_sentences_may_speak_of_any_relation() -> None:
-    assert fits("routh_where", said(1, 1), HERE) is True
-    assert PHRASES.keys() >= {*SAID_OF_FULL, *SAID_OF_LOWER}
-
-
 # -- exponentials ---------------------------------------------------------------------------------------------------------
 
 POLES = Environment(values={"sigma_d": Scalar.of(2), "omega_d": Scalar.of(3), "T_s": Scalar.of(5)})
@@ -192,12 +185,6 @@ def test_the_third_digit_is_one_higher() -> None:
             _one_higher(Fraction(value))
 
 
-@pytest.mark.parametrize("key", [*SAID_OF_FULL, *SAID_OF_LOWER, *EXPONENTS])
-def test_a_relation_is_said_and_no_letter(key: str) -> None:
-    for other in (Letter("omega_d"), "words", Literal(Scalar.of(2))):
-        assert fits(key, other, POLES) is False
-
-
 # -- facts ------------------------------------------------------------------------------------------------------------------
 
 
@@ -228,20 +215,6 @@ def test_a_verdict_rests_on_the_unobservable_modes(verdict: str, of: str) -> Non
             assert not rests(yes, (own[0],), here.extended_by(values=lie))
     assert rests(yes, (), pair(of, Matrix.of([[0, 1], [0, 0]]), [1, 0], 2)[1])
     assert not rests(yes, (STABLE,), pair(of, Matrix.identity(2), [1, 0], 2)[1])
-
-
-def test_other_sentences_rest_on_anything() -> None:
-    for facts in ((), NOTHING, (UNSTABLE,)):
-        assert rests("routh_where", facts, HERE) is True
-
-
-def test_a_rank_that_is_too_much_to_follow_is_not_told_for_all(monkeypatch: pytest.MonkeyPatch) -> None:
-    def too_large(*_: Any) -> None:
-        raise ArithmeticError
-
-    monkeypatch.setattr(Pointwise, "apply", too_large)
-    h = Scalar.symbol("h")
-    assert fits("no_observability", rank(Literal(Matrix.of([[1, h], [2, 2 * h]])), "<", 2), HERE) is False
 
 
 @tabled

@@ -162,8 +162,3 @@ def test_two_systems_share_what_lies_between_them() -> None:
 def test_what_cannot_be_read_is_refused(name: str, labels: Labels, match: str) -> None:
     with pytest.raises(ValueError, match=match):
         said(name, **labels)
-
-
-def test_names_of_signals_need_not_be_used() -> None:
-    loop: Labels = {"P": P, "F": F, "response": T}
-    assert said("loop", r=v, u=u, y=y, **loop) == said("loop", **loop)

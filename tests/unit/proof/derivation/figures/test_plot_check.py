@@ -11,11 +11,8 @@ from typing import TYPE_CHECKING, Any
 import mpmath
 import pytest
 
-from symobs import StateSpace, observer
 from symobs.exact import Matrix, Scalar
 from symobs.formula.figures.plot import (
-    End,
-    LinePicture,
     MarkedPoint,
     PlottedResponse,
     PoleMap,
@@ -25,20 +22,14 @@ from symobs.formula.figures.plot import (
 from symobs.formula.tree import Environment, Letter, Literal, Product
 from symobs.proof.derivation.figures import root_locus_check, time_response_check
 from symobs.proof.derivation.figures.plot_check import faults, is_faithful
-from symobs.proof.derivation.figures.plot_points import within, written
 from symobs.proof.derivation.figures.root_locus_check import faults_of_poles
 from symobs.proof.derivation.figures.time_response_check import faults_of_response
-from symobs.proof.derivation.steps import Plot, Section, Sentence
 from tests.kit import tabled
-from tests.support.problems.steps import said
 from tests.support.regions import drawn_by_hand as hand
-from tests.support.regions.drawn_by_hand import equation, h1, h2, k, s
+from tests.support.regions.drawn_by_hand import h1, h2, k, s
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-
     from symobs.formula.figures.plot import Picture
-    from symobs.proof.derivation import Step
 
 CHI = Letter("chi")
 
@@ -51,24 +42,6 @@ def told(picture: Picture, chi: Scalar, *, discrete: bool = False, **signs: str)
 
 def at(x: Any, y: Any) -> tuple[Fraction, Fraction]:
     return Fraction(x), Fraction(y)
-
-
-# -- places -------------------------------------------------------------------------------------------------------------
-
-SQUARE = ((Fraction(-1), Fraction(1)), (Fraction(-1), Fraction(1)))
-
-
-def test_a_place_lies_in_its_window_or_near_it() -> None:
-    for inside in ((0, 0), (1, 1), (-1, -1), (1, -1)):
-        assert within(at(*inside), SQUARE)
-    for outside in ((2, 0), (0, 2), (-2, 0), (0, -2), ("1.01", 0), (0, "-1.01")):
-        assert not within(at(*outside), SQUARE)
-    near = at("0.5", "0.1")
-    assert within(at("1.5", "1.1"), SQUARE, near)
-    assert within(at("-1.5", "-1.1"), SQUARE, near)
-    for outside in (("1.6", 0), ("-1.6", 0), (0, "1.2"), (0, "-1.2")):
-        assert not within(at(*outside), SQUARE, near)
-    assert written(at("1/2", -3)) == "(1/2, -3)"
 
 
 # -- regions ------------------------------------------------------------------------------------------------------------
@@ -108,26 +81,6 @@ WHOLE = (at(-2, -2), at(2, -2), at(2, 2), at(-2, 2))
 WINDOW = ((Fraction(-2), Fraction(2)), (Fraction(-2), Fraction(2)))
 
 
-def test_all_is_shaded_or_nothing() -> None:
-    stable, unstable = s + 1 + 0 * h1, s - 1
-    shaded = RegionPicture(("h1", "h2"), WINDOW, (WHOLE,), ())
-    bare = replace(shaded, areas=())
-    assert told(shaded, stable) == told(bare, unstable) == []
-    assert len(told(bare, stable)) == 49
-    assert all(fault.endswith("is not stable") for fault in told(bare, stable))
-    assert all(fault.endswith("is stable") for fault in told(shaded, unstable))
-    part = replace(shaded, areas=(WHOLE[:3],))
-    assert any("an edge at" in fault for fault in told(part, stable))
-    beyond = replace(shaded, areas=((at(-3, -2), *WHOLE[1:]),))
-    assert "an edge at (-3, -2), outside of the window" in told(beyond, stable)
-    inner = replace(shaded, areas=((at(-1, -2), *WHOLE[1:3], at(-1, 2)),))
-    assert any(fault.endswith("is not stable") for fault in told(inner, stable))
-    steep = replace(shaded, areas=((at(0, -2), at(2, -2), at(2, 2), at(-1, 2)),))
-    assert "an edge at (-1/2, 0)" in told(steep, stable)
-    for window in ((WINDOW[0], (Fraction(0), Fraction(0))), ((Fraction(1), Fraction(0)), WINDOW[1])):
-        assert told(replace(shaded, window=window), stable) == ["the window is empty"]
-
-
 @tabled
 def test_a_mark_says_what_is_so(kind: str, *, shaded: bool, expected: bool) -> None:
     picture = RegionPicture(
@@ -138,62 +91,12 @@ def test_a_mark_says_what_is_so(kind: str, *, shaded: bool, expected: bool) -> N
     assert (f"(1/3, 1/5) is {kind}" not in told(unstable, s - 1)) == (kind in {"unstable", "excluded"})
 
 
-def test_an_equation_is_one_and_of_the_axes() -> None:
-    picture = hand.hyperbola()
-    (curve, *_) = picture.curves
-    for relation in (said(h1, ">", h2), equation(1, 1), equation(h1, h1), said(h1 * h2, 1, 1)):
-        spoiled = replace(picture, curves=(replace(curve, equation=relation), *picture.curves[1:]))
-        assert any("equation of a curve" in fault for fault in told(spoiled, hand.HYPERBOLA))
-    assert told(picture, hand.HYPERBOLA) == []
-    turned = replace(picture, curves=(replace(curve, boundary=not curve.boundary), *picture.curves[1:]))
-    assert any("boundary" in fault for fault in told(turned, hand.HYPERBOLA))
-
-
 def test_what_cannot_be_looked_at_is_not_faithful() -> None:
     picture = hand.hyperbola()
     known = Environment(values={"chi": hand.HYPERBOLA})
     assert is_faithful(picture, CHI, known, discrete=False)
     assert not is_faithful(picture, Letter("phi"), known, discrete=False)
     assert not is_faithful(replace(picture, areas=()), CHI, known, discrete=False)
-
-
-# -- intervals ----------------------------------------------------------------------------------------------------------
-
-
-def line(*pieces: tuple[Any, Any], marks: tuple[Any, ...] = (), chi: Scalar = s + k) -> list[str]:
-    ends = [tuple(None if e is None else End(Fraction(e), Scalar.of(Fraction(e))) for e in piece) for piece in pieces]
-    return told(LinePicture("k", (Fraction(-4), Fraction(4)), tuple(ends), marks), chi)  # type: ignore[arg-type]
-
-
-def test_pieces_are_where_the_polynomial_is_stable() -> None:
-    assert line((0, None)) == []
-    assert line((0, None), chi=s - k)[:1] == ["1/2 is stable"]
-    assert "1 is an end" in line((1, None))
-    assert "-1 is an end" in line((-1, None))
-    assert "3 is an end" in line((0, 3))
-    assert line() != []
-    assert "the pieces follow one another" in line((2, None), (0, 2))
-    assert line((0, 2), (2, None)) != []
-    assert line((0, None), marks=((Fraction(1), "stable"), (Fraction(-1), "unstable"))) == []
-    for place, kind in ((1, "unstable"), (-1, "stable"), (1, "excluded"), (1, "other")):
-        assert line((0, None), marks=((Fraction(place), kind),)) == [f"{place} is {kind}"]
-    assert line((0, None), marks=((Fraction(-1), "excluded"),)) == []
-
-
-def test_a_name_may_say_no_other_place_than_its_end() -> None:
-    for label, is_so in (
-        ("0", True),
-        ("≈0.00", True),
-        ("−0", True),
-        ("0.001", True),
-        ("1", False),
-        ("−1", False),
-        ("o", False),
-    ):
-        picture = LinePicture("k", (Fraction(-4), Fraction(4)), ((End(Fraction(0), label), None),))
-        assert (told(picture, s + k) == []) == is_so
-    empty = LinePicture("k", (Fraction(1), Fraction(1)), ())
-    assert told(empty, s + k) == ["the window is empty"]
 
 
 # -- poles --------------------------------------------------------------------------------------------------------------
@@ -230,15 +133,6 @@ def test_a_pole_is_where_it_is() -> None:
     assert poles(replace(back, paths=(good.paths[0][::-1],)), s + k) == []
 
 
-def test_a_page_shows_poles_of_its_own_polynomial() -> None:
-    good = straight(((0, 0), (-1, 0), (-2, 0)), along=((0, 1, 2),))
-    assert told(good, s + k) == []
-    assert told(good, s + k + 1)[0] == "(0, 0) is a pole at k = 0"
-    assert told(good, s + k + h1) == [f"the polynomial {s + k + h1} depends on k alone"]
-    assert told(replace(good, drawn_for=(("h1", Scalar.of(0)),)), s + k + h1) == []
-    assert told(good, Scalar.symbol("z") + k, discrete=True)[0] == "the poles are those in s"
-
-
 def test_all_poles_are_drawn_each_once() -> None:
     """(s + k) (s + k + 1) has −k and −k − 1."""
     first, second = ((0, 0), (-1, 0), (-2, 0)), ((-1, 0), (-2, 0), (-3, 0))
@@ -255,66 +149,6 @@ def test_a_pole_drawn_roughly_is_near_enough_and_no_more() -> None:
         assert (poles(replace(good, paths=(path,)), s + k) == []) == is_near
 
 
-def test_every_path_is_looked_at_and_the_narrower_side_counts() -> None:
-    first, second = ((0, 0), (-1, 0), (-2, 0)), ((-1, 0), (-2, 0), (-3, 0))
-    polynomial = (s + k) * (s + k + 1)
-    for paths in ((first, ((-1, 0), (-2, 0), (-4, 0))), (((0, 0), (-1, 0), (-4, 0)), second)):
-        assert poles(straight(*paths, along=((0, 1, 2),) * 2), polynomial)[0] == "(-4, 0) is a pole at k = 2"
-    assert poles(straight(first, second, along=((0, 1, 2), (0, 2))), polynomial) == ["k goes from 0 to 2"]
-    good = straight(first, along=((0, 1, 2),))
-    flat = replace(good, window=(good.window[0], (Fraction(-1), Fraction(1))))
-    for off, is_near in ((Fraction(1, 100), True), (Fraction(1, 50), False)):
-        path = ((off, Fraction(0)), *good.paths[0][1:])
-        assert (poles(replace(flat, paths=(path,)), s + k) == []) == is_near
-
-
-def test_poles_may_meet_at_one_value() -> None:
-    """s² + 2 s + k has 0 and −2, and at k = 1 twice −1."""
-    meeting = straight(((0, 0), (-1, 0)), ((-2, 0), (-1, 0)), along=((0, 1),) * 2)
-    assert poles(replace(meeting, values=(Fraction(0), Fraction(1))), s**2 + 2 * s + k) == []
-
-
-def test_a_root_is_surely_near() -> None:
-    """By |w|ᵏ ≤ C(n, k) |c₀/cₖ| for one root w."""
-
-    def is_near(*coefficients: Any, within: Any) -> bool:
-        shifted = [(Fraction(c), Fraction(0)) for c in coefficients]
-        return root_locus_check._has_root_near(shifted, Fraction(within))
-
-    assert is_near(1, 2, 0, within=1)
-    assert not is_near(1, 2, 0, within="0.99")
-    assert is_near(1, 0, 1, within=1)
-    assert not is_near(1, 0, 1, within="1/2")
-    assert is_near("2/5", 1, within="1/2")
-    assert not is_near("3/5", 1, within="1/2")
-    assert not is_near(1, 1, 0, within=1)
-    assert not is_near(0, 0, within=1)
-    assert is_near(0, 1, within=1)
-
-
-def test_a_polynomial_is_moved_to_a_place() -> None:
-    """At k = 2, k s² + s − 1 about 1 + i/2 has the constant term 2 (3/4 + i) + i/2, the slope 4 (1 + i/2) + 1."""
-    found = root_locus_check._shifted(k * s**2 + s - 1, "k", Fraction(2), at(1, "1/2"), "s")
-    assert found == [at("3/2", "5/2"), at(5, 2), at(2, 0)]
-    assert root_locus_check._shifted(k * s**2 + s - 1, "k", Fraction(0), at(1, 3), "s") == [at(0, 3), at(1, 0)]
-    with pytest.raises(ZeroDivisionError):
-        root_locus_check._shifted(s + 1 / k, "k", Fraction(0), at(1, 3), "s")
-
-
-def test_moduli_and_distances() -> None:
-    assert root_locus_check._square(at(3, 4)) == 25
-    assert root_locus_check._square(at(3, -1)) == 10
-    assert root_locus_check._distance(at(1, 2), at(4, 6)) == 25
-    assert root_locus_check._distance(at(1, 3), at(0, -2)) == 26
-
-
-def test_values_that_all_paths_share_are_taken_from_the_middle_on() -> None:
-    along = [tuple(map(Fraction, values)) for values in ((0, 1, 2, 3, 4), (0, 1, 2, 3, 4, 5))]
-    assert list(root_locus_check._common(SimpleNamespace(along=along))) == [2, 3, 1, 4, 0]  # type: ignore[arg-type]
-    along[1] = tuple(map(Fraction, (0, 1, 9, 3, 4)))
-    assert list(root_locus_check._common(SimpleNamespace(along=along))) == [3, 1, 4, 0]  # type: ignore[arg-type]
-
-
 @tabled
 def test_discs_that_hold_a_root_lie_apart(places: tuple[str, str], *, are_all: bool) -> None:
     """Of s² − 1: each disc has the square of its radius 4 |c₀/c₁|²."""
@@ -322,22 +156,7 @@ def test_discs_that_hold_a_root_lie_apart(places: tuple[str, str], *, are_all: b
     assert root_locus_check._are_all(drawn, s**2 - 1, "s", 0) == are_all  # type: ignore[arg-type]
 
 
-def test_discs_grow_with_the_degree() -> None:
-    """Of s³ − s: the square of the radius is 9 |c₀/c₁|²."""
-    for place, are_all in (("0.85", False), ("0.9", True)):
-        paths = [(at(x, 0),) for x in ("0", place, f"-{place}")]
-        drawn = SimpleNamespace(paths=paths, along=((Fraction(0),),) * 3, moved="k")
-        assert root_locus_check._are_all(drawn, s**3 - s, "s", 0) == are_all  # type: ignore[arg-type]
-
-
 # -- responses ------------------------------------------------------------------------------------------------------------
-
-
-def steps_within(steps: tuple[Step, ...]) -> Iterator[Step]:
-    for step in steps:
-        yield step
-        if isinstance(step, Section):
-            yield from steps_within(step.steps)
 
 
 DECAY = Environment(
@@ -434,37 +253,6 @@ def test_every_segment_of_a_course_is_looked_at() -> None:
 PARABOLA = replace(DECAY, values={"A": Matrix.of([[0, 1, 0], [0, 0, 1], [0, 0, 0]])}, sizes={"x": 3})
 
 
-def test_no_point_of_a_course_leaves_the_window() -> None:
-    known = replace(DECAY, values={"A": Matrix.of([[0, 1], [0, 0]])}, sizes={"x": 2})
-    ramp = (course(0, 1, 2, component=1, row=(1, 0)), course(1, 1, 1, component=2, row=(0, 1)))
-    for low, high, expected in (
-        (0, 2, []),
-        ("1/2", 2, ["x, which leaves the window,"]),
-        (0, "3/2", ["x, which leaves the window,"]),
-    ):
-        window = (WIDE[0], (Fraction(low), Fraction(high)))
-        response = TimeResponse(("x",), ((Fraction(0), Fraction(1)),), ramp, window, PARTS)
-        assert list(faults_of_response(response, Letter("A"), known)) == expected
-
-
-def test_two_points_are_a_course() -> None:
-    assert responses(course(1, 1), window=((Fraction(0), Fraction(1)), WIDE[1])) == []
-
-
-def test_every_signal_is_held_to_the_page() -> None:
-    third = ["an equation of x with this matrix"]
-    assert responses(course(1, 1, 1), course(3, 3, 3, signal="y", row=(3,))) == third
-    assert responses(course(2, 2, 2, signal="y", row=(2,)), course(1, 1, 1, row=(3,))) == third
-    half = replace(course(1, 1, 1, signal="w"), row=(Fraction(1, 2),))
-    known = replace(DECAY, signals={**DECAY.signals, "w": Product((Literal(Scalar.rational(1, 2)), Letter("x")))})
-    response = TimeResponse(("x",), ((Fraction(2),),), (half,), WIDE, PARTS)
-    assert list(faults_of_response(response, Letter("A"), known)) == []
-    response = replace(response, starts=((Fraction(1),),))
-    assert list(faults_of_response(response, Letter("A"), known)) == ["the response of w"]
-    with pytest.raises(ValueError, match="not all components of A"):
-        responses(course(1, 1, 1, signal="A"))
-
-
 def test_rounding_is_not_seen_however_fast_a_course_grows() -> None:
     """e^{200 t} up to t = 2, which takes 578 bits, beside a constant."""
     table = Matrix.of([[0, 0], [0, 200]])
@@ -473,26 +261,6 @@ def test_rounding_is_not_seen_however_fast_a_course_grows() -> None:
         for k, (constant, growing) in enumerate(found):
             assert abs(constant - 2**64) <= 1
             assert abs(growing - mpmath.exp(20 * k) * 2**64) <= 2
-
-
-def test_rounding_is_not_seen_however_far_off_a_course_begins() -> None:
-    """10⁴⁰ e^{2t} beside what stays 0."""
-    start = (Fraction(0), Fraction(10**40))
-    found = time_response_check._stepped(Matrix.of([[0, 0], [0, 2]]), start, Fraction(1, 10), 11)
-    with mpmath.workprec(1000):
-        for k, (zero, growing) in enumerate(found):
-            assert zero == 0
-            assert abs(growing - 10**40 * mpmath.exp(mpmath.mpf(k) / 5) * 2**64) <= 2
-
-
-def test_terms_of_either_sign_come_to_an_end() -> None:
-    """−t eᵗ beside eᵗ: what is left of a negative term, rounded down, is -1 for good."""
-    found = time_response_check._stepped(Matrix.of([[1, -1], [0, 1]]), (Fraction(0), Fraction(1)), Fraction(1, 4), 9)
-    with mpmath.workprec(300):
-        for j, (mixed, growing) in enumerate(found):
-            t = mpmath.mpf(j) / 4
-            assert abs(mixed + t * mpmath.exp(t) * 2**64) <= 2
-            assert abs(growing - mpmath.exp(t) * 2**64) <= 2
 
 
 TURNING = Environment(
@@ -584,20 +352,6 @@ def test_numbers_in_a_field_with_letters_are_raised_to_powers_as_numbers() -> No
     assert time_response_check.is_slow(table, Fraction(1))
 
 
-def test_the_error_of_an_exponential_and_of_its_powers_is_counted() -> None:
-    """Each row is off by no more than is said, and hardly less than a thousandth of it."""
-    table = [[Fraction(-7, 3), Fraction(5)], [Fraction(-11, 2), Fraction(1, 7)]]
-    bits = 96
-    found = time_response_check._exponential(table, bits)
-    with mpmath.workprec(1000):
-        true = mpmath.expm(mpmath.matrix([[mpmath.mpf(x.numerator) / x.denominator for x in row] for row in table]))
-        for _ in range(4):
-            off = [sum(abs(true[i, j] * 2**bits - found.rows[i][j]) for j in range(2)) for i in range(2)]
-            assert found.error / 100_000 < max(off) <= found.error < 2 ** (bits // 2)
-            assert found.norm == max(sum(map(abs, row)) for row in found.rows)
-            true, found = true * true, found.times(found, bits)
-
-
 def test_too_few_bits_are_not_taken_for_enough(monkeypatch: pytest.MonkeyPatch) -> None:
     """(M + I)² = 0 with entries of a thousand: e^{Mt} = e^{-t} (I + (M + I) t)."""
     shear = Matrix.of([[-1 + 1000, -1000], [1000, -1 - 1000]])
@@ -612,18 +366,3 @@ def test_too_few_bits_are_not_taken_for_enough(monkeypatch: pytest.MonkeyPatch) 
             t = mpmath.mpf(k) / 100
             for part, factor in zip(state, (1 + 1000 * t, 1000 * t), strict=True):
                 assert abs(part - mpmath.exp(-t) * factor * 2**64) <= 1
-
-
-# -- diagrams -----------------------------------------------------------------------------------------------------------
-
-
-def test_a_sentence_has_the_slots_of_its_phrase() -> None:
-    for slots in ((), (("polynomial", "chi"), ("more", "words")), (("other", "chi"),)):
-        with pytest.raises(ValueError, match="has the slots"):
-            Sentence("routh_table", slots)
-
-
-def test_a_plot_of_a_page_is_looked_at() -> None:
-    result = observer(StateSpace("[0 1; 0 -1]", "[0; 1]", "[1 0]"), poles=[-10, -10])
-    (plot,) = [step for step in steps_within(result.derivation.steps) if isinstance(step, Plot)]
-    assert isinstance(plot.picture, TimeResponse)

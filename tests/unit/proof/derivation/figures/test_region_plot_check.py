@@ -16,7 +16,7 @@ from symobs.exact.core.generators import square_root
 from symobs.formula.figures.plot import Curve, End, LinePicture, MarkedPoint, RegionPicture
 from symobs.formula.tree import Environment, Letter
 from symobs.proof.derivation.figures import plot_check, region_plot_check
-from symobs.proof.derivation.figures.plot_check import faults, is_faithful, relations_of
+from symobs.proof.derivation.figures.plot_check import faults, is_faithful
 from symobs.proof.derivation.figures.plot_points import Stability
 from tests.support.problems.steps import said
 from tests.support.regions.drawn_by_hand import h1, h2, k, s
@@ -86,31 +86,6 @@ def test_a_point_that_is_taken_out_is_all_but_unstable() -> None:
 # -- curves ---------------------------------------------------------------------------------------------------------------
 
 
-def difference(left: Any, right: Any, *operator: str, **numbers: int) -> Scalar:
-    values = {name: Scalar.of(value) for name, value in numbers.items()}
-    known = Environment(values={"P": h1 * h2})
-    return plot_check._difference(said(left, right, *operator), known, values)
-
-
-def test_an_equation_is_a_polynomial_without_double_factors() -> None:
-    b = Scalar.symbol("b")
-    assert difference(h1, 1) in {h1 - 1, 1 - h1}
-    assert difference((h1 - h2) ** 3 * h1, 0) in {(h1 - h2) * h1, (h2 - h1) * h1}
-    assert difference(h2, 1 / h1) in {h1 * h2 - 1, 1 - h1 * h2}
-    assert difference(Letter("P"), 1) == difference(Matrix.of([[h1 * h2]]), 1) in {h1 * h2 - 1, 1 - h1 * h2}
-    assert difference(h1, b, b=3) in {h1 - 3, 3 - h1}
-    for constant in (difference(h1, h1), difference(1, 2), difference(h1, 1, ">")):
-        assert constant == Scalar.of(1)
-    assert relations_of(RegionPicture(AXES, SQUARE, (), (Curve((), said(h1, 1)), Curve((), said(h2, 2))))) == (
-        said(h1, 1),
-        said(h2, 2),
-    )
-    assert relations_of(LinePicture("k", SQUARE[0], ())) == ()
-
-
-SQUARE = ((Fraction(-1), Fraction(1)), (Fraction(-1), Fraction(1)))
-
-
 @pytest.mark.parametrize(
     ("value", "place", "expected"),
     [
@@ -159,13 +134,6 @@ def test_a_polynomial_vanishes_near_a_number_or_not() -> None:
     assert not vanishes_near(double(Fraction(1, 10**12)), Fraction("9/10"), Fraction("1/5"))
 
 
-def test_an_arm_that_lies_in_a_curve_meets_it() -> None:
-    for value, along, expected in ((h2 * (h2 - 3), 0, True), (h2 - 3, 0, False), (h1, 1, True), (h1 - 3, 1, False)):
-        curve = PlaneCurve(value, AXES)
-        arm = (curve.on_horizontal, curve.on_vertical)[along](Fraction(0))
-        assert vanishes_near(arm, Fraction(0), Fraction(1)) is expected
-
-
 @pytest.mark.parametrize("discrete", [False, True])
 def test_a_polynomial_of_numbers_is_stable_by_its_roots(*, discrete: bool) -> None:
     """Products of factors whose roots are known: s + 1 is stable, s − 1 and s² + 1 are not; z/2 ± … likewise."""
@@ -183,141 +151,6 @@ def test_a_polynomial_of_numbers_is_stable_by_its_roots(*, discrete: bool) -> No
         wanted = first[discrete] and second[discrete] and last[discrete]
         value = -(one * other * third).substitute({"s": z if discrete else s}) + 0 * h1
         assert asked(value, "h1", discrete=discrete).is_stable(Fraction(1)) is wanted
-
-
-def test_edges_that_slope_are_parts_of_curves() -> None:
-    area = (at(0, 0), at(4, 0), at(4, 2), at(2, 3), at(0, 3))
-    assert list(region_plot_check._sloping(area, at("0.1", "0.1"))) == [(at(4, 2), at(2, 3))]
-    assert list(region_plot_check._sloping(area, at("1.99", "0.99"))) == [(at(4, 2), at(2, 3))]
-    for near in (at(2, "0.1"), at("0.1", 1)):
-        assert list(region_plot_check._sloping(area, near)) == []
-    triangle = (at(0, 0), at(1, 0), at(1, 1))
-    assert list(region_plot_check._sloping(triangle, at("0.1", "0.1"))) == [(at(1, 1), at(0, 0))]
-
-
-def test_places_all_over_a_window() -> None:
-    places = list(region_plot_check._grid(((Fraction(0), Fraction(679)), (Fraction(-679), Fraction(0)))))
-    assert len(places) == 49
-    assert places[:2] == [at(41, 43 - 679), at(41, 97 + 43 - 679)]
-    assert places[7] == at(97 + 41, 43 - 679)
-    assert places[-1] == at(6 * 97 + 41, 6 * 97 + 43 - 679)
-    shifted = list(region_plot_check._grid(((Fraction(1), Fraction(680)), (Fraction(2), Fraction(681)))))
-    assert shifted[0] == at(42, 45)
-
-
-def test_a_boundary_has_something_stable_beside_it() -> None:
-    """h1 > 0 is stable, whatever h2 is."""
-    test = asked(s + h1 + 0 * h2, *AXES)
-
-    def may_be(*points: Place) -> set[bool]:
-        return region_plot_check._are_boundaries(Curve(points, said(h1, 0)), SQUARE, test)
-
-    upright = tuple(at(0, Fraction(j, 10)) for j in range(-9, 10))
-    assert may_be(*upright) == may_be(*upright[::-1]) == {True}
-    assert may_be(upright[0], upright[-1]) == {True}
-    assert may_be(*(at("-1/2", y) for _, y in upright)) == {False}
-    assert may_be(*(at("1/2", y) for _, y in upright)) == {True}
-    assert may_be(*(at(Fraction(j, 10), 0) for j in range(1, 9))) == {True}
-    assert may_be(*(at(Fraction(-j, 10), 0) for j in range(1, 9))) == {False}
-    assert may_be(*(at(3, y) for _, y in upright)) == {True, False}  # out of sight
-    assert may_be(at(0, 0), at(0, 1), at(0, 0)) == {True, False}  # it turns back
-    # The border of the window is looked at from inside alone.
-    assert may_be(*(at(-1, y) for _, y in upright)) == {False}
-    assert may_be(*(at(1, y) for _, y in upright)) == {True}
-
-
-def test_a_boundary_is_asked_for_close_beside_it() -> None:
-    """10 000 parts of the window: what is stable only farther away does not lie beside."""
-    wide = ((Fraction(0), Fraction(10**4)), (Fraction(0), Fraction(2 * 10**4)))
-    points = tuple(at(100, j) for j in range(1, 40))
-    for limit, expected in ((100, True), ("100.99", True), ("101.01", False)):
-        test = asked(s + h1 - Scalar.of(Fraction(limit)), *AXES)
-        assert region_plot_check._are_boundaries(Curve(points, said(h1, 0)), wide, test) == {expected}
-    level = tuple(at(j, 100) for j in range(1, 40))
-    for limit, expected in ((100, True), ("101.99", True), ("102.01", False)):
-        test = asked(s + h2 - Scalar.of(Fraction(limit)), *AXES)
-        assert region_plot_check._are_boundaries(Curve(level, said(h2, 0)), wide, test) == {expected}
-
-
-def test_some_points_of_a_curve_are_asked_about(monkeypatch: pytest.MonkeyPatch) -> None:
-    places: list[Place] = []
-    monkeypatch.setattr(Stability, "is_stable", lambda _, *place: places.append(place))
-    points = tuple(at(0, Fraction(j, 100)) for j in range(24))
-    assert region_plot_check._are_boundaries(Curve(points, said(h1, 0)), SQUARE, asked(s, *AXES)) == {False}
-    assert [y for _, y in places[::2]] == [Fraction(j, 100) for j in range(1, 23, 3)]
-    assert {x for x, _ in places} == {Fraction(-2, 10**4), Fraction(2, 10**4)}
-    places.clear()
-    region_plot_check._are_boundaries(Curve(points[:21], said(h1, 0)), SQUARE, asked(s, *AXES))
-    assert [y for _, y in places[::2]] == [Fraction(j, 100) for j in range(1, 20, 2)]
-    places.clear()
-    region_plot_check._are_boundaries(Curve(points[:5], said(h1, 0)), SQUARE, asked(s, *AXES))
-    assert [y for _, y in places[::2]] == [Fraction(j, 100) for j in (1, 2, 3)]
-
-
-def test_the_places_beside_a_curve_lie_across_it(monkeypatch: pytest.MonkeyPatch) -> None:
-    """As it is seen: the window is a square to the eye, however many units it has."""
-    places: list[Place] = []
-    monkeypatch.setattr(Stability, "is_stable", lambda _, *place: places.append(place))
-    wide = ((Fraction(0), Fraction(10**4)), (Fraction(0), Fraction(2 * 10**4)))
-    slope = tuple(at(100 + j, 100 + j) for j in range(3))
-    region_plot_check._are_boundaries(Curve(slope, said(h1, h2)), wide, asked(s, *AXES))
-    assert places == [at("100.5", 103), at("101.5", 99)]
-    places.clear()
-    bent = at(0, "-1/2"), at(0, 0), at(0, "1/2"), at("9/10", "9/10")
-    region_plot_check._are_boundaries(Curve(bent, said(h1, 0)), SQUARE, asked(s, *AXES))
-    assert places[:2] == [at("-1/5000", 0), at("1/5000", 0)]
-
-
-def test_places_on_a_segment() -> None:
-    assert region_plot_check._along(at(0, 0), at(252, -504)) == (
-        at(0, 0),
-        at(72, -144),
-        at(140, -280),
-        at(189, -378),
-        at(252, -504),
-    )
-    assert region_plot_check._along(at(1, 2), at(253, 2))[1] == at(73, 2)
-
-
-def test_the_border_of_a_window() -> None:
-    near = at("0.1", "0.2")
-    for place in (("-0.9", 0), ("0.9", 0), (0, "-0.8"), (0, "0.8"), (1, 1), (-2, 0)):
-        assert region_plot_check._on_border(at(*place), SQUARE, near)
-    for place in (("-0.89", 0), ("0.89", 0), (0, "-0.79"), (0, "0.79")):
-        assert not region_plot_check._on_border(at(*place), SQUARE, near)
-
-
-L_SHAPE = (at(0, 0), at(4, 0), at(4, 1), at(1, 1), at(1, 4), at(0, 4))
-
-
-def test_what_lies_inside_of_an_area() -> None:
-    assert sorted(region_plot_check._crossings(L_SHAPE, Fraction(2))) == [0, 1]
-    assert sorted(region_plot_check._crossings(L_SHAPE, Fraction(1, 2))) == [0, 4]
-    assert sorted(region_plot_check._crossings((at(0, 0), at(3, 0), at(0, 6)), Fraction(2))) == [0, 2]
-    assert sorted(region_plot_check._crossings(L_SHAPE, Fraction(1))) == [0, 1]  # its upper side is not of it
-    for inside in ((2, "1/2"), ("1/2", 3), ("1/2", "1/2")):
-        assert region_plot_check.within_area(L_SHAPE, [at(*inside)]) == [at(*inside)]
-    for outside in ((2, 2), (5, "1/2"), (-1, "1/2"), ("1/2", 5), (2, -1)):
-        assert region_plot_check.within_area(L_SHAPE, [at(*outside)]) == []
-
-
-def test_edges_to_the_left_are_counted() -> None:
-    horseshoe = (at(0, 0), at(30, 0), at(30, 9), at(20, 9), at(20, 5), at(10, 5), at(10, 9), at(0, 9))
-    for x, expected in ((-5, False), (5, True), (15, False), (25, True), (35, False)):
-        assert region_plot_check.within_area(horseshoe, [at(x, 7)]) == [at(x, 7)] * expected
-    for x, expected in ((0, False), (10, True), (20, False), (30, True)):  # an edge is of what lies to its left
-        assert region_plot_check.within_area(horseshoe, [at(x, 7)]) == [at(x, 7)] * expected
-
-
-def test_places_inside_of_an_area() -> None:
-    places = list(region_plot_check._inside((at(0, 0), at(10, 0), at(10, 388), at(0, 388)), Fraction(1)))
-    assert places == [at(x, y) for y in (101, 198, 295) for x in (1, 5, 9)]
-    moved = list(region_plot_check._inside((at(5, 388), at(15, 388), at(15, 776), at(5, 776)), Fraction(1)))
-    assert moved == [at(x + 5, y + 388) for x, y in places]
-    assert list(region_plot_check._inside((at(0, 0), at(10, 0), at(10, 388), at(0, 388)), Fraction(5))) == []
-    assert len(list(region_plot_check._inside((at(0, 0), at(10, 0), at(10, 388), at(0, 388)), Fraction("4.99")))) == 9
-    horseshoe = (at(0, 0), at(30, 0), at(30, 388), at(20, 388), at(20, 50), at(10, 50), at(10, 388), at(0, 388))
-    assert [x for x, _ in region_plot_check._inside(horseshoe, Fraction(1))][:6] == [1, 5, 9, 21, 25, 29]
 
 
 # -- regions ----------------------------------------------------------------------------------------------------------------
@@ -555,20 +388,6 @@ def test_a_piece_that_is_short_is_asked_for_within() -> None:
     assert on_line((end(0), end("2.9")), chi=chi) == []
 
 
-def test_how_far_inside_of_its_piece_an_end_is_asked_for(monkeypatch: pytest.MonkeyPatch) -> None:
-    steps: list[Fraction] = []
-
-    def kept(_: End, step: Fraction, *__: Any) -> list[str]:
-        steps.append(step)
-        return []
-
-    monkeypatch.setattr(plot_check, "_of_end", kept)
-    for width, step in ((3, 1), (6, 2), (60, 2)):
-        steps.clear()
-        assert on_line((end(0), end(width)), chi=s + k * (width - k)) == []
-        assert steps == [step, -step]
-
-
 def test_an_end_has_an_outer_side() -> None:
     assert on_line((end(1), end(4)), chi=s + k * (4 - k)) == []
     assert on_line((end(5), end(5)), chi=s + k - 4).count("5 is an end") == 2
@@ -585,17 +404,6 @@ def test_what_cannot_be_seen_between_pieces_is_not_asked_for() -> None:
     for width, is_seen in ((8, False), (9, True)):
         found = on_line((None, end(0)), (end(width), None), chi=s + 1, window=wide)
         assert any(fault.endswith("is not stable") for fault in found) is is_seen
-
-
-def test_stretches_are_asked_for_at_seven_places() -> None:
-    assert list(plot_check._between(Fraction(0), Fraction(8))) == [1, 2, 3, 4, 5, 6, 7]
-    assert next(plot_check._between(Fraction(8), Fraction(16))) == 9
-    assert on_line((end(0), None), chi=s - k)[:7] == [f"{Fraction(125 * j, 2)} is stable" for j in range(1, 8)]
-    assert on_line(chi=s + 1) == [f"{-500 + 125 * j} is not stable" for j in range(1, 8)]
-    assert on_line((None, None), chi=s - 1) == [f"{-500 + 125 * j} is stable" for j in range(1, 8)]
-    assert on_line((None, None), chi=s + 1) == on_line(chi=s - 1) == []
-    pieces = (None, end(-100)), (end(100), None)
-    assert on_line(*pieces, chi=s + 1)[:7] == [f"{-100 + 25 * j} is not stable" for j in range(1, 8)]
 
 
 def test_pieces_follow_one_another() -> None:
@@ -694,31 +502,9 @@ def test_an_equation_that_means_another_thing_is_looked_at_anew(monkeypatch: pyt
     assert list(faults(picture, CHI, other, discrete=False)) != []
 
 
-def test_the_last_four_pictures_are_remembered() -> None:
-    known = Environment(values={"chi": s + k})
-
-    def found(picture: LinePicture) -> list[str]:
-        return list(faults(picture, CHI, known, discrete=False))
-
-    seen = [LinePicture("k", LINE, ((end(0), None),)) for _ in range(5)]
-    assert [found(picture) for picture in seen] == [[]] * 5
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(plot_check, "_of_line", lambda *_: iter(["it was looked at"]))
-        assert [found(picture) for picture in seen] == [["it was looked at"], [], [], [], []]
-
-
 def test_the_polynomial_may_stand_in_a_matrix_of_one_entry() -> None:
     picture = LinePicture("k", LINE, ((end(0), None),))
     known = Environment(values={"chi": Matrix.of([[s + k]])})
     assert list(faults(picture, CHI, known, discrete=False)) == []
     assert is_faithful(picture, CHI, known, discrete=False) is True
     assert is_faithful(picture, Letter("phi"), known, discrete=False) is False
-
-
-def test_every_number_that_is_drawn_for_is_allowed() -> None:
-    numbers = (("a", Scalar.of(1)), ("b", Scalar.of(-1)), ("c", Scalar.of(0)))
-    chi = s + k + Scalar.symbol("b") + Scalar.symbol("a") + Scalar.symbol("c")
-    assert on_line((end(0), None), chi=chi, drawn_for=numbers) == []
-    assert told(
-        LinePicture("k", LINE, ((end(0), None),), drawn_for=numbers), chi, a="positive", b="positive", c="nonzero"
-    ) == ["b = -1", "c = 0"]

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import xml.etree.ElementTree as ET
 from dataclasses import replace
 from fractions import Fraction
 from math import exp
@@ -13,15 +12,10 @@ import pytest
 
 import symobs
 from symobs.exact import Matrix, Scalar
-from symobs.exact.time_functions.state_response import spectral_abscissae, state_response
+from symobs.exact.time_functions.state_response import state_response
 from symobs.formula.figures.plot import TimeResponse
 from symobs.formula.tree import Exact, Literal, evaluate
 from symobs.ground.errors import DerivationRejected
-from symobs.pages.drawings.svg import svg, svg_scene
-from symobs.pages.drawings.text import sketch
-from symobs.pages.drawings.tikz import tikz, tikz_scene
-from symobs.pages.printers.latex_printer import LatexPrinter
-from symobs.pages.printers.text_printer import TextPrinter
 from symobs.proof.derivation import Derivation, Plot, Section
 from symobs.system import StateSpace
 from tests.kit import tabled
@@ -121,20 +115,6 @@ def test_a_spoiled_value_of_discrete_time_is_refused_however_near() -> None:
         replaced(derivation, step, replace(step, picture=replace(picture, discrete=False))).check()
 
 
-def test_estimate_and_state_meet() -> None:
-    for name in ("compensator", "minimal-order compensator"):
-        ((_, picture),) = plots(PAGES[name]())
-        state, estimate = ([c for c in picture.responses if c.signal == signal] for signal in ("x", "x_hat"))
-        assert [course.dashed for course in (*state, *estimate)] == [False, False, True, True]
-        assert all(picture.points(course)[0] == (Fraction(0), Fraction(1)) for course in state)
-        for one, other in zip(state, estimate, strict=True):
-            ends = [picture.points(course)[-1][1] for course in (one, other)]
-            assert abs(ends[0] - ends[1]) < Fraction(1, 1000)
-            assert abs(ends[0]) < Fraction(1, 10)
-        starts = [float(picture.points(course)[0][1]) for course in estimate]
-        assert starts == ([0, 0] if name == "compensator" else [1, 0])  # what is measured is known from the start
-
-
 def test_a_picture_is_left_out_where_it_would_show_nothing() -> None:
     parametric = StateSpace("[0 1; 0 -a]", "[0; 1]", "[1 0]")
     assert plots(symobs.observer(parametric, poles=[-1, -2])) == []
@@ -209,32 +189,11 @@ def replaced(derivation: Derivation, old: Plot, new: Plot) -> Derivation:
 # -- the kernel -------------------------------------------------------------------------------------------------------
 
 
-def test_enclosures_are_rounded_to_the_nearest_part() -> None:
-    spin = Matrix.of([[0, 1], [-1, 0]])
-    found = state_response(spin, [Fraction(0), Fraction(1)], Fraction(1, 2), 7, 10**9)
-    assert len(found) == 7
-    assert [found[k] for k in (0, 1, 6)] == [[0, 10**9], [479425539, 877582562], [141120008, -989992497]]
-
-
-def test_rates_are_the_real_parts_farthest_right_and_left() -> None:
-    assert spectral_abscissae(Matrix.of([[0, 1], [-5, -2]])) == pytest.approx((-1, -1))
-    assert spectral_abscissae(Matrix.of([[-3, 0], [0, Fraction(1, 2)]])) == pytest.approx((0.5, -3))
-
-
 def test_what_takes_too_many_bits_is_not_drawn() -> None:
     with pytest.raises(ArithmeticError):
         state_response(Matrix.of([[200]]), [Fraction(1)], Fraction(1), 100, 10**9)
     steep = StateSpace([[0, 10**9], [-(10**9), -1]], None, [[1, 0]])
     assert plots(symobs.observer(steep, L=[[0], [0]])) == []
-
-
-def test_errors_that_grow_on_the_way_are_not_seen() -> None:
-    """A matrix whose powers are far larger than its exponential: (M + I)² = 0 with entries of a thousand."""
-    shear = Matrix.of([[-1 + 1000, -1000], [1000, -1 - 1000]])
-    found = state_response(shear, [Fraction(1), Fraction(0)], Fraction(1, 100), 601, 10**6)
-    for k in (100, 300, 600):
-        decay = exp(-k / 100) * 10**6
-        assert found[k] == pytest.approx([decay * (1 + 10 * k), decay * 10 * k], abs=1)
 
 
 @tabled
@@ -267,40 +226,6 @@ def numbers(table: Matrix) -> list[list[Fraction]]:
 
 
 # -- what is written --------------------------------------------------------------------------------------------------
-
-
-@every_page
-def test_every_course_has_its_name_in_every_format(page: Callable[[], Result]) -> None:
-    ((_, picture),) = plots(page())
-    text, latex = TextPrinter(), LatexPrinter()
-    sketched = sketch(picture, text, 76)
-    drawn = tikz(tikz_scene(picture, latex), latex)
-    written = svg(svg_scene(picture, text), text)
-    ET.fromstring(written)  # noqa: S314 - our own text
-    assert max(map(len, sketched.splitlines())) <= 76
-    names: dict[str, tuple[str, str]] = {
-        "e": ("e", "e"),
-        "x": ("x", "x"),
-        "y": ("y", "y"),
-        "x_hat": ("x̂", r"\hat x"),
-        "e_2": ("e₂", "e_2"),
-    }
-    for course in picture.responses:
-        in_text, in_latex = names[course.signal]
-        index = "₁₂₃"[course.component - 1] if course.component else ""
-        comma = "," if course.signal == "e_2" and index else ""
-        assert f" {in_text}{comma}{index}" in sketched
-        below = f"_{{2,{course.component}}}" if comma else f"_{course.component}" if index else ""
-        assert f"${in_latex.removesuffix('_2' if comma else '')}{below}$" in drawn
-    peaks = [max(map(abs, course.heights)) for course in picture.responses]
-    apart = not any(course.dashed for course in picture.responses) and max(peaks) > 4 * min(peaks)  # an axis each
-    dashes = (
-        len(picture.responses) > 1 and not picture.discrete and not apart
-    )  # on one, each has a line style of its own
-    if picture.discrete:
-        assert drawn.count("circle[radius=") >= sum(len(course.heights) for course in picture.responses)
-    assert ("stroke-dasharray" in written) == dashes
-    assert ("dash" in drawn) == dashes
 
 
 def test_an_estimate_that_catches_up_at_once_is_drawn_with_more_segments() -> None:
