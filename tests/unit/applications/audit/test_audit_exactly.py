@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import json
 from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from symobs.applications.audit import audit, report
+from symobs.applications.audit import audit
 from symobs.ground.errors import ProblemErrors
 from symobs.problem import read
 from tests.kit import tabled
@@ -43,14 +42,6 @@ def test_what_fails_at_some_values_is_said_to_hold_in_general_only(relation: str
     assert (found.holds, found.right) == ("in general", f"{relation} where {where}")
     assert reason in found.reason
     assert findings(found.right, **CHAIN) == []
-
-
-def test_two_polynomials_that_vanish_together_are_one_exception() -> None:
-    pair: dict[str, Any] = {"symbols": {"c": "real", "d": "real"}, "plant": {**CHAIN["plant"], "A": "[0 1; d 0]"}}
-    found = finding("rank([c d]) = 1", **pair)
-    assert found.right == "rank([c d]) = 1 where c != 0 or d != 0"
-    assert "rank([c d]) is less where c = 0 and d = 0" in found.reason
-    assert findings(found.right, "rank([c d]) = 1 where c != 0", "rank([c d^2+1]) = 1", **pair) == []
 
 
 @pytest.mark.parametrize("sign", ["positive", "negative", "nonzero"])
@@ -172,47 +163,3 @@ def test_a_letter_before_its_argument_is_a_function(relation: str) -> None:
 
 def test_a_transfer_function_at_a_pole_has_no_value() -> None:
     assert "has no value" in finding("P(0) = 1").reason
-
-
-@pytest.mark.parametrize("symbol", ["L", "x", "tau"])
-def test_a_symbol_that_shadows_a_letter_is_said(symbol: str) -> None:
-    own: dict[str, Any] = {
-        "plant": {"A": f"[0 1; 0 -{symbol}]", "B": "[0; 1]", "C": "[1 0]"},
-        "symbols": {symbol: "real"},
-    }
-    audited = audit(read(problem(f"A = [0 1; 0 -{symbol}]", **own)))
-    assert audited.findings == ()
-    (note,) = audited.notes
-    assert f"{symbol} is the file's own symbol" in note
-    for name in ("text", "markdown", "json"):
-        assert note in report({"x": audited}, name).replace("\\", "")
-    assert audit(read(problem("trace(B B') = 1", **own))).notes == ()
-
-
-@tabled
-def test_expected_conditions_are_compared_as_printed(expected: dict[str, object], true: object) -> None:
-    """Of (s + 1)(s + h - 0.618), stable where h > 0.618."""
-    region = {
-        "task": "stability_region",
-        "symbols": {"h": "real"},
-        "specification": {"polynomial": "s^2 + (h + 191/500) s + h - 309/500", "parameters": ["h"]},
-    }
-    given = json.dumps({"title": "region", **region, "printed": [{"expect": expected}]})
-    assert (audit(read(given)).findings == ()) is true
-
-
-@tabled
-def test_expected_modes_are_compared_as_printed(expected: dict[str, object], true: object) -> None:
-    surds = {"task": "detectability", "plant": {"A": "[0 1; 2 0]", "C": "[1 0]"}}
-    given = json.dumps({"title": "modes", **surds, "printed": [{"expect": expected}]})
-    assert (audit(read(given)).findings == ()) is true
-
-
-def test_expected_roots_are_compared_as_printed() -> None:
-    turning = {"task": "characteristic_polynomial", "plant": {"A": "[0 1; -1 -1]"}}
-    printed = [
-        {"expect": {"roots": ["-0.5+0.866i", "-0.5-0.866i"]}},
-        {"expect": {"roots": ["-0.5+0.867i", "-0.5-0.867i"]}},
-    ]
-    (found,) = audit(read(json.dumps({"title": "roots", **turning, "printed": printed}))).findings
-    assert "0.867" in found.printed

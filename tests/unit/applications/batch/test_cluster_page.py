@@ -10,11 +10,9 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from symobs.applications.batch.store import Store
 from tests.support.paths import ROOT
-from tests.support.problems.batches import design, eventually
+from tests.support.problems.batches import design
 from tests.support.tools.command_line import SAFETY, environment
-from tests.unit.applications.batch.test_cluster import free_port
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -54,25 +52,3 @@ def test_its_lines_for_one_machine(folder: Path) -> None:
             assert process.wait(timeout=SAFETY) == 0, (line, (folder / "log.txt").read_text(encoding="utf-8"))
     assert len(list((folder / "results" / "files").rglob("*.tex"))) == 4
     assert len((folder / "designs.csv").read_text(encoding="utf-8").splitlines()) == 81
-
-
-def test_its_lines_for_a_cluster_killed_on_the_way(folder: Path) -> None:
-    port = free_port()
-    scheduler, *workers, run = CLUSTER
-    assert (len(workers), run.split()[:2]) == (2, ["symobs", "batch"])
-    processes = [started(line, folder, port) for line in (scheduler, *workers)]
-    store = Store(folder / "results")
-    try:
-        with started(run, folder, port) as process:
-            assert eventually(lambda: store.count >= 20)
-            process.kill()
-        kept = len(list(store.rows()))
-        assert 0 < kept < 120
-        with started(run, folder, port) as process:
-            assert process.wait(timeout=SAFETY) == 0, (folder / "log.txt").read_text(encoding="utf-8")
-        assert len({row["key"] for row in store.rows()}) == len(list(store.rows())) == 120
-    finally:
-        for process in processes:
-            process.kill()
-            process.wait(timeout=SAFETY)
-    assert (folder / "results" / "manifest.json").is_file()

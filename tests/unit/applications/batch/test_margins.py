@@ -2,26 +2,18 @@
 
 from __future__ import annotations
 
-import csv
 import math
 import random
 from fractions import Fraction
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import pytest
 
-import symobs
 from symobs.applications.batch.sweep import margins
-from symobs.applications.batch.sweep.plan import Plan
 from symobs.applications.batch.sweep.program import MARGINS, Program
-from symobs.exact.algebraic.loop_distances import Loop, slowest_root
-from symobs.ground.errors import UsageError
+from symobs.exact.algebraic.loop_distances import slowest_root
 from symobs.problem import parse
-from tests.support.tools.command_line import inside
 from tests.unit.applications.batch.test_sweep import problem
-
-if TYPE_CHECKING:
-    from pathlib import Path
 
 control = pytest.importorskip("control")
 np = pytest.importorskip("numpy")
@@ -147,53 +139,6 @@ SPRING = problem(
 )  # K = [2 − c, 3]: P + kN = s² + 3ks + c + k(2 − c)
 
 
-def test_margins_are_columns_of_the_table(tmp_path: Path) -> None:
-    """By hand: where c ≤ 2 every k > 0 is stable, beyond it those below c/(c − 2)."""
-    (tmp_path / "spring.toml").write_text(SPRING, encoding="utf-8")
-    words = ["--columns", "K, margins", "--decimals", "--in-process", "--quiet"]
-    over = ["--over", "c=[1, 2, 3, 4]", "--out", "t.csv"]
-    assert inside("sweep", "spring.toml", *over, *words, folder=tmp_path).code == 0
-    with (tmp_path / "t.csv").open(encoding="utf-8", newline="") as stream:
-        lines = list(csv.DictReader(stream))
-    assert [line["gain_down"] for line in lines] == ["0"] * 4
-    assert [line["gain_up"] for line in lines] == ["oo", "oo", "3", "2"]
-    assert [line["gain_up.d"] for line in lines] == ["inf", "inf", "3.0", "2.0"]
-    assert {line["slowest"] for line in lines} == {"-1"}
-    assert {line["margins_status"] for line in lines} == {"done"}
-    assert all(line["phase_deg.d"] == str(float(line["phase_deg"])) for line in lines)
-
-
-def test_of_several_intervals_it_is_the_one_around_the_design() -> None:
-    """P + kN = s³ + (1 + k)s² + (1 + k)s + 7/8 + 11/4 k is stable where (k − 1/4)(k − 1/2) > 0."""
-    text = problem(
-        "state_feedback",
-        "",
-        'A = "[0 1 0; 0 0 1; -7/8 -1 -1]"\nB = "[0; 0; 1]"',
-        'polynomial = "s^3 + 2 s^2 + 2 s + 29/8"',
-    )
-    program = Program(parse(text), (), None)
-    entries = dict(zip(program.columns(), map(str, program.alone((), None).values), strict=True))
-    cells, _ = margins.cells_at(program, (), entries)
-    assert (cells["gain_down"], cells["gain_up"]) == ("1/2", "oo")
-
-
-#: P + N and P of loops whose |N/P| reaches 1 at an end of the boundary alone, where N/P = 1: half a turn from −1.
-AT_AN_END = {
-    "s = 0": ("1, 2", "1, 1", False),
-    "z = 1": ("1, -1/2", "1, -3/4", True),
-    "z = -1": ("1, 1/2", "1, 3/4", True),
-}
-
-
-@pytest.mark.parametrize("end", AT_AN_END)
-def test_a_loop_that_reaches_one_at_an_end_is_half_a_turn_away(end: str) -> None:
-    closed, opened, discrete = AT_AN_END[end]
-    p, q = ([Fraction(part) for part in text.split(",")] for text in (closed, opened))
-    x = Fraction(end[4:])
-    assert (p[0] * x + p[1]) / (q[0] * x + q[1]) - 1 == 1
-    assert Loop.of(p, q, discrete=discrete).phase(6) == "180"
-
-
 def test_what_is_not_stable_has_no_margins_and_what_takes_long_is_undecided(monkeypatch: pytest.MonkeyPatch) -> None:
     program = Program(parse(SPRING.replace("-1, -2", "1, -2")), ("c",), None)
     entries = dict(zip(program.columns(), map(str, program.alone((Fraction(1),), None).values), strict=True))
@@ -202,12 +147,3 @@ def test_what_is_not_stable_has_no_margins_and_what_takes_long_is_undecided(monk
     monkeypatch.setattr(margins, "_SECONDS", 0.0001)
     design = Design("compensator", random.Random(3), discrete=False)  # noqa: S311
     assert margins.cells_at(design.program, (), design.entries) == ({"margins_status": "undecided"}, {})
-
-
-def test_single_margins_may_be_asked_for_and_two_inputs_have_none() -> None:
-    assert Plan(SPRING, "c=1", "gain_up, K[1,2]", way="each").columns == ["K[1,2]", "gain_up", "margins_status"]
-    (row,) = symobs.sweep(SPRING, "c=5/2", columns="gain_up, phase_deg", workers=1)
-    assert (row["gain_up"], type(row["phase_deg"])) == (5, str)
-    two = problem("state_feedback", "c:positive", 'A = "[0 1; -c 0]"\nB = "[0 1; 1 0]"', 'poles = "-1, -2"')
-    with pytest.raises(UsageError, match="one input, and there are 2"):
-        Plan(two, "c=1", "margins", way="each")

@@ -11,8 +11,7 @@ import pytest
 
 import symobs
 from symobs.applications.batch.sweep.picture import _level, _round_levels, picture_of
-from symobs.applications.batch.sweep.plan import SweepTable
-from symobs.formula.figures.plot import SweepCurves, SweepMap
+from symobs.formula.figures.plot import SweepMap
 from tests.kit import tabled
 from tests.support.tools.command_line import inside
 from tests.unit.applications.batch.test_sweep import problem
@@ -44,45 +43,6 @@ def test_lines_of_equal_values_are_where_the_values_are() -> None:
     torn = [[None if abs(x) < 0.1 else value for value in row] for x, row in zip(fine, cone, strict=True)]
     assert len(list(_level(fine, fine, torn, 1.01))) == 2
     assert _round_levels([k / 100 for k in range(801)]) == [Fraction(k) for k in range(1, 8)]
-
-
-@pytest.mark.slow
-def test_a_picture_is_the_table() -> None:
-    table = symobs.sweep(HIDDEN, "c=0:1/8:2", workers=1)
-    assert isinstance(table, SweepTable)
-    picture = picture_of(table)
-    assert isinstance(picture, SweepCurves)
-    rows = {float(row["c"]): row for row in table}
-    for (_, runs, gaps), name in zip(picture.columns, ("L[1,1]", "L[2,1]"), strict=True):
-        drawn = {x: y for run in runs for x, y in run}
-        assert drawn == {x: float(row[name]) for x, row in rows.items() if x not in {0.5, 1.0}}
-        assert [len(run) for run in runs] == [4, 3, 8]
-        assert gaps == ((0.4375, 0.5625), (0.9375, 1.0625))
-
-
-@pytest.mark.slow
-def test_each_panel_is_shaded_for_itself_and_what_is_infinite_everywhere_is_only_named(tmp_path: Path) -> None:
-    """The state feedback of a double integrator has no upper gain margin; an unstable loop has no phase margin at all."""
-    data = 'A = "[0 1; 0 0]"\nB = "[0; 1]"'
-    (tmp_path / "m.toml").write_text(problem("state_feedback", "c:real", data, 'poles = "-1, -c"'), encoding="utf-8")
-    words = ["--over", "c=-1:1/2:2", "--columns", "margins", "--plot", "m.svg", "--in-process", "--quiet"]
-    assert inside("sweep", "m.toml", *words, folder=tmp_path).code == 0
-    shown = re.sub("<[^>]*>", "", (tmp_path / "m.svg").read_text(encoding="utf-8"))
-    assert "phase margin in degrees" in shown
-    table = symobs.sweep((tmp_path / "m.toml").read_text(encoding="utf-8"), "c=1/2:1/2:2", columns="margins", workers=1)
-    picture = picture_of(table)
-    assert isinstance(picture, SweepCurves)
-    assert picture.infinite == ("gain margin, upper",)
-    assert [(name, len(runs), gaps) for name, runs, gaps in picture.columns] == [
-        (name, 1, ()) for name in ("gain margin, lower", "phase margin in degrees", "modulus margin", "slowest pole")
-    ]
-    unstable = picture_of(
-        symobs.sweep((tmp_path / "m.toml").read_text(encoding="utf-8"), "c=-1/2:1/2:2", columns="margins", workers=1)
-    )
-    assert isinstance(unstable, SweepCurves)
-    shaded = {name: gaps for name, _, gaps in unstable.columns}
-    assert shaded["slowest pole"] == ()
-    assert shaded["modulus margin"] == ((-0.5, -0.25), (-0.25, 0.25))
 
 
 @pytest.mark.slow

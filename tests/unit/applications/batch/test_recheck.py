@@ -2,20 +2,16 @@
 
 from __future__ import annotations
 
-import ast
 import json
-import sys
 from fractions import Fraction
 from typing import Any
 
 import pytest
 
-from symobs.applications.batch import engine
-from symobs.applications.batch.jobs import job, solve_job
+from symobs.applications.batch.jobs import solve_job
 from symobs.applications.batch.recheck import CLAIMS, Beyond, fault, value
 from symobs.applications.batch.solving import given_for, problem_of, run
 from tests.kit import tabled
-from tests.support.paths import ROOT
 from tests.support.tools.command_line import EXAMPLES
 
 QUICK = [path for path in EXAMPLES if path.stem != "cart_pole"]
@@ -90,37 +86,3 @@ def test_texts_beyond_fractions_are_left_out(text: str) -> None:
     with pytest.raises((Beyond, IndexError)) as left:
         value(text, {"a": Fraction(2), "b": Fraction(1, 2)})
     assert left.type is Beyond
-
-
-def test_it_imports_the_standard_library_alone() -> None:
-    tree = ast.parse((ROOT / "symobs" / "applications" / "batch" / "recheck.py").read_text(encoding="utf-8"))
-    names = {node.module or "" for node in ast.walk(tree) if isinstance(node, ast.ImportFrom)}
-    names |= {alias.name for node in ast.walk(tree) if isinstance(node, ast.Import) for alias in node.names}
-    assert {name.partition(".")[0] for name in names} <= {*sys.stdlib_module_names}
-
-
-def test_of_many_rows_the_first_and_one_in_a_hundred_are_looked_at_again(monkeypatch: pytest.MonkeyPatch) -> None:
-    """So a worker that spoils k rows later on stays unseen with probability 0.99ᵏ: of 300 about one in twenty."""
-    looked_at: list[str] = []
-    monkeypatch.setattr(engine, "examined", lambda _, job: looked_at.append(job.name))
-    examine = engine._examiner(0.01)
-    jobs = [job("solve", {"number": number}, str(number)) for number in range(20_200)]
-    for each in jobs:
-        examine({}, each)
-    assert looked_at[:200] == [str(number) for number in range(200)]
-    assert looked_at[200:] == [each.name for each in jobs[200:] if int(each.key[:16], 16) / 2**64 < 0.01]
-    assert abs(len(looked_at) - 400) < 5 * (20_000 * 0.01 * 0.99) ** 0.5
-    nothing = engine._examiner(0.0)
-    nothing({}, jobs[0])
-    assert looked_at.count("0") == 1
-
-
-@pytest.mark.parametrize("dt", ["", "dt = 1\n"])
-def test_the_gains_of_integral_action_are_looked_at(dt: str) -> None:
-    plant = f'[plant]\nA = "[0 1; 0 -a]"\nB = "[0; 1]"\nC = "[1 0]"\nD = "1"\n{dt}[symbols]\na = "real"\n'
-    ((task, given, answer),) = answered(
-        f'task = "integral_action"\n{plant}[specification]\npoles = "-1/2, -1/3, -1/5"\n'
-    )
-    assert fault(task, given, answer, "p") is None
-    for field in ("K", "k_I", "closed_loop_matrix"):
-        assert fault(task, given, {**answer, field: spoilt(answer[field])}, "p") is not None

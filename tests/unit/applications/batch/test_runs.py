@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import ast
 import json
 import os
 import random
@@ -19,7 +18,6 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-import symobs
 from symobs.applications.batch import kinds
 from symobs.applications.batch.engine import Settings, work
 from symobs.applications.batch.executors import InProcess, Unfinished, Workforce, run_chunk, run_in_process
@@ -27,25 +25,18 @@ from symobs.applications.batch.jobs import Job, job, key_of, solve_job
 from symobs.applications.batch.run import Batch, batch, verified
 from symobs.applications.batch.store import Store
 from symobs.ground.child_processes.budget import Budget
-from symobs.ground.errors import CertificateRejected, InputError, UsageError
+from symobs.ground.errors import CertificateRejected, InputError
 from tests.kit import tabled
 from tests.support.paths import ROOT
 from tests.support.problems.batches import Tampering, children_of, design, eventually, hostile_kind
 from tests.support.tools.command_line import SAFETY, SERVO, environment, inside
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Iterator
+    from collections.abc import Callable, Iterable
     from pathlib import Path
 from types import SimpleNamespace
 
 pytestmark = pytest.mark.slow
-
-SOURCES = sorted(
-    [
-        *(ROOT / "symobs" / "applications" / "batch").rglob("*.py"),
-        *(ROOT / "symobs" / "ground" / "child_processes").glob("[!f]*.py"),
-    ]
-)
 
 
 def stored(folder: Path) -> list[str]:
@@ -122,13 +113,6 @@ def test_the_key_is_of_what_the_answer_depends_on(tmp_path: Path) -> None:
     assert solve_job(written, "a", tmp_path).key != solve_job(written, "a", own[1]).key
 
 
-def test_rows_come_as_they_are_done_where_nothing_is_stored() -> None:
-    found = list(batch((design(number) for number in (4, 5, 4)), workers=1, fields="answer"))
-    assert [row["name"] for row in found] == ["problem 1", "problem 2"]
-    assert all(row["result"][0].keys() >= {"K", "L", "F", "verdict", "certificates"} for row in found)
-    assert all("closed_loop" not in row["result"][0] for row in found)
-
-
 def test_pages_and_names_of_what_stands_twice(tmp_path: Path) -> None:
     for name in ("a", "b"):
         (tmp_path / f"{name}.toml").write_text(SERVO.read_text(encoding="utf-8"), encoding="utf-8")
@@ -170,23 +154,6 @@ def test_more_time_tries_what_was_undecided_again(hostile: Path, tmp_path: Path)
     again = run(slow, tmp_path / "out", seconds=60.0, workers=1)
     assert (again.kept, again.counts["done"], again.counts["undecided"]) == (2, 3, 0)
     assert sorted(row["name"] for row in again.rows()) == ["n0", "n2", "slow"]
-
-
-def test_the_engine_never_forks_and_never_waits_without_end() -> None:
-    for path in SOURCES:
-        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
-            if isinstance(node, ast.Attribute | ast.Name | ast.alias):
-                words = {getattr(node, part, "") for part in ("attr", "id", "name")}
-                assert not any("fork" in str(word) for word in words), path
-            if isinstance(node, ast.Call):
-                name = getattr(node.func, "attr", getattr(node.func, "id", ""))
-                if name in {"result", "wait", "communicate", "get"} and not _is_mapping(node):
-                    assert "timeout" in {keyword.arg for keyword in node.keywords}, f"{path}:{node.lineno}"
-
-
-def _is_mapping(node: ast.Call) -> bool:
-    """Whether a call of `get` is one of a mapping, which has a key."""
-    return getattr(node.func, "attr", "") == "get" and bool(node.args)
 
 
 # -- the store --------------------------------------------------------------------------------------------------------
@@ -318,10 +285,6 @@ def test_a_killed_run_goes_on_where_it_was(hostile: Path, tmp_path: Path) -> Non
     killed_and_gone_on(hostile, tmp_path / "out", count=150, kills=2)
 
 
-def test_a_run_killed_ten_times_goes_on_where_it_was(hostile: Path, tmp_path: Path) -> None:
-    killed_and_gone_on(hostile, tmp_path / "out", count=1500, kills=10)
-
-
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 def test_an_interrupted_run_keeps_what_it_has_and_leaves_nobody(number: int, hostile: Path, tmp_path: Path) -> None:
     out = tmp_path / "out"
@@ -421,16 +384,3 @@ def test_what_cannot_be_done_is_said(arguments: list[str], code: int, says: str,
     left = inside(*arguments, folder=tmp_path)
     assert left.code == code
     assert says in left.err
-
-
-def test_python_has_the_same(tmp_path: Path) -> None:
-    done = symobs.batch([SERVO], out=tmp_path / "out", workers=1)
-    assert done.counts["done"] == 1
-    assert done.failed == []
-    with pytest.raises(UsageError, match="nothing is stored"):
-        symobs.batch([SERVO]).rows()
-    with pytest.raises(UsageError, match="names no fields"):
-        symobs.batch([SERVO], fields="some")
-    again: Iterator[dict[str, Any]] = iter(done.rows())
-    assert next(again)["name"] == SERVO.name
-    assert done.retry("failed").counts["done"] == 1

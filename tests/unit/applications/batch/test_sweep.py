@@ -6,25 +6,20 @@ import csv
 import json
 import math
 import random
-import subprocess
-import sys
 from fractions import Fraction
-from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import pytest
 
 import symobs
 from symobs.applications.batch.jobs import read_payload
-from symobs.applications.batch.recheck import determinant, minus, pencil, times
-from symobs.applications.batch.store import Store, work_folder
+from symobs.applications.batch.store import work_folder
 from symobs.applications.batch.sweep import block
 from symobs.applications.batch.sweep.grid import read_grid
 from symobs.applications.batch.sweep.plan import Plan
 from symobs.ground.errors import CertificateRejected, InputError, ProblemErrors
 from tests.kit import tabled
-from tests.support.problems.batches import eventually
-from tests.support.tools.command_line import environment, inside
+from tests.support.tools.command_line import inside
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -112,33 +107,6 @@ def test_formulas_and_single_solutions_agree(name: str) -> None:
     compared(*PROBLEMS[name], points=25)
 
 
-@pytest.mark.parametrize("name", PROBLEMS)
-def test_formulas_and_single_solutions_agree_at_three_hundred_points(name: str) -> None:
-    compared(*PROBLEMS[name], points=300)
-
-
-def test_strata_are_met_at_their_points() -> None:
-    """Where l + m = 1/2 the mode −2 is hidden and not asked for; where l + m = 1 the hidden mode −1 is."""
-    (job,) = Plan(*PROBLEMS["hidden mode"]).jobs()
-    payload = read_payload(job.payload)
-    result, grid = block.run(payload)["result"], block.grid_of(payload)
-    seen = {"no": 0, "asked for": 0, "general": 0}
-    for index in range(grid.size):
-        l, m = grid.point(index)
-        gain = [result["columns"][f"L[{k},1]"][index] for k in (1, 2)]
-        if l + m == Fraction(1, 2):
-            assert (result["status"][index], gain) == ("no", [None, None])
-            seen["no"] += 1
-            continue
-        L = [[Fraction(entry)] for entry in gain]
-        closed = minus([[Fraction(0), Fraction(1)], [Fraction(-2), Fraction(-3)]], times(L, [[Fraction(1), l + m]]))
-        assert all(determinant(pencil(closed, Fraction(s))) == (s + 1) * (s + 5) for s in (0, 1, 2))
-        assert result["status"][index] == "done"
-        seen["asked for" if l + m == 1 else "general"] += 1
-        assert (result["case"][index] is None) == (l + m != 1)
-    assert seen == {"no": 11, "asked for": 13, "general": 145}
-
-
 def test_a_block_that_was_changed_is_found() -> None:
     (job,) = Plan(CART, "l=1:1:20, m=1/10:1/10:2").jobs()
     payload = read_payload(job.payload)
@@ -187,27 +155,6 @@ def test_tables_say_exactly_what_was_found(tmp_path: Path) -> None:
     assert (rows[4]["l"], rows[4]["m"]) == (Fraction(1, 5), Fraction(2))
     assert held.to_arrow()["L[2,1]"].to_pylist() == table["L[2,1]"].to_pylist()
     assert json.loads(table.schema.metadata[b"over"])[0][:2] == ["l", 40]
-
-
-def test_a_sweep_killed_on_the_way_is_the_one_that_was_not(tmp_path: Path) -> None:
-    pq = pytest.importorskip("pyarrow.parquet")
-    (tmp_path / "cart.toml").write_text(CART, encoding="utf-8")
-    words = ["sweep", "cart.toml", "--over", "l=0.1:0.1:20, m=0.1:0.1:10", "--columns", "K,L", "--chunk-seconds", "0.1"]
-    assert inside(*words, "--out", "whole.parquet", "--quiet", folder=tmp_path).code == 0
-    command = [sys.executable, "-m", "symobs", *words, "--out", "killed.parquet"]
-    store = Store(work_folder(tmp_path / "killed.parquet"))
-    for wanted in (2, 7):
-        with subprocess.Popen(command, cwd=tmp_path, env=environment(), stderr=subprocess.DEVNULL) as process:
-            assert eventually(partial(_has_blocks, store, wanted))
-            process.kill()
-    assert inside(*words, "--out", "killed.parquet", "--quiet", folder=tmp_path).code == 0
-    whole, killed = (pq.read_table(tmp_path / f"{name}.parquet") for name in ("whole", "killed"))
-    assert whole.num_rows == 20_000
-    assert killed.equals(whole)
-
-
-def _has_blocks(store: Store, wanted: int) -> bool:
-    return store.count >= wanted
 
 
 # -- grids and what cannot be done --------------------------------------------------------------------------------------

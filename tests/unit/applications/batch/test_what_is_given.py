@@ -12,9 +12,6 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 import symobs
-from symobs.applications.batch.engine import Settings, work
-from symobs.applications.batch.executors import InProcess, Workforce
-from symobs.applications.batch.jobs import job, row_text
 from symobs.applications.batch.run import batch, verified
 from symobs.applications.batch.store import Store
 from symobs.ground.errors import UsageError
@@ -38,13 +35,6 @@ def folder_of_problems(tmp_path: Path) -> Path:
     return folder
 
 
-def test_a_run_that_goes_on_says_of_its_problems_what_it_said_before(folder: Path, tmp_path: Path) -> None:
-    words = ["batch", folder.name, "--out", "out", "--in-process"]
-    for _ in range(2):
-        left = inside(*words, folder=tmp_path)
-        assert (left.code, left.err) == (4, "1 done, 1 unreadable\n")
-
-
 def test_what_a_problem_was_before_it_was_changed_counts_no_more(folder: Path, tmp_path: Path) -> None:
     words = ["batch", folder.name, "--out", "out", "--in-process"]
     assert inside(*words, folder=tmp_path).code == 4
@@ -55,21 +45,6 @@ def test_what_a_problem_was_before_it_was_changed_counts_no_more(folder: Path, t
         assert (left.code, left.err) == (0, "2 done\n")
     assert len(list(Store(tmp_path / "out").rows())) == 3
     assert batch(folder, out=tmp_path / "out").failed == []
-
-
-def test_the_manifest_counts_the_problems_of_the_run(folder: Path, tmp_path: Path) -> None:
-    words = ["batch", folder.name, "--out", "out", "--in-process"]
-    for number in (4, 5, 6):
-        (folder / f"p{number}.toml").write_text(design(number), encoding="utf-8")
-    assert inside(*words, folder=tmp_path).err == "4 done, 1 unreadable\n"
-    (folder / "p4.toml").write_text(design(9), encoding="utf-8")
-    (folder / "p5.toml").unlink()
-    shutil.copy(folder / "good.toml", folder / "bad.toml")
-    for _ in range(2):
-        assert inside(*words, folder=tmp_path).err == "3 done, 1 equal to others\n"
-        manifest = json.loads((tmp_path / "out" / "manifest.json").read_text(encoding="utf-8"))
-        assert manifest["counts"] == {"done": 3, "no": 0, "unreadable": 0, "undecided": 0, "failed": 0}
-        assert list(manifest["names"].values()) == [["good.toml"]]
 
 
 def _shortened(data: bytes) -> bytes:
@@ -104,15 +79,6 @@ def test_what_is_no_row_is_named(folder: Path, tmp_path: Path) -> None:
     assert re.match("out/rows.sqlite: this file was damaged: what is stored of [0-9a-f]{16} is no whole row", found.err)
 
 
-def test_rows_are_there_as_lines_as_well(folder: Path, tmp_path: Path) -> None:
-    words, listing = ["batch", folder.name, "--out", "out", "--in-process"], tmp_path / "out" / "rows"
-    for number in (7, 8):
-        (folder / "bad.toml").write_text(design(number), encoding="utf-8")
-        assert inside(*words, folder=tmp_path).code == 0
-        lines = [line for path in listing.glob("*/*.jsonl") for line in path.read_text(encoding="utf-8").splitlines()]
-        assert [json.loads(line) for line in lines] == list(Store(tmp_path / "out").rows())
-
-
 def test_equal_problems_are_done_once_and_said(folder: Path, tmp_path: Path) -> None:
     shutil.copy(folder / "good.toml", folder / "bad.toml")
     left = inside("batch", "problems", "--out", "out", "--in-process", folder=tmp_path)
@@ -144,23 +110,6 @@ def test_names_are_what_they_are(tmp_path: Path) -> None:
     assert (left.code, left.err) == (0, "7 done\n")
     assert {row["name"] for row in Store(out).rows()} == {*names, "link.toml"}
     assert json.loads((out / "manifest.json").read_text(encoding="utf-8"))["counts"]["done"] == 7
-
-
-@pytest.mark.parametrize("count", [1, 5, 118, 1000])
-def test_the_last_chunks_are_small(count: int) -> None:
-    """A tenth of a second a job, so that chunks of two seconds have twenty: but no worker has more than its share left."""
-    sizes: list[int] = []
-
-    def rows(orders: Any, *_: object) -> tuple[list[str], float]:
-        sizes.append(len(orders))
-        return [row_text(key, kind, {"status": "done"}) for key, kind, _ in orders], len(orders) / 10
-
-    jobs = [job("solve", {"number": number}, str(number)) for number in range(count)]
-    chunks = work(jobs, Workforce(InProcess(), 8, rows), Settings(recheck=0))
-    assert [row["name"] for chunk in chunks for row in chunk.rows] == [str(number) for number in range(count)]
-    left = [count - sum(sizes[:k]) for k in range(len(sizes))]
-    assert all(size <= max(1, here / 16) for size, here in zip(sizes, left, strict=True))
-    assert max(sizes) == {1: 1, 5: 1, 118: 5, 1000: 20}[count]
 
 
 @tabled

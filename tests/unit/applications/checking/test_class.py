@@ -6,22 +6,18 @@ import csv
 import hashlib
 import io
 import json
-import subprocess
-import sys
 from typing import TYPE_CHECKING
 
 import pytest
 from jsonschema import Draft202012Validator  # type: ignore[import-untyped]
 
-from symobs.applications.batch.store import Store
 from symobs.applications.checking import SHOW, Checked, CheckReport
 from symobs.applications.checking.classes.row import report_of_row
 from symobs.applications.checking.classes.summary import safe
 from symobs.applications.checking.report.schema import schema
 from tests.kit import tabled
 from tests.support.problems.answered import SERVO
-from tests.support.problems.batches import children_of, eventually
-from tests.support.tools.command_line import Run, environment, inside
+from tests.support.tools.command_line import Run, inside
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -85,37 +81,6 @@ def test_a_class_is_marked_and_counted(folder: Path) -> None:
     assert "larger than 64 kB" in summary["unreadable"][0]["message"]
     pages = {path.name for path in (results / "feedback").iterdir()}
     assert pages == {hashlib.sha256(name.encode()).hexdigest()[:16] + ".html" for name in verdicts}
-
-
-def test_the_same_bytes_whatever_was_there_before(folder: Path) -> None:
-    run(folder, "--map", "Email address=student")
-    first = {path.name: path.read_bytes() for path in (folder / "RESULTS").iterdir()}
-    (folder / "RESULTS" / "marks.csv").write_text("half", encoding="utf-8")
-    run(folder, "--map", "Email address=student")
-    assert {path.name: path.read_bytes() for path in (folder / "RESULTS").iterdir()} == first
-
-
-@pytest.mark.slow
-def test_the_same_bytes_whoever_works_and_after_an_end_in_the_middle(folder: Path) -> None:
-    rows = [["student", "K", "L", "compensator.F"]]
-    rows += [[f"s{n}", "[4 3]", f"[19; {n + 60}]", "" if n % 3 else F] for n in range(40)]
-    (folder / "class.csv").write_text("\n".join(",".join(row) for row in rows), encoding="utf-8")
-    command = [sys.executable, "-m", "symobs", "check", "problem.toml", "--submissions", "class.csv", "-o", "KILLED"]
-    with subprocess.Popen([*command, "--workers", "2"], cwd=folder, env=environment()) as process:
-        assert eventually(lambda: Store(folder / "KILLED.work").count)
-        process.kill()
-    assert eventually(lambda: not children_of(process.pid))
-    assert not (folder / "KILLED").exists()
-    found = {}
-    for name, workers in (("ONE", "1"), ("KILLED", "2")):
-        arguments = ["check", "problem.toml", "--submissions", "class.csv", "-o", name, "--workers", workers]
-        assert inside(*arguments, folder=folder).code == 0
-        found[name] = {path.name: path.read_bytes() for path in (folder / name).iterdir()}
-        assert not (folder / f"{name}.work").exists()
-    assert found["KILLED"] == found["ONE"]
-    reports = [json.loads(line) for line in found["ONE"]["results.jsonl"].splitlines()]
-    assert [report["student"] for report in reports] == [row[0] for row in rows[1:]]
-    assert [report["student"] for report in reports if report["verdict"] == "right"] == ["s21"]
 
 
 def test_what_ended_its_process_is_undecided() -> None:
@@ -210,12 +175,6 @@ def test_the_exit_code_of_one_answer(folder: Path, answer: str, code: int) -> No
     found = inside("check", "problem.toml", "-", folder=folder, stdin=answer.encode())
     assert found.code == code
     assert found.out or found.err
-
-
-@tabled
-def test_the_suffix_of_a_report_names_its_format(folder: Path, target: str, begins: str) -> None:
-    assert inside("check", "problem.toml", "-", "-o", target, folder=folder, stdin=b"K = [4 3]").code == 4
-    assert (folder / target).read_text(encoding="utf-8").lstrip().startswith(begins)
 
 
 def test_how_the_command_is_used(folder: Path) -> None:

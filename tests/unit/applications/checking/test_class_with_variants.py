@@ -12,7 +12,6 @@ import pytest
 
 from symobs.applications.batch.jobs import canonical, digest
 from symobs.applications.variants.responses import as_text, responses_of
-from symobs.ground.errors import InputError
 from symobs.problem import parse
 from tests.kit import tabled
 from tests.support.tools.command_line import Run, inside
@@ -166,26 +165,6 @@ def test_a_variant_that_is_off_by_more_than_three_standard_errors_is_named() -> 
         "dd     4 students      5.00 marks  harder than the others",
         "1 of 4 variants differs from the others by more than 3 standard errors",
     ]
-
-
-def test_too_few_marks_say_nothing() -> None:
-    for few in (
-        summary_of(a=[1] * 20),
-        summary_of(a=[1] * 6, b=[9] * 5),
-        '{"schema": "symobs-check-summary/1", "variants": {}}',
-    ):
-        with pytest.raises(InputError, match="too few to compare"):
-            responses_of(few, "summary.json")
-    assert [each.compared for each in responses_of(summary_of(a=[1] * 6, b=[9] * 6), "")] == ["harder", "easier"]
-    for wrong in (
-        "x",
-        "[]",
-        "{}",
-        '{"schema": "symobs-check/1", "variants": {}}',
-        '{"variants": {"a": {"students": 0}}}',
-    ):
-        with pytest.raises(InputError, match="this is no summary of a class"):
-            responses_of(wrong, "summary.json")
 
 
 def test_the_command_prints_them(tmp_path: Path) -> None:

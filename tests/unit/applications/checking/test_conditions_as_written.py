@@ -110,9 +110,3 @@ def test_what_is_no_condition_is_refused_with_its_repair(given: Any, message: st
     assert refused.value.message.startswith(message)
     assert not repair or refused.value.repair.replace("h1", "h") == repair.replace("h1", "h")
     assert refused.value.where in {"stable_if", *(f"stable_if[{i}]" for i in range(3))}
-
-
-def test_forty_conditions_and_ten_brackets_are_read() -> None:
-    assert len(read_conditions(["h > 1"] * 40, NAMES)[0]) == 40
-    ((one,),) = read_conditions("(" * 10 + "h > 1" + ")" * 10, NAMES)
-    assert one.text == "h > 1"

@@ -6,7 +6,7 @@ import re
 
 import pytest
 
-from symobs.applications.checking import Checked, check
+from symobs.applications.checking import Checked
 from symobs.ground.errors import ProblemErrors
 from tests.kit import tabled
 
@@ -61,10 +61,3 @@ def test_powers_of_e_are_told_how_they_are_written() -> None:
     assert said in report.lines[-1].reason
     with pytest.raises(ProblemErrors, match=re.escape(said)):
         Checked.of('task = "response"\n[plant]\nA = "[-1]"\nB = "[1]"\n[specification]\ninput = "e^(-t)"\n')
-
-
-def test_a_function_of_time_beside_another_task() -> None:
-    """A² = 0, so that exp(A t) = I + A t."""
-    plant = '[plant]\nA = "[0 1; 0 0]"\nC = "[1 0]"\n'
-    report = check(f'tasks = ["observability", "matrix_exponential"]\n{plant}', {"exp(A t)": "[1 t; 0 1]", "rank": 2})
-    assert {part.verdict for part in report.parts if part.given} == {"right"}

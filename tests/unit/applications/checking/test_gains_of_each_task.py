@@ -7,7 +7,6 @@ from typing import Any
 import pytest
 
 import symobs
-from symobs import StateSpace
 from symobs.applications.checking import Checked, check
 from symobs.ground.errors import NotShown
 from symobs.problem import read
@@ -127,15 +126,6 @@ def test_a_gain_that_is_none_is_wrong_with_the_reason(
         assert part.verdict == ("right" if not reason else "unreadable" if "write" in reason else "wrong")
 
 
-def test_names_of_the_answer_and_those_of_a_problem_that_declares_none() -> None:
-    table = '[answer]\nL = "[19; 81 + m - m]"\nK = "[4 3]"\n'
-    assert judged(SERVO, f'symbols = ["m"]\n{table}')["L"].verdict == "right"
-    assert judged(SERVO, table)["L"].verdict == "unreadable"
-    plain = symobs.observer(StateSpace([[0, 1], [0, -1]], [[0], [1]], [[1, 0]]), poles=[-10, -10])
-    for gain, verdict in (("[19; 81]", "right"), ("[19; 81 + q - q]", "right"), ("[19; q]", "wrong")):
-        assert check(plain, {"L": gain}).verdict == verdict
-
-
 def test_conditions_that_a_problem_has_anyway_are_no_hint() -> None:
     problem = 'task = "observer"\n[symbols]\nalpha = "real"\n[plant]\nA = "[0 0; 0 0]"\nC = "[alpha 0; 0 1]"\n'
     problem += '[specification]\npoles = "-1, -2"\n'
@@ -166,42 +156,6 @@ def test_where_nothing_follows_from_a_wrong_gain_the_rest_is_wrong(
     monkeypatch.setattr(OutputFeedback, "following_from", raising)
     found = judged(SERVO, {"L": "[19; 82]", "F": "1/s"})
     assert [part.verdict for part in found.values()] == ["wrong", "wrong"]
-
-
-def test_values_of_other_parts_are_no_compensators_and_have_no_other_sign() -> None:
-    F = "(319 s + 400)/(s^2 + 23 s + 161)"
-    asked = f'{SERVO}[marking]\nsign_of_F = "either"\nasked = ["compensator.closed_loop_polynomial", "compensator.F"]\n'
-    for given in (F, f"-{F}"):
-        found = judged(asked, {"closed_loop_polynomial": given, "F": given})
-        assert [part.verdict for part in found.values()] == ["wrong", "right"]
-    turned = judged(asked, {"K": "[4 3]", "F": f"-{F}"})["F"]
-    assert (turned.verdict, turned.hints) == ("right", ("with the other sign",))
-    assert judged(asked, {"K": "[4 3]", "F": f"2*{F}"})["F"].verdict == "wrong"
-    unread = judged(asked, {"K": "[4 3", "F": "1/s"})
-    assert (unread["K"].verdict, unread["F"].reason) == ("unreadable", "")
-
-
-def test_decimals_in_a_closed_loop_are_those_of_its_entries() -> None:
-    """K = [1/3 1/3] moves the poles of the servo to -1/3 and -1."""
-    problem = SERVO.replace("-2, -2", "-1/3, -1") + '[marking]\nasked = ["compensator.closed_loop_matrix"]\n'
-    estimate = "[0 1 0 0; 0 -1 {0} {0}; 19 0 -19 1; 81 0 -81-1/3 -1-1/3]"
-    for entry, verdict in (("-1/3", "right"), ("-0.333", "wrong")):
-        part = judged(problem, {"closed_loop_matrix": estimate.format(entry)})["closed_loop_matrix"]
-        assert part.verdict == verdict
-        assert part.hints == (("in the state and its estimate",) if verdict == "right" else ())
-
-
-def test_what_is_rounded_is_accepted_only_if_it_is_near() -> None:
-    plant = (
-        'task = "transfer_function"\n[plant]\nA = "[-1/3]"\nB = "[1]"\nC = "[1/3]"\n[marking]\ndecimals = "accept"\n'
-    )
-    for given, verdict, hints in (
-        ("0.333/(s + 0.333)", "right", ("rounded",)),
-        ("0.3/(s + 0.4)", "wrong", ()),
-        ("2/(3 s + 1)", "wrong", ()),
-    ):
-        part = judged(plant, {"transfer_function": given})["transfer_function"]
-        assert (part.verdict, part.hints) == (verdict, hints)
 
 
 @tabled

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from typing import Any
 
-import pytest
 import sympy as sp
 
 from symobs.applications.checking import check
@@ -55,31 +54,6 @@ def test_both_gains_of_a_disturbance_observer_place_the_poles_together() -> None
         assert (set(found.values()) == {"right"}) is is_right
     half = check(CONSTANT, {"L_w": "[0 6]"}).parts[1]
     assert (half.verdict, half.reason) == ("undecided", "L_x and L_w are right together: give both")
-
-
-@pytest.mark.parametrize("rows", [[[1, 0], [0, 0], [0, 0]], [[1, 1], [0, 2], [0, 3]]])
-@pytest.mark.parametrize("given", ["L", ""])
-def test_any_H_that_decouples_is_right_and_the_gain_is_one_for_it(rows: list[list[int]], given: str) -> None:
-    """With L, or with F = T A - L C alone; L is chosen so that F has the eigenvalues -2, -3, -4."""
-    A, C = sp.Matrix([[0, 1, 0], [0, 0, 1], [-1, -2, -3]]), sp.Matrix([[1, 0, 0], [0, 0, 1]])
-    H = sp.Matrix(rows)
-    assert H * C * sp.Matrix([1, 0, 0]) == sp.Matrix([1, 0, 0])
-    TA = (sp.eye(3) - H * C) * A
-    a, b, c, lam = sp.symbols("a b c lambda")
-    L = sp.Matrix([[3, 0], [0, a], [b, c]]) if H[0, 1] == 0 else sp.Matrix([[a, 0], [b, 0], [c, 0]])
-    wanted = sp.Poly((lam + 2) * (lam + 3) * (lam + 4), lam)
-    equations = (sp.Poly((TA - L * C).charpoly(lam).as_expr(), lam) - wanted).all_coeffs()
-    (values, *_) = [
-        each for each in sp.solve(equations, [a, b, c], dict=True) if all(v.is_rational for v in each.values())
-    ]
-    L = L.subs(values).subs({a: 0, b: 5, c: 0})
-    F = TA - L * C
-    assert sp.Poly(F.charpoly(lam).as_expr(), lam) == wanted
-    answer = {"H": H, "F": F, "B_y": L + F * H} | ({"L": L} if given else {})
-    asked = UNKNOWN + "[marking]\nasked = [" + ", ".join(f'"unknown_input_observer.{n}"' for n in answer) + "]\n"
-    assert set(verdicts(asked, answer).values()) == {"right"}
-    wrong = answer | {"F": F + sp.eye(3)}
-    assert verdicts(asked, wrong)["F"] == "wrong"
 
 
 def test_what_is_asked_for_and_what_is_said_where_nothing_exists() -> None:

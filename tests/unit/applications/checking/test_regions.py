@@ -5,7 +5,6 @@ from __future__ import annotations
 from fractions import Fraction
 from typing import Any
 
-import numpy as np
 import pytest
 
 from symobs.applications.checking import Checked
@@ -274,13 +273,3 @@ def test_the_slip_and_the_reason(checked: Checked, conditions: Any, verdict: str
     assert (found.verdict, found.slip or "") == (told, verdict if verdict != told else "")
     assert found.reason.startswith(reason)
     assert bool(found.reason) is bool(reason)
-
-
-@tabled
-def test_a_point_of_three_parameters_parts_both(conditions: str) -> None:
-    """Roots by NumPy, the conditions by Python."""
-    found = part(THREE, conditions)
-    place = {name: float(Fraction(value)) for name, value in found.place.items()}
-    stable = max(np.roots([1, place["a"], place["b"], place["c"]]).real) < 0
-    assert eval(conditions.replace("a b", "a*b"), place) is not bool(stable)  # noqa: S307 - the text stands above
-    assert all(Fraction(value).denominator <= 2 for value in found.place.values())

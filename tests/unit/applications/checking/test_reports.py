@@ -12,13 +12,12 @@ from typing import Any
 import pytest
 from jsonschema import Draft202012Validator  # type: ignore[import-untyped]
 
-import symobs
 from symobs.applications.checking import SHOW, Checked, CheckReport, check
 from symobs.applications.checking.answers.answer_file import read_answer
 from symobs.applications.checking.asked import answer_file
 from symobs.applications.checking.derivations.line_auditor import without_solution
 from symobs.applications.checking.report.schema import schema
-from symobs.ground.errors import ProblemErrors, UsageError
+from symobs.ground.errors import ProblemErrors
 from symobs.problem import read
 from symobs.problem.marking import SLIPS
 from tests.kit import tabled
@@ -48,13 +47,6 @@ def test_every_report_keeps_its_schema_and_its_width(answer: Any, show: str) -> 
     assert pickle.loads(pickle.dumps(report)) == report  # noqa: S301 - our own bytes
     for page in (report.to_markdown(), report.to_html()):
         assert report.verdict in page
-
-
-def test_the_schema_refuses_another_document() -> None:
-    whole = json.loads(CHECKED.report(RIGHT).to_json())
-    Draft202012Validator.check_schema(schema())
-    assert not VALID.is_valid(whole | {"verdict": "perhaps"})
-    assert not VALID.is_valid({key: value for key, value in whole.items() if key != "score"})
 
 
 # -- what is given away -----------------------------------------------------------------------------------------------
@@ -132,20 +124,6 @@ def test_of_a_wording_that_nobody_knows_nothing_is_told(said: str) -> None:
     assert without_solution(said) == ""
 
 
-def test_an_empty_answer_is_not_filled_in() -> None:
-    """The one entry that is wrong in a gain of order 1, in K_d = 0 and in a line is all that there is to find."""
-    alone = 'task = "observer"\n[plant]\nA = "[2]"\nC = "[1]"\n[specification]\npoles = "-15"\n'
-    for answer in ({"L": "0"}, "L = [0]\n"):  # L = 17
-        report = Checked.of(alone).report(answer)
-        assert (report.parts[0].verdict, report.parts[0].slip) == ("wrong", "one_coefficient")
-        assert _given_away(report, "17", "s^2") == []
-    tracking = ROOT / "worked_examples" / "cart_tracking_angle.toml"  # K_d = [0 -539/50 0 0]
-    report = Checked.of(read(tracking.read_text(encoding="utf-8"), tracking.name, tracking.parent)).report(
-        "K_d = [0 0 0 0]\n"
-    )
-    assert report.parts[0].reason == report.lines[0].reason == "entry (1, 2) is wrong"
-
-
 def test_nothing_is_given_away_to_any_student_of_a_class() -> None:
     checked, seen = Checked.of(THIRD_ORDER), set()
     for number, answer in enumerate(answers(9, "feedback")):
@@ -159,13 +137,6 @@ def test_nothing_is_given_away_to_any_student_of_a_class() -> None:
         assert not any(line.reason or line.right for line in whole.bounded("place").lines)
         assert _given_away(whole, f"{K}{L}{F}", "") != []
     assert {"sign", "entry", "false"} <= seen
-
-
-def test_why_a_line_cannot_be_read_is_always_said() -> None:
-    report = CHECKED.report("K = [4 3\nL = [19; 80]\ndet(s I - A = s\nw = 3\n", "place")
-    assert [bool(line.reason) for line in report.lines] == [False, True, True]
-    assert "declare" not in report.lines[-1].reason
-    assert report.parts[0].reason
 
 
 def test_each_level_shows_more() -> None:
@@ -301,12 +272,6 @@ def test_what_is_pasted_from_elsewhere_is_read(given: Any) -> None:
     assert [part.verdict for part in CHECKED.report(given).parts] == ["right", "right", "missing"]
 
 
-def test_rows_in_brackets_are_rows_and_blocks_are_blocks() -> None:
-    for column, row in (("[[19],[81]]", "[[19];[81]]"), ("[[19] [81]]", "[[19 81]]")):
-        verdicts = [CHECKED.report({"L": given}).parts[1].slip for given in (column, row)]
-        assert verdicts == [None, None if ";" in row else "transposed"]
-
-
 def test_a_function_of_s_is_an_answer_and_nothing_is_missing() -> None:
     report = CHECKED.report(f"F(s) = {RIGHT['F']}\n")
     assert (report.parts[2].verdict, report.lines[0].verdict) == ("right", "true")
@@ -322,20 +287,6 @@ def test_a_line_of_words_harms_no_other_one() -> None:
 def test_what_stands_below_no_task_is_refused_in_a_text_too() -> None:
     with pytest.raises(ProblemErrors, match=r"answer\.observer: no task here"):
         CHECKED.report("observer.L = [19; 81]\n")
-
-
-def test_a_decimal_comma_is_told_so() -> None:
-    problem = 'task = "characteristic_polynomial"\n[plant]\nA = "[-1/2]"\n'
-    part = check(problem, {"polynomial": "s + 0,5"}).parts[0]
-    assert (part.verdict, "write 0.5 with a decimal point" in part.reason) == ("unreadable", True)
-    for given in (
-        {"K": "[4,0 3,0]"},
-        {"L": "[19,5; 81]"},
-        {"closed_loop_matrix": "[" + "; ".join(["0,5 1,0 2 3"] * 4) + "]"},
-    ):
-        (part,) = (part for part in CHECKED.report(given).parts if part.given)
-        assert (part.verdict, "with a decimal point" in part.reason) == ("unreadable", True)
-    assert CHECKED.report({"K": "[4,3,1]"}).parts[0].verdict == "wrong"
 
 
 def test_letters_that_nobody_knows_are_named_with_those_that_are() -> None:
@@ -354,12 +305,3 @@ def test_the_empty_answer_file_is_one() -> None:
     filled = empty.replace('# K = ""', 'K = "[4 3]"')
     assert CHECKED.report(filled).parts[0].verdict == "right"
     assert "81" not in empty
-
-
-def test_in_python() -> None:
-    result = symobs.observer(symobs.StateSpace("[0 1; 0 -1]", None, "[1 0]"), poles="-10, -10")
-    report = symobs.check(result, {"L": "[19; 81]"})
-    assert (report.verdict, report.score, report.total) == ("right", Fraction(1), Fraction(1))
-    assert set(report._repr_mimebundle_()) == {"text/plain", "text/markdown", "text/html"}
-    with pytest.raises(UsageError, match="is nothing to show"):
-        symobs.check(result, {"L": "[19; 81]"}, show="all")

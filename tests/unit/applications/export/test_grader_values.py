@@ -5,13 +5,11 @@ from __future__ import annotations
 import random
 import re
 from fractions import Fraction
-from typing import Any, cast
 
 import pytest
 import sympy as sp
 
-from symobs.applications.export.grader import values
-from symobs.applications.export.grader.values import ONE, UnreadableError, number, poly, read, times
+from symobs.applications.export.grader.values import ONE, UnreadableError, number, poly, read
 
 S = sp.Symbol("s")
 
@@ -160,23 +158,3 @@ def _at(text: str, at: Fraction) -> Fraction:
     powers = re.sub(r"\^~Fraction\('(\d+)'\)", r"**-\1", powers)
     found = eval(powers, {"Fraction": Fraction, "s": at})  # noqa: S307 - the text above
     return Fraction(found)
-
-
-def test_polynomials_have_no_zeros_behind_their_degree() -> None:
-    poly, divided_by = cast("Any", values.poly), cast("Any", values.divided_by)
-    plus, divided = cast("Any", values.plus), cast("Any", values.divided)
-    assert poly([1, 2, 0, 0]) == (1, 2)
-    assert poly([0, 0]) == ()
-    assert plus((Fraction(1), Fraction(2)), (Fraction(3), Fraction(-2))) == (4,)
-    assert (
-        plus((Fraction(1),), (Fraction(0), Fraction(2))) == plus((Fraction(0), Fraction(2)), (Fraction(1),)) == (1, 2)
-    )
-    assert times((), (Fraction(1),)) == ()
-    quotient, rest = divided(poly([1, 0, 0, 1]), poly([1, 1]))  # s³ + 1 = (s + 1)(s² − s + 1)
-    assert (quotient, rest) == ((1, -1, 1), ())
-    assert divided(poly([1]), poly([1, 1])) == ((), (1,))
-    assert divided_by(poly([0, 2]), poly([0, 0, 4])) == ((Fraction(1, 2),), (0, 1))
-    assert divided_by((), poly([3, 1])) == ((), ONE)
-    assert divided_by(poly([4])) == ((4,), ONE)
-    with pytest.raises(UnreadableError, match="a division by zero"):
-        divided_by(ONE, ())

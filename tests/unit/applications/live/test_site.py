@@ -13,7 +13,6 @@ import pytest
 
 from symobs.applications.live.site import build
 from symobs.applications.live.site.__main__ import main
-from tests.support.paths import ROOT
 from tests.support.tools.command_line import SAFETY, environment
 
 if TYPE_CHECKING:
@@ -58,20 +57,6 @@ def test_the_folder_holds_everything_that_it_asks_for(given: tuple[Path, Path], 
     before = {name: path.read_bytes() for name, path in files.items()}
     build(out, *given)  # it may be written again, and is the same
     assert before == {path.relative_to(out).as_posix(): path.read_bytes() for path in out.rglob("*") if path.is_file()}
-
-
-def test_an_installed_package_is_packed_once(
-    given: tuple[Path, Path], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    for name in ("__init__.py", "worked_examples/servo.toml", "latex_templates/article.tex"):
-        (tmp_path / "symobs" / name).parent.mkdir(parents=True, exist_ok=True)
-        (tmp_path / "symobs" / name).write_text("")
-    monkeypatch.setattr("symobs.applications.live.site._PACKAGE", tmp_path / "symobs")
-    build(tmp_path / "out", *given)
-    with zipfile.ZipFile(tmp_path / "out" / "symobs.zip") as archive:
-        names = archive.namelist()
-    assert "symobs/worked_examples/servo.toml" in names
-    assert len(names) == len(set(names))
 
 
 def _asked(out: Path) -> Iterator[str]:
@@ -136,13 +121,3 @@ def test_what_is_something_else_is_refused_before_anything_is_written(
     assert left.value.code == 2
     assert "something else in this folder; give a new one" in capsys.readouterr().err
     assert [path.name for path in out.iterdir()] == ["mine.txt"]
-
-
-def test_all_that_is_missing_is_said_with_the_commands_of_the_page(tmp_path: Path) -> None:
-    with pytest.raises(ValueError, match="there is no folder") as raised:
-        build(tmp_path / "out", tmp_path / "pyodide", tmp_path / "no.whl")
-    lines = str(raised.value).splitlines()
-    assert lines[1] == f"--flint: there is no file {tmp_path / 'no.whl'}"
-    page = (ROOT / "docs").joinpath("live.md").read_text(encoding="utf-8")
-    assert [line.strip() in page for line in lines[3:]] == [True, True]
-    assert not (tmp_path / "out").exists()

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import random
-from itertools import product
 
 import sympy as sp
 
@@ -46,23 +45,6 @@ def test_polynomials_are_those_of_sympy() -> None:
         assert sp.Poly(poly(divisor), s) in (expected, -expected)
         assert sp.expand(poly(whole.quotient(left, divisor)) * poly(divisor) - poly(left)) == 0
         assert whole.resultant(one, other) == sp.resultant(poly(one), poly(other), s)
-
-
-def test_numerators_are_all_whole_ones_with_values_plus_or_minus_one() -> None:
-    for poles in ((0, 2), (1, 0, -1), (3, 1, -2), (3, 0, -3)):
-        pairs = tuple((pole, 0) for pole in poles)
-        chi = whole.of_poles(pairs)
-        found = {poly(each) for each in whole.unit_numerators(chi, pairs)}
-        expected = set()
-        for values in product((1, -1), repeat=len(poles)):
-            each = sp.interpolate(list(zip(poles, values, strict=True)), s)
-            if all(c.is_integer for c in sp.Poly(each, s).all_coeffs()):
-                expected.add(sp.expand(each))
-        assert found == expected
-        assert all(abs(sp.resultant(poly(chi), each, s)) == 1 for each in found)
-    pairs = ((-1, 2), (0, 0))
-    chi = whole.of_poles(pairs)
-    assert all(abs(sp.resultant(poly(chi), poly(b), s)) == 1 for b in whole.unit_numerators(chi, pairs))
 
 
 def test_compensators_are_those_of_sympy() -> None:

@@ -113,13 +113,6 @@ def _of_pari(rows: str) -> str:
     return "[" + "; ".join(", ".join(row.split()) for row in rows.strip("[]").split(";")) + "]"
 
 
-@pytest.mark.slow
-def test_processes_change_nothing() -> None:
-    alone = found(OBSERVER, 2).manifest
-    for workers in (1, 2):
-        assert json.dumps(Variants(OBSERVER, 2, 7, workers=workers).manifest) == json.dumps(alone)
-
-
 # -- what is distinct -------------------------------------------------------------------------------------------------
 
 
@@ -233,20 +226,6 @@ def test_all_errors_of_the_table_come_together_with_place_and_repair() -> None:
         read(OBSERVER)
 
 
-def test_relations_among_parameters_are_read_with_the_table() -> None:
-    text = 'task = "observer"\n[plant]\nA = "[0 1; a b]"\nC = "[1 0]"\n[specification]\npoles = "-1, -2"\n'
-    text += (
-        '[variants.parameters]\na = { integers = [5, -5] }\nb = { set = ["1"] }\nwhen = ["a < c", "a <", "a != b"]\n'
-    )
-    with pytest.raises(ProblemErrors) as raised:
-        Variants(text, 1)
-    assert [str(error) for error in raised.value.errors if "when" in error.where] == [
-        "variants.parameters.when[0]: c is no parameter; use those of [variants.parameters]: a, b",
-        'variants.parameters.when[1]: "a <" is no relation; write when = ["a < b"]',
-    ]
-    assert "variants.parameters.a.integers" in {error.where for error in raised.value.errors}
-
-
 @tabled
 def test_only_whole_seeds_are_taken(seed: Any) -> None:
     with pytest.raises(UsageError, match="is no seed"):
@@ -274,40 +253,10 @@ def poles_of(text: str, seed: int) -> list[str]:
     return str(candidate(read_table(text), seed, 0).data["specification"]["poles"]).split(", ")
 
 
-def test_what_follows_from_another_error_is_left_out() -> None:
-    with pytest.raises(ProblemErrors, match=r"^variants.construct: this is no construction; write one of [^\n]*$"):
-        read_table('task = "observer"\n[variants]\nconstruct = "observr"\n')
-    with pytest.raises(ProblemErrors, match="plant_poles: there are not so many distinct poles"):
-        read_table(OBSERVER.replace("[-5, 5]", "[0, 0]"))
-
-
 def test_what_is_no_problem_file_is_refused() -> None:
     for wrong in ({"task": "observer"}, None):
         with pytest.raises(UsageError, match="problem: a problem file is expected"):
             so.variants(wrong, 2)  # type: ignore[arg-type]
-
-
-def test_names_that_no_candidate_has_are_refused_together() -> None:
-    text = OBSERVER.replace('integer        = ["L"]', 'integer = ["Z"]')
-    text = re.sub(r"(?m)^digits .*$", 'digits = { Q = 2, "A *" = 5 }', text).replace(
-        'answers_nonzero = ["L"]', 'answers_nonzero = ["K"]'
-    )
-    with pytest.raises(ProblemErrors) as raised:
-        found(text, 1)[0]
-    told = [(error.where, error.message.split()[-1]) for error in raised.value.errors]
-    keys = {"integer": '"Z"', "answers_nonzero": '"K"', "digits": '"Q"'}
-    assert told == [(f"variants.constraints.{key}", name) for key, name in keys.items()]
-    assert "known: A, B, C, D, L" in raised.value.errors[0].repair
-
-
-def test_a_placeholder_that_no_parameter_fills_is_refused() -> None:
-    words = 'title = "Poles at {q}"\ntext = "With {d}, and $\\\\bar{x}^{n}$"\n'
-    with pytest.raises(ProblemErrors) as raised:
-        read_table(words + re.sub(r"(?m)^(title|text).*\n", "", OBSERVER))
-    assert [(error.where, error.message) for error in raised.value.errors] == [
-        ("title", "{q} is no parameter"),
-        ("text", "{d} is no parameter"),
-    ]
 
 
 def test_the_number_of_a_variant_stands_in_the_language_of_its_file() -> None:
