@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from typing import Any
 
-import numpy as np
 import pytest
 
 import symobs
@@ -38,16 +37,6 @@ def test_conditions_cases_and_page(
     assert cases is None or [str(case.when[0].lhs) for case in result.cases] == cases
     assert result.to("latex")
     assert result.to_json()
-
-
-@pytest.mark.parametrize("angle", [0.3, 2.0, 3.0])
-def test_a_sampled_oscillator_beside_a_lag_has_the_ranks_of_numpy(angle: float) -> None:
-    result = symobs.pbh(S("[cos(w) sin(w) 0; -sin(w) cos(w) 0; 0 0 exp(-w)]", C="[1 0 0]", dt=True))
-    A = np.array([[np.cos(angle), np.sin(angle), 0], [-np.sin(angle), np.cos(angle), 0], [0, 0, np.exp(-angle)]])
-    C = np.array([[1.0, 0, 0]])
-    ranks = sorted(int(np.linalg.matrix_rank(np.vstack([A - e * np.eye(3), C]))) for e in np.linalg.eigvals(A))
-    assert sorted(mode["rank"] for mode in result.modes) == ranks
-    assert result.to("latex")
 
 
 def test_a_rank_that_drops_where_a_cosine_vanishes_has_a_page() -> None:

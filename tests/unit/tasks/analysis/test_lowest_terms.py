@@ -6,7 +6,6 @@ SymPy cancels the fraction with the numbers put in; what the result says of that
 from __future__ import annotations
 
 import itertools
-import random
 from fractions import Fraction
 from typing import Any
 
@@ -30,10 +29,6 @@ PLANTS: dict[str, tuple[str, str, str, str]] = {
     "companion": ("[0 1 0; 0 0 1; -6 -11 -6]", "[0; 0; 1]", "[a b 1]", "0"),
     "pole at zero": ("[0 1; 0 -a]", "[0; 1]", "[1 b]", "c"),
 }
-
-
-def text(value: Fraction) -> str:
-    return f"({value.numerator}/{value.denominator})"
 
 
 def at(entry: Any, point: dict[str, Fraction]) -> Any:
@@ -100,29 +95,6 @@ def test_every_point_of_a_grid_has_its_own_lowest_terms(name: str) -> None:
     assert assert_right_everywhere(*PLANTS[name], names) > 0
 
 
-def entry(generator: random.Random, names: list[str]) -> str:
-    kind = generator.random()
-    if kind < 0.35:
-        return "0"
-    return str(generator.randint(-2, 2)) if kind < 0.75 else generator.choice(names)
-
-
-def matrix(generator: random.Random, rows: int, columns: int, names: list[str]) -> str:
-    body = "; ".join(" ".join(entry(generator, names) for _ in range(columns)) for _ in range(rows))
-    return f"[{body}]"
-
-
-@pytest.mark.parametrize("seed", range(12))
-def test_random_plants_with_parameters(seed: int) -> None:
-    """One output and several; with two parameters, at 25 points each."""
-    generator, names = random.Random(seed), ["a", "b"]  # noqa: S311 - the same plants in every run
-    n = generator.choice((1, 2, 3))
-    m, p = generator.choice(((1, 1), (1, 1), (2, 1), (1, 2), (2, 2)))
-    shapes = ((n, n), (n, m), (p, n), (p, m))
-    A, B, C, D = (matrix(generator, *shape, names) for shape in shapes)
-    assert_right_everywhere(A, B, C, D, names)
-
-
 def test_a_curve_without_a_parametrisation() -> None:
     result = symobs.transfer_function(symobs.StateSpace("[-1 0; 0 -2]", "[a^2+b^2-2; 1]", "[1 1]"))
     for point in ({"a": Fraction(7, 5), "b": Fraction(1, 5)}, {"a": Fraction(-1), "b": Fraction(1)}):
@@ -130,10 +102,3 @@ def test_a_curve_without_a_parametrisation() -> None:
         assert there.order == 1
         assert str(there.transfer_function) == "1/(s + 2)"
     assert "a² + b² - 2 = 0" in result.to("text")
-
-
-def test_what_changes_nothing_is_no_case() -> None:
-    """The numerator of the pendulum is s: ω² > 0 keeps it from cancelling."""
-    signs = {"w": "positive", "b": "positive"}
-    result = symobs.transfer_function(symobs.StateSpace("[0 1; -w^2 -b]", "[0; 1]", "[0 1]", symbols=signs))
-    assert (result.verdict, result.conditions, result.cases) == ("yes", (), ())

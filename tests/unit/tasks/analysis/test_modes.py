@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-import random
-import shutil
-import subprocess
 from itertools import product
 from typing import Any
 
@@ -14,15 +11,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import symobs
-from symobs.exact import EIGENVALUE, AlgebraicExtension, Matrix, Scalar, stable_roots
-from symobs.ground.errors import CertificateRejected, DerivationRejected, InputError
+from symobs.exact import Scalar, stable_roots
+from symobs.ground.errors import CertificateRejected, InputError
 from symobs.stability.criteria.stability import is_beyond, is_marginal, on_boundary
 from symobs.tasks.analysis.modes import modes
-from symobs.tasks.result import render
 from tests.kit import tabled
-from tests.support.independent_algebra.second_reader import sympy_scalar
-from tests.support.problems.strategies import Sample, plants, unimodular
-from tests.support.sampling import FULL
+from tests.support.problems.strategies import Sample, plants
 
 numeric = plants(("dense", "hidden", "defective"))
 s = sympy.Symbol("s")
@@ -32,28 +26,7 @@ def plant_of(sample: Sample) -> Any:
     return symobs.StateSpace(sample.A, sample.B, sample.C)
 
 
-def by_eigenvalue(result: Any) -> dict[str, tuple[int, Any]]:
-    return {str(mode["eigenvalue"]): (mode["rank"], mode["stable"]) for mode in result.fields["modes"]}
-
-
 # -- identities ----------------------------------------------------------------------------------------------------------
-
-
-@pytest.mark.slow
-@given(numeric, st.data())
-@settings(max_examples=25)
-def test_modes_do_not_depend_on_coordinates_nor_on_output_injection(sample: Sample, data: st.DataObject) -> None:
-    """(T A T⁻¹, C T⁻¹) has the same ranks; A + L C the same unobservable modes and the same rank of 𝒪."""
-    drawn, back = data.draw(unimodular(sample.order))
-    T, inverse, plant = sympy.Matrix(drawn), sympy.Matrix(back), plant_of(sample)
-    L = sympy.Matrix(data.draw(st.lists(st.integers(-2, 2), min_size=sample.order, max_size=sample.order)))
-    here = symobs.pbh(plant)
-    moved = symobs.pbh(symobs.StateSpace(T * plant.A * inverse, None, plant.C * inverse))
-    assert by_eigenvalue(moved) == by_eigenvalue(here)
-    injected = symobs.StateSpace(plant.A + L * plant.C, None, plant.C)
-    assert symobs.pbh(injected).fields["fixed_polynomial"] == here.fields["fixed_polynomial"]
-    assert symobs.detectability(injected).verdict == symobs.detectability(plant).verdict
-    assert symobs.observability(injected).fields["rank"] == symobs.observability(plant).fields["rank"]
 
 
 @given(numeric, st.sampled_from([1, -1]))
@@ -125,70 +98,6 @@ def components(n: int, edges: list[set[int]]) -> list[set[int]]:
     return found
 
 
-# -- another system ------------------------------------------------------------------------------------------------------
-
-COUNT = 10_000 if FULL else 150
-#: For each plant: the rank of 𝒪, the dimension of its kernel, and the polynomial of A on the kernel, highest power first.
-SCRIPT = """
-obs(A,C)={my(R=C,K=C);for(k=1,matsize(A)[1]-1,K=K*A;R=matconcat([R;K]));R};
-fixed(A,N)={my(X);if(matsize(N)[2]==0,return([1]));X=matinverseimage(N,A*N);Vec(charpoly(X))};
-say(A,C)={my(O=obs(A,C),N=matker(O));print(matrank(O)," ",matsize(N)[2]," ",fixed(A,N))};
-"""
-
-
-def random_pair(generator: random.Random) -> tuple[list[list[int]], list[list[int]]]:
-    """Return a pair of order 2 to 4 with one or two outputs, often with something hidden."""
-    n, p = generator.randint(2, 4), generator.randint(1, 2)
-    A = [[generator.randint(-2, 2) for _ in range(n)] for _ in range(n)]
-    C = [[generator.randint(-1, 1) for _ in range(n)] for _ in range(p)]
-    if generator.random() < 0.7:
-        hidden = generator.randint(1, n - 1)
-        for row in A[hidden:]:
-            row[:hidden] = [0] * hidden
-        for row in C:
-            row[:hidden] = [0] * hidden
-        i, j = generator.sample(range(n), 2)
-        factor = generator.choice([-1, 1, 2])
-        for row in (*A, *C):  # x = T x̄ with T = I + factor eᵢeⱼᵀ
-            row[j] += factor * row[i]
-        A[i] = [x - factor * y for x, y in zip(A[i], A[j], strict=True)]
-    return A, C
-
-
-@pytest.mark.slow
-@pytest.mark.skipif(shutil.which("gp") is None, reason="PARI is not installed")
-def test_random_plants_agree_with_pari(record_property: Any) -> None:
-    generator = random.Random(20)  # noqa: S311 - the same plants in every run
-    pairs = [random_pair(generator) for _ in range(COUNT)]
-    matrices = [
-        "say(" + ",".join(f"[{';'.join(','.join(map(str, r)) for r in M)}]" for M in pair) + ");" for pair in pairs
-    ]
-    told = subprocess.run(
-        ["gp", "-q", "-f"],
-        input="\n".join([*(line for line in SCRIPT.strip().splitlines()), *matrices]),
-        text=True,
-        capture_output=True,
-        check=True,
-    ).stdout.split("\n")[:COUNT]
-    deficient = 0
-    for (A, C), line in zip(pairs, told, strict=True):
-        rank, hidden, polynomial = line.split(" ", 2)
-        plant = symobs.StateSpace(A, None, C)
-        found = symobs.observability(plant)
-        assert (found.fields["rank"], len(found.fields["kernel"])) == (int(rank), int(hidden)), (A, C)
-        coefficients = tuple(sympy.Rational(x) for x in polynomial.strip("[] ").split(","))
-        fixed: Any = symobs.pbh(plant)
-        assert tuple(sympy.Poly(fixed.fixed_polynomial, s).all_coeffs()) == coefficients, (A, C)
-        unseen = sympy.Poly(fixed.fixed_polynomial, s)
-        for mode in fixed.fields["modes"]:
-            root = mode["eigenvalue"].factor
-            shared = unseen.rem(sympy.Poly(sympy_scalar(root, {}), s)).is_zero
-            assert mode["observable"] == (not shared), (A, C)
-        deficient += int(hidden) > 0
-    record_property("deficient", deficient)
-    assert deficient > COUNT / 2
-
-
 # -- eigenvalues of every kind -------------------------------------------------------------------------------------------
 
 CUBIC = "[0 1 0 0; 0 0 1 0; 1 1 0 0; 0 0 0 -1]"
@@ -203,15 +112,6 @@ def test_eigenvalues_without_closed_form_are_named_and_told_apart() -> None:
     assert str(modes[1]["matrix"][0][0]) == "-CRootOf(s**3 - s - 1, 0)"
 
 
-def test_roots_that_sympy_gives_as_multiples_of_others_are_told_apart() -> None:
-    """The roots of s⁴ + 2 s³ + 4 s² − 8 s + 16 are twice those of s⁴ + s³ + s² − s + 1, two on either side."""
-    modes = symobs.pbh(symobs.StateSpace("[0 1 0 0; 0 0 1 0; 0 0 0 1; -16 8 -4 -2]", None, "[1 0 0 0]")).fields["modes"]
-    found = [mode["stable"] for mode in modes]
-    roots = [sympy.CRootOf(s**4 + 2 * s**3 + 4 * s**2 - 8 * s + 16, k) for k in range(4)]
-    assert found == [bool(sympy.re(root.evalf()) < 0) for root in roots]
-    assert found.count(True) == 2
-
-
 @tabled
 def test_each_eigenvalue_is_stable_or_not(A: str, stable: dict[str, bool]) -> None:
     modes = symobs.pbh(symobs.StateSpace(A, None, "[1 0]")).fields["modes"]
@@ -222,32 +122,6 @@ def test_each_eigenvalue_is_stable_or_not(A: str, stable: dict[str, bool]) -> No
 def test_each_mode_is_inside_the_unit_circle_or_not(A: str, stable: dict[str, bool]) -> None:
     modes = symobs.pbh(symobs.StateSpace(A, None, "[1 0]", dt=1)).fields["modes"]
     assert {str(mode["eigenvalue"]): mode["stable"] for mode in modes} == stable
-
-
-@given(st.lists(st.integers(-5, 5), min_size=3, max_size=5), st.booleans())
-@settings(max_examples=12)
-def test_modes_without_closed_form_agree_with_numeric_roots(coefficients: list[int], discrete: bool) -> None:  # noqa: FBT001
-    n = len(coefficients)
-    A = [[int(j == i + 1) for j in range(n)] for i in range(n - 1)] + [[-c for c in reversed(coefficients)]]
-    plant = symobs.StateSpace(A, None, [[1] + [0] * (n - 1)], dt=int(discrete))
-    symbol = sympy.Symbol("z" if discrete else "s")
-    told: dict[Any, list[bool]] = {}
-    for mode in symobs.pbh(plant).fields["modes"]:
-        if not mode["eigenvalue"].is_closed:
-            told.setdefault(mode["eigenvalue"].factor, []).append(mode["stable"])
-    for factor, stable in told.items():
-        polynomial = sympy.Poly(sympy_scalar(factor, {}), symbol)
-        roots = polynomial.nroots(n=20)
-        margins = [float(abs(r) - 1 if discrete else sympy.re(r)) for r in roots]
-        real = sorted(r for r in roots if r.is_real)
-        if min(map(abs, margins)) < 1e-9:
-            continue
-        assert [stable[k] for k in range(len(real))] == [bool(abs(r) < 1 if discrete else r < 0) for r in real]
-        assert stable.count(True) == stable_count(margins) * (len(stable) // polynomial.degree())
-
-
-def stable_count(margins: list[float]) -> int:
-    return sum(margin < 0 for margin in margins)
 
 
 # -- detectability -------------------------------------------------------------------------------------------------------
@@ -268,15 +142,6 @@ def test_conditions_of_detectability() -> None:
     assert list(map(str, symobs.detectability(at, meaning="lyapunov").holds_where)) == ["-a >= 0"]
     lost = symobs.detectability(symobs.StateSpace("[0 1; 2 1]", None, "[1 c]"))
     assert [str(c) for c in lost.holds_where] == ["2*c + 1 != 0"]
-
-
-def test_discrete_detectability_looks_at_the_unit_circle() -> None:
-    for mode, verdict in (("1/2", "yes"), ("-1", "no"), ("2", "no")):
-        plant = symobs.StateSpace(f"[{mode} 0; 0 3]", None, "[0 1]", dt=1)
-        assert symobs.detectability(plant).verdict == verdict
-    assert (
-        symobs.detectability(symobs.StateSpace("[-1 0; 0 3]", None, "[0 1]", dt=1), meaning="lyapunov").verdict == "yes"
-    )
 
 
 x = Scalar.symbol("s")
@@ -312,19 +177,6 @@ def test_what_lies_on_the_boundary_and_beyond(
     assert is_beyond(polynomial, "s", {}, discrete=discrete) == beyond
 
 
-# -- the field of an eigenvalue --------------------------------------------------------------------------------------------
-
-
-@given(st.lists(st.integers(-3, 3), min_size=3, max_size=3), st.lists(st.integers(-3, 3), min_size=3, max_size=3))
-def test_inverses_in_a_cubic_field(left: list[int], right: list[int]) -> None:
-    root = Scalar.symbol(EIGENVALUE)
-    field = AlgebraicExtension(root**3 - root - 1, EIGENVALUE)
-    x, y = (sum((root**k * c for k, c in enumerate(part)), Scalar.of(0)) for part in (left, right))
-    assert field.reduce(x * y) == field.reduce(field.reduce(x) * field.reduce(y))
-    if any(left):
-        assert field.reduce(x * field.inverse(x)).is_one
-
-
 # -- nothing false gets through ------------------------------------------------------------------------------------------
 
 
@@ -333,29 +185,6 @@ def test_a_wrong_rank_at_an_eigenvalue_is_rejected() -> None:
     for ranks in ((3, 3), (4, 4), (4, 2), (4,)):
         with pytest.raises((CertificateRejected, ValueError)):
             result.with_answer("ranks", ranks)
-
-
-def test_a_page_cannot_give_a_wrong_rank_at_an_eigenvalue() -> None:
-    from dataclasses import replace  # noqa: PLC0415
-
-    from symobs.proof.derivation import CaseStep  # noqa: PLC0415
-    from symobs.proof.derivation.builder import relation  # noqa: PLC0415
-
-    derivation: Any = symobs.pbh(symobs.StateSpace("[0 -1 0; 1 0 1; 0 0 0]", None, "[1 0 0]")).derivation
-    *before, section = derivation.steps
-    at = [k for k, step in enumerate(section.steps) if isinstance(step, CaseStep)]
-    assert len(at) == 2
-    for k in at:
-        case = section.steps[k]
-        (line,) = case.steps[0].relations
-        for other in (
-            replace(line, members=(*line.members[:-1], relation(2).members[0])),
-            replace(line, members=(line.members[0], relation(Matrix.zeros(4, 3)).members[0], line.members[2])),
-        ):
-            wrong = replace(case, steps=(replace(case.steps[0], relations=(other,)),))
-            steps = (*section.steps[:k], wrong, *section.steps[k + 1 :])
-            with pytest.raises(DerivationRejected):
-                replace(derivation, steps=(*before, replace(section, steps=steps))).check()
 
 
 @pytest.mark.parametrize("call", [
@@ -369,22 +198,6 @@ def test_what_is_not_known_is_refused_with_the_repair(call: Any) -> None:
         call(symobs.StateSpace("[0 1; 0 -1]", "[0; 1]", "[1 0]"))
     assert caught.value.where.startswith("specification.")
     assert caught.value.repair.startswith("write ")
-
-
-def test_pages_of_every_kind_render() -> None:
-    from symobs.tasks.result import Document  # noqa: PLC0415
-
-    plant = symobs.StateSpace("[0 1; 0 -b]", "[0; 1]", "[0 1]", symbols={"b": "positive"})
-    results = (
-        symobs.pbh(plant),
-        symobs.pbh(plant, of="controllability"),
-        symobs.detectability(plant, meaning="lyapunov"),
-        symobs.dual(plant, sign=-1),
-        symobs.decomposition(plant),
-        symobs.canonical_form(plant, kind="controllable"),
-    )
-    for name in ("latex", "text", "json"):
-        assert render(Document("all", "", results), name)
 
 
 @tabled

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 import symobs
-from symobs.exact import Ideal, Scalar
+from symobs.exact import Scalar
 from symobs.pages.formats.json import result_object
 from symobs.tasks.analysis.strata.loci import Region, loci
 
@@ -31,27 +31,10 @@ def test_points_that_are_not_real_are_none() -> None:
     assert found(a**5 - 2, a**4 + a**3 * b + a**2 * b**2 + a * b**3 + b**4) == set()
 
 
-def test_a_point_of_several_multiplicities_is_one() -> None:
-    assert found(a**2 - 2, (a - b) ** 2) == {frozenset({"a - b", "b**2 - 2"})}
-
-
 def test_where_a_denominator_vanishes_there_is_no_stratum() -> None:
     plant = Region(REAL, frozenset({a + b}))
     assert found(a - 1, b + 1, region=plant) == set()
     assert found(a - 1, b - 1, region=plant) == {frozenset({"a - 1", "b - 1"})}
-
-
-def test_an_ideal_knows_only_what_occurs_in_its_generators() -> None:
-    widened = [value + s - s for value in (a**2 - 2, b - 1)]
-    assert all("s" in value.field.names for value in widened)
-    assert Ideal.of(widened).dimension == 2
-
-
-def test_points_may_be_counted_by_a_linear_form() -> None:
-    points = Ideal.of([a**2 - 2, b**2 - 3])
-    assert points.quotient is not None
-    assert str(points.quotient.minimal_polynomial(a + b, "u")) == "u**4 - 10*u**2 + 1"  # of √2 + √3, as is well known
-    assert str(points.quotient.minimal_polynomial(a, "a")) == "a**2 - 2"
 
 
 @pytest.mark.parametrize("equation", ["a^2-a+1", "a^4+a+1"])

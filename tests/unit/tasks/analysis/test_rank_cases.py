@@ -21,7 +21,6 @@ from symobs.formula.expression import parse_scalar
 from symobs.formula.tree import Conjunction, Environment, Letter, Literal, Relation
 from symobs.ground.errors import CertificateRejected, DerivationRejected
 from symobs.proof.derivation import CaseStep, Given
-from symobs.system.conditions import real_consequences
 from symobs.tasks.analysis.rank import missing_measurements
 from symobs.tasks.analysis.rank.rank_test import RankResult
 from symobs.tasks.analysis.strata.loci import Locus, Region, loci, maximal
@@ -34,7 +33,6 @@ from tests.support.independent_algebra.plain import (
     random_fraction,
     rank_of,
     seeded,
-    value_at,
 )
 from tests.support.sampling import FULL
 
@@ -344,40 +342,6 @@ def test_what_is_missing_repairs_it(name: str) -> None:
                 assert rank_of(observability_rows(at.A, [*at.C, *rows])) == order
 
 
-@pytest.mark.parametrize(
-    ("name", "case", "sets"),
-    [
-        ("cart-pole, angle", None, [[1]]),
-        ("cart-pole, rate", None, [[1]]),
-        ("free masses, difference", None, [[1], [3]]),
-        ("bridge", 0, [[1], [2]]),
-        ("two masses, one position", 0, [[3], [4]]),
-        ("diag(a, b, c)", 3, [[1, 2], [1, 3], [2, 3]]),
-        ("C = [0 1]", None, []),
-    ],
-)
-def test_which_states_are_missing(name: str, case: int | None, sets: list[list[int]]) -> None:
-    found: Any = result(name) if case is None else result(name).case_tree[case].result
-    assert found.fields["missing_measurements"] == sets
-
-
-def test_the_dual_says_the_same() -> None:
-    for name in ("diag(a, b, c)", "C = [a c]", "cart-pole, angle"):
-        seen = result(name)
-        dual = symobs.StateSpace(seen.plant.A.T, seen.plant.C.T, symbols=dict(PLANTS[name].signs))
-        moved: Any = symobs.controllability(dual)
-        assert [case.when for case in moved.case_tree] == [case.when for case in seen.case_tree]
-        assert moved.fields["missing_inputs"] == seen.fields["missing_measurements"]
-        assert moved.to("text")
-
-
-@every_plant
-def test_every_page_is_checked(name: str) -> None:
-    result(name).derivation.check()
-    assert result(name).to("text")
-    assert result(name).to("json")
-
-
 # -- nothing else is accepted -------------------------------------------------------------------------------------------
 
 
@@ -430,59 +394,11 @@ def generic(order: int) -> symobs.StateSpace:
     return symobs.StateSpace(A, None, [[f"c{j}" for j in range(order)]])
 
 
-def test_a_generic_plant_keeps_its_determinant_unfactored() -> None:
-    found: Any = symobs.observability(generic(4))
-    assert (found.verdict, len(found.holds_where)) == ("conditional", 1)
-    assert found.holds_where[0].expression in {found.test_determinant, -found.test_determinant}
-    assert [case.result for case in found.case_tree] == [None]
-    assert "is not decided here" in " ".join(found.to("text").split())
-
-
 def test_what_cannot_be_written_down_is_undecided() -> None:
     found: Any = symobs.observability(generic(5))
     assert (found.verdict, found.fields["rank"], found.fields["determinant"]) == ("undecided", 5, None)
     assert found.holds_where == ()
     assert "too long to display" in " ".join(found.to("text").split())
-
-
-def test_a_chain_with_three_outputs_mixed_is_decided_everywhere() -> None:
-    """With c orthogonal to one mode v of the chain that mode is hidden, with cᵢ = mᵢ vᵢ the two others are.
-
-    v and the stiffness k1 follow from a rational eigenvalue μ by the rows of the chain from below.
-    """
-    signs = THREE | real("c1 c2 c3")
-    found: Any = symobs.observability(symobs.StateSpace(CHAIN, None, "[c1 0 c2 0 c3 0]", symbols=signs))
-    assert found.verdict == "conditional"
-    assert sorted(case.result.rank for case in found.cases) == [0, 2, 4, 4]
-    (condition,) = found.holds_where
-    generator = seeded("chain")
-    met: list[int] = []
-    while len(met) < 60:
-        p = {n: random_fraction(generator, sign) for n, sign in signs.items()}
-        mu, kind = -random_fraction(generator, "positive"), len(met) % 4
-        v2 = 1 + mu * p["m3"] / p["kb"]
-        v1 = (mu * p["m2"] * v2 + (p["ka"] + p["kb"]) * v2 - p["kb"]) / p["ka"]
-        if not v1 or not p["c1"]:
-            continue
-        p["k1"] = p["ka"] * v2 / v1 - mu * p["m1"] - p["ka"]
-        if p["k1"] <= 0:
-            continue
-        if kind == 1:
-            p["c3"] = -p["c1"] * v1 - p["c2"] * v2
-        elif kind:
-            p |= (
-                {"c1": p["m1"] * v1, "c2": p["m2"] * v2, "c3": p["m3"]}
-                if kind == 2
-                else dict.fromkeys(("c1", "c2", "c3"), Fraction(0))
-            )
-        at = Setting.of(found.plant, {}, p)
-        rank = rank_of(observability_rows(at.A, at.C))
-        (part,) = applicable(found, p)
-        rank_holds(part, at)
-        assert part.fields["rank"] == rank
-        assert (rank == 6) == (value_at(condition.expression, p) != 0)
-        met.append(rank)
-    assert set(met) == {0, 2, 4, 6}
 
 
 # -- loci -----------------------------------------------------------------------------------------------------------------
@@ -494,13 +410,6 @@ def test_loci(equations: list[str], signs: dict[str, str], expected: list[str]) 
     found = loci([parse_scalar(text, names) for text in equations], Region(names))
     wanted = {ideal_of([parse_scalar(text, names) for text in texts.split(",")]) for texts in expected}
     assert {ideal_of(list(locus.equations)) for locus in found} == wanted
-
-
-def test_consequences_are_for_real_parameters_only() -> None:
-    a, b = Scalar.symbol("a"), Scalar.symbol("b")
-    assert real_consequences(a**2 - b**2, {}) == ()
-    assert real_consequences(a * b + 1, {}) == ()
-    assert set(real_consequences(a**2 * b**2 + b**4, {})) == {a * b, b}
 
 
 def test_a_set_beyond_the_limits_leaves_the_smallest_sets_undecided(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -60,11 +60,6 @@ def test_a_parameter_that_nothing_knows_is_misspelt(parameters: Any, symbols: An
         read(f"{text}parameters = {json.dumps(parameters)}\n").solve()
 
 
-def test_a_file_needs_no_parameter() -> None:
-    problem = read('task = "stability_region"\n[specification]\npolynomial = "s^2 + s + 1"\nparameters = []\n')
-    assert [result.verdict for result in problem.solve()] == ["yes"]
-
-
 def test_the_variable_is_no_parameter() -> None:
     with pytest.raises(
         InputError, match=r"specification\.parameters: s is the variable of the polynomial; leave it out"
@@ -87,19 +82,6 @@ def test_a_horizon_that_contains_t_is_refused() -> None:
     plant = symobs.StateSpace("[0 1; 0 0]", "[0; 1]", "[1 0]")
     with pytest.raises(InputError, match="the horizon depends on t"):
         symobs.gramian(plant, horizon="2*t")
-
-
-@pytest.mark.parametrize("data", [{}, {"Q": "[1]"}])
-def test_the_covariance_may_end_at_a_horizon_called_t(data: dict[str, str]) -> None:
-    plant = symobs.StateSpace("[0 1; 0 0]", "[0; 1]", "[1 0]")
-    called, usual = (symobs.initial_state_covariance(plant, horizon=end, R="[1]", **data) for end in ("t", "T"))
-    T = sympy.Symbol("T")
-    assert called.covariance == usual.covariance.subs(T, t)
-    assert called.output_part == sympy.Matrix([[4 / t, -6 / t**2], [-6 / t**2, 12 / t**3]]).as_immutable()
-    assert [None if each is None else each.replace("t", "T") for each in called.best_horizon] == usual.best_horizon
-    told, plain = (" ".join(each.to("text").split()) for each in (called, usual))
-    assert "called t in the question, is therefore written T" in told
-    assert "is written T" not in plain
 
 
 def test_beside_a_parameter_called_t_in_capitals_the_horizon_is_not_called_t() -> None:

@@ -24,10 +24,8 @@ from symobs.exact.ideals import ideal
 from symobs.formula.tree import Conjunction, Environment
 from symobs.ground.errors import CertificateRejected, DerivationRejected
 from symobs.proof.certificate.claims import Claim, verify
-from symobs.proof.derivation import CaseStep, Derivation, Equal, Section
+from symobs.proof.derivation import CaseStep, Derivation, Section
 from symobs.proof.derivation.builder import relation
-from symobs.proof.derivation.facts.properties import PREDICATES
-from symobs.stability.criteria.stability import meetings
 from symobs.tasks.analysis.strata.repeated_eigenvalues import distances
 from tests.kit import tabled
 from tests.programs.campaign.points import answer_at, holds
@@ -180,31 +178,6 @@ def test_where_eigenvalues_meet_is_a_case(
     assert "In this case a rank drops below its generic value." in found.to("latex").replace("\n", " ")
 
 
-def test_the_condition_of_a_rank_is_met_in_python_and_on_the_page() -> None:
-    found: Any = symobs.pbh(symobs.StateSpace("[a 0; 0 -1]", None, "[1 0]"))
-    a = sympy.Symbol("a")
-    by_value = {mode["eigenvalue"]: mode["conditions"] for mode in found.modes}
-    assert by_value == {a: (sympy.Ne(a + 1, 0),), sympy.Integer(-1): ()}
-    (case,) = found.cases
-    assert case.when == (sympy.Eq(a + 1, 0),)
-    assert [mode["rank"] for mode in case.result.modes] == [1, 1]
-    assert "Case λ = a, a + 1 ≠ 0." in found.to("text")
-
-
-def test_modes_that_meet_without_losing_rank_need_no_condition() -> None:
-    found = symobs.pbh(symobs.StateSpace("[a 1; 0 b]", None, "[1 0]"))
-    assert found.verdict == "yes"
-    assert not found.case_tree
-    assert not any(mode["conditions"] for mode in found.fields["modes"])
-
-
-def test_signs_keep_eigenvalues_apart() -> None:
-    signs = {"a": "positive", "b": "negative"}
-    found = symobs.pbh(symobs.StateSpace("[a 0; 0 b]", None, "[0 0]", symbols=signs))
-    assert not found.case_tree
-    assert [mode["conditions"] for mode in found.fields["modes"]] == [[], []]
-
-
 # -- the weaker reading --------------------------------------------------------------------------------------------------
 
 
@@ -228,18 +201,6 @@ def test_two_oscillators_in_a_chain_grow_where_they_meet() -> None:
     assert case.result is not None
     assert case.result.verdict == "no"
     assert "The modes on the boundary are distinct provided that v - w ≠ 0." in " ".join(found.to("text").split())
-
-
-def test_two_oscillators_are_marginal_only_where_they_do_not_meet() -> None:
-    signs = {"w": "positive", "v": "positive"}
-    z, v, w = (Scalar.symbol(name) for name in ("s", "v", "w"))
-    both = (z**2 + w**2) * (z**2 + v**2)
-    apart = meetings([z**2 + w**2, z**2 + v**2], "s", signs)
-    assert [str(value) for value in apart] == ["v - w"]
-    here = Environment(variable="s", signs=signs)
-    marginal, discrete = PREDICATES["marginal"], False
-    assert not marginal(both, here, discrete)
-    assert marginal(both, replace(here, nonzero=apart), discrete)
 
 
 def test_a_drop_on_several_equations_is_excluded_as_one() -> None:
@@ -359,13 +320,3 @@ def test_a_case_that_cannot_be_is_rejected() -> None:
 
     with pytest.raises(DerivationRejected, match="can be"):
         Derivation(_with_cases(written.steps, impossible), written.start, written.symbols, written.discrete).check()
-
-
-def test_a_vector_that_vanishes_somewhere_is_not_called_an_eigenvector() -> None:
-    # [λ; b] is zero where λ = b = 0 and a ≠ 0.
-    page = symobs.pbh(symobs.StateSpace("[0 a; b 0]", None, "[0 0]")).derivation
-    section = next(step for step in page.steps if isinstance(step, Section) and step.title.key == "pbh")
-    first, second = (step for step in section.steps if isinstance(step, CaseStep))
-    assert len([step for step in first.steps if isinstance(step, Equal)]) == 1
-    (inner,) = (step for step in second.steps if isinstance(step, CaseStep))
-    assert len([step for step in inner.steps if isinstance(step, Equal)]) == 3

@@ -68,54 +68,6 @@ def pictures(result: Any) -> list[TimeResponse]:
     return [step.picture for step in steps if isinstance(step, Plot) and isinstance(step.picture, TimeResponse)]
 
 
-@pytest.mark.parametrize(("u", "signal"), [*INPUTS.items(), ("exp(-t)*cos(3*t)", lambda s: np.exp(-s) * np.cos(3 * s))])
-def test_drawn_courses_are_those_that_python_control_simulates(u: str, signal: Any) -> None:
-    """State and output of a plant with feedthrough, at every drawn instant, to a thousandth of the window."""
-    (picture,) = pictures(
-        symobs.response(StateSpace("[0 1; -2 -2]", "[0; 1]", "[1 1]", "[1/2]"), initial=[1, 0], input=u)
-    )
-    end = float(picture.window[0][1])
-    fine = np.linspace(0, end, 16001)
-    plant = control.ss([[0, 1], [-2, -2]], [[0], [1]], [[1, 0], [0, 1], [1, 1]], [[0], [0], [0.5]])
-    wanted = control.forced_response(plant, fine, signal(fine), [1.0, 0.0]).outputs
-    low, high = map(float, picture.window[1])
-    assert [(course.signal, course.component) for course in picture.responses] == [("x", 1), ("x", 2), ("y", 0)]
-    for course, values in zip(picture.responses, wanted, strict=True):
-        drawn = [float(height) for _, height in picture.points(course)]
-        assert np.abs(np.array(drawn) - values[:: 16000 // (len(drawn) - 1)]).max() < (high - low) / 1000
-
-
-def test_what_is_drawn_and_how_long() -> None:
-    """Six time constants, three periods, growth to e^3; parameters, irrational data and rest have no picture."""
-    servo, double = StateSpace("[0 1; 0 -1]", "[0; 1]", "[1 0]"), StateSpace("[0 1; 0 0]", "[0; 1]")
-    swing = StateSpace("[0 1; -4 0]", "[0; 1]")
-    ends: list[tuple[StateSpace, dict[str, Any], int]] = [
-        (servo, {"input": 1}, 6),
-        (double, {"input": 1}, 10),
-        (swing, {"impulse": 1}, 10),
-    ]
-    ends += [(StateSpace("[3]", "[1]"), {"initial": [1]}, 1), (servo, {"input": "exp(-t/100)"}, 600)]
-    for plant, asked, end in ends:
-        (picture,) = pictures(symobs.response(plant, **asked))
-        assert picture.window[0][1] == end
-        assert all(course.signal == "x" for course in picture.responses)  # the output is a component of the state
-    undrawn: list[tuple[StateSpace, dict[str, Any]]] = [
-        (StateSpace("[0 1; 0 -a]", "[0; 1]"), {"input": 1}),
-        (servo, {"input": "a"}),
-        (servo, {"input": "sqrt(2)*t"}),
-        (servo, {"initial": [0, 0]}),
-        (StateSpace("[-1 0; 0 -10000]", "[1; 1]"), {"input": 1}),
-    ]
-    for plant, asked in undrawn:
-        assert pictures(symobs.response(plant, **asked)) == []
-
-
-def test_irrational_waves_with_rational_derivatives_are_drawn() -> None:
-    """The derivatives of sqrt(2) sin(sqrt(2) t) at 0 are 0, 2, 0, -4, …"""
-    (picture,) = pictures(symobs.response(StateSpace("[-1]", "[1]"), input="sqrt(2)*sin(sqrt(2)*t)"))
-    assert [list(map(int, start)) for start in picture.starts] == [[0], [0, 2]]
-
-
 @pytest.mark.parametrize("strength", [1, -3])
 def test_impulses_are_those_of_python_control(strength: int) -> None:
     A, B, C = [[0, 1], [-2, -3]], [[1], [1]], [[1, 2]]
@@ -140,15 +92,6 @@ def test_an_impulse_without_effect_and_a_wrong_one() -> None:
     wrong = {**found.answer, "impulse": found.answer["impulse"] * 2}
     with pytest.raises(CertificateRejected, match="x0 is the initial state and what the impulse adds"):
         type(found)(found.plant, found.method, wrong)
-
-
-def test_feedthrough_and_several_inputs() -> None:
-    plant = StateSpace("[-1 0; 0 -2]", "[1 0; 0 1]", "[1 1]", "[0 3]")
-    found = symobs.response(plant, input=["1", "exp(-t)"], initial=["p", 0])
-    p = sympy.Symbol("p")
-    x = sympy.Matrix([1 + (p - 1) * sympy.exp(-t), sympy.exp(-t) - sympy.exp(-2 * t)])
-    assert sympy.simplify(found.state - x) == sympy.zeros(2, 1)
-    assert sympy.simplify(sympy.Matrix([found.output])[0] - (x[0] + x[1] + 3 * sympy.exp(-t))) == 0
 
 
 def test_what_is_in_resonance_is_a_case() -> None:

@@ -11,12 +11,9 @@ import pytest
 
 import symobs
 from symobs.exact import Scalar
-from symobs.exact.algebraic.real_algebraic import real_roots, roots_of_scalar
-from symobs.exact.cad import decomposition_check
 from symobs.formula.figures.plot import LinePicture, PoleMap
 from symobs.ground.errors import CertificateRejected, InputError
 from symobs.stability.criteria.critical_polynomials import CriticalPolynomials, StabilityBoundary
-from symobs.stability.regions import region_check
 from symobs.stability.regions.interval_region import LineRegion
 from symobs.stability.regions.plane_region import PlaneRegion, plane_region
 from symobs.stability.regions.region_check import is_region
@@ -63,34 +60,12 @@ def test_answers_worked_by_hand(
     assert (found.verdict, list(found.stable_if)) == (verdict, inequalities)
 
 
-def test_holes_are_where_they_are() -> None:
-    assert region("s^2 + s + (h1 - 1)^2 + (h2 - 3)^2").excluded_points == ({"h1": "1", "h2": "3"},)
-    places = [point["h2"] for point in region("s^2 + s + (h1^3 - 2)^2 + (h2^2 - 3)^2").excluded_points]
-    assert places == ["about -1.73205", "about 1.73205"]
-
-
 @tabled
 def test_the_picture_of_a_region_with_narrow_corners_is_on_its_page(text: str) -> None:
     """A picture that is not faithful is left out with a warning, which is an error here."""
     found = region(text, symbols=dict.fromkeys(["h1", "h2"], "real"))
     assert found.verdict == "conditional"
     assert "<figure>" in found.to("html")
-
-
-def test_close_numbers_are_told_apart_and_many_digits_are_right() -> None:
-    root = real_roots(_polynomial([-2, 0, 1]))[1]
-    low, high = root.interval(1024)
-    assert high - low < Fraction(1, 2**900)
-    assert root.decimal(30) == "1.41421356237309504880168872421"
-    near = (h1**2 - 2) * (10**18 * h1 - 1414213562373095048)
-    assert len(roots_of_scalar(near, "h1")) == 3
-    assert len(LineRegion(CriticalPolynomials(s + near, StabilityBoundary("s")), "h1").intervals) == 2
-
-
-def _polynomial(coefficients: list[int]) -> Any:
-    from flint import fmpz_poly  # noqa: PLC0415 - the kernel's own type, in this test only
-
-    return fmpz_poly(coefficients)
 
 
 def quadratic() -> PlaneRegion:
@@ -127,23 +102,12 @@ def test_a_list_cannot_leave_a_condition_out_nor_an_empty_region_be_called_so() 
     assert not is_region(found, ())
 
 
-def test_a_numbered_root_is_not_claimed_on_a_wall() -> None:
-    """At h1 = 0 the root −1 of (h2 + 1)² (h2 − 1) is new: the bound is another root there."""
-    (component,) = region("s + ((h2 + 1)^2 + h1^2) (h2 - 1) + h1^4", symbols={"h1": "real", "h2": "real"}).components
-    assert not component["parts_are_whole"]
-
-
 @tabled
 def test_questions_that_do_not_fit_are_refused_at_their_place(keywords: Mapping[str, Any], place: str) -> None:
     with pytest.raises(InputError) as refused:
         symobs.stability_region("s^2 + h1 s + h2", **keywords)
     assert refused.value.where == f"specification.{place}"
     assert refused.value.repair
-
-
-def test_a_radius_beyond_the_unit_circle_is_refused() -> None:
-    with pytest.raises(InputError, match="between 0 and 1"):
-        symobs.stability_region("z^2 + h", dt=True, radius=2)
 
 
 def test_the_sign_of_a_coefficient_makes_cases() -> None:
@@ -153,11 +117,6 @@ def test_the_sign_of_a_coefficient_makes_cases() -> None:
         ("a < 0", ["h < -1/a"]),
         ("Eq(a, 0)", []),
     ]
-
-
-def test_a_margin_moves_with_its_symbol() -> None:
-    found = region("s + h", margin="alpha", parameters=["h"], symbols={"alpha": "positive"})
-    assert list(found.stable_if) == ["h > alpha"]
 
 
 @tabled
@@ -185,12 +144,6 @@ def test_a_region_whose_cells_hold_allowed_and_forbidden_values_is_none() -> Non
     assert blind.empty
     assert not is_region(blind, None)
     assert is_region(LineRegion(replace(critical, asked=("h",)), "h"), ())
-
-
-def test_control_and_observer_gains_together_give_the_product() -> None:
-    plant = symobs.StateSpace("[0 1; -1 -1]", "[0; 1]", "[1 0]")
-    found = region(plant, K="[k 0]", L="[l; 0]")
-    assert set(found.stable_if) == {"k > -1", "l > -1"}
 
 
 #: Regions with turning branches, crossings, holes, slivers, vertical lines and several pieces.
@@ -234,23 +187,6 @@ def test_roots_are_not_drawn_where_a_denominator_vanishes(text: str, sign: str, 
     assert type(result.picture) is kind
     assert result.critical.is_stable({"a": Fraction(1)})  # s² + s + 1
     assert not result.critical.is_stable({"a": Fraction(3)})  # s² − s + 1/3
-
-
-def test_a_division_is_proved_once_where_the_list_adds_no_curve(monkeypatch: pytest.MonkeyPatch) -> None:
-    """s³ + x s² + y s + 1: the condition x y > 1 is critical, and x > 0 divides the plane anew."""
-    proved: list[object] = []
-    holds = decomposition_check.holds
-
-    def noted(plane: Any) -> bool:
-        proved.append(plane)
-        return holds(plane)
-
-    monkeypatch.setattr(region_check, "holds", noted)
-    symobs.stability_region("s^2 + (x1d + 1) s + y1d - 1", parameters=["x1d", "y1d"]).to_json()
-    assert len(proved) == 1
-    proved.clear()
-    symobs.stability_region("s^3 + x1d s^2 + y1d s + 1", parameters=["x1d", "y1d"]).to_json()
-    assert len(proved) == len(set(map(id, proved))) == 2
 
 
 def test_a_case_in_which_inequalities_contradict_each_other_is_told_to_be_empty() -> None:

@@ -117,17 +117,6 @@ def test_detectability_on_a_curve(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", CURVES)
-def test_the_dual_on_a_curve(name: str) -> None:
-    curve = CURVES[name]
-    result = on(curve, symobs.dual(plant_of(curve)))
-    for point in curve.points:
-        A, B, C = numbers(curve, point)
-        assert result.observability_rank == stack(A, C).rank()
-        assert result.controllability_rank == stack(A.T, B.T).rank()
-        assert sympy.Matrix(at(result.A, point)) == A.T
-
-
-@pytest.mark.parametrize("name", CURVES)
 def test_the_decomposition_on_a_curve(name: str) -> None:
     curve = CURVES[name]
     result = on(curve, symobs.decomposition(plant_of(curve)))
@@ -197,25 +186,11 @@ def test_every_task_is_decided_on_the_curve_and_its_page_holds(name: str, task: 
     assert found.to("text")
 
 
-def test_real_parameters_meet_a_sum_of_squares_at_one_point() -> None:
-    """With a² + b² = 0 for real parameters both are 0, and the case says so."""
-    found: Any = symobs.decomposition(symobs.StateSpace("[0 1; 0 -1]", "[0; 1]", "[a^2+b^2 0]"))
-    (case,) = found.cases
-    assert {str(r) for r in case.when} == {"Eq(a, 0)", "Eq(b, 0)"}
-    assert case.result.minimal_order == 0
-
-
 def test_functions_of_time_where_several_parameters_vanish() -> None:
     """det 𝒪 = −(a² − a b + b²) is 0 for real a and b at a = b = 0 only; the page holds with such a case."""
     plant = symobs.StateSpace("[0 1; -1 -1]", None, "[a b]")
     found: Any = symobs.gramian(plant)
     assert {str(r) for case in found.cases for r in case.when} == {"Eq(a, 0)", "Eq(b, 0)"}
-    assert found.to("text")
-
-
-def test_without_an_output_there_is_no_reduced_order_observer() -> None:
-    found: Any = symobs.reduced_order_observer(symobs.StateSpace("[0 1; -2 -3]", None, "[a 0]"), poles="-1")
-    assert [(case.result.verdict, case.result.L) for case in found.cases] == [("no", None)]
     assert found.to("text")
 
 
@@ -238,22 +213,11 @@ def test_a_rank_that_drops_at_a_point_of_a_curve_is_said_outside_it() -> None:
     assert "In what follows we assume a ≠ 0. Since rank 𝒪 = 2" in page
 
 
-#: Where the basis of one of the strata is longer than the limits of the kernel.
-BEYOND = symobs.StateSpace("[2 0 -1 0; 2 3 1 0; c 0 3 -3; 0 a 1 1]", C="[d 0 -1 b]")
 SMALL = [
     symobs.StateSpace("[2 0; c c]", "[b; -1]", "[c 0]"),
     symobs.StateSpace("[0 a; 1 2]", "[a-1; -1]", "[0 a-1; 1 b]"),
     symobs.StateSpace("[a b 0; 0 1 c; 0 0 a+b]", "[1; 0; b]", "[a-1 b 1]"),
 ]
-
-
-def test_what_is_too_long_for_the_kernel_is_undecided() -> None:
-    found = symobs.observability(BEYOND)
-    assert found.verdict == "conditional"  # det O is not 0 in general, and where it is not the pair is observable
-    O = sympy.Matrix.vstack(*(BEYOND.C * BEYOND.A**k for k in range(4)))
-    determinant = sympy.factor_list(O.det(method="berkowitz"))[1]
-    assert {sympy.expand(c.lhs) for c in found.conditions} == {sympy.expand(factor) for factor, _ in determinant}
-    assert None in [case.result for case in found.cases]
 
 
 @pytest.mark.parametrize("limit", [2, 12])

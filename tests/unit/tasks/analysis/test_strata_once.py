@@ -2,15 +2,11 @@
 
 from __future__ import annotations
 
-import gc
-import pickle
-import weakref
 from collections import Counter
 from typing import TYPE_CHECKING, Any
 
 import symobs
 from symobs.exact import Scalar
-from symobs.proof.certificate.pointwise import never_together_zero
 from symobs.system import findings
 from symobs.tasks.analysis.rank.rank_test import RankResult
 from symobs.tasks.design.gain.gain_design import GainDesign
@@ -44,18 +40,6 @@ def test_no_gain_and_no_test_of_a_stratum_is_found_twice(monkeypatch: pytest.Mon
     assert set(met.values()) == {1}
 
 
-def test_what_was_found_is_neither_pickled_nor_kept() -> None:
-    found = asked()
-    assert found.case_tree
-    again = pickle.loads(pickle.dumps(found))  # noqa: S301 - our own
-    assert again == found
-    assert "findings" not in vars(again.plant)
-    table = weakref.ref(found.plant.findings)
-    del found, again
-    gc.collect()
-    assert table() is None
-
-
 def test_where_nothing_more_may_be_found_strata_are_undecided(monkeypatch: pytest.MonkeyPatch) -> None:
     whole = asked()
     monkeypatch.setattr(findings, "_BUDGET", 0)
@@ -64,10 +48,3 @@ def test_where_nothing_more_may_be_found_strata_are_undecided(monkeypatch: pytes
     assert short.holds_where == whole.holds_where
     assert {case.when for case in short.case_tree} == {case.when for case in whole.case_tree}
     assert [case.result for case in short.case_tree] == [None] * len(short.case_tree)
-
-
-def test_points_that_are_not_real_do_not_count() -> None:
-    # Both vanish at (1, 1), and where a² + a + 3 = 0 with b = a, which no real a does.
-    values = [(a - 1) * (a**2 + a + 3), b - a]
-    assert never_together_zero(values, [1 - Scalar.symbol("w") * ((a - 1) ** 2 + (b - 1) ** 2)], {})
-    assert not never_together_zero(values, [], {})

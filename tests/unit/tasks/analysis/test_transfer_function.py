@@ -41,9 +41,3 @@ def test_there_are_as_many_poles_as_states_that_are_reached_and_seen(value: Frac
     reached = transposed(observability_rows(transposed(A), transposed(B)))
     hankel = multiply(observability_rows(A, C), reached)
     assert len(found.poles) == rank_of(hankel)
-
-
-def test_signs_that_exclude_a_cancellation_leave_no_condition() -> None:
-    servo = StateSpace("[0 1; 0 -b]", "[0; 1]", "[1 0]", symbols={"b": "positive"})
-    found = symobs.transfer_function(servo)
-    assert (found.verdict, found.conditions, found.cases) == ("yes", (), ())

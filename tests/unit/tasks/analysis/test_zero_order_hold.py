@@ -64,23 +64,6 @@ def test_sampled_plants_are_those_of_python_control(seed: int) -> None:
     assert (sampled.is_discrete, sampled.dt) == (True, period)
 
 
-def test_the_sampled_plant_is_a_plant_for_designs() -> None:
-    """Deadbeat control of the double integrator: K = [1/T², 3/(2T)] (Åström and Wittenmark, ch. 4)."""
-    plant = symobs.zero_order_hold(StateSpace("[0 1; 0 0]", "[0; 1]", "[1 0]"), sampling_period="T").sampled
-    assert sympy.Matrix([[1 / T**2, 3 / (2 * T)]]) == symobs.state_feedback(plant, poles=[0, 0]).K
-    motor = symobs.zero_order_hold(StateSpace("[0 1; 0 -1]", "[0; 1]", "[1 0]"), sampling_period="T").sampled
-    found = symobs.observer(motor, poles="1/2, 1/4")
-    closed = motor.A - found.L * motor.C
-    assert sympy.simplify(closed.trace() - sympy.Rational(3, 4)) == 0
-    assert sympy.simplify(closed.det() - sympy.Rational(1, 8)) == 0
-
-
-def test_an_oscillator_sampled_at_half_its_period_is_not_controllable() -> None:
-    swing = StateSpace("[0 1; -1 0]", "[0; 1]", "[1 0]")
-    assert symobs.controllability(symobs.zero_order_hold(swing, sampling_period="pi").sampled).verdict == "no"
-    assert symobs.controllability(symobs.zero_order_hold(swing, sampling_period=1).sampled).verdict == "yes"
-
-
 def test_what_vanishes_is_a_case_and_values_go_in() -> None:
     found = symobs.zero_order_hold(StateSpace("[-a]", "[1]"), sampling_period="T")
     (case,) = found.cases

@@ -10,8 +10,6 @@ from tests.kit import tabled
 
 s, zeta, omega, a = sympy.symbols("s zeta omega a")
 PLANT = so.StateSpace("[0 1; 20 0]", "[0; 1]", "[1 0]")
-THIRD = so.StateSpace("[0 1 0; 0 0 1; 0 0 0]", "[0; 0; 1]", "[1 0 0]")
-OSCILLATING = -zeta * omega + omega * sympy.sqrt(zeta**2 - 1)
 
 # The desired polynomials are worked out by hand: (s + 2)² + 12, and so on.
 _POLES = {
@@ -38,18 +36,6 @@ def test_the_polynomial_is_multiplied_out(poles: str, polynomial: sympy.Expr) ->
     chi = (PLANT.A - found.L * PLANT.C).charpoly(s).as_expr()
     assert sympy.expand(sympy.expand(chi) - polynomial) == 0
     assert "as required" in found.to("text")
-
-
-def test_sympy_objects_are_poles() -> None:
-    conjugate = -zeta * omega - omega * sympy.sqrt(zeta**2 - 1)
-    found = so.observer(PLANT, poles=[OSCILLATING, conjugate])
-    assert sympy.expand(found.polynomial - (s**2 + 2 * zeta * omega * s + omega**2)) == 0
-
-
-def test_poles_of_several_roots() -> None:
-    """(s + 1)((s + 1)² − 2): four poles with two roots and their product with i close up in pairs."""
-    found = so.observer(THIRD, poles="-1 + sqrt(2), -1, -1 - sqrt(2)")
-    assert sympy.expand(found.polynomial - (s + 1) * ((s + 1) ** 2 - 2)) == 0
 
 
 @pytest.mark.parametrize("order", [1, 2, 3, 5, 6])

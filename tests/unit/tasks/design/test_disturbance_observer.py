@@ -33,20 +33,6 @@ def test_deadbeat_finds_state_and_disturbance_whatever_the_input(S: Any) -> None
     assert estimate == x.col_join(w)
 
 
-def test_the_frequency_of_a_sampled_sinusoid_may_be_an_angle() -> None:
-    """At 60 degrees it is (z - 1/2)^2 + 3/4; in general cos^2 + sin^2 = 1 is used, and names for the two serve as well."""
-    plant = symobs.StateSpace("[1 1; 0 1]", "[1/2; 1]", "[1 0]", dt=True, symbols={"theta": "real"})
-    found = symobs.disturbance_observer(
-        plant, E="[1/2; 1]", S="[cos(theta) sin(theta); -sin(theta) cos(theta)]", polynomial="z^4"
-    )
-    cosine, sine = sympy.Rational(1, 2), sympy.sqrt(3) / 2
-    there = found.at(theta="pi/3")
-    gain = there.L_x.col_join(there.L_w)
-    model = sympy.Matrix([[1, 1, sympy.Rational(1, 2), 0], [0, 1, 1, 0], [0, 0, cosine, sine], [0, 0, -sine, cosine]])
-    assert (model - gain * sympy.Matrix([[1, 0, 0, 0]])).charpoly().all_coeffs() == [1, 0, 0, 0, 0]
-    assert {case.result.verdict for case in found.cases} == {"no"}  # sin = 0: w is not seen
-
-
 def test_a_zero_at_an_eigenvalue_of_the_exosystem_is_a_case_and_a_reason() -> None:
     """From d to y the plant has the transfer function (s + c)/((s + 1) (s + 2)), which at s = 0 is c/2."""
     plant = symobs.StateSpace("[0 1; -2 -3]", C="[c 1]")

@@ -8,8 +8,6 @@ from __future__ import annotations
 import random
 from contextlib import suppress
 from fractions import Fraction
-from itertools import pairwise, permutations
-from math import prod
 from typing import Any
 
 import pytest
@@ -17,11 +15,7 @@ import sympy
 from sympy import Matrix, Rational
 
 import symobs
-from symobs.exact import Scalar
 from symobs.ground.errors import CertificateRejected, InputError
-from symobs.tasks.design.pole_placement import decoupled
-from symobs.tasks.design.pole_placement.brunovsky_chains import split_polynomial
-from symobs.tasks.result import methods
 from tests.kit import tabled
 from tests.support.independent_algebra.plain import (
     characteristic,
@@ -36,17 +30,11 @@ from tests.support.sampling import FULL
 pytestmark = pytest.mark.slow
 
 PLANTS = 500 if FULL else 30
-SINGLE = 2_000 if FULL else 60
 
 s = sympy.Symbol("s")
 
 TRIPLE = symobs.StateSpace("[0 1 0; 0 0 1; 1 2 3]", C="[1 0 0; 0 0 1]")
 CHAINS = symobs.StateSpace("[0 1 0; 0 0 0; 0 0 0]", "[0 0; 1 0; 0 1]")
-MASSES = symobs.StateSpace(
-    "[0 1 0 0; -k/m -d/m k/m d/m; 0 0 0 1; k/m d/m -k/m -d/m]",
-    C="[1 0 0 0; 0 1 0 0]",
-    symbols={"k": "positive", "d": "positive", "m": "positive"},
-)
 
 
 def integers(chance: random.Random, rows: int, columns: int, largest: int = 3) -> list[list[int]]:
@@ -118,17 +106,6 @@ def test_the_spectrum_is_exact_and_hidden_modes_are_told(number: int) -> None:
                 assert characteristic(subtract(plain_A, multiply(member, plain_C))) == phi
 
 
-def test_a_triple_pole_that_numeric_placement_refuses() -> None:
-    signal = pytest.importorskip("scipy.signal")
-    numpy = pytest.importorskip("numpy")
-    A, C = (numpy.array(part.tolist(), dtype=float) for part in (TRIPLE.A, TRIPLE.C))
-    with pytest.raises(ValueError, match="more than rank"):
-        signal.place_poles(A.T, C.T, [-1.0, -1.0, -1.0])
-    for method in ("sylvester", "row_reduced_echelon"):
-        L = symobs.observer(TRIPLE, poles=[-1, -1, -1], method=method).L
-        assert sympy.expand((s * sympy.eye(3) - TRIPLE.A + L * TRIPLE.C).det() - (s + 1) ** 3) == 0
-
-
 # -- the family ----------------------------------------------------------------------------------------------------------
 
 FAMILIES = {
@@ -160,79 +137,6 @@ def test_the_family_meets_the_claim_and_has_its_dimension(name: str) -> None:
     assert jacobian.rank() == n * (p - 1)
 
 
-@families
-def test_sylvesters_equation_is_what_the_family_says(name: str) -> None:
-    plant, listed = FAMILIES[name]
-    family = symobs.observer(plant, poles=listed).family
-    F, G, X, L, shift = (family[key] for key in ("F", "G", "X", "L", "shift"))
-    shift = sympy.zeros(*L.shape) if shift is None else shift
-    A, chance = plant.A - shift * plant.C, random.Random(name)  # noqa: S311 - the same in every run
-    assert (A.T * X - X * F - plant.C.T * G).applyfunc(sympy.expand).is_zero_matrix
-    for _ in range(5):
-        point = {symbol: Rational(chance.randint(-30, 30), chance.randint(1, 9)) for symbol in G.free_symbols}
-        assert ((L - shift).subs(point).T * X.subs(point) - G.subs(point)).is_zero_matrix
-    together = sympy.gcd(A.charpoly(s).as_expr(), F.charpoly(s).as_expr())
-    assert not together.has(s)
-
-
-@pytest.mark.parametrize("name", ["two of three", "irreducible", "three outputs", "not cyclic"])
-def test_random_cyclic_members_are_found_again(name: str) -> None:
-    """With G = LᵀX and X⁻¹ = [r; rM; …], r the row of Lᵀ that is held and M = (A − LC)ᵀ."""
-    plant, listed = FAMILIES[name]
-    family = symobs.observer(plant, poles=listed).family
-    F, G, L = (family[key] for key in ("F", "G", "L"))
-    shift = sympy.zeros(*L.shape) if family["shift"] is None else family["shift"]
-    A, order = plant.A - shift * plant.C, plant.A.rows
-    chance, again = random.Random(name), 0  # noqa: S311 - the same in every run
-    for _ in range(6):
-        free = Matrix(integers(chance, plant.C.rows, order, 5))
-        unknown = Matrix(order, order, sympy.symbols(f"x:{order * order}"))
-        solved = sympy.solve(list(A.T * unknown - unknown * F - plant.C.T * free), list(unknown), dict=True)[0]
-        X = unknown.subs(solved)
-        if X.det() == 0:
-            continue
-        member = shift + (free * X.inv()).T
-        weights = Matrix([[int(G.row(i) == Matrix([[1] + [0] * (order - 1)])) for i in range(G.rows)]])
-        rows, M = [weights * (member - shift).T], (plant.A - member * plant.C).T
-        for _ in range(order - 1):
-            rows.append(rows[-1] * M)
-        W = Matrix.vstack(*rows)
-        if sum(weights) != 1 or W.det() == 0:
-            continue
-        found = (member - shift).T * W.inv()
-        values = {G[i, j]: found[i, j] for i in range(G.rows) for j in range(order) if G[i, j].is_Symbol}
-        assert L.subs(values) == member
-        again += 1
-    assert again >= 4
-
-
-def test_the_parametric_family_at_points() -> None:
-    found = symobs.observer(MASSES, poles=[-1, -1, -2, -2])
-    assert {str(condition) for condition in found.conditions} == set()
-    for values in ((2, 3, 1), (1, Rational(1, 2), 4)):
-        point = dict(zip(sympy.symbols("k d m"), values, strict=True))
-        A, L = MASSES.A.subs(point), found.L.subs(point)
-        assert sympy.expand((s * sympy.eye(4) - A + L * MASSES.C).det() - (s + 1) ** 2 * (s + 2) ** 2) == 0
-        free = {sympy.Symbol(name): k + 2 for k, name in enumerate(found.family["parameters"])}
-        member = found.family["L"].subs(point | free)
-        assert sympy.expand((s * sympy.eye(4) - A + member * MASSES.C).det() - (s + 1) ** 2 * (s + 2) ** 2) == 0
-
-
-def test_hidden_modes_stay_and_the_others_are_assigned() -> None:
-    plant = symobs.StateSpace("[-1 0 0; 0 1 2; 0 0 3]", C="[0 1 0; 0 0 1]")
-    found = symobs.observer(plant, poles=[-1, -2, -3])
-    assert (found.verdict, found.fixed_modes) == ("yes", (-1,))
-    names = [sympy.Symbol(n) for n in found.family["parameters"]]
-    assert found.family["dimension"] == len(names) == 2 * 1 + 1 * 2
-    L = found.family["L"]
-    member = L.subs({name: 3 * k + 1 for k, name in enumerate(names)})
-    assert sympy.expand((s * sympy.eye(3) - plant.A + member * plant.C).det() - (s + 1) * (s + 2) * (s + 3)) == 0
-    jacobian = Matrix([[entry.diff(x).subs({y: k + 2 for k, y in enumerate(names)}) for x in names] for entry in L])
-    assert jacobian.rank() == 4
-    denied = symobs.observer(plant, poles=[-4, -2, -3])
-    assert (denied.verdict, denied.L, denied.fixed_modes) == ("no", None, (-1,))
-
-
 def test_a_gain_outside_the_family_is_rejected() -> None:
     found = symobs.observer(TRIPLE, poles=[-1, -1, -1])
     other = symobs.observer(TRIPLE, L="[1 0; 3 0; -2 5]").answer["L"]
@@ -243,35 +147,6 @@ def test_a_gain_outside_the_family_is_rejected() -> None:
 
 
 # -- zeros -----------------------------------------------------------------------------------------------------------------
-
-
-@tabled
-def test_zeros_are_met_where_they_can_be_and_refused_where_they_cannot(pattern: str) -> None:
-    signs = [row.split() for row in pattern.strip("[]").split(";")]
-    unknown = Matrix(3, 2, lambda i, j: sympy.Symbol(f"l{i}{j}") if signs[i][j] == "*" else 0)
-    error = (s * sympy.eye(3) - TRIPLE.A + unknown * TRIPLE.C).det() - (s + 1) ** 3
-    basis = sympy.groebner(sympy.Poly(sympy.expand(error), s).coeffs(), *unknown.free_symbols)
-    found = symobs.observer(TRIPLE, poles=[-1, -1, -1], zero=pattern)
-    if basis.exprs == [1]:
-        assert (found.verdict, found.L) == ("no", None)
-        assert any("ideal" in certificate.claim for certificate in found.certificates)
-        assert "no common solution" in " ".join(found.to("text").split())
-        return
-    assert found.verdict == "yes"
-    assert all(found.L[i, j] == 0 for i in range(3) for j in range(2) if signs[i][j] == "0")
-    assert sympy.expand((s * sympy.eye(3) - TRIPLE.A + found.L * TRIPLE.C).det() - (s + 1) ** 3) == 0
-    moved = [list(row) for row in found.answer["L"].rows]
-    place = next((i, j) for i in range(3) for j in range(2) if signs[i][j] == "0")
-    moved[place[0]][place[1]] = moved[place[0]][place[1]] + 1
-    with pytest.raises(CertificateRejected):
-        found.with_answer("L", type(found.answer["L"]).of(moved))
-
-
-def test_zeros_of_a_feedback_decouple_two_chains() -> None:
-    found = symobs.state_feedback(CHAINS, poles=[-2, -2, -2], zero="(1, 3), (2, 1), (2, 2)")
-    assert Matrix([[4, 4, 0], [0, 0, 2]]) == found.K
-    assert symobs.state_feedback(CHAINS, poles=[-2, -2, -2], zero=[[1, 3], [2, 1], [2, 2]]).K == found.K
-    assert symobs.state_feedback(CHAINS, poles=[-2, -2, -2], zero="[0 * *; 0 * *]").verdict == "no"
 
 
 @tabled
@@ -339,73 +214,3 @@ def test_a_member_is_not_asked_for_together_with_zeros() -> None:
     with pytest.raises(InputError, match="both member and zero") as caught:
         symobs.observer(TRIPLE, poles=[-1, -1, -1], member="decoupled", zero="(1, 1)")
     assert caught.value.where == "specification.member"
-
-
-# -- one output: every road leads to the same gain ------------------------------------------------------------------------
-
-
-@pytest.mark.parametrize("block", range(0, SINGLE, 20))
-def test_all_methods_agree_for_one_output(block: int) -> None:
-    for number in range(block, block + 20):
-        chance = random.Random(f"single {number}")  # noqa: S311 - the same in every run
-        parameters = chance.randint(0, 3)
-        order = chance.randint(1, 3 if parameters else 5)
-        A = [[str(x) for x in row] for row in integers(chance, order, order)]
-        C = [[str(x) for x in row] for row in integers(chance, 1, order)]
-        for name in "abc"[:parameters]:
-            target = chance.choice([*A, *C])
-            target[chance.randrange(order)] = chance.choice([name, f"{name} + 1", f"2*{name}", f"-{name}"])
-        symbols = dict.fromkeys("abc"[:parameters], "real")
-        listed = poles(chance, order)
-        plant = symobs.StateSpace(A, None, C, symbols=symbols)
-        dual = symobs.StateSpace(turned(A), turned(C), symbols=symbols)
-        gains, verdicts = set(), set()
-        for method in sorted(m.name for m in methods("observer").values()):
-            found = symobs.observer(plant, poles=listed, method=method)
-            gain = found.answer["L"]
-            verdicts.add(found.verdict)
-            gains.add(str(gain))
-            if f"state_feedback/{method}" in methods("state_feedback"):
-                back = symobs.state_feedback(dual, poles=listed, method=method)
-                assert back.answer["K"] == (None if gain is None else gain.T)
-                verdicts.add(back.verdict)
-        assert len(gains) == len(verdicts) == 1, (A, C, listed)
-
-
-# -- sharing the factors of a polynomial -------------------------------------------------------------------------------
-
-
-@pytest.mark.parametrize("roots", ["aabbcc", "abcabc", "aaaaaa", "abcdef"])
-@pytest.mark.parametrize("lengths", [(6,), (4, 2), (2, 2, 2), (3, 1, 2)])
-def test_factors_are_shared_in_every_way_once(roots: str, lengths: tuple[int, ...]) -> None:
-    """Found by all orders of the factors, cut at the lengths."""
-    s = Scalar.symbol("s")
-    factors = [s + ord(root) for root in roots]
-    ends = [sum(lengths[:k]) for k in range(len(lengths) + 1)]
-    wanted = {tuple("".join(sorted(order[low:high])) for low, high in pairwise(ends)) for order in permutations(roots)}
-    polynomials = {
-        part: prod((s + ord(root) for root in part), start=Scalar.of(1)).coefficients("s")[1:]
-        for ways in wanted
-        for part in ways
-    }
-    found = [tuple(map(tuple, share)) for share in split_polynomial(factors, lengths, "s")]
-    assert len(set(found)) == len(found) or roots == "abcabc"  # equal factors that do not stand together
-    assert set(found) == {tuple(polynomials[part] for part in ways) for ways in wanted}
-    assert all(not coefficient.field.names for share in found for part in share for coefficient in part)
-
-
-def test_the_same_chains_are_not_shared_out_again(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Two double integrators: two orders of the outputs, the same chains, and three ways to share -1, -1, -2, -2."""
-    tried: list[object] = []
-    own_rows = decoupled._own_rows
-
-    def noted(pair: Any, gain: Any) -> Any:
-        tried.append(gain)
-        return own_rows(pair, gain)
-
-    monkeypatch.setattr(decoupled, "_own_rows", noted)
-    plant = symobs.StateSpace("[0 1 0 0; 0 0 0 0; 0 0 0 1; 0 0 0 0]", None, "[1 0 0 0; 0 0 1 0]")
-    symobs.observer(plant, poles=[-1, -1, -2, -2], member="decoupled")
-    *looked_at, claimed = tried
-    assert len(looked_at) == len(set(looked_at)) == 3
-    assert claimed in looked_at

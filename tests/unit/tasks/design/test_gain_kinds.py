@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import pickle
 from dataclasses import replace
 from typing import Any
 
@@ -52,20 +51,6 @@ def test_a_gain_is_of_the_kind_that_was_asked_for_and_found(name: str) -> None:
     assert found.verdict == verdict
     assert (found.answer["L"] is None) == (verdict == "no")
     assert ("zero" in found.fields) == ("zero" in specification)
-
-
-@pytest.mark.parametrize("name", ASKED)
-def test_a_design_survives_pickling_with_its_kind(name: str) -> None:
-    found = asked(name)
-    again = pickle.loads(pickle.dumps(found))  # noqa: S301 - our own
-    assert again == found
-    assert again.kind == found.kind
-    assert again.fields.keys() == found.fields.keys()
-
-
-def test_designs_of_one_gain_and_two_kinds_differ() -> None:
-    found = asked("assigned")
-    assert replace(found, kind=GivenGain()) != found
 
 
 @tabled

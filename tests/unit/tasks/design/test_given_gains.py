@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from typing import Any
 
-import control  # type: ignore[import-untyped]
-import numpy as np
 import pytest
 import sympy
 
@@ -50,18 +48,6 @@ def test_the_loop_of_given_gains(plant: StateSpace, K: object, L: object) -> Non
     assert found.verdict == "yes"
 
 
-def test_gains_of_lqr_and_of_a_kalman_filter() -> None:
-    """The poles of the loop are the eigenvalues of A - BK and of A - LC, as NumPy finds them."""
-    A, B, C = (np.array(M, dtype=float) for M in (SEVERAL.A, SEVERAL.B, SEVERAL.C))
-    K, _, _ = control.lqr(A, B, np.eye(3), np.eye(2))
-    L, _, _ = control.lqe(A, np.eye(3), C, np.eye(3), np.eye(2))
-    K, L = K.round(3), L.round(3)
-    found = symobs.compensator(SEVERAL, K=K, L=L, floats="decimal")
-    wanted = np.concatenate([np.linalg.eigvals(A - B @ K), np.linalg.eigvals(A - L @ C)])
-    assert np.allclose(np.sort_complex([complex(pole) for pole in found.poles]), np.sort_complex(wanted), atol=1e-9)
-    assert found.stable == "yes"
-
-
 @tabled
 def test_an_unstable_loop_is_said(time: int, said: str) -> None:
     plant = StateSpace(SERVO.A, SERVO.B, SERVO.C, dt=time)
@@ -89,16 +75,6 @@ def test_one_gain_is_given_and_the_other_placed() -> None:
     minimal = symobs.compensator(SERVO, K=[1, 2], observer_poles=[-3], observer="minimal")
     assert sympy.expand(minimal.closed_loop_polynomial - (s**2 + 3 * s + 1) * (s + 3)) == 0
     assert "asked for" not in str(minimal.to("text")).split("Compensator\n")[1]
-
-
-def test_what_is_not_observable_has_its_cases() -> None:
-    """At k = 0 the second state is not seen, and its mode -1 stays; at k = 1 it is not moved."""
-    plant = StateSpace("[-2 k; 0 -1]", "[1; 1]", "[1 0]", symbols={"k": "real"})
-    found = symobs.compensator(plant, K=[1, 1], L=[1, 1])
-    tree: Any = found.case_tree
-    for case, stays in zip(tree, ({"k": 1, "mode": -2}, {"k": 0, "mode": -1}), strict=True):
-        assert case.result.plant.A[0, 1] == stays["k"]
-        assert sympy.expand(case.result.closed_loop_polynomial).subs(s, stays["mode"]) == 0
 
 
 def test_a_wrong_answer_for_given_gains_does_not_exist() -> None:

@@ -65,14 +65,6 @@ def test_outputs_that_cannot_follow_are_a_no_even_with_the_fixed_pole_desired(A:
     assert "as required" not in page
 
 
-def test_where_the_outputs_can_follow_is_a_condition() -> None:
-    found = symobs.integral_action(symobs.StateSpace("[0 1; -2 -3]", "[0; 1]", "[c 1]"), poles="0, -1, -2")
-    c = sympy.Symbol("c")
-    assert (found.verdict, found.conditions) == ("conditional", (sympy.Ne(c, 0),))
-    assert [(case.when, case.result.verdict) for case in found.cases] == [((sympy.Eq(c, 0),), "no")]
-    assert "converges to an equilibrium" not in " ".join(found.to("text").split())
-
-
 def test_a_zero_at_the_origin_is_a_case_with_its_proof() -> None:
     design = symobs.integral_action(symobs.StateSpace("[0 1; 0 -a]", "[0; 1]", "[c 1]"), poles="-1, -2, -3")
     c = sympy.Symbol("c")
@@ -82,14 +74,6 @@ def test_a_zero_at_the_origin_is_a_case_with_its_proof() -> None:
     assert (there.verdict, there.solvable) == ("no", False)
     assert design.at(c=0).verdict == "no"
     assert list(design.at(c=2, a=1).k_I) == [3]
-
-
-def test_functions_of_parameters_and_poles_by_what_they_do() -> None:
-    T, w = sympy.Symbol("T", real=True), sympy.Symbol("w", positive=True)
-    plant = symobs.StateSpace("[0 1; 0 -1]", "[0; 1]", "[1 0]", symbols={T: "real", w: "positive"})
-    found = symobs.integral_action(plant, poles="damping = exp(-T), natural_frequency = w, others = -w")
-    assert sympy.expand(found.k_I[0] - w**3) == 0
-    assert sympy.expand(found.K[1] - (2 * sympy.exp(-T) * w + w - 1)) == 0
 
 
 @pytest.mark.parametrize(
@@ -108,14 +92,6 @@ def test_as_many_poles_as_states_and_outputs_are_asked_for() -> None:
         symobs.integral_action(symobs.StateSpace("[0 1; 0 -1]", "[0; 1]", "[1 0]"), poles="-1, -2")
     with pytest.raises(InputError, match="integral_action needs C"):
         symobs.integral_action(symobs.StateSpace("[0 1; 0 -1]", "[0; 1]"), poles="-1, -2, -3")
-
-
-def test_signs_of_the_letters_of_the_specification_are_stated() -> None:
-    signs = {"a": "positive", "b": "negative", "c": "real", "w": "positive", "k": "negative"}
-    plant = symobs.StateSpace("[0 1; 0 -a]", "[0; 1]", "[1 c]", symbols=signs)
-    by_pattern = symobs.integral_action(plant, poles={"bessel": "w"}).to("text")
-    assert "Throughout, we assume a > 0, w > 0." in by_pattern
-    assert "Throughout, we assume a > 0, k < 0." in symobs.state_feedback(plant, K="[1 k]").to("text")
 
 
 @tabled

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import pickle
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
@@ -198,11 +197,6 @@ def test_nothing_is_left_to_estimate_where_the_outputs_show_the_state() -> None:
         )
 
 
-def test_the_method_alone_asks_for_the_minimal_observer() -> None:
-    asked = {name: value for name, value in ASKED.items() if name != "observer"}
-    assert symobs.compensator(SERVO, method="minimal_order", **asked).F == symobs.compensator(SERVO, **ASKED).F
-
-
 # -- what a reading of the whole found ------------------------------------------------------------------------------------
 
 
@@ -217,12 +211,6 @@ def test_what_uses_the_estimate_needs_a_law_that_can_be_solved() -> None:
     parametric = symobs.feedforward(StateSpace(*ill_posed[:3], "d"), observer="minimal", **asked)
     assert [str(condition) for condition in parametric.conditions] == ["Ne(31*d - 1, 0)"]
     assert [case.result.verdict for case in parametric.case_tree if case.result is not None] == ["no"]
-
-
-def test_a_parametric_output_that_may_depend_on_another_is_no_refusal() -> None:
-    found = symobs.reduced_order_observer(StateSpace("[0 1 0; 0 0 1; 1 2 3]", C="[1 0 0; 0 a 0]"), poles=[-1])
-    assert found.verdict == "conditional"
-    assert "Ne(a, 0)" in map(str, found.conditions)
 
 
 @pytest.mark.parametrize(
@@ -277,14 +265,6 @@ def test_where_an_impossible_reference_can_be_followed_is_said() -> None:
     assert str(followed.result.answer["K_d"]) == "[1 -1]"
 
 
-def test_several_outputs_have_their_cases_in_the_reduced_order_too() -> None:
-    plant = StateSpace("[1 0 0; 0 2 0; 0 0 3]", C="[1 1 0; 0 1 e]")
-    found = symobs.reduced_order_observer(plant, poles=[-5])
-    assert [
-        (str(case.when[0].expression), case.result.verdict) for case in found.case_tree if case.result is not None
-    ] == [("e", "no")]
-
-
 @tabled
 def test_a_given_gain_is_not_also_chosen(keywords: Any) -> None:
     with pytest.raises(InputError, match="both L and"):
@@ -299,12 +279,6 @@ def test_the_closed_loop_has_a_value_wherever_the_conditions_hold() -> None:
     assert not found.closed_loop.subs("d", 0).has(sympy.nan, sympy.zoo)
 
 
-def test_a_plant_of_negative_gain_keeps_its_sign_in_the_box() -> None:
-    plant = StateSpace("[0 1; 0 -1]", "[0; 1]", "[-2 0]")
-    page = str(symobs.compensator(plant, control_poles=[-2, -3], observer_poles=[-10, -11]).to("text"))
-    assert "│ -2/(s(s + 1)) │" in page
-
-
 @tabled
 def test_the_unity_loop_divides_by_no_parameter_that_stands_in_front(A: str, B: str, C: str) -> None:
     """Its factored form is PF/(1 + PF), and no factor of it has a denominator."""
@@ -315,17 +289,3 @@ def test_the_unity_loop_divides_by_no_parameter_that_stands_in_front(A: str, B: 
     P = (plant.C * (s * sympy.eye(2) - plant.A).inv() * plant.B)[0]
     assert sympy.simplify(found.closed_loop_unity - P * found.F / (1 + P * found.F)) == 0
     assert all(factor.denominator.is_constant for factor, _ in form.factors)
-
-
-@pytest.mark.parametrize("observer", ["full", "minimal"])
-def test_what_follows_from_the_gains_is_a_mapping_found_when_it_is_asked_for(observer: str) -> None:
-    plant = symobs.StateSpace("[a 1; 0 b]", "[0; 1]", "[1 0]")
-    poles = [-3, -4] if observer == "full" else [-3]
-    found = symobs.compensator(plant, control_poles=[-1, -2], observer_poles=poles, observer=observer)
-    assert "loop" not in vars(found)
-    fields: Any = found.fields
-    assert {"closed_loop", "F_stable"} <= set(fields)
-    assert "loop" not in vars(found)
-    assert fields["closed_loop"] is found.loop is fields["closed_loop"]
-    assert pickle.loads(pickle.dumps(fields)) == dict(fields)  # noqa: S301 - our own
-    assert (fields | {"K": 1})["K"] == ({"K": 1, "x": 2} | fields)["x"] - 1 == 1

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import itertools
-import math
 from dataclasses import replace
 from fractions import Fraction
 from math import inf as oo
@@ -18,9 +17,7 @@ from hypothesis import strategies as st
 
 import symobs
 from symobs.exact import Factored, Scalar
-from symobs.exact.algebraic.enclosure import sign_of_number
-from symobs.exact.core.generators import NotWritten, function, square_root
-from symobs.exact.time_functions.butterworth import twice_cosine
+from symobs.exact.core.generators import square_root
 from symobs.ground.errors import CertificateRejected, InputError
 from symobs.system.conditions import sign_of
 from tests.kit import tabled
@@ -29,7 +26,6 @@ from tests.support.claims.claims_of_advice import advice_holds, numerator
 from tests.support.independent_algebra.plain import has_sign
 
 s = sympy.Symbol("s")
-RADII = st.fractions(min_value="1/8", max_value=20, max_denominator=8)
 
 
 def plant(transfer_function: str, **symbols: str) -> symobs.StateSpace:
@@ -43,43 +39,12 @@ def advice(transfer_function: str, **asked: Any) -> Any:
 # -- the circle --------------------------------------------------------------------------------------------------------
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("count", [1, 2, 3, 4, 5, 6, 8, 10])
-@given(radius=RADII)
-@settings(max_examples=5)
-def test_a_circle_is_the_left_half_of_the_roots_that_numpy_finds(count: int, radius: Fraction) -> None:
-    """Of (−1)^N s^{2N} + ω₀^{2N}."""
-    found = advice(f"1/s^{count}", radius=radius)
-    both = np.roots([(-1.0) ** count, *[0.0] * (2 * count - 1), float(radius) ** (2 * count)])
-    expected = sorted((z for z in both if z.real < 0), key=lambda z: z.imag)
-    poles = sorted((complex(sympy.N(pole)) for pole in found.poles), key=lambda z: z.imag)
-    assert np.allclose(poles, expected, rtol=1e-9)
-    assert np.allclose(np.sort_complex(np.roots(np.poly(poles))), np.sort_complex(np.array(expected)), rtol=1e-5)
-    coefficients = [float(sympy.N(c)) for c in sympy.Poly(found.polynomial, s).all_coeffs()]
-    assert np.allclose(coefficients, np.real(np.poly(expected)), rtol=1e-9)
-
-
 @pytest.mark.parametrize("count", [1, 2, 3, 4])
 def test_butterworths_identity_holds_in_sympy(count: int) -> None:
     radius = sympy.Symbol("omega_0", positive=True)
     p = advice(f"1/s^{count}", radius=radius).polynomial
     whole = sympy.expand(p * p.subs(s, -s)) - radius ** (2 * count) - (-1) ** count * s ** (2 * count)
     assert all(sympy.simplify(c) == 0 for c in sympy.Poly(whole, s).all_coeffs())
-
-
-@pytest.mark.parametrize("below", range(1, 25))
-def test_cosines_by_square_roots(below: int) -> None:
-    for above in range(below + 1):
-        turns = Fraction(above, below)
-        try:
-            value = sympy.N(str(twice_cosine(turns)), 30)
-        except NotWritten:
-            odd = turns.denominator
-            while odd % 2 == 0:
-                odd //= 2
-            assert odd not in {1, 3, 5}
-            continue
-        assert abs(value - 2 * sympy.cos(sympy.pi * sympy.Rational(above, below)).evalf(30)) < 1e-25
 
 
 def test_a_circle_without_square_roots_is_refused() -> None:
@@ -111,22 +76,6 @@ def test_irrational_and_complex_zeros_are_used_with_multiplicity() -> None:
     assert advice("(s^2 - 2)/(s + 1)^3", radius=3).zeros_used == (-sympy.sqrt(2),)
     pair = (sympy.Rational(-1, 2) + sympy.sqrt(3) * sympy.I / 2, sympy.Rational(-1, 2) - sympy.sqrt(3) * sympy.I / 2)
     assert advice("(s^2 + s + 1)^2/s^5", radius=3).zeros_used == pair * 2
-
-
-def test_zeros_with_parameters_are_used_where_their_signs_are_declared() -> None:
-    found = symobs.pole_advice(plant("(s + c)/s^2", c="positive"), radius=3)
-    assert found.zeros_used == (-sympy.Symbol("c"),)
-    assert found.warnings == ()
-
-
-def test_the_gain_tends_to_the_direction_of_the_input() -> None:
-    """S3's plant: L = (ω₀ / C B) B + [−2; 4; −2]."""
-    third_order = symobs.StateSpace("[-7 1 15; -2 0 5; -2 0 4]", "[65; -5; 30]", "[1 0 -2]")
-    radius = sympy.Symbol("omega_0", positive=True)
-    polynomial = symobs.pole_advice(third_order, radius=radius).polynomial
-    L = symobs.observer(third_order, polynomial=sympy.expand(polynomial)).L
-    B = sympy.Matrix([65, -5, 30])
-    assert sympy.expand(L - radius / 5 * B - sympy.Matrix([-2, 4, -2])) == sympy.zeros(3, 1)
 
 
 # -- the pair ----------------------------------------------------------------------------------------------------------
@@ -174,13 +123,6 @@ def test_warnings(transfer_function: str, words: str) -> None:
     assert page.count("Remark.") == len(result.warnings)
 
 
-@pytest.mark.parametrize("transfer_function", ["1/(s + 1)^2", "(s + 2)/(s^2 + s + 1)", "5 (s + 2) (s + 3)/((s + 1)^3)"])
-def test_no_warning_without_a_reason(transfer_function: str) -> None:
-    result = advice(transfer_function, radius=3)
-    assert result.warnings == ()
-    assert "caution" not in result.to("text")
-
-
 def test_modes_that_no_gain_moves_are_a_no_with_their_subspace() -> None:
     hidden = symobs.StateSpace("[-1 0; 0 2]", "[1; 1]", "[1 0]")
     result = symobs.pole_advice(hidden, radius=3)
@@ -190,12 +132,6 @@ def test_modes_that_no_gain_moves_are_a_no_with_their_subspace() -> None:
     kept = symobs.StateSpace("[-1 0; 0 -2]", "[1; 1]", "[1 0]")
     assert symobs.pole_advice(kept, radius=3).verdict == "yes"
     assert -2 in symobs.pole_advice(kept, radius=3).zeros_used
-
-
-def test_a_plant_without_response() -> None:
-    result = symobs.pole_advice(symobs.StateSpace("[-1 0; 1 -2]", "[0; 1]", "[1 0]"), radius=3)
-    assert (result.zeros_used, result.verdict) == ((), "no")
-    assert "transfer function is identically zero" in result.warnings[0]
 
 
 # -- special parameters ------------------------------------------------------------------------------------------------
@@ -324,22 +260,3 @@ def test_signs_of_numbers_are_those_of_50_digits(parts: list[tuple[int, int, int
     digits = number.evalf(50)
     expected = "positive" if digits > 1e-40 else "negative" if digits < -1e-40 else "zero"
     assert sign_of(value, {}) in ({expected} if expected != "zero" else {"zero", "real"})
-
-
-def test_signs_of_what_is_no_number_or_zero_stay_open() -> None:
-    two, three, six = (square_root(Scalar.of(k)) for k in (2, 3, 6))
-    assert sign_of_number(two * three - six + Scalar.symbol("a")) == "real"
-    assert sign_of_number(function("exp", -Scalar.symbol("pi")) - Scalar.rational(1, 23)) == "negative"
-    assert sign_of_number(function("exp", -Scalar.symbol("pi")) - Scalar.rational(1, 24)) == "positive"
-    assert sign_of_number(square_root(two + 2) ** 2 - two - 2) == "real"
-    assert sign_of_number(function("sin", Scalar.symbol("a"))) == "real"
-
-
-@pytest.mark.parametrize(
-    ("kind", "f"), [("sin", math.sin), ("cos", math.cos), ("sinh", math.sinh), ("cosh", math.cosh), ("exp", math.exp)]
-)
-def test_functions_of_numbers_have_the_values_of_the_standard_library(kind: str, f: Any) -> None:
-    for k in (1, 2, 3, 5):
-        value, number = function(kind, Scalar.rational(k, 2)), Fraction(f(k / 2))
-        above, below = (Scalar.of(number + Fraction(side, 10**12)) for side in (1, -1))
-        assert (sign_of_number(value - above), sign_of_number(value - below)) == ("negative", "positive")

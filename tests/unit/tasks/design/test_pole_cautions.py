@@ -4,15 +4,12 @@ from __future__ import annotations
 
 from typing import Any
 
-import numpy as np
 import pytest
 
 import symobs
 from tests.kit import tabled
 
 SERVO = ("[0 1; 0 -1]", "[0; 1]", "[1 0]")
-FALLING = ("[0 1; 4 -1]", "[0; 1]", "[2 1]")
-REFERENCE = "[0 1; 4 -1]"
 
 
 def page(result: Any) -> str:
@@ -63,32 +60,6 @@ def test_every_task_with_both_gains(
     assert all(said in found for said in words)
 
 
-@pytest.mark.parametrize("observer", ["full", "minimal"])
-@pytest.mark.parametrize("control", ["-9, -5", "-2, -1"])
-def test_a_law_that_is_unstable_by_itself_is_told(observer: str, control: str) -> None:
-    """The eigenvalues are numpy's."""
-    poles = "-50, -60" if observer == "full" else "-50"
-    falling = symobs.StateSpace(*FALLING)
-    asked: dict[str, Any] = {"control_poles": control, "observer_poles": poles, "observer": observer}
-    own = np.array(symobs.compensator(falling, **asked).compensator_matrix.tolist(), dtype=float)
-    is_stable = max(np.linalg.eigvals(own).real) < 0
-    for task, further in (("feedforward", {}), ("tracking", {"reference_matrix": REFERENCE})):
-        found = page(getattr(symobs, task)(falling, **asked, **further))
-        assert ("The compensator itself is unstable" in found) != is_stable
-
-
-def test_there_are_laws_of_both_kinds() -> None:
-    stable = symobs.compensator(plant(), control_poles="-2, -2", observer_poles="-10, -10").F_stable
-    unstable = symobs.compensator(
-        symobs.StateSpace(*FALLING), control_poles="-9, -5", observer_poles="-50, -60"
-    ).F_stable
-    assert (stable, unstable) == ("yes", "no")
-
-
-def test_parameters_that_leave_it_open_are_not_cautioned() -> None:
-    assert "Remark." not in page(symobs.observer(plant(), poles="-p, -q"))
-
-
 @tabled
 def test_a_mode_that_F_does_not_show_is_told(
     matrices: tuple[str, str, str], control: str, observer: str, stable: str, words: str
@@ -98,9 +69,3 @@ def test_a_mode_that_F_does_not_show_is_told(
     found = " ".join(page(design).split())
     assert ("is not a complete description of the compensator" in found) == bool(words)
     assert words in found
-
-
-def test_a_compensator_that_F_shows_whole_is_stable_as_F_is() -> None:
-    design = symobs.compensator(plant(), control_poles="-2, -2", observer_poles="-10, -10")
-    assert (design.F_stable, design.compensator_stable) == ("yes", "yes")
-    assert "complete description of the compensator" not in page(design)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from fractions import Fraction
 from random import Random
 from typing import TYPE_CHECKING, Any
 
@@ -79,13 +78,6 @@ def test_why_there_is_no_observer_is_said(C: str, poles: str, said: str) -> None
     assert said in " ".join(found.to("text").split())
 
 
-def test_dependent_columns_of_a_disturbance_count_once() -> None:
-    plant = symobs.StateSpace("[0 1 0; 0 0 1; -1 -2 -3]", None, "[1 0 0; 0 1 0]")
-    found = symobs.unknown_input_observer(plant, E="[1 2; 0 0; 2 4]", poles="-1, -2, -3")
-    assert found.H == symobs.unknown_input_observer(plant, E="[1; 0; 2]", poles="-1, -2, -3").H
-    assert "rank E = 1" in found.to("text")
-
-
 @pytest.mark.parametrize(
     ("name", "value"),
     [
@@ -118,21 +110,3 @@ def test_a_direction_that_is_seen_is_no_reason_for_a_no() -> None:
 def test_a_wrong_disturbance_input_is_refused(E: Any, said: str) -> None:
     with pytest.raises(InputError, match=said):
         symobs.unknown_input_observer(symobs.StateSpace("[0 1; 0 0]", C="[1 0]"), E=E, poles="-1, -2")
-
-
-def test_a_direction_may_be_an_angle() -> None:
-    """With E = (cos, sin) and C = I the projection is H = E Eᵀ, since Eᵀ E = 1."""
-    plant = symobs.StateSpace("[0 1; -2 -3]", C="[1 0; 0 1]", symbols={"theta": "real"})
-    found = symobs.unknown_input_observer(plant, E="[cos(theta); sin(theta)]", poles="-2, -3")
-    (theta,) = found.H.free_symbols
-    E = sympy.Matrix([sympy.cos(theta), sympy.sin(theta)])
-    assert (found.H - E * E.T).applyfunc(sympy.simplify) == sympy.zeros(2, 2)
-    assert (found.H * E - E).applyfunc(sympy.simplify) == sympy.zeros(2, 1)
-
-
-def test_a_flat_list_is_a_column_and_the_observer_comes_out() -> None:
-    plant = symobs.StateSpace("[0 1; -2 -3]", "[0; 1]", "[1 0; 0 1]")
-    found = symobs.unknown_input_observer(plant, E=[0, Fraction(1, 2)], poles="-2, -3")
-    observer = found.systems["observer"]  # (u, y) to z + H y
-    assert (observer.B.shape, observer.D.shape) == ((2, 3), (2, 3))
-    assert observer.D[1, 2].is_one

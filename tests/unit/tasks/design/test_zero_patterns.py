@@ -113,15 +113,6 @@ def test_random_patterns(seed: int) -> None:
 
 ROOTS = ("[1 0 0 0; 2 -1 0 3; 0 0 3 -2; -1 2 -2 -1]", "[0 0 3 0; 2 0 -1 0]")
 ASKED = [(3, 2), (3, 1), (2, 1), (4, 2)], [-5, -6, -5, -2]
-TRIPLE = symobs.StateSpace("[0 1 0; 0 0 1; 0 0 0]", "[0; 0; 1]", "[1 0 0; 0 1 0]")
-
-
-def test_square_roots() -> None:
-    plant = symobs.StateSpace(ROOTS[0], None, ROOTS[1])
-    zero, poles = ASKED
-    found = symobs.observer(plant, poles=poles, zero=asked(zero))
-    assert assert_right(plant.A, plant.C, zero, poles, found) == "square root"
-    assert "√363715" in found.to("text")
 
 
 def test_a_pattern_that_one_parameter_value_allows() -> None:

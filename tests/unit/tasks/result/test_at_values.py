@@ -13,8 +13,6 @@ import sympy
 import symobs
 from symobs.ground.errors import CertificateRejected, InexactInput, InputError, ProblemErrors
 from symobs.problem import read
-from symobs.system.specification import KINDS
-from symobs.tasks.result import tasks
 from tests.support.paths import ROOT
 
 if TYPE_CHECKING:
@@ -126,21 +124,6 @@ def test_what_is_asked_for_moves_too(result: Any, values: dict[str, Any], field:
     assert sympy.simplify(getattr(there, field) - expected) == 0
 
 
-def test_a_parameter_that_is_set_is_no_parameter_of_a_region() -> None:
-    result = symobs.stability_region(polynomial="s^3 + k s^2 + h s + 1", parameters="k, h")
-    there = result.at(k=2)
-    assert there.specification["parameters"] == ["h"]
-    assert there.intervals == (("1/2", "oo"),)
-
-
-def test_a_transfer_function_stays_one() -> None:
-    plant = symobs.StateSpace.from_transfer_function("(s + b)/(s^2 + a s)")
-    result = symobs.observability(plant)
-    assert str(result.at(a=2, b=3).plant.origin) == "(s + 3)/(s**2 + 2*s)"
-    cancelled = result.at(a=2, b=2)
-    assert (cancelled.plant.order, cancelled.plant.origin, cancelled.rank) == (2, None, 1)
-
-
 @pytest.mark.parametrize(
     ("values", "kind", "message"),
     [
@@ -195,17 +178,3 @@ def test_a_wrong_value_of_a_gain_is_rejected_by_the_constructor(monkeypatch: pyt
     assert (s * sympy.eye(3) - there.plant.A + there.plant.B * there.K).det().expand() == (
         (s + 1) * (s + 2) ** 2
     ).expand()
-
-
-def test_every_kind_of_keyword_is_read_or_has_no_parameters() -> None:
-    module: Any = import_module("symobs.tasks.result.at_values")
-    assert module._READERS.keys() | {"Name", "Sign", "Entries"} == KINDS.keys()
-    assert {kind for task in tasks().values() for kind in task.keywords.values()} <= KINDS.keys()
-
-
-def test_a_value_may_contain_a_parameter_that_has_a_value_too() -> None:
-    gain = symobs.state_feedback(symobs.StateSpace("[0 1; -k -c]", "[0; 1]"), poles="-1, -2")
-    for values in ({"k": "1/c", "c": 2}, {"c": 2, "k": "1/c"}):
-        assert sympy.Matrix([[sympy.Rational(3, 2), 1]]) == gain.at(values).K
-        assert sympy.Matrix([[0, 1], [-sympy.Rational(1, 2), -2]]) == gain.plant.substitute(values).A
-    assert sympy.Matrix([[2 - 5, 3 - 7]]) == gain.at(k="c", c="k").at(c=5, k=7).K

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import random
 import sys
-from fractions import Fraction
 from typing import Any
 
 import control  # type: ignore[import-untyped]
@@ -81,16 +80,6 @@ def test_the_observer_follows_the_plant() -> None:
         np.testing.assert_allclose(seen.outputs[:, -1], true.states[:, -1], atol=1e-5)
         assert found["observer"].input_labels == ["u", "y"]
         assert found["observer"].output_labels == ["x_hat[0]", "x_hat[1]"]
-
-
-def test_floats_that_were_changed_are_read_as_they_are() -> None:
-    plant = symobs.StateSpace("[0 1; -2 -3/7]", "[0; 1]", "[1 1/3]")
-    system = symobs.observability(plant).to_control()["plant"]
-    system.A[0, 0] = 0.5
-    back = symobs.StateSpace.from_control(system)
-    assert back.A[0, 0] == Fraction(1, 2)
-    assert back.is_from_floats
-    assert back.C[0, 1] == Fraction(repr(1 / 3))
 
 
 def test_refusals(monkeypatch: pytest.MonkeyPatch) -> None:

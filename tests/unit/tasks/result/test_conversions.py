@@ -12,10 +12,8 @@ import sympy
 
 import symobs
 from symobs.exact import Scalar
-from symobs.exact.core.canonical_text import scalar_text
 from symobs.exact.sympy_bridge.conversion import scalar_to_sympy
 from symobs.ground.errors import UsageError
-from symobs.pages.formats.json import _written
 
 NAMES = ["a", "b", "x_1", "zeta", "A", "s"]
 
@@ -55,21 +53,6 @@ def test_long_expressions_are_those_of_sympy(seed: int) -> None:
     assert str(found - expected) == "0"
 
 
-@pytest.mark.parametrize("seed", range(6))
-def test_long_texts_mean_the_value(seed: int) -> None:
-    rng = random.Random(seed)  # noqa: S311 - only for variety
-    value = polynomial(rng, NAMES, 80, 5) / polynomial(rng, NAMES, 1 + 10 * seed, 3)
-    text = scalar_text(value)
-    assert "^" not in text
-    assert sympy.parse_expr(text, {name: sympy.Symbol(name) for name in NAMES}) == by_sympy(value, {})  # noqa: TID251 - ours
-
-
-def test_an_answer_is_converted_once() -> None:
-    design = symobs.observer(symobs.StateSpace("[0 1; -k/m -2]", C="[1 c]"), poles=["-p", "-q"])
-    assert design.L is design.L
-    assert design.polynomial is design.polynomial
-
-
 def test_what_is_shown_of_a_large_answer_is_short() -> None:
     entries = [[f"a{row}{column}" for column in range(3)] for row in range(3)]
     design = symobs.observer(symobs.StateSpace(entries, C=[["c0", "c1", "c2"]]), poles=["p0", "p1", "p2"])
@@ -86,14 +69,6 @@ def test_json_says_an_answer_once() -> None:
     assert json.loads(design.to_json())["results"][0]["in_convention"] == {"name": "standard"}
     other = json.loads(str(design.to("json", convention="plusK-plusMC")))["results"][0]["in_convention"]
     assert other == {"name": "plusK-plusMC", "M": [["-19"], ["-81"]]}
-
-
-@pytest.mark.parametrize(
-    "value",
-    [{}, {"a": []}, {"a": [1, [], {"b": None}], "c": 'ä\n"', "d": {"e": True, "f": [["1", "2"], [1.5]]}}, {"k": ()}],
-)
-def test_json_is_written_as_the_plain_encoder_would(value: dict[str, object]) -> None:
-    assert _written(value) == json.dumps(value, indent=2, ensure_ascii=False) + "\n"
 
 
 def test_json_says_what_was_asked() -> None:
@@ -125,12 +100,6 @@ def test_what_was_asked_is_kept() -> None:
         design.with_answer("L", design.answer["L"]),
     ]
     assert [dict(one.specification) for one in kept] == [asked] * 4
-
-
-def test_a_polynomial_alone_is_the_data() -> None:
-    region = symobs.stability_region(polynomial="s^2 + k*s + 1", parameters=["k"])
-    (found,) = json.loads(region.to_json())["results"]
-    assert found["plant"] == {"polynomial": "s**2 + s*k + 1", "dt": 0, "symbols": {"k": "real"}}
 
 
 def test_options_that_no_page_has_are_refused_with_those_that_it_has() -> None:

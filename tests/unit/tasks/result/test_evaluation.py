@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from fractions import Fraction
 from typing import Any
 
 import numpy as np
@@ -14,25 +13,12 @@ from symobs.ground.errors import InputError
 from tests.kit import tabled
 
 HIDDEN = symobs.StateSpace("[0 1; -2 -3]", "[0; 1]", "[1 c]")
-CART = symobs.StateSpace("[0 1 0 0; 0 0 -m*g/M 0; 0 0 0 1; 0 0 (M+m)*g/(M*l) 0]", "[0; 1/M; 0; -1/(M*l)]", "[1 0 0 0]")
 
 
 def exactly(matrix: Any, **values: float) -> Any:
     """The value of a SymPy matrix at the shortest decimals of doubles, rounded at the end."""
     numbers = {name: sympy.Rational(repr(value)) for name, value in values.items()}
     return np.array(matrix.subs(numbers)).astype(float)
-
-
-def test_gains_beside_lambdify_at_many_points() -> None:
-    result = symobs.state_feedback(CART, poles="-1, -2, -3, -p")
-    chosen = np.random.default_rng(2)
-    points = {name: chosen.uniform(1, 2, 40_000) for name in ("M", "m", "g", "l", "p")}
-    found = result.evaluate(points)
-    assert found["K"].shape == (40_000, 1, 4)
-    entries = list(result.K)
-    expected = sympy.lambdify(sympy.symbols("M m g l p"), entries)(*points.values())  # noqa: TID251 - our own expressions
-    for index, values in enumerate(expected):
-        np.testing.assert_allclose(found["K"][:, 0, index], values, rtol=1e-11)
 
 
 def test_arrays_are_broadcast_and_matrices_stand_behind() -> None:
@@ -59,22 +45,6 @@ def test_where_a_condition_fails_there_stands_what_holds_in_that_case() -> None:
         np.testing.assert_allclose(found[index], np.array(result.at(c=c, k=k).L).astype(float)[:, 0], rtol=1e-12)
 
 
-def test_every_point_is_what_at_finds() -> None:
-    result = symobs.observer(HIDDEN, poles="-k, -5")
-    grid = [0.25 * i for i in range(-4, 9)]
-    c, k = np.meshgrid(grid, grid, indexing="ij")
-    found = result.evaluate({"c": c, "k": k})["L"]
-    missing = 0
-    for index in np.ndindex(c.shape):
-        there = result.at(c=Fraction(float(c[index])), k=Fraction(float(k[index])))
-        if there.answer["L"] is None:
-            assert np.isnan(found[index]).all()
-            missing += 1
-        else:
-            np.testing.assert_allclose(found[index], np.array(there.L).astype(float), rtol=1e-12, atol=1e-14)
-    assert missing == 2 * (len(grid) - 1)  # on two lines, but where k is the unobservable mode
-
-
 def test_beside_a_condition_the_value_is_exact() -> None:
     result = symobs.observer(HIDDEN, poles="-1, -5")
     for places in range(8, 17):
@@ -89,15 +59,6 @@ def test_a_sign_that_is_not_the_declared_one_is_nan() -> None:
         {"k": [1, -1, 0, 1, np.inf, np.nan], "m": [2, 2, 2, 0, 2, 2]}
     )
     assert np.isnan(found["L"][:, 0, 0]).tolist() == [False, True, True, True, True, True]
-
-
-def test_ranks_and_functions_of_parameters() -> None:
-    found = symobs.observability(HIDDEN).evaluate({"c": [0.25, 0.5, 1, 2]})
-    assert found["rank"].tolist() == [2, 1, 1, 2]
-    gramian = symobs.gramian(symobs.StateSpace("[-a]", None, "[1]", symbols={"a": "positive"}))
-    a, T = np.array([0.5, 1, 3]), np.array([1, 2, 0.25])
-    found = gramian.evaluate({"a": a, "T": T})
-    np.testing.assert_allclose(found["matrix"][:, 0, 0], (1 - np.exp(-2 * a * T)) / (2 * a), rtol=1e-12)
 
 
 @tabled

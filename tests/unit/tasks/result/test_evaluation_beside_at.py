@@ -86,19 +86,8 @@ def test_every_point_is_what_at_finds_or_nan(name: str) -> None:
     assert seen > len(points) / 2
 
 
-def test_an_unstable_plant_has_no_gramian_over_all_time() -> None:
-    found = symobs.gramian(S("[-a 0; 0 -1]", C="[1 1]"), horizon="inf").evaluate({"a": [-2.0, 0.0, 1.0, 2.0]})
-    assert np.isnan(found["matrix"][:2]).all()
-    assert found["rank"][2:].tolist() == [1, 2]
-
-
 def test_a_point_in_a_case_of_inequalities_has_its_value_without_a_warning() -> None:
     """x'' = x: the hold has cosh 1 and sinh 1."""
     found = symobs.zero_order_hold(S("[0 1; -k 0]", "[0; 1]"), sampling_period="1").evaluate({"k": [-1.0, 4.0]})
     np.testing.assert_allclose(found["A"][0], [[np.cosh(1), np.sinh(1)], [np.sinh(1), np.cosh(1)]])
     np.testing.assert_allclose(found["A"][1], [[np.cos(2), np.sin(2) / 2], [-2 * np.sin(2), np.cos(2)]])
-
-
-def test_fields_without_parameters_need_no_values() -> None:
-    found = symobs.observer(S("[0 1; 0 -1]", C="[1 0]"), poles="-10, -10").evaluate({})
-    assert found["L"].tolist() == [[19.0], [81.0]]

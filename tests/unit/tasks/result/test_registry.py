@@ -16,8 +16,6 @@ from symobs.tasks.result import (
     format_named,
     formats,
     method,
-    methods,
-    output_format,
     registry,
     task,
     task_in_time,
@@ -151,24 +149,6 @@ def test_any_other_task_is_found_among_all() -> None:
     assert task_named("no-name") is None
 
 
-def test_a_task_that_is_known_is_not_looked_for(monkeypatch: pytest.MonkeyPatch) -> None:
-    @task
-    def known(plant: Any) -> Any:
-        return Answer(plant)
-
-    plant = StateSpace("[0]")
-    assert known(plant).given == (plant,)
-    monkeypatch.setattr(writers, "_modules", pytest.fail)
-    found = task_named("known")
-    assert found is not None
-    assert found.name == "known"
-
-
-def test_all_methods_are_found() -> None:
-    assert list(methods()) == ["first/way", "first/other", "third/way"]
-    assert list(methods("third")) == ["third/way"]
-
-
 def test_a_method_is_looked_for_where_it_is_not_known(monkeypatch: pytest.MonkeyPatch) -> None:
     assert choose("first", "way", "other").summary == "A way."
     assert choose("first", "auto", "other").summary == "Another."
@@ -191,15 +171,6 @@ def test_formats_are_found() -> None:
     assert list(formats()) == ["plain", "odd"]
     with pytest.raises(UsageError, match="'even' is not an output format; use one of odd, plain"):
         format_named("even")
-
-
-def test_a_format_that_is_known_costs_no_other() -> None:
-    class Known:
-        name = "known"
-
-    assert output_format(Known) is Known
-    assert format_named("known").name == "known"
-    assert imported() == set()
 
 
 def test_tasks_in_time_are_named_where_another_refuses_a_plant() -> None:

@@ -4,34 +4,23 @@ from __future__ import annotations
 
 import pickle
 from dataclasses import FrozenInstanceError, replace
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import pytest
 import sympy
 
 from symobs import StateSpace, compensator, observability, observer, reduced_order_observer, stability_region
 from symobs.exact import Matrix, Scalar
-from symobs.formula.convention import STANDARD, convention_named
 from symobs.formula.tree import Environment, Letter
-from symobs.ground.errors import CertificateRejected, DerivationRejected, InputError, UsageError
+from symobs.ground.errors import CertificateRejected, DerivationRejected, InputError
 from symobs.proof.certificate.claims import Certificate, Claim, Statement
 from symobs.proof.derivation import Define, Derivation
 from symobs.tasks.result import (
     Case,
-    Document,
-    Method,
     Result,
-    choose,
-    format_named,
     formats,
-    method,
-    methods,
-    output_format,
     registry,
-    render,
     task,
-    task_in_time,
-    task_named,
     tasks,
     writers,
 )
@@ -234,12 +223,6 @@ def test_conditions_are_those_of_plant_and_answer() -> None:
         assert [x.expression for x in squared(k, k * k, StateSpace(*parts)).domain] == [c]
 
 
-def test_what_is_not_said_is_nothing() -> None:
-    found = squared(Scalar.of(3), Scalar.of(9))
-    assert (found.existence, found.free_signals, found.case_tree, found.picture) == ((), {}, (), None)
-    assert (found.has_reduced_observer, found.in_time, dict(found.fields)) == (False, False, dict(found.answer))
-
-
 # -- faces --------------------------------------------------------------------------------------------------------------
 
 
@@ -277,39 +260,6 @@ def test_answers_leave_as_sympy_objects() -> None:
     assert {"square", "conditions", "cases", "to", "derivation"} <= set(dir(found))
 
 
-def test_a_result_is_shown_short() -> None:
-    found = Squared(SERVO, "m", {"number": Scalar.of(3), "square": Scalar.of(9), "none": None})
-    assert repr(found) == "Squared(number=3, square=9, verdict='yes')"
-    long = squared(Scalar.of(10**150), Scalar.of(10**300))
-    assert len(repr(long)) == len("Squared(, verdict='yes')") + 200
-
-
-def test_a_document_is_told_in_its_convention() -> None:
-    found = observer(SERVO, poles=[-10, -10])
-    document = Document("", "", (found,))
-    assert (document.convention, document.text, document.detail, document.templates) == (STANDARD, "", "full", None)
-    assert document.derivations == (found.derivation,)
-    for place in ("full", None):
-        with pytest.raises(TypeError):
-            Document("", "", (found,), STANDARD, "", place)  # type: ignore[call-arg, arg-type]
-    other = replace(document, convention=convention_named("S1"))
-    (derivation,) = other.derivations
-    L = found.answer["L"]
-    assert derivation.check().values["L"] == -L
-    assert found.derivation.check().values["L"] == L
-    told: list[Any] = []
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("symobs.tasks.result.result.render", lambda *asked: told.append(asked))
-        found.to("text", convention="S1", detail="outline")
-    assert told == [(Document("", "", (found,), convention_named("S1"), detail="outline"), "text")]
-    assert found.to("latex", convention="S1") != found.to("latex") == found.to("latex", detail="full")
-    assert len(found.to("latex", detail="answer")) < len(found.to("latex"))
-    with pytest.raises(FrozenInstanceError):
-        document.title = "other"  # type: ignore[misc]
-    with pytest.raises(TypeError):
-        Document("", "", (found,), STANDARD, "", "full")  # type: ignore[call-arg]
-
-
 # -- registries ---------------------------------------------------------------------------------------------------------
 
 
@@ -320,50 +270,6 @@ def empty(monkeypatch: pytest.MonkeyPatch) -> None:
     for name, copy in (("_TASKS", dict), ("_METHODS", dict), ("_FORMATS", dict), ("_IN_TIME", list)):
         owner = registry if hasattr(registry, name) else writers
         monkeypatch.setattr(owner, name, copy(getattr(owner, name)))
-
-
-class Answer:
-    """What a task made for a test returns: the arguments it was called with."""
-
-    def __init__(self, *given: Any) -> None:
-        self.given = given
-        self.asked: dict[str, Any] = {}
-
-    def specified(self, asked: dict[str, Any]) -> Answer:
-        self.asked = asked
-        return self
-
-
-@pytest.mark.usefixtures("empty")
-def test_a_task_is_its_signature() -> None:
-
-    def weigh(plant: Any, *, poles: Any = None, of: Any = "") -> Any:
-        """Weigh a plant.
-
-        More of it.
-        """
-        return Answer(plant, poles, of)
-
-    def works_without_plant(plant: Any = None, first: Any = None, *, number: Any = None) -> Any:
-        return Answer(plant, first, number)
-
-    weigh.__annotations__ |= {"poles": "Poles | None", "of": Annotated[str, "Of"]}
-    works_without_plant.__annotations__["number"] = Annotated[int, "Number"] | None
-    weighed = task(weigh)(SERVO, of="x")
-    assert (weighed.given, weighed.asked) == ((SERVO, None, "x"), {"of": "x"})
-    found = tasks()["weigh"]
-    assert (found.name, dict(found.keywords), found.summary) == (
-        "weigh",
-        {"poles": "Poles", "of": "Of"},
-        "Weigh a plant.",
-    )
-    assert found.works_without_plant is False
-    assert task_in_time(works_without_plant)(number=3).given == (None, None, 3)
-    found = tasks()["works_without_plant"]
-    assert (found.works_without_plant, dict(found.keywords), found.summary) == (True, {"number": "Number"}, "")
-    with pytest.raises(FrozenInstanceError):
-        found.name = "other"  # type: ignore[misc]
-    assert registry._kind(Annotated[str, "Of"] | None) == "Of"
 
 
 @pytest.mark.usefixtures("empty")
@@ -383,72 +289,3 @@ def test_plants_in_time_are_refused_where_matrices_are_constant() -> None:
     with pytest.raises(InputError, match="constant is for plants with constant matrices"):
         refusing(varying)
     assert refusing.__name__ == "constant"
-
-
-@pytest.mark.usefixtures("empty")
-def test_methods_are_found_by_their_task() -> None:
-    @method("observer/guess", source="nowhere")
-    def guess() -> Any:
-        """Guess it."""
-
-    found = methods("observer")
-    assert set(found) == {name for name in methods() if name.startswith("observer/")}
-    assert found["observer/guess"] == Method("observer", "guess", "nowhere", guess, "Guess it.")
-    assert choose("observer", "guess", "ackermann").solve is guess
-    assert choose("observer", "auto", "guess").solve is guess
-    assert choose("observer", "auto", "ackermann").name == "ackermann"
-    with pytest.raises(InputError, match="'luck' is not a method of observer") as caught:
-        choose("observer", "luck", "ackermann")
-    assert caught.value.where == "specification.method"
-    assert caught.value.repair.startswith("write one of auto, ")
-    assert "guess" in caught.value.repair
-    with pytest.raises(InputError, match=f"'{'x' * 40}' is not"):
-        choose("observer", "x" * 50, "ackermann")
-    with pytest.raises(FrozenInstanceError):
-        found["observer/guess"].name = "other"  # type: ignore[misc]
-
-
-@pytest.mark.usefixtures("empty")
-def test_tasks_are_found_by_name() -> None:
-    assert task_named("observer") is tasks()["observer"]
-    for name in ("nothing", "no name", "../observer", ""):
-        assert task_named(name) is None
-    assert task_named("stabilizability") is tasks()["stabilizability"]
-
-
-@pytest.mark.usefixtures("empty")
-def test_formats_are_found_by_name() -> None:
-    @output_format
-    class Silent:
-        name = "silent"
-        suffix = ".nothing"
-
-        def render(self, document: Document) -> str:
-            return f"<{document.title}>"
-
-    assert formats()["silent"] is format_named("silent")
-    assert render(Document("title", "", ()), "silent") == "<title>"
-    assert {"latex", "text", "json", "html", "markdown"} <= set(formats())
-    assert format_named("json") is formats()["json"]
-    with pytest.raises(UsageError, match="'word' is not an output format") as caught:
-        format_named("word")
-    assert "html" in caught.value.repair
-    for name in ("no name", "x" * 50):
-        with pytest.raises(UsageError, match=f"'{name[:40]}' is not"):
-            render(Document("", "", ()), name)
-
-
-def test_only_what_is_asked_for_is_imported(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Of a package every module is imported once, and a single one by its name."""
-    imported: list[str] = []
-    monkeypatch.setattr("importlib.import_module", imported.append)
-    monkeypatch.setattr(writers, "_DISCOVERED", set())
-    modules = ("symobs.tasks.design.full_order.observer",)
-    monkeypatch.setattr(writers, "_modules", lambda package: modules if package.endswith("design") else ())
-    monkeypatch.setattr(registry, "_TASKS", {})
-    assert task_named("observer") is None
-    assert imported[0] == "symobs.tasks.design.full_order.observer"
-    imported.clear()
-    writers.discover("symobs.tasks.design")
-    writers.discover("symobs.tasks.design")
-    assert imported in ([], ["symobs.tasks.design.full_order.observer"])
