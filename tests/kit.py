@@ -9,6 +9,9 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import pytest
 
+from symobs.exact import Matrix, Scalar
+from symobs.formula.expression import parse_scalar
+
 if TYPE_CHECKING:
     from collections.abc import Callable
 
@@ -31,3 +34,20 @@ def tabled(test: T) -> T:
 
 def _as_tuples(value: Any) -> Any:
     return tuple(map(_as_tuples, value)) if isinstance(value, list) else value
+
+
+def scalar(text: str | int) -> Scalar:
+    """Read an exact value of a table."""
+    return parse_scalar(str(text))
+
+
+def scalars(texts: list[Any]) -> list[Scalar]:
+    """Read exact values of a table."""
+    return list(map(scalar, texts))
+
+
+def member(part: Any) -> Any:
+    """Read a member of a relation of a table, or leave its operator as it is."""
+    if isinstance(part, list):
+        return Matrix.of([scalars(row) for row in part])
+    return part if str(part) in {"=", "!=", "<", "<=", ">", ">="} else scalar(part)
