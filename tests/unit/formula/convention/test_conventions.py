@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import tomllib
-from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import pytest
@@ -12,7 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from symobs.exact import Matrix
-from symobs.formula.convention import STANDARD, Convention, convention_named, conventions
+from symobs.formula.convention import convention_named, conventions
 from symobs.formula.convention.builtin import ALIASES
 from symobs.formula.convention.convention_file import read_convention
 from symobs.formula.tree import (
@@ -35,7 +34,7 @@ from symobs.formula.tree import (
 from symobs.ground.errors import DerivationRejected, InputError, ProblemErrors, UsageError
 from symobs.problem import parse, read, validate
 from symobs.problem.expect import mismatches
-from symobs.proof.derivation import convention_signs, translated
+from symobs.proof.derivation import translated
 from symobs.tasks.result import Document, render
 from tests.kit import tabled
 from tests.support.sampling import every
@@ -92,17 +91,6 @@ def test_the_profiles_are_those_of_the_table() -> None:
     written = {name: (found.law, found.observer_matrix, found.pair) for name, found in conventions().items()}
     assert written == {ALIASES.get(name, name): laws for name, laws in TABLE.items()}
     assert {name: convention_named(name).name for name in ALIASES} == ALIASES
-
-
-def test_a_convention_is_named_by_its_law() -> None:
-    assert convention_named("u = K x_hat, A + M C").name == "plusK-plusMC"
-    assert convention_named("u = -K x_hat, A - L C") is STANDARD
-    own = convention_named("u = -R x_hat, A + G C")
-    assert (own.law, own.observer_matrix) == ("u = -R x_hat", "A + G C")
-    with pytest.raises(
-        UsageError, match=r"not a control law and an observer matrix: law, observer: this cannot be read"
-    ):
-        convention_named("u = K x_hat, A")
 
 
 @pytest.mark.parametrize("name", TABLE)
@@ -168,21 +156,6 @@ def test_every_page_holds_in_every_convention(path: Path) -> None:
         assert render(Document(found.title, found.source, results, convention_named(name)), "text")
 
 
-def test_the_reduced_order_observer_of_the_slides() -> None:
-    """S2: for y = 2 x₁ and the pole −10, L = 9/2, F = −10, H = 1, G = −45."""
-    plant = '[plant]\nA = "[0 1; 0 -1]"\nB = "[0; 1]"\nC = "[2 0]"\n'
-    text = f'task = "reduced_order_observer"\n{plant}[specification]\npoles = [-10]\n'
-    answers = {"L": "[9/2]", "F": "[-10]", "H": "[1]", "G": "[-45]"}
-    found = problem(text, "S2", answers)
-    assert unmet(found) == []
-    assert unmet(problem(text, "S0", {**answers, "G": "[1]", "H": "[-45]"})) == []
-    assert len(unmet(problem(text, "S0", answers))) == 2
-    assert "ż = F z + H u + G y" in page(found)
-    assert unmet(problem(text, "S1", {"M": "[-9/2]", "S": "[1/2 0; 9/2 1]"})) == unmet(
-        problem(text, "S1", {"L": "[9/2]"})
-    )
-
-
 def test_given_gains_are_read_in_the_file_s_letters() -> None:
     observer = 'task = "observer"\n' + PLANT + "[specification]\n"
     polynomial = {"polynomial": "s^2 + 3 s + 2"}
@@ -198,22 +171,6 @@ def test_given_gains_are_read_in_the_file_s_letters() -> None:
     assert len(unmet(problem(feedback, "S0", {"polynomial": "s^2 + 2 s + 2"}))) == 1
 
 
-def test_open_gains_of_a_region() -> None:
-    """S4: the hanging pendulum with u = Kx is stable where k2 < b and k1 < ω²."""
-    text = """
-    task = "stability_region"
-    symbols = { omega = "positive", b = "positive" }
-    [plant]
-    A = "[0 1; -omega^2 -b]"
-    B = "[0; 1]"
-    [specification]
-    K = "[k1 k2]"
-    parameters = ["k1", "k2"]
-    """
-    assert unmet(problem(text, "S4", {"stable_if": ["k2 < b", "k1 < omega^2"]})) == []
-    assert unmet(problem(text, "S0", {"stable_if": ["k2 > -b", "k1 > -omega^2"]})) == []
-
-
 def test_json_and_python_stay_standard() -> None:
     (shown,) = json.loads(page(problem(DESIGN, "S1"), "json"))["results"]
     assert (shown["K"], shown["L"]) == ([["2", "2"]], [["3"], ["2"]])
@@ -223,17 +180,6 @@ def test_json_and_python_stay_standard() -> None:
     (result,) = problem(DESIGN, "S1").solve()
     assert "A + M C" in str(result.to("text", convention="S1"))
     assert "A - L C" in str(result.to("text"))
-
-
-def test_unknown_entries_are_called_after_their_letter() -> None:
-    text = 'task = "observer"\n' + PLANT + '[specification]\npoles = [-1, -2]\nmethod = "coefficient_matching"\n'
-    assert "m₁" in page(problem(text, "S1"))
-    assert "l₁" not in page(problem(text, "S1"))
-    assert "h₁" in page(problem(text, "S4"))
-    told = page(
-        validate({**parse(text.replace("[0; 1]", "[0; m1]")), "convention": "S1", "symbols": {"m1": "positive"}})
-    )
-    assert "-l₁" in told  # m₁ is a mass here
 
 
 # -- the same in other letters ----------------------------------------------------------------------------------------
@@ -282,24 +228,6 @@ def test_a_true_relation_stays_true(formula: Formula, A: Matrix, L: Matrix) -> N
         assert len(values) == 1
 
 
-def test_signs_are_set_as_a_book_sets_them() -> None:
-    A, C, L, M = Letter("A"), Letter("C"), Letter("L"), Matrix.column([3, 2])
-    turned = SignReversal(frozenset({"L"}), (M,))
-    assert turned.whole(Sum((A, Negative(Product((L, C)))))) == Sum((A, Product((L, C))))
-    assert turned.relation(Relation((L, Literal(M)), ("=",))) == Relation((L, Literal(-M)), ("=",))
-    assert turned.formula(L) == L
-    assert turned.whole(Product((L, L))) == Product((L, L))
-    x, z = Letter("x"), Letter("z")
-    written = Relation((Letter("u"), Negative(Product((Literal(M), x)))), ("=",))
-    assert turned.relation(written) == Relation((Letter("u"), Product((Literal(-M), x))), ("=",))
-    assert turned.relation(Relation((z, Product((Literal(M), x))), ("=",))).members[1] == Product((Literal(M), x))
-    both = Sum((Product((L, x)), Product((L, z))))
-    turned_sum = Sum((Negative(Product((L, x))), Negative(Product((L, z)))))
-    assert turned.relation(Relation((A, both), ("=",))).members[1] == turned_sum
-    assert turned.whole(Sum((A, Negative(both)))) == Sum((A, both))
-    assert turned.whole(Product((Sum((L, Negative(A))), x))) == Negative(Product((Sum((L, A)), x)))
-
-
 def test_a_translation_that_changes_a_meaning_is_rejected(monkeypatch: pytest.MonkeyPatch) -> None:
     (result,) = problem(DESIGN, "standard").solve()
     monkeypatch.setattr(SignReversal, "relation", lambda _, relation: relation)
@@ -307,16 +235,6 @@ def test_a_translation_that_changes_a_meaning_is_rejected(monkeypatch: pytest.Mo
     monkeypatch.setattr(SignReversal, "whole", lambda _, formula: formula)
     with pytest.raises(DerivationRejected, match="in another convention"):
         translated(result.derivation, convention_named("S1"))
-
-
-def test_a_letter_that_is_forgotten_is_rejected() -> None:
-    (result,) = problem(DESIGN, "standard").solve()
-    before = result.derivation.check()
-    with pytest.raises(DerivationRejected, match="the line L in another convention"):
-        convention_signs._hold_against(before, before.extended_by(values={"L": before.values["K"]}), frozenset())
-    dynamics = {name: Letter("x") for name in before.dynamics}
-    with pytest.raises(DerivationRejected, match="the line x in another convention"):
-        convention_signs._hold_against(before, replace(before, dynamics=dynamics), frozenset())
 
 
 # -- a user's own -----------------------------------------------------------------------------------------------------
@@ -345,37 +263,6 @@ def test_a_convention_of_one_s_own(tmp_path: Path) -> None:
     latex = inside("solve", str(file), "--convention", str(tmp_path / "lecture.toml")).out
     assert r"\varepsilon" in latex or r"\epsilon" in latex
     assert inside("solve", str(file), "--convention", "S1", "--format", "text").out.count("A + M C") > 1
-
-
-def test_a_parameter_printed_like_a_letter_is_set_apart() -> None:
-    """With the mass M and S1's gain M on one page, the mass is set sans-serif, and the page says so."""
-    mass = DESIGN.replace("[0; 1]", "[0; 1/M]")
-    told = page(validate({**parse(mass), "convention": "S1", "symbols": {"M": "positive"}}))
-    assert "\N{MATHEMATICAL SANS-SERIF CAPITAL M}" in told
-    assert "sans-serif" in told
-    assert "\N{MATHEMATICAL SANS-SERIF CAPITAL M}" not in page(validate({**parse(mass), "symbols": {"M": "positive"}}))
-
-
-def test_no_page_writes_two_things_alike(tmp_path: Path) -> None:
-    path = tmp_path / "same.toml"
-    path.write_text('name = "same"\n[letters]\nA_c = "V_o"\nV_o = "A_c"\nx_1 = "z"\n', encoding="utf-8")
-    assert inside("solve", str(EXAMPLES[0].parent / "output_feedback_servo.toml"), "--convention", str(path)).code == 0
-    run = inside("solve", str(EXAMPLES[0].parent / "servo_minimal_order.toml"), "--convention", str(path))
-    assert (run.code, "writes z for two things of this page" in run.err) == (2, True)
-    with pytest.raises(ProblemErrors, match="F would stand for L and for F"):
-        read_convention({"name": "b", "observer": "A + F C"}, "book.toml")
-    assert inside("conventions", str(path)).out.startswith('name = "same"')
-
-
-def test_data_equal_to_a_gain_keep_their_sign() -> None:
-    """C = [1 0] is written as it is given, though Lᵀ is the same."""
-    plant = '[plant]\nA = "[0 1; 0 -3]"\nB = "[0; 1]"\nC = "[1 0]"\n[specification]\n'
-    text = 'task = "compensator"\n' + plant + 'control_polynomial = "s^2+3s+1"\nobserver_polynomial = "s^2 + 4 s + 3"\n'
-    (result,) = problem(text, "S1").solve()
-    assert str(result.answer["L"]) == "[1; 0]"
-    shown = page(problem(text, "S1")).split("A_c = ")[1].split("that is,")[0]
-    assert "[1  0]" in shown
-    assert "[-1  0]" not in shown
 
 
 def test_every_error_of_a_convention_is_told_at_once() -> None:
@@ -437,15 +324,3 @@ def test_messages_name_the_letter_of_the_file() -> None:
         problem('task = "observer"\n' + PLANT + '[specification]\nM = "[1; 2]"\nL = "[1; 2]"\n', "S1")
     with pytest.raises(InputError, match="unknown key"):
         problem('task = "observer"\n' + PLANT + '[specification]\nM = "[1; 2]"\n', "S0")
-
-
-def test_the_lists() -> None:
-    listed = inside("conventions").out
-    for name, found in conventions().items():
-        assert f"{name}: {found.title}" in listed
-    assert read_convention(tomllib.loads(inside("conventions", "S1").out), "S1.toml") == convention_named("S1")
-    assert replace(read_convention(tomllib.loads(inside("conventions", "standard").out), "x"), title="") == replace(
-        STANDARD, title=""
-    )
-    assert inside("conventions", "S9").code == 2
-    assert Convention("x") != STANDARD

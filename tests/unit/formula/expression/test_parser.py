@@ -21,6 +21,7 @@ from symobs.formula.expression import (
     parse_polynomial,
     parse_scalar,
 )
+from symobs.ground import errors
 from symobs.ground.errors import (
     BudgetExceeded,
     ExpressionError,
@@ -41,7 +42,6 @@ SOON = 10.0
 
 a, b, c, s, z, omega, h1, i = map(Scalar.symbol, ("a", "b", "c", "s", "z", "omega", "h1", "i"))
 one = Scalar.of(1)
-Case = tuple[str, type[SymobsError], str]
 
 
 def q(above: int, below: int = 1) -> Scalar:
@@ -57,59 +57,9 @@ def fractions_of(matrix: Matrix) -> list[list[Fraction]]:
 # -- numbers and operators ----------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize(
-    ("text", "expected"),
-    [
-        ("0", 0),
-        ("007", 7),
-        ("10.78", Fraction(539, 50)),
-        ("1e-3", Fraction(1, 1000)),
-        ("1E3", 1000),
-        ("1.5e+2", 150),
-        (".5", Fraction(1, 2)),
-        ("5.", 5),
-        ("0.1 + 0.2", Fraction(3, 10)),
-        ("1e1000/1e999", 10),
-        ("1 + 2 * 3", 7),
-        ("7 - 2 - 1", 4),
-        ("12 / 2 / 3", 2),
-        ("12 / 2 * 3", 18),
-        ("-2^2", -4),
-        ("(-2)^2", 4),
-        ("2^3^2", 512),
-        ("2**3**2", 512),
-        ("2^-1", Fraction(1, 2)),
-        ("2^-2^2", Fraction(1, 16)),
-        ("(2/3)^-2", Fraction(9, 4)),
-        ("2^(3-1)", 4),
-        ("2^(4/2)", 4),
-        ("0^0", 1),
-        ("2*-3", -6),
-        ("2--3", 5),
-        ("+-+2", -2),
-        ("- -2", 2),
-        ("(2)(3)", 6),
-        ("2(3)", 6),
-        ("(2) 3", 6),
-        ("sqrt(4)", 2),
-        ("sqrt (9/16)", Fraction(3, 4)),
-        ("2 sqrt(0.25) + 1", 2),
-        ("sqrt(0)", 0),
-        ("\n1\t+\r\n 2 ", 3),
-        ("[5]", 5),
-        ("2*[[3]]", 6),
-        ("I^2", -1),
-        ("i*j", -1),
-        ("(1+2i)(1-2i)", 5),
-        ("2i 3i", -6),
-        ("1/i + i", 0),
-        ("i^-2", -1),
-        ("9" * 1000, 10**1000 - 1),
-        ("1^1000", 1),
-    ],
-)
-def test_number(text: str, expected: Fraction | int) -> None:
-    assert parse_scalar(text).fraction() == expected
+@tabled
+def test_number(text: str, expected: str) -> None:
+    assert parse_scalar(text).fraction() == Fraction(expected)
 
 
 @pytest.mark.parametrize(
@@ -157,15 +107,6 @@ def test_declared_name_is_a_factor_and_may_be_i(text: str, expected: Scalar) -> 
     assert parse_scalar(text, {"b": "positive", "h1": "real", "i": "real"}) == expected
 
 
-def test_a_declared_capital_i_is_that_symbol_and_i_is_the_unit() -> None:
-    assert parse_scalar("I^2 + i^2", {"I": "positive"}) == Scalar.symbol("I") * Scalar.symbol("I") - 1
-    assert str(parse_poles("-I + 2i", {"I": "positive"})[0]) == "-I + 2*sqrt(-1)"
-
-
-def test_an_index_below_belongs_to_the_name_that_is_declared() -> None:
-    assert parse_scalar("h₂ + x₁", {"h_2": "real", "x1": "real"}) == Scalar.symbol("h_2") + Scalar.symbol("x1")
-
-
 @tabled
 def test_matrices_are_read_as_they_are_printed(text: str, expected: str) -> None:
     assert parse_matrix(text) == parse_matrix(expected)
@@ -176,106 +117,12 @@ def test_a_pair_of_poles_is_two(poles: object) -> None:
     assert [str(pole) for pole in parse_poles(poles)] == ["-1 + 2*I", "-1 - 2*I", "-3"]
 
 
-def test_terms_are_bounded_by_the_monomials_there_are() -> None:
-    factors = [(a + b + 1) ** 12, (a + b * 2 + 3) ** 12, (a * 2 + b + 5) ** 12]
-    assert parse_scalar("(a+b+1)^12 * (a+2b+3)^12 * (2a+b+5)^12") == _product(factors)
-
-
-def test_variable_is_known_beside_the_names_and_multiplies() -> None:
-    assert parse_scalar("1/(s(s+b))", {"b": "real"}, variable="s") == one / (s * (s + b))
-    with pytest.raises(UnknownName, match='the name "s" is not declared, at column 1 of "s"; declared: b'):
-        parse_scalar("s", {"b": "real"})
-    assert parse_scalar("s", {"s": "real"}) == s
-
-
-def test_exact_values_of_python_pass() -> None:
-    assert parse_scalar(3) == q(3)
-    assert parse_scalar(Fraction(-1, 3)) == q(-1, 3)
-    assert parse_scalar(a) == a
-    assert parse_scalar(10**1000 - 1).fraction() == 10**1000 - 1
-
-
 # -- matrices -----------------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize(
-    ("text", "expected"),
-    [
-        ("[0 1; 0 -1]", [[0, 1], [0, -1]]),
-        ("[1 -2]", [[1, -2]]),
-        ("[1 - 2]", [[-1]]),
-        ("[1-2]", [[-1]]),
-        ("[1- 2]", [[-1]]),
-        ("[1 -2 + 3]", [[1, 1]]),
-        ("[1 -2 +3]", [[1, -2, 3]]),
-        ("[1 - -2]", [[3]]),
-        ("[1 --2]", [[1, 2]]),
-        ("[1 , - 2]", [[1, -2]]),
-        ("[- 1 2]", [[-1, 2]]),
-        ("[(1 -2) 3]", [[-1, 3]]),
-        ("[(1\n-2) 3]", [[-1, 3]]),
-        ("[2 (3)]", [[2, 3]]),
-        ("[2(3)]", [[6]]),
-        ("[(2) (3)]", [[2, 3]]),
-        ("[(2)(3)]", [[6]]),
-        ("[2 (-3)]", [[2, -3]]),
-        ("[2 *3 4/ 2 2 ^2 2 ** 3]", [[6, 2, 4, 8]]),
-        ("[2^ -1]", [[Fraction(1, 2)]]),
-        ("[0.5 1e-1]", [[Fraction(1, 2), Fraction(1, 10)]]),
-        ("[1,2;3,4]", [[1, 2], [3, 4]]),
-        ("[1 2\n3 4]", [[1, 2], [3, 4]]),
-        ("[1 2\r\n3 4]", [[1, 2], [3, 4]]),
-        ("[1 2\r3 4]", [[1, 2], [3, 4]]),
-        ("[1 2;\n 3 4;\n]", [[1, 2], [3, 4]]),
-        ("\n[\n  1 2\n\n  3 4\n]\n", [[1, 2], [3, 4]]),
-        ("[ 1  2 ; 3 4 ; ]", [[1, 2], [3, 4]]),
-        ("[[1] 2]", [[1, 2]]),
-        ("[sqrt(4) sqrt(9)]", [[2, 3]]),
-        ("[i*i 2]", [[-1, 2]]),
-        ("-3", [[-3]]),
-        ("[7]", [[7]]),
-    ],
-)
-def test_matrix_of_numbers(text: str, expected: list[list[Fraction | int]]) -> None:
-    assert fractions_of(parse_matrix(text)) == expected
-
-
-@pytest.mark.parametrize(
-    ("text", "expected"),
-    [
-        ("[0 1; -omega^2 -b]", [[q(0), one], [-(omega * omega), -b]]),
-        ("[a (b)]", [[a, b]]),
-        ("[a(b)]", [[a * b]]),
-        ("[(a (b)) c]", [[a * b, c]]),
-        ("[a (b)(c)]", [[a, b * c]]),
-        ("[2b c]", [[b * 2, c]]),
-        ("[2 b]", [[q(2), b]]),
-        ("[a -b]", [[a, -b]]),
-        ("[a - b]", [[a - b]]),
-        ("[a/b c]", [[a / b, c]]),
-        ("[1/(a (1 + b)) c]", [[one / (a * (one + b)), c]]),
-    ],
-)
-def test_matrix_of_symbols(text: str, expected: list[list[Scalar]]) -> None:
-    names = {"a": "real", "b": "real", "c": "real", "omega": "positive"}
-    assert parse_matrix(text, names) == Matrix.of(expected)
-
-
-@pytest.mark.parametrize(
-    ("value", "expected"),
-    [
-        ([[0, 1], [0, -1]], [[0, 1], [0, -1]]),
-        (((1, 2),), [[1, 2]]),
-        ([["1/2", Fraction(1, 3)], ["1e-1", 2]], [[Fraction(1, 2), Fraction(1, 3)], [Fraction(1, 10), 2]]),
-        ([["1 -2", "[3]"]], [[-1, 3]]),
-        (np.array([[1, 2], [3, 4]]), [[1, 2], [3, 4]]),
-        ([np.array([1, 2])], [[1, 2]]),
-        ([[np.int64(5)]], [[5]]),
-        ([[sympy.Rational(1, 3)]], [[Fraction(1, 3)]]),
-    ],
-)
-def test_matrix_of_nested_lists(value: object, expected: list[list[Fraction | int]]) -> None:
-    assert fractions_of(parse_matrix(value)) == expected
+@tabled
+def test_matrix_of_numbers(text: str, expected: list[list[str]]) -> None:
+    assert fractions_of(parse_matrix(text)) == [[Fraction(entry) for entry in row] for row in expected]
 
 
 @tabled
@@ -331,13 +178,6 @@ def test_poles(value: object, expected: list[tuple[Fraction | int, Fraction | in
     assert poles == expected
 
 
-def test_symbolic_poles() -> None:
-    assert parse_poles("-a, -b + c i", {"a": "real", "b": "real", "c": "real"}) == (
-        Complex.of(-a),
-        Complex(-b, c),
-    )
-
-
 @pytest.mark.parametrize("value", [-2, None, {"a": 1}, 0.5])
 def test_poles_are_a_list(value: object) -> None:
     with pytest.raises(InputError, match="a list of poles is expected"):
@@ -375,130 +215,37 @@ def test_variable_of_the_polynomial_cannot_be_declared() -> None:
 
 # -- what is refused ----------------------------------------------------------------------------------------------
 
-OPERAND = 'a number, a name or "(" is expected'
-REFUSED: list[Case] = [
-    # grammar
-    ("", ExpressionError, "the text is empty"),
-    (" \n ", ExpressionError, "the text is empty"),
-    ("1 +", ExpressionError, f"{OPERAND} at the end"),
-    ("* 2", ExpressionError, f'{OPERAND} before "*"'),
-    ("2 + / 3", ExpressionError, f'{OPERAND} before "/"'),
-    ("()", ExpressionError, f'{OPERAND} before ")"'),
-    ("2 3", ExpressionError, "a number follows a number"),
-    ("2^3 4", ExpressionError, "a number follows a number"),
-    ("1.2.3", ExpressionError, "a number follows a number"),
-    (".5 2", ExpressionError, "a number follows a number"),
-    ("1 000", ExpressionError, "a number follows a number"),
-    ("(1", ExpressionError, 'this "(" is never closed'),
-    ("1)", ExpressionError, 'this ")" closes nothing'),
-    ("(1]", ExpressionError, 'where "(" has to be closed first'),
-    ("(1, 2)", ExpressionError, '"," stands inside parentheses'),
-    ("[(1; 2)]", ExpressionError, '";" stands inside parentheses'),
-    ("1; 2", ExpressionError, "write the rows in brackets"),
-    ("1,5", ExpressionError, "write a decimal number with a point"),
-    # brackets
-    ("[]", ExpressionError, f'{OPERAND} before "]"'),
-    ("[;]", ExpressionError, f'{OPERAND} before "]"'),
-    ("[1,,2]", ExpressionError, f'{OPERAND} before ","'),
-    ("[1,2,]", ExpressionError, f'{OPERAND} before "]"'),
-    ("[1 +\n2]", ExpressionError, f'{OPERAND} before "\\n"'),
-    ("[[1 2] 3]", ExpressionError, "a matrix stands inside"),
-    ("[[1, 2], [3, 4]]", ExpressionError, "[1 0; 0 1]"),
-    ("[1 2]*[1 2]", ExpressionError, "a matrix stands inside"),
-    ("[1 2] + 1", ExpressionError, "a matrix stands inside"),
-    ("1/[1 2]", ExpressionError, "a matrix stands inside"),
-    ("[1 2]^2", ExpressionError, "a matrix stands inside"),
-    ("2^[1 2]", ExpressionError, "a matrix stands inside"),
-    ("sqrt([1 2])", ExpressionError, "a matrix stands inside"),
-    ("[a' 1]", ExpressionError, "a transpose is not read"),
-    ("[1 2]", ExpressionError, "one number is expected, but a 1×2 matrix came"),
-    # values
-    ("1/0", ExpressionError, "division by zero"),
-    ("1/(a - a)", ExpressionError, "division by zero"),
-    ("0^-1", ExpressionError, "division by zero"),
-    ("(i^2 + 1)^-1", ExpressionError, "division by zero"),
-    ("20i", ExpressionError, "a real value is expected, but 20*I came"),
-    ("2^a", ExpressionError, "the exponent a is not an integer"),
-    ("4^(1/2)", ExpressionError, "the exponent 1/2 is not an integer"),
-    ("2^i", ExpressionError, "the exponent I is not an integer"),
-    ("sqrt(sqrt(2))", ExpressionError, "sqrt of a rational number is possible"),
-    ("sqrt(-4)", ExpressionError, "a real value is expected, but 2*I came"),
-    ("sqrt(a)", ExpressionError, "sqrt of a rational number is possible"),
-    ("sqrt(i)", ExpressionError, "sqrt of a complex number"),
-    ("exp(1)", ExpressionError, "exp has no exact value"),
-    ("cos(1)", ExpressionError, "cos has no exact value"),
-    # names
-    ("sqrt", ExpressionError, '"sqrt" is a function'),
-    ("sin 4", ExpressionError, '"sin" is a function'),
-    ("[sqrt (4)]", ExpressionError, '"sqrt" is a function'),
-    ("f(a)", ExpressionError, '"f" is followed by "(" but is neither declared nor a function'),
-    ("f (a)", ExpressionError, "write f*(...) for a product"),
-    ("lambda", ExpressionError, 'write another name, such as "lam"'),
-    ("None", ExpressionError, "is a word of Python"),
-    ("for", ExpressionError, 'write another name, such as "for_"'),
-    ("pi", ExpressionError, '"pi" is reserved'),
-    ("oo", ExpressionError, '"oo" is reserved'),
-    ("inf", ExpressionError, '"inf" is reserved'),
-    ("nan + 1", ExpressionError, '"nan" is reserved'),
-    ("x" * 65, ExpressionError, "has more than 64 characters"),
-    ("_a", ExpressionError, "begin a name with a letter"),
-    ("1_000", ExpressionError, "begin a name with a letter"),
-    # programs, other languages and look-alikes
-    ("__import__('os').system('x')", ExpressionError, "belongs to no expression"),
-    ("().__class__", ExpressionError, "belongs to no expression"),
-    ("a.b", ExpressionError, "belongs to no expression"),
-    ("a .* b", ExpressionError, "* / ^ without a point"),
-    ("!!python/object:os.system", ExpressionError, "belongs to no expression"),
-    ("{a: 1}", ExpressionError, "around what belongs together, [ ] around a list"),
-    ("a = 1", ExpressionError, 'the character "=" belongs to no expression'),
-    ("lambda: 1", ExpressionError, "is a word of Python"),
-    ("ά + 1", ExpressionError, "spell the letter out"),
-    ("1 — 2", ExpressionError, "write the ASCII minus -"),
-    ("2•3", ExpressionError, "write the ASCII star *"),
-    ("1÷2", ExpressionError, "write the ASCII slash /"),
-    ("aⁿ", ExpressionError, "belongs to no expression"),
-    ("a²²^2 + ²", ExpressionError, "expected before"),
-    ("√ 4", ExpressionError, "write sqrt( )"),
-    ("１", ExpressionError, 'write the ASCII "1"'),  # noqa: RUF001 - a full-width digit is the point
-    ("٣", ExpressionError, "(U+0663) belongs to no expression"),
-    ("\u202e1", ExpressionError, '"\\u202e" (U+202E)'),
-    ("a\x00b", ExpressionError, '"\\x00"'),
-    ("\ud800", ExpressionError, '"\\ud800"'),
-    # budgets
-    ("1" * 1001, BudgetExceeded, "more than 1000 digits"),
-    ("0." + "1" * 1001, BudgetExceeded, "more than 1000 digits"),
-    ("1" * 100_000, BudgetExceeded, "more than 10000"),
-    ("a+" * 5000 + "a", BudgetExceeded, "has 10001 characters"),
-    ("1e1001", BudgetExceeded, "a power of ten is beyond 1000"),
-    ("1e-99999999999999999999", BudgetExceeded, "a power of ten is beyond 1000"),
-    ("a^1001", BudgetExceeded, "the exponent is beyond 1000"),
-    ("a^-1001", BudgetExceeded, "the exponent is beyond 1000"),
-    ("9^9^9^9", BudgetExceeded, "the exponent is beyond 1000"),
-    ("((10^64)^64)^64", BudgetExceeded, "10000 bits"),
-    ("(10^64)^64", BudgetExceeded, "10000 bits"),
-    ("(((a^1000)^1000)^1000)^1000", BudgetExceeded, "a power beyond 10000"),
-    ("(a+b+c+d)^1000", BudgetExceeded, "more than 20000 terms"),
-    ("(a+b+c+d)^-1000", BudgetExceeded, "more than 20000 terms"),
-    ("(x+1)^1000^1000", BudgetExceeded, "the exponent is beyond 1000"),
-    ("((x+1)^1000)^1000", BudgetExceeded, "would build"),
-    ("((a+b*i)/(c+d*i))^900", BudgetExceeded, "would build"),
-    ("*".join(["999^999"] * 900), BudgetExceeded, "10000 bits"),
-    ("*".join(["(a+b+c+d+e)"] * 800), BudgetExceeded, "would build"),
-    ("".join(f"(a{k}+b{k})" for k in range(40)), BudgetExceeded, "more than 20000 terms"),
-    ("+".join(["(s+1)^1000"] * 800), BudgetExceeded, "too much"),
-    ("+".join(f"1/(s+{k})" for k in range(900)), BudgetExceeded, "too much"),
-    ("+".join(f"(a^{900 + k}+b^997)/(b^{950 + k}+a^991)" for k in range(200)), BudgetExceeded, "too much"),
-    ("+".join(f"a{k}" for k in range(390)), BudgetExceeded, "too much"),
-    ("+".join(f"a{k}" for k in range(1500)), BudgetExceeded, "more than 400 different names"),
-    ("(" * 101 + "1" + ")" * 101, BudgetExceeded, "nested deeper than 100"),
-    ("(" * 9_999, BudgetExceeded, "nested deeper than 100"),
-    ("[" * 20_000, BudgetExceeded, "more than 10000"),
-    ("(" * 10_000 + ")" * 10_000, BudgetExceeded, "more than 10000"),
+BEYOND_A_BUDGET = [
+    ("1" * 1001, "more than 1000 digits"),
+    ("0." + "1" * 1001, "more than 1000 digits"),
+    ("1" * 100_000, "more than 10000"),
+    ("a+" * 5000 + "a", "has 10001 characters"),
+    ("*".join(["999^999"] * 900), "10000 bits"),
+    ("*".join(["(a+b+c+d+e)"] * 800), "would build"),
+    ("".join(f"(a{k}+b{k})" for k in range(40)), "more than 20000 terms"),
+    ("+".join(["(s+1)^1000"] * 800), "too much"),
+    ("+".join(f"1/(s+{k})" for k in range(900)), "too much"),
+    ("+".join(f"(a^{900 + k}+b^997)/(b^{950 + k}+a^991)" for k in range(200)), "too much"),
+    ("+".join(f"a{k}" for k in range(390)), "too much"),
+    ("+".join(f"a{k}" for k in range(1500)), "more than 400 different names"),
+    ("(" * 101 + "1" + ")" * 101, "nested deeper than 100"),
+    ("(" * 9_999, "nested deeper than 100"),
+    ("[" * 20_000, "more than 10000"),
+    ("(" * 10_000 + ")" * 10_000, "more than 10000"),
 ]
 
 
-@pytest.mark.parametrize(("text", "kind", "message"), REFUSED, ids=[ascii(case[0][:30]) for case in REFUSED])
-def test_refused_with_place_and_reason_soon(text: str, kind: type[SymobsError], message: str) -> None:
+@tabled
+def test_refused_with_place_and_reason_soon(text: str, kind: str, message: str) -> None:
+    refused_soon(text, getattr(errors, kind), message)
+
+
+@pytest.mark.parametrize(("text", "message"), BEYOND_A_BUDGET, ids=range(len(BEYOND_A_BUDGET)))
+def test_what_would_be_too_large_is_refused_soon(text: str, message: str) -> None:
+    refused_soon(text, BudgetExceeded, message)
+
+
+def refused_soon(text: str, kind: type[SymobsError], message: str) -> None:
     start = time.process_time()
     with pytest.raises(kind) as caught:
         parse_scalar(text, where="plant.A")
@@ -544,12 +291,6 @@ def test_unknown_name_among_declared_ones(text: str, repair: str) -> None:
     assert repair in caught.value.repair
 
 
-def test_no_name_is_declared() -> None:
-    for names, variable in (({}, None), ({}, "t"), ({"t": "real"}, None)):  # the time, which nobody declares
-        with pytest.raises(UnknownName, match=r'no name is declared; add b = "real" to \[symbols\]'):
-            parse_scalar("b", names, variable=variable)
-
-
 @pytest.mark.parametrize("text", ["0 1; 0 -1", "1 0", "k; 2"])
 def test_a_matrix_without_its_brackets_is_told_so(text: str) -> None:
     with pytest.raises(ExpressionError, match="at column") as raised:
@@ -563,12 +304,6 @@ def test_numbers_with_a_blank_and_a_sign_between_are_not_guessed_at(poles: objec
     with pytest.raises(ExpressionError, match="may be several numbers or one sum") as raised:
         parse_poles(poles, where="specification.poles")
     assert repair in raised.value.repair
-
-
-def test_a_sign_with_blanks_on_both_sides_is_that_of_a_sum() -> None:
-    assert parse_poles("-1 - 2") == parse_poles("-3") == parse_poles("-1-2")
-    assert parse_poles("-1 +2i, -1 -2i") == parse_poles("-1+2i, -1-2i")
-    assert parse_poles("[-1 -2]") == parse_poles("-1, -2")
 
 
 @pytest.mark.parametrize(
@@ -595,17 +330,6 @@ def test_floats_are_refused_with_the_fraction_to_write(value: object, place: str
     assert isinstance(caught.value, TypeError)
 
 
-def test_floats_are_refused_everywhere() -> None:
-    with pytest.raises(InexactInput, match=r"poles\[1\]"):
-        parse_poles([-2, -2.5], where="poles")
-    with pytest.raises(InexactInput, match=r"-20\+0.5j"):
-        parse_poles([-20 + 0.5j])
-    with pytest.raises(InexactInput, match=r"0\.5 is a float"):
-        parse_scalar(0.5)
-    with pytest.raises(InexactInput, match=r"0\.5 is a float"):
-        parse_polynomial(0.5, "s")
-
-
 @pytest.mark.parametrize(
     ("entry", "kind"),
     [
@@ -625,12 +349,6 @@ def test_other_types_are_refused_by_name(entry: object, kind: str) -> None:
     assert not isinstance(caught.value, InexactInput)
 
 
-@pytest.mark.parametrize("value", [None, 5, {"a": 1}, b"[1]", {1, 2}])
-def test_no_matrix(value: object) -> None:
-    with pytest.raises(InputError, match="a matrix is expected"):
-        parse_matrix(value)
-
-
 @pytest.mark.parametrize(
     "number", [10**1000, -(10**1000), 10**100_000, Fraction(1, 10**1000)], ids=["1001", "-1001", "100001", "1/1001"]
 )
@@ -638,26 +356,6 @@ def test_python_numbers_have_at_most_1000_digits(number: Fraction | int) -> None
     with pytest.raises(BudgetExceeded, match="more than 1000 digits") as caught:
         parse_matrix([[number]], where="A")
     assert caught.value.where == "A[0][0]"
-
-
-@pytest.mark.parametrize(
-    "text",
-    [
-        "[" + " ".join(f"1/(a{k}+b{k})" for k in range(20)) + "]",
-        "[" + " ".join(f"1/(a+{k}*b)^30" for k in range(300)) + "]",
-        "[" + " ".join(f"1/({k}^999+1)" for k in range(2, 600)) + "]",
-    ],
-)
-def test_common_denominator_of_a_matrix_is_bounded(text: str) -> None:
-    with pytest.raises(BudgetExceeded, match="common denominator"):
-        parse_matrix(text)
-
-
-def test_cells_of_one_matrix_share_one_budget() -> None:
-    cell = "(a + b + 1)^100"
-    assert parse_matrix([[cell]]).shape == (1, 1)
-    with pytest.raises(BudgetExceeded, match=r"A\[0\]\[\d+\]: .*too much"):
-        parse_matrix([[cell] * 1000], where="A")
 
 
 def test_place_of_a_bad_cell() -> None:
@@ -736,11 +434,6 @@ def _product(factors: list[Scalar]) -> Scalar:
     for factor in factors:
         total = total * factor
     return total
-
-
-@given(scalars)
-def test_text_of_a_scalar_reads_back(value: Scalar) -> None:
-    assert parse_scalar(str(value)) == value
 
 
 @given(scalars, scalars)

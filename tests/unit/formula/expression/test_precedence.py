@@ -15,7 +15,7 @@ from symobs.formula.expression import parse_matrix, parse_scalar, tokenizer
 from symobs.formula.expression.names import Scope
 from symobs.formula.expression.source import Source, Token
 from symobs.formula.expression.syntax_parser import parse
-from symobs.formula.expression.syntax_tree import SyntaxNode, every, operands_first
+from symobs.formula.expression.syntax_tree import every, operands_first
 from symobs.ground.errors import InputError
 from tests.kit import tabled
 
@@ -120,14 +120,3 @@ def test_a_thousand_signs_are_read() -> None:
     (tree,) = parse(made, Source(text, ""))
     assert sum(1 for _ in every(tree)) == 5_000 + 1 + 2 * 2_000
     assert parse_scalar(text).fraction() == 1
-
-
-def test_a_sign_before_a_product_is_that_of_the_product() -> None:
-    def tree(text: str) -> SyntaxNode:
-        made = tokens_of(text)
-        assert made is not None
-        return parse(made, Source(text, ""))[0]
-
-    assert tree("-a b") == tree("-(a b)")
-    assert tree("a*-b c").kind == "product"
-    assert [part.kind for part in tree("a*-b c").parts] == ["number", "negative", "number"]
