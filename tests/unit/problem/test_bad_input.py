@@ -15,7 +15,7 @@ import sympy
 import symobs
 from symobs.applications.checking.answers.answer_file import read_answer
 from symobs.formula.expression import comma_between_digits, parse_matrix, parse_poles, parse_polynomial, parse_scalar
-from symobs.ground.errors import InexactInput, InputError, ShapeMismatch, SymobsError
+from symobs.ground.errors import InexactInput, SymobsError
 from symobs.problem.expect.roots import read_roots
 from symobs.problem.expect.structure import relation
 from symobs.problem.sheet_file import is_sheet
@@ -274,32 +274,6 @@ def test_all_mistakes_of_a_file_come_together(tmp_path: Path) -> None:
     )
 
 
-def test_mistakes_of_several_tasks_come_together(tmp_path: Path) -> None:
-    text = problem('poles = [-10]\nmethod = "magic"', 'tasks = ["observer", "observability", "state_feedback"]', B=None)
-    run = solved(tmp_path, text)
-    assert_refused(
-        run,
-        ("specification.poles", "1 pole given"),
-        ("specification.method", "observability"),
-        ("plant.B", "state_feedback needs B"),
-    )
-
-
-def test_both_loops_of_a_compensator_are_checked(tmp_path: Path) -> None:
-    poles = 'control_poles = [-1]\nobserver_polynomial = "s^3"\nobserver = "full"\nmethod = "magic"'
-    assert_refused(
-        solved(tmp_path, problem(poles, 'task = "compensator"')),
-        ("specification.method", "'magic'"),
-        ("specification.control_poles", "1 pole given"),
-        ("specification.observer_polynomial", "degree 3 given"),
-    )
-
-
-def test_poles_of_an_unknown_kind_of_observer_are_not_counted(tmp_path: Path) -> None:
-    poles = 'control_poles = [-1, -2]\nobserver_polynomial = "s^3"\nobserver = "none"'
-    assert_refused(solved(tmp_path, problem(poles, 'task = "compensator"')), ("specification.observer", "'none'"))
-
-
 def test_shapes_are_checked_beside_a_matrix_that_cannot_be_read(tmp_path: Path) -> None:
     run = solved(tmp_path, problem(B='"[0; 1; 2]"', C='"[1 x]"'))
     assert_refused(run, ("plant.C", '"x" is not declared'), ("plant.B", "3×1"))
@@ -353,18 +327,6 @@ def test_hostile_files_are_refused(tmp_path: Path, case: str) -> None:
     assert_refused(solved(tmp_path, text, run), (place, words))
 
 
-# -- a mathematical no is no error ----------------------------------------------------------------------------------
-
-
-def test_an_unobservable_plant_is_a_result(tmp_path: Path) -> None:
-    run = solved(tmp_path, problem(C='"[0 1]"'))
-    assert (run.code, run.err) == (4, "observer: no\n")
-    (result,) = json.loads(run.out)["results"]
-    assert result["verdict"] == "no"
-    assert result["fixed_modes"] == ["0"]
-    assert result["L"] is None
-
-
 # -- the same from Python -------------------------------------------------------------------------------------------
 
 
@@ -399,28 +361,6 @@ def test_floats_are_refused_with_what_to_write(case: str) -> None:
         call()
     assert refused.value.where == place
     assert repair in refused.value.repair
-
-
-def test_the_variable_is_no_parameter() -> None:
-    calls: tuple[Callable[[], object], ...] = (
-        lambda: symobs.StateSpace("[0 1; s -1]"),
-        lambda: symobs.StateSpace([[sympy.Symbol("s")]]),
-        lambda: symobs.StateSpace("[0 1; z -1]", dt=True),
-        lambda: symobs.StateSpace("[1]", symbols={"s": "real"}),
-    )
-    for call in calls:
-        with pytest.raises(InputError, match="is the variable of the polynomials"):
-            call()
-    assert str(symobs.characteristic_polynomial(symobs.StateSpace("[s]", dt=True)).polynomial) == "-s + z"
-
-
-def test_shapes_are_refused_as_such() -> None:
-    with pytest.raises(ShapeMismatch, match="2×3"):
-        symobs.StateSpace("[1 2 3; 4 5 6]")
-    with pytest.raises(ShapeMismatch, match="row 2"):
-        symobs.StateSpace([[1, 2], [3]])
-    with pytest.raises(ShapeMismatch, match="1×2, expected 2×1"):
-        symobs.observer(servo(), L="[1 2]")
 
 
 # -- long texts -----------------------------------------------------------------------------------------------------

@@ -82,11 +82,6 @@ def test_numbers_are_exact(text: str, value: Fraction) -> None:
         assert read(file).plant.matrices.A[0, 0].fraction() == value
 
 
-def test_a_byte_order_mark_is_no_part_of_the_text() -> None:
-    assert read("\ufeff" + OBSERVER).plant.order == 2
-    assert parse('\ufeff{"a": 1}') == {"a": 1}
-
-
 @tabled
 def test_what_is_neither_toml_nor_json_is_refused_at_its_place(text: str, words: str) -> None:
     said = complaint(text)
@@ -141,13 +136,6 @@ def test_a_problem_of_one_task_and_of_several() -> None:
     assert one.solve()[0].answer == several.solve()[1].answer
 
 
-def test_title_source_and_ids_are_kept() -> None:
-    found = read('title = "Sérvo\\n≥ 1"\nsource = "S0"\nid = "S0-Ex4.1"\n' + OBSERVER)
-    assert (found.title, found.source, found.ids) == ("Sérvo\n≥ 1", "S0", ("S0-Ex4.1",))
-    assert read('id = ["a", "b"]\n' + OBSERVER).ids == ("a", "b")
-    assert (read(OBSERVER).title, read(OBSERVER).source, read(OBSERVER).ids) == ("", "", ())
-
-
 def test_another_task_can_be_run_on_the_same_file() -> None:
     tables = parse(SERVO.read_text(encoding="utf-8"))
     found = validate(tables, "observability")
@@ -155,17 +143,6 @@ def test_another_task_can_be_run_on_the_same_file() -> None:
     assert [task.name for task in validate({"plant": tables["plant"]}, "observability").tasks] == ["observability"]
     with pytest.raises(ProblemErrors, match="poles are missing"):
         validate({"plant": tables["plant"]}, "observer").solve()
-
-
-def test_symbols_are_declared_with_sign_and_letter() -> None:
-    found = read(
-        'task = "characteristic_polynomial"\n[symbols]\nomega = "positive"\n'
-        'b = { sign = "nonzero", latex = "b_0" }\nc = {}\n[plant]\nA = "[0 1; -omega^2 -b*c]"'
-    )
-    symbols = found.plant.symbols
-    assert symbols.signs == {"omega": "positive", "b": "nonzero", "c": "real"}
-    assert symbols.latex == {"b": "b_0"}
-    assert symbols.closed
 
 
 @pytest.mark.parametrize(
@@ -264,12 +241,6 @@ def test_any_member_of_the_family_meets_what_is_expected() -> None:
     said = expecting('L = "[1; 1]"', NOT_UNIQUE)
     assert len(said) == 1
     assert said[0].startswith("expect.L: expected [1; 1], found ")
-
-
-def test_other_fields_are_held_against_the_member_expected() -> None:
-    right = 'L = "[1; 2]"\nA = "[-1 0; -4 -5]"\nB_y = "[1; 2]"\nverdict = "yes"\nfixed_modes = "-1"'
-    assert expecting(right, NOT_UNIQUE) == []
-    assert [line[:9] for line in expecting(right.replace("-4 -5", "-4 -6"), NOT_UNIQUE)] == ["expect.A:"]
 
 
 def test_a_compensator_follows_the_members_expected() -> None:

@@ -38,12 +38,6 @@ def tokens(task: Task, keyword: str) -> list[str]:
 
 
 @pytest.mark.parametrize("task", TASKS, ids=lambda task: task.name)
-def test_every_task_has_a_question(task: Task) -> None:
-    key, *_ = sentences_for(task, frozenset())
-    assert key == f"ask {task.name}"
-
-
-@pytest.mark.parametrize("task", TASKS, ids=lambda task: task.name)
 def test_a_question_says_all_that_is_specified(task: Task) -> None:
     for keyword in task.keywords:
         for token in tokens(task, keyword):
@@ -85,13 +79,6 @@ def asked(
 @tabled
 def test_the_question_states_what_was_asked(task: str, specification: str, said: str) -> None:
     assert said in asked(specification, task)
-
-
-def test_the_region_names_its_parameters_and_its_margin() -> None:
-    text = 'task = "stability_region"\n[symbols]\nh1 = "real"\nh2 = "real"\n[specification]\n'
-    text += 'polynomial = "s^2 + h1 s + h2"\nmargin = 1\n'
-    said = " ".join(str(render(question_of(read(text)), "text")).split())
-    assert "For which h₁ and h₂ is the polynomial χ(s) stable? Every root must lie more than 1 to the left" in said
 
 
 def test_several_tasks_have_letters_and_given_gains_stand_among_the_data() -> None:

@@ -17,9 +17,9 @@ from symobs.ground.errors import InputError, ProblemErrors
 from symobs.pages.page.blocks import AnswerSpace
 from symobs.problem.sheet_file import PROBLEM, SHEET, is_sheet, read_sheet
 from symobs.problem.sheet_file import schema as sheet_schema
+from tests.kit import tabled
 from tests.support.paths import ROOT
 
-SHEETS = ROOT / "worked_examples" / "sheets"
 ONE = '[[problem]]\nfile = "one.toml"\n'
 PNG = b"\x89PNG\r\n\x1a\n" + bytes(20)
 
@@ -90,22 +90,6 @@ space = 2
     assert sheet.has_final_answers
 
 
-def test_what_is_left_out_is_not_there(folder: Path) -> None:
-    sheet = read_sheet(ONE, "sheet.toml", folder, lambda path: Path(path).read_text(encoding="utf-8"))
-    assert sheet.problems[0].points == ()
-    assert sheet.problems[0].space is None
-    assert not (sheet.header.has_name)
-    assert not (sheet.header.is_exam)
-    assert not (sheet.has_final_answers)
-
-
-def test_json_is_a_sheet_too(folder: Path) -> None:
-    text = '{"course": "C", "problem": [{"file": "one.toml", "points": 2.5}]}'
-    assert is_sheet(text)
-    sheet = read_sheet(text, "sheet.json", folder, lambda path: Path(path).read_text(encoding="utf-8"))
-    assert sheet.problems[0].points == (Fraction(5, 2),)
-
-
 # -- refused ----------------------------------------------------------------------------------------------------------
 
 
@@ -159,40 +143,11 @@ point = 1
     ]
 
 
-@pytest.mark.parametrize(
-    ("text", "said"),
-    [
-        ("", 'sheet.toml, problem: no problem is named; write [[problem]] and below it file = "problem.toml"'),
-        ("problem = 3", "problem[0]: a table is expected, but a number came; write [[problem]]"),
-        ("problem = []", "problem: no problem is named"),
-        ("course =\n", "sheet.toml, line 1, column 9: this is not TOML"),
-        (f"{ONE}points = []", "problem[0].points: the list is empty"),
-        (f"{ONE}points = [true]", "problem[0].points[0]: a number from 0 to 1000"),
-        (f"{ONE}points = 0.125", "problem[0].points: a number from 0 to 1000 with at most two decimals"),
-        (f"{ONE}points = 1e9", "problem[0].points: a number from 0 to 1000"),
-        (f"{ONE}points = [1, 2]", "problem[0].points: 2 values for 1 part;"),
-        (f"number = true\n{ONE}", "number: this is no number of a sheet"),
-        (f"{ONE}space = 26", "problem[0].space: a whole number of centimetres"),
-        (f'title = "\\u0007"\n{ONE}', "title: the character U+0007 cannot be printed"),
-        (f'convention = "nobody"\n{ONE}', "sheet.toml, convention: "),
-        (ONE * 201, "problem: 201 problems, more than 200; make several sheets"),
-        (f"logo = 3\n{ONE}", "logo: the path of a picture is expected, but a number came"),
-        (f'logo = "gone.png"\n{ONE}', "logo: gone.png: No such file or directory"),
-        (f'logo = "false.jpg"\n{ONE}', "logo: false.jpg is not a jpg, whatever it is called"),
-        (
-            f'logo = "../outside.png"\n{ONE}',
-            'logo: "../outside.png" lies outside the folder of the sheet; copy it there',
-        ),
-        (f'logo = "/etc/logo.png"\n{ONE}', "lies outside the folder of the sheet"),
-        (f'logo = "a b.png"\n{ONE}', "has characters that TeX cannot find a file by"),
-        (f'logo = "link.png"\n{ONE}', "lies outside the folder of the sheet"),
-        (f'logo = "large.png"\n{ONE}', "logo: the picture is larger than 2 MB; make it smaller"),
-    ],
-)
+@tabled
 def test_what_is_no_sheet_is_refused(text: str, said: str, folder: Path) -> None:
     (folder / "link.png").symlink_to(folder / ".." / "outside.png")
     (folder / "large.png").write_bytes(PNG + bytes(2 << 20))
-    errors = errors_of(text, folder)
+    errors = errors_of(text.replace("ONE\n", ONE), folder)
     assert len(errors) == 1
     assert said in errors[0]
 
@@ -216,13 +171,6 @@ def test_a_sheet_is_known_by_its_keys_even_where_it_is_broken(text: str) -> None
 )
 def test_anything_else_is_a_problem(text: str) -> None:
     assert not is_sheet(text)
-
-
-def test_no_worked_example_is_a_sheet_and_every_worked_sheet_is_one() -> None:
-    problems = [path.read_text(encoding="utf-8") for path in (ROOT / "worked_examples").glob("*.toml")]
-    assert len(problems) > 100
-    assert not any(map(is_sheet, problems))
-    assert all(is_sheet(path.read_text(encoding="utf-8")) for path in SHEETS.glob("*.toml"))
 
 
 def test_the_guide_names_every_key() -> None:
