@@ -204,8 +204,3 @@ def test_a_polynomial_in_one_parameter_has_a_sign_where_it_has_no_root(
         held = [x / 4 for x in map(Fraction, range(-20, 21)) if has_sign(x, declared)]
         if sign != "real":
             assert all(has_sign(value_at(polynomial, {"a": x}), sign) for x in held)
-
-
-def test_what_may_be_complex_has_no_sign() -> None:
-    assert sign_of(a**2 - a + 1, {}) == "real"  # nobody declared it
-    assert sign_of(a**2 - a * b + b**2, {"a": "real", "b": "real"}) == "real"

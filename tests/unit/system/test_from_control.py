@@ -37,13 +37,6 @@ def test_time_is_carried_over(dt: Any, expected: Any) -> None:
     assert plant.is_discrete == (expected != 0)
 
 
-def test_gains_agree_with_the_numbers_of_python_control() -> None:
-    system = control.ss([[0, 1, 0], [0, 0, 1], [-0.5, -1.25, 2]], [[0], [0], [1]], [[1, 0.5, 0]], [[0]])
-    ours = symobs.state_feedback(StateSpace.from_control(system), poles=[-1, -2, "-5/2"]).K
-    theirs = control.acker(system.A, system.B, [-1, -2, -2.5])
-    assert np.allclose(np.array(ours, dtype=float), theirs, rtol=1e-9)
-
-
 @pytest.mark.parametrize(
     "system",
     [
@@ -56,23 +49,3 @@ def test_what_is_no_system_of_finite_numbers_is_refused(system: Any) -> None:
         StateSpace.from_control(system)
     assert caught.value.where == "plant.A"
     assert caught.value.repair
-
-
-@pytest.mark.parametrize(
-    ("plant", "poles"),
-    [
-        (("[0 1; 0 -1]", "[0; 1]", "[1 0]"), [-10]),
-        (("[-7 1 15; -2 0 5; -2 0 4]", "[65; -5; 30]", "[1 0 -2]"), [-5, -6]),
-        (("[0 0 0 1; 0 0 1 0; 0 10.78 0 0; 0 -0.98 0 0]", "[0; 0; -1; 1]", "[1 0 0 0]"), [-20, "-20+20i", "-20-20i"]),
-    ],
-    ids=["S0-Ex4.4", "S0-MIN-GENC", "S2-EX-PEND"],
-)
-def test_the_gain_of_a_reduced_order_observer_is_the_one_that_place_finds(plant: Any, poles: Any) -> None:
-    """As S2 does it: `place` on the transposed pair (A22, A12) of T A T⁻¹."""
-    found = symobs.reduced_order_observer(symobs.StateSpace(*plant), poles=poles)
-    moved = np.array(found.T * found.plant.A * found.T.inv(), dtype=float)
-    numbers = [complex(str(pole).replace("i", "j")) for pole in poles]
-    gain = control.place(moved[1:, 1:].T, moved[:1, 1:].T, numbers).T
-    assert np.allclose(gain, np.array(found.L, dtype=float), rtol=1e-9)
-    closed = moved[1:, 1:] - np.array(found.L, dtype=float) @ moved[:1, 1:]
-    assert np.allclose(np.poly(closed), np.poly(numbers), rtol=1e-9)

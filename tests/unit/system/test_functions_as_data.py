@@ -51,14 +51,6 @@ def test_gains_place_the_poles_at_values_of_the_parameters(name: str) -> None:
         assert np.poly(A - L @ C) == pytest.approx([1, 7, 12], abs=1e-6)
 
 
-@pytest.mark.parametrize("name", ["tilted sensor", "pendulum", "slower", "roots"])
-def test_the_determinant_is_that_of_sympy(name: str) -> None:
-    given = plant(name)
-    found, stacked = symobs.observability(given), given.C.col_join(given.C * given.A)
-    for point in points(name):
-        assert float(found.determinant.subs(point)) == pytest.approx(float(stacked.det().subs(point)))
-
-
 def test_what_the_functions_are_decides() -> None:
     rotation = symobs.StateSpace("[0 1; -1 0]", None, "[cos(theta) sin(theta)]")
     assert (symobs.observability(rotation).verdict, symobs.observability(rotation).determinant) == ("yes", 1)
@@ -79,27 +71,12 @@ def test_the_case_is_where_the_function_vanishes() -> None:
         assert left.count(0) == 3  # sin² θ = 1/2 at both, sin θ = ± cos θ at one of them
 
 
-def test_pages_speak_of_the_functions() -> None:
-    text = symobs.state_feedback(plant("pendulum"), poles=[-1, -2]).to("text")
-    assert "cos(θ)" in text
-    assert "(cos(θ))² - 1 + (sin(θ))²" not in text
-    assert symobs.observer(plant("roots"), poles=[-1, -2]).to_latex().count(r"\sqrt[5]{") > 0
-
-
 def test_values_go_into_the_functions() -> None:
     design = symobs.observer(plant("pendulum"), poles=[-2, -3])
     assert sympy.Matrix([4, 1]) == design.at(theta="pi/3", k=2).L
     assert sympy.Matrix([[0, 1], [-1, 0]]) == symobs.StateSpace("[0 1; -cos(theta) 0]").substitute({"theta": 0}).A
     grid = design.evaluate({"theta": np.array([0.5, 1.0]), "k": np.array([1.0, 2.0])})["L"]
     assert grid[:, 1, 0] == pytest.approx([2 - np.cos(0.5), 2 - 2 * np.cos(1.0)])
-
-
-def test_sympy_s_objects_are_the_same() -> None:
-    theta, x = sympy.Symbol("theta"), sympy.Symbol("x")
-    given = symobs.StateSpace(sympy.Matrix([[0, 1], [-sympy.cos(theta), -sympy.cbrt(2)]]))
-    assert given == symobs.StateSpace("[0 1; -cos(theta) -2^(1/3)]")
-    root = sympy.CRootOf(x**3 - x - 1, 0)
-    assert symobs.StateSpace(sympy.Matrix([[root]])).A[0, 0] == root
 
 
 def test_constants_of_a_file_are_functions_or_roots() -> None:
@@ -180,8 +157,3 @@ def test_a_square_under_a_root_of_sympy_is_refused() -> None:
 def test_a_value_without_a_cosine_in_roots_is_refused() -> None:
     with pytest.raises(InputError, match="not written with square roots"):
         symobs.observability(plant("pendulum")).at(theta="pi/7")
-
-
-def test_the_dual_says_where_its_ranks_hold() -> None:
-    given = symobs.StateSpace("[0 1; -cos(a)-1 0]", None, "[1 k]", symbols={"a": "real", "k": "real"})
-    assert "we assume" in symobs.dual(given).to("text")

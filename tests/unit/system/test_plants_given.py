@@ -47,11 +47,6 @@ def test_a_pole_that_cancels_is_a_finding(function: object, dt: int, said: str) 
     assert re.search(said, text_of(function, dt))
 
 
-@pytest.mark.parametrize("function", ["1/(s+1) + 2/(s+1)", "2 (s+3)/(4 (s+1))", "1/25/((s+1/50)(s+3/50))", "0.5/(s+1)"])
-def test_nothing_is_said_of_a_function_in_lowest_terms(function: str) -> None:
-    assert "cancel" not in text_of(function)
-
-
 @pytest.mark.parametrize(
     "function", ["b(s+1)/(b(s+2))", b * (s**2 - 1) / (b * s**2 + b * s - 2 * b), [["b", "b"], ["b", "2*b"]]]
 )
@@ -88,22 +83,6 @@ SERVO = StateSpace("[0 1; 0 -1]", "[0; 1]", "[1 0]")
 def test_flat_lists_are_a_column_and_a_row(given: Any) -> None:
     plant = given()
     assert (plant.A, plant.B, plant.C, plant.D) == (SERVO.A, SERVO.B, SERVO.C, SERVO.D)
-
-
-def test_arrays_of_one_dimension_are_a_column_and_a_row() -> None:
-    numpy = pytest.importorskip("numpy")
-    plant = StateSpace(numpy.array([[0, 1], [0, -1]]), numpy.array([0, 1]), numpy.array([1, 0]), numpy.int64(0))
-    assert (plant.A, plant.B, plant.C, plant.D) == (SERVO.A, SERVO.B, SERVO.C, SERVO.D)
-
-
-def test_zero_is_the_feedthrough_of_any_size() -> None:
-    plant = StateSpace("[0 1; 0 -1]", "[0 1; 1 0]", "[1 0; 0 1]", 0)
-    assert sympy.zeros(2, 2) == plant.D
-
-
-def test_numbers_are_matrices_of_one_entry() -> None:
-    plant = StateSpace([[-1]], 1, 2, 3)
-    assert [m[0, 0] for m in (plant.A, plant.B, plant.C, plant.D)] == [-1, 1, 2, 3]
 
 
 # -- systems of other programs ----------------------------------------------------------------------------------------
@@ -163,13 +142,6 @@ def test_parameters_are_replaced_by_whatever_an_entry_may_be(key: object, value:
     plant = StateSpace("[p 1; 0 b]", "[0; p^2]", "[1 0]").substitute({key: value, "b": 3})
     assert sympy.Matrix([[sympy.Rational(-1, 2), 1], [0, 3]]) == plant.A
     assert sympy.Matrix([0, sympy.Rational(1, 4)]) == plant.B
-
-
-def test_parameters_are_replaced_by_expressions_in_others() -> None:
-    q = sympy.Symbol("q", positive=True)
-    plant = StateSpace(sympy.Matrix([[p, 1], [0, b]])).substitute({p: q + b})
-    assert sympy.Matrix([[q + b, 1], [0, b]]) == plant.A
-    assert StateSpace("[p 1; 0 b]").substitute({"p": "2 b"}).A[0, 0] == 2 * b
 
 
 @tabled

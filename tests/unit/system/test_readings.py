@@ -85,13 +85,6 @@ def test_two_symbols_of_one_name_are_refused(ask: Any) -> None:
         ask()
 
 
-def test_an_array_of_symbols_is_looked_into() -> None:
-    numpy = pytest.importorskip("numpy")
-    with pytest.raises(InputError, match="two different symbols are both called a"):
-        symobs.StateSpace(numpy.array([[0, one], [other, 0]]))
-    assert symobs.StateSpace(numpy.array([[0, positive_k], [1, 0]])).symbols.sign("k") == "positive"
-
-
 def test_a_dummy_is_called_by_its_name_and_comes_back_itself() -> None:
     plant = symobs.StateSpace(sympy.Matrix([[0, one], [1, 0]]), C=[[1, 0]])
     assert plant.A[0, 1] is one
@@ -144,19 +137,8 @@ def test_a_declared_sign_may_not_contradict_an_assumption(declared: str, assumed
             ask()
 
 
-def test_the_variable_of_the_polynomials_needs_no_assumption() -> None:
-    variable = Symbol("s", real=False)
-    assert sympy.Matrix([[-1]]) == symobs.StateSpace.from_transfer_function(1 / (variable + 1)).A
-
-
 @tabled
 def test_two_names_that_print_alike_are_refused(declared: dict[str, Any]) -> None:
     one_name, another = sorted(declared)
     with pytest.raises(InputError, match=f"{one_name} and {another} are printed alike; give one of them another name"):
         Symbols.of(declared)
-
-
-def test_undeclared_names_that_print_alike_are_refused() -> None:
-    with pytest.raises(InputError, match="x1 and x_1 are printed alike"):
-        symobs.StateSpace("[x1 1; 0 x_1]")
-    assert Symbols.of({"x1": "real", "x_1": {"latex": "y"}, "x2": "real"}).closed

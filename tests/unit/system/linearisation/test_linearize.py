@@ -9,9 +9,10 @@ import pytest
 import sympy as sp
 
 import symobs
-from symobs.ground.errors import InputError, ProblemErrors
+from symobs.ground.errors import InputError
 from symobs.problem import validate
 from symobs.problem.file_tables import parse
+from tests.kit import tabled
 
 PENDULUM = """
 task = "observer"
@@ -80,35 +81,7 @@ def test_in_discrete_time_the_states_keep_their_values() -> None:
         symobs.linearize(f, "x1", states="x1 x2", inputs="u", equilibrium={"x1": 2, "x2": 1, "u": -1}, dt=True)
 
 
-@pytest.mark.parametrize(
-    ("changes", "reason"),
-    [
-        (
-            {"equilibrium": {"theta": 1, "omega": 0, "u": 0}},
-            r"no equilibrium: f\(x, u\) is \[0; -g\*sin\(1\)/l\] there",
-        ),
-        ({"equilibrium": {"theta": 0, "omega": 0}}, "u has no value"),
-        ({"equilibrium": {"theta": 0, "omega": 0, "u": 0, "v": 1}}, "v is neither a state nor an input"),
-        ({"equilibrium": {"theta": "theta", "omega": 0, "u": 0}}, "does not depend on it"),
-        ({"equilibrium": "theta = 0"}, "a value for each state and input is expected"),
-        ({"states": ""}, "no state is named"),
-        ({"states": "theta, theta"}, "theta stands for something else, too"),
-        ({"states": "theta, s"}, "s stands for something else, too"),
-        ({"f": "[omega]"}, "f has 1 components, and there are 2 states"),
-        ({"f": "[omega 1; 1 2]"}, "a column is expected"),
-        ({"f": None}, "f is missing"),
-        ({"f": "[omega; sqrt(theta) + u]"}, "not differentiable there"),
-        ({"f": "[omega; 1/theta]"}, "not differentiable there"),
-        ({"symbols": {"g": "real", "l": "real"}, "f": "[omega; k*theta]"}, "k"),
-        (
-            {
-                "symbols": {"g": "real", "l": "real", "theta": "positive"},
-                "equilibrium": {"theta": -1, "omega": 0, "u": 0},
-            },
-            "is not positive",
-        ),
-    ],
-)
+@tabled
 def test_what_is_no_equilibrium_is_refused_with_the_reason(changes: dict[str, Any], reason: str) -> None:
     given: dict[str, Any] = {
         "f": "[omega; -g/l*sin(theta) + u]",
@@ -119,24 +92,3 @@ def test_what_is_no_equilibrium_is_refused_with_the_reason(changes: dict[str, An
     }
     with pytest.raises(InputError, match=reason):
         symobs.linearize(**{**given, **changes})
-
-
-def test_a_plant_is_given_once() -> None:
-    with pytest.raises(ProblemErrors, match="both f and A are given"):
-        validate(
-            parse(PENDULUM.replace("{point}", "{ theta = 0 }").replace("[plant]", '[plant]\nA = "[0]"'), "problem")
-        )
-
-
-@pytest.mark.parametrize("tangent", ["tan(delta)", "sin(delta)/cos(delta)"])
-def test_the_bicycle_of_vehicle_steering(tangent: str) -> None:
-    """K. J. Åström and R. M. Murray, Feedback Systems, 2008, Example 5.12: A = [0 v; 0 0], B = [a v/b; v/b]."""
-    plant = symobs.linearize(
-        f"[v*sin(a/b*delta + theta); v/b*{tangent}]",
-        "y",
-        states="y, theta",
-        inputs="delta",
-        equilibrium={"y": 0, "theta": 0, "delta": 0},
-        symbols=dict.fromkeys("abv", "positive"),
-    )
-    assert (str(plant.A), str(plant.B)) == ("Matrix([[0, v], [0, 0]])", "Matrix([[a*v/b], [v/b]])")

@@ -12,10 +12,6 @@ import sympy
 
 import symobs
 from symobs.ground.errors import InputError
-from symobs.problem import validate
-from symobs.problem.file_tables import parse
-from symobs.problem.question import question_of
-from symobs.tasks.result import render
 from tests.kit import tabled
 
 SERVO = ("[0 1; 0 -1]", "[0; 1]", "[1 0]")
@@ -79,18 +75,6 @@ def test_cosine_and_sine_of_one_angle_leave_no_sum_of_squares() -> None:
     assert list(design.at(a=2, theta="pi/3").L) == [1, 3]
 
 
-def test_the_three_kinds_of_design_know_what_vanishes() -> None:
-    plant = symobs.StateSpace("[0 1 0; 0 0 1; 0 0 0]", "[0; 0; 1]", "[1 0 0]")
-    pair = "s^2 + 2 cos(theta) s + cos(theta)^2 + sin(theta)^2"
-    reduced = symobs.reduced_order_observer(plant, polynomial=pair)
-    assert "sin" not in str(reduced.polynomial)
-    loop = symobs.compensator(
-        plant, control_polynomial=f"(s + 1) ({pair})", observer_polynomial=pair, observer="minimal"
-    )
-    assert "sin" not in str(loop.closed_loop_polynomial)
-    assert "sin θ" not in loop.to("text")
-
-
 @tabled
 def test_what_no_algebra_decides_is_refused_with_the_reason(keyword: str, value: str, reason: str) -> None:
     with pytest.raises(InputError, match=reason) as raised:
@@ -98,31 +82,10 @@ def test_what_no_algebra_decides_is_refused_with_the_reason(keyword: str, value:
     assert raised.value.where == f"specification.{keyword}"
 
 
-def test_a_transfer_function_has_functions_of_parameters() -> None:
-    a, theta = sympy.symbols("a theta", real=True)
-    s = sympy.Symbol("s", real=True)
-    text = symobs.StateSpace.from_transfer_function("(s + cos(theta))/(s^2 + 2 a cos(theta) s + a^2)")
-    same = symobs.StateSpace.from_transfer_function(
-        (s + sympy.cos(theta)) / (s**2 + 2 * a * sympy.cos(theta) * s + a**2)
-    )
-    assert text.matrices == same.matrices
-    A, B, C = text.A, text.B, text.C
-    found = (C * (sympy.Symbol("s") * sympy.eye(2) - A).inv() * B)[0]
-    point: dict[Any, float] = {"s": 0.7, "a": 1.3, "theta": 0.4}
-    wanted = (0.7 + np.cos(0.4)) / (0.7**2 + 2 * 1.3 * np.cos(0.4) * 0.7 + 1.3**2)
-    assert float(found.subs(point)) == pytest.approx(wanted)
-
-
 @tabled
 def test_a_transfer_function_that_is_no_plant_is_refused(given: str, reason: str) -> None:
     with pytest.raises(InputError, match=reason):
         symobs.StateSpace.from_transfer_function(given)
-
-
-def test_a_question_names_poles_with_functions() -> None:
-    text = 'task = "observer"\nplant = { A = "[0 1; 0 -1]", C = "[1 0]" }\n[symbols]\ntheta = "real"\n'
-    problem = validate(parse(text + '[specification]\npoles = ["-cosh(theta)", "-2"]\n'))
-    assert "Design an observer with the poles" in str(render(question_of(problem), "text"))
 
 
 #: Divisors that vanish for all values of T and θ.

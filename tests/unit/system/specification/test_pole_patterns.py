@@ -10,7 +10,6 @@ from typing import Any
 import numpy as np
 import pytest
 import scipy.signal  # type: ignore[import-untyped]
-import sympy
 
 import symobs
 from symobs.exact import Scalar
@@ -19,7 +18,7 @@ from symobs.problem import validate
 from symobs.problem.file_tables import parse
 from symobs.problem.question import question_of
 from symobs.system.specification import PolePattern
-from symobs.tasks.result import Document, render
+from symobs.tasks.result import render
 from tests.kit import tabled
 
 
@@ -57,34 +56,12 @@ def test_an_itae_polynomial_has_the_tabulated_poles(order: int) -> None:
     assert polynomial(order, {"itae": 1}) == pytest.approx(np.poly(poles).real.tolist(), abs=0.015)
 
 
-def test_a_pair_by_damping_and_frequency_beside_another_pole() -> None:
-    s = sympy.Symbol("s")
-    zeta, omega = sympy.symbols("zeta omega", positive=True)
-    poles = {"damping": zeta, "natural_frequency": omega, "others": ["-5"]}
-    found = symobs.state_feedback(integrators(3), poles=poles)
-    assert sympy.expand(found.polynomial - (s**2 + 2 * zeta * omega * s + omega**2) * (s + 5)) == 0
-    assert found.verdict == "yes"
-
-
 @pytest.mark.parametrize("overshoot", ["0.05", "0.163", "1e-4"])
 def test_a_pair_by_settling_time_and_overshoot_has_both_and_hardly_less(overshoot: str) -> None:
     _, twice, square = polynomial(2, f"settling_time = 2, overshoot = {overshoot}")
     sigma, omega = twice / 2, math.sqrt(square - twice**2 / 4)
     assert sigma == 4 / 2
     assert 0.97 * float(overshoot) < math.exp(-math.pi * sigma / omega) <= float(overshoot)
-
-
-def test_damping_and_settling_time_leave_no_choice() -> None:
-    assert polynomial(2, "damping = 1/2, settling_time = 2") == [1, 4, 16]
-
-
-def test_values_move_what_poles_are_to_do_and_their_page_is_checked() -> None:
-    observer = "damping = 0.8, settling_time = T"
-    plant = integrators(2, w="positive", T="positive")
-    design = symobs.compensator(plant, control_poles={"bessel": "w"}, observer_poles=observer)
-    there = design.at(w=3, T="1/2")
-    assert (list(there.K), list(there.L)) == ([27, 9], [16, 100])
-    assert "Bessel" in there.to("text")
 
 
 #: The filters of order two for ω₀ = e⁻ᵀ: s² + c ω₀ s + d ω₀².
@@ -145,20 +122,6 @@ def test_a_page_with_another_pattern_is_rejected() -> None:
         replace(found, kind=false).to("text")
 
 
-@pytest.mark.parametrize("damping", ["1/100", "1/2", "0.999"])
-def test_the_amplitude_of_a_pair_is_below_two_percent_at_the_settling_time(damping: str) -> None:
-    rates = -np.roots(polynomial(2, {"damping": damping, "settling_time": "3"})).real
-    assert rates.tolist() == pytest.approx([4 / 3] * 2)
-    assert max(np.exp(-rates * 3)) < 0.02
-
-
-def test_a_damping_that_signs_keep_below_one_has_its_page() -> None:
-    plant = integrators(2, a="positive")
-    found = symobs.state_feedback(plant, poles={"damping": "1/(1 + a)", "settling_time": "a"})
-    assert list(found.at(a=1).K) == [64, 8]  # ζ = 1/2, σ = 4
-    assert "less than 2 %" in found.to("text")
-
-
 def test_a_page_that_says_a_real_pair_settles_is_rejected() -> None:
     """Poles −2 ± √3: at 2 s the slower mode is still at 58.5 %."""
     found = symobs.state_feedback(integrators(2), polynomial="s^2 + 4 s + 1")
@@ -197,24 +160,6 @@ def test_in_discrete_time_they_are_refused() -> None:
         symobs.observer(symobs.StateSpace("[0 1; 0 1]", None, "[1 0]", dt=True), poles={"itae": 1})
 
 
-def test_floats_in_a_table_are_read_as_decimals_on_request() -> None:
-    poles = {"damping": 0.7, "natural_frequency": 4, "others": [-2.5]}
-    found = symobs.state_feedback(integrators(3), poles=poles, floats="decimal")
-    s = sympy.Symbol("s")
-    asked = (s**2 + sympy.Rational(28, 5) * s + 16) * (s + sympy.Rational(5, 2))
-    assert sympy.expand(found.polynomial - asked) == 0
-    assert "K = [40 - 0 30 - 0 8.1 - 0] = │ [40 30 8.1] │" in " ".join(found.to("text").split())
-    with pytest.raises(InputError, match=r"0\.7"):
-        symobs.state_feedback(integrators(3), poles=poles)
-
-
-def test_decimals_in_a_table_make_a_page_of_decimals() -> None:
-    plant = 'task = "state_feedback"\nplant = { A = "[0 1; 0 0]", B = "[0; 1]" }\n'
-    problem = validate(parse(f"{plant}specification.poles = {{ damping = 0.7, natural_frequency = 1.3 }}\n"))
-    document = Document("", "", problem.solve())
-    assert "s² + 1.82 s + 1.69" in str(render(document, "text"))
-
-
 @tabled
 def test_a_page_says_what_was_specified_and_nothing_else(
     poles: dict[str, str | int], says: str, is_silent_of: str
@@ -229,8 +174,3 @@ def test_what_is_wrong_with_a_pattern_is_said_with_its_repair(order: int, asked:
     with pytest.raises(InputError) as refused:
         symobs.state_feedback(integrators(order), **asked)
     assert said in str(refused.value)
-
-
-def test_a_table_of_a_file_is_read_as_a_text_too() -> None:
-    table = '{ damping = "1/2", natural_frequency = 2, others = ["-5", "-3"] }'
-    assert polynomial(4, table) == [1, 10, 35, 62, 60]  # (s² + 2s + 4)(s + 5)(s + 3)
