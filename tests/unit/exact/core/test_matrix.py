@@ -16,15 +16,12 @@ from symobs.exact import (
     Matrix,
     Scalar,
     apply_polynomial,
-    companion,
     echelon,
     from_coefficients,
-    hankel_of,
     independent_rows,
     kernel,
     rank,
     transfer,
-    unit_rows,
 )
 from symobs.exact.core.modular import Point, VanishingDenominator, random_prime
 from symobs.exact.linear_algebra.krylov import Krylov
@@ -39,7 +36,6 @@ from tests.support.problems.strategies import (
     parametric_entries,
     polynomials,
     rational_functions,
-    small_fractions,
     twin_number,
 )
 
@@ -118,12 +114,6 @@ class TestArithmetic:
             assert other.common_denominator() == x.common_denominator()
         assert x.within(wide.field).within(x.field) == x
 
-    def test_different_shapes_are_different_even_without_entries(self) -> None:
-        assert Matrix.zeros(0, 2) != Matrix.zeros(0, 3)
-        assert Matrix.zeros(2, 0) != Matrix.zeros(0, 2)
-        assert Matrix.zeros(2, 2) != Matrix.zeros(2, 3)
-        assert len({Matrix.zeros(0, 2), Matrix.zeros(2, 0), Matrix.zeros(0, 0), Matrix.zeros(0, 2)}) == 3
-
     def test_shapes_that_do_not_fit_are_refused(self) -> None:
         with pytest.raises(ValueError, match="cannot add"):
             Matrix.zeros(2, 2) + Matrix.zeros(2, 3)
@@ -133,29 +123,6 @@ class TestArithmetic:
             Matrix.of([[1, 2], [3]])
         with pytest.raises(ValueError, match="differ in height"):
             Matrix.block([[Matrix.zeros(1, 1), Matrix.zeros(2, 1)]])
-
-    @given(st.data())
-    @few
-    def test_blocks_and_selection_are_inverse(self, data: st.DataObject) -> None:
-        (x, X), (y, Y), (z, Z) = data.draw(shaped((2, 2), (2, 1), (1, 2)))
-        (corner, Corner), (empty, _) = data.draw(shaped((1, 1), (2, 0)))
-        whole = Matrix.block([[x, empty, y], [z, Matrix.zeros(1, 0), corner]])
-        assert same(whole, sympy.Matrix([[X, Y], [Z, Corner]]))
-        assert whole.select([0, 1], [0, 1]) == x
-        assert whole.select([2], [2]) == corner
-        assert whole.select([], [0, 1]).shape == (0, 2)
-
-    @given(st.data(), small_fractions)
-    @few
-    def test_substitution_is_that_of_sympy(self, data: st.DataObject, number: Fraction) -> None:
-        ((x, X),) = data.draw(shaped((2, 2)))
-        image = sympy.Rational(number.numerator, number.denominator)
-        symbol = sympy.Symbol("a")
-        if any(sympy.cancel(sympy.denom(sympy.cancel(entry)).subs(symbol, image)) == 0 for entry in X):
-            with pytest.raises(ZeroDivisionError):
-                x.substitute({"a": Scalar.of(number)})
-        else:
-            assert same(x.substitute({"a": Scalar.of(number)}), X.applyfunc(sympy.cancel).subs(symbol, image))
 
 
 class TestDeterminants:
@@ -181,16 +148,6 @@ class TestDeterminants:
         assert x @ x.inverse() == Matrix.identity(x.shape[0])
         assert x**-2 @ x**3 == x
 
-    @given(st.lists(st.integers(-(2**70), 2**70), min_size=9, max_size=9), st.integers(1, 2**40))
-    @few
-    def test_large_numbers(self, numbers: list[int], below: int) -> None:
-        rows = [numbers[:3], numbers[3:6], numbers[6:]]
-        x, X = Matrix.of([[Fraction(e, below) for e in row] for row in rows]), sympy.Matrix(rows) / below
-        assert same(x.determinant(), X.det())
-        assert same(x.characteristic_polynomial("s"), X.charpoly(SYMBOL).as_expr())
-        if X.det():
-            assert same(x.inverse(), X.inv())
-
     @pytest.mark.parametrize("order", [8, 9, 10])
     def test_determinants_on_both_sides_of_the_change_of_algorithm(self, order: int) -> None:
         generator = seeded(order)
@@ -207,29 +164,6 @@ class TestDeterminants:
         assert marked.determinant() == marked.T.determinant()
         singular = Matrix.block([[marked.select(range(order - 1), range(order))], [marked.select([0], range(order))]])
         assert singular.determinant().is_zero
-
-    @pytest.mark.parametrize("entry", [Scalar.of(0), Scalar.rational(3, 2), a, 1 / (a + b)], ids=str)
-    def test_one_by_one(self, entry: Scalar) -> None:
-        x = Matrix.of([[entry]])
-        assert x.determinant() == entry
-        assert x.adjugate() == Matrix.identity(1)
-        assert x.characteristic_polynomial("s") == s - entry
-        assert rank(x) == int(bool(entry))
-        assert kernel(x).shape == (1, 1 - rank(x))
-        if entry:
-            assert x.inverse()[0, 0] * entry == 1
-        else:
-            with pytest.raises(ZeroDivisionError):
-                x.inverse()
-
-    @pytest.mark.parametrize("names", [(), ("a",)])
-    def test_without_rows(self, names: tuple[str, ...]) -> None:
-        x = Matrix.zeros(0, 0).within(Field.of(names))
-        assert x.determinant() == 1
-        assert x.characteristic_polynomial("s") == 1
-        assert x.inverse() == x
-        assert rank(x) == 0
-        assert kernel(x).shape == (0, 0)
 
 
 class TestElimination:
@@ -264,10 +198,6 @@ class TestElimination:
         assert pivots == (1,)
         assert [v.entries for v in vectors] == [(Scalar.of(1), Scalar.of(0))]
 
-    def test_unit_rows(self) -> None:
-        assert unit_rows(3, (2, 0)) == Matrix.of([[0, 0, 1], [1, 0, 0]])
-        assert unit_rows(3, ()).shape == (0, 3)
-
 
 class TestPolynomialsOfMatrices:
     @given(square(3, columns=1), st.lists(polynomials(("a", "s"), degree=2, most=3), max_size=3))
@@ -279,27 +209,6 @@ class TestPolynomialsOfMatrices:
             powers = reversed(sympy.Poly(factor.expression, SYMBOL).all_coeffs())
             expected = sum((c * X**k for k, c in enumerate(powers)), sympy.zeros(*X.shape)) * expected
         assert same(apply_polynomial([f.scalar for f in factors], "s", x, v), expected)
-
-    @given(
-        st.lists(st.lists(st.fractions(-9, 9, max_denominator=9), min_size=3, max_size=3), min_size=4, max_size=4),
-        st.lists(st.lists(st.fractions(-9, 9, max_denominator=9), min_size=1, max_size=4), max_size=4),
-    )
-    @few
-    def test_horner_on_numbers(self, rows: list[list[Fraction]], factors: list[list[Fraction]]) -> None:
-        """Plain fractions on the other side; the matrix is read as what a user gives."""
-        *table, start = rows
-        vector = start
-        for factor in factors:
-            image = [Fraction(0)] * 3
-            for coefficient in factor:
-                image = [sum((a * b for a, b in zip(row, image, strict=True)), Fraction(0)) for row in table]
-                image = [entry + coefficient * old for entry, old in zip(image, vector, strict=True)]
-            vector = image
-        x, v = parse_matrix(table), parse_matrix([[entry] for entry in start])
-        assert x.rows == Matrix.of(table).rows
-        polynomials = [from_coefficients([Scalar.of(number) for number in factor], "s") for factor in factors]
-        found = apply_polynomial(polynomials, "s", x, v)
-        assert [entry.fraction() for entry in found.entries] == vector
 
     @given(
         st.lists(st.lists(st.fractions(-9, 9, max_denominator=9), min_size=4, max_size=4), min_size=6, max_size=6),
@@ -318,27 +227,6 @@ class TestPolynomialsOfMatrices:
         gain = krylov.placing(coefficients)
         assert gain == apply_polynomial([phi], "s", A, krylov.solve_last())
         assert (A - gain @ c).characteristic_polynomial("s") == phi
-
-    @given(square(4))
-    @few
-    def test_every_matrix_is_a_zero_of_its_characteristic_polynomial(self, drawn: list[Pair]) -> None:
-        x, _ = drawn[0]
-        chi = x.characteristic_polynomial("s")
-        for j in range(x.shape[0]):
-            assert apply_polynomial([chi], "s", x, Matrix.unit(x.shape[0], j)).is_zero
-
-    @given(st.lists(parametric_entries, min_size=1, max_size=4))
-    @few
-    def test_the_companion_and_its_hankel_matrix(self, coefficients: list[Twin]) -> None:
-        values = [twin.scalar for twin in coefficients]
-        A = companion(values)
-        phi = from_coefficients([Scalar.of(1), *values], "s")
-        assert A.characteristic_polynomial("s") == phi
-        order = len(values)
-        columns = [Matrix.unit(order, order - 1)]
-        for _ in range(order - 1):
-            columns.append(A @ columns[-1])
-        assert Matrix.block([columns]) @ hankel_of(values) == Matrix.identity(order)
 
 
 class TestKrylov:

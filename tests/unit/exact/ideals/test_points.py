@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-import pytest
 import sympy
 from hypothesis import assume, example, given, settings
 from hypothesis import strategies as st
 
 from symobs.exact import Ideal, Scalar, apart_from_zero
-from symobs.exact.ideals.conjugate_points import conjugate_points, shortened
-from symobs.exact.ideals.ideal import FEW
+from symobs.exact.ideals.conjugate_points import conjugate_points
 from symobs.formula.expression import parse_scalar
 from tests.kit import tabled
 
@@ -77,19 +75,6 @@ def test_no_point_is_no_function() -> None:
     assert Ideal.of((b**9 - 2, a - b, a**2 + 1)).is_whole
 
 
-def test_an_ideal_of_many_points_is_kept_by_a_coordinate() -> None:
-    p = b**9 - 4 * b + 2
-    ideal = Ideal.of((p, a - b**3))
-    assert (ideal.coordinate, ideal.dimension) == ("b", 9)
-    assert 9 > FEW >= Ideal.of((b**2 - 2, a - b)).generators[-1].degree("b")
-    assert a**3 - 4 * b + 2 in ideal
-    assert a not in ideal
-    assert ideal.extended_by(apart_from_zero(a - b)).coordinate == "b"
-    assert ideal.extended_by(a - b).is_whole
-    assert c * (a - b**3) in ideal
-    assert c * a not in ideal
-
-
 @settings(max_examples=10)
 @given(curves(), curves(), curves())
 @example(a**2 + b, a**3 * b + a**2 - 2, 3 * a * b**2 - a**3 + 1)
@@ -101,35 +86,6 @@ def test_a_basis_is_the_reduced_one(one: Scalar, other: Scalar, third: Scalar) -
     found = sympy.groebner([in_sympy(each) for each in (one, other, third)], *symbols, order="grevlex")
     wanted = {sympy.Poly(each, *symbols).monic().as_expr() for each in found.exprs}
     assert monic(ideal.generators, *ideal.field.names) == wanted
-
-
-@pytest.mark.parametrize(
-    ("equations", "points"),
-    [
-        ((a**3 - a - 1, (b - a**2) * (b + 1), (b - a**2) * (b**2 + a)), True),
-        ((2 * b**2 - 1, (a - b) * (a**2 + 3), (a - b) * (a**3 + b)), True),
-        ((a**3 - 2, (b**2 - a) * (b + 1), (b**2 - a) * (b - 3)), False),
-        ((a**3 - 2, (b - a) * (b + 1), (b + a) * (b - 3)), False),
-    ],
-)
-def test_equations_of_one_name_have_their_common_divisor(equations: tuple[Scalar, ...], points: bool) -> None:  # noqa: FBT001
-    """By Euclid's algorithm at the points of the first equation: a value, a polynomial of higher degree, or 1."""
-    found = conjugate_points(equations)
-    left = found[1] if found is not None else shortened(equations)
-    assert left is not None
-    assert basis(list(left), "a", "b") == basis(list(equations), "a", "b")
-    assert (found is not None and left[0] != 1) == points
-    assert len(left) <= 2
-
-
-@pytest.mark.parametrize("equations", [(b**2 - a**3,), (a**7 - a - 1, b - a**2), ()])
-@pytest.mark.parametrize("apart", [(a - 1,), (b, a**2 + b**2 + 3)])
-def test_what_is_not_0_adds_nothing_to_a_prime_ideal(equations: tuple[Scalar, ...], apart: tuple[Scalar, ...]) -> None:
-    relations = (*equations, *map(apart_from_zero, apart))
-    short, whole = Ideal.where(relations), Ideal.of(relations)
-    assert set(short.field.names) <= {"a", "b"}
-    for value in (a * b, b**2 - a**3, (b**2 - a**3) * (a + 2), a**8 - a**2 - a, b**4 - a**8, a**8 - b - a):
-        assert (value in short) == (value in whole)
 
 
 def test_what_is_not_0_matters_where_an_ideal_is_not_prime() -> None:

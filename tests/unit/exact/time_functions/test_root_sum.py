@@ -9,9 +9,8 @@ import pytest
 import sympy
 
 import symobs
-from symobs.exact import EIGENVALUE, AlgebraicExtension, Scalar
+from symobs.exact import EIGENVALUE, Scalar
 from symobs.exact.core.generators import derivative, substitute
-from symobs.exact.sympy_bridge.conversion import scalar_to_sympy
 from symobs.exact.time_functions.root_sum import RootSum
 from tests.kit import tabled
 
@@ -64,24 +63,8 @@ def test_values_and_rates_of_the_sums() -> None:
     assert [derivative(value) for value in sums] == [sums[1], sums[2], -2 * sums[2] - sums[1] - 3 * sums[0]]
 
 
-def test_traces_are_newtons_sums() -> None:
-    """With e₁ = −2, e₂ = 1 the sums of powers of the roots are p₁ = −2 and p₂ = e₁² − 2 e₂ = 2."""
-    field = AlgebraicExtension(LAMBDA**3 + 2 * LAMBDA**2 + LAMBDA + 3, EIGENVALUE)
-    assert [field.trace(LAMBDA**k) for k in range(3)] == [Scalar.of(3), Scalar.of(-2), Scalar.of(2)]
-    assert field.norm(LAMBDA) == Scalar.of(-3)
-
-
 def test_two_equal_roots_have_no_such_sum() -> None:
     """At a = 0 the sum over the roots of λ³ + λ² + a loses its meaning: two of its roots meet."""
     value = RootSum.of(LAMBDA**3 + LAMBDA**2 + Scalar.symbol("a"), 0, T)
     with pytest.raises(ZeroDivisionError):
         substitute(value, {"a": Scalar.of(0)})
-
-
-def test_a_sum_is_sympy_text() -> None:
-    value = RootSum.of(LAMBDA**3 + LAMBDA + 1, 1, T)
-    lam = sympy.Symbol("lam")
-    assert scalar_to_sympy(value, {}) == sympy.RootSum(
-        lam**3 + lam + 1, sympy.Lambda(lam, lam * sympy.exp(lam * t) / (3 * lam**2 + 1))
-    )
-    assert str(value) == "RootSum(lam**3 + lam + 1, Lambda(lam, lam*exp(t*lam)/(3*lam**2 + 1)))"

@@ -14,21 +14,14 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import symobs
-from symobs import problem
 from symobs.exact import Matrix, Scalar
-from symobs.exact.core.generators import derivative, function, identities, normal_form, square_root, substitute
-from symobs.exact.core.rational_matrix import measures
+from symobs.exact.core.generators import derivative, function
 from symobs.exact.time_functions.quasipolynomial import Key, Quasipolynomial, quasi_of
 from symobs.ground.errors import CertificateRejected, DerivationRejected, InputError, ShapeMismatch
 from symobs.proof.derivation import CaseStep, Section
 from symobs.tasks.result.conversions import to_sympy
 from tests.kit import tabled
-from tests.support.paths import ROOT
-from tests.support.problems.problems_in_time import PROBLEMS_IN_TIME
-from tests.support.sampling import every
 
-FOLDER = ROOT / "worked_examples"
-POINT = {"T": "7/5", "omega": "3/2", "b": "4/5", "x10": "3", "x20": "-2", "q": "5/7", "r": "2/3", "a": "6/5"}
 t, T = sympy.symbols("t T")
 mpmath.mp.dps = 30
 
@@ -61,103 +54,6 @@ def integral(f: Any, end: Any, rows: int, columns: int) -> Any:
     return found
 
 
-def gramian_of(A: Any, C: Any, end: Any) -> Any:
-    return integral(lambda time: (C * expm(A, time)).T * (C * expm(A, time)), end, A.rows, A.rows)
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("name", every(2, sorted(PROBLEMS_IN_TIME)))
-def test_worked_examples_against_quadrature(name: str) -> None:
-    found = problem.read((FOLDER / f"{name}.toml").read_text(encoding="utf-8"), name)
-    for result in found.solve():
-        m = result.plant.matrices
-        A = numeric(m.A, POINT)
-        C = numeric(m.C, POINT) if m.has_output else A
-        horizon = PROBLEMS_IN_TIME[name].horizon.subs(T, sympy.Rational(POINT["T"]))
-        end = mpmath.inf if horizon == sympy.oo else mpmath.mpf(sympy.N(horizon, 30))
-        if result.task == "matrix_exponential":
-            for time in ("1/3", "2"):
-                value = numeric(result.fields["matrix"], POINT | {"t": time})
-                assert close(value, expm(A, mpmath.mpf(Fraction(time).numerator) / Fraction(time).denominator))
-        elif result.task == "gramian":
-            value = numeric(result.fields["matrix"], POINT)
-            if found.specification["horizon"] != "inf":
-                W = gramian_of(A, C, end)
-                assert close(value, W)
-                assert abs(mpmath.det(W) - numeric(result.fields["determinant"], POINT)) < mpmath.mpf(10) ** -15
-            else:
-                assert close(A.T * value + value * A, -C.T * C)
-        elif result.task == "initial_state":
-            for time in ("1/3", "2"):
-                assert close(output_at(result, A, C, time), numeric(result.answer["output"], POINT | {"t": time}))
-        elif result.task == "initial_state_covariance":
-            assert close(numeric(result.fields["covariance"], POINT), covariance_of(result, A, C, end))
-
-
-def output_at(result: Any, A: Any, C: Any, text: str) -> Any:
-    """Return C (e^{At} x₀ + ∫ e^{A(t−s)} B u ds) for a constant input."""
-    B, u, time = (
-        numeric(result.plant.matrices.B, POINT),
-        numeric(result.answer["input"], POINT),
-        mpmath.mpf(sympy.Rational(text)),
-    )
-    x0 = mpmath.matrix([numeric(x, POINT) for x in result.fields["x0"]])
-    forced = integral(lambda s: expm(A, time - s) * B * u, time, A.rows, 1)
-    return C * (expm(A, time) * x0 + forced)
-
-
-def covariance_of(result: Any, A: Any, C: Any, end: Any) -> Any:
-    """Return W⁻¹ (∫ e^{Aᵀt} Cᵀ R C e^{At} dt + ∫ V Q Vᵀ dt) W⁻¹ with V(σ) = e^{Aᵀσ} W(end − σ) B, by quadrature."""
-    mpmath.mp.dps = 18
-    B, Q, R = (numeric(value, POINT) for value in (result.plant.matrices.B, result.answer["Q"], result.answer["R"]))
-    W = gramian_of(A, C, end)
-    noise = integral(lambda s: expm(A, s).T * C.T * R * C * expm(A, s), end, A.rows, A.rows)
-
-    def driven(s: Any) -> Any:
-        V = expm(A, s).T * gramian_of(A, C, end - s) * B
-        return V * Q * V.T
-
-    mpmath.mp.dps = 16
-    nodes = 24
-    total = mpmath.matrix(A.rows, A.rows)
-    for node, weight in zip(*legendre(nodes), strict=True):  # one rule for all entries: the integrand is a quadrature
-        total += driven(end * (node + 1) / 2) * weight * end / 2
-    mpmath.mp.dps = 30
-    inverse = W**-1
-    return inverse * (noise + total) * inverse
-
-
-def legendre(count: int) -> tuple[list[Any], list[Any]]:
-    """Return nodes and weights of the Gauss-Legendre rule on [-1, 1]."""
-    x = sympy.Symbol("x")
-    P = sympy.Poly(sympy.legendre(count, x), x)
-    nodes = [mpmath.mpf(str(root)) for root in P.nroots(n=25)]
-    slopes = [mpmath.mpf(str(sympy.N(P.diff(x).eval(sympy.Float(str(n), 25)), 25))) for n in nodes]
-    return nodes, [2 / ((1 - n**2) * slope**2) for n, slope in zip(nodes, slopes, strict=True)]
-
-
-@pytest.mark.parametrize(
-    ("A", "C", "output", "wanted"),
-    [
-        ("[0 1; 0 -1]", "[1 0]", "1", "T⁴/12"),  # the catalogue: T² (tr W)²/det W → 12
-        ("[-1/25 1/100; 1/25 -1/25]", "[0 1]", "0", "T⁴/7500"),  # det(𝒪)²/12 = (1/25)²/12
-        ("[0 1 0; 0 0 1; 0 0 0]", "[1 0 0]", "t^2", "T⁹/8640"),  # of 1, t, t²/2: a quarter of Hilbert's determinant
-        ("[0 1; -1 0]", "[1 0; 0 1]", "[cos(t); -sin(t)]", None),
-    ],
-)
-def test_how_ill_conditioned_a_short_horizon_is(A: str, C: str, output: str, wanted: str | None) -> None:
-    page = symobs.initial_state(symobs.StateSpace(A, None, C), output=output).to("text")
-    assert ("short horizon" in page) == (wanted is not None)
-    assert wanted is None or f"begins with {wanted}," in " ".join(page.split())
-
-
-def test_the_covariance_of_four_integrators() -> None:
-    """The variance of the first state is n^2 r/T for n integrators in a row: the inverse of Hilbert's matrix begins so."""
-    chain = symobs.StateSpace("[0 1 0 0; 0 0 1 0; 0 0 0 1; 0 0 0 0]", None, "[1 0 0 0]", symbols={"r": "positive"})
-    result = symobs.initial_state_covariance(chain, R="r")
-    assert result.covariance[0, 0] == 16 * sympy.Symbol("r") / T
-
-
 @tabled
 def test_what_stays_open_about_a_covariance_is_named(A: str, C: str, asked: str) -> None:
     plant = symobs.StateSpace(A, None, C, symbols={"k": "positive", "c": "positive"})
@@ -179,15 +75,6 @@ def test_exponentials_of_random_matrices(rows: list[list[int]]) -> None:
     found = numeric(result.fields["matrix"], {"t": "3/4"})
     assert close(found, expm(mpmath.matrix(rows), mpmath.mpf(3) / 4))
     assert not result.matrix.has(sympy.I)
-
-
-def test_a_kernel_of_several_dimensions_is_told() -> None:
-    """Two or three hidden states are columns of one matrix, not one vector that changes its value."""
-    plants = (("[1 1/10; 1/10 1]", "[0 0]"), ("[-1 0 0; 0 -1 0; 0 0 -2]", "[1 0 0]"))
-    for A, C in plants:
-        for horizon in ("inf", "T"):
-            result = symobs.gramian(symobs.StateSpace(A, C=C), horizon=horizon)
-            assert "N = " in result.to("text")
 
 
 @pytest.mark.slow
@@ -221,50 +108,6 @@ def vanishes(value: Any) -> bool:
 
 
 # -- branches ----------------------------------------------------------------------------------------------------------
-
-PENDULUM = {"omega": "positive", "b": "nonnegative", "T": "positive"}
-
-
-def test_every_damping_of_the_pendulum_is_the_formula_of_the_source() -> None:
-    """M_T = (W - e^{A^T T} W e^{AT})/(2b) with W = diag(w^2, 1), at points of every branch, by mpmath."""
-    result = symobs.gramian(symobs.StateSpace("[0 1; -omega^2 -b]", C="[0 1]", symbols=PENDULUM), horizon="T")
-    branches = {tuple(map(str, case.when)): case.result for case in result.case_tree}
-    assert set(branches) == {("b**2 - 4*omega**2 > 0",), ("b == 0",), ("b - 2*omega == 0",)}
-    for b, w, branch in (
-        ("4/5", "3/2", result),
-        ("5", "3/2", branches["b**2 - 4*omega**2 > 0",]),
-        ("3", "3/2", branches["b - 2*omega == 0",]),
-    ):
-        A = mpmath.matrix([[0, 1], [-(mpmath.mpf(sympy.Rational(w)) ** 2), -mpmath.mpf(sympy.Rational(b))]])
-        weight = mpmath.diag([mpmath.mpf(sympy.Rational(w)) ** 2, 1])
-        flow = expm(A, mpmath.mpf(7) / 5)
-        wanted = (weight - flow.T * weight * flow) / (2 * mpmath.mpf(sympy.Rational(b)))
-        assert branch is not None
-        found = numeric(branch.fields["matrix"], {"omega": w, "b": b, "T": "7/5"})
-        assert close(found, wanted)
-    at_zero = branches["b == 0",]
-    assert at_zero is not None
-    free = at_zero.matrix
-    omega = sympy.Symbol("omega")
-    wanted = sympy.Matrix(
-        [
-            [omega**2 * T / 2 - omega / 4 * sympy.sin(2 * omega * T), -(sympy.sin(omega * T) ** 2) / 2],
-            [-(sympy.sin(omega * T) ** 2) / 2, T / 2 + sympy.sin(2 * omega * T) / (4 * omega)],
-        ]
-    )
-    assert (free - wanted).applyfunc(sympy.simplify).is_zero_matrix
-
-
-def test_declared_signs_decide_the_branch() -> None:
-    up = symobs.matrix_exponential(
-        symobs.StateSpace("[0 1; omega^2 -b]", symbols={"omega": "positive", "b": "positive"})
-    )
-    assert (up.verdict, up.case_tree) == ("yes", ())
-    assert up.matrix.has(sympy.cosh)
-    down = symobs.matrix_exponential(
-        symobs.StateSpace("[0 1; -omega^2 -b]", symbols={"omega": "positive", "b": "positive"})
-    )
-    assert (down.verdict, len(down.case_tree)) == ("conditional", 2)
 
 
 def test_a_discriminant_that_cannot_be_negative_is_not_called_negative() -> None:
@@ -398,13 +241,6 @@ def test_gramians_over_all_time() -> None:
         assert result.derivation.check() is not None
 
 
-def test_the_controllability_gramian_is_the_dual_one() -> None:
-    one = symobs.gramian(symobs.StateSpace("[0 1; -2 -3]", B="[0; 1]"), of="controllability", horizon="T")
-    other = symobs.gramian(symobs.StateSpace("[0 -2; 1 -3]", C="[0 1]"), horizon="T")
-    assert one.matrix == other.matrix
-    assert one.derivation.check() is not None
-
-
 # -- initial states ------------------------------------------------------------------------------------------------------
 
 
@@ -490,50 +326,7 @@ def test_functions_of_time_keep_their_frequencies() -> None:
             quasi_of(text)
 
 
-def test_generators_know_each_other() -> None:
-    time = Scalar.symbol("t")
-    values = [
-        function("exp", time * -2),
-        function("exp", time / -3),
-        function("cos", time * 2),
-        function("sin", time * 3),
-    ]
-    meanings, relations = identities(values)
-    numbers = {t: sympy.Rational(2, 7)}
-    for value in values:
-        meaning = meanings.get(str(value), value)
-        assert abs(sympy.N((to_sympy(value, {}) - to_sympy(meaning, {})).subs(numbers), 30)) < 1e-20
-    assert all(abs(sympy.N(to_sympy(r, {}).subs(numbers), 30)) < 1e-20 for r in relations)
-    assert substitute(values[0], {"t": Scalar.of(0)}).is_one
-    root = square_root(Scalar.of(12))
-    assert normal_form(root * root) == Scalar.of(12)
-    assert normal_form(1 / (root + 1)) * 11 == normal_form(root - 1)
-
-
 # -- lengths -------------------------------------------------------------------------------------------------------------
-
-PLANTS = (
-    "[0 1; 0 -1]",
-    "[0 1; -1 0]",
-    "[0 1; -1 -1/2]",
-    "[0 1; 2 0]",
-    "[0 -1 0; 1 0 1; 0 0 0]",
-    "[2 1 0; 0 2 1; 0 0 2]",
-    "[1 2; 3 0]",
-    "[0 1 0; 0 0 1; -2 -4 -3]",
-    "[0 1 0 0; -2 0 1 0; 0 0 0 1; 1 0 -2 0]",
-    "[0 1 0 0; 0 0 -1 0; 0 0 0 1; 0 0 11 0]",
-)
-
-
-def test_lengths_against_sympy() -> None:
-    """Print the LaTeX lengths of ten exponentials beside SymPy's; ours are never more than half as long again."""
-    for text in PLANTS:
-        result = symobs.matrix_exponential(symobs.StateSpace(text))
-        ours = len(sympy.latex(result.matrix))
-        theirs = len(sympy.latex(sympy.Matrix(result.plant.A * t).exp()))
-        print(f"{text}: {ours}, SymPy {theirs}")  # noqa: T201 - shown by pytest -s
-        assert 2 * ours <= 3 * theirs
 
 
 @tabled
@@ -550,27 +343,7 @@ def test_a_horizon_that_may_be_zero_is_said_to_be_positive(asked: dict[str, Any]
         assert "Throughout, we assume $T>0$." in result.to_latex()
 
 
-def test_a_positive_horizon_needs_no_words() -> None:
-    result = symobs.gramian(symobs.StateSpace("[0 1; 0 0]", C="[1 0]", symbols={"T": "positive"}), horizon="T")
-    assert not result.holds_where
-    assert "Throughout" not in result.to_latex()
-
-
 # -- exponents and angles far apart ----------------------------------------------------------------------------------
-
-
-@given(st.lists(st.fractions(Fraction(1, 1000), 10**7, max_denominator=10**5), min_size=1, max_size=5), st.data())
-@settings(deadline=None)
-def test_numbers_are_sums_of_few_measures(numbers: list[Fraction], data: st.DataObject) -> None:
-    """Each number is its sum, and a number beside its double or the sum of two brings no further measure."""
-    few = len(set(numbers))
-    some = st.sampled_from(numbers)
-    numbers = sorted({*numbers, 2 * data.draw(some), data.draw(some) + data.draw(some)})
-    sums = measures(numbers, 30)
-    assert all(sum(step * count for step, count in sums[number]) == number for number in numbers)
-    assert len({step for parts in sums.values() for step, _ in parts}) <= few
-    assert all(step > 0 for parts in sums.values() for step, _ in parts)
-    assert all(sums[n] == [(step, 2 * count) for step, count in sums[n / 2]] for n in numbers if n / 2 in sums)
 
 
 FAR_APART = (
@@ -592,11 +365,3 @@ def test_exponents_and_angles_far_apart(solve: Any) -> None:
     assert result.verdict == "yes"
     assert result.to_json()
     assert result.to_latex()
-
-
-def test_relations_of_high_degree_are_kept() -> None:
-    """(e^t)^2000 − e^{2000t} is 0 though e^t and e^{2000t} are letters of their own where no power is so high."""
-    high, one = function("exp", Scalar.symbol("t") * 2000), function("exp", Scalar.symbol("t"))
-    assert identities([high + one])[0] == {}
-    difference = one**2000 - high
-    assert difference.substitute(identities([difference])[0]).is_zero
