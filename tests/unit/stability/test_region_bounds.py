@@ -11,7 +11,7 @@ import pytest
 from symobs.exact import Scalar
 from symobs.stability.criteria.stability_conditions import is_stable_where, stable_where
 from symobs.stability.inequalities.sign_cases import sign_cases
-from symobs.stability.inequalities.solved_bounds import box, solved
+from symobs.stability.inequalities.solved_bounds import solved
 from tests.support.independent_algebra.plain import has_sign, random_fraction, seeded, value_at
 
 if TYPE_CHECKING:
@@ -19,7 +19,6 @@ if TYPE_CHECKING:
 
 s, x, y, z, a, b, c = (Scalar.symbol(name) for name in ("s", "x", "y", "z", "a", "b", "c"))
 h1, h2 = Scalar.symbol("h1"), Scalar.symbol("h2")
-one, zero = Scalar.of(1), Scalar.of(0)
 AB = {"a": "positive", "b": "positive"}
 
 
@@ -51,51 +50,6 @@ def test_conditions_solved_for_a_parameter(
 ) -> None:
     found = solved(conditions, signs, ["h1", "h2"])
     assert [f"{left} {operator} {right}" for left, operator, right in found] == expected
-
-
-def test_two_conditions_do_not_vouch_for_each_other() -> None:
-    # each of a x > 1 and b x > 1 makes x positive, but a > 1/x and b > 1/x hold for x < 0 too
-    conditions = [a * x - 1, b * x - 1]
-    found = solved(conditions, AB, ["a", "b"])
-    assert [f"{left} {operator} {right}" for left, operator, right in found] == ["a > 1/x", "x > 1/b"]
-    for point in points(AB, 400):
-        if point["x"]:
-            assert all(value_at(l - r, point) > 0 for l, _, r in found) == positive_at(conditions, point)
-
-
-def test_a_box() -> None:
-    found = box([1 - h1, b + h2], ["h1", "h2"], AB)
-    assert found is not None
-    assert (found.lower, found.upper) == ({"h1": (), "h2": (-b,)}, {"h1": (one,), "h2": ()})
-    assert not found.bounded
-    assert found.needs == ()
-    closed = box([1 - h1, b + h1, a * h2 + 1, 1 - a * h2, c], ["h1", "h2"], AB)
-    assert closed is not None
-    assert closed.bounded
-    assert closed.needs == (c,)
-    assert closed.sample == {"h1": (1 - b) / 2, "h2": zero}
-    apart = box([c - h1, h1], ["h1"], {})
-    assert apart is not None
-    assert apart.needs == (c,)
-    assert apart.sample == {"h1": c / 2}
-    several = box([h1 - a, h1 - b], ["h1"], AB)
-    assert several is not None
-    assert several.lower == {"h1": (a, b)}
-    assert several.sample is None
-    for bound, expected in ((h1 - c, c + 1), (c - h1, c - 1)):
-        half = box([bound], ["h1"], {})
-        assert half is not None
-        assert half.sample == {"h1": expected}
-    left = box([1 + h1], ["h1"], {"h1": "negative"})
-    assert left is not None
-    assert left.sample == {"h1": Scalar.rational(-1, 2)}
-    assert box([h1 * h2**2 + h1 - 1], ["h1", "h2"], {}) is None
-    assert box([1 - h1 * h2], ["h1", "h2"], {}) is None
-    assert box([c * h1 - 1], ["h1"], {}) is None
-    assert box([1 - h1**2], ["h1"], {}) is None
-    inside = box([1 - h1], ["h1"], {"h1": "positive"})
-    assert inside is not None
-    assert inside.sample == {"h1": Scalar.rational(1, 2)}
 
 
 @pytest.mark.slow

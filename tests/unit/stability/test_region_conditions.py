@@ -18,11 +18,11 @@ from hypothesis import strategies as st
 from symobs.exact import Scalar, from_coefficients
 from symobs.formula.expression import parse_scalar
 from symobs.stability.criteria.stability_conditions import condition_lists, stable_where
+from tests.kit import tabled
 from tests.support.independent_algebra.plain import (
     coefficients_at,
     has_sign,
     is_hurwitz,
-    is_schur,
     random_fraction,
     seeded,
     value_at,
@@ -37,7 +37,6 @@ s = Scalar.symbol("s")
 a, b, h1, h2, h3 = (Scalar.symbol(name) for name in ("a", "b", "h1", "h2", "h3"))
 NAMES = ["a", "b", "omega", "rho", "J", "L", "R", "K", "M", "m", "l", "g", "t1", "t2", "t3"]
 NAMES += [f"{letter}{k}" for letter in "hk" for k in range(1, 8)]
-ALL_POSITIVE = {name: "positive" for name in NAMES if name[0] not in "hk"}
 
 
 def read(text: str) -> Scalar:
@@ -57,52 +56,10 @@ def all_positive(values: Sequence[Scalar], point: Mapping[str, Fraction]) -> boo
     return all(value_at(value, point) > 0 for value in values)
 
 
-def shifted(coefficients: list[Fraction], by: Fraction) -> list[Fraction]:
-    """The coefficients of p(s + by), by Horner's scheme."""
-    found = list(coefficients)
-    for end in range(len(found), 1, -1):
-        for k in range(1, end):
-            found[k] += by * found[k - 1]
-    return found
-
-
 # -- answers known from elsewhere --------------------------------------------------------------------------------------
 
-DOWN = {"b": "positive", "omega": "positive"}
 #: Coefficients, signs, and the conditions found by QEPCAD, z3 or by hand; each must be > 0.
-KNOWN: dict[str, tuple[str, Mapping[str, str], list[str]]] = {
-    "pendulum hanging": ("1, b + h2, omega^2*(1 - h1)", DOWN, ["1 - h1", "h2 + b"]),
-    "pendulum upright": ("1, b + h2, omega^2*(h1 - 1)", DOWN, ["h1 - 1", "h2 + b"]),
-    "hyperbola": ("1, h1, h2, 1", {}, ["h1", "h1*h2 - 1"]),
-    "bilinear": ("1, 1 + h1, 2 + h2, 1 + h1*h2", {}, ["2*h1 + h2 + 1", "h1*h2 + 1"]),
-    "quartic": ("1, 2, 3 + h1, 2 + h2, 1 + h1", {}, ["h1 + 1", "2*h1*h2 - h2^2 + 2*h2 + 4"]),
-    "branch": ("1, 3, h1, h2, 1", {}, ["h2", "3*h1*h2 - h2^2 - 9"]),
-    "two pieces": ("1, h1^2 - 1, 1 - h2^2", {}, ["h1^2 - 1", "1 - h2", "1 + h2"]),
-    "two masses": ("1, h2, 2 + h1, h2, h1", {}, ["h1", "h2"]),
-    "hole": ("1, 1, h1^2 + h2^2", {}, ["h1^2 + h2^2"]),
-    "annulus": ("1, 5 - h1^2 - h2^2, h1^2 + h2^2 - 1", {}, ["h1^2 + h2^2 - 1", "5 - h1^2 - h2^2"]),
-    "quintic": (
-        "1, 3, 5 + h1, 6 + h2, 4 + h1 - h2, 1 + h2",
-        {},
-        ["h2 + 1", "3*h1 - h2 + 9", "6*h1^2-3*h1*h2^2-2*h1*h2+36*h1+h2^3-18*h2^2+6*h2+50"],
-    ),
-    "disconnected": (
-        "1, 2 + h1, h1^2 + h2^2 - 4, h1*h2 + 1",
-        {},
-        ["h1*h2 + 1", "h1^3 + 2*h1^2 + h1*h2^2 - h1*h2 - 4*h1 + 2*h2^2 - 9"],
-    ),
-    "three lags": (
-        "t1*t2*t3, t1*t2 + t1*t3 + t2*t3, t1 + t2 + t3, 1 + k1",
-        ALL_POSITIVE,
-        ["1 + k1", "(t1 + t2 + t3)*(t1*t2 + t1*t3 + t2*t3) - t1*t2*t3*(1 + k1)"],
-    ),
-    "direct-current motor, PI": (
-        "J*L, J*R + b*L, b*R + K^2 + K*k1, K*k2",
-        ALL_POSITIVE,
-        ["k2", "(J*R + b*L)*(b*R + K^2 + K*k1) - J*L*K*k2"],
-    ),
-    "everywhere": ("1, a, a + b, b*a/2", ALL_POSITIVE, []),
-}
+
 IN_DISCRETE_TIME = {
     "second order": ("1, h1, h2", ["1 + h1 + h2", "1 - h1 + h2", "1 - h2"]),
     "third order": ("1, h1, h2, 1/4", ["4*h1 + 4*h2 + 5", "3 - 4*h1 + 4*h2", "4*h1 - 16*h2 + 15"]),
@@ -133,9 +90,8 @@ def holds_the_same(found: Simplified, expected: Sequence[Scalar], signs: Mapping
     assert str(solver.check()) == "unsat"
 
 
-@pytest.mark.parametrize("name", KNOWN)
-def test_known_regions(name: str) -> None:
-    text, signs, expected = KNOWN[name]
+@tabled
+def test_known_regions(text: str, signs: dict[str, str], expected: list[str]) -> None:
     found = stable_where(polynomial(text), "s", signs)
     assert found.equivalence.holds(signs)
     assert found.verdict == ("conditional" if expected else "yes")
@@ -162,24 +118,6 @@ def test_empty_regions(text: str) -> None:
     assert found.verdict == "no"
     assert found.positive == (Scalar.of(0),)
     assert found.equivalence.holds({})
-
-
-def test_a_margin_and_a_radius() -> None:
-    cubic = polynomial("1, h1, h2, 6")
-    found = stable_where(cubic, "s", {}, margin=Scalar.of(1))
-    expected = [h1 - 3, 5 + h1 - h2, (h1 - 2) * h2 - 2 * (h1**2 - 4 * h1 + 7), h1 - 2]
-    holds_the_same(found, expected, {})
-    for point in points(["h1", "h2"], {}, 100, "margin"):
-        moved = shifted(coefficients_at(cubic, "s", point), Fraction(-1))
-        assert is_hurwitz(moved) == all_positive(found.positive, point)
-    rho = Scalar.symbol("rho")
-    square = polynomial("1, h1, h2")
-    inside = stable_where(square, "s", {"rho": "positive"}, discrete=True, radius=rho)
-    for point in points(["h1", "h2", "rho"], {"rho": "positive"}, 200, "radius"):
-        scaled = [c * point["rho"] ** (2 - k) for k, c in enumerate(coefficients_at(square, "s", point))]
-        assert is_schur(scaled) == all_positive(inside.positive, point)
-    assert stable_where(s - a, "s", {}, discrete=True, radius=Scalar.of(-1)).verdict == "no"
-    assert all(rho in found for found in condition_lists(s - a, "s", {}, discrete=True, radius=rho))
 
 
 def test_the_leading_coefficient_may_vanish() -> None:
@@ -240,40 +178,3 @@ def test_the_simplified_list_the_raw_lists_and_the_roots_agree(
     if found.point is not None:
         filled = {**dict.fromkeys(["a", "b", "h1", "h2", "h3"], Fraction(1)), **found.point}
         assert roots_are_inside(coefficients_at(about, "s", filled), discrete=discrete) is not False
-
-
-free = [Scalar.symbol(f"h{k}") for k in range(1, 7)]
-BIG = {
-    "quartic": from_coefficients([Scalar.of(1), *free[:4]], "s"),
-    "quintic": from_coefficients([Scalar.of(1), *free[:5]], "s"),
-    "sextic": from_coefficients([Scalar.of(1), *free], "s"),
-    "cart and pendulum": polynomial(
-        "1, (k2*l - k4)/(M*l), (k1*l - k3 - g*(M + m))/(M*l), -g*k2/(M*l), -g*k1/(M*l)",
-    ),
-}
-
-
-@pytest.mark.parametrize("name", BIG)
-def test_many_free_parameters(name: str) -> None:
-    about = BIG[name]
-    signs: dict[str, str] = {n: "positive" for n in ("M", "m", "l", "g") if n in about.names}
-    found = stable_where(about, "s", signs)
-    assert found.equivalence.holds(signs)
-    assert found.irredundant
-    assert len(found.positive) == about.degree("s")
-    generator, both = seeded(name), set()
-    for point in points(about.names - {"s"}, signs, 60, name):
-        stable = is_hurwitz(coefficients_at(about, "s", point))
-        both.add(stable)
-        assert stable == all_positive(found.positive, point)
-    for _ in range(40):  # stable ones, which random coefficients seldom are
-        if name == "cart and pendulum":
-            break
-        whole = [Fraction(1)]
-        while len(whole) <= about.degree("s"):
-            root = abs(random_fraction(generator)) - Fraction(1, 4)
-            whole = [p + root * q for p, q in zip([*whole, Fraction(0)], [Fraction(0), *whole], strict=True)]
-        point = {f"h{k}": c for k, c in enumerate(whole) if k}
-        both.add(is_hurwitz(whole))
-        assert is_hurwitz(whole) == all_positive(found.positive, point)
-    assert both == {True, False} or name == "cart and pendulum"

@@ -7,23 +7,21 @@ import sys
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-import symobs
 from symobs.exact import Scalar, from_coefficients
 from symobs.stability.criteria.stability_conditions import stable_where
 from symobs.stability.inequalities import z3_backend
-from symobs.stability.inequalities.decision import decide_empty, equivalence_of, implies
+from symobs.stability.inequalities.decision import decide_empty, implies
 from symobs.stability.inequalities.proof import Combined, Equivalence, Opposite, ProvedByZ3, Step, proves, refutes
-from symobs.stability.inequalities.proof_steps import UNIT, contradiction
-from symobs.stability.inequalities.prover import prove, prove_by_opposite, refute
-from symobs.stability.inequalities.sample_points import find_point, point_where_zero
+from symobs.stability.inequalities.proof_steps import UNIT
+from symobs.stability.inequalities.prover import prove, refute
+from symobs.stability.inequalities.sample_points import find_point
 from symobs.stability.inequalities.simplify import simplify
-from symobs.stability.inequalities.z3_backend import QUESTION, Resources, none_by_z3, point_by_z3
-from tests.kit import tabled
+from symobs.stability.inequalities.z3_backend import QUESTION, Resources, point_by_z3
+from tests.kit import scalar, scalars, tabled
 from tests.support.independent_algebra.plain import has_sign, random_fraction, seeded, value_at
 from tests.support.paths import ROOT
 
@@ -59,39 +57,11 @@ def alone(monkeypatch: pytest.MonkeyPatch) -> None:
 # -- the prover ----------------------------------------------------------------------------------------------------------
 
 #: Goal, what is known, signs.  Each is easily seen by hand.
-PROVED: list[tuple[Scalar, list[Scalar], dict[str, str]]] = [
-    (x + y, [x, y], {}),
-    (x + 2, [x - 1], {}),
-    (y + b, [x, x * (y + b)], AB),
-    (x * y - b, [x - b, y - 1], AB),
-    (x**2 + y**2 - 1, [x - 1], {}),
-    (x, [x + y, x - y], {}),
-    (x**2 * y - 1, [x * y - 1, x - 1], {}),
-    (x * y + z - 1, [x * y + z - 2], {}),
-    (x, [x**3 - 1], {}),
-    (x, [a * x - b], AB),
-    (-x, [a * x + b, -b * x], AB),
-    (x + a, [x + b, a - b], AB),
-    (x, [x - a**2], {}),
-    (x, [y, z, c, x * (y * z) - y**2 - x**2 * c], {}),  # Liénard and Chipart's a₂ from the others
-    (x, [x * y - 1, y], {}),
-    (y, [x * y - 1, x], {}),
-    (2 - x, [1 - x**2], {}),
-    (x**2, [x**2 - a], AB),
-]
-NOT_PROVED: list[tuple[Scalar, list[Scalar], dict[str, str]]] = [
-    (x - y, [x, y], {}),
-    (x, [x + y], AB),
-    (y, [x * y - 1], {}),
-    (x, [a * x + b], AB),
-    (x, [x * y], {}),
-    (x**2, [y], {}),
-    (x + a, [x + b], AB),
-]
 
 
-@pytest.mark.parametrize(("goal", "known", "signs"), PROVED, ids=str)
-def test_what_follows_is_proved_and_true(goal: Scalar, known: list[Scalar], signs: dict[str, str]) -> None:
+@tabled
+def test_what_follows_is_proved_and_true(goal_text: str, known_texts: list[str], signs: dict[str, str]) -> None:
+    goal, known = scalar(goal_text), scalars(known_texts)
     steps = prove(goal, known, signs)
     assert steps is not None
     assert proves(steps, known, [goal], signs)
@@ -103,8 +73,9 @@ def test_what_follows_is_proved_and_true(goal: Scalar, known: list[Scalar], sign
         assert less is None or proves(less, fewer, [goal], signs)
 
 
-@pytest.mark.parametrize(("goal", "known", "signs"), NOT_PROVED, ids=str)
-def test_what_does_not_follow_is_not_proved(goal: Scalar, known: list[Scalar], signs: dict[str, str]) -> None:
+@tabled
+def test_what_does_not_follow_is_not_proved(goal_text: str, known_texts: list[str], signs: dict[str, str]) -> None:
+    goal, known = scalar(goal_text), scalars(known_texts)
     assert prove(goal, known, signs) is None
     found = implies(known, goal, signs)
     assert found.verdict == "no"
@@ -144,38 +115,6 @@ def test_a_sign_known_from_roots_alone_makes_no_false_step() -> None:
     known = [-a - 2, 1 - a, a**2 + a - 2, CUBIC]
     steps = refute(known, {"a": "real"})
     assert steps is None or refutes(steps, known, {"a": "real"})
-
-
-@pytest.mark.parametrize("more", ["", "*(s + b)"])
-def test_a_region_beside_another_symbol_is_that_of_the_roots(more: str) -> None:
-    """By Hurwitz s³ + (a² + a − 2) s² + (a + 3) s + 3 is stable where the cubic is positive: where a > 1.18."""
-    symbols = {"a": "real", "b": "real"}
-    text = f"(s^3 + (a^2 + a - 2)*s^2 + (a + 3)*s + 3){more}"
-    found = symobs.stability_region(text, symbols=symbols, parameters="b")
-    assert found.stable_if == [*(["b > 0"] if more else []), "a**3 + 4*a**2 + a - 9 > 0"]
-    for k in range(-60, 61):
-        at = k / 10 + 0.05
-        stable = max(np.roots([1, at**2 + at - 2, at + 3, 3]).real) < 0
-        assert stable == (at**3 + 4 * at**2 + at - 9 > 0)
-
-
-def test_a_factor_of_which_only_one_sign_is_possible() -> None:
-    steps = prove_by_opposite(x - 1, (x - 1) * (x + y), [x + y + 3, x - 2 - y], {})
-    assert steps is None  # x = −1/2, y = −1
-    product = (x + 1) * (x + y**2 + 2)
-    found = prove_by_opposite(x + 1, product, [x + 3], {})
-    assert found is None  # x = −5/2, y = 0
-    known = [x + y, (x - 1) * y]
-    (steps) = prove_by_opposite(y, known[1], [x + y - 1], {})
-    assert steps is not None  # were y < 0, x < 1, but x > 1 − y
-    assert isinstance(steps[0], Opposite)
-    assert proves(steps, [x + y - 1, known[1]], [y], {})
-    assert not proves(steps, [x + y, known[1]], [y], {})
-    assert not proves([replace(steps[0], multiple=x + y - 1)], [x + y - 1, known[1]], [y], {})
-    weak = [Opposite(x, x * y, (contradiction(-x),))]
-    assert proves(weak, [x * y], [x], {"x": "nonnegative"})
-    assert not proves(weak, [y], [x], {"x": "nonnegative"})  # x = 0 is open
-    assert not proves([replace(steps[0], value=x - 1)], [x + y - 1, known[1]], [x - 1], {})
 
 
 # -- tampering ---------------------------------------------------------------------------------------------------------
@@ -266,14 +205,6 @@ def test_lies_are_refused(lie: Step) -> None:
     assert not proves([lie], [x * y, y], [lie.value], {})
 
 
-def test_z3_is_asked_again() -> None:
-    pytest.importorskip("z3")
-    known = [x * y + 1, x**3 + 2 * x**2 + x * y**2 - x * y - 4 * x + 2 * y**2 - 9]
-    assert proves([ProvedByZ3(x + 2, tuple(known))], known, [x + 2], {})
-    assert not proves([ProvedByZ3(x + 2, tuple(known))], known[:1], [x + 2], {})
-    assert not proves([ProvedByZ3(x + 1, tuple(known))], known, [x + 1], {})
-
-
 @pytest.mark.usefixtures("alone")
 def test_without_z3_nothing_is_believed() -> None:
     known = [x * y + 1, x**3 + 2 * x**2 + x * y**2 - x * y - 4 * x + 2 * y**2 - 9]
@@ -287,39 +218,12 @@ def test_without_z3_nothing_is_believed() -> None:
     assert stable_where(s**2 + (b + h2) * s + 1 - h1, "s", AB).irredundant
 
 
-@pytest.mark.parametrize(
-    ("raw", "signs", "expected"),
-    [
-        ([c * (1 - x)], {"c": "negative"}, [x - 1]),
-        ([c * (1 - x)], {"c": "nonpositive"}, [x - 1, -c]),
-        ([c**2 * (1 - x) ** 3], {}, [1 - x, c**2]),
-        ([c**3 * (1 - x) ** 2 / y], {"c": "positive"}, [y, (x - 1) ** 2]),
-        ([x * (y + b), x], AB, [x, y + b]),
-        ([x * y * z, x - 1, y + b * x], AB, [x - 1, y * z, b * x + y]),
-        ([(x - y) ** 2, x], {}, [x, (x - y) ** 2]),
-        ([(x - y) ** 2, x - y - 1], {}, [x - y - 1]),
-        ([(x - 1) * (x + 1), x + 3 * a], AB, [x**2 - 1, x + 3 * a]),
-        ([1 - x**2], {}, [1 - x, 1 + x]),
-        ([(x**2 + 1) * (x + a), x**2 - 2 * x + 3], {}, [x + a]),
-    ],
-    ids=str,
-)
-def test_lists_made_short(raw: list[Scalar], signs: dict[str, str], expected: list[Scalar]) -> None:
-    found = simplify(raw, signs)
-    assert set(found.positive) == set(expected)
+@tabled
+def test_lists_made_short(raw: list[str], signs: dict[str, str], expected: list[str]) -> None:
+    found = simplify(scalars(raw), signs)
+    assert set(found.positive) == set(scalars(expected))
     assert found.equivalence.holds(signs)
     assert found.irredundant
-
-
-def test_what_is_dropped_is_told() -> None:
-    found = simplify([x - 1, y - 1, x * y - 1, x + y], {})
-    assert set(found.positive) == {x - 1, y - 1}
-    assert set(found.dropped) == {(x * y - 1, "products"), (x + y, "products")}
-    assert found.verdict == "conditional"
-    assert simplify([a, a + b], AB).verdict == "yes"
-    beside = simplify([x * y, y - 1], {}, beside=[x - 1])
-    assert set(beside.positive) == {y - 1}
-    assert beside.equivalence.holds({})
 
 
 # -- decisions -----------------------------------------------------------------------------------------------------------
@@ -352,46 +256,12 @@ def test_empty_is_proved(conditions: list[Scalar]) -> None:
     assert not refutes((), conditions, {}) or zero in conditions
 
 
-def test_empty_by_z3() -> None:
-    """A disc and a half-plane that do not meet: no products of the two prove it."""
-    pytest.importorskip("z3")
-    conditions = [1 - x**2 - y**2, x + y - 2]
-    assert decide_empty(conditions, {}).verdict == "undecided"
-    found = simplify(conditions, {})
-    assert found.verdict == "no"
-    assert found.equivalence.holds({})
-    assert simplify(conditions, {}, ask=False).verdict == "conditional"
-
-
 @pytest.mark.parametrize("conditions", NOT_EMPTY, ids=str)
 def test_not_empty_has_a_point(conditions: list[Scalar]) -> None:
     found = decide_empty(conditions, {})
     assert found.verdict == "no"
     assert found.point is not None
     assert positive_at(conditions, found.point)
-
-
-def test_the_same_region_told_in_two_ways() -> None:
-    proof = equivalence_of([x, x * y - 1], [y, x * y - 1], {})
-    assert proof is not None
-    assert proof.holds({})
-    for first, second in (([x, x * y - 1], [y, x * y - 2]), ([x * y - 1], [x, x * y - 1]), ([x], [x, y**2])):
-        assert equivalence_of(first, second, {}) is None
-
-
-@pytest.mark.parametrize(
-    ("sign", "impossible"),
-    [("positive", x), ("negative", -x), ("nonnegative", x + 1), ("nonpositive", 1 - x), ("nonzero", x**2)],
-)
-def test_z3_knows_the_signs(sign: str, impossible: Scalar) -> None:
-    pytest.importorskip("z3")
-    assert [none_by_z3([], signs, not_above=impossible) for signs in ({"x": sign}, {})] == [True, False]
-
-
-def test_z3_is_not_asked_what_it_cannot_know() -> None:
-    root = Scalar.symbol("pi")
-    assert not none_by_z3([-root], {})
-    assert not none_by_z3([x**40, -x], {"x": "positive"})
 
 
 #: A question that z3 does not settle within one allowance (Motzkin's polynomial with a fourth variable is never negative).
@@ -431,11 +301,3 @@ def test_no_clock_and_no_program_decides_an_answer(folder: str) -> None:
             for alias in node.names
         }
         assert not imported & {"time", "datetime", "signal", "subprocess", "shutil", "os"}, path
-
-
-def test_points() -> None:
-    assert find_point([x, -x], {}) is None
-    found = point_where_zero(x * y - 1, [x - 2], {"y": "positive"})
-    assert found is not None
-    assert found["x"] * found["y"] == 1
-    assert found["x"] > 2

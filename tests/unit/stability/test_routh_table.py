@@ -2,13 +2,8 @@
 
 from __future__ import annotations
 
-import random
-import shutil
-import subprocess
-from contextlib import suppress
 from dataclasses import replace
 from fractions import Fraction
-from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
 import pytest
@@ -17,28 +12,23 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from symobs.exact import Scalar, from_coefficients
-from symobs.formula.phrases import PHRASES, RESTS_ON, THEOREMS
 from symobs.formula.phrases.languages import ENGLISH
 from symobs.formula.phrases.spoken import Counted
 from symobs.formula.tree import Environment, Letter, Sum
 from symobs.formula.tree.plain_text import plain_relation
 from symobs.proof.derivation import CaseStep, Define, Derivation, Sentence, Tabulate
-from symobs.proof.derivation.builder import Builder
-from symobs.proof.derivation.routh_check import findings_of, last_determinant
+from symobs.proof.derivation.routh_check import findings_of
 from symobs.stability.criteria.cauchy_index import imaginary_axis_roots, right_half_plane_roots
 from symobs.stability.criteria.routh_table import RouthRow, RouthTable, is_routh_table, routh_table, sign_changes
-from symobs.stability.criteria.stability import hurwitz_matrix
-from symobs.system import StateSpace
-from tests.support.independent_algebra.plain import is_hurwitz, value_at
+from tests.kit import scalars, tabled
+from tests.support.independent_algebra.plain import value_at
 from tests.support.independent_algebra.routh_by_hand import changes, expression, located, rows_of
-from tests.support.independent_algebra.second_reader import Reader, facts_in, values_of
-from tests.support.independent_algebra.truth import is_true
 from tests.support.problems.steps import checked, literal, refused, said
 from tests.support.tampering.mutations import changes as changes_of
 from tests.support.tampering.mutations import lines_of
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Sequence
 
 s, w = Scalar.symbol("s"), Scalar.symbol("w")
 h1, h2, h3, h4, b, omega, small = (Scalar.symbol(name) for name in ("h1", "h2", "h3", "h4", "b", "omega", "epsilon"))
@@ -69,95 +59,21 @@ def origins(table: RouthTable) -> str:
 
 # -- tables worked by hand ----------------------------------------------------------------------------------------------
 
-REGULAR: list[tuple[list[Any], list[list[Any]]]] = [
-    ([1, 2, 3, 1], [[1, 3], [2, 1], [Fraction(5, 2)], [1]]),
-    ([1, 2, 3, 4, 5], [[1, 3, 5], [2, 4], [1, 5], [-6], [5]]),
-    ([2, 1, 3, 5, 10], [[2, 3, 10], [1, 5], [-7, 10], [Fraction(45, 7)], [10]]),
-    ([1, h1, h2, 1], [[1, h2], [h1, 1], [(h1 * h2 - 1) / h1], [1]]),
-    (
-        [1, h1, h2, h3, h4],
-        [
-            [1, h2, h4],
-            [h1, h3],
-            [(h1 * h2 - h3) / h1, h4],
-            [(h1 * h2 * h3 - h3 * h3 - h1 * h1 * h4) / (h1 * h2 - h3)],
-            [h4],
-        ],
-    ),
-    ([7], [[7]]),
-    ([3, -2], [[3], [-2]]),
-]
 #: With what came of every row, and of roots on the right and on the axis.
-WITH_ZEROS: list[tuple[list[Any], list[list[Any]], str, tuple[int, int]]] = [
-    ([1, 1, 2, 2, 3], [[1, 2, 3], [1, 2], [small, 3], [(2 * small - 3) / small], [3]], "ccerr", (2, 0)),
-    (
-        [1, 2, 3, 6, 5, 3],
-        [
-            [1, 3, 5],
-            [2, 6, 3],
-            [small, Fraction(7, 2)],
-            [(6 * small - 7) / small, 3],
-            [(42 * small - 49 - 6 * small**2) / (12 * small - 14)],
-            [3],
-        ],
-        "ccerrr",
-        (2, 0),
-    ),
-    (
-        [1, 2, 24, 48, -25, -50],
-        [[1, 24, -25], [2, 48, -50], [8, 96], [24, -50], [Fraction(338, 3)], [-50]],
-        "ccarrr",
-        (1, 2),
-    ),
-    (
-        [1, 4, 12, 16, 41, 36, 72],
-        [[1, 12, 41, 72], [4, 16, 36], [8, 32, 72], [32, 64], [16, 72], [-80], [72]],
-        "ccrarrr",
-        (2, 0),
-    ),
-    ([1, 0, 2, 0, 1], [[1, 2, 1], [4, 4], [1, 1], [2], [1]], "carar", (0, 4)),
-    ([1, 0, 3, 2], [[1, 3], [small, 2], [(3 * small - 2) / small], [2]], "cerr", (2, 0)),
-    ([1, 0, 0], [[1, 0], [2], [2]], "caa", (0, 2)),
-    ([5, 0], [[5], [5]], "ca", (0, 1)),
-    # (s² + 1)(s² + 2)(s − 1)
-    (
-        [1, -1, 3, -3, 2, -2],
-        [[1, 3, 2], [-1, -3, -2], [-4, -6], [Fraction(-3, 2), -2], [Fraction(-2, 3)], [-2]],
-        "ccarrr",
-        (1, 4),
-    ),
-]
 
 
-@pytest.mark.parametrize(("coefficients", "expected"), REGULAR)
-def test_regular_tables_worked_by_hand(coefficients: list[Any], expected: list[list[Any]]) -> None:
-    table = routh_table(whole(coefficients))
-    assert entries(table) == [whole(row) for row in expected]
-    assert table.is_regular
-    assert table.epsilon == ""
-    assert is_routh_table(table, whole(coefficients))
-
-
-@pytest.mark.parametrize(("coefficients", "expected", "made", "where"), WITH_ZEROS)
+@tabled
 def test_tables_with_zeros_worked_by_hand(
-    coefficients: list[Any], expected: list[list[Any]], made: str, where: tuple[int, int]
+    texts: list[Any], expected: list[list[Any]], made: str, where: list[int]
 ) -> None:
-    table = routh_table(whole(coefficients))
-    assert entries(table) == [whole(row) for row in expected]
+    coefficients = scalars(texts)
+    table = routh_table(coefficients)
+    assert entries(table) == [scalars(row) for row in expected]
     assert origins(table) == made
     assert not table.is_regular
-    assert is_routh_table(table, whole(coefficients))
-    assert (right_half_plane_roots(whole(coefficients)), imaginary_axis_roots(whole(coefficients))) == where
+    assert is_routh_table(table, coefficients)
+    assert [right_half_plane_roots(coefficients), imaginary_axis_roots(coefficients)] == where
     assert sign_changes(table) == where[0]
-
-
-def test_the_auxiliary_polynomial_has_the_entries_of_the_row_above() -> None:
-    table = routh_table(whole([1, 2, 24, 48, -25, -50]))
-    assert table.auxiliary(table.rows[2], "s") == 2 * s**4 + 48 * s**2 - 50
-    double = routh_table(whole([1, 0, 2, 0, 1]))
-    assert [double.auxiliary(double.rows[k], "w") for k in (1, 3)] == [w**4 + 2 * w**2 + 1, w**2 + 1]
-    cubic = routh_table(whole([1, 0, 1, 0]))
-    assert cubic.auxiliary(cubic.rows[1], "s") == s**3 + s
 
 
 def test_zero_means_identically_zero() -> None:
@@ -166,13 +82,6 @@ def test_zero_means_identically_zero() -> None:
     assert origins(table) == "ccrar"
     assert entries(table)[2:] == [[omega**2, omega**4], [2 * omega**2], [omega**4]]
     assert routh_table([Scalar.of(1), b, h1, b * h1 + h2]).is_regular
-
-
-def test_epsilon_has_a_name_of_its_own() -> None:
-    table = routh_table([Scalar.of(1), Scalar.of(0), small, Scalar.of(2)])
-    assert table.epsilon == "epsilon_1"
-    assert table.first_column[1] == Scalar.symbol("epsilon_1")
-    assert routh_table(whole([1, 0, 3, 2]), {"epsilon", "epsilon_1"}).epsilon == "epsilon_2"
 
 
 def test_a_polynomial_has_a_first_coefficient() -> None:
@@ -221,38 +130,6 @@ def test_every_row_and_every_count_is_found_again(coefficients: list[int]) -> No
         assert sign_changes(table) == right
 
 
-@given(integers | positive)
-@settings(max_examples=150)
-def test_the_first_column_holds_the_quotients_of_the_determinants_of_hurwitz(coefficients: list[int]) -> None:
-    """Δₖ/Δₖ₋₁ where none is 0; then all are positive, with a₀, exactly if all roots lie on the left."""
-    hurwitz = hurwitz_matrix(whole(coefficients))
-    minors = [hurwitz.select(range(k), range(k)).determinant() for k in range(1, len(coefficients))]
-    table = routh_table(whole(coefficients))
-    assert table.is_regular == all(minors)
-    stable = located(coefficients) == (0, 0)
-    assert stable == is_hurwitz([Fraction(c) for c in coefficients])
-    if not table.is_regular:
-        assert not stable
-        return
-    assert list(table.first_column) == [
-        Scalar.of(coefficients[0]),
-        *(b / a for a, b in pairwise([Scalar.of(1), *minors])),
-    ]
-    signs = {entry.fraction() > 0 for entry in table.first_column}
-    assert (len(signs) == 1) == stable
-    assert (sign_changes(table) == 0) == stable
-
-
-@pytest.mark.parametrize("coefficients", [*MISCOUNTED, *MISCOUNTED_TWICE])
-def test_epsilon_misleads_beside_roots_on_the_axis_and_in_two_places(coefficients: list[int]) -> None:
-    table = routh_table(whole(coefficients))
-    right, axis = located(coefficients)
-    assert (axis, origins(table).count("e")) == ((0, 2) if coefficients in MISCOUNTED_TWICE else (2, 1))
-    assert sign_changes(table) != right == right_half_plane_roots(whole(coefficients))
-    findings = findings_of(table, whole(coefficients), "s", {})
-    assert (findings[0].key, findings[-1].key) == ("routh_epsilon", "routh_misleads")
-
-
 PARI = r"""
 where(p) = {
   my(f = factor(p), r = 0, a = 0);
@@ -262,48 +139,6 @@ where(p) = {
 }
 default(realprecision, 77);
 """
-COUNT = 400
-
-
-@pytest.mark.skipif(shutil.which("gp") is None, reason="PARI is not installed")
-def test_counts_agree_with_pari(record_property: Any) -> None:
-    draw = random.Random(20)  # noqa: S311 - the same polynomials in every run
-    polynomials = list(_polynomials(draw))
-    told = subprocess.run(
-        ["gp", "-q", "-f"],
-        input=PARI.strip().replace("\n  ", " ").replace("\n    ", " ").replace("\n}", " }")
-        + "\n"
-        + "\n".join(f"where(Pol({numbers}));" for numbers in polynomials)
-        + "\n",
-        text=True,
-        capture_output=True,
-        check=True,
-    ).stdout.split("\n")[:COUNT]
-    on_axis = 0
-    for numbers, line in zip(polynomials, told, strict=True):
-        right, axis = map(int, line.split())
-        assert (right_half_plane_roots(whole(numbers)), imaginary_axis_roots(whole(numbers))) == (right, axis), numbers
-        table = routh_table(whole(numbers))
-        assert is_routh_table(table, whole(numbers))
-        (stated,) = [f for f in findings_of(table, whole(numbers), "s", {}) if RESTS_ON.get(f.key) or "mis" in f.key]
-        assert (stated.key == "routh_misleads") == (sign_changes(table) != right)
-        assert sign_changes(table) == right or (axis and table.epsilon) or origins(table).count("e") > 1
-        on_axis += axis > 0
-    record_property("with roots on the axis", on_axis)
-    assert COUNT / 5 < on_axis < COUNT
-
-
-def _polynomials(draw: random.Random) -> Iterator[list[int]]:
-    """Yield random polynomials, every other one with factors whose roots lie symmetric to the origin."""
-    x = sympy.Symbol("x")
-    for k in range(COUNT):
-        numbers = [draw.choice((1, 2, -1)), *(draw.randint(-3, 3) for _ in range(draw.randint(1, 6)))]
-        if k % 2:
-            even = sympy.Poly([draw.randint(1, 3), 0, draw.randint(-4, 4)], x) * sympy.Poly(
-                [1, 0, draw.randint(0, 3)], x
-            )
-            numbers = [int(c) for c in (sympy.Poly(numbers, x) * even).all_coeffs()]
-        yield numbers
 
 
 # -- the check ------------------------------------------------------------------------------------------------------------
@@ -390,38 +225,6 @@ START = Environment(signs=SIGNS)
 
 
 @pytest.mark.parametrize("coefficients", LETTERED)
-def test_a_second_reader_finds_the_same(coefficients: list[Any]) -> None:
-    steps = shown(coefficients, SIGNS)
-    derivation = Derivation(steps, START)
-    derivation.check()
-    draw = random.Random(1)  # noqa: S311 - the same points in every run
-
-    def samples() -> Iterator[dict[Any, Any]]:
-        for _ in range(25):
-            numbers = {
-                name: sympy.Rational(draw.randint(-20, 60), draw.randint(1, 9)) for name in ("h1", "h2", "h3", "h4")
-            }
-            numbers |= {name: sympy.Rational(draw.randint(1, 60), 7) for name in SIGNS}
-            yield {sympy.Symbol(name): number for name, number in numbers.items()}
-
-    tally = Reader(derivation, {}, samples).read()
-    assert tally.compared + len(tally.unknown) == values_of(facts_in(steps))
-    assert tally.compared > len(coefficients)
-    assert is_true(derivation)
-
-
-@pytest.mark.parametrize("coefficients", [[1, 2, 3, 1], [1, 1, 2, 2, 3], [1, 2, 24, 48, -25, -50], [1, h1, h2, 1]])
-def test_both_readers_would_see_a_false_table(coefficients: list[Any]) -> None:
-    define, table = shown(coefficients)
-    for change in changes_of(table.table):
-        lie = Derivation((define, replace(table, table=change.value)), START)
-        with pytest.raises(AssertionError):
-            Reader(lie, {}, lambda: iter([{}])).read()
-        with suppress(IndexError, ValueError, ZeroDivisionError):
-            assert not is_true(lie) or ".power" in change.where or ".origin" in change.where
-
-
-@pytest.mark.parametrize("coefficients", LETTERED)
 def test_no_lie_about_a_table_survives(coefficients: list[Any]) -> None:
     derivation = Derivation(shown(coefficients, SIGNS), START)
     _, line = lines_of(derivation)
@@ -490,26 +293,6 @@ def test_the_table_is_that_of_the_letter() -> None:
     refused(define, replace(table, sentence=Sentence("routh_table", (("polynomial", Letter("phi")),))))
 
 
-def test_another_variable_is_named_and_free() -> None:
-    steps = shown([1, 3, h1], variable="w")
-    checked(*steps)
-    refused(steps[0], replace(steps[1], variable="s"))
-    refused(*steps, start=Environment(signs={"w": "positive"}))
-    checked(*steps, start=Environment(variable="z"), discrete=True)
-
-
-def test_epsilon_is_nothing_else_on_the_page() -> None:
-    steps = shown([1, 0, 3, h1])
-    checked(*steps)
-    refused(*steps, start=Environment(signs={"epsilon": "real"}))
-    refused(*steps, start=Environment(coefficients={"epsilon": h2}))
-    refused(*shown([1, 0, 3, h1], variable="epsilon"))
-
-
-def test_a_table_of_two_rows() -> None:
-    checked(*shown([1, h1]))
-
-
 def test_nothing_is_divided_by_what_is_known_to_be_zero() -> None:
     steps = shown([1, h1 * h2 - 1, 3, 2])
     checked(*steps)
@@ -522,30 +305,9 @@ def test_nothing_is_divided_by_what_is_known_to_be_zero() -> None:
     checked(*steps, start=Environment(relations=(h1 - 2,)))
 
 
-@pytest.mark.parametrize(
-    ("coefficients", "signs", "key"),
-    [
-        ([1, b, omega], {"b": "positive", "omega": "positive"}, "routh_positive"),
-        ([-1, -b, -omega], {"b": "positive", "omega": "positive"}, "routh_negative"),
-        ([1, b, omega], {}, "routh_criterion_positive"),
-        ([-1, b, omega], {}, "routh_criterion_negative"),
-        ([b, 1, omega], {}, "routh_criterion_where"),
-        ([b, 1, omega], {"b": "nonzero"}, "routh_criterion_where"),
-        ([b, omega], {"b": "nonzero", "omega": "nonzero"}, "routh_criterion_where"),
-        ([b, 0, omega, 1], {"b": "nonzero"}, "routh_not_stable"),
-        ([b, 0, omega, 1], {"b": "positive"}, "routh_not_stable"),
-        ([b, 0, omega, 1], {}, "routh_epsilon"),
-        ([1, 2, 1], {}, "routh_positive"),
-        ([-1, -2, -1], {}, "routh_negative"),
-        ([Fraction(-1, 2), -2, -1], {}, "routh_negative"),
-        ([1, 2, 3, 4, 5], {}, "routh_changes"),
-        ([1, -1], {}, "routh_changes"),
-        ([1, 0, 3, 2], {}, "routh_changes"),
-        ([1, 0, 1], {}, "routh_changes_axis"),
-    ],
-)
+@tabled
 def test_what_is_said_of_a_table(coefficients: list[Any], signs: dict[str, str], key: str) -> None:
-    numbers = whole(coefficients)
+    numbers = scalars(coefficients)
     *_, last = findings_of(routh_table(numbers), numbers, "s", signs)
     assert last.key == key
 
@@ -576,48 +338,3 @@ def test_the_first_auxiliary_polynomial_divides_and_no_other() -> None:
     divides = Sentence("routh_divides", (("auxiliary", literal((s**2 + 1) ** 2)),))
     assert divides in findings_of(table, numbers, "s", {})
     assert divides not in findings_of(table, whole([1, 0, 3, 0, 1]), "s", {})
-
-
-def test_what_the_letter_of_the_last_determinant_means() -> None:
-    assert last_determinant(s**3 + h1 * s**2 + h2 * s + 5, "s") == {"Delta_2": h1 * h2 - 5}
-    assert last_determinant(s**3 + h1 * s**2 + 2 * s + 1, "s") == {"Delta_2": 2 * h1 - 1}
-    assert last_determinant(s**2 + h1 * s + 1, "s") == {"Delta_1": h1}
-    for polynomial in (s + h1, s**3 + 2 * s + 1, s**3 + h1 * s**2 + h2 * s + h3):  # a root, numbers, three parameters
-        assert last_determinant(polynomial, "s") == {}
-
-
-def test_a_page_shows_a_table_and_what_it_says() -> None:
-    plant = StateSpace("[0 1; 0 -1]", "[0; 1]", "[1 0]")
-    page = Builder(plant)
-    chi = page.define("chi", (s + 1) * (s**2 + 4))
-    table = page.tabulate(chi, say="routh_table", polynomial=chi)
-    step = page.steps[-1]
-    assert isinstance(step, Tabulate)
-    assert (step.table, step.variable) == (table, "s")
-    assert [finding.key for finding in step.findings] == ["routh_zero_row", "routh_divides", "routh_changes_axis"]
-    page.tabulate(chi, with_findings=False)
-    silent = page.steps[-1]
-    assert isinstance(silent, Tabulate)
-    assert silent.findings == ()
-    page.derivation().check()
-
-
-def test_a_page_in_discrete_time_names_the_variable() -> None:
-    plant = StateSpace("[0 1; 0 -h]", "[0; 1]", "[1 0]", dt=1, symbols={"epsilon": "real", "h": "real"})
-    page = Builder(plant)
-    z = Scalar.symbol("z")
-    chi, mapped = (
-        page.define("chi", z**2 + Scalar.symbol("h")),
-        page.define("phi", 3 * w**3 + Scalar.symbol("h") * w + 1),
-    )
-    found = page.tabulate(chi), page.tabulate(mapped, "w")
-    assert [len(table.rows) for table in found] == [3, 4]
-    assert found[1].epsilon == "epsilon_1"
-    assert [step.variable for step in page.steps if isinstance(step, Tabulate)] == ["z", "w"]
-    page.derivation().check()
-
-
-def test_the_theorems_have_their_sources() -> None:
-    for name in ("routh", "hurwitz", "lienard_chipart"):
-        assert any(year in THEOREMS[name] for year in ("1877", "1895", "1914"))
-    assert {key for key in RESTS_ON if key.startswith("routh")} <= PHRASES.keys()
