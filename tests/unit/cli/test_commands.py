@@ -15,12 +15,11 @@ import pytest
 from jsonschema import Draft202012Validator  # type: ignore[import-untyped]
 
 from symobs.cli.commands import solve
-from symobs.formula.phrases.literature import written_out
 from symobs.ground.errors import CertificateRejected
-from symobs.tasks.result import formats, methods, tasks
+from symobs.tasks.result import tasks
 from tests.kit import tabled
 from tests.support.paths import ROOT
-from tests.support.tools.command_line import EXAMPLES, SAFETY, SERVO, environment, fresh, inside
+from tests.support.tools.command_line import EXAMPLES, SAFETY, SERVO, environment, inside
 
 PLANT = '[plant]\nA = "[0 1; 0 -1]"\nB = "[0; 1]"\nC = "[1 0]"\n'
 OBSERVER = f'task = "observer"\n{PLANT}[specification]\npoles = [-10, -10]\n'
@@ -37,15 +36,6 @@ def results(text: str) -> list[dict[str, Any]]:
 # -- solve ----------------------------------------------------------------------------------------------------------
 
 
-def test_solve_prints_latex(tmp_path: Path) -> None:
-    run = inside("solve", str(SERVO))
-    assert run.code == 0
-    assert run.out == inside("solve", str(SERVO), "--format", "latex").out
-    assert run.out.startswith("\\documentclass")
-    assert run.out.endswith("\\end{document}\n")
-    assert not any(tmp_path.iterdir())
-
-
 def test_standard_input_is_toml_or_json() -> None:
     from_toml = inside("solve", "-", "--format", "json", stdin=OBSERVER.encode())
     from_json = inside("solve", "-", "--format", "json", stdin=json.dumps(tomllib.loads(OBSERVER)).encode())
@@ -53,19 +43,6 @@ def test_standard_input_is_toml_or_json() -> None:
     assert from_toml.code == 0
     assert from_toml == from_json == marked
     assert results(from_toml.out)[0]["L"] == [["19"], ["81"]]
-
-
-def test_one_task_of_a_file_can_be_run() -> None:
-    run = inside("solve", str(SERVO), "--task", "controllability", "--format", "json")
-    assert [result["task"] for result in results(run.out)] == ["controllability"]
-    assert run.code == 0
-    two = f'tasks = ["observability", "observer"]\n{PLANT}[specification]\npoles = "-1, -2"\n'
-    two += "[expect]\nrank = 2\nL = [[9], [9]]"
-    assert inside("solve", "-", stdin=two.encode()).code == 4
-    assert inside("solve", "-", "--task", "observability", stdin=two.encode()).code == 0
-    unknown = inside("solve", "-", "--task", "observe", stdin=two.encode())
-    assert unknown.code == 2
-    assert '"observe" is not a task; known tasks are' in unknown.err
 
 
 # -- exit codes -----------------------------------------------------------------------------------------------------
@@ -76,18 +53,6 @@ def test_verdict_or_expectation_decides(text: str, code: int, said: str) -> None
     run = inside("solve", "-", "--format", "json", stdin=text.encode())
     assert (run.code, run.err) == (code, said)
     assert len(results(run.out)) == 1
-
-
-def test_undecided_is_5_unless_something_is_denied(monkeypatch: pytest.MonkeyPatch) -> None:
-    from symobs.tasks.analysis.rank.observability import Observability  # noqa: PLC0415 - the class this test changes
-
-    monkeypatch.setattr(Observability, "verdict", "undecided")
-    text = f'tasks = ["observability", "observer"]\n{PLANT}[specification]\npoles = "-1, -2"'
-    undecided = inside("solve", "-", stdin=text.encode())
-    assert (undecided.code, undecided.err) == (5, "observability: undecided\n")
-    assert undecided.out
-    denied = inside("solve", "-", stdin=text.replace("[1 0]", "[0 1]").replace('"-1, -2"', "[-2, -2]").encode())
-    assert (denied.code, denied.err) == (4, "observability: undecided\nobserver: no\n")
 
 
 def test_a_bug_is_said_as_such(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -144,10 +109,6 @@ def test_files_that_cannot_be_read_are_3(tmp_path: Path) -> None:
     assert inside("solve", "-").code == 3
 
 
-def test_the_name_of_a_file_cannot_write_on_the_terminal(tmp_path: Path) -> None:
-    assert "\x1b" not in inside("solve", "\x1b[2Jfile", folder=tmp_path).err
-
-
 # -- where the result goes ------------------------------------------------------------------------------------------
 
 
@@ -191,24 +152,6 @@ def test_a_file_is_written_whole_or_not_at_all(tmp_path: Path, monkeypatch: pyte
     assert inside("solve", "-", "-o", str(target), stdin=NOT_OBSERVABLE.encode()).code == 4
     assert target.read_text(encoding="utf-8").startswith("\\documentclass")
     assert target.stat().st_mode & 0o777 == 0o600
-
-
-def test_links_and_devices_stay_what_they_are(tmp_path: Path) -> None:
-    target, link = tmp_path / "page.tex", tmp_path / "link.tex"
-    target.touch()
-    link.symlink_to(target)
-    assert inside("solve", str(SERVO), "-o", str(link)).code == 0
-    assert link.is_symlink()
-    assert target.stat().st_size > 0
-    pipe = tmp_path / "pipe"
-    os.mkfifo(pipe)
-    reading = os.open(pipe, os.O_RDONLY | os.O_NONBLOCK)
-    try:
-        assert inside("solve", "-", "--format", "json", "-o", str(pipe), stdin=OBSERVER.encode()).code == 0
-        assert results(os.read(reading, 65536).decode())
-    finally:
-        os.close(reading)
-    assert pipe.is_fifo()
 
 
 @pytest.mark.parametrize("target", ["missing/page.tex", "."])
@@ -280,17 +223,6 @@ def test_ctrl_c_is_130() -> None:
 # -- one command a task ---------------------------------------------------------------------------------------------
 
 
-def test_every_task_has_a_command() -> None:
-    told = inside("--help")
-    assert told.code == 0
-    for name, task in tasks().items():
-        assert f"  {name} " in told.out
-        run = inside(name.replace("_", "-"), "--help")
-        assert run.code == 0
-        for option in ("A", "B", "C", "D", "dt", "transfer-function", "symbol", "format", *task.keywords):
-            assert f"--{option}" in run.out
-
-
 def test_a_task_without_a_file() -> None:
     run = inside("observer", "--A", "[0 1; 0 -1]", "--C", "[1 0]", "--poles", "-10, -10", "--format", "json")
     assert (run.code, run.err) == (0, "")
@@ -335,14 +267,6 @@ def test_wrong_values_are_3_and_name_the_option(options: list[str], said: str) -
 # -- lists ----------------------------------------------------------------------------------------------------------
 
 
-def test_methods_lists_every_method_with_its_source() -> None:
-    run = inside("methods")
-    assert run.code == 0
-    for found in methods().values():
-        assert f"    {found.name}: {found.summary}\n        {written_out(found.source)}\n" in run.out
-    assert [line.split(":")[0] for line in run.out.splitlines() if not line.startswith(" ")] == sorted(tasks())
-
-
 def test_the_schema_is_one_and_fits_the_worked_examples() -> None:
     run = inside("schema")
     assert run.code == 0
@@ -385,14 +309,6 @@ def test_templates_are_listed_and_copied_once(tmp_path: Path) -> None:
     assert "article.tex is already there" in again.err
     assert (mine / "article.tex").read_text(encoding="utf-8") == "my own"
     assert inside("templates", "copy", str(mine / "article.tex")).code == 3
-
-
-def test_version_and_conventions(tmp_path: Path) -> None:
-    run = fresh("--version", folder=tmp_path)
-    assert (run.code, run.err) == (0, "")
-    assert run.out.startswith("symobs ")
-    assert "\nstandard " in inside("conventions").out
-    assert "pdf" in formats()
 
 
 def test_what_is_beyond_the_limits_of_a_check_is_undecided_with_its_reason(tmp_path: Path) -> None:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from symobs.cli.shared.output import check_target, write_all
+from symobs.cli.shared.output import write_all
 from symobs.ground.errors import InputError
 from tests.kit import tabled
 from tests.support.paths import ROOT
@@ -79,13 +79,6 @@ def test_a_place_that_takes_nothing_is_said_at_once(command: list[str], target: 
     assert contents(tmp_path) == {"page.tex": "before"}
 
 
-def test_a_picture_s_place_is_looked_at_too(tmp_path: Path) -> None:
-    left = inside("solve", str(REGION), "-o", "page.tex", "--plot", "missing/map.svg", folder=tmp_path)
-    assert left.code == 3
-    assert left.err.startswith("missing/map.svg: there is no folder ")
-    assert contents(tmp_path) == {}
-
-
 def test_a_folder_that_cannot_be_written(bound: list[str], tmp_path: Path) -> None:
     closed = tmp_path / "closed"
     closed.mkdir(mode=0o555)
@@ -98,16 +91,6 @@ def test_a_folder_that_cannot_be_written(bound: list[str], tmp_path: Path) -> No
     copied = run(*bound, "templates", "copy", "closed/templates", folder=tmp_path)
     assert copied == (3, "", "closed/templates: Permission denied; name a folder that can be written\n")
     assert not any(closed.iterdir())
-
-
-def test_a_read_only_file_stays_as_it_is(bound: list[str], tmp_path: Path) -> None:
-    target = tmp_path / "page.tex"
-    target.write_text("before", encoding="utf-8")
-    target.chmod(0o444)
-    left = run(*bound, "solve", str(SERVO), "-o", "page.tex", folder=tmp_path)
-    assert (left.code, left.out) == (3, "")
-    assert left.err.startswith("page.tex: the file is read-only; make it writable (chmod u+w), or name")
-    assert contents(tmp_path) == {"page.tex": "before"}
 
 
 # -- places that are full ---------------------------------------------------------------------------------------------
@@ -183,20 +166,6 @@ def test_of_several_files_all_are_written_or_none(tmp_path: Path, monkeypatch: p
     assert contents(tmp_path) == {"old": "first", "new": "second", "last": "third"}
 
 
-def test_without_second_names_no_older_file_is_lost(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    def refuse(*_: object) -> None:
-        raise OSError(1, "Operation not permitted")
-
-    first, second = tmp_path / "first", tmp_path / "second"
-    first.write_text("before", encoding="utf-8")
-    monkeypatch.setattr(Path, "hardlink_to", refuse)
-    replace = Path.replace
-    monkeypatch.setattr(Path, "replace", lambda self, place: refuse() if place == second else replace(self, place))
-    with pytest.raises(InputError, match="Operation not permitted; name a file in a folder that can be written"):
-        write_all([("new", str(first)), ("new", str(second))])
-    assert contents(tmp_path) == {"first": "new"}
-
-
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="no device that is always full")
 def test_no_file_is_written_where_standard_output_is_full(tmp_path: Path) -> None:
     command = [sys.executable, "-m", "symobs", "solve", str(REGION), "--plot", "map.svg"]
@@ -221,9 +190,3 @@ def test_without_standard_output_or_error(tmp_path: Path) -> None:
     silent = run("sh", "-c", f"{shell} 2>&-", folder=tmp_path)
     assert silent.code == 0
     assert silent.out.startswith("Output feedback")
-
-
-def test_what_can_be_written_is_let_pass(tmp_path: Path) -> None:
-    (tmp_path / "page.tex").touch()
-    for target in (None, "-", str(tmp_path / "page.tex"), str(tmp_path / "new.tex"), os.devnull):
-        check_target(target)

@@ -13,9 +13,9 @@ import pytest
 
 import symobs
 from symobs.cli.shared import common
-from symobs.ground.errors import InputError, OutOfBudget, UsageError
+from symobs.ground.errors import InputError, UsageError
 from symobs.system.specification import CHOICES
-from symobs.tasks.result import formats, methods, tasks
+from symobs.tasks.result import tasks
 from tests.kit import tabled
 from tests.support.paths import ROOT
 from tests.support.tools.command_line import environment, inside
@@ -44,22 +44,7 @@ def test_examples_are_listed_printed_and_copied(tmp_path: Path) -> None:
     assert sorted(path.stem for path in (tmp_path / "all").iterdir()) == EXAMPLES
 
 
-def test_an_example_that_is_none() -> None:
-    run = inside("examples", "observer_feed")
-    assert run.code == 2
-    assert 'there is no worked example "observer_feed"; did you mean servo_observer_feedthrough?' in run.err
-
-
 # -- choices ----------------------------------------------------------------------------------------------------------
-
-
-def test_help_shows_choices_as_choices() -> None:
-    told = inside("compensator", "--help").out
-    assert "--observer [full|minimal]" in told
-    assert "--detail [full|outline|answer]" in told
-    assert f"--format [{'|'.join(sorted(formats()))}]" in " ".join(told.split())
-    for name in methods("compensator").values():
-        assert name.name in told
 
 
 @tabled
@@ -176,23 +161,6 @@ def test_an_interruption_on_a_terminal_ends_a_call_into_flint() -> None:
 
 
 # -- time and memory in Python ----------------------------------------------------------------------------------------
-
-
-def test_work_in_python_is_bounded() -> None:
-    plant = symobs.StateSpace("[0 1; 0 -1]", "[0; 1]", "[1 0]")
-    wanted = symobs.observer(plant, poles=[-10, -10])
-    assert symobs.bounded(lambda: symobs.observer(plant, poles=[-10, -10]), timeout=60, memory=2000) == wanted
-
-    def forever() -> None:
-        while True:
-            pass
-
-    with pytest.raises(OutOfBudget, match=r"undecided: 0\.05 seconds were not enough; give more with timeout"):
-        symobs.bounded(forever, timeout=0.05)
-    with pytest.raises(OutOfBudget, match="100 MB of memory were not enough; give more with memory"):
-        symobs.bounded(lambda: len(bytearray(10**9)), memory=100)
-    with pytest.raises(InputError, match="poles are missing"):
-        symobs.bounded(lambda: symobs.observer(plant), timeout=60)
 
 
 @tabled

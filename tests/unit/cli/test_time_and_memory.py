@@ -15,12 +15,9 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from symobs.cli.commands import solve
-from symobs.cli.shared import time_and_memory as budget_module
 from symobs.cli.shared.time_and_memory import within
 from symobs.ground.child_processes.budget import Budget
-from symobs.ground.errors import InputError, OutOfBudget, ProblemErrors, ShapeMismatch, TypesettingError
-from symobs.pages.formats.pdf import compiled
+from symobs.ground.errors import OutOfBudget
 from symobs.tasks.result import registry
 from tests.kit import tabled
 from tests.support.paths import ROOT
@@ -81,33 +78,7 @@ def test_what_is_no_budget_is_2(option: str, amount: str) -> None:
     assert run.err.startswith(f'{option}: "{amount}" is not {expected}; write for example {option} ')
 
 
-def test_without_child_processes_a_budget_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.delattr(os, "fork")
-    run = inside("solve", str(SERVO), "--timeout", "5")
-    assert (run.code, run.out) == (2, "")
-    assert run.err.startswith("--timeout: this system cannot end a computation that is under way; leave --timeout out")
-    assert inside("solve", str(SERVO)).code == 0
-
-
 # -- a budget that is not enough --------------------------------------------------------------------------------------
-
-
-def test_the_whole_answer_comes_back() -> None:
-    large = b"x" * 3_000_000  # more than a pipe holds
-
-    def work(with_findings: Callable[[object], None]) -> bytes:
-        with_findings("something")
-        return large
-
-    assert within(Budget(LONG), work) == large
-    errors = ProblemErrors((InputError("one", where="a", repair="b"), ShapeMismatch("two")))
-
-    def fail(_: object) -> None:
-        raise errors
-
-    with pytest.raises(ProblemErrors) as caught:
-        within(Budget(LONG), fail)
-    assert str(caught.value) == str(errors) == "a: one; b\ntwo"
 
 
 def deaf(with_findings: Callable[[object], None]) -> None:
@@ -166,14 +137,6 @@ def test_memory_that_is_refused_is_told_as_such() -> None:
     assert within(Budget(None, most), lambda _: len(bytes(1 << 20))) == 1 << 20
 
 
-def test_a_process_ended_by_the_system_is_undecided() -> None:
-    def work(_: object) -> None:
-        os.kill(os.getpid(), signal.SIGKILL)
-
-    with pytest.raises(OutOfBudget, match="the memory there is was not enough"):
-        within(Budget(LONG), work)
-
-
 def test_an_error_of_ours_stays_one() -> None:
     class OfItsOwnError(Exception):
         """One that cannot be pickled."""
@@ -213,24 +176,6 @@ def test_hostile_problems_end_undecided(text: str, option: str, amount: str, sai
     assert {path.name for path in tmp_path.iterdir()} == {"hard.toml", "page.tex"}
 
 
-def test_json_says_undecided_of_every_task(hard: Path) -> None:
-    text = hard.read_text(encoding="utf-8").replace('task = "observer"', 'tasks = ["observer", "observability"]')
-    run = inside("solve", "-", "--format", "json", "--timeout", "20", stdin=text.encode())
-    assert run.code == 5
-    assert re.fullmatch(
-        r"standard input: undecided: 20 seconds were not enough, at work on \w+; give more .*\n", run.err
-    )
-    whole = json.loads(run.out)
-    assert (whole["schema"], whole["title"]) == ("symobs/1", "All of sixth order")
-    assert [result["task"] for result in whole["results"]] == ["observer", "observability"]
-    decided = json.loads(inside("solve", str(SERVO), "--format", "json").out)["results"][0]
-    for result in whole["results"]:
-        assert result["verdict"] == "undecided"
-        assert result["certificates"] == result["cases"] == result["conditions"] == []
-        assert result["symbols"] == dict.fromkeys(NAMES + OUTPUTS + POLES, "real")
-        assert result.keys() <= decided.keys()
-
-
 THREE_TASKS = (
     NOT_OBSERVABLE.replace('task = "observability"', 'tasks = ["observability", "observer", "detectability"]')
     + '[specification]\npoles = "-1, -2"\n'
@@ -258,21 +203,6 @@ def test_a_page_keeps_the_tasks_that_were_finished(form: str) -> None:
     assert "detectab" not in run.out
 
 
-@pytest.mark.usefixtures("slow_observer")
-def test_json_keeps_the_tasks_that_were_finished() -> None:
-    """The first keeps its answer, the others are undecided."""
-    alone = json.loads(inside("solve", "-", "--format", "json", stdin=NOT_OBSERVABLE.encode()).out)["results"]
-    run = inside("solve", "-", "--format", "json", "--timeout", f"{LONG:g}", stdin=THREE_TASKS.encode())
-    assert run.code == 5
-    assert "at work on observer; " in run.err
-    first, *others = json.loads(run.out)["results"]
-    assert [first] == alone
-    assert [(each["task"], each["verdict"]) for each in others] == [
-        ("observer", "undecided"),
-        ("detectability", "undecided"),
-    ]
-
-
 def unbounded(*arguments: str, folder: Path, **more: str) -> tuple[int, str]:
     """Exit code and messages of a run in a process of its own."""
     run = subprocess.run(
@@ -286,16 +216,6 @@ def unbounded(*arguments: str, folder: Path, **more: str) -> tuple[int, str]:
     )
     assert run.stdout == ""
     return run.returncode, run.stderr
-
-
-def test_memory_that_ends_without_a_budget_is_undecided_too(monkeypatch: pytest.MonkeyPatch) -> None:
-    def greedy(*_: object, **__: object) -> None:
-        raise MemoryError
-
-    monkeypatch.setattr(solve, "run_work", greedy)
-    run = inside("solve", str(SERVO))
-    assert (run.code, run.out) == (5, "")
-    assert run.err.startswith("undecided: the memory there is was not enough; ")
 
 
 def test_a_problem_that_takes_too_much_keeps_its_place_with_its_question(hard: Path) -> None:
@@ -430,21 +350,6 @@ def test_the_alarm_in_tex_is_tex_s(tmp_path: Path) -> None:
     )
     assert ends(int(started.read_text(encoding="utf-8")))
     assert (tmp_path / "page.pdf").read_text(encoding="utf-8") == "before"
-
-
-def test_tex_of_a_child_that_cannot_leave_is_ended(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """A child that hears nothing, or comes to nothing on a busy machine, is killed: what it has started goes with it."""
-    started = hanging_tex(tmp_path)
-    monkeypatch.setattr(budget_module, "GRACE", 0.0)
-
-    def work(_: object) -> None:
-        signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGALRM, signal.SIGINT})
-        monkeypatch.setenv("PATH", f"{tmp_path}{os.pathsep}{os.environ['PATH']}")
-        compiled(r"\documentclass{article}", time_limit=LONG)
-
-    with pytest.raises(TypesettingError, match=r"^TeX was stopped: 5 seconds were over; give more with --timeout"):
-        within(Budget(5.0), work)
-    assert ends(int(started.read_text(encoding="utf-8")))
 
 
 def test_a_computation_does_not_outlive_its_command(tmp_path: Path) -> None:

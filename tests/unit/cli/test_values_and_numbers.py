@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from tests.kit import tabled
-from tests.support.tools.command_line import EXAMPLES, inside
+from tests.support.tools.command_line import inside
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -50,17 +50,6 @@ def test_print_of_an_answer_that_does_not_exist_says_why() -> None:
     assert (modes.code, modes.out) == (4, "verdict = no\n")
     run = inside("observer", "--A", "[0 1; 0 -a]", "--C", "[1 a]", "--poles=-1, -2", "--print", "conditions")
     assert (run.code, run.out) == (0, "conditions = [a + 1 != 0]\n")
-
-
-def test_print_names_every_task_that_has_the_answer(folder: Path) -> None:
-    """F = K(sI - A + LC + BK)⁻¹L of the compensator and F = 4, unit gain at rest, of the feedforward."""
-    text = FILE.replace('task = "compensator"', 'tasks = ["compensator", "feedforward"]')
-    (folder / "servo.toml").write_text(text, encoding="utf-8")
-    lines = inside("solve", "servo.toml", "--set", "k=1", "--print", "F", folder=folder).out.splitlines()
-    assert [line.partition(" = ")[0] for line in lines] == ["compensator.F", "feedforward.F"]
-    assert lines[1].endswith(" = 4")
-    run = inside("solve", "servo.toml", "--set", "k=1", "--print", "K", "--format", "matlab", folder=folder)
-    assert run.out == "compensator_K = [4.0 3.0];\nfeedforward_K = [4.0 3.0];\n"
 
 
 def test_set_gives_values_exactly(folder: Path) -> None:
@@ -113,27 +102,6 @@ def test_the_numbers_alone(folder: Path) -> None:
     assert "closed_loop_matrix = np.array([[0.0, 1.0, 0.0, 0.0], [-4.0, -4.0," in whole
 
 
-def test_names_are_those_of_the_convention() -> None:
-    example = next(
-        path
-        for path in EXAMPLES
-        if 'convention = "minusK-minusLC-gramianM"' in path.read_text(encoding="utf-8") and "observer" in path.stem
-    )
-    found = json.loads(inside("solve", str(example), "--format", "json").out)["results"]
-    own = {name: value for result in found for name, value in result["in_convention"].items() if name != "name"}
-    for name, value in own.items():
-        printed = inside("solve", str(example), "--print", name).out
-        assert all(str(entry).replace(" ", "") in printed for row in value for entry in row)
-
-
-def test_a_program_is_written_to_a_file_by_its_suffix(folder: Path) -> None:
-    for suffix, begins in ((".c", "/*"), (".py", '"""'), (".m", "function [u, state]"), (".mo", "block Compensator")):
-        target = f"servo{suffix}"
-        run = inside("solve", "servo.toml", "--set", "k=1", "--period", "1/100", "-o", target, folder=folder)
-        assert (run.code, run.err) == (0, "")
-        assert (folder / target).read_text(encoding="utf-8").startswith(begins)
-
-
 @tabled
 def test_refusals(folder: Path, arguments: list[str], code: int, message: str) -> None:
     run = inside("solve", "servo.toml", *arguments, folder=folder)
@@ -154,17 +122,3 @@ def test_a_table_of_numbers_that_would_be_empty_is_refused(folder: Path, kind: s
     run = inside("solve", "step.toml", "--format", kind, folder=folder)
     assert (run.code, run.out) == (3, "")
     assert f"needs numbers, and {names}; write --format text" in run.err
-
-
-def test_all_wrong_values_of_a_file_are_told_at_once(folder: Path) -> None:
-    (folder / "servo.toml").write_text(FILE + "[values]\nk = -1\nq = 2\n", encoding="utf-8")
-    run = inside("solve", "servo.toml", folder=folder)
-    assert run.code == 3
-    assert [line.partition(":")[0] for line in run.lines] == ["values.k", "values.q"]
-
-
-def test_json_names_the_method_whose_page_is_written() -> None:
-    arguments = ("observer", "--A", "[0 1; 0 -1]", "--C", "[1 0]", "--poles=-3, -4", "--format", "json")
-    for method, page in ((None, "canonical_form"), ("ackermann", "ackermann"), ("existence", "existence")):
-        asked = ("--method", method) if method else ()
-        assert json.loads(inside(*arguments, *asked).out)["results"][0]["page_method"] == page

@@ -16,7 +16,6 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 OBSERVER = ROOT / "worked_examples" / "variants" / "observer.toml"
-PLAIN = ROOT / "worked_examples" / "servo_observer.toml"
 FEW = """
 title = "a is {a}"
 task = "observability"
@@ -58,15 +57,6 @@ def test_nobody_of_a_table_is_left_without_a_variant(table: str, message: str) -
         assignment(table, 1, 3, "table.csv")
 
 
-def test_none_at_all_leave_nothing_behind(tmp_path: Path) -> None:
-    (tmp_path / "none.toml").write_text(f'{FEW}when = ["a > 2"]\n', encoding="utf-8")
-    run = inside("variants", "none.toml", "--count", "5", "-o", "set", "--partial", folder=tmp_path)
-    assert run.code == 4
-    assert "0 of 5 variants were found among 20 candidates" in run.err
-    assert run.lines[-1].split(maxsplit=1) == ["20", "when: a > 2"]
-    assert not (tmp_path / "set").exists()
-
-
 @pytest.mark.slow
 def test_too_few_leave_nothing_behind_and_partial_ones_what_there_is(tmp_path: Path) -> None:
     (tmp_path / "few.toml").write_text(FEW, encoding="utf-8")
@@ -90,18 +80,6 @@ def test_too_few_leave_nothing_behind_and_partial_ones_what_there_is(tmp_path: P
         path.write_text("before", encoding="utf-8")
     assert inside(*call, "--partial", folder=tmp_path).code == 3
     assert sorted(path.name for path in (tmp_path / "set").rglob("*.*")) == files
-
-
-def test_solve_takes_one_of_them(tmp_path: Path) -> None:
-    (tmp_path / "few.toml").write_text(FEW, encoding="utf-8")
-    first = inside("solve", "few.toml", "--format", "text", folder=tmp_path)
-    assert first.code == 0
-    assert "Variant 1 of seed 0." in first.out
-    second = inside("solve", "few.toml", "--variant", "2", "--format", "text", folder=tmp_path)
-    assert second.out != first.out
-    refused = inside("solve", str(PLAIN), "--variant", "2", folder=tmp_path)
-    assert refused.code == 2
-    assert "no table [variants]" in refused.err
 
 
 @tabled

@@ -82,11 +82,3 @@ def test_what_cannot_be_written_is_named_before_work(command: list[str], path: s
 @pytest.mark.parametrize("path", ["missing.toml", "folder.toml", "picture.toml"])
 def test_what_cannot_be_chosen_is_named(command: list[str], path: str) -> None:
     assert path in refusal(*command, path)
-
-
-def test_a_template_that_is_no_text_is_named() -> None:
-    assert refusal("solve", str(SERVO), "--templates", "templates").startswith("article.tex: ")
-
-
-def test_no_folder_is_made_where_a_file_is() -> None:
-    assert refusal("templates", "copy", "picture.toml").startswith("picture.toml: File exists; ")
