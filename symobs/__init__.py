@@ -16,7 +16,7 @@ FUNCTIONS = {
     "bounded": "symobs.cli.shared.time_and_memory",
     "batch": "symobs.applications.batch",
     "check": "symobs.applications.checking",
-    "linearize": "symobs.system.linearisation.linearize",
+    "linearize": "symobs.system.linearize",
     "live": "symobs.live",
     "margins": "symobs.tasks.analysis.stability_region.margins",
     "sweep": "symobs.applications.batch.sweep",

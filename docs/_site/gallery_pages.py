@@ -45,7 +45,7 @@ class WorkedExample:
     @property
     def link(self) -> str:
         """Its state in a link."""
-        from symobs.applications.live.links import link_of  # noqa: PLC0415 - only where there is a live page
+        from symobs.applications.live.request import link_of  # noqa: PLC0415 - only where there is a live page
 
         return link_of(self.data)
 

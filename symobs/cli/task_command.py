@@ -15,7 +15,7 @@ from symobs.ground.errors import ProblemErrors, SymobsError, UsageError
 from symobs.problem import OPEN, validate
 from symobs.system.specification import CHOICES, KINDS
 from symobs.tasks.result import methods
-from symobs.tasks.result.web_page import WebPage
+from symobs.tasks.result.output_methods import WebPage
 
 if TYPE_CHECKING:
     from symobs.cli.shared.outcome import Outcome

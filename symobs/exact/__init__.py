@@ -3,14 +3,13 @@
 Owns every exact value.  Nothing outside this package imports `flint` or `sympy.polys`.
 """
 
-from symobs.exact.algebraic.complex import Complex
-from symobs.exact.algebraic.decimals import decimal_digits, decimal_places, is_rounding, rounded
 from symobs.exact.algebraic.extension import AlgebraicExtension
-from symobs.exact.algebraic.polynomial_roots import Factored, Root, Shifted, factored, root_of_pole, roots_of
+from symobs.exact.algebraic.polynomial_roots import Complex, Factored, Root, Shifted, factored, root_of_pole, roots_of
 from symobs.exact.algebraic.real_algebraic import RealNumber
+from symobs.exact.algebraic.rounded_decimals import decimal_digits, decimal_places, is_rounding, rounded
 from symobs.exact.core.field import EIGENVALUE, RATIONALS, VARIABLES, Field
 from symobs.exact.core.generators import derivative
-from symobs.exact.core.matrix import Matrix
+from symobs.exact.core.matrix import Matrix, matrix_of_numbers
 from symobs.exact.core.polynomial import (
     apply_polynomial,
     companion,
@@ -20,9 +19,8 @@ from symobs.exact.core.polynomial import (
     remainder,
     resultant,
 )
-from symobs.exact.core.rational_matrix import matrix_of_numbers
 from symobs.exact.core.scalar import Scalar
-from symobs.exact.ideals.ideal import Ideal, TooLarge, apart_from_zero, is_inverse, kept_from_zero
+from symobs.exact.ideals import Ideal, TooLarge, apart_from_zero, is_inverse, kept_from_zero
 from symobs.exact.linear_algebra.elimination import (
     echelon,
     independent_rows,
@@ -34,11 +32,15 @@ from symobs.exact.linear_algebra.elimination import (
     reduced_echelon,
     unit_rows,
 )
-from symobs.exact.linear_algebra.smith_mcmillan import pole_and_zero_polynomial
-from symobs.exact.linear_algebra.transfer_function import controller, transfer, transfer_matrix
-from symobs.exact.numerals.significant_digits import is_correctly_written, is_written_exactly
+from symobs.exact.linear_algebra.transfer_function import (
+    controller,
+    pole_and_zero_polynomial,
+    transfer,
+    transfer_matrix,
+)
+from symobs.exact.numerals.rounded_roots import is_correctly_written, is_written_exactly
 from symobs.exact.numerals.written_digits import significant
-from symobs.exact.sympy_bridge.stable_roots import stable_roots
+from symobs.exact.sympy_bridge.conversion import stable_roots
 from symobs.exact.time_functions.antiderivative import antiderivative, exponential_of_integral
 
 __all__ = [

@@ -17,10 +17,10 @@ from symobs.formula.tree import Apply, Block, Letter, Literal, Negative, Product
 from symobs.ground.dataclass import dataclass
 from symobs.pages.formats.html import HtmlWriter
 from symobs.pages.printers.latex_printer import LatexPrinter
-from symobs.pages.printers.mathml.mathml_printer import MathmlPrinter
+from symobs.pages.printers.mathml import MathmlPrinter
 from symobs.pages.printers.root_lists import LATEX, TEXT, listed
 from symobs.pages.printers.text_printer import TextPrinter
-from symobs.tasks.analysis.factored_form import formula_of_factored
+from symobs.tasks.analysis.page_parts import formula_of_factored
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping

@@ -20,8 +20,7 @@ from symobs.problem.schema import keys_of
 from symobs.proof.derivation import Note, Section, translated
 from symobs.proof.derivation.builder import Builder, relation, sentence
 from symobs.system import read_matrix, read_scalar
-from symobs.system.matrices import as_rows
-from symobs.system.reading import has_decimals
+from symobs.system.reading import as_rows, has_decimals
 from symobs.system.specification import (
     desired_polynomial,
     is_pattern,
@@ -32,11 +31,10 @@ from symobs.system.specification import (
     read_poles,
     read_quantity,
 )
-from symobs.tasks.analysis.factored_form import formula_of_factored
-from symobs.tasks.analysis.page_parts import given, state_signs
+from symobs.tasks.analysis.page_parts import formula_of_factored, given, state_signs
 from symobs.tasks.analysis.time_response.horizons import INFINITE, read_horizon
 from symobs.tasks.result import Document
-from symobs.tasks.result.digits_of_page import DIGITS
+from symobs.tasks.result.output_methods import DIGITS
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
@@ -218,7 +216,7 @@ def _read_pattern(problem: Problem, task: Task, name: str, key: str) -> Scalar:
 
 def _free_parameters(problem: Problem) -> tuple[str, ...]:
     """Return the parameters of the region where none are named."""
-    from symobs.tasks.analysis.stability_region.stability_region_question import read_question  # noqa: PLC0415 - only questions of regions
+    from symobs.tasks.analysis.stability_region.stability_region import read_question  # noqa: PLC0415 - only questions of regions
 
     asked = problem.specification
     gains = {"K": asked.get("K"), "L": asked.get("L")}

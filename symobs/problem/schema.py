@@ -3,22 +3,26 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from itertools import islice
 from typing import TYPE_CHECKING, Any
 
 from symobs.formula.convention import conventions
-from symobs.problem.fields import ANY_TABLE, TEXT, by_name, list_of, table
-from symobs.problem.marking import MARKING
-from symobs.problem.noted_errors import nearest
+from symobs.problem.fields import ANY_TABLE, MARKING, TEXT, by_name, list_of, table
+from symobs.problem.file_tables import Errors, nearest, report_unknown, table_of
+from symobs.system import StateSpace, Symbols, read_scalar
 from symobs.system.conditions import SIGNS
+from symobs.system.linearize import linearize
+from symobs.system.reading import read_time
 from symobs.system.specification import CHOICES, KINDS
 from symobs.tasks.result import result_type, tasks
-from symobs.tasks.result.digits_of_page import MOST_DIGITS
 from symobs.tasks.result.in_convention import names_in
+from symobs.tasks.result.output_methods import MOST_DIGITS
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterator
 
     from symobs.tasks.result.registry import Task
+
 
 TOP: dict[str, dict[str, Any]] = {
     "title": {"description": "the title of the page", "type": "string"},
@@ -55,6 +59,8 @@ TOP: dict[str, dict[str, Any]] = {
     "variants": {"description": "how many problems like this one are drawn, for symobs variants", "type": "object"},
     "variant": {"description": "the id of the variant that this problem is", "type": "string"},
 }
+
+
 #: What one entry of [[printed]] may say.
 _PRINTED = {
     "where": TEXT.about("the place in the source"),
@@ -64,9 +70,17 @@ _PRINTED = {
     "let": by_name(TEXT).about("letters of this entry alone, and what they stand for"),
     "expect": ANY_TABLE.about("instead of relation: answers as in [expect]"),
 }
+
+
 PRINTED = list_of(table(_PRINTED), 200)
+
+
 NONLINEAR = ("f", "h", "states", "inputs", "equilibrium")
+
+
 PLANT = ("A", "B", "C", "D", "transfer_function", *NONLINEAR, "dt")
+
+
 #: A compensator has poles for each of its halves; a task that is one half reads them where nothing else is said of it.
 _HALVES: dict[tuple[str, ...], str] = {("K",): "control", ("L",): "observer"}
 
@@ -194,3 +208,64 @@ def missing_poles(wanted: Collection[Task], given: object) -> Iterator[tuple[str
         instead = (name, f"{name.removesuffix('poles')}polynomial", *gains)
         if not any(other in known or other in keys_of(task, known) for other in instead):
             yield f"{name} are missing", f"specification.{name}", f'give {name} = "-1, -2" or {instead[1]}'
+
+
+# The table [plant] of a problem file: matrices, a transfer function, or a nonlinear plant with an equilibrium.
+
+
+_MAX_CELLS = 1000
+
+
+def period_of(data: Mapping[str, Any], symbols: Symbols, errors: Errors) -> object:
+    """Return dt, 0 where it is none."""
+    table = data.get("plant")
+    with errors:
+        dt: object = table.get("dt", 0) if isinstance(table, Mapping) else 0
+        read_time(dt, symbols)
+        return dt
+    return 0
+
+
+def plant_of(
+    data: Mapping[str, Any], symbols: Symbols, dt: object, errors: Errors, *, optional: bool
+) -> StateSpace | None:
+    """Return the plant, None where it cannot be had; where it is `optional` a polynomial does instead."""
+    table = table_of(data, "plant", errors)
+    if not isinstance(data.get("plant", {}), Mapping):
+        return None
+    report_unknown(table, PLANT, "plant", errors, repair_of)
+    given = [name for name in "ABCD" if name in table]
+    nonlinear = {name: table[name] for name in NONLINEAR if name in table}
+    forms = [*given[:1], *(name for name in ("transfer_function",) if name in table), *list(nonlinear)[:1]]
+    if len(forms) > 1:
+        errors.note(f"both {forms[-1]} and {forms[0]} are given", "plant", "keep one of them")
+    elif nonlinear:
+        with errors:
+            return linearize(**{"f": None, "states": "", "equilibrium": None, **nonlinear}, dt=dt, symbols=symbols)
+    elif "transfer_function" in table:
+        with errors:
+            return StateSpace.from_transfer_function(table["transfer_function"], dt, symbols=symbols)
+    elif optional and not given and "polynomial" in (specification := table_of(data, "specification", errors)):
+        with errors:
+            known = symbols.naming(specification.get("parameters"), "specification.parameters")
+            return StateSpace.from_polynomial(specification["polynomial"], dt, symbols=known)
+    elif "A" not in table:
+        errors.note("the state matrix is missing", "plant.A", 'give it, for example A = "[0 1; 0 -1]"')
+    else:
+        with errors:
+            B, C, D = (table.get(name) for name in "BCD")
+            return StateSpace(table["A"], B, C, D, dt, symbols=symbols)
+        others = Errors()
+        for name in given:
+            read_cells(table[name], symbols.with_time(), f"plant.{name}", others)
+        errors.add_elsewhere(others)
+    return None
+
+
+def read_cells(value: object, symbols: Symbols, where: str, errors: Errors) -> None:
+    """Note every unreadable cell of a matrix in lists; reading the matrix as a whole stops at the first."""
+    rows = value if isinstance(value, list) else []
+    cells = ((i, j, cell) for i, row in enumerate(rows) if isinstance(row, list) for j, cell in enumerate(row))
+    for i, j, cell in islice(cells, _MAX_CELLS):
+        with errors:
+            read_scalar(cell, symbols, f"{where}[{i}][{j}]")

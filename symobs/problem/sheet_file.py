@@ -15,8 +15,7 @@ from symobs.ground.errors import InputError, ProblemErrors, reason_of
 from symobs.pages.page.blocks import AnswerSpace
 from symobs.pages.page.sheet import Header, Logo
 from symobs.problem.fields import FLAG, TEXT, Field, fraction_of, is_integer, list_of, one_of, single, table, whole
-from symobs.problem.file_tables import Decimal, parse
-from symobs.problem.noted_errors import Errors
+from symobs.problem.file_tables import Decimal, Errors, parse
 from symobs.problem.validation import read_convention
 
 if TYPE_CHECKING:

@@ -14,21 +14,28 @@ from symobs.formula.expression.source import shown
 from symobs.formula.phrases.languages import ENGLISH, language_named
 from symobs.ground.dataclass import dataclass
 from symobs.ground.errors import ProblemErrors, Undecided, UsageError
-from symobs.problem.constants import with_constants
 from symobs.problem.expect import unreadable
-from symobs.problem.fields import FLAG, TEXT, list_of
-from symobs.problem.file_tables import Decimal, came
-from symobs.problem.marking import Marking, read_marking
-from symobs.problem.noted_errors import Errors, check_text, report_unknown, table_of, text_of
-from symobs.problem.plant_table import period_of, plant_of, read_cells
-from symobs.problem.schema import PRINTED, TOP, keys_of, kinds_of, missing_poles, repair_of
+from symobs.problem.fields import FLAG, TEXT, Marking, list_of, read_marking
+from symobs.problem.file_tables import Decimal, Errors, came, check_text, report_unknown, table_of, with_constants
+from symobs.problem.file_tables import checked_text as text_of
+from symobs.problem.schema import (
+    PRINTED,
+    TOP,
+    keys_of,
+    kinds_of,
+    missing_poles,
+    period_of,
+    plant_of,
+    read_cells,
+    repair_of,
+)
 from symobs.system import StateSpace, Symbols, read_matrix, read_scalar
+from symobs.system.reading import read_time
 from symobs.system.specification import is_pattern, parse_signal, read_poles
 from symobs.system.specification.pole_patterns import OTHERS, named_parts, require_positive
-from symobs.system.time_domain import read_time
 from symobs.tasks.result import Document, Result, Task, task_named, tasks
-from symobs.tasks.result.digits_of_page import digits_asked
 from symobs.tasks.result.in_convention import ResultInConvention, names_in
+from symobs.tasks.result.output_methods import digits_asked
 
 if TYPE_CHECKING:
     from pathlib import Path

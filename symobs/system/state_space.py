@@ -2,28 +2,145 @@
 
 from __future__ import annotations
 
+import numbers
+from collections.abc import Mapping
 from copy import copy
+from fractions import Fraction
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, cast
+from math import isfinite
+from typing import TYPE_CHECKING, Any, NamedTuple, cast
 
-from symobs.exact import Field, Ideal, Matrix, Scalar, apart_from_zero, companion, modulo
+from symobs.exact import Complex, Field, Ideal, Matrix, Scalar, apart_from_zero, companion, modulo
 from symobs.exact.core.generators import NotWritten, substitute
+from symobs.exact.floating.sampled import nearest_double
 from symobs.ground.errors import InputError, SymobsError, raise_all
-from symobs.system.connections import connected, inverse_of
-from symobs.system.control_system import exact_of, read_control_system
 from symobs.system.findings import Findings
-from symobs.system.floats import read_floats
-from symobs.system.matrices import Matrices, as_rows, shape_errors
-from symobs.system.reading import has_decimals, inserted, over_a_base, read_matrix, read_values
-from symobs.system.symbols import Symbols
-from symobs.system.time_domain import Continuous, Discrete, TimeVarying, read_time
+from symobs.system.reading import (
+    Continuous,
+    Discrete,
+    Matrices,
+    TimeVarying,
+    as_rows,
+    has_decimals,
+    inserted,
+    over_a_base,
+    read_matrix,
+    read_time,
+    read_values,
+    shape_errors,
+)
+from symobs.system.symbols import Symbols, is_sympy
 from symobs.system.transfer_function_text import WrittenTransferFunction, read_characteristic
-from symobs.system.transfer_matrix import WrittenTransferMatrix, read_written
+from symobs.system.transfer_matrix import WrittenTransferMatrix, connected, inverse_of, read_written
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Mapping
+    from collections.abc import Callable, Iterable
 
-    from symobs.system.matrices import Nonlinear
+    from symobs.system.reading import Nonlinear
+
+
+# State-space and transfer-function systems of python-control.
+
+
+class ControlSystem(NamedTuple):
+    """The data of a system: rows of numerators over denominators, or else the matrices by name; dt is 0 in continuous time."""
+
+    transfer_function: list[list[Any]] | None
+    matrices: dict[str, Any]
+    dt: Any
+
+
+def read_control_system(system: Any) -> ControlSystem:
+    """Return the data of a python-control system.
+
+    Raises `InputError` where the system has no A, B, C, D and no numerator and denominator of numbers.
+    """
+    dt = (repr(system.dt) if isinstance(system.dt, float) else system.dt) or 0 if hasattr(system, "dt") else 0
+    if hasattr(system, "num") and hasattr(system, "den"):
+        try:
+            rows = [
+                [[above.tolist(), below.tolist()] for above, below in zip(*row, strict=True)]
+                for row in zip(system.num, system.den, strict=True)
+            ]
+        except (AttributeError, TypeError) as error:
+            message = f"a system of python-control is expected, but a {type(system).__name__} came"
+            raise InputError(message, where="plant", repair="give what control.ss or control.tf returns") from error
+        return ControlSystem(rows[0][0] if len(rows) == len(rows[0]) == 1 else rows, {}, dt)
+    for name in "ABCD":
+        if getattr(getattr(system, name, None), "dtype", None) is None or getattr(system, name).dtype.kind not in "iuf":
+            message = (
+                f"a python-control state-space system is expected, {type(system).__name__} has no matrix of numbers "
+                f"{name}"
+            )
+            raise InputError(message, where=f"plant.{name}", repair="convert it by control.ss(system)")
+    return ControlSystem(None, {name: getattr(system, name) for name in "ABCD"}, dt)
+
+
+def exact_of(system: Any) -> Any:
+    """Return the exact plant that a system was made of, None where there is none or its floats are others by now."""
+    exact = getattr(system, "exact", None)
+    if exact is None or not all(_are_of(getattr(exact.matrices, name), getattr(system, name)) for name in "ABCD"):
+        return None
+    return exact if (exact.dt if isinstance(exact.dt, int) else float(exact.dt)) == system.dt else None
+
+
+def _are_of(matrix: Matrix, array: Any) -> bool:
+    """Return whether an array holds the doubles nearest to the entries of an exact matrix."""
+    return bool(array.shape == matrix.shape) and array.reshape(-1).tolist() == [*map(nearest_double, matrix.entries)]
+
+
+# Floating-point numbers read as their shortest decimals, on request.
+
+
+def read_floats(value: Any, floats: object, where: str) -> Any:
+    """Return a value in which each float is the text of its shortest decimal; the value itself where there is none.
+
+    Lists, tables, arrays, SymPy expressions and their floats are looked into.  `floats` is None, by which floats stay as they
+    are and are refused by whoever reads them, or "decimal".  Raises `InputError` for another word, and where a number
+    is not finite.
+    """
+    if floats is None:
+        return value
+    if not isinstance(floats, str) or floats != "decimal":
+        message = f"{str(floats)[:40]!r} is no way to read floats"
+        raise InputError(message, where="floats", repair='write floats="decimal", or leave it out')
+    return _in_decimals(value, where)
+
+
+def _in_decimals(value: Any, where: str) -> Any:
+    if is_sympy(value):
+        return _without_sympy_floats(value)
+    if isinstance(value, Mapping):
+        named = {name: _in_decimals(part, f"{where}.{name}") for name, part in value.items()}
+        return value if all(named[name] is part for name, part in value.items()) else named
+    is_array = type(value).__name__ in {"ndarray", "matrix"} and hasattr(value, "tolist")
+    if is_array and value.shape == ():
+        return _in_decimals(value[()], where)
+    if isinstance(value, (list, tuple)) or is_array:
+        entries = list(value if type(value).__name__ != "matrix" else value.A)
+        read = [_in_decimals(entry, where) for entry in entries]
+        return value if all(new is old for new, old in zip(read, entries, strict=True)) else read
+    if isinstance(value, numbers.Real) and not isinstance(value, numbers.Rational):
+        return _decimal(value, where)
+    if isinstance(value, numbers.Complex) and not isinstance(value, numbers.Real):
+        real, imaginary = (Scalar.of(Fraction(_decimal(part, where))) for part in (value.real, value.imag))
+        return real if imaginary.is_zero else Complex(real, imaginary)
+    return value
+
+
+def _decimal(value: Any, where: str) -> str:
+    """Return the shortest text that names the same float of its precision."""
+    if not isfinite(value):
+        raise InputError(f"{value} is not a finite number", where=where, repair="give finite numbers")
+    return str(value)
+
+
+def _without_sympy_floats(value: Any) -> Any:
+    """Return a SymPy expression or matrix with each float of double precision as a fraction."""
+    from symobs.exact.sympy_bridge.conversion import without_floats  # noqa: PLC0415 - SymPy is there already
+
+    return without_floats(value)
+
 
 #: Equations of more terms than this cost no more: where they are long, what they leave is mostly few points.
 _LONG = 25

@@ -21,7 +21,7 @@ from symobs.pages.cards import Card, CardPrinter, cards
 from symobs.pages.printers.root_lists import TEXT, listed
 from symobs.pages.printers.text_printer import TextPrinter
 from symobs.problem import read
-from symobs.tasks.result.conversions import to_json
+from symobs.tasks.result.output_methods import to_json
 from tests.support.tools.command_line import EXAMPLES
 
 if TYPE_CHECKING:

@@ -24,7 +24,7 @@ BY_NAME = (
     "symobs/tasks/result/",
     "symobs/cli/",
     "symobs/formula/phrases/catalogue.py",
-    "symobs/applications/batch/kinds.py",
+    "symobs/applications/batch/jobs.py",
 )
 LATE = {"control", "distributed", "flint", "matplotlib", "mpmath", "numpy", "pyarrow", "scipy", "sympy", "z3"}
 

@@ -10,7 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import symobs
-from symobs.applications.audit.equations.grammar import read_relation
+from symobs.applications.audit.equations import read_relation
 from symobs.exact import Scalar
 from symobs.formula.expression import declared_name, parse_matrix, parse_poles, parse_polynomial, parse_scalar
 from symobs.problem import parse, validate

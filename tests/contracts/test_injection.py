@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from symobs.applications.audit import Audited, Finding, report
-from symobs.formula.convention.convention_file import read_convention
+from symobs.formula.convention.convention import read_convention
 from symobs.ground.errors import InputError, ProblemErrors
 from symobs.pages.formats.pdf import compiled
 from symobs.system import Symbols

@@ -19,8 +19,7 @@ import symobs
 from symobs.formula.phrases import CONTINUES, PHRASES
 from symobs.formula.phrases import languages as module
 from symobs.formula.phrases.catalogue import phrases_of_modules
-from symobs.formula.phrases.languages import ENGLISH, faults, language_named, languages
-from symobs.formula.phrases.spoken import Counted, StateChoice
+from symobs.formula.phrases.languages import ENGLISH, Counted, StateChoice, faults, language_named, languages
 from symobs.ground.errors import DerivationRejected, InputError, UsageError
 from symobs.pages.page.blocks import CaseBlock, Heading, Paragraph, every
 from symobs.pages.page.narrator import narrate

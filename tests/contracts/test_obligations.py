@@ -14,7 +14,7 @@ import pytest
 
 from symobs.formula.phrases import ASSERTS, DEMANDS, PHRASES
 from symobs.proof.derivation import check, wording_check
-from symobs.proof.derivation.facts.properties import PREDICATES
+from symobs.proof.derivation.facts import PREDICATES
 
 if TYPE_CHECKING:
     from types import ModuleType

@@ -17,7 +17,7 @@ from flint import ctx
 import symobs
 from symobs.exact import Field, Matrix, Scalar
 from symobs.exact.core.generators import function
-from symobs.exact.core.precision import Precision
+from symobs.exact.core.ring import Precision
 from symobs.tasks.result import tasks
 from tests.programs.benchmarks.fresh_symbols import design
 from tests.support.claims.asking import specification

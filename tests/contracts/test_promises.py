@@ -17,7 +17,7 @@ from symobs.ground.errors import ProblemErrors
 from symobs.pages.formats.json import result_object
 from symobs.problem import read
 from symobs.problem.expect import mismatches
-from symobs.proof.derivation.facts.properties import PREDICATES, are_roots, polynomial_of
+from symobs.proof.derivation.facts import PREDICATES, are_roots, polynomial_of
 from tests.programs.campaign.points import value
 
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from symobs.cli.command_line import COMMANDS
-from symobs.formula.convention.builtin import ALIASES
+from symobs.formula.convention.convention import ALIASES
 from symobs.tasks.result import tasks
 from tests.support.paths import ROOT
 from tests.support.sampling import every

@@ -98,7 +98,7 @@ def test_the_version_needs_neither_kernel_nor_tasks() -> None:
         "symobs.cli.shared",
         "symobs.cli.shared.common",
         "symobs.cli.shared.options",
-        "symobs.cli.shared.output",
+        "symobs.cli.shared.outcome",
     }
     assert own == {"symobs", "symobs.ground", "symobs.ground.errors"} | own_modules
 

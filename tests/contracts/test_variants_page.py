@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from symobs.applications.variants.drawing.constructions import CONSTRUCTIONS
-from symobs.applications.variants.drawing.parameters import read_parameter
-from symobs.applications.variants.reading.constraint_table import CONSTRAINTS, PAGE
+from symobs.applications.variants.constructions import CONSTRUCTIONS
+from symobs.applications.variants.parameters import read_parameter
+from symobs.applications.variants.table import CONSTRAINTS, PAGE
 from symobs.problem import parse
 from tests.support.paths import ROOT
 from tests.support.tools.command_line import inside

@@ -14,7 +14,7 @@ import sympy
 
 from symobs import problem
 from symobs.formula.expression import parse_scalar
-from symobs.tasks.result.conversions import to_sympy
+from symobs.tasks.result.output_methods import to_sympy
 from tests.support.independent_algebra.second_reader import Reader, facts_in, sympy_scalar, values_of
 from tests.support.paths import ROOT
 from tests.support.problems.problems_by_hand import (

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 import sympy
 
-from symobs.tasks.result.conversions import to_sympy
+from symobs.tasks.result.output_methods import to_sympy
 from tests.oracles.test_independent_values import ROOTS, VERDICTS, results, same
 from tests.support.independent_algebra.second_reader import Reader, facts_in, values_of
 from tests.support.problems.problems_by_hand import s

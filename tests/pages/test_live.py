@@ -14,8 +14,7 @@ from urllib.parse import quote
 import pytest
 
 from symobs.applications.live import answer
-from symobs.applications.live.process import AnswerBudget, Children
-from symobs.applications.live.server import Server
+from symobs.applications.live.server import AnswerBudget, Children, Server
 from tests.support.tools.command_line import environment
 
 if TYPE_CHECKING:

@@ -99,7 +99,7 @@ def test_the_result_is_that_of_the_newest_answer(widget: Callable[..., Any]) -> 
 
 
 def test_the_state_is_that_of_a_link(widget: Callable[..., Any]) -> None:
-    from symobs.applications.live.links import link_of  # noqa: PLC0415 - beside anywidget, which may be missing
+    from symobs.applications.live.request import link_of  # noqa: PLC0415 - beside anywidget, which may be missing
 
     plant = symobs.StateSpace("[0 1; -omega^2 0]", None, "[1 0]", symbols={"omega": "positive"})
     live = widget(plant=plant, task="observer", poles="-1, -2")

@@ -30,7 +30,7 @@ from symobs import (
 from symobs.exact import Scalar, is_correctly_written, roots_of, significant
 from symobs.exact.core.generators import function
 from symobs.exact.numerals.rounded_roots import are_rounded_roots
-from symobs.exact.numerals.written_roots import rounded_roots
+from symobs.exact.numerals.written_digits import rounded_roots
 from symobs.formula.tree import Letter, Literal, Negative, Numeral, Product, Quotient, Relation, RoundedRoots
 from symobs.formula.tree.plain_text import plain, plain_relation
 from symobs.ground.errors import DerivationRejected, ProblemErrors, SymobsWarning, UsageError

@@ -17,7 +17,7 @@ from symobs.pages.formats.html import page
 from symobs.pages.page.blocks import CaseBlock, Display, Drawing, Heading, PictureBlock, TableBlock, every
 from symobs.pages.page.narrator import narrate, printer_for
 from symobs.pages.printers.latex_printer import LatexPrinter
-from symobs.pages.printers.mathml.mathml_printer import MathmlPrinter
+from symobs.pages.printers.mathml import MathmlPrinter
 from symobs.tasks.result import render
 from tests.pages.test_worked_examples import FILES, solved
 from tests.support.tools.browser import Browser

@@ -26,8 +26,7 @@ from typing import TYPE_CHECKING, Any
 
 from symobs.applications.live import answer
 from symobs.applications.live.child import prepare
-from symobs.applications.live.process import AnswerBudget
-from symobs.applications.live.server import Server
+from symobs.applications.live.server import AnswerBudget, Server
 from symobs.ground.child_processes import COLLECTED_AFTER
 
 if TYPE_CHECKING:

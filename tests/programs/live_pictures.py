@@ -7,8 +7,7 @@ import threading
 from typing import Any
 from urllib.parse import quote
 
-from symobs.applications.live.process import AnswerBudget
-from symobs.applications.live.server import Server
+from symobs.applications.live.server import AnswerBudget, Server
 from tests.support.paths import ROOT
 
 FOLDER = ROOT / ".github" / "pictures"

@@ -5,7 +5,7 @@ A problem file carries `[[printed]]` entries (`statements`).  Each is an equatio
 printed is looked for (`slips` in a formula, `differences` between values).
 """
 
-from symobs.applications.audit.findings import Audited, Finding, audit
+from symobs.applications.audit.auditor import Audited, Finding, audit
 from symobs.applications.audit.report import REPORTS, report
 
 __all__ = ["REPORTS", "Audited", "Finding", "audit", "report"]

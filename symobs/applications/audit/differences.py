@@ -5,7 +5,7 @@ from __future__ import annotations
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
-from symobs.applications.audit.equations.reading import text_of_value
+from symobs.applications.audit.equations import text_of_value
 from symobs.exact import Matrix, Scalar
 from symobs.exact.algebraic.rounded_decimals import decimals_in, rounds_to, written_out
 from symobs.ground.dataclass import dataclass

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
-    from symobs.applications.audit.findings import Audited, Finding
+    from symobs.applications.audit.auditor import Audited, Finding
 
 
 _WIDTH = 100

@@ -12,7 +12,7 @@ from itertools import combinations, islice
 from typing import TYPE_CHECKING, Protocol
 
 from symobs.exact import Scalar
-from symobs.formula.expression.syntax_tree import SyntaxNode, every, exponent_of, letters_of, with_part
+from symobs.formula.expression.syntax import SyntaxNode, every, exponent_of, letters_of, with_part
 from symobs.ground.dataclass import dataclass
 
 if TYPE_CHECKING:

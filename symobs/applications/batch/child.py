@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from symobs.applications.batch.jobs import digest, read_payload, row_text
-from symobs.applications.batch.kinds import prepare, run
+from symobs.applications.batch.jobs import digest, prepare, read_payload, row_text, run
 from symobs.ground.child_processes.inside import is_for_want_of_memory, serve
 from symobs.ground.errors import ProblemErrors, SymobsError
 

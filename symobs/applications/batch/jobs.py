@@ -7,25 +7,36 @@ import json
 import re
 from collections.abc import Mapping
 from functools import cache
+from importlib import import_module
 from importlib.metadata import PackageNotFoundError, version
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from symobs.formula.convention.builtin import PROFILES
+from symobs.formula.convention.convention import PROFILES
 from symobs.ground.child_processes.budget import Budget
 from symobs.ground.errors import ProblemErrors
 from symobs.problem import Decimal, parse
+from symobs.tasks.result import tasks
 
 if TYPE_CHECKING:
     from pathlib import Path
 
     from symobs.ground.errors import InputError
 
+
 SCHEMA = "symobs-batch/1"
+
+
 #: What of a problem file changes no answer, and what only its page shows.
 _SAYS_NOTHING = {"id", "printed"}
+
+
 #: What one job is allowed where nothing else is said.
 USUAL_BUDGET = Budget(60.0, 2000.0)
+
+
 _ON_A_PAGE = {"title", "source", "text", "digits", "exact"}
+
+
 _JSON_NUMBER = re.compile(r"-?(0|[1-9][0-9]*)(\.[0-9]+)?([eE][-+]?[0-9]+)?")
 
 
@@ -136,3 +147,41 @@ def own_convention(tables: Mapping[str, Any], folder: Path | None) -> dict[str, 
         return {"convention_file": (folder / f"{stem}.toml").read_text(encoding="utf-8")}
     except (OSError, UnicodeDecodeError):
         return {}
+
+
+# The kinds of work there are: each is a function from its data to a row, in a module of its own.
+#
+# A kind is one line of the table. Its module has
+#
+# run(payload) -> row status (done, no, undecided, unreadable, failed), result, and error where there is one; `files`,
+# by format, where texts are to be stored beside the row recheck(payload, row) what does not hold of a row, by other
+# code than that which made it; None where it all does
+#
+# Rows are plain JSON. A row is a function of the payload alone: no times, names of machines or random numbers.
+
+
+KINDS = {
+    "check": "symobs.applications.checking.submissions",
+    "sheet-entry": "symobs.cli.shared.sheet_entries",
+    "solve": "symobs.applications.batch.solving",
+    "variant": "symobs.applications.variants.acceptance",
+    "sweep-block": "symobs.applications.batch.sweep.table",
+}
+
+
+def prepare(kind: str) -> None:
+    """Import what jobs of a kind need."""
+    tasks()
+    import_module(KINDS[kind])
+
+
+def run(kind: str, payload: dict[str, Any]) -> dict[str, Any]:
+    """Do a piece of work and return its row."""
+    row: dict[str, Any] = import_module(KINDS[kind]).run(payload)
+    return row
+
+
+def recheck(kind: str, payload: dict[str, Any], row: dict[str, Any]) -> str | None:
+    """Return what does not hold of a row, None where all that is looked at does."""
+    found: str | None = import_module(KINDS[kind]).recheck(payload, row)
+    return found

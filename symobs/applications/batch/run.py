@@ -7,13 +7,12 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
 
-from symobs.applications.batch.engine import Settings, examined, rejected, work
-from symobs.applications.batch.executors import Unfinished, workforce
+from symobs.applications.batch.engine import Settings, Unfinished, examined, rejected, work, workforce
 from symobs.applications.batch.jobs import Job, digest, key_of, solve_job, unread_job
 from symobs.applications.batch.store import STATUSES, Store
 from symobs.ground.child_processes.budget import Budget
 from symobs.ground.errors import InputError, UsageError, reason_of
-from symobs.tasks.result.digits_of_page import digits_asked
+from symobs.tasks.result.output_methods import digits_asked
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Sequence

@@ -14,7 +14,7 @@ from symobs.problem import parse, validate
 from symobs.problem.expect import mismatches
 from symobs.system.specification import desired_polynomial
 from symobs.tasks.result import render
-from symobs.tasks.result.conversions import to_json
+from symobs.tasks.result.output_methods import to_json
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

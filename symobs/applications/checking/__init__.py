@@ -6,7 +6,6 @@ in, and `report` holds and writes what is said of it.
 """
 
 from symobs.applications.checking.checker import Checked, check
-from symobs.applications.checking.report.data import SHOW, Line, Part
-from symobs.applications.checking.report.report import CheckReport
+from symobs.applications.checking.report import SHOW, CheckReport, Line, Part
 
 __all__ = ["SHOW", "CheckReport", "Checked", "Line", "Part", "check"]

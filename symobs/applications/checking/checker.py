@@ -4,32 +4,319 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
+from difflib import get_close_matches
 from fractions import Fraction
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from symobs.applications.checking.answers.answer_file import Answer, read_answer
-from symobs.applications.checking.answers.values import as_value, plain
-from symobs.applications.checking.derivations.lines import judge_lines
-from symobs.applications.checking.judgement.judge import judge_task
-from symobs.applications.checking.judgement.parts import asked_of, field_called, is_of_time
-from symobs.applications.checking.marking_check import known_parts, marking_errors, part_of_name
-from symobs.applications.checking.marks import missing, part_of
-from symobs.applications.checking.report.data import SHOW, Line, Part
-from symobs.applications.checking.report.report import CheckReport
+from symobs.applications.audit.auditor import printed_entries
+from symobs.applications.checking.answers import Answer, as_value, plain, read_answer, written_text
+from symobs.applications.checking.derivations import is_of_conditions, judge_lines, judge_milestone
+from symobs.applications.checking.faults import Explained, explain_gain, explain_value, other_values
+from symobs.applications.checking.judgement import asked_of, exists, field_called, is_of_time, judge_task
+from symobs.applications.checking.regions import read_conditions
+from symobs.applications.checking.report import SHOW, CheckReport, Line, Part
+from symobs.exact import Factored, Matrix, Scalar
 from symobs.formula.convention import Convention, convention_named
+from symobs.formula.expression import parse_matrix
 from symobs.formula.expression.source import shown
 from symobs.ground.errors import InputError, ProblemErrors, SymobsError, UsageError
 from symobs.problem import MAX_BYTES, Problem, is_text, read, text_of
-from symobs.problem.expect import available
-from symobs.problem.noted_errors import Errors
+from symobs.problem.expect import agrees, available, factored_table, found_in, shown_value
+from symobs.problem.file_tables import Errors
+from symobs.tasks.design.compensator.output_feedback import OutputFeedback
 from symobs.tasks.result import Result
 from symobs.tasks.result.in_convention import ResultInConvention
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Collection, Iterator, Sequence
 
-    from symobs.applications.checking.judgement.judge import TaskJudgement
+    from symobs.applications.checking.judgement import Judged, TaskJudgement
+    from symobs.problem.fields import Marking
+
+
+# What an answer may hold: an empty answer file, with the shape of everything that is asked for.
+
+
+def answer_file(checked: Checked, convention: Convention | None = None) -> str:
+    """Return an empty answer file: one line for each part that counts, with its shape, none of them filled in."""
+    views = checked.views(convention)
+    name = (convention or checked.problem.convention).name
+    lines = ['student    = ""', f'convention = "{name}"', ""]
+    asked = checked.asked(views)
+    fields = [field for _, field in asked]
+    for view in dict.fromkeys(view.task for view, _ in asked):
+        alone = all(fields.count(field) == 1 for each, field in asked if each.task == view)
+        lines.append("[answer]" if alone and len(views) == 1 else f"[answer.{view}]")
+        for each, field in asked:
+            if each.task == view:
+                letter = next((own for own, (standard, _) in each.names.items() if standard == field), field)
+                weight = checked.problem.marking.parts.get(f"{view}.{field}")
+                marks = f", weight {weight}" if weight is not None else ""
+                lines.append(f'# {letter} = ""    # {_shape(each.result.fields.get(field), field)}{marks}')
+        lines.append("")
+    lines += ["# [[step]]", '# relation = ""   # a line of the derivation, in order', ""]
+    return "\n".join(lines)
+
+
+def _shape(right: Any, field: str) -> str:
+    """Return what is expected, without a word on its value."""
+    table = factored_table(right)
+    matrix = right if isinstance(right, Matrix) else table
+    if isinstance(matrix, Matrix):
+        return f"a {matrix.shape[0]}x{matrix.shape[1]} matrix"
+    if isinstance(right, (Scalar, Factored)):
+        return "an expression"
+    if isinstance(right, int) and not isinstance(right, bool):
+        return "an integer"
+    if field == "verdict":
+        return "yes, no or conditional"
+    if field == "stable_if":
+        return "conditions: h1 > 3 and h2 > 0"
+    return "a list" if isinstance(right, (list, tuple)) else "a value"
+
+
+# From verdicts to parts with their credit, and why those that are wrong are so.
+
+
+def part_of(
+    view: ResultInConvention, judgement: TaskJudgement, judged: Judged, marking: Marking, *, counts: bool
+) -> Part:
+    """Return a part with its credit, its slip, and the right value, which the report may not show."""
+    name = f"{view.task}.{judged.name}"
+    weight = marking.parts.get(name, Fraction(1)) if counts else Fraction(0)
+    right = _right(view, judgement.right if judged.there is None else judged.there, judged.letter)
+    part = Part(
+        name, judged.letter, judged.verdict, weight, Fraction(0), written_text(judged.given), hints=judged.hints
+    )
+    part = replace(part, right=right, reason=judged.reason)
+    match judged.verdict:
+        case "right":
+            return replace(part, credit=Fraction(1), effect=_effect(view, judgement, judged))
+        case "undecided":
+            return replace(part, credit=None)
+        case "follows":
+            origins = tuple(f"{view.task}.{origin}" for origin in judged.origins)
+            return _followed(replace(part, origins=origins), judgement, judged, marking)
+        case "wrong":
+            return _explained(part, view, judgement, judged, marking)
+    return part
+
+
+def missing(view: ResultInConvention, name: str, marking: Marking) -> Part:
+    """Return a part that the answer lacks."""
+    letter = next((own for own, (standard, _) in view.names.items() if standard == name), name)
+    part = f"{view.task}.{name}"
+    right = _right(view, view.result, letter)
+    return Part(part, letter, "missing", marking.parts.get(part, Fraction(1)), Fraction(0), right=right)
+
+
+def _right(view: ResultInConvention, result: Result, letter: str) -> str | None:
+    try:
+        return shown_value(found_in(ResultInConvention(result, view.convention), letter))
+    except KeyError:
+        return None
+
+
+# -- what follows -----------------------------------------------------------------------------------------------------
+
+
+def _followed(part: Part, judgement: TaskJudgement, judged: Judged, marking: Marking) -> Part:
+    """Return a part that is right from the student's own earlier one, without credit where that made it easy."""
+    if marking.guard and any(_is_degenerate(judgement, name) for name in judged.origins):
+        hint = "that makes this part too easy to count"
+        return replace(part, credit=Fraction(0), hints=(*part.hints, hint))
+    if marking.guard and judged.name == "F" and isinstance(judged.value, (Matrix, Scalar)):
+        variable = judgement.right.plant.variable
+        if judgement.right.task == "compensator" and variable not in judged.value.names:
+            return replace(part, credit=Fraction(0), hints=(*part.hints, "it follows, but F is constant there"))
+    return replace(part, credit=marking.follow_through)
+
+
+def _is_degenerate(judgement: TaskJudgement, name: str) -> bool:
+    """Return whether the student's wrong gain makes easy what follows: zero, much emptier than the right one, or a unit."""
+    assert judgement.own is not None  # noqa: S101 - something follows from it
+    mine, right = judgement.own.fields.get(name), judgement.right.fields.get(name)
+    if not isinstance(mine, Matrix) or not isinstance(right, Matrix):
+        return False
+    filled, wanted = (sum(not entry.is_zero for entry in matrix.entries) for matrix in (mine, right))
+    return filled == 0 or 2 * filled < wanted or (filled == 1 < wanted)
+
+
+# -- what is wrong ----------------------------------------------------------------------------------------------------
+
+
+def _effect(view: ResultInConvention, judgement: TaskJudgement, judged: Judged) -> dict[str, str]:
+    if judged.name not in view.result.gains:
+        return {}
+    design = judgement.right.design_of(judged.name)
+    return {"polynomial": str(design.answer["polynomial"]), "stable": design.stability.verdict}
+
+
+def _explained(
+    part: Part, view: ResultInConvention, judgement: TaskJudgement, judged: Judged, marking: Marking
+) -> Part:
+    """Return a part that is wrong with its slip, where one reproduces it."""
+    if judged.separation is not None:
+        slip, point = judged.separation.slip or None, judged.separation.point
+        credit = marking.credit.get(slip or "", Fraction(0))
+        place = None if point is None else {name: str(value) for name, value in point.items()}
+        return replace(part, slip=slip, place=place, credit=credit)
+    found = _explanation(view, judgement, judged)
+    reasons = tuple(fault.reason for fault in found.alternatives)
+    slips = [fault.slip for fault in found.alternatives] or [found.slip or ""]
+    credit = min(marking.credit.get(slip, Fraction(0)) for slip in slips)
+    said = found.reason or part.reason
+    if not said and "polynomial" in found.effect:
+        said = f"with your {judged.letter} the polynomial is {found.effect['polynomial']}, not the one asked for"
+    if not said and (view.task, judged.name) == ("compensator", "F") and judgement.has_gains:
+        said = f"this is not the {judged.letter} of your gains"
+    return replace(
+        part,
+        slip=found.slip,
+        place=found.place,
+        reason=said,
+        alternatives=reasons,
+        effect=found.effect,
+        credit=credit,
+    )
+
+
+def _explanation(view: ResultInConvention, judgement: TaskJudgement, judged: Judged) -> Explained:
+    """Return why a value is wrong, as far as it is a matrix or a number."""
+    if judged.value is None:
+        return Explained()
+    is_part = view.result.gains_are_one
+    if is_part and view.standard(judged.letter)[1] < 0:
+        return Explained()  # what is said of a value has its standard sign
+    if judged.name in view.result.gains and isinstance(judged.value, Matrix) and not is_part:
+        design = judgement.right.design_of(judged.name)
+        turned = view.standard(judged.letter)[1] < 0
+        right = design.answer[design.letter]
+        rounded = right is not None and _rounds(judged, right, turned=turned)
+        other = other_polynomial(judgement.right, judged.name)
+        return explain_gain(design, judged.value, judged.letter, other, turned=turned, rounded=rounded)
+    right = _exact((judgement.right if judged.there is None else judged.there).fields.get(judged.name))
+    value = judged.value
+    if right is None:
+        return Explained()
+    if judged.name in view.result.in_coordinates and view.task != "reduced_order_observer":
+        return _without_coordinates(value, right, judged.letter) if isinstance(right, Matrix) else Explained()
+    if isinstance(right, Scalar) and isinstance(value, Matrix) and value.shape == (1, 1):
+        value = value[0, 0]
+    variable = "t" if view.in_time else view.plant.variable
+    in_loop = (view.task, judged.name) == ("compensator", "F")
+    others = other_values(judgement.right) if in_loop else []
+    return explain_value(value, right, judged.letter, variable, others, rounded=judged.rounded, in_loop=in_loop)
+
+
+def _without_coordinates(value: Matrix | Scalar, right: Matrix, letter: str) -> Explained:
+    """Return why a matrix is wrong in any coordinates: its size, or that it has no inverse."""
+    rows, columns = value.shape if isinstance(value, Matrix) else (1, 1)
+    if (rows, columns) != right.shape:
+        sizes = f"{right.shape[0]}x{right.shape[1]} here, yours is {rows}x{columns}"
+        return Explained(None, f"{letter} is {sizes}")
+    if letter == "T" and isinstance(value, Matrix) and value.determinant().is_zero:
+        return Explained(None, f"{letter} has no inverse")
+    return Explained()
+
+
+def _exact(right: Any) -> Matrix | Scalar | None:
+    table = factored_table(right)
+    if table is not None:
+        return table
+    if isinstance(right, Factored):
+        return right.value
+    if isinstance(right, int) and not isinstance(right, bool):
+        return Scalar.of(right)
+    return right if isinstance(right, (Matrix, Scalar)) else None
+
+
+def _rounds(judged: Judged, right: Matrix, *, turned: bool) -> bool:
+    """Return whether the decimals of a gain round the right one."""
+    try:
+        read = parse_matrix(judged.given, None, rounding=True)
+    except SymobsError:
+        return False
+    return read.shape == right.shape and read != judged.value and agrees(-read if turned else read, right)
+
+
+def other_polynomial(result: Result, name: str) -> Scalar | None:
+    """Return the polynomial of the other half of a compensator, where it has the same degree."""
+    loop = result if isinstance(result, OutputFeedback) else getattr(result, "loop", None)
+    if not isinstance(loop, OutputFeedback):
+        return None
+    own, other = loop.design_of(name), loop.design_of("L" if name == "K" else "K")
+    phi, second = own.answer["polynomial"], other.answer["polynomial"]
+    variable = result.plant.variable
+    return second if second != phi and second.degree(variable) == phi.degree(variable) else None
+
+
+# What `[marking]` names, held against the results: parts that exist, and relations that can be read and are true.
+
+
+def marking_errors(problem: Problem, views: Sequence[ResultInConvention]) -> list[SymobsError]:
+    """Return what in the weights and the milestones of a problem would never count."""
+    return [*_unknown_weights(problem, views), *_unmet_milestones(problem, views)]
+
+
+def part_of_name(part: str, views: Sequence[ResultInConvention]) -> tuple[ResultInConvention, str] | None:
+    """Return the result of `task.field` and its standard name, None where there is no such part."""
+    task, _, letter = part.partition(".")
+    view = next((view for view in views if view.task == task), None)
+    name = view.standard(letter)[0] if view is not None else letter
+    return None if view is None or not exists(view.result, name) else (view, name)
+
+
+def known_parts(part: str, views: Sequence[ResultInConvention]) -> str:
+    """Return what to write for a part that does not exist."""
+    return meant(part, [f"{each.task}.{field}" for each in views for field in available(each) if _has(each, field)])
+
+
+def _has(view: ResultInConvention, letter: str) -> bool:
+    return exists(view.result, view.standard(letter)[0])
+
+
+def meant(name: str, known: Collection[str]) -> str:
+    """Return the names there are, and before them the one that was meant."""
+    near = get_close_matches(name, known, 1)
+    return f"{f'did you mean {near[0]}? ' if near else ''}known: {', '.join(known)}"
+
+
+def _unknown_weights(problem: Problem, views: Sequence[ResultInConvention]) -> Iterator[SymobsError]:
+    """Yield the weights of parts that no result has by this name, which is the standard one."""
+    known = [f"{view.task}.{name}" for view in views for name in available(view.result)]
+    for part in problem.marking.parts:
+        if part not in known:
+            yield InputError(f"there is no {part}", where=f"marking.parts.{part}", repair=meant(part, known))
+
+
+def _unmet_milestones(problem: Problem, views: Sequence[ResultInConvention]) -> Iterator[SymobsError]:
+    """Yield the relations that no true line of a derivation could ever be."""
+    for i, milestone in enumerate(problem.marking.milestones):
+        where = f"marking.milestone[{i}].relation"
+        try:
+            _require_readable(milestone.relation, problem, where)
+        except SymobsError as error:
+            each = error.errors[0] if isinstance(error, ProblemErrors) else error
+            repair = each.repair or 'write both sides, for example "L = [19; 81]"'
+            yield InputError(each.message, where=where, repair=repair)
+            continue
+        line = judge_milestone(problem, views, milestone)
+        rounds = problem.marking.decimals == "accept" and "." in milestone.relation
+        if line.verdict == "false" and not rounds:
+            repair = f"write {line.right}" if line.right else "write a relation that the solution meets"
+            yield InputError(
+                f'"{shown(milestone.relation, 80)}" is not true here: {line.reason}', where=where, repair=repair
+            )
+
+
+def _require_readable(relation: str, problem: Problem, where: str) -> None:
+    """Raise an error of a relation that is neither an equation nor conditions."""
+    if is_of_conditions(relation):
+        read_conditions(relation, None, where)
+    else:
+        printed_entries([{"relation": relation}], problem.convention, problem.plant.symbols.signs)
 
 
 def check(

@@ -4,6 +4,6 @@ A platform that cannot hold what decides about an answer is refused the question
 """
 
 from symobs.applications.export.platforms import FOLDERS, PLATFORMS, export
-from symobs.applications.export.questions.exercise import Exercise, ExerciseSet, exercises
+from symobs.applications.export.questions import Exercise, ExerciseSet, exercises
 
 __all__ = ["FOLDERS", "PLATFORMS", "Exercise", "ExerciseSet", "exercises", "export"]

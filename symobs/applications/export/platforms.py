@@ -11,7 +11,7 @@ from symobs.ground.errors import UsageError
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from symobs.applications.export.questions.exercise import ExerciseSet
+    from symobs.applications.export.questions import ExerciseSet
     from symobs.applications.export.targets.shared import Files
 
 #: What writes the files of a platform.

@@ -14,12 +14,12 @@ import traitlets
 
 from symobs.applications.live.answering import answer, result_of
 from symobs.applications.live.assets import ASSETS, script, style
-from symobs.applications.live.links import link_of
 from symobs.applications.live.page import page_object
+from symobs.applications.live.request import link_of
 from symobs.ground.errors import UsageError
 from symobs.problem import parse, text_of, validate
 from symobs.system import StateSpace, as_plant
-from symobs.tasks.result.conversions import signs
+from symobs.tasks.result.output_methods import signs
 
 if TYPE_CHECKING:
     from symobs.exact import Matrix

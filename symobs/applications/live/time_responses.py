@@ -13,7 +13,7 @@ from symobs.applications.live.request import FieldError
 from symobs.exact import Matrix
 from symobs.ground.errors import InputError
 from symobs.system import Symbols, read_matrix
-from symobs.tasks.analysis.response.courses import rounded_up
+from symobs.tasks.analysis.time_response.response import rounded_up
 
 if TYPE_CHECKING:
     from symobs.applications.live.request import Responses
@@ -159,7 +159,7 @@ def _vector(text: str, size: int, otherwise: Fraction, where: str) -> list[Fract
 
 def _end(matrix: Matrix, asked: str | None, *, discrete: bool) -> Fraction:
     """Return the last instant: as it was asked for, or where the slowest mode has converged."""
-    from symobs.exact.time_functions.state_response import spectral_abscissae, spectral_radius  # noqa: PLC0415 - FLINT
+    from symobs.exact.time_functions.matrix_exponential import spectral_abscissae, spectral_radius  # noqa: PLC0415 - FLINT
 
     if asked is not None:
         (value,) = _vector(asked, 1, Fraction(1), "courses.end")
@@ -186,7 +186,7 @@ def _enclosed(signals: Signals, end: Fraction, count: int) -> tuple[list[list[in
     They are those of every half segment, and fewer from the end to twice the end.  Segments are halved where a response
     changes fast.
     """
-    from symobs.exact.time_functions.state_response import spectral_radius  # noqa: PLC0415 - FLINT
+    from symobs.exact.time_functions.matrix_exponential import spectral_radius  # noqa: PLC0415 - FLINT
 
     if any(4 * (sum(map(abs, row)) + 1) * 10**_FINEST > _FINE for _, _, row, _ in signals.rows):
         raise NoResponse(_TOO_WIDE)
@@ -208,7 +208,7 @@ def _second_differences(line: list[int]) -> list[int]:
 
 
 def _at_instants(signals: Signals, step: Fraction, count: int) -> list[list[int]]:
-    from symobs.exact.time_functions.state_response import state_response  # noqa: PLC0415 - FLINT
+    from symobs.exact.time_functions.matrix_exponential import state_response  # noqa: PLC0415 - FLINT
 
     try:
         states = state_response(signals.matrix, signals.start, step, count, _FINE)

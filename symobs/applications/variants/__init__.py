@@ -5,8 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
+from symobs.applications.variants.files import Variant
 from symobs.applications.variants.search import TooFew, Variants
-from symobs.applications.variants.variant import Variant
 from symobs.formula.phrases.languages import ENGLISH, language_named
 from symobs.ground.errors import InputError, UsageError, reason_of
 

@@ -10,18 +10,22 @@ from contextlib import contextmanager, suppress
 from importlib.metadata import PackageNotFoundError, version
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from symobs.applications.variants.drawing.stream import VERSION
+from symobs.applications.variants.drawing import VERSION
+from symobs.applications.variants.parameters import toml_text
 from symobs.ground.errors import InputError, reason_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
     from pathlib import Path
 
-    from symobs.applications.variants.variant import Variant
 
 SCHEMA = "symobs-variants/1"
+
+
 #: Cells that a spreadsheet would take for formulas begin with one of these.
 _FORMULA = ("=", "+", "-", "@", "\t", "\r")
+
+
 LIMIT = (
     "Equal load is not equal difficulty: it says how much there is to write, and the answers of students alone say "
     "how hard that is."
@@ -178,3 +182,45 @@ def place_of(student: str, seed: int, count: int) -> int:
 
 def _is_number(text: str) -> bool:
     return text.removeprefix("-").replace(".", "", 1).isdecimal()
+
+
+# One variant: a problem of its own, with its answers and its profile.
+
+
+class Variant(NamedTuple):
+    """A problem of its own: solved, checked, and like the others in what it takes to work it out."""
+
+    number: int
+    id: str
+    candidate: int
+    data: Mapping[str, Any]
+    answers: list[Any]
+    profile: Mapping[str, Any]
+    expect: Mapping[str, Any]
+
+    @property
+    def name(self) -> str:
+        """The name of its file."""
+        return f"v{self.number:03d}"
+
+    @property
+    def text(self) -> str:
+        """The problem file: numbers in place, and the checked answers as what is expected."""
+        return toml_text({**self.data, "variant": self.id, "expect": self.expect})
+
+    @property
+    def certificates(self) -> int:
+        """How many claims were checked for it."""
+        return sum(len(answer["certificates"]) for answer in self.answers)
+
+    def as_data(self) -> dict[str, Any]:
+        """Return it as JSON."""
+        return {
+            "id": self.id,
+            "file": f"variants/{self.name}.toml",
+            "candidate": self.candidate,
+            "data": dict(self.data),
+            "answers": dict(self.expect),
+            "profile": {key: self.profile[key] for key in ("load", "peak", "fractions", "lines")},
+            "certificates": self.certificates,
+        }

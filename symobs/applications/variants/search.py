@@ -5,21 +5,31 @@ The i-th variant is the i-th accepted candidate, however many are asked for and 
 
 from __future__ import annotations
 
+import json
 from collections import Counter, deque
+from fractions import Fraction
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from statistics import median
+from typing import TYPE_CHECKING, Any, NamedTuple
 
-from symobs.applications.batch.engine import Settings, work
-from symobs.applications.batch.executors import workforce
+from symobs.applications.batch.engine import Settings, work, workforce
 from symobs.applications.batch.jobs import USUAL_BUDGET, Job, canonical, digest, job, own_convention
-from symobs.applications.variants.acceptance.candidates import Candidate, base_candidate, candidate
-from symobs.applications.variants.acceptance.cheap import Cheap, cheap, kind_of
-from symobs.applications.variants.acceptance.distinct import data_key, keys_of
-from symobs.applications.variants.acceptance.profile import UNLIKE, unlike
-from symobs.applications.variants.drawing.stream import LARGEST_SEED
-from symobs.applications.variants.files import About, manifest, write_folder
-from symobs.applications.variants.reading.table import Table, read_table
-from symobs.applications.variants.variant import Variant
+from symobs.applications.checking.report import decimal
+from symobs.applications.variants.acceptance import (
+    Candidate,
+    Cheap,
+    base_candidate,
+    candidate,
+    cheap,
+    data_key,
+    keys_of,
+    kind_of,
+)
+from symobs.applications.variants.constraints import UNLIKE, unlike
+from symobs.applications.variants.drawing import LARGEST_SEED, VERSION
+from symobs.applications.variants.files import SCHEMA, About, Variant, manifest, write_folder
+from symobs.applications.variants.table import Table, read_table
+from symobs.formula.expression.source import shown
 from symobs.formula.phrases.languages import ENGLISH, language_named
 from symobs.ground.errors import CertificateRejected, InputError, OutOfBudget, ProblemErrors, SymobsError, UsageError
 from symobs.problem import parse
@@ -28,13 +38,22 @@ from symobs.problem.fields import is_integer
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping
 
-    from symobs.applications.batch.executors import Workforce
+    from symobs.applications.batch.engine import Workforce
+
 
 MOST = 10_000
+
+
 #: Seconds of work handed over at a time: what is begun beyond the last variant is done for nothing.
 _CHUNK = 0.05
+
+
 _SAME = "the same as another variant"
+
+
 _OF_ONE_KIND = "the first one is of a rare kind: draw distinct poles, or take another seed"
+
+
 PROFILES = ("loose", "strict")
 
 
@@ -271,3 +290,125 @@ def _raise_unknown(result: Mapping[str, Any]) -> None:
     found = result.get("unknown", ())
     if found:
         raise ProblemErrors(tuple(InputError(message, where=where, repair=repair) for where, message, repair in found))
+
+
+# What the answers of a class say of variants: whether one of them was harder, or easier, than the others.
+
+
+SUMMARY_SCHEMA = "symobs-check-summary/1"
+
+
+#: A mean that is off by more standard errors than these is no accident.
+ERRORS = 3
+
+
+#: So many marks more than variants are needed for the spread of the marks to be known.
+FEWEST = 10
+
+
+class AnsweredVariant(NamedTuple):
+    """How a variant was answered: how many have marks, their mean, and how it stands to the others: easier, harder or same."""
+
+    name: str
+    students: int
+    mean: Fraction
+    compared: str = "same"
+
+
+def responses_of(text: str, where: str) -> tuple[AnsweredVariant, ...]:
+    """Return how each variant of a class was answered, from the `summary.json` of `symobs check`.
+
+    A variant with n marks of mean m, N being those of the others, M the median of all means and s² the variance of marks within
+    variants, is off where (m − M)² > 9 s² (1/n + 1/N), which fractions decide.  Raises `InputError` where the text is no such
+    summary or its marks are too few.
+    """
+    found = _read(text, where)
+    students = sum(count for count, _, _ in found.values())
+    if len(found) < 2 or students - len(found) < FEWEST:
+        message = f"{students} marks of {len(found)} variants are too few to compare"
+        raise InputError(message, where=where, repair=f"{FEWEST} marks more than variants are needed, and two variants")
+    usual = median(mean for _, mean, _ in found.values())
+    variance = sum((squares for _, _, squares in found.values()), Fraction(0)) / (students - len(found))
+    listed = []
+    for name, (count, mean, _) in found.items():
+        bound = ERRORS**2 * variance * (Fraction(1, count) + Fraction(1, students - count))
+        word = "easier" if mean > usual else "harder"
+        listed.append(AnsweredVariant(name, count, mean, word if (mean - usual) ** 2 > bound else "same"))
+    return tuple(listed)
+
+
+def _read(text: str, where: str) -> dict[str, tuple[int, Fraction, Fraction]]:
+    """Return of each variant its marks: how many, their mean, and the sum of the squared differences from it."""
+    found: dict[str, tuple[int, Fraction, Fraction]] = {}
+    try:
+        data = json.loads(text)
+        found = {
+            shown(str(name), 40): (int(each["students"]), Fraction(each["mean"]), Fraction(each["squares"]))
+            for name, each in data["variants"].items()
+        }
+        usable = data["schema"] == SUMMARY_SCHEMA and all(count > 0 for count, _, _ in found.values())
+    except (ValueError, RecursionError, LookupError, TypeError, AttributeError, ZeroDivisionError):
+        usable = False
+    if not usable:
+        repair = "name the summary.json that `symobs check --submissions ... --variants ...` wrote"
+        raise InputError("this is no summary of a class", where=where, repair=repair)
+    return found
+
+
+def as_text(listed: tuple[AnsweredVariant, ...]) -> str:
+    """Return the table: a line a variant."""
+    width = max(len(each.name) for each in listed)
+    off = [each for each in listed if each.compared != "same"]
+    lines = [
+        f"{each.name:<{width}}  {each.students:4} students  {decimal(each.mean):>8} marks"
+        + (f"  {each.compared} than the others" if each in off else "")
+        for each in listed
+    ]
+    said = f"{len(off)} of {len(listed)} variants" if off else "no variant"
+    verb = "differ" if len(off) > 1 else "differs"
+    return "\n".join([*lines, f"{said} {verb} from the others by more than {ERRORS} standard errors", ""])
+
+
+# The JSON schema of the manifest of variants.
+
+
+_TEXT: dict[str, Any] = {"type": "string"}
+
+
+_COUNT: dict[str, Any] = {"type": "integer", "minimum": 0}
+
+
+_ANY: dict[str, Any] = {"type": "object"}
+
+
+def _table(**properties: Any) -> dict[str, Any]:
+    return {
+        "type": "object",
+        "properties": properties,
+        "required": list(properties),
+        "additionalProperties": False,
+    }
+
+
+def schema() -> dict[str, Any]:
+    """Return the JSON schema of the manifest that `symobs variants` writes."""
+    variant = _table(
+        id={"type": "string", "pattern": "^[0-9a-f]{12}$"},
+        file={"type": "string", "pattern": "^variants/v[0-9]{3,}[.]toml$"},
+        candidate=_COUNT,
+        data=_ANY,
+        answers=_ANY,
+        profile=_table(load=_COUNT, peak=_COUNT, fractions=_COUNT, lines=_COUNT),
+        certificates=_COUNT,
+    )
+    whole = _table(
+        schema={"const": SCHEMA},
+        engine=_TEXT,
+        problem={"type": "string", "pattern": "^[0-9a-f]{64}$"},
+        version={"const": VERSION},
+        seed={"type": "integer", "minimum": 0, "maximum": LARGEST_SEED},
+        count=_COUNT,
+        variants={"type": "array", "items": variant},
+        rejected={"type": "object", "additionalProperties": _COUNT},
+    )
+    return {"$schema": "https://json-schema.org/draft/2020-12/schema", "title": "symobs variants", **whole}

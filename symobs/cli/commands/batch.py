@@ -11,16 +11,15 @@ from typing import TYPE_CHECKING, Any, NoReturn
 
 import click
 
-from symobs.applications.batch.engine import Settings
-from symobs.applications.batch.executors import Unfinished
+from symobs.applications.batch.engine import Settings, Unfinished
 from symobs.applications.batch.jobs import USUAL_BUDGET
 from symobs.applications.batch.run import Batch, files_of, jobs_of, require_own_folder, require_texts, verified
 from symobs.cli.shared.common import EXIT_NO, EXIT_UNDECIDED, write_message
 from symobs.cli.shared.options import WORKERS, options
 from symobs.ground.child_processes.budget import Budget
 from symobs.ground.errors import UsageError, raise_all
-from symobs.problem.noted_errors import Errors
-from symobs.tasks.result.digits_of_page import digits_asked
+from symobs.problem.file_tables import Errors
+from symobs.tasks.result.output_methods import digits_asked
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping

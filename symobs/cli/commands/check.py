@@ -9,11 +9,10 @@ from typing import TYPE_CHECKING
 import click
 
 from symobs.applications.checking import SHOW, Checked
-from symobs.applications.checking.asked import answer_file
+from symobs.applications.checking.checker import answer_file
 from symobs.cli.shared.common import place_of, read_file, run_work, write_message
 from symobs.cli.shared.options import LIMITS, WORKERS, options, quoted
-from symobs.cli.shared.outcome import Outcome, convention_of
-from symobs.cli.shared.output import check_target, make_folder, write_all
+from symobs.cli.shared.outcome import Outcome, check_target, convention_of, make_folder, write_all
 from symobs.ground.errors import UsageError
 from symobs.problem import read
 
@@ -144,8 +143,8 @@ def _class(
 ) -> None:
     """Check a class and write its results into a folder."""
     from symobs.applications.batch.store import discard_work, work_folder  # noqa: PLC0415
-    from symobs.applications.checking.classes.classroom import check_class  # noqa: PLC0415
-    from symobs.applications.checking.classes.variants_of_class import class_variants, one_problem  # noqa: PLC0415
+    from symobs.applications.checking.classroom import check_class  # noqa: PLC0415
+    from symobs.applications.checking.submissions import class_variants, one_problem  # noqa: PLC0415
     from symobs.ground.child_processes.budget import Budget  # noqa: PLC0415 - a single answer does not pay for it
 
     if target is None:

@@ -6,9 +6,9 @@ import json
 
 import click
 
-from symobs.applications.checking.report.schema import schema as of_check
-from symobs.applications.variants.schema import schema as of_variants
-from symobs.cli.shared.output import write
+from symobs.applications.checking.report import schema as of_check
+from symobs.applications.variants.search import schema as of_variants
+from symobs.cli.shared.outcome import write
 from symobs.ground.errors import UsageError
 from symobs.problem import schema as of_problem
 from symobs.problem.sheet_file import schema as of_sheet

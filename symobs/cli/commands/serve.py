@@ -35,8 +35,12 @@ def command(
     language: str | None,
 ) -> None:
     """Move poles, parameters and entries in a browser, every answer checked; FILE is the problem to begin with."""
-    from symobs.applications.live.process import AnswerBudget  # noqa: PLC0415 - only a server imports it
-    from symobs.applications.live.server import HOSTS, Server, serve  # noqa: PLC0415
+    from symobs.applications.live.server import (  # noqa: PLC0415
+        HOSTS,
+        AnswerBudget,
+        Server,
+        serve,
+    )
 
     if host not in HOSTS:
         raise UsageError(
@@ -46,7 +50,7 @@ def command(
         )
     state = ""
     if file is not None or convention_name is not None or language is not None:
-        from symobs.applications.live.links import link_of  # noqa: PLC0415 - only with a problem
+        from symobs.applications.live.request import link_of  # noqa: PLC0415 - only with a problem
         from symobs.problem import parse, validate  # noqa: PLC0415
 
         text = read_file(file) if file is not None else ""

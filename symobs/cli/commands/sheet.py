@@ -24,15 +24,14 @@ from symobs.cli.shared.common import (
     write_message,
 )
 from symobs.cli.shared.options import LIMITS, AFile, options
-from symobs.cli.shared.outcome import convention_of, page_of
-from symobs.cli.shared.output import check_target, write
+from symobs.cli.shared.outcome import check_target, convention_of, page_of, write
 from symobs.cli.shared.sheet_entries import Wanted, worked_out_all
 from symobs.formula.expression.source import shown
 from symobs.ground.errors import InputError, ProblemErrors, SymobsError, UsageError
 from symobs.pages.page.sheet import Header, Sheet, SheetEntry
 from symobs.problem.sheet_file import SheetFile, SheetProblem, is_sheet, read_sheet
 from symobs.tasks.result import format_named, formats, tasks
-from symobs.tasks.result.web_page import WebPage
+from symobs.tasks.result.output_methods import WebPage
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -13,7 +13,7 @@ from symobs.cli.shared.outcome import check_targets, convention_of, of_problem, 
 from symobs.ground.errors import UsageError
 from symobs.problem import parse, validate
 from symobs.tasks.result import tasks
-from symobs.tasks.result.web_page import WebPage
+from symobs.tasks.result.output_methods import WebPage
 
 if TYPE_CHECKING:
     from symobs.cli.shared.outcome import Outcome

@@ -17,7 +17,7 @@ from symobs.cli.shared.options import options
 from symobs.cli.shared.outcome import check_targets
 from symobs.ground.child_processes.budget import Budget
 from symobs.ground.errors import UsageError, raise_all
-from symobs.problem.noted_errors import Errors
+from symobs.problem.file_tables import Errors
 
 #: What a block of points is allowed where nothing else is said.
 _SECONDS, _MEGABYTES = 600.0, 2000.0

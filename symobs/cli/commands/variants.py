@@ -13,7 +13,7 @@ from symobs.applications.variants.files import assignment
 from symobs.applications.variants.search import PROFILES
 from symobs.cli.shared.common import place_of, read_file, write_message
 from symobs.cli.shared.options import quoted
-from symobs.cli.shared.output import check_target, write, write_all
+from symobs.cli.shared.outcome import check_target, write, write_all
 from symobs.ground.errors import UsageError
 
 _REASONS_SHOWN = 12
@@ -103,7 +103,7 @@ def command(
 
 def _responses(summary: str) -> None:
     """Print how the variants were answered."""
-    from symobs.applications.variants.responses import as_text, responses_of  # noqa: PLC0415 - a question of its own
+    from symobs.applications.variants.search import as_text, responses_of  # noqa: PLC0415 - a question of its own
 
     write(as_text(responses_of(read_file(summary, "the summary.json of a class"), place_of(summary))))
 

@@ -21,7 +21,7 @@ from symobs.pages.page.sheet import SheetEntry, points_in_words
 from symobs.problem import parse, validate
 from symobs.problem.expect import mismatches
 from symobs.problem.question import question_of
-from symobs.tasks.result.web_page import PLAIN, WebPage
+from symobs.tasks.result.output_methods import PLAIN, WebPage
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -109,8 +109,11 @@ def _undecided(reason: str) -> str:
 
 def _rows(orders: Sequence[tuple[Any, ...]], wanted: Wanted, show: Show) -> list[dict[str, Any]]:
     """Return the rows of some problems, in their order."""
-    from symobs.applications.batch.engine import Settings, work  # noqa: PLC0415 - a short sheet pays for none of it
-    from symobs.applications.batch.executors import workforce  # noqa: PLC0415
+    from symobs.applications.batch.engine import (  # noqa: PLC0415 - a short sheet pays for none of it
+        Settings,
+        work,
+        workforce,
+    )
     from symobs.applications.batch.jobs import job  # noqa: PLC0415
 
     jobs = [job("sheet-entry", {"asked": _packed(order)}, order[1].file) for order in orders]

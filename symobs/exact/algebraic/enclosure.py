@@ -9,7 +9,7 @@ from flint import arb, ctx
 
 from symobs.exact.algebraic.real_algebraic import RealRoot
 from symobs.exact.core.generators import PI, function_named, symbols_in
-from symobs.exact.core.precision import Precision
+from symobs.exact.core.ring import Precision
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

@@ -24,7 +24,7 @@ from symobs.exact.algebraic.real_algebraic import (
 )
 from symobs.exact.algebraic.root_location import integers
 from symobs.exact.core.polynomial import resultant
-from symobs.exact.core.precision import Precision
+from symobs.exact.core.ring import Precision
 from symobs.exact.core.scalar import Scalar
 from symobs.ground.dataclass import dataclass
 

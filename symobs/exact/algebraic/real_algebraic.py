@@ -16,7 +16,7 @@ from flint import arb, fmpq, fmpz_poly
 from symobs.exact.algebraic.polynomial_roots import rational_sqrt
 from symobs.exact.core.field import Field
 from symobs.exact.core.generators import Function, square_root
-from symobs.exact.core.precision import Precision
+from symobs.exact.core.ring import Precision
 from symobs.exact.core.scalar import Scalar
 from symobs.ground.dataclass import dataclass
 

@@ -13,24 +13,36 @@ from typing import TYPE_CHECKING, Any
 
 from flint import arb, arb_mat
 
-from symobs.exact.algebraic.complex import Complex
-from symobs.exact.algebraic.enclosure import is_number, polynomial_ball, sign_of_number
+from symobs.exact.algebraic.enclosure import is_number, near, polynomial_ball, sign_of_number
+from symobs.exact.algebraic.polynomial_roots import Complex, rational_sqrt
 from symobs.exact.algebraic.real_algebraic import integer_factor, real_roots
-from symobs.exact.core.generators import partial
+from symobs.exact.core.generators import (
+    Function,
+    all_roots,
+    function_named,
+    normal_form,
+    partial,
+    roots_in,
+    square_root,
+)
+from symobs.exact.core.matrix import Matrix
 from symobs.exact.core.polynomial import coefficients_over
-from symobs.exact.core.precision import Precision
+from symobs.exact.core.ring import Precision
 from symobs.exact.core.scalar import Scalar
 from symobs.ground.dataclass import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
-    from symobs.exact.core.matrix import Matrix
 
 _DECIMAL = re.compile(r"(?P<whole>[0-9]*)(?:\.(?P<places>[0-9]*))?(?:[eE](?P<power>[+-]?[0-9]+))?")
+
+
 #: With more decimals in one number only the printed values themselves are compared.
 _MOST_DECIMALS = 40
-_BITS, _RADIUS, _STEPS = 256, 60, 60
+
+
+_WORKING_BITS, _RADIUS, _STEPS = 256, 60, 60
 
 
 @dataclass(frozen=True)
@@ -224,7 +236,7 @@ class _DecimalBox:
 
     def _near(self, names: Sequence[str], equations: Sequence[Scalar]) -> bool:
         """Return whether Newton's method finds a root in the box and an interval step proves it."""
-        with Precision(_BITS):
+        with Precision(_WORKING_BITS):
             return self._is_root_near(names, equations)
 
     def _is_root_near(self, names: Sequence[str], equations: Sequence[Scalar]) -> bool:
@@ -273,3 +285,161 @@ def _between(value: Scalar, ends: tuple[Fraction, Fraction]) -> bool:
     if value.is_constant:
         return ends[0] <= value.fraction() <= ends[1]
     return sign_of_number(value - ends[0]) == sign_of_number(ends[1] - value) == "positive"
+
+
+# Decimals of exact numbers: rounding, digits, and the test of a printed rounding.
+
+
+#: A decimal of more places is written as a fraction.
+_MOST_PLACES = 12
+
+
+#: From this denominator on a reader wants to see the decimals of a fraction.
+_HARD_TO_READ = 10
+
+
+def decimal_places(value: Scalar) -> int | None:
+    """Return the number of decimal places, None where the expansion is infinite or too long."""
+    if not value.is_constant:
+        return None
+    below = value.fraction().denominator
+    return next((count for count in range(_MOST_PLACES + 1) if 10**count % below == 0), None)
+
+
+def decimal_digits(value: Scalar) -> str:
+    """Return the digits of a decimal, without its sign: 0.3676, 60.  Raises `ValueError` where it does not end."""
+    count = decimal_places(value)
+    if count is None:
+        message = f"{value} is not a decimal of at most {_MOST_PLACES} places"
+        raise ValueError(message)
+    digits = str(abs(int(value.fraction() * 10**count))).zfill(count + 1)
+    return f"{digits[:-count]}.{digits[-count:]}" if count else digits
+
+
+def is_rounding(exact: Scalar, shown: Scalar) -> bool:
+    """Return whether a decimal is within half a unit of its last place; an integer must be exact."""
+    count = decimal_places(shown)
+    if count is None:
+        return False
+    if not exact.is_constant:
+        half = Scalar.of(Fraction(1, 2 * 10**count))
+        return count > 0 and all(sign_of_number(half + off) == "positive" for off in (exact - shown, shown - exact))
+    off = abs(exact.fraction() - shown.fraction())
+    return off == 0 if count == 0 else off * 2 * 10**count <= 1
+
+
+def rounded(value: Matrix | Scalar) -> Matrix | Scalar | None:
+    """Return a number or matrix rounded to decimals that suit its magnitude, trailing zeros omitted.
+
+    None where they help nobody: nothing in it is a fraction with a large denominator, or an entry would be rounded to a
+    whole number, which reads as if it were exact.
+    """
+    entries = value.entries if isinstance(value, Matrix) else (value,)
+    numbers = [number for entry in entries if (number := _number(entry)) is not None]
+    if not entries or len(numbers) < len(entries):
+        return None
+    if all(number.denominator < _HARD_TO_READ for number in numbers):
+        return None
+    found = _rounded(numbers)
+    if any(near.denominator == 1 != number.denominator for near, number in zip(found, numbers, strict=True)):
+        return None
+    shown = [Scalar.of(near) for near in found]
+    if not isinstance(value, Matrix):
+        return shown[0]
+    width = value.shape[1]
+    return Matrix.of([shown[start : start + width] for start in range(0, len(shown), width)])
+
+
+def _number(value: Scalar) -> Fraction | None:
+    """Return a rational number; of a square root of one, or a real root without a closed form, an approximation."""
+    if value.is_constant:
+        return value.fraction()
+    functions = [f for name in value.names if (f := function_named(name)) is not None]
+    counted = any(f.square or f.kind == "CRootOf" for f in functions)
+    return near(value) if counted else None
+
+
+def _rounded(numbers: Iterable[Fraction]) -> list[Fraction]:
+    """Round to four places, larger numbers to fewer."""
+    numbers = list(numbers)
+    largest = max(abs(number) for number in numbers)
+    count = 4 if largest < 10 else 3 if largest < 100 else 2
+    return [Fraction(round(number * 10**count), 10**count) for number in numbers]
+
+
+# Conjugates of complex numbers with square roots, and polynomials from which the roots have gone.
+
+
+def tidied(value: Complex) -> Complex:
+    """Return a complex number with both parts in normal form."""
+    return Complex(normal_form(value.real), normal_form(value.imaginary))
+
+
+def conjugates(value: Complex, *, of_numbers: bool) -> tuple[Complex, ...]:
+    """Return the distinct images of a number under changes of the signs of i and its roots, itself first.
+
+    Roots of numbers keep their signs unless `of_numbers` is set.
+    """
+    roots = dict.fromkeys(root for part in (value.real, value.imaginary) for root in roots_in(part))
+    found = [value]
+    for root in roots:
+        if of_numbers or not is_number(root.argument):
+            found += [_with_sign_changed(image, root) for image in found]
+    return tuple(dict.fromkeys([*found, *(image.conjugate() for image in found)]))
+
+
+def _with_sign_changed(value: Complex, root: Function) -> Complex:
+    images: dict[str, Scalar] = {root.name: -root.value}
+    return tidied(Complex(value.real.substitute(images), value.imaginary.substitute(images)))
+
+
+def product_of_linear(variable: str, roots: Sequence[Complex]) -> Scalar | None:
+    """Return Π (s − root), multiplied out; None unless its coefficients are real, and have no roots but of primes."""
+    product = Complex.of(1)
+    for root in roots:
+        product = product * (Complex.of(Scalar.symbol(variable)) - root)
+    product = tidied(product)
+    return product.real if product.is_real and all(root.square for root in all_roots(product.real)) else None
+
+
+def is_in_kernel(value: Scalar) -> bool:
+    """Return whether the only functions of a value are roots of primes."""
+    functions = (function_named(name) for name in value.names)
+    return all(function is None or function.square for function in functions)
+
+
+def root_in_field(number: Scalar) -> Scalar | None:
+    """Return the positive square root of a positive number where it is one of a field Q(√2, √3, …).
+
+    √(3 + 2 √2) = 1 + √2, and √(2 + √3) = (√6 + √2)/2.
+    """
+    if number.is_constant:
+        root = square_root(number)
+        return root if is_in_kernel(root) else None
+    if not is_number(number) or not is_in_kernel(number) or sign_of_number(number) != "positive":
+        return None
+    variable = "x"
+    found = (Scalar.symbol(variable) ** 2 - number).factors()[1]
+    if len(found) == 1:
+        return _sum_of_two_roots(number)
+    if found[0][0].degree(variable) != 1:  # as of 1/pi
+        return None
+    lead, constant = found[0][0].coefficients(variable)
+    root = constant / lead
+    return root if sign_of_number(root) == "positive" else -root
+
+
+def _sum_of_two_roots(number: Scalar) -> Scalar | None:
+    """Return √(a + b √d) as √((a + e)/2) ± √((a − e)/2) where e² = a² − b² d is the square of a rational number."""
+    field = number.field
+    names = [field.names[index] for index, _ in field.roots if field.names[index] in number.names]
+    if len(names) != 1:
+        return None
+    other = number.substitute({names[0]: -Scalar.symbol(names[0])})
+    norm, mean = (number * other).fraction(), ((number + other) / 2).fraction()
+    size = rational_sqrt(norm) if norm >= 0 else None
+    if size is None:
+        return None
+    first, second = (square_root(Scalar.of((mean + part) / 2)) for part in (size, -size))
+    found = next(total for total in (first + second, first - second) if total**2 == number)
+    return found if is_in_kernel(found) else None

@@ -15,9 +15,8 @@ from typing import TYPE_CHECKING, cast, overload
 from flint import fmpz
 
 from symobs.exact.core.field import Generator
-from symobs.exact.core.matrix import Matrix
+from symobs.exact.core.matrix import Matrix, measures
 from symobs.exact.core.polynomial import highest_power
-from symobs.exact.core.rational_matrix import measures
 from symobs.exact.core.scalar import Scalar
 from symobs.ground.dataclass import dataclass
 

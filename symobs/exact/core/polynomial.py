@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from symobs.exact.core import rational_matrix, ring
+from symobs.exact.core import matrix as rational_matrix
+from symobs.exact.core import ring
 from symobs.exact.core.field import Field
 from symobs.exact.core.matrix import Matrix
 from symobs.exact.core.scalar import Scalar

@@ -8,25 +8,37 @@ from __future__ import annotations
 
 from bisect import bisect_left
 from math import log2
+from threading import RLock
 from typing import TYPE_CHECKING, TypeAlias
 
-from flint import fmpq, fmpq_mpoly_ctx, fmpz, fmpz_mat, fmpz_mpoly
+from flint import ctx, fmpq, fmpq_mpoly_ctx, fmpz, fmpz_mat, fmpz_mpoly
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Sequence
+    from types import TracebackType
 
     from symobs.exact.core.field import Field
 
+
 Rows: TypeAlias = tuple[tuple[fmpz_mpoly, ...], ...]
+
 
 #: Up to this many terms a fingerprint is the whole text; of longer ones the length and some coefficients are told.
 _WHOLE_TEXT, _TOLD = 40, 6
+
+
 #: Of this many terms, or some more, the exponents are looked at where polynomials are told apart.
 _LOOKED_AT = 6
+
+
 #: From this many terms on a common divisor is first looked for in a leading coefficient.
 _LONG = 150
+
+
 #: `fmpz_mpoly.factor` sorts factors through C integers and fails from here on; `fmpq_mpoly.factor` does not.
 _COEFFICIENT_LIMIT = 2**31
+
+
 #: Up to this order determinants go by minors, which keeps sparse parametric entries small; beyond, by elimination.
 MINORS_UP_TO = 8
 
@@ -353,3 +365,27 @@ def _factor_over_rationals(field: Field, polynomial: fmpz_mpoly) -> tuple[fmpz, 
         found.append((whole, power))
         product = product * whole**power
     return number_of(polynomial / product), found
+
+
+# The precision of enclosures: FLINT has one for the process, held by one thread at a time.
+
+
+_IN_USE = RLock()
+
+
+class Precision:
+    """A context manager that computes with this many bits, `with Precision(128): ...`; it may be nested."""
+
+    __slots__ = ("before", "bits")
+
+    def __init__(self, bits: int) -> None:
+        """Take the bits of the block."""
+        self.bits = bits
+
+    def __enter__(self) -> None:
+        _IN_USE.acquire()
+        self.before, ctx.prec = ctx.prec, self.bits
+
+    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, at: TracebackType | None) -> None:
+        ctx.prec = self.before
+        _IN_USE.release()

@@ -13,8 +13,7 @@ from typing import TYPE_CHECKING
 from flint import fmpz, fmpz_mpoly
 
 from symobs.exact.core import number_field
-from symobs.exact.core.canonical_text import scalar_text
-from symobs.exact.core.field import RATIONALS, Field
+from symobs.exact.core.field import RATIONALS, Field, scalar_text
 from symobs.exact.core.ring import (
     common_factor,
     degree_bound,
@@ -25,11 +24,33 @@ from symobs.exact.core.ring import (
     occurring,
     polynomial_fingerprint,
 )
-from symobs.exact.core.univariate import coefficients_in
 from symobs.ground.errors import WrongKind
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
+
+
+# Coefficients of a multivariate polynomial in one generator.
+
+
+def coefficients_in(polynomial: fmpz_mpoly, index: int, source: Field, target: Field) -> list[fmpz_mpoly]:
+    """Return the coefficients of the powers of the generator `index` of `source`, highest first, in `target`.
+
+    The target must contain the other generators that occur.
+    """
+    degree = int(polynomial.degrees()[index])
+    if degree == 1:
+        lead = polynomial.derivative(index)
+        return [target.lift(part, source) for part in (lead, polynomial - lead * source.context.gen(index))]
+    places = [target.position.get(name, -1) for name in source.names]
+    collected: list[dict[tuple[int, ...], fmpz]] = [{} for _ in range(degree + 1)]
+    for powers, coefficient in polynomial.terms():
+        monomial = [0] * len(target.names)
+        for i, power in enumerate(powers):
+            if power and i != index:
+                monomial[places[i]] = power
+        collected[degree - int(powers[index])][tuple(monomial)] = coefficient
+    return [target.context.from_dict(terms) for terms in collected]
 
 
 class Scalar:

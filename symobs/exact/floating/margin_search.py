@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from flint import arb
 
-from symobs.exact.core.precision import Precision
+from symobs.exact.core.ring import Precision
 from symobs.exact.floating.stability_margin import is_in_disc, is_left_of
 
 if TYPE_CHECKING:

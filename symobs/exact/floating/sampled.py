@@ -6,21 +6,32 @@ tustin   s = 2(z − 1)/(h(z + 1)):  Φ = (I − Ah/2)⁻¹(I + Ah/2),  Γ = (I 
 
 from __future__ import annotations
 
+from collections import Counter
 from fractions import Fraction
-from typing import NamedTuple
+from math import pi
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
 
 from flint import arb, arb_mat
 
-from symobs.exact.algebraic.enclosure import _ball
+from symobs.exact.algebraic.enclosure import _ball, decimal, is_number, near
+from symobs.exact.core.generators import PI, function_named
 from symobs.exact.core.matrix import Matrix
-from symobs.exact.core.precision import Precision
+from symobs.exact.core.ring import Precision
 from symobs.exact.core.scalar import Scalar
-from symobs.exact.linear_algebra.realisation import Realisation
+from symobs.exact.linear_algebra.transfer_function import Realisation
 from symobs.ground.errors import InputError
 
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping, Sequence
+
+
 HOLDS = ("zoh", "tustin")
+
+
 #: Bits of the enclosures that are tried in turn until both ends round to one double.
 _BITS = (128, 512, 2048)
+
+
 #: Below this a number is 0 in double precision: half of the smallest double.
 _SMALLEST = Fraction(1, 2**1075)
 
@@ -120,3 +131,155 @@ def _doubles(matrix: arb_mat) -> Matrix:
         for line in (zip(own, found, strict=True) for own, found in zip(matrix.tolist(), rows, strict=True))
     ]
     return Matrix.of(exact, matrix.ncols())
+
+
+# Exact values as functions of NumPy arrays: numerator and denominator by nested multiplication, in double precision.
+#
+# A polynomial is nested once, p = q xᵏ + r with the generator x that most of its terms contain, and evaluated at blocks
+# of points that stay in the processor's cache. NumPy is imported by whoever brings arrays.
+
+
+#: Points that are evaluated together: a few arrays of this length fit into the cache of a processor.
+BLOCK = 1 << 14
+
+
+Term: TypeAlias = tuple[float, dict[str, int]]
+
+
+class Nested(NamedTuple):
+    """q xᵏ + r."""
+
+    high: Polynomial
+    name: str
+    power: int
+    low: Polynomial
+
+
+Polynomial: TypeAlias = "Nested | float"
+
+
+class ArrayFunction:
+    """Some exact values as a function of arrays, one for each name; functions such as exp(−2a) are evaluated, too."""
+
+    def __init__(self, values: Sequence[Scalar]) -> None:
+        """Nest numerators and denominators; raises `InputError` where a coefficient has no double."""
+        self.fractions = [(nested(value.numerator), nested(value.denominator)) for value in values]
+        self.names = sorted({name for value in values for name in value.names})
+
+    def __call__(self, points: Mapping[str, Any]) -> Any:
+        """Return an array with one row for each value; `points` has flat arrays of one length by name."""
+        import numpy as np
+
+        known = {name: at_points(name, points) for name in self.names}
+        count = max((len(array) for array in points.values()), default=1)
+        found = np.empty((len(self.fractions), count))
+        with np.errstate(all="ignore"):
+            for start in range(0, count, BLOCK):
+                block = slice(start, min(start + BLOCK, count))
+                here = {name: values[block] if np.ndim(values) else values for name, values in known.items()}
+                for (above, below), into in zip(self.fractions, found, strict=True):
+                    top = evaluated(above, here)
+                    into[block] = top if below == 1.0 else top / evaluated(below, here)
+        return found
+
+
+def at_points(name: str, points: Mapping[str, Any]) -> Any:
+    """Return the values of a generator: those of its own symbol, or a function of them."""
+    import numpy as np
+
+    function = function_named(name)
+    if function is None:
+        return pi if name == PI else points[name]
+    argument: Scalar = function.argument
+    if is_number(argument) or function.kind == "CRootOf":
+        return decimal(_symbol(name))
+    return getattr(np, function.kind)(ArrayFunction([argument])(points)[0])
+
+
+def _symbol(name: str) -> Scalar:
+    from symobs.exact.core.scalar import Scalar  # noqa: PLC0415 - for annotations above
+
+    return Scalar.symbol(name)
+
+
+def nested(polynomial: Scalar) -> Polynomial:
+    """Return a polynomial as q xᵏ + r, and q and r likewise."""
+    try:
+        return _nested([(float(coefficient), dict(powers)) for coefficient, powers in polynomial.each_term()])
+    except OverflowError:
+        message = "a coefficient is larger than any floating-point number"
+        raise InputError(message, repair="evaluate exactly with .at(...), or write the data in other units") from None
+
+
+def _nested(terms: list[Term]) -> Polynomial:
+    """Return the nested form of Σ c Π x^k."""
+    shared = Counter(name for _, powers in terms for name in powers)
+    if not shared:
+        return sum((coefficient for coefficient, _ in terms), 0.0)
+    name = max(shared, key=lambda each: (shared[each], each))
+    having = [(coefficient, powers) for coefficient, powers in terms if name in powers]
+    rest = [(coefficient, powers) for coefficient, powers in terms if name not in powers]
+    least = min(powers[name] for _, powers in having)
+    lowered = [
+        (coefficient, {other: power - least * (other == name) for other, power in powers.items()})
+        for coefficient, powers in having
+    ]
+    kept = [
+        (coefficient, {other: power for other, power in powers.items() if power}) for coefficient, powers in lowered
+    ]
+    return Nested(_nested(kept), name, least, _nested(rest) if rest else 0.0)
+
+
+def evaluated(polynomial: Polynomial, points: Mapping[str, Any]) -> Any:
+    """Return the values of a nested polynomial."""
+    if not isinstance(polynomial, Nested):
+        return polynomial
+    high, name, power, low = polynomial
+    factor = points[name] if power == 1 else points[name] ** power
+    value = factor if high == 1.0 else evaluated(high, points) * factor
+    return value if low == 0.0 else value + evaluated(low, points)
+
+
+def sizes(polynomial: Polynomial, points: Mapping[str, Any]) -> Any:
+    """Return Σ |c| Π |x|^k, the scale of the rounding errors."""
+    if not isinstance(polynomial, Nested):
+        return abs(polynomial)
+    high, name, power, low = polynomial
+    return sizes(high, points) * abs(points[name]) ** power + sizes(low, points)
+
+
+def shortest(value: float) -> Fraction:
+    """Return the shortest decimal that names a double."""
+    return Fraction(repr(float(value)))
+
+
+# The double nearest to an exact number, and exact matrices of doubles.
+
+
+#: Bits beyond the binary point to which an irrational number is enclosed, in turn, until both ends round alike.
+_BITS_OF_DOUBLES = (200, 800, 2000)
+
+
+def nearest_double(value: Scalar) -> float:
+    """Return the double nearest to a number; raises `InputError` where it has none, `ValueError` for no number."""
+    try:
+        if value.is_constant:
+            return float(value.fraction())
+        for bits in _BITS_OF_DOUBLES:
+            middle = near(value, bits)
+            if middle is None:
+                break
+            lower, upper = float(middle - Fraction(1, 2**bits)), float(middle + Fraction(1, 2**bits))
+            if lower == upper:
+                return lower
+    except OverflowError:
+        message = f"{str(value)[:40]} is larger than any floating-point number"
+        raise InputError(message, repair="write the data in other units") from None
+    message = f"{str(value)[:80]} is no number that can be rounded"
+    raise ValueError(message)
+
+
+def rounded_matrix(matrix: Matrix, rounding: Callable[[Scalar], float] = nearest_double) -> Matrix:
+    """Return the matrix of the nearest doubles, as exact numbers."""
+    rows = [[Scalar.of(Fraction(rounding(entry))) for entry in row] for row in matrix.rows]
+    return Matrix.of(rows, matrix.shape[1])

@@ -2,10 +2,16 @@
 
 from __future__ import annotations
 
+from itertools import combinations
+from typing import TYPE_CHECKING, NamedTuple
+
 from symobs.exact.core import ring
 from symobs.exact.core.field import Field
 from symobs.exact.core.matrix import Matrix
 from symobs.exact.core.scalar import Scalar
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
 
 
 def transfer(A: Matrix, b: Matrix, c: Matrix, d: Scalar, variable: str) -> tuple[Scalar, Scalar]:
@@ -71,3 +77,74 @@ def _bordered(A: Matrix, b: Matrix, c: Matrix, field: Field, variable: str) -> t
     below = A.denominator ** (order - 1) * b.denominator * c.denominator
     characteristic = minors.get(tuple(range(order)), field.zero) * shared
     return Scalar.reduced(field, total * shared, below), Scalar.reduced(field, characteristic, A.denominator**order)
+
+
+# Pole and zero polynomial of a matrix of rational functions, from its minors (Smith and McMillan).
+
+
+def minors(matrix: Matrix, order: int) -> Iterator[Scalar]:
+    """Yield the minors of an order that are not 0."""
+    for rows in combinations(range(matrix.shape[0]), order):
+        for columns in combinations(range(matrix.shape[1]), order):
+            value = matrix.select(rows, columns).determinant()
+            if not value.is_zero:
+                yield value
+
+
+def pole_and_zero_polynomial(matrix: Matrix, variable: str) -> tuple[Scalar, Scalar]:
+    """Return (p, z): p the least common denominator of all minors, z the greatest common divisor of their numerators over p.
+
+    For z the minors of the largest order that does not vanish are written over p.  Both are monic; z is 1 for the matrix 0.
+    """
+    listed = [list(minors(matrix, order)) for order in range(1, min(matrix.shape) + 1)]
+    largest = next((found for found in reversed(listed) if found), [])
+    poles = Scalar.of(1)
+    for minor in (minor for found in listed for minor in found):
+        poles = poles * minor.denominator / _common(poles, minor.denominator, variable)
+    zeros = None
+    for minor in largest:
+        above = (minor * poles).numerator
+        zeros = above if zeros is None else _common(zeros, above, variable)
+    return _monic(poles, variable), _monic(Scalar.of(1) if zeros is None else zeros, variable)
+
+
+def _common(left: Scalar, right: Scalar, variable: str) -> Scalar:
+    """Return the common factor of two polynomials that contains the variable."""
+    quotient = left / right
+    shared = left / quotient.numerator
+    return _monic(shared, variable) if shared.degree(variable) > 0 else Scalar.of(1)
+
+
+def _monic(polynomial: Scalar, variable: str) -> Scalar:
+    return polynomial / polynomial.coefficients(variable)[0]
+
+
+# Systems in state space, and a system in the return path of another.
+
+
+class Realisation(NamedTuple):
+    """A system in state space."""
+
+    A: Matrix
+    B: Matrix
+    C: Matrix
+    D: Matrix
+
+    def function(self, variable: str) -> Matrix:
+        """Return C (sI − A)⁻¹ B + D."""
+        numerators, characteristic = transfer_matrix(*self, variable)
+        return Matrix.of([[entry / characteristic for entry in row] for row in numerators.rows])
+
+
+def closed(plant: Realisation, returned: Realisation) -> Realisation:
+    """Return the plant with another system in the return path, negative feedback: u = v − (C₂ x₂ + D₂ y)."""
+    A, B, C, D = plant
+    through = (Matrix.identity(B.shape[1]) + returned.D @ D).inverse()
+    v, state, own = through, through @ returned.D @ C, through @ returned.C
+    output, fed = C - D @ state, D @ own
+    return Realisation(
+        Matrix.block([[A - B @ state, -(B @ own)], [returned.B @ output, returned.A - returned.B @ fed]]).normal(),
+        Matrix.block([[B @ v], [returned.B @ D @ v]]).normal(),
+        Matrix.block([[output, -fed]]).normal(),
+        (D @ v).normal(),
+    )

@@ -6,27 +6,69 @@ empty.  Roots with a closed form are held against it; the others, all roots of t
 
 from __future__ import annotations
 
+import re
 from collections import Counter
+from fractions import Fraction
 from typing import TYPE_CHECKING, TypeAlias
 
 from symobs.exact.algebraic.enclosure import is_number, sign_of_number
 from symobs.exact.algebraic.root_location import root_boxes
 from symobs.exact.core.generators import generator
 from symobs.exact.core.scalar import Scalar
-from symobs.exact.numerals.significant_digits import is_correctly_written, is_written_exactly
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
-    from fractions import Fraction
 
     from symobs.exact.algebraic.polynomial_roots import Root
 
+
+# Significant digits of exact numbers: the test that a text is the correct rounding of one (trusted).
+#
+# A text is `0.3676`, `16987` or `1.2346e-7`, always of a number that is not negative. Either it is exactly the number,
+# or it has as many significant digits as were asked for, trailing zeros among them, and is the multiple of the unit of
+# its last place that is nearest to the number; of two that are equally near the even one.
+
+
+_WRITTEN = re.compile(r"(?P<whole>0|[1-9][0-9]*)(?:\.(?P<places>[0-9]+))?(?:e(?P<power>-?[1-9][0-9]*))?")
+
+
+def is_correctly_written(exact: Scalar, text: str, digits: int) -> bool:
+    """Return whether a text is the number itself, or its correct rounding to so many significant digits."""
+    found = _WRITTEN.fullmatch(text)
+    if found is None:
+        return False
+    places = found["places"] or ""
+    units = int(found["whole"] + places)
+    unit = Fraction(10) ** (int(found["power"] or 0) - len(places))
+    shown = units * unit
+    if exact.is_constant and exact.fraction() == shown:
+        return True
+    if len(str(units)) != digits or units == 0:
+        return False
+    is_below = exact.fraction() < shown if exact.is_constant else sign_of_number(shown - exact) == "positive"
+    if is_below and units == 10 ** (digits - 1):  # below a power of ten the digits stand one place further
+        units, unit = 10 * units, unit / 10
+    if exact.is_constant:
+        off = abs(exact.fraction() - shown)
+        return 2 * off < unit or (2 * off == unit and units % 2 == 0)
+    return all(sign_of_number(unit / 2 + off) == "positive" for off in (exact - shown, shown - exact))
+
+
+def is_written_exactly(exact: Scalar, text: str) -> bool:
+    """Return whether a text is exactly the number."""
+    return exact.is_constant and Fraction(text) == exact.fraction()
+
+
 RootText: TypeAlias = tuple[str, str, bool]
+
 
 #: A part of a root as an enclosure: a number with itself, or bounds of it.
 Bounds: TypeAlias = tuple[Scalar, Scalar]
 
+
 _ZERO = Scalar.of(0)
+
+
 #: Places after the point, beyond the digits asked for, of the boxes around roots without a closed form.
 _MORE_PLACES = 40
 

@@ -8,24 +8,117 @@ parameters; square roots stand in the scalar functions only.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from fractions import Fraction
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
+
+from flint import arb, arb_mat, fmpq, fmpq_mat
 
 from symobs.exact.algebraic.extension import AlgebraicExtension
 from symobs.exact.algebraic.polynomial_roots import factored
 from symobs.exact.core.field import EIGENVALUE
-from symobs.exact.core.generators import ONE, ZERO, square_root
+from symobs.exact.core.generators import (
+    ONE,
+    ZERO,
+    Function,
+    derivative,
+    function,
+    partial,
+    square_root,
+    substitute,
+    symbols_in,
+)
 from symobs.exact.core.matrix import Matrix
 from symobs.exact.core.polynomial import companion
+from symobs.exact.core.ring import Precision, number_of
 from symobs.exact.core.scalar import Scalar
 from symobs.exact.time_functions.quasipolynomial import Key, Quasipolynomial, matrix_at
-from symobs.exact.time_functions.root_sum import RootSum
 from symobs.ground.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Callable, Mapping, Sequence
 
     from symobs.exact.time_functions.quasipolynomial import Table
+
+
+# Sums over the roots of a square-free polynomial q: φⱼ(t) = Σ λʲ e^{λt} / q′(λ).
+#
+# Every symmetric sum Σ g(λ) e^{λt} is a combination of φ₀, …, φ_{d−1} with coefficients from the field of q.
+# Differentiating multiplies the summand by λ, and at t = 0 the sum is the trace of λʲ / q′(λ) in the field of a root.
+
+
+#: The name of the root in texts; `lambda` itself is a keyword where they are read.
+BOUND = "lam"
+
+
+@dataclass(frozen=True)
+class RootSum(Function):
+    """Σ λᵖ e^{λ·argument} / q′(λ) over the roots λ of q, a polynomial in the generator of eigenvalues."""
+
+    polynomial: Scalar
+    power: int
+
+    @staticmethod
+    def of(polynomial: Scalar, power: int, time: Scalar) -> Scalar:
+        """Return the sum, `power` less than the degree."""
+        return RootSum("RootSum", time, polynomial, power).value
+
+    @property
+    def summand(self) -> Scalar:
+        """The summand."""
+        root = Scalar.symbol(EIGENVALUE)
+        return root**self.power * function("exp", root * self.argument) / self.slope
+
+    @property
+    def slope(self) -> Scalar:
+        """The derivative q′(λ)."""
+        return partial(self.polynomial, EIGENVALUE)
+
+    @property
+    def discriminant(self) -> Scalar:
+        """The product of q′ over all roots, which vanishes exactly where two roots coincide."""
+        return AlgebraicExtension(self.polynomial, EIGENVALUE).norm(self.slope).numerator
+
+    @property
+    def bound(self) -> str:
+        """The name of the root in the text, different from every parameter."""
+        taken = self.polynomial.names | self.argument.names
+        return next(name for name in (BOUND + "_" * k for k in range(len(taken) + 1)) if name not in taken)
+
+    @property
+    def text(self) -> str:
+        """SymPy's text; the variable is named where there are parameters."""
+        root = {EIGENVALUE: Scalar.symbol(self.bound)}
+        q, below = (p.substitute(root) for p in (self.polynomial, self.slope))
+        inside = f"{root[EIGENVALUE] ** self.power}*exp({root[EIGENVALUE] * self.argument})/({below})"
+        named = f", {self.bound}" if len(q.names) > 1 else ""
+        return f"RootSum({q}, Lambda({self.bound}, {inside}){named})"
+
+    @property
+    def symbols(self) -> frozenset[str]:
+        """The time and the parameters of q."""
+        return symbols_in(self.argument) | symbols_in(self.polynomial) - {EIGENVALUE}
+
+    def rate(self, time: str) -> Scalar:
+        """Return d/dt: the summand times λ, its power reduced by q."""
+        field = AlgebraicExtension(self.polynomial, EIGENVALUE)
+        image = field.reduce(Scalar.symbol(EIGENVALUE) ** (self.power + 1))
+        total = Scalar.of(0)
+        for power, c in enumerate(reversed(image.coefficients(EIGENVALUE))):
+            if not c.is_zero:
+                total = total + c * RootSum.of(self.polynomial, power, self.argument)
+        return total * derivative(self.argument, time)
+
+    def moved(self, values: Mapping[str, Scalar]) -> Scalar:
+        """Return the sum with symbols substituted; at time 0 the trace of λᵖ / q′(λ)."""
+        argument, q = substitute(self.argument, values), substitute(self.polynomial, values)
+        slope = partial(q, EIGENVALUE)
+        field = AlgebraicExtension(q, EIGENVALUE)
+        below = field.inverse(slope)  # raises where two roots are equal
+        if not argument.is_zero:
+            return replace(self, argument=argument, polynomial=q).value
+        return field.trace(field.reduce(Scalar.symbol(EIGENVALUE) ** self.power * below))
+
 
 #: Orders up to which it is computed, without and with parameters.
 MOST_STATES, MOST_STATES_WITH_PARAMETERS = 24, 8
@@ -231,3 +324,82 @@ def _rates(modes: Sequence[tuple[Mode | RootMode, int]]) -> tuple[Matrix, Matrix
                     rows[at + i][at + i - width] = Scalar.of(k)
             at += width
     return Matrix.of(rows), Matrix.column(start)
+
+
+# Responses of a numeric linear system from an initial state: enclosures of e^{Mt} v, and spectral bounds.
+
+
+#: Bits that are tried in turn until all enclosures are narrow.
+_BITS = (128, 256, 512, 1024, 2048, 4096)
+
+
+_HALF = arb(0.5)
+
+
+#: Columns are doubled until so many blocks of them are all.
+_BLOCKS = 8
+
+
+def eigenvalues_near(matrix: Matrix) -> list[complex]:
+    """Return the different eigenvalues of a numeric matrix, approximately."""
+    roots: Any = _rational(matrix).charpoly().complex_roots()  # pairs (root, multiplicity), not what its stub says
+    return [complex(float(root.real.mid()), float(root.imag.mid())) for root, _ in roots]
+
+
+def spectral_abscissae(matrix: Matrix) -> tuple[float, float]:
+    """Return the largest and smallest real part of the eigenvalues of a numeric matrix, approximately."""
+    real = [root.real for root in eigenvalues_near(matrix)]
+    return max(real), min(real)
+
+
+def spectral_radius(matrix: Matrix) -> float:
+    """Return the spectral radius of a numeric matrix, approximately."""
+    return max(map(abs, eigenvalues_near(matrix)))
+
+
+def state_response(
+    matrix: Matrix, start: Sequence[Fraction], step: Fraction, count: int, parts: int
+) -> list[list[int]]:
+    """Return e^{Mt} v at `count` instants from 0 on, in integer multiples of 1/parts, with errors of at most one.
+
+    The columns that are known times e^{Mh}, e^{2Mh}, e^{4Mh}, … are as many again, until a few blocks of them are all: an
+    enclosure goes through few products.  Raises `ArithmeticError` where the enclosures stay too wide.
+    """
+    known = _rational(matrix)
+    for bits in _BITS:
+        with Precision(bits):
+            power = (arb_mat(known) * arb(fmpq(step.numerator, step.denominator))).exp()
+            columns = [[arb(fmpq(part.numerator, part.denominator)) * parts] for part in start]
+            while _BLOCKS * len(columns[0]) < count:
+                more = (power * arb_mat(columns)).tolist()
+                columns = [[*row, *new] for row, new in zip(columns, more, strict=True)]
+                power = power * power
+            block, found = arb_mat(columns), list[tuple[int, ...]]()
+            while (states := _nearest(block)) and len(found) + len(states) < count:
+                found += states
+                block = power * block
+            if states:
+                return [list(state) for state in [*found, *states][:count]]
+    raise ArithmeticError("a response with too much to compute")
+
+
+def _rational(matrix: Matrix) -> fmpq_mat:
+    """Return a numeric matrix as FLINT's."""
+    return fmpq_mat(
+        [[fmpq(number_of(e.numerator_part), number_of(e.denominator_part)) for e in row] for row in matrix.rows]
+    )
+
+
+def _nearest(columns: arb_mat) -> list[tuple[int, ...]]:
+    """Return the columns as whole numbers nearest to the middles of intervals; none where one of these is too wide."""
+    halves = arb_mat(columns.nrows(), columns.ncols(), [_HALF] * (columns.nrows() * columns.ncols()))
+    rows = [[_below(ball) for ball in row] for row in (columns + halves).tolist()]
+    return [] if any(None in row for row in rows) else list(zip(*rows, strict=True))
+
+
+def _below(ball: arb) -> int | None:
+    """Return the whole number below an interval, below its middle where it is narrow; None for one that is wide."""
+    whole: Any = ball.floor().unique_fmpz()
+    if whole is None and ball.rad() < _HALF:
+        whole = ball.mid().floor().unique_fmpz()  # never None for what has no radius
+    return None if whole is None else int(whole)

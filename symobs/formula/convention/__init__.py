@@ -1,6 +1,5 @@
 """Conventions: the letters and signs of pages, of input, and of expected answers."""
 
-from symobs.formula.convention.builtin import convention_named, conventions
-from symobs.formula.convention.convention import OF_REDUCED_ORDER, STANDARD, Convention
+from symobs.formula.convention.convention import OF_REDUCED_ORDER, STANDARD, Convention, convention_named, conventions
 
 __all__ = ["OF_REDUCED_ORDER", "STANDARD", "Convention", "convention_named", "conventions"]

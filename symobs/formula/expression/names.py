@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import keyword
 import re
+import unicodedata
 from dataclasses import field
 from difflib import get_close_matches
 from typing import TYPE_CHECKING, TypeAlias
 
 from symobs.exact import Scalar
-from symobs.formula.expression.size_limits import Meter
-from symobs.formula.expression.source import shown
+from symobs.formula.expression.source import Meter, shown
+from symobs.formula.notation import GREEK_LETTERS
 from symobs.ground.dataclass import dataclass
 from symobs.ground.errors import ExpressionError
 
@@ -19,20 +20,33 @@ if TYPE_CHECKING:
 
     from symobs.exact import Field
 
+
 #: The declared names; None declares every well-formed name.
 Names: TypeAlias = "Mapping[str, object] | None"
 
+
 FUNCTIONS = ("sqrt", "exp", "sin", "cos", "tan", "sinh", "cosh", "tanh")
+
+
 RESERVED = ("oo", "inf", "nan", "pi")
+
+
 IMAGINARY = ("i", "j", "I")
+
+
 LONGEST_NAME = 64
 
+
 NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
+
+
 #: The imaginary unit directly before a number or a frequency: j2.4, jw_d.
 UNIT_FIRST = re.compile(
     r"(?P<unit>[ij])(?:(?P<size>[0-9]+(?:\.[0-9]+)?(?:[eE][+-]?[0-9]+)?)|(?P<frequency>(?:w|omega)[A-Za-z0-9_]*))(?![\w.])",
     re.ASCII,
 )
+
+
 _MOST_COMPARED = 1_000
 
 
@@ -121,3 +135,63 @@ class Scope:
         """Return the known name most similar to `name`, functions included for a call."""
         known = self.declared()[:_MOST_COMPARED] + (list(FUNCTIONS) if called else [])
         return next(iter(get_close_matches(name, known, 1)), None)
+
+
+# The characters with which formulas are printed, read back: ω₀², √3, −1 ± 2 i, a·b.
+
+
+#: Signs in place of the minus of ASCII, and blanks in place of its space.
+MINUS = "-\u2212\u2010\u2011\u2013"
+
+
+BLANK = "\u00a0\u2009\u202f\u200b\u2060\ufeff"
+
+
+SUPERSCRIPTS = "⁰¹²³⁴⁵⁶⁷⁸⁹"
+
+
+_BELOW = "₀₁₂₃₄₅₆₇₈₉"
+
+
+_SPELT = {letter: name for name, letter in GREEK_LETTERS.items()} | {
+    "ϕ": "phi",
+    "ϵ": "epsilon",
+    "ϑ": "theta",
+    "µ": "mu",
+}
+
+
+_SANS_SERIF = "\U0001d5a0-\U0001d5d3"
+
+
+#: A name as it is typed, or a Greek letter or one without serifs, with indices below.
+PRINTED_NAME = rf"(?:[A-Za-z][A-Za-z0-9_]*|[{''.join(_SPELT)}{_SANS_SERIF}])[{_BELOW}]*"
+
+
+_PAIR = re.compile(r"([^±]*)±([^±]*)")
+
+
+_ASCII = (
+    str.maketrans(SUPERSCRIPTS, "0123456789")
+    | dict.fromkeys(map(ord, MINUS + "⁻"), "-")
+    | dict.fromkeys(map(ord, "·⋅×"), "*")
+)
+
+
+def ascii_of(glyphs: str) -> str:
+    """Return signs and digits as they are typed: ⁻² is -2, · is *."""
+    return glyphs.translate(_ASCII)
+
+
+def spellings(printed: str) -> tuple[str, ...]:
+    """Return the names that are printed like this: ω₀ is omega0 or omega_0."""
+    stem = printed.rstrip(_BELOW)
+    digits = unicodedata.normalize("NFKC", printed[len(stem) :])
+    plain = _SPELT.get(stem) or unicodedata.normalize("NFKC", stem)
+    return (plain + digits, f"{plain}_{digits}") if digits else (plain,)
+
+
+def pairs(pole: object) -> list[object]:
+    """Return the two poles of a text -1 ± 2i; any other one alone."""
+    pair = _PAIR.fullmatch(pole) if isinstance(pole, str) else None
+    return [f"{pair[1]}+{pair[2]}", f"{pair[1]}-{pair[2]}"] if pair else [pole]

@@ -17,13 +17,10 @@ from math import lcm
 from typing import TYPE_CHECKING
 
 from symobs.exact import Complex, Matrix, Scalar, matrix_of_numbers
-from symobs.formula.expression.evaluation import MOST_CHARACTERS, MatrixRows, read
-from symobs.formula.expression.fast_path import plain_rows
-from symobs.formula.expression.names import Names, Scope, declared_name
-from symobs.formula.expression.printed_glyphs import pairs
-from symobs.formula.expression.size_limits import common_denominator_excess
-from symobs.formula.expression.source import shown
-from symobs.formula.expression.syntax_parser import EQUAL_ROWS, unequal_row
+from symobs.formula.expression.evaluation import MOST_CHARACTERS, MatrixRows, plain_rows, read
+from symobs.formula.expression.names import Names, Scope, declared_name, pairs
+from symobs.formula.expression.source import common_denominator_excess, shown
+from symobs.formula.expression.syntax import EQUAL_ROWS, unequal_row
 from symobs.formula.expression.tokenizer import MOST_DIGITS, sharing
 from symobs.ground.errors import BudgetExceeded, ExpressionError, InexactInput, InputError, ShapeMismatch
 
@@ -31,7 +28,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
     from typing import TypeGuard
 
-    from symobs.formula.expression.size_limits import Number
+    from symobs.formula.expression.source import Number
 
 __all__ = [
     "Names",

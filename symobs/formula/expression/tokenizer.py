@@ -15,21 +15,99 @@ from typing import TYPE_CHECKING
 from symobs.exact import Complex, Field, Scalar
 from symobs.exact.algebraic.rounded_decimals import as_generator
 from symobs.exact.core.generators import PI
-from symobs.formula.expression.ambiguous_products import OPERAND_ENDS, division_before, two_readings
-from symobs.formula.expression.names import FUNCTIONS, LONGEST_NAME, NAME, Scope, refusal
-from symobs.formula.expression.printed_glyphs import BLANK, MINUS, PRINTED_NAME, SUPERSCRIPTS, ascii_of, spellings
+from symobs.formula.expression.names import (
+    BLANK,
+    FUNCTIONS,
+    LONGEST_NAME,
+    MINUS,
+    NAME,
+    PRINTED_NAME,
+    SUPERSCRIPTS,
+    Scope,
+    ascii_of,
+    refusal,
+    spellings,
+)
 from symobs.formula.expression.source import Source, Token, shown
 from symobs.ground.errors import BudgetExceeded, InputError, ProblemErrors, UnknownName
 
 if TYPE_CHECKING:
-    from collections.abc import Container, Iterable
+    from collections.abc import Container, Iterable, Iterator, Sequence
+
+
+# Ambiguous products after a division, `1/s(s+1)`: both readings, written out.
+
+
+OPERAND_ENDS = ("VALUE", "_CLOSE", "_RIGHT", "PRIME")
+
+
+_OPENING_KINDS, _CLOSING_KINDS = ("_OPEN", "LEFT"), ("_CLOSE", "_RIGHT")
+
+
+_LONGEST_READING = 100
+
+
+def division_before(tokens: Sequence[Token]) -> int | None:
+    """Return the place of the "/" whose divisor ends here, None if there is none."""
+    for place in _term_backwards(tokens, len(tokens)):
+        if tokens[place].type == "MULTIPLY":
+            return place if tokens[place] == "/" else None
+    return None
+
+
+def two_readings(tokens: Sequence[Token], division: int, text: str, at: int, rest: Iterator[re.Match[str]]) -> str:
+    """Return both readings of the factors that begin at `at`; `rest` are the pieces of the text from there on."""
+    begin = min((tokens[place].start for place in _term_backwards(tokens, division)), default=0)
+    slash, end = tokens[division].start, at
+    depth, previous = 0, ""
+    for piece in rest:
+        kind = str(piece.lastgroup)
+        ends = kind in {"CLOSE", "COMMA", "END", "MULTIPLY", "SPACE"} or (kind == "ADD" and previous != "POWER")
+        if piece.start() != end or (ends and not depth):
+            break
+        depth += (kind == "OPEN") - (kind == "CLOSE")
+        end, previous = piece.end(), kind
+    above, below, factors = (text[i:j].strip() for i, j in ((begin, slash), (slash + 1, at), (at, end)))
+    return " or ".join(
+        shown(reading, _LONGEST_READING) for reading in (f"{above}/{below}*{factors}", f"{above}/({below}*{factors})")
+    )
+
+
+def _term_backwards(tokens: Sequence[Token], end: int) -> Iterator[int]:
+    """Yield the places before `end`, backwards, of what belongs to the same term and stands in no further bracket."""
+    depth = 0
+    for place in range(end - 1, -1, -1):
+        kind = tokens[place].type
+        if not depth:
+            if kind in {*_OPENING_KINDS, "_COMMA", "_END", "_EQUAL"} or (
+                kind == "ADD" and _follows_operand(tokens, place)
+            ):
+                return
+            yield place
+        depth += (kind in _CLOSING_KINDS) - (kind in _OPENING_KINDS)
+        if not depth and kind in _OPENING_KINDS:
+            yield place
+
+
+def _follows_operand(tokens: Sequence[Token], place: int) -> bool:
+    return place > 0 and tokens[place - 1].type in OPERAND_ENDS
+
 
 MOST_NESTING = 100
+
+
 #: After this many names that are not declared a text is read no further.
 _MOST_UNKNOWN = 20
+
+
 MOST_DIGITS = 1_000
+
+
 MOST_POWER_OF_TEN = 1_000
+
+
 MOST_NAMES = 400
+
 
 #: What a token looks like; the implied signs are those of `Tokeniser`.
 TOKENS = (
@@ -40,17 +118,31 @@ TOKENS = (
     rf"|(?P<RAISED>⁻?[{SUPERSCRIPTS}]+)|(?P<ROOT>√(?P<RADICAND>[0-9]+|{PRINTED_NAME})?)"
     rf"|(?P<SPACE>[ \t\r\n{BLANK}]+)"
 )
+
+
 _ROW = re.compile(r"[^][;\r\n]*")
+
+
 _CLOSING = {"(": ")", "[": "]"}
+
+
 _CALL = re.compile(r"[ \t\r\n]*\(")
+
+
 _POWER = re.compile(r"[ \t\r\n]*(?:\*\*|\^)")
+
+
 #: What is a function or a command elsewhere, and no symbol that anybody means to declare.
 _FUNCTIONS_ELSEWHERE = re.compile(
     r"abs|a(?:rc)?(?:cos|sin|tan|cot)h?|atan2|conj|coth?|csch?|sech?|l[gn]|log(?:2|10)?|det|diag|eye|floor|imag|inv|max|min|ones"
     r"|rank|real|root|round|sat|sgn|sign|sinc|step|sum|trace|transpose|zeros"
 )
+
+
 #: What follows the 0 of a number in base 16, 8 or 2, and what is a power of ten in Fortran.
 _OTHER_BASE, _POWER_OF_TEN = re.compile(r"[xX][0-9A-Fa-f]+|[oO][0-7]+|[bB][01]+"), re.compile(r"[dD][0-9]+")
+
+
 _OPERAND_STARTS = ("NUMBER", "NAME", "OPEN")
 
 
@@ -359,6 +451,8 @@ def _unit_apart(found: re.Match[str]) -> str:
 
 #: What is said of e^(-a t), which is a power of a name here.
 EXPONENTIAL = ": write exp(-a*t) for e^(-a*t)"
+
+
 #: What to do about the variable of the other domain of time.
 _OF_OTHER_TIME = {
     "z": "z is the variable in discrete time: give dt = true, or the period",

@@ -11,8 +11,8 @@ from symobs.ground.dataclass import dataclass
 
 if TYPE_CHECKING:
     from symobs.formula.expression.names import Names
-    from symobs.formula.expression.size_limits import Number
-    from symobs.formula.expression.syntax_tree import SyntaxNode
+    from symobs.formula.expression.source import Number
+    from symobs.formula.expression.syntax import SyntaxNode
 
 _ONE = Scalar.of(1)
 

@@ -17,17 +17,46 @@ from typing import TYPE_CHECKING, Any
 
 from symobs.formula.phrases.catalogue import COUNTS, PHRASES, WORDS, phrases_of_modules
 from symobs.formula.phrases.literature import reference
-from symobs.formula.phrases.spoken import Counted, StateChoice
 from symobs.ground.dataclass import dataclass
 from symobs.ground.errors import UsageError
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping
 
+
+# What a slot of a sentence holds where a language has words for it: numbers of things, and a choice of states.
+
+
+@dataclass(frozen=True)
+class Counted:
+    """How many of a thing there are, or which one is meant: `thing` is a key of `COUNTS`; `among` how many there are in all."""
+
+    thing: str
+    count: int
+    among: int = 0
+
+
+@dataclass(frozen=True)
+class StateChoice:
+    """Sets of states, counted from 1, any one of which will do; all are of the same size."""
+
+    sets: tuple[tuple[int, ...], ...]
+
+
+#: What languages put into words.
+SPOKEN = (Counted, StateChoice)
+
+
 _FOLDER = Path(__file__).parent
+
+
 _WORDS = "words.toml"
+
+
 #: Words of a phrase for one root in its slot, and for several: `the <mode|modes> {roots}`.
 COUNTED = re.compile(r"<([^<|>]*)\|([^<|>]*)>")
+
+
 _PLACES = {"ch.": "chapter", "sec.": "section"}
 
 

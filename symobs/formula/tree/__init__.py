@@ -1,9 +1,7 @@
 """Formulas: the tree, its evaluation, and terms (a formula with its exact value)."""
 
-from symobs.formula.tree.arithmetic import Arithmetic, Signal
-from symobs.formula.tree.comparison import agree, differ
-from symobs.formula.tree.evaluate import Environment, Exact, Modular, evaluate
-from symobs.formula.tree.modulo_ideal import ModuloIdeal
+from symobs.formula.tree.arithmetic import Arithmetic, Signal, agree, differ, exact_meaning, is_rounded
+from symobs.formula.tree.evaluate import Environment, Exact, Modular, ModuloIdeal, evaluate
 from symobs.formula.tree.nodes import (
     Apply,
     At,
@@ -40,7 +38,6 @@ from symobs.formula.tree.nodes import (
     roots_written,
     with_children,
 )
-from symobs.formula.tree.numerals import exact_meaning, is_rounded
 from symobs.formula.tree.sign_changes import SignReversal
 
 __all__ = [

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, Protocol
 
+from symobs.exact import Matrix, Scalar, is_written_exactly
+from symobs.formula.tree.nodes import Literal, Numeral, children, with_children
 from symobs.ground.dataclass import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from symobs.exact import Matrix, Scalar
+    from symobs.formula.tree.nodes import Formula
 
 
 @dataclass(frozen=True)
@@ -92,3 +94,52 @@ def scalar(value: Any, arithmetic: Arithmetic) -> Any:
     if arithmetic.shape(value) == (1, 1):
         return arithmetic.entry(value)
     return value
+
+
+# Equality of two values in any arithmetic.
+
+
+def agree(left: Any, right: Any, arithmetic: Arithmetic) -> bool:
+    """Return whether two values are equal, reading 1×1 matrices as scalars and missing signals as 0."""
+    if isinstance(left, Signal) and isinstance(right, Signal):
+        difference = add(left, times(arithmetic.leaf(Scalar.of(-1)), right, arithmetic), arithmetic)
+        return all(
+            arithmetic.equal(value, arithmetic.leaf(Matrix.zeros(*arithmetic.shape(value))))  # type: ignore[misc]
+            for value in difference.coefficients.values()
+        )
+    left, right = _alike(left, right, arithmetic)
+    return left is not None and arithmetic.equal(left, right)
+
+
+def differ(left: Any, right: Any, arithmetic: Arithmetic) -> bool:
+    """Return whether two values of one kind and shape differ; False if they are not comparable."""
+    left, right = _alike(left, right, arithmetic)
+    return left is not None and not arithmetic.equal(left, right)
+
+
+def _alike(left: Any, right: Any, arithmetic: Arithmetic) -> tuple[Any, Any]:
+    """Return two values in one kind and shape, 1×1 matrices as scalars; (None, None) if that is impossible."""
+    if isinstance(left, Signal) or isinstance(right, Signal):
+        return None, None
+    if arithmetic.shape(left) != arithmetic.shape(right):
+        left, right = scalar(left, arithmetic), scalar(right, arithmetic)
+        if arithmetic.shape(left) != arithmetic.shape(right):
+            return None, None
+    return left, right
+
+
+# Numerals on pages in decimals: rounded or exact, and the formula that one stands for.
+
+
+def is_rounded(shown: Formula) -> bool:
+    """Return whether a decimal in a formula is not exactly its number."""
+    if isinstance(shown, Numeral):
+        return not is_written_exactly(shown.value, shown.text)
+    return any(map(is_rounded, children(shown)))
+
+
+def exact_meaning(shown: Formula) -> Formula:
+    """Return a formula with the exact number in place of each decimal."""
+    if isinstance(shown, Numeral):
+        return Literal(shown.value)
+    return with_children(shown, tuple(map(exact_meaning, children(shown))))

@@ -39,7 +39,7 @@ def at(value: Any, name: str, instant: Scalar, arithmetic: Arithmetic) -> Any:
 
 def integral(integrand: Any, primitive: Any, name: str, limits: tuple[Scalar, Scalar], arithmetic: Arithmetic) -> Any:
     """Return primitive(upper) − primitive(lower), after checking that the primitive's derivative is the integrand."""
-    from symobs.formula.tree.comparison import agree  # noqa: PLC0415 - it stands on `evaluate`, which calls this
+    from symobs.formula.tree.arithmetic import agree  # noqa: PLC0415 - it stands on `evaluate`, which calls this
 
     if not agree(derivative(exact(primitive), name), integrand, arithmetic):
         message = "the primitive is another function's"

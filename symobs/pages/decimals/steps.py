@@ -9,8 +9,8 @@ from dataclasses import fields, is_dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 from symobs.exact import Matrix, Scalar
-from symobs.exact.numerals.written_roots import rounded_roots
-from symobs.formula.figures.block_diagram import letter_for
+from symobs.exact.numerals.written_digits import rounded_roots
+from symobs.formula.figures import letter_for
 from symobs.formula.tree import (
     Conjunction,
     Decimals,
@@ -51,7 +51,7 @@ from symobs.proof.derivation.decimals_check import check_decimals, is_in_order
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
 
-    from symobs.formula.figures.block_diagram import Label
+    from symobs.formula.figures import Label
     from symobs.proof.derivation import Derivation, Step
 
 #: The sentence before an answer in decimals on a page of fractions.

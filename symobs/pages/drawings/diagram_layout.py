@@ -10,7 +10,7 @@ from itertools import pairwise
 from typing import TYPE_CHECKING, TypeAlias
 
 from symobs.exact import Scalar
-from symobs.formula.figures.block_diagram import Figure, figure_of, is_box, is_integrator, key, letter_for, without_sign
+from symobs.formula.figures import Figure, figure_of, is_box, is_integrator, key, letter_for, without_sign
 from symobs.formula.tree import Conjunction, Derivative, Letter, Literal, Power, Quotient
 from symobs.ground.dataclass import dataclass
 from symobs.pages.drawings.scene import Box, Rectangle, Scene, Sign, Stroke, TextLabel
@@ -18,7 +18,7 @@ from symobs.pages.drawings.scene import Box, Rectangle, Scene, Sign, Stroke, Tex
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
-    from symobs.formula.figures.block_diagram import Label, Wire
+    from symobs.formula.figures import Label, Wire
     from symobs.pages.drawings.scene import Point
     from symobs.pages.page.blocks import Drawing
 

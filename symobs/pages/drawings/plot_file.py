@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
+from io import BytesIO
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from symobs.ground.errors import DerivationRejected, UsageError
-from symobs.pages.drawings.matplotlib_writer import drawn_by_matplotlib, require_matplotlib
+from symobs.pages.drawings.plot_layout import plot_scene
+from symobs.pages.drawings.scene import FONT_SIZE, NARROWEST, RADIUS, STYLES, arrow_head, caption_below, head_of
 from symobs.pages.drawings.svg import svg_file
 from symobs.pages.drawings.tikz import tikz_file
 from symobs.pages.page.narrator import printer_for
@@ -16,13 +19,190 @@ from symobs.proof.derivation import Plot
 from symobs.tasks.result import Document
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Callable, Iterator, Sequence
 
-    from symobs.formula.figures.plot import Drawn, Picture, SweepCurves, SweepMap
+    from symobs.formula.figures import Drawn, Picture, SweepCurves, SweepMap
+    from symobs.formula.tree import Formula, Relation
+    from symobs.pages.drawings.scene import Content, Point, Scene, Sign, Stroke
     from symobs.proof.derivation import Step
     from symobs.tasks.result import Result
 
+
+# Plots by matplotlib, for PNG and PDF, with mathematics by matplotlib's own TeX.
+
+
+_COLOURS = {"ink": "#1e3c6e", "text": "black", "pale": "0.78"}
+
+
+_SHADE = "#e4e7ed"
+
+
+_FONT: dict[str, Any] = {"family": ["STIXGeneral", "DejaVu Sans"], "math_fontfamily": "stix"}
+
+
+_SPACE = 0.28 * FONT_SIZE
+
+
+_RESOLUTION = 220
+
+
+_HORIZONTAL, _VERTICAL = {"west": "left", "east": "right"}, {"north": "top", "south": "bottom"}
+
+
+#: Nothing that changes from run to run.
+_METADATA: dict[str, dict[str, Any]] = {
+    "png": {"Software": None},
+    "pdf": {"CreationDate": None, "Producer": None},
+}
+
+
+def require_matplotlib() -> None:
+    """Raise `UsageError` if matplotlib is missing."""
+    try:
+        import matplotlib.figure  # noqa: F401
+    except ImportError:
+        message = "pictures in PNG and PDF need matplotlib"
+        raise UsageError(message, repair="pip install matplotlib, or name a file that ends in .svg or .tex") from None
+
+
+def drawn_by_matplotlib(picture: Drawn, kind: str, latex: LatexPrinter, text: TextPrinter) -> bytes:
+    """Return a plot with its caption as `png` or `pdf`."""
+    require_matplotlib()
+    from matplotlib.figure import Figure
+
+    write = _writer(latex, text)
+    scene = plot_scene(picture, lambda content: _size(write(content)), latex.language)
+    widest = max(scene.whole.right - scene.whole.left, NARROWEST) / 2
+
+    def mathematics(content: Formula | Relation) -> list[str]:
+        """Return mathematics whole, or broken after its signs if it is long."""
+        piece = write(content)
+        return [piece] if _size(piece)[0] <= widest else _broken(piece)
+
+    whole, rows = caption_below(
+        picture, scene, latex.language, _escaped, mathematics, lambda piece: _size(piece)[0], _SPACE
+    )
+    figure = Figure(figsize=((whole.right - whole.left) / 72, (whole.top - whole.bottom) / 72), facecolor="white")
+    axes = figure.add_axes((0, 0, 1, 1))
+    axes.set(xlim=(whole.left, whole.right), ylim=(whole.bottom, whole.top))
+    axes.axis("off")
+    _draw(scene, axes, write)
+    for place, row in rows:
+        axes.text(*place, _joined(row), fontsize=FONT_SIZE, va="center", **_FONT)
+    buffer = BytesIO()
+    figure.savefig(buffer, format=kind, dpi=_RESOLUTION, metadata=_METADATA[kind])
+    return buffer.getvalue()
+
+
+def _escaped(text: str) -> str:
+    return text.replace("$", r"\$")
+
+
+def _writer(latex: LatexPrinter, text: TextPrinter) -> Callable[[Content], str]:
+    """Return the writer of mathematics for matplotlib: LaTeX if its TeX supports it, else plain text."""
+    from matplotlib.mathtext import MathTextParser
+
+    parser: Any = MathTextParser("path")
+
+    def write(content: Content) -> str:
+        if isinstance(content, str):
+            return _escaped(content.replace("-", "−"))
+        written = f"${latex.inline(content)}$"  # type: ignore[arg-type]
+        try:
+            parser.parse(written)
+        except ValueError:
+            return _escaped(text.inline(content))  # type: ignore[arg-type]
+        return written
+
+    return write
+
+
+@lru_cache(maxsize=1024)
+def _size(written: str) -> tuple[float, float]:
+    """Return the width and height of a text in matplotlib."""
+    from matplotlib.font_manager import FontProperties
+    from matplotlib.textpath import TextPath
+
+    font = FontProperties(**_FONT, size=FONT_SIZE)
+    extents = TextPath((0, 0), written, prop=font).get_extents()
+    return float(extents.x1), max(float(extents.height) + 1.5, 0.9 * FONT_SIZE)
+
+
+def _broken(written: str) -> list[str]:
+    """Return mathematics in parts ending with a sign outside parentheses and braces."""
+    parts, depth = [""], 0
+    for place, character in enumerate(written[1:-1]):
+        depth += (character in "({") - (character in ")}")
+        parts[-1] += character
+        if character in "+-=" and depth == 0 and place:
+            parts.append("")
+    return [f"${part}$" for part in parts if part] if written.startswith("$") else written.split(" ")
+
+
+def _joined(row: list[list[str]]) -> str:
+    """Return a row as one text, consecutive parts of a formula joined."""
+    return " ".join("".join(word) for word in row).replace("$ $", "")
+
+
+# -- drawing ----------------------------------------------------------------------------------------------------------
+
+
+def _draw(scene: Scene, axes: Any, write: Callable[[Content], str]) -> None:
+    if scene.shades:
+        _fill(axes, scene.shades, _SHADE)
+    for stroke in scene.strokes:
+        _stroke(axes, stroke)
+    for sign in scene.signs:
+        _sign(axes, sign)
+    for text in scene.texts:
+        anchors = {
+            "ha": _HORIZONTAL.get(text.anchor, "center"),
+            "va": _VERTICAL.get(text.anchor, "center_baseline" if text.anchor == "east" else "center"),
+        }
+        axes.text(*text.place, write(text.content), fontsize=FONT_SIZE, **anchors, **_FONT)
+
+
+def _fill(axes: Any, areas: Sequence[Sequence[Point]], colour: str) -> None:
+    """Fill areas as one path: two that touch show no seam."""
+    from matplotlib.patches import PathPatch
+    from matplotlib.path import Path
+
+    paths = [Path([*area, area[0]], closed=True) for area in areas]
+    axes.add_patch(PathPatch(Path.make_compound_path(*paths), facecolor=colour, edgecolor="none", zorder=0))
+
+
+def _stroke(axes: Any, stroke: Stroke) -> None:
+    style = STYLES[stroke.style]
+    dashes: dict[str, Any] = {"linestyle": (0, tuple(d / style.width for d in style.dashes))} if style.dashes else {}
+    colour = _COLOURS[style.colour]
+    axes.plot(
+        *zip(*stroke.points, strict=True), color=colour, lw=style.width, solid_capstyle="butt", zorder=1, **dashes
+    )
+    if style.has_head:
+        _fill(axes, [head_of(stroke)], colour)
+
+
+def _sign(axes: Any, sign: Sign) -> None:
+    from matplotlib.patches import Circle
+
+    ink, radius = _COLOURS["ink"], RADIUS.get(sign.kind, 0.0)
+    x, y = sign.place
+    match sign.kind:
+        case "dot":
+            axes.add_patch(Circle(sign.place, radius, facecolor=ink, edgecolor="none", zorder=2))
+        case "ring":
+            axes.add_patch(Circle(sign.place, radius, facecolor="white", edgecolor=ink, linewidth=0.8, zorder=2))
+        case "arrow":
+            _fill(axes, [arrow_head(sign.place, sign.direction)], ink)
+        case _:
+            for turn in (1, -1):
+                ends = (x - radius, x + radius), (y - turn * radius, y + turn * radius)
+                axes.plot(*ends, color=ink, linewidth=0.8, zorder=2)
+
+
 SUFFIXES = (".svg", ".png", ".pdf", ".tex")
+
+
 _BY_MATPLOTLIB = {".png": "png", ".pdf": "pdf"}
 
 

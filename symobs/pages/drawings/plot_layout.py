@@ -8,10 +8,9 @@ from math import ceil, cos, dist, floor, hypot, log10, pi, sin
 from typing import TYPE_CHECKING, assert_never
 
 from symobs.exact import Scalar
-from symobs.formula.figures.plot import LinePicture, PoleMap, RegionPicture, SweepCurves, SweepMap, TimeResponse
+from symobs.formula.figures import LinePicture, PoleMap, RegionPicture, SweepCurves, SweepMap, TimeResponse
 from symobs.formula.tree import Decimals, Literal, Relation
-from symobs.pages.drawings.clipping import Frame, chained, segment_in
-from symobs.pages.drawings.curve_labels import Surroundings, labelled, walk
+from symobs.pages.drawings.curve_labels import Frame, Surroundings, chained, labelled, segment_in, walk
 from symobs.pages.drawings.scene import RADIUS, Rectangle, Scene, Sign, Stroke, TextLabel, whole_of
 from symobs.pages.page.plot_captions import drawn, name_of, part, radius_of, symbol, time_axis
 
@@ -19,7 +18,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Sequence
     from fractions import Fraction
 
-    from symobs.formula.figures.plot import Drawn, End, Interval, PlottedResponse, Run
+    from symobs.formula.figures import Drawn, End, Interval, PlottedResponse, Run
     from symobs.formula.phrases.languages import Language
     from symobs.formula.tree import Formula
     from symobs.pages.drawings.scene import Content, Measure, Point

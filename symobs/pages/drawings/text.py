@@ -7,7 +7,7 @@ from itertools import pairwise
 from math import floor, inf
 from typing import TYPE_CHECKING, assert_never
 
-from symobs.formula.figures.plot import LinePicture, PoleMap, RegionPicture, TimeResponse
+from symobs.formula.figures import LinePicture, PoleMap, RegionPicture, TimeResponse
 from symobs.formula.tree import Conjunction, Formula, Literal
 from symobs.pages.drawings.curve_labels import contains
 from symobs.pages.drawings.diagram_layout import Metrics, diagram_scene
@@ -20,8 +20,7 @@ from symobs.pages.printers.text_printer import text_width
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
 
-    from symobs.formula.figures.block_diagram import Label
-    from symobs.formula.figures.plot import Interval, Picture, Place
+    from symobs.formula.figures import Interval, Label, Picture, Place
     from symobs.pages.drawings.scene import Box, Content, Point, Scene, Sign, Stroke, TextLabel
     from symobs.pages.printers.text_printer import TextPrinter
 

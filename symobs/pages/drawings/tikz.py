@@ -6,19 +6,17 @@ from itertools import cycle
 from typing import TYPE_CHECKING
 
 from symobs.formula.tree import Conjunction, Roots
-from symobs.pages.drawings.captions import ABOVE, NARROWEST, below
 from symobs.pages.drawings.diagram_layout import Metrics, diagram_scene
 from symobs.pages.drawings.plot_layout import plot_scene
-from symobs.pages.drawings.scene import FONT_SIZE, RADIUS, STYLES, arrow_head, coordinate
+from symobs.pages.drawings.scene import ABOVE, FONT_SIZE, NARROWEST, RADIUS, STYLES, arrow_head, below, coordinate
 from symobs.pages.page.blocks import Drawing
 from symobs.pages.page.plot_captions import caption
-from symobs.pages.printers.latex_escape import centred, escape
+from symobs.pages.printers.latex_printer import centred, escape
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
-    from symobs.formula.figures.block_diagram import Label
-    from symobs.formula.figures.plot import Drawn
+    from symobs.formula.figures import Drawn, Label
     from symobs.pages.drawings.scene import Box, Content, Measure, Point, Scene, Sign, Stroke, TextLabel
     from symobs.pages.page.blocks import Inline
     from symobs.pages.printers.latex_printer import LatexPrinter

@@ -9,8 +9,7 @@ from symobs.pages.formats.latex import LatexWriter, has_drawings, head_of
 from symobs.pages.formats.templates import fill
 from symobs.pages.page.blocks import AnswerSpace, Columns, Display, Drawing, Heading, PictureBlock, TableBlock, opened
 from symobs.pages.page.narrator import narrate, printer_for
-from symobs.pages.printers.latex_escape import escape
-from symobs.pages.printers.latex_printer import LatexPrinter
+from symobs.pages.printers.latex_printer import LatexPrinter, escape
 from symobs.tasks.result import output_format
 
 if TYPE_CHECKING:

@@ -6,6 +6,8 @@ where it offers buttons that copy LaTeX their one script, known by its hash.
 
 from __future__ import annotations
 
+import base64
+import hashlib
 import re
 from base64 import b64encode
 from copy import copy
@@ -16,8 +18,8 @@ from pathlib import Path
 from string import Template
 from typing import TYPE_CHECKING, ClassVar
 
+from symobs.formula.phrases.languages import language_named
 from symobs.formula.tree import Roots
-from symobs.pages.formats.html_web import folded, levels, live_link, script_of, style_of, switch
 from symobs.pages.page.blocks import (
     AnswerSpace,
     CaseBlock,
@@ -37,29 +39,96 @@ from symobs.pages.page.blocks import (
 from symobs.pages.page.detail_level import DETAILS
 from symobs.pages.page.narrator import narrate, printer_for
 from symobs.pages.printers.latex_printer import LatexPrinter
-from symobs.pages.printers.mathml.mathml_elements import MINUS, PLUS, THIN
-from symobs.pages.printers.mathml.mathml_printer import MathmlPrinter
+from symobs.pages.printers.latex_to_mathml import MINUS, PLUS, THIN
+from symobs.pages.printers.mathml import MathmlPrinter
 from symobs.pages.printers.root_lists import RootGlyphs, listed
 from symobs.pages.printers.text_printer import TextPrinter
-from symobs.pages.tables.html_and_markdown import html_table
+from symobs.pages.tables import html_table
 from symobs.tasks.result import output_format
-from symobs.tasks.result.web_page import PLAIN
+from symobs.tasks.result.output_methods import PLAIN
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Iterator, Mapping, Sequence
 
     from symobs.pages.page.blocks import Block, Inline, Inlines
     from symobs.pages.page.sheet import Sheet
     from symobs.tasks.result import Document
-    from symobs.tasks.result.web_page import WebPage
+    from symobs.tasks.result.output_methods import WebPage
+
+
+# Interactive parts of an HTML page: levels of detail, buttons that copy LaTeX, a link to a live page.
+#
+# Levels are radio buttons and a rule of style. The buttons are made by the one script, which the policy of the page
+# names by its hash: where scripts do not run, there is no button and nothing is missing.
+
+
+_FOLDER = Path(__file__).parent
+
+
+def style_of(web: WebPage) -> str:
+    """Return the style sheet of the interactive parts."""
+    return (_FOLDER / "html_web.css").read_text(encoding="utf-8") if web.details or web.copy or web.live else ""
+
+
+def script_of(web: WebPage, language: str) -> tuple[str, str]:
+    """Return the script with its words, as elements, and the policy that allows it and no other."""
+    if not web.copy:
+        return "", ""
+    text = (_FOLDER / "html_copy.js").read_text(encoding="utf-8")
+    mark = base64.b64encode(hashlib.sha256(text.encode()).digest()).decode()
+    phrases = language_named(language).phrases
+    words = " ".join(f'data-{word}="{escape(phrases[f"web_{word}"])}"' for word in ("copy", "copied", "refused"))
+    return f'<div hidden="" id="words" {words}></div>\n<script>{text}</script>\n', f"; script-src 'sha256-{mark}'"
+
+
+def switch(web: WebPage, chosen: str, language: str) -> str:
+    """Return the choice of the level of detail, if there is one."""
+    if not web.details:
+        return ""
+    phrases, checked = language_named(language).phrases, ' checked="checked"'
+    buttons = [
+        f'<label><input type="radio" name="detail" value="{name}"{checked * (name == chosen)}/> '
+        f"{phrases[f'web_{name}']}</label>"
+        for name in DETAILS
+    ]
+    lines = ['<fieldset class="details">', f"<legend>{phrases['web_detail']}</legend>", *buttons, "</fieldset>"]
+    return "\n".join(lines)
+
+
+def levels(bodies: Mapping[str, str]) -> str:
+    """Return the bodies of all levels, of which the choice shows one."""
+    return "\n".join(f'<div data-detail="{name}">\n{body}\n</div>' for name, body in bodies.items())
+
+
+def live_link(web: WebPage, language: str) -> str:
+    """Return the link to the live page, if there is one."""
+    if not web.live:
+        return ""
+    return f'<p class="live"><a href="{escape(web.live)}">{language_named(language).phrases["web_live"]}</a></p>'
+
+
+def folded(solution: str, language: str) -> str:
+    """Return a solution that is shown when it is opened."""
+    word = language_named(language).phrases["web_solution"]
+    return f'<details class="solution">\n<summary>{word}</summary>\n{solution}\n</details>'
+
 
 #: Stands for the place of a part on a sheet until it is known; no text contains it.
 _SOMEWHERE = "\0"
-_FOLDER = Path(__file__).parent
+
+
 _PICTURES = {"png": "image/png", "jpg": "image/jpeg"}
+
+
 _INSET = 2.0  # em, as in the style
+
+
 _CONTROL = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\ufffe\uffff\ud800-\udfff\u202a-\u202e\u2066-\u2069]")
+
+
 _OPENING_QUOTE = re.compile(r'(?:^|(?<=[\s(\[{]))"')
+
+
 _ROOTS = RootGlyphs(
     square_root=lambda inside: f"<msqrt>{inside}</msqrt>",
     plus_minus="<mo>±</mo>",
@@ -316,7 +385,7 @@ class HtmlWriter:
         return f'<div class="display">{mathematics}{label}</div>'
 
     def _picture(self, block: Drawing | PictureBlock) -> str:
-        from symobs.pages.drawings.captions import below  # noqa: PLC0415 - only pages with pictures
+        from symobs.pages.drawings.scene import below  # noqa: PLC0415 - only pages with pictures
         from symobs.pages.drawings.svg import svg, svg_scene  # noqa: PLC0415
 
         printer = TextPrinter.of(self.printer)

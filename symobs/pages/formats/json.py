@@ -9,12 +9,12 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 from symobs.exact import Complex, Matrix, Root, Scalar
 from symobs.exact.algebraic.enclosure import is_number
-from symobs.exact.floating.doubles import nearest_double
+from symobs.exact.floating.sampled import nearest_double
 from symobs.formula.convention import STANDARD, Convention
 from symobs.pages.page.sheet import decimal_of
 from symobs.tasks.result import Case, Result, output_format
-from symobs.tasks.result.conversions import signs, to_json
 from symobs.tasks.result.in_convention import ResultInConvention
+from symobs.tasks.result.output_methods import signs, to_json
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence

@@ -28,8 +28,7 @@ from symobs.pages.page.blocks import (
     opened,
 )
 from symobs.pages.page.narrator import narrate, printer_for
-from symobs.pages.printers.latex_escape import escape
-from symobs.pages.printers.latex_printer import LatexPrinter
+from symobs.pages.printers.latex_printer import LatexPrinter, escape
 from symobs.pages.printers.root_lists import LATEX, listed
 from symobs.tasks.result import output_format
 
@@ -196,7 +195,7 @@ class LatexWriter:
                 listed = "\n".join(rf"\item {escape(entry)}" for entry in entries)
                 return f"\\begin{{references}}{{{escape(label)}}}\n{listed}\n\\end{{references}}"
             case TableBlock():
-                from symobs.pages.tables.text_and_latex import latex_table  # noqa: PLC0415 - only pages with tables
+                from symobs.pages.tables import latex_table  # noqa: PLC0415 - only pages with tables
 
                 return latex_table(block, self.printer, self.sentence)
             case Drawing() | PictureBlock():
@@ -213,7 +212,7 @@ class LatexWriter:
                 return escape(text)
 
     def _picture(self, block: Drawing | PictureBlock) -> str:
-        from symobs.pages.drawings.captions import below  # noqa: PLC0415 - only pages with pictures
+        from symobs.pages.drawings.scene import below  # noqa: PLC0415 - only pages with pictures
         from symobs.pages.drawings.tikz import figure, tikz_scene  # noqa: PLC0415
 
         if isinstance(block, Drawing):

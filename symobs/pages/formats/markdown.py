@@ -32,17 +32,17 @@ from symobs.pages.page.blocks import (
     opened,
 )
 from symobs.pages.page.narrator import narrate, printer_for
-from symobs.pages.printers.display_layout import Layout
 from symobs.pages.printers.latex_printer import LatexPrinter
+from symobs.pages.printers.line_breaking import Layout
 from symobs.pages.printers.root_lists import LATEX, listed
 from symobs.pages.printers.text_printer import TextPrinter
-from symobs.pages.tables.html_and_markdown import markdown_table
+from symobs.pages.tables import markdown_table
 from symobs.tasks.result import output_format
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
-    from symobs.formula.figures.plot import Picture
+    from symobs.formula.figures import Picture
     from symobs.formula.tree import Relation
     from symobs.pages.page.blocks import Block, Inline, Inlines
     from symobs.pages.page.sheet import Sheet

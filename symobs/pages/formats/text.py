@@ -9,7 +9,7 @@ from itertools import pairwise, zip_longest
 from typing import TYPE_CHECKING, ClassVar
 
 from symobs.formula.tree import Roots
-from symobs.pages.formats.code.numbers import exact_answers
+from symobs.pages.formats.code.program import exact_answers
 from symobs.pages.page.blocks import (
     AnswerSpace,
     CaseBlock,
@@ -28,14 +28,13 @@ from symobs.pages.page.blocks import (
 )
 from symobs.pages.page.narrator import narrate, printer_for
 from symobs.pages.printers.root_lists import TEXT, listed
-from symobs.pages.printers.text_columns import RULE, beside
-from symobs.pages.printers.text_printer import TextPrinter, text_width
+from symobs.pages.printers.text_printer import RULE, TextPrinter, beside, text_width
 from symobs.tasks.result import output_format
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
-    from symobs.formula.figures.plot import Picture
+    from symobs.formula.figures import Picture
     from symobs.pages.page.blocks import Block, Inline, Inlines
     from symobs.pages.page.sheet import Sheet
     from symobs.tasks.result import Document
@@ -143,7 +142,7 @@ class TextWriter:
             case AnswerSpace(is_ruled=is_ruled, lines=lines):
                 return "\n\n".join(["_" * width if is_ruled else ""] * lines)
             case TableBlock():
-                from symobs.pages.tables.text_and_latex import text_table  # noqa: PLC0415 - only pages with tables
+                from symobs.pages.tables import text_table  # noqa: PLC0415 - only pages with tables
 
                 table, legend = text_table(block, self.printer, self.remark)
                 below = f"\n\n{wrapped(self.sentence(block.where), width)}\n\n{indented(legend)}" if legend else ""

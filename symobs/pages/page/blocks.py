@@ -6,19 +6,25 @@ The narrator writes them, the formats read them, and neither knows the other.  T
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING, TypeAlias
+from itertools import zip_longest
+from typing import TYPE_CHECKING, TypeAlias, TypeGuard
 
+from symobs.formula.phrases import BESIDE, CONTINUES
 from symobs.formula.tree import Formula, Relation, Roots
 from symobs.ground.dataclass import dataclass
+from symobs.proof.derivation import Section
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
 
-    from symobs.formula.figures.block_diagram import Label
-    from symobs.formula.figures.plot import Picture
+    from symobs.formula.figures import Label, Picture
+    from symobs.proof.derivation import Sentence, Step
     from symobs.stability.criteria.routh_table import RouthTable
 
+
 Inline: TypeAlias = str | Formula | Relation | Roots
+
+
 Inlines: TypeAlias = tuple[Inline, ...]
 
 
@@ -200,3 +206,37 @@ def with_few_boxes(blocks: Sequence[Block]) -> list[Block]:
         else:
             kept.append(replace(block, boxed=False))
     return kept
+
+
+# Sections in columns: the rows of their steps.
+
+
+def in_rows(runs: Sequence[Sequence[Step]]) -> list[tuple[tuple[Step, ...], ...]]:
+    """Return runs of steps row by row; a step with a complete sentence begins a row."""
+    cut: list[list[tuple[Step, ...]]] = []
+    for run in runs:
+        rows: list[tuple[Step, ...]] = []
+        for step in run:
+            if rows and _begins(step) and any(map(_begins, rows[-1])):
+                rows.append((step,))
+            else:
+                rows[-1:] = [(*(rows[-1] if rows else ()), step)]
+        cut.append(rows)
+    return list(zip_longest(*cut, fillvalue=()))
+
+
+def is_beside(step: Step) -> TypeGuard[Section]:
+    """Return whether a step is a section with its sections in columns."""
+    return isinstance(step, Section) and step.title.key in BESIDE
+
+
+def row_by_row(section: Section) -> list[Step]:
+    """Return the steps of such a section in reading order: row by row, then those below the columns."""
+    columns = [step for step in section.steps if isinstance(step, Section)]
+    cells = [step for row in in_rows([column.steps for column in columns]) for cell in row for step in cell]
+    return [*cells, *(step for step in section.steps if step not in columns)]
+
+
+def _begins(step: Step) -> bool:
+    sentence: Sentence | None = getattr(step, "sentence", None)
+    return sentence is not None and sentence.key not in CONTINUES

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from symobs.formula.phrases.spoken import SPOKEN
+from symobs.formula.phrases.languages import SPOKEN
 from symobs.formula.tree import (
     Conjunction,
     Evaluated,

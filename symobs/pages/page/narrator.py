@@ -10,10 +10,10 @@ from dataclasses import replace
 from itertools import count, zip_longest
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from symobs.formula.convention import OF_REDUCED_ORDER
+from symobs.formula.convention import OF_REDUCED_ORDER, STANDARD
 from symobs.formula.phrases import BESIDE, CONTINUES, OPENS, RESTS_ON
 from symobs.formula.phrases.languages import ENGLISH, language_named
-from symobs.formula.tree import Conjunction
+from symobs.formula.tree import Conjunction, Literal
 from symobs.pages.page.blocks import (
     Block,
     CaseBlock,
@@ -29,14 +29,13 @@ from symobs.pages.page.blocks import (
     References,
     TableBlock,
     Verified,
+    in_rows,
     with_few_boxes,
 )
-from symobs.pages.page.citations import cited_literature, referred_to
 from symobs.pages.page.convention_notes import letters_used, title_of
 from symobs.pages.page.detail_level import FINAL, at_detail
-from symobs.pages.page.handout import handed_out
-from symobs.pages.page.prose import filled, joined, with_reference
-from symobs.pages.page.side_by_side import in_rows
+from symobs.pages.page.prose import cited_literature, filled, joined, referred_to, with_reference
+from symobs.pages.page.sheet import handed_out
 from symobs.proof.derivation import (
     CaseStep,
     Conclude,
@@ -52,7 +51,7 @@ from symobs.proof.derivation import (
     Sentence,
     Tabulate,
 )
-from symobs.tasks.result.digits_of_page import shown_digits
+from symobs.tasks.result.output_methods import shown_digits
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -63,9 +62,12 @@ if TYPE_CHECKING:
     from symobs.formula.tree import Formula, Relation
     from symobs.pages.printers.printer import Printer
     from symobs.proof.derivation import Step
+    from symobs.stability.criteria.routh_table import RouthTable
     from symobs.tasks.result import Document
 
+
 P = TypeVar("P", bound="Printer[Any]")
+
 
 #: The sections of a question.
 _UNNUMBERED = {"task", "tasks"}
@@ -252,7 +254,6 @@ class _PageBlocks:
                 self.blocks.append(Drawing(name, labels, self.figure_title(sentence)))
             case Tabulate(table=table, variable=variable, sentence=sentence, findings=findings):
                 self.emit_sentence(sentence)
-                from symobs.pages.page.routh_remarks import remarks  # noqa: PLC0415 - only pages with tables
 
                 self.blocks.append(
                     TableBlock(
@@ -396,3 +397,22 @@ def _punctuated(blocks: Sequence[Block]) -> tuple[Block, ...]:
         else:
             punctuated.append(block)
     return tuple(punctuated)
+
+
+# Remarks beside the rows of the Routh array.
+
+
+def remarks(table: RouthTable, variable: str, language: Language = ENGLISH) -> tuple[tuple[Inlines, ...], ...]:
+    """Return the remarks beside each row of an array: none, or the replacement of zeros, in full and shorter."""
+    found: list[tuple[Inlines, ...]] = []
+    for row in table.rows:
+        if row.origin == "epsilon":
+            small = Literal(row.entries[0])
+            found.append((filled(Sentence("routh_row_epsilon", (("epsilon", small),)), STANDARD, language),))
+        elif row.origin == "auxiliary":
+            polynomial = Literal(table.auxiliary(row, variable))
+            full = filled(Sentence("routh_row_auxiliary", (("auxiliary", polynomial),)), STANDARD, language)
+            found.append((full, filled(Sentence("routh_row_derivative"), STANDARD, language)))
+        else:
+            found.append(())
+    return tuple(found)

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from symobs.exact import Matrix, Scalar
 from symobs.formula.convention import STANDARD
-from symobs.formula.figures.plot import LinePicture, PoleMap, RegionPicture, SweepCurves, SweepMap, TimeResponse
+from symobs.formula.figures import LinePicture, PoleMap, RegionPicture, SweepCurves, SweepMap, TimeResponse
 from symobs.formula.phrases.languages import ENGLISH
 from symobs.formula.tree import Apply, At, Conjunction, Letter, Literal, Relation
 from symobs.pages.page.prose import filled, joined
@@ -16,7 +16,7 @@ from symobs.proof.derivation import Sentence
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
-    from symobs.formula.figures.plot import Curve, Drawn, PlottedResponse
+    from symobs.formula.figures import Curve, Drawn, PlottedResponse
     from symobs.formula.phrases.languages import Language
     from symobs.formula.tree import Fact, Formula
     from symobs.pages.page.blocks import Inline, Inlines

@@ -14,8 +14,9 @@ from typing import TYPE_CHECKING
 from symobs.exact import Scalar
 from symobs.formula.convention import STANDARD, Convention
 from symobs.formula.notation import LETTERS
-from symobs.formula.phrases.languages import COUNTED, ENGLISH
-from symobs.formula.phrases.spoken import SPOKEN
+from symobs.formula.phrases import PHRASES, RESTS_ON, THEOREMS
+from symobs.formula.phrases.languages import COUNTED, ENGLISH, SPOKEN
+from symobs.formula.phrases.literature import bibliography, cited
 from symobs.formula.tree import (
     Conjunction,
     Decimals,
@@ -34,25 +35,31 @@ from symobs.formula.tree import (
     Transpose,
     children,
 )
+from symobs.pages.page.blocks import is_beside, row_by_row
+from symobs.pages.page.detail_level import at_detail
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
 
-    from symobs.formula.phrases.languages import Language
-    from symobs.formula.phrases.spoken import Counted, StateChoice
+    from symobs.formula.phrases.languages import Counted, Language, StateChoice
     from symobs.formula.tree import Fact, Formula
     from symobs.pages.page.blocks import Inline, Inlines
-    from symobs.proof.derivation import Sentence
+    from symobs.proof.derivation import Sentence, Step
+    from symobs.tasks.result import Document
 
 
 #: Where in a phrase the number of what it rests on stands, if not at its end.
 MARK = "§"
 
+
 #: How a slot is written whose equation is referred to by its number.
 NUMBER = "number"
 
+
 #: A pair of matrices in a phrase, `($C$, $A$)`, and the first members of those that are observable.
 _PAIR = re.compile(r"\((\$[^$]*\$), (\$[^$]*\$)\)")
+
+
 _OUTPUTS = {"$C$", "$A_12$", "$C_dual$"}
 
 
@@ -177,3 +184,43 @@ def _product(text: str) -> Formula:
 
 def _factor(name: str) -> Formula:
     return Transpose(Letter(name[:-1])) if name.endswith("ᵀ") else Letter(name)
+
+
+# What the sentences of a page refer to: the literature, numbered in the order of the page, and equations before them.
+
+
+def cited_literature(steps: Iterable[Step], language: Language = ENGLISH) -> tuple[tuple[str, ...], dict[str, str]]:
+    """Return the works cited, in the order of the page, and how each theorem is cited by their numbers."""
+    works: dict[str, int] = {}
+    citations: dict[str, str] = {}
+    for theorem in dict.fromkeys(RESTS_ON[said.key] for said in _sentences(steps) if said.key in RESTS_ON):
+        places = [
+            f"{works.setdefault(key, len(works) + 1)}{', ' * bool(place)}{language.place(place)}"
+            for key, place in cited(THEOREMS[theorem])
+        ]
+        citations[theorem] = f"[{'; '.join(places)}]"
+    return tuple(works), citations
+
+
+def referred_to(steps: Iterable[Step]) -> Iterator[Relation]:
+    """Yield the equations to which sentences refer by a number."""
+    for said in _sentences(steps):
+        slots = dict(said.slots)
+        for _, name, form, _ in string.Formatter().parse(PHRASES[said.key]):
+            if form == NUMBER and isinstance(slot := slots[str(name)], Relation):
+                yield slot
+
+
+def bibliography_of(document: Document) -> str:
+    """Return the works that a page cites, as a BibTeX file."""
+    steps = (step for derivation in document.derivations for step in at_detail(derivation.steps, document.detail))
+    return bibliography(cited_literature(steps)[0])
+
+
+def _sentences(steps: Iterable[Step]) -> Iterator[Sentence]:
+    for step in steps:
+        found = getattr(step, "sentence", None)
+        if found is not None:
+            yield found
+        yield from getattr(step, "findings", ())
+        yield from _sentences(row_by_row(step) if is_beside(step) else getattr(step, "steps", ()))

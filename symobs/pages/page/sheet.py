@@ -13,16 +13,27 @@ from typing import TYPE_CHECKING, Any
 
 from symobs.formula.phrases.languages import Language, language_named
 from symobs.ground.dataclass import dataclass
-from symobs.tasks.result.web_page import PLAIN, WebPage
+from symobs.pages.page.blocks import AnswerSpace, Paragraph
+from symobs.pages.page.prose import joined
+from symobs.tasks.result.output_methods import PLAIN, WebPage
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
     from pathlib import Path
 
+    from symobs.pages.page.blocks import Block
+
+    Part = tuple[str, AnswerSpace | None]
+
+
 #: A sheet of more problems than this begins with a table of contents.
 WITHOUT_CONTENTS = 6
+
+
 #: So many columns of a table of points stand beside each other.
 _COLUMNS = 10
+
+
 _PREFIX = "sheet_"
 
 
@@ -230,3 +241,22 @@ class Sheet:
             Item("answers", entry, f"{entry.number}.", entry.title, entry.answer, "" if entry.answer else entry.failure)
             for entry in self.entries
         )
+
+
+# Points and room for answers, added to the parts of a question on a sheet.
+
+
+def handed_out(blocks: Sequence[Block], parts: Sequence[Part]) -> tuple[Block, ...]:
+    """Return a question with points and room for each of its parts, its last paragraphs."""
+    paragraphs = [place for place, block in enumerate(blocks) if isinstance(block, Paragraph)]
+    added = dict(zip(paragraphs[-len(parts) :], parts, strict=True)) if parts else {}
+    written: list[Block] = []
+    for place, block in enumerate(blocks):
+        points, space = added.get(place, ("", None))
+        if points and isinstance(block, Paragraph):
+            written.append(Paragraph(joined((*block.inlines, f" ({points})".replace(" ", "\N{NO-BREAK SPACE}")))))
+        else:
+            written.append(block)
+        if space is not None:
+            written.append(space)
+    return tuple(written)

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 from symobs.exact import EIGENVALUE, Matrix, Scalar, decimal_digits
 from symobs.exact.algebraic.real_algebraic import RealRoot
 from symobs.exact.core.generators import function_named
-from symobs.exact.time_functions.root_sum import RootSum
+from symobs.exact.time_functions.matrix_exponential import RootSum
 from symobs.formula.notation import (
     FUNCTIONS,
     LETTERS,

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import unicodedata
 from copy import copy
+from itertools import zip_longest
 from typing import TYPE_CHECKING, Any, Self
 
 from symobs.formula.notation import FUNCTIONS, OPERATORS, symbol_text
 from symobs.formula.tree import Formula, Relation
 from symobs.ground.dataclass import dataclass
-from symobs.pages.printers.display_layout import Layout
 from symobs.pages.printers.glyphs import NO_RULES, GlyphBox, Level
+from symobs.pages.printers.line_breaking import Layout
 from symobs.pages.printers.printer import Printer
 from symobs.pages.printers.rational_formula import digits_of
 
@@ -20,10 +21,19 @@ if TYPE_CHECKING:
     from symobs.exact import Scalar
     from symobs.pages.printers.glyphs import Rules
 
+
 _SUPERSCRIPT_DIGITS = "⁰¹²³⁴⁵⁶⁷⁸⁹⁻"
+
+
 _SUPERSCRIPTS = str.maketrans("0123456789-", _SUPERSCRIPT_DIGITS)
+
+
 _SUBSCRIPTS = str.maketrans("0123456789", "₀₁₂₃₄₅₆₇₈₉")
+
+
 _INDEX = {"k": "ₖ", "k+1": "ₖ₊₁"}
+
+
 _BRACKETS = {"(": ("⎛⎜⎝", "⎞⎟⎠"), "[": ("⎡⎢⎣", "⎤⎥⎦")}
 
 
@@ -341,3 +351,16 @@ def _tight(entry: str) -> str:
 def _pad_left(box: TextBox, width: float) -> TextBox:
     space = " " * int(width - box.width)
     return TextBox(width, box.level, tuple(space + line for line in box.lines), box.baseline)
+
+
+# Pieces of text in columns beside each other.
+
+
+#: What stands between two columns of characters.
+RULE = " │ "
+
+
+def beside(cells: Sequence[str], width: int) -> str:
+    """Return pieces of text beside each other, each `width` columns wide and padded to the height of the highest."""
+    lines = zip_longest(*(cell.split("\n") for cell in cells), fillvalue="")
+    return "\n".join(RULE.join(f"{part}{' ' * (width - text_width(part))}" for part in line).rstrip() for line in lines)

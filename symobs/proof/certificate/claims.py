@@ -44,8 +44,7 @@ from symobs.formula.tree.calculus import TIME
 from symobs.formula.tree.plain_text import plain_relation
 from symobs.ground.dataclass import dataclass
 from symobs.ground.errors import CertificateRejected, NotShown, Undecided, WrongKind
-from symobs.proof.certificate.error_bounds import Bounds, SizeBound
-from symobs.proof.certificate.pointwise import Pointwise, never_together_zero
+from symobs.proof.certificate.pointwise import Bounds, Pointwise, SizeBound, never_together_zero
 from symobs.system.conditions import sign_where, vanishing_factors
 
 if TYPE_CHECKING:

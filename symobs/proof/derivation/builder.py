@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, TypeAlias
 from symobs.exact import Matrix, Scalar, rounded
 from symobs.exact.core.generators import function_named, identities, roots_in
 from symobs.formula.notation import LETTERS
-from symobs.formula.phrases.spoken import SPOKEN, Counted, StateChoice
+from symobs.formula.phrases.languages import SPOKEN, Counted, StateChoice
 from symobs.formula.tree import (
     Conjunction,
     Decimals,
@@ -52,7 +52,7 @@ from symobs.proof.derivation.steps import (
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
 
-    from symobs.formula.figures.plot import Picture
+    from symobs.formula.figures import Picture
     from symobs.stability.criteria.routh_table import RouthTable
     from symobs.system import StateSpace
 
@@ -337,7 +337,7 @@ class Builder:
 
     def diagram(self, name: str, say: str = "", **labels: Member | Conjunction) -> None:
         """Draw a figure of `flow` with these gains; its signals have their own letters unless others are given."""
-        from symobs.formula.figures.block_diagram import with_signals  # noqa: PLC0415 - only pages with a diagram pay for it
+        from symobs.formula.figures import with_signals  # noqa: PLC0415 - only pages with a diagram pay for it
 
         given = {key: label if isinstance(label, Conjunction) else formula_of(label) for key, label in labels.items()}
         because = sentence(say, {}) if say else None
@@ -366,7 +366,7 @@ class Builder:
 
         One that is not faithful is left out with a `SymobsWarning`.
         """
-        from symobs.proof.derivation.figures.plot_check import is_faithful  # noqa: PLC0415 - only pages of regions pay for it
+        from symobs.proof.derivation.plot_check import is_faithful  # noqa: PLC0415 - only pages of regions pay for it
 
         discrete = self.plant.is_discrete
         if not is_faithful(picture, formula_of(subject), self.environment, discrete=discrete):

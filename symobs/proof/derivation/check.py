@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, TypeAlias, assert_never
 
 from symobs.exact import Ideal, Matrix, Scalar, product_of
 from symobs.formula.phrases import ASSERTS, NAMING
-from symobs.formula.phrases.spoken import SPOKEN
+from symobs.formula.phrases.languages import SPOKEN
 from symobs.formula.tree import (
     Apply,
     Conjunction,
@@ -38,10 +38,16 @@ from symobs.formula.tree.plain_text import plain, plain_relation
 from symobs.ground.dataclass import dataclass
 from symobs.ground.errors import DerivationRejected
 from symobs.proof.certificate.claims import UNREADABLE, as_scalar, verify
-from symobs.proof.derivation.exact_where import is_exactly
-from symobs.proof.derivation.facts.properties import PREDICATES, are_roots, polynomial_of, subjects
-from symobs.proof.derivation.facts.rejection import BUG, reject
-from symobs.proof.derivation.facts.restriction import on_stratum
+from symobs.proof.derivation.facts import (
+    BUG,
+    PREDICATES,
+    are_roots,
+    is_exactly,
+    on_stratum,
+    polynomial_of,
+    reject,
+    subjects,
+)
 from symobs.proof.derivation.steps import (
     CaseStep,
     Conclude,
@@ -73,7 +79,7 @@ from symobs.system.conditions import vanishing_factors
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from symobs.formula.figures.plot import Picture
+    from symobs.formula.figures import Picture
 
 Value: TypeAlias = Scalar | Matrix | Signal
 
@@ -131,7 +137,7 @@ def _after(step: Step, environment: Environment, discrete: bool) -> Environment:
             for fact in facts:
                 _fact(fact, environment, discrete)
         case Diagram(name, labels):
-            from symobs.proof.derivation.figures.block_diagram_check import equations_of  # noqa: PLC0415 - only pages with a diagram pay for it
+            from symobs.proof.derivation.figures_check import equations_of  # noqa: PLC0415 - only pages with a diagram pay for it
 
             for relation in equations_of(name, dict(labels), environment):
                 _fact(relation, environment, discrete)
@@ -190,7 +196,7 @@ def _tabulated(step: Tabulate, environment: Environment, discrete: bool) -> Envi
 
 def _drawn(picture: Picture, subject: Formula, environment: Environment, discrete: bool) -> None:  # noqa: FBT001
     """Reject a plot that is false of its polynomial."""
-    from symobs.proof.derivation.figures.plot_check import faults, relations_of  # noqa: PLC0415 - only pages of regions pay for it
+    from symobs.proof.derivation.plot_check import faults, relations_of  # noqa: PLC0415 - only pages of regions pay for it
 
     for formula in (subject, *(member for relation in relations_of(picture) for member in relation.members)):
         _established(formula, environment)

@@ -14,7 +14,7 @@ from symobs.formula.convention import OF_REDUCED_ORDER
 from symobs.formula.notation import LETTERS, printed_alike, sans_serif
 from symobs.formula.tree import Exact, Letter, Literal, Relation, SignReversal, SymbolList, Transpose, evaluate
 from symobs.ground.errors import UsageError
-from symobs.proof.derivation.facts.rejection import reject
+from symobs.proof.derivation.facts import reject
 from symobs.proof.derivation.sign_translation import in_signs, with_own_unknowns
 from symobs.proof.derivation.steps import Note, Section, Sentence, literals, relations
 

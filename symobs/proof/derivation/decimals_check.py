@@ -15,7 +15,7 @@ from typing import Any
 from symobs.exact import Scalar, is_correctly_written
 from symobs.exact.core.generators import identities
 from symobs.exact.numerals.rounded_roots import are_rounded_roots
-from symobs.formula.figures.block_diagram import letter_for, without_sign
+from symobs.formula.figures import letter_for, without_sign
 from symobs.formula.tree import (
     Block,
     Environment,
@@ -43,7 +43,7 @@ from symobs.formula.tree import (
 )
 from symobs.ground.errors import DerivationRejected
 from symobs.proof.certificate.claims import UNREADABLE, verify
-from symobs.proof.derivation.facts.rejection import BUG, reject
+from symobs.proof.derivation.facts import BUG, reject
 from symobs.proof.derivation.steps import CaseStep, Diagram, Given, Inequalities, literals
 
 _ORDER = {

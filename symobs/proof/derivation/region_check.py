@@ -7,17 +7,15 @@ from typing import TYPE_CHECKING
 
 from symobs.exact import Scalar
 from symobs.exact.algebraic.real_algebraic import real_roots
-from symobs.formula.phrases.spoken import Counted
+from symobs.formula.phrases.languages import Counted
 from symobs.formula.tree import Literal, Relation, SymbolList
 from symobs.proof.derivation.steps import Sentence
 from symobs.stability.criteria.critical_polynomials import CriticalPolynomials, StabilityBoundary
 from symobs.stability.criteria.stability_conditions import is_stable_where, stable_where
-from symobs.stability.inequalities.solved_bounds import box
+from symobs.stability.inequalities.simplify import box
 from symobs.stability.regions.description import are_whole, between, parts, relations_of
-from symobs.stability.regions.interval_region import LineRegion
+from symobs.stability.regions.region import LineRegion, RegionInequality, exact_region, short_list
 from symobs.stability.regions.region_check import are_parts, is_region
-from symobs.stability.regions.region_for import exact_region
-from symobs.stability.regions.short_list import RegionInequality, short_list
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
@@ -25,7 +23,7 @@ if TYPE_CHECKING:
     from symobs.exact import RealNumber
     from symobs.formula.tree import Environment
     from symobs.proof.derivation.steps import RegionSummary
-    from symobs.stability.regions.plane_region import PlaneRegion
+    from symobs.stability.regions.region import PlaneRegion
 
 
 def is_survey(step: RegionSummary, value: Scalar, environment: Environment, *, discrete: bool) -> bool:

@@ -6,11 +6,15 @@ from typing import TYPE_CHECKING
 
 from symobs.exact import Ideal, Scalar, remainder
 from symobs.exact import from_coefficients as polynomial_from
-from symobs.formula.phrases.spoken import Counted
+from symobs.formula.phrases.languages import Counted
 from symobs.formula.tree import Literal, Relation
 from symobs.proof.derivation.steps import Sentence
-from symobs.stability.criteria.cauchy_index import imaginary_axis_roots, right_half_plane_roots
-from symobs.stability.criteria.routh_table import is_routh_table, sign_changes
+from symobs.stability.criteria.routh_table import (
+    imaginary_axis_roots,
+    is_routh_table,
+    right_half_plane_roots,
+    sign_changes,
+)
 from symobs.stability.criteria.stability import hurwitz_matrix
 from symobs.system.conditions import sign_of
 

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping
 
     from symobs.formula.convention import Convention
-    from symobs.formula.figures.block_diagram import Label
+    from symobs.formula.figures import Label
     from symobs.formula.tree import Environment, SignReversal
 
 

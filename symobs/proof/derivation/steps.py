@@ -26,9 +26,8 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from symobs.exact import Matrix, Scalar
-    from symobs.formula.figures.block_diagram import Label
-    from symobs.formula.figures.plot import Picture
-    from symobs.formula.phrases.spoken import Counted, StateChoice
+    from symobs.formula.figures import Label, Picture
+    from symobs.formula.phrases.languages import Counted, StateChoice
     from symobs.formula.tree import Fact
     from symobs.stability.criteria.routh_table import RouthTable
 

@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 from symobs.exact import Ideal, Matrix, Scalar, companion, echelon, from_coefficients, independent_rows, rank, unit_rows
 from symobs.exact.core.generators import PI, function
 from symobs.formula.phrases import DEMANDS
-from symobs.formula.phrases.spoken import Counted, StateChoice
+from symobs.formula.phrases.languages import Counted, StateChoice
 from symobs.formula.tree import (
     Apply,
     At,
@@ -49,8 +49,7 @@ from symobs.formula.tree.plain_text import plain
 from symobs.ground.dataclass import dataclass
 from symobs.proof.certificate.claims import UNREADABLE, as_scalar, verify
 from symobs.proof.certificate.pointwise import Pointwise
-from symobs.proof.derivation.facts.properties import PREDICATES
-from symobs.proof.derivation.facts.rejection import reject
+from symobs.proof.derivation.facts import PREDICATES, reject
 from symobs.proof.derivation.steps import everything_in, literals
 
 if TYPE_CHECKING:

@@ -13,8 +13,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 from symobs.exact import Scalar
-from symobs.exact.algebraic.rational_points import value_at
-from symobs.exact.algebraic.root_location import all_to_the_left
+from symobs.exact.algebraic.root_location import all_to_the_left, value_at
 from symobs.ground.dataclass import dataclass
 from symobs.stability.criteria.stability import bilinear, hurwitz_matrix, lienard_chipart
 

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 from symobs.exact import Matrix, Scalar, from_coefficients, resultant
 from symobs.exact.core.generators import function_named
 from symobs.ground.dataclass import dataclass
-from symobs.stability.inequalities.written_form import as_inequality
+from symobs.stability.inequalities.simplify import as_inequality
 from symobs.system.conditions import FACTORED_UP_TO, sign_of, vanishing_factors
 
 if TYPE_CHECKING:

@@ -12,10 +12,8 @@ from typing import TYPE_CHECKING
 from symobs.exact import Scalar
 from symobs.stability.criteria.stability import bilinear, lienard_chipart
 from symobs.stability.inequalities.decision import equivalence_of
-from symobs.stability.inequalities.factors import cleared
 from symobs.stability.inequalities.prover import prove
-from symobs.stability.inequalities.simplify import Simplified, simplify
-from symobs.stability.inequalities.written_form import as_inequality
+from symobs.stability.inequalities.simplify import Simplified, as_inequality, cleared, simplify
 from symobs.system.conditions import FACTORED_UP_TO, sign_of
 
 if TYPE_CHECKING:

@@ -13,7 +13,7 @@ from itertools import pairwise
 from math import isfinite, sqrt
 from typing import TYPE_CHECKING, TypeAlias
 
-from symobs.exact.algebraic.rational_points import value_at
+from symobs.exact.algebraic.root_location import value_at
 from symobs.stability.inequalities.z3_backend import is_free, names_of
 
 if TYPE_CHECKING:

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
     from symobs.exact import RealNumber
     from symobs.exact.cad.decomposition import Branch, Cylinder
-    from symobs.stability.regions.plane_region import Cell, PlaneRegion
+    from symobs.stability.regions.region import Cell, PlaneRegion
 
 
 @dataclass(frozen=True)

@@ -14,15 +14,13 @@ from typing import TYPE_CHECKING
 
 from symobs.exact import Matrix, Scalar
 from symobs.exact.algebraic.enclosure import sign_of_number
-from symobs.exact.algebraic.rational_points import value_at
 from symobs.exact.algebraic.real_algebraic import integer_factor
-from symobs.exact.algebraic.root_location import count_roots_by_half_plane
+from symobs.exact.algebraic.root_location import count_roots_by_half_plane, value_at
 from symobs.exact.cad.decomposition_check import holds, is_line
 from symobs.exact.core.generators import normal_form, substitute
 from symobs.stability.criteria.critical_polynomials import irreducible
 from symobs.stability.regions.description import adjacencies_of, is_regular
-from symobs.stability.regions.plane_region import PlaneRegion
-from symobs.stability.regions.short_list import is_exact
+from symobs.stability.regions.region import PlaneRegion, is_exact
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -30,8 +28,7 @@ if TYPE_CHECKING:
     from symobs.exact.cad.decomposition import Cylinder
     from symobs.stability.criteria.critical_polynomials import CriticalPolynomials
     from symobs.stability.regions.description import CylindricalPart, Edge
-    from symobs.stability.regions.interval_region import LineRegion
-    from symobs.stability.regions.short_list import RegionInequality
+    from symobs.stability.regions.region import LineRegion, RegionInequality
 
 _POINTS = 3
 

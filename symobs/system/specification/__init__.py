@@ -1,7 +1,5 @@
 """What the keywords of a task may contain, and the desired polynomial of a design."""
 
-from symobs.system.specification.entries import read_entries
-from symobs.system.specification.functions_of_parameters import over_common_data
 from symobs.system.specification.keywords import (
     CHOICES,
     KINDS,
@@ -21,16 +19,19 @@ from symobs.system.specification.keywords import (
     SignalText,
     TimeFunctions,
     desired_polynomial,
+    over_common_data,
+    parse_signal,
+    read_entries,
     read_gain,
     read_interval,
     read_names,
     read_pattern,
     read_poles,
     read_quantity,
+    read_signal,
     reject_both,
 )
 from symobs.system.specification.pole_patterns import PolePattern, is_pattern
-from symobs.system.specification.signals import parse_signal, read_signal
 
 __all__ = [
     "CHOICES",

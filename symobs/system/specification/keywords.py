@@ -8,18 +8,20 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Sequence
+from copy import copy
+from dataclasses import replace
 from functools import cached_property
-from typing import Annotated, Any, TypeAlias
+from typing import TYPE_CHECKING, Annotated, Any, TypeAlias
 
-from symobs.exact import Complex, Field, Matrix, Scalar, product_of
-from symobs.exact.algebraic.conjugates import conjugates, is_in_kernel, product_of_linear, tidied
-from symobs.formula.expression import comma_between_digits, declared_name, parse_poles, parse_polynomial
+from symobs.exact import Complex, Field, Matrix, Scalar, modulo, product_of
+from symobs.exact.algebraic.rounded_decimals import conjugates, is_in_kernel, product_of_linear, tidied
+from symobs.exact.core.generators import NotWritten, functions_in, identities, roots_in, square_root
+from symobs.formula.expression import comma_between_digits, declared_name, parse_matrix, parse_poles, parse_polynomial
 from symobs.ground.dataclass import dataclass
 from symobs.ground.errors import InputError, ShapeMismatch
-from symobs.system import StateSpace, Symbols, is_sympy, read_complex, read_matrix, read_scalar
+from symobs.system import Matrices, StateSpace, Symbols, is_sympy, read_complex, read_matrix, read_scalar
 from symobs.system.conditions import sign_of
-from symobs.system.matrices import as_rows
-from symobs.system.reading import require_known
+from symobs.system.reading import as_rows, require_known
 from symobs.system.specification.pole_patterns import (
     FILTERS,
     KEYS,
@@ -31,21 +33,52 @@ from symobs.system.specification.pole_patterns import (
     refuse_names_of_patterns,
 )
 
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+
 #: The kinds of keyword a task may have.  Their names in signatures are the schema, as text or as annotations.
 Poles: TypeAlias = Annotated[Any, "Poles"]
+
+
 PolynomialText: TypeAlias = Annotated[Any, "PolynomialText"]
+
+
 GainText: TypeAlias = Annotated[Any, "GainText"]
+
+
 MatrixText: TypeAlias = Annotated[Any, "MatrixText"]
+
+
 IntervalText: TypeAlias = Annotated[Any, "IntervalText"]
+
+
 SignalText: TypeAlias = Annotated[Any, "SignalText"]
+
+
 Name: TypeAlias = Annotated[str, "Name"]
+
+
 Horizon: TypeAlias = Annotated[Any, "Horizon"]
+
+
 TimeFunctions: TypeAlias = Annotated[Any, "TimeFunctions"]
+
+
 Intensity: TypeAlias = Annotated[Any, "Intensity"]
+
+
 Sign: TypeAlias = Annotated[Any, "Sign"]
+
+
 Entries: TypeAlias = Annotated[Any, "Entries"]
+
+
 Quantity: TypeAlias = Annotated[Any, "Quantity"]
+
+
 Names: TypeAlias = Annotated[Any, "Names"]
+
 
 KINDS: dict[str, dict[str, Any]] = {
     "Poles": {
@@ -95,6 +128,7 @@ KINDS: dict[str, dict[str, Any]] = {
         "oneOf": [{"type": "string"}, {"type": "array"}, {"type": "number"}],
     },
 }
+
 
 #: The words a keyword of the kind Name may be; those of `method` are the task's methods.
 CHOICES: dict[str, tuple[str, ...]] = {
@@ -406,3 +440,155 @@ def reject_both(name: str, gain: object, poles: object, polynomial: object, othe
     if gain is not None and (poles is not None or polynomial is not None):
         message = f"both {name} and {other if poles is not None else 'polynomial'} are given"
         raise InputError(message, where=f"specification.{name}", repair="keep one of them")
+
+
+# Entries of a gain that are to vanish: pairs (row, column), or a pattern of 0 and *.
+
+
+def read_entries(value: object, name: str, shape: tuple[int, int]) -> tuple[tuple[int, int], ...]:
+    """Return entries, counted from 0, from pairs (row, column) counted from 1 or from a pattern of 0 and *."""
+    where = f"specification.{name}"
+    rows = value if isinstance(value, (list, tuple)) else [value]
+    text = "; ".join(" ".join(map(str, row)) if isinstance(row, (list, tuple)) else str(row) for row in rows)
+    if "*" in text or set(re.findall(r"[0-9]+", text)) == {"0"}:
+        return _read_pattern(text, where, shape)
+    numbers = [int(digits) for digits in re.findall(r"[0-9]{1,4}", text)]
+    if not numbers or len(numbers) % 2 or re.search(r"[^0-9,;\s()\[\]]", text):
+        message = f"{text[:40]!r} is no list of entries"
+        raise InputError(message, where=where, repair='write (row, column) counted from 1: "(1, 2), (3, 1)"')
+    found = tuple(dict.fromkeys((i - 1, j - 1) for i, j in zip(numbers[::2], numbers[1::2], strict=True)))
+    for i, j in found:
+        if not (0 <= i < shape[0] and 0 <= j < shape[1]):
+            message = f"there is no entry ({i + 1}, {j + 1}) in a {shape[0]}×{shape[1]} gain"
+            raise InputError(
+                message, where=where, repair='count rows and columns from 1, or write a pattern, "[* 0; * *]"'
+            )
+    return found
+
+
+def _read_pattern(text: str, where: str, shape: tuple[int, int]) -> tuple[tuple[int, int], ...]:
+    """Return the places of the zeros of a pattern."""
+    rows = [row.replace(",", " ").split() for row in text.strip(" []").replace("\n", ";").split(";")]
+    if any(sign not in {"0", "*"} for row in rows for sign in row):
+        message = f"the pattern {text[:40]!r} has other signs than 0 and *"
+        raise InputError(message, where=where, repair='write for example "[* 0; * *]"')
+    if (len(rows), *{len(row) for row in rows}) != shape:
+        message = f"the pattern {text[:40]!r} is not {shape[0]}×{shape[1]}"
+        raise ShapeMismatch(message, where=where, repair=f"write {shape[0]} rows of {shape[1]} signs 0 or *")
+    return tuple((i, j) for i, row in enumerate(rows) for j, sign in enumerate(row) if sign == "0")
+
+
+# Functions of parameters in poles and polynomials: plant and polynomials over one base, with what vanishes there.
+
+
+def over_common_data(plant: StateSpace, *asked: Any) -> tuple[StateSpace, tuple[Any, ...]]:
+    """Return a plant and what is asked for, the functions in desired polynomials and further matrices among its data.
+
+    cos θ and e⁻ᵀ are letters of their own, as in the entries of a plant; on the plant that is returned cos² θ + sin² θ = 1
+    holds.  Raises `InputError` for a function of s or z, and for a root that is not known to be real.
+    """
+    wanted = [one for one in asked if isinstance(one, DesiredPolynomial)]
+    factors = [factor for one in wanted for factor in one.factors]
+    further = [one for one in asked if isinstance(one, Matrix)]
+    if all(function.square for function in functions_in([*factors, *further])):
+        return plant, asked
+    m = plant.matrices
+    parts = [part for one in wanted for pole in one.poles for part in (pole.real, pole.imaginary)]
+    try:
+        meanings, _ = identities([m.A, m.B, m.C, m.D, *plant.equations, *factors, *parts, *further])
+    except NotWritten as error:
+        raise InputError(str(error), where="specification", repair="declare a symbol for it") from None
+    there = copy(plant)
+    there.__dict__.pop("field", None)
+    A, B, C, D = (_moved_matrix(matrix, meanings) for matrix in (m.A, m.B, m.C, m.D))
+    there.matrices = Matrices(A, B if m.has_input else None, C if m.has_output else None, D)
+    there.equations = tuple(_moved(equation, meanings).numerator for equation in plant.equations)
+    if plant.written is not None and there.matrices != m:
+        message = "the transfer function and the poles have functions of different multiples of one argument"
+        raise InputError(
+            message, where="specification", repair="write both with the smaller one, exp(-T)^2 for exp(-2 T)"
+        )
+    moved = [_moved(factor, meanings) for factor in factors]
+    further = [_moved_matrix(matrix, meanings) for matrix in further]
+    there = there.restricted(identities([A, B, C, D, *moved, *further])[1])
+
+    def over(one: Any) -> Any:
+        if isinstance(one, Matrix):
+            return modulo(_moved_matrix(one, meanings), there.ideal)
+        return _over(one, meanings, there) if isinstance(one, DesiredPolynomial) else one
+
+    return there, tuple(map(over, asked))
+
+
+def _over(desired: DesiredPolynomial, meanings: Mapping[str, Scalar], there: StateSpace) -> DesiredPolynomial:
+    """Return a desired polynomial over the data of a plant, its factors simplified by what vanishes there."""
+    factors = []
+    for factor in desired.factors:
+        moved = _moved(factor, meanings)
+        if not there.admits(moved):
+            raise _divides_by_zero()
+        short = there.simplified(moved)
+        factors.append(short if short.coefficients(desired.variable)[0].is_one else moved)
+    poles = tuple(Complex(_moved(pole.real, meanings), _moved(pole.imaginary, meanings)) for pole in desired.poles)
+    own = desired.pattern
+    pattern = None
+    if own is not None:
+        values = tuple((name, _moved(value, meanings)) for name, value in own.values)
+        pattern = replace(own, values=values, factors=tuple(factors[: len(own.factors)]))
+    return replace(desired, factors=tuple(factors), poles=poles, pattern=pattern)
+
+
+def _moved(value: Scalar, meanings: Mapping[str, Scalar]) -> Scalar:
+    """Return a value in the base, the radicands of its roots too."""
+    images = {name: meanings[name] for name in value.names if name in meanings}
+    for root in roots_in(value):
+        if not root.argument.is_constant:
+            images[root.name] = square_root(_moved(root.argument, meanings))
+    try:
+        return value.substitute(images) if images else value
+    except ZeroDivisionError:
+        raise _divides_by_zero() from None
+
+
+def _divides_by_zero() -> InputError:
+    return InputError("a coefficient divides by 0", where="specification", repair="divide by what is not 0")
+
+
+def _moved_matrix(matrix: Matrix, meanings: Mapping[str, Scalar]) -> Matrix:
+    images = {name: meanings[name] for name in matrix.names if name in meanings}
+    return matrix.substitute(images) if images else matrix
+
+
+# Signals: functions of the time t, one for each component.
+
+
+def read_signal(value: object, plant: StateSpace, name: str, size: int, *, functions: bool = False) -> Matrix:
+    """Return a signal of `size` components: rational in t, or with `functions` also in exp, sin, …; raises `ShapeMismatch`."""
+    where = f"specification.{name}"
+    signal = parse_signal(value, plant.symbols, where, functions=functions)
+    signal = signal.T if signal.shape == (1, size) else signal
+    if signal.shape != (size, 1):
+        message = f"{name} has {signal.shape[0]}×{signal.shape[1]} entries, expected a column of {size}"
+        raise ShapeMismatch(message, where=where, repair=f"write {size} entries, set apart by semicolons")
+    return signal
+
+
+def parse_signal(value: object, symbols: Symbols, where: str, *, functions: bool = False) -> Matrix:
+    """Return the entries of a signal, of any number."""
+    listed = value if isinstance(value, (str, list, tuple)) or hasattr(value, "shape") else [[value]]
+    known = symbols.seen(value, "t").with_time()
+    if not functions:
+        return read_matrix(listed, known, where)
+    rows: Any = listed.tolist() if hasattr(listed, "tolist") else listed
+    if not isinstance(rows, str):
+        rows = [[_text(entry) for entry in (row if isinstance(row, (list, tuple)) else [row])] for row in rows]
+    return parse_matrix(rows, known.names, where=where, functions=True)
+
+
+def _text(entry: object) -> object:
+    """Return a SymPy expression as text: the grammar reads its functions."""
+    if not is_sympy(entry):
+        return entry
+    from symobs.exact.sympy_bridge.conversion import with_plain_symbols  # noqa: PLC0415 - SymPy is there already
+
+    return str(with_plain_symbols(entry))

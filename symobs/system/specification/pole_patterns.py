@@ -13,10 +13,10 @@ from math import factorial, floor, log, log10, pi
 from typing import TYPE_CHECKING, Any
 
 from symobs.exact import Scalar, product_of
-from symobs.exact.algebraic.conjugates import is_in_kernel
 from symobs.exact.algebraic.real_algebraic import roots_of_scalar
+from symobs.exact.algebraic.rounded_decimals import is_in_kernel
 from symobs.exact.core.generators import PI, NotWritten, function, symbols_in
-from symobs.exact.time_functions.butterworth import butterworth, butterworth_angles
+from symobs.exact.time_functions.antiderivative import butterworth, butterworth_angles
 from symobs.ground.dataclass import dataclass
 from symobs.ground.errors import InputError
 from symobs.system.conditions import sign_of

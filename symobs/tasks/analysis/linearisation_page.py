@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from symobs.formula.tree import Formula
     from symobs.formula.tree.term import Term
     from symobs.proof.derivation.builder import Builder
-    from symobs.system.matrices import Nonlinear
+    from symobs.system.reading import Nonlinear
 
 
 def state_linearisation(page: Builder) -> None:

@@ -7,27 +7,103 @@ from itertools import accumulate
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
-from symobs.exact import Factored, Matrix, Scalar, TooLarge, decimal_places, root_of_pole
-from symobs.formula.tree import Conjunction, Decimals, HoldsExactlyWhere, Roots
+from symobs.exact import (
+    Factored,
+    Matrix,
+    Scalar,
+    TooLarge,
+    decimal_places,
+    factored,
+    product_of,
+    root_of_pole,
+    roots_of,
+)
+from symobs.formula.tree import (
+    Conjunction,
+    Decimals,
+    HoldsExactlyWhere,
+    Literal,
+    Negative,
+    Power,
+    Product,
+    Quotient,
+    Roots,
+)
 from symobs.formula.tree.term import block
 from symobs.ground.errors import DerivationRejected
 from symobs.proof.derivation import CaseStep, Note, Step
 from symobs.proof.derivation.builder import Builder, predicate, relation, sentence
-from symobs.proof.derivation.facts.restriction import on_stratum
-from symobs.stability.criteria.stability import stability
-from symobs.stability.inequalities.written_form import as_inequality
-from symobs.system.conditions import Condition, vanishing_factors
+from symobs.proof.derivation.facts import on_stratum
+from symobs.stability.criteria.stability import monic, stability
+from symobs.stability.inequalities.simplify import as_inequality
+from symobs.system.conditions import Condition, sign_of, vanishing_factors
 from symobs.system.reading import is_identity
-from symobs.tasks.analysis.factored_form import formula_of_factored
+from symobs.system.transfer_matrix import WrittenTransferMatrix
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 
-    from symobs.formula.tree import Environment, Relation
+    from symobs.formula.tree import Environment, Formula, Relation
     from symobs.formula.tree.term import Term
-    from symobs.proof.derivation import Step
     from symobs.system.specification import DesiredPolynomial
     from symobs.tasks.result import Case, Result
+
+
+# Rational functions as products of powers of their irreducible factors.
+
+
+def factored_form(page: Builder, value: Scalar) -> Term:
+    """Return a scalar written as a product or quotient of its factors in the variable."""
+    return page.term(formula_of_factored(factored(value, page.plant.variable, monic=False)))
+
+
+def formula_of_factored(form: Factored) -> Formula:
+    """Return the formula of a factored form: unit and powers, over powers."""
+    above = [_power(f, p) for f, p in form.factors if p > 0]
+    below = [_power(f, -p) for f, p in form.factors if p < 0]
+    unit = form.unit
+    if below and not unit.denominator.is_one:
+        below.insert(0, Literal(unit.denominator))
+        unit = unit.numerator
+    negative = bool(above or below) and unit.is_constant and unit.fraction() < 0
+    if negative:
+        unit = -unit
+    if not unit.is_one or not above:
+        above.insert(0, Literal(unit))
+    top = above[0] if len(above) == 1 else Product(tuple(above))
+    whole = top if not below else Quotient(top, below[0] if len(below) == 1 else Product(tuple(below)))
+    return Negative(whole) if negative else whole
+
+
+def _power(factor: Scalar, exponent: int) -> Formula:
+    return Literal(factor) if exponent == 1 else Power(Literal(factor), exponent)
+
+
+def over(numerator: Scalar, own: Scalar, polynomial: Factored) -> Factored:
+    """Return numerator · own / Π factors with the desired factors in the denominator, none of them made monic."""
+    unit, above = numerator.factors()
+    sign = _sign(own)
+    below = tuple((factor, -power) for factor, power in polynomial.factors)
+    return Factored(unit * sign, (*above, (own * sign, 1), *below))
+
+
+def _sign(polynomial: Scalar) -> int:
+    """Return the sign that a polynomial is printed with, as a factor."""
+    return -1 if sign_of(polynomial.factors()[0], {}) == "negative" else 1
+
+
+def cancelled(numerator: Scalar, own: Scalar, polynomial: Factored, variable: str) -> Factored:
+    """Return the same, with the parameters that `own` divides by cancelled against those in front of the numerator."""
+    form = over(numerator, own, polynomial)
+    if own.denominator.is_constant:
+        return form
+    unit, above = numerator.factors()
+    whole = product_of(factor**power for factor, power in above if variable not in factor.names) * own
+    number, below = whole.denominator.factors()
+    rest = ((factor, power) for factor, power in above if variable in factor.names)
+    sign = _sign(whole.numerator)
+    parts = (*rest, (whole.numerator * sign, 1), *((factor, -power) for factor, power in below))
+    return Factored(unit * sign / number, (*parts, *(f for f in form.factors if f[1] < 0 and variable in f[0].names)))
 
 
 def case_steps(page: Builder, result: Result, write: Callable[[Builder, Any], None]) -> Iterator[Step]:
@@ -88,8 +164,6 @@ def given(
     plant, m = page.plant, page.plant.matrices
     with page.section("given"):
         if plant.origin is not None:
-            from symobs.tasks.analysis.cancelled_poles import state_transfer_function  # noqa: PLC0415 - it stands on this module
-
             state_transfer_function(page)
         if plant.nonlinear is not None:
             from symobs.tasks.analysis.linearisation_page import state_linearisation  # noqa: PLC0415 - of such plants alone
@@ -292,3 +366,51 @@ def say_stability(page: Builder, about: Term) -> None:
         inequalities = [as_inequality(value, plant.symbols.signs) for value in found.positive]
         where = tuple(relation(left, operator, right) for left, operator, right in inequalities)
         page.conclude(f"stable_if_{time}", where=HoldsExactlyWhere(predicate("stable", about), where))
+
+
+# The transfer function a plant is given by, as the page states it: what cancels in it is a finding.
+
+
+def state_transfer_function(page: Builder) -> None:
+    """State P, as it is written where that is not in lowest terms, and what cancels in it."""
+    plant, written = page.plant, page.plant.written
+    assert written is not None  # noqa: S101 - the caller has looked
+    cancelled = monic(written.cancelled, plant.variable)
+    if isinstance(written, WrittenTransferMatrix):
+        page.given(relation(page["P"], _written_out(page, written)))
+    elif written.cancelled.is_one and not written.apart:
+        page.given(relation(page["P"], factored_form(page, written.value)))
+    else:
+        above, below = (factored_form(page, part) for part in (written.above, written.below))
+        page.given(relation(page["P"], above / below, factored_form(page, written.value)))
+    page.environment = page.environment.extended_by(values={"P": written.value})
+    apart = vanishing_factors(written.apart, plant.symbols.signs)
+    if apart:
+        page.assume("lowest_terms_parameters", *apart)
+    if not written.cancelled.is_one:
+        _say_cancelled(page, cancelled, written.below)
+    page.remark("realised_minimal" if isinstance(written, WrittenTransferMatrix) else "realised")
+
+
+def _written_out(page: Builder, written: WrittenTransferMatrix) -> Term:
+    """Return the matrix with its entries factored."""
+    return block([[factored_form(page, entry.value) for entry in row] for row in written.rows])
+
+
+def _say_cancelled(page: Builder, cancelled: Scalar, below: Scalar) -> None:
+    """Say which poles cancel, and warn where they are not surely stable."""
+    plant = page.plant
+    c = page.set("c_P", cancelled)
+    rest = page.value(below / cancelled)
+    poles = Roots(c.formula, roots_of(cancelled, plant.variable))
+    facts = (relation(below, c * rest),)
+    cancelled_stability = stability(cancelled, plant.variable, plant.symbols.signs, discrete=plant.is_discrete)
+    if cancelled_stability.verdict == "yes":
+        page.remark("lowest_terms", *facts, poles=poles)
+    elif cancelled_stability.verdict == "no":
+        time = "discrete" if plant.is_discrete else "continuous"
+        page.caution(f"lowest_terms_unstable_{time}", predicate("unstable", c), *facts, poles=poles)
+    else:
+        solved = [as_inequality(value, plant.symbols.signs) for value in cancelled_stability.positive]
+        where = HoldsExactlyWhere(predicate("stable", c), tuple(relation(*parts) for parts in solved))
+        page.caution("lowest_terms_where", *facts, poles=poles, where=where)

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from symobs.exact.algebraic.enclosure import is_number
 from symobs.exact.core.generators import symbols_in
-from symobs.exact.floating.doubles import nearest_double
+from symobs.exact.floating.sampled import nearest_double
 from symobs.ground.errors import InputError, UsageError
 from symobs.system import StateSpace
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
 
     from symobs.exact import Matrix
-    from symobs.exact.linear_algebra.realisation import Realisation
+    from symobs.exact.linear_algebra.transfer_function import Realisation
 
 
 class Controller(NamedTuple):

@@ -2,13 +2,97 @@
 
 from __future__ import annotations
 
+import re
+from dataclasses import replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, Self
+from typing import TYPE_CHECKING, Any, Self, TypedDict
 
-from symobs.tasks.result.conversions import signs, to_sympy
+from symobs.exact import Complex, Factored, Matrix, Root, Scalar, Shifted
+from symobs.exact.core.generators import PI, symbols_named
+from symobs.formula.convention import convention_named
+from symobs.formula.expression.source import shown
+from symobs.ground.dataclass import dataclass
+from symobs.ground.errors import UsageError
+from symobs.system.conditions import Condition
+from symobs.system.reading import has_decimals
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
+    from collections.abc import Container, Iterable, Mapping
+
+    from symobs.system import StateSpace
+
+
+# Conversion of exact values to SymPy and JSON.
+
+
+_IMAGINARY = re.compile(r"\bI\b")
+
+
+_RELATIONS = {"!=": "!=", "=": "==", "==": "==", ">": ">", ">=": ">=", "<": "<", "<=": "<="}
+
+
+def signs(plant: StateSpace, values: Iterable[Any] = ()) -> dict[str, str]:
+    """Return every symbol of a plant and of some values with its sign."""
+    names = {*plant.symbols.signs, *plant.matrices.symbols}.union(*(getattr(value, "names", ()) for value in values))
+    names = {plain for name in names for plain in symbols_named(name)} - {plant.variable, "t", PI}
+    return {name: plant.symbols.sign(name) for name in sorted(names)}
+
+
+def to_json(value: Any, symbols: Container[str] = ()) -> Any:
+    """Return JSON of a value: exact strings, nested lists, JSON integers and booleans.
+
+    Beside a symbol I the imaginary unit is sqrt(-1).
+    """
+    if isinstance(value, Matrix):
+        return [[str(entry) for entry in row] for row in value.rows]
+    if isinstance(value, (Complex, Root, Shifted)) and "I" in symbols and "sqrt(-1)" not in str(value):
+        return _IMAGINARY.sub("sqrt(-1)", str(value)) if "I" not in value.names else str(value)
+    if isinstance(value, (Scalar, Complex, Factored, Root, Shifted)):
+        return str(value)
+    if isinstance(value, Condition):
+        return f"{value.expression} {_RELATIONS[value.operator]} 0"
+    if isinstance(value, (list, tuple)):
+        return [to_json(entry, symbols) for entry in value]
+    if isinstance(value, dict):
+        return {key: to_json(entry, symbols) for key, entry in value.items()}
+    return value
+
+
+def vector(value: Matrix) -> list[str]:
+    """Return a column as a flat list."""
+    return [str(entry) for entry in value.entries]
+
+
+def to_sympy(value: Any, objects: Mapping[str, Any]) -> Any:
+    """Return the SymPy object of a value; what has none (texts, integers) stays."""
+    from symobs.exact.sympy_bridge import conversion  # noqa: PLC0415 - SymPy only when asked for
+
+    if isinstance(value, Matrix):
+        return conversion.matrix_to_sympy(value, objects)
+    if isinstance(value, Scalar):
+        return conversion.scalar_to_sympy(value, objects)
+    if isinstance(value, Factored):
+        return conversion.factored_to_sympy(value, objects)
+    if isinstance(value, Complex):
+        return conversion.complex_to_sympy(value, objects)
+    if isinstance(value, Root):
+        return conversion.root_to_sympy(value, objects)
+    if isinstance(value, Shifted):
+        return conversion.scalar_to_sympy(value.value, objects) - conversion.root_to_sympy(value.root, objects)
+    if isinstance(value, Condition):
+        return conversion.relation_to_sympy(value.expression, value.operator, objects)
+    if isinstance(value, tuple) and value and all(isinstance(row, tuple) and _are_factored(row) for row in value):
+        return conversion.table_to_sympy(value, objects)
+    if isinstance(value, (list, tuple)):
+        return tuple(to_sympy(entry, objects) for entry in value)
+    if isinstance(value, dict):
+        return {key: to_sympy(entry, objects) for key, entry in value.items()}
+    return value
+
+
+def _are_factored(row: tuple[Any, ...]) -> bool:
+    return bool(row) and all(isinstance(entry, Factored) for entry in row)
+
 
 #: Answers of more terms than this are not written out by `repr`.
 _TERMS_SHOWN = 500
@@ -71,7 +155,7 @@ class OutputMethods:
         of polynomials, and words, are left out.  Raises `InputError` where a parameter has no value, and where no field is
         left.
         """
-        from symobs.tasks.result.evaluation import evaluate  # noqa: PLC0415 - it needs NumPy
+        from symobs.tasks.result.at_values import evaluate  # noqa: PLC0415 - it needs NumPy
 
         return evaluate(self, points)
 
@@ -119,3 +203,87 @@ class OutputMethods:
         shown = [f"{name}=<{long[name]} terms>" if name in long else f"{name}={value}" for name, value in parts.items()]
         verdict = "" if long else f", verdict={self.verdict!r}"
         return f"{type(self).__name__}({', '.join(shown)[:200]}{verdict})"
+
+
+# Number format of a page: exact, or with a number of significant digits.
+
+
+#: The significant digits of a page whose data are typed as decimals, and the most that can be asked for.
+DIGITS, MOST_DIGITS = 5, 40
+
+
+class PageOptions(TypedDict, total=False):
+    """Options of `result.to`: significant digits, or exact numbers."""
+
+    convention: str
+    detail: str
+    language: str
+    digits: int | None
+    exact: bool
+
+
+def document_options(
+    *,
+    convention: str = "standard",
+    detail: str = "full",
+    language: str = "en",
+    digits: int | None = None,
+    exact: bool = False,
+    **unknown: object,
+) -> dict[str, Any]:
+    """Return the options of a page as those of a document.
+
+    Raises `UsageError` for a convention that does not exist, and for an option that no page has.
+    """
+    if unknown:
+        repair = f"known options are {', '.join(PageOptions.__annotations__)}"
+        raise UsageError("no page has this option", where=shown(next(iter(unknown)), 40), repair=repair)
+    asked = digits_asked(digits, exact=exact)
+    return {"convention": convention_named(convention), "detail": detail, "language": language, "digits": asked}
+
+
+def digits_asked(digits: object = None, *, exact: bool = False, where: str = "digits") -> int | None:
+    """Return the digits of a document: 0 for exact numbers, None by default.
+
+    Raises `UsageError` for what is no number of digits, and where exact numbers are asked for as well.
+    """
+    if digits is None:
+        return 0 if exact else None
+    if exact:
+        message = "digits and exact numbers are both asked for"
+        raise UsageError(message, where=where, repair="keep one of them")
+    if isinstance(digits, bool) or not isinstance(digits, int) or not 1 <= digits <= MOST_DIGITS:
+        message = f"{shown(str(digits), 40)!r} is not a number of significant digits"
+        raise UsageError(message, where=where, repair=f"write a whole number from 1 to {MOST_DIGITS}, for example 5")
+    return digits
+
+
+def shown_digits(document: Any) -> int:
+    """Return the significant digits of the numbers of a document, 0 where they are exact."""
+    if document.digits is not None:
+        return int(document.digits)
+    typed = any(
+        result.plant.is_in_decimals or has_decimals([*result.specification.values()]) for result in document.results
+    )
+    return DIGITS if typed else 0
+
+
+# Interactive parts of an HTML page.
+
+
+@dataclass(frozen=True)
+class WebPage:
+    """All levels of detail to choose from, buttons that copy LaTeX, the address of the problem on a live page."""
+
+    details: bool = False
+    copy: bool = False
+    live: str = ""
+
+    @property
+    def of_question(self) -> WebPage:
+        """What the page of a question may offer: nothing that leads to the solution."""
+        return replace(self, details=False, live="")
+
+
+#: A page that is complete as it is.
+PLAIN = WebPage()

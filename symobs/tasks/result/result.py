@@ -11,7 +11,7 @@ from functools import cache, cached_property, partial
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, ClassVar, Literal, NamedTuple, NoReturn, Self, TypeAlias, Unpack, overload
 
-from symobs.exact.linear_algebra.realisation import Realisation
+from symobs.exact.linear_algebra.transfer_function import Realisation
 from symobs.formula.convention import STANDARD
 from symobs.ground.dataclass import dataclass
 from symobs.ground.errors import CertificateRejected, DerivationRejected, Undecided
@@ -19,10 +19,8 @@ from symobs.proof.certificate.claims import BEYOND_LIMITS, UNREADABLE, Certifica
 from symobs.proof.derivation import translated
 from symobs.proof.derivation.builder import Builder
 from symobs.system.conditions import Condition, vanishing_factors
-from symobs.tasks.result.conversions import to_sympy
-from symobs.tasks.result.digits_of_page import document_options
+from symobs.tasks.result.output_methods import PLAIN, WebPage, document_options, to_sympy
 from symobs.tasks.result.task_traits import TaskTraits
-from symobs.tasks.result.web_page import PLAIN, WebPage
 from symobs.tasks.result.writers import render, writer_of
 
 if TYPE_CHECKING:
@@ -31,11 +29,11 @@ if TYPE_CHECKING:
 
     from symobs.exact import Matrix, Scalar
     from symobs.formula.convention import Convention
-    from symobs.formula.figures.plot import Picture
+    from symobs.formula.figures import Picture
     from symobs.proof.derivation import Derivation
     from symobs.system import StateSpace
     from symobs.tasks.result.control_systems import Controller
-    from symobs.tasks.result.digits_of_page import PageOptions
+    from symobs.tasks.result.output_methods import PageOptions
 
 
 #: The formats that are texts.

@@ -12,7 +12,7 @@ import sympy as sp
 from symobs.applications.checking import Checked
 from symobs.formula.expression import parse_matrix
 from symobs.problem import read
-from symobs.tasks.result.conversions import to_sympy
+from symobs.tasks.result.output_methods import to_sympy
 from tests.unit.applications.checking.test_judgement import EXAMPLES, own_answer
 
 if TYPE_CHECKING:

@@ -11,12 +11,10 @@ from typing import TYPE_CHECKING, Any
 
 import sympy as sp
 
-from symobs.applications.variants.acceptance.candidates import candidate
-from symobs.applications.variants.acceptance.cheap import cheap
-from symobs.applications.variants.acceptance.distinct import keys_of
-from symobs.applications.variants.drawing.constructions import CONSTRUCTIONS, Made
-from symobs.applications.variants.drawing.stream import Draws
-from symobs.applications.variants.reading.table import read_table
+from symobs.applications.variants.acceptance import candidate, cheap, keys_of
+from symobs.applications.variants.constructions import CONSTRUCTIONS, Made
+from symobs.applications.variants.drawing import Draws
+from symobs.applications.variants.table import read_table
 from tests.support.independent_algebra.plain_fractions import determinant, eliminate, inverse, times
 from tests.unit.applications.variants.test_constructions import (
     desired,
@@ -30,7 +28,7 @@ from tests.unit.applications.variants.test_constructions import (
 )
 
 if TYPE_CHECKING:
-    from symobs.applications.variants.acceptance.candidates import Candidate
+    from symobs.applications.variants.acceptance import Candidate
 
 CANDIDATES, SEED = 500, 29
 _OF_GAINS = ("compensator", "observer", "state_feedback", "canonical_form")

@@ -17,10 +17,9 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from symobs.exact import EIGENVALUE, Matrix, Root, Scalar
 from symobs.exact.core.generators import PI, function_named, symbols_in
-from symobs.exact.time_functions.root_sum import RootSum
-from symobs.formula.figures.block_diagram import figure_of, is_box, is_integrator, key
-from symobs.formula.figures.plot import TimeResponse
-from symobs.formula.phrases.spoken import Counted, StateChoice
+from symobs.exact.time_functions.matrix_exponential import RootSum
+from symobs.formula.figures import TimeResponse, figure_of, is_box, is_integrator, key
+from symobs.formula.phrases.languages import Counted, StateChoice
 from symobs.formula.tree import (
     Apply,
     At,
@@ -67,7 +66,7 @@ from tests.support.independent_algebra.responses import untrue_responses
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
-    from symobs.formula.figures.plot import Picture
+    from symobs.formula.figures import Picture
     from symobs.formula.tree import Environment, Fact, Formula
     from symobs.proof.derivation import Step
     from tests.support.independent_algebra.plain import Rows

@@ -17,7 +17,7 @@ from flint import fmpz_poly
 
 from symobs.exact import Scalar
 from symobs.exact.core.generators import function_named
-from symobs.formula.figures.plot import LinePicture, PoleMap, RegionPicture
+from symobs.formula.figures import LinePicture, PoleMap, RegionPicture
 from symobs.formula.phrases.languages import ENGLISH
 from symobs.formula.tree import Literal, Relation
 from tests.support.independent_algebra.plain import (
@@ -34,7 +34,7 @@ from tests.support.regions.region_texts import Binary, Call, Number, expression
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping, Sequence
 
-    from symobs.formula.figures.plot import Curve, Place
+    from symobs.formula.figures import Curve, Place
     from symobs.formula.tree import Formula
     from symobs.proof.derivation import Sentence
     from symobs.stability.criteria.routh_table import RouthTable

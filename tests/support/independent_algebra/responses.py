@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
     from fractions import Fraction
 
-    from symobs.formula.figures.plot import Interval, PlottedResponse, TimeResponse
+    from symobs.formula.figures import Interval, PlottedResponse, TimeResponse
 
 Rows: TypeAlias = "tuple[tuple[Fraction, ...], ...]"
 #: Digits that are kept while one instant after the other is found.

@@ -20,8 +20,7 @@ import sympy
 
 from symobs.exact import Matrix, Scalar
 from symobs.exact.core.generators import function_named
-from symobs.formula.phrases.languages import ENGLISH
-from symobs.formula.phrases.spoken import SPOKEN, Counted
+from symobs.formula.phrases.languages import ENGLISH, SPOKEN, Counted
 from symobs.formula.tree import (
     Apply,
     At,

@@ -45,7 +45,7 @@ from importlib.machinery import PathFinder
 
 class Finder(MetaPathFinder):
     def find_spec(self, name, path=None, target=None):
-        if name != "symobs.applications.batch.kinds":
+        if name != "symobs.applications.batch.jobs":
             return None
         spec = PathFinder.find_spec(name, path)
         run = spec.loader.exec_module

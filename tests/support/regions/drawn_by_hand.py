@@ -10,13 +10,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from symobs.exact import Scalar
-from symobs.formula.figures.plot import Curve, End, LinePicture, MarkedPoint, PoleMap, RegionPicture
+from symobs.formula.figures import Curve, End, LinePicture, MarkedPoint, PoleMap, RegionPicture
 from symobs.formula.tree import Literal, Relation
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
 
-    from symobs.formula.figures.plot import Place
+    from symobs.formula.figures import Place
 
     Window = tuple[tuple[int, int], tuple[int, int]]
     Branch = tuple[list[Place], int]

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 from symobs.exact import Matrix, Scalar
 from symobs.exact.core.generators import symbols_in
-from symobs.formula.figures.plot import TimeResponse
+from symobs.formula.figures import TimeResponse
 from symobs.ground.errors import CertificateRejected, DerivationRejected
 from symobs.proof.derivation import Plot
 from symobs.stability.inequalities.proof import Combined, Opposite

@@ -12,9 +12,9 @@ from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
 from symobs.exact import Factored, Matrix, Root, Scalar
-from symobs.formula.figures.plot import Curve, MarkedPoint, PlottedResponse, PoleMap
+from symobs.formula.figures import Curve, MarkedPoint, PlottedResponse, PoleMap
 from symobs.formula.phrases import PHRASES, slots_of
-from symobs.formula.phrases.spoken import SPOKEN, Counted
+from symobs.formula.phrases.languages import SPOKEN, Counted
 from symobs.formula.tree import (
     Apply,
     Block,
@@ -32,7 +32,7 @@ from symobs.formula.tree import (
 )
 from symobs.proof.derivation import Derivation, Section, Sentence
 from symobs.stability.criteria.routh_table import ORIGINS, RouthRow, RouthTable
-from symobs.stability.regions.short_list import RegionInequality
+from symobs.stability.regions.region import RegionInequality
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     import random
 
     from symobs.applications.export import Exercise, ExerciseSet
-    from symobs.applications.export.questions.parts import ExportedPart
+    from symobs.applications.export.questions import ExportedPart
 
     Given = dict[str, list[list[str]]]
 

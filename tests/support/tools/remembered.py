@@ -13,7 +13,9 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from symobs.proof.derivation.figures import plot_points, region_plot_check, root_locus_check
+from symobs.proof.derivation import figures_check as plot_points
+from symobs.proof.derivation import figures_check as region_plot_check
+from symobs.proof.derivation import plot_check as root_locus_check
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator

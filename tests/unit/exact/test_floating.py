@@ -13,12 +13,10 @@ from scipy import signal  # type: ignore[import-untyped]
 
 from symobs.exact import Matrix, Scalar
 from symobs.exact.core.generators import square_root
-from symobs.exact.floating.deviation import deviation
-from symobs.exact.floating.doubles import nearest_double
 from symobs.exact.floating.margin_search import disc_margin, half_plane_margin
-from symobs.exact.floating.sampled import HOLDS, Sampled
-from symobs.exact.floating.stability_margin import loop_matrix, own_matrix
-from symobs.exact.linear_algebra.realisation import Realisation
+from symobs.exact.floating.sampled import HOLDS, Sampled, nearest_double
+from symobs.exact.floating.stability_margin import deviation, loop_matrix, own_matrix
+from symobs.exact.linear_algebra.transfer_function import Realisation
 from symobs.formula.expression import parse_scalar
 from symobs.ground.errors import InputError
 

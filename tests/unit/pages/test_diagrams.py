@@ -13,7 +13,7 @@ from sympy.polys.matrices import DomainMatrix
 
 import symobs
 from symobs.exact import Matrix, Scalar
-from symobs.formula.figures.block_diagram import figure_of, is_box, is_integrator, key
+from symobs.formula.figures import figure_of, is_box, is_integrator, key
 from symobs.formula.phrases import PHRASES
 from symobs.formula.tree import Conjunction, Exact, Letter, Literal, Negative, evaluate
 from symobs.ground.errors import DerivationRejected
@@ -32,7 +32,7 @@ from tests.support.independent_algebra.second_reader import sympy_scalar
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping, Sequence
 
-    from symobs.formula.figures.block_diagram import Figure, Label
+    from symobs.formula.figures import Figure, Label
     from symobs.formula.tree import Environment
     from symobs.pages.drawings.diagram_layout import Metrics
     from symobs.pages.drawings.scene import Scene

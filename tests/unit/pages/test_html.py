@@ -19,7 +19,7 @@ from symobs.pages.formats.html import Html, HtmlFragment, HtmlWriter, page, plai
 from symobs.pages.page.blocks import Display, Heading, Paragraph, Title, Verified, every
 from symobs.pages.page.narrator import narrate
 from symobs.pages.page.sheet import Sheet, SheetEntry
-from symobs.pages.printers.mathml.mathml_printer import MathmlPrinter
+from symobs.pages.printers.mathml import MathmlPrinter
 from tests.support.problems import render_examples as example
 from tests.support.problems.render_examples import document
 from tests.unit.pages.test_printers import polynomial

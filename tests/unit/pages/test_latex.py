@@ -18,8 +18,7 @@ from symobs.pages.formats.latex import LatexArticle, LatexFragment, LatexWriter,
 from symobs.pages.formats.templates import fill, template_folder
 from symobs.pages.formats.text import WIDTH, Text
 from symobs.pages.page.blocks import Display, Paragraph
-from symobs.pages.printers.latex_escape import LETTERS, escape
-from symobs.pages.printers.latex_printer import LatexPrinter
+from symobs.pages.printers.latex_printer import LETTERS, LatexPrinter, escape
 from symobs.proof.derivation import Define, Derivation, Diagram, Equal, Note
 from tests.support.problems import render_examples as example
 from tests.support.problems.render_examples import document, equals, number, say

@@ -28,8 +28,8 @@ from symobs.formula.tree import (
     Sum,
     Transpose,
 )
-from symobs.pages.printers.mathml.latex_to_mathml import elements_of
-from symobs.pages.printers.mathml.mathml_printer import MathmlPrinter
+from symobs.pages.printers.latex_to_mathml import elements_of
+from symobs.pages.printers.mathml import MathmlPrinter
 from tests.kit import tabled
 from tests.unit.pages.test_printers import (
     MATRICES,

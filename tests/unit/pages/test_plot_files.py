@@ -18,7 +18,7 @@ from tests.support.tools.command_line import inside
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from symobs.formula.figures.plot import Picture
+    from symobs.formula.figures import Picture
     from symobs.proof.derivation.builder import Builder
 
 PLANT = '[plant]\nA = "[0 1; 0 -1]"\nB = "[0; 1]"\nC = "[1 0]"\n'

@@ -15,16 +15,15 @@ import pytest
 
 import symobs
 from symobs.exact import Scalar
-from symobs.formula.figures.plot import Curve, End, LinePicture, MarkedPoint, RegionPicture
+from symobs.formula.figures import Curve, End, LinePicture, MarkedPoint, RegionPicture
 from symobs.formula.phrases import PHRASES
 from symobs.formula.phrases.languages import ENGLISH
 from symobs.formula.tree import Environment, Letter, Relation, Roots
 from symobs.ground.errors import UsageError
-from symobs.pages.drawings.captions import below, words_of
-from symobs.pages.drawings.clipping import chained, clipped, clipped_area, thinned
-from symobs.pages.drawings.matplotlib_writer import drawn_by_matplotlib
+from symobs.pages.drawings.curve_labels import chained, clipped, clipped_area, thinned
+from symobs.pages.drawings.plot_file import drawn_by_matplotlib
 from symobs.pages.drawings.plot_layout import plot_scene, ticks
-from symobs.pages.drawings.scene import Rectangle, Scene
+from symobs.pages.drawings.scene import Rectangle, Scene, below, words_of
 from symobs.pages.drawings.svg import measure_for as measure_svg
 from symobs.pages.drawings.svg import svg, svg_file, svg_scene
 from symobs.pages.drawings.text import sketch
@@ -45,7 +44,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
     from pathlib import Path
 
-    from symobs.formula.figures.plot import Picture
+    from symobs.formula.figures import Picture
     from symobs.pages.drawings.scene import Measure
 
 FAULTS = re.compile(r"^(?:! .*|(?:LaTeX|Package|Class).*Warning.*|Overfull .*|Missing character.*)", re.MULTILINE)

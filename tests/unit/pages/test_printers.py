@@ -32,7 +32,7 @@ from symobs.formula.tree import (
     Transpose,
 )
 from symobs.pages.printers.latex_printer import LatexPrinter
-from symobs.pages.printers.mathml.mathml_printer import MathmlPrinter
+from symobs.pages.printers.mathml import MathmlPrinter
 from symobs.pages.printers.scalar_formula import formula_of
 from symobs.pages.printers.text_printer import TextPrinter, text_width
 

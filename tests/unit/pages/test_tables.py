@@ -9,8 +9,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from symobs.exact import Scalar, from_coefficients
-from symobs.formula.phrases.languages import ENGLISH
-from symobs.formula.phrases.spoken import Counted
+from symobs.formula.phrases.languages import ENGLISH, Counted
 from symobs.formula.tree import Environment, Exact, Letter, Literal, evaluate
 from symobs.pages.formats.latex import LatexArticle, LatexFragment
 from symobs.pages.formats.text import Text
@@ -18,7 +17,7 @@ from symobs.pages.page.blocks import Paragraph, TableBlock
 from symobs.pages.page.narrator import narrate
 from symobs.pages.printers.latex_printer import LatexPrinter
 from symobs.pages.printers.text_printer import TextPrinter
-from symobs.pages.tables.fitted_table import fitted
+from symobs.pages.tables import fitted
 from symobs.proof.derivation import CaseStep, Define, Derivation, Sentence, Tabulate
 from symobs.proof.derivation.routh_check import findings_of
 from symobs.stability.criteria.routh_table import routh_table

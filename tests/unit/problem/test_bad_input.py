@@ -13,11 +13,10 @@ import pytest
 import sympy
 
 import symobs
-from symobs.applications.checking.answers.answer_file import read_answer
+from symobs.applications.checking.answers import read_answer
 from symobs.formula.expression import comma_between_digits, parse_matrix, parse_poles, parse_polynomial, parse_scalar
 from symobs.ground.errors import InexactInput, SymobsError
-from symobs.problem.expect.roots import read_roots
-from symobs.problem.expect.structure import relation
+from symobs.problem.expect import read_roots, relation
 from symobs.problem.sheet_file import is_sheet
 from tests.support.tools.command_line import Run, fresh, inside
 

@@ -10,8 +10,8 @@ import pytest
 
 from symobs.exact import Scalar
 from symobs.stability.criteria.stability_conditions import is_stable_where, stable_where
-from symobs.stability.inequalities.sign_cases import sign_cases
-from symobs.stability.inequalities.solved_bounds import solved
+from symobs.stability.inequalities.decision import sign_cases
+from symobs.stability.inequalities.simplify import solved
 from tests.support.independent_algebra.plain import has_sign, random_fraction, seeded, value_at
 
 if TYPE_CHECKING:

@@ -16,8 +16,7 @@ from symobs.stability.criteria.stability_conditions import stable_where
 from symobs.stability.inequalities import z3_backend
 from symobs.stability.inequalities.decision import decide_empty, implies
 from symobs.stability.inequalities.proof import Combined, Equivalence, Opposite, ProvedByZ3, Step, proves, refutes
-from symobs.stability.inequalities.proof_steps import UNIT
-from symobs.stability.inequalities.prover import prove, refute
+from symobs.stability.inequalities.prover import UNIT, prove, refute
 from symobs.stability.inequalities.sample_points import find_point
 from symobs.stability.inequalities.simplify import simplify
 from symobs.stability.inequalities.z3_backend import QUESTION, Resources, point_by_z3

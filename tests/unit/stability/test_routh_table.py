@@ -12,14 +12,20 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from symobs.exact import Scalar, from_coefficients
-from symobs.formula.phrases.languages import ENGLISH
-from symobs.formula.phrases.spoken import Counted
+from symobs.formula.phrases.languages import ENGLISH, Counted
 from symobs.formula.tree import Environment, Letter, Sum
 from symobs.formula.tree.plain_text import plain_relation
 from symobs.proof.derivation import CaseStep, Define, Derivation, Sentence, Tabulate
 from symobs.proof.derivation.routh_check import findings_of
-from symobs.stability.criteria.cauchy_index import imaginary_axis_roots, right_half_plane_roots
-from symobs.stability.criteria.routh_table import RouthRow, RouthTable, is_routh_table, routh_table, sign_changes
+from symobs.stability.criteria.routh_table import (
+    RouthRow,
+    RouthTable,
+    imaginary_axis_roots,
+    is_routh_table,
+    right_half_plane_roots,
+    routh_table,
+    sign_changes,
+)
 from tests.kit import scalars, tabled
 from tests.support.independent_algebra.plain import value_at
 from tests.support.independent_algebra.routh_by_hand import changes, expression, located, rows_of

@@ -18,7 +18,7 @@ from symobs.stability.criteria.stability import (
     stability,
     stable_somewhere,
 )
-from symobs.stability.inequalities.written_form import as_inequality
+from symobs.stability.inequalities.simplify import as_inequality
 from tests.kit import scalar, tabled
 from tests.support.independent_algebra.plain import (
     coefficients_at,

@@ -12,7 +12,7 @@ import sympy
 import symobs
 from symobs.ground.errors import InputError
 from symobs.problem import validate
-from symobs.problem.expect.expectations import mismatches
+from symobs.problem.expect import mismatches
 from symobs.problem.file_tables import parse
 from tests.kit import tabled
 

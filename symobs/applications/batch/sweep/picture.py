@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 from symobs.applications.batch.sweep.program import MARGINS_STATUS
 from symobs.applications.batch.sweep.table import nearest_of
 from symobs.exact import Scalar
-from symobs.formula.figures.plot import SweepCurves, SweepMap
+from symobs.formula.figures import SweepCurves, SweepMap
 from symobs.formula.tree import Letter, Literal
 from symobs.ground.errors import UsageError
 
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from symobs.applications.batch.sweep.plan import Plan, SweepTable
-    from symobs.formula.figures.plot import Run
+    from symobs.formula.figures import Run
     from symobs.formula.tree import Formula
 
     Point = tuple[float, float]

@@ -11,18 +11,16 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from symobs.applications.batch.engine import Settings
-from symobs.applications.batch.executors import CHILD
+from symobs.applications.batch.engine import CHILD, Settings
 from symobs.applications.batch.jobs import USUAL_BUDGET, job, read_payload, solve_job
 from symobs.applications.batch.run import Batch, one_problem
 from symobs.applications.batch.store import work_folder
-from symobs.applications.batch.sweep.grid import Grid, read_grid
 from symobs.applications.batch.sweep.program import GAINS, MARGINS, MARGINS_STATUS, Program, names_used, with_values
-from symobs.applications.batch.sweep.table import check_target, write_table
+from symobs.applications.batch.sweep.table import Grid, check_target, read_grid, write_table
 from symobs.ground.child_processes.budget import Budget
 from symobs.ground.child_processes.child import Died, started
 from symobs.ground.errors import InputError, SymobsError, UsageError, raise_all
-from symobs.problem.noted_errors import Errors
+from symobs.problem.file_tables import Errors
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -73,7 +71,7 @@ class Plan:
         with errors:
             self.columns = _chosen(bare.columns(), columns)
             if MARGINS_STATUS in self.columns:
-                from symobs.applications.batch.sweep.margins import require_one_loop  # noqa: PLC0415 - only where asked for
+                from symobs.applications.batch.sweep.table import require_one_loop  # noqa: PLC0415 - only where asked for
 
                 require_one_loop(bare)
         raise_all(errors.found)

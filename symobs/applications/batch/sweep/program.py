@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 from symobs.exact import Matrix, Scalar
 from symobs.exact.core.generators import substitute, symbols_in
-from symobs.exact.linear_algebra.at_points import (
+from symobs.exact.linear_algebra.elimination import (
     PointEvaluator,
     characteristic,
     numbers,

@@ -5,15 +5,14 @@ from __future__ import annotations
 from html import escape
 from typing import TYPE_CHECKING
 
-from symobs.applications.export.questions.wording import instruction, label, matrix_text, plain, question_html
+from symobs.applications.export.questions import instruction, label, matrix_text, plain, question_html
 from symobs.applications.export.targets.shared import refuse, terminating, unique_number
 from symobs.formula.phrases import PHRASES
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from symobs.applications.export.questions.exercise import Exercise, ExerciseSet
-    from symobs.applications.export.questions.parts import ExportedPart
+    from symobs.applications.export.questions import Exercise, ExerciseSet, ExportedPart
     from symobs.applications.export.targets.shared import Files
 
 _WORDS = ("yes", "no", "conditional")

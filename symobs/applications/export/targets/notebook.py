@@ -5,8 +5,7 @@ from __future__ import annotations
 import hashlib
 from typing import TYPE_CHECKING, Any
 
-from symobs.applications.export.questions.exercise import total_of
-from symobs.applications.export.questions.wording import instruction, label, matrix_text, plain, question_markdown
+from symobs.applications.export.questions import instruction, label, matrix_text, plain, question_markdown, total_of
 from symobs.applications.export.targets.shared import as_json, refuse
 from symobs.formula.phrases import PHRASES
 from symobs.ground.errors import InputError
@@ -16,8 +15,7 @@ from symobs.problem import read
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from symobs.applications.export.questions.exercise import Exercise, ExerciseSet
-    from symobs.applications.export.questions.parts import ExportedPart
+    from symobs.applications.export.questions import Exercise, ExerciseSet, ExportedPart
     from symobs.applications.export.targets.shared import Files
 
 _TEST = """### BEGIN HIDDEN TESTS

@@ -6,15 +6,14 @@ import uuid
 from html import escape
 from typing import TYPE_CHECKING, Any
 
-from symobs.applications.export.questions.wording import instruction, label, matrix_text, question_html
+from symobs.applications.export.questions import instruction, label, matrix_text, question_html
 from symobs.applications.export.targets.shared import CLAIMS, as_json, claims_module
 from symobs.formula.phrases import PHRASES
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from symobs.applications.export.questions.exercise import Exercise, ExerciseSet
-    from symobs.applications.export.questions.parts import ExportedPart
+    from symobs.applications.export.questions import Exercise, ExerciseSet, ExportedPart
     from symobs.applications.export.targets.shared import Files
 
 _NAMESPACE = uuid.UUID("6ba7b811-9dad-11d1-80b4-00c04fd430c8")  # of names that are addresses

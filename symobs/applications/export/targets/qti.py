@@ -9,9 +9,7 @@ from typing import TYPE_CHECKING, Any
 from xml.etree.ElementTree import Element, SubElement, fromstring, indent, tostring
 from zipfile import ZIP_DEFLATED, ZipFile, ZipInfo
 
-from symobs.applications.export.questions.exercise import total_of
-from symobs.applications.export.questions.parts import texts
-from symobs.applications.export.questions.wording import instruction, label, plain, question_xhtml
+from symobs.applications.export.questions import instruction, label, plain, question_xhtml, texts, total_of
 from symobs.applications.export.targets.shared import refuse, terminating, unique_number
 from symobs.exact import Matrix, Scalar
 from symobs.formula.expression import parse_scalar
@@ -19,8 +17,7 @@ from symobs.formula.expression import parse_scalar
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
-    from symobs.applications.export.questions.exercise import Exercise, ExerciseSet
-    from symobs.applications.export.questions.parts import ExportedPart
+    from symobs.applications.export.questions import Exercise, ExerciseSet, ExportedPart
     from symobs.applications.export.targets.shared import Files
 
 #: A claim of more is refused: an item is no program.

@@ -12,8 +12,7 @@ from symobs.ground.errors import InputError, ProblemErrors
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from symobs.applications.export.questions.exercise import Exercise, ExerciseSet
-    from symobs.applications.export.questions.parts import ExportedPart
+    from symobs.applications.export.questions import Exercise, ExerciseSet, ExportedPart
     from symobs.exact import Scalar
 
     #: File names, relative to the target, and contents.

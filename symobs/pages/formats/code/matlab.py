@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, ClassVar
 
-from symobs.pages.formats.code.numbers import number_rows
-from symobs.pages.formats.code.program import in_doubles, program_of
+from symobs.pages.formats.code.program import in_doubles, number_rows, program_of
 from symobs.tasks.result import output_format
 
 if TYPE_CHECKING:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, ClassVar
 
-from symobs.pages.formats.code.numbers import number_rows
+from symobs.pages.formats.code.program import number_rows
 from symobs.tasks.result import output_format
 
 if TYPE_CHECKING:

@@ -9,8 +9,16 @@ from symobs.exact import roots_of
 from symobs.formula.tree import Roots
 from symobs.ground.dataclass import dataclass
 from symobs.ground.errors import InputError
-from symobs.tasks.analysis.modes.modes import TESTS, ModeResult, has_open_cases
-from symobs.tasks.analysis.modes.modes_page import at_eigenvalues, fixed_modes, meeting_steps, show_spectrum, stack_of
+from symobs.tasks.analysis.modes.modes import (
+    TESTS,
+    ModeResult,
+    at_eigenvalues,
+    fixed_modes,
+    has_open_cases,
+    meeting_steps,
+    show_spectrum,
+    stack_of,
+)
 from symobs.tasks.analysis.page_parts import given, hidden_polynomial
 from symobs.tasks.analysis.rank.rank_page import rank_cases, square_test
 from symobs.tasks.result import Case, Result, choose, method, task

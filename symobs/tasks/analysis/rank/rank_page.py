@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, cast
 
 from symobs.exact import Matrix, roots_of, unit_rows
-from symobs.formula.phrases.spoken import StateChoice
+from symobs.formula.phrases.languages import StateChoice
 from symobs.formula.tree import Conjunction, Roots
 from symobs.formula.tree.term import block
 from symobs.proof.derivation import CaseStep, Conclude, Equal, Step
@@ -175,7 +175,7 @@ def _outside_drops(page: Builder, apart: Sequence[Scalar] | None) -> None:
 
 def _distances(result: Result) -> tuple[Scalar, ...] | None:
     """Return what is 0 exactly in the cases; None where one of them is everywhere."""
-    from symobs.tasks.analysis.strata.repeated_eigenvalues import distances, systems_of  # noqa: PLC0415 - it needs the strata, which need pages
+    from symobs.tasks.analysis.strata.strata import distances, systems_of  # noqa: PLC0415 - it needs the strata, which need pages
 
     systems = systems_of(result.case_tree)
     return None if systems is None else distances(systems)

@@ -12,8 +12,7 @@ from symobs.ground.dataclass import dataclass
 from symobs.proof.certificate.claims import Claim
 from symobs.proof.derivation.builder import Builder, relation
 from symobs.stability.criteria.stability import stability
-from symobs.tasks.analysis.factored_form import formula_of_factored
-from symobs.tasks.analysis.page_parts import given, say_stability
+from symobs.tasks.analysis.page_parts import formula_of_factored, given, say_stability
 from symobs.tasks.result import Result, choose, method, task
 
 if TYPE_CHECKING:

@@ -18,10 +18,9 @@ from symobs.ground.dataclass import dataclass
 from symobs.proof.certificate.claims import Claim
 from symobs.proof.derivation.builder import Builder, relation
 from symobs.system.conditions import Condition, vanishing_factors
-from symobs.tasks.analysis.factored_form import factored_form
-from symobs.tasks.analysis.page_parts import case_steps, given, in_blocks
+from symobs.tasks.analysis.page_parts import case_steps, factored_form, given, in_blocks
 from symobs.tasks.analysis.rank.observability import power_rows
-from symobs.tasks.analysis.realization.coordinates import BLOCKS, basis, minor_of, transfer_matrix
+from symobs.tasks.analysis.realization.canonical_form import BLOCKS, basis, minor_of, transfer_matrix
 from symobs.tasks.analysis.strata.strata import strata
 from symobs.tasks.result import Case, Result, choose, method, task
 

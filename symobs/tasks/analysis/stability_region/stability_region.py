@@ -3,51 +3,349 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from difflib import get_close_matches
 from functools import cached_property, lru_cache
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from symobs.exact import Scalar
+from symobs.exact.core.generators import function_named
 from symobs.formula.tree import Environment
 from symobs.formula.tree.term import identity, letter
 from symobs.ground.dataclass import dataclass
+from symobs.ground.errors import BudgetExceeded, InputError
 from symobs.proof.certificate.claims import Claim, Statement
 from symobs.proof.derivation.builder import relation
+from symobs.stability.criteria.critical_polynomials import CriticalPolynomials, StabilityBoundary
 from symobs.stability.criteria.routh_table import RouthTable, is_routh_table, routh_table
 from symobs.stability.criteria.stability_conditions import is_stable_where, stable_where
+from symobs.stability.inequalities.decision import SignCase, sign_cases
 from symobs.stability.inequalities.proof import asks_z3
-from symobs.stability.inequalities.sign_cases import SignCase, sign_cases
-from symobs.stability.inequalities.written_form import root_of_square
-from symobs.stability.plots.region_plot import oriented, picture_of_line, picture_of_plane
-from symobs.stability.plots.region_plot_with_symbols import picture_with_symbols
-from symobs.stability.plots.root_locus import pole_map
-from symobs.stability.regions.description import parts
-from symobs.stability.regions.interval_region import LineRegion
-from symobs.stability.regions.plane_region import PlaneRegion
+from symobs.stability.inequalities.simplify import as_inequality, box, root_of_square
+from symobs.stability.plots import oriented, picture_of_line, picture_of_plane, picture_with_symbols, pole_map
+from symobs.stability.regions.description import are_whole, parts
+from symobs.stability.regions.region import LineRegion, PlaneRegion, RegionInequality, exact_region, short_list
 from symobs.stability.regions.region_check import are_parts, is_region
-from symobs.stability.regions.region_for import exact_region
-from symobs.stability.regions.short_list import RegionInequality, short_list
-from symobs.system import StateSpace, Symbols
-from symobs.system.conditions import Condition
-from symobs.tasks.analysis.stability_region.stability_region_fields import (
-    cells_of,
-    components_of,
-    excluded_of,
-    intervals_of,
-    of_conditions,
-    stable_if,
-)
-from symobs.tasks.analysis.stability_region.stability_region_question import RegionQuestion, read_question
+from symobs.system import StateSpace, Symbols, read_scalar
+from symobs.system.conditions import Condition, sign_of
+from symobs.system.specification import read_gain, read_names
 from symobs.tasks.result import Case, Result, choose, method, task
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
+    from fractions import Fraction
 
-    from symobs.formula.figures.plot import Picture, PoleMap
-    from symobs.stability.criteria.critical_polynomials import CriticalPolynomials
+    from symobs.exact import Matrix, RealNumber
+    from symobs.formula.figures import Picture, PoleMap
     from symobs.stability.inequalities.proof import Equivalence
     from symobs.stability.inequalities.simplify import Simplified
-    from symobs.stability.regions.description import CylindricalPart
+    from symobs.stability.regions.description import CylindricalPart, Edge
+    from symobs.stability.regions.region import IntervalPiece
     from symobs.system.specification import GainText, Name, Names, PolynomialText, Quantity
+
+
+# The fields of a stability region: exact texts, decimals beside.
+
+
+DIGITS = 6
+
+
+def stable_if(
+    bounds: Sequence[RegionInequality] | None, region: object, signs: Mapping[str, str], parameters: Sequence[str]
+) -> list[str]:
+    """Return the inequalities as texts; of a single interval its ends."""
+    if bounds is None:
+        return ["False"]
+    if isinstance(region, LineRegion) and len(region.intervals) == 1 and not region.cuts:
+        return ends_of(region.intervals[0], region.name, signs)
+    return [" ".join(map(str, solved(bound, signs, parameters))) for bound in bounds]
+
+
+def solved(bound: RegionInequality, signs: Mapping[str, str], parameters: Sequence[str] = ()) -> tuple[Any, str, Any]:
+    """Return an inequality solved for a parameter where its coefficient has a certain sign."""
+    if bound.operator == "!=":
+        left, operator, right = as_inequality(bound.polynomial, signs, parameters)
+        return left, "!=" if operator else operator, right
+    return as_inequality(bound.polynomial, signs, parameters)
+
+
+def of_conditions(found: Simplified, question: RegionQuestion) -> dict[str, Any]:
+    """Return the fields of a region given by inequalities alone: empty, bounded, a sample point."""
+    empty = True if found.verdict == "no" else False if found.point is not None or found.verdict == "yes" else None
+    limits = box(found.positive, question.parameters, question.plant.symbols.signs) if found.verdict != "no" else None
+    fields: dict[str, Any] = {"empty": empty, "irredundant": found.irredundant, "bounded": None}
+    if limits is not None and not limits.needs:
+        fields["bounded"] = limits.bounded
+        fields["components"] = [{"bounded": limits.bounded, "sample": _texts(limits.sample)}]
+    point = limits.sample if limits is not None and limits.sample else found.point
+    fields["sample_points"] = [_texts(point)] if point else []
+    return fields
+
+
+def _texts(point: Mapping[str, Any] | None) -> dict[str, str]:
+    return {name: str(value) for name, value in (point or {}).items()}
+
+
+def ends_of(piece: IntervalPiece, name: str, signs: Mapping[str, str]) -> list[str]:
+    """Return name > low and name < high, without bounds implied by the declared sign."""
+    found = []
+    if piece.low is not None and not (
+        signs.get(name) == "positive" and piece.low.is_rational and not piece.low.fraction
+    ):
+        found.append(f"{name} > {piece.low.text(name)}")
+    if piece.high is not None and not (
+        signs.get(name) == "negative" and piece.high.is_rational and not piece.high.fraction
+    ):
+        found.append(f"{name} < {piece.high.text(name)}")
+    return found
+
+
+def end(number: RealNumber | None, side: str, name: str = "x") -> str:
+    """Return an end of an interval as an exact text."""
+    return f"{side}oo".lstrip("+") if number is None else number.text(name)
+
+
+def decimals(number: RealNumber | None, side: str) -> str:
+    """Return an end of an interval as a decimal, rounded."""
+    return f"{side}oo".lstrip("+") if number is None else number.decimal(DIGITS)
+
+
+def intervals_of(region: LineRegion) -> dict[str, Any]:
+    """Return the open intervals, exact and in decimals, the points left out between them, and a point of each."""
+    name, pieces = region.name, region.intervals
+    return {
+        "bounded": region.bounded,
+        "intervals": [[end(p.low, "-", name), end(p.high, "+", name)] for p in pieces],
+        "intervals_decimal": [[decimals(p.low, "-"), decimals(p.high, "+")] for p in pieces],
+        "excluded_points": [{name: point.text(name)} for point in region.cuts],
+        "sample_points": [{name: str(piece.sample)} for piece in pieces],
+    }
+
+
+def _edge(edge: Edge | None, side: str, name: str) -> str:
+    """Return a bound as an exact text: in closed form, or as a root of its polynomial in `name`."""
+    if edge is None:
+        return f"{side}oo".lstrip("+")
+    return str(edge.closed) if edge.closed is not None else f"CRootOf({edge.polynomial}, {name}, {edge.number})"
+
+
+def _point(region: PlaneRegion, sample: tuple[Fraction, Fraction]) -> dict[str, str]:
+    return {name: str(value) for name, value in zip(region.names, sample, strict=True)}
+
+
+def cells_of(region: PlaneRegion) -> list[dict[str, Any]]:
+    """Return every open cell: its bounds, a point of it, whether it is stable, and its component."""
+    from symobs.stability.regions.description import edges_over  # noqa: PLC0415 - only where cells are asked for
+
+    component = {cell: k for k, found in enumerate(region.components) for cell in found.cells}
+    x, y = region.names
+    widths = [[end(cylinder.left, "-", x), end(cylinder.right, "+", x)] for cylinder in region.plane.cylinders]
+    heights = [
+        [_edge(None, "-", y), *(_edge(edge, "", y) for edge in edges_over(region, index)), _edge(None, "+", y)]
+        for index in range(len(widths))
+    ]
+    return [
+        {
+            "sample": _point(region, cell.sample),
+            "stable": cell.stable,
+            "component": component.get(number),
+            x: list(widths[cell.cylinder]),
+            y: heights[cell.cylinder][cell.height : cell.height + 2],
+        }
+        for number, cell in enumerate(region.cells)
+        if cell.allowed
+    ]
+
+
+def components_of(region: PlaneRegion, parts: Sequence[CylindricalPart]) -> list[dict[str, Any]]:
+    """Return every connected component: bounded or not, a point of it, and bounds of y over intervals of x."""
+    x, y = region.names
+    listed = []
+    for number, component in enumerate(region.components):
+        own = [part for part in parts if part.component == number]
+        listed.append(
+            {
+                "bounded": component.bounded,
+                "sample": _point(region, region.cells[component.cells[0]].sample),
+                "parts_are_whole": are_whole(region, parts),
+                "parts": [
+                    {
+                        x: [end(part.low, "-", x), end(part.high, "+", x)],
+                        y: [_edge(part.lower, "-", y), _edge(part.upper, "+", y)],
+                        "closed": [part.begins, part.reaches],
+                    }
+                    for part in own
+                ],
+            }
+        )
+    return listed
+
+
+def excluded_of(region: PlaneRegion) -> dict[str, Any]:
+    """Return isolated points and curves that the region surrounds without containing them, and a point of each component."""
+    x, y = region.names
+    points = [
+        {x: hole.x.text(x), y: hole.y.text(y) if hole.y is not None else f"about {float(hole.near[1]):.6g}"}
+        for hole in region.holes
+    ]
+    samples = [_point(region, region.cells[component.cells[0]].sample) for component in region.components]
+    curves = [f"{factor} == 0" for factor in region.surrounded()]
+    return {"excluded_points": points, "excluded_curves": curves, "sample_points": samples}
+
+
+# The polynomial of a stability region: given, or that of a plant whose gain has free entries.
+
+
+#: The determinants that decide for a polynomial with parameters grow too large beyond this degree.
+MOST_DEGREE = 40
+
+
+@dataclass(frozen=True)
+class RegionQuestion:
+    """The polynomial's origin (gains that are given, else the plant itself), the parameters, and what stable means."""
+
+    plant: StateSpace
+    K: Matrix | None
+    L: Matrix | None
+    parameters: tuple[str, ...]
+    boundary: StabilityBoundary
+
+    @cached_property
+    def polynomial(self) -> Scalar:
+        """χ: the polynomial itself, or det(sI − A), det(sI − A + BK), det(sI − A + LC), or the product of the last two."""
+        m, variable = self.plant.matrices, self.plant.variable
+        if self.plant.polynomial is not None:
+            return self.plant.polynomial
+        moved = [m.A - m.B @ self.K] if self.K is not None else []
+        moved += [m.A - self.L @ m.C] if self.L is not None else []
+        found = Scalar.of(1)
+        for matrix in moved or [m.A]:
+            found = found * matrix.characteristic_polynomial(variable)
+        return found
+
+    @property
+    def limits(self) -> dict[str, Any]:
+        """The boundary as keywords."""
+        margin, radius = self.boundary.margin, self.boundary.radius
+        discrete = self.boundary.discrete
+        return {
+            "discrete": discrete,
+            "margin": None if margin.is_zero else margin,
+            "radius": None if radius.is_one else radius,
+        }
+
+    @cached_property
+    def critical(self) -> CriticalPolynomials:
+        """Where roots can cross the boundary."""
+        return CriticalPolynomials(self.polynomial, self.boundary, self.plant.symbols.signs)
+
+    @property
+    def symbols(self) -> tuple[str, ...]:
+        """The names in the polynomial that are no parameters."""
+        own = (self.polynomial.names | self.boundary.names) - {self.boundary.variable}
+        return tuple(sorted(own - set(self.parameters)))
+
+
+def read_question(
+    plant: StateSpace, gains: dict[str, object], parameters: object, margin: object, radius: object
+) -> RegionQuestion:
+    """Return the question; raises `InputError` where its parts do not fit together."""
+    if plant.polynomial is not None and any(gain is not None for gain in gains.values()):
+        name = next(name for name, gain in gains.items() if gain is not None)
+        message = f"both a polynomial and the gain {name} are given"
+        raise InputError(
+            message, where=f"specification.{name}", repair="keep one of them; a gain needs a plant A, B, C"
+        )
+    plant = plant.knowing(*gains.values())
+    found: dict[str, Matrix | None] = dict.fromkeys(gains)
+    if gains["K"] is not None:
+        plant.require("B", task="the gain K")
+        found["K"] = read_gain(gains["K"], plant, "K", (plant.inputs, plant.order))
+    if gains["L"] is not None:
+        plant.require("C", task="the gain L")
+        found["L"] = read_gain(gains["L"], plant, "L", (plant.order, plant.outputs))
+    boundary = _boundary(plant, margin, radius)
+    asked = RegionQuestion(plant, found["K"], found["L"], (), boundary)
+    roots = (asked.polynomial.field | boundary.margin.field | boundary.radius.field).numbers.names
+    if roots:
+        message = f"the data contain {roots[0]}, and regions are found for polynomials with rational coefficients"
+        repair = "write a symbol in its place: the inequalities then hold for its value"
+        raise InputError(message, where="specification.polynomial", repair=repair)
+    names = sorted(asked.polynomial.names - {plant.variable})
+    written = [name for name in names if (f := function_named(name)) is not None and not f.square]
+    if written:
+        message = f"{written[0]} is no polynomial, and a region is described by polynomials in its parameters"
+        raise InputError(message, where="plant", repair="write a symbol in its place, or give numbers")
+    degree = asked.polynomial.degree(plant.variable)
+    if names and degree > MOST_DEGREE:
+        message = f"a polynomial of degree {degree} with parameters, more than {MOST_DEGREE}"
+        raise BudgetExceeded(message, where="specification.polynomial", repair="put numbers in place of the symbols")
+    if parameters is not None:
+        chosen = read_names(parameters, "parameters")
+        if plant.variable in chosen:
+            message = f"{plant.variable} is the variable of the polynomial"
+            raise InputError(message, where="specification.parameters", repair="leave it out")
+        _require_occurring(chosen, asked, plant)
+    else:
+        gained = {name for gain in found.values() if gain is not None for name in gain.names}
+        chosen = _free((gained or set(names)) - boundary.names or set(names), plant)
+    shared = boundary.names.intersection(chosen)
+    if shared:
+        name = "radius" if plant.is_discrete else "margin"
+        message = f"the {name} contains the parameter {min(shared)}"
+        raise InputError(
+            message, where=f"specification.{name}", repair="write another name, or leave it out of parameters"
+        )
+    return RegionQuestion(plant, found["K"], found["L"], chosen, boundary)
+
+
+def _require_occurring(chosen: tuple[str, ...], asked: RegionQuestion, plant: StateSpace) -> None:
+    """Raise `InputError` for a parameter that is neither declared nor in the data, unless they have no symbol at all."""
+    data = set(plant.matrices.symbols) if plant.polynomial is None else plant.polynomial.names
+    names = data.union(*(gain.names for gain in (asked.K, asked.L) if gain is not None)) - {plant.variable}
+    declared = set(plant.symbols.signs) - plant.symbols.named
+    absent = [name for name in chosen if name not in names | declared | asked.boundary.names]
+    if names and absent:
+        near = get_close_matches(absent[0], sorted(names), 1)
+        repair = f"did you mean {near[0]}? " if near else ""
+        repair += f"its symbols: {', '.join(sorted(names))}; leave {absent[0]} out, or declare it in [symbols]"
+        message = (
+            f"the parameter {absent[0]} does not occur in the {'plant' if plant.polynomial is None else 'polynomial'}"
+        )
+        raise InputError(message, where="specification.parameters", repair=repair)
+
+
+def _free(names: set[str], plant: StateSpace) -> tuple[str, ...]:
+    """Return the names whose sign is not declared, or all of them where every one has a sign."""
+    free = sorted(name for name in names if plant.symbols.sign(name) == "real")
+    return tuple(free or sorted(names))
+
+
+def _boundary(plant: StateSpace, margin: object, radius: object) -> StabilityBoundary:
+    """Return what stable means; raises `InputError` for a margin in discrete time, a radius in continuous time."""
+    name, other = ("margin", "radius") if plant.is_discrete else ("radius", "margin")
+    wrong, value = (margin, radius) if plant.is_discrete else (radius, margin)
+    if wrong is not None:
+        message = f"a {name} is for {'continuous' if plant.is_discrete else 'discrete'} time"
+        raise InputError(message, where=f"specification.{name}", repair=f"give a {other}, or leave it out")
+    if value is None:
+        return StabilityBoundary(plant.variable, plant.is_discrete)
+    where = f"specification.{other}"
+    found = read_scalar(value, plant.symbols.seen(value), where)
+    if plant.variable in found.names:
+        message = f"the {other} contains {plant.variable}, the variable of the polynomial"
+        raise InputError(message, where=where, repair="write another name")
+    signs = plant.symbols.signs
+    if not plant.is_discrete:
+        if sign_of(found, signs) in {"negative", "nonpositive"} and not found.is_zero:
+            message = f"the margin is {found}, which is negative"
+            raise InputError(message, where=where, repair="all roots shall lie in Re s < -margin: give a margin >= 0")
+        return StabilityBoundary(plant.variable, margin=found)
+    if sign_of(found, signs) in {"zero", "negative", "nonpositive"} or sign_of(found - 1, signs) == "positive":
+        message = f"the radius is {found}, which is not between 0 and 1"
+        raise InputError(
+            message, where=where, repair="all roots shall lie in |z| < radius: give a radius > 0, at most 1"
+        )
+    return StabilityBoundary(plant.variable, discrete=True, radius=found)
 
 
 @dataclass(frozen=True, eq=False, repr=False)

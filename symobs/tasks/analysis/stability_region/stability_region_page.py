@@ -5,20 +5,18 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, cast
 
 from symobs.exact import Scalar
-from symobs.formula.phrases.spoken import Counted
+from symobs.formula.phrases.languages import Counted
 from symobs.formula.tree import HoldsExactlyWhere, Literal, Power, Product, Quotient, Sum, SymbolList
 from symobs.proof.derivation import CaseStep, Conclude, Inequalities, RegionSummary, Step
 from symobs.proof.derivation.builder import predicate, relation, sentence
 from symobs.proof.derivation.region_check import findings_of_conditions, findings_of_region, interval_relations
 from symobs.stability.criteria.stability import hurwitz_matrix
-from symobs.stability.plots.region_plot import picture_of_line
+from symobs.stability.plots import picture_of_line
 from symobs.stability.regions.description import are_whole, is_written, relations_of
-from symobs.stability.regions.interval_region import LineRegion
-from symobs.stability.regions.plane_region import PlaneRegion
+from symobs.stability.regions.region import LineRegion, PlaneRegion
 from symobs.system.conditions import sign_of
 from symobs.tasks.analysis.page_parts import WRITTEN_UP_TO, determinant_form, given, state_signs
-from symobs.tasks.analysis.stability_region.stability_region import StabilityRegion
-from symobs.tasks.analysis.stability_region.stability_region_fields import solved
+from symobs.tasks.analysis.stability_region.stability_region import StabilityRegion, solved
 from symobs.tasks.result import page_of
 
 if TYPE_CHECKING:

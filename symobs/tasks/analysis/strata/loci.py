@@ -14,14 +14,14 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 from symobs.exact import EIGENVALUE, Ideal, Scalar, TooLarge, resultant
-from symobs.exact.ideals.ideal import FEW
+from symobs.exact.ideals import FEW
 from symobs.ground.dataclass import dataclass
 from symobs.system.conditions import FACTORED_UP_TO, real_consequences, sign_of, vanishing_factors
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
 
-    from symobs.exact.ideals.quotient import QuotientRing
+    from symobs.exact.ideals import QuotientRing
 
 #: The most systems that one question may branch into, and terms of the equations of a system that is worked on.
 _BRANCHES = 100

@@ -12,9 +12,9 @@ from symobs.exact.time_functions.matrix_exponential import (
     Exponential,
     Mode,
     NoClosedForm,
+    RootSum,
     exponential,
 )
-from symobs.exact.time_functions.root_sum import RootSum
 from symobs.formula.tree import Identity, Letter, Literal, Negative, Power, Product, Sum
 from symobs.formula.tree.term import identity, letter
 from symobs.ground.dataclass import dataclass
@@ -22,8 +22,7 @@ from symobs.ground.errors import InputError
 from symobs.proof.certificate.claims import Claim
 from symobs.proof.derivation.builder import Builder, relation
 from symobs.system.conditions import vanishing_factors
-from symobs.tasks.analysis.factored_form import formula_of_factored
-from symobs.tasks.analysis.page_parts import given
+from symobs.tasks.analysis.page_parts import formula_of_factored, given
 from symobs.tasks.analysis.time_response.damping_cases import DampingCases, Signs, rate_of, time_environment, with_signs
 from symobs.tasks.result import Result, choose, method, task
 

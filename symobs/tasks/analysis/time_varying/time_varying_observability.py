@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 from symobs.exact import Matrix, Scalar, derivative, echelon, independent_rows
 from symobs.exact.core.generators import substitute
-from symobs.exact.time_functions.trigonometric_sums import collected
+from symobs.exact.time_functions.antiderivative import collected
 from symobs.formula.tree import Environment, Integral, Literal
 from symobs.formula.tree.term import Term, block, identity, letter
 from symobs.ground.dataclass import dataclass
@@ -26,12 +26,14 @@ from symobs.tasks.analysis.rank.rank_test import determinant_term
 from symobs.tasks.analysis.strata.loci import distance_from
 from symobs.tasks.analysis.strata.strata import losses, strata
 from symobs.tasks.analysis.time_response.damping_cases import reject, vanishing_denominators
-from symobs.tasks.analysis.time_varying.time_interval import (
+from symobs.tasks.analysis.time_varying.time_varying_solution import (
+    TimeVaryingRequest,
+    closed_form,
+    dependences,
     instant_where_not_zero,
     reject_poles,
     reject_sizes_and_names,
 )
-from symobs.tasks.analysis.time_varying.time_varying_solution import TimeVaryingRequest, closed_form, dependences
 from symobs.tasks.analysis.time_varying.transition_matrix import START, TERMS_UP_TO, TIME
 from symobs.tasks.result import Case, Result, choose, method, task_in_time
 

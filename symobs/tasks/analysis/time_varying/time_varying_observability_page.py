@@ -13,7 +13,7 @@ from symobs.proof.derivation.builder import relation, sentence
 from symobs.system.conditions import never_zero
 from symobs.tasks.analysis.page_parts import determinant_form, given, stratum_of, undecided
 from symobs.tasks.analysis.rank.rank_page import outside_cases
-from symobs.tasks.analysis.strata.repeated_eigenvalues import distances, systems_of
+from symobs.tasks.analysis.strata.strata import distances, systems_of
 from symobs.tasks.analysis.time_varying.time_varying_observability import TimeVaryingObservability
 from symobs.tasks.analysis.time_varying.time_varying_solution import dependences, has_functions
 from symobs.tasks.analysis.time_varying.transition_matrix import (

@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING
 
 from symobs.exact import Matrix, Scalar, antiderivative, exponential_of_integral, roots_of
 from symobs.exact.core.generators import substitute
+from symobs.exact.time_functions.antiderivative import collected
 from symobs.exact.time_functions.matrix_exponential import NoClosedForm, OpenBranch, exponential
-from symobs.exact.time_functions.trigonometric_sums import collected
 from symobs.ground.dataclass import dataclass
 from symobs.system.conditions import sign_of
 

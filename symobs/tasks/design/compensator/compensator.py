@@ -6,7 +6,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any, Self
 
 from symobs.exact import Matrix, Scalar, controller, modulo, transfer
-from symobs.exact.linear_algebra.realisation import Realisation
+from symobs.exact.linear_algebra.transfer_function import Realisation
 from symobs.formula.tree import Environment
 from symobs.formula.tree.term import identity, letter
 from symobs.ground.dataclass import dataclass
@@ -28,7 +28,7 @@ from symobs.tasks.design.full_order.observer import ObserverDesign
 from symobs.tasks.design.full_order.state_feedback import StateFeedbackDesign
 from symobs.tasks.design.gain.gain_cases import half_of, places_where
 from symobs.tasks.design.gain.gain_design import letters_of
-from symobs.tasks.design.reduced_order.partition import completed
+from symobs.tasks.design.reduced_order.reduced_order_observer import completed
 from symobs.tasks.result import Result, choose, method, poles_of, task
 
 if TYPE_CHECKING:

@@ -5,35 +5,157 @@ from __future__ import annotations
 from collections import Counter
 from typing import TYPE_CHECKING, Any
 
-from symobs.exact import Factored, Matrix, Root, Scalar, from_coefficients, root_of_pole, roots_of, transfer
+from symobs.exact import Factored, Matrix, Root, Scalar, from_coefficients, rank, root_of_pole, roots_of, transfer
 from symobs.formula.phrases import PHRASES
 from symobs.formula.tree import Evaluated, HoldsExactlyWhere, Literal, Quotient, Roots
 from symobs.formula.tree.term import Term, block
 from symobs.proof.derivation.builder import Builder, predicate, relation
 from symobs.stability.criteria.stability import monic, no_stable_compensator, stability
-from symobs.stability.inequalities.written_form import as_inequality
-from symobs.tasks.analysis.factored_form import factored_form, formula_of_factored
-from symobs.tasks.analysis.page_parts import given, in_blocks, is_narrow
+from symobs.stability.inequalities.simplify import as_inequality
+from symobs.system.specification import DesiredPolynomial
+from symobs.tasks.analysis.page_parts import factored_form, formula_of_factored, given, in_blocks, is_narrow
+from symobs.tasks.analysis.rank.rank_page import square_test
+from symobs.tasks.design import page_parts as readability
 from symobs.tasks.design.compensator.compensator import CompensatorDesign
-from symobs.tasks.design.compensator.defective_poles import caution_repeated
-from symobs.tasks.design.compensator.hidden_modes import caution_hidden
-from symobs.tasks.design.compensator.side_by_side_page import can_stand_side_by_side, write_side_by_side
+from symobs.tasks.design.compensator.output_feedback import caution_hidden
 from symobs.tasks.design.full_order.observer import model_and_innovation, write_observer
-from symobs.tasks.design.gain.gain_page import name_entries, write_gain
-from symobs.tasks.design.gain.gain_request import page_style
-from symobs.tasks.design.gain.placement_problem import FEEDBACK, OBSERVER
-from symobs.tasks.design.page_parts import readability
-from symobs.tasks.design.page_parts.block_diagrams import draw_compensator, draw_loop, draw_unity_loop
-from symobs.tasks.design.page_parts.time_responses import plot_estimate
-from symobs.tasks.design.pole_placement.fresh_names import fresh_names, taken_names
+from symobs.tasks.design.full_order.state_feedback import StateFeedbackDesign
+from symobs.tasks.design.gain.gain_design import FEEDBACK, OBSERVER, PlacementProblem, page_style
+from symobs.tasks.design.gain.gain_page import name_coefficients, name_entries, say_as_required, write_case, write_gain
+from symobs.tasks.design.page_parts import caution_poles, draw_compensator, draw_loop, draw_unity_loop, plot_estimate
+from symobs.tasks.design.pole_placement.sylvester import fresh_names, taken_names
 from symobs.tasks.result import page_of
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from symobs.formula.tree import Fact
+    from symobs.formula.tree import Fact, Relation
     from symobs.proof.derivation.builder import Slot
     from symobs.tasks.design.compensator.output_feedback import OutputFeedback
+    from symobs.tasks.design.gain.gain_design import GainDesign
+
+
+# A repeated control pole, which a matrix with fewer eigenvectors than places for it makes defective.
+
+
+def caution_repeated(page: Builder, design: OutputFeedback) -> None:
+    """Warn of a repeated control pole that is defective: its exponential alone does not bound x."""
+    plant = design.plant
+    desired = design.feedback.desired
+    if desired is None or plant.symbols.signs or not desired.is_numeric or plant.inputs > 1:
+        return
+    for factor, power in desired.grouped():
+        if power > 1 and factor.degree(plant.variable) == 1 and factor != page.s.scalar:
+            pole = -factor.coefficients(plant.variable)[1]
+            closed, size = FEEDBACK.closed_loop_matrix(page), page.identity(plant.order)
+            length = abs(pole.fraction())
+            shift = size if length == 1 else page.value(Scalar.of(length)) @ size
+            offset = closed + shift if pole.fraction() < 0 else closed - shift
+            found = rank(offset.value)
+            if plant.order - found >= power:
+                continue
+            held = relation(offset.apply("rank"), found)
+            single = page["phi_c"] / page.value(desired.polynomial / factor)
+            instead = _with_distinct_poles(page, desired)
+            page.caution(
+                "defective" if instead is None else "defective_instead",
+                held,
+                pole=Roots(single.formula, roots_of(factor, plant.variable)),
+                matrix=relation(offset, offset.as_value) if plant.order == readability.OFFSET_ORDER else held,
+                **({} if instead is None else {"instead": instead}),
+            )
+            return
+
+
+def _with_distinct_poles(page: Builder, desired: DesiredPolynomial) -> Relation | None:
+    """Return det(sI − A + BK) = φ for the desired poles, repeated ones moved further in, where a gain places them."""
+    plant, variable = page.plant, page.plant.variable
+    further_in = page.s.scalar * 2 if plant.is_discrete else page.s.scalar + 1
+    factors: dict[Scalar, None] = {}
+    for factor in desired.factors:
+        moved = factor
+        while moved in factors:
+            moved = monic(moved.substitute({variable: further_in}), variable)
+        factors[moved] = None
+    distinct = DesiredPolynomial(variable, tuple(factors))
+    gain = StateFeedbackDesign.of(plant, distinct, "ackermann").answer["K"]
+    if gain is None:
+        return None
+    pencil = page.s @ page.identity(plant.order) - page["A"] + page["B"] @ page.value(gain)
+    product = Factored(Scalar.of(1), tuple((factor, 1) for factor in factors))
+    return relation(pencil.apply("det"), page.term(formula_of_factored(product)))
+
+
+# Observer and state feedback in two columns, line by line: the same placement for (Aᵀ, Cᵀ) and for (A, B).
+
+
+def can_stand_side_by_side(design: CompensatorDesign) -> bool:
+    """Return whether both pairs pass their tests, if only off the zeros of a determinant."""
+    sides = (design.feedback, design.estimator)
+    return design.exists and all(
+        part.fixed_polynomial.is_one and part.answer[part.letter] is not None for part in sides
+    )
+
+
+def write_side_by_side(page: Builder, design: CompensatorDesign) -> None:
+    """Write the two columns, what transposition makes of the left one, and the exceptions of both."""
+    with page.section("side_by_side"):
+        with page.section("left_observer"):
+            _column(page, design.estimator, OBSERVER)
+        with page.section("right_state_feedback"):
+            _column(page, design.feedback, FEEDBACK)
+        own = OBSERVER.error_determinant(page)
+        page.equal(relation(own, _determinant(page, OBSERVER), page["phi_o"]), say="transposed_back")
+        page.equal(relation(page["L"], design.answer["L"]), say="gain_transposed", answer=True)
+        for part, side in ((design.estimator, OBSERVER), (design.feedback, FEEDBACK)):
+            assert part.desired is not None  # noqa: S101 - a compensator is asked for by its polynomials
+            caution_poles(page, part.desired, side.phi, side.kind)
+            for case in part.case_tree:
+                write_case(page, case, side)
+
+
+def _column(page: Builder, design: GainDesign, side: PlacementProblem) -> None:
+    """Write the test, the polynomial, the gain and its check for one of the pairs."""
+    A, order, value = _matrix(page, side), page.plant.order, design.answer[side.gain]
+    if side is OBSERVER:
+        page.define("O", block([[page["C"] @ page["A"] ** k if k else page["C"]] for k in range(order)]), silent=True)
+        test, gain, found = page["O"].T, page["L"].T, value.T
+        blocks = block([[A**k @ page["C"].T if k else page["C"].T for k in range(order)]])
+        page.conclude_silently(relation(test, blocks))
+    else:
+        gain, found = page["K"], value
+        blocks = block([[A**k @ page["B"] if k else page["B"] for k in range(order)]])
+        page.define("Ctr", blocks, silent=True)
+        test = page["Ctr"]
+    page.equal(
+        relation(test, *([blocks] if order <= readability.COLUMN_ORDER else []), test.as_value), say=f"test_{side.kind}"
+    )
+    if square_test(page, side.matrix, design.test, side.test):
+        page.conclude(f"any_{side.kind}")
+    desired = name_coefficients(page, design, side)
+    page.set(side.gain, value)
+    last = page.value(Matrix.unit(order, order - 1).T)
+    page.equal(
+        relation(gain, last @ test.inverse @ A.apply(f"{side.phi}_at"), found),
+        say=f"gain_{side.kind}",
+        answer=side is FEEDBACK,
+    )
+    grouped = [] if desired.is_expanded else [page.term(formula_of_factored(Factored(Scalar.of(1), desired.grouped())))]
+    say_as_required(page, desired, _determinant(page, side), page.value(desired.polynomial), *grouped)
+
+
+def _matrix(page: Builder, side: PlacementProblem) -> Term:
+    """Return Aᵀ on the left, A on the right."""
+    return page["A"].T if side is OBSERVER else page["A"]
+
+
+def _determinant(page: Builder, side: PlacementProblem) -> Term:
+    """Return det(sI − Aᵀ + CᵀLᵀ) on the left, det(sI − A + BK) on the right."""
+    if side is FEEDBACK:
+        return side.error_determinant(page)
+    moved = page["C"].T @ page["L"].T
+    return (page.s @ page.identity(page.plant.order) - page["A"].T + moved).apply("det")
+
 
 #: Up to this order positive coefficients make a polynomial stable in continuous time.
 _DECIDED_BY_SIGNS = 2
@@ -394,3 +516,28 @@ def _poles(design: OutputFeedback, polynomial: Scalar) -> tuple[Root, ...]:
             return roots_of(polynomial, design.plant.variable)
         poles += [root_of_pole(pole, design.plant.variable) for pole in desired.poles]
     return tuple(poles)
+
+
+# Remark on a compensator that is unstable in open loop.
+
+
+def caution_law(page: Builder, loop: OutputFeedback) -> None:
+    """Warn where the law is surely unstable by itself, which a loop with stable poles does not show."""
+    plant, own = page.plant, loop.own_matrix
+    chi = own.characteristic_polynomial(plant.variable)
+    minimal = page.defines("F_z")
+    if chi.names - {plant.variable} or (minimal and plant.matrices.has_feedthrough):
+        return
+    if stability(chi, plant.variable, {}, discrete=plant.is_discrete).verdict != "no":
+        return
+    if minimal:
+        matrix = page["F_z"] - page["G_z"] @ page["K_2"]
+    else:
+        A, B, C, K, L = (page[name] for name in "ABCKL")
+        matrix = A - B @ K - L @ C
+        matrix = matrix + L @ page["D"] @ K if plant.matrices.has_feedthrough else matrix
+    page.set("A_c", own)
+    determinant = (page.s @ page.identity(own.shape[0]) - page["A_c"]).apply("det")
+    time = "discrete" if plant.is_discrete else "continuous"
+    unstable = predicate("unstable", determinant)
+    page.caution(f"law_unstable_{time}", unstable, matrix=relation(page["A_c"], matrix, page["A_c"].as_value))

@@ -9,7 +9,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any, Self
 
 from symobs.exact import Matrix, Scalar, transfer
-from symobs.exact.linear_algebra.realisation import Realisation
+from symobs.exact.linear_algebra.transfer_function import Realisation
 from symobs.formula.tree import Environment
 from symobs.formula.tree.term import block, identity, letter
 from symobs.ground.dataclass import dataclass

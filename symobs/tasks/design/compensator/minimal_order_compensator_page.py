@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from symobs.exact import Matrix, Scalar
 from symobs.formula.tree import Literal, Quotient
 from symobs.formula.tree.term import Term, block
 from symobs.proof.derivation import CaseStep, Conclude
 from symobs.proof.derivation.builder import Builder, predicate, relation, sentence
 from symobs.system.conditions import vanishing_factors
-from symobs.tasks.analysis.factored_form import formula_of_factored
-from symobs.tasks.analysis.page_parts import given, in_blocks
+from symobs.tasks.analysis.page_parts import formula_of_factored, given, in_blocks
+from symobs.tasks.design import page_parts as readability
 from symobs.tasks.design.compensator.compensator_page import (
     Namer,
+    caution_repeated,
     caution_unstable_loop,
     define_or_hold,
     named_return_path,
@@ -20,17 +23,18 @@ from symobs.tasks.design.compensator.compensator_page import (
     return_path_of_several,
     say_stability,
 )
-from symobs.tasks.design.compensator.defective_poles import caution_repeated
-from symobs.tasks.design.compensator.hidden_modes import caution_hidden
 from symobs.tasks.design.compensator.minimal_order_compensator import MinimalOrderCompensator
+from symobs.tasks.design.compensator.output_feedback import caution_hidden
+from symobs.tasks.design.full_order.observer import write_observer
+from symobs.tasks.design.gain.gain_design import FEEDBACK, OBSERVER, page_style
 from symobs.tasks.design.gain.gain_page import name_entries, write_gain
-from symobs.tasks.design.gain.gain_request import page_style
-from symobs.tasks.design.gain.placement_problem import FEEDBACK
-from symobs.tasks.design.page_parts import readability
-from symobs.tasks.design.page_parts.component_equations import combination
-from symobs.tasks.design.page_parts.time_responses import plot_estimate
+from symobs.tasks.design.page_parts import combination, plot_estimate
+from symobs.tasks.design.reduced_order.reduced_order_observer import ReducedOrderObserver
 from symobs.tasks.design.reduced_order.reduced_order_observer_page import observer_state, write_observer_of_rest
 from symobs.tasks.result import page_of
+
+if TYPE_CHECKING:
+    from symobs.tasks.design.compensator.output_feedback import OutputFeedback
 
 
 @page_of(MinimalOrderCompensator)
@@ -236,3 +240,30 @@ def _plain(page: Builder, term: Term) -> Term:
     """Return a value written out, a 1×1 matrix as a number."""
     value = term.value
     return page.value(value[0, 0] if isinstance(value, Matrix) and value.shape == (1, 1) else value)
+
+
+# The first part of pages with estimated-state feedback: both gains, and the law solved for the input.
+
+
+def write_both_gains(page: Builder, loop: OutputFeedback) -> None:
+    """Write the data, the feedback and the observer."""
+    plant = page.plant
+    given(page, ("control", loop.feedback.desired), ("observer", loop.estimator.desired))
+    with page.section("state_feedback"):
+        write_gain(page, loop.feedback, FEEDBACK, page_style("auto", plant, several=plant.inputs > 1))
+    if isinstance(loop.estimator, ReducedOrderObserver):
+        write_observer_of_rest(page, loop.estimator)
+        return
+    with page.section("observer"):
+        write_gain(page, loop.estimator, OBSERVER, page_style("auto", plant, several=plant.outputs > 1))
+        if loop.answer["L"] is not None:
+            write_observer(page)
+
+
+def is_ill_posed(page: Builder, loop: OutputFeedback) -> bool:
+    """Write that the law cannot be solved for u although both gains exist; return whether this is the case."""
+    if loop.exists or None in (loop.answer["K"], loop.answer["L"]) or not isinstance(loop, MinimalOrderCompensator):
+        return False
+    with page.section("compensator"):
+        write_control_law(page, loop, large=False)
+    return True

@@ -5,19 +5,19 @@ from __future__ import annotations
 from functools import cached_property, partial
 from typing import TYPE_CHECKING, Any, ClassVar, Self, TypeAlias
 
-from symobs.exact import Factored, Matrix, Scalar, factored, resultant, roots_of, transfer
-from symobs.exact.linear_algebra.realisation import Realisation, closed
-from symobs.exact.linear_algebra.transfer_function import transfer_matrix
-from symobs.formula.tree import Environment
+from symobs.exact import Factored, Matrix, Scalar, factored, pole_and_zero_polynomial, resultant, roots_of, transfer
+from symobs.exact.linear_algebra.transfer_function import Realisation, closed, transfer_matrix
+from symobs.formula.tree import Environment, HoldsExactlyWhere, Literal, Quotient, Roots
 from symobs.formula.tree.term import Term, identity, letter
 from symobs.ground.dataclass import dataclass
 from symobs.ground.errors import CertificateRejected
 from symobs.ground.on_demand import OnDemand
 from symobs.proof.certificate.claims import Certificate, Claim, check
-from symobs.proof.derivation.builder import relation
-from symobs.stability.criteria.stability import no_stable_compensator, stability, stable_somewhere
+from symobs.proof.derivation.builder import predicate, relation
+from symobs.stability.criteria.stability import monic, no_stable_compensator, stability, stable_somewhere
+from symobs.stability.inequalities.simplify import as_inequality
 from symobs.system.conditions import sign_of, vanishing_factors
-from symobs.tasks.analysis.factored_form import cancelled, over
+from symobs.tasks.analysis.page_parts import cancelled, over
 from symobs.tasks.analysis.strata.strata import places, solved
 from symobs.tasks.design.gain.gain_cases import places_where
 from symobs.tasks.design.gain.gain_design import letters_of
@@ -27,6 +27,7 @@ from symobs.tasks.result.control_systems import Controller
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping
 
+    from symobs.proof.derivation.builder import Builder
     from symobs.system import StateSpace
     from symobs.system.conditions import Condition
     from symobs.system.specification import DesiredPolynomial
@@ -36,12 +37,19 @@ if TYPE_CHECKING:
     from symobs.tasks.design.gain.gain_design import GainDesign
     from symobs.tasks.design.reduced_order.reduced_order_observer import ReducedOrderObserver
 
+
 #: What one half of a compensator is asked for by: its polynomial, or its gain.
 Asked: TypeAlias = "DesiredPolynomial | Matrix"
+
+
 #: The Hurwitz determinants of a compensator with more terms than this take seconds, and only points are tried.
 _DECIDABLE_TERMS = 400
+
+
 #: What an answer has none of where there is no loop.
 _OF_A_LOOP = ("F_stable", "closed_loop_polynomial", "closed_loop", "closed_loop_matrix", "closed_loop_matrix_estimate")
+
+
 #: What follows from K, L and F, and the property that finds it.
 _FOUND = {
     "F_stable": "own_stability", "compensator_stable": "law_stability", "compensator_matrix": "own_matrix",
@@ -343,8 +351,6 @@ class OutputFeedback(Result):
     @cached_property
     def law_stability(self) -> str:
         """Whether the compensator by itself is stable, with the modes that F does not show."""
-        from symobs.tasks.design.compensator.hidden_modes import law_stability  # noqa: PLC0415 - gains in a loop of many are not asked
-
         return law_stability(self.answer["F"], self.own_matrix, self.plant, self.own_stability)
 
     @cached_property
@@ -419,3 +425,66 @@ def _factors_of(design: GainDesign | ReducedOrderObserver) -> tuple[tuple[Scalar
     if design.desired is not None:
         return design.desired.grouped()
     return factored(design.answer["polynomial"], design.plant.variable).factors
+
+
+# The modes of a compensator's own state that cancel in F: F may be stable where the law by itself is not.
+
+
+#: A polynomial of more terms is not decided.
+_TERMS = 400
+
+
+#: The most inputs, or outputs, from all of whose minors the poles of F are found.
+_MOST = 3
+
+
+def hidden_modes(F: Matrix | Scalar, own_matrix: Matrix, variable: str) -> tuple[Scalar, Scalar] | None:
+    """Return the polynomial of F's poles, and that of the modes which cancel in F; None where they are too long.
+
+    `own_matrix` is the state matrix of the compensator that F belongs to.
+    """
+    if isinstance(F, Matrix):
+        if F.size > _TERMS or max(F.shape) > _MOST:
+            return None
+        poles = pole_and_zero_polynomial(F, variable)[0]
+    else:
+        poles = F.denominator
+    if poles.size > _TERMS:
+        return None
+    own = own_matrix.characteristic_polynomial(variable)
+    return poles, monic((own / poles).numerator, variable)
+
+
+def law_stability(F: Matrix | Scalar, own_matrix: Matrix, plant: StateSpace, stability_of_poles: str) -> str:
+    """Return whether the compensator by itself is stable: its poles, and the modes that cancel in F."""
+    found = hidden_modes(F, own_matrix, plant.variable)
+    if found is None:
+        return "undecided"
+    hidden = stability(found[1], plant.variable, plant.symbols.signs, discrete=plant.is_discrete).verdict
+    if "no" in (hidden, stability_of_poles):
+        return "no"
+    return stability_of_poles if hidden == "yes" else hidden
+
+
+def caution_hidden(page: Builder, F: Matrix | Scalar, own_matrix: Matrix) -> None:
+    """Warn where a mode that cancels in F is not stable, surely or for some parameters."""
+    plant = page.plant
+    found = hidden_modes(F, own_matrix, plant.variable)
+    if found is None or found[1].degree(plant.variable) < 1:
+        return
+    poles, hidden = found
+    hidden_stability = stability(hidden, plant.variable, plant.symbols.signs, discrete=plant.is_discrete)
+    if hidden_stability.verdict == "yes":
+        return
+    own = (page.s @ page.identity(own_matrix.shape[0]) - page["A_c"]).apply("det")
+    rest = page.term(Quotient(own.formula, Literal(monic(poles, plant.variable))))
+    if rest.value != hidden:
+        return
+    modes = Roots(rest.formula, roots_of(hidden, plant.variable))
+    time = "discrete" if plant.is_discrete else "continuous"
+    if hidden_stability.verdict == "no":
+        page.caution(f"hides_{time}", predicate("unstable", rest), relation(rest, hidden), modes=modes)
+        return
+    solved = [as_inequality(value, plant.symbols.signs) for value in hidden_stability.positive]
+    where = HoldsExactlyWhere(predicate("stable", rest), tuple(relation(*parts) for parts in solved))
+    page.caution("some_hidden", relation(rest, hidden), modes=modes, where=where)

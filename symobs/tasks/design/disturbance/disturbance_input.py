@@ -7,7 +7,7 @@ from typing import NamedTuple
 from symobs.exact import Matrix
 from symobs.ground.errors import InputError, ShapeMismatch
 from symobs.system import StateSpace, read_matrix
-from symobs.system.matrices import as_rows
+from symobs.system.reading import as_rows
 
 
 class Exosystem(NamedTuple):

@@ -6,22 +6,18 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from symobs.exact import Matrix
-from symobs.exact.linear_algebra.realisation import Realisation
+from symobs.exact.linear_algebra.transfer_function import Realisation
 from symobs.formula.tree.term import Term, letter
 from symobs.ground.dataclass import dataclass
 from symobs.proof.derivation.builder import Builder, relation
 from symobs.tasks.analysis.page_parts import given
 from symobs.tasks.analysis.rank.observability import Observability
-from symobs.tasks.design.full_order.observer_existence_page import write_ansatz, write_found
 from symobs.tasks.design.full_order.placement_methods import register_methods
-from symobs.tasks.design.gain.gain_design import GainDesign
+from symobs.tasks.design.gain.gain_design import OBSERVER, GainDesign, design_gain, page_style
 from symobs.tasks.design.gain.gain_page import write_gain
-from symobs.tasks.design.gain.gain_request import design_gain, page_style
-from symobs.tasks.design.gain.placement_problem import OBSERVER
-from symobs.tasks.design.page_parts.block_diagrams import draw_collected, draw_copy
-from symobs.tasks.design.page_parts.component_equations import write_components
-from symobs.tasks.design.page_parts.time_responses import plot_error
+from symobs.tasks.design.page_parts import draw_collected, draw_copy, plot_error, write_components
 from symobs.tasks.design.pole_placement.multiple_outputs import pair_of
+from symobs.tasks.design.pole_placement.sylvester import fresh_names, taken_names
 from symobs.tasks.result import Case, Result, task
 from symobs.tasks.result.control_systems import Controller, observer_of
 
@@ -33,6 +29,59 @@ if TYPE_CHECKING:
     from symobs.system.specification import Entries, GainText, Name, Poles, PolynomialText
     from symobs.tasks.analysis.rank.rank_test import RankResult
     from symobs.tasks.design.pole_placement.single_output import ObserverPair
+
+
+# The observer from its task: x̂' = F x̂ + G u + H y with nothing known of F, G, H but that the error is to vanish.
+
+
+def write_ansatz(page: Builder, gain: Matrix) -> None:
+    """Write the error of the ansatz, and the choice of F and G that frees it of x and u."""
+    m = page.plant.matrices
+    undetermined(page, "F_x", "f_", (m.A - gain @ m.C).normal())
+    undetermined(page, "H_x", "h_", gain)
+    if m.has_input:
+        undetermined(page, "G_x", "g_", (m.B - gain @ m.D).normal() if m.has_feedthrough else m.B)
+    A, C, F, H = (page[name] for name in ("A", "C", "F_x", "H_x"))
+    model = F @ page["x_hat"]
+    if m.has_input:
+        model = model + page["G_x"] @ page["u"]
+    page.dynamics("x_hat", model + H @ page["y"], say="existence_ansatz")
+    page.signal("e", page["x"] - page["x_hat"], silent=True)
+    moving = (A - H @ C) @ page["x"] - F @ page["x_hat"]
+    choice = [relation(F, A - H @ C)]
+    if m.has_input:
+        wanted: Term = page["B"] - H @ page["D"] if m.has_feedthrough else page["B"]
+        moving = moving + (wanted - page["G_x"]) @ page["u"]
+        choice.insert(0, relation(page["G_x"], wanted))
+    page.equal(
+        relation(page["e"].derivative, moving),
+        say="existence_error",
+        error=relation(page["e"], page["x"] - page["x_hat"]),
+    )
+    page.equal(*choice, say="existence_choice")
+    page.equal(relation(page["e"].derivative, (A - H @ C) @ page["e"]), say="existence_left")
+
+
+def write_found(page: Builder) -> None:
+    """Write the observer with the matrices found."""
+    m, L = page.plant.matrices, page["L"]
+    page.conclude_silently(relation(page["H_x"], L))
+    closed = page["A"] - L @ page["C"]
+    collected, numbers = closed @ page["x_hat"], closed.as_value @ page["x_hat"]
+    if m.has_input:
+        driven = page["B"] - L @ page["D"] if m.has_feedthrough else page["B"]
+        collected, numbers = collected + driven @ page["u"], numbers + driven.as_value @ page["u"]
+    page.equal(
+        relation(page["x_hat"].derivative, collected + L @ page["y"], numbers + L.as_value @ page["y"]),
+        say="existence_observer",
+        answer=True,
+    )
+
+
+def undetermined(page: Builder, name: str, stem: str, value: Matrix) -> None:
+    """Establish a matrix of letters, which stand for what will be chosen."""
+    names = iter(fresh_names(stem, len(value.entries), taken_names(page)))
+    page.set(name, Matrix.of([[page.name_coefficient(next(names), entry) for entry in row] for row in value.rows]))
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -5,16 +5,14 @@ from __future__ import annotations
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from symobs.exact.linear_algebra.realisation import Realisation
+from symobs.exact.linear_algebra.transfer_function import Realisation
 from symobs.formula.tree.term import Term, letter
 from symobs.ground.dataclass import dataclass
 from symobs.tasks.analysis.page_parts import given
 from symobs.tasks.analysis.rank.observability import Controllability
 from symobs.tasks.design.full_order.placement_methods import register_methods
-from symobs.tasks.design.gain.gain_design import GainDesign
+from symobs.tasks.design.gain.gain_design import FEEDBACK, GainDesign, design_gain, page_style
 from symobs.tasks.design.gain.gain_page import write_gain
-from symobs.tasks.design.gain.gain_request import design_gain, page_style
-from symobs.tasks.design.gain.placement_problem import FEEDBACK
 from symobs.tasks.design.pole_placement.multiple_outputs import pair_of
 from symobs.tasks.result import Case, Result, task
 

@@ -14,11 +14,14 @@ from symobs.exact.core.generators import identities
 from symobs.formula.tree import Environment, Relation
 from symobs.formula.tree.term import Term, identity, letter
 from symobs.ground.dataclass import dataclass
-from symobs.ground.errors import CertificateRejected
+from symobs.ground.errors import CertificateRejected, InputError
 from symobs.proof.certificate.claims import Claim, Statement
 from symobs.proof.derivation.builder import relation
 from symobs.stability.criteria.stability import StabilityVerdict, stability
+from symobs.system.specification import desired_polynomial, over_common_data, read_entries, read_gain, reject_both
+from symobs.tasks.analysis.page_parts import HIDDEN
 from symobs.tasks.analysis.strata.strata import region_of
+from symobs.tasks.design import page_parts as readability
 from symobs.tasks.design.gain.gain_claims import (
     claims_of_kernel_family,
     excluded_claims,
@@ -35,27 +38,21 @@ from symobs.tasks.design.gain.gain_kind import (
     NoGainWithZeros,
     UnassignableGain,
 )
-from symobs.tasks.design.pole_placement.decoupled import decoupled_claim, decoupled_gain
-from symobs.tasks.design.pole_placement.fresh_names import fresh_names
-from symobs.tasks.design.pole_placement.gain_family import Family
-from symobs.tasks.design.pole_placement.multiple_outputs import MultiOutputPair
-from symobs.tasks.design.pole_placement.zero_pattern import (
-    RootGain,
-    equations_for,
-    obstacles,
-    unknown_gain,
-    with_zeros,
-)
-from symobs.tasks.result import Result
+from symobs.tasks.design.pole_placement.multiple_outputs import Family, MultiOutputPair, decoupled_claim, decoupled_gain
+from symobs.tasks.design.pole_placement.sylvester import fresh_names
+from symobs.tasks.design.pole_placement.zero_pattern import RootGain, equations_for, obstacles, unknown_gain, with_zeros
+from symobs.tasks.result import Result, choose
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping
 
+    from symobs.proof.derivation.builder import Builder
     from symobs.system import StateSpace
-    from symobs.system.specification import DesiredPolynomial
+    from symobs.system.specification import DesiredPolynomial, Entries, GainText, Name, Poles, PolynomialText
     from symobs.tasks.analysis.rank.rank_test import RankResult
     from symobs.tasks.design.gain.gain_kind import AskedGain, GainKind, Places
     from symobs.tasks.design.pole_placement.single_output import ObserverPair
+
 
 #: What is said of a claim that only a fault of the program can break.
 _BUG = "please report this: it is a bug of symobs"
@@ -415,3 +412,101 @@ def letters_of(plant: StateSpace) -> dict[str, Scalar | Matrix]:
     if m.has_input and m.has_output:
         values["D"] = m.D
     return values
+
+
+# The common part of both gain tasks: reading the specification, choosing the method and its page.
+
+
+#: The members of the family of gains that can be asked for by name.
+MEMBERS = ("simple", "decoupled")
+
+
+def design_gain(
+    kind: type[GainDesign],
+    plant: StateSpace,
+    *,
+    poles: Poles,
+    polynomial: PolynomialText,
+    given: GainText,
+    zero: Entries,
+    member: Name,
+    method: Name,
+) -> Result:
+    """Return the design: with a given gain, with zeros, the requested member of the family, or by a method."""
+    if member not in MEMBERS:
+        message = f"{member[:40]!r} is no member of the family that has a name"
+        raise InputError(message, where="specification.member", repair=f"write one of {', '.join(MEMBERS)}")
+    gain, is_observer = kind.letter, kind.letter == "L"
+    plant = plant.knowing(poles, polynomial, given)
+    plant.require("C" if is_observer else "B", task=kind.task)
+    reject_both(gain, given, poles, polynomial)
+    reject_both(gain, given, zero, None, other="zero")
+    reject_both(gain, given, None if member == "simple" else member, None, other="member")
+    several = plant.outputs if is_observer else plant.inputs
+    shape = (plant.order, several) if is_observer else (several, plant.order)
+    if given is not None:
+        return kind.of_given(plant, read_gain(given, plant, gain, shape))
+    desired = desired_polynomial(plant, poles, polynomial)
+    assert desired is not None  # noqa: S101 - required
+    plant, (desired,) = over_common_data(plant, desired)
+    chosen = choose(kind.task, method, "ackermann" if several == 1 else "sylvester")
+    if member != "simple":
+        reject_both("member", member, zero, None, other="zero")
+        return kind.of(plant, desired, chosen.name, decoupled=True).asked(method)
+    if zero is not None:
+        return kind.of(plant, desired, chosen.name, read_entries(zero, "zero", shape)).asked(method)
+    return chosen.solve(plant, desired).asked(method)
+
+
+def page_style(method_name: str, plant: StateSpace, *, several: bool = False) -> str:
+    """Return the method of the page: by default canonical form for small plants."""
+    if method_name != "auto":
+        return method_name
+    if several:
+        return "sylvester"
+    readable = (
+        readability.CANONICAL_FORM_ORDER if not plant.field.names else readability.PARAMETRIC_CANONICAL_FORM_ORDER
+    )
+    return "canonical_form" if plant.order <= readable else "ackermann"
+
+
+# The letters and phrases of one side of pole placement: observers of (C, A) and state feedback of (A, B) are dual.
+
+
+@dataclass(frozen=True)
+class PlacementProblem:
+    """The words and letters of one side of pole placement."""
+
+    kind: str
+    gain: str
+    matrix: str
+    test: str
+    index: str
+    coefficient: str
+
+    @property
+    def hidden(self) -> tuple[str, str]:
+        """The letters of the hidden subspace, different for the two sides."""
+        return HIDDEN[self.test]
+
+    @property
+    def phi(self) -> str:
+        """The letter of the desired polynomial."""
+        return f"phi_{self.index}"
+
+    def closed_loop_matrix(self, page: Builder) -> Term:
+        """Return A − LC or A − BK."""
+        return page["A"] - self._gain_term(page)
+
+    def error_determinant(self, page: Builder) -> Term:
+        """Return det(sI − A + LC) or det(sI − A + BK)."""
+        return (page.s @ page.identity(page.plant.order) - page["A"] + self._gain_term(page)).apply("det")
+
+    def _gain_term(self, page: Builder) -> Term:
+        return page["L"] @ page["C"] if self.gain == "L" else page["B"] @ page["K"]
+
+
+OBSERVER = PlacementProblem("observer", "L", "O", "observability", "o", "beta_")
+
+
+FEEDBACK = PlacementProblem("state_feedback", "K", "Ctr", "controllability", "c", "alpha_")

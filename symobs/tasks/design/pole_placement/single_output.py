@@ -8,7 +8,7 @@ be assigned exactly when their polynomial divides it, and then every gain differ
 from __future__ import annotations
 
 from functools import cached_property
-from typing import TYPE_CHECKING, Self
+from typing import TYPE_CHECKING, NamedTuple, Self
 
 from symobs.exact import (
     Field,
@@ -17,6 +17,7 @@ from symobs.exact import (
     Scalar,
     apply_polynomial,
     echelon,
+    hankel_of,
     independent_rows,
     modulo,
     primitive_kernel,
@@ -131,3 +132,63 @@ class ObserverPair:
         part = ObserverPair(A.select(range(rank), range(rank)), c.select([0], range(rank)), self.variable)
         gain = apply_polynomial([polynomial], self.variable, part.A, part.krylov.solve_last())
         return modulo((inverse @ Matrix.block([[gain], [Matrix.zeros(order - rank, 1)]])).normal(), self.ideal)
+
+
+# Differences of coefficients carried back from controllable canonical form.
+
+
+def canonical_gain(pair: ObserverPair, desired: DesiredPolynomial) -> Matrix:
+    """Return l with lᵀ = [αₙ − aₙ, …, α₁ − a₁] V⁻¹, V = 𝒪ᵀ · Hankel(a); needs det 𝒪 ≠ 0."""
+    found = pair.A.characteristic_polynomial(pair.variable).coefficients(pair.variable)[1:]
+    V = pair.krylov.matrix.T @ hankel_of(found)
+    differences = [alpha - a for alpha, a in zip(desired.coefficients, found, strict=True)]
+    return V.T.solve(Matrix.column(list(reversed(differences)))).normal()
+
+
+def companion_rows(pair: ObserverPair) -> Matrix:
+    """Return T with rows q, qAᵀ, …, q the last row of 𝒞(Aᵀ, Cᵀ)⁻¹: T Aᵀ T⁻¹ is a companion matrix and T Cᵀ = eₙ."""
+    rows = [pair.krylov.solve_last().normal().T]
+    for _ in range(pair.A.shape[0] - 1):
+        rows.append((rows[-1] @ pair.A.T).normal())
+    return Matrix.block([[row] for row in rows])
+
+
+def companion_gain(pair: ObserverPair, desired: DesiredPolynomial) -> Matrix:
+    """Return l with lᵀ = [αₙ − aₙ, …, α₁ − a₁] T; needs det 𝒪 ≠ 0."""
+    found = pair.A.characteristic_polynomial(pair.variable).coefficients(pair.variable)[1:]
+    row = Matrix.row([alpha - a for alpha, a in zip(desired.coefficients, found, strict=True)][::-1])
+    return (row @ companion_rows(pair)).T.normal()
+
+
+# Matching coefficients: det(sI − A + l c) is affine in the entries of l, so l solves a linear system.
+
+
+class Matching(NamedTuple):
+    """The system M l = r: row k compares the coefficients of sⁿ⁻ᵏ."""
+
+    M: Matrix
+    r: Matrix
+
+    @property
+    def solution(self) -> Matrix:
+        """Return l; raises ZeroDivisionError where the pair is not observable."""
+        return self.M.solve(self.r).normal()
+
+
+def matching(pair: ObserverPair, desired: DesiredPolynomial) -> Matching:
+    """Return the system; column i is the change of the polynomial of A by a one in row i of l."""
+    order, variable = pair.A.shape[0], pair.variable
+    own = pair.A.characteristic_polynomial(variable).coefficients(variable)[1:]
+    columns = []
+    for i in range(order):
+        moved = (pair.A - Matrix.unit(order, i) @ pair.c).characteristic_polynomial(variable)
+        found = moved.coefficients(variable)[1:]
+        columns.append([new - old for new, old in zip(found, own, strict=True)])
+    M = Matrix.of([list(row) for row in zip(*columns, strict=True)])
+    r = Matrix.column([coefficient - old for coefficient, old in zip(desired.coefficients, own, strict=True)])
+    return Matching(M, r)
+
+
+def matched_gain(pair: ObserverPair, desired: DesiredPolynomial) -> Matrix:
+    """Return l."""
+    return matching(pair, desired).solution

@@ -17,12 +17,16 @@ from symobs.exact import Matrix, Scalar, apply_polynomial, companion
 from symobs.ground.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Iterable, Iterator, Sequence
 
     from symobs.exact import Ideal
+    from symobs.proof.derivation.builder import Builder
+
 
 #: Where placement by the equation comes from.
 SYLVESTER = "bhattacharyya1982"
+
+
 #: A general gain whose determinant could have more terms than this is not written out.
 WRITTEN_UP_TO = 60_000
 
@@ -213,3 +217,26 @@ def _shared(A: Matrix, factors: Sequence[Scalar], variable: str) -> int:
             rest = quotient.numerator
             quotient = rest / factor
     return found
+
+
+# Names: which stand on a page already, and fresh ones.
+
+
+def taken_names(page: Builder) -> set[str]:
+    """Return the names of parameters and coefficients that stand on the page."""
+    named = page.environment.coefficients
+    inside = {name for meaning in named.values() for name in meaning.field.names}
+    return {*page.plant.symbols.signs, *page.plant.field.names, *named, *inside}
+
+
+def fresh_names(stem: str, count: int, taken: Iterable[str], start: int = 1) -> tuple[str, ...]:
+    """Return `stem1`, `stem2`, … (from `start` on) that are not among the names taken."""
+    used = set(taken)
+    names: list[str] = []
+    index = start
+    while len(names) < count:
+        name = f"{stem}{index}"
+        if name not in used:
+            names.append(name)
+        index += 1
+    return tuple(names)

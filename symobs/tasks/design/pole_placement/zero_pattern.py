@@ -58,7 +58,7 @@ def obstacles(equations: Sequence[Scalar]) -> tuple[Scalar, ...] | None:
 
     They are what eliminating all unknowns leaves; None where that is too much work, and nothing is known.
     """
-    from symobs.exact.ideals.triangular_basis import triangular  # noqa: PLC0415 - only patterns that are hard to meet pay for it
+    from symobs.exact.ideals import triangular  # noqa: PLC0415 - only patterns that are hard to meet pay for it
 
     unknowns = _unknowns_in(equations)
     with suppress(TooLarge):
@@ -166,7 +166,7 @@ class Search:
                 return self._by_roots(open_, equation, next(iter(names)))
         involved = sorted(self.unknowns.intersection(name for e in open_ for name in e.names))
         if not eliminated and len(involved) <= len(open_):
-            from symobs.exact.ideals.triangular_basis import triangular  # noqa: PLC0415 - only patterns that are hard to meet pay for it
+            from symobs.exact.ideals import triangular  # noqa: PLC0415 - only patterns that are hard to meet pay for it
 
             with suppress(TooLarge):
                 return self.solve(triangular(open_, involved), eliminated=True)

@@ -7,10 +7,10 @@ from __future__ import annotations
 
 from dataclasses import field
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, ClassVar, Self
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Self
 
-from symobs.exact import Matrix, Root, Scalar, kernel, modulo
-from symobs.exact.linear_algebra.realisation import Realisation
+from symobs.exact import Ideal, Matrix, Root, Scalar, kernel, modulo, unit_rows
+from symobs.exact.linear_algebra.transfer_function import Realisation
 from symobs.formula.tree import Environment
 from symobs.formula.tree.term import block, identity, letter
 from symobs.ground.dataclass import dataclass
@@ -32,7 +32,6 @@ from symobs.tasks.analysis.strata.strata import equations_of, places, solved
 from symobs.tasks.design.full_order.observer import ObserverDesign
 from symobs.tasks.design.gain.gain_cases import chosen, design_of, places_beside
 from symobs.tasks.design.gain.gain_design import letters_of
-from symobs.tasks.design.reduced_order.partition import Partition, completed, partition
 from symobs.tasks.result import Case, Result, choose, method, poles_of, task
 from symobs.tasks.result.control_systems import Controller, observer_of
 
@@ -41,6 +40,63 @@ if TYPE_CHECKING:
 
     from symobs.system.conditions import Condition
     from symobs.tasks.analysis.strata.strata import Place
+
+
+# The coordinates of a reduced-order observer: the outputs first, rows that complete them after.
+
+
+class Partition(NamedTuple):
+    """The plant in the coordinates x̄ = T x, the measured states first."""
+
+    T: Matrix
+    A11: Matrix
+    A12: Matrix
+    A21: Matrix
+    A22: Matrix
+    B1: Matrix | None
+    B2: Matrix | None
+
+
+def partition(plant: StateSpace, T: Matrix) -> Partition:
+    """Return T A T⁻¹ and T B in blocks; raises ZeroDivisionError where T is singular."""
+    m, measured = plant.matrices, plant.outputs
+    first, second = range(measured), range(measured, plant.order)
+    A = (T @ m.A @ T.inverse()).normal()
+    B = (T @ m.B).normal() if m.has_input else None
+    A11, A12, A21, A22 = (A.select(rows, columns) for rows in (first, second) for columns in (first, second))
+    B1, B2 = (
+        (None, None) if B is None else (B.select(first, range(plant.inputs)), B.select(second, range(plant.inputs)))
+    )
+    return Partition(T, A11, A12, A21, A22, B1, B2)
+
+
+def completed(C: Matrix, ideal: Ideal | None = None) -> Matrix:
+    """Return T = [C; R], R the unit rows of the columns without a pivot; constant pivots are preferred.
+
+    What lies in `ideal` is 0.  Raises `InputError` where the rows of C depend on each other.
+    """
+    pivots = _pivots(C, ideal)
+    if len(pivots) < C.shape[0]:
+        message = "the rows of C depend on each other: one output is a combination of the others"
+        raise InputError(message, where="plant.C", repair="leave that output out")
+    others = tuple(j for j in range(C.shape[1]) if j not in pivots)
+    return Matrix.block([[C], [unit_rows(C.shape[1], others)]]) if others else C
+
+
+def _pivots(C: Matrix, ideal: Ideal | None) -> list[int]:
+    """Return the pivot columns of C, row by row: the first with a constant entry, else the first with an entry."""
+    rows = [list(row) for row in C.rows]
+    found: list[int] = []
+    for index, row in enumerate(rows):
+        candidates = [j for j, entry in enumerate(row) if not entry.is_zero and (ideal is None or entry not in ideal)]
+        if not candidates:
+            continue
+        pivot = next((j for j in candidates if row[j].is_constant), candidates[0])
+        found.append(pivot)
+        for other in rows[index + 1 :]:
+            factor = other[pivot] / row[pivot]
+            other[:] = [a - factor * b for a, b in zip(other, row, strict=True)]
+    return found
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -11,28 +11,63 @@ from symobs.proof.derivation.builder import Builder, predicate, relation
 from symobs.proof.derivation.wording_check import fits
 from symobs.stability.criteria.stability import stability
 from symobs.system.conditions import vanishing_factors
-from symobs.tasks.analysis.factored_form import formula_of_factored
-from symobs.tasks.analysis.page_parts import case_steps, given, in_blocks
+from symobs.tasks.analysis.page_parts import case_steps, formula_of_factored, given, in_blocks
 from symobs.tasks.analysis.rank.observability import Observability
 from symobs.tasks.analysis.rank.rank_page import rank_cases, square_test
+from symobs.tasks.design import page_parts as readability
+from symobs.tasks.design.full_order.observer import undetermined
+from symobs.tasks.design.gain.gain_design import OBSERVER
 from symobs.tasks.design.gain.gain_page import define_test_matrix, say_as_required
-from symobs.tasks.design.gain.placement_problem import OBSERVER
-from symobs.tasks.design.page_parts import readability
-from symobs.tasks.design.page_parts.block_diagrams import draw_minimal_order
-from symobs.tasks.design.page_parts.component_equations import combination, summed
-from symobs.tasks.design.page_parts.pole_cautions import caution_poles
-from symobs.tasks.design.page_parts.time_responses import plot_error
-from symobs.tasks.design.page_parts.unassignable import say_unassignable
-from symobs.tasks.design.pole_placement.fresh_names import fresh_names, taken_names
-from symobs.tasks.design.reduced_order.partition import partition
-from symobs.tasks.design.reduced_order.reduced_order_observer import DependentOutputs, ReducedOrderObserver
-from symobs.tasks.design.reduced_order.undetermined_matrices_page import write_undetermined
+from symobs.tasks.design.page_parts import (
+    caution_poles,
+    combination,
+    draw_minimal_order,
+    plot_error,
+    say_unassignable,
+    summed,
+)
+from symobs.tasks.design.pole_placement.sylvester import fresh_names, taken_names
+from symobs.tasks.design.reduced_order.reduced_order_observer import DependentOutputs, ReducedOrderObserver, partition
 from symobs.tasks.result import page_of
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from symobs.formula.tree import Relation
+
+
+# The reduced-order observer with undetermined matrices: x̂₂ = z + L x₁, ż = F z + G u + H y with undetermined F, G, H.
+
+
+def write_undetermined(page: Builder, design: ReducedOrderObserver) -> None:
+    """Write the error of the ansatz, collected by signals, and the choice of F, G and H that frees it of x and u."""
+    m, name = page.plant.matrices, "w_o" if page.plant.is_discrete else "z_o"
+    letters = iter(fresh_names("l_", len(design.answer["L"].entries), taken_names(page)))
+    entries = [[page.name_coefficient(next(letters), entry) for entry in row] for row in design.answer["L"].rows]
+    page.set("L", Matrix.of(entries))
+    for letter, stem in (("F_z", "f_"), ("H_z", "h_"), ("G_z", "g_")):
+        value = design.answer[letter[0]]
+        if value is not None:
+            undetermined(page, letter, stem, value)
+    L, F, H, z, x_1, x_2, u = (page[key] for key in ("L", "F_z", "H_z", name, "x_1", "x_2", "u"))
+    page.signal("x_2_hat", z + L @ x_1, silent=True)
+    rate = F @ z + page["G_z"] @ u if m.has_input else F @ z
+    page.dynamics(
+        name, rate + H @ page["y"], say="undetermined_ansatz", estimate=relation(page["x_2_hat"], z + L @ x_1)
+    )
+    page.signal("e_2", x_2 - page["x_2_hat"], silent=True)
+    fed = page["A_21"] - L @ page["A_11"] + F @ L
+    moving = F @ page["e_2"] + (fed - H) @ x_1 + (page["A_22"] - L @ page["A_12"] - F) @ x_2
+    choice = [relation(F, page["A_22"] - L @ page["A_12"]), relation(H, F @ L + page["A_21"] - L @ page["A_11"])]
+    if m.has_input:
+        wanted = page["B_2"] - L @ page["B_1"]
+        wanted = wanted - H @ page["D"] if m.has_feedthrough else wanted
+        moving = moving + (wanted - page["G_z"]) @ u
+        choice.insert(1, relation(page["G_z"], wanted))
+    error = relation(page["e_2"], x_2 - page["x_2_hat"])
+    page.equal(relation(page["e_2"].derivative, moving), say="undetermined_error", error=error)
+    page.equal(*choice, say="undetermined_choice")
+    page.equal(relation(page["e_2"].derivative, F @ page["e_2"]), say="undetermined_left")
 
 
 @page_of(ReducedOrderObserver)

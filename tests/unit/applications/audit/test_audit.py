@@ -12,7 +12,7 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from symobs.applications.audit import audit, report
-from symobs.applications.audit.equations.grammar import read_relation
+from symobs.applications.audit.equations import read_relation
 from symobs.ground.errors import BudgetExceeded, CertificateRejected, ProblemErrors, SymobsError
 from symobs.problem import read
 from tests.kit import tabled
@@ -22,7 +22,7 @@ from tests.support.tools.command_line import inside
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from symobs.formula.expression.syntax_tree import SyntaxNode
+    from symobs.formula.expression.syntax import SyntaxNode
 
 # Of the servo 1/(s (s + 1)) with observer poles -10, -10, worked out by hand: L = [19; 81].
 RIGHT = [
@@ -190,7 +190,7 @@ def test_a_false_equation_is_never_said_to_be_right(monkeypatch: pytest.MonkeyPa
     def lie(left: SyntaxNode, _right: SyntaxNode, *_: object) -> tuple[SyntaxNode, SyntaxNode, str]:
         return left, left.parts[0], "no reason"
 
-    monkeypatch.setattr("symobs.applications.audit.equation_auditor.found_slip", lie)
+    monkeypatch.setattr("symobs.applications.audit.auditor.found_slip", lie)
     with pytest.raises(ProblemErrors, match="does not hold") as raised:
         findings("A + L C = A - B C")
     assert isinstance(raised.value.errors[0], CertificateRejected)

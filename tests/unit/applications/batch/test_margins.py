@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 
-from symobs.applications.batch.sweep import margins
+from symobs.applications.batch.sweep import table as margins
 from symobs.applications.batch.sweep.program import MARGINS, Program
 from symobs.exact.algebraic.loop_distances import slowest_root
 from symobs.problem import parse

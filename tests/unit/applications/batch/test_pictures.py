@@ -11,7 +11,7 @@ import pytest
 
 import symobs
 from symobs.applications.batch.sweep.picture import _level, _round_levels, picture_of
-from symobs.formula.figures.plot import SweepMap
+from symobs.formula.figures import SweepMap
 from tests.kit import tabled
 from tests.support.tools.command_line import inside
 from tests.unit.applications.batch.test_sweep import problem

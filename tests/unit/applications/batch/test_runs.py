@@ -18,9 +18,8 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from symobs.applications.batch import kinds
-from symobs.applications.batch.engine import Settings, work
-from symobs.applications.batch.executors import InProcess, Unfinished, Workforce, run_chunk, run_in_process
+from symobs.applications.batch import jobs as kinds
+from symobs.applications.batch.engine import InProcess, Settings, Unfinished, Workforce, run_chunk, run_in_process, work
 from symobs.applications.batch.jobs import Job, job, key_of, solve_job
 from symobs.applications.batch.run import Batch, batch, verified
 from symobs.applications.batch.store import Store

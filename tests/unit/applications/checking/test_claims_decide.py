@@ -6,7 +6,7 @@ from types import SimpleNamespace
 from typing import Any
 
 from symobs.applications.checking import Checked, check
-from symobs.applications.checking.judgement.parts import asked_of
+from symobs.applications.checking.judgement import asked_of
 from symobs.tasks.result import result_type
 from tests.kit import tabled
 from tests.support.paths import ROOT

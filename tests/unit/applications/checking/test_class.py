@@ -12,9 +12,9 @@ import pytest
 from jsonschema import Draft202012Validator  # type: ignore[import-untyped]
 
 from symobs.applications.checking import SHOW, Checked, CheckReport
-from symobs.applications.checking.classes.row import report_of_row
-from symobs.applications.checking.classes.summary import safe
-from symobs.applications.checking.report.schema import schema
+from symobs.applications.checking.classroom import safe
+from symobs.applications.checking.report import schema
+from symobs.applications.checking.submissions import report_of_row
 from tests.kit import tabled
 from tests.support.problems.answered import SERVO
 from tests.support.tools.command_line import Run, inside

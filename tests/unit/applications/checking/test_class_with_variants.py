@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from symobs.applications.batch.jobs import canonical, digest
-from symobs.applications.variants.responses import as_text, responses_of
+from symobs.applications.variants.search import as_text, responses_of
 from symobs.problem import parse
 from tests.kit import tabled
 from tests.support.tools.command_line import Run, inside

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from symobs.applications.checking.judgement.conditions import read_conditions
-from symobs.exact.algebraic.rational_points import value_at
+from symobs.applications.checking.regions import read_conditions
+from symobs.exact.algebraic.root_location import value_at
 from symobs.ground.errors import InputError
 from tests.kit import tabled
 

@@ -11,7 +11,7 @@ from symobs.applications.checking import Checked, CheckReport, check
 from symobs.ground.errors import InputError, ProblemErrors
 from symobs.problem import read
 from symobs.problem.expect import found_in, mismatches
-from symobs.tasks.result.conversions import to_json
+from symobs.tasks.result.output_methods import to_json
 from tests.kit import tabled
 from tests.support.paths import ROOT
 from tests.support.problems.answered import SERVO, THIRD_ORDER, TWO_OUTPUTS, A, F, K, L, S, text

@@ -13,13 +13,13 @@ import pytest
 from jsonschema import Draft202012Validator  # type: ignore[import-untyped]
 
 from symobs.applications.checking import SHOW, Checked, CheckReport, check
-from symobs.applications.checking.answers.answer_file import read_answer
-from symobs.applications.checking.asked import answer_file
-from symobs.applications.checking.derivations.line_auditor import without_solution
-from symobs.applications.checking.report.schema import schema
+from symobs.applications.checking.answers import read_answer
+from symobs.applications.checking.checker import answer_file
+from symobs.applications.checking.derivations import without_solution
+from symobs.applications.checking.report import schema
 from symobs.ground.errors import ProblemErrors
 from symobs.problem import read
-from symobs.problem.marking import SLIPS
+from symobs.problem.fields import SLIPS
 from tests.kit import tabled
 from tests.programs.teaching.classes import answers, lines
 from tests.support.paths import ROOT

@@ -19,8 +19,7 @@ from jsonschema import Draft202012Validator  # type: ignore[import-untyped]
 
 from symobs.applications.live import answer
 from symobs.applications.live.assets import MOST_BYTES
-from symobs.applications.live.links import SHORT
-from symobs.applications.live.request import parsed
+from symobs.applications.live.request import SHORT, parsed
 from symobs.pages.formats.json import result_object
 from symobs.problem import validate
 from symobs.tasks.result import result_type, tasks

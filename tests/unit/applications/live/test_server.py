@@ -17,9 +17,8 @@ from urllib.parse import parse_qsl
 
 import pytest
 
-from symobs.applications.live.links import SHORT, link_of
-from symobs.applications.live.process import AnswerBudget, Children, Gone
-from symobs.applications.live.server import Server, routes
+from symobs.applications.live.request import SHORT, link_of
+from symobs.applications.live.server import AnswerBudget, Children, Gone, Server, routes
 from symobs.tasks.result import tasks
 from tests.support.paths import ROOT
 from tests.support.problems.batches import eventually

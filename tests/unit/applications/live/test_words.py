@@ -5,8 +5,8 @@ from __future__ import annotations
 import re
 
 from symobs.applications.live import answer
+from symobs.applications.live.answering import pole_sets
 from symobs.applications.live.assets import ASSETS, script, words
-from symobs.applications.live.views import pole_sets
 from symobs.formula.phrases.languages import languages
 from symobs.tasks.result import tasks
 from tests.kit import tabled

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 import pytest
 import sympy as sp
 
-from symobs.applications.variants.drawing.constructions import CONSTRUCTIONS, Made
-from symobs.applications.variants.drawing.stream import Draws
+from symobs.applications.variants.constructions import CONSTRUCTIONS, Made
+from symobs.applications.variants.drawing import Draws
 from tests.kit import tabled
 from tests.support.independent_algebra.plain_fractions import determinant, eliminate, identity, inverse, plus, times
 

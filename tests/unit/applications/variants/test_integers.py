@@ -6,8 +6,8 @@ import random
 
 import sympy as sp
 
-from symobs.applications.variants.acceptance.cheap import controller
-from symobs.applications.variants.drawing import integers as whole
+from symobs.applications.variants import drawing as whole
+from symobs.applications.variants.acceptance import controller
 
 s = sp.Symbol("s")
 

@@ -10,8 +10,8 @@ from itertools import pairwise
 
 import pytest
 
-from symobs.applications.variants.drawing.parameters import Parameter, read_parameter
-from symobs.applications.variants.drawing.stream import Draw, Draws
+from symobs.applications.variants.drawing import Draw, Draws
+from symobs.applications.variants.parameters import Parameter, read_parameter
 
 SEEDS = (0, 7, 2**63 - 1)
 

@@ -14,13 +14,10 @@ from jsonschema import Draft202012Validator  # type: ignore[import-untyped]
 
 import symobs as so
 from symobs.applications.variants import TooFew, Variants, variant_of
-from symobs.applications.variants.acceptance.candidates import candidate
-from symobs.applications.variants.acceptance.cheap import cheap
-from symobs.applications.variants.acceptance.distinct import coordinate_key, data_key
-from symobs.applications.variants.acceptance.profile import unlike
-from symobs.applications.variants.acceptance.solving import run
-from symobs.applications.variants.reading.table import read_table
-from symobs.applications.variants.schema import schema
+from symobs.applications.variants.acceptance import candidate, cheap, coordinate_key, data_key, run
+from symobs.applications.variants.constraints import unlike
+from symobs.applications.variants.search import schema
+from symobs.applications.variants.table import read_table
 from symobs.ground.errors import CertificateRejected, ProblemErrors, UsageError
 from symobs.problem import read
 from symobs.problem.expect import mismatches

@@ -11,7 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from symobs.exact import Ideal, Scalar, product_of
-from symobs.exact.algebraic.conjugates import root_in_field
+from symobs.exact.algebraic.rounded_decimals import root_in_field
 from symobs.exact.core.generators import square_root
 from symobs.exact.core.modular import Point, VanishingDenominator
 from symobs.exact.sympy_bridge.conversion import scalar_to_sympy

@@ -7,7 +7,7 @@ from hypothesis import assume, example, given, settings
 from hypothesis import strategies as st
 
 from symobs.exact import Ideal, Scalar, apart_from_zero
-from symobs.exact.ideals.conjugate_points import conjugate_points
+from symobs.exact.ideals import conjugate_points
 from symobs.formula.expression import parse_scalar
 from tests.kit import tabled
 

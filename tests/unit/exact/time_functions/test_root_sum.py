@@ -11,7 +11,7 @@ import sympy
 import symobs
 from symobs.exact import EIGENVALUE, Scalar
 from symobs.exact.core.generators import derivative, substitute
-from symobs.exact.time_functions.root_sum import RootSum
+from symobs.exact.time_functions.matrix_exponential import RootSum
 from tests.kit import tabled
 
 T = Scalar.symbol("t")

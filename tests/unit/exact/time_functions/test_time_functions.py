@@ -19,7 +19,7 @@ from symobs.exact.core.generators import derivative, function
 from symobs.exact.time_functions.quasipolynomial import Key, Quasipolynomial, quasi_of
 from symobs.ground.errors import CertificateRejected, DerivationRejected, InputError, ShapeMismatch
 from symobs.proof.derivation import CaseStep, Section
-from symobs.tasks.result.conversions import to_sympy
+from symobs.tasks.result.output_methods import to_sympy
 from tests.kit import tabled
 
 t, T = sympy.symbols("t T")

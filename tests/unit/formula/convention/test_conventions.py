@@ -12,8 +12,7 @@ from hypothesis import strategies as st
 
 from symobs.exact import Matrix
 from symobs.formula.convention import convention_named, conventions
-from symobs.formula.convention.builtin import ALIASES
-from symobs.formula.convention.convention_file import read_convention
+from symobs.formula.convention.convention import ALIASES, read_convention
 from symobs.formula.tree import (
     Apply,
     Block,

@@ -14,8 +14,7 @@ from hypothesis import strategies as st
 from symobs.formula.expression import parse_matrix, parse_scalar, tokenizer
 from symobs.formula.expression.names import Scope
 from symobs.formula.expression.source import Source, Token
-from symobs.formula.expression.syntax_parser import parse
-from symobs.formula.expression.syntax_tree import every, operands_first
+from symobs.formula.expression.syntax import every, operands_first, parse
 from symobs.ground.errors import InputError
 from tests.kit import tabled
 

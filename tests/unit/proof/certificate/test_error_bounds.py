@@ -29,7 +29,7 @@ from symobs.formula.tree import (
     Transpose,
     evaluate,
 )
-from symobs.proof.certificate.error_bounds import Bounds, SizeBound
+from symobs.proof.certificate.pointwise import Bounds, SizeBound
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

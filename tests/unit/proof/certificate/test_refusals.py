@@ -36,7 +36,7 @@ from symobs.proof.certificate.claims import (
     check_all,
     verify,
 )
-from symobs.proof.certificate.error_bounds import SizeBound
+from symobs.proof.certificate.pointwise import SizeBound
 from tests.support.problems.steps import A, X, a, b, c, literal, said
 
 if TYPE_CHECKING:

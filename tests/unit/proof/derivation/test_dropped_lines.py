@@ -42,7 +42,7 @@ def test_a_line_beyond_the_reach_of_the_check_is_left_out_by_decision() -> None:
 
 def test_a_picture_that_is_not_faithful_is_left_out_with_a_warning(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(
-        "symobs.proof.derivation.figures.plot_check.faults", lambda *_, **__: iter(["a curve that is not there"])
+        "symobs.proof.derivation.plot_check.faults", lambda *_, **__: iter(["a curve that is not there"])
     )
     with pytest.warns(SymobsWarning, match="a picture of kind .* is left out: its check failed"):
         symobs.stability_region("s^2 + 2 s + k", parameters=["k"]).to("latex")

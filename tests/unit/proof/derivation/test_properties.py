@@ -10,9 +10,15 @@ import pytest
 
 from symobs.exact import Matrix, Scalar
 from symobs.formula.tree import Environment, HoldsExactlyWhere, Letter, Predicate
-from symobs.proof.derivation.exact_where import is_exactly
-from symobs.proof.derivation.facts.properties import PREDICATES, is_criterion, needed, polynomial_of, subjects
-from symobs.proof.derivation.facts.restriction import on_stratum
+from symobs.proof.derivation.facts import (
+    PREDICATES,
+    is_criterion,
+    is_exactly,
+    needed,
+    on_stratum,
+    polynomial_of,
+    subjects,
+)
 from tests.support.problems.steps import said
 
 if TYPE_CHECKING:

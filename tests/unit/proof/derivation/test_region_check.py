@@ -8,8 +8,7 @@ import pytest
 
 from symobs.exact import Scalar
 from symobs.exact.core.generators import square_root
-from symobs.formula.phrases.languages import ENGLISH
-from symobs.formula.phrases.spoken import Counted
+from symobs.formula.phrases.languages import ENGLISH, Counted
 from symobs.formula.tree import Environment, Letter, Literal, Relation
 from symobs.formula.tree.plain_text import plain_relation
 from symobs.proof.derivation import region_check
@@ -23,8 +22,7 @@ from symobs.proof.derivation.region_check import (
     region_of,
 )
 from symobs.proof.derivation.steps import RegionSummary, Sentence
-from symobs.stability.regions.interval_region import LineRegion
-from symobs.stability.regions.plane_region import PlaneRegion
+from symobs.stability.regions.region import LineRegion, PlaneRegion
 from tests.support.problems.steps import said
 
 s, z, h, k, m, a = (Scalar.symbol(name) for name in "szhkma")

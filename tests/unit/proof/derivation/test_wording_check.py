@@ -11,7 +11,7 @@ import pytest
 import symobs
 from symobs.exact import Matrix, Scalar
 from symobs.exact.core.generators import PI, function
-from symobs.formula.phrases.spoken import Counted, StateChoice
+from symobs.formula.phrases.languages import Counted, StateChoice
 from symobs.formula.tree import (
     Apply,
     Environment,

@@ -21,7 +21,7 @@ from symobs.formula.expression import parse_scalar
 from symobs.formula.tree import Conjunction, Environment, Letter, Literal, Relation
 from symobs.ground.errors import CertificateRejected, DerivationRejected
 from symobs.proof.derivation import CaseStep, Given
-from symobs.tasks.analysis.rank import missing_measurements
+from symobs.tasks.analysis.rank import rank_test as missing_measurements
 from symobs.tasks.analysis.rank.rank_test import RankResult
 from symobs.tasks.analysis.strata.loci import Locus, Region, loci, maximal
 from tests.kit import tabled

@@ -20,13 +20,13 @@ from hypothesis import strategies as st
 
 import symobs
 from symobs.exact import EIGENVALUE, Scalar
-from symobs.exact.ideals import ideal
+from symobs.exact import ideals as ideal
 from symobs.formula.tree import Conjunction, Environment
 from symobs.ground.errors import CertificateRejected, DerivationRejected
 from symobs.proof.certificate.claims import Claim, verify
 from symobs.proof.derivation import CaseStep, Derivation, Section
 from symobs.proof.derivation.builder import relation
-from symobs.tasks.analysis.strata.repeated_eigenvalues import distances
+from symobs.tasks.analysis.strata.strata import distances
 from tests.kit import tabled
 from tests.programs.campaign.points import answer_at, holds
 from tests.support.problems.strategies import unimodular

@@ -12,7 +12,7 @@ import sympy
 
 import symobs
 from symobs import StateSpace
-from symobs.formula.figures.plot import TimeResponse
+from symobs.formula.figures import TimeResponse
 from symobs.ground.errors import CertificateRejected, InputError, ShapeMismatch
 from symobs.proof.derivation.steps import Plot
 

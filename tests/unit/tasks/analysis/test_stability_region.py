@@ -11,13 +11,11 @@ import pytest
 
 import symobs
 from symobs.exact import Scalar
-from symobs.formula.figures.plot import LinePicture, PoleMap
+from symobs.formula.figures import LinePicture, PoleMap
 from symobs.ground.errors import CertificateRejected, InputError
 from symobs.stability.criteria.critical_polynomials import CriticalPolynomials, StabilityBoundary
-from symobs.stability.regions.interval_region import LineRegion
-from symobs.stability.regions.plane_region import PlaneRegion, plane_region
+from symobs.stability.regions.region import LineRegion, PlaneRegion, RegionInequality, plane_region, short_list
 from symobs.stability.regions.region_check import is_region
-from symobs.stability.regions.short_list import RegionInequality, short_list
 from tests.kit import tabled
 
 if TYPE_CHECKING:

@@ -14,7 +14,7 @@ import sympy
 
 import symobs
 from symobs.exact import Scalar
-from symobs.exact.ideals import ideal
+from symobs.exact import ideals as ideal
 from symobs.pages.formats.json import result_object
 from tests.kit import tabled
 

@@ -17,7 +17,7 @@ from symobs.exact import Ideal, Scalar
 from symobs.exact import Matrix as Exact
 from symobs.ground.errors import CertificateRejected, InputError
 from symobs.pages.formats.json import result_object
-from symobs.tasks.design.reduced_order.partition import completed
+from symobs.tasks.design.reduced_order.reduced_order_observer import completed
 from tests.kit import tabled
 
 if TYPE_CHECKING:

@@ -16,11 +16,11 @@ import sympy
 
 import symobs
 from symobs.exact import TooLarge
-from symobs.exact.ideals import triangular_basis
+from symobs.exact import ideals as triangular_basis
 from symobs.ground.errors import CertificateRejected
 from symobs.tasks.design.gain.gain_kind import AlgebraicGain, NoGainWithZeros
 from symobs.tasks.design.pole_placement import zero_pattern
-from symobs.tasks.result.conversions import to_sympy
+from symobs.tasks.result.output_methods import to_sympy
 
 s, x = sympy.Symbol("s"), sympy.Symbol("x")
 

@@ -8,7 +8,7 @@ from typing import TypeAlias
 import pytest
 
 from symobs.exact import Scalar
-from symobs.formula.figures.block_diagram import Wire, figure_of
+from symobs.formula.figures import Wire, figure_of
 from symobs.formula.tree import (
     Conjunction,
     Derivative,
@@ -24,7 +24,7 @@ from symobs.formula.tree import (
 from symobs.formula.tree.plain_text import plain_relation
 from symobs.ground.errors import DerivationRejected
 from symobs.proof.derivation import Derivation, Diagram
-from symobs.proof.derivation.figures.block_diagram_check import equations_of
+from symobs.proof.derivation.figures_check import equations_of
 
 A, B, C, D, F, G, H, K, L, M, P, Q, T = map(Letter, "ABCDFGHKLMPQT")
 x, x_hat, u, v, y, y_hat, z = (Letter(name) for name in ("x", "x_hat", "u", "v_r", "y", "y_hat", "z_o"))
@@ -86,7 +86,7 @@ def test_a_loop_without_end_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
     figure = figure_of("loop")
     wires = (*figure.wires, Wire("u", ">", "a"), Wire("a", ">", "u"))
     endless = replace(figure, places=(*figure.places, ("a", (0, 2))), wires=wires)
-    monkeypatch.setattr("symobs.proof.derivation.figures.block_diagram_check.figure_of", lambda _: endless)
+    monkeypatch.setattr("symobs.proof.derivation.figures_check.figure_of", lambda _: endless)
     start = Environment(values={"P": 1 / Scalar.symbol("s"), "F": Scalar.of(1), "T": 1 / (Scalar.symbol("s") - 1)})
     diagram = Diagram("loop", (("P", P), ("F", F), ("response", T)))
     with pytest.raises(DerivationRejected, match="Diagram cannot be read"):

@@ -6,10 +6,9 @@ from dataclasses import replace
 
 import pytest
 
-from symobs.formula.figures.plot import PoleMap, RegionPicture
+from symobs.formula.figures import PoleMap, RegionPicture
 from symobs.problem import read
-from symobs.proof.derivation import Plot
-from symobs.proof.derivation.figures import plot_check
+from symobs.proof.derivation import Plot, plot_check
 from tests.support.paths import ROOT
 from tests.support.tampering.mutations import Line, changes, lines_of
 from tests.support.tools.remembered import KEPT, remembered

@@ -12,24 +12,17 @@ import mpmath
 import pytest
 
 from symobs.exact import Matrix, Scalar
-from symobs.formula.figures.plot import (
-    MarkedPoint,
-    PlottedResponse,
-    PoleMap,
-    RegionPicture,
-    TimeResponse,
-)
+from symobs.formula.figures import MarkedPoint, PlottedResponse, PoleMap, RegionPicture, TimeResponse
 from symobs.formula.tree import Environment, Letter, Literal, Product
-from symobs.proof.derivation.figures import root_locus_check, time_response_check
-from symobs.proof.derivation.figures.plot_check import faults, is_faithful
-from symobs.proof.derivation.figures.root_locus_check import faults_of_poles
-from symobs.proof.derivation.figures.time_response_check import faults_of_response
+from symobs.proof.derivation import plot_check as root_locus_check
+from symobs.proof.derivation import plot_check as time_response_check
+from symobs.proof.derivation.plot_check import faults, faults_of_poles, faults_of_response, is_faithful
 from tests.kit import tabled
 from tests.support.regions import drawn_by_hand as hand
 from tests.support.regions.drawn_by_hand import h1, h2, k, s
 
 if TYPE_CHECKING:
-    from symobs.formula.figures.plot import Picture
+    from symobs.formula.figures import Picture
 
 CHI = Letter("chi")
 

@@ -10,7 +10,7 @@ import pytest
 
 from symobs.exact import Scalar
 from symobs.exact.core.generators import square_root
-from symobs.formula.figures.plot import End, LinePicture, MarkedPoint, RegionPicture
+from symobs.formula.figures import End, LinePicture, MarkedPoint, RegionPicture
 from symobs.formula.tree import Apply, Environment, Letter, Literal, Negative, Sum
 from symobs.ground.errors import DerivationRejected
 from symobs.proof.derivation import Derivation, Plot
@@ -21,7 +21,7 @@ from tests.support.regions.drawn_by_hand import ALL, equation, h1, h2, k, s
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from symobs.formula.figures.plot import Picture, Place
+    from symobs.formula.figures import Picture, Place
 
 CHI = Letter("chi")
 Z, LINE, END = Scalar.symbol("z"), (Fraction(-4), Fraction(4)), End(Fraction(-2), Scalar.of(-2))

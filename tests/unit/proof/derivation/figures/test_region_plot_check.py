@@ -10,19 +10,20 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from symobs.exact import Matrix, Scalar
-from symobs.exact.algebraic.rational_points import vanishes_near
+from symobs.exact.algebraic.root_location import vanishes_near
 from symobs.exact.cad.decomposition import PlaneCurve
 from symobs.exact.core.generators import square_root
-from symobs.formula.figures.plot import Curve, End, LinePicture, MarkedPoint, RegionPicture
+from symobs.formula.figures import Curve, End, LinePicture, MarkedPoint, RegionPicture
 from symobs.formula.tree import Environment, Letter
-from symobs.proof.derivation.figures import plot_check, region_plot_check
-from symobs.proof.derivation.figures.plot_check import faults, is_faithful
-from symobs.proof.derivation.figures.plot_points import Stability
+from symobs.proof.derivation import figures_check as region_plot_check
+from symobs.proof.derivation import plot_check
+from symobs.proof.derivation.figures_check import Stability
+from symobs.proof.derivation.plot_check import faults, is_faithful
 from tests.support.problems.steps import said
 from tests.support.regions.drawn_by_hand import h1, h2, k, s
 
 if TYPE_CHECKING:
-    from symobs.formula.figures.plot import Picture, Place
+    from symobs.formula.figures import Picture, Place
 
 CHI, z = Letter("chi"), Scalar.symbol("z")
 AXES = ("h1", "h2")

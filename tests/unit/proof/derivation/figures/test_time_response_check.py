@@ -12,8 +12,8 @@ import pytest
 
 import symobs
 from symobs.exact import Matrix, Scalar
-from symobs.exact.time_functions.state_response import state_response
-from symobs.formula.figures.plot import TimeResponse
+from symobs.exact.time_functions.matrix_exponential import state_response
+from symobs.formula.figures import TimeResponse
 from symobs.formula.tree import Exact, Literal, evaluate
 from symobs.ground.errors import DerivationRejected
 from symobs.proof.derivation import Derivation, Plot, Section
@@ -200,8 +200,8 @@ def test_what_takes_too_many_bits_is_not_drawn() -> None:
 def test_bits_are_lost_to_what_grows_and_not_to_large_entries(
     control: str, observer: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    from symobs.exact.time_functions import state_response as writer  # noqa: PLC0415
-    from symobs.proof.derivation.figures import time_response_check as trusted  # noqa: PLC0415 - the only test that sets its bits
+    from symobs.exact.time_functions import matrix_exponential as writer  # noqa: PLC0415
+    from symobs.proof.derivation import plot_check as trusted  # noqa: PLC0415 - the only test that sets its bits
 
     plant = StateSpace("[1 -1 0; 2 2 1; -3 2 0]", "[0; 1; -1]", "[0 -2 -1]")
     design = symobs.compensator(plant, control_poles=control, observer_poles=observer)

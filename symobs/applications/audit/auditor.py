@@ -1,0 +1,701 @@
+"""The auditor of printed equations in one convention: evaluation, and the cause of every failure."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import field, replace
+from functools import cached_property
+from itertools import chain, combinations, pairwise, product
+from typing import TYPE_CHECKING, Any
+
+from symobs.applications.audit import differences
+from symobs.applications.audit.differences import wrong_entries
+from symobs.applications.audit.equations import (
+    FUNCTIONS,
+    HIDDEN,
+    INSTANTS,
+    EquationConditions,
+    Gap,
+    Reading,
+    exceptions,
+    read_relation,
+    signals,
+    telling,
+    text_of_value,
+    values,
+)
+from symobs.applications.audit.evaluation import (
+    Flexible,
+    Misfit,
+    Printed,
+    Unknown,
+    as_printed,
+    common,
+    equal,
+    holds,
+    is_rounded,
+    is_signal,
+    is_spectrum,
+    shape,
+    spectral,
+    spectrum_text,
+    value_of,
+)
+from symobs.applications.audit.slips import SearchBudget, found_slip
+from symobs.exact import Matrix, Scalar
+from symobs.exact.algebraic.rounded_decimals import decimals_in
+from symobs.formula.convention import Convention, convention_named
+from symobs.formula.expression import declared_name
+from symobs.formula.expression.source import shown
+from symobs.formula.expression.syntax import SyntaxNode, every, letters_of
+from symobs.formula.tree import Environment, Signal
+from symobs.formula.tree.term import Term
+from symobs.ground.dataclass import dataclass
+from symobs.ground.errors import (
+    BudgetExceeded,
+    CertificateRejected,
+    InputError,
+    ProblemErrors,
+    SymobsError,
+    UnknownName,
+    UsageError,
+)
+from symobs.problem.expect import mismatches
+from symobs.proof.certificate.claims import EVALUATION_ERRORS
+from symobs.system.conditions import vanishing_factors
+from symobs.tasks.result.in_convention import ResultInConvention
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping, Sequence
+
+    from symobs.applications.audit.equations import Kept
+    from symobs.problem import Problem
+    from symobs.tasks.result import Result
+
+    Kind = tuple[bool, tuple[int, int] | None] | None
+
+
+# Candidate letters in place of a printed one.
+
+
+@dataclass(frozen=True)
+class CandidateLetters:
+    """The letters of an environment, without the names of `fields` of an answer and reserved names.
+
+    Where the sizes `fit` as printed, only letters of the same size may have been meant.
+    """
+
+    environment: Environment
+    fields: frozenset[str]
+    fit: bool = True
+
+    def offered(self, name: str, *, primed: bool) -> list[str]:
+        """Return the letters that fit in place of `name`; with `primed` those whose transpose or derivative fits."""
+        kinds = {other: kind for other, kind in self.kinds.items() if other != name}
+        if primed:
+            kinds = {other: _turned(kind) for other, kind in kinds.items() if kind is not None and any(kind)}
+        wanted = self.kinds[name] if name in self.kinds else self._kind(name)
+        return [other for other, kind in kinds.items() if not self.fit or kind == wanted]
+
+    @cached_property
+    def kinds(self) -> dict[str, Kind]:
+        """What may be offered, and the kind of each."""
+        environment = self.environment
+        names = [*environment.values, *environment.signals, *INSTANTS, environment.variable]
+        known = [n for n in dict.fromkeys(names) if n not in {*self.fields, *HIDDEN} and not n.endswith("'")]
+        return {name: self._kind(name) for name in known}
+
+    def is_signal(self, name: str) -> bool:
+        """Return whether a letter is a signal."""
+        return name in self.environment.signals
+
+    def rounded(self, block: SyntaxNode) -> str | None:
+        """Return the letter whose value rounds to a matrix of decimals."""
+        try:
+            printed = as_printed(block, Reading(self.environment))
+        except Misfit:  # a matrix with 1/0 in it rounds nothing
+            return None
+        if not isinstance(printed, Matrix) or not decimals_in(printed):
+            return None
+        known = [(name, value) for name, value in self.environment.values.items() if isinstance(value, Matrix)]
+        alike = ((name, value) for name, value in known if value.shape == printed.shape)
+        return next((name for name, value in alike if not wrong_entries(printed, value)), None)
+
+    def _kind(self, name: str) -> Kind:
+        """Return whether a letter is a signal, and its size; numbers count as 1×1 matrices."""
+        try:
+            found = value_of(SyntaxNode("letter", text=name), Reading(self.environment))
+        except (Misfit, Unknown):
+            return None
+        if isinstance(found, Flexible):
+            return None
+        size = shape(found)
+        return is_signal(found), None if size == (1, 1) else size
+
+
+def _turned(kind: Kind) -> Kind:
+    """Return the kind of the transpose of a matrix, or of the derivative of a signal."""
+    if kind is None or kind[0] or kind[1] is None:
+        return kind
+    return kind[0], (kind[1][1], kind[1][0])
+
+
+# The `[[printed]]` entries of a file: places and printed equations.
+
+
+_MOST_LETS = 20
+
+
+_WHERE = " where"
+
+
+_FUNCTIONS = {name for name, _ in FUNCTIONS}
+
+
+@dataclass(frozen=True)
+class PrintedEntry:
+    """A printed entry: an equation of two or more members, or answers in the form of `[expect]`."""
+
+    place: str
+    where: str
+    erratum: str
+    convention: Convention
+    relation: str = ""
+    condition: EquationConditions = field(default_factory=EquationConditions)
+    let: Mapping[str, str] = field(default_factory=dict)
+    expect: Mapping[str, Any] = field(default_factory=dict)
+
+
+def printed_entries(
+    entries: Sequence[Mapping[str, Any]], convention: Convention, signs: Mapping[str, str]
+) -> list[PrintedEntry]:
+    """Return the entries of a file; raises `ProblemErrors` with every unreadable one.
+
+    `signs` are those of the file's own symbols, of which conditions speak.
+    """
+    found, errors = [], []
+    for i, entry in enumerate(entries):
+        try:
+            found.append(_statement(entry, f"printed[{i}]", convention, signs))
+        except SymobsError as error:
+            errors.append(error)
+    if errors:
+        raise ProblemErrors(tuple(errors))
+    return found
+
+
+def _built_in(name: str, place: str) -> Convention:
+    try:
+        return convention_named(re.sub(r"(\.toml)+\Z", "", name))  # a file names no path
+    except UsageError as error:
+        raise InputError(error.message, where=f"{place}.convention", repair=error.repair) from None
+
+
+def _statement(entry: Mapping[str, Any], place: str, convention: Convention, signs: Mapping[str, str]) -> PrintedEntry:
+    name = entry.get("convention", convention.name)
+    written_in = convention if name == convention.name else _built_in(name, place)
+    let = _lets(entry.get("let", {}), f"{place}.let")
+    relation, condition = parted(entry.get("relation", ""), signs, f"{place}.relation")
+    if "relation" in entry and len(read_relation(relation, f"{place}.relation")) < 2:
+        repair = 'write both sides, for example "det(s I - A) = s^2 + 3 s + 2"'
+        raise InputError("an equation is expected", where=f"{place}.relation", repair=repair)
+    where, erratum = entry.get("where", ""), entry.get("erratum", "")
+    return PrintedEntry(place, where, erratum, written_in, relation, condition, let, entry.get("expect", {}))
+
+
+def parted(text: str, signs: Mapping[str, str], place: str) -> tuple[str, EquationConditions]:
+    """Return an equation and its conditions: `rank(O) = 2 where c != 0`."""
+    equation, found, condition = text.partition(_WHERE)
+    return equation, EquationConditions.of(condition, signs, place) if found else EquationConditions(signs=signs)
+
+
+def _lets(table: Mapping[str, Any], where: str) -> dict[str, str]:
+    """Return the values of the letters defined by the entry."""
+    if len(table) > _MOST_LETS:
+        raise InputError(f"more than {_MOST_LETS} letters", where=where, repair="print less at once")
+    found: dict[str, str] = {}
+    for name, written in table.items():
+        place = f"{where}.{shown(name, 40)}"
+        declared_name(name, place)
+        members = read_relation(written, place)
+        if len(members) != 1:
+            raise InputError("one expression is expected", where=place, repair='leave "=" out')
+        if name in _FUNCTIONS or name in letters_of(*members):
+            raise InputError(f"{name} cannot stand for this", where=place, repair="take another letter")
+        found[name] = written
+    return found
+
+
+# Whether a change that makes a printed equation true says what was meant.
+
+
+def is_plausible(printed: Sequence[SyntaxNode], changed: Sequence[SyntaxNode], reading: Reading) -> bool:
+    """Return whether an equation may have been meant as it was changed: by what is in it, not by what is lost.
+
+    A term that vanishes, L (y - C x) for L (y - C x_hat), leaves its factor L free; and a letter that is given by
+    signals, u = -K x, was not given by their derivatives, which hold whatever it is.
+    """
+    if printed[0].kind == "letter" and not _derivatives(printed, reading) and _derivatives(changed, reading):
+        return False
+    known = {part for side in printed for part in every(side)}
+    new = [part for side in changed if not _vanishes(side, reading) for part in every(side) if part not in known]
+    return not any(part.kind in {"sum", "product", "negative"} and _vanishes(part, reading) for part in new)
+
+
+def _derivatives(sides: Sequence[SyntaxNode], reading: Reading) -> bool:
+    """Return whether there is a derivative of a signal in an equation."""
+    signals = reading.environment.signals
+    return any(
+        part.kind == "primed" and part.parts[0].text in signals and part.parts[0].kind == "letter"
+        for side in sides
+        for part in every(side)
+    )
+
+
+def _vanishes(node: SyntaxNode, reading: Reading) -> bool:
+    """Return whether a part of an equation is zero."""
+    try:
+        found = value_of(node, reading)
+        return found.factor.is_zero if isinstance(found, Flexible) else equal(found, found - found)
+    except (Misfit, Unknown, *EVALUATION_ERRORS):
+        return False
+
+
+def is_evident(left: SyntaxNode, exact: Matrix, printed: Matrix, wrong: int) -> bool:
+    """Return whether the error lies in numbers on the right: a value of a letter, an entry, a number.
+
+    A single number says too little to tell which letter was meant instead of another.
+    """
+    if left.kind == "letter" or (left.kind == "call" and left.text == "size"):
+        return True
+    alone = exact.shape == (1, 1)
+    return (alone and exact[0, 0].is_constant and printed[0, 0].is_constant) or (not alone and wrong == 1)
+
+
+_MOST_LETTERS = 3
+
+
+#: The signs of so many factors under roots are tried both ways.
+_MOST_SQUARES = 3
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """The correction of an equation that does not hold in general, and the reason; `holds` states where it does."""
+
+    right: str
+    reason: str
+    holds: str = ""
+
+
+@dataclass()
+class EquationAuditor:
+    """The letters of one convention, and the equations found true so far."""
+
+    problem: Problem
+    results: Sequence[Result]
+    convention: Convention
+    patience: SearchBudget
+    known: list[SyntaxNode] = field(default_factory=list)
+    notes: dict[str, None] = field(default_factory=dict)
+    values: Mapping[str, Scalar | Matrix] = field(init=False)
+    telling: frozenset[str] = field(init=False)
+    let: Mapping[str, SyntaxNode] = field(init=False, default_factory=dict)
+    where: EquationConditions = field(init=False, default_factory=EquationConditions)
+    environments: dict[object, Environment] = field(init=False, default_factory=dict)
+    kept: dict[tuple[int, str], Kept] = field(init=False, default_factory=dict)
+    gaps: list[Gap] = field(init=False, default_factory=list)
+
+    def __post_init__(self) -> None:
+        self.values = values(self.problem.plant, self.results, self.convention)
+        self.telling = telling(self.problem.plant, self.convention)
+
+    @property
+    def symbols(self) -> Mapping[str, str]:
+        """The file's own symbols and their signs; they shadow every other meaning of a letter."""
+        return self.problem.plant.symbols.signs
+
+    def read(self, entry: PrintedEntry) -> Iterator[tuple[str, Verdict]]:
+        """Yield the equations of an entry that do not hold in general."""
+        self.environments, self.kept, self.gaps, self.where = {}, {}, [], entry.condition
+        self.let = {name: self._members(text)[0] for name, text in entry.let.items()}
+        for left, right in pairwise(self._members(entry.relation)):
+            verdict = self._checked(left, right)
+            if verdict is None:
+                self.known += [left, right]
+            else:
+                if not verdict.holds:
+                    verdict = replace(verdict, right=self._confirmed(verdict.right))
+                yield self._under(f"{left} = {right}"), verdict
+
+    def _members(self, equation: str) -> tuple[SyntaxNode, ...]:
+        """Return the members of an equation; letters whose value depends on the variable may have an argument."""
+        variable = self.problem.plant.variable
+        functions = {name for name, value in self.values.items() if variable in value.names}
+        return read_relation(equation, "", functions, {*self.symbols, variable, *INSTANTS})
+
+    def _under(self, equation: str, *needed: str) -> str:
+        """Return an equation with its conditions, and others that it needs."""
+        conditions = ", ".join(filter(None, (self.where.text, *needed)))
+        return f"{equation} where {conditions}" if conditions else equation
+
+    def _confirmed(self, right: str) -> str:
+        """Return a correction after evaluating it like a printed equation; it must hold.  Long texts are left out.
+
+        Where it is true in general only, its conditions are said with it, and it is read again.
+        """
+        before, equation = self.where, right
+        if not right:
+            return ""
+        try:
+            equation, self.where = parted(right, self.symbols, "") if " where " in right else (right, before)
+            for pair in pairwise(self._members(equation)):
+                verdict = self._checked(*pair)
+                if verdict is not None and verdict.holds and verdict.right != right:
+                    return self._confirmed(verdict.right)
+                if verdict is not None:
+                    message = f"the equation {right} does not hold"
+                    raise CertificateRejected(message, repair="please report this: it is a bug of symobs", claim=right)
+        except BudgetExceeded:
+            return ""
+        finally:
+            self.where = before
+        return right
+
+    # -- one equation -------------------------------------------------------------------------------------------------
+
+    def environment(self, left: SyntaxNode, right: SyntaxNode) -> Environment:
+        """Return the environment of an equation; the equations of signals depend on the signals that occur."""
+        inside = letters_of(*(self.let[name] for name in letters_of(left, right) if name in self.let))
+        names = self.telling.difference(self.symbols)
+        mentioned = (names.intersection([*letters_of(left, right), *inside]), names.intersection(letters_of(right)))
+        if mentioned not in self.environments:
+            made = signals(self.problem.plant, self.results, self.convention, *mentioned)
+            environment = made.extended_by(values=dict(self.values), signs=dict(self.symbols))
+            for name, meaning in self.let.items():
+                environment = self._with_let(environment, name, meaning)
+            self.environments[mentioned] = environment
+        self._note_shadows([*letters_of(left, right), *inside], self.environments[mentioned])
+        return self.environments[mentioned]
+
+    def _note_shadows(self, letters: Sequence[str], environment: Environment) -> None:
+        """Note the letters of an equation that are declared symbols and also letters of the convention."""
+        for name in letters:
+            if name in self.symbols and (name in {*self.values, *INSTANTS} or name in environment.signals):
+                note = f"{name} is the file's own symbol wherever it is printed, not the {name} of the convention "
+                self.notes[note + self.convention.name] = None
+
+    def reading(self, left: SyntaxNode, right: SyntaxNode, turned: Sequence[Scalar] = ()) -> Reading:
+        """Return a reading of an equation."""
+        reading = Reading(self.environment(left, right), self.where, turned=frozenset(turned))
+        reading.gaps += self.gaps
+        return reading
+
+    def true(self, left: SyntaxNode, right: SyntaxNode) -> bool:
+        """Return whether an equation holds in general."""
+        reading = self.reading(left, right)
+        reading.kept = self.kept.setdefault((id(reading.environment), self.where.text), {})
+        return self._true(left, right, reading)
+
+    def _true(self, left: SyntaxNode, right: SyntaxNode, reading: Reading) -> bool:
+        try:
+            return holds(*spectral(left, right, self.problem.plant.variable), reading)
+        except Misfit:
+            return False
+
+    def _checked(self, printed_left: SyntaxNode, printed_right: SyntaxNode) -> Verdict | None:
+        """Return the correction of an equation that does not hold in general, None for a true one."""
+        reading = self.reading(printed_left, printed_right)
+        environment = reading.environment
+        try:
+            left, right = spectral(printed_left, printed_right, environment.variable)
+            sides = [self._value(side, reading) for side in (left, right)]
+            pair = common(sides[0], sides[1], environment)
+        except Misfit as misfit:
+            return Verdict(*self._misfit(printed_left, printed_right, str(misfit), environment))
+        if equal(*pair):
+            return self._where_it_holds(printed_left, printed_right, reading)
+        turned = self._turned(printed_left, printed_right, reading)
+        if turned is not None:
+            return turned
+        rounded = [is_rounded(side, reading) for side in (left, right)]
+        if (not letters_of(left) and letters_of(right)) or is_spectrum(right) or rounded == [True, False]:
+            left, right, pair = right, left, (pair[1], pair[0])
+        spectra = (left, right) != (printed_left, printed_right) and (right, left) != (printed_left, printed_right)
+        if is_signal(pair[0]):
+            return Verdict(*self._signals(left, right, pair, environment))
+        found = self._values(left, right, pair, reading, spectra=spectra)
+        if found is None:  # only rounding parts them
+            return self._where_it_holds(printed_left, printed_right, reading)
+        return Verdict(*found)
+
+    def _where_it_holds(self, left: SyntaxNode, right: SyntaxNode, reading: Reading) -> Verdict | None:
+        """Return the conditions of a true equation, None if there are none."""
+        turned = self._turned(left, right, reading)
+        if turned is not None:
+            return turned
+        values = [value for name in letters_of(left, right) if (value := self.values.get(name)) is not None]
+        nonzero = vanishing_factors([value.common_denominator() for value in values], reading.where.signs)
+        needed, reasons = exceptions(reading, nonzero)
+        if not needed:
+            return None
+        return Verdict(
+            self._under(f"{left} = {right}", *needed), f"true in general only: {'; '.join(reasons)}", "in general"
+        )
+
+    def _turned(self, left: SyntaxNode, right: SyntaxNode, reading: Reading) -> Verdict | None:
+        """Return the signs of squared radicands for which an equation holds, unless it holds for all or none."""
+        squares = reading.squares[:_MOST_SQUARES]
+        choices = list(chain.from_iterable(combinations(squares, count) for count in range(len(squares) + 1)))
+        true = [turned for turned in choices if self._true(left, right, self.reading(left, right, turned))]
+        if not true or len(true) == len(choices):
+            return None
+        needed = [f"{text_of_value(factor)} {'<=' if factor in true[0] else '>='} 0" for factor in squares]
+        return Verdict(
+            self._under(f"{left} = {right}", *needed), f"a root is not negative: true only where {' and '.join(needed)}"
+        )
+
+    def _value(self, node: SyntaxNode, reading: Reading) -> Printed:
+        try:
+            return value_of(node, reading)
+        except Unknown as unknown:
+            raise self._unknown(unknown.name, reading.environment) from None
+
+    def _unknown(self, name: str, environment: Environment) -> UnknownName:
+        from difflib import get_close_matches  # noqa: PLC0415 - needed for messages only
+
+        known = [*environment.values, *environment.signals]
+        near = get_close_matches(name, known, 1)
+        repair = f'did you mean "{near[0]}"?' if near else "declare it in [symbols], or say in let what it stands for"
+        message = (
+            f'the letter "{name}" means nothing in the convention {self.convention.name}, with the tasks of this file'
+        )
+        return UnknownName(message, repair=repair, name=name)
+
+    def _with_let(self, environment: Environment, name: str, meaning: SyntaxNode) -> Environment:
+        """Return the environment in which a letter of the entry stands for a value or a signal."""
+        reading = Reading(environment, self.where)
+        try:
+            found = value_of(meaning, reading)
+        except (
+            Misfit,
+            Unknown,
+        ):  # it is another equation that uses this letter, or the letter is reported where it stands
+            return environment
+        self.gaps += [gap for gap in reading.gaps if gap not in self.gaps]
+        if isinstance(found, Flexible):
+            return environment
+        if is_signal(found):
+            return environment.extended_by(signals={name: found.formula})
+        others = {key: formula for key, formula in environment.signals.items() if key != name}
+        return replace(environment, signals=others, values={**environment.values, name: found.value})
+
+    # -- what is wrong ------------------------------------------------------------------------------------------------
+
+    def _slip(
+        self, left: SyntaxNode, right: SyntaxNode, environment: Environment, *, fit: bool = True
+    ) -> tuple[str, str] | None:
+        fields = {name for result in self.results for name in result.fields if name[0].islower()}
+        matrices = {f"{result.task}_matrix" for result in self.results}
+        alphabet = CandidateLetters(environment, frozenset(fields | matrices), fit=fit)
+        true, sides = self.patience.asks(self.true), (left, right)
+        found = found_slip(*sides, lambda *new: true(*new) and is_plausible(sides, new, self.reading(*new)), alphabet)
+        return None if found is None else (f"{found[0]} = {found[1]}", found[2])
+
+    def _misfit(self, left: SyntaxNode, right: SyntaxNode, message: str, environment: Environment) -> tuple[str, str]:
+        slip = self._slip(left, right, environment, fit=False)
+        if slip is not None:
+            return slip[0], f"{message}; {slip[1]}"
+        for side, other in ((left, right), (right, left)):
+            try:
+                value = self._value(side, Reading(environment, self.where))
+                if is_spectrum(side) and isinstance(value, Term):
+                    return spectrum_text(side, value.value, environment.variable), message
+                self._value(other, Reading(environment, self.where))
+            except Misfit:
+                continue
+            if isinstance(value, Term) and letters_of(side) and not is_signal(value):
+                return f"{side} = {differences.value_text(value.value)}", message
+        return "", message
+
+    def _values(
+        self, left: SyntaxNode, right: SyntaxNode, pair: tuple[Term, Term], reading: Reading, *, spectra: bool
+    ) -> tuple[str, str] | None:
+        """Return the error of a value or of a formula for one, None if it differs by rounding only."""
+        environment = reading.environment
+        exact, printed = (differences.as_matrix(term.value) for term in pair)
+        rounded = as_printed(right, reading) if is_rounded(right, reading) else None
+        if (
+            rounded is not None and differences.as_matrix(rounded).shape == exact.shape
+        ):  # else it is a 0 of another size
+            printed = differences.as_matrix(rounded)
+        wrong = differences.wrong_entries(printed, exact)
+        if not wrong:
+            return None
+        variable = environment.variable
+        reason = ""
+        if exact.shape == (1, 1):
+            reason = differences.polynomial_reason(printed[0, 0], exact[0, 0], variable)
+        numbers = self._is_written_out(right, environment)
+        plain = bool(reason) and "; " not in reason and not spectra
+        if not numbers or not (plain or is_evident(left, exact, printed, len(wrong))):
+            slip = self._slip(left, right, environment)
+            if slip is not None:
+                return slip
+        if spectra:
+            return spectrum_text(left, exact[0, 0], variable), "the eigenvalues are others"
+        factor = None if numbers else self._missing_factor(left, right)
+        if factor is not None:
+            return factor
+        whole = differences.reasons(printed, exact, str(left))
+        value, alike = (exact[0, 0], printed[0, 0]) if isinstance(pair[1].value, Scalar) else (exact, printed)
+        return f"{left} = {differences.value_text(value, alike)}", reason or whole
+
+    def _is_written_out(self, node: SyntaxNode, environment: Environment) -> bool:
+        """Return whether a side has no letters other than the symbols of the problem."""
+        plain = {*self.problem.plant.symbols.signs, *INSTANTS, environment.variable}
+        return set(letters_of(node)) <= plain
+
+    def _missing_factor(self, left: SyntaxNode, right: SyntaxNode) -> tuple[str, str] | None:
+        """Return the equation with its left side multiplied by a factor from a side of an earlier equation."""
+        for node in reversed(self.known):
+            if node.kind == "block" and self.true(SyntaxNode("product", (node, left)), right):
+                fixed = SyntaxNode("product", (node, left))
+                return f"{fixed} = {right}", f"the factor {node} before {left} is missing"
+        return None
+
+    def _signals(
+        self, left: SyntaxNode, right: SyntaxNode, pair: tuple[Term, Term], environment: Environment
+    ) -> tuple[str, str]:
+        exact, printed = (self._coefficients(term) for term in pair)
+        names = [name for name in {**exact, **printed} if exact.get(name) != printed.get(name)]
+        wrong = {
+            name: differences.wrong_entries(printed[name], exact[name])
+            for name in names
+            if name in exact and name in printed
+        }
+        single = len(names) == 1 and len(wrong.get(names[0], ())) == 1
+        if not single:
+            slip = self._slip(left, right, environment)
+            if slip is not None:
+                return slip
+        term = self._missing_term(left, right, exact, printed, environment)
+        if term is not None:
+            return term
+        reasons = []
+        for name in names:
+            if name not in printed:
+                reasons.append(f"the term {differences.term_text(exact[name], name)} is missing")
+            elif name not in exact:
+                reasons.append(f"the term {differences.term_text(printed[name], name)} does not belong there")
+            else:
+                whole = f"the coefficient of {name}"
+                why = differences.reasons(printed[name], exact[name], whole)
+                reasons.append(why if why.startswith(whole) else f"in {whole} {why}")
+        terms = (
+            " + ".join(differences.term_text(value, name) for name, value in exact.items()).replace("+ -", "- ") or "0"
+        )
+        return "" if terms == str(left) else f"{left} = {terms}", "; ".join(reasons)
+
+    def _coefficients(self, term: Term) -> dict[str, Matrix]:
+        value = term.value
+        assert isinstance(value, Signal)  # noqa: S101 - an invariant of the caller
+        return {name: part for name, part in value.coefficients.items() if not part.is_zero}
+
+    def _missing_term(
+        self,
+        left: SyntaxNode,
+        right: SyntaxNode,
+        exact: Mapping[str, Matrix],
+        printed: Mapping[str, Matrix],
+        environment: Environment,
+    ) -> tuple[str, str] | None:
+        """Return the equation with one more term, a product of letters of the equation and one signal."""
+        names = [name for name in {**exact, **printed} if exact.get(name) != printed.get(name)]
+        if len(names) != 1 or any(part.kind == "number" for part in every(right)):
+            return None
+        true, written = self.patience.asks(self.true), self._matrices(letters_of(left, right), environment)
+        offered = self._matrices([*written, *environment.values], environment)
+        for letters, most in ((written[:6], _MOST_LETTERS), (offered[:16], 2)):
+            for chosen in (each for count in range(1, most + 1) for each in product(letters, repeat=count)):
+                term = SyntaxNode("product", tuple(SyntaxNode("letter", text=name) for name in (*chosen, names[0])))
+                terms = right.parts if right.kind == "sum" else (right,)
+                for last in (term, SyntaxNode("negative", (term,))):
+                    fixed = SyntaxNode("sum", (*terms, last))
+                    if true(left, fixed):
+                        return f"{left} = {fixed}", f"the term {last} is missing"
+        return None
+
+    def _matrices(self, names: Sequence[str], environment: Environment) -> list[str]:
+        values = environment.values
+        return [name for name in dict.fromkeys(names) if isinstance(values.get(name), Matrix)]
+
+
+# Findings of the audit of a problem: false equations, right values and reasons.
+
+
+@dataclass(frozen=True)
+class Finding:
+    """A printed equation that does not hold in general: its place, text, correction and reason.
+
+    `holds` is empty where it is false, `in general` where it fails only where some polynomials vanish.
+    """
+
+    where: str
+    erratum: str
+    printed: str
+    right: str
+    reason: str
+    holds: str = ""
+
+
+@dataclass(frozen=True)
+class Audited:
+    """The findings for one problem, the number of printed equations, and notes on the reading of letters."""
+
+    title: str
+    checked: int
+    findings: tuple[Finding, ...]
+    notes: tuple[str, ...] = ()
+
+    @property
+    def wrong(self) -> tuple[Finding, ...]:
+        """The equations that are false."""
+        return tuple(finding for finding in self.findings if not finding.holds)
+
+
+def audit(problem: Problem) -> Audited:
+    """Solve a problem and compare every printed equation with the answers.
+
+    Raises `ProblemErrors` with every entry that cannot be read.
+    """
+    entries = printed_entries(problem.printed, problem.convention, problem.plant.symbols.signs)
+    results = problem.solve()
+    found: list[Finding] = []
+    errors: list[SymobsError] = []
+    desks: dict[str, EquationAuditor] = {}
+    patience = SearchBudget()
+    for entry in entries:
+        name = entry.convention.name
+        desk = desks[name] = desks.get(name) or EquationAuditor(problem, results, entry.convention, patience)
+        try:
+            found += _read(entry, desk)
+        except SymobsError as error:
+            error.where = error.where or entry.place
+            errors.append(error)
+    if errors:
+        raise ProblemErrors(tuple(errors))
+    notes = dict.fromkeys(note for desk in desks.values() for note in desk.notes)
+    return Audited(problem.title, len(entries), tuple(found), tuple(notes))
+
+
+def _read(entry: PrintedEntry, desk: EquationAuditor) -> list[Finding]:
+    """Return the findings for one entry."""
+    if entry.expect:
+        lines = mismatches([ResultInConvention(result, desk.convention) for result in desk.results], entry.expect)
+        texts = [line.partition(": expected ")[2].partition(", found ") for line in lines]
+        return [Finding(entry.where, entry.erratum, came, right, "") for came, _, right in texts]
+    return [
+        Finding(entry.where, entry.erratum, printed, verdict.right, verdict.reason, verdict.holds)
+        for printed, verdict in desk.read(entry)
+    ]

@@ -1,1 +1,0 @@
-"""Printed equations: their grammar, the values of letters and signals, and their evaluation."""

@@ -1,1 +1,0 @@
-"""What a student hands in: the answer file, and its values."""

@@ -1,1 +1,0 @@
-"""The answers of a class: read from a table or a folder, checked one by one, counted."""

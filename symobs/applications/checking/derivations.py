@@ -1,0 +1,508 @@
+"""The lines of a derivation: the first false one, and what follows from it."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from contextlib import suppress
+from dataclasses import field, replace
+from itertools import pairwise
+from typing import TYPE_CHECKING, Any
+
+from symobs.applications.audit.auditor import EquationAuditor, printed_entries
+from symobs.applications.audit.differences import as_matrix, wrong_entries
+from symobs.applications.audit.evaluation import Misfit, Unknown, value_of
+from symobs.applications.audit.slips import SearchBudget
+from symobs.applications.checking.answers import Answer, Step, as_value, read_like
+from symobs.applications.checking.judgement import OF_THE_PLANT, exists, field_called, is_of_time
+from symobs.applications.checking.regions import compare, read_conditions
+from symobs.applications.checking.report import Line
+from symobs.exact import Matrix, Scalar, TooLarge
+from symobs.formula.expression.syntax import SyntaxNode, letters_of
+from symobs.formula.tree.term import Term
+from symobs.ground.dataclass import dataclass
+from symobs.ground.errors import BudgetExceeded, CertificateRejected, NotShown, ProblemErrors, SymobsError, UnknownName
+from symobs.problem.expect import found_in, met, names_of
+from symobs.proof.certificate.claims import UNREADABLE
+from symobs.tasks.analysis.rank.observability import controllability_rank, observability_rank
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+    from fractions import Fraction
+
+    from symobs.applications.audit.auditor import PrintedEntry
+    from symobs.applications.checking.judgement import TaskJudgement
+    from symobs.formula.convention import Convention
+    from symobs.problem import Problem
+    from symobs.problem.fields import Milestone
+    from symobs.tasks.result import Result
+    from symobs.tasks.result.in_convention import ResultInConvention
+
+
+# The auditor of a derivation's lines: that of printed equations, with the student's values in place of letters.
+
+
+#: A right value beside the one that was written, and the slip from one to the other.
+_BESIDE = re.compile(r"(.+?) is .+, not [^:]+(?:: (.+))?")
+
+
+_PART = re.compile(r"(?:in )?(?:entry|the coefficient|the constant term)\b")
+
+
+#: A term with its right coefficient, or with what a student's letters make of it: its signal alone is a place.
+_TERM = re.compile(r"the term (?:.* )?-?(\S+) (is missing|does not belong there)")
+
+
+_MORE = re.compile(r"and [0-9]+ more entr(?:y|ies)")
+
+
+#: What is wrong with a value as a whole, in words that have no right value in them.
+_CAUSE = re.compile(
+    r"(?:in the coefficient of \S+ )?"
+    r"(?:all signs are wrong|the (?:transpose|inverse) is printed|every entry is multiplied by \S+"
+    r"|the (?:entries|rows|columns) [(),0-9 ]+ and [(),0-9 ]+ are exchanged)"
+    r"|the eigenvalues are others"
+)
+
+
+_BETWEEN_PIECES = re.compile(r"; (?![^\[]*\])")
+
+
+def without_solution(reason: str, *, is_gain: bool = False) -> str:
+    """Return why a line is false without what is right: one wrong entry or coefficient is told, of several the places.
+
+    A value that is wrong as a whole has its slip for a reason, or none; so has a gain, which may be right in other places.
+    Of what has none of the known wordings nothing is told.
+    """
+    pieces = _BETWEEN_PIECES.split(reason)
+    beside = [found for piece in pieces if (found := _BESIDE.fullmatch(piece)) and not _TERM.fullmatch(piece)]
+    if len(pieces) == len(beside) == 1:
+        return reason if _PART.match(beside[0][1]) else beside[0][2] or ""
+    causes = [piece for piece in pieces if _CAUSE.fullmatch(piece)]
+    if causes or is_gain:
+        return "; ".join(causes)
+    places = [found[1] for found in beside if _PART.match(found[1])]
+    places += [piece for piece in pieces if places and _MORE.fullmatch(piece)]
+    terms = [f"a term in {found[1]} {found[2]}" for piece in pieces if (found := _TERM.fullmatch(piece))]
+    return "; ".join([*([f"not right: {', '.join(places)}"] if places else []), *terms])
+
+
+def place_alone(reason: str) -> str:
+    """Return the reason for a matrix with one entry at most, of which a right entry may be all that there is to find."""
+    return re.sub(r"^(entry \([0-9]+, [0-9]+\)) is [^;]*$", r"\1 is wrong", reason)
+
+
+@dataclass()
+class LineAuditor(EquationAuditor):
+    """An auditor that tells whether a line is true, and what it defines.
+
+    What is said in the letters and numbers of the line itself, of slips and of sizes, is `harmless`: it gives nothing away.
+    """
+
+    harmless: set[str] = field(init=False, default_factory=set)
+
+    def members(self, entry: PrintedEntry) -> tuple[SyntaxNode, ...]:
+        """Return the members of a line, its conditions and its own letters being set."""
+        self.environments, self.kept, self.gaps, self.where = {}, {}, [], entry.condition
+        self.let = {name: self._members(text)[0] for name, text in entry.let.items()}
+        return self._members(entry.relation)
+
+    def is_true(self, entry: PrintedEntry) -> bool:
+        """Return whether a line holds in general; raises `UnknownName` for a letter without a meaning."""
+        members = self.members(entry)
+        reading = self.reading(members[0], members[-1])
+        for name in {*letters_of(*members)} - {*self.let}:
+            with suppress(Misfit):
+                self._value(SyntaxNode("letter", text=name), reading)
+        return all(self.true(left, right) for left, right in pairwise(members))
+
+    def defined(self, entry: PrintedEntry) -> tuple[str, Scalar | Matrix] | None:
+        """Return the letter that a line defines, and its value; None for any other line."""
+        members = self.members(entry)
+        letter, last = members[0], members[-1]
+        plain = {*self.symbols, *self.let, self.problem.plant.variable, "t"}
+        if letter.kind != "letter" or letter.text in plain or not set(letters_of(last)) <= plain:
+            return None
+        try:
+            found = value_of(last, self.reading(letter, last))
+        except (Misfit, Unknown):
+            return None
+        value = found.value if isinstance(found, Term) else None
+        known = self.values.get(letter.text)
+        if isinstance(known, Scalar) and isinstance(value, Matrix) and value.shape == (1, 1):
+            value = value[0, 0]
+        return (letter.text, value) if isinstance(value, (Scalar, Matrix)) else None
+
+    def letters(self, entry: PrintedEntry) -> set[str]:
+        """Return the letters of a line."""
+        return {*letters_of(*self.members(entry), *self.let.values())}
+
+    def explained(self, entry: PrintedEntry, *, is_gain: bool) -> tuple[str, str]:
+        """Return the correction of a false line and the reason without it, empty where none is found."""
+        for _, verdict in self.read(entry):
+            if not verdict.holds:
+                said = verdict.reason
+                return verdict.right, said if said in self.harmless else without_solution(said, is_gain=is_gain)
+        return "", ""
+
+    def _slip(self, *sides: Any, **options: Any) -> tuple[str, str] | None:
+        return self._noted(super()._slip(*sides, **options))
+
+    def _misfit(self, *sides: Any) -> tuple[str, str]:
+        found = super()._misfit(*sides)
+        self._noted(found)
+        return found
+
+    def _missing_factor(self, *sides: Any) -> tuple[str, str] | None:
+        return self._noted(super()._missing_factor(*sides))
+
+    def _missing_term(self, *sides: Any) -> tuple[str, str] | None:
+        return self._noted(super()._missing_term(*sides))
+
+    def _noted(self, found: tuple[str, str] | None) -> tuple[str, str] | None:
+        """Return a correction, its reason being noted as harmless."""
+        if found is not None:
+            self.harmless.add(found[1])
+        return found
+
+
+def auditor(
+    problem: Problem,
+    results: Sequence[Result],
+    convention: Convention,
+    budget: SearchBudget,
+    values: Mapping[str, Any],
+) -> LineAuditor:
+    """Return an auditor in which some letters have values of their own."""
+    found = LineAuditor(problem, results, convention, budget)
+    found.values = {**found.values, **values}
+    return found
+
+
+# Lines that say what a function of time is, x(t) = [...], y(t) = ... and exp(A t) = [...]: held against the answer
+# itself.
+
+
+def of_function_of_time(
+    step: Step, views: Sequence[ResultInConvention], audited: Callable[[Step], Line]
+) -> Line | None:
+    """Return the line x(t) = ... = ... with its verdict, None for any other line; members with letters are `audited`."""
+    name, *members = (side.strip() for side in step.relation.split("="))
+    view = next((view for view in views if is_of_time([view.result], name)), None)
+    if view is None or not members or not exists(view.result, field_called(view.result, name)):
+        return None
+    found = [
+        _of_member(step, name, member, view) or audited(replace(step, relation=f"{name} = {member}"))
+        for member in members
+    ]
+    worst = next((line for line in found if line.verdict != "true"), found[0])
+    return replace(worst, relation=step.relation)
+
+
+def _of_member(step: Step, name: str, member: str, view: ResultInConvention) -> Line | None:
+    """Return whether a function equals a member that is written out in t; None for a member in letters."""
+    field = field_called(view.result, name)
+    try:
+        if met(view, field, as_value(member), step.where):
+            return Line(step.where, step.relation, "true")
+        right = found_in(view, field)
+        mine = read_like(right, as_value(member), names_of(view), "t", step.where)
+    except (NotShown, TooLarge) as error:
+        return Line(step.where, step.relation, "undecided", reason=str(error))
+    except SymobsError:
+        if "exp" not in f"{name} {member}":
+            return None
+        reason = "only functions of t that are written out can be compared here"
+        return Line(step.where, step.relation, "undecided", reason=reason)
+    assert mine is not None  # noqa: S101 - a function of time is a matrix or a number
+    own, exact = as_matrix(mine), as_matrix(right)
+    if own.shape != exact.shape:
+        rows, columns = (f"{a}x{b}" for a, b in (exact.shape, own.shape))
+        return Line(step.where, step.relation, "false", reason=f"{name} is {rows} here, yours is {columns}")
+    wrong = wrong_entries(own, exact, whole=name)
+    reason = without_solution("; ".join(map(str, wrong))) or "its sides are not equal"
+    return Line(step.where, step.relation, "false", right=f"{name} = {right}", reason=reason)
+
+
+# The lines of a derivation: true with the right values, following from earlier wrong ones, or false.
+#
+# A line that defines a letter binds it for the lines behind it. A gain that meets its claim takes the place of the
+# right one; a wrong value is what later lines may follow from.
+
+
+#: What a line may raise that is too large to be decided, or that the correction of a false one could not confirm.
+_OPEN = (NotShown, TooLarge, BudgetExceeded)
+
+
+#: Tasks whose values are right in many ways, though they design no gain.
+_CHOSEN = ("dual", "initial_state")
+
+
+_ORDER = re.compile(r"[<>]")
+
+
+@dataclass()
+class _Derivation:
+    """What the lines so far have defined: right gains, and the values of letters that are not right."""
+
+    problem: Problem
+    views: Sequence[ResultInConvention]
+    symbols: Mapping[str, Scalar]
+    right: dict[str, Result]
+    budget: SearchBudget = field(default_factory=SearchBudget)
+    bound: dict[str, tuple[Any, str]] = field(default_factory=dict)
+    rightly: set[str] = field(default_factory=set)
+
+    def auditor_of_right(self) -> LineAuditor:
+        """Return the auditor with the right values."""
+        return auditor(self.problem, list(self.right.values()), self.views[0].convention, self.budget, self.symbols)
+
+    def auditor_of_own(self) -> LineAuditor:
+        """Return the auditor with the student's values of letters, and with what follows from the student's gains."""
+        results = []
+        for view in self.views:
+            result = self.right[view.task]
+            gains = {
+                view.standard(letter)[0]: -value if view.standard(letter)[1] < 0 else value
+                for letter, (value, _) in self.bound.items()
+                if view.standard(letter)[0] in result.gains and isinstance(value, Matrix)
+            }
+            try:
+                results.append(result.following_from(gains) if gains else result)
+            except (SymobsError, ArithmeticError, ValueError, AttributeError, TypeError):
+                results.append(result)
+        own = {letter: value for letter, (value, _) in self.bound.items()}
+        return auditor(self.problem, results, self.views[0].convention, self.budget, {**self.symbols, **own})
+
+    def origins(self, letters: set[str]) -> tuple[str, ...]:
+        """Return the lines that bound the letters of a line, or those that bound gains."""
+        named = [where for letter, (_, where) in self.bound.items() if letter in letters]
+        return tuple(dict.fromkeys(named or [where for _, where in self.bound.values()]))
+
+    def is_gain(self, letter: str) -> bool:
+        """Return whether a letter is that of a gain, of which the part of the answer says why it is wrong."""
+        return any(view.standard(letter)[0] in view.result.gains for view in self.views)
+
+    def takes(self, letter: str, value: Any) -> bool:
+        """Return whether a value of a gain meets its claim; then it takes the place of the right one."""
+        for view in self.views:
+            name, sign = view.standard(letter)
+            right = self.right.get(view.task)
+            if right is None or name not in right.gains or not isinstance(value, Matrix):
+                continue
+            known = right.fields.get(name)
+            if not isinstance(known, Matrix) or known.shape != value.shape:
+                continue
+            try:
+                self.right[view.task] = right.with_gains({name: -value if sign < 0 else value})
+            except CertificateRejected:
+                continue
+            return True
+        return False
+
+
+def judge_lines(
+    problem: Problem,
+    views: Sequence[ResultInConvention],
+    judged: Mapping[str, TaskJudgement],
+    answer: Answer,
+    milestones: Sequence[Milestone],
+) -> tuple[tuple[Line, ...], tuple[tuple[str, Fraction, bool], ...]]:
+    """Return the lines of an answer with their verdicts, and the milestones with whether they are met."""
+    symbols = {name: Scalar.symbol(name) for name in answer.symbols}
+    state = _Derivation(problem, views, symbols, {task: each.right for task, each in judged.items()})
+    if not answer.loose:
+        for each in judged.values():
+            for part in each.parts:
+                if part.verdict == "wrong" and part.name in each.right.gains and part.value is not None:
+                    view = next(view for view in views if view.task == each.right.task)
+                    value = -part.value if view.standard(part.letter)[1] < 0 else part.value
+                    state.bound[part.letter] = (value, "the answer")
+    chosen = {
+        part.letter
+        for each in judged.values()
+        for part in each.parts
+        if part.verdict == "right" and part.name in each.right.in_coordinates
+    }
+    lines = tuple(
+        _judged(state, step, answer) for step in answer.steps if not _states_a_part(step, answer, views, chosen)
+    )
+    right = {part.letter for each in judged.values() for part in each.parts if part.verdict == "right"}
+    met = tuple((each.relation, each.points, _is_met(each, lines, right | state.rightly)) for each in milestones)
+    return lines, met
+
+
+def judge_milestone(problem: Problem, views: Sequence[ResultInConvention], milestone: Milestone) -> Line:
+    """Return a milestone as a line with its verdict, given the problem's own answers as far as nobody could choose others.
+
+    Where an answer may be chosen, its letters mean nothing here: such a milestone is no line that could be called false.
+    """
+    letter = milestone.relation.partition("=")[0].strip()
+    if letter in OF_THE_PLANT and any(exists(view.result, letter) for view in views):
+        return Line("", milestone.relation, "undecided")  # the plant's letter, and that of an answer
+    right = {view.task: view.result for view in views if _is_unique(view.result)}
+    state = _Derivation(problem, views, {}, right)
+    return _judged(state, Step(milestone.relation, ""), Answer())
+
+
+def _is_unique(result: Result) -> bool:
+    """Return whether only one answer is right: no coordinates are chosen, and one signal alone is fed back to all modes."""
+    if result.task in _CHOSEN or result.in_coordinates or result.claimed:
+        return False
+    plant = result.plant
+    shapes = {"K": (1, plant.order), "L": (plant.order, 1)}
+    whole = {"K": controllability_rank, "L": observability_rank}
+    return all(
+        name in shapes
+        and isinstance(gain := result.fields.get(name), Matrix)
+        and gain.shape == shapes[name]
+        and whole[name](plant).answer["rank"] == plant.order
+        for name in result.gains
+    )
+
+
+def _states_a_part(step: Step, answer: Answer, views: Sequence[ResultInConvention], chosen: set[str]) -> bool:
+    """Return whether a line only repeats a part of the answer.
+
+    Its letter is the plant's, A = [...] of a canonical form, or it is right in coordinates that the student has `chosen`.
+    """
+    letter, _, value = (side.strip() for side in step.relation.partition("="))
+    given = [entry.get(letter) for entry in (answer.values, *answer.values.values()) if isinstance(entry, Mapping)]
+    if letter in chosen:
+        return value in given
+    return letter in OF_THE_PLANT and value in given and any(exists(view.result, letter) for view in views)
+
+
+def _is_too_long(error: SymobsError) -> bool:
+    """Return whether a line has no other fault than its length, so that it may be true or false."""
+    return isinstance(error, ProblemErrors) and all(isinstance(each, BudgetExceeded) for each in error.errors)
+
+
+def _without_place(error: SymobsError) -> str:
+    """Return what is wrong with a line; its place is that of the line."""
+    errors = error.errors if isinstance(error, ProblemErrors) else (error,)
+    for each in errors:
+        each.where = ""
+        if isinstance(each, UnknownName) and not each.repair.startswith("did you mean"):
+            each.repair = "use the letters of the problem; your own ones belong to symbols or let of an answer file"
+    return "\n".join(map(str, errors))
+
+
+def is_of_conditions(relation: str) -> bool:
+    """Return whether a line is one of conditions, and no equation."""
+    return bool(_ORDER.search(relation)) and " where " not in relation
+
+
+def _judged(state: _Derivation, step: Step, answer: Answer) -> Line:
+    """Return a line with its verdict."""
+    if is_of_conditions(step.relation):
+        return _of_conditions(state, step)
+    of_time = of_function_of_time(step, state.views, lambda member: _audited(state, member, answer))
+    return of_time or _audited(state, step, answer)
+
+
+def _audited(state: _Derivation, step: Step, answer: Answer) -> Line:
+    """Return a line of letters with its verdict."""
+    try:
+        entry = _entry(state, step, answer)
+        right = state.auditor_of_right()
+        true = right.is_true(entry)
+        defined = right.defined(entry)
+        if defined is not None and not true and state.takes(*defined):
+            true = True
+        if true:
+            if defined is not None:
+                state.bound.pop(defined[0], None)
+                state.rightly.add(defined[0])
+            return Line(step.where, step.relation, "true")
+        return _not_true(state, step, entry, right, defined)
+    except _OPEN as error:
+        return Line(step.where, step.relation, "undecided", reason=str(error))
+    except SymobsError as error:
+        verdict = "undecided" if _is_too_long(error) else "unreadable"
+        return Line(step.where, step.relation, verdict, reason=_without_place(error))
+    except UNREADABLE:
+        return Line(step.where, step.relation, "undecided", reason="this line cannot be evaluated")
+
+
+def _not_true(
+    state: _Derivation, step: Step, entry: PrintedEntry, right: LineAuditor, defined: tuple[str, Any] | None
+) -> Line:
+    """Return a line that is not true: it follows from earlier lines that are wrong, or is false itself."""
+    desk = right
+    if state.bound:
+        own = state.auditor_of_own()
+        if defined is not None:  # a letter that was bound before is bound anew, by what it follows from
+            before = state.bound.pop(defined[0], None)
+            own = state.auditor_of_own() if state.bound else right
+            if before is not None and not state.bound:
+                state.bound[defined[0]] = before
+        if state.bound and own.is_true(entry):
+            origins = state.origins(own.letters(entry) - ({defined[0]} if defined else set()))
+            if defined is not None:
+                state.bound[defined[0]] = (defined[1], step.where)
+            return Line(step.where, step.relation, "follows", origins)
+        desk = own
+    is_gain = defined is not None and state.is_gain(defined[0])
+    try:
+        corrected, reason = desk.explained(entry, is_gain=is_gain)
+    except (CertificateRejected, *UNREADABLE):  # the search for the cause found none that stands
+        corrected, reason = "", ""
+    if defined is not None and isinstance(defined[1], Matrix) and sum(not x.is_zero for x in defined[1].entries) < 2:
+        reason = place_alone(reason)
+    reason = reason or ("" if is_gain else "its sides are not equal")
+    if desk is not right:
+        reason = ", ".join(filter(None, (reason, _with_own(state, entry, right, corrected))))
+    if defined is not None:
+        state.bound[defined[0]] = (defined[1], step.where)
+    return Line(step.where, step.relation, "false", right=corrected or None, reason=reason)
+
+
+def _with_own(state: _Derivation, entry: PrintedEntry, right: LineAuditor, corrected: str) -> str:
+    """Return with which values of the student a correction holds, empty where it holds with the right ones as well."""
+    with suppress(SymobsError, *UNREADABLE):
+        if corrected and right.is_true(replace(entry, relation=corrected.partition(" where ")[0])):
+            return ""
+    letters = right.letters(entry) - {entry.relation.partition("=")[0].strip()}
+    own = [letter for letter in state.bound if letter in letters]
+    if not own and corrected:
+        own = [letter for letter in state.bound if state.is_gain(letter)]
+    return f"with your {' and '.join(own)}" if own else ""
+
+
+def _entry(state: _Derivation, step: Step, answer: Answer) -> PrintedEntry:
+    """Return a line as the audit reads it; raises `ProblemErrors` where it cannot."""
+    table: dict[str, Any] = {"relation": step.relation, "let": {**answer.let, **step.let}}
+    (entry,) = printed_entries([table], state.views[0].convention, state.problem.plant.symbols.signs)
+    return entry
+
+
+def _of_conditions(state: _Derivation, step: Step) -> Line:
+    """Return a line of conditions: true where the region implies them."""
+    view = next((view for view in state.views if view.task == "stability_region"), None)
+    if view is None:
+        return Line(step.where, step.relation, "unreadable", reason="no region is asked for here")
+    names = names_of(view)
+    known = None if names is None else {**dict.fromkeys(view.result.question.parameters, "real"), **names}
+    try:
+        union = read_conditions(step.relation, known, step.where)
+        ours = read_conditions(list(view.result.fields["stable_if"]), known)
+        both = tuple((*mine, *theirs) for mine in ours for theirs in union)
+        found = compare(view.result, both)  # type: ignore[arg-type]
+    except _OPEN as error:
+        return Line(step.where, step.relation, "undecided", reason=str(error))
+    except SymobsError as error:
+        return Line(step.where, step.relation, "unreadable", reason=_without_place(error))
+    verdict = {"right": "true", "undecided": "undecided"}.get(found.verdict, "false")
+    return Line(step.where, step.relation, verdict)
+
+
+def _is_met(milestone: Milestone, lines: Sequence[Line], right: set[str]) -> bool:
+    """Return whether a milestone is among the true lines, or defines a letter that was rightly defined."""
+    sides = _sides(milestone.relation)
+    letter = milestone.relation.split("=")[0].strip()
+    return letter in right or any(line.verdict == "true" and _sides(line.relation) == sides for line in lines)
+
+
+def _sides(relation: str) -> frozenset[str]:
+    return frozenset(re.sub(r"\s+", "", side) for side in relation.split("="))

@@ -1,1 +1,0 @@
-"""The lines of a derivation: the first false one, and what follows from it."""

@@ -1,1 +1,0 @@
-"""What an answer is held against: the claims of the results, and regions."""

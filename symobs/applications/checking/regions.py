@@ -1,0 +1,436 @@
+"""Equality of regions: the conditions of a student and the exact region of the result.
+
+With one parameter the line is divided at every critical point of both, with two the plane by the curves of both; then both are
+asked at a point of every piece.  A difference always comes with a rational point, unless it lies on boundaries only.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+from contextlib import suppress
+from dataclasses import replace
+from fractions import Fraction
+from random import Random
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from symobs.applications.checking.answers import exact
+from symobs.exact import Scalar, TooLarge
+from symobs.exact.algebraic.real_algebraic import RealNumber, integer_factor, rational_between, roots_of_scalar
+from symobs.exact.algebraic.root_location import value_at
+from symobs.exact.core.generators import function_named
+from symobs.formula.expression import parse_scalar
+from symobs.formula.expression.source import shown
+from symobs.ground.dataclass import dataclass
+from symobs.ground.errors import InputError, NotShown
+from symobs.problem.expect import conditions_agree
+from symobs.stability.criteria.critical_polynomials import irreducible
+from symobs.stability.regions.region import PlaneRegion
+from symobs.tasks.analysis.stability_region.stability_region import RegionQuestion, StabilityRegion
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping, Sequence
+
+    from symobs.stability.criteria.critical_polynomials import CriticalPolynomials, StabilityBoundary
+    from symobs.stability.regions.region import LineRegion
+
+    Height = Fraction | RealNumber
+
+
+# Conditions as students write them: chains, conjunctions and unions of inequalities.
+
+
+_OPERATOR = re.compile(r"(!=|>=|<=|>|<|==|=)")
+
+
+_BETWEEN = re.compile(r"[()]|\band\b|&&?|[,;]")
+
+
+_OR = re.compile(r"\bor\b|\|\|?")
+
+
+_MOST, _DEEPEST = 40, 10
+
+
+#: A union of conjunctions.
+Union = tuple[tuple["Inequality", ...], ...]
+
+
+class Inequality(NamedTuple):
+    """value > 0, value >= 0 or value != 0, and how it was written."""
+
+    value: Scalar
+    operator: str
+    text: str
+
+    def holds(self, sign: int) -> bool:
+        """Return whether it holds where the value has this sign."""
+        return sign > 0 if self.operator == ">" else sign >= 0 if self.operator == ">=" else sign != 0
+
+
+def read_conditions(given: Any, names: Any, where: str = "stable_if") -> Union:
+    """Return the conditions of a text, of a list (all of them hold) or of a list of lists (one of them holds).
+
+    Raises `InputError` for what is no condition.
+    """
+    given = _unpacked(given)
+    if isinstance(given, str):
+        union = [_conjunction([part], names, where) for part in _OR.split(given)]
+    elif isinstance(given, list) and any(isinstance(part, list) for part in given):
+        parts = [part if isinstance(part, list) else [part] for part in given]
+        union = [_conjunction(part, names, where) for part in parts]
+    elif isinstance(given, list) and len(given) > 1 and any(map(_OR.search, map(str, given))):
+        raise InputError('a list with "or" has two readings', where=where, repair="write a list of lists")
+    elif isinstance(given, list) and len(given) == 1:
+        return read_conditions(given[0], names, where)
+    elif isinstance(given, list):
+        union = [_conjunction(given, names, where)]
+    else:
+        raise InputError("conditions are expected", where=where, repair='write "h1 > 3 and h2 > 0"')
+    found = tuple(part for part in union if part is not None)
+    if sum(map(len, found)) > _MOST:
+        raise InputError(f"more than {_MOST} conditions", where=where, repair="write fewer")
+    return found
+
+
+def _unpacked(given: Any) -> Any:
+    """Return the conditions in a text that is a list, of texts in quotes or of conditions; another value as it is."""
+    if not isinstance(given, str):
+        return given
+    text = given.strip()
+    if '"' in text or "'" in text:
+        inside = text.replace("'", '"')
+        with suppress(ValueError, RecursionError):
+            return json.loads(inside if inside.startswith("[") else f"[{inside}]")
+    return text[1:-1] if text[:1] + text[-1:] in {"[]", "{}"} else text
+
+
+def _conjunction(parts: Sequence[Any], names: Any, where: str) -> tuple[Inequality, ...] | None:
+    """Return the inequalities that hold together; None where one of them is False."""
+    found: list[Inequality] = []
+    for part in parts:
+        if not isinstance(part, str):
+            raise InputError("a condition is a text", where=where, repair='write "h1 > 3"')
+        for text in _conjuncts(part, where):
+            if text == "False":
+                return None
+            if text not in {"", "True"}:
+                found += _chain(text, names, where)
+    return tuple(found)
+
+
+def _conjuncts(text: str, where: str, depth: int = 0) -> list[str]:
+    """Return the parts of a conjunction, each without the brackets around it, however these are nested."""
+    if depth > _DEEPEST:
+        raise InputError("brackets are nested too deeply", where=where, repair="write the conditions as a list")
+    inner = _without_brackets(text)
+    pieces, level, start = [], 0, 0
+    for found in _BETWEEN.finditer(inner):
+        level += (found[0] == "(") - (found[0] == ")")
+        if level == 0 and found[0] not in "()":
+            pieces.append(inner[start : found.start()])
+            start = found.end()
+    pieces.append(inner[start:])
+    if len(pieces) == 1 and inner == text.strip():
+        return [inner]
+    return [part for piece in pieces for part in _conjuncts(piece, where, depth + 1)]
+
+
+def _without_brackets(text: str) -> str:
+    """Return a text without the brackets around all of it."""
+    inner = text.strip()
+    if not inner.startswith("(") or not inner.endswith(")"):
+        return inner
+    depth = 0
+    for place, character in enumerate(inner):
+        depth += (character == "(") - (character == ")")
+        if not depth and place < len(inner) - 1:
+            return inner
+    return inner[1:-1] if _OPERATOR.search(inner) else inner
+
+
+def _chain(text: str, names: Any, where: str) -> list[Inequality]:
+    """Return the inequalities of a chain: 3 < h1 < 8."""
+    pieces = _OPERATOR.split(text)
+    if len(pieces) < 3 or any(operator in {"=", "=="} for operator in pieces[1::2]):
+        repair = 'write for example "h1 > 3" or "3 < h1 < 8"'
+        raise InputError(f'"{shown(text, 60)}" is no condition', where=where, repair=repair)
+    sides = [parse_scalar(exact(side), names, where=where, functions=True) for side in pieces[::2]]
+    found: list[Inequality] = []
+    for i, operator in enumerate(pieces[1::2]):
+        value = sides[i] - sides[i + 1] if operator in {">", ">=", "!="} else sides[i + 1] - sides[i]
+        plain = operator.replace("<", ">")
+        below = value.denominator
+        written = f"{pieces[2 * i].strip()} {operator} {pieces[2 * i + 2].strip()}"
+        found.append(Inequality(value.numerator * below, plain, written))
+        if plain != ">" and not below.is_constant:
+            found.append(Inequality(below, "!=", written))
+    return found
+
+
+#: So many points are tried where there is no exact region, before the question is left open.
+_MOST_TRIED = 4000
+
+
+_TRIED = tuple(map(Fraction, ["1", "2", "-1", "3", "1/2", "-2", "5", "10", "1/10", "-5", "20", "100"]))
+
+
+@dataclass(frozen=True)
+class Separation:
+    """The verdict on a region; where it is `wrong`, a point that lies in one of both only, or the boundary alone differs.
+
+    slip and reason where one change of the conditions makes both equal.
+    """
+
+    verdict: str
+    point: Mapping[str, Fraction] | None = None
+    inside: bool = False
+    boundary: bool = False
+    slip: str = ""
+    reason: str = ""
+    polynomial: str = ""
+
+
+def region_verdict(result: Any, given: Any, names: Any) -> Separation:
+    """Return whether conditions describe the region of a result.
+
+    Raises `InputError` where they cannot be read, and `NotShown` where they have roots or functions.
+    """
+    union = read_conditions(given, {**dict.fromkeys(result.question.parameters, "real"), **names})
+    found = compare(result, union)
+    return found if found.verdict != "wrong" else _explained(result, union, found)
+
+
+def compare(result: StabilityRegion, union: Union) -> Separation:
+    """Return whether a union of conjunctions is the region; raises `NotShown` where it has roots or functions."""
+    if any(function_named(name) for part in union for condition in part for name in condition.value.names):
+        raise NotShown("conditions with roots or functions are not compared")
+    region = result.region
+    if region is None:
+        return _without_region(result, union)
+    off: list[tuple[Mapping[str, Fraction], bool]] = []
+    boundary = inside = False
+    try:
+        for fixed, name, height, right in _pieces(region, union):
+            mine = _holds(union, fixed, name, height)
+            if mine == right:
+                continue
+            if isinstance(height, Fraction) and not _on_a_curve(region, union, fixed, name, height):
+                off.append(({**fixed, name: height}, mine))
+            else:
+                boundary, inside = True, mine
+    except TooLarge:
+        if not off:
+            raise
+    if off:
+        found, inside = min(off, key=lambda entry: _length(entry[0]))
+        point = {name: found[name] for name in sorted(found)}
+        return Separation("wrong", point, inside, polynomial=_at(result, point))
+    if boundary:
+        return Separation("wrong", inside=inside, boundary=True)
+    return Separation("right")
+
+
+def _pieces(region: LineRegion | PlaneRegion, union: Union) -> Iterator[tuple[dict[str, Fraction], str, Height, bool]]:
+    """Yield points of all pieces: the other coordinate, the name and value of this one, and whether it is stable there."""
+    further = irreducible(condition.value for part in union for condition in part)
+    if not isinstance(region, PlaneRegion):
+        yield from _along(region.critical, further, {}, region.name)
+        return
+    plane = region.divided(further)
+    x, y = region.names
+    for cylinder in plane.cylinders:
+        yield from _along(region.critical, further, {x: cylinder.x}, y)
+    for wall in plane.critical_lines:
+        if wall.x.is_rational:
+            yield from _along(region.critical, further, {x: wall.x.fraction}, y)
+        elif plane.vertical_at(wall):
+            raise TooLarge("a boundary lies at an irrational value of one parameter")
+
+
+def _along(
+    critical: CriticalPolynomials, further: Sequence[Scalar], fixed: dict[str, Fraction], name: str
+) -> Iterator[tuple[dict[str, Fraction], str, Height, bool]]:
+    """Yield the same along a line parallel to an axis."""
+    lines = [_restricted(factor, fixed) for factor in critical.factors]
+    others = [_restricted(factor, fixed) for factor in further]
+    nowhere = any(line.is_zero for line in lines)
+    ends = {root for line in lines for root in roots_of_scalar(line, name)}
+    points = sorted(ends.union(root for line in others for root in roots_of_scalar(line, name)))
+    for low, high in zip([None, *points], [*points, None], strict=True):
+        sample = rational_between(low, high)
+        stable = not nowhere and critical.is_stable({**fixed, name: sample})
+        if critical.allows({**fixed, name: sample}):
+            yield fixed, name, sample, stable
+            if high is not None and (high in ends or nowhere):
+                yield from _allowed(critical, fixed, name, high, stable=False)
+            elif high is not None:
+                yield fixed, name, high, stable
+
+
+def _allowed(
+    critical: CriticalPolynomials, fixed: dict[str, Fraction], name: str, at: RealNumber, *, stable: bool
+) -> Iterator[tuple[dict[str, Fraction], str, Height, bool]]:
+    """Yield a critical point unless the declared sign excludes it."""
+    if critical.signs.get(name, "real") == "real" or not (at.is_rational and at.fraction == 0):
+        yield fixed, name, at, stable
+
+
+def _restricted(value: Scalar, fixed: Mapping[str, Fraction]) -> Scalar:
+    found = value.substitute({name: Scalar.of(number) for name, number in fixed.items()})
+    return found.numerator * found.denominator
+
+
+def _sign(value: Scalar, fixed: Mapping[str, Fraction], name: str, height: Height) -> int:
+    """Return the sign of a value at a point."""
+    found = _restricted(value, fixed)
+    return (
+        _number_sign(found, {name: height})
+        if isinstance(height, Fraction)
+        else height.sign_of(integer_factor(found, name))
+    )
+
+
+def _holds(union: Union, fixed: Mapping[str, Fraction], name: str, height: Height) -> bool:
+    return any(all(c.holds(_sign(c.value, fixed, name, height)) for c in part) for part in union)
+
+
+def _on_a_curve(
+    region: LineRegion | PlaneRegion, union: Union, fixed: Mapping[str, Fraction], name: str, height: Fraction
+) -> bool:
+    """Return whether a point lies on a curve of either side."""
+    values = [*region.critical.factors, *(condition.value for part in union for condition in part)]
+    return any(_sign(value, fixed, name, height) == 0 for value in values)
+
+
+def _length(point: Mapping[str, Fraction]) -> Fraction:
+    """Return what orders points by simplicity: whole numbers first."""
+    return sum((3 * value.denominator + abs(value) for value in point.values()), Fraction())
+
+
+def _at(result: StabilityRegion, point: Mapping[str, Fraction]) -> str:
+    """Return the polynomial at a point."""
+    return str(result.answer["polynomial"].substitute({name: Scalar.of(value) for name, value in point.items()}))
+
+
+# -- more parameters, or other symbols --------------------------------------------------------------------------------
+
+
+def _without_region(result: StabilityRegion, union: Union) -> Separation:
+    """Return whether a proof shows both equal, or a point parts them; else the question is open."""
+    if result.empty and not union:
+        return Separation("right")
+    if len(union) == 1 and all(condition.operator != ">=" for condition in union[0]):
+        texts = [f"{condition.value} {condition.operator} 0" for condition in union[0]]
+        if conditions_agree(result.stable_if, texts, None, "stable_if", result.signs):
+            return Separation("right")
+    return _somewhere(result, union)
+
+
+def _somewhere(result: StabilityRegion, union: Union) -> Separation:
+    """Return a point that parts both, among simple ones; `undecided` where there is none."""
+    critical = result.critical
+    used = {name for part in union for condition in part for name in condition.value.names}
+    names, drawn = sorted({*critical.parameters, *used}), Random(0)  # noqa: S311 - the same points every time
+    points = (dict(zip(names, drawn.choices(_TRIED, k=len(names)), strict=True)) for _ in range(_MOST_TRIED))
+    for point in sorted(points, key=_length):
+        if not critical.allows(point):
+            continue
+        mine = any(all(c.holds(_number_sign(c.value, point)) for c in part) for part in union)
+        off = any(value_at(c.value, point) == 0 for part in union for c in part)
+        if not off and mine != critical.is_stable(point) and all(value_at(f, point) for f in critical.factors):
+            return Separation("wrong", point, mine, polynomial=_at(result, point))
+    return Separation("undecided")
+
+
+def _number_sign(value: Scalar, point: Mapping[str, Fraction]) -> int:
+    number = value_at(value, point)
+    return (number > 0) - (number < 0)
+
+
+# -- why --------------------------------------------------------------------------------------------------------------
+
+
+def _explained(result: StabilityRegion, union: Union, found: Separation) -> Separation:
+    """Return the separation with the slip that makes both equal, and what is wrong at the point."""
+    if found.boundary:
+        lies = "includes its boundary, where a root is not stable" if found.inside else "leaves out a part of no width"
+        return replace(found, slip="boundary", reason=f"the region is right, but yours {lies}")
+    for slip, reason in _slips(result, union):
+        return replace(found, slip=slip, reason=f"{reason}; {_at_point(result, found)}")
+    return replace(found, reason=_at_point(result, found))
+
+
+def _at_point(result: StabilityRegion, found: Separation) -> str:
+    assert found.point is not None  # noqa: S101 - asked only where both differ off the boundary
+    where = ", ".join(f"{name} = {value}" for name, value in found.point.items())
+    boundary = result.question.boundary
+    at = f"|z| >= {boundary.radius}" if boundary.discrete else f"real part >= {-boundary.margin}"
+    if found.inside:
+        return f"at {where} your conditions hold, but {found.polynomial} has roots with {at}"
+    return f"at {where} your conditions fail, but all roots of {found.polynomial} are as asked for"
+
+
+def _slips(result: StabilityRegion, union: Union) -> Iterator[tuple[str, str]]:
+    """Yield the slips that turn the right region into the given one, the simplest first."""
+    boundary = result.question.boundary
+    if not boundary.margin.is_zero and _same(_within(result, replace(boundary, margin=Scalar.of(0))), union):
+        yield "margin_forgotten", f"these are the conditions without the margin {boundary.margin}"
+    if len(union) == 1:
+        yield from _slips_of_one(result, union)
+    if (
+        union
+        and boundary.margin.is_zero
+        and _same(_within(result, replace(boundary, discrete=not boundary.discrete)), union)
+    ):
+        stable = "all real parts < 0" if boundary.discrete else "all |z| < 1"
+        yield "discrete", f"these are the conditions for {stable}, which is stability in the other kind of time"
+
+
+def _within(result: StabilityRegion, boundary: StabilityBoundary) -> StabilityRegion:
+    """Return the region of the same question with another boundary."""
+    asked = result.question
+    return StabilityRegion.of(RegionQuestion(asked.plant, asked.K, asked.L, asked.parameters, boundary), result.method)
+
+
+def _slips_of_one(result: StabilityRegion, union: Union) -> Iterator[tuple[str, str]]:
+    """Yield the slips of a single list of conditions."""
+    (part,) = union
+    lead, *rest = result.critical.coefficients
+    if _equal(result, union, (tuple(Inequality(c * lead, ">", "") for c in rest),)):
+        yield "only_positive_coefficients", "positive coefficients are necessary only, not sufficient"
+    for text in result.stable_if:
+        for missing in read_conditions(text, None):  # there is none in False
+            if _same(result, ((*part, *missing),)):
+                yield "condition_missing", f"the condition {text} is missing"
+                return
+    for i, condition in enumerate(part):
+        turned = Inequality(-condition.value, condition.operator, condition.text)
+        if condition.operator != "!=" and _same(result, ((*part[:i], turned, *part[i + 1 :]),)):
+            yield "half_plane", f"{condition.text} is the wrong half"
+            return
+
+
+def _same(result: StabilityRegion, union: Union) -> bool:
+    """Return whether a union is the region, up to its boundary."""
+    try:
+        found = compare(result, union)
+    except TooLarge:
+        return False
+    return found.verdict == "right" or found.boundary
+
+
+def _equal(result: StabilityRegion, one: Union, other: Union) -> bool:
+    """Return whether two unions agree off their curves, in the exact region's pieces."""
+    region = result.region
+    if region is None:
+        return False
+    try:
+        pieces = list(_pieces(region, (*one, *other)))
+    except TooLarge:
+        return False
+    return all(
+        _holds(one, fixed, name, height) == _holds(other, fixed, name, height)
+        for fixed, name, height, _ in pieces
+        if isinstance(height, Fraction)
+    )

@@ -1,1 +1,0 @@
-"""The report on an answer, and how it is written."""

@@ -1,1 +1,0 @@
-"""Polynomial ideals by Gröbner bases."""

@@ -1,1 +1,0 @@
-"""Block diagrams and plots as data, before any format draws them."""

@@ -1,1 +1,0 @@
-"""The Routh array as a table, fitted to the line, in every format."""

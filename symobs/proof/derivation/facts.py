@@ -1,0 +1,316 @@
+"""Facts a derivation may state besides equations: properties of matrices, rejected alternatives, restricted parameters."""
+
+from __future__ import annotations
+
+from contextlib import suppress
+from dataclasses import replace
+from itertools import pairwise
+from typing import TYPE_CHECKING, Any, NoReturn
+
+from symobs.exact import Ideal, Matrix, Scalar, TooLarge, apart_from_zero, from_coefficients, remainder
+from symobs.exact.algebraic.polynomial_roots import polynomial_of_roots
+from symobs.exact.core.generators import substitute
+from symobs.formula.tree import Conjunction, Environment, Exact, Relation, evaluate
+from symobs.formula.tree.plain_text import plain_relation
+from symobs.ground.errors import DerivationRejected, WrongKind
+from symobs.proof.certificate.claims import as_scalar, verify
+from symobs.proof.certificate.pointwise import never_together_zero
+from symobs.stability.criteria.stability import is_beyond, is_marginal, marginal_where, no_stable_compensator, stability
+from symobs.system.conditions import never_zero, sign_of, vanishing_factors
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping, Sequence
+
+    from symobs.exact import Root
+    from symobs.formula.tree import HoldsExactlyWhere
+
+
+# Properties that no equation states: stable, strictly proper, never zero (trusted).
+
+
+def polynomial_of(value: Scalar, environment: Environment) -> Scalar:
+    """Return a polynomial, and what is one where the relations hold, and of another rational function the denominator."""
+    found = _divided(value, environment)
+    return _lowered(found[0] if found is not None and found[1].is_zero else value.denominator, environment)
+
+
+def _lowered(polynomial: Scalar, environment: Environment) -> Scalar:
+    """Return a polynomial without the coefficients that vanish where the relations hold.
+
+    Raises `TooLarge` where that is not known of the first, and so not the degree.
+    """
+    coefficients = polynomial.coefficients(environment.variable)
+    if not environment.relations:
+        return polynomial
+    try:
+        ideal = Ideal.where(environment.relations)
+        kept = [c if c.numerator not in ideal or c.denominator in ideal else Scalar.of(0) for c in coefficients]
+    except TooLarge:
+        if not coefficients[0].is_constant:
+            raise
+        return polynomial
+    return from_coefficients(kept, environment.variable) if any(kept) else polynomial
+
+
+def _divided(value: Scalar, environment: Environment) -> tuple[Scalar, Scalar] | None:
+    """Return quotient and remainder of numerator and denominator where the relations hold; None if that is not known."""
+    variable = environment.variable
+    if value.is_polynomial_in(variable):
+        return value, Scalar.of(0)
+    if not environment.relations:
+        return value, Scalar.of(1)  # in lowest terms a fraction stays one
+    try:
+        ideal = Ideal.where(environment.relations)
+        if value.denominator.coefficients(variable)[0].numerator in ideal:
+            return None
+        quotient, rest = remainder(value.numerator, value.denominator, variable)
+        return ideal.simplified(quotient), ideal.simplified(rest)
+    except TooLarge:
+        return None
+
+
+def _never_divides(value: Scalar, environment: Environment) -> bool:
+    """Return whether a rational function is a polynomial at no point: its remainder's coefficients never vanish together."""
+    variable, apart = environment.variable, (*environment.nonzero, *environment.domain)
+    rest = remainder(value.numerator, value.denominator, variable)[1].coefficients(variable)
+    systems = value.denominator.coefficients(variable)[:1], [c.numerator for c in rest]
+    try:
+        return all(never_together_zero(s, environment.relations, environment.signs, apart) for s in systems)
+    except TooLarge:
+        return False
+
+
+def _verdict(value: Scalar, environment: Environment, discrete: bool) -> str:  # noqa: FBT001
+    polynomial = polynomial_of(value, environment)
+    return stability(polynomial, environment.variable, environment.signs, discrete=discrete).verdict
+
+
+def _degrees(value: Scalar, environment: Environment) -> tuple[int, int]:
+    return value.degree(environment.variable), value.denominator.degree(environment.variable)
+
+
+def are_roots(values: tuple[Root, ...], polynomial: Scalar, environment: Environment) -> bool:
+    """Return whether these are the roots of a monic polynomial where the relations hold."""
+    product = polynomial_of_roots(environment.variable, values)
+    if product is None or product == polynomial:
+        return product is not None
+    try:
+        ideal = Ideal.where(environment.relations)
+        divides_by_zero = any(part.denominator in ideal for part in (product, polynomial))
+        return not divides_by_zero and (product - polynomial).numerator in ideal
+    except TooLarge:
+        return False
+
+
+def subjects(name: str, value: Any, variable: str) -> tuple[Scalar, ...]:
+    """Return the subject of a property: a scalar, the entries of a matrix, or their common denominator.
+
+    Raises TypeError for a matrix without poles: a constant matrix would be stable whatever its eigenvalues.
+    """
+    if not isinstance(value, Matrix) or value.shape == (1, 1):
+        return (as_scalar(value),)
+    if name == "strictly_proper":
+        return value.entries
+    denominator = value.common_denominator()
+    if name not in {"stable", "unstable"} or denominator.degree(variable) < 1:
+        message = f"{name} is no property of this matrix"
+        raise WrongKind(message)
+    return (denominator,)
+
+
+def needed(name: str, polynomial: Scalar, environment: Environment, discrete: bool) -> tuple[Scalar, ...]:  # noqa: FBT001
+    """Return what must be positive for a polynomial to be stable, not negative for it to be marginal; nothing if unknown."""
+    variable, signs = environment.variable, environment.signs
+    if name == "marginal":
+        return marginal_where(polynomial, variable, signs, discrete=discrete)
+    return stability(polynomial, variable, signs, discrete=discrete).positive if name == "stable" else ()
+
+
+def is_criterion(
+    name: str,
+    polynomial: Scalar,
+    said: Sequence[Scalar],
+    environment: Environment,
+    discrete: bool,  # noqa: FBT001
+) -> bool:
+    """Return whether the stated inequalities are those of the criterion, each up to a positive factor."""
+    signs, bounds = environment.signs, needed(name, polynomial, environment, discrete)
+    if not said:
+        return False
+    same = [[sign_of(value / bound, signs) == "positive" for bound in bounds] for value in said]
+    return all(map(any, same)) and all(map(any, zip(*same, strict=True)))
+
+
+#: What each property asks of a scalar, of the environment, and of discrete time.
+PREDICATES: dict[str, Callable[[Scalar, Environment, bool], bool]] = {
+    "stable": lambda value, environment, discrete: _verdict(value, environment, discrete) == "yes",
+    "unstable": lambda value, environment, discrete: _verdict(value, environment, discrete) == "no",
+    "strictly_proper": lambda value, environment, _: _degrees(value, environment)[0] < _degrees(value, environment)[1],
+    "polynomial": lambda value, environment, _: (_divided(value, environment) or (0, Scalar.of(1)))[1].is_zero,
+    "not_polynomial": lambda value, environment, _: _never_divides(value, environment),
+    "no_stable_compensator": lambda value, environment, discrete: (
+        not discrete and no_stable_compensator(value, environment.variable, environment.signs)
+    ),
+    "marginal": lambda value, environment, discrete: is_marginal(
+        value,
+        environment.variable,
+        environment.signs,
+        discrete=discrete,
+        apart=(*environment.nonzero, *environment.domain),
+    ),
+    "beyond": lambda value, environment, discrete: is_beyond(
+        value, environment.variable, environment.signs, discrete=discrete
+    ),
+    "never_zero": lambda value, environment, _: never_zero(value, environment.signs),
+}
+
+
+# Rejection of a line of a derivation.
+
+
+BUG = "please report this: it is a bug of symobs"
+
+
+def reject(line: str) -> NoReturn:
+    """Raise `DerivationRejected`."""
+    message = f"the line {line} is not true"
+    raise DerivationRejected(message, repair=BUG, line=line)
+
+
+# Restriction of an environment to a stratum, its substitution verified first (trusted).
+
+
+def on_stratum(when: Relation | Conjunction, substitution: dict[str, Scalar], environment: Environment) -> Environment:
+    """Return the environment on a stratum, after verifying that the substitution describes it.
+
+    Without a substitution the single equation itself is what is known inside: that a polynomial of the parameters
+    vanishes, or that λ is an eigenvalue.  Otherwise a single `when` has one factor that can vanish, linear in the one
+    name put in: another equation would hold elsewhere too.  Of several equations and inequations it is verified that
+    each value put in follows from them.
+    """
+    if not substitution and isinstance(when, Relation) and when.operators in {("<",), (">",), ("!=",)}:
+        left, right = (as_scalar(evaluate(member, environment, Exact(environment))) for member in when.members)
+        if when.operators == ("!=",):
+            return environment  # it narrows, and nothing is put in: all stays true
+        return _where_positive(left - right if when.operators == (">",) else right - left, environment)
+    if not substitution and isinstance(when, Relation) and when.operators == ("=",):
+        left, right = (as_scalar(evaluate(member, environment, Exact(environment))) for member in when.members)
+        inside = replace(environment, relations=(*environment.relations, left - right), nonzero=())
+        return (
+            inside if not Ideal.where(inside.relations).is_whole else reject(plain_relation(when, environment.variable))
+        )
+    named, lost = dict(substitution), set[str]()
+    for name, value in environment.coefficients.items():
+        try:
+            named[name] = _there(value, substitution, lost)
+        except ZeroDivisionError:
+            lost.add(name)
+    replaced = {}
+    for name, known in environment.values.items():
+        with suppress(ZeroDivisionError):  # the letter means nothing on this stratum
+            replaced[name] = _there(known, substitution, lost)
+    positive = _known_there(environment.positive, substitution)
+    relations = tuple(value.numerator for value in _known_there(environment.relations, substitution) if value)
+    domain = vanishing_factors(_known_there(environment.domain, substitution), environment.signs)
+    inside = replace(
+        environment,
+        values=replaced,
+        coefficients=named,
+        nonzero=(),
+        domain=domain,
+        positive=positive,
+        relations=relations,
+    )
+    if isinstance(when, Conjunction):
+        return inside.with_relations(_left_of(when, substitution, environment))
+    left, right = (as_scalar(evaluate(member, environment, Exact(environment))) for member in when.members)
+    factors = [f for f, _ in (left - right).numerator.factors()[1] if not never_zero(f, environment.signs)]
+    says_no_more = [f.degree(name) for f in factors for name in substitution] == [1] and when.operators == ("=",)
+    if not says_no_more or verify(when, inside)[0] == "":
+        reject(plain_relation(when, environment.variable))
+    return inside
+
+
+def _where_positive(value: Scalar, environment: Environment) -> Environment:
+    """Return the environment where a value is positive: of a symbol, or of minus a symbol, it is a sign."""
+    told = (("positive", value), ("negative", -value))
+    signs = {str(symbol): sign for sign, symbol in told if str(symbol) in symbol.names}
+    return replace(environment, positive=(*environment.positive, value), signs={**environment.signs, **signs})
+
+
+def _there(value: Any, substitution: Mapping[str, Scalar], lost: set[str]) -> Any:
+    """Return a value on a stratum; raises ZeroDivisionError where it has none, or rests on what has none."""
+    if lost.intersection(value.names):
+        raise ZeroDivisionError
+    return substitute(value, substitution)
+
+
+def _known_there(values: tuple[Scalar, ...], substitution: Mapping[str, Scalar]) -> tuple[Scalar, ...]:
+    """Return values on a stratum, without those that mean nothing there: of these nothing is known any more."""
+    found = []
+    for value in values:
+        with suppress(ZeroDivisionError):
+            found.append(substitute(value, substitution))
+    return tuple(found)
+
+
+def _left_of(when: Conjunction, substitution: dict[str, Scalar], environment: Environment) -> tuple[Scalar, ...]:
+    """Return what of the equations (1 − w p = 0 for an inequation of p) is left when parameters are put in.
+
+    What is said of the stratum is held to them, and so to each of its points.
+    """
+    equations: list[Scalar] = []
+    excluded: list[Scalar] = []
+    for relation in when.relations:
+        left, right = (as_scalar(evaluate(member, environment, Exact(environment))) for member in relation.members)
+        if relation.operators == ("=",):
+            equations.append((left - right).numerator)
+        elif relation.operators == ("!=",):
+            excluded.append(left - right)
+        else:
+            reject(plain_relation(relation, environment.variable))
+    relations = [apart_from_zero(value) for value in excluded]
+    known = Ideal.where((*equations, *relations, *environment.relations))
+    if known.is_whole or never_together_zero(equations, (*relations, *environment.relations), environment.signs):
+        reject(f"that {' and '.join(plain_relation(r, environment.variable) for r in when.relations)} can be")
+    for name, value in substitution.items():
+        rest = Scalar.symbol(name) * value.denominator - value.numerator
+        solved = rest in known or never_together_zero(
+            equations, (apart_from_zero(rest), *relations, *environment.relations), environment.signs
+        )
+        if not solved or not never_together_zero([value.denominator], (*equations, *relations), environment.signs):
+            reject(f"{name} = {value}")
+    left_over = [equation.substitute(substitution).numerator for equation in equations]
+    return (*(value for value in left_over if value), *(apart_from_zero(v.substitute(substitution)) for v in excluded))
+
+
+# Check that inequalities hold exactly where a polynomial has a property (trusted).
+
+
+def is_exactly(fact: HoldsExactlyWhere, polynomial: Scalar, environment: Environment, *, discrete: bool) -> bool:
+    """Return whether a polynomial has a property exactly where some inequalities hold.
+
+    They are those that the criterion asks for, or proved to say the same; with one or two parameters by the region itself.
+    """
+    arithmetic, name = Exact(environment), fact.property.name
+    said: list[tuple[Scalar, str]] = []
+    for relation in fact.where:
+        values = [as_scalar(evaluate(member, environment, arithmetic)) for member in relation.members]
+        for (left, right), operator in zip(pairwise(values), relation.operators, strict=True):
+            said.append((right - left if operator[0] == "<" else left - right, operator))
+    allowed = {">", "<", "!="} if name == "stable" else {">=", "<="}
+    if not {operator for _, operator in said} <= allowed:
+        return False
+    positive = tuple(value**2 if operator == "!=" else value for value, operator in said)
+    if is_criterion(name, polynomial, positive, environment, discrete):
+        return True
+    if name != "stable" or not said:
+        return False
+    from symobs.proof.derivation.region_check import holds_exactly, region_of  # noqa: PLC0415 - only pages of regions pay for it
+    from symobs.stability.criteria.stability_conditions import is_stable_where  # noqa: PLC0415 - the same
+
+    region = region_of(polynomial, environment, discrete=discrete)
+    where = tuple((value, "!=" if operator == "!=" else ">") for value, operator in said)
+    if region is not None and holds_exactly(region, where):
+        return True
+    return is_stable_where(polynomial, environment.variable, positive, environment.signs, discrete=discrete)

@@ -1,0 +1,438 @@
+"""Check of plots against the polynomial they are drawn for, to within visible accuracy (trusted).
+
+The points of a picture are rational and lie near what they stand for; how near is a fixed part of the window.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from fractions import Fraction
+from functools import lru_cache
+from itertools import dropwhile, islice, pairwise
+from math import comb, lcm
+from operator import mul
+from typing import TYPE_CHECKING, NamedTuple
+
+from symobs.exact import Matrix, Scalar, product_of
+from symobs.exact.algebraic.enclosure import sign_of_number
+from symobs.exact.algebraic.root_location import shifted, value_at
+from symobs.exact.core.matrix import whole_product
+from symobs.formula.figures import LinePicture, PoleMap, RegionPicture, TimeResponse
+from symobs.formula.tree import Block, Derivative, Exact, Letter, Literal, Product, Relation, Signal, evaluate
+from symobs.proof.certificate.claims import EVALUATION_ERRORS, as_scalar, verify
+from symobs.proof.derivation.facts import polynomial_of
+from symobs.proof.derivation.figures_check import ALLOWS, Stability, faults_of_region, within, written
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
+    from symobs.formula.figures import End, Picture, Place, PlottedResponse
+    from symobs.formula.tree import Environment, Formula
+
+
+# Check of a root locus against its polynomial, to within visible accuracy (trusted).
+#
+# That a root z₀ lies near z follows from p(z + w) = Σ cₖ wᵏ, of degree n: ±cₖ/c₀ is a sum of C(n, k) products of k
+# reciprocals of z₀ − z, so one root has |z₀ − z|ᵏ ≤ C(n, k) |c₀/cₖ|.
+
+
+#: How far a pole may lie from its path, as a part of the window.
+_NEAR_POLE = Fraction(1, 200)
+
+
+def faults_of_poles(picture: PoleMap, polynomial: Scalar, variable: str, *, discrete: bool) -> Iterator[str]:
+    """Yield the faults of a root locus."""
+    if (picture.variable, picture.discrete) != (variable, discrete):
+        yield f"the poles are those in {picture.variable}"
+    degree = polynomial.degree(variable)
+    if len(picture.paths) != degree or len(picture.along) != degree:
+        yield f"there are {len(picture.paths)} poles"
+        return
+    begin, end = picture.values
+    if any(not within(place, picture.window) for path in picture.paths for place in path):
+        yield "the poles do not leave the window"
+    near = min(high - low for low, high in picture.window) * _NEAR_POLE
+    for path, along in zip(picture.paths, picture.along, strict=True):
+        falling = sorted(along, reverse=begin > end)
+        if len(path) != len(along) or (along[0], along[-1]) != (begin, end) or list(along) != falling:
+            yield f"{picture.moved} goes from {begin} to {end}"
+            return
+        for place, value in zip(path, along, strict=True):
+            if not is_pole(polynomial, picture.moved, value, place, variable, near):
+                yield f"{written(place)} is a pole at {picture.moved} = {value}"
+    if not any(_are_all(picture, polynomial, variable, at) for at in _common(picture)):
+        yield "these are all poles"
+
+
+def is_pole(polynomial: Scalar, moved: str, value: Fraction, place: Place, variable: str, near: Fraction) -> bool:
+    """Return whether a root of a polynomial surely lies near a place where the parameter that is moved has this value."""
+    return _has_root_near(_shifted(polynomial, moved, value, place, variable), near)
+
+
+def _shifted(polynomial: Scalar, moved: str, value: Fraction, place: Place, variable: str) -> list[Place]:
+    """Return c₀, …, cₙ of a multiple of p(z + w) = Σ cₖ wᵏ."""
+    below, coefficients = _parts(polynomial, variable)
+    if value_at(below, {moved: value}) == 0:
+        raise ZeroDivisionError
+    found = [value_at(c, {moved: value}) for c in coefficients]
+    return shifted(list(dropwhile(lambda c: c == 0, found)), place)
+
+
+@lru_cache(maxsize=4)
+def _parts(polynomial: Scalar, variable: str) -> tuple[Scalar, tuple[Scalar, ...]]:
+    """Return the denominator of a polynomial and the coefficients of its numerator, highest first."""
+    return polynomial.denominator, polynomial.numerator.coefficients(variable)
+
+
+def _has_root_near(around: Sequence[Place], distance: Fraction) -> bool:
+    """Return whether some root surely has |w| ≤ distance."""
+    degree = len(around) - 1
+    constant = _square(around[0])
+    return any(
+        comb(degree, k) ** 2 * constant <= distance ** (2 * k) * _square(c) and _square(c) != 0
+        for k, c in enumerate(around)
+        if k
+    )
+
+
+def _square(value: Place) -> Fraction:
+    """Return the square of the modulus."""
+    real, imaginary = value
+    return real * real + imaginary * imaginary
+
+
+def _common(picture: PoleMap) -> Iterator[int]:
+    """Yield the indices at which all paths stand at the same value of the parameter, from the middle on."""
+    shortest = min(map(len, picture.along))
+    for index in sorted(range(shortest), key=lambda index: abs(2 * index - shortest)):
+        if len({along[index] for along in picture.along}) == 1:
+            yield index
+
+
+def _are_all(picture: PoleMap, polynomial: Scalar, variable: str, index: int) -> bool:
+    """Return whether discs that hold a root each lie apart from one another, as many as there are different roots."""
+    different = sum(factor.degree(variable) for factor, _ in polynomial.numerator.factors()[1])
+    apart: list[tuple[Place, Fraction]] = []
+    for path, along in zip(picture.paths, picture.along, strict=True):
+        around = _shifted(polynomial, picture.moved, along[index], path[index], variable)
+        constant, slope = _square(around[0]), _square(around[1])
+        if constant and not slope:
+            continue
+        radius = (len(around) - 1) ** 2 * constant / slope if constant else Fraction(0)
+        if all(_distance(path[index], place) > 2 * (radius + other) for place, other in apart):
+            apart.append((path[index], radius))
+    return len(apart) >= different
+
+
+def _distance(a: Place, b: Place) -> Fraction:
+    """Return the square of the distance."""
+    return (a[0] - b[0]) ** 2 + (a[1] - b[1]) ** 2
+
+
+#: The part of a window that is near a place or an end.
+_NEAR = Fraction(1, 500)
+
+
+#: The last pictures in which nothing was false, and of what: a page asks before it shows one, and again when it is
+#: checked.  A picture cannot be changed, so the same one shows the same; another one of equal parts is looked at anew.
+_FAITHFUL: deque[tuple[Picture, tuple[object, ...]]] = deque(maxlen=4)
+
+
+def relations_of(picture: Picture) -> tuple[Relation, ...]:
+    """Return the equations that are written into a picture."""
+    return tuple(curve.equation for curve in picture.curves) if isinstance(picture, RegionPicture) else ()
+
+
+def faults(picture: Picture, subject: Formula, environment: Environment, *, discrete: bool) -> Iterator[str]:
+    """Yield the faults of a plot."""
+    if isinstance(picture, TimeResponse):
+        if picture.discrete == discrete:
+            yield from faults_of_response(picture, subject, environment)
+        else:
+            yield "another time"
+        return
+    numbers = dict(picture.drawn_for)
+    for name, value in numbers.items():
+        if not value.is_constant or not ALLOWS[environment.signs.get(name, "real")](value.fraction()):
+            yield f"{name} = {value}"
+    variable = environment.variable
+    value = as_scalar(evaluate(subject, environment, Exact(environment)))
+    polynomial = polynomial_of(value, environment).substitute(numbers)
+    axes = (picture.moved,) if isinstance(picture, PoleMap) else _axes(picture)
+    if not polynomial.names <= {variable, *axes}:
+        yield f"the polynomial {polynomial} depends on {', '.join(axes)} alone"
+        return
+    equations = {relation: _difference(relation, environment, numbers) for relation in relations_of(picture)}
+    of = polynomial, variable, discrete, dict(environment.signs), equations
+    if any(seen is picture and held == of for seen, held in _FAITHFUL):
+        return
+    is_rejected = False
+    signs = tuple(environment.signs.get(name, "real") for name in axes)
+    test = Stability(polynomial, variable, axes, signs, discrete)
+    match picture:
+        case RegionPicture():
+            found = faults_of_region(picture, equations, test)
+        case LinePicture():
+            found = _of_line(picture, test)
+        case _:
+            found = faults_of_poles(picture, polynomial, variable, discrete=discrete)
+    for fault in found:
+        is_rejected = True
+        yield fault
+    if not is_rejected:
+        _FAITHFUL.append((picture, of))
+
+
+def is_faithful(picture: Picture, subject: Formula, environment: Environment, *, discrete: bool) -> bool:
+    """Return whether nothing that a picture shows is false."""
+    try:
+        return next(faults(picture, subject, environment, discrete=discrete), None) is None
+    except EVALUATION_ERRORS:
+        return False
+
+
+def _axes(picture: RegionPicture | LinePicture) -> tuple[str, ...]:
+    return picture.axes if isinstance(picture, RegionPicture) else (picture.axis,)
+
+
+def _difference(relation: Relation, environment: Environment, numbers: dict[str, Scalar]) -> Scalar:
+    """Return a polynomial that vanishes where the equation holds, each factor once; 1 where there is no equation."""
+    if relation.operators != ("=",):
+        return Scalar.of(1)
+    left, right = (as_scalar(evaluate(member, environment, Exact(environment))) for member in relation.members)
+    factors = (left - right).substitute(numbers).numerator.factors()[1]
+    return product_of(factor for factor, _ in factors)
+
+
+# -- intervals --------------------------------------------------------------------------------------------------------
+
+
+def _of_line(picture: LinePicture, test: Stability) -> Iterator[str]:
+    low, high = picture.window
+    near = (high - low) * _NEAR
+    if near <= 0:
+        yield "the window is empty"
+        return
+    drawn = [(a.place if a else low, b.place if b else high) for a, b in picture.pieces]
+    borders = [low, *(part for piece in drawn for part in piece), high]
+    if borders != sorted(borders):
+        yield "the pieces follow one another"
+    for a, b in drawn:
+        yield from (f"{x} is stable" for x in _between(a, b) if not test.is_stable(x))
+    for a, b in zip(borders[::2], borders[1::2], strict=True):
+        if b - a > 2 * near:
+            yield from (f"{x} is not stable" for x in _between(a, b) if test.is_stable(x))
+    for (begin, end), (a, b) in zip(picture.pieces, drawn, strict=True):
+        inward = min(near, (b - a) / 3)
+        for found, step in ((begin, inward), (end, -inward)):
+            if found is not None:
+                yield from _of_end(found, step, near, dict(picture.drawn_for), test)
+    for place, kind in picture.marks:
+        around = [(place - near,), (place + near,)]
+        is_stable = test.is_stable(place)
+        agrees = {"stable": is_stable, "unstable": not is_stable, "excluded": test.is_excluded((place,), around)}
+        if not agrees.get(kind):
+            yield f"{place} is {kind}"
+
+
+def _of_end(end: End, inward: Fraction, near: Fraction, numbers: dict[str, Scalar], test: Stability) -> Iterator[str]:
+    """Yield the faults of an end: stable on the inner side, on the outer not, unless the end alone is taken out."""
+    outward = end.place - near if inward > 0 else end.place + near
+    is_taken_out = test.is_excluded((end.place,), [(end.place - near,), (end.place + near,)])
+    if not test.is_stable(end.place + inward) or (test.is_stable(outward) and not is_taken_out):
+        yield f"{end.place} is an end"
+    if not _is_labelled(end, near, numbers):
+        yield f"{end.label} = {end.place}"
+
+
+def _between(a: Fraction, b: Fraction) -> Iterator[Fraction]:
+    return (a + (b - a) * Fraction(k, 8) for k in range(1, 8))
+
+
+def _is_labelled(end: End, near: Fraction, numbers: dict[str, Scalar]) -> bool:
+    """Return whether the label at an end is its place, to visible accuracy."""
+    if isinstance(end.label, str):
+        try:
+            value = Scalar.of(Fraction(end.label.strip("≈… ").replace("−", "-")))
+        except ValueError:
+            return False
+    else:
+        value = end.label.substitute(numbers)
+    above, below = value - (end.place - near), (end.place + near) - value
+    return all(
+        difference.fraction() >= 0 if difference.is_constant else sign_of_number(difference) == "positive"
+        for difference in (above, below)
+    )
+
+
+# Check of time responses against the equations of the page (trusted).
+#
+# The values are found anew, in whole numbers with an error that is counted: e^{Mh} from the power series of a small
+# part of Mh and by squaring, and then twice as many instants with each power e^{Mh}, e^{2Mh}, e^{4Mh}, …. In discrete
+# time they are powers of M times the start, and must be met exactly.
+
+
+#: Parts of the window: how far a point may lie from what it stands for, and a segment from what it passes between.
+_OFF, _BETWEEN = Fraction(1, 500), Fraction(1, 100)
+
+
+#: Bits that are left when rounding has done its worst, and those that are kept in turn until they are left.
+_BITS, _KEPT = 64, (256, 512, 1024, 2048, 4096)
+
+
+#: The series is that of a matrix of norm 2⁻¹⁶ or less, so that each term brings 16 bits.
+_SMALL = 16
+
+
+#: A mode may turn by so much between two instants, less than π: one that turns by 2π more would look the same.
+_TURN, _SQUARINGS = 3, 6
+
+
+def faults_of_response(picture: TimeResponse, subject: Formula, environment: Environment) -> Iterator[str]:
+    """Yield the faults of plotted responses."""
+    state = Block(tuple((Letter(name),) for name in picture.states))
+    for relation in ((Derivative(state), Product((subject, state))), *_signals(picture, state, environment)):
+        if verify(Relation(relation, ("=",)), environment)[0] == "":
+            yield f"an equation of {', '.join(picture.states)} with this matrix"
+            return
+    (begin, end), (bottom, top) = picture.window
+    counts = {len(response.heights) for response in picture.responses}
+    if len(counts) != 1 or min(counts) < 2 or begin != 0 or end <= 0 or bottom >= top or picture.parts < 1:
+        yield "a window that begins at 0 and that responses fill"
+        return
+    steps = min(counts) - 1
+    sizes = [_size(name, environment) for name in picture.states]
+    if [len(start) for start in picture.starts] != sizes:
+        yield f"a start of {', '.join(picture.states)}"
+        return
+    matrix = evaluate(subject, environment, Exact(environment))
+    beginning = tuple(part for start in picture.starts for part in start)
+    if picture.discrete:
+        yield from _faults_of_samples(picture, matrix, beginning)
+        return
+    if not is_slow(matrix, end / (2 * steps)):
+        yield "modes that do not turn unseen between two instants"
+        return
+    values = _stepped(matrix, beginning, end / (2 * steps), 2 * steps + 1)
+    for response in picture.responses:
+        yield from _faults_of_component(response, picture.parts, values, (bottom, top))
+
+
+def _faults_of_samples(picture: TimeResponse, matrix: Matrix, state: tuple[Fraction, ...]) -> Iterator[str]:
+    """Yield the instants at which a discrete-time response differs from row · Mᵏ · start."""
+    count = len(picture.responses[0].heights)
+    if picture.window[0][1] != count - 1:
+        yield "instants other than 0, 1, 2, ..."
+        return
+    table = [[entry.fraction() for entry in row] for row in matrix.rows]
+    heights: list[list[Fraction]] = [[] for _ in picture.responses]
+    for _ in range(count):
+        for found, response in zip(heights, picture.responses, strict=True):
+            found.append(sum(map(mul, response.row, state), Fraction(0)))
+        state = tuple(sum(map(mul, row, state), Fraction(0)) for row in table)
+    bottom, top = picture.window[1]
+    for found, response in zip(heights, picture.responses, strict=True):
+        if [height * picture.parts for height in found] != list(response.heights):
+            yield f"the response of {response.signal}"
+        if min(found) < bottom or max(found) > top:
+            yield f"{response.signal}, which leaves the window,"
+
+
+def _signals(picture: TimeResponse, state: Block, environment: Environment) -> Iterator[tuple[Formula, Formula]]:
+    """Yield the equations that make responses components of their signals."""
+    for name in dict.fromkeys(response.signal for response in picture.responses):
+        rows = {response.component: response.row for response in picture.responses if response.signal == name}
+        size = _size(name, environment)
+        if sorted(rows) != ([0] if size == 1 else list(range(1, size + 1))):
+            raise ValueError(f"not all components of {name}")
+        table = Matrix.of([[Scalar.of(part) for part in rows[component]] for component in sorted(rows)])
+        yield Letter(name), Product((Literal(table), state))
+
+
+def _size(name: str, environment: Environment) -> int:
+    """Return how many components a signal has."""
+    signal = evaluate(Letter(name), environment, Exact(environment))
+    return signal.size if isinstance(signal, Signal) else 0
+
+
+def _faults_of_component(
+    response: PlottedResponse, parts: int, values: list[list[int]], edges: tuple[Fraction, Fraction]
+) -> Iterator[str]:
+    """Yield the instants at which a response is wrong; `values` are those at all instants and between them."""
+    common = lcm(*(part.denominator for part in response.row))
+    row = [int(part * common) for part in response.row]
+    true = [sum(map(mul, row, value)) // common for value in values]
+    drawn = [(height << _BITS) // parts for height in response.heights]
+    bottom, top = (int(edge * (1 << _BITS)) for edge in edges)
+    height = top - bottom
+    off = [abs(y - value) for y, value in zip(drawn, true[::2], strict=True)]
+    between = [abs((a + b) // 2 - value) for (a, b), value in zip(pairwise(drawn), true[1::2], strict=True)]
+    if max(off) > height * _OFF or max(between) > height * _BETWEEN:
+        yield f"the response of {response.signal}"
+    if min(drawn) < bottom or max(drawn) > top:
+        yield f"{response.signal}, which leaves the window,"
+
+
+def is_slow(matrix: Matrix, step: Fraction) -> bool:
+    """Return whether |λ| h ≤ 3 for all eigenvalues λ of M: no |λ|ᵏ is larger than ‖Mᵏ‖, here for k = 64."""
+    power = Matrix.of([[Scalar.of(entry.fraction() * step / _TURN) for entry in row] for row in matrix.rows])
+    for _ in range(_SQUARINGS):
+        power = power @ power
+    return all(sum(abs(entry.fraction()) for entry in row) <= 1 for row in power.rows)
+
+
+class _Enclosed(NamedTuple):
+    """A matrix in parts of 2⁻ᵇⁱᵗˢ, and two norms (largest sums of a row): its own, and a bound for that of its error."""
+
+    rows: list[list[int]]
+    norm: int
+    error: int
+
+    @classmethod
+    def of(cls, rows: list[list[int]], error: int) -> _Enclosed:
+        return cls(rows, max(sum(map(abs, row)) for row in rows), error)
+
+    def times(self, other: _Enclosed, bits: int, divisor: int = 1) -> _Enclosed:
+        """Return the product by a whole number, each entry rounded down."""
+        rows = [[(entry >> bits) // divisor for entry in row] for row in whole_product(self.rows, other.rows)]
+        error = self.norm * other.error + self.error * other.norm + self.error * other.error
+        return _Enclosed.of(rows, (error >> bits) // divisor + 1 + 2 * len(rows[0]))
+
+
+@lru_cache(maxsize=2)
+def _stepped(matrix: Matrix, start: tuple[Fraction, ...], step: Fraction, count: int) -> list[list[int]]:
+    """Return the state at `count` instants, in parts of 2 to the power of _BITS, each off by at most one.
+
+    Raises ValueError where rounding leaves fewer bits.
+    """
+    table = [[entry.fraction() * step for entry in row] for row in matrix.rows]
+    for bits in _KEPT:
+        power = _exponential(table, bits)
+        states, error = [[round(part * (1 << bits))] for part in start], 1  # a column for each instant
+        while len(states[0]) < count:
+            largest = max(max(map(abs, row)) for row in states)
+            more = [[entry >> bits for entry in row] for row in whole_product(power.rows, states)]
+            error = max(error, ((power.norm * error + power.error * (largest + error)) >> bits) + 3)
+            states = [known + new for known, new in zip(states, more, strict=True)]
+            power = power.times(power, bits)
+        spare = bits - _BITS
+        if error < 1 << (spare - 1):
+            half = 1 << (spare - 1)
+            return [[(part + half) >> spare for part in state] for state in islice(zip(*states, strict=True), count)]
+    raise ValueError("a response with too much to compute")
+
+
+def _exponential(table: list[list[Fraction]], bits: int) -> _Enclosed:
+    """Return e^M: the power series of M/2ᵏ, of norm 2⁻¹⁶ at most, squared k times."""
+    order = len(table)
+    halvings = _SMALL + int(max(sum(map(abs, row), Fraction(0)) for row in table)).bit_length()
+    small = _Enclosed.of([[round(entry * (1 << bits) / (1 << halvings)) for entry in row] for row in table], order)
+    term = total = _Enclosed.of([[(i == j) << bits for j in range(order)] for i in range(order)], 0)
+    for k in range(1, bits // _SMALL + 1):
+        term = term.times(small, bits, k)
+        rows = [[a + b for a, b in zip(*pair, strict=True)] for pair in zip(total.rows, term.rows, strict=True)]
+        total = _Enclosed.of(rows, total.error + term.error)
+    total = total._replace(error=total.error + 1)  # the terms left out: 2⁻¹⁶ᵏ and less, where 16 k > bits
+    for _ in range(halvings):
+        total = total.times(total, bits)
+    return total

@@ -1,1 +1,0 @@
-"""Stability regions and root loci as plots."""

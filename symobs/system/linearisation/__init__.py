@@ -1,1 +1,0 @@
-"""Nonlinear plants, linearised at an equilibrium."""

@@ -1,0 +1,150 @@
+"""The linearisation of ẋ = f(x, u), y = h(x, u) at an equilibrium, from what a user gives."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from functools import partial
+from typing import Any
+
+from symobs.exact import Ideal, Matrix, Scalar
+from symobs.exact.core.generators import NotWritten, identities, symbols_in
+from symobs.formula.expression import declared_name, parse_matrix
+from symobs.formula.expression.source import shown
+from symobs.ground.errors import InputError, ShapeMismatch, together
+from symobs.system.reading import Nonlinear, has_decimals, read_time, read_values
+from symobs.system.state_space import StateSpace
+from symobs.system.symbols import Symbols, is_sympy
+
+_EXAMPLE = 'equilibrium = { theta = "pi", omega = 0, u = 0 }'
+
+
+def linearize(
+    f: object,
+    h: object = None,
+    *,
+    states: str | Sequence[Any],
+    inputs: str | Sequence[Any] = (),
+    equilibrium: Mapping[Any, Any],
+    dt: object = 0,
+    symbols: Mapping[str, Any] | Symbols | None = None,
+) -> StateSpace:
+    """Return the plant of the deviations from an equilibrium of ẋ = f(x, u), y = h(x, u).
+
+    A = ∂f/∂x, B = ∂f/∂u, C = ∂h/∂x and D = ∂h/∂u at the equilibrium, where f = 0 (f(x, u) = x in discrete time,
+    x(k+1) = f(x, u)); pages begin with that.
+
+    f, h         n and p functions of the states and inputs: a text such as "[omega; g/l*sin(theta) + u]", a list or a
+                 SymPy matrix, rational in exp, sin, cos, tan, sinh, cosh, tanh and sqrt
+    states       their names in the order of x, "theta, omega"; `inputs` likewise
+    equilibrium  a value for each of them: {"theta": "pi", "omega": 0, "u": 0}
+    dt, symbols  as for `StateSpace`; states and inputs need not be declared
+    Raises `InputError` where f does not vanish at that point or is not differentiable there, and for unknown names;
+    `ShapeMismatch` where f has not a component for each state.
+    """
+    x, u = _names(states, "states"), _names(inputs, "inputs")
+    known = (symbols if isinstance(symbols, Symbols) else Symbols.of(symbols)).seen([f, h, equilibrium])
+    variable = read_time(dt, known).variable
+    if taken := sorted({name for name in x + u if (x + u).count(name) > 1 or name in {variable, "t"}}):
+        message = f"{taken[0]} stands for something else, too"
+        raise InputError(message, where="plant.states", repair=f"give {taken[0]} another name")
+    signals = {name: known.sign(name) for name in x + u}
+    inside = replace(known, signs={**known.signs, **signals})
+    right, output, point = together(
+        partial(_column, f, inside, "plant.f"),
+        partial(_column, h, inside, "plant.h"),
+        partial(_point, equilibrium, x + u, inside),
+    )
+    if right.shape[0] != len(x):
+        message = f"f has {right.shape[0]} components, and there are {len(x)} states"
+        raise ShapeMismatch(message, where="plant.f", repair="write the rate of change of each state, in their order")
+    given = Nonlinear(right, output, x, u, point)
+    A, B, C, D = _linearised(given, is_discrete=variable == "z")
+    plant = StateSpace(A, B, C, D, dt, symbols=known)
+    plant.nonlinear, plant.is_in_decimals = given, has_decimals([f, h, equilibrium])
+    return plant
+
+
+def _linearised(given: Nonlinear, *, is_discrete: bool) -> tuple[Matrix | None, ...]:
+    """Return A, B, C, D; raises `InputError` where the point is no equilibrium, or f has no derivative there."""
+    try:
+        rest = given.there(given.f)
+        if is_discrete:
+            rest = rest - Matrix.of([[dict(given.equilibrium)[name]] for name in given.states])
+        parts = [
+            given.there(given.jacobian(function, names)) if function is not None and names else None
+            for function in (given.f, given.h)
+            for names in (given.states, given.inputs)
+        ]
+        meanings, vanishing = identities([rest])
+    except NotWritten as error:
+        raise InputError(str(error), where="plant.equilibrium", repair="declare a symbol for it") from None
+    except ZeroDivisionError:
+        message = "f or h is not differentiable there: a denominator is 0"
+        raise InputError(message, where="plant.equilibrium", repair="give an equilibrium inside their domain") from None
+    ideal = Ideal.of(vanishing)
+    left = [entry.substitute(meanings) if meanings else entry for entry in rest.entries]
+    if any(not ideal.simplified(entry).is_zero for entry in left):
+        what, wanted = ("f(x, u) - x", "f(x, u) = x") if is_discrete else ("f(x, u)", "f(x, u) = 0")
+        message = f"this is no equilibrium: {what} is [{'; '.join(map(str, rest.entries))}] there"
+        raise InputError(message, where="plant.equilibrium", repair=f"give values for which {wanted}")
+    return tuple(parts)
+
+
+def _names(given: object, where: str) -> tuple[str, ...]:
+    """Return the names in a text or a list."""
+    listed = re.split(r"[,;\s]+", given.strip(" []")) if isinstance(given, str) else given
+    if not isinstance(listed, Sequence):
+        message = "names are expected"
+        raise InputError(message, where=f"plant.{where}", repair=f'write {where} = "x1, x2"')
+    names = tuple(declared_name(str(name), f"plant.{where}") for name in listed if str(name))
+    if not names and where == "states":
+        raise InputError("no state is named", where="plant.states", repair='write states = "theta, omega"')
+    return names
+
+
+def _column(value: object, symbols: Symbols, where: str) -> Matrix | None:
+    """Return functions of the states and inputs as a column; h may be left out."""
+    if value is None and where == "plant.f":
+        raise InputError("f is missing", where=where, repair='give it, for example f = "[omega; -sin(theta) + u]"')
+    if value is None:
+        return None
+    rows: Any = value.tolist() if hasattr(value, "tolist") else value
+    if not isinstance(rows, str):
+        rows = [rows] if not isinstance(rows, (list, tuple)) else rows
+        rows = [[_text(entry) for entry in (row if isinstance(row, (list, tuple)) else [row])] for row in rows]
+    read = parse_matrix(rows, symbols.names, where=where, functions=True)
+    read = read.T if read.shape[0] == 1 else read
+    if read.shape[1] != 1:
+        message = f"a column is expected, but a matrix of {read.shape[0]}×{read.shape[1]} came"
+        raise ShapeMismatch(message, where=where, repair="set its components apart by semicolons")
+    return read
+
+
+def _text(entry: object) -> object:
+    return str(entry) if is_sympy(entry) else entry
+
+
+def _point(given: object, names: tuple[str, ...], symbols: Symbols) -> tuple[tuple[str, Scalar], ...]:
+    """Return the value of each state and input at the equilibrium, in their order."""
+    if not isinstance(given, Mapping):
+        message = "a value for each state and input is expected"
+        raise InputError(message, where="plant.equilibrium", repair=f"write {_EXAMPLE}")
+    values = {str(getattr(key, "name", key)): value for key, value in given.items()}
+    missing, unknown = [n for n in names if n not in values], [n for n in values if n not in names]
+    if missing or unknown:
+        said = [f"{', '.join(missing)} has no value"] if missing else []
+        said += [f"{shown(', '.join(unknown), 40)} is neither a state nor an input"] if unknown else []
+        message = " and ".join(said)
+        raise InputError(message, where="plant.equilibrium", repair=f"give a value for each of {', '.join(names)}")
+    try:
+        found = read_values(values, symbols, names)
+    except InputError as error:
+        error.where = error.where.replace("substitute", "plant.equilibrium")
+        raise
+    inside = sorted({name for value in found.values() for name in symbols_in(value) & set(names)})
+    if inside:
+        message = f"{inside[0]} is a state or an input, and the equilibrium does not depend on it"
+        raise InputError(message, where="plant.equilibrium", repair="give the value, with a parameter such as theta0")
+    return tuple((name, found[name]) for name in names)

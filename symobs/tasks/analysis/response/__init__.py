@@ -1,1 +1,0 @@
-"""The response of a plant to its initial state and its input."""

@@ -1,0 +1,503 @@
+"""The response  x(t) = e^{At} x₀ + ∫₀ᵗ e^{A(t−s)} B u(s) ds,  y = C x + D u,  of a plant in closed form.
+
+The answer is held to the differential equation and to the initial state, which have one solution.
+"""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from functools import cached_property
+from math import lcm, pi
+from operator import mul
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Self, TypeAlias
+
+from symobs.exact import Matrix, Scalar
+from symobs.exact.core.generators import normal_form
+from symobs.exact.core.polynomial import companion
+from symobs.exact.time_functions.matrix_exponential import NoClosedForm
+from symobs.exact.time_functions.quasipolynomial import Quasipolynomial, Table, matrix_at, product, table_of
+from symobs.formula.figures import PlottedResponse, TimeResponse
+from symobs.formula.tree import Literal
+from symobs.formula.tree.term import Term, block, identity, letter
+from symobs.ground.dataclass import dataclass
+from symobs.ground.errors import InputError
+from symobs.proof.certificate.claims import Claim
+from symobs.proof.derivation.builder import Builder, relation
+from symobs.system.specification import read_gain
+from symobs.tasks.analysis.page_parts import given
+from symobs.tasks.analysis.time_response.damping_cases import DampingCases, Signs, rate_of, time_environment
+from symobs.tasks.analysis.time_response.horizons import read_functions
+from symobs.tasks.analysis.time_response.initial_state import motion_from_rest
+from symobs.tasks.analysis.time_response.matrix_exponential import (
+    TIME,
+    closed_form,
+    question_of,
+    require_continuous,
+    tell_exponential,
+    tell_polynomial,
+    tell_question,
+)
+from symobs.tasks.result import Result, choose, method, task
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping, Sequence
+
+    from symobs.formula.figures import Interval
+    from symobs.formula.tree import Environment, Relation
+    from symobs.proof.derivation.builder import Slot
+    from symobs.system import StateSpace
+    from symobs.system.specification import MatrixText, Name, TimeFunctions
+
+
+# Courses over time in a picture: responses of a system with numbers from its initial state, by segments that fit.
+
+
+#: The slowest mode has fallen to e⁻⁶, a quarter of a per cent, at the end.
+TIMES = 6.0
+
+
+#: How many segments are drawn, more where a response changes fast at first: none passes by the values between its ends at
+#: more than this part of the window.
+_STEPS, _BETWEEN, _PARTS = (400, 800, 1600), Fraction(1, 110), 10**6
+
+
+_ROUND = (Fraction(1), Fraction(3, 2), Fraction(2), Fraction(3), Fraction(4), Fraction(5), Fraction(6), Fraction(8))
+
+
+#: Signals, each with its rows as a matrix times the state, and whether it is dashed.
+Signals: TypeAlias = "Sequence[tuple[str, Matrix, bool]]"
+
+
+def plot_courses(
+    page: Builder,
+    states: tuple[str, ...],
+    starts: tuple[tuple[Fraction, ...], ...],
+    matrix: Term,
+    signals: Signals,
+    end: Fraction,
+    say: str,
+    **slots: Slot,
+) -> None:
+    """Plot signals of a system with these states and their starts up to an end, unless no segments fit or all is at rest."""
+    from symobs.exact.time_functions.matrix_exponential import state_response  # noqa: PLC0415
+    from symobs.proof.derivation.plot_check import is_slow  # noqa: PLC0415 - only pages with responses pay for it
+
+    if not is_slow(matrix.value, end / (2 * _STEPS[0])):  # a mode would turn unseen between two instants
+        return
+    start = tuple(part for parts in starts for part in parts)
+    for steps in _STEPS:
+        try:
+            between = state_response(matrix.value, start, end / (2 * steps), 2 * steps + 1, _PARTS)
+        except ArithmeticError:
+            return
+        made = tuple(
+            PlottedResponse(name, index if table.shape[0] > 1 else 0, row, _course(row, between[::2]), dashed)
+            for name, table, dashed in signals
+            for index, row in enumerate(rows_of(table), 1)
+        )
+        window = window_of(end, made, _PARTS)
+        if window[1][0] == window[1][1]:
+            return
+        if all(_is_smooth(_course(response.row, between), window[1]) for response in made):
+            page.plot(TimeResponse(states, starts, made, window, _PARTS), matrix, say=say, **slots)
+            return
+
+
+def _is_smooth(heights: Sequence[int], edges: Interval) -> bool:
+    """Return whether segments from every other instant to the next pass close by the values between them."""
+    allowed = 2 * _BETWEEN * (edges[1] - edges[0]) * _PARTS
+    return all(
+        abs(a - 2 * v + b) <= allowed for a, v, b in zip(heights[::2], heights[1::2], heights[2::2], strict=False)
+    )
+
+
+def window_of(end: Fraction, responses: Sequence[PlottedResponse], parts: int) -> tuple[Interval, Interval]:
+    """Return a window with a little room above and below."""
+    low, high = min(min(each.heights) for each in responses), max(max(each.heights) for each in responses)
+    edge = Fraction(high - low, 20)
+    return (Fraction(0), end), ((low - edge) / parts, (high + edge) / parts)
+
+
+def rows_of(table: Matrix) -> list[tuple[Fraction, ...]]:
+    """Return the rows of a matrix of numbers."""
+    return [tuple(entry.fraction() for entry in row) for row in table.rows]
+
+
+def _course(row: Sequence[Fraction], states: Sequence[Sequence[int]]) -> tuple[int, ...]:
+    """Return row · state, in whole parts."""
+    common = lcm(*(part.denominator for part in row))
+    whole = [int(part * common) for part in row]
+    return tuple(sum(map(mul, whole, state)) // common for state in states)
+
+
+def rounded_up(value: float) -> Fraction:
+    """Return a round number that is not smaller."""
+    power = Fraction(1)
+    while power * 10 <= value:
+        power *= 10
+    while power > value:
+        power /= 10
+    return next((factor * power for factor in _ROUND if factor * power >= value), 10 * power)
+
+
+# The picture of a response: the input is the output of an exosystem, so state and input have a linear equation.
+
+
+#: More courses cannot be told from one another.
+_MOST_COURSES = 6
+
+
+#: What is drawn of an undamped oscillation, in periods; of growth, in time constants; and where nothing has a time scale.
+_PERIODS, _GROWTHS, _ANY = 3, 3.0, Fraction(10)
+
+
+_NEAR_ZERO = 1e-9
+
+
+class InputModel(NamedTuple):
+    """ẇ = S w, u = V w, w(0) = w₀, with w the inputs and their derivatives, also as functions of t."""
+
+    S: Matrix
+    V: Matrix
+    start: Matrix
+    w: Matrix
+
+
+def input_model(u: Matrix) -> InputModel | None:
+    """Return the least exosystem of each input; None where its coefficients are no rational numbers."""
+    blocks: list[tuple[Matrix, list[Scalar]]] = []
+    functions: list[list[Scalar]] = []
+    for (entry,) in table_of(u):
+        if entry.is_zero:
+            blocks.append((Matrix.zeros(0, 0), []))
+            continue
+        coefficients = [normal_form(c) for c in _annihilator(entry).coefficients("s")]
+        start, derivative = [], entry
+        for _ in coefficients[1:]:
+            start.append(derivative.at_zero)
+            functions.append([derivative.value_at(Scalar.symbol("t"))])
+            derivative = derivative.derivative()
+        if any(not value.is_constant for value in (*coefficients, *start)):
+            return None
+        blocks.append((companion(coefficients[1:]), start))
+    sizes = [len(start) for _, start in blocks]
+    if not sum(sizes):
+        return None
+    zeros = [[Matrix.zeros(a, b) for b in sizes] for a in sizes]
+    S = Matrix.block([[*row[:i], blocks[i][0], *row[i + 1 :]] for i, row in enumerate(zeros) if sizes[i]])
+    first = [sum(sizes[:i]) if size else None for i, size in enumerate(sizes)]
+    V = Matrix.of([[Scalar.of(int(j == at)) for j in range(sum(sizes))] for at in first])
+    return InputModel(S, V, Matrix.column([value for _, start in blocks for value in start]), Matrix.of(functions))
+
+
+def _annihilator(entry: Quasipolynomial) -> Scalar:
+    """Return the least polynomial q with q(d/dt) u = 0."""
+    powers: dict[tuple[Scalar, Scalar], int] = {}
+    for key in entry.terms:
+        mode = key.rate, key.frequency
+        powers[mode] = max(powers.get(mode, 0), key.power + 1)
+    found, s = Scalar.of(1), Scalar.symbol("s")
+    for (rate, frequency), power in powers.items():
+        factor = s - rate if frequency.is_zero else (s - rate) ** 2 + frequency**2
+        found = found * factor**power
+    return found
+
+
+def plot_response(page: Builder, begins: Matrix, model: InputModel | None) -> None:
+    """Plot state and output from x(0); plant and input have numbers."""
+    order = page.plant.order
+    states: tuple[str, ...] = ("x",)
+    starts: tuple[tuple[Fraction, ...], ...] = (_numbers(begins),)
+    whole, row, say = page["A"], Matrix.identity(order), ""
+    slots: dict[str, Relation] = {}
+    if model is not None:
+        w, V, S = page["w_e"], page.value(model.V), page.value(model.S)
+        page.dynamics("w_e", S @ w, silent=True)
+        page.signal("u", V @ w, silent=True)
+        functions = page.value(model.w)
+        page.conclude_silently(
+            relation(rate_of(functions), S @ functions),
+            relation(functions.at("t", 0), model.start),
+            relation(page["u_t"], V @ functions),
+        )
+        whole = block([[page["A"], page["B"] @ V], [page.value(Matrix.zeros(model.S.shape[0], order)), S]])
+        row = Matrix.block([[row, Matrix.zeros(order, model.S.shape[0])]])
+        states, starts = ("x", "w_e"), (*starts, _numbers(model.start))
+        slots = {"input": relation(page["u"], w if Matrix.identity(V.value.shape[1]) == model.V else V @ w)}
+        say = "plot_response_constant"
+        if not model.S.is_zero:
+            slots["exosystem"] = relation(w.derivative, S @ w)
+            say = "plot_response_forced"
+    elif page.plant.matrices.has_input:
+        page.signal("u", page.value(Matrix.zeros(page.plant.inputs, order)) @ page["x"], silent=True)
+    if signals := _signals(page.plant, row, model):
+        plot_courses(page, states, starts, whole, signals, _end(whole.value), say, **slots)
+
+
+def _signals(plant: StateSpace, row: Matrix, model: InputModel | None) -> Signals:
+    """Return the state, and the output where it is no component of the state, up to a number of courses."""
+    m, order = plant.matrices, plant.order
+    found = [("x", row, False)] if order <= _MOST_COURSES else []
+    if m.has_output and m.C.shape[0] <= _MOST_COURSES - (order if found else 0):
+        seen = m.C @ row
+        if model is not None and m.has_feedthrough:
+            seen = seen + Matrix.block([[Matrix.zeros(m.C.shape[0], order), m.D @ model.V]])
+        if not found or not set(rows_of(seen)) <= set(rows_of(row)):
+            found.append(("y", seen, False))
+    return found
+
+
+def _numbers(start: Matrix) -> tuple[Fraction, ...]:
+    return tuple(entry.fraction() for entry in start.entries)
+
+
+def _end(matrix: Matrix) -> Fraction:
+    """Return when decay is over, or oscillation and growth have been seen."""
+    from symobs.exact.time_functions.matrix_exponential import eigenvalues_near  # noqa: PLC0415 - only pages with responses pay for it
+
+    found = eigenvalues_near(matrix)
+    near = _NEAR_ZERO * max(map(abs, found))
+    if (fastest := max(root.real for root in found)) > near:
+        return rounded_up(_GROWTHS / fastest)
+    times = [TIMES / -root.real for root in found if root.real < -near]
+    times += [2 * pi * _PERIODS / abs(root.imag) for root in found if abs(root.real) <= near < abs(root.imag)]
+    return rounded_up(max(times)) if times else _ANY
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Response(DampingCases):
+    """x(t) with x′ = A x + B u and x(0) = x₀, which has one solution, and y = C x + D u."""
+
+    task: ClassVar[str] = "response"
+    answered_by = ("state",)
+    functions_of_time = {"x": "state", "x(t)": "state", "y": "output", "y(t)": "output"}
+    letters = {"state": "x_t", "output": "y_t"}
+    main: ClassVar[str] = "state"
+    asked_for: ClassVar[tuple[str, ...]] = ("initial", "input", "impulse")
+
+    @classmethod
+    def of(cls, plant: StateSpace, method_name: str, asked: Mapping[str, Any], taken: Signs) -> Self:
+        """Return the result for a plant; `asked` holds the initial state, the input in t, and the strength of its impulse."""
+        v = asked["impulse"]
+        start = asked["initial"] if v is None else asked["initial"] + plant.matrices.B @ v
+        shared = {**{name: asked[name] for name in cls.asked_for}, "start": start, "taken": taken, "chosen": {}}
+        try:
+            found, chosen = closed_form(plant, taken)
+        except NoClosedForm as error:
+            nothing = {"state": None, "output": None, "question": question_of(error), "factor": error.factor}
+            return cls(plant, method_name, {**shared, **nothing})
+        m, exponential = plant.matrices, found.table()
+        state = product(exponential, table_of(start))
+        answer = {**shared, "chosen": chosen, "exponential": matrix_at(exponential, TIME), "output": None}
+        u = None if asked["input"] is None else table_of(asked["input"])
+        if u is not None:
+            forced = motion_from_rest(exponential, m.B, u)
+            answer["forced"] = matrix_at(forced, TIME)
+            state = _plus(state, forced)
+        if m.has_output:
+            seen = product(table_of(m.C), state)
+            if u is not None and m.has_feedthrough:
+                seen = _plus(seen, product(table_of(m.D), u))
+            answer["output"] = matrix_at(seen, TIME)
+        return cls(plant, method_name, {**answer, "state": matrix_at(state, TIME)})
+
+    @property
+    def matrices(self) -> tuple[Matrix | Scalar, ...]:
+        """The functions of time, and the initial state."""
+        names = ("initial", "input", "impulse", "exponential", "forced", "state", "output")
+        return tuple(self.answer[name] for name in names if self.answer.get(name) is not None)
+
+    def claims(self) -> Iterator[Claim]:
+        """Yield the differential equation, the start, and the output."""
+        yield from super().claims()
+        if self.answer["state"] is None:
+            return
+        m, names = self.plant.matrices, {"x_t": "state", "y_t": "output", "u_t": "input", "x_0": "start"}
+        names |= {"exp_At": "exponential", "x_f": "forced"}
+        values: dict[str, Any] = {"A": m.A, "B": m.B, "C": m.C, "D": m.D}
+        values |= {name: self.answer[key] for name, key in names.items() if self.answer.get(key) is not None}
+        e = time_environment(self.plant, values)
+        x, Phi = letter("x_t", e), letter("exp_At", e)
+        yield Claim(relation(rate_of(Phi), letter("A", e) @ Phi), e, "d/dt exp(A*t) = A*exp(A*t)")
+        yield Claim(relation(Phi.at("t", 0), identity(self.plant.order, e)), e, "exp(A*0) = I")
+        if "x_f" in values:
+            free = Phi @ letter("x_0", e)
+            yield Claim(relation(x, free + letter("x_f", e)), e, "x = exp(A*t)*x0 + x_f")
+        yield Claim(relation(rate_of(x), _moved(self, e)), e, "x' = A*x + B*u")
+        yield Claim(relation(x.at("t", 0), letter("x_0", e)), e, "x(0) = x0")
+        yield Claim(
+            relation(letter("x_0", e), _begun(self, e, leave_out_rest=False)),
+            e,
+            "x0 is the initial state and what the impulse adds",
+        )
+        if "y_t" in values:
+            yield Claim(relation(letter("y_t", e), _seen(self, e)), e, "y = C*x + D*u")
+
+    @cached_property
+    def fields(self) -> Mapping[str, Any]:
+        """State and output in t; where there is none, the question that is open."""
+        asked = self.answer.get("question")
+        found = {name: self.answer[name] for name in ("state", "output")}
+        return {**found, **({"question": asked} if asked else {})}
+
+    @cached_property
+    def input_model(self) -> InputModel | None:
+        """The exosystem of an input in numbers."""
+        return None if self.answer["input"] is None else input_model(self.answer["input"])
+
+    @property
+    def is_drawn(self) -> bool:
+        """Whether a picture can show the response: it is one function, in numbers."""
+        m, u, start = self.plant.matrices, self.answer["input"], self.answer["start"]
+        data = [part for part in (m.A, m.B, m.C, m.D, start) if part is not None]
+        if self.answer["state"] is None or self.plant.relations or any(part.names for part in data):
+            return False
+        return u is None or u.is_zero or self.input_model is not None
+
+    @property
+    def free_signals(self) -> Mapping[str, int]:
+        """The state of the exosystem."""
+        return {"w_e": self.input_model.S.shape[0]} if self.is_drawn and self.input_model else {}
+
+    def write(self, page: Builder) -> None:
+        """Write the matrix exponential, what is given, the forced response, state and output, the check."""
+        page.in_time(*self.everything())
+        given(page)
+        with page.section("response"):
+            tell_polynomial(page)
+            self.write_branches(page, _write_branch)
+            if self.is_drawn:
+                plot_response(page, self.answer["start"], self.input_model)
+
+
+def _plus(left: Table, right: Table) -> Table:
+    return tuple(tuple(a + b for a, b in zip(p, q, strict=True)) for p, q in zip(left, right, strict=True))
+
+
+def _begun(result: Response, e: Environment, *, leave_out_rest: bool = True) -> Term:
+    """Return the initial state plus B v, what an impulse of strength v adds to it."""
+    before, v = result.answer["initial"], result.answer["impulse"]
+    if v is None:
+        return Term(Literal(before), e)
+    added = letter("B", e) if v == Matrix.identity(1) else letter("B", e) @ Term(Literal(v), e)
+    return added if leave_out_rest and before.is_zero else Term(Literal(before), e) + added
+
+
+def _moved(result: Response, e: Environment) -> Term:
+    """Return A x + B u."""
+    free = letter("A", e) @ letter("x_t", e)
+    return free if result.answer["input"] is None else free + letter("B", e) @ letter("u_t", e)
+
+
+def _seen(result: Response, e: Environment) -> Term:
+    """Return C x + D u."""
+    seen = letter("C", e) @ letter("x_t", e)
+    through = result.answer["input"] is not None and result.plant.matrices.has_feedthrough
+    return seen + letter("D", e) @ letter("u_t", e) if through else seen
+
+
+def _entry(matrix: Matrix) -> Matrix | Scalar:
+    """Return the entry of a 1×1 matrix, else the matrix."""
+    return matrix[0, 0] if matrix.shape == (1, 1) else matrix
+
+
+def _write_branch(page: Builder, result: Response) -> None:
+    """Write one branch."""
+    answer = result.answer
+    if answer.get("question") is not None:
+        tell_question(page, answer["factor"])
+        page.remark("response_not_given")
+        return
+    found, _ = closed_form(result.plant, {**answer["taken"], **answer["chosen"]})
+    tell_exponential(page, found, answer["exponential"])
+    begins, has_impulse, u = answer["start"], answer["impulse"] is not None, None
+    from_rest = begins.is_zero and not has_impulse
+    x_0 = page.value(begins) if from_rest else page.set("x_0", begins)
+    if answer["input"] is not None:
+        u = relation(page.set("u_t", answer["input"]), _entry(answer["input"]))
+    if has_impulse:
+        chain = [_begun(result, page.environment), _entry(begins)]
+        page.equal(relation(x_0, *chain), say="response_impulse")
+        if u is not None:
+            page.equal(u, say="response_beside")
+    elif u is None:
+        page.equal(relation(x_0, _entry(begins)), say="response_free")
+    elif from_rest:
+        page.equal(u, say="response_from_rest")
+    else:
+        page.equal(relation(x_0, _entry(begins)), u, say="response_driven")
+    members, say = [page["exp_At"] @ x_0], "response_state_free"
+    if from_rest:
+        members, say = [], "output_forced"
+    elif u is not None:
+        members, say = [page["exp_At"] @ x_0 + _forced(page, answer["forced"])], "response_state"
+    x = page.define("x_t", *members, answer["state"], say=say, answer=True, closing=False)
+    e = page.environment
+    if answer["output"] is not None:
+        page.define(
+            "y_t", _seen(result, e), _entry(answer["output"]), say="response_output", answer=True, closing=False
+        )
+    page.verified("response_checked", relation(rate_of(x), _moved(result, e)), start=relation(x.at("t", 0), x_0))
+
+
+def _forced(page: Builder, value: Matrix) -> Term:
+    """Define the motion from rest, which is held to its differential equation without words."""
+    x_f = page.define("x_f", value, say="output_forced", closing=False)
+    rate = relation(rate_of(x_f), page["A"] @ x_f + page["B"] @ page["u_t"])
+    page.conclude_silently(rate, relation(x_f.at("t", 0), Matrix.zeros(*value.shape)))
+    return x_f
+
+
+@method("response/superposition", source="kailath1980, ch. 2; ogata2010, ch. 9")
+def superposition(plant: StateSpace, asked: Mapping[str, Any]) -> Response:
+    """Add e^{At} x₀ and the motion from rest, ∫₀ᵗ e^{A(t−s)} B u(s) ds."""
+    return Response.of(plant, "superposition", asked, {})
+
+
+@task
+def response(
+    plant: StateSpace,
+    *,
+    initial: MatrixText = None,
+    input: TimeFunctions = None,  # noqa: A002 - the specification's word
+    impulse: MatrixText = None,
+    method: Name = "auto",
+) -> Result:
+    """Return the response x(t) = e^{At} x₀ + ∫₀ᵗ e^{A(t−s)} B u(s) ds and y = C x + D u to an initial state and an input.
+
+    plant    n states, continuous time; B where an input is given, C where the output is asked for
+    initial  x₀; 0 where it is left out
+    input    u(t) for t ≥ 0: sums of exponentials, sines and cosines times powers of t, one for each input, such as 1 for
+             a step and t for a ramp; none where it is left out
+    impulse  the strength v of an impulse v δ(t), one for each input, which moves the state to x₀ + B v at t = 0
+    Returns state, output, in t.  Where the sign of a discriminant decides between oscillation and none, and where an input
+    is in resonance, conditions hold the branch that is shown and cases the others; undecided where the modes have no
+    closed form.  Raises `InputError` where nothing is given, in discrete time, for other functions of t, and where the impulse
+    goes through to the output; `ShapeMismatch`.
+    Source: T. Kailath, Linear Systems, ch. 2; K. Ogata, Modern Control Engineering, 5th ed., ch. 9.
+    """
+    plant = plant.knowing(initial, input, impulse)
+    require_continuous(plant, "response")
+    if initial is None and input is None and impulse is None:
+        message = "nothing moves the plant: neither an initial state nor an input is given"
+        raise InputError(message, where="specification.input", repair='give input = "1" for a step, or initial')
+    size = (plant.order, 1)
+    start = Matrix.zeros(*size) if initial is None else read_gain(initial, plant, "initial", size)
+    v = None
+    if impulse is not None:
+        plant.require("B", task="response")
+        v = read_gain(impulse, plant, "impulse", (plant.inputs, 1))
+        if plant.matrices.has_feedthrough and not (plant.matrices.D @ v).is_zero:
+            message = "the impulse goes through D to the output, which is then no function of t"
+            raise InputError(
+                message, where="specification.impulse", repair="leave C and D out: the state is a function of t"
+            )
+    for name, value in (("initial", start), ("impulse", v)):
+        if value is not None and "t" in value.names:
+            message = f"the {'initial state' if name == 'initial' else 'strength of the impulse'} does not depend on the time t"
+            raise InputError(message, where=f"specification.{name}", repair="give the values at t = 0")
+    u = None
+    if input is not None:
+        plant.require("B", task="response")
+        u, _ = read_functions(input, plant, "input", plant.inputs)
+    return choose("response", method, "superposition").solve(plant, {"initial": start, "input": u, "impulse": v})

@@ -1,1 +1,0 @@
-"""The discrete-time plant of a plant behind a zero-order hold."""
