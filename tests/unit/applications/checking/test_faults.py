@@ -22,6 +22,7 @@ from tests.support.problems.answered import (
     K,
     L,
     S,
+    feedback_gain,
     observer_gain,
     polynomial,
     text,
@@ -205,3 +206,28 @@ def test_no_random_gain_is_explained_falsely() -> None:
     explained, false = hold(150, 5)
     assert explained > 5
     assert false == 0
+
+
+@pytest.mark.parametrize("slip", ["sign", "mirrored", "entry_misread", "other_matrix", "other_half"])
+def test_the_dual_slips_of_a_feedback_gain_are_found(slip: str) -> None:
+    wrong = {
+        "sign": -K,
+        "mirrored": feedback_gain(A, B, polynomial((1, 2, 4))),
+        "entry_misread": feedback_gain(sp.Matrix([[1, 2, 0], [0, 1, 3], [1, 0, 2]]), B, polynomial(CONTROL)),
+        "other_matrix": feedback_gain(A, C.T, polynomial(CONTROL)),
+        "other_half": feedback_gain(A, B, polynomial(OBSERVER)),
+    }[slip]
+    report = CHECKED.report({"K": text(wrong)})
+    part = report.parts[0]
+    assert part.slip == slip
+    assert report.bounded("place").parts[0].place is None  # the place of what was misread is one of A
+    assert slip != "entry_misread" or (part.place, part.reason) == (
+        [2, 2],
+        "entry (2,2) of A is taken with the other sign",
+    )
+
+
+def test_a_gain_rounded_is_named_so() -> None:
+    problem = 'task = "observer"\n[plant]\nA = "[0 1; 0 -1]"\nC = "[3 0]"\n[specification]\npoles = "-10, -10"\n'
+    part = check(problem, {"L": "[6.333; 27]"}).parts[0]
+    assert (part.slip, part.credit) == ("rounded", Fraction(1, 2))

@@ -68,23 +68,6 @@ def pictures(result: Any) -> list[TimeResponse]:
     return [step.picture for step in steps if isinstance(step, Plot) and isinstance(step.picture, TimeResponse)]
 
 
-@pytest.mark.parametrize("strength", [1, -3])
-def test_impulses_are_those_of_python_control(strength: int) -> None:
-    A, B, C = [[0, 1], [-2, -3]], [[1], [1]], [[1, 2]]
-    found = symobs.response(StateSpace(A, B, C), impulse=strength)
-    times = np.linspace(0, 4, 21)
-    wanted = control.impulse_response(control.ss(A, B, C, 0), times).outputs
-    assert np.allclose(heights(sympy.Matrix([found.output])[0], times), strength * wanted)
-    assert found.state.subs(t, 0) == sympy.Matrix([strength, strength])
-    moved = symobs.response(StateSpace(A, B, C), impulse="v", initial=["p", 0], input=1)
-    whole = sum(
-        (symobs.response(StateSpace(A, B, C), **each).state for each in ({"input": 1}, {"impulse": "v"})),
-        sympy.zeros(2, 1),
-    )
-    whole += symobs.response(StateSpace(A, B, C), initial=["p", 0]).state
-    assert (moved.state - whole).expand() == sympy.zeros(2, 1)
-
-
 def test_an_impulse_without_effect_and_a_wrong_one() -> None:
     plant = StateSpace("[-1]", "[1]", "[1]")
     assert "x₀ = B·0 = 0" in symobs.response(plant, impulse=0).to("text")

@@ -122,24 +122,6 @@ def test_nothing_left_to_estimate() -> None:
         symobs.reduced_order_observer(StateSpace("[0 1; 0 0]", "[0; 1]", "[1 2; 2 4]"), poles=[])
 
 
-@pytest.mark.parametrize(
-    ("plant", "poles"),
-    [
-        (THIRD_ORDER, "-5, -6"),
-        (StateSpace("[0 1; 0 -1]", "[0; 1]", "[1 0]", "[2]"), "-10"),
-        (StateSpace("[0 1; 0 -1]", None, "[1 0]"), "-10"),
-        (StateSpace("[1 1; 0 1]", "[0; 1]", "[1 0]", "[3]", dt=True), "0"),
-        (StateSpace("[0 1 0; 0 0 1; 1 2 3]", "[0; 0; 1]", "[1 0 0; 0 0 1]"), "-2"),
-        (StateSpace("[0 1; 0 -b]", "[0; 1]", "[c 1]"), "-p"),
-    ],
-)
-def test_both_ways_lead_to_the_same_observer(plant: StateSpace, poles: str) -> None:
-    there, here = (symobs.reduced_order_observer(plant, poles=poles, method=m) for m in ("partition", "undetermined"))
-    assert dict(there.answer) == dict(here.answer)
-    assert "which requires" in " ".join(here.to("text").split())
-    assert "which requires" not in " ".join(there.to("text").split())
-
-
 DEPENDENT = StateSpace(
     "[0 a-1 0; 0 a-1 -1; a*b 1 1]", "[1; 0; -1]", "[0 0 b; 0 b b+1]", symbols={"a": "real", "b": "real"}
 )

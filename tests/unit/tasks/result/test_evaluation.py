@@ -53,14 +53,6 @@ def test_beside_a_condition_the_value_is_exact() -> None:
         np.testing.assert_allclose(result.evaluate({"c": c})["L"], exactly(result.L, c=c), rtol=tolerance)
 
 
-def test_a_sign_that_is_not_the_declared_one_is_nan() -> None:
-    plant = symobs.StateSpace("[0 1; -k/m 0]", None, "[1 0]", symbols={"k": "positive", "m": "nonzero"})
-    found = symobs.observer(plant, poles="-1, -2").evaluate(
-        {"k": [1, -1, 0, 1, np.inf, np.nan], "m": [2, 2, 2, 0, 2, 2]}
-    )
-    assert np.isnan(found["L"][:, 0, 0]).tolist() == [False, True, True, True, True, True]
-
-
 @tabled
 def test_refusals(points: dict[str, Any], message: str) -> None:
     with pytest.raises(InputError, match=message):

@@ -189,13 +189,6 @@ def replaced(derivation: Derivation, old: Plot, new: Plot) -> Derivation:
 # -- the kernel -------------------------------------------------------------------------------------------------------
 
 
-def test_what_takes_too_many_bits_is_not_drawn() -> None:
-    with pytest.raises(ArithmeticError):
-        state_response(Matrix.of([[200]]), [Fraction(1)], Fraction(1), 100, 10**9)
-    steep = StateSpace([[0, 10**9], [-(10**9), -1]], None, [[1, 0]])
-    assert plots(symobs.observer(steep, L=[[0], [0]])) == []
-
-
 @tabled
 def test_bits_are_lost_to_what_grows_and_not_to_large_entries(
     control: str, observer: str, monkeypatch: pytest.MonkeyPatch
