@@ -569,7 +569,10 @@ class World:
             return
         assert relation.operators[0] == "=", "an introduction is an equation"
         self.introduce(relation)
-        free = relation.members[0] == Letter("N")  # any basis will do, for which the facts that follow are true
+        free = relation.members[0] in {
+            Letter("N"),
+            Letter("N_K"),
+        }  # any basis will do, for which the facts that follow are true
         yield "basis" if free else "means", self.value(relation.members[0])
         yield from self.facts((relation,))
 

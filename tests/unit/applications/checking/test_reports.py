@@ -20,9 +20,8 @@ from symobs.applications.checking.report import schema
 from symobs.ground.errors import ProblemErrors, UsageError
 from symobs.problem import read
 from tests.kit import tabled
-from tests.programs.teaching.classes import answers, lines
 from tests.support.paths import ROOT
-from tests.support.problems.answered import SERVO, THIRD_ORDER, TWO_OUTPUTS, F, K, L
+from tests.support.problems.answered import SERVO, THIRD_ORDER, TWO_OUTPUTS, F, K, L, answers, lines
 
 RIGHT = {"K": "[4 3]", "L": "[19; 81]", "F": "(319 s + 400)/(s^2 + 23 s + 161)"}
 ANSWERS: list[Any] = [

@@ -27,7 +27,8 @@ from symobs.proof.certificate.claims import verify
 from symobs.proof.derivation import CaseStep, Derivation, Section
 from symobs.proof.derivation.builder import relation
 from tests.kit import tabled
-from tests.programs.campaign.points import answer_at, holds
+from tests.programs.campaign.points import answer_at
+from tests.support.algebra import holds
 from tests.support.problems.strategies import unimodular
 
 pytestmark = pytest.mark.slow

@@ -17,7 +17,8 @@ import symobs
 from symobs.ground.errors import DerivationRejected
 from symobs.proof.derivation import Conclude, Section
 from tests.kit import tabled
-from tests.programs.campaign.points import answer_at, value
+from tests.programs.campaign.points import answer_at
+from tests.support.algebra import evaluated as value
 from tests.support.problems.strategies import unimodular
 from tests.unit.tasks.analysis.test_repeated_eigenvalues import NAMES, at_point, hidden_map
 

@@ -11,26 +11,25 @@ from fractions import Fraction
 from itertools import combinations
 from typing import TYPE_CHECKING
 
-from tests.programs.benchmarks import qepcad
-from tests.programs.campaign.asked import Untold, is_discrete, listed, rows
-from tests.support.independent_algebra.region_algebra import All, Atom, Polynomial, Some, difference
-from tests.support.regions import region_answers, region_checks
+from tests.programs.campaign.systems import Untold
+from tests.support.independent_algebra.region_algebra import All, Atom, Polynomial, Some
+from tests.support.independent_algebra.region_algebra import difference as exclusive
+from tests.support.problems.random_problems import listed, rows
+from tests.support.regions import qepcad, region_answers, region_checks
 from tests.support.regions.region_problem import Problem, characteristic
 from tests.support.regions.region_proofs import nothing_in
 from tests.support.regions.region_texts import UnreadableError, expression, fraction
 from tests.support.regions.region_translation import Translation, conjunction
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Iterator
 
-    from tests.programs.campaign.asked import Asked, Difference, Tables
+    from tests.programs.campaign.systems import Difference
     from tests.support.independent_algebra.region_algebra import Formula
+    from tests.support.problems.random_problems import Tables
 
 NAME = "QEPCAD"
 COMMAND: str | None = "qepcad"
-
-#: Where `tests.programs.campaign.sharpness` changes an answer to see whether that is noticed.
-FIELDS = ("stable_if", "intervals", "conditions")
 
 _SECONDS = 5
 _POINTS = 40  # at which the roots themselves are asked besides
@@ -44,14 +43,10 @@ def covers(problem: Tables) -> bool:
     return problem["task"] in {"observability", "controllability"} and 0 < len(problem["symbols"]) <= 3
 
 
-def differences(batch: Sequence[Asked]) -> list[Difference]:
-    """Ask about each in a process of its own: QEPCAD takes one question."""
-    return [_difference(asked) for asked in batch]
-
-
-def _difference(asked: Asked) -> Difference:
+def difference(given: Tables, answer: Tables) -> Difference:
+    """Judge one answer."""
     try:
-        return _region(asked) if asked.task == "stability_region" else _observable(asked)
+        return (_region if given["task"] == "stability_region" else _observable)(given, answer)
     except (UnreadableError, NotImplementedError) as error:
         return Untold(f"not read: {error}")
 
@@ -59,10 +54,10 @@ def _difference(asked: Asked) -> Difference:
 # -- regions -----------------------------------------------------------------------------------------------------------
 
 
-def problem_of(asked: Asked) -> Problem:
+def problem_of(asked: Tables) -> Problem:
     """Return the region that is asked for; the polynomial of a plant with a gain is expanded by minors of its rows."""
-    given, specification = asked.plant, asked.specification
-    variable = "z" if is_discrete(asked.problem) else "s"
+    given, specification = asked["plant"], asked["specification"]
+    variable = "z" if given.get("dt") else "s"
     if "polynomial" in specification:
         text = specification["polynomial"]
     else:
@@ -75,15 +70,14 @@ def problem_of(asked: Asked) -> Problem:
             turned = [list(column) for column in zip(*A, strict=True)]
             text = characteristic(turned, K[0], [row[0] for row in B], variable)
     parameters = tuple(listed(specification["parameters"]))
-    symbols = {name: sign for name, sign in asked.problem["symbols"].items() if name not in parameters}
+    symbols = {name: sign for name, sign in asked["symbols"].items() if name not in parameters}
     margin, radius = str(specification.get("margin", "0")), str(specification.get("radius", "1"))
-    name = f"{asked.kind} {asked.seed}"
-    return Problem(name, text, parameters, symbols=symbols, margin=margin, radius=radius)
+    return Problem(str(asked), text, parameters, symbols=symbols, margin=margin, radius=radius)
 
 
-def _region(asked: Asked) -> Difference:
-    problem = problem_of(asked)
-    said = {**asked.answer, "sample_points": []} if problem.symbols else asked.answer  # those depend on the symbols
+def _region(given: Tables, said: Tables) -> Difference:
+    problem = problem_of(given)
+    said = {**said, "sample_points": []} if problem.symbols else said  # those depend on the symbols
     answer = region_answers.from_json(json.dumps({"results": [said]}), problem.parameters)
     if answer.verdict == "undecided":
         return Untold("symobs does not decide")
@@ -109,9 +103,9 @@ def _region(asked: Asked) -> Difference:
 # -- where parameters leave a plant observable -------------------------------------------------------------------------
 
 
-def _observable(asked: Asked) -> Difference:
-    (A, C), given = _without_denominators(asked, "AC" if asked.task == "observability" else "AB")
-    if asked.task == "controllability":
+def _observable(asked: Tables, answer: Tables) -> Difference:
+    (A, C), given = _without_denominators(asked, "AC" if asked["task"] == "observability" else "AB")
+    if asked["task"] == "controllability":
         A, C = _turned(A), _turned(C)
     stack, block = list(C), C
     for _ in range(len(A) - 1):
@@ -120,8 +114,8 @@ def _observable(asked: Asked) -> Difference:
     minors = [_determinant([stack[i] for i in chosen]) for chosen in combinations(range(len(stack)), len(A))]
     truth = Some(tuple(Atom(minor, "!=") for minor in minors))
     translation = Translation()
-    ours = Some(tuple(conjunction(translation, relations) for relations in _where_yes(asked.answer, [])))
-    proof = nothing_in(All((given, difference(truth, ours))), translation.definitions, _SECONDS)
+    ours = Some(tuple(conjunction(translation, relations) for relations in _where_yes(answer, [])))
+    proof = nothing_in(All((given, exclusive(truth, ours))), translation.definitions, _SECONDS)
     if proof.verdict == "different":
         return f"observable elsewhere than said: {proof}, for instance at {proof.point}"
     return None if proof.verdict == "same" else Untold("no answer in time")
@@ -148,14 +142,14 @@ def _signs(symbols: Tables) -> Iterator[Formula]:
 Matrix = list[list[Polynomial]]
 
 
-def _without_denominators(asked: Asked, letters: str) -> tuple[list[Matrix], Formula]:
+def _without_denominators(asked: Tables, letters: str) -> tuple[list[Matrix], Formula]:
     """Return matrices of the plant, each times what is under its entries, and where there is a plant.
 
     A factor that does not vanish changes no rank, not even one for each block C Aᵏ.
     """
     found: dict[str, Matrix] = {}
-    defined = list(_signs(asked.problem["symbols"]))
-    for letter, text in asked.plant.items():
+    defined = list(_signs(asked["symbols"]))
+    for letter, text in asked["plant"].items():
         if letter in set("ABCD"):
             entries = [[fraction(expression(entry)) for entry in row] for row in rows(text)]
             under = {below.text("*"): below for row in entries for _, below in row}
