@@ -21,6 +21,8 @@ from symobs.exact.core.generators import function_named, symbols_in
 from symobs.problem import Problem, read
 from symobs.system.conditions import never_zero
 from tests.support.claims.claims import HOLDS, Setting, applicable, conditions_hold, read_once
+from tests.support.examples import NAMES as FILES
+from tests.support.examples import problem_of, results_of
 from tests.support.independent_algebra.plain import (
     assignable,
     at_number,
@@ -33,7 +35,6 @@ from tests.support.independent_algebra.plain import (
     value_at,
 )
 from tests.support.independent_algebra.plain_fractions import World
-from tests.support.paths import ROOT
 from tests.support.sampling import FULL, every
 
 if TYPE_CHECKING:
@@ -93,8 +94,6 @@ BUILT = {
     """,
 }
 
-FOLDER = ROOT / "worked_examples"
-FILES = {path.stem: path for path in sorted(FOLDER.glob("*.toml"))}
 #: Fractions know no roots: examples with roots in their data are held to PARI, or by the second reader of examples.
 WITH_ROOTS = {
     "coupled_masses_irrational",
@@ -107,8 +106,8 @@ NAMES = [*(name for name in FILES if name not in WITH_ROOTS), *BUILT]
 
 @cache
 def solved(name: str) -> tuple[Problem, tuple[Result, ...]]:
-    problem = read(FILES[name].read_text(encoding="utf-8") if name in FILES else BUILT[name])
-    results = problem.solve()
+    problem = problem_of(name) if name in FILES else read(BUILT[name])
+    results = results_of(name) if name in FILES else problem.solve()
     return replace(problem, specification=read_once(problem.plant, problem.specification)), results
 
 

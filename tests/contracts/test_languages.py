@@ -9,7 +9,6 @@ import sys
 import tomllib
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
-from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -27,6 +26,7 @@ from symobs.problem import read
 from symobs.problem.question import question_of
 from symobs.proof.derivation import RegionSummary, Section
 from symobs.tasks.result import Document, render
+from tests.support.examples import document_of
 from tests.support.paths import ROOT
 from tests.support.problems.render_examples import HandWritten
 from tests.support.tools.command_line import inside
@@ -36,14 +36,8 @@ GERMAN = ROOT / "symobs" / "formula" / "phrases" / "german"
 EXAMPLES = ("servo_minimal_order", "region_two_intervals", "hidden_state_two_outputs", "routh_zero_row")
 
 
-@cache
-def example(name: str) -> Document:
-    problem = read((ROOT / "worked_examples" / f"{name}.toml").read_text(encoding="utf-8"), name)
-    return problem.document(problem.solve())
-
-
 def document(name: str, language: str) -> Document:
-    return replace(example(name), language=language)
+    return replace(document_of(name), language=language)
 
 
 # -- completeness -------------------------------------------------------------------------------------------------------
@@ -216,7 +210,7 @@ def test_choices_of_states() -> None:
 
 def test_a_false_number_in_a_sentence_is_rejected_in_every_language() -> None:
     """What is checked are numbers, not the words for them: a derivation has no language."""
-    told = example("region_two_intervals")
+    told = document_of("region_two_intervals")
     (derivation,) = told.derivations
 
     def lie(step: object) -> object:

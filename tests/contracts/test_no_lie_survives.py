@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from dataclasses import replace
 from fractions import Fraction
-from functools import cache
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -20,13 +19,13 @@ from symobs.exact import Matrix, Scalar
 from symobs.formula.phrases import DEMANDS, slots_of
 from symobs.formula.tree import Letter
 from symobs.ground.errors import CertificateRejected, DerivationRejected
-from symobs.problem import read
 from symobs.proof.derivation import Conclude, Diagram, Sentence
 from symobs.proof.derivation.builder import Builder
 from symobs.proof.derivation.steps import everything_in
 from symobs.proof.derivation.wording_check import obligations
 from symobs.tasks.design.compensator.output_feedback import OutputFeedback
 from symobs.tasks.design.gain.gain_design import GainDesign
+from tests.support.examples import results_of
 from tests.support.independent_algebra.plain import multiply, observability_rows, rank_of, transposed
 from tests.support.independent_algebra.plain_fractions import World, determinant, plus, times
 from tests.support.independent_algebra.truth import is_true, still_true
@@ -56,9 +55,8 @@ OF_RANKS = {"observability", "controllability", "pbh", "detectability", "stabili
 OF_STRAIGHT_EDGES = {"pendulum_feedback_region", "region_without_one_point", "region_disconnected"}
 
 
-@cache
 def results(path: Path) -> tuple[Result, ...]:
-    return read(path.read_text(encoding="utf-8")).solve()
+    return results_of(path.stem)
 
 
 #: Examples whose answer leaves entries free: K_d beside one trajectory, the row that shows there is none.

@@ -15,11 +15,11 @@ from symobs.exact import Factored, Matrix, Root, Scalar
 from symobs.exact.core.generators import function_named, symbols_in
 from symobs.formula.expression import parse_scalar
 from symobs.formula.tree import Literal
-from symobs.problem import read
 from tests.support.claims.claims import Setting, conditions_hold
 from tests.support.claims.claims_in_time import FUNCTIONS_OF_TIME
 from tests.support.claims.claims_of_advice import advice_holds
 from tests.support.claims.claims_of_regions import region_holds
+from tests.support.examples import results_of
 from tests.support.independent_algebra.plain import (
     at_number,
     hidden,
@@ -61,7 +61,7 @@ def asking(*tasks: str) -> list[str]:
 
 @cache
 def every_part(name: str) -> list[Result]:
-    return [part for result in read(TEXTS[name]).solve() for _, part in parts_of(result)]
+    return [part for result in results_of(name) for _, part in parts_of(result)]
 
 
 def has_functions(part: Result) -> bool:

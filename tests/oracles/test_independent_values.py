@@ -6,15 +6,14 @@ The problems come from `problems_by_hand`, written a second time; derivations ar
 from __future__ import annotations
 
 import itertools
-from functools import cache
 from typing import TYPE_CHECKING, Any
 
 import pytest
 import sympy
 
-from symobs import problem
 from symobs.formula.expression import parse_scalar
 from symobs.tasks.result.output_methods import to_sympy
+from tests.support.examples import results_of
 from tests.support.independent_algebra.second_reader import Reader, facts_in, sympy_scalar, values_of
 from tests.support.paths import ROOT
 from tests.support.problems.problems_by_hand import (
@@ -63,12 +62,6 @@ BY_HAND: dict[str, Hand] = {
     **PROBLEMS_OF_INTEGRAL_ACTION,
     **PROBLEMS_OF_DISTURBANCES,
 }
-
-
-@cache
-def results(name: str) -> tuple[Result, ...]:
-    text = (FOLDER / f"{name}.toml").read_text(encoding="utf-8")
-    return problem.read(text, name).solve()
 
 
 def points(name: str, count: int) -> Iterator[dict[Any, Any]]:
@@ -188,7 +181,7 @@ def read(name: str, result: Result) -> list[Reader]:
 @pytest.mark.parametrize("name", every(2, BY_HAND))
 def test_every_line_of_every_derivation(name: str, record_property: Callable[[str, object], None]) -> None:
     lines = compared = 0
-    for result in results(name):
+    for result in results_of(name):
         facts = list(facts_in(result.derivation.steps))
         lines += len(facts)
         for reader in read(name, result):
@@ -363,7 +356,7 @@ FREE = {
 @pytest.mark.parametrize("name", every(2, BY_HAND, 1))
 def test_every_answer(name: str) -> None:
     hand = BY_HAND[name]
-    for result in results(name):
+    for result in results_of(name):
         for point in points(name, 2) if hand.large else [{}]:
             expected = answers(hand.at(point), result.task)
             if result.task == "compensator" and "poles" in result.fields:  # found for given gains
@@ -413,7 +406,7 @@ def is_family(found: Mapping[str, Any], wanted: Mapping[str, Any], variable: Any
 
 def test_attributes_are_never_of_the_kernel() -> None:
     for name in BY_HAND:
-        for result in results(name):
+        for result in results_of(name):
             for field_name in result.fields:
                 assert not type(getattr(result, field_name)).__module__.startswith("symobs"), field_name
 
@@ -422,7 +415,7 @@ def test_attributes_are_never_of_the_kernel() -> None:
 def test_verdicts_of_stability(name: str) -> None:
     """Hold verdicts, and the inequalities that come with them, against numeric roots at sample points."""
     asked = ("stable", "F_stable", "compensator_stable")
-    for result, verdict in ((result, name) for result in results(name) for name in asked if name in result.fields):
+    for result, verdict in ((result, name) for result in results_of(name) for name in asked if name in result.fields):
         seen = set()
         for point in points(name, 10 if BY_HAND[name].large else 60):
             hand = BY_HAND[name].at(point)

@@ -20,6 +20,7 @@ from symobs.pages.printers.latex_printer import LatexPrinter
 from symobs.pages.printers.mathml import MathmlPrinter
 from symobs.tasks.result import render
 from tests.pages.test_worked_examples import FILES, solved
+from tests.support.examples import document_of
 from tests.support.tools.browser import Browser
 from tests.unit.pages.test_html import faults, local, parsed
 from tests.unit.pages.test_markdown import formulas
@@ -37,8 +38,7 @@ pytestmark = pytest.mark.slow
 
 def documents() -> Iterator[tuple[str, Document]]:
     for path in FILES:
-        found, results = solved(path)
-        yield path.stem, found.document(results)
+        yield path.stem, document_of(path.stem)
 
 
 # -- the same mathematics ---------------------------------------------------------------------------------------------
