@@ -66,13 +66,14 @@ def problem(random: Random, tasks: Collection[str] = (), kinds: Collection[str] 
     asked_kinds, asked_tasks = (
         {k: w for k, w in table.items() if not some or k in some} for table, some in ((KINDS, kinds), (TASKS, tasks))
     )
-    while True:
+    for _ in range(1000):
         kind = random.choices(list(asked_kinds), list(asked_kinds.values()))[0]
         task = random.choices(list(asked_tasks), list(asked_tasks.values()))[0]
         shape = _shape(random, kind, task)
         asked = specification(random, task, shape)
         if asked is not None:
             return assembled(task, shape, asked)
+    raise LookupError(f"none of {tasks} is asked about {kinds}")
 
 
 def assembled(task: str, shape: Shape, asked: dict[str, Any]) -> Tables:
