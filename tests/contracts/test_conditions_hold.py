@@ -20,10 +20,7 @@ from symobs.exact import Matrix, Scalar
 from symobs.exact.core.generators import function_named, symbols_in
 from symobs.problem import Problem, read
 from symobs.system.conditions import never_zero
-from tests.support.claims.claims import HOLDS, Setting, applicable, conditions_hold, read_once
-from tests.support.examples import NAMES as FILES
-from tests.support.examples import problem_of, results_of
-from tests.support.independent_algebra.plain import (
+from tests.support.algebra import (
     assignable,
     at_number,
     has_sign,
@@ -34,7 +31,10 @@ from tests.support.independent_algebra.plain import (
     seeded,
     value_at,
 )
-from tests.support.independent_algebra.plain_fractions import World
+from tests.support.claims.claims import HOLDS, Setting, applicable, conditions_hold, read_once
+from tests.support.derivations import World
+from tests.support.examples import NAMES as FILES
+from tests.support.examples import problem_of, results_of
 from tests.support.sampling import FULL, every
 
 if TYPE_CHECKING:

@@ -25,10 +25,9 @@ from symobs.proof.derivation.steps import everything_in
 from symobs.proof.derivation.wording_check import obligations
 from symobs.tasks.design.compensator.output_feedback import OutputFeedback
 from symobs.tasks.design.gain.gain_design import GainDesign
+from tests.support.algebra import determinant, multiply, observability_rows, rank_of, transposed
+from tests.support.derivations import World, is_true, plus, still_true, times
 from tests.support.examples import results_of
-from tests.support.independent_algebra.plain import multiply, observability_rows, rank_of, transposed
-from tests.support.independent_algebra.plain_fractions import World, determinant, plus, times
-from tests.support.independent_algebra.truth import is_true, still_true
 from tests.support.paths import ROOT
 from tests.support.sampling import every
 from tests.support.tampering.lies import Count, tampered, try_answers, try_lines, try_witnesses
@@ -41,7 +40,7 @@ if TYPE_CHECKING:
     from symobs.formula.tree import Environment
     from symobs.proof.derivation import Derivation, Step
     from symobs.tasks.result import Result
-    from tests.support.independent_algebra.plain import Rows
+    from tests.support.algebra import Rows
 
 pytestmark = pytest.mark.slow
 

@@ -20,6 +20,7 @@ import symobs
 from symobs.exact import Matrix, Scalar
 from symobs.ground.errors import CertificateRejected, InexactInput
 from symobs.tasks.result import Result, methods, tasks
+from tests.support.algebra import assignable, random_fraction, seeded, value_at
 from tests.support.claims.asking import (
     DISTURBED,
     OTHER_QUESTIONS,
@@ -30,7 +31,6 @@ from tests.support.claims.asking import (
     specification,
 )
 from tests.support.claims.claims import HOLDS, Setting, applicable, conditions_hold
-from tests.support.independent_algebra.plain import assignable, random_fraction, seeded, value_at
 from tests.support.problems.strategies import Sample, plants, unimodular
 from tests.support.sampling import every
 from tests.support.tools.another_process import Account, account_of, read_in_another_process

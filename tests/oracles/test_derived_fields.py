@@ -15,14 +15,15 @@ from symobs.exact import Factored, Matrix, Root, Scalar
 from symobs.exact.core.generators import function_named, symbols_in
 from symobs.formula.expression import parse_scalar
 from symobs.formula.tree import Literal
-from tests.support.claims.claims import Setting, conditions_hold
-from tests.support.claims.claims_in_time import FUNCTIONS_OF_TIME
-from tests.support.claims.claims_of_advice import advice_holds
-from tests.support.claims.claims_of_regions import region_holds
-from tests.support.examples import results_of
-from tests.support.independent_algebra.plain import (
+from tests.support.algebra import (
+    CONTEXT,
+    Series,
     at_number,
+    determinant,
+    digits,
     hidden,
+    identity,
+    inverse,
     is_hurwitz,
     is_schur,
     matrix_at,
@@ -34,8 +35,12 @@ from tests.support.independent_algebra.plain import (
     transposed,
     value_at,
 )
-from tests.support.independent_algebra.plain_fractions import World, determinant, identity, inverse, plus, times
-from tests.support.independent_algebra.series import CONTEXT, Series, digits
+from tests.support.claims.claims import Setting, conditions_hold
+from tests.support.claims.claims_in_time import FUNCTIONS_OF_TIME
+from tests.support.claims.claims_of_advice import advice_holds
+from tests.support.claims.claims_of_regions import region_holds
+from tests.support.derivations import World, plus, times
+from tests.support.examples import results_of
 from tests.support.paths import ROOT
 from tests.support.tampering.mutations import parts_of
 
@@ -43,7 +48,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
     from symobs.tasks.result import Result
-    from tests.support.independent_algebra.plain import Point, Polynomial, Rows
+    from tests.support.algebra import Point, Polynomial, Rows
 
 pytestmark = pytest.mark.slow
 

@@ -13,8 +13,15 @@ import z3  # type: ignore[import-untyped, unused-ignore]
 
 import symobs
 from tests.programs.benchmarks import other_systems
-from tests.support.independent_algebra.region_algebra import FALSE, TRUE, All, Atom, Some, difference
 from tests.support.regions import qepcad, region_answers, region_checks
+from tests.support.regions.region_algebra import (
+    FALSE,
+    TRUE,
+    All,
+    Atom,
+    Some,
+    difference,
+)
 from tests.support.regions.region_answers import Answer, Cell
 from tests.support.regions.region_problems import PROBLEMS, by_name
 from tests.support.regions.region_proofs import nothing_in, same_intervals, same_relations

@@ -21,9 +21,9 @@ from symobs.problem.expect import mismatches
 from symobs.tasks.result import formats, render
 from tests.support.examples import EXAMPLES as FILES
 from tests.support.examples import problem_of, results_of
-from tests.support.independent_algebra.second_reader import sympy_scalar
 from tests.support.paths import ROOT
 from tests.support.sampling import every
+from tests.support.second_reader import sympy_scalar
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping

@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING
 
 from symobs.ground.errors import DerivationRejected, SymobsError
 from symobs.problem import read
-from tests.support.independent_algebra.truth import is_true
+from tests.support.derivations import is_true
 from tests.support.paths import ROOT
 from tests.support.problems.random_problems import Tables, problem, to_toml
 from tests.support.tampering.lies import Count, try_answers, try_lines, try_witnesses

@@ -12,10 +12,10 @@ from itertools import combinations
 from typing import TYPE_CHECKING
 
 from tests.programs.campaign.systems import Untold
-from tests.support.independent_algebra.region_algebra import All, Atom, Polynomial, Some
-from tests.support.independent_algebra.region_algebra import difference as exclusive
 from tests.support.problems.random_problems import listed, rows
 from tests.support.regions import qepcad, region_answers, region_checks
+from tests.support.regions.region_algebra import All, Atom, Polynomial, Some
+from tests.support.regions.region_algebra import difference as exclusive
 from tests.support.regions.region_problem import Problem, characteristic
 from tests.support.regions.region_proofs import nothing_in
 from tests.support.regions.region_texts import UnreadableError, expression, fraction
@@ -25,8 +25,8 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from tests.programs.campaign.systems import Difference
-    from tests.support.independent_algebra.region_algebra import Formula
     from tests.support.problems.random_problems import Tables
+    from tests.support.regions.region_algebra import Formula
 
 NAME = "QEPCAD"
 COMMAND: str | None = "qepcad"

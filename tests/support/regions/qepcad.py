@@ -1,7 +1,7 @@
 """QEPCAD B as a judge of regions: what it is asked, how long it takes, and its answer read back as a formula.
 
 It is asked in two ways.  The quick one gives it Liénard and Chipart's strict inequalities, made in plain fractions by
-`tests.support.independent_algebra.region_algebra`; the slow one gives it roots: some x + iy with x ≥ 0 (|z|
+`tests.support.regions.region_algebra`; the slow one gives it roots: some x + iy with x ≥ 0 (|z|
 ≥ 1) and χ(x + iy) = 0, quantified.
 
 Debian's `qepcad` needs no environment variable.  It ends in a segmentation fault where its input ends early, so an
@@ -19,7 +19,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from tests.programs.benchmarks import other_systems
-from tests.support.independent_algebra.region_algebra import (
+from tests.support.regions.region_algebra import (
     FALSE,
     TRUE,
     All,
@@ -36,7 +36,7 @@ from tests.support.regions.region_texts import formula
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
-    from tests.support.independent_algebra.region_algebra import Formula
+    from tests.support.regions.region_algebra import Formula
     from tests.support.regions.region_problem import Problem
 
 _ANSWER = re.compile(r"An equivalent quantifier-free formula:\s*(.*?)\s*(?:=====|Before Solution)", re.DOTALL)

@@ -17,14 +17,14 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 
 from flint import Ordering, acb, arb, ctx, fmpq, fmpq_mpoly_ctx, fmpz_poly
 
-from tests.support.independent_algebra.region_algebra import Polynomial, Signs, bilinear, hurwitz_determinants
-from tests.support.independent_algebra.region_roots import count_real_roots, gcd_of, primitive, real_roots
+from tests.support.regions.region_algebra import Polynomial, Signs, bilinear, hurwitz_determinants
+from tests.support.regions.region_roots import count_real_roots, gcd_of, primitive, real_roots
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
-    from tests.support.independent_algebra.region_roots import Root
     from tests.support.regions.region_problem import Problem
+    from tests.support.regions.region_roots import Root
 
 Point: TypeAlias = tuple[Fraction, ...]
 _PRECISIONS = (53, 128, 512, 2048, 8192)

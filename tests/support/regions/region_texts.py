@@ -11,12 +11,20 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import TYPE_CHECKING, TypeAlias
 
-from tests.support.independent_algebra.region_algebra import FALSE, TRUE, All, Atom, Not, Polynomial, Some
+from tests.support.regions.region_algebra import (
+    FALSE,
+    TRUE,
+    All,
+    Atom,
+    Not,
+    Polynomial,
+    Some,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection
 
-    from tests.support.independent_algebra.region_algebra import Formula
+    from tests.support.regions.region_algebra import Formula
 
 
 class UnreadableError(ValueError):

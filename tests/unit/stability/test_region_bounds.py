@@ -13,7 +13,7 @@ from symobs.stability.criteria.stability_conditions import is_stable_where, stab
 from symobs.stability.inequalities.decision import sign_cases
 from symobs.stability.inequalities.simplify import solved
 from tests.kit import scalars, tabled
-from tests.support.independent_algebra.plain import has_sign, random_fraction, seeded, value_at
+from tests.support.algebra import has_sign, random_fraction, seeded, value_at
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence

@@ -20,7 +20,7 @@ from symobs.stability.criteria.stability import (
 )
 from symobs.stability.inequalities.simplify import as_inequality
 from tests.kit import scalar, tabled
-from tests.support.independent_algebra.plain import (
+from tests.support.algebra import (
     coefficients_at,
     is_hurwitz,
     random_fraction,

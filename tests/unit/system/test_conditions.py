@@ -23,7 +23,7 @@ from symobs.system.conditions import (
     sign_of,
     vanishing_factors,
 )
-from tests.support.independent_algebra.plain import has_sign, random_fraction, seeded, value_at
+from tests.support.algebra import has_sign, random_fraction, seeded, value_at
 from tests.support.problems.strategies import Twin, polynomials, rational_functions
 
 if TYPE_CHECKING:

@@ -12,12 +12,13 @@ import sympy as sp
 from symobs.applications.variants.constructions import CONSTRUCTIONS, Made
 from symobs.applications.variants.drawing import Draws
 from tests.kit import tabled
-from tests.support.independent_algebra.plain_fractions import determinant, eliminate, identity, inverse, plus, times
+from tests.support.algebra import determinant, identity, inverse, rank_of
+from tests.support.derivations import plus, times
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from tests.support.independent_algebra.plain import Rows
+    from tests.support.algebra import Rows
 
 s, h1, h2 = sp.symbols("s h1 h2")
 
@@ -73,8 +74,8 @@ def test_parts_are_hidden_where_the_sizes_say(sizes: list[int]) -> None:
     kept = 0
     for plant, _ in made("decomposition", 60, sizes=sizes):
         A, B, C = (table(plant[name]) for name in "ABC")
-        seen = eliminate(observability(A, C), len(A))[0]
-        moved = eliminate(observability(turned(A), turned(B)), len(A))[0]
+        seen = rank_of(observability(A, C))
+        moved = rank_of(observability(turned(A), turned(B)))
         assert seen <= sizes[0] + sizes[2]
         assert moved <= sizes[0] + sizes[1]
         kept += (seen, moved) == (sizes[0] + sizes[2], sizes[0] + sizes[1])

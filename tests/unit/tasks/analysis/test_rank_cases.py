@@ -26,8 +26,7 @@ from symobs.tasks.analysis.rank import rank_test as missing_measurements
 from symobs.tasks.analysis.rank.rank_test import RankResult
 from symobs.tasks.analysis.strata.loci import Locus, Region, loci, maximal
 from tests.kit import tabled, tables
-from tests.support.claims.claims import Setting, applicable, conditions_hold, rank_holds
-from tests.support.independent_algebra.plain import (
+from tests.support.algebra import (
     has_sign,
     matrix_at,
     observability_rows,
@@ -36,6 +35,7 @@ from tests.support.independent_algebra.plain import (
     seeded,
     value_at,
 )
+from tests.support.claims.claims import Setting, applicable, conditions_hold, rank_holds
 from tests.support.sampling import FULL
 
 if TYPE_CHECKING:

@@ -20,9 +20,9 @@ from symobs.formula.expression import parse_scalar
 from symobs.ground.errors import BudgetExceeded, CertificateRejected, DerivationRejected, InputError
 from symobs.tasks.result import tasks
 from tests.kit import tabled, tables
-from tests.support.independent_algebra.second_reader import sympy_scalar
 from tests.support.problems.problems_by_hand import is_zero
 from tests.support.sampling import FULL
+from tests.support.second_reader import sympy_scalar
 
 pytestmark = pytest.mark.slow
 

@@ -13,9 +13,12 @@ from symobs import StateSpace
 from symobs.exact import Matrix
 from symobs.ground.errors import CertificateRejected, InputError
 from tests.kit import tabled
-from tests.support.independent_algebra.plain import (
+from tests.support.algebra import (
     at_number,
     characteristic,
+    determinant,
+    identity,
+    inverse,
     matrix_at,
     multiply,
     observability_rows,
@@ -25,13 +28,13 @@ from tests.support.independent_algebra.plain import (
     subtract,
     transposed,
 )
-from tests.support.independent_algebra.plain_fractions import determinant, identity, inverse, plus, times
+from tests.support.derivations import plus, times
 from tests.support.sampling import FULL
 
 if TYPE_CHECKING:
     import random
 
-    from tests.support.independent_algebra.plain import Rows
+    from tests.support.algebra import Rows
 
 DRAWS = 400 if FULL else 40
 #: order, inputs, outputs

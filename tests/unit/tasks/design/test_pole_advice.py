@@ -19,9 +19,9 @@ import symobs
 from symobs.exact import Factored, Scalar
 from symobs.ground.errors import CertificateRejected, InputError
 from tests.kit import tabled
+from tests.support.algebra import has_sign
 from tests.support.claims.claims import Setting, applicable
 from tests.support.claims.claims_of_advice import advice_holds, numerator
-from tests.support.independent_algebra.plain import has_sign
 
 s = sympy.Symbol("s")
 

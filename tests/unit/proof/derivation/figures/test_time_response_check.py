@@ -19,7 +19,7 @@ from symobs.ground.errors import DerivationRejected
 from symobs.proof.derivation import Derivation, Plot, Section
 from symobs.system import StateSpace
 from tests.kit import tabled
-from tests.support.independent_algebra.responses import untrue_responses
+from tests.support.derivations import untrue_responses
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator

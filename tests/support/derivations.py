@@ -1,19 +1,24 @@
-"""Derivations read without the kernel: every formula evaluated in plain fractions at random points.
+"""Derivations read without the kernel: every formula evaluated at random points, and what a changed derivation says.
 
 Nothing of `symobs.exact`, `symobs.formula.tree.evaluate`, `certificate` or `derivation.check` takes part: a scalar is read by
 its terms, a matrix is a list of lists, a determinant is an elimination.  A polynomial identity of degree d that is false
 holds at a point drawn from 10⁹ values with probability at most d / 10⁹; three points are drawn.  Functions of time are
-numbers of 60 digits there, derivatives are those of Taylor coefficients (`series`), and a primitive has its integrand as
-derivative at a random instant.
+numbers of 60 digits there, derivatives are those of Taylor coefficients, and a primitive has its integrand as derivative at
+a random instant.
 """
 
 from __future__ import annotations
 
 import random
+from collections import deque
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
-from functools import reduce
-from typing import TYPE_CHECKING, Any, NamedTuple
+from functools import lru_cache, reduce
+from operator import mul
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
+
+import mpmath
+import sympy
 
 from symobs.exact import EIGENVALUE, Matrix, Root, Scalar
 from symobs.exact.core.generators import PI, function_named, symbols_in
@@ -58,138 +63,37 @@ from symobs.proof.derivation import (
     Section,
     Tabulate,
 )
-from tests.support.independent_algebra import regions_in_plain_fractions as regions
-from tests.support.independent_algebra import series
-from tests.support.independent_algebra.plain import coefficients_at, multiply, transposed
-from tests.support.independent_algebra.responses import untrue_responses
+from tests.support.algebra import (
+    CONTEXT,
+    Series,
+    adjugate,
+    applied,
+    at_number,
+    coefficients_at,
+    determinant,
+    digits,
+    identity,
+    inverse,
+    is_stable,
+    multiply,
+    rank_of,
+    rate,
+    root_sum,
+    transposed,
+)
+from tests.support.algebra import PI as NUMBER_PI
+from tests.support.regions import region_facts as regions
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
-    from symobs.formula.figures import Picture
+    from symobs.formula.figures import Interval, Picture, PlottedResponse
     from symobs.formula.tree import Environment, Fact, Formula
-    from symobs.proof.derivation import Step
-    from tests.support.independent_algebra.plain import Rows
+    from symobs.proof.derivation import Derivation, Step
+    from tests.support.algebra import Rows
 
 LARGEST = 2**30
 _ONE = Literal(Scalar.of(1))
-
-
-def identity(order: int) -> Rows:
-    return [[Fraction(i == j) for j in range(order)] for i in range(order)]
-
-
-def eliminate(table: Rows, width: int) -> tuple[int, Fraction, Rows]:
-    """Return rank and determinant of the first `width` columns, and the rows reduced by Gauss and Jordan."""
-    rows, rank, determinant = [list(row) for row in table], 0, Fraction(1)
-    for column in range(width):
-        pivot = next((i for i in range(rank, len(rows)) if rows[i][column]), None)
-        if pivot is None:
-            determinant = Fraction(0)
-            continue
-        if pivot != rank:
-            rows[rank], rows[pivot], determinant = rows[pivot], rows[rank], -determinant
-        lead = rows[rank][column]
-        determinant *= lead
-        rows[rank] = [entry / lead for entry in rows[rank]]
-        for i, row in enumerate(rows):
-            if i != rank and row[column]:
-                rows[i] = [a - row[column] * b for a, b in zip(row, rows[rank], strict=True)]
-        rank += 1
-    return rank, determinant, rows
-
-
-def determinant(table: Rows) -> Fraction:
-    return eliminate(table, len(table))[1]
-
-
-def inverse(table: Rows) -> Rows:
-    order = len(table)
-    rank, _, rows = eliminate([row + unit for row, unit in zip(table, identity(order), strict=True)], order)
-    if rank < order:
-        raise ZeroDivisionError
-    return [row[order:] for row in rows]
-
-
-def adjugate(table: Rows) -> Rows:
-    def cofactor(i: int, j: int) -> Fraction:
-        minor = [[x for b, x in enumerate(row) if b != i] for a, row in enumerate(table) if a != j]
-        return -determinant(minor) if (i + j) % 2 else determinant(minor)
-
-    return [[cofactor(i, j) for j in range(len(table))] for i in range(len(table))]
-
-
-class Algebraic(Fraction):
-    """A polynomial in λ modulo q: an element of Q[λ]/(q), which is a field where q is irreducible."""
-
-    parts: list[Fraction]
-    modulus: list[Fraction]
-
-    @classmethod
-    def make(cls, parts: Sequence[Fraction], modulus: list[Fraction]) -> Fraction:
-        """Reduce parts, constant first, by the monic modulus, constant first."""
-        left, degree = [Fraction(p) for p in parts], len(modulus) - 1
-        while len(left) > degree:
-            lead = left.pop()
-            for k in range(degree):
-                left[len(left) - degree + k] -= lead * modulus[k]
-        found = super().__new__(cls, 0)
-        found.parts, found.modulus = left + [Fraction(0)] * (degree - len(left)), modulus
-        return found
-
-    def _of(self, other: Fraction) -> list[Fraction]:
-        return other.parts if isinstance(other, Algebraic) else [Fraction(other)]
-
-    def __add__(self, other: Any) -> Any:
-        mine, others = self.parts, [*self._of(other), *([Fraction(0)] * len(self.parts))]
-        return self.make([a + b for a, b in zip(mine, others, strict=False)], self.modulus)
-
-    def __mul__(self, other: Any) -> Any:
-        others = self._of(other)
-        total = [Fraction(0)] * (len(self.parts) + len(others))
-        for i, a in enumerate(self.parts):
-            for j, b in enumerate(others):
-                total[i + j] += a * b
-        return self.make(total, self.modulus)
-
-    def __pow__(self, exponent: Any) -> Any:
-        total: Any = self.make([Fraction(1)], self.modulus)
-        for _ in range(exponent):
-            total = total * self
-        return total
-
-    def __truediv__(self, other: Any) -> Any:
-        if not isinstance(other, Algebraic):
-            return self * (1 / Fraction(other))
-        degree, root = len(self.parts), self.make([Fraction(0), Fraction(1)], self.modulus)
-        images: list[Any] = [other]
-        for _ in range(degree - 1):
-            images.append(images[-1] * root)
-        rows = [[image.parts[i] for image in images] for i in range(degree)]
-        solved = inverse(rows)
-        return self * self.make([row[0] for row in solved], self.modulus)
-
-    def __rtruediv__(self, other: Any) -> Any:
-        return self.make([Fraction(other)], self.modulus) / self
-
-    def __neg__(self) -> Any:
-        return self * Fraction(-1)
-
-    def __sub__(self, other: Any) -> Any:
-        return self + Fraction(-1) * other
-
-    def __rsub__(self, other: Any) -> Any:
-        return -self + other
-
-    __radd__, __rmul__ = __add__, __mul__
-
-    def __bool__(self) -> bool:
-        return any(self.parts)
-
-    def __eq__(self, other: object) -> bool:
-        return isinstance(other, (int, Fraction)) and not (self - other)
-
-    __hash__ = None  # type: ignore[assignment]
 
 
 class Compared(NamedTuple):
@@ -235,11 +139,11 @@ class World:
             return regions.number_of(name)
         if isinstance(function, RootSum):
             q = [self.scalar(c) for c in function.polynomial.coefficients(EIGENVALUE)]
-            return series.root_sum(q, function.power, self.scalar(function.argument))  # type: ignore[no-any-return]
+            return root_sum(q, function.power, self.scalar(function.argument))  # type: ignore[no-any-return]
         if function is not None:
-            return series.applied(function.kind, self.scalar(function.argument))  # type: ignore[no-any-return]
+            return applied(function.kind, self.scalar(function.argument))  # type: ignore[no-any-return]
         if name == PI:
-            return series.PI
+            return NUMBER_PI
         if name in self.meanings:
             found = self.meanings[name]
             found = found if isinstance(found, Fraction) else self.value(found)
@@ -342,17 +246,17 @@ class World:
                 total = plus(multiply(total, table), times(coefficient, identity(len(table))))
             return total
         if function == "rank":
-            return Fraction(eliminate(table, len(table[0]))[0])
+            return Fraction(rank_of(table))
         return {"det": determinant, "adj": adjugate}[function](table)
 
     def derivative(self, operand: Formula, name: str) -> Any:
         """Return the derivative of a value by a generator, or of a signal by the time."""
         now = self.number(name)
-        parts = now.parts if isinstance(now, series.Series) else [now]
-        value = self.at(name, series.Series.moving(parts[0], len(parts) + 1)).value(operand)
+        parts = now.parts if isinstance(now, Series) else [now]
+        value = self.at(name, Series.moving(parts[0], len(parts) + 1)).value(operand)
         if not isinstance(value, dict):
-            return series.rate(value)
-        slopes = {signal: series.rate(table) for signal, table in value.items()}
+            return rate(value)
+        slopes = {signal: rate(table) for signal, table in value.items()}
         whole = self.rate(self.value(operand))
         return whole if zeroed(slopes) == 0 else plus(whole, slopes)
 
@@ -533,7 +437,7 @@ class World:
         coefficients = coefficients_at(value, self.variable, point)
         if self.is_quotient(self.scalar_of(subject)) and not any(coefficients):
             raise ZeroDivisionError(point)
-        return regions.is_stable(coefficients, discrete=self.is_discrete)
+        return is_stable(coefficients, discrete=self.is_discrete)
 
     def region(self, fact: HoldsExactlyWhere) -> Iterator[tuple[str, Any]]:
         """Yield whether some inequalities hold exactly where a polynomial is stable, at points."""
@@ -549,7 +453,7 @@ class World:
         yield "=", Fraction(wrong)
 
     def move_to(self, equations: Sequence[Scalar]) -> None:
-        """Let λ, or a parameter, be a root of the one equation that holds: a rational one or that of an irreducible factor."""
+        """Let λ, or a parameter, be a root of the one equation that holds: a rational one, or one of 60 digits."""
         if len(equations) != 1 or not equations[0].names:
             return
         (equation,) = equations
@@ -557,8 +461,11 @@ class World:
         moved = equation.substitute({other: Scalar.of(self.number(other)) for other in equation.names - {name}})
         factors = [factor for factor, _ in moved.numerator.factors()[1] if name in factor.names]
         lead, *rest = min(factors, key=lambda factor: factor.degree(name)).coefficients(name)
-        monic = [*(c.fraction() / lead.fraction() for c in reversed(rest)), Fraction(1)]
-        self.meanings[name] = -monic[0] if len(rest) == 1 else Algebraic.make([Fraction(0), Fraction(1)], monic)
+        if len(rest) == 1:
+            self.meanings[name] = -rest[0].fraction() / lead.fraction()
+            return
+        roots = CONTEXT.polyroots([digits(c.fraction()) for c in (lead, *rest)], maxsteps=500, extraprec=400)
+        self.meanings[name] = Series.make([min(roots, key=lambda root: (abs(CONTEXT.im(root)), CONTEXT.re(root)))])
 
     def difference(self, relation: Relation) -> Any:
         return plus(self.value(relation.members[0]), times(Fraction(-1), self.value(relation.members[1])))
@@ -658,7 +565,7 @@ def same_rows(left: Rows, right: Rows) -> bool:
     """Tell whether the rows of two tables span the same space."""
     if len(left[0]) != len(right[0]):
         return False
-    return len({eliminate(table, len(left[0]))[0] for table in (left, right, [*left, *right])}) == 1
+    return len({rank_of(table) for table in (left, right, [*left, *right])}) == 1
 
 
 def single(value: Any) -> Fraction:
@@ -737,3 +644,275 @@ def zeroed(value: Any) -> Any:
     if is_number(value):
         return value
     return Fraction(0) if not any(entry for row in value for entry in row) else value
+
+
+# -- true or a lie --------------------------------------------------------------------------------------------------------
+
+POINTS = 3
+#: Enough values of the variable to tell a polynomial of degree up to 9 from any other rational function.
+_FITTED, _TESTED = 10, 4
+
+Readings: TypeAlias = "list[list[tuple[str, Any]]]"
+
+
+def readings(derivation: Derivation, points: Sequence[Any] = range(POINTS), scale: Fraction | None = None) -> Readings:
+    """Return what a derivation says at random points; `scale` puts that multiple of the variable in its place."""
+    found = []
+    for seed in points:
+        world = World.of(derivation.start, seed)
+        if scale is not None:
+            world.meanings[world.variable] = Scalar.of(scale * world.number(world.variable))
+        found.append(list(world.read(derivation.steps)))
+    return found
+
+
+def is_true(derivation: Derivation) -> bool:
+    """Tell whether every equation of a derivation holds at random points."""
+    return all(content == 0 for reading in readings(derivation) for kind, content in reading if kind in {"=", "zero"})
+
+
+def still_true(changed: Derivation, original: Derivation) -> bool:
+    """Tell whether a changed derivation says other things that are true as well.
+
+    What it introduces means the same.  Equations hold.  Inequalities are proved by SymPy from the declared signs, or are the
+    same up to a factor.  Conditions are the same up to a factor.  Properties are of the same function up to a factor of
+    value or variable, or are decided anew.  Roots, regions, labels, words are the same.
+    """
+    try:
+        told = readings(changed)
+    except (ArithmeticError, ValueError, TypeError, LookupError, AssertionError):
+        return False
+    meant = _meant(original)
+    if [_family(kind) for kind, _ in told[0]] != [_family(kind) for kind, _ in meant[0]]:
+        return False
+    for place, kind in enumerate(kind for kind, _ in told[0]):
+        new, old = ([reading[place][1] for reading in side] for side in (told, meant))
+        if not (_agrees(kind, new, old, original.start.signs) or _has_property(kind, place, changed, original, new)):
+            return False
+    return True
+
+
+def _meant(original: Derivation) -> Readings:
+    """Return what an original says: it is asked for again by each of its changes."""
+    for known, found in _READ:
+        if known is original:
+            return found
+    _READ.append((original, readings(original)))
+    return _READ[-1][1]
+
+
+_READ: deque[tuple[Derivation, Readings]] = deque(maxlen=2)
+
+
+def _family(kind: str) -> str:
+    return "comparison" if kind in _HOLDS else kind
+
+
+def _agrees(kind: str, new: list[Any], old: list[Any], signs: Mapping[str, str]) -> bool:
+    if kind in {"=", "zero"}:
+        return all(content == 0 for content in new)
+    if kind == "basis":
+        return True
+    if kind == "!==":
+        return any(content != 0 for content in new)
+    if new == old:
+        return True
+    if kind in _HOLDS:
+        return _compares(kind, new, signs)
+    if kind == "region":
+        return _same_bounds(new, old)
+    if kind.startswith(("condition", "property")):
+        ratio = _ratio(new, old)
+        return ratio is not None and (kind not in {"condition <", "condition >"} or ratio > 0)
+    return False
+
+
+def _ratio(new: list[Any], old: list[Any]) -> Any:
+    """Return by what the first are multiples of the second, the same at all points; None where they are not.
+
+    The entries of a table may be multiples by different numbers, and the first of them is returned.
+    """
+    if is_matrix(new[0]) or is_matrix(old[0]):
+        return _ratio_of_tables(new, old)
+    values = [(single(a), single(b)) for a, b in zip(new, old, strict=True)]
+    if any(a == 0 or b == 0 for a, b in values):
+        return None
+    ratios = [a / b for a, b in values]
+    return None if any(ratio != ratios[0] for ratio in ratios) else ratios[0]
+
+
+def _same_bounds(new: list[Any], old: list[Any]) -> bool:
+    """Tell whether inequalities are the same in turn, each up to a positive factor."""
+    for bounds, others in zip(zip(*new, strict=True), zip(*old, strict=True), strict=True):
+        if {operators for operators, _ in bounds} != {operators for operators, _ in others}:
+            return False
+        ratio = _ratio([value for _, value in bounds], [value for _, value in others])
+        if ratio is None or ratio < 0:
+            return False
+    return True
+
+
+def _ratio_of_tables(new: list[Any], old: list[Any]) -> Any:
+    left, right = ([_entries(table) for table in side] for side in (new, old))
+    if any(len(a) != len(b) for a, b in zip(left, right, strict=True)):
+        return None
+    found = []
+    for above, below in zip(zip(*left, strict=True), zip(*right, strict=True), strict=True):
+        if any(above) or any(below):
+            found.append(_ratio(list(above), list(below)))
+    return None if not found or None in found else found[0]
+
+
+def _entries(value: Any) -> list[Any]:
+    return [entry for row in value for entry in row] if is_matrix(value) else [single(value)]
+
+
+def _compares(operator: str, compared: list[Compared], signs: Mapping[str, str]) -> bool:
+    """Prove an inequality: between constants, or from declared signs where no letter stands in it."""
+    difference, *others = (single(content.difference) for content in compared)
+    if all(other == difference for other in others):
+        parts = getattr(difference, "parts", None)
+        exact = sympy.Rational(*difference.as_integer_ratio()) if parts is None else sympy.Float(str(parts[0]), 50)
+        return bool(_HOLDS[operator](exact))
+    try:
+        left, right = (_symbolic(member, signs) for member in compared[0].members)
+    except KeyError:
+        return False
+    return bool(_HOLDS[operator](sympy.factor(left - right)))
+
+
+_HOLDS = {
+    "!=": lambda difference: difference.is_nonzero,
+    ">": lambda difference: difference.is_positive,
+    ">=": lambda difference: difference.is_nonnegative,
+    "<": lambda difference: difference.is_negative,
+    "<=": lambda difference: difference.is_nonpositive,
+}
+
+
+def _symbolic(formula: Any, signs: Mapping[str, str]) -> Any:
+    """Return a scalar formula without letters as a SymPy expression in symbols with the declared signs."""
+    match formula:
+        case Literal(Scalar() as value):
+            return _terms(value.numerator, signs) / _terms(value.denominator, signs)
+        case Negative(operand):
+            return -_symbolic(operand, signs)
+        case Product(factors):
+            return sympy.Mul(*(_symbolic(factor, signs) for factor in factors))
+        case Quotient(above, below):
+            return _symbolic(above, signs) / _symbolic(below, signs)
+        case Power(base, exponent):
+            return _symbolic(base, signs) ** exponent
+    raise KeyError(formula)
+
+
+def _terms(polynomial: Scalar, signs: Mapping[str, str]) -> Any:
+    total = sympy.Integer(0)
+    for coefficient, powers in polynomial.terms():
+        symbols = (sympy.Symbol(name, **{signs.get(name, "real"): True}) ** power for name, power in powers)
+        total += coefficient * sympy.Mul(*symbols)
+    return total
+
+
+def _has_property(kind: str, place: int, changed: Derivation, original: Derivation, new: list[Any]) -> bool:
+    """Decide a property anew, of a polynomial that is told by interpolation.
+
+    Strictly proper stays what is so when its variable is scaled, and in continuous time stable and unstable do too.
+    """
+    if kind == "property strictly_proper" or (kind in _OF_ROOTS and not original.discrete):
+        for scale in (Fraction(2), Fraction(1, 2)):
+            if _ratio(new, [reading[place][1] for reading in readings(original, scale=scale)]) is not None:
+                return True
+    if kind in _OF_ROOTS:
+        found = [_polynomial(changed, place, seed) for seed in range(POINTS)]
+        if found[0] is None or any(polynomial != found[0] for polynomial in found):
+            return False
+        return is_stable(found[0], discrete=changed.discrete) == _OF_ROOTS[kind]
+    if kind not in {"property polynomial", "property not_polynomial"}:
+        return False
+    return (_polynomial(changed, place, 0) is not None) == (kind == "property polynomial")
+
+
+_OF_ROOTS = {"property stable": True, "property unstable": False}
+
+
+def _polynomial(derivation: Derivation, place: int, seed: int) -> list[Fraction] | None:
+    """Return the coefficients of what is told at a place, highest power first; None where it is no polynomial."""
+    at = World(seed, derivation.variable, {}).number(derivation.variable)
+    values = [(k * at, readings(derivation, [seed], Fraction(k))[0][place][1]) for k in range(1, _FITTED + _TESTED + 1)]
+    places, told = zip(*values[:_FITTED], strict=True)
+    powers = [[point**k for k in reversed(range(_FITTED))] for point in places]
+    found = [entry for (entry,) in multiply(inverse(powers), [[single(value)] for value in told])]
+    while len(found) > 1 and not found[0]:
+        del found[0]
+    return found if all(at_number(found, point) == single(value) for point, value in values[_FITTED:]) else None
+
+
+# -- courses over time, found by powers of the matrix exponential of mpmath -----------------------------------------------
+
+Tables: TypeAlias = "tuple[tuple[Fraction, ...], ...]"
+#: Digits that are kept while one instant after the other is found.
+_DIGITS = 60
+
+
+def untrue_responses(picture: TimeResponse, matrix: Sequence[Sequence[Fraction]]) -> tuple[str, ...]:
+    """Return the points that lie a thousandth of the window or more from where they should."""
+    return _all_untrue(picture, tuple(map(tuple, matrix)))
+
+
+@lru_cache(maxsize=8)
+def _all_untrue(picture: TimeResponse, matrix: Tables) -> tuple[str, ...]:
+    """Return them, the same at every random point."""
+    if picture.discrete:
+        return tuple(_untrue_samples(picture, matrix))
+    start = tuple(part for start in picture.starts for part in start)
+    found = (_untrue(response, picture.window, picture.parts, start, matrix) for response in picture.responses)
+    return tuple(text for texts in found for text in texts)
+
+
+@lru_cache(maxsize=64)
+def _untrue(
+    response: PlottedResponse,
+    window: tuple[Interval, Interval],
+    parts: int,
+    start: tuple[Fraction, ...],
+    matrix: Tables,
+) -> tuple[str, ...]:
+    """Return the points of one response: pictures that differ in another response have the same."""
+    (begin, end), (bottom, top) = window
+    step = end / (len(response.heights) - 1)
+    assert begin == 0
+    assert step <= end / 100
+    row, near = [float(part) for part in response.row], float(top - bottom) / 1000
+    states = _states(matrix, start, step, len(response.heights))
+    return tuple(
+        f"{response.signal} at {k * step}"
+        for k, (height, state) in enumerate(zip(response.heights, states, strict=True))
+        if abs(sum(map(mul, row, state)) - height / parts) > near
+    )
+
+
+@lru_cache(maxsize=8)
+def _states(matrix: Tables, start: tuple[Fraction, ...], step: Fraction, count: int) -> list[list[float]]:
+    """Return the state at 0, h, 2 h, …: e^{Mh} times the one before."""
+    with mpmath.workdps(_DIGITS):
+        once = mpmath.expm(mpmath.matrix([[_real(entry * step) for entry in row] for row in matrix]))
+        states = [mpmath.matrix([_real(part) for part in start])]
+        for _ in range(count - 1):
+            states.append(once * states[-1])
+    return [[float(part) for part in state] for state in states]
+
+
+def _untrue_samples(picture: TimeResponse, matrix: Tables) -> Iterator[str]:
+    """Yield the values that are not row · Mᵏ · start, exactly."""
+    start = sympy.Matrix([sympy.Rational(str(part)) for start in picture.starts for part in start])
+    table = sympy.Matrix([[sympy.Rational(str(entry)) for entry in row] for row in matrix])
+    for response in picture.responses:
+        row = sympy.Matrix([[sympy.Rational(str(part)) for part in response.row]])
+        for place, (instant, height) in enumerate(picture.points(response)):
+            if instant != place or (row * table**place * start)[0] != sympy.Rational(str(height)):
+                yield f"{response.signal} at {instant}"
+
+
+def _real(value: Fraction) -> mpmath.mpf:
+    return mpmath.mpf(value.numerator) / value.denominator

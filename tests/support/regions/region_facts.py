@@ -1,7 +1,7 @@
 """What a derivation says of regions, held at points against the roots: nothing of `symobs.stability` takes part.
 
 Stability is Routh's or Schur and Cohn's scheme in plain fractions, square roots and `CRootOf` are compared exactly
-(`tests.support.independent_algebra.region_roots`).  Points are small integers, small fractions, and some far out.
+(`tests.support.regions.region_roots`).  Points are small integers, small fractions, and some far out.
 """
 
 from __future__ import annotations
@@ -20,15 +20,21 @@ from symobs.exact.core.generators import function_named
 from symobs.formula.figures import LinePicture, PoleMap, RegionPicture
 from symobs.formula.phrases.languages import ENGLISH
 from symobs.formula.tree import Literal, Relation
-from tests.support.independent_algebra.plain import (
+from tests.support.algebra import (
     characteristic,
     coefficients_at,
-    is_hurwitz,
-    is_schur,
+    is_stable,
     multiply,
     value_at,
 )
-from tests.support.independent_algebra.region_roots import Root, UndefinedError, primitive, real_roots, root_of, sign
+from tests.support.regions.region_roots import (
+    Root,
+    UndefinedError,
+    primitive,
+    real_roots,
+    root_of,
+    sign,
+)
 from tests.support.regions.region_texts import Binary, Call, Number, expression
 
 if TYPE_CHECKING:
@@ -39,20 +45,13 @@ if TYPE_CHECKING:
     from symobs.proof.derivation import Sentence
     from symobs.stability.criteria.routh_table import RouthTable
     from symobs.tasks.analysis.stability_region.stability_region import StabilityRegion
-    from tests.support.independent_algebra.plain_fractions import World
+    from tests.support.derivations import World
 
 #: How many points a statement is held at, and of how many a picture.
 POINTS, IN_A_PICTURE = 60, 40
 #: Parts of a window that cannot be seen, and what a pole may lie off its path.
 NEAR, NEAR_POLE = Fraction(1, 250), Fraction(1, 100)
 ORDINALS = ("first", "second", "third", "fourth", "fifth", "sixth", "seventh", "eighth", "ninth", "tenth")
-
-
-def is_stable(coefficients: Sequence[Fraction], *, discrete: bool) -> bool:
-    """Tell whether a polynomial, highest power first, keeps its degree and has all roots in Re s < 0 (|z| < 1)."""
-    if not coefficients[0]:
-        return False
-    return (is_schur if discrete else is_hurwitz)(list(coefficients))
 
 
 def points(
