@@ -21,8 +21,8 @@ import mpmath
 import sympy
 
 from symobs.exact import EIGENVALUE, Matrix, Root, Scalar
+from symobs.exact.algebraic.root_sum import RootSum
 from symobs.exact.core.generators import PI, function_named, symbols_in
-from symobs.exact.time_functions.matrix_exponential import RootSum
 from symobs.formula.figures import TimeResponse, figure_of, is_box, is_integrator, key
 from symobs.formula.phrases.languages import Counted, StateChoice
 from symobs.formula.tree import (

@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 from fractions import Fraction
-from typing import TYPE_CHECKING
+from functools import lru_cache
+from typing import TYPE_CHECKING, Any
 
-from flint import arb, ctx
+from flint import acb, arb, ctx, fmpq, fmpq_poly
 
 from symobs.exact.algebraic.real_algebraic import RealRoot
+from symobs.exact.algebraic.root_sum import RootSum
+from symobs.exact.core.field import EIGENVALUE
 from symobs.exact.core.generators import PI, function_named, symbols_in
 from symobs.exact.core.ring import Precision
 
@@ -18,12 +21,14 @@ if TYPE_CHECKING:
 
 #: Bits that are tried in turn until an enclosure keeps clear of 0.
 _BITS = (64, 256, 1024, 4096)
+_KINDS = {"sqrt", "exp", "cos", "sin", "cosh", "sinh", "CRootOf"}
 
 
 def is_number(value: Scalar) -> bool:
     """Return whether a value has no parameter: only rational numbers, π, roots, and functions of them."""
-    kinds = {f.kind for name in value.names if (f := function_named(name)) is not None}
-    return symbols_in(value) <= {PI} and kinds <= {"sqrt", "exp", "cos", "sin", "cosh", "sinh", "CRootOf"}
+    found = [f for name in value.names if (f := function_named(name)) is not None]
+    is_written = all(f.kind in _KINDS or (isinstance(f, RootSum) and f.is_rational) for f in found)
+    return is_written and symbols_in(value) <= {PI}
 
 
 def sign_of_number(value: Scalar) -> str:
@@ -88,5 +93,32 @@ def _generator(name: str) -> arb:
         return arb.pi()
     if isinstance(found, RealRoot):
         return found.number.ball(ctx.prec)
+    if isinstance(found, RootSum):
+        return _sum_over_roots(found, ctx.prec)
     enclosed: arb = getattr(_ball(found.argument), found.kind)()  # the kernel calls them so, too
     return enclosed
+
+
+@lru_cache(maxsize=1024)
+def _sum_over_roots(found: RootSum, bits: int) -> arb:
+    """Return an enclosure of Σ λᵖ e^{λT} / q′(λ), from disjoint enclosures of all roots of q with rational coefficients."""
+    coefficients = tuple(c.fraction() for c in reversed(found.polynomial.coefficients(EIGENVALUE)))
+    slope, time, total = _polynomial(coefficients).derivative(), _ball(found.argument), acb(0)
+    for root in _roots_of(coefficients, bits):
+        below = acb(0)
+        for c in reversed(slope.coeffs()):
+            below = below * root + acb(c)
+        total = total + root**found.power * (root * time).exp() / below
+    return total.real
+
+
+@lru_cache(maxsize=256)
+def _roots_of(coefficients: tuple[Fraction, ...], bits: int) -> tuple[acb, ...]:
+    """Return enclosures of the roots of a polynomial without multiple roots, lowest coefficient first."""
+    with Precision(bits):
+        found: Any = _polynomial(coefficients).complex_roots()
+        return tuple(root for root, _ in found)
+
+
+def _polynomial(coefficients: tuple[Fraction, ...]) -> fmpq_poly:
+    return fmpq_poly([fmpq(c.numerator, c.denominator) for c in coefficients])

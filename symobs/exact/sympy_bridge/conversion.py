@@ -13,6 +13,7 @@ from flint import arb, fmpq, fmpz_poly
 
 from symobs.exact.algebraic.polynomial_roots import Complex
 from symobs.exact.algebraic.real_algebraic import RealNumber, RealRoot, root_of_fraction, roots_of_scalar
+from symobs.exact.algebraic.root_sum import RootSum
 from symobs.exact.algebraic.rounded_decimals import root_in_field
 from symobs.exact.core import generators as functions
 from symobs.exact.core.field import EIGENVALUE
@@ -20,7 +21,6 @@ from symobs.exact.core.matrix import Matrix
 from symobs.exact.core.ring import Precision
 from symobs.exact.core.scalar import Scalar
 from symobs.exact.sympy_bridge.sympy_import import sympy
-from symobs.exact.time_functions.matrix_exponential import RootSum
 from symobs.ground.errors import InexactInput, InputError
 
 if TYPE_CHECKING:

@@ -151,6 +151,11 @@ class Result(TaskTraits):
         return False
 
     @property
+    def is_told_in_decimals(self) -> bool:
+        """Whether answers are numbers without a closed form, which a page writes in decimals."""
+        return False
+
+    @property
     def picture(self) -> Picture | None:
         """The picture of the answer that the page shows, where there is one."""
         return None

@@ -115,7 +115,7 @@ def test_outputs_that_contradict_each_other_agree_somewhere() -> None:
 
 
 def test_modes_without_a_closed_form_are_undecided_and_another_answer_is_rejected() -> None:
-    cubic = symobs.response(StateSpace("[0 1 0; 0 0 1; -1 -1 -3]", "[0; 0; 1]"), input=1)
+    cubic = symobs.response(StateSpace("[0 1 0; 0 0 1; -a -1 -3]", "[0; 0; 1]"), input=1)
     assert (cubic.verdict, cubic.state) == ("undecided", None)
     for language, said in (("en", "the response is not given"), ("de", "die Zeitantwort nicht angegeben")):
         assert said in cubic.to("text", language=language)

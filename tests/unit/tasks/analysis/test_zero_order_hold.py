@@ -69,7 +69,7 @@ def test_a_plant_that_depends_on_an_open_sign_is_not_taken_for_one() -> None:
     with pytest.raises(InputError, match="the sampled plant is another one for each sign of"):
         _ = found.sampled
     assert found.at(a=1).sampled.order == 2
-    cubic = symobs.zero_order_hold(StateSpace("[0 1 0; 0 0 1; -1 -1 -3]", "[0; 0; 1]"))
+    cubic = symobs.zero_order_hold(StateSpace("[0 1 0; 0 0 1; -a -1 -3]", "[0; 0; 1]"))
     assert (cubic.verdict, cubic.A) == ("undecided", None)
     with pytest.raises(InputError, match="no sampled plant in closed form: what is open is the roots of"):
         _ = cubic.sampled
