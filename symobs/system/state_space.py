@@ -194,7 +194,7 @@ class StateSpace:
         if "A" in parts:
             errors += shape_errors({name: parts.get(name) for name in "ABC"} | {"D": None if errors else parts["D"]})
         raise_all(errors)
-        parts, relations = over_a_base(parts)
+        parts, relations = over_a_base(parts, known.signs)
         self.matrices = Matrices(parts["A"], parts["B"], parts["C"], parts["D"])  # type: ignore[arg-type]
         self.symbols = known
         self.time = read_time(dt, known)
@@ -238,7 +238,7 @@ class StateSpace:
         given = read_floats(transfer_function, floats, where)
         known = known.seen(given, time.variable)
         written = read_written(given, known, time.variable, where)
-        A, B, C, D = written.realised(where)
+        A, B, C, D = written.realised(where, known.signs)
         plant = cls(A, B, C, D, dt, symbols=known, transfer_function=written)
         plant.is_from_floats, plant.is_in_decimals = given is not transfer_function, has_decimals(given)
         return plant

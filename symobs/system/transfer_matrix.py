@@ -23,7 +23,7 @@ from symobs.system.transfer_function_text import (
 )
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Iterator, Mapping, Sequence
 
     from symobs.system.symbols import Symbols
 
@@ -58,9 +58,9 @@ class WrittenTransferMatrix:
         """The cancelled factors in the parameters alone, which are nonzero wherever the matrix is defined."""
         return tuple(dict.fromkeys(factor for entry in self._entries for factor in entry.apart))
 
-    def realised(self, where: str) -> tuple[Matrix, Matrix, Matrix, Matrix]:
+    def realised(self, where: str, signs: Mapping[str, str]) -> tuple[Matrix, Matrix, Matrix, Matrix]:
         """Return a minimal realisation; raises `InputError` where functions in it depend on each other."""
-        functions = require_known([self.value], where)
+        functions = require_known([self.value], signs, where)
         meanings, relations = identities([self.value])
         if not {*meanings}.isdisjoint(self.value.names) or any(
             relation.names <= self.value.names for relation in relations
@@ -82,7 +82,9 @@ def read_written(
         return _of_rows(
             [
                 [
-                    written_over(*over_data(*(w or (f.numerator, f.denominator)), variable, where), variable)
+                    written_over(
+                        *over_data(*(w or (f.numerator, f.denominator)), variable, where, symbols.signs), variable
+                    )
                     for w, f in row
                 ]
                 for row in pairs

@@ -17,7 +17,7 @@ from symobs.exact.algebraic.extension import AlgebraicExtension
 from symobs.exact.algebraic.polynomial_roots import factored
 from symobs.exact.algebraic.root_sum import RootSum
 from symobs.exact.core.field import EIGENVALUE
-from symobs.exact.core.generators import ONE, ZERO, square_root
+from symobs.exact.core.generators import ONE, ZERO, normal_form, square_root
 from symobs.exact.core.matrix import Matrix, matrix_of_numbers
 from symobs.exact.core.polynomial import companion
 from symobs.exact.core.ring import Precision, number_of
@@ -179,7 +179,7 @@ def modes_of(
             found.append((Mode(-coefficients[1], ZERO, oscillates=False), multiplicity))
         elif len(coefficients) == 3:
             rate = -coefficients[1] / 2
-            discriminant = rate * rate - coefficients[2]
+            discriminant = normal_form(rate * rate - coefficients[2])
             known = sign(discriminant)
             if known == "zero":
                 found.append((Mode(rate, ZERO, oscillates=False), 2 * multiplicity))

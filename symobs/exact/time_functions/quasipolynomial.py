@@ -194,10 +194,9 @@ def _hyperbolic(terms: Mapping[Key, Scalar]) -> list[tuple[Key, Scalar]]:
 
 
 def rate_parts(rate: Scalar) -> tuple[Scalar, Scalar]:
-    """Return (the part without square roots, the rest)."""
-    plain = rate.substitute(
-        {name: ZERO for name in rate.names if (f := function_named(name)) is not None and f.kind == "sqrt"}
-    )
+    """Return (the part without square roots, the rest); a rate that divides by roots is all without."""
+    roots = {name: ZERO for name in rate.names if (f := function_named(name)) is not None and f.kind == "sqrt"}
+    plain = rate if roots.keys() & rate.denominator.names else rate.substitute(roots)
     return plain, rate - plain
 
 

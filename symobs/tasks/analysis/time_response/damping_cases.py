@@ -178,11 +178,7 @@ class DampingCases(Result):
         given(page)
         beyond = [c.expression for c in self.domain if c.operator == ">"]
         beyond += [_plain(delta if sign == "positive" else -delta) for delta, sign in self.answer["taken"].items()]
-        if beyond:
-            page.start, page.environment = (
-                replace(each, positive=(*each.positive, *beyond)) for each in (page.start, page.environment)
-            )
-            page.conclude("declared", signs=Conjunction(tuple(relation(value, ">", 0) for value in beyond)))
+        page.assume_positive(beyond)
 
     def write_branches(self, page: Builder, write_branch: Callable[[Builder, Any], None]) -> None:
         """Write this branch and the others; each is a case if there are several."""
