@@ -17,10 +17,35 @@ from tests.support.paths import ROOT
 from tests.support.problems.answered import SERVO
 
 EXAMPLES = ROOT / "worked_examples"
+UNKNOWN_INPUT = (EXAMPLES / "unknown_input_observer.toml").read_text(encoding="utf-8")
+NOT_DECOUPLED = (EXAMPLES / "unknown_input_not_decoupled.toml").read_text(encoding="utf-8")
+SERVO_FEEDFORWARD = (EXAMPLES / "servo_feedforward.toml").read_text(encoding="utf-8")
+#: ẋ = u₁ + u₂, y = x: K = [k₁; k₂] with k₁ + k₂ = 2, and F = [f₁; f₂] with f₁ + f₂ = k₁ + k₂.
+TWO_INPUTS = (
+    'task = "feedforward"\n[plant]\nA = "[0]"\nB = "[1 1]"\nC = "[1]"\n'
+    '[specification]\ncontrol_poles = "-2"\nobserver_poles = "-3"\n'
+)
+#: ẋ = u, y = x: K with the eigenvalues 1 and 2, and F = K.
+TWO_OF_EACH = (
+    'task = "feedforward"\n[plant]\nA = "[0 0; 0 0]"\nB = "[1 0; 0 1]"\nC = "[1 0; 0 1]"\n'
+    '[specification]\ncontrol_poles = "-1, -2"\nobserver_poles = "-3, -4"\n'
+)
+#: ẋ₁ = x₂ + u₁, ẋ₂ = u₂ and y = x₁; what is to be followed is constant.
+TRACKING = (
+    'task = "tracking"\n[plant]\nA = "[0 1; 0 0]"\nB = "[1 0; 0 1]"\nC = "[1 0]"\n'
+    '[specification]\ncontrol_poles = "-1, -2"\nobserver_poles = "-3"\nreference_matrix = "[0 0; 0 0]"\n'
+)
+INTEGRAL = (
+    'task = "integral_action"\n[plant]\nA = "[0 1; 0 -1]"\nB = "[0; 1]"\nC = "[1 0]"\n'
+    '[specification]\npoles = "-1, -2, -3"\n'
+)
+#: The integral of x₁' is x₁: the sum of both integrals cannot be moved.
+NO_INTEGRAL = INTEGRAL.replace('C = "[1 0]"', 'C = "[0 1]"')
 TWO_INTEGRALS = (
     'task = "integral_action"\n[plant]\nA = "[0 0; 0 0]"\nB = "[1 0; 0 1]"\nC = "[1 0; 0 1]"\n'
     '[specification]\npoles = "-1, -1, -2, -2"\n'
 )
+NO_FEEDBACK = 'task = "state_feedback"\n[plant]\nA = "[1 0; 0 2]"\nB = "[1; 0]"\n[specification]\npoles = "-1, -2"\n'
 PROBLEMS = {name: text for name, text in vars().items() if name.isupper()}
 
 
