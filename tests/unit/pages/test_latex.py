@@ -13,7 +13,7 @@ from symobs.exact import Matrix, Scalar
 from symobs.formula.phrases import PHRASES
 from symobs.formula.tree import Block, Environment, Formula, Letter, Literal, Negative, Numeral
 from symobs.pages.formats.latex import LatexArticle, typeset
-from symobs.pages.formats.templates import fill, template_folder
+from symobs.pages.formats.templates import fill
 from symobs.pages.formats.text import WIDTH, Text
 from symobs.pages.printers.latex_printer import LETTERS, LatexPrinter, escape
 from symobs.proof.derivation import Define, Derivation, Diagram, Equal, Note
@@ -162,14 +162,6 @@ def test_a_user_replaces_one_block(tmp_path: Path, faults: Callable[[str], list[
 def test_marks_of_templates_in_a_title_mean_nothing() -> None:
     latex = LatexArticle().render(document(title=r"\VAR{body} \BLOCK{raw} %% x"))
     assert r"\textbackslash{}VAR\{body\} \textbackslash{}BLOCK\{raw\} \%\% x" in latex
-
-
-def test_an_installed_package_has_its_templates_inside(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    (tmp_path / "symobs").mkdir()
-    monkeypatch.setattr("symobs.pages.formats.templates._PACKAGE", tmp_path / "symobs")
-    assert template_folder() == tmp_path / "latex_templates"
-    (tmp_path / "symobs" / "latex_templates").mkdir()
-    assert template_folder() == tmp_path / "symobs" / "latex_templates"
 
 
 # -- terminals --------------------------------------------------------------------------------------------------------

@@ -6,11 +6,14 @@ import re
 
 import pytest
 
-from symobs.exact import Scalar
+from symobs.exact import Matrix, Scalar
 from symobs.formula.phrases import PHRASES
+from symobs.formula.tree import Environment, Letter, Literal, Relation
 from symobs.pages.formats.markdown import Markdown, paragraph, plain, portable
+from symobs.proof.derivation import Define, Derivation
 from tests.kit import tabled
 from tests.support.problems import render_examples as example
+from tests.support.problems.render_examples import document
 
 s, b = Scalar.symbol("s"), Scalar.symbol("b")
 #: Everything in dollars, displays first.
@@ -71,3 +74,10 @@ def test_text_is_escaped(text: str, markdown: str) -> None:
 @tabled
 def test_a_paragraph_begins_no_list(line: str, markdown: str) -> None:
     assert paragraph(line) == markdown
+
+
+def test_a_symbol_of_several_letters_keeps_its_spaces() -> None:
+    mass = Scalar.symbol("mass")
+    steps = (Define(Relation((Letter("A"), Literal(Matrix.of([[mass * b]]))), ("=",))),)
+    page = Markdown().render(document(Derivation(steps, Environment())))
+    assert r"b\thinspace \mathit{mass}" in page

@@ -15,6 +15,8 @@ from hypothesis import strategies as st
 from symobs.formula.notation import LETTERS
 from symobs.formula.tree import (
     Letter,
+    Product,
+    Sum,
 )
 from symobs.pages.printers.latex_to_mathml import elements_of
 from symobs.pages.printers.mathml import MathmlPrinter
@@ -35,6 +37,7 @@ from tests.unit.pages.test_printers import (
     rational,
     scalar_formula,
     sources,
+    table,
     value_of,
 )
 
@@ -224,3 +227,9 @@ forms = st.lists(
 @tabled
 def test_forms(form: str, mathml: str) -> None:
     assert "".join(elements_of(form)) == mathml
+
+
+def test_parentheses_grow_only_around_what_is_tall() -> None:
+    flat, tall = (MathmlPrinter().unbroken(Product((Sum((A, term)), B))) for term in (B, table([1, 2])))
+    assert 'stretchy="false">(' in flat
+    assert 'stretchy="false">(' not in tall

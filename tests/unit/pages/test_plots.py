@@ -12,12 +12,10 @@ from typing import TYPE_CHECKING
 import pytest
 
 import symobs
-from symobs.formula.figures import RegionPicture
 from symobs.formula.tree import Environment, Letter, Relation
 from symobs.ground.errors import UsageError
 from symobs.pages.drawings.curve_labels import clipped
 from symobs.pages.drawings.plot_file import drawn_by_matplotlib
-from symobs.pages.drawings.scene import Rectangle, Scene
 from symobs.pages.drawings.svg import measure_for as measure_svg
 from symobs.pages.drawings.svg import svg, svg_file, svg_scene
 from symobs.pages.drawings.tikz import measure_for as measure_latex
@@ -37,7 +35,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from symobs.formula.figures import Picture
-    from symobs.pages.drawings.scene import Measure
+    from symobs.pages.drawings.scene import Measure, Rectangle, Scene
 
 FAULTS = re.compile(r"^(?:! .*|(?:LaTeX|Package|Class).*Warning.*|Overfull .*|Missing character.*)", re.MULTILINE)
 SVG = "{http://www.w3.org/2000/svg}"
@@ -88,21 +86,6 @@ def test_labels_stand_inside_the_frame_beside_every_line(name: str) -> None:
 
 def _meets(line: tuple[tuple[float, float], ...], box: Rectangle) -> bool:
     return any(clipped(line, box))
-
-
-@pytest.mark.parametrize("name", ["hyperbola", "annulus", "three_components", "fifth_order"])
-def test_every_area_and_every_boundary_is_there(name: str) -> None:
-    picture = ALL[name][0]()
-    assert isinstance(picture, RegionPicture)
-    equations = {curve.equation for curve in picture.curves if curve.boundary}
-    for scene, _ in scenes(name):
-        labelled = {text.content for text in scene.texts if isinstance(text.content, Relation)}
-        assert labelled | set(scene.numbered) == equations
-        assert len(scene.shades) == len(picture.areas)
-        assert all(scene.frame.grown(0.01).holds(Rectangle(x, y, x, y)) for area in scene.shades for x, y in area)
-        numbers = [text.content for text in scene.texts if str(text.content).startswith("(")]
-        assert numbers == [f"({place})" for place in range(1, len(scene.numbered) + 1)]
-        assert len(scene.signs) == sum(mark.kind == "excluded" for mark in picture.marks)  # no test points of the proof
 
 
 # -- LaTeX ------------------------------------------------------------------------------------------------------------

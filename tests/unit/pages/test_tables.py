@@ -8,6 +8,7 @@ import pytest
 
 from symobs.exact import Scalar, from_coefficients
 from symobs.formula.tree import Environment, Exact, Letter, Literal, evaluate
+from symobs.pages.formats.latex import LatexFragment
 from symobs.pages.formats.text import Text
 from symobs.pages.page.blocks import Paragraph, TableBlock
 from symobs.pages.page.narrator import narrate
@@ -127,3 +128,12 @@ def test_the_page_says_what_the_table_says_and_names_the_theorem() -> None:
         )
     )
     assert "Routh, A Treatise" in str(sources)
+
+
+def test_powers_stand_left_of_a_rule() -> None:
+    written = LatexFragment().render(page(polynomial(1, "h1", "h2", 1)))
+    assert (
+        "\\begin{array}{c|cc}\n"
+        r"s^3&1&h_{2}\\s^2&h_{1}&1\\[4pt]s^1&\dfrac{h_{1}h_{2}-1}{h_{1}}&\\[12pt]s^0&1&"
+        "\n\\end{array}"
+    ) in written

@@ -43,7 +43,8 @@ def test_conditions_solved_for_a_parameter(conditions: list[str], signs: dict[st
 @pytest.mark.slow
 @tabled
 def test_cases_by_signs_cover_all_and_say_the_same(conditions: list[str], signs: dict[str, str], count: int) -> None:
-    cases = sign_cases(scalars(conditions), ["h1", "h2"], signs)
+    given = scalars(conditions)
+    cases = sign_cases(given, ["h1", "h2"], signs)
     assert len(cases) == count
     relations: dict[str, Callable[[Fraction], bool]] = {
         ">": lambda v: v > 0,
@@ -58,12 +59,12 @@ def test_cases_by_signs_cover_all_and_say_the_same(conditions: list[str], signs:
             met = [c for c in cases if all(relations[o](value_at(v, here)) for v, o in c.when)]
             assert len(met) == 1
             (case,) = met
-            assert positive_at(case.conditions.positive, here) == positive_at(conditions, here)
+            assert positive_at(case.conditions.positive, here) == positive_at(given, here)
             assert all(value_at(value, here) == here[name] for name, value in case.substitution.items())
             for left, operator, right in solved(case.conditions.positive, case.signs, ["h1", "h2"], case.assumed):
                 difference = value_at(left - right, here)
                 told = difference > 0 if operator == ">" else difference < 0
-                assert told or not positive_at(conditions, here)
+                assert told or not positive_at(given, here)
 
 
 def test_what_was_declared_of_a_symbol_is_kept_where_it_is_replaced() -> None:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-from fractions import Fraction
 from typing import Any
 
 import pytest
@@ -72,19 +71,6 @@ def test_what_a_fraction_divides_by_stays_a_condition(function: object) -> None:
 SERVO = StateSpace("[0 1; 0 -1]", "[0; 1]", "[1 0]")
 
 
-@pytest.mark.parametrize(
-    "given",
-    [
-        lambda: StateSpace([[0, 1], [0, -1]], [0, 1], [1, 0], 0),
-        lambda: StateSpace([[0, 1], [0, -1]], ("0", 1), sympy.Matrix([[1, 0]]), "0"),
-        lambda: StateSpace([[0, 1], [0, -1]], [sympy.Integer(0), 1], [1, sympy.Integer(0)], [0]),
-    ],
-)
-def test_flat_lists_are_a_column_and_a_row(given: Any) -> None:
-    plant = given()
-    assert (plant.A, plant.B, plant.C, plant.D) == (SERVO.A, SERVO.B, SERVO.C, SERVO.D)
-
-
 # -- systems of other programs ----------------------------------------------------------------------------------------
 
 
@@ -132,16 +118,6 @@ def test_what_is_no_plant_is_refused(system: Any, reason: str) -> None:
 
 
 # -- parameters replaced ----------------------------------------------------------------------------------------------
-
-
-@pytest.mark.parametrize("key", ["p", p], ids=["name", "symbol"])
-@pytest.mark.parametrize(
-    "value", ["-1/2", Fraction(-1, 2), sympy.Rational(-1, 2)], ids=lambda value: type(value).__name__
-)
-def test_parameters_are_replaced_by_whatever_an_entry_may_be(key: object, value: object) -> None:
-    plant = StateSpace("[p 1; 0 b]", "[0; p^2]", "[1 0]").substitute({key: value, "b": 3})
-    assert sympy.Matrix([[sympy.Rational(-1, 2), 1], [0, 3]]) == plant.A
-    assert sympy.Matrix([0, sympy.Rational(1, 4)]) == plant.B
 
 
 @tabled

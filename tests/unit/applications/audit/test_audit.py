@@ -212,13 +212,6 @@ def test_a_deep_equation_is_refused(relation: str) -> None:
         read_relation(relation, "")
 
 
-def test_all_entries_that_cannot_be_read_are_told_together() -> None:
-    entries = [{"relation": "L = "}, {"relation": "L = [19; 81]"}, {"relation": "= A"}]
-    with pytest.raises(ProblemErrors) as raised:
-        audit(read(problem(printed=entries)))
-    assert [error.where for error in raised.value.errors] == ["printed[0].relation", "printed[2].relation"]
-
-
 # -- the command -------------------------------------------------------------------------------------------------------
 
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import re
-import shutil
 import sqlite3
 from contextlib import closing
 from typing import TYPE_CHECKING, Any
@@ -65,12 +64,6 @@ def test_what_is_no_row_is_named(folder: Path, tmp_path: Path) -> None:
     found = inside("batch", "--verify", "out", folder=tmp_path)
     assert found.code == 4
     assert re.match("out/rows.sqlite: this file was damaged: what is stored of [0-9a-f]{16} is no whole row", found.err)
-
-
-def test_equal_problems_are_done_once_and_said(folder: Path, tmp_path: Path) -> None:
-    shutil.copy(folder / "good.toml", folder / "bad.toml")
-    left = inside("batch", "problems", "--out", "out", "--in-process", folder=tmp_path)
-    assert (left.code, left.err) == (0, "1 done, 1 equal to others\n")
 
 
 def test_a_file_that_cannot_be_read_loses_no_other(folder: Path, tmp_path: Path) -> None:

@@ -11,18 +11,9 @@ from tests.support.problems.answered import SERVO
 
 EXAMPLES = ROOT / "worked_examples"
 
-HIDDEN = 'task = "observer"\n[plant]\nA = "[1 0; 0 2]"\nC = "[1 0]"\n[specification]\npoles = "-1, -2"\n'
-
 
 def verdicts(problem: str, answer: dict[str, Any]) -> dict[str, str]:
     return {part.letter: part.verdict for part in check(problem, answer).parts if part.letter in answer}
-
-
-def test_a_gain_where_there_is_none_is_wrong() -> None:
-    for given, reason in (("[3; 0]", ""), ("[1 2]", "L is 2x1 here, yours is 1x2")):
-        part = check(HIDDEN + '[marking]\nasked = ["observer.verdict"]\n', {"L": given, "verdict": "no"}).parts
-        assert [(each.letter, each.verdict) for each in part] == [("verdict", "right"), ("L", "wrong")]
-        assert reason in part[1].reason
 
 
 REGION = (

@@ -92,21 +92,6 @@ def test_a_planted_slip_of_a_compensator_is_found(slip: str) -> None:
     assert (part.verdict, part.slip) == ("wrong", slip)
 
 
-def test_a_forgotten_feedthrough_is_found() -> None:
-    problem = 'task = "compensator"\n[plant]\nA = "[0 1; 0 -1]"\nB = "[0; 1]"\nC = "[1 0]"\nD = "[2]"\n'
-    problem += '[specification]\ncontrol_poles = "-2, -2"\nobserver_poles = "-10, -10"\n'
-    A, B, C, K, L = (
-        sp.Matrix([[0, 1], [0, -1]]),
-        sp.Matrix([0, 1]),
-        sp.Matrix([[1, 0]]),
-        sp.Matrix([[4, 3]]),
-        sp.Matrix([19, 81]),
-    )
-    forgotten = (K * (S * sp.eye(2) - A + B * K + L * C).inv() * L)[0]
-    part = check(problem, {"K": text(K), "L": text(L), "F": str(sp.cancel(forgotten))}).parts[2]
-    assert part.slip == "forgot_D"
-
-
 @tabled
 def test_products_in_the_wrong_order_are_found(left: bool, reason: str) -> None:  # noqa: FBT001 - a table
     """With as many inputs and outputs as states, K B and C L have the sizes of B K and L C."""
@@ -152,17 +137,6 @@ def test_several_signs_the_transpose_and_a_special_value() -> None:
         assert check(problem, {"matrix": text(matrix).replace(" + ", "+")}).parts[0].slip == slip
     every = 'task = "characteristic_polynomial"\n[symbols]\na = "real"\nb = "real"\n[plant]\nA = "[a 0; 0 b]"\n'
     assert check(every, {"polynomial": "(s - 1)^2"}).parts[0].slip == "specialised"
-
-
-def test_of_several_slips_of_a_kind_all_are_named() -> None:
-    """Both outputs are the same, so that either entry of the first row may be mended."""
-    problem = 'task = "observer"\n[plant]\nA = "[0 1; 0 0]"\nC = "[1 0; 1 0]"\n[specification]\npoles = "-1, -2"\n'
-    part = check(problem, {"L": "[1 1; 2 0]"}).parts[0]
-    assert (part.slip, part.credit) == ("ambiguous", Fraction(1, 2))
-    assert part.alternatives == (
-        "entry (1,1) should be 2 with the others as they are",
-        "entry (1,2) should be 2 with the others as they are",
-    )
 
 
 def explained_truly(slip: str, value: sp.Matrix, part: object) -> bool:
@@ -231,3 +205,18 @@ def test_a_gain_rounded_is_named_so() -> None:
     problem = 'task = "observer"\n[plant]\nA = "[0 1; 0 -1]"\nC = "[3 0]"\n[specification]\npoles = "-10, -10"\n'
     part = check(problem, {"L": "[6.333; 27]"}).parts[0]
     assert (part.slip, part.credit) == ("rounded", Fraction(1, 2))
+
+
+def test_a_forgotten_feedthrough_is_found() -> None:
+    problem = 'task = "compensator"\n[plant]\nA = "[0 1; 0 -1]"\nB = "[0; 1]"\nC = "[1 0]"\nD = "[2]"\n'
+    problem += '[specification]\ncontrol_poles = "-2, -2"\nobserver_poles = "-10, -10"\n'
+    A, B, C, K, L = (
+        sp.Matrix([[0, 1], [0, -1]]),
+        sp.Matrix([0, 1]),
+        sp.Matrix([[1, 0]]),
+        sp.Matrix([[4, 3]]),
+        sp.Matrix([19, 81]),
+    )
+    forgotten = (K * (S * sp.eye(2) - A + B * K + L * C).inv() * L)[0]
+    part = check(problem, {"K": text(K), "L": text(L), "F": str(sp.cancel(forgotten))}).parts[2]
+    assert part.slip == "forgot_D"

@@ -69,16 +69,6 @@ def test_what_no_task_has_is_an_error_with_the_known_fields() -> None:
         check(SERVO, {"M": "[19; 81]"})
 
 
-def test_in_the_letters_and_signs_of_a_convention() -> None:
-    plant = 'task = "observer"\nconvention = "S1"\n[plant]\nA = "[0 1; 0 -1]"\nC = "[1 0]"\n'
-    plant += '[specification]\npoles = "-10, -10"\n'
-    assert check(plant, {"M": "[-19; -81]"}).verdict == "right"
-    part = one(check(plant, {"M": "[19; 81]"}), "L")
-    assert (part.verdict, part.slip, part.letter) == ("wrong", "sign", "M")
-    assert part.reason == "the sign of M: with A + M C, yours is the gain of A - M C"
-    assert check(plant, {"L": "[19; 81]"}, convention="standard").verdict == "right"
-
-
 def test_both_gains_of_integral_action_have_the_sign_of_the_convention() -> None:
     report = check(read(TWO_INTEGRATORS), {"K": "[-3 -1; 0 -3]", "k_I": "[2 0; 0 2]"}, convention="plusK-plusMC")
     assert [part.verdict for part in report.parts] == ["right", "right"]

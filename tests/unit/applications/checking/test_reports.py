@@ -14,7 +14,6 @@ from jsonschema import Draft202012Validator  # type: ignore[import-untyped]
 
 import symobs
 from symobs.applications.checking import SHOW, Checked, CheckReport, check
-from symobs.applications.checking.answers import read_answer
 from symobs.applications.checking.derivations import without_solution
 from symobs.applications.checking.report import schema
 from symobs.ground.errors import ProblemErrors, UsageError
@@ -126,18 +125,6 @@ def test_each_level_shows_more() -> None:
     assert "<math" in CHECKED.report(answer, "solution").to_html()
 
 
-def test_marks_are_exact_fractions() -> None:
-    marking = '[marking]\ntotal = 10\nparts = { "compensator.F" = 4 }\n[marking.credit]\nentry = "1/3"\n'
-    report = check(SERVO + marking, {"K": "[4 3]", "L": "[19; 80]"})
-    assert (report.score, report.total) == (Fraction(10) * (1 + Fraction(1, 3)) / 6, Fraction(10))
-    assert json.loads(report.to_json())["score_decimal"] == "2.22"
-    asked = check(
-        f'{SERVO}[marking]\nasked = ["compensator.K", "compensator.closed_loop_polynomial"]\n', {"K": "[4 3]"}
-    )
-    assert [part.part for part in asked.parts] == ["compensator.K", "compensator.closed_loop_polynomial"]
-    assert (asked.verdict, asked.score) == ("incomplete", Fraction(1))
-
-
 @tabled
 def test_a_wrong_marking_is_refused(marking: str, message: str) -> None:
     with pytest.raises(ProblemErrors, match=message):
@@ -176,16 +163,6 @@ def test_a_milestone_that_is_false_for_every_right_answer_is_refused(problem: st
 # -- the answer file --------------------------------------------------------------------------------------------------
 
 
-def test_the_three_forms_of_an_answer_say_the_same() -> None:
-    lines = "# by hand\nL = [1; 2]\nK = [4 3]\n\nL = [19; 81]   # better\n"
-    toml = 'student = "s1"\n[answer]\nK = "[4 3]"\nL = "[19; 81]"\n'
-    as_json = json.dumps({"answer": {"K": [[4, 3]], "L": [["19"], [81]]}})
-    for form in (lines, toml, as_json, {"K": "[4 3]", "L": "[19; 81]"}):
-        assert [part.verdict for part in CHECKED.report(form).parts] == ["right", "right", "missing"]
-    assert CHECKED.report(toml).student == "s1"
-    assert [step.where for step in read_answer(lines).steps] == ["line 2", "line 3", "line 5"]
-
-
 @pytest.mark.parametrize(
     ("answer", "message"),
     [
@@ -203,14 +180,6 @@ def test_the_three_forms_of_an_answer_say_the_same() -> None:
 def test_an_answer_that_cannot_be_read_is_refused_with_its_place(answer: str, message: str) -> None:
     with pytest.raises(ProblemErrors, match=message):
         CHECKED.report(answer)
-
-
-@tabled
-def test_a_value_that_cannot_be_read_leaves_the_others(value: str, message: str) -> None:
-    report = CHECKED.report({"K": value, "L": "[19; 81]"})
-    assert [part.verdict for part in report.parts] == ["unreadable", "right", "missing"]
-    assert report.verdict == "unreadable"
-    assert message in report.parts[0].reason
 
 
 @tabled

@@ -154,7 +154,7 @@ def another() -> str:
 
 @tabled
 def test_what_is_said_of_a_compensator(changed: dict[str, Any], expected: list[str]) -> None:
-    given = {part: value for part, value in {**RIGHT, **changed}.items() if value}  # type: ignore[dict-item]
+    given = {part: value for part, value in {**RIGHT, **changed}.items() if value}
     assert outcome(WHOLE, "F", given) == expected
 
 

@@ -54,24 +54,6 @@ def test_what_is_no_value_is_refused_with_its_reason(text: str, reason: str) -> 
     assert str(raised.value) == reason
 
 
-def test_bounds_are_where_they_are_said_to_be() -> None:
-    s = {"s": (poly([0, 1]), ONE)}
-    assert len(read("s^59", s)[0]) == 60
-    assert number(read("1" * 2000, {})) == int("1" * 2000)
-    assert number(read("(" * 50 + "1" + ")" * 50, {})) == 1
-    assert number(read("1^" * 50 + "1", {})) == 1
-    assert number(read("*".join(["1e999"] * 6) + "*2^88", {})) == 10**5994 * 2**88  # of 20,000 bits
-    with pytest.raises(UnreadableError, match=r"x is not a letter of this question \(p, s\)"):
-        read("x", {**s, "p": s["s"]})
-    assert number(read("2^1000", {})) == 2**1000
-    assert number(read("2^-1000", {})) == Fraction(1, 2**1000)
-    assert number(read("1e999", {})) == 10**999
-    for wrong in ("s", "1/s"):
-        with pytest.raises(UnreadableError, match="a number is expected here"):
-            number(read(wrong, s))
-    assert number(read("s - s", s)) == 0
-
-
 def test_a_random_expression_has_the_value_that_python_finds() -> None:
     """Trees of sums, products, quotients and powers with their text; both evaluated at points, and in lowest terms."""
     reasons: set[str] = set()

@@ -7,13 +7,10 @@ from typing import Any
 import symobs
 from tests.kit import tabled
 
-S = symobs.StateSpace
-B_AND_EXP = ("[b 0; 0 -exp(b)]", "[1; 1]", "[1 1]")
-
 
 @tabled
 def test_conditions_cases_and_page(
-    task: str, data: dict[str, str], asked: Any, conditions: list[str], cases: list[str]
+    task: str, data: dict[str, Any], asked: Any, conditions: list[str], cases: list[str]
 ) -> None:
     result = getattr(symobs, task)(symobs.StateSpace(**data), **asked)
     assert [str(relation.lhs) for relation in result.conditions] == conditions

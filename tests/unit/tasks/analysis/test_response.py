@@ -165,3 +165,9 @@ def test_what_roots_and_functions_leave_open_is_not_told_as_no() -> None:
     lag = StateSpace("[-1]", C="[1]", symbols={"a": "real"})
     (case,) = symobs.initial_state(lag, output="(exp(a) - 1)*exp(-2*t)", horizon="1").cases
     assert (str(case.when[0].lhs), case.result) == ("exp(a) - 1", None)
+
+
+def test_irrational_waves_with_rational_derivatives_are_drawn() -> None:
+    """The derivatives of sqrt(2) sin(sqrt(2) t) at 0 are 0, 2, 0, -4, …"""
+    (picture,) = pictures(symobs.response(StateSpace("[-1]", "[1]"), input="sqrt(2)*sin(sqrt(2)*t)"))
+    assert [list(map(int, start)) for start in picture.starts] == [[0], [0, 2]]

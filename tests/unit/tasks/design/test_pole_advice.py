@@ -37,14 +37,6 @@ def advice(transfer_function: str, **asked: Any) -> Any:
 # -- the circle --------------------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("count", [1, 2, 3, 4])
-def test_butterworths_identity_holds_in_sympy(count: int) -> None:
-    radius = sympy.Symbol("omega_0", positive=True)
-    p = advice(f"1/s^{count}", radius=radius).polynomial
-    whole = sympy.expand(p * p.subs(s, -s)) - radius ** (2 * count) - (-1) ** count * s ** (2 * count)
-    assert all(sympy.simplify(c) == 0 for c in sympy.Poly(whole, s).all_coeffs())
-
-
 def test_a_circle_without_square_roots_is_refused() -> None:
     with pytest.raises(InputError, match="the 7 poles on a circle are not written with square roots"):
         advice("1/s^7", radius=1)

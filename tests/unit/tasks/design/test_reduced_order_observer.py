@@ -73,21 +73,6 @@ def test_the_equations_hold_for_any_plant(drawn: tuple[Any, Any, Any, Any], pole
         assert found.fixed_modes
 
 
-def test_the_exceptions_of_a_parameter_are_cases() -> None:
-    a, b, p = sympy.symbols("a b p")
-    plant = StateSpace("[0 1; -2 -3]", "[0; 1]", "[a b]")
-    found = symobs.reduced_order_observer(plant, poles=["-p"])
-    holds(found, plant.A, plant.B, plant.C, Matrix([[0]]), s + p)
-    assert found.verdict == "conditional"
-    assert {sympy.factor(c.lhs) for c in found.conditions} == {a, a - b, a - 2 * b}
-    cases = {case.when[0].lhs: case.result for case in found.cases}
-    assert set(cases) == {a, a - b, a - 2 * b}
-    assert [cases[value].verdict for value in (a - b, a - 2 * b)] == ["no", "no"]
-    there = cases[a]
-    assert Matrix([[0, b], [1, 0]]) == there.T
-    holds(there, plant.A, plant.B, Matrix([[0, b]]), Matrix([[0]]), s + p)
-
-
 @tabled
 def test_no_entry_can_be_changed(name: str) -> None:
     found = symobs.reduced_order_observer(THIRD_ORDER, poles="-5, -6")

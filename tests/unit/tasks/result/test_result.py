@@ -30,7 +30,6 @@ if TYPE_CHECKING:
 
     from symobs.proof.derivation.builder import Builder
 
-PLANT = StateSpace("[0 1; -k/m -2]", "[0; 1/m]", "[1 c]")
 SERVO = StateSpace("[0 1; 0 -1]", "[0; 1]", "[1 0]")
 
 
@@ -170,28 +169,6 @@ def test_a_page_is_checked() -> None:
             page.steps = [Define(said(Letter("y"), Letter("v")))]
 
     assert Driven(SERVO, "m", {"number": Scalar.of(3), "square": Scalar.of(9)}).derivation.check().defines("y")
-
-
-# -- conditions ---------------------------------------------------------------------------------------------------------
-
-
-def test_conditions_are_those_of_plant_and_answer() -> None:
-    k, m, c = (Scalar.symbol(name) for name in "kmc")
-    found = squared(1 / c, 1 / c**2, PLANT)
-    assert [(x.kind, x.expression) for x in found.domain] == [("domain", m)]
-    assert [(x.kind, x.expression) for x in found.holds_where] == [("domain", m), ("claim", c)]
-    assert found.verdict == "conditional"
-    known = squared(1 / m, 1 / m**2, PLANT)
-    assert [(x.kind, x.expression) for x in known.holds_where] == [("domain", m)]
-    assert known.verdict == "yes"
-    s = Scalar.symbol("s")
-    assert squared(1 / (s + k), 1 / (s + k) ** 2, PLANT).verdict == "yes"
-    declared = StateSpace("[0 1; -k/m -2]", "[0; 1/m]", "[1 c]", symbols={"k": "real", "m": "positive", "c": "nonzero"})
-    assert squared(1 / c, 1 / c**2, declared).holds_where == ()
-    for place in range(4):
-        parts: list[Any] = [[["0"]], [["1"]], [["1"]], [["0"]]]
-        parts[place] = [["1/c"]]
-        assert [x.expression for x in squared(k, k * k, StateSpace(*parts)).domain] == [c]
 
 
 # -- registries ---------------------------------------------------------------------------------------------------------
