@@ -112,6 +112,9 @@ def starts_process(function: Any) -> bool:
         elif isinstance(found, FunctionType):
             names = {*_names(found.__code__)}
             values = [found.__globals__[name] for name in names if name in found.__globals__]
+            values += [
+                getattr(value, name, None) for value in values if isinstance(value, ModuleType) for name in names
+            ]
             if names & _STARTS or {value.__name__ for value in values if isinstance(value, ModuleType)} & _STARTS:
                 return True
             left += values

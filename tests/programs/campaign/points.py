@@ -100,7 +100,7 @@ def points_for(problem: Tables, answer: Tables, most: int = 5) -> Iterator[Point
 
 def _vanishes(text: str, point: Point) -> bool:
     try:
-        return evaluated(text, point) == 0
+        return bool(evaluated(text, point) == 0)
     except (ZeroDivisionError, Unreadable):
         return False
 

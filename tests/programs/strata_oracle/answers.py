@@ -313,8 +313,9 @@ def hold(problem: Tables, point: Point, branch: Branch, there: Tables) -> None:
     if branch.verdict != there["verdict"]:
         raise Contradiction(f"the verdict is {there['verdict']}, not {branch.verdict}")
     try:
-        with mpmath.workdps(50):
-            _HELD.get(problem["task"], lambda _: None)(Held(problem, point, branch.fields, there))
+        with mpmath.workdps(50):  # type: ignore[no-untyped-call, unused-ignore]
+            if problem["task"] in _HELD:
+                _HELD[problem["task"]](Held(problem, point, branch.fields, there))
     except ZeroDivisionError as error:
         raise Contradiction(f"a field has no value: {error}") from error
     except Unreadable:

@@ -27,9 +27,24 @@ Texts: TypeAlias = list[list[str]]
 Drawn: TypeAlias = dict[str, Any] | None
 
 #: How often each kind of plant is drawn, and each task asked.
-KINDS = {"numeric": 20, "large": 0.7, "several": 18, "defective": 12, "hidden": 14, "discrete": 12, "feedthrough": 8}
+KINDS: dict[str, float] = {
+    "numeric": 20,
+    "large": 0.7,
+    "several": 18,
+    "defective": 12,
+    "hidden": 14,
+    "discrete": 12,
+    "feedthrough": 8,
+}
 KINDS |= {"parametric": 6, "parametric several": 3, "parametric hidden": 3}
-TASKS = {"observability": 8, "controllability": 8, "detectability": 6, "stabilizability": 6, "pbh": 5, "dual": 3}
+TASKS: dict[str, float] = {
+    "observability": 8,
+    "controllability": 8,
+    "detectability": 6,
+    "stabilizability": 6,
+    "pbh": 5,
+    "dual": 3,
+}
 TASKS |= {"characteristic_polynomial": 4, "transfer_function": 6, "canonical_form": 6, "decomposition": 6}
 TASKS |= {"matrix_exponential": 4, "gramian": 3, "initial_state": 2, "initial_state_covariance": 0.3}
 TASKS |= {"time_varying_observability": 2, "state_feedback": 10, "observer": 10, "reduced_order_observer": 7}
@@ -144,7 +159,8 @@ class Shape:
     @classmethod
     def of(cls, A: Table, B: Table, C: Table, **more: Any) -> Shape:
         """Return the shape of matrices of numbers."""
-        return cls(*([[str(entry) for entry in row] for row in M] for M in (A, B, C)), zeros(len(C), len(B[0])), **more)
+        a, b, c = ([[str(entry) for entry in row] for row in M] for M in (A, B, C))
+        return cls(a, b, c, zeros(len(C), len(B[0])), **more)
 
     @property
     def order(self) -> int:
@@ -196,7 +212,7 @@ def _matrices(random: Random, order: int, inputs: int, outputs: int, fractions: 
 def _defective(random: Random, order: int, inputs: int, outputs: int) -> Shape:
     """Return Jordan blocks behind a change of coordinates."""
     _, B, C = _matrices(random, order, inputs, outputs, 0)
-    J, blocks = [[Fraction()] * order for _ in range(order)], []
+    J, blocks = [[Fraction()] * order for _ in range(order)], list[tuple[int, int]]()
     while (start := sum(size for _, size in blocks)) < order:
         value, size = random.randint(-3, 1), random.randint(1, order - start)
         blocks.append((value, size))
@@ -430,8 +446,8 @@ def _output(random: Random, shape: Shape) -> Drawn:
         for weight, terms in zip(row, motion, strict=True):
             for key, part in terms.items():
                 total[key] = total.get(key, Fraction()) + weight * part
-        terms = [f"({part})*t^{power}*exp({rate}*t)" for (rate, power), part in total.items() if part]
-        outputs.append(" + ".join(terms) or "0")
+        told = [f"({part})*t^{power}*exp({rate}*t)" for (rate, power), part in total.items() if part]
+        outputs.append(" + ".join(told) or "0")
     if random.random() < 0.2:
         outputs[0] += random.choice([" + 1", " + t", " + exp(-t)", " + t^4"])
     given = "0" if shape.inputs == 1 else ["0"] * shape.inputs

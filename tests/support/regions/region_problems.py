@@ -4,16 +4,17 @@ from __future__ import annotations
 
 import tomllib
 from pathlib import Path
+from typing import Any
 
 from tests.support.regions.region_problem import Problem
 
 _GROUPS = tomllib.loads(Path(__file__).with_suffix(".toml").read_text(encoding="utf-8"))
 
 
-def _problem(given: dict[str, object]) -> Problem:
-    tuples = {name: tuple(given[name]) for name in ("parameters",) if name in given}  # type: ignore[arg-type]
-    holes = {name: tuple(map(tuple, given[name])) for name in ("excluded",) if name in given}  # type: ignore[call-overload]
-    return Problem(**{**given, **tuples, **holes})  # type: ignore[arg-type]
+def _problem(given: dict[str, Any]) -> Problem:
+    tuples = {name: tuple(given[name]) for name in {"parameters"} & given.keys()}
+    holes = {name: tuple(map(tuple, given[name])) for name in {"excluded"} & given.keys()}
+    return Problem(**{**given, **tuples, **holes})
 
 
 RECORDED, SHAPES, OBSERVERS, ONE_PARAMETER = ([*map(_problem, problems)] for problems in _GROUPS.values())

@@ -1,6 +1,6 @@
-"""Exact real numbers for judging regions: real roots by Sturm's theorem, and signs of expressions with roots.
+"""Exact real numbers for judging regions: real roots in FLINT's certified balls, and signs of expressions with roots.
 
-Everything about roots is integer arithmetic.  A sum with square roots is decided by balls (Arb) where it is not 0, and by
+What is asked of a root is decided in integers.  A sum with square roots is decided by balls (Arb) where it is not 0, and by
 FLINT's algebraic numbers where it may be.
 """
 
@@ -9,11 +9,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import lru_cache
-from itertools import pairwise
 from math import gcd, isqrt, lcm, prod
 from typing import TYPE_CHECKING, Any
 
-from flint import arb, ctx, fmpq
+from flint import arb, ctx, fmpq, fmpz_poly
 from flint.types._gr import gr_real_qqbar_ctx  # type: ignore[import-not-found, unused-ignore]
 
 from tests.support.regions.region_texts import (
@@ -42,7 +41,7 @@ class _IrrationalError(ArithmeticError):
     pass
 
 
-# -- Sturm ----------------------------------------------------------------------------------------------------------
+# -- real roots ----------------------------------------------------------------------------------------------------
 
 
 def primitive(coefficients: Sequence[Fraction | int]) -> tuple[int, ...]:
@@ -65,58 +64,9 @@ def _value(polynomial: Sequence[int], x: Fraction) -> int:
     return total
 
 
-def _remainder(left: Sequence[int], right: Sequence[int]) -> tuple[int, ...]:
-    """Return a positive multiple of the remainder of a division."""
-    rest = list(left)
-    lead = abs(right[0])
-    sign = 1 if right[0] > 0 else -1
-    while len(rest) >= len(right):
-        factor = rest[0] * sign
-        rest = [c * lead for c in rest]
-        for k, c in enumerate(right):
-            rest[k] -= factor * c
-        rest.pop(0)
-    return primitive(rest)
-
-
-@lru_cache(maxsize=4096)
-def _chain(polynomial: tuple[int, ...]) -> tuple[tuple[int, ...], ...]:
-    order = len(polynomial) - 1
-    found = [polynomial, primitive([c * (order - k) for k, c in enumerate(polynomial[:-1])])]
-    while found[-1]:
-        found.append(tuple(-c for c in _remainder(found[-2], found[-1])))
-    return tuple(found[:-1])
-
-
-def gcd_of(left: Sequence[int], right: Sequence[int]) -> tuple[int, ...]:
-    """Return the greatest common divisor of two polynomials."""
-    a, b = primitive(left), primitive(right)
-    while b:
-        a, b = b, (_remainder(a, b) if len(a) >= len(b) else a)
-    return a
-
-
-def _changes(signs: list[int]) -> int:
-    kept = [s for s in signs if s]
-    return sum((a > 0) != (b > 0) for a, b in pairwise(kept))
-
-
-def _changes_at(polynomial: tuple[int, ...], x: Fraction | None, *, left: bool = False) -> int:
-    """Return the sign changes of the chain at x; at an infinity where x is None."""
-    chain = _chain(polynomial)
-    if x is not None:
-        return _changes([_value(p, x) for p in chain])
-    return _changes([p[0] * (-1) ** (left * (len(p) - 1)) for p in chain])
-
-
 def count_real_roots(polynomial: Sequence[int]) -> int:
     """Count the distinct real roots."""
-    found = primitive(polynomial)
-    if not found:
-        raise ValueError("every number is a root of 0")
-    if len(found) == 1:
-        return 0
-    return _changes_at(found, None, left=True) - _changes_at(found, None)
+    return len(real_roots(polynomial))
 
 
 @dataclass
@@ -152,52 +102,24 @@ class Root:
 
 
 def real_roots(coefficients: Sequence[Fraction | int]) -> list[Root]:
-    """Return the distinct real roots in ascending order."""
-    polynomial = primitive(coefficients)
-    if len(polynomial) < 2:
+    """Return the distinct real roots in ascending order, each in the ball that FLINT certifies."""
+    whole = fmpz_poly(list(reversed(primitive(coefficients))))
+    if whole.degree() < 1:
         return []
-    common = gcd_of(polynomial, _chain(polynomial)[1])
-    if len(common) > 1:
-        polynomial = _quotient(polynomial, common)
-    bound = Fraction(2 + max(abs(c) for c in polynomial[1:]) // abs(polynomial[0]))
-    found: list[Root] = []
-    _isolate(polynomial, -bound, bound, found)
-    return found
+    free = whole / whole.gcd(whole.derivative())
+    polynomial = primitive([int(c) for c in reversed(free.coeffs())])
+    found = []
+    for root, _ in free.complex_roots():
+        if root.imag == 0:
+            middle, radius = (_fraction(part) for part in (root.real.mid(), root.real.rad()))
+            found.append(Root(polynomial, middle - radius, middle + radius))
+    return sorted(found, key=lambda root: root.low)
 
 
-def _isolate(polynomial: tuple[int, ...], low: Fraction, high: Fraction, found: list[Root]) -> None:
-    """Append the roots between two numbers that are no roots."""
-    number = _changes_at(polynomial, low) - _changes_at(polynomial, high)
-    if number == 0:
-        return
-    if number == 1:
-        found.append(Root(polynomial, low, high))
-        return
-    middle, step = (low + high) / 2, (high - low) / 4
-    if _value(polynomial, middle) == 0:
-        while _changes_at(polynomial, middle - step) - _changes_at(polynomial, middle + step) != 1 or not (
-            _value(polynomial, middle - step) and _value(polynomial, middle + step)
-        ):
-            step /= 2
-        _isolate(polynomial, low, middle - step, found)
-        found.append(Root(polynomial, middle, middle))
-        _isolate(polynomial, middle + step, high, found)
-        return
-    _isolate(polynomial, low, middle, found)
-    _isolate(polynomial, middle, high, found)
-
-
-def _quotient(left: Sequence[int], right: Sequence[int]) -> tuple[int, ...]:
-    rest, found = [Fraction(c) for c in left], []
-    while len(rest) >= len(right):
-        factor = rest[0] / right[0]
-        found.append(factor)
-        for k, c in enumerate(right):
-            rest[k] -= factor * c
-        rest.pop(0)
-    if any(rest):
-        raise ArithmeticError("the division leaves a remainder")
-    return primitive(found)
+def _fraction(value: arb) -> Fraction:
+    """Return a number that has no radius."""
+    mantissa, exponent = value.man_exp()
+    return Fraction(int(mantissa)) * Fraction(2) ** int(exponent)
 
 
 # -- expressions at a point -----------------------------------------------------------------------------------------
