@@ -44,7 +44,7 @@ class Oracle(Protocol):
         """Return None where it agrees, a text of one line where it does not, `Untold` where it cannot tell."""
 
 
-ORACLES: dict[str, Oracle] = {oracle.NAME: oracle for oracle in (*SYSTEMS, qepcad)}  # type: ignore[dict-item, misc]
+ORACLES: dict[str, Oracle] = {oracle.NAME: oracle for oracle in (*SYSTEMS, qepcad)}  # type: ignore[misc]
 
 
 def judged(oracle: Oracle, problem: Tables, answer: Tables) -> Difference:

@@ -27,24 +27,10 @@ Texts: TypeAlias = list[list[str]]
 Drawn: TypeAlias = dict[str, Any] | None
 
 #: How often each kind of plant is drawn, and each task asked.
-KINDS: dict[str, float] = {
-    "numeric": 20,
-    "large": 0.7,
-    "several": 18,
-    "defective": 12,
-    "hidden": 14,
-    "discrete": 12,
-    "feedthrough": 8,
-}
-KINDS |= {"parametric": 6, "parametric several": 3, "parametric hidden": 3}
-TASKS: dict[str, float] = {
-    "observability": 8,
-    "controllability": 8,
-    "detectability": 6,
-    "stabilizability": 6,
-    "pbh": 5,
-    "dual": 3,
-}
+KINDS: dict[str, float] = {"numeric": 20, "large": 0.7, "several": 18, "defective": 12, "hidden": 14}
+KINDS |= {"discrete": 12, "feedthrough": 8, "parametric": 6, "parametric several": 3, "parametric hidden": 3}
+TASKS: dict[str, float] = {"observability": 8, "controllability": 8, "detectability": 6, "stabilizability": 6}
+TASKS |= {"pbh": 5, "dual": 3}
 TASKS |= {"characteristic_polynomial": 4, "transfer_function": 6, "canonical_form": 6, "decomposition": 6}
 TASKS |= {"matrix_exponential": 4, "gramian": 3, "initial_state": 2, "initial_state_covariance": 0.3}
 TASKS |= {"time_varying_observability": 2, "state_feedback": 10, "observer": 10, "reduced_order_observer": 7}

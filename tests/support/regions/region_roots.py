@@ -109,7 +109,8 @@ def real_roots(coefficients: Sequence[Fraction | int]) -> list[Root]:
     free = whole / whole.gcd(whole.derivative())
     polynomial = primitive([int(c) for c in reversed(free.coeffs())])
     found = []
-    for root, _ in free.complex_roots():
+    roots: Any = free.complex_roots()
+    for root, _ in roots:
         if root.imag == 0:
             middle, radius = (_fraction(part) for part in (root.real.mid(), root.real.rad()))
             found.append(Root(polynomial, middle - radius, middle + radius))

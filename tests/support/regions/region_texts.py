@@ -10,7 +10,7 @@ import ast
 import re
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 from tests.support.algebra import Unreadable, parsed
 from tests.support.regions.region_algebra import (
@@ -100,7 +100,7 @@ _RELATIONS = {ast.Gt: ">", ast.GtE: ">=", ast.Eq: "=", ast.NotEq: "!=", ast.Lt: 
 _FUNCTIONS = {"sqrt": "sqrt", "abs": "Abs", "Abs": "Abs", "CRootOf": "CRootOf", "rootof": "CRootOf"}
 _ARGUMENTS = {"sqrt": (1,), "Abs": (1,), "CRootOf": (2, 3)}
 #: What is written otherwise in Python: factors beside each other, then signs and words.
-_IN_PYTHON = [
+_IN_PYTHON: list[tuple[str, Any]] = [
     (r"\[", "("),
     (r"\]", ")"),
     (r"(?<=[\w)])\s+(?=[\w(])|(?<=\))(?=[\w(])|(?<=\b\d)(?=[A-Za-z(])", "*"),
