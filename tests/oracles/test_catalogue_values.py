@@ -14,7 +14,8 @@ from symobs.formula.expression import parse_matrix, parse_scalar
 from symobs.formula.tree import Evaluated, Exact, Formula, Literal, Relation, evaluate
 from symobs.formula.tree.nodes import children
 from symobs.tasks.result import render
-from tests.pages.test_worked_examples import FILES, solved
+from tests.pages.test_worked_examples import solved
+from tests.support.examples import EXAMPLES as FILES
 from tests.support.paths import ROOT
 from tests.support.tampering.mutations import lines_of
 

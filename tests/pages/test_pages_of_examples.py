@@ -19,7 +19,8 @@ from symobs.pages.page.narrator import narrate, printer_for
 from symobs.pages.printers.latex_printer import LatexPrinter
 from symobs.pages.printers.mathml import MathmlPrinter
 from symobs.tasks.result import render
-from tests.pages.test_worked_examples import FILES, solved
+from tests.pages.test_worked_examples import solved
+from tests.support.examples import EXAMPLES as FILES
 from tests.support.examples import document_of
 from tests.support.tools.browser import Browser
 from tests.unit.pages.test_html import faults, local, parsed

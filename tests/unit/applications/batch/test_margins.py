@@ -9,7 +9,6 @@ import pytest
 
 from symobs.exact.algebraic.loop_distances import slowest_root
 
-control = pytest.importorskip("control")
 np = pytest.importorskip("numpy")
 pytestmark = pytest.mark.slow
 
