@@ -7,7 +7,7 @@ import re
 import shutil
 import signal
 from functools import cache
-from pathlib import Path  # noqa: TC003 - pytest reads the annotations of hooks
+from pathlib import Path
 from types import CodeType, FunctionType, ModuleType
 from typing import TYPE_CHECKING, Any
 
@@ -67,6 +67,8 @@ def own_phrases(monkeypatch: pytest.MonkeyPatch) -> None:
 
 # -- which tests -------------------------------------------------------------------------------------------------------
 
+#: Tests that were measured and take long, by file and name.
+SLOW = {*Path(__file__).with_name("slow.txt").read_text(encoding="utf-8").splitlines()}
 _ALL_SLOW = re.compile(r"^pytestmark = pytest\.mark\.slow$", re.MULTILINE)
 
 
@@ -76,14 +78,16 @@ def pytest_ignore_collect(collection_path: Path, config: pytest.Config) -> bool 
     if collection_path.suffix != ".py" or not chosen or config.args != config.getini("testpaths"):
         return None
     text = collection_path.read_text(encoding="utf-8")
-    left_out = ("not slow" in chosen and _ALL_SLOW.search(text)) or (chosen == "slow" and "mark.slow" not in text)
+    left_out = "not slow" in chosen and _ALL_SLOW.search(text)
     return True if left_out else None
 
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Mark the tests that start processes, and let the tests of one worked example share a worker."""
+    """Mark the tests that take long or start processes, and let the tests of one worked example share a worker."""
     for item in items:
+        if item.nodeid.partition("[")[0].removeprefix("tests/") in SLOW:
+            item.add_marker(pytest.mark.slow)
         if not isinstance(item, pytest.Function):
             continue
         if example := example_of(list(item.callspec.params.values()) if hasattr(item, "callspec") else []):
