@@ -62,7 +62,7 @@ def results(path: Path) -> tuple[Result, ...]:
 NOT_UNIQUE = {"cart_tracking", "cart_tracking_impossible"}
 
 
-@pytest.mark.parametrize("path", every(2, EXAMPLES), ids=lambda path: path.stem)
+@pytest.mark.parametrize("path", every(4, EXAMPLES), ids=lambda path: path.stem)
 def test_no_lie_survives(path: Path, record_property: Callable[[str, object], None]) -> None:
     answers, lines = Count(), Count()
     for result in results(path):
@@ -83,7 +83,7 @@ def test_no_lie_survives(path: Path, record_property: Callable[[str, object], No
     assert lines.tried >= 60
 
 
-@pytest.mark.parametrize("path", every(2, EXAMPLES, 1), ids=lambda path: path.stem)
+@pytest.mark.parametrize("path", every(4, EXAMPLES, 1), ids=lambda path: path.stem)
 def test_every_line_holds_in_plain_fractions(path: Path) -> None:
     for result in results(path):
         assert is_true(result.derivation)

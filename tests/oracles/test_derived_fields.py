@@ -42,6 +42,7 @@ from tests.support.claims.claims_of_regions import region_holds
 from tests.support.derivations import World, plus, times
 from tests.support.examples import results_of
 from tests.support.paths import ROOT
+from tests.support.sampling import every
 from tests.support.tampering.mutations import parts_of
 
 if TYPE_CHECKING:
@@ -312,7 +313,7 @@ def loop_at(plant: tuple[Rows, Rows, Rows, Rows], F: Any, s: Fraction) -> Any:
     return found[0][0] if len(B[0]) == len(C) == 1 else found
 
 
-@pytest.mark.parametrize("name", EXAMPLES)
+@pytest.mark.parametrize("name", every(3, EXAMPLES))
 def test_derived_fields_are_what_plain_fractions_or_numbers_of_many_digits_give(name: str) -> None:
     for part in every_part(name):
         if has_functions(part):
@@ -334,7 +335,7 @@ def hold_in_fractions(part: Result) -> None:
     assert met >= 2
 
 
-@pytest.mark.parametrize("name", asking("transfer_function"))
+@pytest.mark.parametrize("name", every(2, asking("transfer_function")))
 def test_a_transfer_function_is_made_of_its_poles_and_zeros(name: str) -> None:
     for part in parts(name, "transfer_function"):
         P = part.answer["transfer_function"]
@@ -346,7 +347,7 @@ def test_a_transfer_function_is_made_of_its_poles_and_zeros(name: str) -> None:
         assert len(part.fields["poles"]) == P.denominator.degree(part.plant.variable)
 
 
-@pytest.mark.parametrize("name", asking("characteristic_polynomial"))
+@pytest.mark.parametrize("name", every(2, asking("characteristic_polynomial")))
 def test_factors_multiply_to_the_polynomial(name: str) -> None:
     for part in parts(name, "characteristic_polynomial"):
         for point in points(part, FEW):
@@ -434,7 +435,7 @@ def holds(text: str, point: Point) -> bool:
     return difference > 0 if operator == ">" else difference < 0
 
 
-@pytest.mark.parametrize("name", EXAMPLES)
+@pytest.mark.parametrize("name", every(3, EXAMPLES))
 def test_what_is_called_stable_has_all_its_roots_there(name: str) -> None:
     for part in parts(name):
         variable = part.plant.variable

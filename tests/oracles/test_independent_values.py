@@ -169,7 +169,7 @@ def read(name: str, result: Result) -> list[Reader]:
     ]
 
 
-@pytest.mark.parametrize("name", every(2, BY_HAND))
+@pytest.mark.parametrize("name", every(4, BY_HAND))
 def test_every_line_of_every_derivation(name: str, record_property: Callable[[str, object], None]) -> None:
     lines = compared = 0
     for result in results_of(name):
@@ -344,7 +344,7 @@ FREE = {
 }
 
 
-@pytest.mark.parametrize("name", every(2, BY_HAND, 1))
+@pytest.mark.parametrize("name", every(4, BY_HAND, 1))
 def test_every_answer(name: str) -> None:
     hand = hand_of(name)
     for result in results_of(name):
@@ -402,7 +402,7 @@ def test_attributes_are_never_of_the_kernel() -> None:
                 assert not type(getattr(result, field_name)).__module__.startswith("symobs"), field_name
 
 
-@pytest.mark.parametrize("name", every(2, BY_HAND))
+@pytest.mark.parametrize("name", every(4, BY_HAND))
 def test_verdicts_of_stability(name: str) -> None:
     """Hold verdicts, and the inequalities that come with them, against numeric roots at sample points."""
     asked = ("stable", "F_stable", "compensator_stable")
