@@ -116,9 +116,10 @@ def starts_process(function: Any) -> bool:
         elif isinstance(found, FunctionType):
             names = {*_names(found.__code__)}
             values = [found.__globals__[name] for name in names if name in found.__globals__]
-            values += [
-                getattr(value, name, None) for value in values if isinstance(value, ModuleType) for name in names
+            own = [
+                vars(value) for value in values if isinstance(value, ModuleType) and value.__name__.startswith("tests")
             ]
+            values += [scope[name] for scope in own for name in names if name in scope]
             if names & _STARTS or {value.__name__ for value in values if isinstance(value, ModuleType)} & _STARTS:
                 return True
             left += values
