@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import pytest
 
@@ -11,6 +11,10 @@ from symobs.ground.errors import ProblemErrors
 from symobs.problem import read
 from tests.kit import tabled
 from tests.support.problems.printed import finding, findings, problem
+from tests.support.tools.command_line import inside
+
+if TYPE_CHECKING:
+    from pathlib import Path
 
 # O = [c 0; 0 c], so det O = c^2.
 CHAIN: dict[str, Any] = {"plant": {"A": "[0 1; 0 0]", "B": "[0; 1]", "C": "[c 0]"}, "symbols": {"c": "real"}}
@@ -138,3 +142,10 @@ def test_a_letter_before_its_argument_is_a_function(relation: str) -> None:
 
 def test_a_transfer_function_at_a_pole_has_no_value() -> None:
     assert "has no value" in finding("P(0) = 1").reason
+
+
+def test_expected_decimals_are_compared_as_printed(tmp_path: Path) -> None:
+    expected = {"F": "(778.2 s + 3690.7)/(s^2 + 19.6 s + 151.2)", "K": "[29.6 3.60]", "L": "[16.0; 85.]"}
+    for expect, code in ((expected, 0), ({**expected, "L": "[16.0; 85]"}, 4), ({**expected, "K": "[29.5 3.6]"}, 4)):
+        (tmp_path / "file.json").write_text(problem(**OGATA, expect=expect), encoding="utf-8")
+        assert inside("solve", "file.json", folder=tmp_path).code == code

@@ -234,3 +234,10 @@ def test_a_notebook_is_one_of_format_4_5_and_says_the_same_every_time() -> None:
         (True, True, False, 1.0),
     ]
     assert export("ipynb", [each]) == export("ipynb", [held("servo_observer")])
+
+
+def test_items_of_2_1_are_the_same_in_other_names() -> None:
+    new, old = item_of(held("servo_observer")), item_of(held("servo_observer"), "qti21")
+    assert old.tag == "assessmentItem"
+    assert [re.sub(r"qti-|-", "", e.tag).lower() for e in new.iter()] == [e.tag.lower() for e in old.iter()]
+    assert [e.get("toleranceMode") for e in old.iter("equal")] == ["exact"] * 4
