@@ -4,13 +4,12 @@ from __future__ import annotations
 
 from fractions import Fraction
 from functools import lru_cache
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
-from flint import acb, arb, ctx, fmpq, fmpq_poly
+from flint import arb, ctx
 
 from symobs.exact.algebraic.real_algebraic import RealRoot
 from symobs.exact.algebraic.root_sum import RootSum
-from symobs.exact.core.field import EIGENVALUE
 from symobs.exact.core.generators import PI, function_named, symbols_in
 from symobs.exact.core.ring import Precision
 
@@ -100,25 +99,5 @@ def _generator(name: str) -> arb:
 
 
 @lru_cache(maxsize=1024)
-def _sum_over_roots(found: RootSum, bits: int) -> arb:
-    """Return an enclosure of Σ λᵖ e^{λT} / q′(λ), from disjoint enclosures of all roots of q with rational coefficients."""
-    coefficients = tuple(c.fraction() for c in reversed(found.polynomial.coefficients(EIGENVALUE)))
-    slope, time, total = _polynomial(coefficients).derivative(), _ball(found.argument), acb(0)
-    for root in _roots_of(coefficients, bits):
-        below = acb(0)
-        for c in reversed(slope.coeffs()):
-            below = below * root + acb(c)
-        total = total + root**found.power * (root * time).exp() / below
-    return total.real
-
-
-@lru_cache(maxsize=256)
-def _roots_of(coefficients: tuple[Fraction, ...], bits: int) -> tuple[acb, ...]:
-    """Return enclosures of the roots of a polynomial without multiple roots, lowest coefficient first."""
-    with Precision(bits):
-        found: Any = _polynomial(coefficients).complex_roots()
-        return tuple(root for root, _ in found)
-
-
-def _polynomial(coefficients: tuple[Fraction, ...]) -> fmpq_poly:
-    return fmpq_poly([fmpq(c.numerator, c.denominator) for c in coefficients])
+def _sum_over_roots(found: RootSum, bits: int) -> arb:  # noqa: ARG001 - the precision, by which it is kept
+    return found.enclosed(_ball(found.argument))

@@ -8,16 +8,22 @@ from __future__ import annotations
 
 from dataclasses import replace
 from functools import lru_cache
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
+
+from flint import acb, acb_poly, ctx, fmpq, fmpq_poly
 
 from symobs.exact.algebraic.extension import AlgebraicExtension
 from symobs.exact.core.field import EIGENVALUE
 from symobs.exact.core.generators import Function, derivative, function, partial, substitute, symbols_in
+from symobs.exact.core.ring import Precision
 from symobs.exact.core.scalar import Scalar
 from symobs.ground.dataclass import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
+    from fractions import Fraction
+
+    from flint import arb
 
 #: The name of the root in texts; `lambda` itself is a keyword where they are read.
 BOUND = "lam"
@@ -75,6 +81,14 @@ class RootSum(Function):
         """The time and the parameters of q."""
         return symbols_in(self.argument) | symbols_in(self.polynomial) - {EIGENVALUE}
 
+    def enclosed(self, time: arb) -> arb:
+        """Return an enclosure where q has rational coefficients, from disjoint enclosures of all its roots."""
+        coefficients = tuple(c.fraction() for c in reversed(self.polynomial.coefficients(EIGENVALUE)))
+        total = acb(0)
+        for root, slope in _roots_of(coefficients, ctx.prec):
+            total = total + root**self.power * (root * time).exp() / slope
+        return total.real
+
     def rate(self, time: str) -> Scalar:
         """Return d/dt: the summand times λ, its power reduced by q."""
         lower, speed = AlgebraicExtension(self.polynomial, EIGENVALUE).coefficients[1:], derivative(self.argument, time)
@@ -102,3 +116,13 @@ def _texts(q: Scalar, name: str) -> tuple[str, str]:
     """Return the texts of q and q′ in a name for the root."""
     root = {EIGENVALUE: Scalar.symbol(name)}
     return str(q.substitute(root)), str(partial(q, EIGENVALUE).substitute(root))
+
+
+@lru_cache(maxsize=256)
+def _roots_of(coefficients: tuple[Fraction, ...], bits: int) -> list[tuple[acb, acb]]:
+    """Return enclosures of the roots of a polynomial without multiple ones, lowest coefficient first, and of its slopes."""
+    q = fmpq_poly([fmpq(c.numerator, c.denominator) for c in coefficients])
+    slope = acb_poly(q.derivative())
+    with Precision(bits):
+        roots: Any = q.complex_roots()
+        return [(root, slope(root)) for root, _ in roots]

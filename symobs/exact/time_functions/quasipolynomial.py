@@ -194,9 +194,13 @@ def _hyperbolic(terms: Mapping[Key, Scalar]) -> list[tuple[Key, Scalar]]:
 
 
 def rate_parts(rate: Scalar) -> tuple[Scalar, Scalar]:
-    """Return (the part without square roots, the rest); a rate that divides by roots is all without."""
-    roots = {name: ZERO for name in rate.names if (f := function_named(name)) is not None and f.kind == "sqrt"}
-    plain = rate if roots.keys() & rate.denominator.names else rate.substitute(roots)
+    """Return (the part without square roots, the rest); beside others, roots of primes are numbers as all are.
+
+    A rate that divides by roots is all without.
+    """
+    roots = roots_in(rate)
+    moving = dict.fromkeys([f.name for f in roots if not f.square] or [f.name for f in roots], ZERO)
+    plain = rate if moving.keys() & rate.denominator.names else rate.substitute(moving)
     return plain, rate - plain
 
 

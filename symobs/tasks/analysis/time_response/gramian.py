@@ -9,7 +9,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 from symobs.exact import Matrix, Scalar, modulo, product_of
-from symobs.exact.core.generators import substitute, symbols_in
+from symobs.exact.core.generators import function_named, substitute, symbols_in
 from symobs.exact.time_functions.matrix_exponential import NoClosedForm
 from symobs.exact.time_functions.quasipolynomial import (
     Table,
@@ -411,7 +411,7 @@ def _transposed(term: Term) -> Term:
 
 def _tell_lyapunov(result: Gramian, page: Builder) -> None:
     """Define P where Lyapunov's equation has one solution: it serves every branch."""
-    if result.plant.order > _LYAPUNOV_UP_TO:
+    if result.plant.order > _LYAPUNOV_UP_TO or any(map(function_named, result.plant.field.names)):
         return
     A, C = _letters(result, page)
     P = lyapunov(A.value, C.value, discrete=False)

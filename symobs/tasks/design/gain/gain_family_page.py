@@ -26,8 +26,11 @@ if TYPE_CHECKING:
 
 def write_sylvester(page: Builder, design: GainDesign, side: PlacementProblem, desired: DesiredPolynomial) -> None:
     """Write the equation, its solution, and for several outputs (inputs) the family and one member of it."""
-    page.define(f"F_{side.index}", companion(desired.coefficients), say="companion_of_wish")
     chart = design.chart
+    if chart is None and design.dual_pair(page.plant).c.shape[0] > 1:  # whether the rows of G are free is not known
+        page.define(side.gain, design.answer[side.gain], say="gain_stated", answer=True)
+        return
+    page.define(f"F_{side.index}", companion(desired.coefficients), say="companion_of_wish")
     if chart is None:
         _only_gain(page, design, side, desired)
         return
