@@ -197,7 +197,11 @@ def require_known(values: Sequence[Matrix | Scalar], signs: Mapping[str, str], w
     for f in sorted(functions | all_roots(*values), key=lambda f: f.text):
         if f.symbols & {"t", "s", "z"}:
             message = f"{f.text} is a function of {', '.join(f.symbols & {'t', 's', 'z'})}"
-            raise InputError(message, where=where, repair="entries are rational in t, and have no s or z")
+            repair = "entries are rational in t, and have no s or z"
+            if f.kind == "exp" and f.symbols & {"s"}:
+                message = f"{message}: dead time is not rational"
+                repair = "write a Padé approximation, (2 - s)/(2 + s) for exp(-s)"
+            raise InputError(message, where=where, repair=repair)
         if f.kind == "sqrt" and not f.square:
             if f.argument.is_constant or any(map(function_named, f.argument.names)):
                 repair = "sqrt of numbers and of rational expressions is possible; for other roots declare a symbol"
@@ -387,7 +391,8 @@ def read_time(dt: object, symbols: Symbols) -> TimeDomain:
     value = read_scalar(str(dt) if isinstance(dt, float) else dt, symbols, "plant.dt")
     if value.is_zero:
         return Continuous()
-    if not value.is_constant or value.fraction() <= 0:
+    if sign_of(value, symbols.signs) != "positive":
         message = f"{value} is not a sampling period"
-        raise InputError(message, where="plant.dt", repair="write 0 for continuous time, true or a positive number")
+        repair = "write 0 for continuous time, true, a positive number, or a symbol that is declared positive"
+        raise InputError(message, where="plant.dt", repair=repair)
     return Discrete(value)

@@ -113,6 +113,8 @@ def _rows_of(value: Any, variable: str) -> list[list[Any]] | None:
     """Return the rows of a matrix of functions, None for one function: two lists of coefficients have no variable."""
     if hasattr(value, "tolist") and len(getattr(value, "shape", ())) == 2:  # a matrix or an array
         value = value.tolist()
+    if (rows := _over_one_denominator(value)) is not None:
+        return rows
     if (
         not isinstance(value, (list, tuple))
         or not value
@@ -123,6 +125,19 @@ def _rows_of(value: Any, variable: str) -> list[list[Any]] | None:
     if not any(isinstance(entry, (list, tuple)) or _has(variable, entry) for entry in entries):
         return None
     return [list(row) for row in value]
+
+
+def _over_one_denominator(value: Any) -> list[list[Any]] | None:
+    """Return the rows of functions of ([[n, n], [n, n]], d), numerators over a common denominator; None for other values."""
+    if not isinstance(value, (list, tuple)) or len(value) != 2:
+        return None
+    above, below = (part.tolist() if hasattr(part, "tolist") else part for part in value)
+    are_lists = all(isinstance(part, (list, tuple)) and part for part in (above, below))
+    if not are_lists or not all(isinstance(row, (list, tuple)) for row in above):
+        return None
+    if any(isinstance(part, (list, tuple)) for part in below):
+        return None
+    return [[(entry if isinstance(entry, (list, tuple)) else [entry], below) for entry in row] for row in above]
 
 
 def _has(variable: str, entry: object) -> bool:

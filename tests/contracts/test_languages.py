@@ -270,13 +270,20 @@ def test_the_command_line_names_a_language(tmp_path: Path) -> None:
     assert "Questions\n=========" in told("sheet", str(path), "--language", "en")
 
 
-def test_an_incomplete_language_is_refused_as_a_whole(copy: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    words = copy / "words.toml"
+def test_a_phrase_without_a_translation_is_printed_in_english(copy: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    words, german = copy / "words.toml", language_named("de")
     words.write_text(words.read_text(encoding="utf-8").replace('code = "de"', 'code = "yy"'), encoding="utf-8")
     (copy / "gain.toml").unlink()
     monkeypatch.setattr(module, "_folders", lambda: {"yy": copy})
-    with pytest.raises(ValueError, match=r"gain\.toml: write a translation of"):
-        language_named("yy")
+    found = language_named("yy")
+    missing = phrases_of_modules()["gain"]
+    assert {key: found.phrases[key] for key in missing} == missing
+    assert all(found.phrases[key] == german.phrases[key] for key in found.phrases.keys() - missing)
+    (copy / "words.toml").write_text('[WORDS]\ncode = "zz"\n', encoding="utf-8")
+    monkeypatch.setattr(module, "_folders", lambda: {"zz": copy})
+    module._read.cache_clear()
+    with pytest.raises(ValueError, match=r"words\.toml"):
+        language_named("zz")
 
 
 def test_every_file_of_a_language_is_read() -> None:

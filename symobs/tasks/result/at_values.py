@@ -80,9 +80,9 @@ def _plant(plant: StateSpace, values: dict[str, Scalar]) -> StateSpace:
         raise InputError(message, where="values", repair="give values where the data are defined") from None
     if plant.polynomial is not None:
         polynomial = substitute(plant.polynomial, values)
-        there = StateSpace.from_polynomial(polynomial, plant.dt, symbols=there.symbols)
+        there = StateSpace.from_polynomial(polynomial, there.dt, symbols=there.symbols)
     elif plant.origin is not None:
-        written = StateSpace.from_transfer_function(substitute(plant.origin, values), plant.dt, symbols=there.symbols)
+        written = StateSpace.from_transfer_function(substitute(plant.origin, values), there.dt, symbols=there.symbols)
         there = written if written.matrices == there.matrices else there
     elif plant.nonlinear is not None:
         there.nonlinear = plant.nonlinear.moved(values)

@@ -224,3 +224,19 @@ def test_an_error_hides_no_other_and_makes_none(text: str, places: list[str]) ->
     with pytest.raises(ProblemErrors) as raised:
         read(text)
     assert [error.where for error in raised.value.errors] == places
+
+
+def test_a_method_is_for_the_tasks_of_a_file_that_have_it() -> None:
+    text = """
+tasks = ["observability", "observer", "stability_region"]
+[plant]
+A = "[0 1; -2 -3]"
+C = "[1 0]"
+[specification]
+poles = "-4, -5"
+method = "%s"
+"""
+    found = validate(parse(text % "ackermann", "problem")).solve()
+    assert [result.printed_method for result in found][:2] == ["rank", "ackermann"]
+    with pytest.raises(ProblemErrors, match="'magic' is not a method of observability"):
+        validate(parse(text % "magic", "problem")).solve()

@@ -125,3 +125,24 @@ def test_values_that_cannot_be_are_refused(values: dict[Any, Any], said: str) ->
     plant = StateSpace("[p 1; 0 b]", symbols={"p": "real", "b": "positive"})
     with pytest.raises(InputError, match=said):
         plant.substitute(values)
+
+
+def test_transfer_functions_of_other_programs_are_read() -> None:
+    """Two lists of coefficients, and SciPy's and MATLAB's matrix of numerators over a common denominator."""
+    read = StateSpace.from_transfer_function
+    assert read([1, 3], [1, 3, 2]) == read(([1, 3], [1, 3, 2])) == read([1, 3], [1, 3, 2], 0)
+    assert read([1], [2, 1], "1/2").dt == read([1], [2, 1], dt="1/2").dt == Fraction(1, 2)
+    lag = symobs.transfer_function(read(([[1, 0], [1, 1]], [1, 1]))).transfer_function
+    s = sympy.Symbol("s")
+    assert lag == sympy.Matrix([[1, 0], [1, 1]]) / (s + 1)
+    with pytest.raises(InputError, match="dead time is not rational; write a Padé approximation"):
+        read("exp(-s)/(s+1)")
+
+
+def test_a_sampling_period_may_be_a_symbol_that_is_positive() -> None:
+    held = StateSpace("[exp(-T)]", "[1]", "[1]", dt="T", symbols={"T": "positive"})
+    assert (held.is_discrete, held.dt, held.substitute({"T": "1/2"}).dt) == (True, "T", Fraction(1, 2))
+    assert symobs.observability(held).at(T=2).plant.dt == 2
+    assert '"dt": "T"' in symobs.observability(held).to("json")
+    with pytest.raises(InputError, match="T is not a sampling period"):
+        StateSpace("[1]", dt="T", symbols={"T": "real"})

@@ -186,3 +186,10 @@ def test_an_interval_that_begins_at_the_declared_sign_is_printed() -> None:
         p, q, r = 3 - 2 * a, a * a - 6 * a + Fraction(3, 10), 3 * a * a - Fraction(3, 10) * a + Fraction(3, 100)
         assert (p > 0 and q > 0 and r > 0 and p * q > r) is stable
         assert (found.at(a=a).verdict == "yes") is stable
+
+
+def test_a_parameter_in_the_numerator_alone_says_how_the_loop_is_asked_for() -> None:
+    found = symobs.stability_region(symobs.StateSpace.from_transfer_function("K/(s*(s+1)*(s+2))"), parameters="K")
+    page = " ".join(found.to("text").split())
+    assert "The loop with unity feedback is asked for by polynomial = s**3 + 3*s**2 + 2*s + K." in page
+    assert symobs.stability_region("s**3 + 3*s**2 + 2*s + K", parameters="K").stable_if == ["K > 0", "K < 6"]
