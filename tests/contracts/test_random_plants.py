@@ -40,7 +40,7 @@ BUDGET = 240.0
 #: Tasks whose specification is a matter of its own.
 OTHERS = {"time_varying_observability", "stability_region", "initial_state_covariance", "disturbance_observer"}
 #: Statements that may give way to a remark, of all pages.
-REMARKS = 6
+REMARKS = 20
 
 
 def plant_of(chance: random.Random) -> symobs.StateSpace:

@@ -398,11 +398,14 @@ def identities(
 def _common_denominators(moving: Iterable[Function]) -> dict[Function, Scalar]:
     """Return for each function the denominator of all arguments that may depend on its own.
 
-    exp(t), exp(t/(a + 1)) and exp(t*a/(a + 1)) do, exp(x) and exp(t*exp(x)/(exp(x) + 1)) do not: they share no letter.
+    exp(t), exp(t/(a + 1)) and exp(t*a/(a + 1)) do, exp(x) and exp(t*exp(x)/(exp(x) + 1)) do not: their numerators share no
+    letter, and they have different denominators.
     """
     groups: list[tuple[set[str], list[Function]]] = []
     for f in moving:
-        letters, members = {name for name in f.argument.names if function_named(name) is None}, [f]
+        above, below = f.argument.numerator, f.argument.denominator
+        letters, members = {name for name in above.names if function_named(name) is None} or {"1"}, [f]
+        letters |= set() if below.is_constant else {str(below)}
         for group in [group for group in groups if group[0] & letters]:
             groups.remove(group)
             letters |= group[0]
@@ -410,8 +413,8 @@ def _common_denominators(moving: Iterable[Function]) -> dict[Function, Scalar]:
         groups.append((letters, members))
     found: dict[Function, Scalar] = {}
     for _, members in groups:
-        below = Matrix.of([[f.argument for f in members]]).common_denominator()
-        found |= dict.fromkeys(members, below / gcd(*(coefficient for coefficient, _ in below.terms())))
+        shared = Matrix.of([[f.argument for f in members]]).common_denominator()
+        found |= dict.fromkeys(members, shared / gcd(*(coefficient for coefficient, _ in shared.terms())))
     return found
 
 
