@@ -33,8 +33,8 @@ def without_rejected(written: Derivation) -> Derivation:
                 break
             written = replace(written, steps=_remarked(written.steps, error.facts["step"]))
             continue
-        for error in rejected:
-            left_out(f"the line {error.facts['line']}")
+        for each in rejected:
+            left_out(f"the line {each.facts['line']}")
         return written
     raise rejected[0]
 
