@@ -11,7 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from symobs.ground.errors import InputError, ProblemErrors, SymobsError
-from symobs.problem import parse, read
+from symobs.problem import parse, read, validate
 from symobs.problem.expect import mismatches
 from tests.kit import tabled
 from tests.support.tools.command_line import EXAMPLES, SERVO
