@@ -218,8 +218,8 @@ def require_known(values: Sequence[Matrix | Scalar], signs: Mapping[str, str], w
     degrees = [f.number.degree for f in functions if isinstance(f, RealRoot)]
     degrees += [2] if any(f.square for f in functions | all_roots(*values)) else []
     if lcm(*degrees) != prod(degrees):
-        roots = ", ".join(sorted(f.text for f in functions if isinstance(f, RealRoot)))
-        message = f"roots that may depend on each other: {roots}"
+        listed = ", ".join(sorted(f.text for f in functions if isinstance(f, RealRoot)))
+        message = f"roots that may depend on each other: {listed}"
         raise InputError(message, where=where, repair="write all of them with one root, r^2 for another")
     return functions
 

@@ -6,6 +6,7 @@ import json
 import os
 import random
 import warnings
+from functools import partial
 from typing import Any
 
 import pytest
@@ -13,8 +14,12 @@ import pytest
 import symobs
 from symobs.ground.errors import SymobsError, SymobsWarning
 from symobs.tasks.result import tasks
+from tests.support.sampling import FULL
 
-pytestmark = pytest.mark.slow
+pytestmark = [
+    pytest.mark.slow,
+    pytest.mark.skipif(not FULL, reason="takes minutes, and how many plants are answered depends on the machine"),
+]
 
 #: What entries are made of: numbers, decimals, parameters, functions of them, and roots.
 ENTRIES = {
@@ -27,7 +32,7 @@ ENTRIES = {
 #: Those of which answers are long with three states.
 SHORT = [ENTRIES[kind] for kind in ("parameters", "functions", "roots")]
 #: f, its states, its inputs, and their values at rest.
-NONLINEAR = [
+NONLINEAR: list[tuple[str, str, str, dict[str, Any]]] = [
     ("[u - 0.5*sqrt(h)]", "h", "u", {"h": "4", "u": "1"}),
     ("[v; -a*sin(x) - v + u]", "x, v", "u", {"x": "b", "v": 0, "u": "a*sin(b)"}),
     ("[u - exp(-x)]", "x", "u", {"x": "a", "u": "exp(-a)"}),
@@ -80,7 +85,7 @@ def specification_of(name: str, plant: symobs.StateSpace, chance: random.Random)
             ["controllable", "observable", "modal"] if kinds[name] == "kind" else ["observability", "controllability"]
         )
         asked[kinds[name]] = chance.choice(choices)
-    own = {"response": {"input": ["1"] * plant.inputs}, "pole_advice": {"radius": "1"}}
+    own: dict[str, dict[str, Any]] = {"response": {"input": ["1"] * plant.inputs}, "pole_advice": {"radius": "1"}}
     return own.get(name, {"horizon": horizon, "output": ["1"] * plant.outputs} if name == "initial_state" else asked)
 
 
@@ -93,15 +98,11 @@ def test_every_answer_of_random_plants_has_its_page() -> None:
         chance, name = random.Random(seed), names[seed % len(names)]  # noqa: S311 - repeats
         try:
             plant = plant_of(chance)
-            result = symobs.bounded(
-                lambda plant=plant, name=name, chance=chance: tasks()[name].function(
-                    plant, **specification_of(name, plant, chance)
-                ),
-                timeout=5,
-            )
+            solve = partial(tasks()[name].function, plant, **specification_of(name, plant, chance))
+            result = symobs.bounded(solve, timeout=5)
             with warnings.catch_warnings(record=True) as caught:
                 warnings.simplefilter("always", SymobsWarning)
-                text = symobs.bounded(lambda result=result: result.to("text"), timeout=10)
+                text = symobs.bounded(partial(result.to, "text"), timeout=10)
             found = json.loads(result.to_json())["results"][0]
         except SymobsError as error:
             if error.exit_code == 1:

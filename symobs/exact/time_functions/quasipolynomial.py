@@ -199,7 +199,8 @@ def rate_parts(rate: Scalar) -> tuple[Scalar, Scalar]:
     A rate that divides by roots is all without.
     """
     roots = roots_in(rate)
-    moving = dict.fromkeys([f.name for f in roots if not f.square] or [f.name for f in roots], ZERO)
+    names: list[str] = [f.name for f in roots if not f.square] or [f.name for f in roots]
+    moving = dict.fromkeys(names, ZERO)
     plain = rate if moving.keys() & rate.denominator.names else rate.substitute(moving)
     return plain, rate - plain
 

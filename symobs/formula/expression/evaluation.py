@@ -199,8 +199,9 @@ def _degree_of_root(base: Scalar, exponent: Number) -> int:
 
 def _halves(exponent: Number) -> int:
     """Return p where an exponent is p/2 with an odd p, else 0."""
-    is_half = isinstance(exponent, Scalar) and exponent.is_constant and exponent.fraction().denominator == 2
-    return exponent.fraction().numerator if is_half else 0
+    if not isinstance(exponent, Scalar) or not exponent.is_constant or exponent.fraction().denominator != 2:
+        return 0
+    return exponent.fraction().numerator
 
 
 class Evaluator:

@@ -66,8 +66,9 @@ def write_region(page: Builder, result: StabilityRegion) -> None:
 def _say_open_loop(page: Builder, result: StabilityRegion) -> None:
     """Say how a loop is asked for where parameters stand in the numerator of a transfer function alone."""
     written, chi = result.plant.written, result.answer["polynomial"]
-    single = isinstance(written, WrittenTransferFunction) and result.question.K is None and result.question.L is None
-    if single and chi.names <= {page.plant.variable} and not written.above.names <= {page.plant.variable}:
+    if not isinstance(written, WrittenTransferFunction) or {result.question.K, result.question.L} != {None}:
+        return
+    if chi.names <= {page.plant.variable} and not written.above.names <= {page.plant.variable}:
         page.remark("open_loop_asked", polynomial=str(written.above + written.below))
 
 

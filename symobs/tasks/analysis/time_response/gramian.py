@@ -141,8 +141,8 @@ class Gramian(DampingCases):
             open_answer = {"matrix": None, "determinant": None, "question": question_of(error), "factor": error.factor}
             return cls(plant, method_name, {**shared, **open_answer})
         if W is not None:
-            answer = {"matrix": substitute(W, {"t": asked["horizon"]}), "determinant": None, "function": W}
-            return cls(plant, method_name, {**shared, **answer, "chosen": chosen})
+            there = {"matrix": substitute(W, {"t": asked["horizon"]}), "determinant": None, "function": W}
+            return cls(plant, method_name, {**shared, **there, "chosen": chosen})
         table = exponential.table() if asked["of"] == "observability" else transposed(exponential.table())
         seen = product(table_of(C), table)
         integrals = integral(product(transposed(seen), seen))
@@ -443,8 +443,16 @@ def _write_branch(page: Builder, result: Gramian) -> None:
         equation = relation(rate_of(moving), _transposed(A) @ moving + moving @ A + _square(C))
         start = relation(moving.at("t", 0), Matrix.zeros(*answer["matrix"].shape))
         held = moving.at("t", answer["horizon"])
-        slots = {"equation": equation, "start": start}
-        page.define("W", held, answer["matrix"], say="gramian_by_sums", answer=True, closing=False, **slots)
+        page.define(
+            "W",
+            held,
+            answer["matrix"],
+            say="gramian_by_sums",
+            answer=True,
+            closing=False,
+            equation=equation,
+            start=start,
+        )
         return
     if "exponential" not in answer:
         total = _square(C)

@@ -47,7 +47,9 @@ def has_sums(plant: StateSpace) -> bool:
 
 def motion(plant: StateSpace, whole: Matrix, start: Matrix) -> Exponential:
     """Return e^{Mt} V for the matrix M of a larger system in which that of the plant stands.  Raises `NoClosedForm`."""
-    return with_signs(plant, {}, lambda sign: exponential(whole, plant.variable, sign, sums=True, start=start))[0]
+    found: Exponential
+    found, _ = with_signs(plant, {}, lambda sign: exponential(whole, plant.variable, sign, sums=True, start=start))
+    return found
 
 
 def question_of(error: NoClosedForm) -> str:

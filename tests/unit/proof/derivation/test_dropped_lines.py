@@ -51,7 +51,7 @@ def test_a_false_statement_gives_way_to_a_remark_and_what_a_page_rests_on_does_n
     wrong: dict[str, Step] = {
         "answer": replace(statement, answer=True),
         "silent": Conclude(None, (false,)),
-        "given": Given((relation(false.members[0], "!=", Term(Letter("A"), page.check())),)),
+        "given": Given((relation(Term(Letter("A"), page.check()), "!=", Term(Letter("A"), page.check())),)),
     }
     with pytest.warns(SymobsWarning, match="is left out: its check failed"):
         remaining = without_rejected(replace(page, steps=(*page.steps, statement)))
