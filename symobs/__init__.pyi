@@ -40,15 +40,15 @@ from symobs.tasks.analysis.realization.characteristic_polynomial import Characte
 from symobs.tasks.analysis.realization.dual import Dual as _Dual
 from symobs.tasks.analysis.realization.kalman_decomposition import Decomposition as _Decomposition
 from symobs.tasks.analysis.realization.transfer_function import TransferFunction as _TransferFunction
-from symobs.tasks.analysis.time_response.response import Response as _Response
 from symobs.tasks.analysis.stability_region.margins import margins as margins
 from symobs.tasks.analysis.stability_region.stability_region import StabilityRegion as _StabilityRegion
 from symobs.tasks.analysis.time_response.gramian import Gramian as _Gramian
 from symobs.tasks.analysis.time_response.initial_state import InitialState as _InitialState
 from symobs.tasks.analysis.time_response.initial_state_covariance import InitialStateCovariance as _InitialStateCovariance
 from symobs.tasks.analysis.time_response.matrix_exponential import MatrixExponential as _MatrixExponential
-from symobs.tasks.analysis.time_varying.time_varying_observability import TimeVaryingObservability as _TimeVaryingObservability
+from symobs.tasks.analysis.time_response.response import Response as _Response
 from symobs.tasks.analysis.time_response.zero_order_hold import ZeroOrderHold as _ZeroOrderHold
+from symobs.tasks.analysis.time_varying.time_varying_observability import TimeVaryingObservability as _TimeVaryingObservability
 from symobs.tasks.design.compensator.output_feedback import OutputFeedback as _OutputFeedback
 from symobs.tasks.design.disturbance.disturbance_observer import DisturbanceObserver as _DisturbanceObserver
 from symobs.tasks.design.disturbance.unknown_input_observer import UnknownInputObserver as _UnknownInputObserver
@@ -340,11 +340,12 @@ def feedforward(
     control_polynomial: str | Expr | None = None,
     observer_poles: str | Sequence[_Number] | Mapping[str, Any] | MatrixBase | None = None,
     observer_polynomial: str | Expr | None = None,
+    K: _Matrix | None = None,
     observer: str = "full",
     method: str = "auto",
     floats: str | None = None,
 ) -> _FeedforwardResult:
-    """Design F in u = −K x̂ + F v so that y = v at rest:  F = [(C − DK)(−A + BK)⁻¹B + D]⁻¹."""
+    """Design F in u = −K x + F v, or −K x̂ + F v, so that y = v at rest:  F = [(C − DK)(−A + BK)⁻¹B + D]⁻¹."""
 
 class _GramianResult(_Gramian):
     """What `gramian` returns."""

@@ -166,7 +166,7 @@ s, z = symbols("s z")
 omega, b, p, q, h1, h2, k1, k2, c, d, theta = symbols("omega b p q h1 h2 k1 k2 c d theta")
 M, m, l, g = symbols("M m l g")
 a, k, m1, m2, R1, R2, C1, C2 = symbols("a k m1 m2 R1 R2 C1 C2")
-omega_0, mu1, mu2 = symbols("omega_0 mu1 mu2")
+omega_0, omega_c, zeta_c, gamma, mu1, mu2 = symbols("omega_0 omega_c zeta_c gamma mu1 mu2")
 p1, p2, p3, p4, q1, q2, q3, q4 = symbols("p1:5 q1:5")
 
 
@@ -282,7 +282,10 @@ class Hand:
 
     @cached_property
     def loop_matrix(self) -> Any:
-        BK, LC = self.B * self.feedback_gain, self.observer_gain * self.C
+        BK = self.B * self.feedback_gain
+        if self.observer is None and self.L is None:
+            return self.A - BK
+        LC = self.observer_gain * self.C
         return Matrix([[self.A - BK, BK], [sympy.zeros(*self.A.shape), self.A - LC]])
 
     @cached_property
@@ -426,6 +429,14 @@ PROBLEMS = {
     ),
     "cart_pendulum_feedback": Hand(**cart, control=(s + 1) * (s + 2) * (s + 3) * (s + 4)),
     "servo_feedforward": Hand(**servo, control=(s + 2) ** 2, observer=(s + 10) ** 2, follows=True),
+    "vehicle_steering_feedforward": Hand(
+        A=Matrix([[0, 1], [0, 0]]),
+        B=Matrix([gamma, 1]),
+        C=Matrix([[1, 0]]),
+        control=s**2 + 2 * zeta_c * omega_c * s + omega_c**2,
+        signs={"gamma": "positive", "omega_c": "positive", "zeta_c": "positive"},
+        follows=True,
+    ),
     "third_order_feedforward": Hand(
         **third_order,
         control=(s + 3) * (s + 4) * (s + 5),

@@ -212,6 +212,13 @@ def test_the_feedforward_is_drawn() -> None:
     assert same(graph.transfer("v", "y"), 4 / (s + 2) ** 2)
 
 
+def test_the_feedforward_of_a_measured_state_is_drawn() -> None:
+    """A plant 1/(s + 1) whose state is its output: K = 1 and F = 2 give 2/(s + 2)."""
+    step, known = drawn(symobs.feedforward(StateSpace("[-1]", "[1]", "[1]"), control_poles=[-2]), "state_feedforward")
+    graph = Graph(step, known, {"Plant": sympy.Matrix([[1 / (s + 1)]])}, {"v": 1})
+    assert same(graph.transfer("v", "y"), 2 / (s + 2))
+
+
 def test_the_tracking_loop_is_drawn() -> None:
     """S2: with K_d = [w^2 -1] for an oscillator the reference leaves the error, and y follows its first component."""
     page = symobs.tracking(servo(), **POLES, reference_matrix="[0 1; -4 0]", observer="full")
@@ -254,6 +261,7 @@ PAGES: dict[str, Callable[[], Result]] = {
         StateSpace("[0 1; 0 -1]", "[1 0; 0 2]", "[1 1; 0 1]"), control_poles=[-2, -3], observer_poles=[-10, -11]
     ),
     "feedforward": lambda: symobs.feedforward(servo(), **POLES),
+    "feedforward of a measured state": lambda: symobs.feedforward(servo("[2]"), control_poles=[-2, -2]),
     "feedforward with feedthrough": lambda: symobs.feedforward(
         servo("[1]"), control_poles=[-2, -2], observer_poles=[-10], observer="minimal"
     ),
