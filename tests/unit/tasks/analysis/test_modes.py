@@ -76,6 +76,47 @@ def test_the_parts_have_the_zeros_and_the_spectra_they_should(sample: Sample) ->
     assert sympy.degree(sympy.fraction(sympy.cancel(expected))[1], s) == found.minimal_order
 
 
+@pytest.mark.parametrize("missing", ["input", "output"])
+@given(numeric)
+@settings(max_examples=100)
+def test_without_input_or_output_there_are_two_parts(missing: str, sample: Sample) -> None:
+    """As many states are reached (seen) as the rank of the test matrix says, and none of the others drives (shows) them."""
+    plant = plant_of(sample)
+    order, A, B, C = sample.order, plant.A, plant.B, plant.C
+    if missing == "output":
+        found: Any = symobs.decomposition(symobs.StateSpace(sample.A, sample.B))
+        test, names = sympy.Matrix.hstack(*(A**k * B for k in range(order))), ["c", "no c"]
+    else:
+        found = symobs.decomposition(symobs.StateSpace(sample.A, None, sample.C))
+        test, names = sympy.Matrix.vstack(*(C * A**k for k in range(order))), ["o", "no o"]
+    first = test.rank()
+    assert dict(found.sizes) == dict(zip(names, [first, order - first], strict=True))
+    assert "transfer_function" not in found.fields
+    assert found.T * A == found.A * found.T
+    assert found.T.rank() == order
+    if missing == "output":
+        assert found.B == found.T * B
+        assert found.A[first:, :first].is_zero_matrix is not False
+        assert found.B[first:, :].is_zero_matrix is not False
+    else:
+        assert C == found.C * found.T
+        assert found.A[:first, first:].is_zero_matrix is not False
+        assert found.C[:, first:].is_zero_matrix is not False
+
+
+def test_a_decomposition_without_output_has_its_cases_and_its_sentences() -> None:
+    found = symobs.decomposition(symobs.StateSpace("[0 1; -2 -3]", "[1; b]"))
+    assert {str(case.when[0]): case.result.sizes["no c"] for case in found.cases} == {
+        "Eq(b + 1, 0)": 1,
+        "Eq(b + 2, 0)": 1,
+    }
+    text = found.to("text")
+    assert "controllable; uncontrollable" in text
+    assert "observable" not in text
+    with pytest.raises(InputError, match="B"):
+        symobs.decomposition(symobs.StateSpace("[0 1; -2 -3]"))
+
+
 @given(plants(("dense", "hidden", "defective", "parametric"), largest=4))
 @settings(max_examples=30)
 def test_the_modal_form_is_similar_and_block_diagonal(sample: Sample) -> None:

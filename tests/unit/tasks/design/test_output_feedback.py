@@ -321,7 +321,7 @@ def test_the_feedforward_of_a_state_says_where_the_dc_gain_vanishes() -> None:
     """G = c/k for u = −[k 1] x + F v: F = k/c, none where c = 0, and no steady state where k = 0."""
     found = symobs.feedforward(StateSpace("[0 1; 0 -1]", "[0; 1]", "[c 1]"), K="[k 1]")
     c, k = sympy.symbols("c k")
-    assert found.F == k / c
+    assert k / c == found.F
     assert {str(case.when[0]): case.result.verdict for case in found.cases} == {"Eq(c, 0)": "no", "Eq(k, 0)": "no"}
     text = found.to("text")
     assert "Observer" not in text
