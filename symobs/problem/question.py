@@ -78,6 +78,8 @@ def question_of(problem: Problem) -> Question:
                 page.remark("part", letter=_letter_of(place))
             for key in sentences_for(task, tokens_of(task, values, problem)):
                 page.steps.append(Note(_filled(page, task, key, values)))
+            if task.name == problem.plant_of:
+                page.remark("plant_found", letter=_letter_of(place))
     typed = problem.plant.is_in_decimals or has_decimals([*problem.specification.values()])
     digits = DIGITS if problem.digits is None and typed else problem.digits
     of_page: dict[str, Any] = {"page": page.derivation(), "digits": digits, "language": problem.language}

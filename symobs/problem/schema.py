@@ -31,6 +31,10 @@ TOP: dict[str, dict[str, Any]] = {
     "text": {"description": "the problem in words, printed under the title", "type": "string"},
     "task": {"description": "one task"},
     "tasks": {"description": "several tasks, instead of task"},
+    "plant_of": {
+        "description": "a task whose answer is the plant of the tasks after it: canonical_form, zero_order_hold, …",
+        "type": "string",
+    },
     "convention": {
         "description": 'the convention the file is written in: standard, a law such as "u = K x_hat, A + M C", or a name',
         "type": "string",

@@ -367,6 +367,17 @@ class StateSpace:
             raise ZeroDivisionError("what does not vanish is 0")
         return plant.restricted([image for image in images if not image.is_zero], nonzero)
 
+    def in_coordinates(
+        self, A: Matrix, B: Matrix | None, C: Matrix | None, D: Matrix | None, nonzero: Iterable[Scalar]
+    ) -> StateSpace:
+        """Return a plant with other matrices over the same parameters, which there is where some values do not vanish."""
+        plant = copy(self)
+        plant.__dict__.pop("field", None)
+        plant.matrices = Matrices(A, B, C, D if B is not None and C is not None else None)
+        plant.written = plant.polynomial = plant.nonlinear = None
+        plant.nonzero = tuple(dict.fromkeys((*self.nonzero, *self.apart, *(value.numerator for value in nonzero))))
+        return plant.asked_anew()
+
     def restricted(self, equations: Iterable[Scalar], nonzero: Iterable[Scalar] = ()) -> StateSpace:
         """Return the plant where some polynomials, which must have common zeros, vanish and others do not."""
         ideal, apart = Ideal.of((*self.equations, *equations)), tuple(dict.fromkeys((*self.nonzero, *nonzero)))

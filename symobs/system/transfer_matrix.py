@@ -257,6 +257,7 @@ def parallel(first: Realisation, second: Realisation) -> Realisation:
 
 def connected(kind: str, plant: Plant, other: object) -> Plant:
     """Return the connection of a plant with another one, or with a gain; raises `InputError` where they do not fit."""
+    other = getattr(other, "as_plant", other)
     first, second = _system(plant), _of_other(plant, other)
     size = {"series": first.D.shape[1], "gain": first.D.shape[0]}.get(kind, 1)
     if not isinstance(other, type(plant)) and second.D.shape == (1, 1) != (size, size):  # a number, for each of several

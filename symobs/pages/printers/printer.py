@@ -84,6 +84,12 @@ class Printer(FormulaWriter[B]):
         #: The entries named by stars so far, numbered through the page.
         self.stars: dict[Formula, int] = {}
 
+    def keep_time(self, time: tuple[str, bool] | None) -> None:
+        """Go on with this variable, in continuous or discrete time."""
+        if time is not None and time != (self.variable, self.discrete):
+            self.variable, self.discrete = time
+            self.known.clear()
+
     @abstractmethod
     def inline(self, item: Formula | Relation) -> str:
         """Return mathematics for a line of text, without delimiters."""

@@ -27,6 +27,7 @@ PHRASES: dict[str, str] = {
     "task": "Task.",
     "tasks": "Tasks.",
     "part": "({letter})",
+    "plant_found": "The following parts are about the plant found in part ({letter}).",
     # What is said of a task without a sentence of its own: the first line of its description.
     "asked": "{summary}",
 }
@@ -74,6 +75,7 @@ NAMING = (
     "task",
     "tasks",
     "part",
+    "plant_found",
     "asked",
 )
 

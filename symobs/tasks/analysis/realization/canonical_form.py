@@ -84,6 +84,17 @@ class CanonicalForm(Result):
         """The certificates of this result and of the rank test below it."""
         return (*self.certificates, *(self.test.certificates if self.test is not None else ()))
 
+    @property
+    def as_plant(self) -> StateSpace:
+        """The plant in these coordinates, where they are some."""
+        answer, m = self.answer, self.plant.matrices
+        if answer["T"] is None:
+            message = f"there is no {self.kind} canonical form, and no plant in it"
+            raise InputError(message, where="plant", repair="take another form, or the plant itself")
+        B, C = answer["B"] if m.has_input else None, answer["C"] if m.has_output else None
+        nonzero = [c.expression for c in self.holds_where]
+        return self.plant.in_coordinates(answer["A"], B, C, answer["D"], nonzero)
+
     def claims(self) -> Iterator[Claim]:
         """Yield the change of coordinates and the form; or that the rank is below n."""
         m, answer, n = self.plant.matrices, self.answer, self.plant.order

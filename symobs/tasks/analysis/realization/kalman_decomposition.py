@@ -57,6 +57,14 @@ class Decomposition(Result):
     }
 
     @property
+    def as_plant(self) -> StateSpace:
+        """The plant in these coordinates, where they are some."""
+        answer, m = self.answer, self.plant.matrices
+        B, C = answer["B"] if m.has_input else None, answer["C"] if m.has_output else None
+        nonzero = [c.expression for c in self.holds_where]
+        return self.plant.in_coordinates(answer["A"], B, C, answer["D"], nonzero)
+
+    @property
     def dimensions(self) -> tuple[int, ...]:
         """The dimensions of the four parts."""
         found: tuple[int, ...] = self.answer["sizes"]

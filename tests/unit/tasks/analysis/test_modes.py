@@ -301,3 +301,35 @@ def test_a_mode_that_grows_on_strata_that_are_not_known_is_undecided(monkeypatch
     found = symobs.detectability(symobs.StateSpace(*plant), **asked)
     assert found.verdict == "undecided"
     assert "is not detectable" not in found.to("text")
+
+
+@given(plants(("dense", "hidden", "defective", "parametric"), largest=3))
+@settings(max_examples=50)
+def test_a_plant_in_other_coordinates_is_a_plant(sample: Sample) -> None:
+    """C (sI − A)⁻¹ B is the same in all coordinates, transposed for the dual; what the coordinates need is kept."""
+    plant = plant_of(sample)
+    own = symobs.transfer_function(plant).transfer_function
+    for found in (symobs.decomposition(plant), symobs.canonical_form(plant, kind="modal"), symobs.dual(plant)):
+        there = symobs.transfer_function(found)
+        assert sympy.cancel(there.transfer_function - own) == 0
+        if found.task != "dual":
+            assert set(found.conditions) <= set(there.conditions)
+    twice = plant * symobs.dual(plant)
+    assert sympy.cancel(symobs.transfer_function(twice).transfer_function - own**2) == 0
+
+
+def test_what_is_no_plant_in_any_coordinates_is_refused() -> None:
+    hidden = symobs.StateSpace("[-1 0; 0 -2]", "[1; 0]", "[1 1]")
+    with pytest.raises(InputError, match="no controllable canonical form"):
+        symobs.observability(symobs.canonical_form(hidden, kind="controllable"))
+    with pytest.raises(InputError, match="a plant is expected"):
+        symobs.observability(symobs.pbh(hidden))
+
+
+def test_a_design_in_canonical_form_says_where_that_is() -> None:
+    """For C = [1 c] the observable form is there unless (c − 1)(2c − 1) = 0, and L is φ less χ: no letter is left in it."""
+    found = symobs.canonical_form(symobs.StateSpace("[0 1; -2 -3]", "[0; 1]", "[1 c]"), kind="observable")
+    design = symobs.observer(found, poles=[-5, -6])
+    assert list(design.L) == [28, 8]
+    assert {str(condition) for condition in design.conditions} == {"Ne(2*c - 1, 0)", "Ne(c - 1, 0)"}
+    assert "2c - 1 ≠ 0" in design.to("text")
