@@ -225,19 +225,21 @@ class StateSpace:
         *,
         symbols: Mapping[str, Any] | Symbols | None = None,
         floats: str | None = None,
+        realisation: str | None = None,
     ) -> StateSpace:
         """Return the controllable canonical realisation of a proper rational function of s (z in discrete time).
 
         b(s)/a(s) + d with a(s) = sⁿ + a₁ sⁿ⁻¹ + … + aₙ gives ones above the diagonal, last row −aₙ … −a₁, B = eₙ and
-        C the coefficients of b, constant first.  The function is a text, a SymPy expression or lists of coefficients,
-        highest power first: ([1], [1, 2, 0]).  A matrix of functions, "[1/(s+1) 0; 1/s 1/(s+1)]", is given a minimal
-        realisation.  Raises `InputError` where a function is not proper, or has no pole.
+        C the coefficients of b, constant first.  `realisation` may be "observable", (Aᵀ, Cᵀ, Bᵀ), or "modal", A block
+        diagonal, B with a 1 in each block and C with the residues.  The function is a text, a SymPy expression or lists of
+        coefficients, highest power first: ([1], [1, 2, 0]).  A matrix of functions, "[1/(s+1) 0; 1/s 1/(s+1)]", is given a
+        minimal realisation.  Raises `InputError` where a function is not proper, or has no pole.
         """
         known = symbols if isinstance(symbols, Symbols) else Symbols.of(symbols)
         time, where = read_time(dt, known), "plant.transfer_function"
         given = read_floats(transfer_function, floats, where)
         known = known.seen(given, time.variable)
-        written = read_written(given, known, time.variable, where)
+        written = read_written(given, known, time.variable, where, realisation)
         A, B, C, D = written.realised(where)
         plant = cls(A, B, C, D, dt, symbols=known, transfer_function=written)
         plant.is_from_floats, plant.is_in_decimals = given is not transfer_function, has_decimals(given)

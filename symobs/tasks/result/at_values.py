@@ -82,7 +82,8 @@ def _plant(plant: StateSpace, values: dict[str, Scalar]) -> StateSpace:
         polynomial = substitute(plant.polynomial, values)
         there = StateSpace.from_polynomial(polynomial, plant.dt, symbols=there.symbols)
     elif plant.origin is not None:
-        written = StateSpace.from_transfer_function(substitute(plant.origin, values), plant.dt, symbols=there.symbols)
+        kind, origin = getattr(plant.written, "realisation", None), substitute(plant.origin, values)
+        written = StateSpace.from_transfer_function(origin, plant.dt, symbols=there.symbols, realisation=kind)
         there = written if written.matrices == there.matrices else there
     elif plant.nonlinear is not None:
         there.nonlinear = plant.nonlinear.moved(values)

@@ -23,6 +23,7 @@ from symobs.exact import (
     modulo,
     transfer,
 )
+from symobs.exact.linear_algebra.modal_matrix import modal_matrix
 from symobs.formula.tree import Environment
 from symobs.formula.tree.term import block, identity, letter
 from symobs.ground.dataclass import dataclass
@@ -34,7 +35,7 @@ from symobs.tasks.analysis.modes.modes import TESTS
 from symobs.tasks.analysis.page_parts import case_steps, formula_of_factored, given
 from symobs.tasks.analysis.rank.observability import power_rows
 from symobs.tasks.analysis.rank.rank_page import square_test
-from symobs.tasks.analysis.realization.modal_form import modal_basis, modal_matrix
+from symobs.tasks.analysis.realization.modal_form import modal_basis
 from symobs.tasks.analysis.strata.strata import carried, strata
 from symobs.tasks.result import Case, Result, choose, method, task
 
