@@ -136,7 +136,7 @@ def tokens_of(task: Task, values: Mapping[str, Any], problem: Problem) -> frozen
             tokens.add(name)
         if kind == "Poles" and value.degree == 1:
             tokens.add(f"{name}=1")
-    return frozenset(tokens - {"horizon"})
+    return frozenset(tokens - {"horizon"} | ({"discrete"} if problem.plant.is_discrete else set()))
 
 
 def sentences_for(task: Task, tokens: frozenset[str]) -> list[str]:

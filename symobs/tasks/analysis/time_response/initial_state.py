@@ -296,15 +296,19 @@ def initial_state(
 ) -> Result:
     """Return the initial state x₀ of an output y(t) under an input u(t), y = C (e^{At} x₀ + x_f) + D u, or that none exists.
 
-    plant    n states, p outputs; B where an input is given; continuous time
+    plant    n states, p outputs; B where an input is given
     output   y(t): sums of exponentials, sines and cosines times powers of t, one for each output
     input    u(t), likewise; 0 where it is left out
     horizon  the end of the interval of measurement, "T" if left out
-    Returns x0, kernel.  Verdict no where no state explains the data, and where more than one does.  Raises `InputError`
-    where C (or B) is missing, in discrete time, for other functions of t and for an infinite horizon; `ShapeMismatch`.
+    In discrete time output and input are samples from k = 0 on, "1, 3", n of them or more; a row for each of several.
+    Returns x0, kernel; the residual of samples that no state explains.  Verdict no where no state explains the data, and
+    where more than one does.  Raises `InputError` where C (or B) is missing, for other functions of t, for an infinite
+    horizon and for too few samples; `ShapeMismatch`.
     Source: R. E. Kalman, Y. C. Ho and K. S. Narendra (1963).
     """
     plant.require("C", task="initial_state")
+    if plant.is_discrete:
+        return _of_samples(plant, output, input, horizon, method)
     require_continuous(plant, "initial_state")
     y, _ = read_functions(output, plant, "output", plant.outputs)
     u = None
@@ -317,6 +321,29 @@ def initial_state(
         raise InputError(message, where="specification.horizon", repair='write "T", or a number above 0')
     asked = {"output": y, "input": u, "horizon": end}
     return over_horizon(lambda: choose("initial_state", method, "moments").solve(plant, asked))
+
+
+def _of_samples(plant: StateSpace, output: object, given: object, horizon: object, method_name: str) -> Result:
+    """Return the initial state of samples, in discrete time."""
+    from symobs.tasks.analysis.time_response.initial_state_of_samples import InitialStateOfSamples, read_samples  # noqa: PLC0415 - it extends this
+
+    if horizon is not None:
+        message = "in discrete time the samples say how long was measured"
+        raise InputError(message, where="specification.horizon", repair="leave the horizon out")
+    plant = plant.knowing(output, given)
+    y = read_samples(output, plant, "output", plant.outputs)
+    if y.shape[1] < plant.order:
+        message = f"{y.shape[1]} samples of the output, and {plant.order} states"
+        raise InputError(message, where="specification.output", repair=f"give {plant.order} samples or more")
+    u = None
+    if given is not None:
+        plant.require("B", task="initial_state")
+        u = read_samples(given, plant, "input", plant.inputs)
+        if u.shape[1] < y.shape[1]:  # the last one may be missing, or all from one on: they are 0
+            u = Matrix.block([[u, Matrix.zeros(plant.inputs, y.shape[1] - u.shape[1])]])
+    choose("initial_state", method_name, "moments")
+    asked = {"output": y, "input": u}
+    return InitialStateOfSamples.of(plant, "moments", asked, {}).asked(method_name)
 
 
 # The page of the initial state: free output, forced output, moments, solution, check.

@@ -68,6 +68,14 @@ PHRASES: dict[str, str] = {
     "initial_refused": "but it produces a different output: the residual {rest} is not 0. No initial state is consistent with these data.",
     "initial_start": "The value and the derivatives at 0 would have to be $O x_0$. They are",
     "initial_inconsistent": "These equations are inconsistent: with {row} one has {zero}, but {rest}. No initial state is consistent with these data.",
+    "samples_stacked": "The samples, one below the other, are $O x_0$ plus the forced output, with",
+    "samples_right": "There is no input, so $O x_0 = r_0$ with the samples",
+    "samples_right_input": "Subtracting the forced output gives $O x_0 = r_0$ with",
+    "samples_found": "The pair ($C$, $A$) is observable, so the initial state is uniquely determined,",
+    "samples_kernel": "The following vector gives no output, so any multiple of it may be added:",
+    "samples_kernel_several": "The following vectors give no output, so any linear combination of them may be added:",
+    "samples_inconsistent": "These equations are inconsistent: with {row} one has {zero}, but {rest}. No initial state is consistent with these samples.",
+    "samples_checked": "The output from this initial state is the measured one: {check}.",
     "covariance": "Covariance of the initial-state estimate.",
     "noise": "The known input is corrupted by white noise of intensity $Q$ and the output by white noise of intensity $R$,",
     "estimator": "The initial state is estimated by least squares: the output, multiplied by $exp_Atᵀ Cᵀ$ and integrated over the horizon, is multiplied by the inverse of the Gramian $W$.",
@@ -99,6 +107,8 @@ QUESTIONS: dict[str, str] = {
     "ask gramian of=controllability horizon=inf": "Find the infinite-horizon controllability Gramian and its determinant.",
     "ask initial_state": "Determine the initial state from the output.",
     "ask initial_state output": "The output {output} was measured up to the time {horizon}, with zero input. Determine the initial state.",
+    "ask initial_state discrete output": "The samples of the output from $k=0$ on are {output}, with zero input. Determine the initial state.",
+    "ask initial_state discrete output input": "The samples of the output from $k=0$ on are {output}, those of the input {input}. Determine the initial state.",
     "ask initial_state output input": "The output {output} was measured up to the time {horizon}, with the input {input}. Determine the initial state.",
     "also initial_state input": "The input is {input}.",
     "also initial_state_covariance Q": "The known input is corrupted by white noise {Q}.",
@@ -133,6 +143,7 @@ DEMANDS: dict[str, str] = {
     "gramian_diverges_controllability": "seen Bᵀ Aᵀ N_K X_K",
     "initial_found": "observable C A",
     "initial_not_unique": "unobservable C A",
+    "samples_found": "observable C A",
 }
 
 RESTS_ON: dict[str, str] = {
