@@ -233,14 +233,21 @@ def derivatives(plant: StateSpace) -> MatrixExponential:
 
 @task
 def matrix_exponential(plant: StateSpace, *, method: Name = "auto") -> Result:
-    """Return e^{At} as a real matrix of exponentials, cosines, sines, cosh, sinh and powers of t.
+    """Return e^{At} as a real matrix of exponentials, cosines, sines, cosh, sinh and powers of t; Aᵏ in discrete time.
 
-    plant    n states, continuous time; only A matters
-    Returns matrix, in t.  Where the sign of a discriminant decides between oscillation and none, conditions hold the
+    plant    n states; only A matters
+    Returns matrix, in t; in discrete time in k, of λᵏ, real and imaginary parts of (σ + iω)ᵏ, powers of k and, where A is
+    singular, δ(k, j).  Where the sign of a discriminant decides between oscillation and none, conditions hold the
     branch that is shown and cases the others.  An irreducible factor q of χ of degree 3 or more brings sums over its roots,
     Σ λʲ e^{λt}/q′(λ), in SymPy's syntax `RootSum`; where parameters make two of the roots equal it is undecided.
-    Raises `InputError` in discrete time, and where t is a parameter of A.
+    Raises `InputError` where t, or k in discrete time, is a parameter of A.
     Source: I. E. Leonard (1996).
     """
+    if plant.is_discrete:
+        from symobs.tasks.analysis.time_response.matrix_power import MatrixPower, require_no_instant  # noqa: PLC0415 - it extends this
+
+        require_no_instant(plant)
+        name = choose("matrix_exponential", method, "derivatives").name
+        return MatrixPower.of(plant, name, {}, {}).asked(method)
     require_continuous(plant, "matrix_exponential")
     return choose("matrix_exponential", method, "derivatives").solve(plant)

@@ -4,6 +4,13 @@ from __future__ import annotations
 
 PHRASES: dict[str, str] = {
     "matrix_exponential": "Matrix exponential.",
+    "matrix_power": "Powers of the state matrix.",
+    "power_sum": "The powers of $A$ are a combination of these modes with constant matrices, which follow from the values at the first instants:",
+    "power_here": "The powers of $A$ are",
+    "power_delta": "Here $delta$ is 1 where its arguments are equal, and 0 elsewhere.",
+    "power_start": "At $k+1$ it is $A$ times its value at $k$, and its initial value is the identity, {start}.",
+    "no_closed_power": "The factor {factor} of degree {degree} is irreducible over the field of the data, so its roots and the corresponding modes are not available in closed form here. The powers of $A$ are not given.",
+    "too_many_states_power": "With {order} states the powers of $A$ are too long to be computed here.",
     "exponential_modes": "The modes follow from the characteristic polynomial:",
     "exponential_sum": "The matrix exponential is a combination of these modes with constant matrices, which follow from its derivatives at $t=0$:",
     "exponential_here": "Here",
@@ -99,6 +106,7 @@ PHRASES: dict[str, str] = {
 
 QUESTIONS: dict[str, str] = {
     "ask matrix_exponential": "Find the matrix exponential $exp_At$, in real form.",
+    "ask matrix_exponential discrete": "Find the powers $A_k$ of the state matrix, in real form.",
     "ask gramian": "Find the observability Gramian over the horizon {horizon} and its determinant. Is the plant observable?",
     "ask gramian horizon=inf": "Find the infinite-horizon observability Gramian and its determinant. Is the plant observable?",
     "ask gramian of=observability": "Find the observability Gramian over the horizon {horizon}, with its determinant.",
@@ -164,7 +172,7 @@ THEOREMS: dict[str, str] = {
     "exponential": "leonard1996",
 }
 
-NAMING = ("no_closed_form",)
+NAMING = ("no_closed_form", "no_closed_power", "power_delta")
 
 EXPLAINS = (
     "exponential_sum",

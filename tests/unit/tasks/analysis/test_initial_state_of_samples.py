@@ -12,6 +12,9 @@ import symobs
 from symobs import StateSpace
 from symobs.ground.errors import InputError
 
+#: All are drawn where there is time.
+SEEDS = [*range(30), *(pytest.param(seed, marks=pytest.mark.slow) for seed in range(30, 200))]
+
 
 def drawn(chance: random.Random, rows: int, columns: int) -> Any:
     return sympy.Matrix(rows, columns, lambda *_: sympy.Rational(chance.randint(-4, 4), chance.choice([1, 1, 2, 3])))
@@ -21,7 +24,7 @@ def texts(matrix: Any) -> list[list[str]]:
     return [[str(entry) for entry in row] for row in matrix.tolist()]
 
 
-@pytest.mark.parametrize("seed", range(200))
+@pytest.mark.parametrize("seed", SEEDS)
 def test_the_samples_give_the_state_they_began_with(seed: int) -> None:
     """The state is found where the pair is observable, one of them where it is not; a sample that is wrong refutes all."""
     chance = random.Random(seed)  # noqa: S311 - repeats
