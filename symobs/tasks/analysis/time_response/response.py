@@ -465,22 +465,29 @@ def response(
 ) -> Result:
     """Return the response x(t) = e^{At} x₀ + ∫₀ᵗ e^{A(t−s)} B u(s) ds and y = C x + D u to an initial state and an input.
 
-    plant    n states, continuous time; B where an input is given, C where the output is asked for
+    plant    n states; B where an input is given, C where the output is asked for
     initial  x₀; 0 where it is left out
     input    u(t) for t ≥ 0: sums of exponentials, sines and cosines times powers of t, one for each input, such as 1 for
              a step and t for a ramp; none where it is left out
+             In discrete time an expression in k, "1 + k*(1/2)^k", or a sequence "1, 0, 2", which is 0 behind its end.
     impulse  the strength v of an impulse v δ(t), one for each input, which moves the state to x₀ + B v at t = 0
-    Returns state, output, in t.  Where the sign of a discriminant decides between oscillation and none, and where an input
-    is in resonance, conditions hold the branch that is shown and cases the others; undecided where the modes have no
-    closed form.  Raises `InputError` where nothing is given, in discrete time, for other functions of t, and where the impulse
-    goes through to the output; `ShapeMismatch`.
+    Returns state, output, in t (in k).  Where the sign of a discriminant decides between oscillation and none, and where an
+    input is in resonance, conditions hold the branch that is shown and cases the others; undecided where the modes have no
+    closed form.  Raises `InputError` where nothing is given, for other functions of t, and where the impulse goes through to
+    the output; `ShapeMismatch`.
     Source: T. Kailath, Linear Systems, ch. 2; K. Ogata, Modern Control Engineering, 5th ed., ch. 9.
     """
     plant = plant.knowing(initial, input, impulse)
-    require_continuous(plant, "response")
+    if not plant.is_discrete:
+        require_continuous(plant, "response")
     if initial is None and input is None and impulse is None:
         message = "nothing moves the plant: neither an initial state nor an input is given"
         raise InputError(message, where="specification.input", repair='give input = "1" for a step, or initial')
+    if plant.is_discrete:
+        from symobs.tasks.analysis.time_response.response_in_steps import response_in_steps  # noqa: PLC0415 - it extends this
+
+        choose("response", method, "superposition")
+        return response_in_steps(plant, initial, input, impulse).asked(method)
     size = (plant.order, 1)
     start = Matrix.zeros(*size) if initial is None else read_gain(initial, plant, "initial", size)
     v = None

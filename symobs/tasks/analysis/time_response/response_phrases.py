@@ -11,6 +11,8 @@ PHRASES: dict[str, str] = {
     "response_beside": "Apart from the impulse the input is",
     "response_state": "The state is the response to the initial state plus the forced response:",
     "response_state_free": "The state is therefore",
+    "steps_state": "The state is therefore, by the powers of the matrix of plant and input together,",
+    "steps_checked": "The state satisfies the difference equation and has the initial value {start}.",
     "response_output": "The output is",
     "response_not_given": "Therefore the response is not given either.",
     "response_checked": "The state satisfies the differential equation and has the initial value {start}.",

@@ -77,3 +77,46 @@ def test_wrong_powers_are_rejected() -> None:
 def test_the_instant_is_no_parameter() -> None:
     with pytest.raises(InputError, match="k is the number of the instant"):
         symobs.matrix_exponential(StateSpace("[k]", dt=True))
+
+
+# -- the response in steps ---------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_the_response_follows_the_recursion(seed: int) -> None:
+    """The state is A x + B u step by step, for sequences, powers of k times powers of numbers, and no input at all."""
+    chance = random.Random(seed)  # noqa: S311 - repeats
+    A = drawn(chance)
+    n = A.rows
+    B, C, start = (sympy.Matrix(r, c, lambda *_: chance.randint(-2, 2)) for r, c in ((n, 1), (1, n), (n, 1)))
+    r, d = sympy.Rational(chance.choice([-2, -1, 1, 3]), chance.choice([1, 2])), chance.randint(0, 2)
+    given: Any = {
+        0: (None, lambda _: 0),
+        1: ("3, 0, -1, 1/2", lambda at: [3, 0, -1, sympy.Rational(1, 2)][at] if at < 4 else 0),
+        2: (f"1 + k^{d}*({r})^k", lambda at: 1 + sympy.Integer(at) ** d * r**at),
+        3: ("k^2 - 2", lambda at: at**2 - 2),
+    }
+    text, value = given[chance.randrange(4)]
+    asked: Any = {"initial": [[str(entry)] for entry in start]} | ({} if text is None else {"input": text})
+    texts = [[[str(entry) for entry in row] for row in matrix.tolist()] for matrix in (A, B, C)]
+    found = symobs.response(StateSpace(*texts, [[str(d)]], dt=True), **asked)
+    state = start
+    for at in range(7):
+        scale = 1e-9 * (1 + max(map(abs, state)))
+        assert max(abs(complex(entry)) for entry in sympy.Matrix(found.state).subs(k, at) - state) < scale
+        seen = (C * state)[0] + d * value(at)
+        assert abs(complex(sympy.Matrix([found.output]).subs(k, at)[0] - seen)) < 10 * scale * (1 + abs(seen))
+        state = A * state + B * value(at)
+
+
+def test_a_resonant_input_is_a_case_and_pages_are_checked() -> None:
+    a, b = sympy.symbols("a b")
+    found = symobs.response(StateSpace("[a]", "[1]", "[1]", dt=True), input="b^k")
+    assert sympy.simplify(found.state[0] - (a**k - b**k) / (a - b)) == 0
+    (resonant,) = found.cases
+    assert resonant.result.state[0] == k * b**k / b
+    text = symobs.response(StateSpace("[1/2]", "[1]", "[1]", dt=True), input="1, 0, 2").to("text")
+    assert "u(k) = δ(k, 0) + 2δ(k, 2)" in text
+    assert "The state satisfies the difference equation" in text
+    free = symobs.response(StateSpace("[1/2]", "[1]", "[1]", dt=True), initial="[4]")
+    assert "x(k) = Aᵏ x₀" in free.to("text")
