@@ -92,3 +92,17 @@ def test_what_is_no_equilibrium_is_refused_with_the_reason(changes: dict[str, An
     }
     with pytest.raises(InputError, match=reason):
         symobs.linearize(**{**given, **changes})
+
+
+@tabled
+def test_rounded_values_are_told_the_equilibrium_they_round(f: str, point: dict[str, Any], exact: str) -> None:
+    """The exact point is a zero of f by hand, and is taken; where none is simple, none is named."""
+    given: dict[str, Any] = {"f": f, "states": ", ".join(name for name in point if name != "u")}
+    given["inputs"] = "u" if "u" in point else ""
+    with pytest.raises(InputError) as refused:
+        symobs.linearize(**given, equilibrium=point)
+    assert ("rounded ones" in refused.value.repair) == bool(exact)
+    assert exact in refused.value.repair
+    if exact:
+        named = dict(entry.split(" = ") for entry in exact.strip("{} ").split(", "))
+        symobs.linearize(**given, equilibrium={name: value.strip('"') for name, value in named.items()})
