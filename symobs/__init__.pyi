@@ -459,7 +459,7 @@ def matrix_exponential(
     method: str = "auto",
     floats: str | None = None,
 ) -> _MatrixExponentialResult:
-    """Return e^{At} as a real matrix of exponentials, cosines, sines, cosh, sinh and powers of t."""
+    """Return e^{At} as a real matrix of exponentials, cosines, sines, cosh, sinh and powers of t; Aᵏ in discrete time."""
 
 class _ObservabilityResult(_Observability):
     """What `observability` returns."""
