@@ -7,7 +7,7 @@ contains.  The page is a derivation like any other: what it states is checked, a
 from __future__ import annotations
 
 import string
-from functools import cached_property
+from functools import cached_property, partial
 from typing import TYPE_CHECKING, Any
 
 from symobs.exact import Matrix, Scalar, factored, root_of_pole
@@ -24,6 +24,7 @@ from symobs.system.reading import as_rows, has_decimals
 from symobs.system.specification import (
     desired_polynomial,
     is_pattern,
+    parse_in_steps,
     parse_signal,
     read_entries,
     read_interval,
@@ -240,7 +241,9 @@ def _read(value: object, kind: str, name: str, plant: StateSpace, task: str) -> 
         case "IntervalText":
             return read_interval(value, plant)
         case "SignalText" | "TimeFunctions":
-            return parse_signal(value, plant.symbols, where, functions=True)
+            return (parse_in_steps if plant.is_discrete else partial(parse_signal, functions=True))(
+                value, plant.symbols, where
+            )
         case "Horizon":
             return read_horizon(plant, value)
         case "Intensity":

@@ -19,7 +19,7 @@ from symobs.ground.errors import CertificateRejected, InputError, ProblemErrors,
 from symobs.system import StateSpace, read_matrix, read_scalar
 from symobs.system.conditions import sign_of
 from symobs.system.reading import has_decimals, inserted, read_values
-from symobs.system.specification import is_pattern, parse_signal, read_names, read_pattern, read_poles
+from symobs.system.specification import is_pattern, parse_in_steps, parse_signal, read_names, read_pattern, read_poles
 from symobs.system.specification.pole_patterns import OTHERS
 
 if TYPE_CHECKING:
@@ -129,6 +129,8 @@ def _poles(value: object, plant: StateSpace, where: str) -> tuple[Complex, ...] 
 
 
 def _signal(value: object, plant: StateSpace, where: str) -> Matrix:
+    if plant.is_discrete:
+        return parse_in_steps(value, plant.symbols, where)
     return parse_signal(value, plant.symbols, where, functions=True)
 
 

@@ -11,7 +11,7 @@ from math import factorial
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 from symobs.exact import Matrix, Scalar, kernel
-from symobs.exact.core.generators import all_roots, function_named, normal_form, substitute
+from symobs.exact.core.generators import all_roots, function_named, normal_form, substitute, symbols_in
 from symobs.exact.time_functions.matrix_exponential import NoClosedForm
 from symobs.exact.time_functions.quasipolynomial import (
     Table,
@@ -30,7 +30,7 @@ from symobs.ground.errors import InputError, ShapeMismatch
 from symobs.proof.certificate.claims import Claim
 from symobs.proof.derivation.builder import relation
 from symobs.system.conditions import Condition, never_zero, vanishing_factors
-from symobs.system.reading import as_rows, read_matrix
+from symobs.system.specification import parse_in_steps
 from symobs.tasks.analysis.rank.rank_test import rank_answer
 from symobs.tasks.analysis.time_response.damping_cases import Signs, from_zero, rate_of, time_environment
 from symobs.tasks.analysis.time_response.horizons import (
@@ -503,9 +503,9 @@ def read_samples(value: object, plant: StateSpace, name: str, rows: int) -> Matr
     if value is None:
         message = f"the samples of the {name} are missing"
         raise InputError(message, where=where, repair=f'give them from k = 0 on, {name} = "1, 3"')
-    if isinstance(value, str) and not value.lstrip().startswith("["):
-        value = f"[{value}]"
-    found = read_matrix(as_rows("C", value), plant.symbols.seen(value), where, functions=True)
+    found = parse_in_steps(value, plant.symbols, where)
+    if "k" in symbols_in(found):
+        raise InputError(f"the samples of the {name} depend on k", where=where, repair="give the value at each instant")
     if rows == 1 and found.shape[1] == 1:
         found = found.T
     if found.shape[0] != rows:

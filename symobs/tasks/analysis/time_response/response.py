@@ -5,7 +5,6 @@ The answer is held to the differential equation and to the initial state, which 
 
 from __future__ import annotations
 
-import re
 from fractions import Fraction
 from functools import cached_property
 from math import lcm, pi
@@ -13,7 +12,7 @@ from operator import mul
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Self, TypeAlias
 
 from symobs.exact import Matrix, Scalar, companion
-from symobs.exact.core.generators import function_named, functions_in, normal_form, substitute
+from symobs.exact.core.generators import function_named, functions_in, normal_form, substitute, symbols_in
 from symobs.exact.time_functions.matrix_exponential import NoClosedForm
 from symobs.exact.time_functions.matrix_power import PowerOf, matrix_power
 from symobs.exact.time_functions.quasipolynomial import Quasipolynomial, Table, matrix_at, product, table_of
@@ -24,8 +23,7 @@ from symobs.ground.dataclass import dataclass
 from symobs.ground.errors import InputError, ShapeMismatch
 from symobs.proof.certificate.claims import Claim
 from symobs.proof.derivation.builder import Builder, relation
-from symobs.system.reading import as_rows, read_matrix
-from symobs.system.specification import read_gain
+from symobs.system.specification import parse_in_steps, read_gain
 from symobs.tasks.analysis.page_parts import given
 from symobs.tasks.analysis.time_response.damping_cases import DampingCases, Signs, rate_of, time_environment
 from symobs.tasks.analysis.time_response.horizons import read_functions
@@ -519,10 +517,6 @@ def response(
 # In discrete time: x(k + 1) = A x(k) + B u(k), where u is the output of a system of its own; together they have powers.
 
 
-#: A number, a name or a parenthesis to the power k.
-_POWER = re.compile(r"(\d+(?:\.\d+)?|[A-Za-z]\w*|\([^()]*\))\s*(?:\^|\*\*)\s*k\b")
-
-
 @dataclass(frozen=True, eq=False, repr=False)
 class ResponseInSteps(Response):
     """x(k) with x(k + 1) = A x(k) + B u(k) and x(0) = x₀, and y = C x + D u."""
@@ -678,35 +672,15 @@ def response_in_steps(plant: StateSpace, initial: object, given_input: object, i
 def _read_input(value: object, plant: StateSpace) -> Matrix:
     """Return the inputs as functions of k: a sequence, which is 0 behind its end, or an expression for each."""
     where = "specification.input"
-    known = plant.symbols.seen(value, "k").naming(["k"], where)
-    powers: dict[str, str] = {}
-
-    def lettered(text: object) -> object:
-        """Return a text with a letter for each power to the k."""
-        if not isinstance(text, str):
-            return [lettered(entry) for entry in text] if isinstance(text, (list, tuple)) else text
-
-        def named(found: re.Match[str]) -> str:
-            name = f"power_{len(powers)}"
-            powers[name] = found[1]
-            return f"({name})"
-
-        return _POWER.sub(named, text)
-
-    read = lettered(value if isinstance(value, (str, list, tuple)) or hasattr(value, "shape") else [[value]])
-    if isinstance(read, str) and not read.lstrip().startswith("["):
-        read = f"[{read}]" if "," in read else [[read]]
-    table = read_matrix(as_rows("C", read), known.naming(list(powers), where), where)
+    table = parse_in_steps(value, plant.symbols, where)
     if table.shape == (1, plant.inputs) or (plant.inputs == 1 and table.shape[1] == 1):
         table = table.T
     if table.shape[0] != plant.inputs or table.shape[1] > MOST_SAMPLES:
         message = f"{table.shape[0]}×{table.shape[1]} entries of the input, for {plant.inputs} inputs"
         raise ShapeMismatch(message, where=where, repair="write an expression in k, or a sequence, for each input")
-    bases = {name: read_matrix([[text]], known, where)[0, 0] for name, text in powers.items()}
-    table = substitute(table, {name: PowerOf.of("power", base) for name, base in bases.items()})
     if table.shape[1] > 1:
         impulses = [PowerOf.of("KroneckerDelta", Scalar.of(at)) for at in range(table.shape[1])]
-        moving = "k" in table.names or bool(powers)
+        moving = "k" in symbols_in(table)
         table = (table @ Matrix.column(impulses)).normal()
         if moving:
             raise InputError(

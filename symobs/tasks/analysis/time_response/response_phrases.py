@@ -24,5 +24,7 @@ QUESTIONS: dict[str, str] = {
     "ask response input": "The input is {input} from $t=0$ on, and the initial state is zero. Find the response of the plant.",
     "ask response initial": "The plant is released from the initial state {initial}. Find its response.",
     "ask response initial input": "The initial state is {initial}, and the input is {input} from $t=0$ on. Find the response of the plant.",
+    "ask response discrete input": "The input from $k=0$ on is {input}, and the initial state is zero. Find the response of the plant.",
+    "ask response discrete initial input": "The initial state is {initial}, and the input from $k=0$ on is {input}. Find the response of the plant.",
     "also response impulse": "At $t=0$ an impulse of strength {impulse} acts on the input.",
 }

@@ -11,6 +11,9 @@ import sympy
 import symobs
 from symobs import StateSpace
 from symobs.ground.errors import CertificateRejected, InputError
+from symobs.problem import read
+from symobs.problem.question import question_of
+from symobs.tasks.result import render
 
 k = sympy.Symbol("k")
 #: Matrices of one to three states: a real, a double, a nilpotent, a turning and an irrational pair of modes.
@@ -120,3 +123,14 @@ def test_a_resonant_input_is_a_case_and_pages_are_checked() -> None:
     assert "The state satisfies the difference equation" in text
     free = symobs.response(StateSpace("[1/2]", "[1]", "[1]", dt=True), initial="[4]")
     assert "x(k) = Aᵏ x₀" in free.to("text")
+
+
+def test_values_and_questions_read_what_the_task_reads() -> None:
+    """C bᵏ + 1 drives x(k + 1) = a x + u: at a = 2, b = 3, c = 5 that is 5 (3ᵏ − 2ᵏ) + 2ᵏ − 1."""
+    plant = StateSpace("[a]", "[1]", "[1]", dt=True)
+    found = symobs.response(plant, input="c*b^k + 1").at(a=2, b=3, c=5)
+    assert sympy.expand(found.state[0] - (5 * 3**k - 4 * 2**k - 1)) == 0
+    samples = symobs.initial_state(StateSpace("[0 1; -1/2 1]", None, "[1 0]", dt=True), output="1, y")
+    assert list(samples.at(y=3).x0) == [1, 3]
+    text = 'task = "response"\n[plant]\nA = "[1/2]"\nB = "[1]"\ndt = true\n[specification]\ninput = "1, 0, 2"\n'
+    assert "The input from k = 0 on is [1 0 2]" in render(question_of(read(text)), "text")
