@@ -61,7 +61,8 @@ from symobs.tasks.design.reference.integral_action import IntegralAction as _Int
 from symobs.tasks.design.reference.tracking import TrackingDesign as _TrackingDesign
 
 _Number: TypeAlias = str | float | complex | Fraction | Decimal | Expr
-_Plant: TypeAlias = StateSpace | tuple[Sequence[_Number], Sequence[_Number]]
+_IsPlant: TypeAlias = _CanonicalFormResult | _DecompositionResult | _DualResult | _ZeroOrderHoldResult
+_Plant: TypeAlias = StateSpace | _IsPlant | tuple[Sequence[_Number], Sequence[_Number]]
 _Matrix: TypeAlias = str | Sequence[object] | MatrixBase
 
 TASK_PACKAGES: tuple[str, ...]

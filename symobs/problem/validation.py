@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Collection, Mapping, Sequence
-from dataclasses import field
+from dataclasses import field, replace
 from difflib import get_close_matches
 from typing import TYPE_CHECKING, Any
 
@@ -156,8 +156,8 @@ def validate(data: Mapping[str, Any], only: str | None = None, folder: Path | No
         return Problem(*about, digits, language, plant_task)
     if plant is not None and wanted and not any(error.where.startswith("constants") for error in errors.found):
         with errors:
-            about = title, source, ids, wanted, plant, specification, expect, convention
-            Problem(*about, values=values, plant_of=plant_task).solve()
+            tried = Problem(title, source, ids, wanted, plant, specification, expect, convention)
+            replace(tried, values=values, plant_of=plant_task).solve()
             errors.found += unreadable(expect, symbols.names, plant.variable)
     else:
         _read_alone(specification, _kinds(wanted), expect, symbols, read_time(dt, symbols).variable, errors)

@@ -123,8 +123,8 @@ class Dual(Result):
     @property
     def as_plant(self) -> StateSpace:
         """The dual plant."""
-        matrices = (self.answer[name] for name in "ABCD")
-        return self.plant.in_coordinates(*matrices, [c.expression for c in self.domain])
+        A, B, C, D = (self.answer[name] for name in "ABCD")
+        return self.plant.in_coordinates(A, B, C, D, [c.expression for c in self.domain])
 
     @cached_property
     def fields(self) -> Mapping[str, Any]:

@@ -611,7 +611,7 @@ class InitialStateOfSamples(InitialState):
     def fields(self) -> Mapping[str, Any]:
         """The state, the kernel where it is not the only one, and what is left where there is none."""
         residual = self.answer.get("residual")
-        return super().fields | ({} if residual is None else {"residual": list(residual.entries)})
+        return {**super().fields, **({} if residual is None else {"residual": list(residual.entries)})}
 
 
 def _column(table: Matrix, index: int) -> Matrix:

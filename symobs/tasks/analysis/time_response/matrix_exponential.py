@@ -303,7 +303,7 @@ class MatrixPower(MatrixExponential):
         yield Claim(relation(power.at("k", 0), identity(self.plant.order, e)), e, "A**0 = I")
 
     @property
-    def denominators(self) -> tuple[Scalar, ...]:  # type: ignore[override]
+    def denominators(self) -> tuple[Scalar, ...]:
         """Those of the entries."""
         return super(MatrixExponential, self).denominators
 

@@ -698,7 +698,12 @@ def _require_sums(table: Matrix, where: str) -> None:
             for _, powers in entry.numerator.terms()
         )
         moving = [f for f in functions_in([entry]) if "k" in f.symbols and not isinstance(f, PowerOf)]
-        moving += [name for name in entry.denominator.names if name == "k" or isinstance(function_named(name), PowerOf)]
-        if several or moving or any("k" in f.base.names for f in functions_in([entry]) if isinstance(f, PowerOf)):
+        below = any(name == "k" or isinstance(function_named(name), PowerOf) for name in entry.denominator.names)
+        if (
+            several
+            or below
+            or moving
+            or any("k" in f.base.names for f in functions_in([entry]) if isinstance(f, PowerOf))
+        ):
             message = f"the input {entry} is no sum of powers of k times powers of numbers to the k"
             raise InputError(message, where=where, repair='write for example "1 + k*(1/2)^k", or a sequence "1, 0, 2"')

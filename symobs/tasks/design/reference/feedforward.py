@@ -55,7 +55,7 @@ class FeedforwardDesign(Result):
 
     task: ClassVar[str] = "feedforward"
     answered_by = ("F",)
-    gains = ("K", "L")
+    gains: ClassVar[tuple[str, ...]] = ("K", "L")
     claimed = ("F",)
     letters = {
         "F": "F_v",
@@ -66,7 +66,7 @@ class FeedforwardDesign(Result):
         "closed_loop_matrix": "A_cl",
     }
     panels = ("plane", "responses")
-    cards = ("F", "K", "L", "transfer_function")
+    cards: ClassVar[tuple[str, ...]] = ("F", "K", "L", "transfer_function")
 
     @classmethod
     def of(cls, loop: OutputFeedback, method_name: str) -> Self:

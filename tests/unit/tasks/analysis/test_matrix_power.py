@@ -101,8 +101,8 @@ def test_the_response_follows_the_recursion(seed: int) -> None:
     }
     text, value = given[chance.randrange(4)]
     asked: Any = {"initial": [[str(entry)] for entry in start]} | ({} if text is None else {"input": text})
-    texts = [[[str(entry) for entry in row] for row in matrix.tolist()] for matrix in (A, B, C)]
-    found = symobs.response(StateSpace(*texts, [[str(d)]], dt=True), **asked)
+    a, b, c = ([[str(entry) for entry in row] for row in matrix.tolist()] for matrix in (A, B, C))
+    found = symobs.response(StateSpace(a, b, c, [[str(d)]], dt=True), **asked)
     state = start
     for at in range(7):
         scale = 1e-9 * (1 + max(map(abs, state)))

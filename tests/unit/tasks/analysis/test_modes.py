@@ -323,7 +323,7 @@ def test_what_is_no_plant_in_any_coordinates_is_refused() -> None:
     with pytest.raises(InputError, match="no controllable canonical form"):
         symobs.observability(symobs.canonical_form(hidden, kind="controllable"))
     with pytest.raises(InputError, match="a plant is expected"):
-        symobs.observability(symobs.pbh(hidden))
+        symobs.observability(symobs.pbh(hidden))  # type: ignore[arg-type]
 
 
 def test_a_design_in_canonical_form_says_where_that_is() -> None:
