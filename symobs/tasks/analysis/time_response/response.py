@@ -587,7 +587,7 @@ class ResponseInSteps(Response):
 
 def _with_input(A: Matrix, B: Matrix, start: Matrix, u: Matrix, variable: str) -> tuple[Matrix, Matrix]:
     """Return the matrix of plant and input system together, and the initial state of both."""
-    polynomial = _annihilator(u, variable)
+    polynomial = _input_polynomial(u, variable)
     size, inputs = polynomial.degree(variable), u.shape[0]
     S = companion(polynomial.coefficients(variable)[1:])
     samples = [substitute(u, {"k": Scalar.of(at)}) for at in range(size)]
@@ -603,7 +603,7 @@ def _with_input(A: Matrix, B: Matrix, start: Matrix, u: Matrix, variable: str) -
     return Matrix.block([[A, B @ first], [zero, own]]).normal(), Matrix.block([[start], [begun]])
 
 
-def _annihilator(u: Matrix, variable: str) -> Scalar:
+def _input_polynomial(u: Matrix, variable: str) -> Scalar:
     """Return the polynomial of the input system: (z − λ)ʲ⁺¹ for kʲ λᵏ, and zʲ⁺¹ for δ(k, j)."""
     z, counts = Scalar.symbol(variable), dict[Scalar, int]()
     for entry in u.entries:
