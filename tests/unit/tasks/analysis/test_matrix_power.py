@@ -133,4 +133,4 @@ def test_values_and_questions_read_what_the_task_reads() -> None:
     samples = symobs.initial_state(StateSpace("[0 1; -1/2 1]", None, "[1 0]", dt=True), output="1, y")
     assert list(samples.at(y=3).x0) == [1, 3]
     text = 'task = "response"\n[plant]\nA = "[1/2]"\nB = "[1]"\ndt = true\n[specification]\ninput = "1, 0, 2"\n'
-    assert "The input from k = 0 on is [1 0 2]" in render(question_of(read(text)), "text")
+    assert "The input from k = 0 on is [1 0 2]" in str(render(question_of(read(text)), "text"))
