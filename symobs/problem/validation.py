@@ -33,7 +33,7 @@ from symobs.system import StateSpace, Symbols, read_matrix, read_scalar
 from symobs.system.reading import read_time
 from symobs.system.specification import is_pattern, parse_signal, read_poles
 from symobs.system.specification.pole_patterns import OTHERS, named_parts, require_positive
-from symobs.tasks.result import Document, Result, Task, result_type, task_named, tasks
+from symobs.tasks.result import Document, Result, Task, methods, result_type, task_named, tasks
 from symobs.tasks.result.in_convention import ResultInConvention, names_in
 from symobs.tasks.result.output_methods import digits_asked
 
@@ -85,7 +85,7 @@ class Problem:
         for task in (*first, *self.tasks):
             if report is not None:
                 report(task.name, tuple(results))
-            own, keys = Errors(), keys_of(task, self.specification)
+            own, keys = Errors(), keys_of(task, self._specification_of(task))
             with own:
                 try:
                     found = task.function(plant, **{name: self.specification[keys[name]] for name in keys})
@@ -110,6 +110,14 @@ class Problem:
             undecided[0].facts["results"] = tuple(results)
             raise undecided[0]
         return tuple(results)
+
+    def _specification_of(self, task: Task) -> Mapping[str, Any]:
+        """Return the specification of a task: of several tasks, a method is for those that have it."""
+        name = self.specification.get("method")
+        having = [each for each in self.tasks if f"{each.name}/{name}" in methods(each.name)]
+        if name in {None, "auto"} or task in having or not having:
+            return self.specification
+        return {key: value for key, value in self.specification.items() if key != "method"}
 
     def viewed(self, results: tuple[Result, ...]) -> tuple[ResultInConvention, ...]:
         """Return the results in the file's convention."""

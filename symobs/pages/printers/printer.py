@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING
 
 from symobs.exact import EIGENVALUE, Matrix, Scalar, decimal_digits
 from symobs.exact.algebraic.real_algebraic import RealRoot
+from symobs.exact.algebraic.root_sum import RootSum
 from symobs.exact.core.generators import function_named
-from symobs.exact.time_functions.matrix_exponential import RootSum
 from symobs.exact.time_functions.matrix_power import PowerOf
 from symobs.formula.notation import (
     FUNCTIONS,

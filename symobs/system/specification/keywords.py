@@ -224,7 +224,7 @@ def desired_polynomial(
         found = _from_poles(read, plant.variable, first)
     else:
         found = _from_polynomial(polynomial, plant, degree, second)
-    require_known(found.factors, second if poles is None else first)
+    require_known(found.factors, plant.symbols.signs, second if poles is None else first)
     return found
 
 

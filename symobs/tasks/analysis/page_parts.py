@@ -18,6 +18,7 @@ from symobs.exact import (
     root_of_pole,
     roots_of,
 )
+from symobs.exact.core.generators import symbols_named
 from symobs.formula.tree import (
     Conjunction,
     Decimals,
@@ -251,7 +252,7 @@ def _asked(page: Builder, name: str, desired_polynomial: DesiredPolynomial) -> N
 def state_signs(page: Builder) -> None:
     """Say which parameters have a declared sign."""
     by_sign: dict[str, list[str]] = {}
-    used = {*page.plant.field.names, *page.asked}
+    used = {*page.asked}.union(*map(symbols_named, page.plant.field.names))
     for name, sign in page.plant.symbols.signs.items():
         if name in used and sign != "real":
             by_sign.setdefault(sign, []).append(name)

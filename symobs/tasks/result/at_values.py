@@ -80,10 +80,10 @@ def _plant(plant: StateSpace, values: dict[str, Scalar]) -> StateSpace:
         raise InputError(message, where="values", repair="give values where the data are defined") from None
     if plant.polynomial is not None:
         polynomial = substitute(plant.polynomial, values)
-        there = StateSpace.from_polynomial(polynomial, plant.dt, symbols=there.symbols)
+        there = StateSpace.from_polynomial(polynomial, there.dt, symbols=there.symbols)
     elif plant.origin is not None:
         kind, origin = getattr(plant.written, "realisation", None), substitute(plant.origin, values)
-        written = StateSpace.from_transfer_function(origin, plant.dt, symbols=there.symbols, realisation=kind)
+        written = StateSpace.from_transfer_function(origin, there.dt, symbols=there.symbols, realisation=kind)
         there = written if written.matrices == there.matrices else there
     elif plant.nonlinear is not None:
         there.nonlinear = plant.nonlinear.moved(values)

@@ -18,6 +18,7 @@ from symobs.ground.errors import CertificateRejected, DerivationRejected, Undeci
 from symobs.proof.certificate.claims import BEYOND_LIMITS, UNREADABLE, Certificate, Claim, Statement, check_all
 from symobs.proof.derivation import translated
 from symobs.proof.derivation.builder import Builder
+from symobs.proof.derivation.left_out import without_rejected
 from symobs.system.conditions import Condition, vanishing_factors
 from symobs.tasks.result.output_methods import PLAIN, WebPage, document_options, to_sympy
 from symobs.tasks.result.task_traits import TaskTraits
@@ -151,6 +152,11 @@ class Result(TaskTraits):
         return False
 
     @property
+    def is_told_in_decimals(self) -> bool:
+        """Whether answers are numbers without a closed form, which a page writes in decimals."""
+        return False
+
+    @property
     def picture(self) -> Picture | None:
         """The picture of the answer that the page shows, where there is one."""
         return None
@@ -232,7 +238,7 @@ class Result(TaskTraits):
         page = Builder(self.plant, self.free_signals)
         page.asked_for(self.specification)
         self.write(page)
-        written = page.derivation()
+        written = without_rejected(page.derivation())
         established = written.check()
         for name, value in self.data.items():
             if name in established.values and established.values[name] != value:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import tomllib
-from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
 import pytest
@@ -65,25 +64,6 @@ def test_json_with_the_same_keys_is_the_same_problem(path: Any) -> None:
     assert from_json.expect == from_toml.expect
 
 
-@pytest.mark.parametrize(
-    ("text", "value"),
-    [
-        ("10.78", Fraction(539, 50)),
-        ("1e-3", Fraction(1, 1000)),
-        ("-0.1", Fraction(-1, 10)),
-        ("3", Fraction(3)),
-        ('"1/3"', Fraction(1, 3)),
-        ("0.1000000000000000055511151231257827", Fraction("0.1000000000000000055511151231257827")),
-    ],
-)
-def test_numbers_are_exact(text: str, value: Fraction) -> None:
-    for file in (
-        f'task = "observability"\n[plant]\nA = [[{text}]]',
-        f'{{"task": "observability", "plant": {{"A": [[{text}]]}}}}',
-    ):
-        assert read(file).plant.matrices.A[0, 0].fraction() == value
-
-
 @tabled
 def test_what_is_neither_toml_nor_json_is_refused_at_its_place(text: str, words: str) -> None:
     said = complaint(text)
@@ -123,43 +103,6 @@ def test_any_damage_to_a_file_is_found_out(data: st.DataObject) -> None:
         assert isinstance(error, InputError)
         assert error.where
         assert error.repair
-
-
-# -- its tables -----------------------------------------------------------------------------------------------------
-
-
-def test_a_problem_of_one_task_and_of_several() -> None:
-    one, several = read(OBSERVER), read(OBSERVER.replace('task = "observer"', 'tasks = ["observability", "observer"]'))
-    assert [result.task for result in one.solve()] == ["observer"]
-    begun: list[tuple[str, list[str]]] = []
-    results = several.solve(lambda name, so_far: begun.append((name, [result.task for result in so_far])))
-    assert [result.task for result in results] == ["observability", "observer"]
-    assert begun == [("observability", []), ("observer", ["observability"])]
-    assert one.solve()[0].answer == several.solve()[1].answer
-
-
-def test_another_task_can_be_run_on_the_same_file() -> None:
-    tables = parse(SERVO.read_text(encoding="utf-8"))
-    found = validate(tables, "observability")
-    assert [result.task for result in found.solve()] == ["observability"]
-    assert [task.name for task in validate({"plant": tables["plant"]}, "observability").tasks] == ["observability"]
-    with pytest.raises(ProblemErrors, match="poles are missing"):
-        validate({"plant": tables["plant"]}, "observer").solve()
-
-
-@pytest.mark.parametrize(
-    ("dt", "variable", "period"),
-    [
-        ("0", "s", 0),
-        ("true", "z", True),
-        ("0.1", "z", Fraction(1, 10)),
-        ("false", "s", 0),
-        ('"1/4"', "z", Fraction(1, 4)),
-    ],
-)
-def test_time_is_continuous_or_discrete(dt: str, variable: str, period: object) -> None:
-    plant = read(f"{OBSERVER.replace(PLANT, f'{PLANT}dt = {dt}{chr(10)}')}").plant
-    assert (plant.variable, plant.dt) == (variable, period)
 
 
 # -- expected answers -----------------------------------------------------------------------------------------------
@@ -283,6 +226,22 @@ def test_an_error_hides_no_other_and_makes_none(text: str, places: list[str]) ->
     with pytest.raises(ProblemErrors) as raised:
         read(text)
     assert [error.where for error in raised.value.errors] == places
+
+
+def test_a_method_is_for_the_tasks_of_a_file_that_have_it() -> None:
+    text = """
+tasks = ["observability", "observer", "stability_region"]
+[plant]
+A = "[0 1; -2 -3]"
+C = "[1 0]"
+[specification]
+poles = "-4, -5"
+method = "%s"
+"""
+    found = validate(parse(text % "ackermann", "problem")).solve()
+    assert [result.printed_method for result in found][:2] == ["rank", "ackermann"]
+    with pytest.raises(ProblemErrors, match="'magic' is not a method of observability"):
+        validate(parse(text % "magic", "problem")).solve()
 
 
 # -- tasks about the plant that another task finds ---------------------------------------------------------------------

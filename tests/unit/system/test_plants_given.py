@@ -73,19 +73,6 @@ def test_what_a_fraction_divides_by_stays_a_condition(function: object) -> None:
 SERVO = StateSpace("[0 1; 0 -1]", "[0; 1]", "[1 0]")
 
 
-@pytest.mark.parametrize(
-    "given",
-    [
-        lambda: StateSpace([[0, 1], [0, -1]], [0, 1], [1, 0], 0),
-        lambda: StateSpace([[0, 1], [0, -1]], ("0", 1), sympy.Matrix([[1, 0]]), "0"),
-        lambda: StateSpace([[0, 1], [0, -1]], [sympy.Integer(0), 1], [1, sympy.Integer(0)], [0]),
-    ],
-)
-def test_flat_lists_are_a_column_and_a_row(given: Any) -> None:
-    plant = given()
-    assert (plant.A, plant.B, plant.C, plant.D) == (SERVO.A, SERVO.B, SERVO.C, SERVO.D)
-
-
 # -- systems of other programs ----------------------------------------------------------------------------------------
 
 
@@ -135,21 +122,32 @@ def test_what_is_no_plant_is_refused(system: Any, reason: str) -> None:
 # -- parameters replaced ----------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("key", ["p", p], ids=["name", "symbol"])
-@pytest.mark.parametrize(
-    "value", ["-1/2", Fraction(-1, 2), sympy.Rational(-1, 2)], ids=lambda value: type(value).__name__
-)
-def test_parameters_are_replaced_by_whatever_an_entry_may_be(key: object, value: object) -> None:
-    plant = StateSpace("[p 1; 0 b]", "[0; p^2]", "[1 0]").substitute({key: value, "b": 3})
-    assert sympy.Matrix([[sympy.Rational(-1, 2), 1], [0, 3]]) == plant.A
-    assert sympy.Matrix([0, sympy.Rational(1, 4)]) == plant.B
-
-
 @tabled
 def test_values_that_cannot_be_are_refused(values: dict[Any, Any], said: str) -> None:
     plant = StateSpace("[p 1; 0 b]", symbols={"p": "real", "b": "positive"})
     with pytest.raises(InputError, match=said):
         plant.substitute(values)
+
+
+def test_transfer_functions_of_other_programs_are_read() -> None:
+    """Two lists of coefficients, and SciPy's and MATLAB's matrix of numerators over a common denominator."""
+    read = StateSpace.from_transfer_function
+    assert read([1, 3], [1, 3, 2]) == read(([1, 3], [1, 3, 2])) == read([1, 3], [1, 3, 2], 0)
+    assert read([1], [2, 1], "1/2").dt == read([1], [2, 1], dt="1/2").dt == Fraction(1, 2)
+    lag = symobs.transfer_function(read(([[1, 0], [1, 1]], [1, 1]))).transfer_function
+    s = sympy.Symbol("s")
+    assert lag == sympy.Matrix([[1, 0], [1, 1]]) / (s + 1)
+    with pytest.raises(InputError, match="dead time is not rational; write a Padé approximation"):
+        read("exp(-s)/(s+1)")
+
+
+def test_a_sampling_period_may_be_a_symbol_that_is_positive() -> None:
+    held = StateSpace("[exp(-T)]", "[1]", "[1]", dt="T", symbols={"T": "positive"})
+    assert (held.is_discrete, held.dt, held.substitute({"T": "1/2"}).dt) == (True, "T", Fraction(1, 2))
+    assert symobs.observability(held).at(T=2).plant.dt == 2
+    assert '"dt": "T"' in symobs.observability(held).to("json")
+    with pytest.raises(InputError, match="T is not a sampling period"):
+        StateSpace("[1]", dt="T", symbols={"T": "real"})
 
 
 # -- the coordinates of a transfer function ----------------------------------------------------------------------------

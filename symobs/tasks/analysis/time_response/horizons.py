@@ -116,19 +116,29 @@ def _of_what_is_seen(A: Matrix, C: Matrix, test: Mapping[str, Any], *, discrete:
     return None if W is None else (Q.T @ W @ Q).normal()
 
 
-def lyapunov(A: Matrix, C: Matrix, *, discrete: bool) -> Matrix | None:
-    """Return the symmetric P with AᵀP + PA = −CᵀC (AᵀPA − P = −CᵀC), None where it is not unique."""
-    order = A.shape[0]
-    places = [(i, j) for i in range(order) for j in range(i, order)]
-    Q = (C.T @ C).normal()
-    columns = []
+def symmetric_places(order: int) -> list[tuple[int, int]]:
+    """Return the places on and above the diagonal."""
+    return [(i, j) for i in range(order) for j in range(i, order)]
+
+
+def lyapunov_map(A: Matrix, *, discrete: bool = False) -> Matrix:
+    """Return the matrix of P ↦ AᵀP + PA (AᵀPA − P) for symmetric P, in the order of their places."""
+    order, columns = A.shape[0], []
+    places = symmetric_places(order)
     for i, j in places:
         unit = Matrix.of([[int((r, c) in {(i, j), (j, i)}) for c in range(order)] for r in range(order)])
         image = A.T @ unit @ A - unit if discrete else A.T @ unit + unit @ A
-        columns.append([image[r, c] for r, c in places])
-    table = Matrix.of(columns).T
+        columns.append([image[place] for place in places])
+    return Matrix.of(columns).T
+
+
+def lyapunov(A: Matrix, C: Matrix, *, discrete: bool) -> Matrix | None:
+    """Return the symmetric P with AᵀP + PA = −CᵀC (AᵀPA − P = −CᵀC), None where it is not unique."""
+    order = A.shape[0]
+    places = symmetric_places(order)
+    Q = (C.T @ C).normal()
     try:
-        found = table.solve(Matrix.column([-Q[r, c] for r, c in places])).normal()
+        found = lyapunov_map(A, discrete=discrete).solve(Matrix.column([-Q[place] for place in places])).normal()
     except ZeroDivisionError:
         return None
     values = {place: found[k, 0] for k, place in enumerate(places)}

@@ -7,13 +7,12 @@ from operator import add
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 from symobs.exact import Matrix, Scalar, factored
+from symobs.exact.algebraic.root_sum import RootSum
 from symobs.exact.core.generators import function_named, functions_in
 from symobs.exact.time_functions.matrix_exponential import (
-    MOST_STATES_WITH_PARAMETERS,
     Exponential,
     Mode,
     NoClosedForm,
-    RootSum,
     exponential,
 )
 from symobs.exact.time_functions.matrix_power import INSTANT, matrix_power
@@ -50,10 +49,22 @@ def closed_form(plant: StateSpace, taken: Signs, *, sums: bool = False) -> tuple
     return with_signs(plant, taken, lambda sign: exponential(plant.matrices.A, plant.variable, sign, sums=sums))
 
 
+def has_sums(plant: StateSpace) -> bool:
+    """Return whether sums over roots may stand in answers beyond e^{At}: where the modes are numbers."""
+    return not plant.equations and not plant.matrices.A.names
+
+
+def motion(plant: StateSpace, whole: Matrix, start: Matrix) -> Exponential:
+    """Return e^{Mt} V for the matrix M of a larger system in which that of the plant stands.  Raises `NoClosedForm`."""
+    found: Exponential
+    found, _ = with_signs(plant, {}, lambda sign: exponential(whole, plant.variable, sign, sums=True, start=start))
+    return found
+
+
 def question_of(error: NoClosedForm) -> str:
     """Return what would have to be known."""
     if error.factor is None:
-        return f"the exponential of a matrix of more than {MOST_STATES_WITH_PARAMETERS} states"
+        return f"the exponential of a matrix of more than {error.most} states"
     return f"the roots of {error.factor}"
 
 

@@ -12,6 +12,7 @@ from operator import mul
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Self, TypeAlias
 
 from symobs.exact import Matrix, Scalar, companion
+from symobs.exact.algebraic.enclosure import is_number
 from symobs.exact.core.generators import function_named, functions_in, normal_form, substitute, symbols_in
 from symobs.exact.time_functions.matrix_exponential import NoClosedForm
 from symobs.exact.time_functions.matrix_power import PowerOf, matrix_power
@@ -32,6 +33,8 @@ from symobs.tasks.analysis.time_response.matrix_exponential import (
     TIME,
     closed_form,
     following,
+    has_sums,
+    motion,
     powers_of,
     question_of,
     require_continuous,
@@ -48,6 +51,7 @@ from symobs.tasks.result import Result, choose, method, task
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
+    from symobs.exact.time_functions.matrix_exponential import Exponential
     from symobs.formula.figures import Interval
     from symobs.formula.tree import Environment, Relation
     from symobs.proof.derivation.builder import Builder, Slot
@@ -170,7 +174,15 @@ class InputModel(NamedTuple):
 
 
 def input_model(u: Matrix) -> InputModel | None:
-    """Return the least exosystem of each input; None where its coefficients are no rational numbers."""
+    """Return the exosystem of an input that is not 0; None where it is no system of rational numbers."""
+    if u.is_zero:
+        return None
+    found = exosystem(u)
+    return None if found.S.names or found.start.names else found
+
+
+def exosystem(u: Matrix) -> InputModel:
+    """Return the least exosystem of each input, of which one at least is not 0."""
     blocks: list[tuple[Matrix, list[Scalar]]] = []
     functions: list[list[Scalar]] = []
     for (entry,) in table_of(u):
@@ -183,12 +195,8 @@ def input_model(u: Matrix) -> InputModel | None:
             start.append(derivative.at_zero)
             functions.append([derivative.value_at(Scalar.symbol("t"))])
             derivative = derivative.derivative()
-        if any(not value.is_constant for value in (*coefficients, *start)):
-            return None
         blocks.append((companion(coefficients[1:]), start))
     sizes = [len(start) for _, start in blocks]
-    if not sum(sizes):
-        return None
     zeros = [[Matrix.zeros(a, b) for b in sizes] for a in sizes]
     S = Matrix.block([[*row[:i], blocks[i][0], *row[i + 1 :]] for i, row in enumerate(zeros) if sizes[i]])
     first = [sum(sizes[:i]) if size else None for i, size in enumerate(sizes)]
@@ -288,24 +296,30 @@ class Response(DampingCases):
         start = asked["initial"] if v is None else asked["initial"] + plant.matrices.B @ v
         shared = {**{name: asked[name] for name in cls.asked_for}, "start": start, "taken": taken, "chosen": {}}
         try:
-            found, chosen = closed_form(plant, taken)
+            found, chosen = closed_form(plant, taken, sums=has_sums(plant))
+            forced = _motion_from_rest(plant, found, asked["input"])
         except NoClosedForm as error:
             nothing = {"state": None, "output": None, "question": question_of(error), "factor": error.factor}
             return cls(plant, method_name, {**shared, **nothing})
-        m, exponential = plant.matrices, found.table()
-        state = product(exponential, table_of(start))
-        answer = {**shared, "chosen": chosen, "exponential": matrix_at(exponential, TIME), "output": None}
-        u = None if asked["input"] is None else table_of(asked["input"])
-        if u is not None:
-            forced = motion_from_rest(exponential, m.B, u)
-            answer["forced"] = matrix_at(forced, TIME)
-            state = _plus(state, forced)
+        m, answer = plant.matrices, {**shared, "chosen": chosen, "exponential": found.matrix(TIME), "output": None}
+        if forced is not None:
+            answer["forced"] = forced if isinstance(forced, Matrix) else matrix_at(forced, TIME)
+        if not found.is_closed:
+            state = found.matrix(TIME) @ start + (start * 0 if forced is None else answer["forced"])
+            if m.has_output:
+                seen = m.C @ state
+                through = forced is not None and m.has_feedthrough
+                answer["output"] = seen + m.D @ asked["input"] if through else seen
+            return cls(plant, method_name, {**answer, "state": state})
+        table = product(found.table(), table_of(start))
+        if isinstance(forced, tuple):
+            table = _plus(table, forced)
         if m.has_output:
-            seen = product(table_of(m.C), state)
-            if u is not None and m.has_feedthrough:
-                seen = _plus(seen, product(table_of(m.D), u))
-            answer["output"] = matrix_at(seen, TIME)
-        return cls(plant, method_name, {**answer, "state": matrix_at(state, TIME)})
+            outputs = product(table_of(m.C), table)
+            if forced is not None and m.has_feedthrough:
+                outputs = _plus(outputs, product(table_of(m.D), table_of(asked["input"])))
+            answer["output"] = matrix_at(outputs, TIME)
+        return cls(plant, method_name, {**answer, "state": matrix_at(table, TIME)})
 
     @property
     def matrices(self) -> tuple[Matrix | Scalar, ...]:
@@ -376,6 +390,25 @@ class Response(DampingCases):
                 plot_response(page, self.answer["start"], self.input_model)
 
 
+def _motion_from_rest(plant: StateSpace, found: Exponential, u: Matrix | None) -> Table | Matrix | None:
+    """Return ∫₀ᵗ e^{A(t−s)} B u(s) ds; beside sums over roots it is the motion of the plant and the exosystem of u.
+
+    Raises `NoClosedForm` where that has parameters.
+    """
+    B = plant.matrices.B
+    if u is None or u.is_zero:
+        return None if u is None else B @ u
+    if found.is_closed:
+        return motion_from_rest(found.table(), B, table_of(u))
+    S, V, start, _ = exosystem(u)
+    if not all(map(is_number, S.entries)):
+        raise NoClosedForm(plant.matrices.A.characteristic_polynomial(plant.variable))
+    (n, _), m = B.shape, S.shape[0]
+    whole = Matrix.block([[plant.matrices.A, B @ V], [Matrix.zeros(m, n), S]])
+    moved = motion(plant, whole, Matrix.block([[Matrix.zeros(n, 1)], [start]]))
+    return moved.matrix(TIME).select(range(n), range(1))
+
+
 def _plus(left: Table, right: Table) -> Table:
     return tuple(tuple(a + b for a, b in zip(p, q, strict=True)) for p, q in zip(left, right, strict=True))
 
@@ -414,7 +447,7 @@ def _write_branch(page: Builder, result: Response) -> None:
         tell_question(page, answer["factor"])
         page.remark("response_not_given")
         return
-    found, _ = closed_form(result.plant, {**answer["taken"], **answer["chosen"]})
+    found, _ = closed_form(result.plant, {**answer["taken"], **answer["chosen"]}, sums=has_sums(result.plant))
     tell_exponential(page, found, answer["exponential"])
     begins, has_impulse, u = answer["start"], answer["impulse"] is not None, None
     from_rest = begins.is_zero and not has_impulse

@@ -27,6 +27,7 @@ PHRASES: dict[str, str] = {
     "output_of_exponential": "The zero-input response of the output is governed by",
     "input_through_exponential": "The response of the state at the time $t$ to an impulse at the input is",
     "gramian_integral": "The Gramian is the integral over the horizon of its product with its transpose:",
+    "gramian_by_sums": "The modes have no closed form. The Gramian up to the time $t$ solves {equation}, {start}; its entries are sums over the roots of the modes of this equation. At the horizon it is",
     "gramian_determinant": "Its determinant is",
     "lyapunov": "The Lyapunov equation {equation} has the solution",
     "lyapunov_denominator": "Where its denominator vanishes there is no such solution, and the integral is evaluated directly.",

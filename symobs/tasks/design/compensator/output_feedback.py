@@ -48,12 +48,20 @@ _DECIDABLE_TERMS = 400
 
 
 #: What an answer has none of where there is no loop.
-_OF_A_LOOP = ("F_stable", "closed_loop_polynomial", "closed_loop", "closed_loop_matrix", "closed_loop_matrix_estimate")
+_OF_A_LOOP = (
+    "F_stable",
+    "F_stable_if",
+    "closed_loop_polynomial",
+    "closed_loop",
+    "closed_loop_matrix",
+    "closed_loop_matrix_estimate",
+)
 
 
 #: What follows from K, L and F, and the property that finds it.
 _FOUND = {
-    "F_stable": "own_stability", "compensator_stable": "law_stability", "compensator_matrix": "own_matrix",
+    "F_stable": "own_stability", "F_stable_if": "own_stability_where",
+    "compensator_stable": "law_stability", "compensator_matrix": "own_matrix",
     "closed_loop_polynomial": "loop_polynomial", "closed_loop": "loop", "closed_loop_unity": "unity_loop",
     "closed_loop_matrix": "error_coordinates", "closed_loop_matrix_estimate": "estimate_coordinates", "family": "families",
 }  # fmt: skip
@@ -356,6 +364,16 @@ class OutputFeedback(Result):
                 return verdict
         met = stable_somewhere(denominator, variable, signs, discrete=discrete)
         return "conditional" if len(met) == 2 else "undecided"
+
+    @property
+    def own_stability_where(self) -> list[str] | None:
+        """The inequalities that hold exactly where F is stable, if this is conditional and F is not too long."""
+        plant, F = self.plant, self.answer["F"]
+        if self.own_stability != "conditional" or F.size > _DECIDABLE_TERMS:
+            return None
+        signs = plant.symbols.signs
+        found = stability(F.common_denominator(), plant.variable, signs, discrete=plant.is_discrete)
+        return found.inequalities(signs) or None
 
     @cached_property
     def law_stability(self) -> str:

@@ -13,9 +13,12 @@ from symobs import StateSpace
 from symobs.exact import Matrix
 from symobs.ground.errors import CertificateRejected, InputError
 from tests.kit import tabled
-from tests.support.independent_algebra.plain import (
+from tests.support.algebra import (
     at_number,
     characteristic,
+    determinant,
+    identity,
+    inverse,
     matrix_at,
     multiply,
     observability_rows,
@@ -25,13 +28,13 @@ from tests.support.independent_algebra.plain import (
     subtract,
     transposed,
 )
-from tests.support.independent_algebra.plain_fractions import determinant, identity, inverse, plus, times
+from tests.support.derivations import plus, times
 from tests.support.sampling import FULL
 
 if TYPE_CHECKING:
     import random
 
-    from tests.support.independent_algebra.plain import Rows
+    from tests.support.algebra import Rows
 
 DRAWS = 400 if FULL else 40
 #: order, inputs, outputs
@@ -289,6 +292,14 @@ def test_the_unity_loop_divides_by_no_parameter_that_stands_in_front(A: str, B: 
     P = (plant.C * (s * sympy.eye(2) - plant.A).inv() * plant.B)[0]
     assert sympy.simplify(found.closed_loop_unity - P * found.F / (1 + P * found.F)) == 0
     assert all(factor.denominator.is_constant for factor, _ in form.factors)
+
+
+def test_a_compensator_that_is_stable_for_some_parameters_says_for_which() -> None:
+    """s² + (10 − a) s + a² − 10 a + 35, whose last coefficient is (a − 5)² + 10, has its roots in Re s < 0 for a < 10."""
+    plant = symobs.StateSpace("[0 1; 0 -a]", "[0; 1]", "[1 0]")
+    found = symobs.compensator(plant, control_poles="-1, -2", observer_poles="-3, -4")
+    assert (found.F_stable, list(found.F_stable_if)) == ("conditional", ["a < 10"])
+    assert found.at(a=1).F_stable_if is None
 
 
 @pytest.mark.parametrize("size", SIZES, ids=str)
