@@ -44,7 +44,7 @@ NONLINEAR: list[tuple[str, str, str, dict[str, Any]]] = [
 BUDGET = 240.0
 #: Tasks whose specification is a matter of its own.
 OTHERS = {"time_varying_observability", "stability_region", "initial_state_covariance", "disturbance_observer"}
-#: Statements that may give way to a remark, of all pages.
+#: Lines that are left out with a warning, of all pages.
 REMARKS = 20
 
 

@@ -111,12 +111,9 @@ def _walk(steps: tuple[Step, ...], environment: Environment, discrete: bool) -> 
     for step in steps:
         try:
             environment = _after(step, environment, discrete)
-        except DerivationRejected as error:
-            error.facts.setdefault("step", step)
-            raise
         except UNREADABLE as error:
             message = f"a step of kind {type(step).__name__} cannot be read: {error}"
-            raise DerivationRejected(message, repair=BUG, line=str(step), step=step) from error
+            raise DerivationRejected(message, repair=BUG, line=str(step)) from error
     return environment
 
 

@@ -18,7 +18,6 @@ from symobs.ground.errors import CertificateRejected, DerivationRejected, Undeci
 from symobs.proof.certificate.claims import BEYOND_LIMITS, UNREADABLE, Certificate, Claim, Statement, check_all
 from symobs.proof.derivation import translated
 from symobs.proof.derivation.builder import Builder
-from symobs.proof.derivation.left_out import without_rejected
 from symobs.system.conditions import Condition, vanishing_factors
 from symobs.tasks.result.output_methods import PLAIN, WebPage, document_options, to_sympy
 from symobs.tasks.result.task_traits import TaskTraits
@@ -238,7 +237,7 @@ class Result(TaskTraits):
         page = Builder(self.plant, self.free_signals)
         page.asked_for(self.specification)
         self.write(page)
-        written = without_rejected(page.derivation())
+        written = page.derivation()
         established = written.check()
         for name, value in self.data.items():
             if name in established.values and established.values[name] != value:

@@ -32,7 +32,6 @@ PHRASES: dict[str, str] = {
     "from_floats": "Floating-point entries are taken as the shortest decimals that represent them.",
     "exact_decimals": "The decimals are taken as exact: {numbers}.",
     "rounded_digits": "Numbers after ≈ are exact values rounded to {digits} significant digits.",
-    "left_out": "A statement that could not be verified is left out here.",
     "shown_in_section": "This has been shown in section {number}.",
     "without_serifs": "The sans-serif {parameter} denotes a symbol of the data, not the matrix or signal with that letter.",
     "declared": "Throughout, we assume {signs}.",

@@ -2,20 +2,17 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import pytest
 
 import symobs
 from symobs.exact import Matrix, Scalar
-from symobs.formula.tree import Environment, Letter, Literal
+from symobs.formula.tree import Environment, Literal
 from symobs.formula.tree.term import Term
-from symobs.ground.errors import DerivationRejected, SymobsWarning
+from symobs.ground.errors import SymobsWarning
 from symobs.proof.certificate.claims import can_be_shown, verify
-from symobs.proof.derivation import Conclude, Equal, Given, Note, Sentence, Step
 from symobs.proof.derivation.builder import relation, shows
-from symobs.proof.derivation.left_out import without_rejected
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -41,23 +38,6 @@ def test_a_line_beyond_the_reach_of_the_check_is_left_out_by_decision() -> None:
     assert verify(fact, e) == ("", 0.0)
     assert not can_be_shown(fact, e)
     assert not shows([fact], e)
-
-
-@pytest.mark.parametrize("kept", ["answer", "silent", "given"])
-def test_a_false_statement_gives_way_to_a_remark_and_what_a_page_rests_on_does_not(kept: str) -> None:
-    page = symobs.observer(symobs.StateSpace("[0 1; -2 -3]", C="[1 0]"), poles="-4, -5").derivation
-    false = relation(Term(Letter("A"), page.check()), Matrix.zeros(2, 2))
-    statement = Equal((false,), Sentence("in_decimals"))
-    wrong: dict[str, Step] = {
-        "answer": replace(statement, answer=True),
-        "silent": Conclude(None, (false,)),
-        "given": Given((relation(Term(Letter("A"), page.check()), "!=", Term(Letter("A"), page.check())),)),
-    }
-    with pytest.warns(SymobsWarning, match="is left out: its check failed"):
-        remaining = without_rejected(replace(page, steps=(*page.steps, statement)))
-    assert remaining.steps == (*page.steps, Note(Sentence("left_out")))
-    with pytest.raises(DerivationRejected):
-        without_rejected(replace(page, steps=(*page.steps, wrong[kept], statement)))
 
 
 def test_a_picture_that_is_not_faithful_is_left_out_with_a_warning(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -7,7 +7,6 @@ from typing import Any
 import pytest
 
 import symobs
-from symobs.ground.errors import SymobsWarning
 from tests.kit import tabled
 
 S = symobs.StateSpace
@@ -48,11 +47,3 @@ def test_a_rank_that_drops_where_a_cosine_vanishes_has_a_page() -> None:
 )
 def test_pages_beside_letters_and_roots(task: str, data: tuple[str | None, ...], asked: dict[str, str]) -> None:
     assert getattr(symobs, task)(S(*data), **asked).to("text")
-
-
-def test_a_statement_that_cannot_be_verified_gives_way_to_a_remark() -> None:
-    """The rank 2 needs a or b ≠ 0, which is a sum of squares for the check of a rank here: the page says what is missing."""
-    found = symobs.detectability(S("[cos(b) 1; 0 0]", C="[a 0; -b 1]"))
-    with pytest.warns(SymobsWarning, match=r"rank\(O\) = 2 is left out"):
-        page = " ".join(found.to("text").split())
-    assert "A statement that could not be verified is left out here." in page
