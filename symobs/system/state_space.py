@@ -225,12 +225,14 @@ class StateSpace:
         dt: object = 0,
         symbols: Mapping[str, Any] | Symbols | None = None,
         floats: str | None = None,
+        realisation: str | None = None,
     ) -> StateSpace:
         """Return the controllable canonical realisation of a proper rational function of s (z in discrete time).
 
         b(s)/a(s) + d with a(s) = sⁿ + a₁ sⁿ⁻¹ + … + aₙ gives ones above the diagonal, last row −aₙ … −a₁, B = eₙ and
-        C the coefficients of b, constant first.  The function is a text, a SymPy expression or lists of coefficients,
-        highest power first: ([1], [1, 2, 0]), or [1], [1, 2, 0]; dt may stand behind.  A matrix of functions,
+        C the coefficients of b, constant first.  `realisation` may be "observable", (Aᵀ, Cᵀ, Bᵀ), or "modal", A block
+        diagonal, B with a 1 in each block and C with the residues.  The function is a text, a SymPy expression or lists of
+        coefficients, highest power first: ([1], [1, 2, 0]), or [1], [1, 2, 0]; dt may stand behind.  A matrix of functions,
         "[1/(s+1) 0; 1/s 1/(s+1)]", or ([[1, 0], [1, 1]], [1, 1]) with a common denominator, is given a minimal realisation.
         Raises `InputError` where a function is not proper, or has no pole.
         """
@@ -244,7 +246,7 @@ class StateSpace:
         time, where = read_time(dt, known), "plant.transfer_function"
         exact = read_floats(transfer_function, floats, where)
         known = known.seen(exact, time.variable)
-        written = read_written(exact, known, time.variable, where)
+        written = read_written(exact, known, time.variable, where, realisation)
         A, B, C, D = written.realised(where, known.signs)
         plant = cls(A, B, C, D, dt, symbols=known, transfer_function=written)
         plant.is_from_floats, plant.is_in_decimals = exact is not transfer_function, has_decimals(exact)
@@ -374,6 +376,17 @@ class StateSpace:
         if any(value.is_zero for value in nonzero) or any(i.is_constant and not i.is_zero for i in images):
             raise ZeroDivisionError("what does not vanish is 0")
         return plant.restricted([image for image in images if not image.is_zero], nonzero)
+
+    def in_coordinates(
+        self, A: Matrix, B: Matrix | None, C: Matrix | None, D: Matrix | None, nonzero: Iterable[Scalar]
+    ) -> StateSpace:
+        """Return a plant with other matrices over the same parameters, which there is where some values do not vanish."""
+        plant = copy(self)
+        plant.__dict__.pop("field", None)
+        plant.matrices = Matrices(A, B, C, D if B is not None and C is not None else None)
+        plant.written = plant.polynomial = plant.nonlinear = None
+        plant.nonzero = tuple(dict.fromkeys((*self.nonzero, *self.apart, *(value.numerator for value in nonzero))))
+        return plant.asked_anew()
 
     def restricted(self, equations: Iterable[Scalar], nonzero: Iterable[Scalar] = ()) -> StateSpace:
         """Return the plant where some polynomials, which must have common zeros, vanish and others do not."""

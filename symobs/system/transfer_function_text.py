@@ -1,4 +1,4 @@
-"""Transfer functions as given, and their controllable canonical form."""
+"""Transfer functions as given, and their realisation in canonical or modal form."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 from symobs.exact import Ideal, Matrix, Scalar, companion, product_of, resultant
+from symobs.exact.linear_algebra.modal_matrix import modal_realisation
 from symobs.formula.expression import parse_polynomial, parse_scalar
 from symobs.formula.expression.written_fraction import parse_fraction
 from symobs.ground.dataclass import dataclass
@@ -21,6 +22,9 @@ if TYPE_CHECKING:
 #: A realisation of more states is refused: designs and tests for it would not end.
 MOST_STATES = 200
 
+#: The coordinates in which a transfer function is realised; the first ones where none are named.
+REALISATIONS = ("controllable", "observable", "modal")
+
 
 @dataclass(frozen=True)
 class WrittenTransferFunction:
@@ -29,6 +33,8 @@ class WrittenTransferFunction:
     above: Scalar
     below: Scalar
     variable: str
+    #: The coordinates of the realisation.
+    realisation: str = REALISATIONS[0]
 
     @cached_property
     def value(self) -> Scalar:
@@ -45,9 +51,12 @@ class WrittenTransferFunction:
         return product_of(factor**power for factor, power in self._common if self.variable in factor.names)
 
     def realised(self, where: str, signs: Mapping[str, str]) -> tuple[Matrix, Matrix, Matrix, Matrix]:
-        """Return its controllable canonical form."""
+        """Return its realisation in controllable or observable canonical form, or in modal form."""
         del signs  # its roots have been read
-        return realise(self.value, self.variable, where)
+        A, B, C, D = realise(self.value, self.variable, where)
+        if self.realisation == "observable":
+            return A.T, C.T, B.T, D
+        return (*modal_realisation(A, B, C, self.variable), D) if self.realisation == "modal" else (A, B, C, D)
 
     @property
     def apart(self) -> tuple[Scalar, ...]:

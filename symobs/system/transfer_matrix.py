@@ -16,6 +16,7 @@ from symobs.ground.errors import BudgetExceeded, CertificateRejected, InputError
 from symobs.system.reading import as_rows, is_identity, read_matrix, require_known
 from symobs.system.transfer_function_text import (
     MOST_STATES,
+    REALISATIONS,
     WrittenTransferFunction,
     over_data,
     read_transfer_function,
@@ -72,6 +73,26 @@ class WrittenTransferMatrix:
 
 
 def read_written(
+    value: object, symbols: Symbols, variable: str, where: str, realisation: object = None
+) -> WrittenTransferFunction | WrittenTransferMatrix:
+    """Return a transfer function with the coordinates of its realisation, or a matrix of functions.
+
+    Raises `InputError` for other coordinates than there are, and where they are named for a matrix.
+    """
+    written = _read_written(value, symbols, variable, where)
+    if realisation is None:
+        return written
+    place = where.replace("transfer_function", "realisation")
+    if realisation not in REALISATIONS:
+        message = f"{str(realisation)[:40]!r} is no kind of realisation"
+        raise InputError(message, where=place, repair=f"write one of {', '.join(REALISATIONS)}")
+    if isinstance(written, WrittenTransferMatrix):
+        message = "a matrix of transfer functions has a minimal realisation, in coordinates of its own"
+        raise InputError(message, where=place, repair="leave it out")
+    return replace(written, realisation=str(realisation))
+
+
+def _read_written(
     value: object, symbols: Symbols, variable: str, where: str
 ) -> WrittenTransferFunction | WrittenTransferMatrix:
     """Return a transfer function, or the matrix of several that a text in brackets, nested lists or SymPy give."""
@@ -274,6 +295,7 @@ def parallel(first: Realisation, second: Realisation) -> Realisation:
 
 def connected(kind: str, plant: Plant, other: object) -> Plant:
     """Return the connection of a plant with another one, or with a gain; raises `InputError` where they do not fit."""
+    other = getattr(other, "as_plant", other)
     first, second = _system(plant), _of_other(plant, other)
     size = {"series": first.D.shape[1], "gain": first.D.shape[0]}.get(kind, 1)
     if not isinstance(other, type(plant)) and second.D.shape == (1, 1) != (size, size):  # a number, for each of several

@@ -262,8 +262,11 @@ def without_input(answer: dict[str, Any], pair: tuple[Rows, Rows], s: Fraction) 
 
 def errors_of(part: Any, point: Point, A: Rows, B: Rows, C: Rows, s: Fraction) -> dict[str, Any]:
     """Return the loop in state and estimation error (of full order), or tracking and estimation error (of minimal order)."""
-    K, L = (at(part.loop.answer[name], point) for name in "KL")
+    K = at(part.loop.answer["K"], point)
     closed = subtract(A, multiply(B, K))
+    if part.loop.answer["L"] is None:
+        return {"closed_loop_matrix": closed, "polynomial": characteristic_at(closed, s), "K": K}
+    L = at(part.loop.answer["L"], point)
     if part.task == "feedforward":
         whole = blocks((closed, multiply(B, K)), ([[Fraction(0)] * len(A) for _ in A], subtract(A, multiply(L, C))))
         return {"closed_loop_matrix": whole, "polynomial": characteristic_at(whole, s), "K": K, "L": L}

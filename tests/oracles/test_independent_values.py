@@ -111,7 +111,7 @@ def known_letters(hand: Hand) -> dict[str, Any]:
     if hand.follows:
         F = hand.gain_at_rest.inv()
         known |= {"F_v": F, "G_0": hand.gain_at_rest, "T_v": hand.followed}
-        known["u"] = {"x_hat": -hand.feedback_gain, "v_r": F}
+        known["u"] = {"x" if hand.observer is None else "x_hat": -hand.feedback_gain, "v_r": F}
     return known
 
 
@@ -281,7 +281,7 @@ def answers(hand: Hand, task: str) -> dict[str, Any]:
             own = {"L": hand.observer_gain, "A": A - hand.observer_gain * C, "B_u": driven, "B_y": hand.observer_gain}
         case "feedforward":
             whole = {"polynomial": characteristic(hand.loop_matrix, variable), "closed_loop_matrix": hand.loop_matrix}
-            gains = {"K": hand.feedback_gain, "L": hand.observer_gain}
+            gains = {"K": hand.feedback_gain} | ({} if hand.observer is None else {"L": hand.observer_gain})
             return gains | whole | {"F": hand.gain_at_rest.inv()[0], "transfer_function": hand.followed}
         case "state_feedback":
             polynomial = characteristic(A - B * hand.feedback_gain, variable)

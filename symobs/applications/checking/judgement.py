@@ -32,7 +32,7 @@ from symobs.formula.expression.source import shown
 from symobs.ground.dataclass import dataclass
 from symobs.ground.errors import CertificateRejected, InputError, NotShown, ProblemErrors, SymobsError, UnknownName
 from symobs.problem.expect import agrees, found_in, met, names_of
-from symobs.tasks.analysis.realization.canonical_form import BLOCKS, CanonicalForm
+from symobs.tasks.analysis.realization.canonical_form import CanonicalForm
 from symobs.tasks.analysis.realization.kalman_decomposition import Decomposition
 from symobs.tasks.design.compensator.output_feedback import OutputFeedback
 from symobs.tasks.design.reduced_order.reduced_order_observer import ReducedOrderObserver
@@ -695,8 +695,8 @@ def _in_coordinates(task: _Task, given: Sequence[Judged]) -> dict[str, Judged]:
     parts: dict[str, Judged] = {}
     for each in given:
         name, entry = each.name, each.given
-        if name == "sizes" and isinstance(entry, list) and len(entry) == len(BLOCKS):
-            entry = dict(zip(BLOCKS, entry, strict=True))
+        if name == "sizes" and isinstance(entry, list) and len(entry) == len(task.right.fields[name]):
+            entry = dict(zip(task.right.fields[name], entry, strict=True))
         part = replace(each, given=entry)
         try:
             parts[name] = replace(part, value=_value(task, part))

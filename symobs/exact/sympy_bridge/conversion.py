@@ -18,6 +18,7 @@ from symobs.exact.core.field import EIGENVALUE
 from symobs.exact.core.matrix import Matrix
 from symobs.exact.core.scalar import Scalar
 from symobs.exact.sympy_bridge.sympy_import import sympy
+from symobs.exact.time_functions.matrix_power import PowerOf
 from symobs.ground.errors import InexactInput, InputError
 
 if TYPE_CHECKING:
@@ -152,9 +153,20 @@ def _generator(name: str, objects: dict[str, Any]) -> sympy.Expr:
             scalar_to_sympy(functions.substitute(v, named), objects) for v in (found.polynomial, found.summand)
         )
         return sympy.RootSum(sympy.Poly(q, root), sympy.Lambda(root, summand))
+    if isinstance(found, PowerOf):
+        return _power_of(found, objects)
     if isinstance(found, RealRoot):
         return sympy.CRootOf(scalar_to_sympy(found.argument), found.number.index)
     return getattr(sympy, found.kind)(scalar_to_sympy(found.argument, objects))
+
+
+def _power_of(found: PowerOf, objects: dict[str, Any]) -> sympy.Expr:
+    """Return λᵏ, the real or imaginary part of (σ + iω)ᵏ, or δ(k, j)."""
+    k, base, imaginary = (scalar_to_sympy(part, objects) for part in (found.argument, found.base, found.imaginary))
+    if found.kind == "KroneckerDelta":
+        return sympy.KroneckerDelta(k, base)
+    whole = sympy.Pow(base + sympy.I * imaginary, k)
+    return whole if found.kind == "power" else getattr(sympy, found.kind)(whole)
 
 
 def matrix_to_sympy(value: Matrix, objects: Mapping[str, Any] | None = None) -> sympy.ImmutableMatrix:

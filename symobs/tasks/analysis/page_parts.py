@@ -39,6 +39,7 @@ from symobs.stability.criteria.stability import monic, stability
 from symobs.stability.inequalities.simplify import as_inequality
 from symobs.system.conditions import Condition, sign_of, vanishing_factors
 from symobs.system.reading import is_identity
+from symobs.system.transfer_function_text import REALISATIONS
 from symobs.system.transfer_matrix import WrittenTransferMatrix
 
 if TYPE_CHECKING:
@@ -390,7 +391,8 @@ def state_transfer_function(page: Builder) -> None:
         page.assume("lowest_terms_parameters", *apart)
     if not written.cancelled.is_one:
         _say_cancelled(page, cancelled, written.below)
-    page.remark("realised_minimal" if isinstance(written, WrittenTransferMatrix) else "realised")
+    kind = "minimal" if isinstance(written, WrittenTransferMatrix) else written.realisation
+    page.remark("realised" if kind == REALISATIONS[0] else f"realised_{kind}")
 
 
 def _written_out(page: Builder, written: WrittenTransferMatrix) -> Term:

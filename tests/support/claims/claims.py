@@ -284,7 +284,7 @@ def F_stable_holds(result: Any, at: Setting) -> None:
 def feedforward_holds(result: Any, at: Setting) -> None:
     """Hold F to G F = I for the gain G at rest, and T to its definition; with both gains and no F, G has dependent rows."""
     loop = result.loop
-    if None in (loop.answer["K"], loop.answer["L"]):
+    if not loop.exists:
         assert result.answer["F"] is None
         return
     K = matrix_at(loop.answer["K"], at.point)

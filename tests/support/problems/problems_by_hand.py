@@ -295,7 +295,10 @@ class Hand:
 
     @cached_property
     def loop_matrix(self) -> Any:
-        BK, LC = self.B * self.feedback_gain, self.observer_gain * self.C
+        BK = self.B * self.feedback_gain
+        if self.observer is None and self.L is None:
+            return self.A - BK
+        LC = self.observer_gain * self.C
         return Matrix([[self.A - BK, BK], [sympy.zeros(*self.A.shape), self.A - LC]])
 
     @cached_property

@@ -82,6 +82,7 @@ PAGES: dict[str, Callable[[], Result]] = {
         StateSpace("[0 1; 0 -1]", "[1 0; 0 2]", "[1 1; 0 1]"), control_poles=[-2, -3], observer_poles=[-10, -11]
     ),
     "feedforward": lambda: symobs.feedforward(servo(), **POLES),
+    "feedforward of a measured state": lambda: symobs.feedforward(servo("[2]"), control_poles=[-2, -2]),
     "feedforward with feedthrough": lambda: symobs.feedforward(
         servo("[1]"), control_poles=[-2, -2], observer_poles=[-10], observer="minimal"
     ),

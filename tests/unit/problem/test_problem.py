@@ -13,6 +13,8 @@ from hypothesis import strategies as st
 from symobs.ground.errors import InputError, ProblemErrors, SymobsError
 from symobs.problem import parse, read, validate
 from symobs.problem.expect import mismatches
+from symobs.problem.question import question_of
+from symobs.tasks.result import render
 from tests.kit import tabled
 from tests.support.tools.command_line import EXAMPLES, SERVO
 
@@ -240,3 +242,51 @@ method = "%s"
     assert [result.printed_method for result in found][:2] == ["rank", "ackermann"]
     with pytest.raises(ProblemErrors, match="'magic' is not a method of observability"):
         validate(parse(text % "magic", "problem")).solve()
+
+
+# -- tasks about the plant that another task finds ---------------------------------------------------------------------
+
+SAMPLED = f"""tasks = ["observability", "zero_order_hold", "state_feedback"]
+plant_of = "zero_order_hold"
+[symbols]
+T = "positive"
+{PLANT.replace("-1", "0")}[specification]
+sampling_period = "T"
+poles = [0, 0]
+[expect.state_feedback]
+K = "[1/T^2 3/(2*T)]"
+"""
+
+
+def test_tasks_may_be_about_the_plant_that_another_one_finds() -> None:
+    """The sampled double integrator has the deadbeat gain [1/T², 3/(2T)] (Åström and Wittenmark, ch. 4)."""
+    assert unmet(SAMPLED) == []
+    problem = read(SAMPLED)
+    results = problem.solve()
+    assert [result.plant.is_discrete for result in results] == [False, False, True]
+    text = problem.document(results)
+    page = str(render(text, "text"))
+    before, after = page.split("3. State feedback")
+    assert "ẋ" in before
+    assert "xₖ₊₁" in before
+    assert "ẋ" not in after
+    assert "det(zI - A + B K) = z²" in after
+    assert "the plant found in part (b)" in " ".join(str(render(question_of(problem), "text")).split())
+    alone = validate(parse(SAMPLED, "file"), "state_feedback").solve()
+    assert [result.task for result in alone] == ["state_feedback"]
+    assert alone[0].plant.is_discrete
+    assert not validate(parse(SAMPLED, "file"), "observability").solve()[0].plant.is_discrete
+
+
+@pytest.mark.parametrize(
+    ("name", "words"),
+    [
+        ("observability", "no task here whose answer is a plant; write zero_order_hold"),
+        ("canonical_form", "no task here whose answer is a plant; write zero_order_hold"),
+        ("state_feedback", "no task here whose answer is a plant"),
+    ],
+)
+def test_the_plant_of_a_task_that_has_none_is_refused(name: str, words: str) -> None:
+    (error,) = errors_of(lambda: read(SAMPLED.replace('plant_of = "zero_order_hold"', f'plant_of = "{name}"')))
+    assert error.where == "plant_of"
+    assert words in f"{error.message}; {error.repair}"

@@ -114,6 +114,11 @@ class ZeroOrderHold(DampingCases):
         dt = period.fraction() if period.is_constant else True
         return StateSpace(self.answer["A_d"], self.answer["B_d"], C, D, dt=dt, symbols=symbols)
 
+    @property
+    def as_plant(self) -> StateSpace:
+        """The sampled plant."""
+        return self.sampled
+
     @cached_property
     def fields(self) -> Mapping[str, Any]:
         """The matrices of the sampled plant; where there are none, the question that is open."""

@@ -168,6 +168,12 @@ def test_peak_and_settling_are_those_of_the_whole_response(poles: str) -> None:
             assert -1e-3 * end <= float(line["settles"]) - settled <= drawn + 1e-2 * settled
 
 
+def test_of_a_measured_state_there_is_no_estimate() -> None:
+    servo = {"A": "[0 1; 0 -1]", "B": "[0; 1]", "C": "[1 0]"}
+    found = asked({"task": "feedforward", "plant": servo, "specification": {"control_poles": "-2, -2"}}, courses={})
+    assert [line["signal"] for line in found["courses"]["lines"]] == ["x", "x"]
+
+
 def test_a_value_takes_the_place_of_its_symbol() -> None:
     general = asked(DETECTABLE, cases=True)
     assert general["verdict"] == "conditional"

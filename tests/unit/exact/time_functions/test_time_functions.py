@@ -278,8 +278,6 @@ def test_wrong_questions_are_refused() -> None:
         symobs.gramian(plant, horizon="-1")
     with pytest.raises(InputError, match=r"specification\.R: the intensity R of the output noise is missing"):
         symobs.initial_state_covariance(plant, Q="1")
-    with pytest.raises(InputError, match=r"plant\.dt: matrix_exponential belongs to continuous time"):
-        symobs.matrix_exponential(symobs.StateSpace("[0 1; 0 0]", dt=True))
 
 
 # -- the kernel ----------------------------------------------------------------------------------------------------------

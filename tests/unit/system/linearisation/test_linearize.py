@@ -152,3 +152,17 @@ def test_a_magnetic_levitator_has_the_root_of_its_balance_of_forces() -> None:
     assert sp.simplify(found[1, 0] - 2 * g / h) == sp.simplify(found[1, 2] + 2 * sp.sqrt(K * g / m) / h) == 0
     assert symobs.controllability(plant).verdict == "yes"
     assert symobs.observer(plant, poles="-1, -2, -3").to("text")
+
+
+@tabled
+def test_rounded_values_are_told_the_equilibrium_they_round(f: str, point: dict[str, Any], exact: str) -> None:
+    """The exact point is a zero of f by hand, and is taken; where none is simple, none is named."""
+    given: dict[str, Any] = {"f": f, "states": ", ".join(name for name in point if name != "u")}
+    given["inputs"] = "u" if "u" in point else ""
+    with pytest.raises(InputError) as refused:
+        symobs.linearize(**given, equilibrium=point)
+    assert ("rounded ones" in refused.value.repair) == bool(exact)
+    assert exact in refused.value.repair
+    if exact:
+        named = dict(entry.split(" = ") for entry in exact.strip("{} ").split(", "))
+        symobs.linearize(**given, equilibrium={name: value.strip('"') for name, value in named.items()})
