@@ -228,9 +228,8 @@ def ranked(result: Any) -> list[tuple[Any, bool]]:
     """Return the parts of a result that stand on a rank, and whether the pair is the dual one."""
     if result.task == "compensator":
         return [(result.feedback, True), (result.estimator, False)]
-    if (
-        result.task == "transfer_function"
-    ):  # either rank may drop there: tests/unit/tasks/analysis/test_transfer_function.py
+    # either rank may drop there, or neither: tests/unit/tasks/analysis/test_transfer_function.py and the claims of both
+    if result.task in {"transfer_function", "feedforward"}:
         return []
     square = result.task not in {"observability", "controllability"} or result.test_determinant is not None
     return [(result, result.task in {"controllability", "state_feedback"})] if square and result.existence else []

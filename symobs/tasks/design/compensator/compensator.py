@@ -363,6 +363,6 @@ def _require_place(gains: tuple[object, object], method_name: str, *, minimal: b
     if minimal and gains[1] is not None:
         message = "the gain of an observer of minimal order depends on its coordinates, so L cannot be given here"
         raise InputError(message, where="specification.L", repair='give observer_poles, or write observer = "full"')
-    if method_name == "duality" and gains != (None, None):
+    if method_name == "duality" and any(gain is not None for gain in gains):
         message = "the method duality places poles, but a gain is given"
         raise InputError(message, where="specification.method", repair="leave the method out")

@@ -317,7 +317,7 @@ def feedforward(
     """
     control, estimate = (control_poles, control_polynomial), (observer_poles, observer_polynomial)
     loop: OutputFeedback
-    if estimate == (None, None) and observer == "full":
+    if observer_poles is None and observer_polynomial is None and observer == "full":
         loop = of_known_state(plant, task="feedforward", control=control, gain=K)
     else:
         loop = observer_based(
