@@ -30,6 +30,7 @@ from symobs.ground.errors import UsageError as UsageError
 from symobs.live import live as live
 from symobs.system import StateSpace as StateSpace
 from symobs.system.linearize import linearize as linearize
+from symobs.tasks.analysis.lyapunov.lyapunov import LyapunovSolution as _LyapunovSolution
 from symobs.tasks.analysis.modes.detectability import Detectability as _Detectability
 from symobs.tasks.analysis.modes.detectability import Stabilizability as _Stabilizability
 from symobs.tasks.analysis.modes.pbh import PopovBelevitchHautus as _PopovBelevitchHautus
@@ -40,15 +41,15 @@ from symobs.tasks.analysis.realization.characteristic_polynomial import Characte
 from symobs.tasks.analysis.realization.dual import Dual as _Dual
 from symobs.tasks.analysis.realization.kalman_decomposition import Decomposition as _Decomposition
 from symobs.tasks.analysis.realization.transfer_function import TransferFunction as _TransferFunction
-from symobs.tasks.analysis.time_response.response import Response as _Response
 from symobs.tasks.analysis.stability_region.margins import margins as margins
 from symobs.tasks.analysis.stability_region.stability_region import StabilityRegion as _StabilityRegion
 from symobs.tasks.analysis.time_response.gramian import Gramian as _Gramian
 from symobs.tasks.analysis.time_response.initial_state import InitialState as _InitialState
 from symobs.tasks.analysis.time_response.initial_state_covariance import InitialStateCovariance as _InitialStateCovariance
 from symobs.tasks.analysis.time_response.matrix_exponential import MatrixExponential as _MatrixExponential
-from symobs.tasks.analysis.time_varying.time_varying_observability import TimeVaryingObservability as _TimeVaryingObservability
+from symobs.tasks.analysis.time_response.response import Response as _Response
 from symobs.tasks.analysis.time_response.zero_order_hold import ZeroOrderHold as _ZeroOrderHold
+from symobs.tasks.analysis.time_varying.time_varying_observability import TimeVaryingObservability as _TimeVaryingObservability
 from symobs.tasks.design.compensator.output_feedback import OutputFeedback as _OutputFeedback
 from symobs.tasks.design.disturbance.disturbance_observer import DisturbanceObserver as _DisturbanceObserver
 from symobs.tasks.design.disturbance.unknown_input_observer import UnknownInputObserver as _UnknownInputObserver
@@ -445,6 +446,31 @@ def integral_action(
     floats: str | None = None,
 ) -> _IntegralActionResult:
     """Let y follow constant references by u = −K x + k_I ξ, ξ' = r − y, with n + p given poles."""
+
+class _LyapunovResult(_LyapunovSolution):
+    """What `lyapunov` returns."""
+
+    @property
+    def P(self) -> ImmutableMatrix: ...
+    @property
+    def solvable(self) -> str: ...
+    @property
+    def positive_definite(self) -> str: ...
+    @property
+    def positive_if(self) -> tuple[str, ...]: ...
+    @property
+    def determinant(self) -> Expr: ...
+    @property
+    def homogeneous(self) -> Any: ...
+
+def lyapunov(
+    plant: _Plant,
+    *,
+    Q: _Number | _Matrix | None = None,
+    method: str = "auto",
+    floats: str | None = None,
+) -> _LyapunovResult:
+    """Solve Lyapunov's equation AᵀP + PA = −Q, in discrete time AᵀPA − P = −Q, for a symmetric P."""
 
 class _MatrixExponentialResult(_MatrixExponential):
     """What `matrix_exponential` returns."""

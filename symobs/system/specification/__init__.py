@@ -29,6 +29,7 @@ from symobs.system.specification.keywords import (
     read_poles,
     read_quantity,
     read_signal,
+    read_symmetric,
     reject_both,
 )
 from symobs.system.specification.pole_patterns import PolePattern, is_pattern
@@ -64,5 +65,6 @@ __all__ = [
     "read_poles",
     "read_quantity",
     "read_signal",
+    "read_symmetric",
     "reject_both",
 ]

@@ -166,6 +166,7 @@ PHRASES: dict[str, str] = {
     "live_task_initial_state": "initial state",
     "live_task_initial_state_covariance": "initial state covariance",
     "live_task_integral_action": "integral action",
+    "live_task_lyapunov": "Lyapunov equation",
     "live_task_matrix_exponential": "matrix exponential",
     "live_task_observability": "observability",
     "live_task_observer": "observer",

@@ -84,6 +84,7 @@ UNSAID = (
     "auto",
     "basis",
     "decoupled",
+    "entries",
     "derivatives",
     "determinant",
     "eigenvalues",

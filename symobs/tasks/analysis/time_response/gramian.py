@@ -385,7 +385,7 @@ def _tell_lyapunov(result: Gramian, page: Builder) -> None:
     if result.plant.order > _LYAPUNOV_UP_TO:
         return
     A, C = _letters(result, page)
-    P = lyapunov(A.value, C.value, discrete=False)
+    P = lyapunov(A.value, C.value.T @ C.value, discrete=False)
     if P is None:
         return
     page.set("P_l", P)

@@ -27,11 +27,11 @@ from symobs.formula.tree import Literal, Power
 from symobs.formula.tree.calculus import since_start
 from symobs.formula.tree.term import Term, identity, letter
 from symobs.ground.dataclass import dataclass
-from symobs.ground.errors import InputError, ShapeMismatch
+from symobs.ground.errors import InputError
 from symobs.proof.certificate.claims import Claim
 from symobs.proof.derivation.builder import relation
-from symobs.system import read_matrix
 from symobs.system.conditions import Condition, never_zero, sign_of
+from symobs.system.specification import read_symmetric
 from symobs.tasks.analysis.rank.rank_test import rank_answer
 from symobs.tasks.analysis.time_response.damping_cases import Signs, from_zero, rate_of, time_environment
 from symobs.tasks.analysis.time_response.horizons import (
@@ -301,21 +301,13 @@ def read_intensity(value: object, plant: StateSpace, name: str, size: int) -> Ma
     """Return a symmetric matrix; a single value q stands for q I.  Raises `InputError`, `ShapeMismatch`."""
     if value is None:
         return None
-    where = f"specification.{name}"
-    found = read_matrix(
-        [[value]] if not isinstance(value, (str, list, tuple)) else value, plant.symbols.seen(value), where
-    )
-    if found.shape == (1, 1):
-        found = Matrix.identity(size) * found[0, 0]
-    if found.shape != (size, size):
-        message = f"{name} is {found.shape[0]}×{found.shape[1]}, expected {size}×{size}"
-        raise ShapeMismatch(message, where=where, repair=f"write {name} as a symmetric {size}×{size} matrix")
-    if found != found.T:
-        raise InputError(f"{name} is not symmetric", where=where, repair="an intensity is a symmetric matrix")
+    found = read_symmetric(value, plant, name, size)
     for i in range(size):
         if sign_of(found[i, i], plant.symbols.signs) == "negative":
             raise InputError(
-                f"{name} has a negative entry on its diagonal", where=where, repair="variances are not negative"
+                f"{name} has a negative entry on its diagonal",
+                where=f"specification.{name}",
+                repair="variances are not negative",
             )
     return found
 
