@@ -47,6 +47,7 @@ from symobs.tasks.analysis.time_response.gramian import Gramian as _Gramian
 from symobs.tasks.analysis.time_response.initial_state import InitialState as _InitialState
 from symobs.tasks.analysis.time_response.initial_state_covariance import InitialStateCovariance as _InitialStateCovariance
 from symobs.tasks.analysis.time_response.matrix_exponential import MatrixExponential as _MatrixExponential
+from symobs.tasks.analysis.time_response.minimum_energy_input import MinimumEnergyInput as _MinimumEnergyInput
 from symobs.tasks.analysis.time_response.response import Response as _Response
 from symobs.tasks.analysis.time_response.zero_order_hold import ZeroOrderHold as _ZeroOrderHold
 from symobs.tasks.analysis.time_varying.time_varying_observability import TimeVaryingObservability as _TimeVaryingObservability
@@ -459,6 +460,8 @@ class _LyapunovResult(_LyapunovSolution):
     @property
     def positive_if(self) -> tuple[str, ...]: ...
     @property
+    def minors(self) -> tuple[Any, ...]: ...
+    @property
     def determinant(self) -> Expr: ...
     @property
     def homogeneous(self) -> Any: ...
@@ -485,6 +488,29 @@ def matrix_exponential(
     floats: str | None = None,
 ) -> _MatrixExponentialResult:
     """Return e^{At} as a real matrix of exponentials, cosines, sines, cosh, sinh and powers of t."""
+
+class _MinimumEnergyInputResult(_MinimumEnergyInput):
+    """What `minimum_energy_input` returns."""
+
+    @property
+    def input(self) -> Expr | tuple[Any, ...]: ...
+    @property
+    def energy(self) -> Expr: ...
+    @property
+    def gramian(self) -> ImmutableMatrix: ...
+    @property
+    def unreachable(self) -> Any: ...
+
+def minimum_energy_input(
+    plant: _Plant,
+    *,
+    initial: _Matrix | None = None,
+    final: _Matrix | None = None,
+    horizon: _Number | None = None,
+    method: str = "auto",
+    floats: str | None = None,
+) -> _MinimumEnergyInputResult:
+    """Return the input of least energy ∫ uᵀu dt (Σ uᵀu) from x₀ to x_f: u = Bᵀ e^{Aᵀ(T−t)} W⁻¹ (x_f − e^{AT} x₀)."""
 
 class _ObservabilityResult(_Observability):
     """What `observability` returns."""

@@ -271,7 +271,7 @@ def _fact(fact: Fact, environment: Environment, discrete: bool) -> None:  # noqa
         _about_letters(fact.property.subject, environment)
         found = evaluate(fact.property.subject, environment, Exact(environment))
         values: Scalar | tuple[Scalar, ...] = subjects(fact.property.name, found, environment.variable)
-        if fact.property.name != "positive_definite":
+        if fact.property.name != "positive_definite" and isinstance(values, tuple):
             (value,) = values
             values = polynomial_of(value, environment)
         if not is_exactly(fact, values, environment, discrete=discrete):

@@ -719,6 +719,7 @@ _OF_STEP: dict[str, Callable[..., bool]] = {
     "ends": lambda said, operator: all(
         (told.operators[-1], told.members[-1]) == (operator, _number(0)) for told in said.of(Relation)
     ),
+    "solves": lambda said, M, x, b: _holds(said.environment, Product((Letter(M), Letter(x))), "=", Letter(b)),
     "solves_homogeneous": _solves_homogeneous,
     "refutes_lyapunov": _refutes_lyapunov,
     "minors": _are_minors,

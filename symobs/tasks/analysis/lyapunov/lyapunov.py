@@ -263,8 +263,8 @@ def lyapunov(plant: StateSpace, *, Q: Intensity = None, method: Name = "auto") -
     Q        n×n, symmetric; q stands for q I, and I where it is left out
     Returns P, solvable (yes, no, conditional: whether there is one and only one P; where there are several P is one of them),
     positive_definite (yes, no, conditional), positive_if (conditions for it), minors (the leading principal ones), determinant
-    (0 where some λᵢ + λⱼ, λᵢ λⱼ − 1, is 0) and homogeneous (where P is not unique, what may be added to it).  Raises
-    `InputError` where Q is not symmetric, `ShapeMismatch`; `Undecided` for too many states.
+    (0 where some λᵢ + λⱼ, λᵢ λⱼ − 1, is 0) and homogeneous (where P is not unique, what may be added to it).
+    Raises `InputError` where Q is not symmetric, `ShapeMismatch`; `Undecided` for too many states.
     Source: R. E. Kalman and J. E. Bertram (1960); P. Lancaster and M. Tismenetsky, The Theory of Matrices, ch. 12, 13.
     """
     plant = plant.knowing(Q)

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 from symobs.exact import Matrix, Scalar
 from symobs.exact.core.generators import derivative, identities, roots_in, substitute
-from symobs.exact.time_functions.matrix_exponential import Exponential, NoClosedForm
+from symobs.exact.time_functions.matrix_exponential import NoClosedForm
 from symobs.exact.time_functions.quasipolynomial import (
     Quasipolynomial,
     Table,
@@ -98,7 +98,7 @@ class InitialStateCovariance(OfTheInitialState):
             found, chosen = closed_form(plant, taken)
         except NoClosedForm as error:
             return cls(plant, method_name, {**shared, "question": question_of(error), "factor": error.factor})
-        if question := _too_long(plant, found):
+        if question := too_long(plant.matrices.A, plant.matrices.C, found.table()):
             return cls(plant, method_name, {**shared, "question": question, "factor": None, "chosen": chosen})
         return cls(plant, method_name, {**shared, "chosen": chosen, **_parts(plant, found.table(), data)})
 
@@ -189,14 +189,14 @@ class InitialStateCovariance(OfTheInitialState):
         return {**found, **({"question": asked} if asked else {})}
 
 
-def _too_long(plant: StateSpace, found: Exponential) -> str:
-    """Return the question that stays open where the Gramian cannot be inverted readably."""
-    table, order = found.table(), plant.order
-    if plant.matrices.A.names and any(roots_of_frequencies(entry) for row in table for entry in row):
+def too_long(A: Matrix, C: Matrix, table: Table) -> str:
+    """Return the question that stays open where the Gramian of (A, C), with e^{At}, cannot be inverted readably."""
+    order = A.shape[0]
+    if A.names and any(roots_of_frequencies(entry) for row in table for entry in row):
         return (
             f"the inverse of the {order}x{order} Gramian, whose functions have square roots of the parameters in them"
         )
-    seen = product(table_of(plant.matrices.C), table)
+    seen = product(table_of(C), table)
     terms = sum(len(entry.terms) for row in product(transposed(seen), seen) for entry in row)
     return (
         f"the inverse of the {order}x{order} Gramian, of {terms} terms, more than {_MOST_TERMS}"
