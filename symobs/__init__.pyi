@@ -63,7 +63,8 @@ from symobs.tasks.design.reference.integral_action import IntegralAction as _Int
 from symobs.tasks.design.reference.tracking import TrackingDesign as _TrackingDesign
 
 _Number: TypeAlias = str | float | complex | Fraction | Decimal | Expr
-_Plant: TypeAlias = StateSpace | tuple[Sequence[_Number], Sequence[_Number]]
+_IsPlant: TypeAlias = _CanonicalFormResult | _DecompositionResult | _DualResult | _ZeroOrderHoldResult
+_Plant: TypeAlias = StateSpace | _IsPlant | tuple[Sequence[_Number], Sequence[_Number]]
 _Matrix: TypeAlias = str | Sequence[object] | MatrixBase
 
 TASK_PACKAGES: tuple[str, ...]
@@ -132,6 +133,8 @@ class _CompensatorResult(_OutputFeedback):
     def F(self) -> Expr | ImmutableMatrix: ...
     @property
     def F_stable(self) -> str: ...
+    @property
+    def F_stable_if(self) -> tuple[str, ...]: ...
     @property
     def compensator_stable(self) -> str: ...
     @property
@@ -342,11 +345,12 @@ def feedforward(
     control_polynomial: str | Expr | None = None,
     observer_poles: str | Sequence[_Number] | Mapping[str, Any] | MatrixBase | None = None,
     observer_polynomial: str | Expr | None = None,
+    K: _Matrix | None = None,
     observer: str = "full",
     method: str = "auto",
     floats: str | None = None,
 ) -> _FeedforwardResult:
-    """Design F in u = −K x̂ + F v so that y = v at rest:  F = [(C − DK)(−A + BK)⁻¹B + D]⁻¹."""
+    """Design F in u = −K x + F v, or −K x̂ + F v, so that y = v at rest:  F = [(C − DK)(−A + BK)⁻¹B + D]⁻¹."""
 
 class _GramianResult(_Gramian):
     """What `gramian` returns."""
@@ -487,7 +491,7 @@ def matrix_exponential(
     method: str = "auto",
     floats: str | None = None,
 ) -> _MatrixExponentialResult:
-    """Return e^{At} as a real matrix of exponentials, cosines, sines, cosh, sinh and powers of t."""
+    """Return e^{At} as a real matrix of exponentials, cosines, sines, cosh, sinh and powers of t; Aᵏ in discrete time."""
 
 class _MinimumEnergyInputResult(_MinimumEnergyInput):
     """What `minimum_energy_input` returns."""

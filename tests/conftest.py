@@ -1,25 +1,33 @@
-"""What all tests share: reproducible Hypothesis runs, and tools that may be missing at home but not in CI."""
+"""What all tests share: reproducible Hypothesis runs, tools that may be missing at home, and which tests share a worker."""
 
 from __future__ import annotations
 
 import os
+import re
 import shutil
-from typing import TYPE_CHECKING
+import signal
+from functools import cache
+from pathlib import Path
+from types import CodeType, FunctionType, ModuleType
+from typing import TYPE_CHECKING, Any
 
 import pytest
 from hypothesis import HealthCheck, settings
 
 from symobs.formula.phrases import PHRASES
+from tests.support.examples import example_of
 from tests.support.problems.steps import OWN_PHRASES
+from tests.support.sampling import FULL
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Generator
+    from collections.abc import Callable, Generator, Iterator
 
 SKIPS_FAIL = os.environ.get("SYMOBS_REQUIRE_TOOLS") == "1"
 
 # The same examples in every run, and nothing that depends on how fast the machine is.
 settings.register_profile(
     "symobs",
+    max_examples=100 if FULL else 30,
     derandomize=True,
     database=None,
     deadline=None,
@@ -27,6 +35,10 @@ settings.register_profile(
     suppress_health_check=[HealthCheck.too_slow],
 )
 settings.load_profile("symobs")
+
+# A shell's background jobs begin with it ignored, and so would every process that a test starts and interrupts.
+if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
+    signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
 def require_tool(name: str) -> str:
@@ -53,7 +65,76 @@ def own_phrases(monkeypatch: pytest.MonkeyPatch) -> None:
         monkeypatch.setitem(PHRASES, key, phrase)
 
 
-# With SYMOBS_REQUIRE_TOOLS=1 every skip is a failure, whoever asked for it: nothing is left out in silence.
+# -- which tests -------------------------------------------------------------------------------------------------------
+
+#: Tests that were measured and take long, by file and name.
+SLOW = {*Path(__file__).with_name("slow.txt").read_text(encoding="utf-8").splitlines()}
+_ALL_SLOW = re.compile(r"^pytestmark = pytest\.mark\.slow$", re.MULTILINE)
+
+
+def pytest_ignore_collect(collection_path: Path, config: pytest.Config) -> bool | None:
+    """Leave out files of which nothing is chosen without importing them."""
+    chosen = config.option.markexpr
+    if collection_path.suffix != ".py" or not chosen or config.args != config.getini("testpaths"):
+        return None
+    text = collection_path.read_text(encoding="utf-8")
+    left_out = "not slow" in chosen and _ALL_SLOW.search(text)
+    return True if left_out else None
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Mark the tests that take long or start processes, and let the tests of one worked example share a worker."""
+    for item in items:
+        if item.nodeid.partition("[")[0].removeprefix("tests/") in SLOW:
+            item.add_marker(pytest.mark.slow)
+        if not isinstance(item, pytest.Function):
+            continue
+        if example := example_of(list(item.callspec.params.values()) if hasattr(item, "callspec") else []):
+            item.add_marker(pytest.mark.xdist_group(example))
+        fixtures = [fixture.func for found in item._fixtureinfo.name2fixturedefs.values() for fixture in found]
+        if any(map(starts_process, (item.function, *fixtures))):
+            item.add_marker(pytest.mark.process)
+
+
+#: What starts a process: modules, and functions of symobs.
+_STARTS = {"subprocess", "multiprocessing", "require_tool", "compiled", "Popen", "fork"}
+
+
+@cache
+def starts_process(function: Any) -> bool:
+    """Tell whether a function of the tests, or one that it calls, starts a process."""
+    left, seen = [function], set[int]()
+    while left:
+        found = left.pop()
+        found = getattr(found, "__wrapped__", found)
+        if id(found) in seen or not str(getattr(found, "__module__", "")).startswith("tests"):
+            continue
+        seen.add(id(found))
+        if isinstance(found, type):
+            left += vars(found).values()
+        elif isinstance(found, FunctionType):
+            names = {*_names(found.__code__)}
+            values = [found.__globals__[name] for name in names if name in found.__globals__]
+            own = [
+                vars(value) for value in values if isinstance(value, ModuleType) and value.__name__.startswith("tests")
+            ]
+            values += [scope[name] for scope in own for name in names if name in scope]
+            if names & _STARTS or {value.__name__ for value in values if isinstance(value, ModuleType)} & _STARTS:
+                return True
+            left += values
+    return False
+
+
+def _names(code: CodeType) -> Iterator[str]:
+    yield from code.co_names
+    yield from code.co_varnames[: code.co_argcount]
+    for constant in code.co_consts:
+        if isinstance(constant, CodeType):
+            yield from _names(constant)
+
+
+# -- with SYMOBS_REQUIRE_TOOLS=1 every skip is a failure, whoever asked for it: nothing is left out in silence -----------
 
 
 @pytest.hookimpl(wrapper=True, tryfirst=True)

@@ -27,6 +27,7 @@ PLANT_OPTIONS = {
     "C": "output matrix",
     "D": "feedthrough; 0 if left out",
     "transfer_function": 'instead of A, B, C, D: "1/(s*(s + 1))"',
+    "realisation": "of a transfer function: controllable (default), observable or modal",
     "dt": "0: continuous (default); true, or the period: discrete",
 }
 

@@ -41,7 +41,7 @@ from symobs.exact.linear_algebra.transfer_function import (
 )
 from symobs.exact.numerals.rounded_roots import is_correctly_written, is_written_exactly
 from symobs.exact.numerals.written_digits import significant
-from symobs.exact.sympy_bridge.conversion import stable_roots
+from symobs.exact.sympy_bridge.stable_roots import stable_roots
 from symobs.exact.time_functions.antiderivative import antiderivative, exponential_of_integral
 
 __all__ = [

@@ -81,6 +81,10 @@ LETTERS: dict[str, LetterForm] = {
     "N_2": LetterForm("N_2", "N₂", "basis of the unobservable subspace of the unmeasured subsystem"),
     "X_2": LetterForm("X_2", "X₂", "restriction of A to the unobservable subspace of the unmeasured part"),
     "exp_At": LetterForm("e^{At}", "exp(A t)", "matrix exponential"),
+    "A_k": LetterForm("A^k", "Aᵏ", "power of the state matrix"),
+    "x_k": LetterForm("x(k)", "x(k)", "state at the instant k"),
+    "y_k": LetterForm("y(k)", "y(k)", "output at the instant k"),
+    "u_k": LetterForm("u(k)", "u(k)", "input at the instant k"),
     "Phi_T": LetterForm("e^{AT}", "exp(A T)", "matrix exponential over the horizon"),
     "A_zoh": LetterForm(r"A_{\mathrm d}", "A_d", "state matrix of the sampled plant"),
     "B_zoh": LetterForm(r"B_{\mathrm d}", "B_d", "input matrix of the sampled plant"),
@@ -272,8 +276,8 @@ def is_of_time(name: str) -> bool:
 
 
 def shows_time(name: str) -> bool:
-    """Return whether the time is written in a letter: e^{At}, W(t); its value at an instant stands behind a bar."""
-    return name in LETTERS and LETTERS[name].text.endswith("t)")
+    """Return whether the time is written in a letter: e^{At}, W(t), Aᵏ; its value at an instant stands behind a bar."""
+    return name in LETTERS and LETTERS[name].text.endswith(("t)", "k)", "ᵏ"))
 
 
 FUNCTIONS: dict[str, tuple[str, str]] = {
@@ -281,6 +285,8 @@ FUNCTIONS: dict[str, tuple[str, str]] = {
     "adj": (r"\operatorname{adj}", "adj"),
     "rank": (r"\operatorname{rank}", "rank"),
     **{name: (rf"\{name}", name) for name in ("sin", "cos", "sinh", "cosh")},
+    "re": (r"\operatorname{Re}", "Re"),
+    "im": (r"\operatorname{Im}", "Im"),
     "mu_at": (r"\mu", "μ"),
     "chi_p_at": (r"\chi", "χ"),
     "chi_cl_at": (r"\chi_{\mathrm{cl}}", "χ_cl"),

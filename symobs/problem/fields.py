@@ -250,6 +250,9 @@ MARKING = table(
         "guard": FLAG.about("no such credit where the wrong one makes the part easy"),
         "credit": by_name(number(most=1), _slip).about("the credit of a part by its slip"),
         "decimals": one_of("exact", "accept").about("whether a rounded value is right"),
+        "digits": whole(1, 15, "a whole number from 1 to 15 is expected", "write {key} = 3").about(
+            "the significant digits to which a rounded gain, or the poles that it places, are to be right"
+        ),
         "sign_of_F": one_of("convention", "either").about("whether -F is right, too"),
         "milestone": list_of(table(_MILESTONE, *_MILESTONE), 50).about("a relation on the way, and its marks"),
     }
@@ -275,6 +278,7 @@ class Marking:
     guard: bool = True
     credit: Mapping[str, Fraction] = field(default_factory=lambda: dict(CREDIT))
     decimals: str = "exact"
+    digits: int | None = None
     sign_of_F: str = "convention"  # noqa: N815 - the key of the file
     milestones: tuple[Milestone, ...] = ()
 
@@ -287,6 +291,8 @@ def read_marking(value: object, tasks: Collection[str], errors: Errors) -> Marki
         if (task := part.partition(".")[0]) not in tasks and _PART.fullmatch(part):
             message = f"{task} is not a task of this file"
             errors.note(message, f"marking.{place}", f"its tasks are {', '.join(tasks)}")
+    if "digits" in found and found.get("decimals") != "accept":
+        errors.note("nothing rounded is accepted", "marking.digits", 'write decimals = "accept" beside it')
     found["milestones"] = tuple(Milestone(**each) for each in found.pop("milestone", ()) if len(each) == 2)
     found["credit"] = {**CREDIT, **found.get("credit", {})}
     return Marking(**found)

@@ -164,7 +164,7 @@ def _with_constant(name: str, value: Any, symbols: Symbols) -> Symbols:
     if any(function_named(part) is None for part in found.names - {PI}):
         message = f"{name} contains a symbol that is not inside a function, and a constant is a number"
         raise InputError(message, where=where, repair="write the expression where it is needed")
-    require_known([found], where)
+    require_known([found], symbols.signs, where)
     return replace(symbols, constants={**known, name: found})
 
 

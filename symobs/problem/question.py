@@ -7,7 +7,7 @@ contains.  The page is a derivation like any other: what it states is checked, a
 from __future__ import annotations
 
 import string
-from functools import cached_property
+from functools import cached_property, partial
 from typing import TYPE_CHECKING, Any
 
 from symobs.exact import Matrix, Scalar, factored, root_of_pole
@@ -24,6 +24,7 @@ from symobs.system.reading import as_rows, has_decimals
 from symobs.system.specification import (
     desired_polynomial,
     is_pattern,
+    parse_in_steps,
     parse_signal,
     read_entries,
     read_interval,
@@ -78,6 +79,8 @@ def question_of(problem: Problem) -> Question:
                 page.remark("part", letter=_letter_of(place))
             for key in sentences_for(task, tokens_of(task, values, problem)):
                 page.steps.append(Note(_filled(page, task, key, values)))
+            if task.name == problem.plant_of:
+                page.remark("plant_found", letter=_letter_of(place))
     typed = problem.plant.is_in_decimals or has_decimals([*problem.specification.values()])
     digits = DIGITS if problem.digits is None and typed else problem.digits
     of_page: dict[str, Any] = {"page": page.derivation(), "digits": digits, "language": problem.language}
@@ -134,7 +137,7 @@ def tokens_of(task: Task, values: Mapping[str, Any], problem: Problem) -> frozen
             tokens.add(name)
         if kind == "Poles" and value.degree == 1:
             tokens.add(f"{name}=1")
-    return frozenset(tokens - {"horizon"})
+    return frozenset(tokens - {"horizon"} | ({"discrete"} if problem.plant.is_discrete else set()))
 
 
 def sentences_for(task: Task, tokens: frozenset[str]) -> list[str]:
@@ -238,7 +241,9 @@ def _read(value: object, kind: str, name: str, plant: StateSpace, task: str) -> 
         case "IntervalText":
             return read_interval(value, plant)
         case "SignalText" | "TimeFunctions":
-            return parse_signal(value, plant.symbols, where, functions=True)
+            return (parse_in_steps if plant.is_discrete else partial(parse_signal, functions=True))(
+                value, plant.symbols, where
+            )
         case "Horizon":
             return read_horizon(plant, value)
         case "Intensity":

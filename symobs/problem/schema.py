@@ -14,6 +14,7 @@ from symobs.system.conditions import SIGNS
 from symobs.system.linearize import linearize
 from symobs.system.reading import read_time
 from symobs.system.specification import CHOICES, KINDS
+from symobs.system.transfer_function_text import REALISATIONS
 from symobs.tasks.result import result_type, tasks
 from symobs.tasks.result.in_convention import names_in
 from symobs.tasks.result.output_methods import MOST_DIGITS
@@ -31,6 +32,10 @@ TOP: dict[str, dict[str, Any]] = {
     "text": {"description": "the problem in words, printed under the title", "type": "string"},
     "task": {"description": "one task"},
     "tasks": {"description": "several tasks, instead of task"},
+    "plant_of": {
+        "description": "a task whose answer is the plant of the tasks after it: canonical_form, zero_order_hold, …",
+        "type": "string",
+    },
     "convention": {
         "description": 'the convention the file is written in: standard, a law such as "u = K x_hat, A + M C", or a name',
         "type": "string",
@@ -78,7 +83,7 @@ PRINTED = list_of(table(_PRINTED), 200)
 NONLINEAR = ("f", "h", "states", "inputs", "equilibrium")
 
 
-PLANT = ("A", "B", "C", "D", "transfer_function", *NONLINEAR, "dt")
+PLANT = ("A", "B", "C", "D", "transfer_function", "realisation", *NONLINEAR, "dt")
 
 
 #: A compensator has poles for each of its halves; a task that is one half reads them where nothing else is said of it.
@@ -133,6 +138,7 @@ def schema() -> dict[str, Any]:
         | dict.fromkeys("BCD", column_or_row)
         | {
             "transfer_function": {"description": 'instead of A, B, C, D: "1/(s*(s + 1))"', **number_or_text},
+            "realisation": {"description": "the coordinates of a transfer function", "enum": list(REALISATIONS)},
             "f": {"description": 'instead of A and B: "[omega; g/l*sin(theta) + u]"', **column_or_row},
             "h": {"description": 'with f, instead of C and D: "theta"', **column_or_row},
             "states": {"description": 'the states of f in their order: "theta, omega"', **names},
@@ -242,9 +248,12 @@ def plant_of(
     elif nonlinear:
         with errors:
             return linearize(**{"f": None, "states": "", "equilibrium": None, **nonlinear}, dt=dt, symbols=symbols)
+    elif "realisation" in table and "transfer_function" not in table:
+        errors.note("there is nothing to realise", "plant.realisation", "it belongs to transfer_function: leave it out")
     elif "transfer_function" in table:
         with errors:
-            return StateSpace.from_transfer_function(table["transfer_function"], dt, symbols=symbols)
+            kind = table.get("realisation")
+            return StateSpace.from_transfer_function(table["transfer_function"], dt, symbols=symbols, realisation=kind)
     elif optional and not given and "polynomial" in (specification := table_of(data, "specification", errors)):
         with errors:
             known = symbols.naming(specification.get("parameters"), "specification.parameters")

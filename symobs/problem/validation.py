@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Collection, Mapping
-from dataclasses import field
+from collections.abc import Callable, Collection, Mapping, Sequence
+from dataclasses import field, replace
 from difflib import get_close_matches
 from typing import TYPE_CHECKING, Any
 
@@ -33,7 +33,7 @@ from symobs.system import StateSpace, Symbols, read_matrix, read_scalar
 from symobs.system.reading import read_time
 from symobs.system.specification import is_pattern, parse_signal, read_poles
 from symobs.system.specification.pole_patterns import OTHERS, named_parts, require_positive
-from symobs.tasks.result import Document, Result, Task, task_named, tasks
+from symobs.tasks.result import Document, Result, Task, methods, result_type, task_named, tasks
 from symobs.tasks.result.in_convention import ResultInConvention, names_in
 from symobs.tasks.result.output_methods import digits_asked
 
@@ -65,6 +65,12 @@ class Problem:
     marking: Marking = Marking()
     digits: int | None = None  # of the numbers on the page, as a document has them
     language: str = ENGLISH.code
+    plant_of: str = ""  # the task whose answer is the plant of those after it
+
+    def follows(self, name: str) -> bool:
+        """Return whether a task is one of the plant that another task finds."""
+        names = [task.name for task in self.tasks]
+        return bool(self.plant_of) and (self.plant_of not in names or names.index(name) > names.index(self.plant_of))
 
     def solve(self, report: Callable[[str, tuple[Result, ...]], None] | None = None) -> tuple[Result, ...]:
         """Run every task; `report` receives the name of the next one and the results so far.
@@ -74,16 +80,26 @@ class Problem:
         results: list[Result] = []
         errors = Errors()
         undecided: list[Undecided] = []
-        for task in self.tasks:
+        first = [task for task in (task_named(self.plant_of),) if task is not None and task not in self.tasks]
+        plant: Any = self.plant
+        for task in (*first, *self.tasks):
             if report is not None:
                 report(task.name, tuple(results))
-            own, keys = Errors(), keys_of(task, self.specification)
+            own, keys = Errors(), keys_of(task, self._specification_of(task))
             with own:
                 try:
-                    found = task.function(self.plant, **{name: self.specification[keys[name]] for name in keys})
-                    results.append(found.at(self.values) if self.values else found)
+                    found = task.function(plant, **{name: self.specification[keys[name]] for name in keys})
+                    if task.name == self.plant_of:
+                        plant = found
+                    if task not in first:
+                        results.append(found.at(self.values) if self.values else found)
                 except Undecided as error:
                     undecided.append(error)
+                    if task.name == self.plant_of:
+                        break
+            if own.found and task.name == self.plant_of:
+                errors.found += own.found
+                break
             own.move({f"specification.{name}": f"specification.{key}" for name, key in keys.items()})
             errors.found += own.found
         if errors.found:
@@ -94,6 +110,14 @@ class Problem:
             undecided[0].facts["results"] = tuple(results)
             raise undecided[0]
         return tuple(results)
+
+    def _specification_of(self, task: Task) -> Mapping[str, Any]:
+        """Return the specification of a task: of several tasks, a method is for those that have it."""
+        name = self.specification.get("method")
+        having = [each for each in self.tasks if f"{each.name}/{name}" in methods(each.name)]
+        if name in {None, "auto"} or task in having or not having:
+            return self.specification
+        return {key: value for key, value in self.specification.items() if key != "method"}
 
     def viewed(self, results: tuple[Result, ...]) -> tuple[ResultInConvention, ...]:
         """Return the results in the file's convention."""
@@ -119,6 +143,7 @@ def validate(data: Mapping[str, Any], only: str | None = None, folder: Path | No
     language = _language(data, errors)
     asked = _tasks(data, errors, required=only is None)
     wanted = asked if only is None else tuple(filter(None, [task_named(only)]))
+    plant_task = _plant_task(data, asked, only, errors)
     symbols = Symbols() if data.get("symbols") is OPEN else _symbols(table_of(data, "symbols", errors), errors)
     symbols = with_constants(table_of(data, "constants", errors), symbols, errors)
     dt = period_of(data, symbols, errors)
@@ -136,10 +161,11 @@ def validate(data: Mapping[str, Any], only: str | None = None, folder: Path | No
     check_text(data.get("variant", ""), "variant", errors)
     if not errors.found and plant is not None:
         about = title, source, ids, wanted, plant, specification, expect, convention, text, printed, values, marking
-        return Problem(*about, digits, language)
+        return Problem(*about, digits, language, plant_task)
     if plant is not None and wanted and not any(error.where.startswith("constants") for error in errors.found):
         with errors:
-            Problem(title, source, ids, wanted, plant, specification, expect, convention, values=values).solve()
+            tried = Problem(title, source, ids, wanted, plant, specification, expect, convention)
+            replace(tried, values=values, plant_of=plant_task).solve()
             errors.found += unreadable(expect, symbols.names, plant.variable)
     else:
         _read_alone(specification, _kinds(wanted), expect, symbols, read_time(dt, symbols).variable, errors)
@@ -201,6 +227,25 @@ def _tasks(data: Mapping[str, Any], errors: Errors, *, required: bool) -> tuple[
         else:
             found[name] = task
     return tuple(found.values())
+
+
+def _plant_task(data: Mapping[str, Any], asked: Sequence[Task], only: str | None, errors: Errors) -> str:
+    """Return the task whose answer is the plant of those after it; none where the file, or the task to run, names none."""
+    name, names = data.get("plant_of", ""), [task.name for task in asked]
+    able = [task for task in names if result_type(task).as_plant is not Result.as_plant]
+    if name == "":
+        return ""
+    if name not in names or name not in able:
+        message = (
+            f"{came(name) if not isinstance(name, str) else shown(name, 40)} is no task here whose answer is a plant"
+        )
+        some = "canonical_form, decomposition, dual or zero_order_hold"
+        repair = f"write {' or '.join(able)}" if able else f"name {some} among the tasks"
+        errors.note(message, "plant_of", repair)
+        return ""
+    if name == names[-1]:
+        errors.note(f"no task comes after {name}", "plant_of", "name the tasks that are about its plant after it")
+    return "" if only in names[: names.index(name) + 1] else str(name)
 
 
 def _listed(name: str = "") -> str:

@@ -5,11 +5,13 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from fractions import Fraction
 from functools import partial
-from typing import Any
+from itertools import islice, product
+from typing import TYPE_CHECKING, Any
 
 from symobs.exact import Ideal, Matrix, Scalar
-from symobs.exact.core.generators import NotWritten, identities, symbols_in
+from symobs.exact.core.generators import PI, NotWritten, identities, square_root, symbols_in, symbols_named
 from symobs.formula.expression import declared_name, parse_matrix
 from symobs.formula.expression.source import shown
 from symobs.ground.errors import InputError, ShapeMismatch, together
@@ -17,6 +19,11 @@ from symobs.system.reading import Nonlinear, has_decimals, read_time, read_value
 from symobs.system.state_space import StateSpace
 from symobs.system.symbols import Symbols, is_sympy
 
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+#: π to more digits than a value is given with.
+_PI = Fraction(3141592653589793238, 10**18)
 _EXAMPLE = 'equilibrium = { theta = "pi", omega = 0, u = 0 }'
 
 
@@ -69,27 +76,127 @@ def linearize(
 def _linearised(given: Nonlinear, *, is_discrete: bool) -> tuple[Matrix | None, ...]:
     """Return A, B, C, D; raises `InputError` where the point is no equilibrium, or f has no derivative there."""
     try:
-        rest = given.there(given.f)
-        if is_discrete:
-            rest = rest - Matrix.of([[dict(given.equilibrium)[name]] for name in given.states])
+        rest = _left_over(given, is_discrete=is_discrete)
         parts = [
             given.there(given.jacobian(function, names)) if function is not None and names else None
             for function in (given.f, given.h)
             for names in (given.states, given.inputs)
         ]
-        meanings, vanishing = identities([rest])
+        is_at_rest = _vanishes(rest)
     except NotWritten as error:
         raise InputError(str(error), where="plant.equilibrium", repair="declare a symbol for it") from None
     except ZeroDivisionError:
         message = "f or h is not differentiable there: a denominator is 0"
         raise InputError(message, where="plant.equilibrium", repair="give an equilibrium inside their domain") from None
-    ideal = Ideal.of(vanishing)
-    left = [entry.substitute(meanings) if meanings else entry for entry in rest.entries]
-    if any(not ideal.simplified(entry).is_zero for entry in left):
+    if not is_at_rest:
         what, wanted = ("f(x, u) - x", "f(x, u) = x") if is_discrete else ("f(x, u)", "f(x, u) = 0")
         message = f"this is no equilibrium: {what} is [{'; '.join(map(str, rest.entries))}] there"
-        raise InputError(message, where="plant.equilibrium", repair=f"give values for which {wanted}")
+        repair = f"give values for which {wanted}"
+        if exact := _exact_nearby(given, is_discrete=is_discrete):
+            listed = ", ".join(f'{name} = "{value}"' for name, value in exact)
+            repair += f": these are rounded ones of the equilibrium {{ {listed} }}"
+        raise InputError(message, where="plant.equilibrium", repair=repair)
     return tuple(parts)
+
+
+def _left_over(given: Nonlinear, *, is_discrete: bool) -> Matrix:
+    """Return f at the point, in discrete time less the point."""
+    rest = given.there(given.f)
+    return rest - Matrix.of([[dict(given.equilibrium)[name]] for name in given.states]) if is_discrete else rest
+
+
+def _vanishes(rest: Matrix) -> bool:
+    """Return whether all entries are 0, by the identities of their functions."""
+    meanings, vanishing = identities([rest])
+    ideal = Ideal.of(vanishing)
+    left = (entry.substitute(meanings) if meanings else entry for entry in rest.entries)
+    return all(ideal.simplified(entry).is_zero for entry in left)
+
+
+# An exact equilibrium that has the given values when rounded.
+
+
+#: How many points are tried, and the largest denominator of a multiple of π.
+_TRIED, _PARTS_OF_PI = 200, 12
+
+
+def _exact_nearby(given: Nonlinear, *, is_discrete: bool) -> tuple[tuple[str, Scalar], ...]:
+    """Return an equilibrium that differs in the last digit at most; nothing where none is found.
+
+    Its values are fractions, square roots and multiples of π; one of them may solve an equation of degree 2.
+    """
+    meant = [_meant(value) for _, value in given.equilibrium]
+    names = [name for name, _ in given.equilibrium]
+    points = list(islice(product(*meant), _TRIED))
+    solving = [(point, place) for place in range(len(names)) for point in points if len(meant[place]) > 1]
+    for point, place in [*((point, None) for point in points), *solving[:_TRIED]]:
+        at = list(point)
+        try:
+            if place is not None:
+                at[place] = Scalar.symbol(names[place])
+                moved = replace(given, equilibrium=tuple(zip(names, at, strict=True)))
+                rest = _left_over(moved, is_discrete=is_discrete)
+                value = given.equilibrium[place][1]
+                root = next(_roots_near(rest, names[place], value), None)
+                if root is None:
+                    continue
+                at[place] = root
+            moved = replace(given, equilibrium=tuple(zip(names, at, strict=True)))
+            if _vanishes(_left_over(moved, is_discrete=is_discrete)):
+                return moved.equilibrium
+        except (NotWritten, ZeroDivisionError):
+            continue
+    return ()
+
+
+def _step(value: Scalar) -> Fraction | None:
+    """Return a unit of the last decimal of a number; None for what is no decimal of one digit or more."""
+    if not value.is_constant:
+        return None
+    number, step = value.fraction(), Fraction(1)
+    while number % step and step > Fraction(1, 10**12):
+        step /= 10
+    return step if step < 1 and not number % step else None
+
+
+def _meant(value: Scalar) -> list[Scalar]:
+    """Return a value, and what it may be rounded from."""
+    step, found = _step(value), [value]
+    if step is None:
+        return found
+    number = value.fraction()
+    for turned, scale in ((number / _PI, Scalar.symbol(PI)), (number, None)):
+        near = turned.limit_denominator(_PARTS_OF_PI if scale is not None else max(1, int(1 / step / 10)))
+        exact = near * (_PI if scale is not None else 1)
+        if abs(exact - number) <= step and near:
+            found.append(Scalar.of(near) if scale is None else scale * near)
+    squared = (number * number).limit_denominator(max(1, int(1 / step / 10)))
+    if squared and abs(float(squared) ** 0.5 - abs(float(number))) <= step:
+        found.append(square_root(Scalar.of(squared)) * (1 if number > 0 else -1))
+    return list(dict.fromkeys(found))
+
+
+def _roots_near(rest: Matrix, name: str, value: Scalar) -> Iterator[Scalar]:
+    """Yield the roots by square roots, near a value, of the first entry that is not 0."""
+    number, step = float(value.fraction()), float(_step(value) or 0)
+    entry = next((entry for entry in rest.entries if name in entry.names), None)
+    if entry is None or any(name in symbols_named(other) for other in entry.names if other != name):
+        return
+    for factor, _ in entry.numerator.factors()[1]:
+        if factor.names != {name} or factor.degree(name) > 2:
+            continue
+        *lead, b, c = factor.coefficients(name)
+        roots = [-c / b]
+        if lead:
+            half, distance = -b / (2 * lead[0]), b * b / (4 * lead[0] * lead[0]) - c / lead[0]
+            if distance.fraction() < 0:
+                continue
+            root = square_root(distance)
+            roots = [half + root, half - root] if distance else [half]
+            near = [float(half.fraction()) + sign * float(distance.fraction()) ** 0.5 for sign in (1, -1)]
+        else:
+            near = [float(roots[0].fraction())]
+        yield from (root for root, at in zip(roots, near, strict=False) if abs(at - number) <= step)
 
 
 def _names(given: object, where: str) -> tuple[str, ...]:

@@ -12,7 +12,7 @@ _MAKE_ONE = 'give a symobs.StateSpace, for example symobs.StateSpace("[0 1; 0 -1
 
 
 def as_plant(value: Any, *, only: bool = True, floats: str | None = None) -> Any:
-    """Return the plant of a system of python-control, SciPy or SymPy, or of a pair of lists of coefficients.
+    """Return the plant of a result, of a system of python-control, SciPy or SymPy, or of a pair of lists of coefficients.
 
     A `StateSpace` is returned as it is, and what is no plant where it need not be the `only` thing that may come: raises
     `InputError` otherwise, saying how to make one.  A list of two lists of one length may be meant as a matrix: a
@@ -20,6 +20,8 @@ def as_plant(value: Any, *, only: bool = True, floats: str | None = None) -> Any
     """
     if isinstance(value, StateSpace):
         return value
+    if (there := getattr(value, "as_plant", None)) is not None:  # the result of a task
+        return there
     module = str(type(value).__module__)
     if module.partition(".")[0] == "control":
         return StateSpace.from_control(value)

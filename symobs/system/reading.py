@@ -14,6 +14,7 @@ from symobs.exact.core.generators import (
     Function,
     NotWritten,
     all_roots,
+    are_dependent,
     derivative,
     function_named,
     functions_in,
@@ -162,15 +163,15 @@ def read_complex(value: object, where: str) -> Complex:
 
 
 def over_a_base(
-    matrices: Mapping[str, Matrix | None], where: str = "plant"
+    matrices: Mapping[str, Matrix | None], signs: Mapping[str, str], where: str = "plant"
 ) -> tuple[dict[str, Matrix | None], tuple[Scalar, ...]]:
     """Return matrices with their functions in a common base, and the polynomials in the base that vanish.
 
-    Raises `InputError` for a function of time, a root of what is no rational number, roots that may depend on each other,
-    and an entry that divides by 0.
+    Raises `InputError` for a function of time, a root of what may be negative, roots that may depend on each other, and an
+    entry that divides by 0.
     """
     given = [matrix for matrix in matrices.values() if matrix is not None]
-    if all(f.square for f in require_known(given, where)):
+    if all(f.square for f in require_known(given, signs, where)):
         return dict(matrices), ()
     try:
         meanings, relations = identities(given)
@@ -186,26 +187,39 @@ def over_a_base(
     return moved, relations
 
 
-def require_known(values: Sequence[Matrix | Scalar], where: str) -> frozenset[Function]:
+def require_known(values: Sequence[Matrix | Scalar], signs: Mapping[str, str], where: str) -> frozenset[Function]:
     """Return the functions in values; raises `InputError` where one is not of parameters or equals another one.
 
-    Roots are of rational numbers, since only these are known to be real; of several, the degrees have no common factor, so
-    that no equation ties them to each other.
+    Roots are of what the declared signs make positive, since only these are known to be real, and no product of radicands
+    is a square; of several roots of numbers, the degrees have no common factor.  So no equation ties them to each other.
     """
     functions = functions_in(values)
     for f in sorted(functions | all_roots(*values), key=lambda f: f.text):
         if f.symbols & {"t", "s", "z"}:
             message = f"{f.text} is a function of {', '.join(f.symbols & {'t', 's', 'z'})}"
-            raise InputError(message, where=where, repair="entries are rational in t, and have no s or z")
-        if f.kind == "sqrt" and not f.square:
-            message = f"{f.text} has no exact value here"
-            repair = "sqrt of a rational number is possible; for other roots declare a symbol"
+            repair = "entries are rational in t, and have no s or z"
+            if f.kind == "exp" and f.symbols & {"s"}:
+                message = f"{message}: dead time is not rational"
+                repair = "write a Padé approximation, (2 - s)/(2 + s) for exp(-s)"
             raise InputError(message, where=where, repair=repair)
+        if f.kind == "sqrt" and not f.square:
+            if f.argument.is_constant or any(map(function_named, f.argument.names)):
+                repair = "sqrt of numbers and of rational expressions is possible; for other roots declare a symbol"
+                raise InputError(f"{f.text} has no exact value here", where=where, repair=repair)
+            if sign_of(f.argument, signs) != "positive":
+                repair = "declare signs for which its radicand is positive, or a symbol for the root"
+                raise InputError(f"{f.text} has no exact value here: it may not be real", where=where, repair=repair)
+    roots = [f for f in functions | all_roots(*values) if f.kind == "sqrt"]
+    if are_dependent([f.argument for f in roots]):
+        listed = ", ".join(sorted(f.text for f in roots))
+        raise InputError(
+            f"roots that depend on each other: {listed}", where=where, repair="write one of them with the others"
+        )
     degrees = [f.number.degree for f in functions if isinstance(f, RealRoot)]
     degrees += [2] if any(f.square for f in functions | all_roots(*values)) else []
     if lcm(*degrees) != prod(degrees):
-        roots = ", ".join(sorted(f.text for f in functions if isinstance(f, RealRoot)))
-        message = f"roots that may depend on each other: {roots}"
+        listed = ", ".join(sorted(f.text for f in functions if isinstance(f, RealRoot)))
+        message = f"roots that may depend on each other: {listed}"
         raise InputError(message, where=where, repair="write all of them with one root, r^2 for another")
     return functions
 
@@ -377,7 +391,8 @@ def read_time(dt: object, symbols: Symbols) -> TimeDomain:
     value = read_scalar(str(dt) if isinstance(dt, float) else dt, symbols, "plant.dt")
     if value.is_zero:
         return Continuous()
-    if not value.is_constant or value.fraction() <= 0:
+    if sign_of(value, symbols.signs) != "positive":
         message = f"{value} is not a sampling period"
-        raise InputError(message, where="plant.dt", repair="write 0 for continuous time, true or a positive number")
+        repair = "write 0 for continuous time, true, a positive number, or a symbol that is declared positive"
+        raise InputError(message, where="plant.dt", repair=repair)
     return Discrete(value)

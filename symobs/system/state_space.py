@@ -194,7 +194,7 @@ class StateSpace:
         if "A" in parts:
             errors += shape_errors({name: parts.get(name) for name in "ABC"} | {"D": None if errors else parts["D"]})
         raise_all(errors)
-        parts, relations = over_a_base(parts)
+        parts, relations = over_a_base(parts, known.signs)
         self.matrices = Matrices(parts["A"], parts["B"], parts["C"], parts["D"])  # type: ignore[arg-type]
         self.symbols = known
         self.time = read_time(dt, known)
@@ -221,26 +221,35 @@ class StateSpace:
     def from_transfer_function(
         cls,
         transfer_function: object,
+        *given: object,
         dt: object = 0,
-        *,
         symbols: Mapping[str, Any] | Symbols | None = None,
         floats: str | None = None,
+        realisation: str | None = None,
     ) -> StateSpace:
         """Return the controllable canonical realisation of a proper rational function of s (z in discrete time).
 
         b(s)/a(s) + d with a(s) = sⁿ + a₁ sⁿ⁻¹ + … + aₙ gives ones above the diagonal, last row −aₙ … −a₁, B = eₙ and
-        C the coefficients of b, constant first.  The function is a text, a SymPy expression or lists of coefficients,
-        highest power first: ([1], [1, 2, 0]).  A matrix of functions, "[1/(s+1) 0; 1/s 1/(s+1)]", is given a minimal
-        realisation.  Raises `InputError` where a function is not proper, or has no pole.
+        C the coefficients of b, constant first.  `realisation` may be "observable", (Aᵀ, Cᵀ, Bᵀ), or "modal", A block
+        diagonal, B with a 1 in each block and C with the residues.  The function is a text, a SymPy expression or lists of
+        coefficients, highest power first: ([1], [1, 2, 0]), or [1], [1, 2, 0]; dt may stand behind.  A matrix of functions,
+        "[1/(s+1) 0; 1/s 1/(s+1)]", or ([[1, 0], [1, 1]], [1, 1]) with a common denominator, is given a minimal realisation.
+        Raises `InputError` where a function is not proper, or has no pole.
         """
+        if given and (isinstance(given[0], (list, tuple)) or hasattr(given[0], "tolist")):
+            transfer_function, given = (transfer_function, given[0]), given[1:]
+        if len(given) > 1:
+            message = f"{len(given)} values stand behind the transfer function"
+            raise InputError(message, where="plant.transfer_function", repair="give it, and dt")
+        (dt,) = given or (dt,)
         known = symbols if isinstance(symbols, Symbols) else Symbols.of(symbols)
         time, where = read_time(dt, known), "plant.transfer_function"
-        given = read_floats(transfer_function, floats, where)
-        known = known.seen(given, time.variable)
-        written = read_written(given, known, time.variable, where)
-        A, B, C, D = written.realised(where)
+        exact = read_floats(transfer_function, floats, where)
+        known = known.seen(exact, time.variable)
+        written = read_written(exact, known, time.variable, where, realisation)
+        A, B, C, D = written.realised(where, known.signs)
         plant = cls(A, B, C, D, dt, symbols=known, transfer_function=written)
-        plant.is_from_floats, plant.is_in_decimals = given is not transfer_function, has_decimals(given)
+        plant.is_from_floats, plant.is_in_decimals = exact is not transfer_function, has_decimals(exact)
         return plant
 
     @classmethod
@@ -360,12 +369,24 @@ class StateSpace:
             raise InputError(str(error), where="plant", repair="give another value") from None
         there = m.has_input, m.has_output, m.has_input and m.has_output
         B, C, D = [part if is_there else None for part, is_there in zip(others, there, strict=True)]
-        plant = StateSpace(A, B, C, D, self.dt, symbols=symbols)
+        period = getattr(self.time, "period", None)
+        plant = StateSpace(A, B, C, D, self.dt if period is None else str(substitute(period, values)), symbols=symbols)
         images = [substitute(equation, values).numerator for equation in self.equations]
         nonzero = [substitute(value, values).numerator for value in self.nonzero]
         if any(value.is_zero for value in nonzero) or any(i.is_constant and not i.is_zero for i in images):
             raise ZeroDivisionError("what does not vanish is 0")
         return plant.restricted([image for image in images if not image.is_zero], nonzero)
+
+    def in_coordinates(
+        self, A: Matrix, B: Matrix | None, C: Matrix | None, D: Matrix | None, nonzero: Iterable[Scalar]
+    ) -> StateSpace:
+        """Return a plant with other matrices over the same parameters, which there is where some values do not vanish."""
+        plant = copy(self)
+        plant.__dict__.pop("field", None)
+        plant.matrices = Matrices(A, B, C, D if B is not None and C is not None else None)
+        plant.written = plant.polynomial = plant.nonlinear = None
+        plant.nonzero = tuple(dict.fromkeys((*self.nonzero, *self.apart, *(value.numerator for value in nonzero))))
+        return plant.asked_anew()
 
     def restricted(self, equations: Iterable[Scalar], nonzero: Iterable[Scalar] = ()) -> StateSpace:
         """Return the plant where some polynomials, which must have common zeros, vanish and others do not."""
@@ -524,10 +545,11 @@ class StateSpace:
 
     @property
     def dt(self) -> Any:
-        """0 in continuous time, True or the period in discrete time."""
+        """0 in continuous time, True or the period in discrete time, a text where it is a symbol."""
         if isinstance(self.time, Continuous):
             return 0
-        return True if self.time.period is None else self.time.period.fraction()
+        period = self.time.period
+        return True if period is None else period.fraction() if period.is_constant else str(period)
 
     def __eq__(self, other: object) -> bool:
         """Return whether entries, time, symbols (with signs and printed forms) and the form of the data are equal."""

@@ -1,4 +1,4 @@
-"""Transfer functions as given, and their controllable canonical form."""
+"""Transfer functions as given, and their realisation in canonical or modal form."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 from symobs.exact import Ideal, Matrix, Scalar, companion, product_of, resultant
+from symobs.exact.linear_algebra.modal_matrix import modal_realisation
 from symobs.formula.expression import parse_polynomial, parse_scalar
 from symobs.formula.expression.written_fraction import parse_fraction
 from symobs.ground.dataclass import dataclass
@@ -14,10 +15,15 @@ from symobs.system.reading import over_a_base, read_scalar, require_known
 from symobs.system.symbols import is_sympy
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from symobs.system.symbols import Symbols
 
 #: A realisation of more states is refused: designs and tests for it would not end.
 MOST_STATES = 200
+
+#: The coordinates in which a transfer function is realised; the first ones where none are named.
+REALISATIONS = ("controllable", "observable", "modal")
 
 
 @dataclass(frozen=True)
@@ -27,6 +33,8 @@ class WrittenTransferFunction:
     above: Scalar
     below: Scalar
     variable: str
+    #: The coordinates of the realisation.
+    realisation: str = REALISATIONS[0]
 
     @cached_property
     def value(self) -> Scalar:
@@ -42,9 +50,13 @@ class WrittenTransferFunction:
         """The cancelled factor of the denominator, 1 if nothing cancels."""
         return product_of(factor**power for factor, power in self._common if self.variable in factor.names)
 
-    def realised(self, where: str) -> tuple[Matrix, Matrix, Matrix, Matrix]:
-        """Return its controllable canonical form."""
-        return realise(self.value, self.variable, where)
+    def realised(self, where: str, signs: Mapping[str, str]) -> tuple[Matrix, Matrix, Matrix, Matrix]:
+        """Return its realisation in controllable or observable canonical form, or in modal form."""
+        del signs  # its roots have been read
+        A, B, C, D = realise(self.value, self.variable, where)
+        if self.realisation == "observable":
+            return A.T, C.T, B.T, D
+        return (*modal_realisation(A, B, C, self.variable), D) if self.realisation == "modal" else (A, B, C, D)
 
     @property
     def apart(self) -> tuple[Scalar, ...]:
@@ -67,18 +79,20 @@ def read_transfer_function(value: object, symbols: Symbols, variable: str, where
     else:
         found, written = read_scalar(value, symbols, where), None
     above, below = written or (found.numerator, found.denominator)
-    return written_over(*over_data(above, below, variable, where), variable)
+    return written_over(*over_data(above, below, variable, where, symbols.signs), variable)
 
 
-def over_data(above: Scalar, below: Scalar, variable: str, where: str) -> tuple[Scalar, Scalar]:
+def over_data(
+    above: Scalar, below: Scalar, variable: str, where: str, signs: Mapping[str, str]
+) -> tuple[Scalar, Scalar]:
     """Return numerator and denominator over a common base of their functions, simplified by what vanishes there.
 
     Raises `InputError` for a function of the variable, and where what vanishes is divided by, is the numerator, or makes the
     two have a common factor.
     """
-    if not require_known([above, below], where):
+    if not require_known([above, below], signs, where):
         return above, below
-    row, relations = over_a_base({"P": Matrix.row([above, below])}, where)
+    row, relations = over_a_base({"P": Matrix.row([above, below])}, signs, where)
     assert row["P"] is not None  # noqa: S101 - it is given
     given, common = above, row["P"].common_denominator()
     above, below = (part * common for part in row["P"].entries)

@@ -16,6 +16,7 @@ from symobs.ground.errors import BudgetExceeded, CertificateRejected, InputError
 from symobs.system.reading import as_rows, is_identity, read_matrix, require_known
 from symobs.system.transfer_function_text import (
     MOST_STATES,
+    REALISATIONS,
     WrittenTransferFunction,
     over_data,
     read_transfer_function,
@@ -23,7 +24,7 @@ from symobs.system.transfer_function_text import (
 )
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Iterator, Mapping, Sequence
 
     from symobs.system.symbols import Symbols
 
@@ -58,9 +59,9 @@ class WrittenTransferMatrix:
         """The cancelled factors in the parameters alone, which are nonzero wherever the matrix is defined."""
         return tuple(dict.fromkeys(factor for entry in self._entries for factor in entry.apart))
 
-    def realised(self, where: str) -> tuple[Matrix, Matrix, Matrix, Matrix]:
+    def realised(self, where: str, signs: Mapping[str, str]) -> tuple[Matrix, Matrix, Matrix, Matrix]:
         """Return a minimal realisation; raises `InputError` where functions in it depend on each other."""
-        functions = require_known([self.value], where)
+        functions = require_known([self.value], signs, where)
         meanings, relations = identities([self.value])
         if not {*meanings}.isdisjoint(self.value.names) or any(
             relation.names <= self.value.names for relation in relations
@@ -72,6 +73,26 @@ class WrittenTransferMatrix:
 
 
 def read_written(
+    value: object, symbols: Symbols, variable: str, where: str, realisation: object = None
+) -> WrittenTransferFunction | WrittenTransferMatrix:
+    """Return a transfer function with the coordinates of its realisation, or a matrix of functions.
+
+    Raises `InputError` for other coordinates than there are, and where they are named for a matrix.
+    """
+    written = _read_written(value, symbols, variable, where)
+    if realisation is None:
+        return written
+    place = where.replace("transfer_function", "realisation")
+    if realisation not in REALISATIONS:
+        message = f"{str(realisation)[:40]!r} is no kind of realisation"
+        raise InputError(message, where=place, repair=f"write one of {', '.join(REALISATIONS)}")
+    if isinstance(written, WrittenTransferMatrix):
+        message = "a matrix of transfer functions has a minimal realisation, in coordinates of its own"
+        raise InputError(message, where=place, repair="leave it out")
+    return replace(written, realisation=str(realisation))
+
+
+def _read_written(
     value: object, symbols: Symbols, variable: str, where: str
 ) -> WrittenTransferFunction | WrittenTransferMatrix:
     """Return a transfer function, or the matrix of several that a text in brackets, nested lists or SymPy give."""
@@ -82,7 +103,9 @@ def read_written(
         return _of_rows(
             [
                 [
-                    written_over(*over_data(*(w or (f.numerator, f.denominator)), variable, where), variable)
+                    written_over(
+                        *over_data(*(w or (f.numerator, f.denominator)), variable, where, symbols.signs), variable
+                    )
                     for w, f in row
                 ]
                 for row in pairs
@@ -111,6 +134,8 @@ def _rows_of(value: Any, variable: str) -> list[list[Any]] | None:
     """Return the rows of a matrix of functions, None for one function: two lists of coefficients have no variable."""
     if hasattr(value, "tolist") and len(getattr(value, "shape", ())) == 2:  # a matrix or an array
         value = value.tolist()
+    if (rows := _over_one_denominator(value)) is not None:
+        return rows
     if (
         not isinstance(value, (list, tuple))
         or not value
@@ -121,6 +146,19 @@ def _rows_of(value: Any, variable: str) -> list[list[Any]] | None:
     if not any(isinstance(entry, (list, tuple)) or _has(variable, entry) for entry in entries):
         return None
     return [list(row) for row in value]
+
+
+def _over_one_denominator(value: Any) -> list[list[Any]] | None:
+    """Return the rows of functions of ([[n, n], [n, n]], d), numerators over a common denominator; None for other values."""
+    if not isinstance(value, (list, tuple)) or len(value) != 2:
+        return None
+    above, below = (part.tolist() if hasattr(part, "tolist") else part for part in value)
+    are_lists = all(isinstance(part, (list, tuple)) and part for part in (above, below))
+    if not are_lists or not all(isinstance(row, (list, tuple)) for row in above):
+        return None
+    if any(isinstance(part, (list, tuple)) for part in below):
+        return None
+    return [[(entry if isinstance(entry, (list, tuple)) else [entry], below) for entry in row] for row in above]
 
 
 def _has(variable: str, entry: object) -> bool:
@@ -257,6 +295,7 @@ def parallel(first: Realisation, second: Realisation) -> Realisation:
 
 def connected(kind: str, plant: Plant, other: object) -> Plant:
     """Return the connection of a plant with another one, or with a gain; raises `InputError` where they do not fit."""
+    other = getattr(other, "as_plant", other)
     first, second = _system(plant), _of_other(plant, other)
     size = {"series": first.D.shape[1], "gain": first.D.shape[0]}.get(kind, 1)
     if not isinstance(other, type(plant)) and second.D.shape == (1, 1) != (size, size):  # a number, for each of several

@@ -22,7 +22,7 @@ from symobs.pages.printers.root_lists import TEXT, listed
 from symobs.pages.printers.text_printer import TextPrinter
 from symobs.problem import read
 from symobs.tasks.result.output_methods import to_json
-from tests.support.tools.command_line import EXAMPLES
+from tests.support.examples import EXAMPLES, problem_of, results_of
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -78,8 +78,8 @@ def number(value: Any) -> complex:
 
 @pytest.mark.parametrize("path", [path for path in EXAMPLES if path.stem not in LARGE], ids=lambda path: path.stem)
 def test_a_card_shows_the_value_of_its_field(path: Path) -> None:
-    problem = read(path.read_text(encoding="utf-8"), folder=path.parent)
-    for result in problem.solve():
+    problem = problem_of(path.stem)
+    for result in results_of(path.stem):
         for card in cards(result, result.fields):
             assert card.answer is result.fields[card.name]
             if isinstance(card.shown, Roots):

@@ -20,8 +20,7 @@ from symobs.exact import Matrix, Scalar
 from symobs.exact.core.generators import function_named, symbols_in
 from symobs.problem import Problem, read
 from symobs.system.conditions import never_zero
-from tests.support.claims.claims import HOLDS, Setting, applicable, conditions_hold, read_once
-from tests.support.independent_algebra.plain import (
+from tests.support.algebra import (
     assignable,
     at_number,
     has_sign,
@@ -32,8 +31,10 @@ from tests.support.independent_algebra.plain import (
     seeded,
     value_at,
 )
-from tests.support.independent_algebra.plain_fractions import World
-from tests.support.paths import ROOT
+from tests.support.claims.claims import HOLDS, Setting, applicable, conditions_hold, read_once
+from tests.support.derivations import World
+from tests.support.examples import NAMES as FILES
+from tests.support.examples import problem_of, results_of
 from tests.support.sampling import FULL, every
 
 if TYPE_CHECKING:
@@ -93,8 +94,6 @@ BUILT = {
     """,
 }
 
-FOLDER = ROOT / "worked_examples"
-FILES = {path.stem: path for path in sorted(FOLDER.glob("*.toml"))}
 #: Fractions know no roots: examples with roots in their data are held to PARI, or by the second reader of examples.
 WITH_ROOTS = {
     "coupled_masses_irrational",
@@ -107,8 +106,8 @@ NAMES = [*(name for name in FILES if name not in WITH_ROOTS), *BUILT]
 
 @cache
 def solved(name: str) -> tuple[Problem, tuple[Result, ...]]:
-    problem = read(FILES[name].read_text(encoding="utf-8") if name in FILES else BUILT[name])
-    results = problem.solve()
+    problem = problem_of(name) if name in FILES else read(BUILT[name])
+    results = results_of(name) if name in FILES else problem.solve()
     return replace(problem, specification=read_once(problem.plant, problem.specification)), results
 
 
@@ -143,7 +142,7 @@ def scalars(point: dict[str, Fraction]) -> dict[str, Scalar]:
     return {name: Scalar.of(value) for name, value in point.items()}
 
 
-@pytest.mark.parametrize("name", every(2, NAMES))
+@pytest.mark.parametrize("name", every(3, NAMES))
 def test_claims_hold_wherever_the_conditions_do(name: str) -> None:
     problem, results = solved(name)
     names = names_of(problem, results)
@@ -175,7 +174,7 @@ def says(result: Result, at: Setting) -> int:
     return len(parts)
 
 
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("name", every(3, NAMES))
 def test_answers_are_defined_wherever_the_conditions_hold(name: str) -> None:
     """No denominator is left out: each factor of one is a condition or excluded by the declared signs.
 
@@ -208,7 +207,7 @@ def zeros(problem: Problem, names: list[str], factor: Scalar, seed: object) -> I
                 yield {**point, name: -constant / lead}
 
 
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("name", every(3, NAMES))
 def test_where_a_domain_condition_fails_there_is_no_plant(name: str) -> None:
     problem, results = solved(name)
     names, m = names_of(problem, results), problem.plant.matrices
@@ -237,7 +236,7 @@ def ranked(result: Any) -> list[tuple[Any, bool]]:
     return [(result, result.task in {"controllability", "state_feedback"})] if square and result.existence else []
 
 
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("name", every(3, NAMES))
 def test_where_an_existence_factor_vanishes_the_rank_drops_and_the_case_is_right(name: str) -> None:
     problem, results = solved(name)
     names, signs = names_of(problem, results), problem.plant.symbols.signs

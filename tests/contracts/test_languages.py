@@ -9,7 +9,6 @@ import sys
 import tomllib
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
-from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -27,6 +26,7 @@ from symobs.problem import read
 from symobs.problem.question import question_of
 from symobs.proof.derivation import RegionSummary, Section
 from symobs.tasks.result import Document, render
+from tests.support.examples import document_of
 from tests.support.paths import ROOT
 from tests.support.problems.render_examples import HandWritten
 from tests.support.tools.command_line import inside
@@ -36,14 +36,8 @@ GERMAN = ROOT / "symobs" / "formula" / "phrases" / "german"
 EXAMPLES = ("servo_minimal_order", "region_two_intervals", "hidden_state_two_outputs", "routh_zero_row")
 
 
-@cache
-def example(name: str) -> Document:
-    problem = read((ROOT / "worked_examples" / f"{name}.toml").read_text(encoding="utf-8"), name)
-    return problem.document(problem.solve())
-
-
 def document(name: str, language: str) -> Document:
-    return replace(example(name), language=language)
+    return replace(document_of(name), language=language)
 
 
 # -- completeness -------------------------------------------------------------------------------------------------------
@@ -216,7 +210,7 @@ def test_choices_of_states() -> None:
 
 def test_a_false_number_in_a_sentence_is_rejected_in_every_language() -> None:
     """What is checked are numbers, not the words for them: a derivation has no language."""
-    told = example("region_two_intervals")
+    told = document_of("region_two_intervals")
     (derivation,) = told.derivations
 
     def lie(step: object) -> object:
@@ -276,13 +270,20 @@ def test_the_command_line_names_a_language(tmp_path: Path) -> None:
     assert "Questions\n=========" in told("sheet", str(path), "--language", "en")
 
 
-def test_an_incomplete_language_is_refused_as_a_whole(copy: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    words = copy / "words.toml"
+def test_a_phrase_without_a_translation_is_printed_in_english(copy: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    words, german = copy / "words.toml", language_named("de")
     words.write_text(words.read_text(encoding="utf-8").replace('code = "de"', 'code = "yy"'), encoding="utf-8")
     (copy / "gain.toml").unlink()
     monkeypatch.setattr(module, "_folders", lambda: {"yy": copy})
-    with pytest.raises(ValueError, match=r"gain\.toml: write a translation of"):
-        language_named("yy")
+    found = language_named("yy")
+    missing = phrases_of_modules()["gain"]
+    assert {key: found.phrases[key] for key in missing} == missing
+    assert all(found.phrases[key] == german.phrases[key] for key in found.phrases.keys() - missing)
+    (copy / "words.toml").write_text('[WORDS]\ncode = "zz"\n', encoding="utf-8")
+    monkeypatch.setattr(module, "_folders", lambda: {"zz": copy})
+    module._read.cache_clear()
+    with pytest.raises(ValueError, match=r"words\.toml"):
+        language_named("zz")
 
 
 def test_every_file_of_a_language_is_read() -> None:

@@ -19,7 +19,6 @@ from symobs.exact import Field, Matrix, Scalar
 from symobs.exact.core.generators import function
 from symobs.exact.core.ring import Precision
 from symobs.tasks.result import tasks
-from tests.programs.benchmarks.fresh_symbols import design
 from tests.support.claims.asking import specification
 from tests.support.tools.another_process import Account, account_of, read_in_another_process
 
@@ -36,6 +35,14 @@ PLANTS = {
 }
 IN_TIME = ("gramian", "initial_state", "matrix_exponential")
 NAMES = [(plant, task) for plant in PLANTS for task in (sorted(tasks()) if plant == "decaying" else IN_TIME)]
+
+
+def design(number: int) -> tuple[Any, Any]:
+    """Return an observer and a matrix exponential for symbols that no design before had."""
+    a, b, p = (f"{letter}{number}" for letter in "abp")
+    plant = symobs.StateSpace([["0", a], ["1", b]], [["1"], ["0"]], [["1", b]])
+    decaying = symobs.StateSpace([[f"-{p}", "1"], ["0", f"-2*{p}"]], [["0"], ["1"]], [["1", "0"]])
+    return symobs.observer(plant, poles=[f"-{p}", "-1"]), symobs.matrix_exponential(decaying)
 
 
 def example(name: tuple[str, str]) -> Any:

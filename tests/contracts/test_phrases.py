@@ -15,8 +15,8 @@ import pytest
 from symobs.formula.phrases import PHRASES, RESTS_ON, THEOREMS
 from symobs.formula.phrases.english import question_phrases
 from symobs.formula.phrases.literature import LITERATURE, bibliography, cited
-from symobs.problem import read
 from symobs.tasks.result import Task, methods, tasks
+from tests.support.examples import document_of
 from tests.support.paths import ROOT
 
 if TYPE_CHECKING:
@@ -153,6 +153,4 @@ def examples() -> dict[str, Path]:
 @pytest.mark.parametrize("task", TASKS, ids=lambda task: task.name)
 def test_a_task_has_a_worked_example_with_a_page(task: Task) -> None:
     assert task.name in examples(), f"{task.name} has no example: write worked_examples/{task.name}.toml"
-    path = examples()[task.name]
-    problem = read(path.read_text(encoding="utf-8"), path.name)
-    assert problem.document(problem.solve()).derivations
+    assert document_of(examples()[task.name].stem).derivations

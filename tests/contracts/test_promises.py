@@ -18,7 +18,7 @@ from symobs.pages.formats.json import result_object
 from symobs.problem import read
 from symobs.problem.expect import mismatches
 from symobs.proof.derivation.facts import PREDICATES, are_roots, polynomial_of
-from tests.programs.campaign.points import value
+from tests.support.algebra import evaluated as value
 
 
 def answered(problem: dict[str, Any]) -> dict[str, Any]:

@@ -206,7 +206,7 @@ TRACE_CLAIMS = '''
 
 from typing import Any
 
-from tests.support.independent_algebra.plain import matrix_at
+from tests.support.algebra import matrix_at
 
 
 def holds(result: Any, at: Any) -> None:

@@ -98,7 +98,7 @@ def test_the_version_needs_neither_kernel_nor_tasks() -> None:
         "symobs.cli.shared",
         "symobs.cli.shared.common",
         "symobs.cli.shared.options",
-        "symobs.cli.shared.outcome",
+        "symobs.cli.shared.output",
     }
     assert own == {"symobs", "symobs.ground", "symobs.ground.errors"} | own_modules
 

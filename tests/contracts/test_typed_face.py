@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import ast
+import importlib
 import pydoc
 import re
 import shutil
@@ -135,3 +137,14 @@ def test_a_task_is_described_by_its_parts(name: str) -> None:
     parts = [r"^plant .*(states|a plant)", r"\bReturns ", r"\bRaises `", r"\bSource: "]
     parts += [rf"\b{keyword}\b" for keyword in tasks()[name].keywords if keyword != "method"]
     assert [part for part in parts if not re.search(part, text, re.MULTILINE)] == []
+
+
+def test_what_the_face_names_is_there() -> None:
+    """Every public name of the stub is one of the package, and every name that it imports one of its module."""
+    tree = ast.parse((ROOT / "symobs" / "__init__.pyi").read_text(encoding="utf-8"))
+    for node in tree.body:
+        if isinstance(node, ast.ImportFrom):
+            module = importlib.import_module(node.module or "")
+            assert [each.name for each in node.names if not hasattr(module, each.name)] == []
+        elif isinstance(node, (ast.FunctionDef, ast.ClassDef)):
+            assert node.name.startswith("_") or hasattr(symobs, node.name), node.name

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import tomllib
 from dataclasses import fields, replace
 from functools import cache
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -13,8 +14,9 @@ from symobs.formula.expression import parse_matrix, parse_scalar
 from symobs.formula.tree import Evaluated, Exact, Formula, Literal, Relation, evaluate
 from symobs.formula.tree.nodes import children
 from symobs.tasks.result import render
-from tests.pages.test_worked_examples import FILES, solved
-from tests.support.problems.catalogue_values import VALUES
+from tests.pages.test_worked_examples import solved
+from tests.support.examples import EXAMPLES as FILES
+from tests.support.paths import ROOT
 from tests.support.tampering.mutations import lines_of
 
 if TYPE_CHECKING:
@@ -24,6 +26,9 @@ if TYPE_CHECKING:
     from symobs.formula.tree import Environment
     from symobs.proof.derivation import Derivation
 
+VALUES: dict[str, list[str]] = tomllib.loads(
+    (ROOT / "tests/support/problems/catalogue_values.toml").read_text(encoding="utf-8")
+)
 pytestmark = pytest.mark.slow
 
 LINE = "line: "

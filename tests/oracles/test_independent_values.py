@@ -6,25 +6,28 @@ The problems come from `problems_by_hand`, written a second time; derivations ar
 from __future__ import annotations
 
 import itertools
-from functools import cache
 from typing import TYPE_CHECKING, Any
 
 import pytest
 import sympy
 
-from symobs import problem
 from symobs.formula.expression import parse_scalar
 from symobs.tasks.result.output_methods import to_sympy
-from tests.support.independent_algebra.second_reader import Reader, facts_in, sympy_scalar, values_of
+from tests.support.examples import results_of
 from tests.support.paths import ROOT
 from tests.support.problems.problems_by_hand import (
+    BY_HAND,
     FAMILIES,
     FREE_ENTRIES,
-    PROBLEMS,
+    Disturbed,
+    Integral,
+    MinimalOrder,
+    Modelled,
     canonical_transformation,
     characteristic,
     common_denominator,
     compare,
+    entries,
     fixed,
     inverse,
     is_stable,
@@ -33,18 +36,13 @@ from tests.support.problems.problems_by_hand import (
     observability_matrix,
     sylvester_letters,
 )
-from tests.support.problems.problems_by_hand import points as points_of
-from tests.support.problems.problems_in_time import PROBLEMS_IN_TIME, VARYING
-from tests.support.problems.problems_of_disturbances import PROBLEMS_OF_DISTURBANCES, Disturbed, Modelled
-from tests.support.problems.problems_of_integral_action import PROBLEMS_OF_INTEGRAL_ACTION, Integral
-from tests.support.problems.problems_of_minimal_order import (
-    PROBLEMS_OF_MINIMAL_ORDER,
-    PROBLEMS_OF_SEVERAL,
-    MinimalOrder,
-    entries,
+from tests.support.problems.problems_by_hand import (
+    hand as hand_of,
 )
-from tests.support.problems.problems_of_tracking import PROBLEMS_OF_TRACKING
+from tests.support.problems.problems_by_hand import points as points_of
+from tests.support.problems.problems_in_time import NAMES_IN_TIME, VARYING
 from tests.support.sampling import every
+from tests.support.second_reader import Reader, facts_in, sympy_scalar, values_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping
@@ -55,24 +53,10 @@ if TYPE_CHECKING:
 pytestmark = pytest.mark.slow
 
 FOLDER = ROOT / "worked_examples"
-BY_HAND: dict[str, Hand] = {
-    **PROBLEMS,
-    **PROBLEMS_OF_MINIMAL_ORDER,
-    **PROBLEMS_OF_SEVERAL,
-    **PROBLEMS_OF_TRACKING,
-    **PROBLEMS_OF_INTEGRAL_ACTION,
-    **PROBLEMS_OF_DISTURBANCES,
-}
-
-
-@cache
-def results(name: str) -> tuple[Result, ...]:
-    text = (FOLDER / f"{name}.toml").read_text(encoding="utf-8")
-    return problem.read(text, name).solve()
 
 
 def points(name: str, count: int) -> Iterator[dict[Any, Any]]:
-    return points_of(name, BY_HAND[name], count)
+    return points_of(name, hand_of(name), count)
 
 
 def known_letters(hand: Hand) -> dict[str, Any]:
@@ -127,7 +111,7 @@ def known_letters(hand: Hand) -> dict[str, Any]:
     if hand.follows:
         F = hand.gain_at_rest.inv()
         known |= {"F_v": F, "G_0": hand.gain_at_rest, "T_v": hand.followed}
-        known["u"] = {"x_hat": -hand.feedback_gain, "v_r": F}
+        known["u"] = {"x" if hand.observer is None else "x_hat": -hand.feedback_gain, "v_r": F}
     return known
 
 
@@ -165,7 +149,7 @@ def advised_letters(hand: Hand) -> dict[str, Any]:
 
 def read(name: str, result: Result) -> list[Reader]:
     """Walk one derivation with symbols, or at two points of its parameters where these are many."""
-    hand = BY_HAND[name]
+    hand = hand_of(name)
 
     def samples() -> Iterator[dict[Any, Any]]:
         return points(name, 60)
@@ -185,17 +169,17 @@ def read(name: str, result: Result) -> list[Reader]:
     ]
 
 
-@pytest.mark.parametrize("name", every(2, BY_HAND))
+@pytest.mark.parametrize("name", every(4, BY_HAND))
 def test_every_line_of_every_derivation(name: str, record_property: Callable[[str, object], None]) -> None:
     lines = compared = 0
-    for result in results(name):
+    for result in results_of(name):
         facts = list(facts_in(result.derivation.steps))
         lines += len(facts)
         for reader in read(name, result):
             tally = reader.read()
             assert tally.compared + len(reader.assumed) + len(tally.unknown) == values_of(facts)
             assert set(tally.unknown) <= WITNESSES, "every other letter has an independent value"
-            said_and_assumed(BY_HAND[name], reader)
+            said_and_assumed(hand_of(name), reader)
             compared += tally.compared + len(reader.assumed) + len(tally.unknown)
     record_property("lines", lines)
     record_property("values compared", compared)
@@ -297,7 +281,7 @@ def answers(hand: Hand, task: str) -> dict[str, Any]:
             own = {"L": hand.observer_gain, "A": A - hand.observer_gain * C, "B_u": driven, "B_y": hand.observer_gain}
         case "feedforward":
             whole = {"polynomial": characteristic(hand.loop_matrix, variable), "closed_loop_matrix": hand.loop_matrix}
-            gains = {"K": hand.feedback_gain, "L": hand.observer_gain}
+            gains = {"K": hand.feedback_gain} | ({} if hand.observer is None else {"L": hand.observer_gain})
             return gains | whole | {"F": hand.gain_at_rest.inv()[0], "transfer_function": hand.followed}
         case "state_feedback":
             polynomial = characteristic(A - B * hand.feedback_gain, variable)
@@ -360,10 +344,10 @@ FREE = {
 }
 
 
-@pytest.mark.parametrize("name", every(2, BY_HAND, 1))
+@pytest.mark.parametrize("name", every(4, BY_HAND, 1))
 def test_every_answer(name: str) -> None:
-    hand = BY_HAND[name]
-    for result in results(name):
+    hand = hand_of(name)
+    for result in results_of(name):
         for point in points(name, 2) if hand.large else [{}]:
             expected = answers(hand.at(point), result.task)
             if result.task == "compensator" and "poles" in result.fields:  # found for given gains
@@ -413,19 +397,19 @@ def is_family(found: Mapping[str, Any], wanted: Mapping[str, Any], variable: Any
 
 def test_attributes_are_never_of_the_kernel() -> None:
     for name in BY_HAND:
-        for result in results(name):
+        for result in results_of(name):
             for field_name in result.fields:
                 assert not type(getattr(result, field_name)).__module__.startswith("symobs"), field_name
 
 
-@pytest.mark.parametrize("name", every(2, BY_HAND))
+@pytest.mark.parametrize("name", every(4, BY_HAND))
 def test_verdicts_of_stability(name: str) -> None:
     """Hold verdicts, and the inequalities that come with them, against numeric roots at sample points."""
     asked = ("stable", "F_stable", "compensator_stable")
-    for result, verdict in ((result, name) for result in results(name) for name in asked if name in result.fields):
+    for result, verdict in ((result, name) for result in results_of(name) for name in asked if name in result.fields):
         seen = set()
-        for point in points(name, 10 if BY_HAND[name].large else 60):
-            hand = BY_HAND[name].at(point)
+        for point in points(name, 10 if hand_of(name).large else 60):
+            hand = hand_of(name).at(point)
             if verdict == "F_stable":
                 polynomial = common_denominator(hand.compensator)
             elif verdict == "compensator_stable":
@@ -454,5 +438,5 @@ REGIONS = {path.stem for path in FOLDER.glob("*.toml") if "stability_region" in 
 
 
 def test_every_worked_example_is_written_out_here() -> None:
-    written = {*BY_HAND, *PROBLEMS_IN_TIME, *VARYING, *FAMILIES, *REGIONS}
+    written = {*BY_HAND, *NAMES_IN_TIME, *VARYING, *FAMILIES, *REGIONS}
     assert {path.stem for path in FOLDER.glob("*.toml")} == written

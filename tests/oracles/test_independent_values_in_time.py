@@ -8,11 +8,13 @@ import pytest
 import sympy
 
 from symobs.tasks.result.output_methods import to_sympy
-from tests.oracles.test_independent_values import ROOTS, VERDICTS, results, same
-from tests.support.independent_algebra.second_reader import Reader, facts_in, values_of
+from tests.oracles.test_independent_values import ROOTS, VERDICTS, same
+from tests.support.examples import results_of
 from tests.support.problems.problems_by_hand import s
-from tests.support.problems.problems_in_time import PROBLEMS_IN_TIME, VARYING
+from tests.support.problems.problems_in_time import NAMES_IN_TIME, VARYING
+from tests.support.problems.problems_in_time import in_time as hand_of
 from tests.support.sampling import every
+from tests.support.second_reader import Reader, facts_in, values_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -30,7 +32,7 @@ NO_FUNCTION = {"impulse_response": {"u"}}
 
 def in_time(name: str, result: Result) -> Reader:
     """Return the reader of a page in functions of time."""
-    hand = PROBLEMS_IN_TIME[name]
+    hand = hand_of(name)
 
     def samples() -> Iterator[dict[Any, Any]]:
         return hand.points(name, 40)
@@ -38,9 +40,9 @@ def in_time(name: str, result: Result) -> Reader:
     return Reader(result.derivation, hand.letters(), samples, known_at=lambda values: hand.at(values).letters())
 
 
-@pytest.mark.parametrize("name", every(2, PROBLEMS_IN_TIME))
+@pytest.mark.parametrize("name", every(4, NAMES_IN_TIME))
 def test_every_line_of_every_page_in_time(name: str) -> None:
-    for result in results(name):
+    for result in results_of(name):
         facts, reader = list(facts_in(result.derivation.steps)), in_time(name, result)
         tally = reader.read()
         assert tally.compared + len(tally.unknown) >= values_of(facts)
@@ -49,10 +51,10 @@ def test_every_line_of_every_page_in_time(name: str) -> None:
         assert tally.compared >= len(facts) > 0
 
 
-@pytest.mark.parametrize("name", every(2, PROBLEMS_IN_TIME, 1))
+@pytest.mark.parametrize("name", every(4, NAMES_IN_TIME, 1))
 def test_every_answer_in_time(name: str) -> None:
-    hand = PROBLEMS_IN_TIME[name]
-    for result in results(name):
+    hand = hand_of(name)
+    for result in results_of(name):
         reader, expected = in_time(name, result), hand.answers(result.task)
         assert set(result.fields) - VERDICTS - {"best_horizon"} == set(expected)
         if result.answer.get("chosen"):
@@ -68,7 +70,7 @@ def test_every_answer_in_time(name: str) -> None:
 
 @pytest.mark.parametrize("name", VARYING)
 def test_every_line_and_answer_where_the_plant_varies(name: str) -> None:
-    (result,), known = results(name), VARYING[name]
+    (result,), known = results_of(name), VARYING[name]
     facts = list(facts_in(result.derivation.steps))
     positive = [{sympy.Symbol("T"): sympy.Rational(k, 3)} for k in range(1, 6)]
     reader = Reader(result.derivation, known, lambda: iter(positive))

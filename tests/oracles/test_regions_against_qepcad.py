@@ -12,9 +12,16 @@ import pytest
 import z3  # type: ignore[import-untyped, unused-ignore]
 
 import symobs
-from tests.programs.benchmarks import other_systems, qepcad, regions
-from tests.support.independent_algebra.region_algebra import FALSE, TRUE, All, Atom, Some, difference
-from tests.support.regions import region_answers, region_checks, region_proofs
+from tests.programs.benchmarks import other_systems
+from tests.support.regions import qepcad, region_answers, region_checks
+from tests.support.regions.region_algebra import (
+    FALSE,
+    TRUE,
+    All,
+    Atom,
+    Some,
+    difference,
+)
 from tests.support.regions.region_answers import Answer, Cell
 from tests.support.regions.region_problems import PROBLEMS, by_name
 from tests.support.regions.region_proofs import nothing_in, same_intervals, same_relations
@@ -244,21 +251,6 @@ def test_cells_bounded_by_square_roots_are_proved() -> None:
         ((replace(inside, bounds=(bounds[0], ("h2", "0", f"1 + {bounds[1][2]}"))),), "different"),
     ]:
         assert region_checks._all_cells(Answer((), cells=cells), truth, 20).verdict == verdict
-
-
-def test_the_table_of_times_says_what_was_proved() -> None:
-    same, other = region_proofs.Proof("same", "z3"), region_proofs.Proof("different", "z3", {"h1": "1"})
-    rows = [
-        regions.Measured(by_name("disc"), 0.002, 0.2, 0.004, 0.05, {"stable_if": same, "cells": same}),
-        regions.Measured(by_name("cusp"), 0.002, 0.2, 0.016, 0.05, {"stable_if": same, "cells": other}),
-        regions.Measured(by_name("annulus"), 0.002, None, None, None),
-    ]
-    lines = regions.table(rows).splitlines()
-    assert [line.split()[0] for line in lines] == ["problem", "disc", "cusp", "annulus", "median"]
-    assert "same: stable_if, cells (z3)" in lines[1]
-    assert "cells different (z3) at {'h1': '1'}" in lines[2]
-    assert lines[4].split() == ["median", "5", "25", "0.25"]
-    assert regions.median(row.ratio for row in rows) == 5
 
 
 # -- symobs -------------------------------------------------------------------------------------------------------------

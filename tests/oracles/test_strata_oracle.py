@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from fractions import Fraction
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import pytest
 
@@ -15,8 +15,9 @@ from symobs.problem.file_tables import parse
 from tests.programs.strata_oracle.__main__ import Found, drawn, examine
 from tests.programs.strata_oracle.answers import Branch, Contradiction, branches, hold, relations
 from tests.programs.strata_oracle.points import points_on
-from tests.programs.strata_oracle.times import drawn as of_times
-from tests.programs.strata_oracle.times import strata
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
 
 pytestmark = pytest.mark.slow
 
@@ -199,10 +200,28 @@ def test_a_sample_of_plants_is_right_at_points_of_its_strata() -> None:
     assert {drawn(seed)["task"] for seed in SAMPLE} >= {"gramian", "pbh", "disturbance_observer"}
 
 
-@pytest.mark.parametrize(("seed", "least"), [(0, 15), (83, 5), (140, 7)])
-def test_plants_of_several_inputs_and_outputs_are_decided_on_all_strata_and_have_pages(seed: int, least: int) -> None:
+def strata(answer: dict[str, Any]) -> Iterator[bool]:
+    """Yield for each case, and each case of a case, whether it is decided."""
+    for case in answer.get("cases", []):
+        yield case["verdict"] != "undecided"
+        yield from strata(case)
+
+
+@pytest.mark.parametrize(
+    ("task", "plant", "least"),
+    [
+        ("compensator", ("[a-1 0 1; a-1 a-1 b+1; 0 0 b+1]", "[b 1; -1 0; b+1 0]", "[0 b a*b; a+b a+b a-1]"), 15),
+        ("reduced_order_observer", ("[-1 1 b+1; a+b a*b 0; 0 b+1 b+1]", "[0 0; 1 1; 1 a+b]", "[a*b b 1]"), 5),
+        ("compensator", ("[0 -1 b; -1 0 1; 0 1 0]", "[a+b 1; b+1 -1; a 0]", "[1 a*b b]"), 7),
+    ],
+)
+def test_plants_of_several_inputs_and_outputs_are_decided_on_all_strata_and_have_pages(
+    task: str, plant: tuple[str, str, str], least: int
+) -> None:
     """Curves of degree five and nine meet on them, gains have poles on some of the curves, and points lie on long ones."""
-    (result,) = validate(parse(of_times(seed)[1], "problem")).solve()
+    both = {"control_poles": "-1, -2, -3", "observer_poles": "-4, -5, -6"}
+    asked = both if task == "compensator" else {"poles": "-4, -5"}
+    result = getattr(symobs, task)(symobs.StateSpace(*plant), **asked)
     decided = list(strata(told(result)))
     assert len(decided) >= least
     assert all(decided)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from functools import cache
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
@@ -17,9 +16,10 @@ from symobs.ground.errors import UsageError
 from symobs.pages.page.blocks import CaseBlock, Caution, Display, Paragraph, References, Verified, every
 from symobs.pages.page.detail_level import DETAILS, at_detail
 from symobs.pages.page.narrator import narrate
-from symobs.problem import read
 from symobs.proof.derivation import CaseStep, Conclude, Define, Equal, Given, Note, Sentence
-from tests.support.tools.command_line import EXAMPLES, SERVO, inside
+from tests.support.examples import EXAMPLES, document_of
+from tests.support.sampling import every as some_of
+from tests.support.tools.command_line import SERVO, inside
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
@@ -28,19 +28,13 @@ if TYPE_CHECKING:
     from symobs.formula.tree import Formula
     from symobs.pages.page.blocks import Block
     from symobs.proof.derivation import Step
-    from symobs.tasks.result import Document
 
+every_third = some_of(3, EXAMPLES)
 SHORTER = [detail for detail in DETAILS if detail != "full"]
 
 
-@cache
-def document(path: Path) -> Document:
-    problem = read(path.read_text(encoding="utf-8"), path.name)
-    return problem.document(problem.solve())
-
-
 def blocks(path: Path, detail: str) -> tuple[Block, ...]:
-    return tuple(every(narrate(replace(document(path), detail=detail))))
+    return tuple(every(narrate(replace(document_of(path.stem), detail=detail))))
 
 
 def inequalities(page: Iterable[Block]) -> Iterator[Relation]:
@@ -76,10 +70,10 @@ def is_sources(block: Block) -> bool:
     return isinstance(block, References)
 
 
-@pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.stem)
+@pytest.mark.parametrize("path", every_third, ids=lambda path: path.stem)
 def test_sentences_of_a_shorter_page_can_be_read(path: Path) -> None:
     for detail in SHORTER:
-        page = list(narrate(replace(document(path), detail=detail)))
+        page = list(narrate(replace(document_of(path.stem), detail=detail)))
         for before, block in zip([None, *page], page, strict=False):
             if isinstance(block, Paragraph) and isinstance(first := block.inlines[0], str) and first[:1].islower():
                 assert isinstance(before, Display), f"{detail}: {first!r} goes on with nothing"
@@ -88,10 +82,10 @@ def test_sentences_of_a_shorter_page_can_be_read(path: Path) -> None:
                 assert not isinstance(after, Paragraph | Verified | CaseBlock), f"{detail}: {block.inlines[-1]!r}"
 
 
-@pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.stem)
+@pytest.mark.parametrize("path", every_third, ids=lambda path: path.stem)
 def test_short_names_in_answers_are_spelled_out(path: Path) -> None:
     for detail in SHORTER:
-        for derivation in document(path).derivations:
+        for derivation in document_of(path.stem).derivations:
             steps = list(walk(at_detail(derivation.steps, detail)))
             short = {name for step in walk(derivation.steps) for name in named_by(step)}
             answered = {name for step in steps if getattr(step, "answer", False) for name in names_in(step)}

@@ -19,7 +19,9 @@ from symobs.pages.page.narrator import narrate, printer_for
 from symobs.pages.printers.latex_printer import LatexPrinter
 from symobs.pages.printers.mathml import MathmlPrinter
 from symobs.tasks.result import render
-from tests.pages.test_worked_examples import FILES, solved
+from tests.pages.test_worked_examples import solved
+from tests.support.examples import EXAMPLES as FILES
+from tests.support.examples import document_of
 from tests.support.tools.browser import Browser
 from tests.unit.pages.test_html import faults, local, parsed
 from tests.unit.pages.test_markdown import formulas
@@ -37,8 +39,7 @@ pytestmark = pytest.mark.slow
 
 def documents() -> Iterator[tuple[str, Document]]:
     for path in FILES:
-        found, results = solved(path)
-        yield path.stem, found.document(results)
+        yield path.stem, document_of(path.stem)
 
 
 # -- the same mathematics ---------------------------------------------------------------------------------------------

@@ -15,10 +15,9 @@ from symobs.ground.errors import DerivationRejected, InputError
 from symobs.pages.page.blocks import Columns, Display, every
 from symobs.pages.page.narrator import narrate
 from symobs.pages.printers.text_printer import text_width
-from symobs.problem import read
 from symobs.proof.derivation import Equal, Section
 from symobs.tasks.result import render
-from tests.support.tools.command_line import EXAMPLES
+from tests.support.examples import document_of
 
 if TYPE_CHECKING:
     from symobs.proof.derivation import Step
@@ -30,9 +29,7 @@ POLES: dict[str, Any] = {"control_poles": [-2, -2], "observer_poles": [-10, -10]
 
 
 def document() -> Document:
-    path = next(path for path in EXAMPLES if path.stem == "double_integrator_pole_placement")
-    problem = read(path.read_text(encoding="utf-8"), path.name)
-    return problem.document(problem.solve())
+    return document_of("double_integrator_pole_placement")
 
 
 def columns() -> Columns:

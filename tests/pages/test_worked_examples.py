@@ -6,7 +6,6 @@ import json
 import re
 import subprocess
 import sys
-from functools import cache
 from itertools import product
 from typing import TYPE_CHECKING, Any
 
@@ -14,16 +13,17 @@ import pytest
 import sympy
 from click.testing import CliRunner
 
-from symobs import problem
 from symobs.cli import cli
 from symobs.exact import Matrix
 from symobs.formula.expression import parse_matrix, parse_scalar
 from symobs.formula.tree import Block, Literal
 from symobs.problem.expect import mismatches
 from symobs.tasks.result import formats, render
-from tests.support.independent_algebra.second_reader import sympy_scalar
+from tests.support.examples import EXAMPLES as FILES
+from tests.support.examples import problem_of, results_of
 from tests.support.paths import ROOT
 from tests.support.sampling import every
+from tests.support.second_reader import sympy_scalar
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping
@@ -35,7 +35,6 @@ if TYPE_CHECKING:
 
 pytestmark = pytest.mark.slow
 
-FILES = sorted((ROOT / "worked_examples").glob("*.toml"))
 #: The rows of the catalogue of sources; a line may name two that share a heading.
 ROWS = [
     row.split(" / ")
@@ -47,10 +46,8 @@ MOST_ROWS = 6
 every_file = pytest.mark.parametrize("path", FILES, ids=lambda path: path.stem)
 
 
-@cache
 def solved(path: Path) -> tuple[Problem, tuple[Result, ...]]:
-    found = problem.read(path.read_text(encoding="utf-8"), path.name)
-    return found, found.solve()
+    return problem_of(path.stem), results_of(path.stem)
 
 
 def test_all_rows_are_covered() -> None:
@@ -227,7 +224,7 @@ def every_spoiled(found: Problem) -> Iterator[tuple[str, dict[str, Any]]]:
                 yield (f"{key}.{name}", whole | {key: changed}) if key in tasks else (name, whole | changed)
 
 
-@every_file
+@pytest.mark.parametrize("path", every(3, FILES), ids=lambda path: path.stem)
 def test_every_spoiled_value_is_noticed(path: Path, record_property: Callable[[str, object], None]) -> None:
     found, solutions = solved(path)
     results = found.viewed(solutions)

@@ -10,20 +10,17 @@ from __future__ import annotations
 
 import argparse
 import itertools
-import random
 import sys
 from collections import defaultdict
-from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from random import Random
+from typing import TYPE_CHECKING
 
-from symobs import StateSpace
 from symobs.ground.errors import DerivationRejected, SymobsError
 from symobs.problem import read
-from symobs.tasks.result import tasks
-from tests.support.claims.asking import is_for, specification
-from tests.support.independent_algebra.truth import is_true
+from tests.support.derivations import is_true
 from tests.support.paths import ROOT
+from tests.support.problems.random_problems import Tables, problem, to_toml
 from tests.support.tampering.lies import Count, try_answers, try_lines, try_witnesses
 from tests.support.tampering.mutations import parts_of
 
@@ -39,7 +36,6 @@ ASKED = (
     "compensator",
     "observability",
     "controllability",
-    "compensator/minimal_order",
     "reduced_order_observer",
     "tracking",
     "detectability",
@@ -52,72 +48,15 @@ ASKED = (
     "pbh",
     "feedforward",
 )
-KINDS = ("whole", "fractions", "parametric", "defective", "hidden", "discrete", "feedthrough", "several")
+KINDS = ("numeric", "parametric", "defective", "hidden", "discrete", "feedthrough", "several")
 ALL = 10**9
 
 
-@dataclass(frozen=True)
-class Drawn:
-    """A design drawn at random: what is asked, of which plant."""
-
-    number: int
-    asked: str
-    kind: str
-    plant: StateSpace
-    specification: dict[str, Any]
-
-    def solve(self) -> Result:
-        """Return the result, which may be a negative one."""
-        return tasks()[self.asked.partition("/")[0]].function(self.plant, **self.specification)
-
-
-def drawn(number: int) -> Drawn:
-    """Return the design of a number: all kinds of plants and all questions in turn."""
-    generator = random.Random(f"design {number}")  # noqa: S311 - test plants, no secrets
-    kind = KINDS[number % len(KINDS)]
-    order = generator.choice((1, 2, 2, 2, 3)) if kind != "parametric" else 2
-    A, B, C, D = _matrices(generator, kind, order)
-    plant = StateSpace(A, B, C, D, dt=kind == "discrete")
-    poles = _poles(generator, order, small=kind == "discrete")
-    for asked in (ASKED[(number // len(KINDS) + shift) % len(ASKED)] for shift in range(len(ASKED))):
-        if is_for(asked, plant, poles):
-            method = {"method": asked.partition("/")[2]} if "/" in asked else {}
-            return Drawn(number, asked, kind, plant, specification(asked, poles) | method)
-    raise AssertionError(number)
-
-
-def _matrices(generator: random.Random, kind: str, order: int) -> list[list[list[str]]]:
-    inputs, outputs = (generator.choice((1, 2)) for _ in "BC") if kind == "several" else (1, 1)
-
-    def entry() -> str:
-        whole = generator.choice((-3, -2, -1, 0, 0, 1, 1, 2))
-        return f"{whole}/{generator.randint(1, 4)}" if kind == "fractions" else str(whole)
-
-    def table(rows: int, columns: int) -> list[list[str]]:
-        return [[entry() for _ in range(columns)] for _ in range(rows)]
-
-    A, B, C, D = table(order, order), table(order, inputs), table(outputs, order), [["0"] * inputs] * outputs
-    if kind == "parametric":
-        for part in (A, generator.choice((A, B, C))):
-            row = generator.choice(part)
-            row[generator.randrange(len(row))] = generator.choice(("k", "-k", "k/m", "k + 1", "m"))
-    if kind == "defective":
-        value = generator.choice(("-2", "-1", "1"))
-        A = [[value if i == j else "1" if j == i + 1 else "0" for j in range(order)] for i in range(order)]
-    if kind == "hidden":
-        C = [["0" if j == 0 else part for j, part in enumerate(row)] for row in C]
-        A = [[part if i == 0 or j else "0" for j, part in enumerate(row)] for i, row in enumerate(A)]
-    if kind == "feedthrough":
-        D = [["1"]]
-    return [A, B, C, D]
-
-
-def _poles(generator: random.Random, order: int, *, small: bool) -> list[str]:
-    if order > 1 and generator.random() < 0.25:
-        pair = ["1/4+i/4", "1/4-i/4"] if small else ["-1+2i", "-1-2i"]
-        return [*pair, *(["0"] if small else ["-3"])][:order] if order > 2 else pair
-    reals = ("0", "1/2", "-1/2", "1/3") if small else ("-1", "-2", "-3", "-5/2", "-4")
-    return [generator.choice(reals) for _ in range(order)]
+def drawn(number: int) -> Tables:
+    """Return the problem of a number: all kinds of plants and all questions in turn."""
+    random, kind = Random(f"design {number}"), KINDS[number % len(KINDS)]  # noqa: S311 - test plants, no secrets
+    task = ASKED[number // len(KINDS) % len(ASKED)]
+    return problem(random, [task], [kind if (task, kind) != ("feedforward", "several") else "numeric"])
 
 
 def try_result(result: Result, label: str, answers: Count, lines: Count, most_lines: int) -> None:
@@ -137,15 +76,15 @@ def try_result(result: Result, label: str, answers: Count, lines: Count, most_li
     lines.lies[before:] = [f"{label}: {lie}" for lie in lines.lies[before:]]
 
 
-def tried(numbers: Sequence[int], most_lines: int) -> Iterator[tuple[Drawn, Count, Count]]:
+def tried(numbers: Sequence[int], most_lines: int) -> Iterator[tuple[Tables, Count, Count]]:
     """Yield each design with what became of the lies about its answers and its lines; refused questions are left out."""
     for number in numbers:
         design, answers, lines = drawn(number), Count(), Count()
         try:
-            result = design.solve()
+            (result,) = read(to_toml(design)).solve()
         except SymobsError:
             continue
-        label = f"design {design.number} ({design.asked}, {design.kind})"
+        label = f"design {number} ({design['task']})"
         try_result(result, label, answers, lines, most_lines)
         yield design, answers, lines
 
@@ -178,7 +117,7 @@ def main(arguments: Sequence[str]) -> int:
         numbers = itertools.count(chosen.first)
         while table.designs < chosen.designs:
             for design, answers, lines in tried([next(numbers)], chosen.lines):
-                table.add(design.asked, answers, lines)
+                table.add(design["task"], answers, lines)
     print(table)
     return int(bool(table.survived))
 

@@ -1,9 +1,8 @@
 """Hold the static site against the engine: `python -m tests.programs.live_site SITE [NAME …]`.
 
-SITE is a folder that `python -m symobs.live.site` wrote.  It is served with its policy as a header, and opened in the Chromium
-of the machine as a reader would: time to the first answer, times of a drag, an answer without a network, the page opened
-without one.  Then every worked example is asked for its view, its answer with curves, its JSON, its LaTeX and its page, each
-of which has to be what this process says; where names are given, these alone.  Needs playwright.
+SITE is a folder that `python -m symobs.live.site` wrote.  It is served with its policy as a header, and opened in the
+Chromium of the machine.  Every worked example is asked for its view, its answer with curves, its JSON, its LaTeX and its
+page, each of which has to be what this process says; where names are given, these alone.  Needs playwright.
 """
 
 from __future__ import annotations
@@ -14,7 +13,6 @@ import re
 import shutil
 import sys
 import threading
-import time
 import tomllib
 from contextlib import contextmanager
 from http.server import SimpleHTTPRequestHandler, ThreadingHTTPServer
@@ -23,13 +21,11 @@ from typing import TYPE_CHECKING, Any
 
 from symobs.applications.live.child import respond
 from symobs.applications.live.site import POLICY
-from tests.programs.live_goals import HEAD, dragged, row
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
 EXAMPLES = Path(__file__).parents[2] / "worked_examples"
-SERVO = "v=1&task=compensator&A=[0 1; 0 -1]&B=[0; 1]&C=[1 0]&control=-2, -2&observer=-5+3i, -5-3i&snap=1/20"
 QUESTIONS: tuple[dict[str, Any], ...] = (
     {"want": "view"},
     {"want": "answer", "courses": {"count": 33}, "cases": True},
@@ -95,52 +91,6 @@ def _of_words(answer: dict[str, Any]) -> dict[str, Any]:
     return {key: OF_WORDS.sub("", entry) if isinstance(entry, str) else entry for key, entry in answer.items()}
 
 
-def looked_at(context: Any, address: str) -> None:
-    """Open the page as a reader does, and print how long it takes."""
-    page = context.new_page()
-    page.set_default_timeout(300_000)
-    complaints, others = [], []
-    page.on("console", lambda said: complaints.append(said.text) if said.type == "error" else None)
-    page.on("pageerror", lambda error: complaints.append(str(error)))
-    page.on("request", lambda asked: None if asked.url.startswith((address, "data:")) else others.append(asked.url))
-    begin = time.perf_counter()
-    page.goto(f"{address}#{SERVO}&closed=page")
-    page.wait_for_selector(".card math")
-    row("site: first answer, ms", [1000 * (time.perf_counter() - begin)], 10_000)
-    hit = '[data-handle="observer_poles.0"] .hit'
-    row("site: pointer to painted, n = 2, ms", dragged(page, ".plane svg", hit, ".cards .list"), 150)
-    page.evaluate("() => navigator.serviceWorker.ready.then(() => true)")
-    context.set_offline(True)
-    page.fill('[data-set="observer_poles"]', "-7, -8")
-    page.keyboard.press("Enter")
-    gain = wait_for(page, '.card[data-name="L"] .display', "14")
-    print(f"without a network: L is {gain}")
-    page.goto("about:blank")
-    begin = time.perf_counter()
-    page.goto(f"{address}#{SERVO}")
-    page.wait_for_selector(".html math")
-    print(f"opened without a network: derivation after {time.perf_counter() - begin:.1f} s")
-    assert complaints == [], complaints
-    assert others == [], others
-    page.evaluate("""() => { setTimeout("window.evaluated = true", 0); }""")
-    page.wait_for_timeout(200)
-    assert page.evaluate("window.evaluated") is None
-    assert "unsafe-eval" in complaints[0], complaints
-    context.set_offline(False)
-    page.close()
-
-
-def wait_for(page: Any, place: str, text: str) -> str:
-    """Wait until the LaTeX of a card contains a text, and return it; the policy forbids waiting by evaluation."""
-    found = ""
-    for _ in range(600):
-        found = str(page.get_attribute(place, "data-latex"))
-        if text in found:
-            return found
-        page.wait_for_timeout(50)
-    raise AssertionError(f"{text} did not come: {found}")
-
-
 @contextmanager
 def served(folder: Path) -> Iterator[str]:
     """Serve a folder with the policy of the site; its address."""
@@ -158,9 +108,6 @@ def main(folder: Path, names: list[str]) -> int:
     with sync_playwright() as driver, served(folder) as address:
         flags = ["--headless", "--no-sandbox", "--disable-gpu", "--disable-background-networking"]
         browser = driver.chromium.launch(executable_path=shutil.which("chromium"), args=flags)
-        if not names:
-            print(HEAD)
-            looked_at(browser.new_context(viewport={"width": 1180, "height": 900}), address)
         page = browser.new_page()
         page.goto(f"{address}THIRD-PARTY.txt")
         found = differences(page, names or sorted(path.stem for path in EXAMPLES.glob("*.toml")))

@@ -47,7 +47,8 @@ from sympy.matrices import MatrixBase
 '''
 NAMES = """
 _Number: TypeAlias = str | float | complex | Fraction | Decimal | Expr
-_Plant: TypeAlias = StateSpace | tuple[Sequence[_Number], Sequence[_Number]]
+_IsPlant: TypeAlias = _CanonicalFormResult | _DecompositionResult | _DualResult | _ZeroOrderHoldResult
+_Plant: TypeAlias = StateSpace | _IsPlant | tuple[Sequence[_Number], Sequence[_Number]]
 _Matrix: TypeAlias = str | Sequence[object] | MatrixBase
 
 TASK_PACKAGES: tuple[str, ...]

@@ -86,6 +86,8 @@ def recheck(payload: Mapping[str, Any], row: Mapping[str, Any]) -> str | None:
     for task, answer in zip(problem.tasks, row["result"], strict=True):
         if task.name != answer.get("task"):
             return f"the answer is one of {answer.get('task')!r}, {task.name} was asked for"
+        if problem.follows(task.name):  # its plant is an answer, and in no data
+            continue
         found = fault(task.name, given_for(problem, task), answer, seed=row["key"])
         if found:
             return f"{task.name}: {found}"

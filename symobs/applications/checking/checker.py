@@ -13,16 +13,15 @@ from symobs.applications.audit.auditor import printed_entries
 from symobs.applications.checking.answers import Answer, as_value, plain, read_answer, written_text
 from symobs.applications.checking.derivations import is_of_conditions, judge_lines, judge_milestone
 from symobs.applications.checking.faults import Explained, explain_gain, explain_value, other_values
-from symobs.applications.checking.judgement import asked_of, exists, field_called, is_of_time, judge_task
+from symobs.applications.checking.judgement import asked_of, exists, field_called, is_of_time, judge_task, rounds
 from symobs.applications.checking.regions import read_conditions
 from symobs.applications.checking.report import SHOW, CheckReport, Line, Part
 from symobs.exact import Factored, Matrix, Scalar
 from symobs.formula.convention import Convention, convention_named
-from symobs.formula.expression import parse_matrix
 from symobs.formula.expression.source import shown
 from symobs.ground.errors import InputError, ProblemErrors, SymobsError, UsageError
 from symobs.problem import MAX_BYTES, Problem, is_text, read, text_of
-from symobs.problem.expect import agrees, available, factored_table, found_in, shown_value
+from symobs.problem.expect import available, factored_table, found_in, shown_value
 from symobs.problem.file_tables import Errors
 from symobs.tasks.design.compensator.output_feedback import OutputFeedback
 from symobs.tasks.result import Result
@@ -193,7 +192,7 @@ def _explanation(view: ResultInConvention, judgement: TaskJudgement, judged: Jud
         design = judgement.right.design_of(judged.name)
         turned = view.standard(judged.letter)[1] < 0
         right = design.answer[design.letter]
-        rounded = right is not None and _rounds(judged, right, turned=turned)
+        rounded = right is not None and rounds(judged, right, turned=turned)
         other = other_polynomial(judgement.right, judged.name)
         return explain_gain(design, judged.value, judged.letter, other, turned=turned, rounded=rounded)
     right = _exact((judgement.right if judged.there is None else judged.there).fields.get(judged.name))
@@ -230,15 +229,6 @@ def _exact(right: Any) -> Matrix | Scalar | None:
     if isinstance(right, int) and not isinstance(right, bool):
         return Scalar.of(right)
     return right if isinstance(right, (Matrix, Scalar)) else None
-
-
-def _rounds(judged: Judged, right: Matrix, *, turned: bool) -> bool:
-    """Return whether the decimals of a gain round the right one."""
-    try:
-        read = parse_matrix(judged.given, None, rounding=True)
-    except SymobsError:
-        return False
-    return read.shape == right.shape and read != judged.value and agrees(-read if turned else read, right)
 
 
 def other_polynomial(result: Result, name: str) -> Scalar | None:

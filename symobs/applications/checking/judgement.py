@@ -6,6 +6,7 @@ import re
 from contextlib import suppress
 from dataclasses import field, replace
 from itertools import product
+from math import floor, log10
 from typing import TYPE_CHECKING, Any
 
 from symobs.applications.checking.answers import (
@@ -24,13 +25,14 @@ from symobs.applications.checking.answers import (
 )
 from symobs.applications.checking.regions import region_verdict
 from symobs.exact import Complex, Matrix, Root, Scalar, TooLarge, kernel
+from symobs.exact.algebraic.root_location import complex_roots
 from symobs.exact.linear_algebra.transfer_function import pole_and_zero_polynomial
 from symobs.formula.expression import parse_matrix
 from symobs.formula.expression.source import shown
 from symobs.ground.dataclass import dataclass
 from symobs.ground.errors import CertificateRejected, InputError, NotShown, ProblemErrors, SymobsError, UnknownName
-from symobs.problem.expect import found_in, met, names_of
-from symobs.tasks.analysis.realization.canonical_form import BLOCKS, CanonicalForm
+from symobs.problem.expect import agrees, found_in, met, names_of
+from symobs.tasks.analysis.realization.canonical_form import CanonicalForm
 from symobs.tasks.analysis.realization.kalman_decomposition import Decomposition
 from symobs.tasks.design.compensator.output_feedback import OutputFeedback
 from symobs.tasks.design.reduced_order.reduced_order_observer import ReducedOrderObserver
@@ -498,6 +500,8 @@ def _gain(task: _Task, part: Judged) -> Judged:
         own = task.right.fields.get(name)
         other = task.right if value == own else task.right.with_gains({name: value})
     except CertificateRejected as rejected:
+        if task.marking.decimals == "accept" and _is_rounded(task, part, value):
+            return replace(part, verdict="right", hints=("rounded",))
         if task.is_half:
             return replace(
                 part, verdict="undecided", reason=f"{' and '.join(task.right.gains)} are right together: give both"
@@ -519,6 +523,51 @@ def _gain_in(task: _Task, part: Judged) -> Matrix:
     """Return a gain with its sign in the standard convention."""
     read = parse_matrix(part.given, task.names)
     return -read if task.view.standard(part.letter)[1] < 0 else read
+
+
+def rounds(part: Judged, right: Matrix, *, turned: bool) -> bool:
+    """Return whether the decimals of a gain round the right one; `turned` says that the letter denotes its negative."""
+    try:
+        read = parse_matrix(part.given, None, rounding=True)
+    except SymobsError:
+        return False
+    return read.shape == right.shape and read != part.value and agrees(-read if turned else read, right)
+
+
+def _is_rounded(task: _Task, part: Judged, value: Matrix) -> bool:
+    """Return whether decimals stand for a right gain: its entries, or the poles placed, are right to the digits asked for.
+
+    Without a number of digits the entries are to be those of the right gain, correctly rounded.
+    """
+    design, digits = task.right.design_of(part.name), task.marking.digits
+    right, polynomial = design.answer[design.letter], design.answer["polynomial"]
+    if not has_decimals(part.given) or right is None:
+        return False
+    if digits is None:
+        return rounds(part, right, turned=task.view.standard(part.letter)[1] < 0)
+    if value.names or right.names or polynomial.names - {design.plant.variable}:
+        return False
+    pairs = zip(value.entries, right.entries, strict=True)
+    if all(_is_near(complex(one.fraction()), complex(other.fraction()), digits) for one, other in pairs):
+        return True
+    placed = _roots(type(design).of_given(design.plant, value).answer["polynomial"], design.plant.variable)
+    for pole in _roots(polynomial, design.plant.variable):
+        nearest = min(placed, key=lambda root: abs(root - pole))
+        if not _is_near(nearest, pole, digits):
+            return False
+        placed.remove(nearest)
+    return True
+
+
+def _is_near(value: complex, right: complex, digits: int) -> bool:
+    """Return whether a value is right to so many significant digits; beside 0 to so many places."""
+    power = floor(log10(abs(right))) if right else 0
+    return abs(value - right) <= 10.0 ** (power + 1 - digits) / 2
+
+
+def _roots(polynomial: Scalar, variable: str) -> list[complex]:
+    found = complex_roots([entry.fraction() for entry in polynomial.coefficients(variable)])
+    return [complex(float(real), float(imaginary)) for real, imaginary in found]
 
 
 def _together(task: _Task, right: Any, given: Mapping[str, Judged]) -> Any:
@@ -646,8 +695,8 @@ def _in_coordinates(task: _Task, given: Sequence[Judged]) -> dict[str, Judged]:
     parts: dict[str, Judged] = {}
     for each in given:
         name, entry = each.name, each.given
-        if name == "sizes" and isinstance(entry, list) and len(entry) == len(BLOCKS):
-            entry = dict(zip(BLOCKS, entry, strict=True))
+        if name == "sizes" and isinstance(entry, list) and len(entry) == len(task.right.fields[name]):
+            entry = dict(zip(task.right.fields[name], entry, strict=True))
         part = replace(each, given=entry)
         try:
             parts[name] = replace(part, value=_value(task, part))

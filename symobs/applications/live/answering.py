@@ -15,6 +15,7 @@ from symobs.applications.live.page import export_object, page_object
 from symobs.applications.live.request import FieldError, Request, put_in, read
 from symobs.applications.live.time_responses import NoResponse, readout, responses_of
 from symobs.exact import Scalar
+from symobs.exact.algebraic.polynomial_roots import Factored, factored, roots_of
 from symobs.exact.algebraic.root_location import complex_roots, root_boxes, value_at
 from symobs.formula.figures import LinePicture, PoleMap, RegionPicture
 from symobs.formula.phrases.languages import language_named
@@ -37,6 +38,7 @@ from symobs.problem.schema import kinds_of
 from symobs.system import Symbols, read_scalar
 from symobs.system.conditions import sign_of
 from symobs.system.specification import is_pattern, read_poles
+from symobs.tasks.analysis.modes.modes import stable_modes
 from symobs.tasks.result import Document, result_type, tasks
 from symobs.tasks.result.output_methods import to_json
 
@@ -390,6 +392,7 @@ def _answer(asked: Request) -> dict[str, Any]:
         "cards": [card_object(card, printer) for card in found],
         "readouts": _readouts(there),
         "marks": _marks(there.result),
+        "unstable": _unstable_poles(there.result),
         "courses": responses,
     }
     if asked.cases:
@@ -423,7 +426,7 @@ def _view(asked: Request) -> dict[str, Any]:
     symbols = found.result.plant.symbols
     whole["symbols"] = {name: symbols.sign(name) for name in sorted(symbols.signs)}
     if found.result.task == "stability_region":
-        whole["region"] = region_object(found.result, language_named(found.problem.language))
+        whole["region"] = region_object(_there(asked).result, language_named(found.problem.language))
     return {"status": "done", "verdict": found.result.verdict, "view": whole}
 
 
@@ -537,5 +540,21 @@ def _notes(result: Result, language: Language) -> list[str]:
         if fixed:
             phrase = language.phrases["said_fixed_modes" if len(fixed) > 1 else "said_fixed_mode"]
             notes.append(phrase.format(modes=", ".join(map(str, fixed)), pair=pair))
-    stable = {"compensator_stable": "said_unstable_compensator", "stable": "said_unstable_pole"}
-    return notes + [language.phrases[key] for name, key in stable.items() if result.fields.get(name) == "no"]
+    return notes + [language.phrases["said_unstable_compensator"]] * (result.fields.get("compensator_stable") == "no")
+
+
+def _unstable_poles(result: Result) -> list[str]:
+    """Return the poles of a design's loop or error outside of the region of stability, where they are numbers."""
+    found, variable = (
+        result.fields.get("closed_loop_polynomial") or result.fields.get("polynomial"),
+        result.plant.variable,
+    )
+    factors = found if isinstance(found, Factored) else factored(found, variable) if isinstance(found, Scalar) else None
+    if not result.gains or factors is None or factors.names - {variable}:
+        return []
+    outside = []
+    for factor, _ in factors.factors:
+        roots = roots_of(factor, variable)
+        stable = stable_modes(roots, {}, discrete=result.plant.is_discrete)
+        outside += [str(root) for root, is_stable in zip(roots, stable, strict=True) if is_stable is False]
+    return outside

@@ -112,8 +112,8 @@ def _signals(result: Result, asked: Responses) -> Signals:
             matrix = fields.get("closed_loop_matrix")
             if matrix is not None:
                 unseen, hidden = _unseen(given, order, matrix.shape[0] - order)
-                start = state + (error if unseen is None else _below(unseen, error, hidden))
-                drawn = _state_and_estimate(order, unseen, hidden)
+                start = state + ([] if not hidden else error if unseen is None else _below(unseen, error, hidden))
+                drawn = _state_and_estimate(order, unseen, hidden)[: 2 if hidden else 1]
         case _:
             raise NoResponse
     if matrix is None:
@@ -126,7 +126,7 @@ def _signals(result: Result, asked: Responses) -> Signals:
 def _unseen(result: Any, order: int, size: int) -> tuple[Matrix | None, int]:
     """Return T of an observer of reduced order, None for one of full order, and the size of the error."""
     T = result.fields.get("T")
-    return (T if size < order else None), size
+    return (T if 0 < size < order else None), size
 
 
 def _state_and_estimate(order: int, T: Matrix | None, size: int) -> list[tuple[str, Matrix, bool]]:

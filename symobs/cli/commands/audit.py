@@ -11,7 +11,8 @@ import click
 from symobs.applications.audit import REPORTS, audit, report
 from symobs.cli.shared.common import EXIT_NO, place_of, read_file, run_work, write_message
 from symobs.cli.shared.options import LIMITS, AFile, OneOf, options
-from symobs.cli.shared.outcome import Outcome, check_target
+from symobs.cli.shared.outcome import Outcome
+from symobs.cli.shared.output import check_target
 from symobs.ground.errors import ProblemErrors, SymobsError, UsageError
 from symobs.problem import read
 

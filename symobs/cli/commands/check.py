@@ -12,7 +12,8 @@ from symobs.applications.checking import SHOW, Checked
 from symobs.applications.checking.checker import answer_file
 from symobs.cli.shared.common import place_of, read_file, run_work, write_message
 from symobs.cli.shared.options import LIMITS, WORKERS, options, quoted
-from symobs.cli.shared.outcome import Outcome, check_target, convention_of, make_folder, write_all
+from symobs.cli.shared.outcome import Outcome, convention_of
+from symobs.cli.shared.output import check_target, make_folder, write_all
 from symobs.ground.errors import UsageError
 from symobs.problem import read
 

@@ -8,7 +8,7 @@ from pathlib import Path
 import click
 
 from symobs.cli.shared.options import AFile, OneOf, quoted
-from symobs.cli.shared.outcome import copied, write
+from symobs.cli.shared.output import copied, write
 from symobs.ground.errors import UsageError
 
 _PACKAGE = Path(__file__).parents[2]

@@ -11,7 +11,8 @@ import click
 from symobs.applications.export import FOLDERS, PLATFORMS, exercises, export
 from symobs.cli.shared.common import run_work
 from symobs.cli.shared.options import LIMITS, options, quoted
-from symobs.cli.shared.outcome import Outcome, check_target
+from symobs.cli.shared.outcome import Outcome
+from symobs.cli.shared.output import check_target
 from symobs.ground.errors import UsageError
 
 if TYPE_CHECKING:

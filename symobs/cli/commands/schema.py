@@ -8,7 +8,7 @@ import click
 
 from symobs.applications.checking.report import schema as of_check
 from symobs.applications.variants.search import schema as of_variants
-from symobs.cli.shared.outcome import write
+from symobs.cli.shared.output import write
 from symobs.ground.errors import UsageError
 from symobs.problem import schema as of_problem
 from symobs.problem.sheet_file import schema as of_sheet

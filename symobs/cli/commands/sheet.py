@@ -24,7 +24,8 @@ from symobs.cli.shared.common import (
     write_message,
 )
 from symobs.cli.shared.options import LIMITS, AFile, options
-from symobs.cli.shared.outcome import check_target, convention_of, page_of, write
+from symobs.cli.shared.outcome import convention_of, page_of
+from symobs.cli.shared.output import check_target, write
 from symobs.cli.shared.sheet_entries import Wanted, worked_out_all
 from symobs.formula.expression.source import shown
 from symobs.ground.errors import InputError, ProblemErrors, SymobsError, UsageError

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import click
 
 from symobs.cli.shared.options import AFile
-from symobs.cli.shared.outcome import copied, write
+from symobs.cli.shared.output import copied, write
 from symobs.pages.formats.templates import template_folder
 
 if TYPE_CHECKING:

@@ -13,7 +13,7 @@ from symobs.applications.variants.files import assignment
 from symobs.applications.variants.search import PROFILES
 from symobs.cli.shared.common import place_of, read_file, write_message
 from symobs.cli.shared.options import quoted
-from symobs.cli.shared.outcome import check_target, write, write_all
+from symobs.cli.shared.output import check_target, write, write_all
 from symobs.ground.errors import UsageError
 
 _REASONS_SHOWN = 12

@@ -5,7 +5,7 @@ from __future__ import annotations
 import click
 
 from symobs.cli.shared.options import OneOf
-from symobs.cli.shared.outcome import write
+from symobs.cli.shared.output import write
 from symobs.formula.convention import conventions
 from symobs.formula.convention.convention import file_of, listed
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import click
 
-from symobs.cli.shared.outcome import write
+from symobs.cli.shared.output import write
 from symobs.formula.phrases.literature import written_out
 from symobs.tasks.result import methods as known
 from symobs.tasks.result import tasks

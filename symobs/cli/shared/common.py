@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import click
 
 from symobs.cli.shared.options import quoted
-from symobs.cli.shared.outcome import binary, make_folder, write_all
+from symobs.cli.shared.output import binary, make_folder, write_all
 from symobs.ground.errors import InputError, UsageError, reason_of
 
 if TYPE_CHECKING:

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 _HERE = Path(__file__).parents[2]
 #: A task as it stands in its module: the decorator, the name, and the first line of the docstring.
 _TASK = re.compile(
-    r'^@task(?:_in_time)?\n(?:@poles_of\(.*\)\n)?def (\w+)\(.*?\) -> \w+:\n    """(.*?)(?:"""|\n)',
+    r'^@task(?:_in_time)?\n(?:@poles_of\([^\n]*\)\n)?def (\w+)\(.*?\) -> \w+:\n    """(.*?)(?:"""|\n)',
     re.MULTILINE | re.DOTALL,
 )
 _FORMAT = re.compile(r'name: ClassVar\[str\] = "(\w+)"\n    suffix: ClassVar\[str\] = "(\.\w+)"')

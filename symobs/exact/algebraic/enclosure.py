@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from fractions import Fraction
+from functools import lru_cache
 from typing import TYPE_CHECKING
 
 from flint import arb, ctx
 
 from symobs.exact.algebraic.real_algebraic import RealRoot
+from symobs.exact.algebraic.root_sum import RootSum
 from symobs.exact.core.generators import PI, function_named, symbols_in
 from symobs.exact.core.ring import Precision
 
@@ -18,12 +20,14 @@ if TYPE_CHECKING:
 
 #: Bits that are tried in turn until an enclosure keeps clear of 0.
 _BITS = (64, 256, 1024, 4096)
+_KINDS = {"sqrt", "exp", "cos", "sin", "cosh", "sinh", "CRootOf"}
 
 
 def is_number(value: Scalar) -> bool:
     """Return whether a value has no parameter: only rational numbers, π, roots, and functions of them."""
-    kinds = {f.kind for name in value.names if (f := function_named(name)) is not None}
-    return symbols_in(value) <= {PI} and kinds <= {"sqrt", "exp", "cos", "sin", "cosh", "sinh", "CRootOf"}
+    found = [f for name in value.names if (f := function_named(name)) is not None]
+    is_written = all(f.kind in _KINDS or (isinstance(f, RootSum) and f.is_rational) for f in found)
+    return is_written and symbols_in(value) <= {PI}
 
 
 def sign_of_number(value: Scalar) -> str:
@@ -88,5 +92,12 @@ def _generator(name: str) -> arb:
         return arb.pi()
     if isinstance(found, RealRoot):
         return found.number.ball(ctx.prec)
+    if isinstance(found, RootSum):
+        return _sum_over_roots(found, ctx.prec)
     enclosed: arb = getattr(_ball(found.argument), found.kind)()  # the kernel calls them so, too
     return enclosed
+
+
+@lru_cache(maxsize=1024)
+def _sum_over_roots(found: RootSum, bits: int) -> arb:  # noqa: ARG001 - the precision, by which it is kept
+    return found.enclosed(_ball(found.argument))

@@ -21,7 +21,7 @@ from symobs.exact.core.scalar import Scalar
 from symobs.ground.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
+    from collections.abc import Iterable, Mapping, Sequence
 
 #: Integers of more bits are not split into primes under a root.
 _PRIME_BITS = 128
@@ -203,6 +203,26 @@ def all_roots(*values: Scalar | Matrix) -> frozenset[Function]:
     return frozenset(f for f in found if f.kind == "sqrt") | inner
 
 
+def are_dependent(radicands: Sequence[Scalar]) -> bool:
+    """Return whether a product of some of the radicands is a square, or may be one: where numbers are too long to factor."""
+    places: dict[Scalar, int] = {}
+    pivots: list[int] = []
+    for radicand in radicands:
+        unit, factors = radicand.factors()
+        whole = unit.fraction().numerator * unit.fraction().denominator
+        if whole.bit_length() > _PRIME_BITS and len(radicands) > 1:
+            return True
+        numbers = [(Scalar.of(-1), 1)] if whole < 0 else []
+        numbers += [(Scalar.of(int(prime)), int(power)) for prime, power in fmpz(abs(whole)).factor()]
+        odd = sum(1 << places.setdefault(factor, len(places)) for factor, power in (*numbers, *factors) if power % 2)
+        for pivot in pivots:
+            odd = min(odd, odd ^ pivot)
+        if not odd:
+            return True
+        pivots.append(odd)
+    return False
+
+
 def normal_form(value: Scalar) -> Scalar:
     """Return the normal form of a value with square roots: degree at most 1 in each, none in the denominator."""
     for root in roots_in(value):
@@ -349,11 +369,9 @@ def identities(
     roots = all_roots(*values)
     moving = sorted((f for f in found if f.kind in _RATES), key=lambda f: f.name)
     found_in: dict[tuple[bool, Scalar], set[Fraction]] = {}
-    # over one denominator: exp(t), exp(t/(a + 1)) and exp(t*a/(a + 1)) depend on each other
-    below = Matrix.of([[f.argument for f in moving] or [ONE]]).common_denominator()
-    below = below / gcd(*(coefficient for coefficient, _ in below.terms()))
+    below = _common_denominators(moving)
     for f in moving:
-        for monomial, coefficient in _coordinates(f.argument, below).items():
+        for monomial, coefficient in _coordinates(f.argument, below[f]).items():
             found_in.setdefault((f.kind in {"cos", "sin"}, monomial), set()).add(abs(coefficient))
     several = any(len(coefficients) > 1 for coefficients in found_in.values())
     degree = highest_power(values, {f.name for f in moving}) if several else 1
@@ -371,10 +389,33 @@ def identities(
             relations.append(function("cos", monomial * step) ** 2 + function("sin", monomial * step) ** 2 - 1)
     meanings: dict[str, Scalar] = {}
     for f in moving:
-        meaning = _in_base(f, steps, below)
+        meaning = _in_base(f, steps, below[f])
         if meaning != f.value:
             meanings[f.name] = meaning
     return meanings, tuple(r.numerator for r in relations)
+
+
+def _common_denominators(moving: Iterable[Function]) -> dict[Function, Scalar]:
+    """Return for each function the denominator of all arguments that may depend on its own.
+
+    exp(t), exp(t/(a + 1)) and exp(t*a/(a + 1)) do, exp(x) and exp(t*exp(x)/(exp(x) + 1)) do not: their numerators share no
+    letter, and they have different denominators.
+    """
+    groups: list[tuple[set[str], list[Function]]] = []
+    for f in moving:
+        above, below = f.argument.numerator, f.argument.denominator
+        letters, members = {name for name in above.names if function_named(name) is None} or {"1"}, [f]
+        letters |= set() if below.is_constant else {str(below)}
+        for group in [group for group in groups if group[0] & letters]:
+            groups.remove(group)
+            letters |= group[0]
+            members += group[1]
+        groups.append((letters, members))
+    found: dict[Function, Scalar] = {}
+    for _, members in groups:
+        shared = Matrix.of([[f.argument for f in members]]).common_denominator()
+        found |= dict.fromkeys(members, shared / gcd(*(coefficient for coefficient, _ in shared.terms())))
+    return found
 
 
 def _in_base(f: Function, steps: Steps, below: Scalar) -> Scalar:

@@ -9,24 +9,20 @@ from functools import cmp_to_key
 from operator import itemgetter
 from typing import TYPE_CHECKING, Any
 
-from flint import arb, fmpq, fmpz_poly
-
 from symobs.exact.algebraic.polynomial_roots import Complex
 from symobs.exact.algebraic.real_algebraic import RealNumber, RealRoot, root_of_fraction, roots_of_scalar
+from symobs.exact.algebraic.root_sum import RootSum
 from symobs.exact.algebraic.rounded_decimals import root_in_field
 from symobs.exact.core import generators as functions
 from symobs.exact.core.field import EIGENVALUE
 from symobs.exact.core.matrix import Matrix
-from symobs.exact.core.ring import Precision
 from symobs.exact.core.scalar import Scalar
 from symobs.exact.sympy_bridge.sympy_import import sympy
-from symobs.exact.time_functions.matrix_exponential import RootSum
+from symobs.exact.time_functions.matrix_power import PowerOf
 from symobs.ground.errors import InexactInput, InputError
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping, Sequence
-
-    from flint import acb
+    from collections.abc import Iterator, Mapping
 
     from symobs.exact.algebraic.polynomial_roots import Factored, Root
 
@@ -157,9 +153,20 @@ def _generator(name: str, objects: dict[str, Any]) -> sympy.Expr:
             scalar_to_sympy(functions.substitute(v, named), objects) for v in (found.polynomial, found.summand)
         )
         return sympy.RootSum(sympy.Poly(q, root), sympy.Lambda(root, summand))
+    if isinstance(found, PowerOf):
+        return _power_of(found, objects)
     if isinstance(found, RealRoot):
         return sympy.CRootOf(scalar_to_sympy(found.argument), found.number.index)
     return getattr(sympy, found.kind)(scalar_to_sympy(found.argument, objects))
+
+
+def _power_of(found: PowerOf, objects: dict[str, Any]) -> sympy.Expr:
+    """Return λᵏ, the real or imaginary part of (σ + iω)ᵏ, or δ(k, j)."""
+    k, base, imaginary = (scalar_to_sympy(part, objects) for part in (found.argument, found.base, found.imaginary))
+    if found.kind == "KroneckerDelta":
+        return sympy.KroneckerDelta(k, base)
+    whole = sympy.Pow(base + sympy.I * imaginary, k)
+    return whole if found.kind == "power" else getattr(sympy, found.kind)(whole)
 
 
 def matrix_to_sympy(value: Matrix, objects: Mapping[str, Any] | None = None) -> sympy.ImmutableMatrix:
@@ -348,72 +355,3 @@ def with_plain_symbols(expression: Any, names: Mapping[Any, str] | None = None) 
     """Return a SymPy expression whose symbols carry no assumptions, or in which the symbols in `names` are renamed."""
     chosen = {symbol: symbol.name for symbol in expression.free_symbols} if names is None else names
     return expression.subs({symbol: sympy.Symbol(name) for symbol, name in chosen.items()}, simultaneous=True)
-
-
-# Location of the roots of a numeric polynomial relative to the stability boundary, by certified enclosures.
-
-
-_FIRST_BITS = 64
-
-
-def stable_roots(factor: Scalar, variable: str, *, discrete: bool) -> tuple[bool, ...]:
-    """Return, for each root of an irreducible polynomial, whether Re s < 0 (|z| < 1).
-
-    The order is that of SymPy's `CRootOf`: the real roots ascending, then the others.  Where the others do not all lie on
-    one side, SymPy's isolation tells which comes first.
-    """
-    polynomial = fmpz_poly([int(c.fraction()) for c in reversed(factor.numerator.coefficients(variable))])
-    roots, sides = _decided(polynomial, discrete=discrete)
-    real = sorted((k for k, root in enumerate(roots) if root.imag == 0), key=lambda k: float(roots[k].real.mid()))
-    others = [k for k in range(len(roots)) if k not in real]
-    if len({sides[k] for k in others}) > 1:
-        others = _as_counted(factor, variable, roots, others)
-    return tuple(sides[k] for k in (*real, *others))
-
-
-def _decided(polynomial: fmpz_poly, *, discrete: bool) -> tuple[list[acb], list[bool]]:
-    """Return enclosures of the roots and whether each is stable, increasing the precision until all are decided."""
-    bits = _FIRST_BITS
-    while True:
-        with Precision(bits):
-            found: Any = polynomial.complex_roots()
-            roots = [root for root, _ in found]
-            distances = [r.real * r.real + r.imag * r.imag - 1 if discrete else r.real for r in roots]
-            if all(
-                distance < 0 or distance > 0 or _is_on_boundary(k, roots, polynomial, discrete=discrete)
-                for k, distance in enumerate(distances)
-            ):
-                return roots, [bool(distance < 0) for distance in distances]
-        bits *= 2
-
-
-def _is_on_boundary(number: int, roots: Sequence[acb], polynomial: fmpz_poly, *, discrete: bool) -> bool:
-    """Return whether a root certainly lies on the boundary: its mirror image is a root and no other root is near."""
-    coefficients = polynomial.coeffs()
-    image = coefficients[::-1] if discrete else [-c if k % 2 else c for k, c in enumerate(coefficients)]
-    if fmpz_poly(image) not in (polynomial, -polynomial):
-        return False
-    root = roots[number].conjugate()
-    mirrored = 1 / root if discrete else -root
-    return not any(mirrored.overlaps(other) for k, other in enumerate(roots) if k != number)
-
-
-def _as_counted(factor: Scalar, variable: str, roots: Sequence[acb], numbers: Sequence[int]) -> list[int]:
-    """Return the indices of the nonreal roots in SymPy's order, by their isolating rectangles."""
-    found = []
-    for scale, rectangle in rectangles(factor, variable, len(roots) - len(numbers)):
-        inside, scaled = rectangle, [root / _number(scale) for root in roots]
-        while len(near := [k for k in numbers if _meets(scaled[k], inside)]) != 1:
-            inside = inside.refine()
-        found += near
-    return found
-
-
-def _meets(root: acb, rectangle: Any) -> bool:
-    """Return whether an enclosure intersects a rectangle."""
-    ends = ((root.real, rectangle.ax, rectangle.bx), (root.imag, rectangle.ay, rectangle.by))
-    return all(not (part < _number(low) or part > _number(high)) for part, low, high in ends)
-
-
-def _number(value: Any) -> arb:
-    return arb(fmpq(int(value.numerator), int(value.denominator)))

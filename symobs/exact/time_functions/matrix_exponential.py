@@ -8,7 +8,6 @@ parameters; square roots stand in the scalar functions only.
 
 from __future__ import annotations
 
-from dataclasses import replace
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
@@ -16,19 +15,10 @@ from flint import arb, arb_mat, fmpq, fmpq_mat
 
 from symobs.exact.algebraic.extension import AlgebraicExtension
 from symobs.exact.algebraic.polynomial_roots import factored
+from symobs.exact.algebraic.root_sum import RootSum
 from symobs.exact.core.field import EIGENVALUE
-from symobs.exact.core.generators import (
-    ONE,
-    ZERO,
-    Function,
-    derivative,
-    function,
-    partial,
-    square_root,
-    substitute,
-    symbols_in,
-)
-from symobs.exact.core.matrix import Matrix
+from symobs.exact.core.generators import ONE, ZERO, normal_form, square_root
+from symobs.exact.core.matrix import Matrix, matrix_of_numbers
 from symobs.exact.core.polynomial import companion
 from symobs.exact.core.ring import Precision, number_of
 from symobs.exact.core.scalar import Scalar
@@ -36,101 +26,22 @@ from symobs.exact.time_functions.quasipolynomial import Key, Quasipolynomial, ma
 from symobs.ground.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
+    from collections.abc import Callable, Sequence
 
     from symobs.exact.time_functions.quasipolynomial import Table
 
 
-# Sums over the roots of a square-free polynomial q: φⱼ(t) = Σ λʲ e^{λt} / q′(λ).
-#
-# Every symmetric sum Σ g(λ) e^{λt} is a combination of φ₀, …, φ_{d−1} with coefficients from the field of q.
-# Differentiating multiplies the summand by λ, and at t = 0 the sum is the trace of λʲ / q′(λ) in the field of a root.
-
-
-#: The name of the root in texts; `lambda` itself is a keyword where they are read.
-BOUND = "lam"
-
-
-@dataclass(frozen=True)
-class RootSum(Function):
-    """Σ λᵖ e^{λ·argument} / q′(λ) over the roots λ of q, a polynomial in the generator of eigenvalues."""
-
-    polynomial: Scalar
-    power: int
-
-    @staticmethod
-    def of(polynomial: Scalar, power: int, time: Scalar) -> Scalar:
-        """Return the sum, `power` less than the degree."""
-        return RootSum("RootSum", time, polynomial, power).value
-
-    @property
-    def summand(self) -> Scalar:
-        """The summand."""
-        root = Scalar.symbol(EIGENVALUE)
-        return root**self.power * function("exp", root * self.argument) / self.slope
-
-    @property
-    def slope(self) -> Scalar:
-        """The derivative q′(λ)."""
-        return partial(self.polynomial, EIGENVALUE)
-
-    @property
-    def discriminant(self) -> Scalar:
-        """The product of q′ over all roots, which vanishes exactly where two roots coincide."""
-        return AlgebraicExtension(self.polynomial, EIGENVALUE).norm(self.slope).numerator
-
-    @property
-    def bound(self) -> str:
-        """The name of the root in the text, different from every parameter."""
-        taken = self.polynomial.names | self.argument.names
-        return next(name for name in (BOUND + "_" * k for k in range(len(taken) + 1)) if name not in taken)
-
-    @property
-    def text(self) -> str:
-        """SymPy's text; the variable is named where there are parameters."""
-        root = {EIGENVALUE: Scalar.symbol(self.bound)}
-        q, below = (p.substitute(root) for p in (self.polynomial, self.slope))
-        inside = f"{root[EIGENVALUE] ** self.power}*exp({root[EIGENVALUE] * self.argument})/({below})"
-        named = f", {self.bound}" if len(q.names) > 1 else ""
-        return f"RootSum({q}, Lambda({self.bound}, {inside}){named})"
-
-    @property
-    def symbols(self) -> frozenset[str]:
-        """The time and the parameters of q."""
-        return symbols_in(self.argument) | symbols_in(self.polynomial) - {EIGENVALUE}
-
-    def rate(self, time: str) -> Scalar:
-        """Return d/dt: the summand times λ, its power reduced by q."""
-        field = AlgebraicExtension(self.polynomial, EIGENVALUE)
-        image = field.reduce(Scalar.symbol(EIGENVALUE) ** (self.power + 1))
-        total = Scalar.of(0)
-        for power, c in enumerate(reversed(image.coefficients(EIGENVALUE))):
-            if not c.is_zero:
-                total = total + c * RootSum.of(self.polynomial, power, self.argument)
-        return total * derivative(self.argument, time)
-
-    def moved(self, values: Mapping[str, Scalar]) -> Scalar:
-        """Return the sum with symbols substituted; at time 0 the trace of λᵖ / q′(λ)."""
-        argument, q = substitute(self.argument, values), substitute(self.polynomial, values)
-        slope = partial(q, EIGENVALUE)
-        field = AlgebraicExtension(q, EIGENVALUE)
-        below = field.inverse(slope)  # raises where two roots are equal
-        if not argument.is_zero:
-            return replace(self, argument=argument, polynomial=q).value
-        return field.trace(field.reduce(Scalar.symbol(EIGENVALUE) ** self.power * below))
-
-
 #: Orders up to which it is computed, without and with parameters.
-MOST_STATES, MOST_STATES_WITH_PARAMETERS = 24, 8
+MOST_STATES, MOST_STATES_WITH_PARAMETERS = 40, 8
 
 
 class NoClosedForm(ArithmeticError):
     """A factor of the characteristic polynomial has degree 3 or more."""
 
-    def __init__(self, factor: Scalar | None) -> None:
-        """Keep the factor; None where the order is too large."""
+    def __init__(self, factor: Scalar | None, most: int = MOST_STATES) -> None:
+        """Keep the factor; None where there are more states than the given number."""
         super().__init__(str(factor))
-        self.factor = factor
+        self.factor, self.most = factor, most
 
 
 class OpenBranch(ArithmeticError):
@@ -215,10 +126,15 @@ class RootMode:
 
 @dataclass(frozen=True)
 class Exponential:
-    """e^{At} = Σ function · matrix over the parts; a part is (mode, k, the matrices of its one or two functions)."""
+    """e^{At} V = Σ function · matrix over the parts; a part is (mode, k, the matrices of its one or two functions)."""
 
     parts: tuple[tuple[Mode | RootMode, int, tuple[Matrix, ...]], ...]
-    order: int
+    shape: tuple[int, int]
+
+    @property
+    def order(self) -> int:
+        """The number of states."""
+        return self.shape[0]
 
     @property
     def is_closed(self) -> bool:
@@ -236,14 +152,14 @@ class Exponential:
 
     def table(self) -> Table:
         """Return the entries with closed forms."""
-        zero = Quasipolynomial({})
-        rows = [[zero] * self.order for _ in range(self.order)]
+        height, width = self.shape
+        rows = [[Quasipolynomial({})] * width for _ in range(height)]
         for mode, power, matrices in self.parts:
             if isinstance(mode, RootMode):
                 continue
             for f, matrix in zip(mode.functions(power), matrices, strict=True):
-                for i in range(self.order):
-                    for j in range(self.order):
+                for i in range(height):
+                    for j in range(width):
                         if not matrix[i, j].is_zero:
                             rows[i][j] = rows[i][j] + f.scaled(matrix[i, j])
         return tuple(tuple(row) for row in rows)
@@ -263,7 +179,7 @@ def modes_of(
             found.append((Mode(-coefficients[1], ZERO, oscillates=False), multiplicity))
         elif len(coefficients) == 3:
             rate = -coefficients[1] / 2
-            discriminant = rate * rate - coefficients[2]
+            discriminant = normal_form(rate * rate - coefficients[2])
             known = sign(discriminant)
             if known == "zero":
                 found.append((Mode(rate, ZERO, oscillates=False), 2 * multiplicity))
@@ -278,35 +194,40 @@ def modes_of(
     return tuple(found)
 
 
-def exponential(A: Matrix, variable: str, sign: Callable[[Scalar], str], *, sums: bool = False) -> Exponential:
-    """Return e^{At}, with `sums` over roots if need be.
+def exponential(
+    A: Matrix, variable: str, sign: Callable[[Scalar], str], *, sums: bool = False, start: Matrix | None = None
+) -> Exponential:
+    """Return e^{At}, or e^{At} V for a matrix `start`, with `sums` over roots if need be.
 
     Raises `NoClosedForm` where it has none here, `OpenBranch` where a sign must be known first.
     """
     order = A.shape[0]
-    if order > (MOST_STATES_WITH_PARAMETERS if A.names else MOST_STATES):
-        raise NoClosedForm(None)
+    most = MOST_STATES_WITH_PARAMETERS if A.names else MOST_STATES
+    if order > most:
+        raise NoClosedForm(None, most)
+    A, start = _over_its_field(A), Matrix.identity(order) if start is None else _over_its_field(start)
+    width = start.shape[1]
     found = modes_of(A.characteristic_polynomial(variable), variable, sign, sums=sums)
     places = [(mode, k) for mode, multiplicity in found for k in range(multiplicity)]
-    D, start = _rates(found)
-    columns = [start]
+    D, begins = _rates(found)
+    columns = [begins]
     for _ in range(order - 1):
         columns.append(D @ columns[-1])
-    powers = [Matrix.identity(order)]
+    powers = [start]
     for _ in range(order - 1):
-        powers.append((powers[-1] @ A).normal())
+        powers.append((A @ powers[-1]).normal())
     W = Matrix.of([list(column.entries) for column in columns])
     right = Matrix.of([list(power.entries) for power in powers])
     solved = W.solve(right).rows
-    matrices = [Matrix.of([row[i * order : (i + 1) * order] for i in range(order)]) for row in solved]
+    matrices = [Matrix.of([row[i * width : (i + 1) * width] for i in range(order)], width) for row in solved]
     parts, at = [], 0
     for mode, k in places:
-        width = len(mode.start)
-        own = tuple(matrices[at : at + width])
-        at += width
+        count = len(mode.start)
+        own = tuple(matrices[at : at + count])
+        at += count
         if any(not matrix.is_zero for matrix in own):
             parts.append((mode, k, own))
-    return Exponential(tuple(parts), order)
+    return Exponential(tuple(parts), start.shape)
 
 
 def _rates(modes: Sequence[tuple[Mode | RootMode, int]]) -> tuple[Matrix, Matrix]:
@@ -323,7 +244,14 @@ def _rates(modes: Sequence[tuple[Mode | RootMode, int]]) -> tuple[Matrix, Matrix
                 if k:
                     rows[at + i][at + i - width] = Scalar.of(k)
             at += width
-    return Matrix.of(rows), Matrix.column(start)
+    return _over_its_field(Matrix.of(rows)), _over_its_field(Matrix.column(start))
+
+
+def _over_its_field(matrix: Matrix) -> Matrix:
+    """Return a matrix of numbers as one of the rationals, where equations are solved much faster; any other as it is."""
+    if matrix.names or not matrix.shape[1]:
+        return matrix
+    return matrix_of_numbers([[entry.fraction() for entry in row] for row in matrix.rows])
 
 
 # Responses of a numeric linear system from an initial state: enclosures of e^{Mt} v, and spectral bounds.

@@ -194,10 +194,14 @@ def _hyperbolic(terms: Mapping[Key, Scalar]) -> list[tuple[Key, Scalar]]:
 
 
 def rate_parts(rate: Scalar) -> tuple[Scalar, Scalar]:
-    """Return (the part without square roots, the rest)."""
-    plain = rate.substitute(
-        {name: ZERO for name in rate.names if (f := function_named(name)) is not None and f.kind == "sqrt"}
-    )
+    """Return (the part without square roots, the rest); beside others, roots of primes are numbers as all are.
+
+    A rate that divides by roots is all without.
+    """
+    roots = roots_in(rate)
+    names: list[str] = [f.name for f in roots if not f.square] or [f.name for f in roots]
+    moving = dict.fromkeys(names, ZERO)
+    plain = rate if moving.keys() & rate.denominator.names else rate.substitute(moving)
     return plain, rate - plain
 
 

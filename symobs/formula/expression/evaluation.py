@@ -197,6 +197,13 @@ def _degree_of_root(base: Scalar, exponent: Number) -> int:
     return degree if 1 < degree <= _MOST_DEGREE and abs(exponent.fraction().numerator) <= _MOST_DEGREE else 0
 
 
+def _halves(exponent: Number) -> int:
+    """Return p where an exponent is p/2 with an odd p, else 0."""
+    if not isinstance(exponent, Scalar) or not exponent.is_constant or exponent.fraction().denominator != 2:
+        return 0
+    return exponent.fraction().numerator
+
+
 class Evaluator:
     """Evaluation of a tree on a stack.  Invariant: no operation begins before `_spend` has bounded its result."""
 
@@ -266,6 +273,9 @@ class Evaluator:
     def _power(self, base: Number, place: int, value: Number) -> Number:
         if self.functions and isinstance(base, Scalar) and (degree := _degree_of_root(base, value)):
             return root_of_fraction(base.fraction(), degree) ** int(Complex.of(value).real.fraction() * degree)
+        if self.functions and isinstance(base, Scalar) and not base.is_constant and (half := _halves(value)):
+            whole = self._power(base, place, Scalar.of((half - 1) // 2))  # x^(q + 1/2) is x^q times the root of x
+            return self._combined(whole, place, self._function("sqrt", place, base), "*")
         exponent = self._exponent(value, place)
         if isinstance(base, Complex):
             return self._complex_power(base, exponent, place)

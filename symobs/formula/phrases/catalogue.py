@@ -93,7 +93,7 @@ RESTS_ON: dict[str, str] = _table("RESTS_ON")
 #: The theorems that phrases may appeal to, each with the literature where it is proved: keys of `literature`.
 THEOREMS: dict[str, str] = _collected("THEOREMS")
 
-#: The block diagrams of pages, as `figures.block_diagram` reads them: grid, routes, signals, letters, optional boxes.
+#: The block diagrams of pages, as `formula.figures` reads them: grid, routes, signals, letters, optional boxes.
 FIGURES: dict[str, dict[str, Any]] = _collected("FIGURES")
 
 #: Phrases that name a value and claim nothing of it: in all others a value stands with what it is the value of.

@@ -155,12 +155,13 @@ def language_named(code: str, where: str = "language") -> Language:
 
 @cache
 def _read(folder: Path) -> Language:
-    """Return the language of a folder; raises ValueError where something of it is missing."""
+    """Return the language of a folder, a phrase that it lacks in English; raises ValueError where words are missing."""
     words, wanted = _table(folder / _WORDS), phrases_of_modules()
-    phrases = {key: text for name in wanted for key, text in _table(folder / f"{name}.toml").items()}
+    phrases = {key: text for of_module in wanted.values() for key, text in of_module.items()}
+    phrases |= {key: text for name in wanted for key, text in _table(folder / f"{name}.toml").items()}
     found = Language(phrases, words.get("WORDS", {}), words.get("COUNTS", {}))
-    is_whole = phrases.keys() == {key for of_module in wanted.values() for key in of_module}
-    if not is_whole or found.words.keys() != WORDS.keys() or found.counts.keys() != COUNTS.keys():
+    is_known = phrases.keys() == {key for of_module in wanted.values() for key in of_module}
+    if not is_known or found.words.keys() != WORDS.keys() or found.counts.keys() != COUNTS.keys():
         raise ValueError("\n".join(faults(folder)))
     return found
 

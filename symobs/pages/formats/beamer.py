@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
     from pathlib import Path
 
-    from symobs.pages.page.blocks import Block, Inlines
+    from symobs.pages.page.blocks import Block
     from symobs.pages.page.sheet import Sheet
     from symobs.tasks.result import Document
 
@@ -49,10 +49,7 @@ class Beamer:
             "source": escape(title.source).strip(),
             "conventions": writer.sentence(title.conventions),
             "head": None,
-            "frames": [
-                {"title": writer.sentence(heading).removesuffix("."), "body": writer.body(body)}
-                for heading, body in _frames(blocks)
-            ],
+            "frames": [writer.frame(heading, body) for heading, body in _frames(blocks)],
             "drawings": has_drawings(blocks),
         }
 
@@ -89,24 +86,29 @@ def _title(text: str) -> dict[str, Any]:
     return {**slides, "frames": [], "drawings": False}
 
 
-def _frames(blocks: Sequence[Block]) -> Iterator[tuple[Inlines, tuple[Block, ...]]]:
-    """Yield the blocks of each heading of the first level after its title; leading blocks belong to the first."""
-    title: Inlines = ()
+def _frames(blocks: Sequence[Block]) -> Iterator[tuple[Heading, tuple[Block, ...]]]:
+    """Yield the blocks of each heading of the first level after it; leading blocks belong to the first."""
+    title = Heading("", ())
     body: list[Block] = []
     for block in blocks:
         if not isinstance(block, Heading) or block.number.count(".") > 1:
             body.append(block)
-        elif title and body:
+        elif title.inlines and body:
             yield title, tuple(body)
-            title, body = block.inlines, []
+            title, body = block, []
         else:
-            title = block.inlines
+            title = block
     if body:
         yield title, tuple(body)
 
 
 class _SlideWriter(LatexWriter):
     """Writer of blocks for slides, which fits unbreakable ones."""
+
+    def frame(self, heading: Heading, body: tuple[Block, ...]) -> dict[str, str]:
+        """Return the template values of a frame."""
+        self.printer.keep_time(heading.time)
+        return {"title": self.sentence(heading.inlines).removesuffix("."), "body": self.body(body)}
 
     def block(self, block: Block) -> str:
         """Return one block."""

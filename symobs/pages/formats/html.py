@@ -312,7 +312,10 @@ class HtmlWriter:
         match block:
             case Title(text, source, conventions):
                 return self._title(plain(text).strip(), f"{plain(source)} {self.sentence(conventions)}".strip())
-            case Heading(number, inlines):
+            case Heading(number, inlines, time):
+                self.printer.keep_time(time)
+                if self.latex is not None:
+                    self.latex.keep_time(time)
                 return self._heading(number, self.sentence(inlines))
             case Paragraph(inlines):
                 return f"<p>{self.sentence(inlines)}</p>"

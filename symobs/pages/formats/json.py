@@ -7,9 +7,7 @@ from collections.abc import Mapping
 from datetime import date
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from symobs.exact import Complex, Matrix, Root, Scalar
-from symobs.exact.algebraic.enclosure import is_number
-from symobs.exact.floating.sampled import nearest_double
+from symobs.exact import Matrix
 from symobs.formula.convention import STANDARD, Convention
 from symobs.pages.page.sheet import decimal_of
 from symobs.tasks.result import Case, Result, output_format
@@ -127,7 +125,7 @@ def result_object(result: Result, convention: Convention = STANDARD) -> dict[str
         "plant": _plant_object(result.plant),
         "specification": {name: _given(value) for name, value in result.specification.items()},
         **answers,
-        "decimals": _decimals(result),
+        "decimals": result.decimals,
         "in_convention": {"name": convention.name, **in_convention},
     }
 
@@ -142,34 +140,6 @@ def answer_object(result: Result) -> dict[str, Any]:
         "certificates": [{"claim": c.claim, "how": c.how, "bound": c.bound} for c in result.all_certificates],
         **{name: to_json(value, result.symbols) for name, value in result.asked_fields.items()},
     }
-
-
-def _decimals(result: Result) -> dict[str, Any]:
-    """Return the nearest doubles of those answers that are numbers; a complex number as [real, imaginary]."""
-    found = {name: _double(value) for name, value in result.fields.items()}
-    return {name: value for name, value in found.items() if value is not None}
-
-
-def _double(value: Any) -> Any:
-    """Return the nearest doubles of numbers, matrices and lists of them, None where one has letters or is none."""
-    if isinstance(value, Matrix):
-        return _all([_all([_double(entry) for entry in row]) for row in value.rows])
-    if isinstance(value, (list, tuple)) and value and all(isinstance(entry, (Root, Scalar)) for entry in value):
-        return _all([_double(entry) for entry in value])
-    if isinstance(value, Root):
-        value = value.exact()
-    if isinstance(value, Complex):
-        return _all([_double(value.real), _double(value.imaginary)]) if not value.is_real else _double(value.real)
-    if not isinstance(value, Scalar) or not is_number(value):
-        return None
-    try:
-        return nearest_double(value)
-    except ValueError:  # too large, or not written by roots and exponentials
-        return None
-
-
-def _all(values: list[Any]) -> list[Any] | None:
-    return None if any(value is None for value in values) else values
 
 
 def _plant_object(plant: StateSpace) -> dict[str, Any]:

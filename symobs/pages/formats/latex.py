@@ -178,7 +178,8 @@ class LatexWriter:
     def block(self, block: Block) -> str:
         """Return one block."""
         match block:
-            case Heading(number, inlines):
+            case Heading(number, inlines, time):
+                self.printer.keep_time(time)
                 return rf"\textbf{{{f'{number} ' * bool(number)}{self.sentence(inlines)}}}"
             case Paragraph(inlines):
                 return self.sentence(inlines)

@@ -158,7 +158,8 @@ class MarkdownWriter:
                 heading = f"{'#' * self.level} {plain(text).strip()}" if text.strip() else ""
                 below = paragraph(f"{plain(source)} {self.sentence(conventions)}".strip())
                 return "\n\n".join(filter(None, (heading, below)))
-            case Heading(number, inlines):
+            case Heading(number, inlines, time):
+                self.printer.keep_time(time)
                 depth = min(6, self.level + max(1, number.count(".")))
                 return f"{'#' * depth} {f'{number} {self.sentence(inlines)}'.strip().removesuffix('.')}"
             case Paragraph(inlines):

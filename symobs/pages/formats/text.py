@@ -121,7 +121,8 @@ class TextWriter:
                 heading = underlined(wrapped(printable(text), width), "=", width)
                 below = wrapped(f"{printable(source)} {self.sentence(conventions)}", width)
                 return "\n".join(part for part in (heading, below) if part)
-            case Heading(number, inlines):
+            case Heading(number, inlines, time):
+                self.printer.keep_time(time)
                 title = f"{number} {self.sentence(inlines)}".strip().removesuffix(".")
                 return underlined(wrapped(title, width), "-", width)
             case Paragraph(inlines):

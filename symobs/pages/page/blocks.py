@@ -39,10 +39,14 @@ class Title:
 
 @dataclass(frozen=True)
 class Heading:
-    """A heading that runs into the paragraph after it; `number` is empty where headings are not numbered."""
+    """A heading that runs into the paragraph after it; `number` is empty where headings are not numbered.
+
+    Where another time begins, `time` is the variable of the polynomials from here on, and whether time is discrete.
+    """
 
     number: str
     inlines: Inlines
+    time: tuple[str, bool] | None = None
 
 
 @dataclass(frozen=True)

@@ -94,6 +94,7 @@ def narrate(document: Document) -> tuple[Block, ...]:
     if is_final:  # the question has said what is given, and where it comes from
         page.blocks[:] = [replace(title_of(document, language), source="")]
     for index, steps in enumerate(parts):
+        page.time = document.derivations[index].variable, document.derivations[index].discrete
         if index in apart:
             page.printed.clear()
             page.emit_given(apart[index])
@@ -190,6 +191,7 @@ class _PageBlocks:
         self.places: dict[Step, str] = {}  # the numbers of the sections in which steps are printed first
         self.numbers = [0]
         self.numbered = True
+        self.time: tuple[str, bool] | None = None
 
     def inside(self, *, numbered: bool = True) -> _PageBlocks:
         """Return the blocks of a part set apart from the page: its data hold there only, its figures are counted on."""
@@ -209,7 +211,7 @@ class _PageBlocks:
         """Emit the given data that are not printed yet."""
         news = [new for step in statement for new in self.news(step)]
         if news:
-            self.blocks.append(Heading("", (self.language.phrases["given"],)))
+            self.blocks.append(Heading("", (self.language.phrases["given"],), self.time))
             for step in news:
                 self.emit_step(step)
 

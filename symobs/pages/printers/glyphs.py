@@ -92,6 +92,10 @@ class FormulaWriter(ABC, Generic[B]):
         """Return a power of an already parenthesised base."""
 
     @abstractmethod
+    def to_the_instant(self, base: B) -> B:
+        """Return the k-th power of such a base."""
+
+    @abstractmethod
     def transposed(self, base: B) -> B:
         """Return the transpose of such a base."""
 

@@ -194,6 +194,10 @@ class LatexPrinter(Printer[LatexBox]):
         """Return a power."""
         return self._above(base, str(exponent))
 
+    def to_the_instant(self, base: LatexBox) -> LatexBox:
+        """Return the k-th power."""
+        return self._above(base, "k")
+
     def transposed(self, base: LatexBox) -> LatexBox:
         """Return the transpose."""
         return self._above(base, r"\mathsf T")

@@ -241,6 +241,10 @@ class MathmlPrinter(Printer[MathmlBox]):
         script = digits if exponent >= 0 else f'<mrow><mo form="prefix">−</mo>{digits}</mrow>'
         return self._above(base, script, len(str(exponent)) * widths.DIGIT)
 
+    def to_the_instant(self, base: MathmlBox) -> MathmlBox:
+        """Return the k-th power."""
+        return self._above(base, "<mi>k</mi>", 0.5)
+
     def transposed(self, base: MathmlBox) -> MathmlBox:
         """Return the transpose."""
         return self._above(base, TRANSPOSE, 0.7)

@@ -12,8 +12,9 @@ from typing import TYPE_CHECKING
 
 from symobs.exact import EIGENVALUE, Matrix, Scalar, decimal_digits
 from symobs.exact.algebraic.real_algebraic import RealRoot
+from symobs.exact.algebraic.root_sum import RootSum
 from symobs.exact.core.generators import function_named
-from symobs.exact.time_functions.matrix_exponential import RootSum
+from symobs.exact.time_functions.matrix_power import PowerOf
 from symobs.formula.notation import (
     FUNCTIONS,
     LETTERS,
@@ -83,6 +84,12 @@ class Printer(FormulaWriter[B]):
         self.known: dict[Scalar, B] = {}
         #: The entries named by stars so far, numbered through the page.
         self.stars: dict[Formula, int] = {}
+
+    def keep_time(self, time: tuple[str, bool] | None) -> None:
+        """Go on with this variable, in continuous or discrete time."""
+        if time is not None and time != (self.variable, self.discrete):
+            self.variable, self.discrete = time
+            self.known.clear()
 
     @abstractmethod
     def inline(self, item: Formula | Relation) -> str:
@@ -226,11 +233,26 @@ class Printer(FormulaWriter[B]):
             q, below = (self.typeset(formula_of(part, EIGENVALUE)) for part in (function.polynomial, function.slope))
             over = self.joined([q, self.comparison("="), self.scalar(Scalar.of(0))], Level.SUM)
             return self.summed(over, self.fraction(self.scalar(function.summand * function.slope), below))
+        if isinstance(function, PowerOf):
+            return self.power_of(function)
         argument = self.scalar(function.argument)
         if function.kind == "sqrt":
             return self.root(argument)
         is_plain = argument.level >= Level.PRODUCT and not isinstance(formula_of(function.argument, ""), Quotient)
         return self._wave(function, argument if is_plain else self.grouped(argument))
+
+    def power_of(self, function: PowerOf) -> B:
+        """Return λᵏ, Re (σ + iω)ᵏ, or δ(k, j)."""
+        if function.kind == "KroneckerDelta":
+            return self.called(self.named(r"\delta"), [self.symbol("k"), self.scalar(function.base)])
+        if function.kind == "power":
+            return self.to_the_instant(self.at_least(Level.ATOM, self.scalar(function.base)))
+        turned = function.imaginary
+        unit = self.named("i")
+        parts = [] if function.base.is_zero else [self.scalar(function.base), self.sign(negative=False, leading=False)]
+        parts += [unit] if turned.is_one else self.spaced([self.at_least(Level.PRODUCT, self.scalar(turned)), unit])
+        whole = self.grouped(self.joined(parts, Level.SUM)) if len(parts) > 1 else parts[0]
+        return self._wave(function, self.grouped(self.to_the_instant(whole)))
 
     def _wave(self, function: Function, argument: B) -> B:
         """Return cos ωt, which binds like a power."""

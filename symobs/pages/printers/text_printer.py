@@ -171,6 +171,10 @@ class TextPrinter(Printer[TextBox]):
         """Return a power."""
         return self._above(base, str(exponent).translate(_SUPERSCRIPTS))
 
+    def to_the_instant(self, base: TextBox) -> TextBox:
+        """Return the k-th power."""
+        return self._above(base, "ᵏ")
+
     def transposed(self, base: TextBox) -> TextBox:
         """Return the transpose."""
         return self._above(base, "ᵀ")

@@ -50,7 +50,7 @@ from symobs.proof.derivation.steps import (
 )
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Mapping
+    from collections.abc import Iterable, Iterator, Mapping, Sequence
 
     from symobs.formula.figures import Picture
     from symobs.stability.criteria.routh_table import RouthTable
@@ -293,6 +293,14 @@ class Builder:
     def conclude_silently(self, *facts: Fact) -> None:
         """Hold the page to facts that need no words."""
         self.steps.append(Conclude(None, facts))
+
+    def assume_positive(self, values: Sequence[Scalar]) -> None:
+        """State that values are positive throughout; values that are none say nothing."""
+        if values:
+            self.start, self.environment = (
+                replace(each, positive=(*each.positive, *values)) for each in (self.start, self.environment)
+            )
+            self.conclude("declared", signs=Conjunction(tuple(relation(value, ">", 0) for value in values)))
 
     def name_coefficient(self, name: str, meaning: Scalar) -> Scalar:
         """Let a generator stand for a longer scalar from here on, without a display."""

@@ -15,7 +15,8 @@ from typing import TYPE_CHECKING, Annotated, Any, TypeAlias
 
 from symobs.exact import Complex, Field, Matrix, Scalar, modulo, product_of
 from symobs.exact.algebraic.rounded_decimals import conjugates, is_in_kernel, product_of_linear, tidied
-from symobs.exact.core.generators import NotWritten, functions_in, identities, roots_in, square_root
+from symobs.exact.core.generators import NotWritten, functions_in, identities, roots_in, square_root, substitute
+from symobs.exact.time_functions.matrix_power import PowerOf
 from symobs.formula.expression import comma_between_digits, declared_name, parse_matrix, parse_poles, parse_polynomial
 from symobs.ground.dataclass import dataclass
 from symobs.ground.errors import InputError, ShapeMismatch
@@ -223,7 +224,7 @@ def desired_polynomial(
         found = _from_poles(read, plant.variable, first)
     else:
         found = _from_polynomial(polynomial, plant, degree, second)
-    require_known(found.factors, second if poles is None else first)
+    require_known(found.factors, plant.symbols.signs, second if poles is None else first)
     return found
 
 
@@ -600,6 +601,33 @@ def parse_signal(value: object, symbols: Symbols, where: str, *, functions: bool
     if not isinstance(rows, str):
         rows = [[_text(entry) for entry in (row if isinstance(row, (list, tuple)) else [row])] for row in rows]
     return parse_matrix(rows, known.names, where=where, functions=True)
+
+
+#: A number, a name or a parenthesis to the power k.
+_POWER = re.compile(r"(\d+(?:\.\d+)?|[A-Za-z]\w*|\([^()]*\))\s*(?:\^|\*\*)\s*k\b")
+
+
+def parse_in_steps(value: object, symbols: Symbols, where: str) -> Matrix:
+    """Return the entries of a signal in discrete time, a column for each instant or expressions in k with powers λᵏ."""
+    known, powers = symbols.seen(value, "k").naming(["k"], where), dict[str, str]()
+
+    def named(found: re.Match[str]) -> str:
+        name = f"power_{len(powers)}"
+        powers[name] = found[1]
+        return f"({name})"
+
+    def lettered(given: object) -> object:
+        """Return a text, or each of several, with a letter for each power to the k."""
+        if isinstance(given, (list, tuple)):
+            return [lettered(entry) for entry in given]
+        return _POWER.sub(named, given) if isinstance(given, str) else given
+
+    read = lettered(value if isinstance(value, (str, list, tuple)) or hasattr(value, "shape") else [[value]])
+    if isinstance(read, str) and not read.lstrip().startswith("["):
+        read = f"[{read}]" if "," in read else [[read]]
+    table = read_matrix(as_rows("C", read), known.naming(list(powers), where), where, functions=True)
+    bases = {name: read_matrix([[text]], known, where)[0, 0] for name, text in powers.items()}
+    return substitute(table, {name: PowerOf.of("power", base) for name, base in bases.items()})
 
 
 def _text(entry: object) -> object:

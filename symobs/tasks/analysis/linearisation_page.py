@@ -5,11 +5,12 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from symobs.exact import Matrix, Scalar
+from symobs.exact.core.generators import all_roots, substitute
 from symobs.formula.tree import At, Block, Derivative, Letter, Literal, SymbolList
 from symobs.proof.derivation.builder import relation
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterator, Sequence
 
     from symobs.formula.tree import Formula
     from symobs.formula.tree.term import Term
@@ -22,10 +23,16 @@ def state_linearisation(page: Builder) -> None:
     plant, given = page.plant, page.plant.nonlinear
     assert given is not None  # noqa: S101 - the caller has looked
     m = plant.matrices
-    page.in_time(given.f, *([given.h] if given.h is not None else []), m.A, m.B, m.C, m.D)
+    functions = [function for function in (given.f, given.h) if function is not None]
+    jacobians = [
+        given.jacobian(function, names) for function in functions for names in (given.states, given.inputs) if names
+    ]
+    moved = [value for function in (*functions, *jacobians) for value in _step_by_step(given, function)]
+    page.in_time(*functions, *moved, *(value for _, value in given.equilibrium), m.A, m.B, m.C, m.D)
     time = "discrete" if plant.is_discrete else "continuous"
     states, inputs = SymbolList(given.states), SymbolList(given.inputs)
     page.remark(f"nonlinear_{time}" if given.inputs else f"nonlinear_{time}_free", states=states, inputs=inputs)
+    page.assume_positive(_radicands(given, functions))
     f = page.set("f_x", given.f)
     shown = [relation(f, given.f)]
     if given.h is not None:
@@ -45,6 +52,20 @@ def state_linearisation(page: Builder) -> None:
             between = [] if jacobian == value else [_there(page, given, Literal(jacobian))]
             lines.append(relation(page[matrix], columns, *between, value))
     page.equal(*lines, say="linearised")
+
+
+def _step_by_step(given: Nonlinear, value: Matrix) -> Iterator[Matrix]:
+    """Yield a matrix with the values of the equilibrium inserted one by one, as a page writes it."""
+    for name, instead in given.equilibrium:
+        value = substitute(value, {name: instead})
+        yield value
+
+
+def _radicands(given: Nonlinear, functions: Sequence[Matrix]) -> list[Scalar]:
+    """Return what stands under roots with states or inputs: positive at the equilibrium, and therefore near it."""
+    names = {*given.states, *given.inputs}
+    found = sorted((root for root in all_roots(*functions) if root.symbols & names), key=lambda root: root.text)
+    return [root.argument for root in found]
 
 
 def _columns(name: str, jacobian: Matrix, names: Sequence[str]) -> Formula:

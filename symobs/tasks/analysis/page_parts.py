@@ -18,6 +18,7 @@ from symobs.exact import (
     root_of_pole,
     roots_of,
 )
+from symobs.exact.core.generators import symbols_named
 from symobs.formula.tree import (
     Conjunction,
     Decimals,
@@ -38,6 +39,7 @@ from symobs.stability.criteria.stability import monic, stability
 from symobs.stability.inequalities.simplify import as_inequality
 from symobs.system.conditions import Condition, sign_of, vanishing_factors
 from symobs.system.reading import is_identity
+from symobs.system.transfer_function_text import REALISATIONS
 from symobs.system.transfer_matrix import WrittenTransferMatrix
 
 if TYPE_CHECKING:
@@ -250,7 +252,7 @@ def _asked(page: Builder, name: str, desired_polynomial: DesiredPolynomial) -> N
 def state_signs(page: Builder) -> None:
     """Say which parameters have a declared sign."""
     by_sign: dict[str, list[str]] = {}
-    used = {*page.plant.field.names, *page.asked}
+    used = {*page.asked}.union(*map(symbols_named, page.plant.field.names))
     for name, sign in page.plant.symbols.signs.items():
         if name in used and sign != "real":
             by_sign.setdefault(sign, []).append(name)
@@ -389,7 +391,8 @@ def state_transfer_function(page: Builder) -> None:
         page.assume("lowest_terms_parameters", *apart)
     if not written.cancelled.is_one:
         _say_cancelled(page, cancelled, written.below)
-    page.remark("realised_minimal" if isinstance(written, WrittenTransferMatrix) else "realised")
+    kind = "minimal" if isinstance(written, WrittenTransferMatrix) else written.realisation
+    page.remark("realised" if kind == REALISATIONS[0] else f"realised_{kind}")
 
 
 def _written_out(page: Builder, written: WrittenTransferMatrix) -> Term:

@@ -95,6 +95,12 @@ def draw_feedforward(page: Builder, *, minimal: bool) -> None:
     page.diagram("estimated_state_feedback", say=say, Plant=_plant(page), Observer=observer, **gains)
 
 
+def draw_state_feedforward(page: Builder) -> None:
+    """Draw feedback from the state, and the feedforward."""
+    gains = {"K": -page["K"], "F": page["F_v"]}
+    page.diagram("state_feedforward", say="drawn_state_feedforward", Plant=_plant(page), **gains)
+
+
 def draw_tracking(page: Builder, *, minimal: bool) -> None:
     """Draw the generator of the reference, K and K_d, plant and observer."""
     observer = _minimal_order_observer(page) if minimal else _observer(page)

@@ -19,7 +19,7 @@ from symobs.ground.errors import CertificateRejected, InputError, ProblemErrors,
 from symobs.system import StateSpace, read_matrix, read_scalar
 from symobs.system.conditions import sign_of
 from symobs.system.reading import has_decimals, inserted, read_values
-from symobs.system.specification import is_pattern, parse_signal, read_names, read_pattern, read_poles
+from symobs.system.specification import is_pattern, parse_in_steps, parse_signal, read_names, read_pattern, read_poles
 from symobs.system.specification.pole_patterns import OTHERS
 
 if TYPE_CHECKING:
@@ -80,9 +80,10 @@ def _plant(plant: StateSpace, values: dict[str, Scalar]) -> StateSpace:
         raise InputError(message, where="values", repair="give values where the data are defined") from None
     if plant.polynomial is not None:
         polynomial = substitute(plant.polynomial, values)
-        there = StateSpace.from_polynomial(polynomial, plant.dt, symbols=there.symbols)
+        there = StateSpace.from_polynomial(polynomial, there.dt, symbols=there.symbols)
     elif plant.origin is not None:
-        written = StateSpace.from_transfer_function(substitute(plant.origin, values), plant.dt, symbols=there.symbols)
+        kind, origin = getattr(plant.written, "realisation", None), substitute(plant.origin, values)
+        written = StateSpace.from_transfer_function(origin, there.dt, symbols=there.symbols, realisation=kind)
         there = written if written.matrices == there.matrices else there
     elif plant.nonlinear is not None:
         there.nonlinear = plant.nonlinear.moved(values)
@@ -128,6 +129,8 @@ def _poles(value: object, plant: StateSpace, where: str) -> tuple[Complex, ...] 
 
 
 def _signal(value: object, plant: StateSpace, where: str) -> Matrix:
+    if plant.is_discrete:
+        return parse_in_steps(value, plant.symbols, where)
     return parse_signal(value, plant.symbols, where, functions=True)
 
 

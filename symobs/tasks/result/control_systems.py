@@ -66,7 +66,7 @@ def to_control(result: Any) -> dict[str, Any]:
         require_numbers(system, "a system of python-control")
         arrays = [_array(matrix) for matrix in system]
         inputs, outputs = _signals(name, plant, system.C.shape[0])
-        dt = float(plant.dt) if isinstance(plant.dt, Fraction) else plant.dt
+        dt = float(plant.dt) if isinstance(plant.dt, Fraction) else plant.dt if isinstance(plant.dt, int) else True
         made = control.ss(*arrays, dt, inputs=inputs, outputs=outputs, name=name)
         made.exact = _exact(system, plant)
         found[name] = made

@@ -8,7 +8,9 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any, Self, TypedDict
 
 from symobs.exact import Complex, Factored, Matrix, Root, Scalar, Shifted
+from symobs.exact.algebraic.enclosure import is_number
 from symobs.exact.core.generators import PI, symbols_named
+from symobs.exact.floating.sampled import nearest_double
 from symobs.formula.convention import convention_named
 from symobs.formula.expression.source import shown
 from symobs.ground.dataclass import dataclass
@@ -94,6 +96,34 @@ def _are_factored(row: tuple[Any, ...]) -> bool:
     return bool(row) and all(isinstance(entry, Factored) for entry in row)
 
 
+def doubles_of(fields: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the nearest doubles of those answers that are numbers; a complex number as [real, imaginary]."""
+    found = {name: _double(value) for name, value in fields.items()}
+    return {name: value for name, value in found.items() if value is not None}
+
+
+def _double(value: Any) -> Any:
+    """Return the nearest doubles of numbers, matrices and lists of them, None where one has letters or is none."""
+    if isinstance(value, Matrix):
+        return _all([_all([_double(entry) for entry in row]) for row in value.rows])
+    if isinstance(value, (list, tuple)) and value and all(isinstance(entry, (Root, Scalar)) for entry in value):
+        return _all([_double(entry) for entry in value])
+    if isinstance(value, Root):
+        value = value.exact()
+    if isinstance(value, Complex):
+        return _all([_double(value.real), _double(value.imaginary)]) if not value.is_real else _double(value.real)
+    if not isinstance(value, Scalar) or not is_number(value):
+        return None
+    try:
+        return nearest_double(value)
+    except ValueError:  # too large, or not written by roots and exponentials
+        return None
+
+
+def _all(values: list[Any]) -> list[Any] | None:
+    return None if any(value is None for value in values) else values
+
+
 #: Answers of more terms than this are not written out by `repr`.
 _TERMS_SHOWN = 500
 
@@ -145,6 +175,11 @@ class OutputMethods:
 
         found: Self = at_values(self, {**(values or {}), **named})
         return found
+
+    @property
+    def decimals(self) -> dict[str, Any]:
+        """The nearest doubles of the answers that are numbers, also of those without a closed form, as JSON has them."""
+        return doubles_of(self.fields)
 
     def evaluate(self, points: Mapping[Any, Any]) -> dict[str, Any]:
         """Return a NumPy array for each field at arrays of points: `result.evaluate({"k": np.linspace(1, 2, 100)})`.
@@ -259,11 +294,15 @@ def digits_asked(digits: object = None, *, exact: bool = False, where: str = "di
 
 
 def shown_digits(document: Any) -> int:
-    """Return the significant digits of the numbers of a document, 0 where they are exact."""
+    """Return the significant digits of the numbers of a document, 0 where they are exact.
+
+    They are decimals where data are, and where answers are numbers without a closed form.
+    """
     if document.digits is not None:
         return int(document.digits)
     typed = any(
-        result.plant.is_in_decimals or has_decimals([*result.specification.values()]) for result in document.results
+        result.plant.is_in_decimals or has_decimals([*result.specification.values()]) or result.is_told_in_decimals
+        for result in document.results
     )
     return DIGITS if typed else 0
 

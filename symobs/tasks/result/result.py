@@ -151,6 +151,11 @@ class Result(TaskTraits):
         return False
 
     @property
+    def is_told_in_decimals(self) -> bool:
+        """Whether answers are numbers without a closed form, which a page writes in decimals."""
+        return False
+
+    @property
     def picture(self) -> Picture | None:
         """The picture of the answer that the page shows, where there is one."""
         return None
@@ -167,6 +172,7 @@ class Result(TaskTraits):
         """What must not vanish for there to be a plant: what its data divide by."""
         m = self.plant.matrices
         divisors = [*_denominators([m.A, m.B, m.C, m.D]), *self.plant.apart]
+        divisors += [] if self.plant.is_stratum else self.plant.nonzero
         factors = vanishing_factors(divisors, self.plant.symbols.signs)
         return tuple(Condition("domain", factor) for factor in factors)
 

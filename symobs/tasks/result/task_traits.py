@@ -10,6 +10,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
     from symobs.exact import Matrix
+    from symobs.system import StateSpace
 
 
 class TaskTraits(OutputMethods):
@@ -33,6 +34,14 @@ class TaskTraits(OutputMethods):
     cards: ClassVar[tuple[str, ...]] = ()
     #: What the screen shows above the cards.
     panels: ClassVar[tuple[str, ...]] = ()
+
+    @property
+    def as_plant(self) -> StateSpace | None:
+        """The plant that the answer is, in other coordinates or times; None for any other answer.
+
+        Raises `InputError` where there is none.
+        """
+        return None
 
     def __dir__(self) -> Iterable[str]:
         """List what users ask for: these are of the task, and not of its answer."""

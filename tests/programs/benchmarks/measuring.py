@@ -5,7 +5,6 @@ from __future__ import annotations
 import statistics
 import time
 from dataclasses import dataclass
-from math import exp, log
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
@@ -82,18 +81,6 @@ def processor_time(function: Callable[[], object]) -> float:
     start = time.process_time()
     function()
     return time.process_time() - start
-
-
-def exponent(sizes: Sequence[float], times: Sequence[float]) -> float:
-    """Return the b of times = a · size^b, fitted to the logarithms by least squares."""
-    xs, ys = list(map(log, sizes)), list(map(log, times))
-    x, y = statistics.fmean(xs), statistics.fmean(ys)
-    return sum((a - x) * (b - y) for a, b in zip(xs, ys, strict=True)) / sum((a - x) ** 2 for a in xs)
-
-
-def factor(sizes: Sequence[float], times: Sequence[float]) -> float:
-    """Return the c of times = a · c^size: by what the time grows where the size grows by 1."""
-    return exp(exponent([exp(size) for size in sizes], times))
 
 
 def table(rows: Sequence[Row]) -> str:

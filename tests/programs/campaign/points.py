@@ -1,113 +1,28 @@
-"""Parameters at rational points, and which case of an answer holds there.
-
-The relations of an answer are evaluated here in fractions, by Python's own grammar of expressions.
-"""
+"""Parameters at rational points, and which case of an answer holds there."""
 
 from __future__ import annotations
 
-import ast
-import operator
 import re
 from collections import Counter
 from collections.abc import Mapping
 from fractions import Fraction
-from functools import cache
 from itertools import combinations, islice, product
 from random import Random
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import TYPE_CHECKING, Any
+
+from tests.support.algebra import Point, Unreadable, evaluated, has_sign, holds, sides
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Iterator, Sequence
+    from collections.abc import Iterable, Iterator, Sequence
 
-    from tests.programs.campaign.asked import Asked, Tables
+    from tests.support.problems.random_problems import Tables
 
-Point: TypeAlias = Mapping[str, Fraction]
-
-_OPERATIONS: dict[type[ast.AST], Callable[..., Any]] = {
-    ast.Add: operator.add,
-    ast.Sub: operator.sub,
-    ast.Mult: operator.mul,
-    ast.Div: operator.truediv,
-    ast.Pow: operator.pow,
-    ast.USub: operator.neg,
-    ast.UAdd: operator.pos,
-}
-_RELATION = re.compile(r"(.*?)\s*(!=|==|>=|<=|>|<)\s*(.*)")
-_COMPARED = {
-    "!=": operator.ne,
-    "==": operator.eq,
-    ">": operator.gt,
-    ">=": operator.ge,
-    "<": operator.lt,
-    "<=": operator.le,
-}
 _NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
 _VALUES = [
     Fraction(p, q) for p, q in ((1, 1), (2, 1), (3, 1), (-1, 1), (-2, 1), (-3, 1), (0, 1), (1, 2), (-3, 2), (5, 3))
 ]
-
-
 #: What an answer holds beside its fields.
 _NOT_FIELDS = {"certificates", "in_convention", "cases", "conditions"}
-
-
-class NotRational(ValueError):
-    """A text that has no rational value: it contains a root, a function, or a name without a value."""
-
-
-@cache
-def _tree(text: str) -> ast.expr:
-    return ast.parse(text.replace("^", "**").strip(), mode="eval").body
-
-
-def value(text: str, point: Point) -> Fraction:
-    """Return the rational value of an expression; raises ZeroDivisionError or NotRational."""
-    try:
-        return _value(_tree(text), point)
-    except SyntaxError as error:
-        raise NotRational(text) from error
-
-
-def _value(node: ast.expr, point: Point) -> Fraction:
-    match node:
-        case ast.Constant(value=int(number)):
-            return Fraction(number)
-        case ast.Name(id=name) if name in point:
-            return point[name]
-        case ast.UnaryOp(op=sign, operand=inner):
-            return Fraction(_OPERATIONS[type(sign)](_value(inner, point)))
-        case ast.BinOp(left=left, op=operation, right=right):
-            found = _OPERATIONS[type(operation)](_value(left, point), _value(right, point))
-            if isinstance(found, Fraction):
-                return found
-    raise NotRational(ast.unparse(node))
-
-
-def holds(relation: str, point: Point) -> bool:
-    """Tell whether a relation of an answer holds at a point."""
-    if relation in {"True", "False"}:
-        return relation == "True"
-    parts = _RELATION.fullmatch(relation)
-    if parts is None:
-        raise NotRational(relation)
-    left, sign, right = parts.groups()
-    return bool(_COMPARED[sign](value(left, point), value(right, point)))
-
-
-def has_sign(number: Fraction, sign: str) -> bool:
-    """Tell whether a number has a declared sign."""
-    match sign:
-        case "positive":
-            return number > 0
-        case "negative":
-            return number < 0
-        case "nonnegative":
-            return number >= 0
-        case "nonpositive":
-            return number <= 0
-        case "nonzero":
-            return number != 0
-    return True
 
 
 # -- the answer at a point ---------------------------------------------------------------------------------------------
@@ -165,14 +80,14 @@ def texts_at(thing: Any, point: Point) -> Any:
 # -- points ------------------------------------------------------------------------------------------------------------
 
 
-def points_for(asked: Asked, most: int = 5) -> Iterator[Point]:
+def points_for(problem: Tables, answer: Tables, most: int = 5) -> Iterator[Point]:
     """Yield points: some anywhere, and one in each pattern of equations that the answer speaks of, as far as found."""
-    signs = asked.problem["symbols"]
+    signs = problem["symbols"]
     if not signs:
         yield {}
         return
-    random = Random(f"points {asked.seed}")  # noqa: S311 - test points, no secrets
-    equations = sorted({side for text in _relations(asked.answer) for side in _sides(text)} | _meetings(asked.answer))
+    random = Random(str(problem))  # noqa: S311 - test points, no secrets
+    equations = sorted({side for text in _relations(answer) for side in _sides(text)} | _meetings(answer))
     seen: Counter[tuple[bool, ...]] = Counter()
     for point in islice(_candidates(signs, equations, random), 60):
         pattern = tuple(_vanishes(equation, point) for equation in equations)
@@ -185,8 +100,8 @@ def points_for(asked: Asked, most: int = 5) -> Iterator[Point]:
 
 def _vanishes(text: str, point: Point) -> bool:
     try:
-        return value(text, point) == 0
-    except (ZeroDivisionError, NotRational):
+        return bool(evaluated(text, point) == 0)
+    except (ZeroDivisionError, Unreadable):
         return False
 
 
@@ -204,8 +119,10 @@ def _meetings(answer: Tables) -> set[str]:
 
 
 def _sides(relation: str) -> list[str]:
-    parts = _RELATION.fullmatch(relation)
-    return [f"({parts.group(1)})-({parts.group(3)})"] if parts else []
+    if relation in {"True", "False"}:
+        return []
+    left, _, right = sides(relation)
+    return [f"({left})-({right})"]
 
 
 def _candidates(signs: Mapping[str, str], equations: Sequence[str], random: Random) -> Iterator[Point]:
@@ -232,8 +149,8 @@ def _candidates(signs: Mapping[str, str], equations: Sequence[str], random: Rand
 def _solved(equation: str, name: str, point: dict[str, Fraction], signs: Mapping[str, str]) -> Iterator[Point]:
     """Yield the point moved along one name to where the equation holds, where that is linear in the name."""
     try:
-        zero, one, two = (value(equation, {**point, name: Fraction(k)}) for k in (0, 1, 2))
-    except (ZeroDivisionError, NotRational):
+        zero, one, two = (evaluated(equation, {**point, name: Fraction(k)}) for k in (0, 1, 2))
+    except (ZeroDivisionError, Unreadable):
         return
     if one != zero and two - one == one - zero:
         found = -zero / (one - zero)

@@ -17,13 +17,12 @@ from dataclasses import dataclass, field
 from random import Random
 from typing import TYPE_CHECKING, Any
 
-from tests.programs.campaign.asked import Asked, Tables, text_of, to_toml
-from tests.programs.campaign.points import NotRational, texts_at
-from tests.programs.campaign.shapes import Shape, zero
+from tests.programs.campaign.points import texts_at
 from tests.programs.campaign.solving import solved
-from tests.programs.campaign.specifications import TASKS, specification
 from tests.programs.strata_oracle.answers import Contradiction, branches, hold, relations
 from tests.programs.strata_oracle.points import points_on
+from tests.support.algebra import Unreadable
+from tests.support.problems.random_problems import TASKS, Shape, Tables, assembled, specification, to_toml, zeros
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -46,14 +45,7 @@ def drawn(seed: int, tasks: Sequence[str] = ()) -> Tables:
         asked: dict[str, Any] | None = {"radius": "2"} if task == "pole_advice" else specification(random, task, shape)
         if not shape.signs or asked is None or (task == "pole_advice" and shape.discrete):
             continue
-        signs = {**shape.signs, **asked.pop("symbols", {})}
-        plant: dict[str, Any] = {letter: text_of(getattr(shape, letter)) for letter in "ABCD"}
-        if not any(entry != "0" for row in shape.D for entry in row):
-            del plant["D"]
-        plant = asked.pop("plant", plant)
-        if shape.discrete:
-            plant["dt"] = True
-        return {"task": task, "symbols": signs, "plant": plant, "specification": asked}
+        return assembled(task, shape, asked)
 
 
 def _shape(random: Random, task: str) -> Shape:
@@ -71,7 +63,7 @@ def _shape(random: Random, task: str) -> Shape:
         ]
 
     A, B, C = table(order, order), table(order, inputs), table(outputs, order)
-    D = table(outputs, inputs) if random.random() < 0.15 else zero(outputs, inputs)
+    D = table(outputs, inputs) if random.random() < 0.15 else zeros(outputs, inputs)
     used = {name for part in (A, B, C, D) for row in part for entry in row for name in names if name in entry}
     return Shape(A, B, C, D, {name: random.choice(_SIGNS) for name in sorted(used)}, random.random() < 0.3)
 
@@ -107,50 +99,49 @@ def examine(seed: int, found: Found, tasks: Sequence[str] = (), seconds: float =
     problem = drawn(seed, tasks)
     task = problem["task"]
     try:
-        asked = solved("strata", seed, problem, seconds)
+        answer = solved(problem, seconds)
     except Exception as error:  # noqa: BLE001 - whatever it is, no caller may see it
         found.counted[task, "crashes"] += 1
         found.wrong.append(f"seed {seed}, {task}: {error!r}")
         return
-    if not isinstance(asked, Asked):
+    if isinstance(answer, str):
         found.counted[task, "given up"] += 1
         return
     found.counted[task, "answers"] += 1
-    for point in points_on(relations(asked.answer), problem["symbols"], most):
-        for kind, said in _judged(asked, point, seconds):
+    for point in points_on(relations(answer), problem["symbols"], most):
+        for kind, said in _judged(problem, answer, point, seconds):
             found.counted[task, kind] += 1
             if said:
                 where = ", ".join(f"{name} = {number}" for name, number in sorted(point.items()))
                 found.wrong.append(f"seed {seed}, {task}, {kind} at {where}: {said}")
 
 
-def _judged(asked: Asked, point: Point, seconds: float) -> Iterator[tuple[str, str]]:
+def _judged(problem: Tables, answer: Tables, point: Point, seconds: float) -> Iterator[tuple[str, str]]:
     """Yield what becomes of a point, and the words for what is wrong."""
-    problem = asked.problem
     at = {**texts_at({key: problem[key] for key in ("plant", "specification")}, point), "symbols": {}}
     at["plant"] |= {key: problem["plant"][key] for key in ("dt",) if key in problem["plant"]}
     try:
-        covering = branches(asked.answer, point)
+        covering = branches(answer, point)
         if covering is None:
             return
-        there = solved("point", asked.seed, {"task": asked.task, **at}, seconds)
-        if not isinstance(there, Asked):
+        there = solved({"task": problem["task"], **at}, seconds)
+        if isinstance(there, str):
             yield "refused there", ""
             return
         yield "points", ""
         if not covering:
-            yield "uncovered", f"no branch holds, and the answer is {there.verdict}"
+            yield "uncovered", f"no branch holds, and the answer is {there['verdict']}"
         decided = [branch for branch in covering if branch.verdict != "undecided"]
         if covering and not decided:
             yield "undecided", ""
-        for branch in decided if there.verdict != "undecided" else ():
+        for branch in decided if there["verdict"] != "undecided" else ():
             try:
-                hold({**problem, **at, "task": asked.task}, point, branch, there.answer)
+                hold({**problem, **at}, point, branch, there)
             except Contradiction as error:
                 raise Contradiction(f"{error}, where {' and '.join(branch.when)[:200] or 'in general'}") from error
     except Contradiction as error:
         yield "contradictions", str(error)[:400]
-    except NotRational:
+    except Unreadable:
         return
 
 

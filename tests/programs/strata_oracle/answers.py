@@ -2,38 +2,29 @@
 
 from __future__ import annotations
 
-from collections import Counter
+import ast
 from dataclasses import dataclass
+from fractions import Fraction
+from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import mpmath
+import sympy
 
-from tests.programs.campaign.asked import is_discrete, rows
-from tests.programs.campaign.branch import CROOT
-from tests.programs.campaign.numbers import (
-    TINY,
-    Ratio,
-    UnreadableError,
-    array,
-    from_roots,
-    polynomial,
-    ratio,
-    real,
-    roots_of,
-    value,
-)
-from tests.programs.campaign.points import NotRational, holds
+from tests.support.algebra import Unreadable, evaluated, holds, is_stable, sides
+from tests.support.problems.random_problems import rows
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
-    from tests.programs.campaign.asked import Tables
-    from tests.programs.strata_oracle.points import Point
+    from tests.support.algebra import Point
+    from tests.support.problems.random_problems import Tables
 
 #: Where functions of the variable are compared, and the time at which functions of time are.
 _PLACES = (mpmath.mpf(13) / 10, mpmath.mpf(-37) / 10)
 _TIME = mpmath.mpf(3) / 10
 _NEAR = mpmath.mpf(10) ** -15
+_FUNCTIONS = {name: getattr(mpmath, name) for name in ("sqrt", "exp", "sin", "cos", "sinh", "cosh")} | {"Abs": abs}
 
 
 @dataclass(frozen=True)
@@ -59,11 +50,10 @@ def relations(answer: Tables) -> Iterator[str]:
 
 
 def _side(relation: str) -> str:
-    for sign in ("!=", "==", ">=", "<=", ">", "<"):
-        if sign in relation:
-            left, right = relation.split(sign)
-            return left if right.strip() == "0" else f"({left})-({right})"
-    return relation
+    if relation in {"True", "False"}:
+        return "1"
+    left, _, right = sides(relation)
+    return left if right.strip() == "0" else f"({left})-({right})"
 
 
 def branches(answer: Tables, point: Point, when: tuple[str, ...] = ()) -> list[Branch] | None:
@@ -106,13 +96,41 @@ class Held:
     """A branch at a point, and the answer of the plant there."""
 
     problem: Tables
-    point: dict[str, Any]
+    point: Point
     said: Tables
     there: Tables
 
     @property
+    def discrete(self) -> bool:
+        return bool(self.problem["plant"].get("dt"))
+
+    @property
     def variable(self) -> str:
-        return "z" if is_discrete(self.problem) else "s"
+        return "z" if self.discrete else "s"
+
+    @cached_property
+    def exact(self) -> dict[str, Any]:
+        return {name: sympy.Rational(number.numerator, number.denominator) for name, number in self.point.items()}
+
+    def value(self, text: object, **more: Any) -> Any:
+        """Return the number that a text is here."""
+        names = {name: mpmath.mpf(number.numerator) / number.denominator for name, number in self.point.items()}
+        roots = {"CRootOf": self._root, "RootSum": self._root_sum}
+        return evaluated(text, {"I": mpmath.j, "pi": mpmath.pi, **names, **more}, _FUNCTIONS | roots, mpmath.mpf)
+
+    def rational(self, text: object) -> Any:
+        """Return a rational function of one variable in SymPy."""
+        tree = ast.walk(ast.parse(text, mode="eval") if isinstance(text, str) else text)  # type: ignore[arg-type]
+        free = {node.id for node in tree if isinstance(node, ast.Name)} - self.point.keys()
+        return evaluated(text, {**self.exact, **{name: sympy.Symbol(name) for name in free}}, number=sympy.Integer)
+
+    def _root(self, polynomial: ast.expr, index: ast.expr) -> Any:
+        return mpmath.mpmathify(sympy.CRootOf(self.rational(polynomial), int(evaluated(index, {}))).evalf(40))
+
+    def _root_sum(self, polynomial: ast.expr, function: ast.Call) -> Any:
+        name, inner = function.args
+        roots = sympy.Poly(self.rational(polynomial)).nroots(n=40, maxsteps=500)
+        return sum(self.value(inner, **{ast.unparse(name): mpmath.mpmathify(root)}) for root in roots)
 
     def same(self, *names: str) -> None:
         """Demand that integers and booleans are the same."""
@@ -120,24 +138,23 @@ class Held:
             if self.said.get(name) != self.there.get(name):
                 raise Contradiction(f"{name} is {self.there.get(name)}, not {self.said.get(name)}")
 
-    def same_matrices(self, *names: str) -> None:
-        """Demand that numbers are the same; what one of them does not hold is not compared."""
+    def same_values(self, *names: str) -> None:
+        """Demand that numbers and functions are the same; what one of them does not hold is not compared."""
         for name in names:
             ours, theirs = (side.get(name) for side in (self.said, self.there))
             if ours is None or theirs is None:
                 continue
-            pairs = zip(_flat(ours), _flat(theirs), strict=False)
-            if len(_flat(ours)) != len(_flat(theirs)) or any(not self._near(a, b) for a, b in pairs):
+            pairs = list(zip(_flat(ours), _flat(theirs), strict=False))
+            if len(_flat(ours)) != len(_flat(theirs)) or not all(self._near(*pair) for pair in pairs):
                 raise Contradiction(f"{name} is {theirs}, not {ours}")
 
     def _near(self, ours: str, theirs: str) -> bool:
-        place = {**self.point, "t": _TIME}
         for s in _PLACES:
             try:
-                there = value(theirs, {**place, self.variable: s})
+                there = self.value(theirs, **{"t": _TIME, self.variable: s})
             except ZeroDivisionError:
                 continue
-            if abs(value(ours, {**place, self.variable: s}) - there) > _NEAR * (1 + abs(there)):
+            if abs(self.value(ours, **{"t": _TIME, self.variable: s}) - there) > _NEAR * (1 + abs(there)):
                 return False
         return True
 
@@ -145,77 +162,52 @@ class Held:
         """Demand that lists of roots are those of the same polynomial."""
         for name in names:
             ours, theirs = self.said.get(name), self.there.get(name)
-            if ours is not None and theirs is not None:
-                self._same_coefficients(name, self._from_roots(ours), self._from_roots(theirs))
-
-    def _from_roots(self, texts: list[str]) -> list[Any]:
-        """Return the polynomial of roots; roots without a closed form come in whole sets, whose product it is."""
-        whole = Counter(match.group(1) for text in texts if (match := CROOT.fullmatch(text)))
-        found = from_roots([value(text, self.point) for text in texts if not CROOT.fullmatch(text)])
-        for text, count in whole.items():
-            once = polynomial(text, self.point, self.variable, monic=True)
-            for _ in range(count // (len(once) - 1)):
-                found = product(found, once)
-        return found
-
-    def same_polynomials(self, *names: str) -> None:
-        """Demand that polynomials are the same."""
-        for name in names:
-            if self.said.get(name) is not None and self.there.get(name) is not None:
-                ours, theirs = (polynomial(side[name], self.point, self.variable) for side in (self.said, self.there))
-                self._same_coefficients(name, ours, theirs)
-
-    def _same_coefficients(self, name: str, ours: list[Any], theirs: list[Any]) -> None:
-        same = len(ours) == len(theirs) and all(
-            abs(a - b) <= _NEAR * (1 + abs(b)) for a, b in zip(ours, theirs, strict=True)
-        )
-        if not same:
-            raise Contradiction(f"{name} is {self.there[name]}, not {self.said[name]}")
+            if ours is None or theirs is None:
+                continue
+            values = [
+                [mpmath.fprod(s - self.value(root) for root in roots) for s in _PLACES] for roots in (ours, theirs)
+            ]
+            if len(ours) != len(theirs) or any(abs(a - b) > _NEAR * (1 + abs(b)) for a, b in zip(*values, strict=True)):
+                raise Contradiction(f"{name} is {theirs}, not {ours}")
 
     def matrix(self, letter: str) -> Any:
         """Return a matrix of the plant, or else of the branch, in numbers."""
         plant = self.problem["plant"]
         table = rows(plant[letter]) if letter in plant else self.said[letter]
-        return mpmath.matrix([[value(entry, self.point) for entry in row] for row in table])
+        return mpmath.matrix([[self.value(entry) for entry in row] for row in table])
 
     def assigns(self, matrix: Any) -> None:
         """Demand that a closed-loop matrix has the polynomial that the plant at the point is given."""
-        wanted = polynomial(self.there["polynomial"], {}, self.variable)
         for place in _PLACES:
             found = mpmath.det(place * mpmath.eye(matrix.rows) - matrix)
-            asked = mpmath.polyval(wanted, place)
+            asked = self.value(self.there["polynomial"], **{self.variable: place})
             if abs(found - asked) > _NEAR * (1 + abs(asked)):
                 raise Contradiction("the closed loop has another polynomial than the one asked for")
 
 
-def product(left: list[Any], right: list[Any]) -> list[Any]:
-    """Return the coefficients of a product of polynomials."""
-    return (Ratio(left) * Ratio(right)).over
-
-
-def _flat(value_: Any) -> list[str]:
-    return [text for each in value_ for text in _flat(each)] if isinstance(value_, list) else [str(value_)]
+def _flat(found: Any) -> list[str]:
+    return [text for each in found for text in _flat(each)] if isinstance(found, list) else [str(found)]
 
 
 def _rank_test(held: Held) -> None:
     held.same("rank")
-    held.same_polynomials("determinant")
+    held.same_values("determinant")
     held.same_roots("unobservable_modes", "uncontrollable_modes")
-    table = array(held.said["matrix"], 0, held.point)
+    table, kernel = held.matrix("matrix"), held.said["kernel"]
     table = table if held.problem["task"] == "observability" else table.T
-    kernel = array(held.said["kernel"], table.shape[1], held.point)
-    if len(kernel) != table.shape[1] - held.there["rank"] or abs(table @ kernel.T).max(initial=0) > 1e-9:
+    vectors = [mpmath.matrix([held.value(entry) for entry in vector]) for vector in kernel]
+    if len(kernel) != table.cols - held.there["rank"] or any(mpmath.norm(table * v) > 1e-9 for v in vectors):
         raise Contradiction("the kernel is another one")
 
 
 def _modes(held: Held) -> None:
-    held.same_polynomials("fixed_polynomial")
+    held.same_values("fixed_polynomial")
 
     def told(side: Tables) -> list[tuple[Any, ...]]:
         flag = "observable" if "observable" in (side["modes"] or [{"observable": 0}])[0] else "controllable"
         found = []
         for mode in side["modes"]:
-            number = mpmath.mpmathify(value(mode["eigenvalue"], held.point))
+            number = mpmath.mpmathify(held.value(mode["eigenvalue"]))
             place = (round(float(number.real), 8) + 0.0, round(float(number.imag), 8) + 0.0)
             found.append((place, mode[flag], mode.get("rank"), mode["stable"]))
         return sorted(found, key=str)
@@ -244,11 +236,11 @@ def _reduced(held: Held) -> None:
     held.same_roots("fixed_modes")
     if held.said.get("L") is None:
         return
-    held.assigns(mpmath.matrix([[value(entry, held.point) for entry in row] for row in held.said["F"]]))
+    held.assigns(held.matrix("F"))
 
 
 def _loop(held: Held) -> None:
-    held.same_polynomials("closed_loop_polynomial", "polynomial")
+    held.same_values("closed_loop_polynomial", "polynomial")
     if held.said.get("F") is None or isinstance(held.said["F"], list):
         return
     if "F_stable" in held.said:
@@ -256,56 +248,37 @@ def _loop(held: Held) -> None:
 
 
 def _stable_compensator(held: Held) -> None:
-    """Demand that F is stable exactly where its poles in lowest terms are, if they are not on the boundary."""
-    said = held.said["F_stable"]
-    said = said if isinstance(said, str) else said.get("verdict")
-    found = ratio(held.said["F"], held.point, held.variable)
-    poles = _lowest_poles(found.over, found.under)
-    outside = [1 - abs(p) if held.variable == "z" else -p.real for p in poles]
-    if any(abs(bar) < _NEAR for bar in outside) or said not in {"yes", "no"}:
-        return
-    if (said == "yes") != all(bar > 0 for bar in outside):
-        raise Contradiction(f"F_stable is {said}, and the poles of F are {[mpmath.nstr(p, 5) for p in poles]}")
-
-
-def _lowest_poles(above: list[Any], below: list[Any]) -> list[Any]:
-    zeros, poles = list(roots_of(above)), list(roots_of(below))
-    if not any(abs(c) > TINY for c in above):
-        return []
-    for zero in zeros:
-        near = min(poles, key=lambda pole: abs(pole - zero), default=None)
-        if near is not None and abs(near - zero) < real(10) ** -8:
-            poles.remove(near)
-    return poles
+    """Demand that F is stable exactly where its poles in lowest terms are."""
+    below = sympy.fraction(sympy.cancel(held.rational(held.said["F"])))[1]
+    poles = sympy.Poly(below, sympy.Symbol(held.variable))
+    stable = is_stable([Fraction(int(c.p), int(c.q)) for c in poles.all_coeffs()], discrete=held.discrete)
+    if held.said["F_stable"] in {"yes", "no"} and (held.said["F_stable"] == "yes") != stable:
+        raise Contradiction(f"F_stable is {held.said['F_stable']}, and the poles of F are the roots of {below}")
 
 
 def _transfer(held: Held) -> None:
-    held.same_matrices("transfer_function")
+    held.same_values("transfer_function")
     held.same_roots("poles", "zeros")
 
 
 def _canonical(held: Held) -> None:
     if held.problem["specification"]["kind"] != "modal":
-        held.same_matrices("A", "B", "C", "D")
-
-
-def _nothing(_held: Held) -> None:
-    """Hold the verdict alone."""
+        held.same_values("A", "B", "C", "D")
 
 
 def _characteristic(held: Held) -> None:
-    held.same_polynomials("polynomial")
+    held.same_values("polynomial")
     held.same_roots("roots")
 
 
 def _decomposition(held: Held) -> None:
     held.same("sizes", "minimal_order")
-    held.same_matrices("transfer_function")
+    held.same_values("transfer_function")
 
 
 def _gramian(held: Held) -> None:
     held.same("rank")
-    held.same_matrices("matrix", "determinant", "finite_sum")
+    held.same_values("matrix", "determinant", "finite_sum")
 
 
 _HELD: dict[str, Callable[[Held], None]] = {
@@ -321,7 +294,7 @@ _HELD: dict[str, Callable[[Held], None]] = {
         "observability_rank", "controllability_rank", "dual_observability_rank", "dual_controllability_rank"
     ),
     "decomposition": _decomposition,
-    "matrix_exponential": lambda held: held.same_matrices("matrix"),
+    "matrix_exponential": lambda held: held.same_values("matrix"),
     "gramian": _gramian,
     "state_feedback": _gain,
     "observer": _gain,
@@ -339,10 +312,11 @@ def hold(problem: Tables, point: Point, branch: Branch, there: Tables) -> None:
     """
     if branch.verdict != there["verdict"]:
         raise Contradiction(f"the verdict is {there['verdict']}, not {branch.verdict}")
-    numbers = {name: real(number.numerator) / number.denominator for name, number in point.items()}
     try:
-        _HELD.get(problem["task"], _nothing)(Held(problem, numbers, branch.fields, there))
+        with mpmath.workdps(50):  # type: ignore[no-untyped-call, unused-ignore]
+            if problem["task"] in _HELD:
+                _HELD[problem["task"]](Held(problem, point, branch.fields, there))
     except ZeroDivisionError as error:
         raise Contradiction(f"a field has no value: {error}") from error
-    except (UnreadableError, NotRational):
+    except Unreadable:
         return

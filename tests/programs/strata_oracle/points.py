@@ -6,14 +6,13 @@ until one is left, whose rational roots are points.
 
 from __future__ import annotations
 
-import ast
 from fractions import Fraction
 from itertools import chain, combinations, islice, product
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 from flint import Ordering, fmpq, fmpq_mpoly_ctx, fmpq_poly
 
-from tests.programs.campaign.points import has_sign
+from tests.support.algebra import evaluated, has_sign
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -37,10 +36,11 @@ class Curves:
         found: dict[str, Any] = {}
         for text in dict.fromkeys(texts):
             try:
-                value = _read(ast.parse(text, mode="eval").body, self)
-            except (ValueError, ZeroDivisionError, SyntaxError):
+                value = evaluated(text, dict(zip(self.names, self.ring.gens(), strict=True)), number=self.ring.constant)
+                factors = value.factor()[1]
+            except (ValueError, TypeError, ArithmeticError):
                 continue
-            for factor, _ in value.factor()[1]:
+            for factor, _ in factors:
                 found.setdefault(str(factor), factor)
         self.curves = [curve for curve in found.values() if len(curve) <= 4 * _TERMS]
 
@@ -115,30 +115,6 @@ def rational_roots(polynomial: Any, place: int) -> list[Fraction]:
 
 def _rational(value: Fraction) -> fmpq:
     return fmpq(value.numerator, value.denominator)
-
-
-def _read(node: ast.expr, curves: Curves) -> Any:
-    match node:
-        case ast.Constant(value=int(number)):
-            return curves.ring.constant(number)
-        case ast.Name(id=name) if name in curves.names:
-            return curves.ring.gen(curves.names.index(name))
-        case ast.UnaryOp(op=ast.USub(), operand=inner):
-            return -_read(inner, curves)
-        case ast.BinOp(left=left, op=ast.Pow(), right=ast.Constant(value=int(power))):
-            return _read(left, curves) ** power
-        case ast.BinOp(left=left, op=operation, right=right):
-            first, second = _read(left, curves), _read(right, curves)
-            match operation:
-                case ast.Add():
-                    return first + second
-                case ast.Sub():
-                    return first - second
-                case ast.Mult():
-                    return first * second
-                case ast.Div() if second.is_constant():
-                    return first / second
-    raise ValueError(ast.unparse(node))
 
 
 def points_on(texts: Iterable[str], signs: Mapping[str, str], most: int) -> list[Point]:

@@ -11,10 +11,7 @@ from typing import TYPE_CHECKING, Any
 from symobs.exact import Factored, Matrix, Scalar
 from symobs.formula.expression import parse_polynomial
 from symobs.system.specification import read_poles
-from tests.support.claims.claims_in_time import FUNCTIONS_OF_TIME
-from tests.support.claims.claims_of_advice import advice_holds
-from tests.support.claims.claims_of_modes import MODES
-from tests.support.independent_algebra.plain import (
+from tests.support.algebra import (
     Point,
     Polynomial,
     Rows,
@@ -22,21 +19,28 @@ from tests.support.independent_algebra.plain import (
     at_number,
     characteristic,
     coefficients_at,
-    faddeev_leverrier,
+    determinant,
+    identity,
+    inverse,
     is_hurwitz,
     is_schur,
     matrix_at,
     multiply,
     observability_rows,
+    plus,
     product,
     random_fraction,
     rank_of,
+    response,
     seeded,
     subtract,
     transposed,
     value_at,
 )
-from tests.support.independent_algebra.plain_fractions import determinant, identity, inverse, plus, times
+from tests.support.claims.claims_in_time import FUNCTIONS_OF_TIME
+from tests.support.claims.claims_of_advice import advice_holds
+from tests.support.claims.claims_of_modes import MODES
+from tests.support.derivations import times
 from tests.support.paths import ROOT
 from tests.support.regions.region_answers import holds as relations_hold
 
@@ -121,16 +125,6 @@ def multiplied_out(poles: tuple[Complex, ...], point: Point) -> Polynomial:
         found = [(u - p, v - q) for (u, v), (p, q) in zip([*found, zero], times_pole, strict=True)]
     assert not any(imaginary for _, imaginary in found), "the poles asked for are closed under conjugation"
     return [real for real, _ in found]
-
-
-def response(A: Rows, B: Rows, C: Rows, s: Fraction) -> Rows:
-    """Return C (sI − A)⁻¹ B at a number s."""
-    chi, adjugates = faddeev_leverrier(A)
-    parts = [multiply(multiply(C, part), B) for part in adjugates]
-    return [
-        [at_number([part[i][j] for part in parts], s) / at_number(chi, s) for j in range(len(B[0]))]
-        for i in range(len(C))
-    ]
 
 
 def beside(*lines: list[Rows]) -> Rows:
@@ -290,7 +284,7 @@ def F_stable_holds(result: Any, at: Setting) -> None:
 def feedforward_holds(result: Any, at: Setting) -> None:
     """Hold F to G F = I for the gain G at rest, and T to its definition; with both gains and no F, G has dependent rows."""
     loop = result.loop
-    if None in (loop.answer["K"], loop.answer["L"]):
+    if not loop.exists:
         assert result.answer["F"] is None
         return
     K = matrix_at(loop.answer["K"], at.point)
@@ -445,7 +439,7 @@ def region_holds(result: Any, at: Setting) -> None:
     ]
     inside = relations_hold(result.stable_if, names)([at.point[name] for name in names])
     stable = [
-        at.is_stable(faddeev_leverrier(shifted(subtract(at.A, part) if part else at.A, boundary))[0])
+        at.is_stable(characteristic(shifted(subtract(at.A, part) if part else at.A, boundary)))
         for part in moved or [[]]
     ]
     assert inside == all(stable)

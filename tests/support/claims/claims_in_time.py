@@ -13,17 +13,29 @@ from typing import TYPE_CHECKING, Any
 from mpmath.calculus.quadrature import GaussLegendre
 
 from symobs.formula.tree import Literal
-from tests.support.claims.claims_of_modes import hidden_polynomial, quotient
-from tests.support.independent_algebra.plain import characteristic, multiply, observability_rows, rank_of, transposed
-from tests.support.independent_algebra.plain_fractions import World, eliminate
-from tests.support.independent_algebra.series import CONTEXT, TOLERANCE, Series, digits
+from tests.support.algebra import (
+    CONTEXT,
+    TOLERANCE,
+    Series,
+    characteristic,
+    determinant,
+    digits,
+    divided,
+    hidden,
+    multiply,
+    observability_rows,
+    plus,
+    rank_of,
+    transposed,
+)
+from tests.support.derivations import World
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from symobs.exact import Matrix, Scalar
+    from tests.support.algebra import Rows
     from tests.support.claims.claims import Setting
-    from tests.support.independent_algebra.plain import Rows
 
 #: Taylor coefficients that are compared: more than the differential equations of both sides have orders.
 _COUNT = 14
@@ -96,7 +108,7 @@ def gramian_holds(result: Any, at: Setting) -> None:
     else:
         assert near(table(W), gramian_of(table(A), table(square), digits_of(world, horizon)))
     if result.fields["determinant"] is not None:
-        product = digits_in(eliminate(W, len(W))[1])
+        product = digits_in(determinant(W))
         difference = digits_of(world, result.fields["determinant"]) - product
         assert abs(difference) <= _FEWER * (1 + abs(product))
 
@@ -114,7 +126,7 @@ def _decays(A: Rows, C: Rows, at: Setting) -> bool:
     """Whether what the output sees decays."""
     whole = characteristic(A)
     is_observable = rank_of(observability_rows(A, C)) == len(A)
-    return at.is_stable(whole if is_observable else quotient(whole, hidden_polynomial(A, C)))
+    return at.is_stable(whole if is_observable else divided(whole, hidden(A, C))[0])
 
 
 def digits_in(value: Any) -> Any:
@@ -147,8 +159,8 @@ def motion(world: World, result: Any, x0: Rows, driven: Matrix | None, start: Fr
         y.append(_convolved(C, x, k))
         rate = _convolved(A, x, k)
         if u is not None:
-            y[k] = _plus(y[k], _convolved(D, u, k))
-            rate = _plus(rate, _convolved(B, u, k))
+            y[k] = plus(y[k], _convolved(D, u, k))
+            rate = plus(rate, _convolved(B, u, k))
         x.append([[entry / Fraction(k + 1) for entry in row] for row in rate])
     return y
 
@@ -156,12 +168,8 @@ def motion(world: World, result: Any, x0: Rows, driven: Matrix | None, start: Fr
 def _convolved(left: list[Rows], right: list[Rows], k: int) -> Rows:
     total = multiply(left[0], right[k])
     for i in range(1, k + 1):
-        total = _plus(total, multiply(left[i], right[k - i]))
+        total = plus(total, multiply(left[i], right[k - i]))
     return total
-
-
-def _plus(left: Rows, right: Rows) -> Rows:
-    return [[a + b for a, b in zip(p, q, strict=True)] for p, q in zip(left, right, strict=True)]
 
 
 def explains(result: Any, world: World, x0: Any, data: tuple[Matrix, Matrix | None], start: Fraction) -> bool:
@@ -175,13 +183,13 @@ def nothing_explains(result: Any, world: World, data: tuple[Matrix, Matrix | Non
     order = result.plant.order
     zero = [[Fraction(0)] for _ in range(order)]
     rest = motion(world, result, zero, data[1], start)
-    right = [row for a, b in zip(taylor(world, data[0], start), rest, strict=True) for row in _plus(a, _times(b, -1))]
+    right = [row for a, b in zip(taylor(world, data[0], start), rest, strict=True) for row in plus(a, _times(b, -1))]
     columns = [
         motion(world, result, [[Fraction(int(i == j))] for i in range(order)], None, start) for j in range(order)
     ]
     left = [[column[k][i][0] for column in columns] for k in range(_COUNT) for i in range(len(columns[0][0]))]
     whole = [row + wanted for row, wanted in zip(left, right, strict=True)]
-    return eliminate(whole, order + 1)[0] > eliminate(left, order)[0]
+    return rank_of(whole) > rank_of(left)
 
 
 def _times(rows: Rows, factor: int) -> Rows:
@@ -252,9 +260,9 @@ def stack_holds(result: Any, at: Setting) -> None:
     for k, block in enumerate(fields["stack"]):
         found = world.value(block)
         assert found == (world.value(m.C) if k == 0 else expected)
-        expected = _plus(multiply(found, world.value(m.A)), world.derivative(Literal(block), "t"))
+        expected = plus(multiply(found, world.value(m.A)), world.derivative(Literal(block), "t"))
         rows += found
-    assert eliminate(rows, len(at.A))[0] == fields["rank"]
+    assert rank_of(rows) == fields["rank"]
     if "t" not in m.A.names | m.C.names:
         assert rows == observability_rows(at.A, at.C)
     if "transition_matrix" in fields:
@@ -289,7 +297,7 @@ def _transition_holds(result: Any, world: World) -> None:
         found = _integral(integrand, digits(end - start), order)
         W = world.value(result.fields["gramian"])
         assert near(table(W), found, _FEWER)
-        product = digits_in(eliminate(W, order)[1])
+        product = digits_in(determinant(W))
         assert abs(digits_of(world, result.fields["determinant"]) - product) <= _FEWER * (1 + abs(product))
     data = asked.output, asked.input
     if asked.output is not None and result.fields["x0"] is not None:
@@ -310,11 +318,11 @@ def response_holds(result: Any, at: Setting) -> None:
     driven = None if u is None else taylor(world, u, start)
     begins = taylor(world, x0, start)[0]
     if result.answer["impulse"] is not None:
-        begins = _plus(begins, multiply(B[0], taylor(world, result.answer["impulse"], start)[0]))
+        begins = plus(begins, multiply(B[0], taylor(world, result.answer["impulse"], start)[0]))
     assert x[0] == begins
     for k in range(_COUNT - 1):
         rate = _convolved(A, x, k)
-        rate = rate if driven is None else _plus(rate, _convolved(B, driven, k))
+        rate = rate if driven is None else plus(rate, _convolved(B, driven, k))
         assert [[entry * Fraction(k + 1) for entry in row] for row in x[k + 1]] == rate
     if result.fields["output"] is not None:
         assert motion(world, result, x[0], u, start) == taylor(world, result.fields["output"], start)

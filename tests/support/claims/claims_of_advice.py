@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
 from symobs.exact import Root
-from tests.support.independent_algebra.plain import faddeev_leverrier, multiply
-from tests.support.independent_algebra.plain_fractions import World
-from tests.support.independent_algebra.series import CONTEXT, digits
+from tests.support.algebra import CONTEXT, characteristic, digits, multiply, subtract
+from tests.support.derivations import World
 
 if TYPE_CHECKING:
+    from fractions import Fraction
+
     from tests.support.claims.claims import Setting
 
 _NEAR = CONTEXT.mpf(10) ** -12
@@ -50,10 +50,8 @@ def value_of(polynomial: list[Any], at: Any) -> Any:
 
 def numerator(at: Setting) -> list[Fraction]:
     """Return C adj(sI − A) B + D det(sI − A)."""
-    chi, adjugates = faddeev_leverrier(at.A)
-    found = [multiply(multiply(at.C, part), at.B)[0][0] for part in adjugates]
-    rest = [Fraction(0)] * (len(chi) - len(found)) + found
-    return [a + at.D[0][0] * c for a, c in zip(rest, chi, strict=True)]
+    chi, moved = characteristic(at.A), characteristic(subtract(at.A, multiply(at.B, at.C)))
+    return [b - a + at.D[0][0] * a for a, b in zip(chi, moved, strict=True)]  # det(sI − A + BC) = χ + C adj(sI − A) B
 
 
 def places(world: World, poles: Any) -> list[Any]:

@@ -5,7 +5,13 @@ from __future__ import annotations
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
-from tests.support.independent_algebra.plain import assignable, characteristic, matrix_at, multiply, subtract
+from tests.support.algebra import (
+    assignable,
+    characteristic,
+    matrix_at,
+    multiply,
+    subtract,
+)
 
 if TYPE_CHECKING:
     from tests.support.claims.claims import Setting

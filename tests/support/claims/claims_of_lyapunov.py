@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from tests.support.independent_algebra.plain import matrix_at, multiply, rank_of, subtract, transposed, value_at
-from tests.support.independent_algebra.plain_fractions import determinant, identity, plus, times
+from tests.support.algebra import determinant, identity, matrix_at, multiply, rank_of, subtract, transposed, value_at
+from tests.support.derivations import plus, times
 
 if TYPE_CHECKING:
+    from tests.support.algebra import Rows
     from tests.support.claims.claims import Setting
-    from tests.support.independent_algebra.plain import Rows
 
 
 def holds(result: Any, at: Setting) -> None:

@@ -5,19 +5,20 @@ from __future__ import annotations
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
-from tests.support.independent_algebra.plain import (
-    Rows,
+from tests.support.algebra import (
     at_number,
     characteristic,
     coefficients_at,
+    hidden,
     matrix_at,
     multiply,
     observability_rows,
+    plus,
     rank_of,
+    response,
     transposed,
     value_at,
 )
-from tests.support.independent_algebra.plain_fractions import plus
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -25,52 +26,10 @@ if TYPE_CHECKING:
     from tests.support.claims.claims import Setting
 
 
-def hidden_polynomial(A: Rows, C: Rows) -> list[Fraction]:
-    """Return the characteristic polynomial of A on ker 𝒪: that of A over that of A on the rows of 𝒪."""
-    rows: Rows = []
-    for row in observability_rows(A, C):
-        if rank_of([*rows, row]) > len(rows):
-            rows.append(row)
-    if not rows:
-        return characteristic(A)
-    seen = characteristic(coordinates(rows, multiply(rows, A)))
-    return quotient(characteristic(A), seen)
-
-
-def coordinates(rows: Rows, images: Rows) -> Rows:
-    """Return Y with Y · rows = images, for independent rows that span the images, by elimination of columns."""
-    table = transposed([*rows, *images])
-    found = [[Fraction(0)] * len(rows) for _ in images]
-    pivots: list[tuple[int, list[Fraction]]] = []
-    for column in range(len(rows)):
-        pivot = next(r for r in table if r[column] and not any(r is used for _, used in pivots))
-        pivot[:] = [x / pivot[column] for x in pivot]
-        for other in table:
-            if other is not pivot and other[column]:
-                factor = other[column]
-                other[:] = [x - factor * y for x, y in zip(other, pivot, strict=True)]
-        pivots.append((column, pivot))
-    for column, pivot in pivots:
-        for k in range(len(images)):
-            found[k][column] = pivot[len(rows) + k]
-    return found
-
-
-def quotient(whole: list[Fraction], part: list[Fraction]) -> list[Fraction]:
-    """Return the exact quotient of monic polynomials."""
-    left, found = list(whole), []
-    while len(left) >= len(part):
-        lead = left[0]
-        found.append(lead)
-        left = [x - lead * (part[k] if k < len(part) else 0) for k, x in enumerate(left)][1:]
-    assert not any(left)
-    return found
-
-
 def modes_hold(result: Any, at: Setting) -> None:
     A, C = at.pair(dual=result.kind == "controllability")
     variable, order = result.plant.variable, len(A)
-    assert coefficients_at(result.fields["fixed_polynomial"], variable, at.point) == hidden_polynomial(A, C)
+    assert coefficients_at(result.fields["fixed_polynomial"], variable, at.point) == hidden(A, C)
     modes = result.fields["modes"]
     assert len(modes) == order
     seen = "observable" if result.kind == "observability" else "controllable"
@@ -88,7 +47,7 @@ def modes_hold(result: Any, at: Setting) -> None:
 def detectability_holds(result: Any, at: Setting) -> None:
     modes_hold(result, at)
     A, C = at.pair(dual=result.kind == "controllability")
-    stable = at.is_stable(hidden_polynomial(A, C))
+    stable = at.is_stable(hidden(A, C))
     if result.meaning == "lyapunov" and not stable:
         return  # decided by hand in `test_modes`
     if result.hidden.verdict in {"yes", "no"}:
@@ -134,7 +93,7 @@ def decomposition_holds(result: Any, at: Setting) -> None:
             assert not (entry and leads_out)
     assert not any(any(B[i]) for i in range(len(A)) if kind[i] in {2, 3})
     assert not any(row[j] for row in C for j in range(len(A)) if kind[j] in {1, 3})
-    from tests.support.claims.claims import response, table_at  # noqa: PLC0415 - the two modules belong together
+    from tests.support.claims.claims import table_at  # noqa: PLC0415 - the two modules belong together
 
     for s in at.probes:
         if at_number(characteristic(at.A), s):

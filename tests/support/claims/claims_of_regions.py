@@ -5,17 +5,17 @@ from __future__ import annotations
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
-from tests.support.independent_algebra.plain import value_at
-from tests.support.independent_algebra.region_roots import compare, value
-from tests.support.independent_algebra.regions_in_plain_fractions import in_w, is_stable, moved_at, points, table_at
+from tests.support.algebra import is_stable, value_at
 from tests.support.regions.region_answers import from_json, holds, in_cells, in_intervals
+from tests.support.regions.region_facts import in_w, moved_at, points, table_at
+from tests.support.regions.region_roots import compare, value
 from tests.support.regions.region_texts import bound, expression
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from symobs.tasks.analysis.stability_region.stability_region import StabilityRegion
-    from tests.support.independent_algebra.plain import Point
+    from tests.support.algebra import Point
 
 #: Half of the last digit that is shown.
 _HALF = Fraction(51, 10**8)

@@ -4,20 +4,23 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from tests.support.independent_algebra.plain import (
+from tests.support.algebra import (
     assignable,
     characteristic,
+    identity,
+    independent,
+    inverse,
     matrix_at,
     multiply,
+    plus,
     rank_of,
     subtract,
     transposed,
 )
-from tests.support.independent_algebra.plain_fractions import identity, inverse, plus
 
 if TYPE_CHECKING:
+    from tests.support.algebra import Rows
     from tests.support.claims.claims import Setting
-    from tests.support.independent_algebra.plain import Rows
 
 
 def holds(result: Any, at: Setting) -> None:
@@ -53,12 +56,3 @@ def without_disturbance(at: Setting, E: Rows) -> Rows:
     chosen = [seen.index(row) for row in independent(seen)]
     through = multiply(inverse([seen[i] for i in chosen]), [at.C[i] for i in chosen])
     return subtract(at.A, multiply(multiply(E, through), at.A))
-
-
-def independent(rows: Rows) -> Rows:
-    """Return rows that are independent, as many as there are."""
-    found: Rows = []
-    for row in rows:
-        if rank_of([*found, row]) > len(found):
-            found.append(row)
-    return found

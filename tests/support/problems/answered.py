@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import random
+
 import sympy as sp
 
 S = sp.Symbol("s")
@@ -71,3 +73,49 @@ def text(matrix: sp.Matrix) -> str:
 K = feedback_gain(A, B, polynomial(CONTROL))
 L = observer_gain(A, C, polynomial(OBSERVER))
 F = sp.cancel((K * (S * sp.eye(3) - A + B * K + L * C).inv() * L)[0])
+
+
+def answers(count: int, seed: str = "a class") -> list[dict[str, str]]:
+    """What a class hands in: a third all right, slips of the usual kinds, F from wrong gains, nonsense."""
+    draw, made = random.Random(seed), []  # noqa: S311 - repeatable by design
+    for number in range(count):
+        gain, feedback = L.copy(), K.copy()
+        match draw.randrange(9):
+            case 0:
+                gain = -gain
+            case 1:
+                gain[draw.randrange(3)] += draw.choice([-2, -1, 1, 3])
+            case 2:
+                feedback[draw.randrange(3)] += draw.choice([-1, 1])
+            case 3:
+                gain = sp.Matrix([draw.randrange(-50, 51) for _ in range(3)])
+            case 4:
+                feedback, gain = feedback * 2, gain / 2
+            case _:
+                pass
+        follows = draw.random() < 0.7
+        found = sp.cancel((feedback * (S * sp.eye(3) - A + B * feedback + gain * C).inv() * gain)[0]) if follows else F
+        made.append({"student": f"s{number:03d}", "K": text(feedback), "L": text(gain), "F": str(found)})
+    return made
+
+
+def lines(answer: dict[str, str], number: int) -> str:
+    """A derivation of twelve lines, with an error in some."""
+    rank = "3" if number % 4 else "2"
+    shift = "+ 1" if number % 3 == 0 else ""
+    return "\n".join(
+        [
+            "C A = [1 1 3]",
+            "C A^2 = [4 1 9]" if number % 5 else "C A^2 = [4 1 8]",
+            f"rank([C; C*A; C*A^2]) = {rank}",
+            f"det(s I - A) = {sp.expand(A.charpoly(S).as_expr())} {shift}",
+            f"K = {answer['K']}",
+            f"L = {answer['L']}",
+            "det(s I - A + B K) = (s + 1)(s + 2)(s + 4)",
+            "det(s I - A + L C) = (s + 5)(s + 6)(s + 7)",
+            "A - B K = A - (B K)",
+            "eigenvalues(A - B K) = [-1, -2, -4]",
+            f"F = {answer['F']}",
+            "det(s I - A + B K) = s^3 + 7 s^2 + 14 s + 8",
+        ]
+    )

@@ -7,26 +7,27 @@ from __future__ import annotations
 
 import random
 from dataclasses import dataclass, field, replace
+from functools import cache
 from typing import TYPE_CHECKING, Any
 
 import sympy
 from sympy import Matrix, Rational, cos, exp, sin, sqrt, symbols
 
 from tests.support.problems.problems_by_hand import (
-    b,
+    IN_TIME,
+    TASKS,
     characteristic,
     fixed,
     observability_matrix,
-    omega,
     response,
     s,
-    servo,
 )
+from tests.support.problems.second_reading import given
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
-t, t0, T, sigma, x10, x20, q, r, a = symbols("t t0 T sigma x10 x20 q r a")
+t, t0, T, sigma, x10, x20, a, b = symbols("t t0 T sigma x10 x20 a b")
 
 
 def exponential(A: Any, time: Any) -> Any:
@@ -215,78 +216,23 @@ class InTime:
             yield {k: -v if self.signs[str(k)] == "real" and chance.random() < 0.5 else v for k, v in point.items()}
 
 
-tank = {"A": Matrix([[Rational(-1, 25), Rational(1, 100)], [Rational(1, 25), Rational(-1, 25)]])}
-tank |= {"B": Matrix([1, 0]), "C": Matrix([[0, 1]])}
-plain = {"T": "positive"}
-states = plain | {"x10": "real", "x20": "real"}
+#: The examples in functions of time.
+NAMES_IN_TIME = [name for name, tasks in TASKS.items() if {*tasks} & IN_TIME]
 
-PROBLEMS_IN_TIME = {
-    "servo_gramian": InTime(servo["A"], servo["C"], signs=plain),
-    "third_order_gramian": InTime(Matrix([[0, -1, 0], [1, 0, 1], [0, 0, 0]]), Matrix([[1, 0, 0]]), signs=plain),
-    "third_order_gramian_period": InTime(
-        Matrix([[0, -1, 0], [1, 0, 1], [0, 0, 0]]), Matrix([[1, 0, 0]]), horizon=2 * sympy.pi
-    ),
-    "double_integrator_error": InTime(Matrix([[-3, 1], [-2, 0]]), Matrix([[1, 0]])),
-    "third_order_plant_gramian": InTime(
-        Matrix([[-7, 1, 15], [-2, 0, 5], [-2, 0, 4]]), Matrix([[1, 0, -2]]), horizon=sympy.oo
-    ),
-    "dual_gramian": InTime(Matrix([[0, 1], [0, 0]]), Matrix([[1, 0]]), signs=plain),
-    "hidden_state_gramian": InTime(sympy.diag(-1, 1), Matrix([[0, 1]]), signs=plain),
-    "pendulum_gramian": InTime(
-        Matrix([[0, 1], [-(omega**2), -b]]),
-        Matrix([[0, 1]]),
-        signs={"omega": "positive", "b": "nonnegative", "T": "positive"},
-    ),
-    "pendulum_overdamped_gramian": InTime(Matrix([[0, 1], [-2, -3]]), Matrix([[0, 1]]), signs=plain),
-    "tanks": InTime(**tank, horizon=sympy.oo),
-    "tanks_initial_state": InTime(
-        **tank,
-        signs=states,
-        input=Matrix([Rational(3, 10)]),
-        output=Matrix([10 + (x10 + x20 / 2 - 15) * exp(-t / 50) + (-x10 + x20 / 2 + 5) * exp(-3 * t / 50)]),
-        x0=Matrix([x10, x20]),
-    ),
-    "step_response": InTime(
-        Matrix([[0, 1], [-2, -3]]),
-        Matrix([[1, 0]]),
-        Matrix([0, 1]),
-        input=Matrix([1]),
-        x0=Matrix([0, 0]),
-        moves=True,
-    ),
-    "impulse_response": InTime(
-        Matrix([[0, 1], [-1, Rational(-1, 5)]]),
-        Matrix([[1, 0]]),
-        Matrix([0, 1]),
-        input=Matrix([0]),
-        x0=Matrix([0, 1]),
-        moves=True,
-    ),
-    "zero_order_hold": InTime(Matrix([[-1, 0], [1, 0]]), Matrix([[0, 1]]), Matrix([1, 0]), signs=plain, is_held=True),
-    "servo_initial_state": InTime(
-        **servo,
-        signs=states,
-        input=Matrix([1]),
-        output=Matrix([x10 + x20 * (1 - exp(-t)) + t - 1 + exp(-t)]),
-        x0=Matrix([x10, x20]),
-    ),
-    "double_integrator_noise": InTime(
-        Matrix([[0, 1], [0, 0]]),
-        Matrix([[1, 0]]),
-        Matrix([0, 1]),
-        signs={"q": "positive", "r": "positive", "T": "positive"},
-        Q=q,
-        R=r,
-    ),
-    "lag_noise": InTime(
-        Matrix([[-a]]),
-        Matrix([[1]]),
-        Matrix([[1]]),
-        signs={"a": "positive", "q": "positive", "r": "positive", "T": "positive"},
-        Q=q,
-        R=r,
-    ),
-}
+
+@cache
+def in_time(name: str) -> InTime:
+    """Return a worked example by hand."""
+    found = given(name)
+    tasks = {*found["tasks"]}
+    more: dict[str, Any] = {"moves": "response" in tasks, "is_held": "zero_order_hold" in tasks}
+    more |= {"C": Matrix([[1, 0]])} if "C" not in found else {}
+    if more["moves"]:  # from rest; an impulse leaves the state B
+        impulse = "input" not in found
+        more |= {"x0": found["B"] if impulse else 0 * found["B"], "input": Matrix([0]) if impulse else found["input"]}
+    elif "output" in found:
+        more |= {"x0": Matrix([x10, x20])}
+    return InTime(**{key: value for key, value in found.items() if key in InTime.__dataclass_fields__} | more)
 
 
 # -- plants in which the time stands -----------------------------------------------------------------------------------

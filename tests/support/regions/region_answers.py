@@ -9,14 +9,14 @@ from dataclasses import dataclass, field
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
-from tests.support.independent_algebra.region_algebra import All, Membership, sign_holds
-from tests.support.independent_algebra.region_roots import UndefinedError, compare, sign
+from tests.support.regions.region_algebra import All, Membership, sign_holds
+from tests.support.regions.region_roots import UndefinedError, compare, sign
 from tests.support.regions.region_texts import Binary, Relation, UnreadableError, bound, rational_formula, statement
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
-    from tests.support.independent_algebra.region_algebra import Formula
+    from tests.support.regions.region_algebra import Formula
     from tests.support.regions.region_problem import Problem
     from tests.support.regions.region_texts import Node
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
-from tests.programs.benchmarks import qepcad
-from tests.support.independent_algebra.region_algebra import All, Atom, Polynomial
+from tests.support.regions import qepcad
+from tests.support.regions.region_algebra import All, Atom, Polynomial
 from tests.support.regions.region_answers import holds, in_cells, in_intervals
 from tests.support.regions.region_points import Oracle, Points
 from tests.support.regions.region_proofs import Proof, cell_right, nothing_in, same_intervals, same_relations
@@ -15,7 +15,7 @@ from tests.support.regions.region_texts import UnreadableError
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from tests.support.independent_algebra.region_algebra import Formula
+    from tests.support.regions.region_algebra import Formula
     from tests.support.regions.region_answers import Answer
     from tests.support.regions.region_points import Point
     from tests.support.regions.region_problem import Problem

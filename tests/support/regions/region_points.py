@@ -1,8 +1,4 @@
-"""Single points of a region: where the roots lie, without Routh, Hurwitz or Jury, and points worth asking about.
-
-The roots are enclosed by balls (Arb, certified).  Where a ball meets the boundary, the boundary is looked at exactly: the
-real roots y of gcd(Re p(iy), Im p(iy)) are counted by Sturm's theorem; for |z| < 1, p((1 + iy)/(1 − iy))(1 − iy)ⁿ takes the
-place of p(iy), and p(−1) is asked beside it.  Where no root lies on the boundary the balls are made smaller.
+"""Single points of a region: where the roots lie, and points worth asking about.
 
 Points are drawn uniformly, with small denominators, far out, on the critical curves (exactly), and very near to them.
 """
@@ -12,22 +8,21 @@ from __future__ import annotations
 import random
 from fractions import Fraction
 from functools import lru_cache
-from math import gcd
 from typing import TYPE_CHECKING, Any, TypeAlias
 
-from flint import Ordering, acb, arb, ctx, fmpq, fmpq_mpoly_ctx, fmpz_poly
+from flint import Ordering, fmpq, fmpq_mpoly_ctx
 
-from tests.support.independent_algebra.region_algebra import Polynomial, Signs, bilinear, hurwitz_determinants
-from tests.support.independent_algebra.region_roots import count_real_roots, gcd_of, primitive, real_roots
+from tests.support.algebra import is_stable
+from tests.support.regions.region_algebra import Polynomial, Signs, bilinear, hurwitz_determinants
+from tests.support.regions.region_roots import primitive, real_roots
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
-    from tests.support.independent_algebra.region_roots import Root
     from tests.support.regions.region_problem import Problem
+    from tests.support.regions.region_roots import Root
 
 Point: TypeAlias = tuple[Fraction, ...]
-_PRECISIONS = (53, 128, 512, 2048, 8192)
 
 
 # -- where the roots lie --------------------------------------------------------------------------------------------
@@ -35,72 +30,7 @@ _PRECISIONS = (53, 128, 512, 2048, 8192)
 
 def stable_at(coefficients: Sequence[int], *, discrete: bool) -> bool:
     """Tell whether a polynomial (highest power first) keeps its degree and has its roots in Re s < 0 (|z| < 1)."""
-    if not coefficients[0]:
-        return False
-    if len(coefficients) == 1:
-        return True
-    common = gcd(*coefficients)
-    polynomial = [c // common for c in coefficients]
-    before, asked = ctx.prec, False
-    try:
-        for precision in _PRECISIONS:
-            ctx.prec = precision
-            seen = _seen(polynomial, discrete=discrete)
-            if seen is not None:
-                return seen
-            if not asked:
-                asked = True
-                if on_boundary(polynomial, discrete=discrete):
-                    return False
-    finally:
-        ctx.prec = before
-    raise ArithmeticError(f"the roots of {polynomial} are not separated from the boundary")
-
-
-def _seen(polynomial: Sequence[int], *, discrete: bool) -> bool | None:
-    """Return what the balls say: all inside, one outside, or nothing."""
-    sure = True
-    roots: Any = fmpz_poly(list(reversed(polynomial))).complex_roots()
-    for root, _ in roots:
-        size = _size(root, discrete=discrete)
-        if size > 0:
-            return False
-        if not size < 0:
-            sure = False
-    return True if sure else None
-
-
-def _size(root: acb, *, discrete: bool) -> arb:
-    """Return a number that is negative exactly for a stable root (`arb ** 2` knows no ball around 0)."""
-    return root.real * root.real + root.imag * root.imag - 1 if discrete else root.real
-
-
-def on_boundary(coefficients: Sequence[int], *, discrete: bool) -> bool:
-    """Tell whether a root lies on the imaginary axis (the unit circle)."""
-    order = len(coefficients) - 1
-    real, imaginary = [0] * (order + 1), [0] * (order + 1)  # of powers of y, the lowest first
-    for k, c in enumerate(reversed(coefficients)):
-        for power, (a, b) in enumerate(_circle(k, order) if discrete else _axis(k)):
-            real[power] += c * a
-            imaginary[power] += c * b
-    if discrete and sum(c * (-1) ** k for k, c in enumerate(coefficients)) == 0:
-        return True
-    common = gcd_of(real[::-1], imaginary[::-1])
-    return not common or count_real_roots(common) > 0
-
-
-def _axis(k: int) -> list[tuple[int, int]]:
-    """Return (iy)ᵏ by powers of y, as real and imaginary parts."""
-    return [(0, 0)] * k + [[(1, 0), (0, 1), (-1, 0), (0, -1)][k % 4]]
-
-
-def _circle(k: int, order: int) -> list[tuple[int, int]]:
-    """Return (1 + iy)ᵏ (1 − iy)ⁿ⁻ᵏ by powers of y."""
-    found = [(1, 0)]
-    for sign in [1] * k + [-1] * (order - k):
-        moved = [(0, 0), *((-sign * b, sign * a) for a, b in found)]
-        found = [(a + c, b + d) for (a, b), (c, d) in zip([*found, (0, 0)], moved, strict=True)]
-    return found
+    return is_stable([Fraction(c) for c in coefficients], discrete=discrete)
 
 
 class Oracle:

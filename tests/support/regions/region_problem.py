@@ -10,13 +10,19 @@ from dataclasses import dataclass, field
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
-from tests.support.independent_algebra.region_algebra import Polynomial, bilinear, scaled, shifted, stable_where
+from tests.support.regions.region_algebra import (
+    Polynomial,
+    bilinear,
+    scaled,
+    shifted,
+    stable_where,
+)
 from tests.support.regions.region_texts import polynomial
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from tests.support.independent_algebra.region_algebra import Formula
+    from tests.support.regions.region_algebra import Formula
 
 
 @dataclass(frozen=True)

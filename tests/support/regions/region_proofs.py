@@ -11,15 +11,23 @@ from typing import TYPE_CHECKING, Any
 
 import z3  # type: ignore[import-untyped, unused-ignore]
 
-from tests.programs.benchmarks import other_systems, qepcad
-from tests.support.independent_algebra.region_algebra import All, Atom, Some, difference, names_of, opposite
+from tests.programs.benchmarks import other_systems
+from tests.support.regions import qepcad
+from tests.support.regions.region_algebra import (
+    All,
+    Atom,
+    Some,
+    difference,
+    names_of,
+    opposite,
+)
 from tests.support.regions.region_texts import Name, expression
 from tests.support.regions.region_translation import Translation, between, conjunction, union
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from tests.support.independent_algebra.region_algebra import Formula, Polynomial
+    from tests.support.regions.region_algebra import Formula, Polynomial
     from tests.support.regions.region_answers import Answer, Cell
     from tests.support.regions.region_problem import Problem
 

@@ -1,22 +1,32 @@
 """Reading what describes a region: polynomials, bounds, relations, and the formulas that QEPCAD prints.
 
 One grammar for `19*s/4 + h1**2`, `2 h1^2 h2 - 1 > 0`, `sqrt(h1 + 1)`, `CRootOf(x**3 - x - 1, 0)`, and for `/\\`, `\\/`, `~`
-and brackets around relations.  Written without symobs and without SymPy.
+and brackets around relations: it is brought to Python's, whose parser reads it.
 """
 
 from __future__ import annotations
 
+import ast
 import re
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TYPE_CHECKING, Any, TypeAlias
 
-from tests.support.independent_algebra.region_algebra import FALSE, TRUE, All, Atom, Not, Polynomial, Some
+from tests.support.algebra import Unreadable, parsed
+from tests.support.regions.region_algebra import (
+    FALSE,
+    TRUE,
+    All,
+    Atom,
+    Not,
+    Polynomial,
+    Some,
+)
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Collection
+    from collections.abc import Collection
 
-    from tests.support.independent_algebra.region_algebra import Formula
+    from tests.support.regions.region_algebra import Formula
 
 
 class UnreadableError(ValueError):
@@ -85,157 +95,90 @@ class NotOf:
     part: Statement
 
 
-_TOKEN = re.compile(r"\s*(?:(\d+(?:\.\d+)?)|([A-Za-z_]\w*)|(/\\|\\/|\*\*|[=!<>/]=|[-+*/^()\[\],<>=~]))")
-_RELATIONS = {">": ">", ">=": ">=", "=": "=", "==": "=", "!=": "!=", "/=": "!=", "<": "<", "<=": "<="}
+_OPERATORS = {ast.Add: "+", ast.Sub: "-", ast.Mult: "*", ast.Div: "/"}
+_RELATIONS = {ast.Gt: ">", ast.GtE: ">=", ast.Eq: "=", ast.NotEq: "!=", ast.Lt: "<", ast.LtE: "<="}
 _FUNCTIONS = {"sqrt": "sqrt", "abs": "Abs", "Abs": "Abs", "CRootOf": "CRootOf", "rootof": "CRootOf"}
 _ARGUMENTS = {"sqrt": (1,), "Abs": (1,), "CRootOf": (2, 3)}
+#: What is written otherwise in Python: factors beside each other, then signs and words.
+_IN_PYTHON: list[tuple[str, Any]] = [
+    (r"\[", "("),
+    (r"\]", ")"),
+    (r"(?<=[\w)])\s+(?=[\w(])|(?<=\))(?=[\w(])|(?<=\b\d)(?=[A-Za-z(])", "*"),
+    (r"/\\", " and "),
+    (r"\\/", " or "),
+    (r"~", " not "),
+    (r"/=", "!="),
+    (r"(?<![<>!=])=(?!=)", "=="),
+    (r"\b(TRUE|FALSE)\b", lambda found: found[1].capitalize()),
+]
 
 
-class _Reader:
-    def __init__(self, text: str) -> None:
-        self.text, self.place = text, 0
-        self.tokens: list[str] = []
-        place, text = 0, text.rstrip()
-        while place < len(text):
-            match = _TOKEN.match(text, place)
-            if match is None:
-                raise UnreadableError(f"{text!r} at {text[place : place + 20]!r}")
-            self.tokens.append(match.group().strip())
-            place = match.end()
+def _read(text: str) -> Node | Statement:
+    written = text.strip()
+    for pattern, other in _IN_PYTHON:
+        written = re.sub(pattern, other, written)
+    try:
+        return _node(parsed(written))
+    except Unreadable as error:
+        raise UnreadableError(text) from error
 
-    @property
-    def next(self) -> str:
-        return self.tokens[self.place] if self.place < len(self.tokens) else ""
 
-    def take(self) -> str:
-        self.place += 1
-        return self.tokens[self.place - 1]
+def _node(tree: ast.expr) -> Node | Statement:
+    match tree:
+        case ast.Constant(value=bool(known)):
+            return AllOf(()) if known else SomeOf(())
+        case ast.Constant(value=int() | float() as number):
+            return Number(Fraction(str(number)))
+        case ast.Name(id=name):
+            return Name(name)
+        case ast.UnaryOp(op=ast.USub(), operand=inner):
+            return Binary("-", Number(Fraction(0)), _expression(inner))
+        case ast.UnaryOp(op=ast.UAdd(), operand=inner):
+            return _expression(inner)
+        case ast.UnaryOp(op=ast.Not(), operand=inner):
+            return NotOf(_statement(inner))
+        case ast.BoolOp(op=ast.And(), values=parts):
+            return AllOf(tuple(map(_statement, parts)))
+        case ast.BoolOp(values=parts):
+            return SomeOf(tuple(map(_statement, parts)))
+        case ast.Compare(left=first, ops=signs, comparators=others):
+            members = [_expression(member) for member in (first, *others)]
+            found = [
+                Relation(*part)
+                for part in zip(members, (_RELATIONS[type(s)] for s in signs), members[1:], strict=False)
+            ]
+            return found[0] if len(found) == 1 else AllOf(tuple(found))
+        case ast.BinOp(left=base, op=ast.Pow(), right=power):
+            exponent = rational(_expression(power))
+            if exponent.denominator == 1:
+                return Power(_expression(base), int(exponent))
+            if exponent.denominator == 2:
+                return Power(Call("sqrt", (_expression(base),)), exponent.numerator)
+        case ast.BinOp(left=left, op=sign, right=right) if type(sign) in _OPERATORS:
+            return Binary(_OPERATORS[type(sign)], _expression(left), _expression(right))
+        case ast.Call(func=ast.Name(id=name), args=arguments) if name in _FUNCTIONS:
+            if len(arguments) in _ARGUMENTS[_FUNCTIONS[name]]:
+                return Call(_FUNCTIONS[name], tuple(map(_expression, arguments)))
+    raise UnreadableError(ast.unparse(tree))
 
-    def skip(self, token: str) -> None:
-        if self.next != token:
-            raise UnreadableError(f"{self.text!r}: {token!r} expected, {self.next!r} found")
-        self.place += 1
 
-    # relations and their combinations
+def _expression(tree: ast.expr) -> Node:
+    found = _node(tree)
+    if isinstance(found, (Relation, AllOf, SomeOf, NotOf)):
+        raise UnreadableError(ast.unparse(tree))
+    return found
 
-    def statement(self) -> Statement:
-        parts = [self.conjunction()]
-        while self.next == "\\/":
-            self.take()
-            parts.append(self.conjunction())
-        return parts[0] if len(parts) == 1 else SomeOf(tuple(parts))
 
-    def conjunction(self) -> Statement:
-        parts = [self.unit()]
-        while self.next == "/\\":
-            self.take()
-            parts.append(self.unit())
-        return parts[0] if len(parts) == 1 else AllOf(tuple(parts))
-
-    def unit(self) -> Statement:
-        if self.next == "~":
-            self.take()
-            return NotOf(self.unit())
-        if self.next == "[":
-            self.take()
-            inside = self.statement()
-            self.skip("]")
-            return inside
-        if self.next.upper() in {"TRUE", "FALSE"}:
-            return AllOf(()) if self.take().upper() == "TRUE" else SomeOf(())
-        left = self.sum()
-        found: list[Statement] = []
-        while self.next in _RELATIONS:
-            op = _RELATIONS[self.take()]
-            right = self.sum()
-            found.append(Relation(left, op, right))
-            left = right
-        if not found:
-            raise UnreadableError(f"{self.text!r}: a relation expected before {self.next!r}")
-        return found[0] if len(found) == 1 else AllOf(tuple(found))
-
-    # expressions
-
-    def sum(self) -> Node:
-        sign = self.take() if self.next in {"+", "-"} else "+"
-        total = self.product()
-        total = Binary("-", Number(Fraction(0)), total) if sign == "-" else total
-        while self.next in {"+", "-"}:
-            total = Binary(self.take(), total, self.product())
-        return total
-
-    def product(self) -> Node:
-        total = self.power()
-        while True:
-            if self.next in {"*", "/"}:
-                total = Binary(self.take(), total, self.signed_power())
-            elif self.next == "(" or self.next[:1].isalnum():
-                total = Binary("*", total, self.power())
-            else:
-                return total
-
-    def signed_power(self) -> Node:
-        if self.next == "-":
-            self.take()
-            return Binary("-", Number(Fraction(0)), self.power())
-        return self.power()
-
-    def power(self) -> Node:
-        base = self.primary()
-        if self.next not in {"^", "**"}:
-            return base
-        self.take()
-        exponent = self.exponent()
-        if exponent.denominator == 1:
-            return Power(base, int(exponent))
-        if exponent.denominator == 2:
-            return Power(Call("sqrt", (base,)), exponent.numerator)
-        raise UnreadableError(f"{self.text!r}: exponent {exponent}")
-
-    def exponent(self) -> Fraction:
-        if self.next == "(":
-            self.take()
-            value = rational(self.sum())
-            self.skip(")")
-        else:
-            value = rational(self.signed_power())
-        return value
-
-    def primary(self) -> Node:
-        if self.next == "(":
-            self.take()
-            inside = self.sum()
-            self.skip(")")
-            return inside
-        token = self.take() if self.next else ""
-        if token[:1].isdigit():
-            return Number(Fraction(token))
-        if not re.fullmatch(r"[A-Za-z_]\w*", token):
-            raise UnreadableError(f"{self.text!r}: {token!r} begins no expression")
-        if token not in _FUNCTIONS or self.next != "(":
-            return Name(token)
-        self.take()
-        arguments = [self.sum()]
-        while self.next == ",":
-            self.take()
-            arguments.append(self.sum())
-        self.skip(")")
-        function = _FUNCTIONS[token]
-        if len(arguments) not in _ARGUMENTS[function]:
-            raise UnreadableError(f"{self.text!r}: {token} with {len(arguments)} arguments")
-        return Call(function, tuple(arguments))
-
-    def whole(self, read: Callable[[], Node | Statement]) -> Node | Statement:
-        found = read()
-        if self.next:
-            raise UnreadableError(f"{self.text!r}: {self.next!r} is left over")
-        return found
+def _statement(tree: ast.expr) -> Statement:
+    found = _node(tree)
+    if not isinstance(found, (Relation, AllOf, SomeOf, NotOf)):
+        raise UnreadableError(ast.unparse(tree))
+    return found
 
 
 def expression(text: str) -> Node:
     """Read an expression."""
-    reader = _Reader(text)
-    found = reader.whole(reader.sum)
+    found = _read(text)
     if isinstance(found, (Relation, AllOf, SomeOf, NotOf)):
         raise UnreadableError(text)
     return found
@@ -268,8 +211,7 @@ def bound(text: str, names: Collection[str]) -> Node | None:
 
 def statement(text: str) -> Statement:
     """Read relations joined by and, or, not."""
-    reader = _Reader(text)
-    found = reader.whole(reader.statement)
+    found = _read(text)
     if not isinstance(found, (Relation, AllOf, SomeOf, NotOf)):
         raise UnreadableError(text)
     return found

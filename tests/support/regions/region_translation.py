@@ -11,8 +11,15 @@ from dataclasses import dataclass, field
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
-from tests.support.independent_algebra.region_algebra import FALSE, All, Atom, Polynomial, Some, opposite
-from tests.support.independent_algebra.region_roots import UndefinedError, root_of
+from tests.support.regions.region_algebra import (
+    FALSE,
+    All,
+    Atom,
+    Polynomial,
+    Some,
+    opposite,
+)
+from tests.support.regions.region_roots import UndefinedError, root_of
 from tests.support.regions.region_texts import (
     AllOf,
     Binary,
@@ -33,7 +40,7 @@ from tests.support.regions.region_texts import (
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Sequence
 
-    from tests.support.independent_algebra.region_algebra import Formula
+    from tests.support.regions.region_algebra import Formula
     from tests.support.regions.region_texts import Node, Statement
 
 

@@ -23,26 +23,23 @@ from symobs.tasks.analysis.stability_region.stability_region import StabilityReg
 from symobs.tasks.design.compensator.compensator import CompensatorDesign
 from symobs.tasks.design.gain.gain_design import GainDesign
 from symobs.tasks.design.reference.tracking import TrackingDesign
-from tests.support.claims.claims import HOLDS, Setting
-from tests.support.claims.claims_in_time import FUNCTIONS_OF_TIME
-from tests.support.independent_algebra.plain import (
+from tests.support.algebra import (
+    determinant,
     divides,
     hidden,
+    identity,
+    inverse,
+    is_stable,
     multiply,
     observability_rows,
     rank_of,
     transposed,
     value_at,
 )
-from tests.support.independent_algebra.plain_fractions import World, determinant, identity, inverse, plus, times
-from tests.support.independent_algebra.regions_in_plain_fractions import (
-    is_stable,
-    is_table,
-    loop_polynomial,
-    moved_at,
-    points,
-)
-from tests.support.independent_algebra.truth import still_true
+from tests.support.claims.claims import HOLDS, Setting
+from tests.support.claims.claims_in_time import FUNCTIONS_OF_TIME
+from tests.support.derivations import World, plus, still_true, times
+from tests.support.regions.region_facts import is_table, loop_polynomial, moved_at, points
 from tests.support.sampling import FULL
 from tests.support.tampering.mutations import WORDS, Change, Line, answer_changes, changes, lines_of
 from tests.support.tools.remembered import remembered
@@ -53,7 +50,7 @@ if TYPE_CHECKING:
     from symobs.proof.derivation import Derivation
     from symobs.tasks.design.pole_placement.single_output import ObserverPair
     from symobs.tasks.result import Result
-    from tests.support.independent_algebra.plain import Rows
+    from tests.support.algebra import Rows
 
 #: How many changes are tried by default: of one answer, and of all the lines of a page together at least.
 OF_AN_ANSWER, OF_LINES = (10**9, 10**9) if FULL else (8, 80)

@@ -1,7 +1,7 @@
 """Every way to change one thing in an answer or in a derivation: the lies that must not survive.
 
 `changes` walks any value of the library (scalars, matrices, formulas, facts, steps) and yields copies that differ in one
-place.  Nothing here knows what is true; `tests/support/independent_algebra/truth.py` does.
+place.  Nothing here knows what is true; `tests/support/derivations.py` does.
 """
 
 from __future__ import annotations

@@ -11,12 +11,13 @@ from typing import TYPE_CHECKING, NamedTuple
 import pytest
 
 from symobs.cli import main
+from tests.support import examples
 from tests.support.paths import ROOT
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-EXAMPLES = sorted((ROOT / "worked_examples").glob("*.toml"))
+EXAMPLES = examples.EXAMPLES
 SERVO = ROOT / "worked_examples" / "output_feedback_servo.toml"
 SAFETY = 300  # seconds; ends a run that hangs, measures nothing
 MEGABYTES = 1024  # of addresses, libraries included; the run of a worked example takes about a third of it

@@ -33,18 +33,6 @@ def results(text: str) -> list[dict[str, Any]]:
     return listed
 
 
-# -- solve ----------------------------------------------------------------------------------------------------------
-
-
-def test_standard_input_is_toml_or_json() -> None:
-    from_toml = inside("solve", "-", "--format", "json", stdin=OBSERVER.encode())
-    from_json = inside("solve", "-", "--format", "json", stdin=json.dumps(tomllib.loads(OBSERVER)).encode())
-    marked = inside("solve", "-", "--format", "json", stdin=OBSERVER.encode("utf-8-sig"))
-    assert from_toml.code == 0
-    assert from_toml == from_json == marked
-    assert results(from_toml.out)[0]["L"] == [["19"], ["81"]]
-
-
 # -- exit codes -----------------------------------------------------------------------------------------------------
 
 

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from symobs.cli.shared.outcome import write_all
+from symobs.cli.shared.output import write_all
 from symobs.ground.errors import InputError
 from tests.kit import tabled
 from tests.support.paths import ROOT

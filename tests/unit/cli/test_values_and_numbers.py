@@ -64,22 +64,6 @@ def test_set_gives_values_exactly(folder: Path) -> None:
     assert (task.code, task.out) == (0, "L = [6; 4]\n")
 
 
-@pytest.mark.parametrize("extra", ["[values]\nk = 1\n", '[values]\nk = "2/2"\n[expect]\nL = "[19; 81]"\n'])
-def test_a_file_gives_values(folder: Path, extra: str) -> None:
-    (folder / "servo.toml").write_text(FILE + extra, encoding="utf-8")
-    run = inside("solve", "servo.toml", "--print", "L", folder=folder)
-    assert (run.code, run.out, run.err) == (0, "L = [19; 81]\n", "")
-
-
-def test_what_a_file_expects_is_held_against_its_own_answers(folder: Path) -> None:
-    """`--set` comes after: the file's problem has the parameter, and so has what it expects."""
-    expected = '[expect]\nL = "[20 - k; (10 - k)^2]"\n'
-    (folder / "servo.toml").write_text(FILE + expected, encoding="utf-8")
-    assert inside("solve", "servo.toml", "--print", "L", "--set", "k=1", folder=folder).code == 0
-    (folder / "servo.toml").write_text(FILE + "[values]\nk = 2\n" + '[expect]\nL = "[19; 81]"\n', encoding="utf-8")
-    assert inside("solve", "servo.toml", "--print", "L", folder=folder).code == 4
-
-
 def test_the_numbers_alone(folder: Path) -> None:
     def printed(name: str, answers: str = "K,L") -> str:
         return inside("solve", "servo.toml", "--set", "k=1/3", "--print", answers, "--format", name, folder=folder).out

@@ -5,12 +5,14 @@ from __future__ import annotations
 import dataclasses
 import pickle
 from functools import cached_property, partial
+from pathlib import Path
 from typing import Any, ClassVar
 
 import pytest
 
 import symobs.ground.dataclass as ours
 from tests.contracts.test_floors import SOURCES
+from tests.kit import tables
 
 MAKERS = {"symobs": ours.dataclass, "library": dataclasses.dataclass}
 
@@ -69,31 +71,7 @@ def made(by: Any) -> dict[str, Any]:
     return {kind.__name__: kind for kind in (Point, Named, Finished, Open, Single, Own, Empty)}
 
 
-CALLS: list[tuple[str, tuple[Any, ...], dict[str, Any]]] = [
-    ("Point", (1,), {}),
-    ("Point", (1, 2), {}),
-    ("Point", (), {"y": 3, "x": 1}),
-    ("Point", (1, 3), {}),
-    ("Point", (), {}),
-    ("Point", (1,), {"x": 1}),
-    ("Point", (1, 2, 3), {}),
-    ("Point", (1,), {"z": 1}),
-    ("Named", (1,), {}),
-    ("Named", (1, 2), {"name": "q", "note": "n"}),
-    ("Named", (1, 2), {"seen": {"a": 1}}),
-    ("Named", (1, 2, {}, "n", "q"), {}),
-    ("Finished", (2,), {}),
-    ("Finished", (-1,), {}),
-    ("Finished", (2, 4), {}),
-    ("Finished", (), {"doubled": 1, "value": 1}),
-    ("Open", (), {}),
-    ("Open", ([1],), {}),
-    ("Single", (1,), {}),
-    ("Own", (1,), {}),
-    ("Own", (4,), {}),
-    ("Empty", (), {}),
-    ("Empty", (1,), {}),
-]
+CALLS = tables(Path(__file__))["calls"]
 
 
 def result(call: Any) -> Any:

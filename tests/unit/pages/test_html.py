@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import random
 import re
 import xml.etree.ElementTree as ET
 from typing import TYPE_CHECKING
@@ -12,17 +11,13 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from symobs.exact import Scalar
-from symobs.exact.algebraic.polynomial_roots import roots_of
 from symobs.formula.phrases import PHRASES
-from symobs.formula.tree import Letter, Roots
 from symobs.pages.formats.html import Html, HtmlFragment, HtmlWriter, page, plain, style
-from symobs.pages.page.blocks import Display, Heading, Paragraph, Title, Verified, every
+from symobs.pages.page.blocks import Heading, Paragraph, Title, Verified, every
 from symobs.pages.page.narrator import narrate
-from symobs.pages.page.sheet import Sheet, SheetEntry
 from symobs.pages.printers.mathml import MathmlPrinter
 from tests.support.problems import render_examples as example
 from tests.support.problems.render_examples import document
-from tests.unit.pages.test_printers import polynomial
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -138,18 +133,6 @@ def test_a_page_says_its_language_and_forbids_itself_the_network() -> None:
     assert "@media print" in style()
 
 
-def test_a_fragment_restyles_nothing_around_it() -> None:
-    rules = re.sub(r"@media print \{(.*)\}\s*$", r"\1", style(), flags=re.DOTALL)
-    selectors = [part for rule in re.findall(r"([^{}]+)\{", rules) for part in re.split(r",(?![^(]*\))", rule)]
-    assert len(selectors) > 20
-    assert [selector for selector in selectors if not selector.strip().startswith(".symobs")] == []
-    fragment = HtmlFragment().render(example.target_document())
-    assert fragment.startswith('<div class="symobs">')
-    assert "<html" not in fragment
-    assert "<h1" not in fragment
-    assert " id=" not in fragment
-
-
 def test_parts_of_one_page_have_ids_of_their_own() -> None:
     blocks = narrate(document(*example.target_document().derivations, example.with_a_case()))
     parts = [HtmlWriter(MathmlPrinter(), prefix=f"p{k}-", level=2).body(blocks) for k in (1, 2)]
@@ -160,65 +143,8 @@ def test_parts_of_one_page_have_ids_of_their_own() -> None:
     assert {local(node) for node in root.iter() if re.fullmatch("h[1-6]", local(node))} == {"h3"}
 
 
-def test_a_case_is_set_in() -> None:
-    root = parsed(Html().render(document(example.with_a_case())))
-    (case,) = (node for node in root.iter() if node.get("class") == "case")
-    assert words_of(case[0]) == "Case b=0."
-    assert [node.get("class") for node in case[1:]][-1] == "display"
-
-
-def test_rendering_is_deterministic() -> None:
-    once, again = (Html().render(example.target_document()) for _ in range(2))
-    assert once == again
-
-
-def test_roots_are_mathematics() -> None:
-    wanted = {
-        (s + 2) ** 2: ["−2", "−2"],
-        s**2 + 40 * s + 800: ["−20±20i"],
-        s**2 + 2 * s - 1: ["−1±2"],
-        s**2 + 4: ["±2i"],
-        s**5 - s - 1: ["{s:s5−s−1=0}"],
-    }
-    for value, roots in wanted.items():
-        sentence = HtmlWriter(MathmlPrinter()).sentence((Roots(Letter("phi"), roots_of(value, "s")),))
-        root = parsed(f"<p>{sentence}</p>")
-        assert list(faults(f"<p>{sentence}</p>")) == []
-        assert ["".join(words_of(node).split()) for node in root] == roots
-    surd = HtmlWriter(MathmlPrinter()).sentence((Roots(Letter("phi"), roots_of(s**2 + 2 * s - 1, "s")),))
-    assert "<msqrt><mn>2</mn></msqrt>" in surd
-
-
-def test_lines_in_a_case_are_shorter() -> None:
-    wide = example.equals(Letter("A"), example.number(polynomial(random.Random(3), 12)))  # noqa: S311
-    heights = [HtmlWriter(MathmlPrinter(), inset=inset).block(Display((wide,))).count("<mtr>") for inset in (0, 25)]
-    assert heights[0] < heights[1]
-
-
 def test_what_a_reader_cannot_see_is_told() -> None:
     writer = HtmlWriter(MathmlPrinter())
     assert writer.block(Verified(("as required.",))) == '<p class="verified">as required.</p>'
     assert writer.block(Title("", "", ())) == ""
     assert writer.block(Paragraph(("a < b",))) == "<p>a &lt; b</p>"
-
-
-# -- sheets -----------------------------------------------------------------------------------------------------------
-
-
-@pytest.mark.parametrize("text", HOSTILE, ids=range(len(HOSTILE)))
-def test_a_sheet_links_its_contents_to_its_parts(text: str) -> None:
-    part = Html().part(document(*example.target_document().derivations, title=text, source=text))
-    entries = [SheetEntry(k, f"{k}.toml", text, part, part) for k in range(1, 8)]
-    html = Html().sheet(Sheet(text, (*entries, SheetEntry(8, "8.toml", text, None, None, text))))
-    assert list(faults(html)) == []
-    nodes = list(parsed(html).iter())
-    ids = [node.get("id") for node in nodes if node.get("id")]
-    links = [str(node.get("href")).removeprefix("#") for node in nodes if node.get("href")]
-    assert len(ids) == len(set(ids)) == 2 * 8 + 2 + 14 * 5
-    assert len(links) == 16
-    assert set(links) <= set(ids)
-    headings = {local(node) for node in nodes if re.fullmatch("h[1-6]", local(node))}
-    assert headings == {"h1", "h2", "h3", "h4"}
-    assert [words_of(node) for node in nodes if local(node) == "h3"].count(
-        f"8. {words_of(parsed(f'<p>{plain(text)}</p>'))}"
-    ) == 2

@@ -4,24 +4,21 @@ from __future__ import annotations
 
 import re
 import subprocess
-import unicodedata
 from typing import TYPE_CHECKING
 
 import pytest
 
 import symobs
 from symobs.exact import Matrix, Scalar
-from symobs.exact.algebraic.polynomial_roots import roots_of
 from symobs.formula.phrases import PHRASES
-from symobs.formula.tree import Block, Environment, Formula, Letter, Literal, Negative, Numeral, Roots
-from symobs.pages.formats.latex import LatexArticle, LatexFragment, LatexWriter, typeset
-from symobs.pages.formats.templates import fill, template_folder
+from symobs.formula.tree import Block, Environment, Formula, Letter, Literal, Negative, Numeral
+from symobs.pages.formats.latex import LatexArticle, typeset
+from symobs.pages.formats.templates import fill
 from symobs.pages.formats.text import WIDTH, Text
-from symobs.pages.page.blocks import Display, Paragraph
 from symobs.pages.printers.latex_printer import LETTERS, LatexPrinter, escape
 from symobs.proof.derivation import Define, Derivation, Diagram, Equal, Note
 from tests.support.problems import render_examples as example
-from tests.support.problems.render_examples import document, equals, number, say
+from tests.support.problems.render_examples import document, equals, number
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -117,10 +114,6 @@ def test_every_letter_kept_is_typeset(faults: Callable[[str], list[str]]) -> Non
         assert faults(source) == []
 
 
-def test_letters_are_normal() -> None:
-    assert all(unicodedata.normalize("NFC", letter) == letter for letter in LETTERS)
-
-
 # -- pages ------------------------------------------------------------------------------------------------------------
 
 
@@ -137,49 +130,11 @@ def test_a_page_in_another_language_is_typeset_without_a_fault(faults: Callable[
     assert faults(source.replace(r"\end{document}", f"{english}\n\\end{{document}}")) == []
 
 
-def test_a_case_is_set_in_and_typeset(faults: Callable[[str], list[str]]) -> None:
-    latex = LatexArticle().render(document(example.with_a_case()))
-    assert r"\begin{inset}" in latex
-    assert faults(latex) == []
-
-
-def test_the_fragment_stands_in_a_plain_document(faults: Callable[[str], list[str]]) -> None:
-    fragment = LatexFragment().render(document(*example.target_document().derivations, example.with_a_case()))
-    preamble = r"""\documentclass[11pt,a4paper]{article}
-\usepackage{amsmath,amssymb,tikz}
-\usepackage[margin=27mm]{geometry}
-\usetikzlibrary{arrows.meta}"""
-    assert faults(rf"{preamble}\begin{{document}}{fragment}\end{{document}}") == []
-
-
-def test_nothing_is_loaded_for_a_drawing_that_is_not_there() -> None:
-    assert "tikz" not in LatexArticle().render(document(example.with_a_case()))
-    assert "tikz" in LatexArticle().render(example.target_document())
-
-
-def test_rendering_is_deterministic() -> None:
-    once, again = (LatexArticle().render(example.target_document()) for _ in range(2))
-    assert once == again
-
-
-def test_an_empty_document_is_a_page(faults: Callable[[str], list[str]]) -> None:
-    assert faults(LatexArticle().render(document(title="Nothing"))) == []
-
-
 @pytest.mark.parametrize("degree", [1, 4, 8, 14])
 def test_a_loop_fits_its_page_whatever_its_labels(degree: int, faults: Callable[[str], list[str]]) -> None:
     long = sum((Scalar.of(10**5 + k) * s**k for k in range(degree)), s**degree)
     for plant, compensator in ((1 / s, 1 / long), (1 / long, 1 / s), (1 / long, 1 / long)):
         assert faults(LatexArticle().render(page_with(*a_loop(plant, compensator)))) == []
-
-
-def test_roots_in_a_sentence() -> None:
-    polynomial = (s + 2) ** 2 * (s**2 + 40 * s + 800) * (s**2 + 2 * s - 1) * (s**2 + 1) * (s**3 + s + 1)
-    known = Define(equals(Letter("chi"), number(polynomial)), silent=True)
-    page = page_with(known, Note(say("roots", roots=Roots(Letter("chi"), roots_of(polynomial, "s")))))
-    body = r"$-2$, $-2$, $\pm i$, $-1\pm \sqrt{2}$, $-20\pm 20i$, $\{s:s^3+s+1=0\}$, all of them."
-    assert body in LatexFragment().render(page)
-    assert "-2, -2, ± i, -1 ± √2, -20 ± 20i, {s: s³ + s + 1 = 0}, all" in " ".join(Text().render(page).split())
 
 
 # -- templates --------------------------------------------------------------------------------------------------------
@@ -209,18 +164,6 @@ def test_marks_of_templates_in_a_title_mean_nothing() -> None:
     assert r"\textbackslash{}VAR\{body\} \textbackslash{}BLOCK\{raw\} \%\% x" in latex
 
 
-def test_an_installed_package_has_its_templates_inside(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    (tmp_path / "symobs").mkdir()
-    monkeypatch.setattr("symobs.pages.formats.templates._PACKAGE", tmp_path / "symobs")
-    assert template_folder() == tmp_path / "latex_templates"
-    (tmp_path / "symobs" / "latex_templates").mkdir()
-    assert template_folder() == tmp_path / "symobs" / "latex_templates"
-
-
-def test_templates_are_found() -> None:
-    assert {path.name for path in template_folder().iterdir()} >= {"article.tex", "fragment.tex"}
-
-
 # -- terminals --------------------------------------------------------------------------------------------------------
 
 
@@ -230,28 +173,9 @@ def test_text_keeps_to_its_width() -> None:
     assert text.endswith("\n")
 
 
-def test_text_has_headings_checks_and_a_drawing() -> None:
-    text = Text().render(example.target_document())
-    assert "1. State feedback\n-----------------\n" in text
-    assert "✓ det(" in text
-    assert "! Remark." in text
-    assert " r ───▶○─" in text
-
-
 def test_nothing_in_a_title_steers_the_terminal() -> None:
     text = Text().render(document(title="\x1b[2J\x1b]0;x\x07clear\u202e\r\nnext \ud800"))
     assert text.splitlines()[0] == "[2J]0;xclear next ?"
-
-
-def test_a_wide_drawing_falls_back_to_letters() -> None:
-    long = 1 / sum((Scalar.of(10**5 + k) * s**k for k in range(9)), s**9)
-    text = Text().render(page_with(*a_loop(long, long)))
-    assert "P(s)" in text
-    assert "F(s)" in text
-
-
-def test_relations_are_shown() -> None:
-    assert "1 = 1" in Text().render(page_with(Equal((equals(number(1), number(1)),))))
 
 
 # -- matrices and the words between displays --------------------------------------------------------------------------
@@ -268,28 +192,3 @@ def test_blocks_of_numbers_in_decimals_are_one_matrix_with_lines_between_them() 
     )
     names = (Block(((Letter("A"),),)), Block(((Letter("B"),),)))
     assert r"\hline" not in LatexPrinter().typeset(Block((names, names))).source
-
-
-def test_the_fractions_of_a_matrix_are_of_one_size() -> None:
-    half, a = Scalar.of(1) / 2, Scalar.symbol("a")
-    numbers = LatexPrinter().typeset(Literal(Matrix.of([[half, -half]]))).source
-    assert r"\frac{1}{2}" in numbers
-    assert r"\dfrac" not in numbers
-    mixed = LatexPrinter().typeset(Literal(Matrix.of([[half, 1 / a + 1], [1 / a, -half]]))).source
-    assert r"\frac" not in mixed.replace(r"\dfrac", "")
-    assert mixed.count(r"\dfrac") >= 4
-
-
-def test_a_few_words_between_two_displays_stand_on_the_line_of_the_second() -> None:
-    one = equals(number(1), number(1))
-    writer = LatexWriter(LatexPrinter())
-    blocks: list[Display | Paragraph] = [
-        Display((one,), closing=","),
-        Paragraph(("hence",), continues=True),
-        Display((one,), closing="."),
-    ]
-    assert writer.body(blocks) == "\\[ 1=1, \\postdisplaypenalty=5000 \\]\n\\[ \\text{hence}\\qquad 1=1. \\]"
-    blocks[1] = Paragraph(("and, for every value of the gain, we have",), continues=True)
-    assert "\n\\[ 1=1. \\]" in writer.body(blocks)
-    blocks[1] = Paragraph(("The gain is",))
-    assert "\nThe gain is\n" in writer.body(blocks)

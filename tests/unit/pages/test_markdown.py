@@ -7,19 +7,15 @@ import re
 import pytest
 
 from symobs.exact import Matrix, Scalar
-from symobs.exact.algebraic.polynomial_roots import roots_of
 from symobs.formula.phrases import PHRASES
-from symobs.formula.tree import Environment, Letter, Literal, Relation, Roots
-from symobs.pages.formats.markdown import Markdown, MarkdownWriter, paragraph, plain, portable
-from symobs.pages.page.blocks import CaseBlock, Caution, Display, Paragraph, References
-from symobs.pages.printers.latex_printer import LatexPrinter
+from symobs.formula.tree import Environment, Letter, Literal, Relation
+from symobs.pages.formats.markdown import Markdown, paragraph, plain, portable
 from symobs.proof.derivation import Define, Derivation
 from tests.kit import tabled
 from tests.support.problems import render_examples as example
 from tests.support.problems.render_examples import document
 
 s, b = Scalar.symbol("s"), Scalar.symbol("b")
-K, L = Letter("K"), Letter("L")
 #: Everything in dollars, displays first.
 MATHEMATICS = re.compile(r"\$\$ (.+?) \$\$|\$([^$]+)\$")
 
@@ -28,10 +24,6 @@ MATHEMATICS = re.compile(r"\$\$ (.+?) \$\$|\$([^$]+)\$")
 def _phrases(monkeypatch: pytest.MonkeyPatch) -> None:
     for key, phrase in example.PHRASES.items():
         monkeypatch.setitem(PHRASES, key, phrase)
-
-
-def writer() -> MarkdownWriter:
-    return MarkdownWriter(LatexPrinter())
 
 
 def formulas(page: str) -> list[str]:
@@ -82,32 +74,6 @@ def test_text_is_escaped(text: str, markdown: str) -> None:
 @tabled
 def test_a_paragraph_begins_no_list(line: str, markdown: str) -> None:
     assert paragraph(line) == markdown
-
-
-def test_a_case_is_a_quotation_with_its_displays_on_one_line() -> None:
-    page = writer().block(
-        CaseBlock(("Case ",), (Paragraph(("so",)), Display((Relation((K, L), ("=",)),), closing=".")))
-    )
-    assert page == "> **Case **\n>\n> so\n>\n> $$ K=L. $$"
-
-
-def test_references_are_no_warnings() -> None:
-    assert writer().block(Caution("Remark.", ("x",))).startswith("> **Remark.** ")
-    assert writer().block(References("References", ("x",))) == "**References**\n\n- \\[1\\] x"
-
-
-def test_rows_of_a_display_are_aligned() -> None:
-    wide = Matrix.of([[10**9 + k + 3 * j for k in range(5)] for j in range(2)])
-    relations = tuple(Relation((letter, Literal(wide)), ("=",)) for letter in (K, L))
-    display = writer().display(relations)
-    assert display.startswith(r"$$ \begin{aligned}K&=\begin{bmatrix}1000000000&")
-    assert r"\end{bmatrix},\cr L&=\begin{bmatrix}" in display
-    assert display.endswith(r"\end{bmatrix}.\end{aligned} $$")
-
-
-def test_roots_without_a_form_are_a_set() -> None:
-    sentence = writer().sentence(("The poles are ", Roots(Letter("phi"), roots_of(s**5 - s - 1, "s")), "."))
-    assert sentence == r"The poles are $\lbrace s:s^5-s-1=0\rbrace$."
 
 
 def test_a_symbol_of_several_letters_keeps_its_spaces() -> None:

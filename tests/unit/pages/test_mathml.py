@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import random
-import re
 import unicodedata
 import xml.etree.ElementTree as ET
 from itertools import islice, pairwise
@@ -13,20 +12,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from symobs.exact import Matrix, Scalar
 from symobs.formula.notation import LETTERS
 from symobs.formula.tree import (
-    Apply,
-    Block,
-    Derivative,
-    Formula,
     Letter,
-    Negative,
-    Power,
     Product,
-    Relation,
     Sum,
-    Transpose,
 )
 from symobs.pages.printers.latex_to_mathml import elements_of
 from symobs.pages.printers.mathml import MathmlPrinter
@@ -208,28 +198,12 @@ def test_broken_displays_read_back_as_the_same_number(source: random.Random) -> 
     assert Reader(tokens_of(right_side(display)), POINT).whole() == value.substitute(POINT)
 
 
-def test_a_long_number_loses_no_digit() -> None:
-    value = lit(7**300 * 10**6000 + 3)
-    wanted = str(7**300) + "0" * 5999 + "3"
-    for source in (MathmlPrinter().display([equation(A, value)], end=""), MathmlPrinter().inline(value)):
-        assert "".join(re.findall(r"<mn>(\d+)</mn>", source)) == wanted
-
-
 # -- it is MathML -----------------------------------------------------------------------------------------------------
 
 
 def test_long_displays_are_made_of_elements_that_browsers_know() -> None:
     for member in islice(hostile_members(random.Random(6)), 0, None, 3):  # noqa: S311
         assert list(faults(MathmlPrinter().display([equation(K, A, member)], boxed=True))) == []
-
-
-def test_a_display_that_cannot_be_broken_says_how_wide_it_is() -> None:
-    wide = lit(Matrix.of([[10**40 + k for k in range(12)]]))
-    (math,) = parsed(MathmlPrinter(width=20).display([equation(K, Transpose(wide))]))
-    assert "style" not in math.attrib or math.attrib["style"].startswith("--excess:")
-    stack = Block(tuple((Power(Sum((A, B)), k),) for k in range(2, 5)))
-    (math,) = parsed(MathmlPrinter(width=2).display([equation(K, stack)]))
-    assert float(math.attrib["style"].removeprefix("--excess:")) > 1
 
 
 @pytest.mark.parametrize("name", [name for name in LETTERS if "exp" not in LETTERS[name].text])
@@ -250,63 +224,12 @@ forms = st.lists(
 ).map("".join)
 
 
-@given(forms)
-@settings(max_examples=300)
-def test_every_declared_form_is_written_somehow(form: str) -> None:
-    written = "".join(elements_of(form))
-    assert [fault for fault in faults(written) if not fault.startswith("empty")] == []
-
-
 @tabled
 def test_forms(form: str, mathml: str) -> None:
     assert "".join(elements_of(form)) == mathml
-
-
-def test_a_dot_stands_on_the_letter_and_an_index_beside_the_others() -> None:
-    dotted = '<mover><mi>x</mi><mo stretchy="false">.</mo></mover>'
-    assert MathmlPrinter().unbroken(Derivative(Letter("x_1"))) == f"<msub>{dotted}<mn>1</mn></msub>"
-    stepped = MathmlPrinter("z", discrete=True).unbroken(Derivative(Letter("x_1")))
-    assert letters(parsed(stepped)) == "x1,k+1"
 
 
 def test_parentheses_grow_only_around_what_is_tall() -> None:
     flat, tall = (MathmlPrinter().unbroken(Product((Sum((A, term)), B))) for term in (B, table([1, 2])))
     assert 'stretchy="false">(' in flat
     assert 'stretchy="false">(' not in tall
-
-
-def test_a_long_formula_in_running_text_may_end_a_line_after_its_signs() -> None:
-    short, long = equation(K, A), equation(K, *(Power(Sum((A, B)), k) for k in range(2, 9)))
-    assert MathmlPrinter().inline(short).count("<math>") == 1
-    pieces = list(parsed(MathmlPrinter().inline(long)))
-    assert len(pieces) > 6
-    assert [fault for piece in pieces for fault in faults(ET.tostring(piece, "unicode"))] == []
-
-
-def test_a_broken_line_keeps_the_space_around_its_first_sign() -> None:
-    wide = polynomial(random.Random(1), 60)  # noqa: S311
-    compared = Relation((A, lit(wide), B), ("=", "<="))
-    (math,) = parsed(MathmlPrinter().display([compared], end=""))
-    forms = {(sign.text, sign.get("form")) for sign in math.iter("mo") if sign.text in {"+", "=", "≤"}}
-    assert forms == {("+", "infix"), ("=", "infix"), ("≤", "infix")}
-    lines = [[part for part in line[-1] if part.tag != "mspace"] for line in math.iter("mtr")]
-    starts = [line[0] for line in lines[1:] if line[0].tag == "mo"]
-    assert starts
-    assert {sign.attrib["form"] for sign in starts} == {"infix"}
-
-
-@pytest.mark.parametrize(
-    ("formula", "characters"),
-    [
-        (Product((lit(2), lit(3), A)), "2⋅3\u2062A"),
-        (Product((lit(2), Power(lit(3), 2))), "2⋅32"),
-        (Sum((lit(4), Negative(lit(-3)))), "4−(−3)"),
-        (Apply("det", A), "det\u2061A"),
-        (Product((Apply("det", A), B)), "det\u2061(A)\u2062B"),
-        (Transpose(Transpose(A)), "(AT)T"),
-        (lit(Matrix.zeros(2, 0)), "02×0"),
-        (lit(Scalar.rational(-1, 2)), "−12"),
-    ],
-)
-def test_formulas_look_as_in_a_book(formula: Formula, characters: str) -> None:
-    assert letters(parsed(MathmlPrinter().unbroken(formula))) == characters

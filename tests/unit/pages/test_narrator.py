@@ -7,31 +7,19 @@ import re
 import pytest
 
 from symobs import StateSpace, observer
-from symobs.exact import Matrix, Scalar
+from symobs.exact import Scalar
 from symobs.formula.phrases import CONTINUES, PHRASES, WORDS
-from symobs.formula.tree import Environment, HoldsExactlyWhere, Letter, Literal, Predicate, Relation, Transpose
+from symobs.formula.tree import Environment, Letter, Literal, Relation, Transpose
 from symobs.ground.errors import DerivationRejected, ProblemErrors
 from symobs.pages.page import narrator
-from symobs.pages.page.blocks import (
-    Block,
-    CaseBlock,
-    Caution,
-    Display,
-    Drawing,
-    Heading,
-    Paragraph,
-    Title,
-    Verified,
-    every,
-)
+from symobs.pages.page.blocks import Block, CaseBlock, Display, Paragraph, Title, every
 from symobs.pages.page.narrator import narrate
 from symobs.pages.page.prose import filled, with_reference
 from symobs.problem.validation import validate
-from symobs.proof.derivation import Conclude, Define, Derivation, Equal, Given, Note, Section, Sentence, Step
-from symobs.tasks.result import render
+from symobs.proof.derivation import Derivation, Equal, Given, Note, Sentence, Step
 from tests.kit import tabled
 from tests.support.problems import render_examples as example
-from tests.support.problems.render_examples import document, equals, minus, number, plus, say, times, values
+from tests.support.problems.render_examples import document, equals, minus, number, plus, times, values
 
 A, C = Letter("A"), Letter("C")
 A_IS_ONE, A_IS_TWO = equals(A, values((1,))), equals(A, values((2,)))
@@ -62,184 +50,15 @@ def told(*steps: Step) -> tuple[Block, ...]:
     return narrate(document(derivation(*steps)))[1:]
 
 
-def section(*steps: Step) -> Section:
-    return Section(say("title"), steps)
-
-
-def test_the_page_to_aim_at_block_by_block() -> None:
-    kinds = [type(block) for block in narrate(example.target_document())]
-    assert kinds == [
-        Title,
-        *(Heading, Display, Paragraph),
-        *(Heading, Paragraph, Display, Verified),
-        *(Heading, Paragraph, Display, Paragraph, Display, Paragraph, Display, Verified),
-        *(Heading, Paragraph, Display, Paragraph, Display, Paragraph, Display, Paragraph),
-        *(Heading, Paragraph, Display, Drawing, Paragraph, Caution),
-    ]
-
-
-def test_every_word_comes_from_a_phrase_or_a_label() -> None:
-    words = " ".join([*PHRASES.values(), *WORDS.values()])
-    for block in every(narrate(example.target_document())[1:]):
-        for inline in getattr(block, "inlines", ()):
-            for word in inline.split() if isinstance(inline, str) else ():
-                assert word in words
-
-
 def test_a_derivation_with_a_false_line_is_not_told() -> None:
     with pytest.raises(DerivationRejected, match="the line 1 = 2"):
         told(Equal((equals(number(1), number(2)),)))
-
-
-def test_a_sentence_stands_before_its_display() -> None:
-    assert told(Equal((ONE,), say("large"))) == (Paragraph(("Now",)), Display((ONE,), closing="."))
-
-
-def test_displays_without_a_sentence_between_them_are_one() -> None:
-    assert told(Equal((ONE,)), Equal((TWO,))) == (Display((ONE, TWO), closing="."),)
-
-
-def test_a_box_ends_its_display() -> None:
-    blocks = told(Equal((ONE,)), Equal((TWO,), answer=True), Equal((ONE,)))
-    assert blocks == (Display((ONE, TWO), boxed=True), Display((ONE,), closing="."))
-
-
-def test_sentences_in_a_row_are_one_paragraph() -> None:
-    assert told(Conclude(say("large")), Note(say("small"))) == (Paragraph(("Now and so on",)),)
-
-
-@tabled
-def test_a_display_ends_as_the_sentence_after_it_asks(key: str, mark: str) -> None:
-    display, _ = told(Equal((ONE,)), Conclude(say(key)))
-    assert display == Display((ONE,), closing=mark)
-
-
-def test_silent_steps_are_not_shown_but_hold() -> None:
-    blocks = told(Given((A_IS_ONE,), silent=True), Define(equals(C, A), silent=True), Equal((C_IS_ONE,)))
-    assert blocks == (Display((C_IS_ONE,), closing="."),)
-
-
-def statement(*steps: Step) -> Section:
-    return Section(Sentence("given"), steps)
-
-
-def test_what_is_given_comes_first() -> None:
-    blocks = told(section(Equal((ONE,))), statement(Given((A_IS_ONE,)), Note(say("about", A=A))))
-    assert blocks[:3] == (
-        Heading("", ("Given.",)),
-        Display((A_IS_ONE,), closing=","),
-        Paragraph(("with ", A, " as it is."), continues=True),
-    )
-    assert blocks[3] == Heading("1.", ("A title.",))
-
-
-def test_data_on_their_own_are_a_statement() -> None:
-    assert told(Equal((ONE,)), Given((A_IS_ONE,)))[0] == Heading("", ("Given.",))
-
-
-def test_what_is_given_is_said_once_on_a_page() -> None:
-    remark = Note(say("about", A=A))
-    first = derivation(statement(Given((A_IS_ONE,)), remark))
-    second = derivation(statement(Given((A_IS_ONE, C_IS_ONE)), remark))
-    same = derivation(statement(Given((C_IS_ONE,)), Given((A_IS_ONE,), silent=True), remark))
-    blocks = narrate(document(first, same, second))
-    assert [block for block in blocks if isinstance(block, Heading)] == [Heading("", ("Given.",))]
-    shown = [relation for block in blocks if isinstance(block, Display) for relation in block.relations]
-    assert shown == [A_IS_ONE, C_IS_ONE]
-
-
-def test_an_answer_is_not_told_again_as_a_step() -> None:
-    answer, step = (Equal((ONE,), say("large"), answer=is_answer) for is_answer in (True, False))
-    both = narrate(document(derivation(section(answer)), derivation(section(step, Equal((TWO,))))))
-    displays = [block.relations for block in both if isinstance(block, Display)]
-    assert displays == [(ONE,), (TWO,)]
-
-
-def test_another_value_is_given_again() -> None:
-    blocks = narrate(document(*(derivation(Given((given,))) for given in (A_IS_ONE, A_IS_TWO, A_IS_ONE))))
-    assert [block.relations for block in blocks if isinstance(block, Display)] == [
-        (A_IS_ONE,),
-        (A_IS_TWO,),
-        (A_IS_ONE,),
-    ]
-
-
-def test_a_condition_keeps_its_place() -> None:
-    b = Literal(Scalar.symbol("b"))
-    condition = Relation((b, number(0)), ("!=",))
-    assert told(Equal((ONE,)), Given((condition,))) == (Display((ONE, condition), closing="."),)
-    said = Sentence("test_about", (("A", condition),))
-    assert told(Given((condition,), said)) == (Paragraph(("with ", condition, " as it is."), continues=True),)
-
-
-def test_sections_are_numbered_through_the_page_and_nest() -> None:
-    first = derivation(section(section(), section()), section())
-    blocks = narrate(document(first, derivation(section(section()))))
-    assert [block.number for block in blocks if isinstance(block, Heading)] == [
-        "1.",
-        "1.1.",
-        "1.2.",
-        "2.",
-        "3.",
-        "3.1.",
-    ]
-
-
-def test_a_case_says_when_it_holds_and_keeps_its_own_data() -> None:
-    block = narrate(document(example.with_a_case()))[-1]
-    assert isinstance(block, CaseBlock)
-    assert block.label[0] == f"{WORDS['case']} "
-    assert block.blocks == (
-        Paragraph((PHRASES["test_case"],)),
-        Display((equals(C, values((1, 0))),), closing="."),
-    )
-
-
-def test_only_conventions_about_letters_used_are_stated() -> None:
-    title = narrate(example.target_document())[0]
-    assert isinstance(title, Title)
-    words = "".join(part if isinstance(part, str) else "·" for part in title.conventions)
-    assert words == "Notation: ·, observer matrix ·, error ·."
-    assert narrate(document(derivation(Equal((ONE,)))))[0] == Title("", "", ())
-    gain = Define(equals(Letter("K"), Literal(Matrix.of([[1, 2]]))))
-    assert narrate(document(derivation(gain)))[0] == Title(
-        "", "", ("Notation: ", equals(example.u, minus(times(example.K, example.x))), ".")
-    )
 
 
 @tabled
 def test_the_source_is_a_sentence(source: str, shown: str) -> None:
     title = narrate(document(source=source))[0]
     assert title == Title("", shown, ())
-
-
-def test_a_slot_that_is_a_predicate_shows_its_subject() -> None:
-    known = Define(Relation((A, number(1)), ("=",)), silent=True)
-    fact = Sentence("test_about", (("A", Predicate("never_zero", A)),))
-    assert told(known, Conclude(fact)) == (Paragraph(("with ", A, " as it is."), continues=True),)
-
-
-def test_a_slot_that_is_a_region_shows_its_inequalities() -> None:
-    s = Scalar.symbol("s")
-    where = (Relation((number(1), number(0)), (">",)), Relation((number(2), number(0)), (">",)))
-    region = HoldsExactlyWhere(Predicate("stable", Literal(s**2 + 2 * s + 1)), where)
-    sentence = Sentence("test_about", (("A", region),))
-    assert filled(sentence) == ("with ", where[0], ", ", where[1], " as it is.")
-
-
-@pytest.mark.parametrize(
-    ("written", "formula"),
-    [
-        ("A", A),
-        ("A - L C", plus(A, minus(times(Letter("L"), C)))),
-        ("−U", minus(Letter("U"))),
-        ("Aᵀ", Transpose(A)),
-        ("u = −K x_hat", equals(Letter("u"), minus(times(Letter("K"), Letter("x_hat"))))),
-    ],
-)
-def test_a_name_between_dollars_is_mathematics(written: str, formula: object, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setitem(PHRASES, "test_named", f"Here ${written}$ is named.")
-    assert filled(Sentence("test_named")) == ("Here ", formula, " is named.")
 
 
 # -- sources and the problem in words -----------------------------------------------------------------------------------
@@ -258,10 +77,6 @@ def test_a_sentence_has_the_number_of_its_source(inlines: tuple[object, ...], sh
     assert with_reference(inlines, "[2, ch. 3]") == shown  # type: ignore[arg-type]
 
 
-def test_without_a_source_nothing_is_added() -> None:
-    assert with_reference(("By duality§ it is.",), None) == ("By duality it is.",)
-
-
 def test_numbers_in_the_text_are_those_of_the_sources() -> None:
     page = str(observer(StateSpace("[0 1; 0 -1]", "[0; 1]", "[1 0]"), poles=[-10, -10]).to("text"))
     words, _, sources = page.partition("References\n")
@@ -271,19 +86,6 @@ def test_numbers_in_the_text_are_those_of_the_sources() -> None:
     assert [number for number in cited if number in listed][:2] == ["1", "3"]
     assert set(cited) <= set(listed)
     assert "[1] R. E. Kalman, Mathematical description of linear dynamical systems" in " ".join(sources.split())
-
-
-def test_the_problem_in_words_stands_under_the_title() -> None:
-    data = {
-        "title": "A tank",
-        "text": "Salt & water,\nmixed.\n\nHow much is there?",
-        "task": "observability",
-        "plant": {"A": "[-1]", "C": "[1]"},
-    }
-    found = validate(data)
-    page = str(render(found.document(found.solve()), "latex"))
-    title, statement, given = (page.index(part) for part in (r"A tank", r"Salt \& water, mixed.", "Given."))
-    assert title < statement < page.index("How much is there?") < given
 
 
 def test_words_that_are_no_text_are_refused() -> None:
@@ -318,11 +120,34 @@ def test_an_equation_has_a_number_where_a_later_sentence_refers_to_it() -> None:
     assert Paragraph(("By ", A_IS_TWO, " this is ", A_IS_TWO, ".")) in whole
 
 
-def test_every_format_writes_the_number_beside_the_equation() -> None:
-    told: list[Step] = [Given((A_IS_TWO,)), Note(Sentence("test_refers", (("law", A_IS_TWO),)))]
-    page = document(Derivation(tuple(told), Environment()))
-    beside = {"latex": r"\tag{1} \]", "markdown": r"\tag{1} $$", "text": "A = 2    (1)", "html": ">(1)</span></div>"}
-    for name, number_there in beside.items():
-        written = str(render(page, name))
-        assert written.count(number_there) == 1, name
-        assert written.count("By (1)") == 1, name
+def test_a_condition_keeps_its_place() -> None:
+    b = Literal(Scalar.symbol("b"))
+    condition = Relation((b, number(0)), ("!=",))
+    assert told(Equal((ONE,)), Given((condition,))) == (Display((ONE, condition), closing="."),)
+    said = Sentence("test_about", (("A", condition),))
+    assert told(Given((condition,), said)) == (Paragraph(("with ", condition, " as it is."), continues=True),)
+
+
+def test_a_case_says_when_it_holds_and_keeps_its_own_data() -> None:
+    block = narrate(document(example.with_a_case()))[-1]
+    assert isinstance(block, CaseBlock)
+    assert block.label[0] == f"{WORDS['case']} "
+    assert block.blocks == (
+        Paragraph((PHRASES["test_case"],)),
+        Display((equals(C, values((1, 0))),), closing="."),
+    )
+
+
+@pytest.mark.parametrize(
+    ("written", "formula"),
+    [
+        ("A", A),
+        ("A - L C", plus(A, minus(times(Letter("L"), C)))),
+        ("−U", minus(Letter("U"))),
+        ("Aᵀ", Transpose(A)),
+        ("u = −K x_hat", equals(Letter("u"), minus(times(Letter("K"), Letter("x_hat"))))),
+    ],
+)
+def test_a_name_between_dollars_is_mathematics(written: str, formula: object, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(PHRASES, "test_named", f"Here ${written}$ is named.")
+    assert filled(Sentence("test_named")) == ("Here ", formula, " is named.")

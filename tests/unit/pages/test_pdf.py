@@ -52,13 +52,6 @@ def test_the_page_to_aim_at(require_tool: RequireTool, tmp_path: Path) -> None:
     assert "Remark." in words
 
 
-def test_the_same_page_gives_the_same_bytes(require_tool: RequireTool) -> None:
-    require_tool("pdflatex")
-    first, second = (Pdf().render(document(title="Twice")) for _ in range(2))
-    assert first.startswith(b"%PDF-")
-    assert first == second
-
-
 HOSTILE = [
     "".join(map(chr, range(0x250))),
     r"\input{/etc/passwd}",
@@ -167,14 +160,6 @@ def test_an_end_that_comes_while_tex_is_being_started_ends_it(
     assert signal.getsignal(number) == before
 
 
-def test_tex_that_says_nothing_is_reported(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    program(tmp_path / "pdflatex", "exit 1")
-    which = {"pdflatex": str(tmp_path / "pdflatex")}
-    monkeypatch.setattr(shutil, "which", which.get)
-    with pytest.raises(TypesettingError, match="without an error in its log"):
-        compiled(article("x"))
-
-
 def only(monkeypatch: pytest.MonkeyPatch, path: Path) -> None:
     """Let this be the only TeX there is."""
     monkeypatch.setattr(shutil, "which", {"pdflatex": str(path)}.get)
@@ -192,61 +177,6 @@ def test_tex_that_floods_its_log_is_stopped(monkeypatch: pytest.MonkeyPatch, tmp
     assert str(caught.value) == "TeX was stopped after it had written 20 MB; write LaTeX with --format latex to see why"
     assert ends(int(number.read_text(encoding="utf-8")))
     assert {path.name for path in tmp_path.iterdir()} == {"number", "pdflatex"}
-
-
-def test_the_error_at_the_end_of_a_long_log_is_found(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    script = "yes 'a line that says nothing' | head -c 5000000 > page.log\necho '! Stumbled.' >> page.log\nexit 1"
-    program(tmp_path / "pdflatex", script)
-    only(monkeypatch, tmp_path / "pdflatex")
-    with pytest.raises(TypesettingError, match=r"TeX failed: Stumbled\.; write LaTeX with --format latex"):
-        compiled(article("x"))
-
-
-def test_tex_that_makes_no_page_is_reported(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    program(tmp_path / "pdflatex", "exit 0")
-    only(monkeypatch, tmp_path / "pdflatex")
-    with pytest.raises(TypesettingError, match="TeX ended without a page"):
-        compiled(article("x"))
-
-
-def test_tex_that_cannot_be_started_is_reported(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    path = tmp_path / "pdflatex"
-    path.write_bytes(b"\x7fELF is not what this is")
-    path.chmod(0o755)
-    only(monkeypatch, path)
-    with pytest.raises(TypesettingError) as caught:
-        compiled(article("x"))
-    assert caught.value.where == str(path)
-    assert caught.value.message.startswith("this program cannot be started: ")
-    assert "apt-get install" in caught.value.repair
-
-
-def test_tex_needs_a_folder_for_its_files(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    program(tmp_path / "pdflatex", "exit 0")
-    only(monkeypatch, tmp_path / "pdflatex")
-    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path / "missing"))
-    with pytest.raises(TypesettingError) as caught:
-        compiled(article("x"))
-    assert caught.value.where == str(tmp_path / "missing")
-    assert "TMPDIR" in caught.value.repair
-    assert caught.value.exit_code == 6
-
-
-def test_tex_that_finds_the_disk_full_is_reported(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    program(tmp_path / "pdflatex", "exit 1")
-    only(monkeypatch, tmp_path / "pdflatex")
-    full = shutil.disk_usage(tmp_path)._replace(free=0)
-    monkeypatch.setattr(shutil, "disk_usage", lambda _: full)
-    with pytest.raises(TypesettingError, match="no space left on the device; make room"):
-        compiled(article("x"))
-
-
-def test_signals_mean_afterwards_what_they_meant_before(require_tool: RequireTool) -> None:
-    require_tool("pdflatex")
-    numbers = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
-    before = [signal.getsignal(number) for number in numbers]
-    compiled(article("x"))
-    assert [signal.getsignal(number) for number in numbers] == before
 
 
 def program(path: Path, script: str) -> None:

@@ -54,21 +54,6 @@ def test_the_first_picture_is_written_beside_the_result(
     assert pictured is not None
 
 
-def test_every_task_has_the_option(pictured: Picture, tmp_path: Path) -> None:
-    run = inside("observability", "--A", "[0 1; 0 -1]", "--C", "[1 0]", "--plot", "map.svg", folder=tmp_path)
-    assert (run.code, run.err) == (0, "")
-    assert "stable values of" in (tmp_path / "map.svg").read_text(encoding="utf-8")
-    assert pictured is not None
-
-
-def test_without_a_picture_the_result_is_printed_and_the_reason_said(tmp_path: Path) -> None:
-    run = inside("solve", "-", "--plot", "map.svg", folder=tmp_path, stdin=PROBLEM)
-    assert run.code == 2
-    assert run.out.startswith("\\documentclass")
-    assert run.err.startswith("--plot: there is no picture of controllability, observability; leave --plot out")
-    assert not any(tmp_path.iterdir())
-
-
 @tabled
 def test_a_file_of_no_format_is_refused_before_anything_is_solved(path: str, said: str, tmp_path: Path) -> None:
     run = inside("solve", "-", "--plot", path, folder=tmp_path, stdin=PROBLEM)
@@ -76,13 +61,6 @@ def test_a_file_of_no_format_is_refused_before_anything_is_solved(path: str, sai
     assert said in run.err
     task = inside("observability", "--A", "[0]", "--C", "[1]", "--plot", path, folder=tmp_path)
     assert (task.code, task.out, task.err) == (2, "", run.err)
-
-
-def test_one_file_does_not_hold_both(tmp_path: Path) -> None:
-    run = inside("solve", "-", "-o", "x.tex", "--plot", "./x.tex", folder=tmp_path, stdin=PROBLEM)
-    assert run.code == 2
-    assert "the result is written to that file; name another file" in run.err
-    assert not any(tmp_path.iterdir())
 
 
 def test_a_missing_matplotlib_is_said_before_anything_is_solved(
@@ -94,13 +72,6 @@ def test_a_missing_matplotlib_is_said_before_anything_is_solved(
     assert (run.code, run.out) == (2, "")
     assert "pip install matplotlib, or name a file that ends in .svg or .tex" in run.err
     assert inside("solve", "-", "--plot", "map.svg", folder=tmp_path, stdin=PROBLEM).code == 0
-    assert pictured is not None
-
-
-def test_a_folder_that_is_not_there_is_said(pictured: Picture, tmp_path: Path) -> None:
-    run = inside("solve", "-", "--plot", "no/map.svg", folder=tmp_path, stdin=PROBLEM)
-    assert run.code == 3
-    assert "no/map.svg" in run.err
     assert pictured is not None
 
 

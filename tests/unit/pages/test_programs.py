@@ -14,7 +14,6 @@ from symobs.exact.floating import margin_search
 from symobs.exact.floating.sampled import Sampled
 from symobs.ground.errors import CertificateRejected, InexactInput, InputError, SymobsError, UsageError
 from symobs.tasks.result import formats
-from tests.kit import tabled
 
 LANGUAGES = ("c", "matlab", "modelica", "python")
 SERVO = symobs.StateSpace("[0 1; 0 -1]", "[0; 1]", "[1 0]")
@@ -37,14 +36,6 @@ def test_gains_rounding_and_margin_stand_in_the_program(language: str) -> None:
     assert stated is not None
     poles = np.exp(np.array([-2, -2, -10, -10]) / 100)
     assert max(poles) - 0.01 < float(stated[1]) < 1
-
-
-def test_whole_gains_are_said_to_be_exact() -> None:
-    assert "L = [19.0; 81.0], exactly." in DESIGN.to("c", period="1/100")
-
-
-def test_the_margin_in_continuous_time() -> None:
-    assert "every eigenvalue of the plant with this program has Re s < -1.99." in DESIGN.to("modelica")
 
 
 @pytest.mark.parametrize("asked", [("python", {"period": Fraction(1, 100)}), ("modelica", {})])
@@ -87,16 +78,6 @@ def test_a_bad_rounding_is_refused(language: str, monkeypatch: pytest.MonkeyPatc
     monkeypatch.setattr(Sampled, "rounded", to_two_digits)
     with pytest.raises(InputError, match="is not proved stable"):
         design.to(language, period="1/100")
-
-
-@tabled
-def test_what_rounding_does_to_a_program_that_is_unstable_by_itself(
-    A: str, B: str, control_poles: str, observer_poles: str, stable: str, said: str
-) -> None:
-    plant = symobs.StateSpace(A, B, "[1 0]", dt=True)
-    design = symobs.compensator(plant, control_poles=control_poles, observer_poles=observer_poles)
-    assert design.F_stable == stable
-    assert said in design.to("c")
 
 
 @pytest.mark.parametrize(

@@ -2,38 +2,29 @@
 
 from __future__ import annotations
 
-import re
-import subprocess
 from typing import TYPE_CHECKING
 
 import pytest
 
 from symobs.exact import Scalar, from_coefficients
-from symobs.formula.phrases.languages import ENGLISH, Counted
 from symobs.formula.tree import Environment, Exact, Letter, Literal, evaluate
-from symobs.pages.formats.latex import LatexArticle, LatexFragment
+from symobs.pages.formats.latex import LatexFragment
 from symobs.pages.formats.text import Text
 from symobs.pages.page.blocks import Paragraph, TableBlock
 from symobs.pages.page.narrator import narrate
-from symobs.pages.printers.latex_printer import LatexPrinter
 from symobs.pages.printers.text_printer import TextPrinter
 from symobs.pages.tables import fitted
-from symobs.proof.derivation import CaseStep, Define, Derivation, Sentence, Tabulate
+from symobs.proof.derivation import Define, Derivation, Sentence, Tabulate
 from symobs.proof.derivation.routh_check import findings_of
 from symobs.stability.criteria.routh_table import routh_table
-from tests.support.independent_algebra.routh_by_hand import LIE, TIMES
 from tests.support.problems.render_examples import document
 from tests.support.problems.steps import said
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-    from pathlib import Path
-
     from tests.support.problems.render_examples import HandWritten
 
 s = Scalar.symbol("s")
 CHI = Letter("chi")
-FAULTS = re.compile(r"^(?:! .*|(?:LaTeX|Package|Class).*Warning.*|(?:Over|Under)full .*)", re.MULTILINE)
 
 
 def polynomial(*coefficients: int | str) -> Scalar:
@@ -65,59 +56,6 @@ def text(*coefficients: int | str) -> list[str]:
 def block_of(value: Scalar) -> TableBlock:
     (block,) = (block for block in narrate(page(value)) if isinstance(block, TableBlock))
     return block
-
-
-# -- terminals ----------------------------------------------------------------------------------------------------------
-
-
-def test_columns_are_aligned() -> None:
-    assert text(1, 10, 35, 50, 24) == [
-        "    s⁴ │ 1   35  24",
-        "    s³ │ 10  50",
-        "    s² │ 30  24",
-        "    s¹ │ 42",
-        "    s⁰ │ 24",
-    ]
-
-
-def test_what_was_put_in_is_told_beside_its_row() -> None:
-    assert text(1, 0, 3, 2) == [
-        "    s³ │ 1           3",
-        "    s² │ ε           2    ε in place of 0",
-        "    s¹ │ (3ε - 2)/ε",
-        "    s⁰ │ 2",
-    ]
-    assert text(1, 0, 2, 0, 1) == [
-        "    s⁴ │ 1  2  1",
-        "    s³ │ 4  4       derivative of s⁴ + 2s² + 1",
-        "    s² │ 1  1",
-        "    s¹ │ 2          derivative of s² + 1",
-        "    s⁰ │ 1",
-    ]
-
-
-def test_a_long_remark_is_told_in_fewer_words() -> None:
-    wide = polynomial(1, 0, "first_long_name", 0, "second_long_name", 0, "third_long_name")
-    lines = [line for line in Text().render(page(wide)).splitlines() if "derivative" in line]
-    assert lines
-    assert lines[0].endswith("derivative of the row above")
-
-
-def test_wide_entries_have_names_that_are_told_below() -> None:
-    found = text(1, "h1", "h2", "h3", "h4", "h5", "h6")
-    assert found[:7] == [
-        "    s⁶ │ 1   h₂  h₄  h₆",
-        "    s⁵ │ h₁  h₃  h₅",
-        "    s⁴ │ b₁  b₂  h₆",
-        "    s³ │ c₁  c₂",
-        "    s² │ d₁  h₆",
-        "    s¹ │ f₁",
-        "    s⁰ │ h₆",
-    ]
-    assert "where" in found
-    assert "    b₁ = (h₁ h₂ - h₃)/h₁," in found
-    assert "    d₁ = (c₁ b₂ - b₁ c₂)/c₁," in found
-    assert "    f₁ = (d₁ c₂ - c₁ h₆)/d₁" in found
 
 
 # -- names ----------------------------------------------------------------------------------------------------------------
@@ -178,38 +116,6 @@ def test_no_name_is_one_of_a_parameter() -> None:
     assert {str(r.members[0].value)[0] for r in told if isinstance(r.members[0], Literal)}.isdisjoint("bc")
 
 
-# -- LaTeX ----------------------------------------------------------------------------------------------------------------
-
-
-def test_powers_stand_left_of_a_rule() -> None:
-    written = LatexFragment().render(page(polynomial(1, "h1", "h2", 1)))
-    assert (
-        "\\begin{array}{c|cc}\n"
-        r"s^3&1&h_{2}\\s^2&h_{1}&1\\[4pt]s^1&\dfrac{h_{1}h_{2}-1}{h_{1}}&\\[12pt]s^0&1&"
-        "\n\\end{array}"
-    ) in written
-
-
-def test_remarks_stand_right_of_the_entries() -> None:
-    written = LatexFragment().render(page(polynomial(1, 0, 2, 0, 1)))
-    assert r"\begin{array}{c|ccc@{\quad}l}" in written
-    assert r"s^3&4&4&&\text{derivative of $s^4+2s^2+1$}\\" in written
-
-
-def test_no_line_is_overfull(require_tool: Callable[[str], str], tmp_path: Path) -> None:
-    many = [polynomial(1, "h1", "h2", "h3", "h4"), polynomial("a", "b", "c", "d", "e", "f"), *WIDE]
-    derivations = [derivation(value) for value in many]
-    inside = derivation(polynomial(1, "h1", "h2", "h3", "h4", "h5", "h6", "h7"))
-    case = CaseStep(said(Scalar.symbol("h8"), 0), (("h8", Scalar.of(0)),), inside.steps, anew=("chi",))
-    source = LatexArticle().render(document(*derivations, Derivation((case,), Environment())))
-    (tmp_path / "page.tex").write_text(source, encoding="utf-8")
-    command = [require_tool("pdflatex"), "-interaction=nonstopmode", "-no-shell-escape", "page.tex"]
-    subprocess.run(command, cwd=tmp_path, capture_output=True, check=False)
-    log = (tmp_path / "page.log").read_text(encoding="latin-1")
-    assert "Output written" in log
-    assert FAULTS.findall(log) == []
-
-
 # -- what is said ---------------------------------------------------------------------------------------------------------
 
 
@@ -224,13 +130,10 @@ def test_the_page_says_what_the_table_says_and_names_the_theorem() -> None:
     assert "Routh, A Treatise" in str(sources)
 
 
-def test_numbers_in_words() -> None:
-    assert [ENGLISH.put(Counted("sign_changes", k)) for k in range(len(TIMES))] == TIMES
-    assert [ENGLISH.put(Counted("root_lies", k)) for k in range(len(LIE))] == LIE
-    assert ENGLISH.put(Counted("root_lies", 13)) == "13 roots lie"
-
-
-def test_latex_and_terminal_choose_by_their_own_width() -> None:
-    block = block_of(polynomial(1, "h1", "h2", "h3", "h4", "h5"))
-    printer = LatexPrinter()
-    assert fitted(block, printer, lambda _: printer.width - 4, 1, printer.width).legend == ()
+def test_powers_stand_left_of_a_rule() -> None:
+    written = LatexFragment().render(page(polynomial(1, "h1", "h2", 1)))
+    assert (
+        "\\begin{array}{c|cc}\n"
+        r"s^3&1&h_{2}\\s^2&h_{1}&1\\[4pt]s^1&\dfrac{h_{1}h_{2}-1}{h_{1}}&\\[12pt]s^0&1&"
+        "\n\\end{array}"
+    ) in written

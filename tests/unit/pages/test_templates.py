@@ -42,14 +42,6 @@ def test_one_block_replaced(name: str, block: str, command: list[str], tmp_path:
     assert [line.replace("MINE ", "") for line in mine.out.splitlines()] == plain.out.splitlines()
 
 
-def test_a_preamble_of_ones_own_serves_sheets_too(tmp_path: Path) -> None:
-    block = "\\BLOCK{block preamble}\n\\VAR{super()}\n\\usepackage{mine}\n\\BLOCK{endblock}\n"
-    text = f'\\BLOCK{{extends "symobs/article.tex"}}\n{block}'
-    own(tmp_path, "article.tex", text)
-    for command in ("solve", "sheet"):
-        assert r"\usepackage{mine}" in inside(command, OBSERVER, "--templates", str(tmp_path)).out
-
-
 def test_copied_templates_give_the_same_pages(tmp_path: Path) -> None:
     assert inside("templates", "copy", str(tmp_path)).code == 0
     assert sorted(path.name for path in tmp_path.iterdir()) == BUILT_IN
@@ -71,13 +63,6 @@ def test_a_broken_template_is_told_with_its_line(text: str, place: str, reason: 
     assert line.startswith(f"{place}: ")
     assert reason in line
     assert "symobs" in line.partition(";")[2]
-
-
-def test_a_broken_sheet_is_told_once(tmp_path: Path) -> None:
-    own(tmp_path, "sheet.tex", "\n\\VAR{title.upper(}")
-    run = inside("sheet", OBSERVER, OBSERVER, "--templates", str(tmp_path))
-    assert (run.code, run.out, len(run.lines)) == (3, "", 1)
-    assert run.err.startswith("sheet.tex, line 2: the template cannot be used")
 
 
 @pytest.mark.parametrize("name", ["/etc/passwd", "../secret.tex", "sub/../../secret.tex", "symobs/../../README.md"])

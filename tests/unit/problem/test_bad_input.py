@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import re
 from contextlib import suppress
 from time import process_time
@@ -18,10 +17,11 @@ from symobs.formula.expression import comma_between_digits, parse_matrix, parse_
 from symobs.ground.errors import InexactInput, SymobsError
 from symobs.problem.expect import read_roots, relation
 from symobs.problem.sheet_file import is_sheet
+from tests.kit import tabled
 from tests.support.tools.command_line import Run, fresh, inside
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Sequence
     from pathlib import Path
 
 SERVO = {"A": '"[0 1; 0 -1]"', "B": '"[0; 1]"', "C": '"[1 0]"'}
@@ -29,15 +29,16 @@ POLES = "poles = [-10, -10]"
 CODE = "__import__('pathlib').Path('canary').touch()"
 
 
-def problem(specification: str = POLES, top: str = 'task = "observer"', symbols: str = "", **plant: str | None) -> str:
+def problem(
+    specification: str = POLES,
+    top: str = 'task = "observer"',
+    symbols: str = "",
+    without: Sequence[str] = (),
+    **plant: str | None,
+) -> str:
     """A problem file: the observer of the servo with both poles at -10, as far as nothing else is said."""
-    entries = "".join(f"{name} = {value}\n" for name, value in (SERVO | plant).items() if value is not None)
+    entries = "".join(f"{name} = {value}\n" for name, value in (SERVO | plant).items() if value and name not in without)
     return f"{top}\n[symbols]\n{symbols}\n[plant]\n{entries}[specification]\n{specification}\n"
-
-
-def as_json(**changes: Any) -> str:
-    plant = {"A": "[0 1; 0 -1]", "C": "[1 0]"}
-    return json.dumps({"task": "observer", "plant": plant, "specification": {"poles": "-1, -2"}} | changes)
 
 
 def solved(folder: Path, text: str, run: Callable[..., Run] = inside) -> Run:
@@ -63,164 +64,11 @@ def assert_refused(run: Run, *expected: tuple[str, str]) -> None:
 
 # -- one mistake ----------------------------------------------------------------------------------------------------
 
-WRONG = {
-    # shapes
-    "A not square": (problem(A='"[0 1 2; 0 -1 3]"'), "plant.A", "2×3 … expected a square matrix"),
-    "B with a row too many": (problem(B='"[0; 1; 2]"'), "plant.B", "3×1 … 2 rows"),
-    "C with a column too many": (problem(C='"[1 0 0]"'), "plant.C", "1×3 … 2 columns"),
-    "D against outputs and inputs": (problem(D='"[1 2]"'), "plant.D", "1×2 … 1×1"),
-    "ragged text": (problem(A='"[0 1; 0]"'), "plant.A", "row 2 has 1 entry, but row 1 has 2"),
-    "ragged lists": (problem(A="[[0, 1], [0]]"), "plant.A", "row 2 has 1 entry, but row 1 has 2"),
-    "flat list": (problem(A="[0, 1]"), "plant.A", "row 1 is not a list of entries … [[1, 2]]"),
-    "empty text": (problem(A='""'), "plant.A", "the text is empty"),
-    "empty brackets": (problem(A='"[]"'), "plant.A", "expected"),
-    "no entries": (problem(A="[[]]"), "plant.A", "no entry"),
-    "no A": (problem(A=None), "plant.A", 'missing … A = "[0 1; 0 -1]"'),
-    "no C": (problem(C=None), "plant.C", "observer needs C"),
-    "given gain of wrong shape": (problem('L = "[1 2]"'), "specification.L", "1×2, expected 2×1"),
-    # names
-    "misspelt name": (
-        problem(symbols='omega = "positive"', A='"[0 1; -omga^2 -1]"'),
-        "plant.A",
-        'the name "omga" is not declared … column 8 … did you mean "omega"?',
-    ),
-    "misspelt name in a list": (
-        problem(symbols='omega = "positive"', A='[[0, 1], ["-omga^2", -1]]'),
-        "plant.A[1][0]",
-        '"omga" … did you mean "omega"?',
-    ),
-    "undeclared name": (problem(A='"[0 1; 0 -b]"'), "plant.A", '"b" is not declared'),
-    "name of a transfer function": (
-        problem(A=None, B=None, C=None, transfer_function='"b/(s + 1)"'),
-        "plant.transfer_function",
-        '"b" is not declared',
-    ),
-    "Python's word": (problem(symbols='lambda = "real"'), "symbols.lambda", '"lambda" is a word of Python … "lam"'),
-    "the variable": (problem(symbols='s = "real"'), "plant", "s is the variable"),
-    "no sign": (problem(symbols='omega = "plus"'), "symbols.omega", "'plus' is not a sign … positive"),
-    "no key of a symbol": (problem(symbols='b = { sgn = "real" }'), "symbols.b", "'sgn' … sign and latex"),
-    "hostile letter": (problem(symbols='b = { latex = "\\\\input{x}" }'), "symbols.b.latex", "not a printed form"),
-    **{
-        f"letter {form}": (problem(symbols=f"b = {{ latex = '''{form}''' }}"), "symbols.b.latex", "not a printed form")
-        for form in (
-            r"^^5cinput{x}",
-            "b^^41",
-            "a^1^2",
-            "a_1_2",
-            "a^2'x'_1",
-            r"\bar",
-            r"x_\bar a",
-            "}{",
-            "b_",
-            "1",
-            ", ",
-            "a ",
-        )
-    },
-    # keys and their values
-    "key of the file": (problem(top='task = "observer"\ntitel = "x"'), "titel", "unknown key … did you mean title?"),
-    "key of the plant": (problem(F="1"), "plant.F", "unknown key … known keys are A, B, C, D"),
-    "key of the file in a table": (
-        problem(convention='"S1"'),
-        "plant.convention",
-        "unknown key … above the first table",
-    ),
-    "key at the wrong place": (problem(top='task = "observer"\nA = "[1]"'), "A", "unknown key … belongs to [plant]"),
-    "key of another task": (
-        problem(f"{POLES}\ncontrol_polynomial = 's'"),
-        "specification.control_polynomial",
-        "unknown key … belongs to the task compensator",
-    ),
-    "task": (
-        problem(top='task = "observe"'),
-        "task",
-        '"observe" is not a task; did you mean observer? known tasks are … observability',
-    ),
-    "one of the tasks": (problem(top='tasks = ["observer", "hug"]'), "tasks[1]", '"hug" is not a task'),
-    "the same task twice": (problem(top='tasks = ["observer", "observer"]'), "tasks[1]", "twice"),
-    "a number for a task": (problem(top="task = 5"), "task", "a number came"),
-    "no task": (problem(top=""), "task", 'no task is named … task = "observer"'),
-    "no tasks": (problem(top="tasks = []"), "tasks", "no task is named"),
-    "task and tasks": (problem(top='task = "observer"\ntasks = ["observer"]'), "tasks", "both"),
-    "method": (problem(f'{POLES}\nmethod = "magic"'), "specification.method", "'magic' … ackermann"),
-    "a number for a method": (problem(f"{POLES}\nmethod = 5"), "specification.method", "a number came"),
-    "convention": (problem(top='task = "observer"\nconvention = "S9"'), "convention", '"S9" … use one of standard'),
-    "title": (problem(top='task = "observer"\ntitle = 5'), "title", "a text is expected, but a number came"),
-    "title without a glyph": (problem(top='task = "observer"\ntitle = "\\u0007"'), "title", "U+0007"),
-    "id": (problem(top='task = "observer"\nid = ["a", 5]'), "id[1]", "a text is expected, but a number came"),
-    "plant and transfer function": (problem(transfer_function='"1/s"'), "plant", "both transfer_function and A"),
-    "improper": (problem(A=None, B=None, C=None, transfer_function='"s"'), "plant.transfer_function", "proper"),
-    "period": (problem(dt="-1"), "plant.dt", "-1 is not a sampling period … positive number"),
-    "table": (problem(top='task = "observer"\nexpect = "x"'), "expect", "a table is expected, but a text came"),
-    # poles
-    "too few poles": (problem("poles = [-10]"), "specification.poles", "1 pole given, 2 needed"),
-    "a comma between digits and too many poles": (
-        problem('poles = "-1,5, -2,5"'),
-        "specification.poles",
-        "4 poles given, 2 needed … if one of them is 1.5, write it with a decimal point",
-    ),
-    "a decimal comma among semicolons": (
-        problem('poles = "-1,5; -2"'),
-        "specification.poles",
-        '"1,5" has a comma between its digits … write 1.5 with a decimal point',
-    ),
-    "a comma between digits in German": (
-        'language = "de"\n' + problem('poles = "-1,5"'),
-        "specification.poles",
-        "1,5 may be one number or two; write 1.5 with a decimal point, or a space behind a comma between two poles",
-    ),
-    "no poles": (problem(""), "specification.poles", 'poles are missing … poles = "-1, -2"'),
-    "poles without their conjugates": (
-        problem('poles = "-20+20i, -20+20i"'),
-        "specification.poles",
-        "not closed under conjugation: -20 - 20*I is missing",
-    ),
-    "poles and a polynomial": (problem(f'{POLES}\npolynomial = "s^2"'), "specification.poles", "both"),
-    "gain and poles": (problem(f'{POLES}\nL = "[1; 2]"'), "specification.L", "both"),
-    "degree": (problem('polynomial = "s^3"'), "specification.polynomial", "degree 3 given, degree 2 needed"),
-    "not monic": (problem('polynomial = "2 s^2 + 1"'), "specification.polynomial", "leading coefficient is 2"),
-    "no polynomial": (problem('polynomial = "1/s"'), "specification.polynomial", "a polynomial in s is expected"),
-    "no list of poles": (problem("poles = true"), "specification.poles[0]", "not an exact number"),
-    # values of the file format that are no entries of a matrix
-    "date": (problem(A="[[1979-05-27, 1], [0, -1]]"), "plant.A[0][0]", "date is not an exact number"),
-    "infinity": (problem(A="[[inf, 1], [0, -1]]"), "plant.A[0][0]", "not a finite number"),
-    "not a number": (problem(A="[[0, 1], [0, nan]]"), "plant.A[1][1]", "not a finite number"),
-    "truth": (problem(A="[[true, 1], [0, -1]]"), "plant.A[0][0]", "bool"),
-    "nothing": (as_json(plant={"A": [[0, 1], [0, None]], "C": "[1 0]"}), "plant.A[1][1]", "not an exact number"),
-    "table for an entry": (problem(A="[[{ a = 1 }, 1], [0, -1]]"), "plant.A[0][0]", "a table"),
-    "division by zero": (problem(A='"[0 1; 0 1/0]"'), "plant.A", "division by zero"),
-    "complex entry": (problem(A='"[0 1; 0 2i]"'), "plant.A[1][1]", "a real value is expected, but 2*I came"),
-    "root of a negative": (
-        problem(A='"[0 1; 0 (-2)^(1/3)]"'),
-        "plant.A",
-        "the exponent 1/3 is not an integer … declare a symbol",
-    ),
-    "root of a parameter": (
-        problem(A='"[0 1; 0 a^(1/3)]"', symbols='a = "positive"'),
-        "plant.A",
-        "declare a symbol for it",
-    ),
-    "root of a polynomial": (
-        problem(A='"[0 1; 0 CRootOf(x^3 - x - 1, 0)]"'),
-        "plant.A",
-        "stands inside an expression … the table [constants]",
-    ),
-    # expected answers
-    "expected text unreadable": (problem(f'{POLES}\n[expect]\nL = "[19; 81"'), "expect.L", '"[" is never closed'),
-    "expected field unknown": (problem(f'{POLES}\n[expect]\nK = "[1 2]"'), "expect.K", "no task here … L"),
-    "expected of another task": (problem(f"{POLES}\n[expect.pbh]\nL = 1"), "expect.pbh", "no task here"),
-    "expected field not of the task": (
-        problem(f"{POLES}\n[expect.observer]\nK = 1"),
-        "expect.observer.K",
-        "observer has no such field … L",
-    ),
-}
 
-
-@pytest.mark.parametrize("case", WRONG)
-def test_one_mistake_is_one_line(tmp_path: Path, case: str) -> None:
-    text, place, words = WRONG[case]
-    assert_refused(solved(tmp_path, text), (place, words))
+@tabled
+def test_one_mistake_is_one_line(tmp_path: Path, case: str, given: dict[str, Any], place: str, words: str) -> None:
+    assert case
+    assert_refused(solved(tmp_path, given.get("text") or problem(**given)), (place, words))
 
 
 # -- many mistakes --------------------------------------------------------------------------------------------------

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import tomllib
-from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
 import pytest
@@ -14,6 +13,8 @@ from hypothesis import strategies as st
 from symobs.ground.errors import InputError, ProblemErrors, SymobsError
 from symobs.problem import parse, read, validate
 from symobs.problem.expect import mismatches
+from symobs.problem.question import question_of
+from symobs.tasks.result import render
 from tests.kit import tabled
 from tests.support.tools.command_line import EXAMPLES, SERVO
 
@@ -63,25 +64,6 @@ def test_json_with_the_same_keys_is_the_same_problem(path: Any) -> None:
     assert from_json.expect == from_toml.expect
 
 
-@pytest.mark.parametrize(
-    ("text", "value"),
-    [
-        ("10.78", Fraction(539, 50)),
-        ("1e-3", Fraction(1, 1000)),
-        ("-0.1", Fraction(-1, 10)),
-        ("3", Fraction(3)),
-        ('"1/3"', Fraction(1, 3)),
-        ("0.1000000000000000055511151231257827", Fraction("0.1000000000000000055511151231257827")),
-    ],
-)
-def test_numbers_are_exact(text: str, value: Fraction) -> None:
-    for file in (
-        f'task = "observability"\n[plant]\nA = [[{text}]]',
-        f'{{"task": "observability", "plant": {{"A": [[{text}]]}}}}',
-    ):
-        assert read(file).plant.matrices.A[0, 0].fraction() == value
-
-
 @tabled
 def test_what_is_neither_toml_nor_json_is_refused_at_its_place(text: str, words: str) -> None:
     said = complaint(text)
@@ -121,43 +103,6 @@ def test_any_damage_to_a_file_is_found_out(data: st.DataObject) -> None:
         assert isinstance(error, InputError)
         assert error.where
         assert error.repair
-
-
-# -- its tables -----------------------------------------------------------------------------------------------------
-
-
-def test_a_problem_of_one_task_and_of_several() -> None:
-    one, several = read(OBSERVER), read(OBSERVER.replace('task = "observer"', 'tasks = ["observability", "observer"]'))
-    assert [result.task for result in one.solve()] == ["observer"]
-    begun: list[tuple[str, list[str]]] = []
-    results = several.solve(lambda name, so_far: begun.append((name, [result.task for result in so_far])))
-    assert [result.task for result in results] == ["observability", "observer"]
-    assert begun == [("observability", []), ("observer", ["observability"])]
-    assert one.solve()[0].answer == several.solve()[1].answer
-
-
-def test_another_task_can_be_run_on_the_same_file() -> None:
-    tables = parse(SERVO.read_text(encoding="utf-8"))
-    found = validate(tables, "observability")
-    assert [result.task for result in found.solve()] == ["observability"]
-    assert [task.name for task in validate({"plant": tables["plant"]}, "observability").tasks] == ["observability"]
-    with pytest.raises(ProblemErrors, match="poles are missing"):
-        validate({"plant": tables["plant"]}, "observer").solve()
-
-
-@pytest.mark.parametrize(
-    ("dt", "variable", "period"),
-    [
-        ("0", "s", 0),
-        ("true", "z", True),
-        ("0.1", "z", Fraction(1, 10)),
-        ("false", "s", 0),
-        ('"1/4"', "z", Fraction(1, 4)),
-    ],
-)
-def test_time_is_continuous_or_discrete(dt: str, variable: str, period: object) -> None:
-    plant = read(f"{OBSERVER.replace(PLANT, f'{PLANT}dt = {dt}{chr(10)}')}").plant
-    assert (plant.variable, plant.dt) == (variable, period)
 
 
 # -- expected answers -----------------------------------------------------------------------------------------------
@@ -281,3 +226,67 @@ def test_an_error_hides_no_other_and_makes_none(text: str, places: list[str]) ->
     with pytest.raises(ProblemErrors) as raised:
         read(text)
     assert [error.where for error in raised.value.errors] == places
+
+
+def test_a_method_is_for_the_tasks_of_a_file_that_have_it() -> None:
+    text = """
+tasks = ["observability", "observer", "stability_region"]
+[plant]
+A = "[0 1; -2 -3]"
+C = "[1 0]"
+[specification]
+poles = "-4, -5"
+method = "%s"
+"""
+    found = validate(parse(text % "ackermann", "problem")).solve()
+    assert [result.printed_method for result in found][:2] == ["rank", "ackermann"]
+    with pytest.raises(ProblemErrors, match="'magic' is not a method of observability"):
+        validate(parse(text % "magic", "problem")).solve()
+
+
+# -- tasks about the plant that another task finds ---------------------------------------------------------------------
+
+SAMPLED = f"""tasks = ["observability", "zero_order_hold", "state_feedback"]
+plant_of = "zero_order_hold"
+[symbols]
+T = "positive"
+{PLANT.replace("-1", "0")}[specification]
+sampling_period = "T"
+poles = [0, 0]
+[expect.state_feedback]
+K = "[1/T^2 3/(2*T)]"
+"""
+
+
+def test_tasks_may_be_about_the_plant_that_another_one_finds() -> None:
+    """The sampled double integrator has the deadbeat gain [1/T², 3/(2T)] (Åström and Wittenmark, ch. 4)."""
+    assert unmet(SAMPLED) == []
+    problem = read(SAMPLED)
+    results = problem.solve()
+    assert [result.plant.is_discrete for result in results] == [False, False, True]
+    text = problem.document(results)
+    page = str(render(text, "text"))
+    before, after = page.split("3. State feedback")
+    assert "ẋ" in before
+    assert "xₖ₊₁" in before
+    assert "ẋ" not in after
+    assert "det(zI - A + B K) = z²" in after
+    assert "the plant found in part (b)" in " ".join(str(render(question_of(problem), "text")).split())
+    alone = validate(parse(SAMPLED, "file"), "state_feedback").solve()
+    assert [result.task for result in alone] == ["state_feedback"]
+    assert alone[0].plant.is_discrete
+    assert not validate(parse(SAMPLED, "file"), "observability").solve()[0].plant.is_discrete
+
+
+@pytest.mark.parametrize(
+    ("name", "words"),
+    [
+        ("observability", "no task here whose answer is a plant; write zero_order_hold"),
+        ("canonical_form", "no task here whose answer is a plant; write zero_order_hold"),
+        ("state_feedback", "no task here whose answer is a plant"),
+    ],
+)
+def test_the_plant_of_a_task_that_has_none_is_refused(name: str, words: str) -> None:
+    (error,) = errors_of(lambda: read(SAMPLED.replace('plant_of = "zero_order_hold"', f'plant_of = "{name}"')))
+    assert error.where == "plant_of"
+    assert words in f"{error.message}; {error.repair}"

@@ -12,7 +12,8 @@ from symobs.exact import Scalar
 from symobs.stability.criteria.stability_conditions import is_stable_where, stable_where
 from symobs.stability.inequalities.decision import sign_cases
 from symobs.stability.inequalities.simplify import solved
-from tests.support.independent_algebra.plain import has_sign, random_fraction, seeded, value_at
+from tests.kit import scalars, tabled
+from tests.support.algebra import has_sign, random_fraction, seeded, value_at
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -33,41 +34,17 @@ def positive_at(values: Sequence[Scalar], point: Mapping[str, Fraction]) -> bool
     return all(value_at(value, point) > 0 for value in values)
 
 
-@pytest.mark.parametrize(
-    ("conditions", "signs", "expected"),
-    [
-        ([1 - h1, b + h2], AB, ["h1 < 1", "h2 > -b"]),
-        ([h2, 3 * h1 * h2 - h2**2 - 9], {}, ["h2 > 0", "h1 > (h2**2 + 9)/(3*h2)"]),
-        ([h1 * h2 - 1], {}, ["h1*h2 - 1 > 0"]),
-        ([a * h1 - b], AB, ["h1 > b/a"]),
-        ([(h1 - h2) ** 2], {}, ["h1 != h2"]),
-        ([h1 - 3, 5 + h1 - h2, (h1 - 2) * h2 - 1], {}, ["h1 > 3", "h1 > h2 - 5", "h2 > 1/(h1 - 2)"]),
-    ],
-    ids=str,
-)
-def test_conditions_solved_for_a_parameter(
-    conditions: list[Scalar], signs: dict[str, str], expected: list[str]
-) -> None:
-    found = solved(conditions, signs, ["h1", "h2"])
+@tabled
+def test_conditions_solved_for_a_parameter(conditions: list[str], signs: dict[str, str], expected: list[str]) -> None:
+    found = solved(scalars(conditions), signs, ["h1", "h2"])
     assert [f"{left} {operator} {right}" for left, operator, right in found] == expected
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(
-    ("conditions", "signs", "count"),
-    [
-        ([c * h1 - 1, h2 + 1], {}, 3),
-        ([(c - b) * h1 - 1, h2 * c + 1], AB, 5),
-        ([(a - b) * h1 + h2, c * h2 + 1], AB, 9),
-        ([x * h1 - 1], {"x": "nonnegative"}, 2),
-        ([h1 - c, c * h1 + h2], {}, 3),
-        ([(a - b) * h1 - 1, (a - b + 1) * h2 - 1], AB, 5),
-        ([h1 - c], {}, 1),
-    ],
-    ids=str,
-)
-def test_cases_by_signs_cover_all_and_say_the_same(conditions: list[Scalar], signs: dict[str, str], count: int) -> None:
-    cases = sign_cases(conditions, ["h1", "h2"], signs)
+@tabled
+def test_cases_by_signs_cover_all_and_say_the_same(conditions: list[str], signs: dict[str, str], count: int) -> None:
+    given = scalars(conditions)
+    cases = sign_cases(given, ["h1", "h2"], signs)
     assert len(cases) == count
     relations: dict[str, Callable[[Fraction], bool]] = {
         ">": lambda v: v > 0,
@@ -82,12 +59,12 @@ def test_cases_by_signs_cover_all_and_say_the_same(conditions: list[Scalar], sig
             met = [c for c in cases if all(relations[o](value_at(v, here)) for v, o in c.when)]
             assert len(met) == 1
             (case,) = met
-            assert positive_at(case.conditions.positive, here) == positive_at(conditions, here)
+            assert positive_at(case.conditions.positive, here) == positive_at(given, here)
             assert all(value_at(value, here) == here[name] for name, value in case.substitution.items())
             for left, operator, right in solved(case.conditions.positive, case.signs, ["h1", "h2"], case.assumed):
                 difference = value_at(left - right, here)
                 told = difference > 0 if operator == ">" else difference < 0
-                assert told or not positive_at(conditions, here)
+                assert told or not positive_at(given, here)
 
 
 def test_what_was_declared_of_a_symbol_is_kept_where_it_is_replaced() -> None:

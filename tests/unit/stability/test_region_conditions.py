@@ -19,7 +19,7 @@ from symobs.exact import Scalar, from_coefficients
 from symobs.formula.expression import parse_scalar
 from symobs.stability.criteria.stability_conditions import condition_lists, stable_where
 from tests.kit import tabled
-from tests.support.independent_algebra.plain import (
+from tests.support.algebra import (
     coefficients_at,
     has_sign,
     is_hurwitz,

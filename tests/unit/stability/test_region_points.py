@@ -12,10 +12,10 @@ import pytest
 
 import symobs
 from tests.kit import tabled
-from tests.support.independent_algebra.region_roots import count_real_roots, real_roots
 from tests.support.regions import region_answers, region_checks
 from tests.support.regions.region_answers import Answer
 from tests.support.regions.region_problems import PROBLEMS, by_name
+from tests.support.regions.region_roots import count_real_roots, real_roots
 from tests.support.sampling import FULL, every
 
 if TYPE_CHECKING:

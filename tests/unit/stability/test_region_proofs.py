@@ -21,7 +21,7 @@ from symobs.stability.inequalities.sample_points import find_point
 from symobs.stability.inequalities.simplify import simplify
 from symobs.stability.inequalities.z3_backend import QUESTION, Resources, point_by_z3
 from tests.kit import scalar, scalars, tabled
-from tests.support.independent_algebra.plain import has_sign, random_fraction, seeded, value_at
+from tests.support.algebra import has_sign, random_fraction, seeded, value_at
 from tests.support.paths import ROOT
 
 if TYPE_CHECKING:

@@ -27,9 +27,9 @@ from symobs.stability.criteria.routh_table import (
     sign_changes,
 )
 from tests.kit import scalars, tabled
-from tests.support.independent_algebra.plain import value_at
-from tests.support.independent_algebra.routh_by_hand import changes, expression, located, rows_of
+from tests.support.algebra import value_at
 from tests.support.problems.steps import checked, literal, refused, said
+from tests.support.second_reader import changes, expression, located, rows_of
 from tests.support.tampering.mutations import changes as changes_of
 from tests.support.tampering.mutations import lines_of
 

@@ -96,10 +96,3 @@ poles = "-2 + 2 r i, -2 - 2 r i"
 def test_a_wrong_constant_is_told_at_its_place(constants: str, reason: str) -> None:
     with pytest.raises(so.ProblemErrors, match=rf"constants\..*{reason}"):
         read(_FILE.format(constants=constants))
-
-
-def test_constants_of_a_file() -> None:
-    problem = read(_FILE.format(constants='r = "sqrt(3)"\nh = "r/2 + cos(pi/6)"'))
-    assert sympy.Matrix([[1, sympy.sqrt(3)]]) == problem.plant.C
-    (result,) = problem.solve()
-    assert result.verdict == "yes"

@@ -23,7 +23,7 @@ from symobs.system.conditions import (
     sign_of,
     vanishing_factors,
 )
-from tests.support.independent_algebra.plain import has_sign, random_fraction, seeded, value_at
+from tests.support.algebra import has_sign, random_fraction, seeded, value_at
 from tests.support.problems.strategies import Twin, polynomials, rational_functions
 
 if TYPE_CHECKING:
@@ -180,27 +180,3 @@ class TestValues:
     def test_a_condition_is_printed_as_a_relation_with_zero(self) -> None:
         assert str(Condition("claim", 2 * c - 1)) == "2*c - 1 != 0"
         assert str(Condition("existence", c, "==")) == "c == 0"
-
-
-#: Irreducible polynomials, and their sign for each that is declared of a; "real" where one has a root there.
-WITHOUT_ROOTS: list[tuple[Scalar, dict[str, str]]] = [
-    (a**2 - a + 1, dict.fromkeys(SIGNS, "positive")),
-    (-(a**4) + a - 1, dict.fromkeys(SIGNS, "negative")),
-    (a**3 - 2 * a**2 + a + 5, {"positive": "positive", "nonnegative": "positive"}),
-    (a**3 + a - 1, {"negative": "negative", "nonpositive": "negative"}),
-    (a**2 - a - 1, {}),
-    (a**4 - 3 * a**2 + a + 1, {}),
-]
-
-
-@pytest.mark.parametrize(("polynomial", "expected"), WITHOUT_ROOTS, ids=str)
-def test_a_polynomial_in_one_parameter_has_a_sign_where_it_has_no_root(
-    polynomial: Scalar, expected: dict[str, str]
-) -> None:
-    for declared in SIGNS:
-        sign = expected.get(declared, "real")
-        assert sign_of(polynomial, {"a": declared}) == sign
-        assert bool(vanishing_factors([polynomial], {"a": declared})) == (sign == "real")
-        held = [x / 4 for x in map(Fraction, range(-20, 21)) if has_sign(x, declared)]
-        if sign != "real":
-            assert all(has_sign(value_at(polynomial, {"a": x}), sign) for x in held)

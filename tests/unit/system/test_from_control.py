@@ -8,18 +8,10 @@ from typing import Any
 import control  # type: ignore[import-untyped]
 import numpy as np
 import pytest
-import sympy
 
 import symobs
 from symobs import StateSpace
 from symobs.ground.errors import InputError
-
-
-def test_floats_are_read_as_their_shortest_decimals() -> None:
-    plant = StateSpace.from_control(control.ss([[0, 1], [0.1, -10.78]], [[0], [1e-3]], [[1, 0]], [[0]]))
-    assert sympy.ImmutableMatrix([[0, 1], [sympy.Rational(1, 10), sympy.Rational(-539, 50)]]) == plant.A
-    assert sympy.ImmutableMatrix([[0], [sympy.Rational(1, 1000)]]) == plant.B
-    assert plant.dt == 0
 
 
 def test_the_page_says_what_was_read() -> None:
@@ -28,13 +20,6 @@ def test_the_page_says_what_was_read() -> None:
     assert sentence in " ".join(symobs.observer(plant, poles=[-10, -10]).to("text").split())
     exact = StateSpace("[0 1; 0 -1]", "[0; 1]", "[1 0]")
     assert sentence not in " ".join(symobs.observer(exact, poles=[-10, -10]).to("text").split())
-
-
-@pytest.mark.parametrize(("dt", "expected"), [(0, 0), (True, True), (0.1, sympy.Rational(1, 10)), (None, 0)])
-def test_time_is_carried_over(dt: Any, expected: Any) -> None:
-    plant = StateSpace.from_control(control.ss([[0.5]], [[1]], [[1]], [[0]], dt))
-    assert plant.dt == expected
-    assert plant.is_discrete == (expected != 0)
 
 
 @pytest.mark.parametrize(

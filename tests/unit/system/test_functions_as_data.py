@@ -148,10 +148,22 @@ def test_roots_of_what_has_symbols_are_no_constants() -> None:
         )
 
 
-def test_a_square_under_a_root_of_sympy_is_refused() -> None:
-    x = sympy.Symbol("x")
-    with pytest.raises(InputError, match="has no exact value"):
-        symobs.StateSpace(sympy.Matrix([[0, 1], [0, 0]]), None, sympy.Matrix([[sympy.sqrt(x**2 + 1) - x, 0]]))
+def test_roots_of_positive_expressions_are_data_with_their_relation() -> None:
+    """√(x² + 1) > x always; √k = k and √k = 1 at k = 1 alone.  Roots of which a product is a square are no letters."""
+    x, k = sympy.symbols("x k")
+    double = sympy.Matrix([[0, 1], [0, 0]])
+    always = symobs.observability(symobs.StateSpace(double, None, sympy.Matrix([[sympy.sqrt(x**2 + 1) - x, 0]])))
+    assert (always.verdict, always.conditions, always.cases) == ("yes", (), ())
+    for entry in ("sqrt(k) - k", "sqrt(k) - 1"):
+        plant = symobs.StateSpace(double, None, f"[{entry} 0]", symbols={"k": "positive"})
+        found = symobs.observability(plant)
+        assert (found.conditions, [case.result.verdict for case in found.cases]) == ((sympy.Ne(k - 1, 0),), ["no"])
+        assert list(found.evaluate({"k": [1.0, 4.0]})["rank"]) == [0, 2]
+        assert found.to("text")
+    signs = {"a": "positive", "b": "positive"}
+    for A in ("[sqrt(a) sqrt(b); sqrt(a*b) 0]", "[sqrt(2*a) sqrt(a); sqrt(2) 0]"):
+        with pytest.raises(InputError, match="roots that depend on each other"):
+            symobs.StateSpace(A, symbols=signs)
 
 
 def test_a_value_without_a_cosine_in_roots_is_refused() -> None:

@@ -305,3 +305,10 @@ def test_what_other_programs_call_a_task_is_told_its_name() -> None:
     assert set(symobs.SYNONYMS.values()) <= set(tasks())
     with pytest.raises(AttributeError, match="it is called state_feedback here"):
         getattr(symobs, next(name for name in symobs.SYNONYMS if name == "place"))
+
+
+def test_rows_in_brackets_and_flat_vectors_are_read() -> None:
+    plant = StateSpace("[[0, 1], [-2, -3]]", "[[0], [1]]", "[1 0]")
+    assert plant == StateSpace("[0 1; -2 -3]", "[0; 1]", "[1 0]")
+    assert symobs.state_feedback(plant, poles=np.array([[-1, -4]])).K == symobs.state_feedback(plant, K="2, 2").K
+    assert symobs.response(plant, initial="1, 0") == symobs.response(plant, initial="[1; 0]")

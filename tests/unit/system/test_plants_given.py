@@ -14,6 +14,7 @@ from sympy.physics.control import StateSpace as SymPyStateSpace
 import symobs
 from symobs import StateSpace
 from symobs.ground.errors import InputError
+from symobs.problem import read
 from tests.kit import tabled
 
 b, p, s, z = sympy.symbols("b p s z")
@@ -72,19 +73,6 @@ def test_what_a_fraction_divides_by_stays_a_condition(function: object) -> None:
 SERVO = StateSpace("[0 1; 0 -1]", "[0; 1]", "[1 0]")
 
 
-@pytest.mark.parametrize(
-    "given",
-    [
-        lambda: StateSpace([[0, 1], [0, -1]], [0, 1], [1, 0], 0),
-        lambda: StateSpace([[0, 1], [0, -1]], ("0", 1), sympy.Matrix([[1, 0]]), "0"),
-        lambda: StateSpace([[0, 1], [0, -1]], [sympy.Integer(0), 1], [1, sympy.Integer(0)], [0]),
-    ],
-)
-def test_flat_lists_are_a_column_and_a_row(given: Any) -> None:
-    plant = given()
-    assert (plant.A, plant.B, plant.C, plant.D) == (SERVO.A, SERVO.B, SERVO.C, SERVO.D)
-
-
 # -- systems of other programs ----------------------------------------------------------------------------------------
 
 
@@ -134,18 +122,94 @@ def test_what_is_no_plant_is_refused(system: Any, reason: str) -> None:
 # -- parameters replaced ----------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("key", ["p", p], ids=["name", "symbol"])
-@pytest.mark.parametrize(
-    "value", ["-1/2", Fraction(-1, 2), sympy.Rational(-1, 2)], ids=lambda value: type(value).__name__
-)
-def test_parameters_are_replaced_by_whatever_an_entry_may_be(key: object, value: object) -> None:
-    plant = StateSpace("[p 1; 0 b]", "[0; p^2]", "[1 0]").substitute({key: value, "b": 3})
-    assert sympy.Matrix([[sympy.Rational(-1, 2), 1], [0, 3]]) == plant.A
-    assert sympy.Matrix([0, sympy.Rational(1, 4)]) == plant.B
-
-
 @tabled
 def test_values_that_cannot_be_are_refused(values: dict[Any, Any], said: str) -> None:
     plant = StateSpace("[p 1; 0 b]", symbols={"p": "real", "b": "positive"})
     with pytest.raises(InputError, match=said):
         plant.substitute(values)
+
+
+def test_transfer_functions_of_other_programs_are_read() -> None:
+    """Two lists of coefficients, and SciPy's and MATLAB's matrix of numerators over a common denominator."""
+    read = StateSpace.from_transfer_function
+    assert read([1, 3], [1, 3, 2]) == read(([1, 3], [1, 3, 2])) == read([1, 3], [1, 3, 2], 0)
+    assert read([1], [2, 1], "1/2").dt == read([1], [2, 1], dt="1/2").dt == Fraction(1, 2)
+    lag = symobs.transfer_function(read(([[1, 0], [1, 1]], [1, 1]))).transfer_function
+    s = sympy.Symbol("s")
+    assert lag == sympy.Matrix([[1, 0], [1, 1]]) / (s + 1)
+    with pytest.raises(InputError, match="dead time is not rational; write a Padé approximation"):
+        read("exp(-s)/(s+1)")
+
+
+def test_a_sampling_period_may_be_a_symbol_that_is_positive() -> None:
+    held = StateSpace("[exp(-T)]", "[1]", "[1]", dt="T", symbols={"T": "positive"})
+    assert (held.is_discrete, held.dt, held.substitute({"T": "1/2"}).dt) == (True, "T", Fraction(1, 2))
+    assert symobs.observability(held).at(T=2).plant.dt == 2
+    assert '"dt": "T"' in symobs.observability(held).to("json")
+    with pytest.raises(InputError, match="T is not a sampling period"):
+        StateSpace("[1]", dt="T", symbols={"T": "real"})
+
+
+# -- the coordinates of a transfer function ----------------------------------------------------------------------------
+
+
+a, c, d, k = sympy.symbols("a c d k")
+FUNCTIONS = {
+    "1/(s*(s + 1))": 1 / (s * (s + 1)),
+    "(s + 2)/((s + 1)^2*(s^2 + 2*s + 5))": (s + 2) / ((s + 1) ** 2 * (s**2 + 2 * s + 5)),
+    "(s + a)/((s + b)*(s + c)) + 1": (s + a) / ((s + b) * (s + c)) + 1,
+    "1/((s^2 + s + 1)^2*(s - 1))": 1 / ((s**2 + s + 1) ** 2 * (s - 1)),
+    "(s^2 + 3)/(s + 2)^3": (s**2 + 3) / (s + 2) ** 3,
+    "k/(s^2 + 2*d*s + 1)": k / (s**2 + 2 * d * s + 1),
+}
+
+
+@pytest.mark.parametrize(
+    "written",
+    FUNCTIONS,
+)
+def test_a_transfer_function_is_realised_in_the_coordinates_asked_for(written: str) -> None:
+    """C (sI − A)⁻¹ B + D is the function in all of them; the dual of the controllable form, and blocks of the factors."""
+    wanted = FUNCTIONS[written]
+    plain, observable, modal = (
+        StateSpace.from_transfer_function(written, realisation=kind) for kind in ("controllable", "observable", "modal")
+    )
+    for plant in (plain, observable, modal):
+        n = plant.A.rows
+        found = (plant.C * (s * sympy.eye(n) - plant.A).inv() * plant.B + plant.D)[0]
+        assert sympy.cancel(found - wanted) == 0
+    assert (observable.A, observable.B, observable.C) == (plain.A.T, plain.C.T, plain.B.T)
+    factors = sympy.factor_list(sympy.fraction(sympy.cancel(wanted))[1], s)[1]
+    for factor, power in factors:
+        degree = sympy.degree(factor, s) * power
+        assert any(
+            sympy.expand(block.charpoly(s).as_expr() - sympy.Poly(factor**power, s).monic().as_expr()) == 0
+            and modal.A[first : first + degree, :first].is_zero_matrix is not False
+            and modal.A[first : first + degree, first + degree :].is_zero_matrix is not False
+            for first in range(modal.A.rows - degree + 1)
+            for block in [modal.A[first : first + degree, first : first + degree]]
+        )
+    assert sorted(modal.B) == [0] * (modal.B.rows - len(factors)) + [1] * len(factors)
+
+
+def test_a_page_says_which_realisation_it_has_and_values_keep_it() -> None:
+    plant = StateSpace.from_transfer_function("1/((s + a)*(s + 2))", realisation="modal")
+    found = symobs.observability(plant)
+    assert "A realisation in modal form is" in found.to("text")
+    assert [str(condition) for condition in found.conditions] == ["Ne(a - 2, 0)"]
+    assert "A realisation in modal form is" in found.at(a=3).to("text")
+    text = 'task = "observability"\n[plant]\ntransfer_function = "1/(s^2 + s)"\nrealisation = "observable"\n'
+    (read_there,) = read(text).solve()
+    assert "observable canonical form" in read_there.to("text")
+
+
+@pytest.mark.parametrize(
+    ("function", "kind", "words"),
+    [
+        ("1/s", "diagonal", "write one of controllable, observable, modal"),
+        ("[1/s, 1/s]", "modal", "minimal realisation"),
+    ],
+)
+def test_coordinates_that_there_are_not_are_refused(function: str, kind: str, words: str) -> None:
+    with pytest.raises(InputError, match=words):
+        StateSpace.from_transfer_function(function, realisation=kind)

@@ -10,7 +10,6 @@ import sympy
 from sympy import Dummy, Symbol
 
 import symobs
-from symobs.exact.sympy_bridge.conversion import scalar_to_sympy
 from symobs.formula.expression import parse_matrix, parse_poles, parse_scalar
 from symobs.ground.errors import ExpressionError, InputError
 from symobs.system import Symbols
@@ -32,21 +31,10 @@ def test_a_product_without_its_sign_after_a_division_has_two_readings(
     assert one != other
 
 
-@pytest.mark.parametrize(
-    ("text", "value"),
-    [
-        ("2 s/3", 2 * s / 3),
-        ("(1/s)(s+1)", (s + 1) / s),
-        ("s (1/2) s", s**2 / 2),
-        ("a/b*c d", a * c * d / b),
-        ("a/(b c)", a / (b * c)),
-        ("s^(1/1) a", s * a),
-        ("1/2 + s(s+1)", sympy.Rational(1, 2) + s**2 + s),
-    ],
-)
-def test_other_products_need_no_sign(text: str, value: sympy.Expr) -> None:
+@tabled
+def test_other_products_need_no_sign(text: str, value: str) -> None:
     names = dict.fromkeys("abcd", "real")
-    assert sympy.simplify(scalar_to_sympy(parse_scalar(text, names, variable="s")) - value) == 0
+    assert str(parse_scalar(text, names, variable="s")) == value
 
 
 def test_spaces_in_brackets_set_entries_apart_after_a_division_too() -> None:
@@ -83,14 +71,6 @@ k, positive_k = Symbol("k"), Symbol("k", positive=True)
 def test_two_symbols_of_one_name_are_refused(ask: Any) -> None:
     with pytest.raises(InputError, match=r"symbols\.\w: two different symbols are both called [aks]; give each"):
         ask()
-
-
-def test_a_dummy_is_called_by_its_name_and_comes_back_itself() -> None:
-    plant = symobs.StateSpace(sympy.Matrix([[0, one], [1, 0]]), C=[[1, 0]])
-    assert plant.A[0, 1] is one
-    found = symobs.observability(plant)
-    assert [condition.lhs for condition in found.conditions] == [one]
-    assert '"a != 0"' in found.to_json()
 
 
 @pytest.mark.parametrize(

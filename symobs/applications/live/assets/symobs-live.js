@@ -174,7 +174,7 @@ export function mount(element, transport, options = {}) {
   const begun = (link) => decoded(/(^|[#&])task=/.test(link) ? link : `${DEMO}&${link.replace(/^#/, "")}`);
   let s = begun(options.state ?? "");
   let view = null, viewed = "", answer = null, sets = {}, held = null, frame = null, start = null;
-  let waiting = null, running = false, number = 0, drawn = 0, restTimer = 0, busyTimer = 0, said = 0, gone = false, quiet = false, before = "";
+  let waiting = null, running = false, number = 0, drawn = 0, restTimer = 0, busyTimer = 0, said = 0, refused = false, gone = false, quiet = false, before = "";
   let aborted = new AbortController(), language = null, notice = "", point = null;
   const el = {};
 
@@ -257,15 +257,30 @@ export function mount(element, transport, options = {}) {
     for (const key of ["convention", "language"]) if (s[key]) told[key] = s[key];
     return told;
   };
-  const signature = () => JSON.stringify([s.task, s.plant, s.symbols, s.convention, s.language, s.task === "stability_region" ? s.spec : Object.keys(s.spec)]);
-  const free = () => Object.fromEntries(Object.entries(s.at).filter(([name]) => !view?.region?.parameters?.includes(name)));
+  const isRegion = () => s.task === "stability_region";
+  const signature = () => JSON.stringify([s.task, s.plant, s.symbols, s.convention, s.language, isRegion() ? [s.spec, free()] : Object.keys(s.spec)]);
+  const axes = () => (isRegion() ? view?.region?.parameters ?? Object.keys(s.at) : []);
+  const free = () => Object.fromEntries(Object.entries(s.at).filter(([name]) => !axes().includes(name)));
+
+  // Whatever is shown carries the question that it answers: it is pale while the fields and handles say another.
+  const questions = { answer: () => [problem(), free(), s.x0, s.xh0], region: () => [problem(), free()], point: () => [problem(), s.at], page: () => [problem(), free(), s.detail] };
+  const answered = {};
+  const question = (kind) => JSON.stringify(questions[kind]());
+  const isOld = (kind) => refused || answered[kind] !== question(kind);
+  function fade() {
+    root.classList.toggle("stale", isOld("answer"));
+    el.map.classList.toggle("old", isOld("region"));
+    el.point.classList.toggle("old", isOld("region") || isOld("point"));
+    el.page.classList.toggle("old", isOld("page"));
+  }
+
   const asking = (want, more = {}) => ({ schema: SCHEMA, id: ++number, want, problem: problem(), ...more });
 
   function ask() {
     waiting = true;
     aborted.abort();
     clearTimeout(restTimer);
-    el.page.classList.add("old");
+    fade();
     if (!running) run();
   }
 
@@ -278,22 +293,26 @@ export function mount(element, transport, options = {}) {
       const moving = held !== null;
       try {
         if (signature() !== viewed) {
-          const mark = signature(), got = await transport(asking("view"));
-          if (got.status === "done") { view = got.view; viewed = mark; takeView(); }
-          else { drawAnswer(got); continue; }
+          const mark = signature(), asked = question("region"), got = await transport(asking("view", isRegion() ? { at: free() } : {}));
+          if (got.status !== "done") { drawAnswer(got); continue; }
+          view = got.view;
+          viewed = mark;
+          answered.region = asked;
+          takeView();
+          if (signature() !== viewed) waiting = true;  // the picture has other axes than the one before
           if (waiting) continue;
         }
         const region = view.panels.includes("region") && view.region?.handle && Object.keys(s.at).length;
         if (region) {
-          const got = await transport(asking("point", { at: s.at }));
-          drawPoint(got);
+          const asked = question("point"), got = await transport(asking("point", { at: { ...view.region.drawn_for, ...s.at } }));
+          drawPoint(got, asked);
           if (waiting || moving || got.status !== "done") continue;
         }
         const at = free(), courses = open("responses") ? { start: s.x0, estimate: s.xh0, end: null, count: 129 } : undefined;
         const more = { at, cards_at: Object.keys(at).length > 0, cases: !moving && open("cases") };
         if (courses) more.courses = courses;
-        const question = asking("answer", more), got = await transport(question);
-        if (got.id >= drawn || !got.id) drawAnswer(got);
+        const asked = question("answer"), got = await transport(asking("answer", more));
+        if (got.id >= drawn || !got.id) drawAnswer(got, asked);
       } catch (error) {
         if (!gone) say(w("no_answer", { reason: why(error) }), () => ask());
       }
@@ -329,14 +348,16 @@ export function mount(element, transport, options = {}) {
     restTimer = setTimeout(async () => {
       announce();
       if (!start) learn();
-      if (!open("page") || running || answer?.status === "bad") return;
+      if (!open("page") || running || isOld("answer")) return;
+      aborted.abort();
       aborted = new AbortController();
-      const signal = aborted.signal, at = free();
+      const signal = aborted.signal, at = free(), asked = question("page");
       el.page.setAttribute("aria-busy", "true");
       try {
         const got = await transport(asking("page", { detail: s.detail, at, cards_at: Object.keys(at).length > 0 }), signal);
         if (signal.aborted) return;
-        el.page.classList.remove("old");
+        answered.page = asked;
+        fade();
         if (got.html) el.html.innerHTML = got.html;
         else el.html.replaceChildren(h("p", { class: "pale" }, got.message ?? got.errors?.map((e) => e.message).join("; ") ?? w("no_derivation")), got.status === "undecided" ? h("button", { onclick: () => rest(0) }, w("try_again")) : null);
         el.page.setAttribute("aria-busy", "false");
@@ -345,7 +366,7 @@ export function mount(element, transport, options = {}) {
   }
 
   function announce() {
-    if (!answer?.cards || Date.now() - said < 1000) return;
+    if (!answer?.cards || isOld("answer") || Date.now() - said < 1000) return;
     said = Date.now();
     el.live.textContent = `${el.verdict.textContent}. ${answer.cards.filter((c) => /^[KLF]$/.test(c.name)).map((c) => c.says).join(". ")}`;
   }
@@ -360,6 +381,8 @@ export function mount(element, transport, options = {}) {
   // -- changes ----------------------------------------------------------------------------------------------------------
 
   function commit(final) {
+    refused = false;
+    fade();
     const link = encoded(s);
     if (link.length > LONGEST) say(w("too_long"));
     else options.changed?.(link, final);
@@ -371,6 +394,7 @@ export function mount(element, transport, options = {}) {
     if (!found) return;
     s = { ...decoded(found.link), snap, closed, detail, language };
     view = null;
+    viewed = "";
     el.examples.value = "";
     problemChanged();
   }
@@ -417,7 +441,7 @@ export function mount(element, transport, options = {}) {
     const isParted = given.includes(";") && (input.dataset.set || where.startsWith("courses."));
     if (language.decimal_mark === "," && (isOne || isParted)) changed(input.value = points.replace(/\s*;\s*/g, ", "));
     else if (language.decimal_mark !== "," || points === given) changed(given);
-    else { clearWrong(); showErrors([{ where, message: w("comma"), repair: w("comma_repair") }]); }
+    else { refused = true; clearWrong(); showErrors([{ where, message: w("comma"), repair: w("comma_repair") }]); fade(); }
   }
 
   function field(where, label, given, changed, wide = true) {
@@ -426,7 +450,7 @@ export function mount(element, transport, options = {}) {
   }
 
   function build() {
-    const isFresh = furnish(), isRegion = s.task === "stability_region";
+    const isFresh = furnish();
     const listed = ["A", "B", "C", "D"].filter((name) => s.plant[name] !== undefined);
     const rows = listed.map((name) => {
       const table = cells(s.plant[name]);
@@ -444,11 +468,11 @@ export function mount(element, transport, options = {}) {
     const setKeys = (view?.sets ?? []).map((g) => g.key), untold = h("div", { class: "fields" });
     const fill = () => untold.replaceChildren(...(start?.tasks[s.task] ?? []).filter((key) => s.spec[key] === undefined && !setKeys.includes(key)).map(told));
     fill();
-    const all = h("details", { class: "astext", open: el.plant.querySelector(".astext")?.open, ontoggle: fill }, h("summary", {}, w("as_text")), h("div", { class: "fields" }, ["A", "B", "C", "D", "transfer_function", "dt"].map((name) => field(`text.${name}`, labelOf(name), s.plant[name], (t) => { if (t) s.plant[name] = t; else delete s.plant[name]; problemChanged(); })), field("text.symbols", labelOf("symbols"), Object.entries(s.symbols).map(([n, g]) => `${n}: ${g}`).join(", "), (t) => { s.symbols = Object.fromEntries(t.split(",").map((e) => e.split(":").map((p) => p.trim())).filter(([n]) => n).map(([n, g]) => [n, g || "real"])); problemChanged(); })), untold);
+    const all = h("details", { class: "astext", open: el.plant.querySelector(".astext")?.open, ontoggle: () => { if (!untold.childElementCount) fill(); } }, h("summary", {}, w("as_text")), h("div", { class: "fields" }, ["A", "B", "C", "D", "transfer_function", "dt"].map((name) => field(`text.${name}`, labelOf(name), s.plant[name], (t) => { if (t) s.plant[name] = t; else delete s.plant[name]; problemChanged(); })), field("text.symbols", labelOf("symbols"), Object.entries(s.symbols).map(([n, g]) => `${n}: ${g}`).join(", "), (t) => { s.symbols = Object.fromEntries(t.split(",").map((e) => e.split(":").map((p) => p.trim())).filter(([n]) => n).map(([n, g]) => [n, g || "real"])); problemChanged(); })), untold);
     if (s.plant.transfer_function !== undefined) rows.push(field("plant.transfer_function", "P(s)", s.plant.transfer_function, (t) => { s.plant.transfer_function = t; problemChanged(); }));
     const others = Object.keys(s.spec).filter((key) => !setKeys.includes(key) && key !== "observer").map(told);
     const kind = s.task === "compensator" ? h("label", { class: "field" }, h("span", {}, w("kind")), h("select", { onchange: (e) => { s.spec.observer = e.target.value; fitObserver(); problemChanged(); } }, ["full", "minimal"].map((k) => h("option", { value: k, selected: (s.spec.observer ?? "full") === k }, w(`kind_${k}`))))) : null;
-    const names = Object.keys(s.symbols).filter((n) => !(isRegion && view?.region?.parameters?.includes(n)));
+    const names = Object.keys(s.symbols).filter((n) => !axes().includes(n) || !view);
     const sliders = names.map((name) => slider(name));
     el.plant.replaceChildren(h("header", {}, h("h2", {}, w("problem"))), h("div", { class: "body" }, h("div", { class: "matrices" }, rows), kind, others, sliders.length ? h("div", { class: "sliders" }, sliders) : null, all));
     if ([...el.task.options].some((o) => o.value === s.task)) el.task.value = s.task;
@@ -458,9 +482,9 @@ export function mount(element, transport, options = {}) {
     showPanels();
     if (!isFresh || !answer) return;
     if (view?.panels.includes("region")) drawMap();
-    if (point && el.pointVerdict) drawPoint(point);
+    if (point && el.pointVerdict) drawPoint(point, answered.point);
     show(answer);
-    root.classList.add("stale");
+    fade();
   }
 
   /** An observer of minimal order has fewer poles: drop the last ones, or repeat the first. */
@@ -477,7 +501,7 @@ export function mount(element, transport, options = {}) {
     const set = (t, final) => { if (t) s.at[name] = t; else delete s.at[name]; exact.value = t; range.value = t && rational(t) ? String(value(rational(t)) * GRID) : range.value; commit(final); ask(); };
     const range = h("input", { type: "range", min: (low || 0) * GRID, max: high * GRID, step: 1, value: rational(s.at[name] ?? "") ? value(rational(s.at[name])) * GRID : (low + high) * GRID / 2, "aria-label": `${name}, ${sign}`, oninput: () => { held = "slider"; set(text(ratio(Number(range.value), GRID)), false); }, onchange: () => { held = null; commit(true); ask(); } });
     const exact = field(`at.${name}`, w("value_of", { name }), s.at[name] ?? "", (t) => set(t, true), false);
-    exact.setAttribute("placeholder", w("letter"));
+    exact.setAttribute("placeholder", view?.region?.drawn_for?.[name] ?? w("letter"));
     return h("div", { class: "slider" }, h("i", {}, name), range, exact, h("small", { class: "wrong", "data-of": `at.${name}` }));
   }
 
@@ -491,7 +515,6 @@ export function mount(element, transport, options = {}) {
   function drawMap() {
     const region = view.region;
     el.map.innerHTML = region?.svg ?? "";
-    for (const [name, given] of Object.entries(region?.drawn_for ?? {})) s.at[name] ??= given;
     if (region?.handle) {
       region.parameters.forEach((name, k) => { s.at[name] ??= region.handle[k]; });
       buildPoint();
@@ -587,7 +610,7 @@ export function mount(element, transport, options = {}) {
       const r = 6.5 + 4 * (same + (nested ? index : 0));
       return [h("svg:circle", { class: "hit", cx: x, cy: y, r: 18 }), h("svg:circle", { class: "halo", cx: x, cy: y, r: 12 }), group.mark === "cross" ? h("svg:path", { class: "glyph", d: `M${x - r} ${y - r}l${2 * r} ${2 * r}m0 ${-2 * r}l${-2 * r} ${2 * r}` }) : h("svg:circle", { class: "glyph", cx: x, cy: y, r })];
     };
-    const said = answer?.readouts?.find((r) => r.handle === `${group.key}.${k}`);
+    const said = isOld("answer") ? null : answer?.readouts?.find((r) => r.handle === `${group.key}.${k}`);
     const isHeld = held && held.p === p;
     const mine = h("svg:g", {
       class: `handle ${group.mark}${isHeld ? " held" : ""}`, tabindex: 0, role: "slider", "data-handle": `${group.key}.${k}`,
@@ -756,11 +779,14 @@ export function mount(element, transport, options = {}) {
     follow(event);
   }
 
-  function drawPoint(got) {
+  function drawPoint(got, asked) {
     if (got.status !== "done") { drawAnswer(got); return; }
     clearWrong();
     point = got;
-    el.pointVerdict.textContent = `${view.region.parameters.map((n) => `${n} = ${pretty(s.at[n])}`).join(", ")}: ${w(`point_${got.verdict}`)}`;
+    answered.point = asked;
+    fade();
+    const there = { ...view.region.drawn_for, ...s.at };
+    el.pointVerdict.textContent = `${Object.keys(there).map((n) => `${n} = ${pretty(there[n])}`).join(", ")}: ${w(`point_${got.verdict}`)}`;
     el.pointVerdict.dataset.verdict = got.verdict;
     el.pointMath.innerHTML = [...(got.cards ?? []), ...(got.boundary ?? [])].map((c) => `<div class="display">${c.mathml}</div>`).join("");
     const middle = (p) => (Number(p[0]) + Number(p[1])) / 2, digits = (p) => pretty(middle(p).toFixed(3));
@@ -778,12 +804,10 @@ export function mount(element, transport, options = {}) {
   function clearWrong() {
     root.querySelectorAll(".wrong").forEach((e) => e.replaceChildren());
     root.querySelectorAll("[aria-invalid]").forEach((e) => e.removeAttribute("aria-invalid"));
-    root.classList.remove("stale");
     say("");
   }
 
   function showErrors(errors) {
-    root.classList.add("stale");
     const left = [];
     for (const { where, message, repair, lang } of errors) {
       const words = `${message}${repair ? `: ${repair}` : ""}`, base = where.replace(/\[.*$/, "");
@@ -798,21 +822,25 @@ export function mount(element, transport, options = {}) {
     if (left.length) say(left.slice(0, 4).join(" · "));
   }
 
-  function drawAnswer(got) {
+  function drawAnswer(got, asked) {
     if (got.id) drawn = got.id;
-    if (got.status === "bad") { answer = answer && { ...answer, status: "bad" }; clearWrong(); showErrors(got.errors); return; }
     clearWrong();
-    if (got.status === "bug" || (got.status === "undecided" && !got.cards)) { root.classList.add("stale"); say(got.status === "bug" ? got.message : w("undecided", { reason: got.message }), () => ask()); return; }
+    if (got.status === "bad") { showErrors(got.errors); return; }
+    if (got.status === "bug" || (got.status === "undecided" && !got.cards)) { say(got.status === "bug" ? got.message : w("undecided", { reason: got.message }), () => ask()); return; }
     answer = got;
+    answered.answer = asked;
+    fade();
     show(got);
   }
 
   /** Show an answer. */
   function show(got) {
     const claims = got.verdict === "no" ? "" : ` · ${w(got.claims === 1 ? "claim" : "claims", { count: got.claims })}`;
-    const told = w(`verdict_${got.verdict}`) + claims;
+    const isUnstable = got.verdict !== "no" && got.unstable.length > 0;
+    const unstable = isUnstable ? `${w(got.unstable.length > 1 ? "unstable_poles" : "unstable_pole", { poles: pretty(got.unstable.join(", ")) })} · ` : "";
+    const told = unstable + w(`verdict_${got.verdict}`) + claims;
     if (el.verdict.textContent !== told) el.verdict.textContent = told;
-    el.verdict.dataset.verdict = got.verdict;
+    el.verdict.dataset.verdict = isUnstable ? "unstable" : got.verdict;
     if (el.notes.textContent !== (got.note ?? "")) el.notes.textContent = got.note ?? "";
     drawCards(got);
     if (!el.cases.hidden) drawCases(got);
@@ -839,10 +867,10 @@ export function mount(element, transport, options = {}) {
 
   function drawCases(got) {
     if (!got.cases) return;
-    const general = h("button", { class: Object.keys(free()).length ? "" : "chosen", onclick: () => { s.at = {}; commit(true); build(); ask(); } }, w("in_general"));
+    const general = h("button", { class: Object.keys(free()).length ? "" : "chosen", onclick: () => { s.at = {}; problemChanged(); } }, w("in_general"));
     const made = got.cases.map((c) => {
       const usable = Object.keys(c.at).length > 0;
-      const b = h("button", { disabled: !usable, "data-case": JSON.stringify(c.at), onclick: () => { s.at = { ...c.at }; commit(true); build(); ask(); } });
+      const b = h("button", { disabled: !usable, "data-case": JSON.stringify(c.at), onclick: () => { s.at = { ...c.at }; problemChanged(); } });
       b.innerHTML = (c.mathml.length ? c.mathml : c.when.map((w) => w.mathml)).join(" ");
       return h("div", { class: "case-row" }, b, h("span", { class: "pale" }, c.rank !== undefined ? w("rank", c) : w(`case_${c.verdict}`)));
     });

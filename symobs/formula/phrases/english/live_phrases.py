@@ -102,6 +102,8 @@ PHRASES: dict[str, str] = {
     "live_roots": "Roots ≈ {roots}",
     # answers
     "live_verdict_yes": "Checked",
+    "live_unstable_pole": "Not stable: pole at {poles}",
+    "live_unstable_poles": "Not stable: poles at {poles}",
     "live_verdict_no": "No",
     "live_verdict_conditional": "Checked, under conditions",
     "live_verdict_undecided": "Undecided",
@@ -147,7 +149,6 @@ PHRASES: dict[str, str] = {
     "said_fixed_mode": "No gain moves the mode {modes} of {pair}.",
     "said_fixed_modes": "No gain moves the modes {modes} of {pair}.",
     "said_unstable_compensator": "F is not stable by itself.",
-    "said_unstable_pole": "A pole lies outside the region of stability.",
     "said_needs_numbers": "Responses need numbers: give every symbol a value.",
     "said_too_fast": "The responses are left out: they change too fast for a picture that shows them to their end.",
     "said_too_large": "A response is left out: its values are too large to draw.",

@@ -1,7 +1,8 @@
 """What a problem asks for, as the question sheet puts it.
 
 The key of a sentence says when it is said: `ask` and a task, then what the specification must contain, a keyword, or
-`keyword=value` where it is a word; `poles=1` is a single pole.  Of several that fit, the one that says most is said.
+`keyword=value` where it is a word; `poles=1` is a single pole, `discrete` discrete time.  Of several that fit, the one that says most is
+said.
 What it leaves unsaid is said by sentences that begin with `also`, for one task or for all.  Slots are keywords.
 """
 
@@ -27,6 +28,7 @@ PHRASES: dict[str, str] = {
     "task": "Task.",
     "tasks": "Tasks.",
     "part": "({letter})",
+    "plant_found": "The following parts are about the plant found in part ({letter}).",
     # What is said of a task without a sentence of its own: the first line of its description.
     "asked": "{summary}",
 }
@@ -74,6 +76,7 @@ NAMING = (
     "task",
     "tasks",
     "part",
+    "plant_found",
     "asked",
 )
 

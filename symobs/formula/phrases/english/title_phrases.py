@@ -45,6 +45,8 @@ PHRASES: dict[str, str] = {
     "observer_pole": "The desired observer pole is {poles}.",
     "observer_poles": "The desired observer poles are {poles}.",
     "observer_polynomial": "The desired observer polynomial is {polynomial}.",
+    "realised_observable": "A realisation in observable canonical form is",
+    "realised_modal": "A realisation in modal form is",
     "realised_minimal": "A minimal realisation is",
     "variant": "Variant {number}",
     "variant_of": "{title}, variant {number}",

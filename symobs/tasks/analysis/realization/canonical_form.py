@@ -23,6 +23,7 @@ from symobs.exact import (
     modulo,
     transfer,
 )
+from symobs.exact.linear_algebra.modal_matrix import modal_matrix
 from symobs.formula.tree import Environment
 from symobs.formula.tree.term import block, identity, letter
 from symobs.ground.dataclass import dataclass
@@ -34,7 +35,7 @@ from symobs.tasks.analysis.modes.modes import TESTS
 from symobs.tasks.analysis.page_parts import case_steps, formula_of_factored, given
 from symobs.tasks.analysis.rank.observability import power_rows
 from symobs.tasks.analysis.rank.rank_page import square_test
-from symobs.tasks.analysis.realization.modal_form import modal_basis, modal_matrix
+from symobs.tasks.analysis.realization.modal_form import modal_basis
 from symobs.tasks.analysis.strata.strata import carried, strata
 from symobs.tasks.result import Case, Result, choose, method, task
 
@@ -83,6 +84,17 @@ class CanonicalForm(Result):
     def all_certificates(self) -> tuple[Certificate, ...]:
         """The certificates of this result and of the rank test below it."""
         return (*self.certificates, *(self.test.certificates if self.test is not None else ()))
+
+    @property
+    def as_plant(self) -> StateSpace:
+        """The plant in these coordinates, where they are some."""
+        answer, m = self.answer, self.plant.matrices
+        if answer["T"] is None:
+            message = f"there is no {self.kind} canonical form, and no plant in it"
+            raise InputError(message, where="plant", repair="take another form, or the plant itself")
+        B, C = answer["B"] if m.has_input else None, answer["C"] if m.has_output else None
+        nonzero = [c.expression for c in self.holds_where]
+        return self.plant.in_coordinates(answer["A"], B, C, answer["D"], nonzero)
 
     def claims(self) -> Iterator[Claim]:
         """Yield the change of coordinates and the form; or that the rank is below n."""

@@ -7,6 +7,12 @@ PHRASES: dict[str, str] = {
     "canonical_form": "Canonical form.",
     "reached_and_hidden": "The controllable subspace is the range of $Ctr$, and the unobservable subspace is the kernel of $O$:",
     "basis_blocks": "The columns of $S$ form a basis adapted to the decomposition, with blocks of dimensions {sizes}, in this order: controllable and observable; controllable and unobservable; uncontrollable and observable; uncontrollable and unobservable.",
+    "reached_alone": "The controllable subspace is the range of $Ctr$:",
+    "hidden_alone": "The unobservable subspace is the kernel of $O$:",
+    "basis_reached": "The columns of $S$ form a basis adapted to the decomposition, with blocks of dimensions {sizes}, in this order: controllable; uncontrollable.",
+    "basis_seen": "The columns of $S$ form a basis adapted to the decomposition, with blocks of dimensions {sizes}, in this order: observable; unobservable.",
+    "zero_block_reached": "The zero blocks show that the controllable subspace is invariant under $A$.",
+    "zero_block_hidden": "The zero blocks show that the unobservable subspace is invariant under $A$.",
     "decomposed": "In the coordinates $T x$ the plant has the matrices",
     "zero_pattern": "The zero blocks show that the controllable and the unobservable subspace are invariant under $A$.",
     "minimal_part": "The controllable and observable part is a minimal realisation of the transfer function:",
@@ -39,6 +45,8 @@ RESTS_ON: dict[str, str] = {
     "last_row_controllable": "canonical_form",
     "last_column_observable": "canonical_form",
     "reached_and_hidden": "decomposition",
+    "reached_alone": "decomposition",
+    "hidden_alone": "decomposition",
 }
 
 THEOREMS: dict[str, str] = {
@@ -48,4 +56,6 @@ THEOREMS: dict[str, str] = {
 EXPLAINS = (
     "last_column_observable",
     "zero_pattern",
+    "zero_block_reached",
+    "zero_block_hidden",
 )

@@ -120,6 +120,12 @@ class Dual(Result):
         found = {tuple(map(str, case.when)): case for test in self.tests.values() for case in test.case_tree}
         return carried(self.plant, found.values(), lambda plant, _: solve(plant, self.sign, self.method))
 
+    @property
+    def as_plant(self) -> StateSpace:
+        """The dual plant."""
+        A, B, C, D = (self.answer[name] for name in "ABCD")
+        return self.plant.in_coordinates(A, B, C, D, [c.expression for c in self.domain])
+
     @cached_property
     def fields(self) -> Mapping[str, Any]:
         """The four matrices and the ranks."""

@@ -4,6 +4,8 @@ With R the reachable subspace, the image of 𝒞, and N = ker 𝒪, the columns 
 R, of R ∩ N, of a complement of R + N, and of a complement of R ∩ N in N, in the order co, c_no, nc_o, nc_no.  Then
 
     Ā = [A₁₁  0   A₁₃  0 ;  A₂₁ A₂₂ A₂₃ A₂₄ ;  0  0  A₃₃  0 ;  0  0  A₄₃ A₄₄],   B̄ = [B₁; B₂; 0; 0],   C̄ = [C₁ 0 C₃ 0].
+
+Without an output nothing is seen, N is the whole space, and R splits it in two; without an input R = 0, and N does.
 """
 
 from __future__ import annotations
@@ -55,10 +57,31 @@ class Decomposition(Result):
     }
 
     @property
+    def as_plant(self) -> StateSpace:
+        """The plant in these coordinates, where they are some."""
+        answer, m = self.answer, self.plant.matrices
+        B, C = answer["B"] if m.has_input else None, answer["C"] if m.has_output else None
+        nonzero = [c.expression for c in self.holds_where]
+        return self.plant.in_coordinates(answer["A"], B, C, answer["D"], nonzero)
+
+    @property
     def dimensions(self) -> tuple[int, ...]:
         """The dimensions of the four parts."""
         found: tuple[int, ...] = self.answer["sizes"]
         return found
+
+    @property
+    def parts(self) -> Mapping[str, int]:
+        """The dimensions by name: of a plant without input or output those of its two parts."""
+        if self._is_whole:
+            return dict(zip(BLOCKS, self.dimensions, strict=True))
+        _, reached, seen, rest = self.dimensions
+        return {"c": reached, "no c": rest} if self.plant.matrices.has_input else {"o": seen, "no o": rest}
+
+    @property
+    def _is_whole(self) -> bool:
+        """Whether the plant has input and output."""
+        return self.plant.matrices.has_input and self.plant.matrices.has_output
 
     def part(self, *blocks: int) -> list[int]:
         """Return the indices of the states of some parts."""
@@ -74,9 +97,12 @@ class Decomposition(Result):
         T, S = letter("T", e), letter("S", e)
         yield Claim(relation(T @ S, identity(n, e)), e)
         yield Claim(relation(letter("A_bar", e), T @ letter("A", e) @ S), e)
-        yield Claim(relation(letter("B_bar", e), T @ letter("B", e)), e)
-        yield Claim(relation(letter("C_bar", e), letter("C", e) @ S), e)
-        yield Claim(relation(letter("D_bar", e), letter("D", e)), e)
+        if m.has_input:
+            yield Claim(relation(letter("B_bar", e), T @ letter("B", e)), e)
+        if m.has_output:
+            yield Claim(relation(letter("C_bar", e), letter("C", e) @ S), e)
+        if self._is_whole:
+            yield Claim(relation(letter("D_bar", e), letter("D", e)), e)
         yield Claim(relation(Scalar.of(sum(self.dimensions)), n), e, "the parts make up the whole")
         yield Claim(relation(answer["minimal_order"], self.dimensions[0]), e, "the order is that of the first part")
         for to, out in ZEROS:
@@ -84,7 +110,8 @@ class Decomposition(Result):
         yield from self._zero("B_bar", self.part(2, 3), range(self.plant.inputs), e)
         yield from self._zero("C_bar", range(self.plant.outputs), self.part(1, 3), e)
         yield from self._minors(e)
-        yield from self._transfer(e)
+        if self._is_whole:
+            yield from self._transfer(e)
 
     def _zero(self, name: str, rows: Any, columns: Any, e: Environment) -> Iterator[Claim]:
         rows, columns = list(rows), list(columns)
@@ -155,14 +182,14 @@ class Decomposition(Result):
     @cached_property
     def fields(self) -> Mapping[str, Any]:
         """The change of coordinates, the four matrices in it, the sizes, the minimal order and transfer function."""
+        m = self.plant.matrices
+        missing = {"B": m.has_input, "C": m.has_output, "D": self._is_whole}
+        found = {key: self.answer[key] for key in "TABCD" if missing.get(key, True)} | {"sizes": self.parts}
+        if not self._is_whole:
+            return found
         P: Matrix = self.answer["transfer_function"]
-        single = P.shape == (1, 1)
-        return {
-            **{key: self.answer[key] for key in "TABCD"},
-            "sizes": dict(zip(BLOCKS, self.dimensions, strict=True)),
-            "minimal_order": self.answer["minimal_order"],
-            "transfer_function": P[0, 0] if single else P,
-        }
+        found["minimal_order"] = self.answer["minimal_order"]
+        return found | {"transfer_function": P[0, 0] if P.shape == (1, 1) else P}
 
     def write(self, page: Builder) -> None:
         """Write the two subspaces, the basis, the plant in it, and its minimal part."""
@@ -178,15 +205,18 @@ class Decomposition(Result):
 
     def _subspaces(self, page: Builder) -> None:
         A, B, C, n = page["A"], page["B"], page["C"], range(1, self.plant.order)
-        reach = page.term(block([[B, *(A**k @ B for k in n)]]).formula)
-        see = page.term(block([[C], *([C @ A**k] for k in n)]).formula)
-        page.define("Ctr", reach, say="reached_and_hidden")
-        page.define("O", see)
+        m = self.plant.matrices
+        if m.has_input:
+            reach = page.term(block([[B, *(A**k @ B for k in n)]]).formula)
+            page.define("Ctr", reach, say="reached_and_hidden" if m.has_output else "reached_alone")
+        if m.has_output:
+            see = page.term(block([[C], *([C @ A**k] for k in n)]).formula)
+            page.define("O", see, say="" if m.has_input else "hidden_alone")
 
     def _coordinates(self, page: Builder) -> None:
-        page.define(
-            "S", page.value(self.answer["inverse"]), say="basis_blocks", sizes=", ".join(map(str, self.dimensions))
-        )
+        m = self.plant.matrices
+        say = "basis_blocks" if self._is_whole else "basis_reached" if m.has_input else "basis_seen"
+        page.define("S", page.value(self.answer["inverse"]), say=say, sizes=", ".join(map(str, self.parts.values())))
         page.define("T", page["S"].inverse, say="", answer=True)
         T, S = page["T"], page["S"]
         sizes, inputs, outputs = self.dimensions, [self.plant.inputs], [self.plant.outputs]
@@ -199,11 +229,18 @@ class Decomposition(Result):
             answer=True,
             closing=False,
         )
-        page.define("B_bar", T @ page["B"], in_blocks(page, parts["B"], sizes, inputs), answer=True, closing=False)
-        page.define("C_bar", page["C"] @ S, in_blocks(page, parts["C"], outputs, sizes), answer=True, closing=False)
-        page.remark("zero_pattern")
+        if m.has_input:
+            page.define("B_bar", T @ page["B"], in_blocks(page, parts["B"], sizes, inputs), answer=True, closing=False)
+        if m.has_output:
+            page.define("C_bar", page["C"] @ S, in_blocks(page, parts["C"], outputs, sizes), answer=True, closing=False)
+        if self._is_whole:
+            page.remark("zero_pattern")
+        elif all(self.parts.values()):
+            page.remark("zero_block_reached" if m.has_input else "zero_block_hidden")
 
     def _minimal(self, page: Builder) -> None:
+        if not self._is_whole:
+            return
         first = self.part(0)
         P: Matrix = self.answer["transfer_function"]
         value = factored_form(page, P[0, 0]) if P.shape == (1, 1) else page.value(P)
@@ -234,14 +271,15 @@ def solve(plant: StateSpace, method_name: str) -> Decomposition:
     S, sizes = basis(m.A, m.B, m.C, plant.ideal)
     T = modulo(S.inverse().normal(), plant.ideal)
     A, B, C = (modulo(value.normal(), plant.ideal) for value in (T @ m.A @ S, T @ m.B, m.C @ S))
-    first = range(sizes[0])
-    P = transfer_matrix(
-        A.select(first, first),
-        B.select(first, range(plant.inputs)),
-        C.select(range(plant.outputs), first),
-        m.D,
-        plant.variable,
-    )
+    first, P = range(sizes[0]), None
+    if m.has_input and m.has_output:
+        P = transfer_matrix(
+            A.select(first, first),
+            B.select(first, range(plant.inputs)),
+            C.select(range(plant.outputs), first),
+            m.D,
+            plant.variable,
+        )
     answer = {
         "T": T,
         "inverse": S,
@@ -266,10 +304,11 @@ def subspaces(plant: StateSpace) -> Decomposition:
 def decomposition(plant: StateSpace, *, method: Name = "auto") -> Result:
     """Split a plant into four parts: reached and seen, reached and hidden, not reached and seen, neither.
 
-    plant    n states, m ≥ 1 inputs, p ≥ 1 outputs
-    Returns T (x̄ = T x), A, B, C, D in the new coordinates, sizes (co, c_no, nc_o, nc_no, in the order of the blocks),
-    minimal_order, transfer_function in lowest terms; with parameters the generic parts and the cases.  Raises `InputError`
-    where B or C is missing.  Source: R. E. Kalman, 1962.
+    plant    n states, m inputs, p outputs; B or C may be missing
+    Returns T (x̄ = T x), A, B, C, D in the new coordinates, sizes (co, c_no, nc_o, nc_no, in the order of the blocks; c, no c
+    without C, and o, no o without B), minimal_order, transfer_function in lowest terms; with parameters the generic parts
+    and the cases.  Raises `InputError` where B and C are missing.  Source: R. E. Kalman, 1962.
     """
-    plant.require("B", "C", task="decomposition")
+    if not plant.matrices.has_output:
+        plant.require("B", task="decomposition")
     return choose("decomposition", method, "subspaces").solve(plant)

@@ -9,14 +9,12 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from symobs.exact import Matrix, Scalar, echelon, factored, kernel, roots_of
+from symobs.exact import Matrix, Scalar, echelon, factored, kernel
+from symobs.exact.linear_algebra.modal_matrix import Blocks, rotation
 from symobs.tasks.analysis.modes.modes import polynomial_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
-
-#: The polynomial of a block: an irreducible factor and its power.
-Blocks = tuple[tuple[Scalar, int], ...]
 
 
 def modal_basis(A: Matrix, chi: Scalar, variable: str) -> tuple[Matrix, Blocks]:
@@ -76,56 +74,9 @@ def _rank(vectors: Sequence[Matrix]) -> int:
 
 def _chain(A: Matrix, N: Matrix, w: Matrix, factor: Scalar, length: int, variable: str) -> list[Matrix]:
     """Return the basis of one block: for which `modal_matrix` is A."""
-    turn = _rotation(factor, length, variable)
+    turn = rotation(factor, length, variable)
     if turn is not None:
         centre, speed = turn
         return [((A @ w - w * centre) * (1 / speed)).normal(), w]
     degree = factor.degree(variable)
     return [v for i in reversed(range(length)) for v in _images(A, _apply(N, w, i), degree)]
-
-
-def _rotation(factor: Scalar, length: int, variable: str) -> tuple[Scalar, Scalar] | None:
-    """Return (σ, ω) of a single factor (s − σ)² + ω² with rational ω."""
-    root = roots_of(factor, variable)[0]
-    if length != 1 or factor.degree(variable) != 2 or not factor.names <= {variable}:
-        return None
-    exact = root.exact()
-    return None if exact is None or exact.imaginary.is_zero else (exact.real, exact.imaginary)
-
-
-def modal_matrix(blocks: Blocks, variable: str) -> Matrix:
-    """Return the block diagonal matrix of these polynomials.
-
-    A linear factor gives a Jordan block, (s − σ)² + ω² with rational ω the block [σ ω; −ω σ], and any other factor of degree
-    d companion blocks (ones below the diagonal, the last column −a_d … −a₁), joined by a 1 where the power is above 1.
-    """
-    order = sum(factor.degree(variable) * length for factor, length in blocks)
-    table = [[Scalar.of(0)] * order for _ in range(order)]
-    start = 0
-    for factor, length in blocks:
-        degree = factor.degree(variable)
-        for i, row in enumerate(_block(factor, length, variable)):
-            for j, entry in enumerate(row):
-                table[start + i][start + j] = entry
-        start += degree * length
-    return Matrix.of(table, order)
-
-
-def _block(factor: Scalar, length: int, variable: str) -> list[list[Scalar]]:
-    turn = _rotation(factor, length, variable)
-    if turn is not None:
-        centre, speed = turn
-        return [[centre, speed], [-speed, centre]]
-    degree = factor.degree(variable)
-    coefficients = list(reversed(factor.coefficients(variable)[1:]))
-    order = degree * length
-    table = [[Scalar.of(0)] * order for _ in range(order)]
-    for k in range(length):
-        first = k * degree
-        for i in range(degree):
-            if i:
-                table[first + i][first + i - 1] = Scalar.of(1)
-            table[first + i][first + degree - 1] = -coefficients[i]
-        if k:  # A of the last vector of a block has a part in the block before it
-            table[first - degree][first + degree - 1] = Scalar.of(1)
-    return table

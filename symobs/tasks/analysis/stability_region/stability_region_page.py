@@ -15,6 +15,7 @@ from symobs.stability.plots import picture_of_line
 from symobs.stability.regions.description import are_whole, is_written, relations_of
 from symobs.stability.regions.region import LineRegion, PlaneRegion
 from symobs.system.conditions import sign_of
+from symobs.system.transfer_function_text import WrittenTransferFunction
 from symobs.tasks.analysis.page_parts import WRITTEN_UP_TO, determinant_form, given, state_signs
 from symobs.tasks.analysis.stability_region.stability_region import StabilityRegion, solved
 from symobs.tasks.result import page_of
@@ -51,6 +52,7 @@ def write_region(page: Builder, result: StabilityRegion) -> None:
         if not chi:
             chi = _polynomial_of_loop(page, result)
         _sought(page, result)
+        _say_open_loop(page, result)
         moved = _moved(page, result, chi)
         _table(page, result, moved)
         if result.region is not None:
@@ -59,6 +61,15 @@ def write_region(page: Builder, result: StabilityRegion) -> None:
             _region(page, result, chi, moved)
         elif result.question.parameters:
             _conditions(page, result, moved)
+
+
+def _say_open_loop(page: Builder, result: StabilityRegion) -> None:
+    """Say how a loop is asked for where parameters stand in the numerator of a transfer function alone."""
+    written, chi = result.plant.written, result.answer["polynomial"]
+    if not isinstance(written, WrittenTransferFunction) or {result.question.K, result.question.L} != {None}:
+        return
+    if chi.names <= {page.plant.variable} and not written.above.names <= {page.plant.variable}:
+        page.remark("open_loop_asked", polynomial=str(written.above + written.below))
 
 
 def _polynomial_of_loop(page: Builder, result: StabilityRegion) -> str:

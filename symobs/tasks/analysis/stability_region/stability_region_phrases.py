@@ -4,6 +4,7 @@ from __future__ import annotations
 
 PHRASES: dict[str, str] = {
     "stability_region": "Stability region.",
+    "open_loop_asked": "This is the polynomial of $P$ itself, in which no parameter stands. The loop with unity feedback is asked for by polynomial = {polynomial}.",
     "gain_open": "The gain is left free,",
     "sought_continuous": "Find all values of {names} for which every root has negative real part.",
     "sought_discrete": "Find all values of {names} for which every root lies in the open unit disc.",

@@ -11,7 +11,15 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar, NoReturn, Self
 
 from symobs.exact import Matrix, Scalar, product_of
-from symobs.exact.core.generators import all_roots, function_named, identities, substitute, symbols_in
+from symobs.exact.algebraic.root_sum import RootSum
+from symobs.exact.core.generators import (
+    all_roots,
+    function_named,
+    identities,
+    substitute,
+    symbols_in,
+    symbols_named,
+)
 from symobs.exact.time_functions.matrix_exponential import OpenBranch
 from symobs.formula.tree import Conjunction, Environment, Literal
 from symobs.formula.tree.term import Term, letter
@@ -150,6 +158,12 @@ class DampingCases(Result):
     def _rebuilt(self, plant: StateSpace, asked: Mapping[str, Any], taken: Signs) -> Self:
         return type(self).of(plant, self.method, asked, taken)
 
+    @property
+    def is_told_in_decimals(self) -> bool:
+        """Whether a sum over roots at an instant is a number in an answer."""
+        names = {name for value in self.matrices for name in value.names}
+        return any(isinstance(function_named(name), RootSum) and not symbols_named(name) for name in names)
+
     def everything(self) -> Iterator[Matrix | Scalar]:
         """Yield all functions of time on the page: those of the cases too."""
         yield from self.matrices
@@ -164,11 +178,7 @@ class DampingCases(Result):
         given(page)
         beyond = [c.expression for c in self.domain if c.operator == ">"]
         beyond += [_plain(delta if sign == "positive" else -delta) for delta, sign in self.answer["taken"].items()]
-        if beyond:
-            page.start, page.environment = (
-                replace(each, positive=(*each.positive, *beyond)) for each in (page.start, page.environment)
-            )
-            page.conclude("declared", signs=Conjunction(tuple(relation(value, ">", 0) for value in beyond)))
+        page.assume_positive(beyond)
 
     def write_branches(self, page: Builder, write_branch: Callable[[Builder, Any], None]) -> None:
         """Write this branch and the others; each is a case if there are several."""

@@ -9,7 +9,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 from symobs.exact import Matrix, Scalar, modulo, product_of
-from symobs.exact.core.generators import substitute, symbols_in
+from symobs.exact.core.generators import function_named, substitute, symbols_in
 from symobs.exact.time_functions.matrix_exponential import NoClosedForm
 from symobs.exact.time_functions.quasipolynomial import (
     Table,
@@ -56,13 +56,18 @@ from symobs.tasks.analysis.time_response.horizons import (
     INFINITE,
     infinite_gramian,
     lyapunov,
+    lyapunov_operator,
     over_horizon,
     read_horizon,
     steps_gramian,
+    symmetric,
+    upper_entries,
 )
 from symobs.tasks.analysis.time_response.matrix_exponential import (
     TIME,
     closed_form,
+    has_sums,
+    motion,
     question_of,
     require_continuous,
     tell_exponential,
@@ -131,17 +136,21 @@ class Gramian(DampingCases):
         if plant.is_discrete:
             return cls(plant, method_name, {**shared, **steps_gramian(A, C, asked["horizon"])})
         try:
-            exponential, chosen = closed_form(plant, taken)
+            exponential, chosen = closed_form(plant, taken, sums=has_sums(plant))
+            W = None if exponential.is_closed else _with_sums(plant, A, C)
         except NoClosedForm as error:
             open_answer = {"matrix": None, "determinant": None, "question": question_of(error), "factor": error.factor}
             return cls(plant, method_name, {**shared, **open_answer})
+        if W is not None:
+            there = {"matrix": substitute(W, {"t": asked["horizon"]}), "determinant": None, "function": W}
+            return cls(plant, method_name, {**shared, **there, "chosen": chosen})
         table = exponential.table() if asked["of"] == "observability" else transposed(exponential.table())
         seen = product(table_of(C), table)
-        W = integral(product(transposed(seen), seen))
+        integrals = integral(product(transposed(seen), seen))
         answer = {
-            "matrix": matrix_at(W, asked["horizon"]),
-            "determinant": _determinant(W, asked["horizon"]),
-            "function": matrix_at(W, TIME),
+            "matrix": matrix_at(integrals, asked["horizon"]),
+            "determinant": _determinant(integrals, asked["horizon"]),
+            "function": matrix_at(integrals, TIME),
             "exponential": matrix_at(table, TIME),
         }
         return cls(plant, method_name, {**shared, **answer, "chosen": chosen})
@@ -233,9 +242,10 @@ class Gramian(DampingCases):
             reject("the determinant of a small Gramian is missing")
         if self.answer["determinant"] is not None:
             values["determinant"] = self.answer["determinant"]
+        if "function" in self.answer:
+            values["primitive"] = self.answer["function"]
         if "exponential" in self.answer:
             values["exp_At"] = self.answer["exponential"]
-            values["primitive"] = self.answer["function"]
         e = time_environment(self.plant, {**values, **_at_horizon(values, self.answer["horizon"])})
         yield from self._about_gramian(e)
 
@@ -262,6 +272,12 @@ class Gramian(DampingCases):
             yield from from_zero(["primitive"], e)
             whole = Term(since_start(integrand.formula, letter("primitive", e).formula, horizon), e)
             yield Claim(relation(W, whole), e, "W = integral of exp(A.T*t)*C.T*C*exp(A*t) from 0 to the horizon")
+        elif "function" in self.answer:
+            moving = letter("primitive", e)
+            yield from from_zero(["primitive"], e)
+            balance = relation(rate_of(moving), A.T @ moving + moving @ A + C.T @ C)
+            yield Claim(balance, e, "dW/dt = A.T*W + W*A + C.T*C")
+            yield Claim(relation(W, moving.at("t", horizon)), e, "W at the horizon")
         elif horizon == INFINITE and self.plant.is_discrete:
             yield Claim(relation(A.T @ W @ A - W + C.T @ C, Matrix.zeros(*A.value.shape)), e, "A.T*W*A - W = -C.T*C")
         elif horizon == INFINITE:
@@ -288,12 +304,23 @@ class Gramian(DampingCases):
         return {**found, **({"question": asked} if asked else {})}
 
 
+def _with_sums(plant: StateSpace, A: Matrix, C: Matrix) -> Matrix:
+    """Return W(t) with W′ = AᵀW + WA + CᵀC and W(0) = 0, in sums over the roots that the modes of this equation have.
+
+    The motion of its n(n+1)/2 different entries beside a constant.  Raises `NoClosedForm` where these are too many.
+    """
+    constant = upper_entries(C.T @ C).normal()
+    count = constant.shape[0]
+    operator = lyapunov_operator(A, discrete=False)
+    whole = Matrix.block([[operator, constant], [Matrix.zeros(1, count + 1)]])
+    found = motion(plant, whole, Matrix.unit(count + 1, count)).matrix(TIME)
+    return symmetric(found.select(range(count), [0]))
+
+
 def _at_horizon(values: Mapping[str, Any], horizon: Any) -> dict[str, Any]:
     """Return the functions of time at the horizon, so that their generators are known as well."""
     if not isinstance(horizon, Scalar):
         return {}
-    from symobs.exact.core.generators import substitute  # noqa: PLC0415
-
     moving = {name: value for name, value in values.items() if "t" in symbols_in(value)}
     return {f"{name} at T": substitute(value, {"t": horizon}) for name, value in moving.items()}
 
@@ -351,7 +378,7 @@ def write_gramian(page: Builder, result: Gramian) -> None:
     if is_dual:
         page.environment = page.environment.extended_by(values={})
     with page.section(f"gramian_{result.answer['of']}"):
-        if "exponential" in result.answer or result.answer.get("factor") is not None:
+        if "function" in result.answer or result.answer.get("factor") is not None:
             tell_polynomial(page)
         if result.answer["chosen"]:
             _tell_lyapunov(result, page)
@@ -382,7 +409,7 @@ def _transposed(term: Term) -> Term:
 
 def _tell_lyapunov(result: Gramian, page: Builder) -> None:
     """Define P where Lyapunov's equation has one solution: it serves every branch."""
-    if result.plant.order > _LYAPUNOV_UP_TO:
+    if result.plant.order > _LYAPUNOV_UP_TO or any(map(function_named, result.plant.field.names)):
         return
     A, C = _letters(result, page)
     P = lyapunov(A.value, C.value.T @ C.value, discrete=False)
@@ -408,6 +435,22 @@ def _write_branch(page: Builder, result: Gramian) -> None:
         return
     if answer["horizon"] == INFINITE:
         _tell_infinite(result, page, A, C)
+        return
+    if "function" in answer and "exponential" not in answer:
+        moving = page.set("W_t", answer["function"])
+        equation = relation(rate_of(moving), _transposed(A) @ moving + moving @ A + _square(C))
+        start = relation(moving.at("t", 0), Matrix.zeros(*answer["matrix"].shape))
+        held = moving.at("t", answer["horizon"])
+        page.define(
+            "W",
+            held,
+            answer["matrix"],
+            say="gramian_by_sums",
+            answer=True,
+            closing=False,
+            equation=equation,
+            start=start,
+        )
         return
     if "exponential" not in answer:
         total = _square(C)

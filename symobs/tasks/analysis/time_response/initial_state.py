@@ -11,7 +11,7 @@ from math import factorial
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 from symobs.exact import Matrix, Scalar, kernel
-from symobs.exact.core.generators import all_roots, function_named, normal_form, substitute
+from symobs.exact.core.generators import all_roots, function_named, normal_form, substitute, symbols_in
 from symobs.exact.time_functions.matrix_exponential import NoClosedForm
 from symobs.exact.time_functions.quasipolynomial import (
     Table,
@@ -26,10 +26,11 @@ from symobs.formula.tree import Environment, Evaluated, Literal
 from symobs.formula.tree.calculus import since_start
 from symobs.formula.tree.term import Term, block, identity, letter
 from symobs.ground.dataclass import dataclass
-from symobs.ground.errors import InputError
+from symobs.ground.errors import InputError, ShapeMismatch
 from symobs.proof.certificate.claims import Claim
 from symobs.proof.derivation.builder import relation
 from symobs.system.conditions import Condition, never_zero, vanishing_factors
+from symobs.system.specification import parse_in_steps
 from symobs.tasks.analysis.rank.rank_test import rank_answer
 from symobs.tasks.analysis.time_response.damping_cases import Signs, from_zero, rate_of, time_environment
 from symobs.tasks.analysis.time_response.horizons import (
@@ -56,6 +57,7 @@ if TYPE_CHECKING:
     from symobs.proof.derivation.builder import Builder
     from symobs.system import StateSpace
     from symobs.system.specification import Horizon, Name, TimeFunctions
+    from symobs.tasks.analysis.time_response.damping_cases import Signs
 
 
 def difference(left: Table, right: Table) -> Table:
@@ -296,15 +298,19 @@ def initial_state(
 ) -> Result:
     """Return the initial state x₀ of an output y(t) under an input u(t), y = C (e^{At} x₀ + x_f) + D u, or that none exists.
 
-    plant    n states, p outputs; B where an input is given; continuous time
+    plant    n states, p outputs; B where an input is given
     output   y(t): sums of exponentials, sines and cosines times powers of t, one for each output
     input    u(t), likewise; 0 where it is left out
     horizon  the end of the interval of measurement, "T" if left out
-    Returns x0, kernel.  Verdict no where no state explains the data, and where more than one does.  Raises `InputError`
-    where C (or B) is missing, in discrete time, for other functions of t and for an infinite horizon; `ShapeMismatch`.
+    In discrete time output and input are samples from k = 0 on, "1, 3", n of them or more; a row for each of several.
+    Returns x0, kernel; the residual of samples that no state explains.  Verdict no where no state explains the data, and
+    where more than one does.  Raises `InputError` where C (or B) is missing, for other functions of t, for an infinite
+    horizon and for too few samples; `ShapeMismatch`.
     Source: R. E. Kalman, Y. C. Ho and K. S. Narendra (1963).
     """
     plant.require("C", task="initial_state")
+    if plant.is_discrete:
+        return _of_samples(plant, output, input, horizon, method)
     require_continuous(plant, "initial_state")
     y, _ = read_functions(output, plant, "output", plant.outputs)
     u = None
@@ -317,6 +323,27 @@ def initial_state(
         raise InputError(message, where="specification.horizon", repair='write "T", or a number above 0')
     asked = {"output": y, "input": u, "horizon": end}
     return over_horizon(lambda: choose("initial_state", method, "moments").solve(plant, asked))
+
+
+def _of_samples(plant: StateSpace, output: object, given: object, horizon: object, method_name: str) -> Result:
+    """Return the initial state of samples, in discrete time."""
+    if horizon is not None:
+        message = "in discrete time the samples say how long was measured"
+        raise InputError(message, where="specification.horizon", repair="leave the horizon out")
+    plant = plant.knowing(output, given)
+    y = read_samples(output, plant, "output", plant.outputs)
+    if y.shape[1] < plant.order:
+        message = f"{y.shape[1]} samples of the output, and {plant.order} states"
+        raise InputError(message, where="specification.output", repair=f"give {plant.order} samples or more")
+    u = None
+    if given is not None:
+        plant.require("B", task="initial_state")
+        u = read_samples(given, plant, "input", plant.inputs)
+        if u.shape[1] < y.shape[1]:  # the last one may be missing, or all from one on: they are 0
+            u = Matrix.block([[u, Matrix.zeros(plant.inputs, y.shape[1] - u.shape[1])]])
+    choose("initial_state", method_name, "moments")
+    asked = {"output": y, "input": u}
+    return InitialStateOfSamples.of(plant, "moments", asked, {}).asked(method_name)
 
 
 # The page of the initial state: free output, forced output, moments, solution, check.
@@ -461,3 +488,170 @@ def _tell_refusal(result: InitialState, page: Builder, free: Term) -> None:
     page.equal(relation(start, at_zero, answer["start"]), say="initial_start")
     rest = relation(page["v"].T @ start, (page["v"].T @ start).as_value, "!==", 0)
     page.remark("initial_inconsistent", row=relation(w, answer["row"].T), zero=zero, rest=rest)
+
+
+# In discrete time: the samples less the forced output are O x₀ = r with O = [C; CA; …]; a row w with w O = 0 refutes others.
+
+
+#: The forced output of N samples is a sum of N² products.
+MOST_SAMPLES = 60
+
+
+def read_samples(value: object, plant: StateSpace, name: str, rows: int) -> Matrix:
+    """Return samples, a column for each instant; raises `InputError`, and `ShapeMismatch` for other than `rows` rows."""
+    where = f"specification.{name}"
+    if value is None:
+        message = f"the samples of the {name} are missing"
+        raise InputError(message, where=where, repair=f'give them from k = 0 on, {name} = "1, 3"')
+    found = parse_in_steps(value, plant.symbols, where)
+    if "k" in symbols_in(found):
+        raise InputError(f"the samples of the {name} depend on k", where=where, repair="give the value at each instant")
+    if rows == 1 and found.shape[1] == 1:
+        found = found.T
+    if found.shape[0] != rows:
+        message = f"{found.shape[0]} rows of samples of the {name}, but {rows} are expected"
+        raise ShapeMismatch(message, where=where, repair="give a row for each signal, an entry for each instant")
+    if found.shape[1] > MOST_SAMPLES:
+        raise InputError(f"{found.shape[1]} samples of the {name}", where=where, repair=f"keep to {MOST_SAMPLES}")
+    return found
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class InitialStateOfSamples(InitialState):
+    """x₀ with O x₀ = r, the samples without the forced output; or the proof that there is none."""
+
+    @classmethod
+    def of(cls, plant: StateSpace, method_name: str, asked: Mapping[str, Any], taken: Signs) -> Self:
+        """Return the result for a plant; `asked` holds the samples of the output and of the input."""
+        m, y, u = plant.matrices, asked["output"], asked["input"]
+        test = rank_answer(m.A, m.C)
+        rows, state = [m.C], Matrix.zeros(plant.order, 1)
+        right: list[Scalar] = []
+        for k in range(y.shape[1]):
+            sample = _column(y, k) - m.C @ state
+            if u is not None:
+                sample = sample - m.D @ _column(u, k)
+                state = (m.A @ state + m.B @ _column(u, k)).normal()
+            right += sample.entries
+            rows.append((rows[-1] @ m.A).normal())
+        O, r = Matrix.block([[row] for row in rows[:-1]]), Matrix.column(list(map(normal_form, right)))
+        answer = {
+            "output": y,
+            "input": u,
+            "rank": test,
+            "taken": taken,
+            "chosen": {},
+            "stack": O,
+            "right": r,
+            "x0": None,
+        }
+        values = [Scalar.of(0)] * plant.order
+        if test["columns"]:
+            solution = test["matrix"].select(test["rows"], test["columns"]).solve(r.select(test["rows"], [0]))
+            for place, index in enumerate(test["columns"]):
+                values[index] = normal_form(solution[place, 0])
+        candidate = Matrix.column(values)
+        residual = Matrix.column([normal_form(entry) for entry in (r - O @ candidate).entries])
+        if residual.is_zero:
+            return cls(plant, method_name, {**answer, "x0": candidate})
+        null = kernel(O.T)
+        for j in range(null.shape[1]):
+            w = _column(null, j).T
+            value = normal_form((w @ r)[0, 0])
+            if not value.is_zero:
+                return cls(plant, method_name, {**answer, "row": w, "residual": residual, "refuted": (value,)})
+        raise ArithmeticError("a residual that no row refutes")
+
+    @property
+    def matrices(self) -> tuple[Matrix | Scalar, ...]:
+        """The samples and the state."""
+        return tuple(self.answer[name] for name in ("output", "input", "x0") if self.answer.get(name) is not None)
+
+    def claims(self) -> Iterator[Claim]:
+        """Yield the stacked equations, and that the state solves them or that a row refutes them."""
+        m, answer = self.plant.matrices, self.answer
+        values = {"A": m.A, "B": m.B, "C": m.C, "D": m.D, "O": answer["stack"], "r_0": answer["right"]}
+        values |= {} if answer["x0"] is None else {"x_0": answer["x0"]}
+        e = Environment(variable=self.plant.variable, values=values, signs=self.plant.symbols.signs)
+        O, r = letter("O", e), letter("r_0", e)
+        yield Claim(relation(O, block([[row] for row in self.seen(e)])), e, "O stacks C*A**k")
+        yield Claim(
+            relation(r, block([[sample] for sample in self.free(e)])), e, "r is the output without that of the input"
+        )
+        if answer["x0"] is not None:
+            yield Claim(relation(O @ letter("x_0", e), r), e, "O*x0 = r")
+        else:
+            w = Term(Literal(answer["row"]), e)
+            yield Claim(relation(w @ O, Matrix.zeros(1, self.plant.order)), e, "w*O = 0")
+            yield Claim(relation(w @ r, "!==", 0), e, "w*r is not 0")
+        yield from self.observability_claims()
+
+    def seen(self, e: Environment) -> list[Term]:
+        """Return C Aᵏ for each sample."""
+        A, C = letter("A", e), letter("C", e)
+        return [C @ A**k if k else C for k in range(self.answer["output"].shape[1])]
+
+    def free(self, e: Environment) -> list[Term]:
+        """Return y(k) − Σ C A^(k−1−i) B u(i) − D u(k)."""
+        A, B, C, D, y, u = *(letter(name, e) for name in "ABCD"), self.answer["output"], self.answer["input"]
+        found = []
+        for k in range(y.shape[1]):
+            sample = Term(Literal(_column(y, k)), e)
+            for i in range(k if u is not None else 0):
+                if _column(u, i).is_zero:
+                    continue
+                power = C @ A ** (k - 1 - i) if k - 1 - i else C
+                sample = sample - power @ B @ Term(Literal(_column(u, i)), e)
+            if u is not None and self.plant.matrices.has_feedthrough and not _column(u, k).is_zero:
+                sample = sample - D @ Term(Literal(_column(u, k)), e)
+            found.append(sample)
+        return found
+
+    @cached_property
+    def fields(self) -> Mapping[str, Any]:
+        """The state, the kernel where it is not the only one, and what is left where there is none."""
+        residual = self.answer.get("residual")
+        return {**super().fields, **({} if residual is None else {"residual": list(residual.entries)})}
+
+
+def _column(table: Matrix, index: int) -> Matrix:
+    return table.select(range(table.shape[0]), [index])
+
+
+@page_of(InitialStateOfSamples)
+def write_initial_state_of_samples(page: Builder, result: InitialStateOfSamples) -> None:
+    """Write the stacked equations, and their solution or why there is none."""
+    page.in_time(*result.everything())
+    result.state_data(page)
+    with page.section("initial_state"):
+        result.write_branches(page, _write_samples)
+
+
+def _write_samples(page: Builder, result: InitialStateOfSamples) -> None:
+    """Write one branch."""
+    answer = result.answer
+    O = page.define("O", block([[row] for row in result.seen(page.environment)]), say="samples_stacked")
+    samples = block([[sample] for sample in result.free(page.environment)])
+    say = "samples_right" if answer["input"] is None else "samples_right_input"
+    members = [samples] if answer["input"] is not None else []
+    r = page.define("r_0", *members, answer["right"], say=say, closing=False)
+    page.conclude_silently(relation(r, samples))
+    if answer["x0"] is None:
+        w = page.set("v", answer["row"].T)
+        zero = relation(w.T @ O, Matrix.zeros(1, result.plant.order))
+        rest = relation(w.T @ r, (w.T @ r).as_value, "!==", 0)
+        page.remark("samples_inconsistent", row=relation(w, answer["row"].T), zero=zero, rest=rest)
+        return
+    x_0 = page.define(
+        "x_0",
+        answer["x0"],
+        say="samples_found" if result.is_unique else "initial_not_unique",
+        answer=True,
+        closing=False,
+    )
+    if not result.is_unique:
+        N = answer["rank"]["kernel"]
+        say = "samples_kernel" if N.shape[1] == 1 else "samples_kernel_several"
+        zeros = [relation(O @ page.value(_column(N, j)), Matrix.zeros(r.value.shape[0], 1)) for j in range(N.shape[1])]
+        page.equal(*zeros, say=say)
+    page.verified("samples_checked", check=relation(O @ x_0, r))

@@ -2,21 +2,22 @@
 
 from __future__ import annotations
 
-from functools import cached_property
+from functools import cached_property, reduce
+from operator import add
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 from symobs.exact import Matrix, Scalar, factored
-from symobs.exact.core.generators import function_named
+from symobs.exact.algebraic.root_sum import RootSum
+from symobs.exact.core.generators import function_named, functions_in
 from symobs.exact.time_functions.matrix_exponential import (
-    MOST_STATES_WITH_PARAMETERS,
     Exponential,
     Mode,
     NoClosedForm,
-    RootSum,
     exponential,
 )
+from symobs.exact.time_functions.matrix_power import INSTANT, matrix_power
 from symobs.formula.tree import Identity, Letter, Literal, Negative, Power, Product, Sum
-from symobs.formula.tree.term import identity, letter
+from symobs.formula.tree.term import Term, identity, letter
 from symobs.ground.dataclass import dataclass
 from symobs.ground.errors import InputError
 from symobs.proof.certificate.claims import Claim
@@ -29,8 +30,10 @@ from symobs.tasks.result import Result, choose, method, task
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
+    from symobs.exact import Matrix
     from symobs.formula.tree import Formula
     from symobs.formula.tree.term import Term
+    from symobs.proof.derivation.builder import Builder
     from symobs.system import StateSpace
     from symobs.system.specification import Name
 
@@ -46,10 +49,22 @@ def closed_form(plant: StateSpace, taken: Signs, *, sums: bool = False) -> tuple
     return with_signs(plant, taken, lambda sign: exponential(plant.matrices.A, plant.variable, sign, sums=sums))
 
 
+def has_sums(plant: StateSpace) -> bool:
+    """Return whether sums over roots may stand in answers beyond e^{At}: where the modes are numbers."""
+    return not plant.equations and not plant.matrices.A.names
+
+
+def motion(plant: StateSpace, whole: Matrix, start: Matrix) -> Exponential:
+    """Return e^{Mt} V for the matrix M of a larger system in which that of the plant stands.  Raises `NoClosedForm`."""
+    found: Exponential
+    found, _ = with_signs(plant, {}, lambda sign: exponential(whole, plant.variable, sign, sums=True, start=start))
+    return found
+
+
 def question_of(error: NoClosedForm) -> str:
     """Return what would have to be known."""
     if error.factor is None:
-        return f"the exponential of a matrix of more than {MOST_STATES_WITH_PARAMETERS} states"
+        return f"the exponential of a matrix of more than {error.most} states"
     return f"the roots of {error.factor}"
 
 
@@ -233,14 +248,116 @@ def derivatives(plant: StateSpace) -> MatrixExponential:
 
 @task
 def matrix_exponential(plant: StateSpace, *, method: Name = "auto") -> Result:
-    """Return e^{At} as a real matrix of exponentials, cosines, sines, cosh, sinh and powers of t.
+    """Return e^{At} as a real matrix of exponentials, cosines, sines, cosh, sinh and powers of t; Aᵏ in discrete time.
 
-    plant    n states, continuous time; only A matters
-    Returns matrix, in t.  Where the sign of a discriminant decides between oscillation and none, conditions hold the
+    plant    n states; only A matters
+    Returns matrix, in t; in discrete time in k, of λᵏ, real and imaginary parts of (σ + iω)ᵏ, powers of k and, where A is
+    singular, δ(k, j).  Where the sign of a discriminant decides between oscillation and none, conditions hold the
     branch that is shown and cases the others.  An irreducible factor q of χ of degree 3 or more brings sums over its roots,
     Σ λʲ e^{λt}/q′(λ), in SymPy's syntax `RootSum`; where parameters make two of the roots equal it is undecided.
-    Raises `InputError` in discrete time, and where t is a parameter of A.
+    Raises `InputError` where t, or k in discrete time, is a parameter of A.
     Source: I. E. Leonard (1996).
     """
+    if plant.is_discrete:
+        require_no_instant(plant)
+        name = choose("matrix_exponential", method, "derivatives").name
+        return MatrixPower.of(plant, name, {}, {}).asked(method)
     require_continuous(plant, "matrix_exponential")
     return choose("matrix_exponential", method, "derivatives").solve(plant)
+
+
+# In discrete time: the powers Aᵏ in closed form, Aᵏ⁺¹ = A Aᵏ and A⁰ = I.
+
+
+def require_no_instant(plant: StateSpace) -> None:
+    """Raise `InputError` where k is a parameter of the plant."""
+    if "k" in plant.matrices.symbols:
+        message = "k is the number of the instant and cannot be a parameter of the plant"
+        raise InputError(message, where="plant.A", repair="give the parameter another name")
+
+
+def following(term: Term) -> Term:
+    """Return the value of a function of k at the next instant."""
+    return term.at("k", INSTANT + 1)
+
+
+def powers_of(A: Matrix, variable: str) -> Matrix:
+    """Return Aᵏ.  Raises `NoClosedForm`."""
+    return reduce(add, (matrix * value for value, matrix in matrix_power(A, variable))).normal()
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class MatrixPower(MatrixExponential):
+    """Aᵏ."""
+
+    functions_of_time = {"A^k": "matrix"}
+    letters = {"matrix": "A_k"}
+
+    @classmethod
+    def of(cls, plant: StateSpace, method_name: str, _: Mapping[str, Any], taken: Signs) -> Self:
+        """Return the result for a plant."""
+        shared = {"taken": taken, "chosen": {}}
+        try:
+            return cls(plant, method_name, {"matrix": powers_of(plant.matrices.A, plant.variable), **shared})
+        except NoClosedForm as error:
+            nothing = {"matrix": None, "question": question_of(error), "factor": error.factor}
+            return cls(plant, method_name, {**nothing, **shared})
+
+    def claims(self) -> Iterator[Claim]:
+        """Yield the recursion and the start."""
+        yield from super(MatrixExponential, self).claims()
+        if self.answer["matrix"] is None:
+            return
+        e = time_environment(self.plant, {"A": self.plant.matrices.A, "A_k": self.answer["matrix"]})
+        power = letter("A_k", e)
+        yield Claim(relation(following(power), letter("A", e) @ power), e, "A**(k + 1) = A*A**k")
+        yield Claim(relation(power.at("k", 0), identity(self.plant.order, e)), e, "A**0 = I")
+
+    @property
+    def denominators(self) -> tuple[Scalar, ...]:
+        """Those of the entries."""
+        return super(MatrixExponential, self).denominators
+
+    def write(self, page: Builder) -> None:
+        """Write the characteristic polynomial, the sum of functions and matrices, the entries, the check."""
+        page.in_time(*self.everything())
+        given(page)
+        with page.section("matrix_power"):
+            tell_polynomial(page)
+            self.write_branches(page, _write_power)
+
+
+def _write_power(page: Builder, result: DampingCases) -> None:
+    """Write one branch."""
+    if result.answer["matrix"] is None:
+        tell_open_power(page, result.answer["factor"])
+        return
+    power = tell_power(page, result.plant.matrices.A, result.answer["matrix"], answer=True)
+    start = relation(power.at("k", 0), page.identity(result.plant.order))
+    page.verified("power_start", relation(following(power), page["A"] @ power), start=start)
+
+
+def tell_open_power(page: Builder, factor: Scalar | None) -> None:
+    """State the undecided question."""
+    if factor is None:
+        page.remark("too_many_states_power", order=str(page.plant.order))
+    else:
+        page.remark("no_closed_power", factor=factor, degree=str(factor.degree(page.plant.variable)))
+
+
+def tell_power(page: Builder, A: Matrix, value: Matrix, *, answer: bool = False) -> Term:
+    """Define Aᵏ: the sum over the modes where it is short, then the entries."""
+    parts = matrix_power(A, page.plant.variable)
+    members: list[Term | Matrix] = []
+    if 1 < len(parts) <= _SHOWN_SUM:
+        members = [page.term(Sum(tuple(Product((Literal(f), Literal(matrix))) for f, matrix in parts)))]
+    say = "power_sum" if members else "power_here"
+    power = page.define("A_k", *members, value, say=say, answer=answer, closing=False)
+    tell_impulses(page, value)
+    return power
+
+
+def tell_impulses(page: Builder, value: Matrix) -> None:
+    """Say what δ(k, j) is, where it occurs."""
+    if any(found.kind == "KroneckerDelta" for found in functions_in([value])):
+        page.remark("power_delta")

@@ -11,30 +11,39 @@ from math import lcm, pi
 from operator import mul
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Self, TypeAlias
 
-from symobs.exact import Matrix, Scalar
-from symobs.exact.core.generators import normal_form
-from symobs.exact.core.polynomial import companion
+from symobs.exact import Matrix, Scalar, companion
+from symobs.exact.algebraic.enclosure import is_number
+from symobs.exact.core.generators import function_named, functions_in, normal_form, substitute, symbols_in
 from symobs.exact.time_functions.matrix_exponential import NoClosedForm
+from symobs.exact.time_functions.matrix_power import PowerOf, matrix_power
 from symobs.exact.time_functions.quasipolynomial import Quasipolynomial, Table, matrix_at, product, table_of
 from symobs.formula.figures import PlottedResponse, TimeResponse
 from symobs.formula.tree import Literal
 from symobs.formula.tree.term import Term, block, identity, letter
 from symobs.ground.dataclass import dataclass
-from symobs.ground.errors import InputError
+from symobs.ground.errors import InputError, ShapeMismatch
 from symobs.proof.certificate.claims import Claim
 from symobs.proof.derivation.builder import Builder, relation
-from symobs.system.specification import read_gain
+from symobs.system.specification import parse_in_steps, read_gain
 from symobs.tasks.analysis.page_parts import given
 from symobs.tasks.analysis.time_response.damping_cases import DampingCases, Signs, rate_of, time_environment
 from symobs.tasks.analysis.time_response.horizons import read_functions
-from symobs.tasks.analysis.time_response.initial_state import motion_from_rest
+from symobs.tasks.analysis.time_response.initial_state import MOST_SAMPLES, motion_from_rest
 from symobs.tasks.analysis.time_response.matrix_exponential import (
     TIME,
     closed_form,
+    following,
+    has_sums,
+    motion,
+    powers_of,
     question_of,
     require_continuous,
+    require_no_instant,
     tell_exponential,
+    tell_impulses,
+    tell_open_power,
     tell_polynomial,
+    tell_power,
     tell_question,
 )
 from symobs.tasks.result import Result, choose, method, task
@@ -42,9 +51,10 @@ from symobs.tasks.result import Result, choose, method, task
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
+    from symobs.exact.time_functions.matrix_exponential import Exponential
     from symobs.formula.figures import Interval
     from symobs.formula.tree import Environment, Relation
-    from symobs.proof.derivation.builder import Slot
+    from symobs.proof.derivation.builder import Builder, Slot
     from symobs.system import StateSpace
     from symobs.system.specification import MatrixText, Name, TimeFunctions
 
@@ -164,7 +174,15 @@ class InputModel(NamedTuple):
 
 
 def input_model(u: Matrix) -> InputModel | None:
-    """Return the least exosystem of each input; None where its coefficients are no rational numbers."""
+    """Return the exosystem of an input that is not 0; None where it is no system of rational numbers."""
+    if u.is_zero:
+        return None
+    found = exosystem(u)
+    return None if found.S.names or found.start.names else found
+
+
+def exosystem(u: Matrix) -> InputModel:
+    """Return the least exosystem of each input, of which one at least is not 0."""
     blocks: list[tuple[Matrix, list[Scalar]]] = []
     functions: list[list[Scalar]] = []
     for (entry,) in table_of(u):
@@ -177,12 +195,8 @@ def input_model(u: Matrix) -> InputModel | None:
             start.append(derivative.at_zero)
             functions.append([derivative.value_at(Scalar.symbol("t"))])
             derivative = derivative.derivative()
-        if any(not value.is_constant for value in (*coefficients, *start)):
-            return None
         blocks.append((companion(coefficients[1:]), start))
     sizes = [len(start) for _, start in blocks]
-    if not sum(sizes):
-        return None
     zeros = [[Matrix.zeros(a, b) for b in sizes] for a in sizes]
     S = Matrix.block([[*row[:i], blocks[i][0], *row[i + 1 :]] for i, row in enumerate(zeros) if sizes[i]])
     first = [sum(sizes[:i]) if size else None for i, size in enumerate(sizes)]
@@ -282,24 +296,30 @@ class Response(DampingCases):
         start = asked["initial"] if v is None else asked["initial"] + plant.matrices.B @ v
         shared = {**{name: asked[name] for name in cls.asked_for}, "start": start, "taken": taken, "chosen": {}}
         try:
-            found, chosen = closed_form(plant, taken)
+            found, chosen = closed_form(plant, taken, sums=has_sums(plant))
+            forced = _motion_from_rest(plant, found, asked["input"])
         except NoClosedForm as error:
             nothing = {"state": None, "output": None, "question": question_of(error), "factor": error.factor}
             return cls(plant, method_name, {**shared, **nothing})
-        m, exponential = plant.matrices, found.table()
-        state = product(exponential, table_of(start))
-        answer = {**shared, "chosen": chosen, "exponential": matrix_at(exponential, TIME), "output": None}
-        u = None if asked["input"] is None else table_of(asked["input"])
-        if u is not None:
-            forced = motion_from_rest(exponential, m.B, u)
-            answer["forced"] = matrix_at(forced, TIME)
-            state = _plus(state, forced)
+        m, answer = plant.matrices, {**shared, "chosen": chosen, "exponential": found.matrix(TIME), "output": None}
+        if forced is not None:
+            answer["forced"] = forced if isinstance(forced, Matrix) else matrix_at(forced, TIME)
+        if not found.is_closed:
+            state = found.matrix(TIME) @ start + (start * 0 if forced is None else answer["forced"])
+            if m.has_output:
+                seen = m.C @ state
+                through = forced is not None and m.has_feedthrough
+                answer["output"] = seen + m.D @ asked["input"] if through else seen
+            return cls(plant, method_name, {**answer, "state": state})
+        table = product(found.table(), table_of(start))
+        if isinstance(forced, tuple):
+            table = _plus(table, forced)
         if m.has_output:
-            seen = product(table_of(m.C), state)
-            if u is not None and m.has_feedthrough:
-                seen = _plus(seen, product(table_of(m.D), u))
-            answer["output"] = matrix_at(seen, TIME)
-        return cls(plant, method_name, {**answer, "state": matrix_at(state, TIME)})
+            outputs = product(table_of(m.C), table)
+            if forced is not None and m.has_feedthrough:
+                outputs = _plus(outputs, product(table_of(m.D), table_of(asked["input"])))
+            answer["output"] = matrix_at(outputs, TIME)
+        return cls(plant, method_name, {**answer, "state": matrix_at(table, TIME)})
 
     @property
     def matrices(self) -> tuple[Matrix | Scalar, ...]:
@@ -370,6 +390,25 @@ class Response(DampingCases):
                 plot_response(page, self.answer["start"], self.input_model)
 
 
+def _motion_from_rest(plant: StateSpace, found: Exponential, u: Matrix | None) -> Table | Matrix | None:
+    """Return ∫₀ᵗ e^{A(t−s)} B u(s) ds; beside sums over roots it is the motion of the plant and the exosystem of u.
+
+    Raises `NoClosedForm` where that has parameters.
+    """
+    B = plant.matrices.B
+    if u is None or u.is_zero:
+        return None if u is None else B @ u
+    if found.is_closed:
+        return motion_from_rest(found.table(), B, table_of(u))
+    S, V, start, _ = exosystem(u)
+    if not all(map(is_number, S.entries)):
+        raise NoClosedForm(plant.matrices.A.characteristic_polynomial(plant.variable))
+    (n, _), m = B.shape, S.shape[0]
+    whole = Matrix.block([[plant.matrices.A, B @ V], [Matrix.zeros(m, n), S]])
+    moved = motion(plant, whole, Matrix.block([[Matrix.zeros(n, 1)], [start]]))
+    return moved.matrix(TIME).select(range(n), range(1))
+
+
 def _plus(left: Table, right: Table) -> Table:
     return tuple(tuple(a + b for a, b in zip(p, q, strict=True)) for p, q in zip(left, right, strict=True))
 
@@ -408,7 +447,7 @@ def _write_branch(page: Builder, result: Response) -> None:
         tell_question(page, answer["factor"])
         page.remark("response_not_given")
         return
-    found, _ = closed_form(result.plant, {**answer["taken"], **answer["chosen"]})
+    found, _ = closed_form(result.plant, {**answer["taken"], **answer["chosen"]}, sums=has_sums(result.plant))
     tell_exponential(page, found, answer["exponential"])
     begins, has_impulse, u = answer["start"], answer["impulse"] is not None, None
     from_rest = begins.is_zero and not has_impulse
@@ -465,22 +504,27 @@ def response(
 ) -> Result:
     """Return the response x(t) = e^{At} x₀ + ∫₀ᵗ e^{A(t−s)} B u(s) ds and y = C x + D u to an initial state and an input.
 
-    plant    n states, continuous time; B where an input is given, C where the output is asked for
+    plant    n states; B where an input is given, C where the output is asked for
     initial  x₀; 0 where it is left out
     input    u(t) for t ≥ 0: sums of exponentials, sines and cosines times powers of t, one for each input, such as 1 for
              a step and t for a ramp; none where it is left out
+             In discrete time an expression in k, "1 + k*(1/2)^k", or a sequence "1, 0, 2", which is 0 behind its end.
     impulse  the strength v of an impulse v δ(t), one for each input, which moves the state to x₀ + B v at t = 0
-    Returns state, output, in t.  Where the sign of a discriminant decides between oscillation and none, and where an input
-    is in resonance, conditions hold the branch that is shown and cases the others; undecided where the modes have no
-    closed form.  Raises `InputError` where nothing is given, in discrete time, for other functions of t, and where the impulse
-    goes through to the output; `ShapeMismatch`.
+    Returns state, output, in t (in k).  Where the sign of a discriminant decides between oscillation and none, and where an
+    input is in resonance, conditions hold the branch that is shown and cases the others; undecided where the modes have no
+    closed form.  Raises `InputError` where nothing is given, for other functions of t, and where the impulse goes through to
+    the output; `ShapeMismatch`.
     Source: T. Kailath, Linear Systems, ch. 2; K. Ogata, Modern Control Engineering, 5th ed., ch. 9.
     """
     plant = plant.knowing(initial, input, impulse)
-    require_continuous(plant, "response")
+    if not plant.is_discrete:
+        require_continuous(plant, "response")
     if initial is None and input is None and impulse is None:
         message = "nothing moves the plant: neither an initial state nor an input is given"
         raise InputError(message, where="specification.input", repair='give input = "1" for a step, or initial')
+    if plant.is_discrete:
+        choose("response", method, "superposition")
+        return response_in_steps(plant, initial, input, impulse).asked(method)
     size = (plant.order, 1)
     start = Matrix.zeros(*size) if initial is None else read_gain(initial, plant, "initial", size)
     v = None
@@ -501,3 +545,198 @@ def response(
         plant.require("B", task="response")
         u, _ = read_functions(input, plant, "input", plant.inputs)
     return choose("response", method, "superposition").solve(plant, {"initial": start, "input": u, "impulse": v})
+
+
+# In discrete time: x(k + 1) = A x(k) + B u(k), where u is the output of a system of its own; together they have powers.
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class ResponseInSteps(Response):
+    """x(k) with x(k + 1) = A x(k) + B u(k) and x(0) = x₀, and y = C x + D u."""
+
+    functions_of_time = {"x": "state", "x(k)": "state", "y": "output", "y(k)": "output"}
+    letters = {"state": "x_k", "output": "y_k"}
+
+    @classmethod
+    def of(cls, plant: StateSpace, method_name: str, asked: Mapping[str, Any], taken: Signs) -> Self:
+        """Return the result for a plant; `asked` holds the initial state and the input in k."""
+        m, start, u = plant.matrices, asked["initial"], asked["input"]
+        shared = {"initial": start, "input": u, "impulse": None, "start": start, "taken": taken, "chosen": {}}
+        A, z = m.A, start
+        if u is not None:
+            A, z = _with_input(m.A, m.B, start, u, plant.variable)
+        try:
+            parts = matrix_power(A, plant.variable)
+        except NoClosedForm as error:
+            nothing = {"state": None, "output": None, "question": question_of(error), "factor": error.factor}
+            return cls(plant, method_name, {**shared, **nothing})
+        state, rows = Matrix.zeros(plant.order, 1), range(plant.order)
+        for value, matrix in parts:
+            state = state + (matrix @ z).select(rows, [0]) * value
+        state, output = state.normal(), None
+        if m.has_output:
+            output = (m.C @ state if u is None else m.C @ state + m.D @ u).normal()
+        return cls(plant, method_name, {**shared, "state": state, "output": output})
+
+    def claims(self) -> Iterator[Claim]:
+        """Yield the recursion, the start, and the output."""
+        yield from super(Response, self).claims()
+        if self.answer["state"] is None:
+            return
+        m, names = self.plant.matrices, {"x_k": "state", "y_k": "output", "u_k": "input", "x_0": "start"}
+        values: dict[str, Any] = {"A": m.A, "B": m.B, "C": m.C, "D": m.D}
+        values |= {name: self.answer[key] for name, key in names.items() if self.answer[key] is not None}
+        e = time_environment(self.plant, values)
+        x = letter("x_k", e)
+        yield Claim(relation(following(x), self.moved(e)), e, "x(k + 1) = A*x(k) + B*u(k)")
+        yield Claim(relation(x.at("k", 0), letter("x_0", e)), e, "x(0) = x0")
+        if "y_k" in values:
+            yield Claim(relation(letter("y_k", e), self.seen(e)), e, "y = C*x + D*u")
+
+    def moved(self, e: Environment) -> Term:
+        """Return A x + B u."""
+        free = letter("A", e) @ letter("x_k", e)
+        return free if self.answer["input"] is None else free + letter("B", e) @ letter("u_k", e)
+
+    def seen(self, e: Environment) -> Term:
+        """Return C x + D u."""
+        seen = letter("C", e) @ letter("x_k", e)
+        through = self.answer["input"] is not None and self.plant.matrices.has_feedthrough
+        return seen + letter("D", e) @ letter("u_k", e) if through else seen
+
+    @property
+    def is_drawn(self) -> bool:
+        """No picture is drawn."""
+        return False
+
+    def write(self, page: Builder) -> None:
+        """Write the powers of A, what is given, state and output, the check."""
+        page.in_time(*self.everything())
+        given(page)
+        with page.section("response"):
+            tell_polynomial(page)
+            self.write_branches(page, _write_steps)
+
+
+def _with_input(A: Matrix, B: Matrix, start: Matrix, u: Matrix, variable: str) -> tuple[Matrix, Matrix]:
+    """Return the matrix of plant and input system together, and the initial state of both."""
+    polynomial = _input_polynomial(u, variable)
+    size, inputs = polynomial.degree(variable), u.shape[0]
+    S = companion(polynomial.coefficients(variable)[1:])
+    samples = [substitute(u, {"k": Scalar.of(at)}) for at in range(size)]
+    begun = Matrix.column([samples[at][i, 0] for i in range(inputs) for at in range(size)])
+    own = Matrix.of(
+        [
+            [S[i % size, j % size] if i // size == j // size else Scalar.of(0) for j in range(inputs * size)]
+            for i in range(inputs * size)
+        ]
+    )
+    first = Matrix.of([[int(j == i * size) for j in range(inputs * size)] for i in range(inputs)])
+    zero = Matrix.zeros(inputs * size, A.shape[0])
+    return Matrix.block([[A, B @ first], [zero, own]]).normal(), Matrix.block([[start], [begun]])
+
+
+def _input_polynomial(u: Matrix, variable: str) -> Scalar:
+    """Return the polynomial of the input system: (z − λ)ʲ⁺¹ for kʲ λᵏ, and zʲ⁺¹ for δ(k, j)."""
+    z, counts = Scalar.symbol(variable), dict[Scalar, int]()
+    for entry in u.entries:
+        for _, powers in entry.numerator.terms():
+            degree = next((power for name, power in powers if name == "k"), 0)
+            found = [function for name, _ in powers if isinstance(function := function_named(name), PowerOf)]
+            mode = z - (found[0].base if found else 1)
+            if found and found[0].kind == "KroneckerDelta":
+                mode, degree = z, int(found[0].base.fraction())
+            counts[mode] = max(counts.get(mode, 0), degree + 1)
+    total = Scalar.of(1)
+    for mode, count in counts.items():
+        total = total * mode**count
+    return total if counts else z
+
+
+def _write_steps(page: Builder, result: DampingCases) -> None:
+    """Write one branch."""
+    assert isinstance(result, ResponseInSteps)  # noqa: S101 - its own branches
+    answer, A = result.answer, result.plant.matrices.A
+    if answer.get("question") is not None:
+        tell_open_power(page, answer["factor"])
+        page.remark("response_not_given")
+        return
+    power = tell_power(page, A, powers_of(A, page.plant.variable)) if answer["input"] is None else None
+    begins, u = answer["start"], None
+    x_0 = page.value(begins) if begins.is_zero else page.set("x_0", begins)
+    if answer["input"] is not None:
+        u = relation(page.set("u_k", answer["input"]), _entry(answer["input"]))
+        tell_impulses(page, answer["input"])
+    if u is None:
+        page.equal(relation(x_0, _entry(begins)), say="response_free")
+    elif begins.is_zero:
+        page.equal(u, say="response_from_rest")
+    else:
+        page.equal(relation(x_0, _entry(begins)), u, say="response_driven")
+    members, say = ([], "steps_state") if power is None else ([power @ x_0], "response_state_free")
+    x = page.define("x_k", *members, answer["state"], say=say, answer=True, closing=False)
+    e = page.environment
+    if answer["output"] is not None:
+        page.define("y_k", result.seen(e), _entry(answer["output"]), say="response_output", answer=True, closing=False)
+    page.verified("steps_checked", relation(following(x), result.moved(e)), start=relation(x.at("k", 0), x_0))
+
+
+# What is given.
+
+
+def response_in_steps(plant: StateSpace, initial: object, given_input: object, impulse: object) -> ResponseInSteps:
+    """Return the response to an initial state and an input; raises `InputError`, `ShapeMismatch`."""
+    require_no_instant(plant)
+    if impulse is not None:
+        message = "an impulse in discrete time is an input"
+        raise InputError(message, where="specification.impulse", repair='write the sequence input = "1, 0"')
+    size = (plant.order, 1)
+    start = Matrix.zeros(*size) if initial is None else read_gain(initial, plant, "initial", size)
+    if "k" in start.names:
+        message = "the initial state does not depend on the instant k"
+        raise InputError(message, where="specification.initial", repair="give the values at k = 0")
+    u = None
+    if given_input is not None:
+        plant.require("B", task="response")
+        u = _read_input(given_input, plant)
+    return ResponseInSteps.of(plant, "superposition", {"initial": start, "input": u}, {})
+
+
+def _read_input(value: object, plant: StateSpace) -> Matrix:
+    """Return the inputs as functions of k: a sequence, which is 0 behind its end, or an expression for each."""
+    where = "specification.input"
+    table = parse_in_steps(value, plant.symbols, where)
+    if table.shape == (1, plant.inputs) or (plant.inputs == 1 and table.shape[1] == 1):
+        table = table.T
+    if table.shape[0] != plant.inputs or table.shape[1] > MOST_SAMPLES:
+        message = f"{table.shape[0]}×{table.shape[1]} entries of the input, for {plant.inputs} inputs"
+        raise ShapeMismatch(message, where=where, repair="write an expression in k, or a sequence, for each input")
+    if table.shape[1] > 1:
+        impulses = [PowerOf.of("KroneckerDelta", Scalar.of(at)) for at in range(table.shape[1])]
+        moving = "k" in symbols_in(table)
+        table = (table @ Matrix.column(impulses)).normal()
+        if moving:
+            raise InputError(
+                "the entries of a sequence depend on k", where=where, repair="give numbers, or one expression"
+            )
+    _require_sums(table, where)
+    return table
+
+
+def _require_sums(table: Matrix, where: str) -> None:
+    """Raise `InputError` for other functions of k than sums of powers of k times λᵏ."""
+    for entry in table.entries:
+        several = any(
+            sum(power for name, power in powers if isinstance(function_named(name), PowerOf)) > 1
+            for _, powers in entry.numerator.terms()
+        )
+        moving = [f for f in functions_in([entry]) if "k" in f.symbols and not isinstance(f, PowerOf)]
+        below = any(name == "k" or isinstance(function_named(name), PowerOf) for name in entry.denominator.names)
+        if (
+            several
+            or below
+            or moving
+            or any("k" in f.base.names for f in functions_in([entry]) if isinstance(f, PowerOf))
+        ):
+            message = f"the input {entry} is no sum of powers of k times powers of numbers to the k"
+            raise InputError(message, where=where, repair='write for example "1 + k*(1/2)^k", or a sequence "1, 0, 2"')

@@ -11,6 +11,8 @@ PHRASES: dict[str, str] = {
     "response_beside": "Apart from the impulse the input is",
     "response_state": "The state is the response to the initial state plus the forced response:",
     "response_state_free": "The state is therefore",
+    "steps_state": "The state is therefore, by the powers of the matrix of plant and input together,",
+    "steps_checked": "The state satisfies the difference equation and has the initial value {start}.",
     "response_output": "The output is",
     "response_not_given": "Therefore the response is not given either.",
     "response_checked": "The state satisfies the differential equation and has the initial value {start}.",
@@ -22,5 +24,7 @@ QUESTIONS: dict[str, str] = {
     "ask response input": "The input is {input} from $t=0$ on, and the initial state is zero. Find the response of the plant.",
     "ask response initial": "The plant is released from the initial state {initial}. Find its response.",
     "ask response initial input": "The initial state is {initial}, and the input is {input} from $t=0$ on. Find the response of the plant.",
+    "ask response discrete input": "The input from $k=0$ on is {input}, and the initial state is zero. Find the response of the plant.",
+    "ask response discrete initial input": "The initial state is {initial}, and the input from $k=0$ on is {input}. Find the response of the plant.",
     "also response impulse": "At $t=0$ an impulse of strength {impulse} acts on the input.",
 }

@@ -4,6 +4,13 @@ from __future__ import annotations
 
 PHRASES: dict[str, str] = {
     "matrix_exponential": "Matrix exponential.",
+    "matrix_power": "Powers of the state matrix.",
+    "power_sum": "The powers of $A$ are a combination of these modes with constant matrices, which follow from the values at the first instants:",
+    "power_here": "The powers of $A$ are",
+    "power_delta": "Here $delta$ is 1 where its arguments are equal, and 0 elsewhere.",
+    "power_start": "At $k+1$ it is $A$ times its value at $k$, and its initial value is the identity, {start}.",
+    "no_closed_power": "The factor {factor} of degree {degree} is irreducible over the field of the data, so its roots and the corresponding modes are not available in closed form here. The powers of $A$ are not given.",
+    "too_many_states_power": "With {order} states the powers of $A$ are too long to be computed here.",
     "exponential_modes": "The modes follow from the characteristic polynomial:",
     "exponential_sum": "The matrix exponential is a combination of these modes with constant matrices, which follow from its derivatives at $t=0$:",
     "exponential_here": "Here",
@@ -20,6 +27,7 @@ PHRASES: dict[str, str] = {
     "output_of_exponential": "The zero-input response of the output is governed by",
     "input_through_exponential": "The response of the state at the time $t$ to an impulse at the input is",
     "gramian_integral": "The Gramian is the integral over the horizon of its product with its transpose:",
+    "gramian_by_sums": "The modes have no closed form. The Gramian up to the time $t$ solves {equation}, {start}; its entries are sums over the roots of the modes of this equation. At the horizon it is",
     "gramian_determinant": "Its determinant is",
     "lyapunov": "The Lyapunov equation {equation} has the solution",
     "lyapunov_denominator": "Where its denominator vanishes there is no such solution, and the integral is evaluated directly.",
@@ -68,6 +76,14 @@ PHRASES: dict[str, str] = {
     "initial_refused": "but it produces a different output: the residual {rest} is not 0. No initial state is consistent with these data.",
     "initial_start": "The value and the derivatives at 0 would have to be $O x_0$. They are",
     "initial_inconsistent": "These equations are inconsistent: with {row} one has {zero}, but {rest}. No initial state is consistent with these data.",
+    "samples_stacked": "The samples, one below the other, are $O x_0$ plus the forced output, with",
+    "samples_right": "There is no input, so $O x_0 = r_0$ with the samples",
+    "samples_right_input": "Subtracting the forced output gives $O x_0 = r_0$ with",
+    "samples_found": "The pair ($C$, $A$) is observable, so the initial state is uniquely determined,",
+    "samples_kernel": "The following vector gives no output, so any multiple of it may be added:",
+    "samples_kernel_several": "The following vectors give no output, so any linear combination of them may be added:",
+    "samples_inconsistent": "These equations are inconsistent: with {row} one has {zero}, but {rest}. No initial state is consistent with these samples.",
+    "samples_checked": "The output from this initial state is the measured one: {check}.",
     "covariance": "Covariance of the initial-state estimate.",
     "noise": "The known input is corrupted by white noise of intensity $Q$ and the output by white noise of intensity $R$,",
     "estimator": "The initial state is estimated by least squares: the output, multiplied by $exp_Atᵀ Cᵀ$ and integrated over the horizon, is multiplied by the inverse of the Gramian $W$.",
@@ -91,6 +107,7 @@ PHRASES: dict[str, str] = {
 
 QUESTIONS: dict[str, str] = {
     "ask matrix_exponential": "Find the matrix exponential $exp_At$, in real form.",
+    "ask matrix_exponential discrete": "Find the powers $A_k$ of the state matrix, in real form.",
     "ask gramian": "Find the observability Gramian over the horizon {horizon} and its determinant. Is the plant observable?",
     "ask gramian horizon=inf": "Find the infinite-horizon observability Gramian and its determinant. Is the plant observable?",
     "ask gramian of=observability": "Find the observability Gramian over the horizon {horizon}, with its determinant.",
@@ -99,6 +116,8 @@ QUESTIONS: dict[str, str] = {
     "ask gramian of=controllability horizon=inf": "Find the infinite-horizon controllability Gramian and its determinant.",
     "ask initial_state": "Determine the initial state from the output.",
     "ask initial_state output": "The output {output} was measured up to the time {horizon}, with zero input. Determine the initial state.",
+    "ask initial_state discrete output": "The samples of the output from $k=0$ on are {output}, with zero input. Determine the initial state.",
+    "ask initial_state discrete output input": "The samples of the output from $k=0$ on are {output}, those of the input {input}. Determine the initial state.",
     "ask initial_state output input": "The output {output} was measured up to the time {horizon}, with the input {input}. Determine the initial state.",
     "also initial_state input": "The input is {input}.",
     "also initial_state_covariance Q": "The known input is corrupted by white noise {Q}.",
@@ -133,6 +152,7 @@ DEMANDS: dict[str, str] = {
     "gramian_diverges_controllability": "seen Bᵀ Aᵀ N_K X_K",
     "initial_found": "observable C A",
     "initial_not_unique": "unobservable C A",
+    "samples_found": "observable C A",
 }
 
 RESTS_ON: dict[str, str] = {
@@ -153,7 +173,7 @@ THEOREMS: dict[str, str] = {
     "exponential": "leonard1996",
 }
 
-NAMING = ("no_closed_form",)
+NAMING = ("no_closed_form", "no_closed_power", "power_delta")
 
 EXPLAINS = (
     "exponential_sum",

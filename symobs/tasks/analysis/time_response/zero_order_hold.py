@@ -26,6 +26,8 @@ from symobs.tasks.analysis.time_response.horizons import INFINITE, over_horizon,
 from symobs.tasks.analysis.time_response.matrix_exponential import (
     TIME,
     closed_form,
+    has_sums,
+    motion,
     question_of,
     require_continuous,
     tell_exponential,
@@ -35,9 +37,10 @@ from symobs.tasks.analysis.time_response.matrix_exponential import (
 from symobs.tasks.result import Result, choose, method, task
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
+    from collections.abc import Callable, Iterator, Mapping
 
     from symobs.exact import Scalar
+    from symobs.exact.time_functions.matrix_exponential import Exponential
     from symobs.formula.tree import Environment
     from symobs.proof.derivation.builder import Builder
     from symobs.system.specification import Horizon, Name
@@ -55,17 +58,16 @@ class ZeroOrderHold(DampingCases):
     @classmethod
     def of(cls, plant: StateSpace, method_name: str, asked: Mapping[str, Any], taken: Signs) -> Self:
         """Return the result for a plant; `asked` holds the sampling period."""
-        m, period = plant.matrices, asked["horizon"]
+        period = asked["horizon"]
         shared = {"horizon": period, "taken": taken, "chosen": {}}
         try:
-            found, chosen = closed_form(plant, taken)
+            found, chosen = closed_form(plant, taken, sums=has_sums(plant))
+            driven = _driven(plant, found)
         except NoClosedForm as error:
             nothing = {"A_d": None, "B_d": None, "question": question_of(error), "factor": error.factor}
             return cls(plant, method_name, {**shared, **nothing})
-        exponential = found.table()
-        driven = integral(product(exponential, table_of(m.B)))
-        answer = {"exponential": matrix_at(exponential, TIME), "driven": matrix_at(driven, TIME)}
-        at_period = {"A_d": matrix_at(exponential, period), "B_d": matrix_at(driven, period)}
+        at_period = {"A_d": found.matrix(period), "B_d": driven(period)}
+        answer = {"exponential": found.matrix(TIME), "driven": driven(TIME)}
         return cls(plant, method_name, {**shared, **answer, **at_period, "chosen": chosen})
 
     @property
@@ -112,6 +114,11 @@ class ZeroOrderHold(DampingCases):
         dt = period.fraction() if period.is_constant else True
         return StateSpace(self.answer["A_d"], self.answer["B_d"], C, D, dt=dt, symbols=symbols)
 
+    @property
+    def as_plant(self) -> StateSpace:
+        """The sampled plant."""
+        return self.sampled
+
     @cached_property
     def fields(self) -> Mapping[str, Any]:
         """The matrices of the sampled plant; where there are none, the question that is open."""
@@ -128,6 +135,18 @@ class ZeroOrderHold(DampingCases):
             self.write_branches(page, _write_branch)
 
 
+def _driven(plant: StateSpace, found: Exponential) -> Callable[[Scalar], Matrix]:
+    """Return ∫₀ᵗ e^{As} B ds as a function of t; beside sums over roots the motion of x′ = A x + B u, u′ = 0, u(0) = I."""
+    A, B = plant.matrices.A, plant.matrices.B
+    if found.is_closed:
+        table = integral(product(found.table(), table_of(B)))
+        return lambda time: matrix_at(table, time)
+    n, m = B.shape
+    whole = Matrix.block([[A, B], [Matrix.zeros(m, n), Matrix.zeros(m, m)]])
+    moved = motion(plant, whole, Matrix.block([[Matrix.zeros(n, m)], [Matrix.identity(m)]]))
+    return lambda time: moved.matrix(time).select(range(n), range(m))
+
+
 def _integral(e: Environment, primitive: Term | Matrix, period: Scalar) -> Any:
     """Return ∫₀ᵀ e^{At} B dt with its primitive."""
     known = Literal(primitive) if isinstance(primitive, Matrix) else primitive.formula
@@ -141,7 +160,7 @@ def _write_branch(page: Builder, result: ZeroOrderHold) -> None:
         tell_question(page, answer["factor"])
         page.remark("zero_order_hold_not_given")
         return
-    found, _ = closed_form(result.plant, {**answer["taken"], **answer["chosen"]})
+    found, _ = closed_form(result.plant, {**answer["taken"], **answer["chosen"]}, sums=has_sums(result.plant))
     tell_exponential(page, found, answer["exponential"])
     Phi = page["exp_At"]
     page.define("A_zoh", Phi.at("t", period), answer["A_d"], say="zero_order_hold_held", answer=True, closing=False)
@@ -167,7 +186,8 @@ def zero_order_hold(plant: StateSpace, *, sampling_period: Horizon = None, metho
     sampling_period  T > 0, the sampling period: a symbol or a number ("T" if left out)
     Returns A, B, C, D of the sampled plant.  In Python `sampled` is this plant, for every task in discrete time: e^{−T},
     cos T and sin T beside T are independent letters there.  Where the sign of a discriminant decides between oscillation
-    and none, conditions hold the branch that is shown and cases the others; undecided where the modes have no closed form.
+    and none, conditions hold the branch that is shown and cases the others.  Modes of a plant in numbers that have no closed
+    form stand in sums over roots, `RootSum`, with `decimals` beside; undecided where such modes have parameters.
     Raises `InputError` in discrete time, and for a period that is not positive or infinite.
     Source: K. J. Åström and B. Wittenmark, Computer-Controlled Systems, 3rd ed., ch. 2.
     """

@@ -32,7 +32,7 @@ from symobs.tasks.design.reduced_order.reduced_order_observer import completed
 from symobs.tasks.result import Result, choose, method, poles_of, task
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
+    from collections.abc import Iterator, Mapping, Sequence
 
     from symobs.system import StateSpace
     from symobs.tasks.analysis.strata.strata import Place
@@ -46,10 +46,10 @@ class CompensatorDesign(OutputFeedback):
     estimator: ObserverDesign
 
     @classmethod
-    def design(cls, plant: StateSpace, control: Asked, observer: Asked, name: str) -> Self:
+    def design(cls, plant: StateSpace, asked: Sequence[Asked], name: str) -> Self:
         """Return the compensator for these polynomials, or with these gains."""
-        feedback = half_of(StateFeedbackDesign, plant, control)
-        estimator = half_of(ObserverDesign, plant, observer)
+        feedback = half_of(StateFeedbackDesign, plant, asked[0])
+        estimator = half_of(ObserverDesign, plant, asked[1])
         return cls.of(feedback, estimator, name)
 
     @classmethod
@@ -124,6 +124,63 @@ class CompensatorDesign(OutputFeedback):
         return Matrix.block([[m.A, -(m.B @ K)], [L @ m.C, m.A - m.B @ K - L @ m.C]])
 
 
+@dataclass(frozen=True, eq=False, repr=False)
+class KnownState(OutputFeedback):
+    """The law u = −K x of a state that is measured: a loop without an observer."""
+
+    estimator: None  # type: ignore[assignment]
+
+    @classmethod
+    def design(cls, plant: StateSpace, asked: Sequence[Asked], name: str) -> Self:
+        """Return the loop for this polynomial, or with this gain."""
+        return cls.of(half_of(StateFeedbackDesign, plant, asked[0]), None, name)
+
+    @classmethod
+    def of(cls, feedback: StateFeedbackDesign, estimator: None, method_name: str) -> Self:
+        """Return the loop of a state feedback."""
+        answer = {"K": feedback.answer["K"], "L": None, "F": None}
+        return cls(feedback.plant, method_name, answer, feedback, estimator)
+
+    def claims(self) -> Iterator[Claim]:
+        """Yield that K is the certified gain."""
+        values = letters_of(self.plant) | {"K": self.answer["K"]}
+        yield from self.certified(Environment(variable=self.plant.variable, values=values))
+
+    def with_answer(self, name: str, value: object) -> Self:
+        """Return the loop with another gain."""
+        return self.of(self.feedback.with_answer(name, value), None, self.method).in_place_of(self)
+
+    def following_from(self, gains: Mapping[str, Matrix]) -> Self:
+        """Return the loop of a given gain."""
+        return self.of(self.feedback.following_from(gains), None, self.method)
+
+    @property
+    def halves(self) -> tuple[StateFeedbackDesign, ...]:
+        """The state feedback alone."""
+        return (self.feedback,)
+
+    @property
+    def exists(self) -> bool:
+        """Whether there is a K."""
+        return self.answer["K"] is not None
+
+    @property
+    def _estimator_places(self) -> tuple[Place, ...]:
+        return ()
+
+    @cached_property
+    def error_coordinates(self) -> Matrix:
+        """A − BK."""
+        m = self.plant.matrices
+        closed: Matrix = m.A - m.B @ self.answer["K"]
+        return closed
+
+    @property
+    def systems(self) -> Mapping[str, Realisation]:
+        """The plant."""
+        return self.feedback.systems
+
+
 def realised(plant: StateSpace, K: Matrix, L: Matrix) -> Realisation:
     """Return F in state space: A − BK − LC + LDK, L, K, 0."""
     m = plant.matrices
@@ -145,7 +202,7 @@ def own_transfer(feedback: StateFeedbackDesign, estimator: ObserverDesign) -> tu
 @method("compensator/separation", source="luenberger1964; luenberger1971")
 def separation(plant: StateSpace, control: Asked, observer: Asked) -> CompensatorDesign:
     """Design K as if x were known, design the observer of order n, use x̂ for x."""
-    return CompensatorDesign.design(plant, control, observer, "separation")
+    return CompensatorDesign.design(plant, (control, observer), "separation")
 
 
 @method("compensator/duality", source="kalman1960")
@@ -154,7 +211,7 @@ def duality(plant: StateSpace, control: Asked, observer: Asked) -> CompensatorDe
     if not plant.inputs == plant.outputs == 1:
         message = f"the method duality needs one input and one output, the plant has {plant.inputs} and {plant.outputs}"
         raise InputError(message, where="specification.method", repair="leave the method out, or write separation")
-    return CompensatorDesign.design(plant, control, observer, "duality")
+    return CompensatorDesign.design(plant, (control, observer), "duality")
 
 
 @method("compensator/minimal_order", source="luenberger1971; kailath1980, ch. 4")
@@ -162,7 +219,7 @@ def minimal_order(plant: StateSpace, control: Asked, observer: Asked) -> Minimal
     """Design K as if x were known, estimate the unmeasured states only, use x̂ for x."""
     from symobs.tasks.design.compensator.minimal_order_compensator import MinimalOrderCompensator  # noqa: PLC0415 - paid for where used
 
-    return MinimalOrderCompensator.design(plant, control, observer, "minimal_order")
+    return MinimalOrderCompensator.design(plant, (control, observer), "minimal_order")
 
 
 #: The method of each kind of observer.
@@ -269,6 +326,20 @@ def observer_based(
     plant, (control_wish, observer_wish) = over_common_data(plant, control_wish, observer_wish)
     found: OutputFeedback = chosen.solve(plant, control_wish, observer_wish)
     return found
+
+
+def of_known_state(plant: StateSpace, *, task: str, control: tuple[object, object], gain: object) -> KnownState:
+    """Return the loop u = −K x for the control poles, their polynomial or a gain."""
+    plant = plant.knowing(*control, gain)
+    plant.require("B", "C", task=task)
+    asked: Asked | None
+    if gain is not None:
+        reject_both("K", gain, *control, other="control_poles")
+        asked = read_gain(gain, plant, "K", (plant.inputs, plant.order))
+    else:
+        asked = desired_polynomial(plant, *control, names=("control_poles", "control_polynomial"))
+    plant, (asked,) = over_common_data(plant, asked)
+    return KnownState.design(plant, (asked,), "state_feedback")
 
 
 def _require_kind(observer: str, plant: StateSpace, method_name: str) -> None:

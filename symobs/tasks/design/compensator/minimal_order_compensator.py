@@ -26,7 +26,7 @@ from symobs.tasks.design.gain.gain_design import letters_of
 from symobs.tasks.design.reduced_order.reduced_order_observer import ReducedOrderObserver, reduced_observer_of
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
+    from collections.abc import Iterator, Mapping, Sequence
 
     from symobs.system import StateSpace
     from symobs.tasks.analysis.strata.strata import Place
@@ -43,8 +43,9 @@ class MinimalOrderCompensator(OutputFeedback):
     estimator: ReducedOrderObserver
 
     @classmethod
-    def design(cls, plant: StateSpace, control: Asked, observer: Asked, name: str) -> Self:
+    def design(cls, plant: StateSpace, asked: Sequence[Asked], name: str) -> Self:
         """Return the compensator for these polynomials, or with this K, in the coordinates [C; R]."""
+        control, observer = asked
         assert not isinstance(observer, Matrix)  # noqa: S101 - the task takes no L of a reduced-order observer
         return cls.of(half_of(StateFeedbackDesign, plant, control), reduced_observer_of(plant, observer), name)
 

@@ -12,6 +12,7 @@ from symobs.proof.derivation.builder import Builder, predicate, relation, senten
 from symobs.system.conditions import vanishing_factors
 from symobs.tasks.analysis.page_parts import formula_of_factored, given, in_blocks
 from symobs.tasks.design import page_parts as readability
+from symobs.tasks.design.compensator.compensator import KnownState
 from symobs.tasks.design.compensator.compensator_page import (
     Namer,
     caution_repeated,
@@ -246,11 +247,14 @@ def _plain(page: Builder, term: Term) -> Term:
 
 
 def write_both_gains(page: Builder, loop: OutputFeedback) -> None:
-    """Write the data, the feedback and the observer."""
+    """Write the data, the feedback and the observer, where there is one."""
     plant = page.plant
-    given(page, ("control", loop.feedback.desired), ("observer", loop.estimator.desired))
+    asked = zip(("control", "observer"), (half.desired for half in loop.halves), strict=False)
+    given(page, *asked)
     with page.section("state_feedback"):
         write_gain(page, loop.feedback, FEEDBACK, page_style("auto", plant, several=plant.inputs > 1))
+    if isinstance(loop, KnownState):
+        return
     if isinstance(loop.estimator, ReducedOrderObserver):
         write_observer_of_rest(page, loop.estimator)
         return

@@ -25,8 +25,9 @@ from symobs.tasks.result import Case, Result
 from symobs.tasks.result.control_systems import Controller
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Mapping
+    from collections.abc import Callable, Iterator, Mapping, Sequence
 
+    from symobs.exact import Root
     from symobs.proof.derivation.builder import Builder
     from symobs.system import StateSpace
     from symobs.system.conditions import Condition
@@ -47,12 +48,20 @@ _DECIDABLE_TERMS = 400
 
 
 #: What an answer has none of where there is no loop.
-_OF_A_LOOP = ("F_stable", "closed_loop_polynomial", "closed_loop", "closed_loop_matrix", "closed_loop_matrix_estimate")
+_OF_A_LOOP = (
+    "F_stable",
+    "F_stable_if",
+    "closed_loop_polynomial",
+    "closed_loop",
+    "closed_loop_matrix",
+    "closed_loop_matrix_estimate",
+)
 
 
 #: What follows from K, L and F, and the property that finds it.
 _FOUND = {
-    "F_stable": "own_stability", "compensator_stable": "law_stability", "compensator_matrix": "own_matrix",
+    "F_stable": "own_stability", "F_stable_if": "own_stability_where",
+    "compensator_stable": "law_stability", "compensator_matrix": "own_matrix",
     "closed_loop_polynomial": "loop_polynomial", "closed_loop": "loop", "closed_loop_unity": "unity_loop",
     "closed_loop_matrix": "error_coordinates", "closed_loop_matrix_estimate": "estimate_coordinates", "family": "families",
 }  # fmt: skip
@@ -87,8 +96,8 @@ class OutputFeedback(Result):
     # -- what a subclass says ----------------------------------------------------------------------------------------
 
     @classmethod
-    def design(cls, plant: StateSpace, control: Asked, observer: Asked, name: str) -> Self:
-        """Return the compensator for these polynomials, or with these gains."""
+    def design(cls, plant: StateSpace, asked: Sequence[Asked], name: str) -> Self:
+        """Return the compensator for the polynomial, or with the gain, of each half: feedback, estimator."""
         raise NotImplementedError
 
     @classmethod
@@ -147,13 +156,23 @@ class OutputFeedback(Result):
         return self.feedback if gain == "K" else self.estimator.design_of(gain)
 
     @property
+    def halves(self) -> tuple[StateFeedbackDesign | ObserverDesign | ReducedOrderObserver, ...]:
+        """The designs of the gains."""
+        return self.feedback, self.estimator
+
+    @property
+    def unmoved_modes(self) -> tuple[Root, ...]:
+        """The modes that no gain moves."""
+        return tuple(mode for half in self.halves for mode in half.unmoved_modes)
+
+    @property
     def exists(self) -> bool:
         """Whether there is a compensator."""
         return self.answer["F"] is not None
 
     def certified(self, environment: Environment) -> Iterator[Claim]:
         """Yield that K and L are the certified gains of the two designs, which are for this plant."""
-        for design in (self.feedback, self.estimator):
+        for design in self.halves:
             if design.plant is not self.plant and letters_of(design.plant) != letters_of(self.plant):
                 message = f"{design.letter} is a gain for another plant"
                 raise CertificateRejected(message, repair="please report this: it is a bug of symobs")
@@ -164,7 +183,7 @@ class OutputFeedback(Result):
     @property
     def all_certificates(self) -> tuple[Certificate, ...]:
         """The certificates of both gains and of F."""
-        return (*self.feedback.certificates, *self.estimator.certificates, *self.certificates)
+        return (*(each for half in self.halves for each in half.certificates), *self.certificates)
 
     # -- what follows ------------------------------------------------------------------------------------------------
 
@@ -183,8 +202,7 @@ class OutputFeedback(Result):
     @cached_property
     def holds_where(self) -> tuple[Condition, ...]:
         """The conditions of both gains."""
-        both = [*self.feedback.holds_where, *self.estimator.holds_where]
-        return tuple({c.expression: c for c in both}.values())
+        return tuple({c.expression: c for half in self.halves for c in half.holds_where}.values())
 
     @cached_property
     def gain_places(self) -> tuple[Place, ...]:
@@ -219,21 +237,20 @@ class OutputFeedback(Result):
 
     def on(self, plant: StateSpace, values: dict[str, Scalar]) -> Self:
         """Return the compensator on a stratum."""
-        control, observer = (asked.substitute(values) for asked in self.asked_for[2:])
+        asked = tuple(half.substitute(values) for half in self.asked_for[2:])
         kind, name = type(self), self.method
-        found: Self = plant.once((kind, control, observer, name), lambda: kind.design(plant, control, observer, name))
+        found: Self = plant.once((kind, *asked, name), lambda: kind.design(plant, asked, name))
         return found
 
     @property
     def asked_for(self) -> tuple[Any, ...]:
         """The specification of a compensator: its kind and method, and the polynomial or the gain of each half."""
-        halves = (self.feedback, self.estimator)
-        return type(self), self.method, *(half.desired or half.answer[half.letter] for half in halves)
+        return type(self), self.method, *(half.desired or half.answer[half.letter] for half in self.halves)
 
     @property
     def has_given_gain(self) -> bool:
         """Whether one of the gains is given, so that its poles are found, not desired."""
-        return None in (self.feedback.desired, self.estimator.desired)
+        return any(half.desired is None for half in self.halves)
 
     @property
     def is_single(self) -> bool:
@@ -317,7 +334,7 @@ class OutputFeedback(Result):
     def loop_polynomial(self) -> Factored:
         """φ_c φ_o, with its desired factors."""
         factors: dict[Scalar, int] = {}
-        for design in (self.feedback, self.estimator):
+        for design in self.halves:
             for factor, power in _factors_of(design):
                 factors[factor] = factors.get(factor, 0) + power
         return Factored(Scalar.of(1), tuple(factors.items()))
@@ -348,6 +365,16 @@ class OutputFeedback(Result):
         met = stable_somewhere(denominator, variable, signs, discrete=discrete)
         return "conditional" if len(met) == 2 else "undecided"
 
+    @property
+    def own_stability_where(self) -> list[str] | None:
+        """The inequalities that hold exactly where F is stable, if this is conditional and F is not too long."""
+        plant, F = self.plant, self.answer["F"]
+        if self.own_stability != "conditional" or F.size > _DECIDABLE_TERMS:
+            return None
+        signs = plant.symbols.signs
+        found = stability(F.common_denominator(), plant.variable, signs, discrete=plant.is_discrete)
+        return found.inequalities(signs) or None
+
     @cached_property
     def law_stability(self) -> str:
         """Whether the compensator by itself is stable, with the modes that F does not show."""
@@ -376,8 +403,7 @@ class OutputFeedback(Result):
         """The fields of the contract."""
         answers = self.asked_fields
         if not self.exists:
-            fixed = {"fixed_modes": self.feedback.unmoved_modes + self.estimator.unmoved_modes}
-            return {**answers, **dict.fromkeys(_OF_A_LOOP), **fixed}
+            return {**answers, **dict.fromkeys(_OF_A_LOOP), "fixed_modes": self.unmoved_modes}
         poles = self._found_poles if self.has_given_gain else {}
         known = {name: partial(table.get, name) for table in (answers, poles) for name in table}
         found: dict[str, Callable[[], Any]] = {name: partial(getattr, self, place) for name, place in _FOUND.items()}

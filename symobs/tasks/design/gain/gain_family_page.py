@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from symobs.exact import EIGENVALUE, Matrix, companion
+from symobs.exact import EIGENVALUE, Matrix, Scalar, companion
 from symobs.proof.derivation import CaseStep, Note
 from symobs.proof.derivation.builder import Builder, relation, sentence
 from symobs.system.conditions import vanishing_factors
@@ -26,8 +26,11 @@ if TYPE_CHECKING:
 
 def write_sylvester(page: Builder, design: GainDesign, side: PlacementProblem, desired: DesiredPolynomial) -> None:
     """Write the equation, its solution, and for several outputs (inputs) the family and one member of it."""
-    page.define(f"F_{side.index}", companion(desired.coefficients), say="companion_of_wish")
     chart = design.chart
+    if chart is None and design.dual_pair(page.plant).c.shape[0] > 1:  # whether the rows of G are free is not known
+        page.define(side.gain, design.answer[side.gain], say="gain_stated", answer=True)
+        return
+    page.define(f"F_{side.index}", companion(desired.coefficients), say="companion_of_wish")
     if chart is None:
         _only_gain(page, design, side, desired)
         return
@@ -120,12 +123,28 @@ def _equation(page: Builder, side: PlacementProblem, which: str, equation: Sylve
             page.equal(shown, say="solution_is", equation=conditional)
         else:
             page.equal(shown)
-    determinant = solution.value.determinant()
-    if determinant.size <= readability.FAMILY_DETERMINANT:
+    determinant = _short_determinant(solution.value, equation.names)
+    if determinant is not None:
         page.equal(
             relation(solution.apply("det"), determinant_form(page, determinant)),
             say="determinant_free" if value.shape[0] > 1 else "",
         )
+
+
+def _short_determinant(X: Matrix, names: tuple[str, ...]) -> Scalar | None:
+    """Return det X unless it is too long to be shown: where letters are 0 it has no more terms than elsewhere."""
+    kept = 2
+    while True:
+        found = (
+            X.substitute(dict.fromkeys(names[kept:], Scalar.of(0))).determinant()
+            if kept < len(names)
+            else X.determinant()
+        )
+        if found.size > readability.FAMILY_DETERMINANT:
+            return None
+        if kept >= len(names):
+            return found
+        kept *= 2
 
 
 def _sylvester(page: Builder, side: PlacementProblem, which: str, equation: Sylvester) -> Relation:

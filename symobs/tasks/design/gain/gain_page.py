@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
@@ -562,7 +563,7 @@ def write_case(page: Builder, case: Case, side: PlacementProblem, around: tuple[
 
 def _on_stratum(page: Builder, cases: tuple[Case, ...], result: GainDesign, side: PlacementProblem) -> None:
     """Write whether a gain exists on a stratum, with the hidden modes that decide it."""
-    own, gain = _is_finite_on(cases, page, side), result.answer[side.gain]
+    before, own, gain = page.environment, _is_finite_on(cases, page, side), result.answer[side.gain]
     fixed = _fixed(page, side, result.pair.kernel, result.pair.restricted)
     modes = Roots(fixed.formula, roots_of(result.fixed_polynomial, page.plant.variable))
     if gain is None:
@@ -576,7 +577,12 @@ def _on_stratum(page: Builder, cases: tuple[Case, ...], result: GainDesign, side
     if not own:
         page.define(side.gain, gain)
     page.conclude_silently(relation(side.error_determinant(page), page[side.phi]))
-    page.steps = outside_cases(page, result, page.steps) or [undecided(page, cases[-1])]
+    steps = outside_cases(page, result, page.steps) or [undecided(page, cases[-1])]
+    if steps != page.steps:  # a gain that is defined there is none of the further cases
+        anew = set_anew(before, page.environment)
+        page.environment = before
+        steps = [replace(step, anew=anew) if isinstance(step, CaseStep) else step for step in steps]
+    page.steps = steps
 
 
 def _is_finite_on(cases: tuple[Case, ...], page: Builder, side: PlacementProblem) -> bool:

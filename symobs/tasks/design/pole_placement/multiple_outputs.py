@@ -137,20 +137,24 @@ def decoupled_gain(pair: ObserverPair, desired: DesiredPolynomial) -> Matrix:
     if not pair.is_observable:
         message = "a decoupled gain is looked for where no mode is fixed"
         raise NotDecoupled(message, where=where, repair="leave member out, or give zero")
-    found, tried = [], set()
+    gains = chain_gains(pair, desired)
+    found = [gain for gain in gains if sum(rank(rows) for rows in _own_rows(pair, gain)) == pair.A.shape[0]]
+    if not found:
+        message = "no chains of the plant decouple the outputs with these poles"
+        raise NotDecoupled(message, where=where, repair="leave member out, or say with zero what is to vanish")
+    return min(found, key=cost)
+
+
+def chain_gains(pair: ObserverPair, desired: DesiredPolynomial) -> Iterator[Matrix]:
+    """Yield the gains of an observable pair that give each chain factors of φ of its own."""
+    tried = set()
     for order in permutations(range(pair.c.shape[0])):
         chains = BrunovskyChains.of(pair.A, pair.c, order)
         if chains.by_output in tried:
             continue  # in another order the same chains share the same factors
         tried.add(chains.by_output)
         for share in split_polynomial(desired.factors, chains.lengths, pair.variable):
-            gain = chains.gain(chains.shared(share, "nothing"), pair.c.shape[0])
-            if sum(rank(rows) for rows in _own_rows(pair, gain)) == pair.A.shape[0]:
-                found.append(gain)
-    if not found:
-        message = "no chains of the plant decouple the outputs with these poles"
-        raise NotDecoupled(message, where=where, repair="leave member out, or say with zero what is to vanish")
-    return min(found, key=cost)
+            yield chains.gain(chains.shared(share, "nothing"), pair.c.shape[0])
 
 
 def decoupled_claim(pair: ObserverPair, gain: Matrix) -> Claim:

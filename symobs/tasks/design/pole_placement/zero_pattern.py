@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING
 from symobs.exact import EIGENVALUE, AlgebraicExtension, Ideal, Matrix, Scalar, TooLarge, modulo
 from symobs.exact.core.generators import identities
 from symobs.ground.dataclass import dataclass
+from symobs.tasks.design.pole_placement.multiple_outputs import chain_gains
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -105,6 +106,9 @@ def with_zeros(
     with suppress(TooLarge):
         if Ideal.of(equations).is_whole:
             return None
+    for gain in chain_gains(pair, desired) if pair.is_observable else ():
+        if all(gain[place].is_zero for place in zero) and all(e.is_zero for e in equations_for(pair, desired, gain)):
+            return gain
     unknowns = [name for name in general.field.names if name in general.names]
     rest = dict.fromkeys(unknowns, Scalar.of(0))
     for degree in DEGREES:

@@ -1,4 +1,4 @@
-"""Feedforward for unit DC gain: u = −K x̂ + F v with y = v at rest; the observer's modes do not appear from v to y."""
+"""Feedforward for unit DC gain: u = −K x + F v, or −K x̂ + F v, with y = v at rest; v does not excite the observer."""
 
 from __future__ import annotations
 
@@ -13,13 +13,14 @@ from symobs.formula.tree.term import Term, block, identity, letter
 from symobs.ground.dataclass import dataclass
 from symobs.ground.errors import CertificateRejected
 from symobs.proof.certificate.claims import Certificate, Claim
-from symobs.proof.derivation.builder import Builder, relation
+from symobs.proof.derivation import CaseStep, Conclude
+from symobs.proof.derivation.builder import Builder, relation, sentence
 from symobs.system.conditions import Condition, vanishing_factors
 from symobs.tasks.analysis.page_parts import factored_form, formula_of_factored
 from symobs.tasks.analysis.strata.rank_stratification import maximal_minors
 from symobs.tasks.analysis.strata.strata import common_places, places, solved
 from symobs.tasks.design import page_parts as readability
-from symobs.tasks.design.compensator.compensator import observer_based, observer_order
+from symobs.tasks.design.compensator.compensator import KnownState, observer_based, observer_order, of_known_state
 from symobs.tasks.design.compensator.compensator_page import caution_law
 from symobs.tasks.design.compensator.minimal_order_compensator import MinimalOrderCompensator
 from symobs.tasks.design.compensator.minimal_order_compensator_page import (
@@ -28,14 +29,14 @@ from symobs.tasks.design.compensator.minimal_order_compensator_page import (
     write_both_gains,
 )
 from symobs.tasks.design.gain.gain_design import FEEDBACK, OBSERVER, letters_of
-from symobs.tasks.design.page_parts import draw_feedforward
+from symobs.tasks.design.page_parts import draw_feedforward, draw_state_feedforward
 from symobs.tasks.result import Case, Result, choose, method, page_of, poles_of, task
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
     from symobs.system import StateSpace
-    from symobs.system.specification import Name, Poles, PolynomialText
+    from symobs.system.specification import GainText, Name, Poles, PolynomialText
     from symobs.tasks.analysis.strata.strata import Place
     from symobs.tasks.design.compensator.output_feedback import OutputFeedback
     from symobs.tasks.design.gain.gain_design import GainDesign
@@ -45,16 +46,16 @@ if TYPE_CHECKING:
 class FeedforwardDesign(Result):
     """F with T = (C − DK)(sI − A + BK)⁻¹BF + DF and T(0) = I (T(1) = I in discrete time), or why there is none.
 
-    `loop` is the compensator whose gains are used, with its own claims.  Where there is no F, `w` is a row with w G = 0
-    for the gain G at rest from the input, or `stuck` a state with (A − BK) x = 0 (x in discrete time): the loop has a mode
-    that never comes to rest.
+    `loop` is the state feedback, or the compensator, whose gains are used, with its own claims.  Where there is no F, `w` is
+    a row with w G = 0 for the gain G at rest from the input, or `stuck` a state with (A − BK) x = 0 (x in discrete time):
+    the loop has a mode that never comes to rest.
     """
 
     loop: OutputFeedback
 
     task: ClassVar[str] = "feedforward"
     answered_by = ("F",)
-    gains = ("K", "L")
+    gains: ClassVar[tuple[str, ...]] = ("K", "L")
     claimed = ("F",)
     letters = {
         "F": "F_v",
@@ -65,7 +66,7 @@ class FeedforwardDesign(Result):
         "closed_loop_matrix": "A_cl",
     }
     panels = ("plane", "responses")
-    cards = ("F", "K", "L", "transfer_function")
+    cards: ClassVar[tuple[str, ...]] = ("F", "K", "L", "transfer_function")
 
     @classmethod
     def of(cls, loop: OutputFeedback, method_name: str) -> Self:
@@ -126,7 +127,9 @@ class FeedforwardDesign(Result):
             return
         m = self.plant.matrices
         values = letters_of(self.plant) | {"D": m.D, "K": K, "F": F, "w": w, "T_v": self.answer["transfer_function"]}
-        values |= {"A_cl": self.loop.error_coordinates, "K_e": self.loop.coupling, "x_0": stuck}
+        values |= {"x_0": stuck}
+        if not isinstance(self.loop, KnownState):
+            values |= {"A_cl": self.loop.error_coordinates, "K_e": self.loop.coupling}
         restored = {
             name: Matrix.of(v.rows) if isinstance(v, Matrix) else v for name, v in values.items()
         }  # as unpickled
@@ -149,6 +152,8 @@ class FeedforwardDesign(Result):
         F_, T, s = letter("F", e), letter("T_v", e), letter("s", e)
         yield Claim(relation(at_rest @ F_, identity(self.plant.outputs, e)), e, "G*F = I")
         yield Claim(relation(T, (C - D @ K_) @ (s @ one - A + B @ K_).inverse @ B @ F_ + D @ F_), e)
+        if isinstance(self.loop, KnownState):
+            return
         errors = self.loop.error_coordinates.shape[0] - order
         zero = e.extended_by(values={"O_e": Matrix.zeros(errors, self.plant.outputs)})
         A_cl, K_e, nothing = letter("A_cl", zero), letter("K_e", zero), letter("O_e", zero)
@@ -233,16 +238,28 @@ class FeedforwardDesign(Result):
         """The fields of the contract, the gains and the loop's polynomial."""
         loop = self.loop
         found = {name: self.answer[name] for name in ("F", "transfer_function")}
-        found |= {"K": loop.answer["K"], "L": loop.answer["L"]}
+        found |= {name: loop.answer[name] for name in self.gains}
         if self.answer["F"] is None:
-            modes = loop.feedback.unmoved_modes + loop.estimator.unmoved_modes
-            return found | {"fixed_modes": modes}
+            return found | {"fixed_modes": loop.unmoved_modes}
         return found | {"polynomial": loop.loop_polynomial, "closed_loop_matrix": loop.error_coordinates}
 
     @property
     def free_signals(self) -> Mapping[str, int]:
         """The new input, and the free signals of the loop."""
         return {"v_r": self.plant.outputs, **self.loop.free_signals}
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class StateFeedforward(FeedforwardDesign):
+    """The feedforward of u = −K x + F v."""
+
+    loop: KnownState
+
+    gains = ("K",)
+    letters = {name: letter for name, letter in FeedforwardDesign.letters.items() if name != "L"} | {
+        "closed_loop_matrix": "A - B K"
+    }
+    cards = ("F", "K", "transfer_function")
 
 
 def moving_at_rest(loop: OutputFeedback) -> Matrix:
@@ -268,7 +285,7 @@ def response(loop: OutputFeedback, F: Matrix) -> Realisation:
 @method("feedforward/static", source="chen1999, ch. 8")
 def static(loop: OutputFeedback) -> FeedforwardDesign:
     """F = [(C − DK)(−A + BK)⁻¹B + D]⁻¹."""
-    return FeedforwardDesign.of(loop, "static")
+    return (StateFeedforward if isinstance(loop, KnownState) else FeedforwardDesign).of(loop, "static")
 
 
 @task
@@ -280,27 +297,32 @@ def feedforward(
     control_polynomial: PolynomialText = None,
     observer_poles: Poles = None,
     observer_polynomial: PolynomialText = None,
+    K: GainText = None,
     observer: Name = "full",
     method: Name = "auto",
 ) -> Result:
-    """Design F in u = −K x̂ + F v so that y = v at rest:  F = [(C − DK)(−A + BK)⁻¹B + D]⁻¹.
+    """Design F in u = −K x + F v, or −K x̂ + F v, so that y = v at rest:  F = [(C − DK)(−A + BK)⁻¹B + D]⁻¹.
 
     plant                                   n states, m inputs, p ≤ m outputs, D allowed
     control_poles or control_polynomial     the n poles of A − BK
-    observer_poles or observer_polynomial   the n poles of A − LC, or the n − p poles of the observer
+    observer_poles or observer_polynomial   the n poles of A − LC, or the n − p poles of the observer; without them x is
+                                            measured, and there is no observer
+    K                                       a given m×n gain instead of control poles
     observer                                `full` or `minimal`
     Returns F (m×p; with more inputs than outputs the smallest one), transfer_function v → y, K, L, polynomial (control
-    times observer) and closed_loop_matrix in (x, e) or (x, e₂).  Where the plant has a zero at 0 (in
-    discrete time at 1), or a control pole stands there, the verdict is `no`.  Raises `InputError` for wrong poles or shapes.
+    times observer) and closed_loop_matrix in (x, e) or (x, e₂), without an observer A − BK.  Where the plant has a zero
+    at 0 (in discrete time at 1), or a control pole stands there, the verdict is `no`.  Raises `InputError` for wrong poles or
+    shapes.
     Source: C.-T. Chen, Linear System Theory and Design, 3rd ed., ch. 8.
     """
-    loop = observer_based(
-        plant,
-        task="feedforward",
-        control=(control_poles, control_polynomial),
-        estimate=(observer_poles, observer_polynomial),
-        observer=observer,
-    )
+    control, estimate = (control_poles, control_polynomial), (observer_poles, observer_polynomial)
+    loop: OutputFeedback
+    if estimate == (None, None) and observer == "full":
+        loop = of_known_state(plant, task="feedforward", control=control, gain=K)
+    else:
+        loop = observer_based(
+            plant, task="feedforward", control=control, estimate=estimate, observer=observer, gains=(K, None)
+        )
     found: Result = choose("feedforward", method, "static").solve(loop)
     return found.asked(method)
 
@@ -314,7 +336,7 @@ def write_feedforward(page: Builder, design: FeedforwardDesign) -> None:
     loop = design.loop
     minimal = isinstance(loop, MinimalOrderCompensator)
     write_both_gains(page, loop)
-    if loop.answer["K"] is None or loop.answer["L"] is None:
+    if any(half.answer[half.letter] is None for half in loop.halves):
         return
     if is_ill_posed(page, loop):
         return
@@ -324,6 +346,9 @@ def write_feedforward(page: Builder, design: FeedforwardDesign) -> None:
             return
         _loop(page, design, minimal=minimal)
         _gain(page, design)
+        if isinstance(loop, KnownState):
+            draw_state_feedforward(page)
+            return
         caution_law(page, loop)
         draw_feedforward(page, minimal=minimal)
 
@@ -379,6 +404,9 @@ def _loop(page: Builder, design: FeedforwardDesign, *, minimal: bool) -> None:
     plant, m = page.plant, page.plant.matrices
     F = design.answer["F"]
     page.set("F_v", F if isinstance(F, Matrix) else Matrix.of([[F]]))
+    if isinstance(design.loop, KnownState):
+        _loop_of_state(page, design.loop)
+        return
     if minimal:
         partitioned_gain(page)
         page.signal(
@@ -414,10 +442,24 @@ def _loop(page: Builder, design: FeedforwardDesign, *, minimal: bool) -> None:
     page.equal(relation(determinant, parts_of, product), say="feedforward_polynomial")
 
 
+def _loop_of_state(page: Builder, loop: KnownState) -> None:
+    """Write u = −K x + F v, and what becomes of state and output."""
+    A, B, C, K, F_v, x, v = (page[name] for name in ("A", "B", "C", "K", "F_v", "x", "v_r"))
+    page.signal("u", -K @ x + F_v @ v, say="feedforward_law")
+    output = (C - page["D"] @ K) @ x + page["D"] @ F_v @ v if page.plant.matrices.has_feedthrough else C @ x
+    rate = relation(x.derivative, (A - B @ K) @ x + B @ F_v @ v)
+    page.equal(rate, relation(page["y"], output), say="feedforward_state")
+    product = page.term(formula_of_factored(loop.loop_polynomial))
+    page.equal(relation(FEEDBACK.error_determinant(page), product), say="feedforward_state_polynomial")
+
+
 def _gain(page: Builder, design: FeedforwardDesign) -> None:
     """Write F from the gain at rest, and the transfer function from v to y."""
     plant, m = page.plant, page.plant.matrices
     A, B, C, K, F_v = (page[name] for name in ("A", "B", "C", "K", "F_v"))
+    factors = vanishing_factors([value.numerator for value in design.existence], plant.symbols.signs)
+    if factors:
+        page.assume("feedforward_assumed", *factors)
     page.define("G_0", _at_rest(page), say="gain_at_rest")
     G = page["G_0"]
     if plant.inputs == plant.outputs:
@@ -431,9 +473,23 @@ def _gain(page: Builder, design: FeedforwardDesign) -> None:
     if m.has_feedthrough:
         response = (C - page["D"] @ K) @ resolvent @ B @ F_v + page["D"] @ F_v
     T = design.answer["transfer_function"]
+    say = "feedforward_state_response" if isinstance(design.loop, KnownState) else "feedforward_response"
     if isinstance(T, Scalar):
-        page.define("T_v", response, factored_form(page, T), say="feedforward_response", answer=True, closing=False)
+        page.define("T_v", response, factored_form(page, T), say=say, answer=True, closing=False)
     else:
         shown = [page.value(T)] if T.size <= readability.MATRIX else []
-        page.define("T_v", response, *shown, say="feedforward_response", answer=True, closing=False)
+        page.define("T_v", response, *shown, say=say, answer=True, closing=False)
     page.conclude_silently(relation(page["T_v"], T))
+    page.steps += [_without(case, G) for case in design.case_tree if _is_without(case)]
+
+
+def _is_without(case: Case) -> bool:
+    """Return whether there is no F on a stratum because the only gain at rest is 0 there."""
+    w = None if case.result is None else case.result.answer.get("w")
+    return w is not None and w.shape == (1, 1) and len(case.when) == 1
+
+
+def _without(case: Case, G: Term) -> CaseStep:
+    """Return that there is no F on a stratum."""
+    step = Conclude(sentence("no_feedforward_single", {}), (relation(G, Matrix.zeros(1, 1)),))
+    return CaseStep(relation(case.when[0].expression, 0), tuple(case.substitution.items()), (step,))

@@ -5,7 +5,11 @@ from __future__ import annotations
 PHRASES: dict[str, str] = {
     "feedforward_law": "A reference input $v_r$ is added to the control law:",
     "feedforward_loop": "State, error and output then satisfy",
+    "feedforward_state": "State and output then satisfy",
+    "feedforward_state_polynomial": "The closed-loop characteristic polynomial is",
+    "feedforward_state_response": "The transfer function from $v_r$ to $y$ is",
     "feedforward_polynomial": "The error dynamics are autonomous and not driven by $v_r$, and the closed-loop characteristic polynomial is",
+    "feedforward_assumed": "A DC gain is defined, and some $F_v$ makes it one, provided that {condition}.",
     "gain_at_rest": "With a constant input in place of $F_v v_r$, the steady-state output is this input multiplied by the DC gain",
     "feedforward_gain": "For the steady-state output to equal $v_r$,",
     "feedforward_smallest": "There are more inputs than outputs. The $F_v$ of smallest norm for which the steady-state output equals $v_r$ is",
@@ -18,7 +22,11 @@ PHRASES: dict[str, str] = {
 }
 
 QUESTIONS: dict[str, str] = {
-    "ask feedforward": "Design state feedback, a full-order observer, and a feedforward gain that gives the closed loop unit DC gain.",
+    "ask feedforward": "Design state feedback and a feedforward gain that gives the closed loop unit DC gain.",
+    "ask feedforward K": "With the feedback gain $K$, find the feedforward gain that gives the closed loop unit DC gain.",
+    "ask feedforward observer_poles": "Design state feedback, a full-order observer with the poles {observer_poles}, and a feedforward gain that gives the closed loop unit DC gain.",
+    "ask feedforward observer_poles=1": "Design state feedback, an observer with the pole {observer_poles}, and a feedforward gain that gives the closed loop unit DC gain.",
+    "ask feedforward observer_polynomial": "Design state feedback, a full-order observer with the characteristic polynomial {observer_polynomial}, and a feedforward gain that gives the closed loop unit DC gain.",
     "ask feedforward observer=full": "Design state feedback, a full-order observer, and a feedforward gain that gives the closed loop unit DC gain.",
     "ask feedforward observer=minimal": "Design state feedback, a reduced-order observer, and a feedforward gain that gives the closed loop unit DC gain.",
 }
@@ -42,6 +50,17 @@ THEOREMS: dict[str, str] = {
 OPENS = ("feedforward_law",)
 
 FIGURES: dict[str, dict[str, object]] = {
+    "state_feedforward": {
+        "grid": """
+        v  F  u  Plant  y
+        .  .  K  x      .
+        """,
+        "routes": (
+            "v > F > u > Plant > y",
+            "Plant > x > K > u",
+        ),
+        "signals": {"v": "v_r", "u": "u", "y": "y", "x": "x"},
+    },
     "estimated_state_feedback": {
         "grid": """
         v  F  u  b  Plant     y'  y

@@ -223,7 +223,7 @@ class TrackingDesign(Result):
         found |= {"L": loop.answer["L"]}
         if not self.has_gains:
             found |= {"error_matrix": None, "polynomial": None}
-            return found | {"fixed_modes": loop.feedback.unmoved_modes + loop.estimator.unmoved_modes}
+            return found | {"fixed_modes": loop.unmoved_modes}
         return found | {"error_matrix": self.matrix_of_errors, "polynomial": loop.loop_polynomial}
 
     @property

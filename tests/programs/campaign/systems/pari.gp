@@ -149,12 +149,12 @@ expm(M) =
 near(a, b) = { my(s = 1 + vecmax(abs(concat(Vec(b * 1.))))); vecmax(abs(concat(Vec(a - b)))) < 1e-30 * s };
 rootsum(p, f) = vecsum(apply(f, polroots(p)));
 exponential(A, M) = near(M, expm(A * 7/10));
-gramian(A, C, T) =
+gramianof(A, C, T) =
 {
   my(n = #A, E = expm(matconcat([-A~, C~ * C; matrix(n, n), A]) * T));
   E[n + 1 .. 2 * n, n + 1 .. 2 * n]~ * E[1 .. n, n + 1 .. 2 * n]
 };
-isgramian(A, C, W, T) = near(W, gramian(A, C, T));
+isgramian(A, C, W, T) = near(W, gramianof(A, C, T));
 issteps(A, C, W, N) = zero(W - sum(k = 0, N - 1, (C * A^k)~ * (C * A^k)));
 explains(A, C, x0, y) = { for (k = 1, #y, if (!near(C * expm(A * y[k][1]) * x0, y[k][2]), return(0))); 1 };
 \\ No initial state explains the outputs: the least squares leave something over.
@@ -173,13 +173,13 @@ integral(f, T, nodes = 40) =
 };
 outputpart(A, C, R, S, T) =
 {
-  my(W = gramian(A, C, T)^-1, inner = integral(t -> my(E = C * expm(A * t)); E~ * R * E, T));
+  my(W = gramianof(A, C, T)^-1, inner = integral(t -> my(E = C * expm(A * t)); E~ * R * E, T));
   vecmax(abs(concat(Vec(W * inner * W - S)))) < 1e-15 * (1 + vecmax(abs(concat(Vec(S)))))
 };
 inputpart(A, B, C, Q, S, T) =
 {
-  my(W = gramian(A, C, T)^-1, inner, V);
-  V = t -> expm(A * t)~ * gramian(A, C, T - t) * B;
+  my(W = gramianof(A, C, T)^-1, inner, V);
+  V = t -> expm(A * t)~ * gramianof(A, C, T - t) * B;
   inner = integral(t -> my(v = V(t)); v * Q * v~, T);
   vecmax(abs(concat(Vec(W * inner * W - S)))) < 1e-15 * (1 + vecmax(abs(concat(Vec(S)))))
 };

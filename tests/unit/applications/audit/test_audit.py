@@ -212,35 +212,6 @@ def test_a_deep_equation_is_refused(relation: str) -> None:
         read_relation(relation, "")
 
 
-def test_all_entries_that_cannot_be_read_are_told_together() -> None:
-    entries = [{"relation": "L = "}, {"relation": "L = [19; 81]"}, {"relation": "= A"}]
-    with pytest.raises(ProblemErrors) as raised:
-        audit(read(problem(printed=entries)))
-    assert [error.where for error in raised.value.errors] == ["printed[0].relation", "printed[2].relation"]
-
-
-def test_solving_does_not_look_at_what_is_printed() -> None:
-    plain, broken = read(problem()), read(problem("L = [", "zork = 1"))
-    assert [result.answer["L"] for result in plain.solve()] == [result.answer["L"] for result in broken.solve()]
-
-
-# -- letters of an entry, and answers as they are expected -------------------------------------------------------------
-
-
-def test_an_entry_may_have_letters_of_its_own() -> None:
-    entry = {"let": {"rate": "[0 1] x", "W": "A - L C"}, "relation": "rate' = -rate + u"}
-    assert audit(read(problem(printed=[entry]))).findings == ()
-    entry["relation"] = "W = [-19 1; -81 1]"
-    (found,) = audit(read(problem(printed=[entry]))).findings
-    assert found.right == "W = [-19 1; -81 -1]"
-
-
-def test_answers_that_are_no_equation_are_printed_as_they_are_expected() -> None:
-    right, wrong = {"expect": {"stable": "yes"}}, {"expect": {"stable": "no"}, "where": "page 3"}
-    (found,) = audit(read(problem(printed=[right, wrong]))).findings
-    assert (found.where, found.printed, found.right) == ("page 3", "no", "yes")
-
-
 # -- the command -------------------------------------------------------------------------------------------------------
 
 
@@ -297,13 +268,6 @@ def test_every_format_says_what_is_wrong(name: str, files: dict[str, str], tmp_p
     if name == "json":
         (entry,) = json.loads(written)["files"]
         assert (entry["checked"], len(entry["findings"])) == (1, 1)
-
-
-def test_a_bar_in_a_table_does_not_end_its_cell() -> None:
-    entry = {"relation": "L = [19; 82]", "where": "a | b"}
-    found = audit(read(problem(printed=[entry])))
-    row = report({"x": found}, "markdown").splitlines()[2]
-    assert row.replace("\\|", "").count("|") == 6
 
 
 def test_a_report_shows_texts_and_does_nothing_else() -> None:

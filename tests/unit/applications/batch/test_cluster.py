@@ -17,7 +17,6 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from symobs.applications.batch.run import batch
 from symobs.applications.batch.store import Store
 from tests.support.paths import ROOT
 from tests.support.problems.batches import design, eventually
@@ -132,18 +131,6 @@ def local_run(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, list[str]
     return folder, found
 
 
-def test_three_processes_of_a_local_cluster_find_the_same_rows(plain: tuple[Path, list[str]], tmp_path: Path) -> None:
-    import distributed  # noqa: PLC0415 - skipped without it
-
-    folder, wanted = plain
-    some = sorted(folder.iterdir())[:30]
-    cluster = distributed.LocalCluster(n_workers=3, threads_per_worker=1, processes=True, dashboard_address=":0")
-    with cluster, distributed.Client(cluster, set_as_default=False) as found:
-        batch(some, out=tmp_path / "out", executor=found.get_executor(pure=False), workers=3)
-    names = {path.name for path in some}
-    assert rows(tmp_path / "out") == [row for row in wanted if json.loads(row)["name"] in names]
-
-
 def _has_rows(out: Path, least: int) -> bool:
     return stored(out) >= least
 
@@ -198,21 +185,6 @@ def test_a_killed_scheduler_ends_the_run_which_goes_on(plain: tuple[Path, list[s
     assert rows(out) == wanted
     assert stored(out) == len(wanted)
     assert {*before} <= {*rows(out)}
-
-
-def test_a_cluster_without_workers_ends_the_run(plain: tuple[Path, list[str]], tmp_path: Path) -> None:
-    folder, _ = plain
-    out = tmp_path / "out"
-    with cluster(tmp_path / "cluster", 1) as found:
-        with client(folder, out, "--scheduler", found.address, "--worker-timeout", "3") as process:
-            assert eventually(lambda: stored(out) >= 1)
-            found.workers[0].kill()
-            said = process.communicate(timeout=SAFETY)[1]
-        assert process.returncode == 5
-        assert "there has been no worker for 3 seconds" in said
-        with client(folder, out, "--scheduler", found.address, "--worker-timeout", "1") as process:
-            said = process.communicate(timeout=SAFETY)[1]
-        assert (process.returncode, "the scheduler has no workers; start some" in said) == (5, True)
 
 
 def test_a_cluster_that_is_not_there_is_said(tmp_path: Path) -> None:

@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 import re
-from fractions import Fraction
-from math import dist, hypot, isclose, pi
 from typing import TYPE_CHECKING
 
 import pytest
 
 import symobs
-from symobs.applications.batch.sweep.picture import _level, _round_levels, picture_of
+from symobs.applications.batch.sweep.picture import picture_of
 from symobs.formula.figures import SweepMap
 from tests.kit import tabled
 from tests.support.tools.command_line import inside
@@ -22,27 +20,6 @@ if TYPE_CHECKING:
 #: L = [−3; 6]/(2c − 1): none at c = 1/2, and at c = 1 the hidden mode is asked for, a case of its own.
 HIDDEN = problem("observer", "c:real", 'A = "[0 1; -2 -3]"\nC = "[1 c]"', 'poles = "-1, -5"')
 PLANE = problem("observer", "c:real d:real", 'A = "[0 1; -2 -3]"\nC = "[1 c+d]"', 'poles = "-1, -5"')
-
-
-def test_lines_of_equal_values_are_where_the_values_are() -> None:
-    """Of a plane they are straight, whole and exact; of a cone closed and as long as a circle."""
-    xs, ys = [k / 7 for k in range(15)], [k / 5 for k in range(11)]
-    plane: list[list[float | None]] = [[x + 2 * y for y in ys] for x in xs]
-    (run,) = _level(xs, ys, plane, 2.5)
-    assert all(isclose(x + 2 * y, 2.5) for x, y in run)
-    assert isclose(dist(run[0], run[-1]), hypot(2, 1)) or isclose(dist(run[0], run[-1]), sum(map(dist, run, run[1:])))
-    fine = [k / 20 for k in range(-30, 31)]
-    cone: list[list[float | None]] = [[hypot(x, y) for y in fine] for x in fine]
-    (circle,) = _level(fine, fine, cone, 1.01)
-    assert circle[0] == circle[-1]
-    assert all(abs(hypot(*place) - 1.01) < 1e-3 for place in circle)
-    assert abs(sum(map(dist, circle, circle[1:])) - 2 * pi * 1.01) < 0.01
-    saddle: list[list[float | None]] = [[x * y for y in (-1.0, 1.0)] for x in (-1.0, 1.0)]
-    corners = [{x + y for x, y in run} for run in _level([-1.0, 1.0], [-1.0, 1.0], saddle, 0.0)]
-    assert sorted(corners, key=min) == [{-1.0}, {1.0}]  # round the corners that lie above
-    torn = [[None if abs(x) < 0.1 else value for value in row] for x, row in zip(fine, cone, strict=True)]
-    assert len(list(_level(fine, fine, torn, 1.01))) == 2
-    assert _round_levels([k / 100 for k in range(801)]) == [Fraction(k) for k in range(1, 8)]
 
 
 @pytest.mark.slow

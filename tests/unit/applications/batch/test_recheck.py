@@ -86,3 +86,14 @@ def test_texts_beyond_fractions_are_left_out(text: str) -> None:
     with pytest.raises((Beyond, IndexError)) as left:
         value(text, {"a": Fraction(2), "b": Fraction(1, 2)})
     assert left.type is Beyond
+
+
+@pytest.mark.parametrize("dt", ["", "dt = 1\n"])
+def test_the_gains_of_integral_action_are_looked_at(dt: str) -> None:
+    plant = f'[plant]\nA = "[0 1; 0 -a]"\nB = "[0; 1]"\nC = "[1 0]"\nD = "1"\n{dt}[symbols]\na = "real"\n'
+    ((task, given, answer),) = answered(
+        f'task = "integral_action"\n{plant}[specification]\npoles = "-1/2, -1/3, -1/5"\n'
+    )
+    assert fault(task, given, answer, "p") is None
+    for field in ("K", "k_I", "closed_loop_matrix"):
+        assert fault(task, given, {**answer, field: spoilt(answer[field])}, "p") is not None

@@ -9,7 +9,6 @@ import signal
 import sqlite3
 import subprocess
 import sys
-import time
 from concurrent.futures import Future, ProcessPoolExecutor
 from contextlib import closing
 from functools import partial
@@ -19,7 +18,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from symobs.applications.batch import jobs as kinds
-from symobs.applications.batch.engine import InProcess, Settings, Unfinished, Workforce, run_chunk, run_in_process, work
+from symobs.applications.batch.engine import InProcess, Settings, Workforce, run_chunk, run_in_process, work
 from symobs.applications.batch.jobs import Job, job, key_of, solve_job
 from symobs.applications.batch.run import Batch, batch, verified
 from symobs.applications.batch.store import Store
@@ -33,7 +32,6 @@ from tests.support.tools.command_line import SAFETY, SERVO, environment, inside
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
     from pathlib import Path
-from types import SimpleNamespace
 
 pytestmark = pytest.mark.slow
 
@@ -211,25 +209,6 @@ def test_what_a_lost_connection_leaves_without_an_answer_is_done_again() -> None
 
 
 # -- deadlines, signals and death -------------------------------------------------------------------------------------
-
-
-def test_a_deadline_ends_a_run_that_goes_on_later(
-    hostile: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    jobs = orders(hostile, 60)
-    settings = Settings(chunk_seconds=0.05, deadline=1000.0)
-    rows = iter(Batch(lambda: jobs, tmp_path / "out", settings=settings, workers=1))
-    next(rows)
-    later = SimpleNamespace(monotonic=lambda: time.monotonic() + 2000.0, sleep=time.sleep)
-    with monkeypatch.context() as patch:
-        patch.setattr("symobs.applications.batch.engine.time", later)
-        with pytest.raises(Unfinished, match="1000 seconds are over") as left:
-            list(rows)
-    assert left.value.exit_code == 5
-    done = len(stored(tmp_path / "out"))
-    assert 0 < done < 60
-    rest = run(jobs, tmp_path / "out", workers=2)
-    assert (rest.kept, rest.counts["done"]) == (done, 60)
 
 
 _CLIENT = """

@@ -194,16 +194,6 @@ def test_what_cannot_be_swept_is_said(arguments: list[str], code: int, says: str
     assert says in left.err
 
 
-def test_all_that_is_wrong_with_a_sweep_is_said_at_once(tmp_path: Path) -> None:
-    (tmp_path / "cart.toml").write_text(CART, encoding="utf-8")
-    left = inside("sweep", "cart.toml", "--over", "q=1:1:3", "--columns", "Q", folder=tmp_path)
-    assert left.code == 3
-    assert [line.split(":")[0] for line in left.err.splitlines()] == ["--out", "over.q", "--columns"]
-    left = inside("sweep", "cart.toml", "--over", "m=1:1:3", "--out", "t.csv", folder=tmp_path)
-    assert left.code == 3
-    assert left.err.strip() == "over: l has no values; add l=… or write l in [values]"
-
-
 def test_functions_of_swept_names_are_solved_point_by_point_and_points_are_counted(tmp_path: Path) -> None:
     text = problem("state_feedback", "w:real", 'A = "[0 1; 0 0]"\nB = "[0; w]"', 'poles = "-exp(-w), -1"')
     (tmp_path / "e.toml").write_text(text, encoding="utf-8")

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import re
-import shutil
 import sqlite3
 from contextlib import closing
 from typing import TYPE_CHECKING, Any
@@ -12,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 import symobs
-from symobs.applications.batch.run import batch, verified
+from symobs.applications.batch.run import verified
 from symobs.applications.batch.store import Store
 from symobs.ground.errors import UsageError
 from tests.kit import tabled
@@ -33,18 +32,6 @@ def folder_of_problems(tmp_path: Path) -> Path:
     (folder / "good.toml").write_text(design(7), encoding="utf-8")
     (folder / "bad.toml").write_text("nothing", encoding="utf-8")
     return folder
-
-
-def test_what_a_problem_was_before_it_was_changed_counts_no_more(folder: Path, tmp_path: Path) -> None:
-    words = ["batch", folder.name, "--out", "out", "--in-process"]
-    assert inside(*words, folder=tmp_path).code == 4
-    (folder / "bad.toml").write_text(design(8), encoding="utf-8")
-    assert inside(*words, "--dry-run", folder=tmp_path).err == "2 problems, 1 to be done, 1 done already\n"
-    for _ in range(2):
-        left = inside(*words, folder=tmp_path)
-        assert (left.code, left.err) == (0, "2 done\n")
-    assert len(list(Store(tmp_path / "out").rows())) == 3
-    assert batch(folder, out=tmp_path / "out").failed == []
 
 
 def _shortened(data: bytes) -> bytes:
@@ -77,12 +64,6 @@ def test_what_is_no_row_is_named(folder: Path, tmp_path: Path) -> None:
     found = inside("batch", "--verify", "out", folder=tmp_path)
     assert found.code == 4
     assert re.match("out/rows.sqlite: this file was damaged: what is stored of [0-9a-f]{16} is no whole row", found.err)
-
-
-def test_equal_problems_are_done_once_and_said(folder: Path, tmp_path: Path) -> None:
-    shutil.copy(folder / "good.toml", folder / "bad.toml")
-    left = inside("batch", "problems", "--out", "out", "--in-process", folder=tmp_path)
-    assert (left.code, left.err) == (0, "1 done, 1 equal to others\n")
 
 
 def test_a_file_that_cannot_be_read_loses_no_other(folder: Path, tmp_path: Path) -> None:

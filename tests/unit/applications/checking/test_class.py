@@ -111,40 +111,6 @@ def test_a_table_that_cannot_be_used_is_refused(folder: Path, table: str, mapped
     assert not (folder / "RESULTS").exists()
 
 
-def test_what_nobody_could_hand_in_is_said(folder: Path) -> None:
-    (folder / "class.csv").write_text("student,K,M,F\na,[4 3],[19; 81],0\n", encoding="utf-8")
-    found = run(folder)
-    assert (found.code, found.err.strip()) == (0, "no column holds L; unused: M (did you mean L?)")
-    (folder / "class.csv").write_text("student,K,L,F\n", encoding="utf-8")
-    found = run(folder)
-    assert (found.code, "no student in class.csv" in found.err) == (3, True)
-
-
-def test_a_spreadsheet_may_say_what_sets_its_cells_apart(folder: Path) -> None:
-    table = '\ufeffsep=;\r\n"Student, whole name";K;note\r\nA;[4,3];";;;"\r\nB;[3,4];x\r\n'
-    (folder / "class.csv").write_bytes(table.encode())
-    assert run(folder, "--map", "Student, whole name=student").code == 0
-    marks = (folder / "RESULTS" / "marks.csv").read_text(encoding="utf-8").splitlines()
-    assert [line.split(",")[4] for line in marks[1:]] == ["right", "wrong"]
-
-
-def test_what_cannot_be_read_is_told_of_the_part_that_it_is(folder: Path) -> None:
-    (folder / "class.csv").write_text("student,K,L\na,[4 3],[19; q]\n", encoding="utf-8")
-    run(folder)
-    (found,) = json.loads((folder / "RESULTS" / "summary.json").read_text(encoding="utf-8"))["unreadable"]
-    assert (found["student"], '"q" is not declared' in found["message"]) == ("a", True)
-
-
-def test_a_verdict_of_a_text_is_no_line_of_a_derivation(tmp_path: Path) -> None:
-    plant = 'plant = { A = "[0 1; 0 0]", C = "[1 0]" }\n'
-    (tmp_path / "p.toml").write_text(f'task = "observability"\n{plant}', encoding="utf-8")
-    (tmp_path / "a.txt").write_text("verdict = yes\n", encoding="utf-8")
-    found = inside("check", "p.toml", "a.txt", "--format", "json", folder=tmp_path)
-    data = json.loads(found.out)
-    assert [part["verdict"] for part in data["parts"] if part["part"] == "observability.verdict"] == ["right"]
-    assert data["lines"] == []
-
-
 def test_json_lines_and_a_folder_of_files_say_the_same(folder: Path) -> None:
     (folder / "class.jsonl").write_text(
         '{"student": "a", "L": "[19; 81]"}\n{"student": "b", "answer": {"K": "[4 3]"}}\n'

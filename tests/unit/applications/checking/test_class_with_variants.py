@@ -165,16 +165,3 @@ def test_a_variant_that_is_off_by_more_than_three_standard_errors_is_named() -> 
         "dd     4 students      5.00 marks  harder than the others",
         "1 of 4 variants differs from the others by more than 3 standard errors",
     ]
-
-
-def test_the_command_prints_them(tmp_path: Path) -> None:
-    (tmp_path / "summary.json").write_text(summary_of(a=[7, 9] * 5, b=[7, 9] * 5), encoding="utf-8")
-    found = inside("variants", "--responses", "summary.json", folder=tmp_path)
-    assert (found.code, found.out.splitlines()[-1]) == (
-        0,
-        "no variant differs from the others by more than 3 standard errors",
-    )
-    assert inside("variants", "--responses", "nothing.json", folder=tmp_path).code == 3
-    for arguments in (["variants"], ["variants", "problem.toml", "--responses", "summary.json"]):
-        found = inside(*arguments, folder=tmp_path)
-        assert (found.code, "one thing is to be done at a time" in found.err) == (2, True)

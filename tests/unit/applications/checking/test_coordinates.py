@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from fractions import Fraction
 from typing import Any
 
 import pytest
@@ -11,6 +10,11 @@ import sympy as sp
 from symobs.applications.checking import check
 from tests.kit import tabled
 from tests.support.problems.answered import text
+
+CANONICAL = (
+    'task = "canonical_form"\n[plant]\nA = "[1 2; 3 4]"\nB = "[1; 1]"\nC = "[1 0]"\n[specification]\nkind = "{}"\n'
+)
+
 
 REDUCED = 'task = "reduced_order_observer"\n'
 REDUCED += '[plant]\nA = "[0 1; 0 -1]"\nB = "[0; 1]"\nC = "[1 0]"\n[specification]\npoles = "-10"\n'
@@ -59,18 +63,6 @@ def test_a_part_that_is_right_in_coordinates_of_its_own_is_no_false_line() -> No
     report = check(REDUCED, "F = [-10]\nG = [2]\nH = [-180]\nA B = [1; -1]\n")
     assert [part.verdict for part in report.parts] == ["right"] * 3 + ["missing"]
     assert [line.verdict for line in report.lines] == ["true"]
-
-
-def test_a_matrix_that_is_wrong_beside_right_ones_has_its_right_value_in_their_coordinates() -> None:
-    """t (A + 4 I) = C and t (A + 5 I) = C are the rows of T, and t B = -1/φ(-4) and -1/φ(-5), φ = s³ + 6 s² + 11 s + 6."""
-    problem = 'task = "reduced_order_observer"\n[plant]\nA = "[0 1 0; 0 0 1; -6 -11 -6]"\nB = "[0; 0; 1]"\n'
-    problem += 'C = "[1 0 0]"\n[specification]\npoles = "-4, -5"\n'
-    report = check(problem, {"F": "[-4 0; 0 -5]", "G": "[0; 1]", "H": "[1; 1]"}, show="solution")
-    parts = {part.letter: part for part in report.parts if part.given}
-    assert {letter: part.verdict for letter, part in parts.items()} == {"F": "right", "G": "wrong", "H": "right"}
-    first, second = (-1 / (Fraction(s) ** 3 + 6 * s**2 + 11 * s + 6) for s in (-4, -5))
-    assert parts["G"].right == f"[{first}; {second}]"
-    assert (parts["G"].reason, parts["G"].slip, parts["G"].alternatives) == ("", None, ())
 
 
 #: Eigenvalues -1, -2 ± 3i, -5; of the fields of T x = z with integers, so that all of the plant is integral.
@@ -127,3 +119,50 @@ def test_an_observer_of_two_states_and_two_outputs_with_any_of_its_gains_is_righ
         assert set(verdicts(problem, answer).values()) == {"right"}
         M[2, 0] += 1
         assert verdicts(problem, {"M": text(M)}) == {"M": "wrong"}
+
+
+def observable_layouts() -> list[sp.Matrix]:
+    """T of the dual four layouts: the columns of 𝒪⁻¹ and its last column with A, and both reversed."""
+    A, C = sp.Matrix([[1, 2], [3, 4]]), sp.Matrix([[1, 0]])
+    seen = C.col_join(C * A)
+    q = seen.inv()[:, 1]
+    turn = sp.Matrix([[0, 1], [1, 0]])
+    column = sp.Matrix.hstack(q, A * q).inv()
+    return [column, turn * column, seen, turn * seen]
+
+
+@pytest.mark.parametrize("number", range(4))
+def test_the_observable_form_in_any_layout_is_right_and_T_belongs_to_it(number: int) -> None:
+    A, B, C = sp.Matrix([[1, 2], [3, 4]]), sp.Matrix([1, 1]), sp.Matrix([[1, 0]])
+    T = observable_layouts()[number]
+    answer = dict(zip("TABC", map(text, (T, T * A * T.inv(), T * B, C * T.inv())), strict=True))
+    problem = CANONICAL.format("observable")
+    assert set(verdicts(problem, answer).values()) == {"right"}
+    assert set(verdicts(problem, answer | {"T": text(T.inv())}).values()) == {"right"}
+    for wrong in (sp.eye(2), 2 * T, sp.Matrix([[1, 1], [1, 1]])):
+        assert verdicts(problem, answer | {"T": text(wrong)}) == {
+            "T": "wrong",
+            "A": "right",
+            "B": "right",
+            "C": "right",
+        }
+
+
+@pytest.mark.parametrize(("kind", "left_out"), [("controllable", 'C = "[1 0]"\n'), ("observable", 'B = "[1; 1]"\n')])
+def test_a_form_of_half_a_plant_and_without_T_is_judged_by_what_is_there(kind: str, left_out: str) -> None:
+    problem = CANONICAL.format(kind).replace(left_out, "")
+    # χ = s² − 5 s − 2 in the first row or column
+    A = "[5 2; 1 0]" if kind == "controllable" else "[5 1; 2 0]"
+    report = check(problem, {"A": A, **({"B": "[1; 0]"} if kind == "controllable" else {"C": "[1 0]"})})
+    assert [part.verdict for part in report.parts if part.given] == ["right", "right"]
+    assert "first" in report.parts[1].hints[0]
+
+
+def test_a_few_matrices_of_an_observer_of_reduced_order() -> None:
+    assert verdicts(REDUCED, {"H": "[-90]"}) == {"H": "right"}
+    assert verdicts(REDUCED, {"F": "[-10]", "H": "[-180]"}) == {"F": "right", "H": "right"}
+    wrong_size = {"F": "[-10 0; 0 1]", "G": "[2]", "H": "[-180]"}
+    assert verdicts(REDUCED, wrong_size) == dict.fromkeys("FGH", "wrong")
+    unobservable = REDUCED.replace("[0 1; 0 -1]", "[1 0; 0 2]")
+    parts = {part.letter: part.reason for part in check(unobservable, {"L": "[1 2]"}).parts if part.given}
+    assert parts == {"L": "L is 1x1 here, yours is 1x2"}

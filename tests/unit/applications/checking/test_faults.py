@@ -22,6 +22,7 @@ from tests.support.problems.answered import (
     K,
     L,
     S,
+    feedback_gain,
     observer_gain,
     polynomial,
     text,
@@ -91,21 +92,6 @@ def test_a_planted_slip_of_a_compensator_is_found(slip: str) -> None:
     assert (part.verdict, part.slip) == ("wrong", slip)
 
 
-def test_a_forgotten_feedthrough_is_found() -> None:
-    problem = 'task = "compensator"\n[plant]\nA = "[0 1; 0 -1]"\nB = "[0; 1]"\nC = "[1 0]"\nD = "[2]"\n'
-    problem += '[specification]\ncontrol_poles = "-2, -2"\nobserver_poles = "-10, -10"\n'
-    A, B, C, K, L = (
-        sp.Matrix([[0, 1], [0, -1]]),
-        sp.Matrix([0, 1]),
-        sp.Matrix([[1, 0]]),
-        sp.Matrix([[4, 3]]),
-        sp.Matrix([19, 81]),
-    )
-    forgotten = (K * (S * sp.eye(2) - A + B * K + L * C).inv() * L)[0]
-    part = check(problem, {"K": text(K), "L": text(L), "F": str(sp.cancel(forgotten))}).parts[2]
-    assert part.slip == "forgot_D"
-
-
 @tabled
 def test_products_in_the_wrong_order_are_found(left: bool, reason: str) -> None:  # noqa: FBT001 - a table
     """With as many inputs and outputs as states, K B and C L have the sizes of B K and L C."""
@@ -153,17 +139,6 @@ def test_several_signs_the_transpose_and_a_special_value() -> None:
     assert check(every, {"polynomial": "(s - 1)^2"}).parts[0].slip == "specialised"
 
 
-def test_of_several_slips_of_a_kind_all_are_named() -> None:
-    """Both outputs are the same, so that either entry of the first row may be mended."""
-    problem = 'task = "observer"\n[plant]\nA = "[0 1; 0 0]"\nC = "[1 0; 1 0]"\n[specification]\npoles = "-1, -2"\n'
-    part = check(problem, {"L": "[1 1; 2 0]"}).parts[0]
-    assert (part.slip, part.credit) == ("ambiguous", Fraction(1, 2))
-    assert part.alternatives == (
-        "entry (1,1) should be 2 with the others as they are",
-        "entry (1,2) should be 2 with the others as they are",
-    )
-
-
 def explained_truly(slip: str, value: sp.Matrix, part: object) -> bool:
     """Whether a slip reproduces a gain, computed without symobs."""
     mine = sp.Poly((A - value * C).charpoly(S).as_expr(), S)
@@ -205,3 +180,43 @@ def test_no_random_gain_is_explained_falsely() -> None:
     explained, false = hold(150, 5)
     assert explained > 5
     assert false == 0
+
+
+@pytest.mark.parametrize("slip", ["sign", "mirrored", "entry_misread", "other_matrix", "other_half"])
+def test_the_dual_slips_of_a_feedback_gain_are_found(slip: str) -> None:
+    wrong = {
+        "sign": -K,
+        "mirrored": feedback_gain(A, B, polynomial((1, 2, 4))),
+        "entry_misread": feedback_gain(sp.Matrix([[1, 2, 0], [0, 1, 3], [1, 0, 2]]), B, polynomial(CONTROL)),
+        "other_matrix": feedback_gain(A, C.T, polynomial(CONTROL)),
+        "other_half": feedback_gain(A, B, polynomial(OBSERVER)),
+    }[slip]
+    report = CHECKED.report({"K": text(wrong)})
+    part = report.parts[0]
+    assert part.slip == slip
+    assert report.bounded("place").parts[0].place is None  # the place of what was misread is one of A
+    assert slip != "entry_misread" or (part.place, part.reason) == (
+        [2, 2],
+        "entry (2,2) of A is taken with the other sign",
+    )
+
+
+def test_a_gain_rounded_is_named_so() -> None:
+    problem = 'task = "observer"\n[plant]\nA = "[0 1; 0 -1]"\nC = "[3 0]"\n[specification]\npoles = "-10, -10"\n'
+    part = check(problem, {"L": "[6.333; 27]"}).parts[0]
+    assert (part.slip, part.credit) == ("rounded", Fraction(1, 2))
+
+
+def test_a_forgotten_feedthrough_is_found() -> None:
+    problem = 'task = "compensator"\n[plant]\nA = "[0 1; 0 -1]"\nB = "[0; 1]"\nC = "[1 0]"\nD = "[2]"\n'
+    problem += '[specification]\ncontrol_poles = "-2, -2"\nobserver_poles = "-10, -10"\n'
+    A, B, C, K, L = (
+        sp.Matrix([[0, 1], [0, -1]]),
+        sp.Matrix([0, 1]),
+        sp.Matrix([[1, 0]]),
+        sp.Matrix([[4, 3]]),
+        sp.Matrix([19, 81]),
+    )
+    forgotten = (K * (S * sp.eye(2) - A + B * K + L * C).inv() * L)[0]
+    part = check(problem, {"K": text(K), "L": text(L), "F": str(sp.cancel(forgotten))}).parts[2]
+    assert part.slip == "forgot_D"

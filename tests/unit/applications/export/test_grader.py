@@ -4,18 +4,19 @@ from __future__ import annotations
 
 from fractions import Fraction
 from functools import cache
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-import pytest
 import sympy as sp
 
 from symobs.applications.export.grader import claims
-from symobs.applications.export.grader.claims import judge, score
-from symobs.applications.export.grader.values import ONE, poly
+from symobs.applications.export.grader.claims import judge
+from symobs.applications.export.grader.values import ONE, number, points, poly
 from tests.kit import tabled
 
+if TYPE_CHECKING:
+    import pytest
+
 S = sp.Symbol("s")
-HALF, QUARTER = Fraction(1, 2), Fraction(1, 4)
 MARKS: dict[str, Any] = {
     "credit": {
         "entry": "1/2",
@@ -73,7 +74,7 @@ def question(*parts: dict[str, Any], names: tuple[str, ...] = (), **marks: Any) 
 
 def outcome(asked: dict[str, Any], name: str, given: dict[str, Any]) -> Any:
     found = judge(asked, given)[name]
-    return found["verdict"], found["slip"], found["reason"], found["credit"]
+    return [found["verdict"], found["slip"], found["reason"], str(found["credit"])]
 
 
 def rows(text: str) -> list[list[str]]:
@@ -83,39 +84,19 @@ def rows(text: str) -> list[list[str]]:
 # -- gains ------------------------------------------------------------------------------------------------------------
 
 
-def other_polynomial(letter: str, polynomial: str) -> tuple[str, str, str, int]:
-    return "wrong", "", f"with your {letter} the polynomial is {polynomial}, not the one asked for", 0
+def other_polynomial(letter: str, polynomial: str) -> list[str]:
+    return ["wrong", "", f"with your {letter} the polynomial is {polynomial}, not the one asked for", "0"]
 
 
-@pytest.mark.parametrize(
-    ("given", "expected"),
-    [
-        ("19; 81", ("right", "", "", 1)),
-        ("38/2; 80+1", ("right", "", "", 1)),
-        ("-19; -81", ("wrong", "sign", "the sign of L", HALF)),
-        ("19 81", ("wrong", "transposed", "the transpose of L is right", Fraction(2, 3))),
-        ("19 80", ("wrong", "", "L is 2x1 here, yours is 1x2", 0)),
-        ("19; 81; 0", ("wrong", "", "L is 2x1 here, yours is 3x1", 0)),
-        ("19; 80", ("wrong", "entry", "entry (2,1) should be 81 with the others as they are", HALF)),
-        ("3; 1", ("wrong", "other_half", "L places the poles of the other half", QUARTER)),
-        ("3; 2", other_polynomial("L", "s^2 + 4 s + 5")),
-        ("20; 80", other_polynomial("L", "s^2 + 21 s + 100")),
-        ("0; 0", other_polynomial("L", "s^2 + s")),
-        ("-2; 2", other_polynomial("L", "s^2 - s")),
-        ("-1; 0", other_polynomial("L", "s^2 - 1")),
-        ("-1; 1", other_polynomial("L", "s^2")),
-        ("1/2; -4/3", other_polynomial("L", "s^2 + 3/2 s - 5/6")),
-        ("-4; 5", other_polynomial("L", "s^2 - 3 s + 1")),
-    ],
-)
-def test_what_is_said_of_a_gain(given: str, expected: tuple[str, str, str, Fraction]) -> None:
+@tabled
+def test_what_is_said_of_a_gain(given: str, expected: list[str]) -> None:
     assert outcome(question(OBSERVER), "L", {"L": rows(given)}) == expected
     turned = {"turned": True, "letter": "M"}
     opposite = [[f"-({entry})" for entry in row] for row in rows(given)]
     verdict, slip, reason, credit = outcome(question({**OBSERVER, **turned}), "L", {"L": opposite})
     mirrored = expected[2].replace("of L", "of M").replace("your L", "your M").replace("should be 81", "should be -81")
     mirrored = f"M{mirrored[1:]}" if mirrored.startswith("L") else mirrored
-    assert (verdict, slip, reason, credit) == (expected[0], expected[1], mirrored, expected[3])
+    assert [verdict, slip, reason, credit] == [*expected[:2], mirrored, expected[3]]
 
 
 def test_of_several_entries_that_may_be_mended_none_is_named() -> None:
@@ -123,7 +104,7 @@ def test_of_several_entries_that_may_be_mended_none_is_named() -> None:
     twins = gain("L", [["0", "1"], ["0", "0"]], [["1", "0"], ["1", "0"]], "1 3 2", [["3", "0"], ["2", "0"]])
     assert outcome(question(twins), "L", {"L": rows("1 2; 0 2")})[0] == "right"
     found = outcome(question(twins), "L", {"L": rows("1 1; 2 0")})
-    assert found == ("wrong", "entry", "one of several slips in a single entry", HALF)
+    assert found == ["wrong", "entry", "one of several slips in a single entry", "1/2"]
 
 
 def test_what_does_not_tell_is_not_told() -> None:
@@ -138,20 +119,13 @@ def test_what_does_not_tell_is_not_told() -> None:
 
 @tabled
 def test_a_rounded_gain_is_named_so(given: str, rounds: bool) -> None:  # noqa: FBT001 - a table
-    said = ("wrong", "rounded", "L is rounded, and its exact value is asked for", Fraction(1, 3))
+    said = ["wrong", "rounded", "L is rounded, and its exact value is asked for", "1/3"]
     found = outcome(question(THIRDS), "L", {"L": rows(given)})
     assert (found == said) is rounds
     opposite = [[f"-{entry}" for entry in row] for row in rows(given)]
     assert (outcome(question({**THIRDS, "turned": True}), "L", {"L": opposite}) == said) is rounds
     assert outcome(question(THIRDS, decimals="accept"), "L", {"L": rows(given)})[0] == "wrong"
     assert rows(given) != [["6.5"], ["27"]]
-
-
-def test_half_a_unit_of_the_last_place_is_rounding() -> None:
-    halves = gain("L", PLANT["A"], [["8", "0"]], "1 20 100", [["19/8"], ["81/8"]])  # 2.375, 10.125
-    for given, slip in (("2.38; 10.12", "rounded"), ("2.37; 10.13", "rounded"), ("2.36; 10.12", ""), ("2.4; 10", "")):
-        assert outcome(question(halves), "L", {"L": rows(given)})[1] == slip
-    assert outcome(question(halves), "L", {"L": rows("2.375; 10.125")})[0] == "right"
 
 
 # -- the compensator --------------------------------------------------------------------------------------------------
@@ -178,71 +152,18 @@ def another() -> str:
     return f"(5 s^2 + ({found[b]}) s + ({found[c]}))/(s^2 + ({found[d]}) s + ({found[e]}))"
 
 
-MORE = {
-    "all right": ({}, ("right", "", "", 1)),
-    "the sign": (
-        {"F": [[f"-({RIGHT['F'][0][0]})"]]},
-        ("wrong", "sign_convention", "-F is right with positive feedback", Fraction(1, 5)),
-    ),
-    "not of these gains": ({"F": [["1/s"]]}, ("wrong", "", "this is not the F of your gains", 0)),
-    "from a wrong L": (
-        {"L": rows("19; 80"), "F": [[function(("4", "3"), ("19", "80"))]]},
-        ("follows", "", "it follows from your earlier result", Fraction(3, 4)),
-    ),
-    "from a wrong K": (
-        {"K": rows("4 4"), "F": [[function(("4", "4"), ("19", "81"))]]},
-        ("follows", "", "it follows from your earlier result", Fraction(3, 4)),
-    ),
-    "from both": (
-        {"K": rows("4 4"), "L": rows("19; 80"), "F": [[function(("4", "4"), ("19", "80"))]]},
-        ("follows", "", "it follows from your earlier result", Fraction(3, 4)),
-    ),
-    "right in spite of a wrong L": ({"L": rows("19; 80")}, ("right", "", "", 1)),
-    "from nothing of both": (
-        {"L": rows("19; 80"), "F": [[function(("4", "5"), ("19", "80"))]]},
-        ("wrong", "", "this is not the F of your gains", 0),
-    ),
-    "from zero": (
-        {"L": rows("0; 0"), "F": [["0"]]},
-        ("follows", "", "it follows from your earlier result, which makes this part too easy to count", 0),
-    ),
-    "from one entry": (
-        {"L": rows("0; 7"), "F": [[function(("4", "3"), ("0", "7"))]]},
-        ("follows", "", "it follows from your earlier result, which makes this part too easy to count", 0),
-    ),
-    "of a gain that does not fit": (
-        {"L": rows("19 81 0"), "F": [["1/s"]]},
-        ("wrong", "", "this is not the F of your gains", 0),
-    ),
-    "alone": ({"K": [], "L": []}, ("right", "", "", 1)),
-    "another one alone": (
-        {"K": [], "L": [], "F": [[another()]]},
-        ("right", "", "another compensator with the same closed-loop polynomial", 1),
-    ),
-    "another one with gains": ({"F": [[another()]]}, ("wrong", "", "this is not the F of your gains", 0)),
-    "wrong alone": ({"K": [], "L": [], "F": [["1/(s + 1)"]]}, ("wrong", "", "", 0)),
-    "improper alone": ({"K": [], "L": [], "F": [["s^3/(s^2 + 1)"]]}, ("wrong", "", "", 0)),
-    "opposite alone": (
-        {"K": [], "L": [], "F": [[f"-({RIGHT['F'][0][0]})"]]},
-        ("wrong", "sign_convention", "-F is right with positive feedback", Fraction(1, 5)),
-    ),
-    "with K alone": ({"L": []}, ("right", "", "", 1)),
-}
-
-
-@pytest.mark.parametrize("name", MORE)
-def test_what_is_said_of_a_compensator(name: str) -> None:
-    changed, expected = MORE[name]
-    given = {part: value for part, value in {**RIGHT, **changed}.items() if value}  # type: ignore[dict-item]
+@tabled
+def test_what_is_said_of_a_compensator(changed: dict[str, Any], expected: list[str]) -> None:
+    given = {part: value for part, value in {**RIGHT, **changed}.items() if value}
     assert outcome(WHOLE, "F", given) == expected
 
 
 def test_the_marks_of_a_compensator_are_those_of_the_file() -> None:
     easy = {**RIGHT, "L": rows("0; 7"), "F": [[function(("4", "3"), ("0", "7"))]]}
     unguarded = question(FEEDBACK, OBSERVER, F, guard=False)
-    assert outcome(unguarded, "F", easy) == ("follows", "", "it follows from your earlier result", Fraction(3, 4))
+    assert outcome(unguarded, "F", easy) == ["follows", "", "it follows from your earlier result", "3/4"]
     either = question(FEEDBACK, OBSERVER, F, sign_of_F="either")
-    assert outcome(either, "F", {**RIGHT, "F": [[f"-({RIGHT['F'][0][0]})"]]}) == ("right", "", "", 1)
+    assert outcome(either, "F", {**RIGHT, "F": [[f"-({RIGHT['F'][0][0]})"]]}) == ["right", "", "", "1"]
     wrong = {**RIGHT, "L": rows("19; 80"), "F": [[f"-({function(('4', '3'), ('19', '80'))})"]]}
     assert outcome(either, "F", wrong)[0] == "follows"
     assert outcome(WHOLE, "F", wrong)[0] == "wrong"
@@ -252,7 +173,7 @@ def test_a_compensator_alone_is_held_to_the_closed_loop_and_its_order() -> None:
     """A mode that F does not reach stays: (s + 2) · ((s + 1)(s + 5) + 3) = (s + 2)² (s + 4)."""
     hidden = {"A": rows("-1 0; 0 -2"), "B": rows("1; 0"), "C": rows("1 0"), "phi": ["1", "8", "20", "16"]}
     asked = question({**F, **hidden, "right_K": rows("9 9"), "right_L": rows("9; 9")})
-    said = ("right", "", "another compensator with the same closed-loop polynomial", 1)
+    said = ["right", "", "another compensator with the same closed-loop polynomial", "1"]
     assert outcome(asked, "F", {"F": [["3/(s + 5)"]]}) == said
     assert outcome(asked, "F", {"F": [["4/(s + 5)"]]})[0] == "wrong"
     for order, verdict in ((1, "right"), (0, "wrong")):
@@ -285,41 +206,9 @@ def value(right: str, **more: Any) -> dict[str, Any]:
     return {**usual, "kind": "value", "exact": False, "right": rows(right), **more}
 
 
-@pytest.mark.parametrize(
-    ("right", "given", "expected"),
-    [
-        ("1 2; 3 4", "1 2; 3 4", ("right", "", "", 1)),
-        ("1 2; 3 4", "-1 -2; -3 -4", ("wrong", "sign", "-W is right", HALF)),
-        ("1 2; 3 4", "1 3; 2 4", ("wrong", "transposed", "the transpose of W is right", Fraction(2, 3))),
-        ("1; 2", "1 2", ("wrong", "transposed", "the transpose of W is right", Fraction(2, 3))),
-        ("1; 2", "1 3", ("wrong", "", "", 0)),
-        ("1; 2", "1; 2; 3", ("wrong", "", "", 0)),
-        ("1 2; 3 4", "1 2; 5 4", ("wrong", "entry", "entry (2,1) is wrong", HALF)),
-        ("1 2; 3 4", "1 9; 3 4", ("wrong", "entry", "entry (1,2) is wrong", HALF)),
-        ("1 2; 3 4", "1 9; 9 4", ("wrong", "", "", 0)),
-        ("1/3", "0.33", ("wrong", "rounded", "W is rounded, and its exact value is asked for", Fraction(1, 3))),
-        ("1/3", "0.3", ("wrong", "rounded", "W is rounded, and its exact value is asked for", Fraction(1, 3))),
-        ("1/3", "0.4", ("wrong", "", "", 0)),
-        ("1/3", "-1/3", ("wrong", "sign", "-W is right", HALF)),
-        ("1/3", "2/6", ("right", "", "", 1)),
-        ("5", "6", ("wrong", "", "", 0)),
-    ],
-)
-def test_what_is_said_of_a_value(right: str, given: str, expected: tuple[str, str, str, Fraction]) -> None:
+@tabled
+def test_what_is_said_of_a_value(right: str, given: str, expected: list[str]) -> None:
     assert outcome(question(value(right)), "M", {"M": rows(given)}) == expected
-
-
-def test_a_rounded_value_is_right_where_decimals_are_accepted_and_no_count_is_rounded() -> None:
-    assert outcome(question(value("1/3"), decimals="accept"), "M", {"M": [["0.33"]]}) == (
-        "right",
-        "rounded",
-        "W is rounded, and its exact value is asked for",
-        1,
-    )
-    assert outcome(question(value("1/3"), decimals="accept"), "M", {"M": [["0.4"]]})[0] == "wrong"
-    assert outcome(question(value("12", exact=True)), "M", {"M": [["1e1"]]})[1] == ""
-    assert outcome(question(value("12")), "M", {"M": [["1e1"]]})[1] == "rounded"
-    assert outcome(question(value("2", exact=True)), "M", {"M": [["2.0"]]})[0] == "right"
 
 
 def test_functions_are_equal_as_functions() -> None:
@@ -329,7 +218,7 @@ def test_functions_are_equal_as_functions() -> None:
     asked["parts"][0]["variable"] = "z"
     asked["parts"][0]["right"] = [["z"]]
     assert outcome(asked, "M", {"M": [["z"]]})[0] == "right"
-    assert outcome(asked, "M", {"M": [["s"]]})[:3] == ("unreadable", "", "s is not a letter of this question (z)")
+    assert outcome(asked, "M", {"M": [["s"]]})[2] == "s is not a letter of this question (z)"
 
 
 @tabled
@@ -338,31 +227,19 @@ def test_a_word_is_right_or_wrong(given: str, means: str) -> None:
     for right in ("yes", "no", "conditional"):
         found = outcome(question({**word, "right": right}), "v", {"v": [[given]]})
         if means:
-            assert found == ("right" if means == right else "wrong", "", "", int(means == right))
+            assert found == ["right" if means == right else "wrong", "", "", str(int(means == right))]
         else:
-            assert found == ("unreadable", "", "write yes, no or conditional", 0)
+            assert found == ["unreadable", "", "write yes, no or conditional", "0"]
 
 
 # -- the whole answer -------------------------------------------------------------------------------------------------
-
-
-def test_parts_are_told_in_the_order_of_the_question_and_weighed() -> None:
-    asked = question(F, OBSERVER, FEEDBACK)
-    found = judge(asked, {**RIGHT, "L": rows("-19; -81")})
-    assert list(found) == ["F", "L", "K"]
-    wrong = {**RIGHT, "L": rows("19; 80"), "F": [["(316 s + 396)/(s^2 + 23 s + 160)"]]}
-    assert judge(asked, wrong)["F"]["verdict"] == "follows"
-    assert score(asked, found) == (2 + HALF + 1) / 4
-    assert score(asked, judge(asked, {})) == 0
-    assert {each["verdict"] for each in judge(asked, {"K": [[" ", ""]], "L": [], "F": [[""]]}).values()} == {"missing"}
-    assert judge(asked, {})["K"] == {"verdict": "missing", "slip": "", "reason": "", "credit": 0}
 
 
 def test_what_cannot_be_read_says_why_and_harms_no_other_part(monkeypatch: pytest.MonkeyPatch) -> None:
     found = judge(WHOLE, {**RIGHT, "L": [["19"], ["81", "1"]]})
     assert (found["K"]["verdict"], found["L"]["verdict"]) == ("right", "unreadable")
     assert (found["L"]["reason"], found["L"]["credit"]) == ("the rows have different lengths", 0)
-    assert outcome(WHOLE, "L", {"L": [["19"], [""]]})[::2] == ("unreadable", "a value is missing")
+    assert outcome(WHOLE, "L", {"L": [["19"], [""]]})[2] == "a value is missing"
     assert outcome(WHOLE, "L", {"L": [["19"], ["s"]]})[2] == "s is not a letter of this question"
     assert outcome(WHOLE, "F", {"F": [["1/x"]]})[2] == "x is not a letter of this question (s)"
 
@@ -370,21 +247,34 @@ def test_what_cannot_be_read_says_why_and_harms_no_other_part(monkeypatch: pytes
         raise KeyError("a bug")
 
     monkeypatch.setattr(claims, "judge_gain", broken)
-    assert outcome(WHOLE, "L", RIGHT) == ("unreadable", "", "this could not be read", 0)
+    assert outcome(WHOLE, "L", RIGHT) == ["unreadable", "", "this could not be read", "0"]
 
 
 def test_symbols_are_drawn_twice_and_both_must_agree(monkeypatch: pytest.MonkeyPatch) -> None:
     """A − LC = [-a 1; -b 0] has s² + a s + b; p and q are asked for."""
     part = gain("L", rows("0 1; 0 0"), rows("1 0"), "1 p q", rows("p; q"), other=["1", "q", "p"])
     asked = question(part, names=("p", "q"))
-    assert outcome(asked, "L", {"L": rows("p; q")}) == ("right", "", "", 1)
+    assert outcome(asked, "L", {"L": rows("p; q")}) == ["right", "", "", "1"]
     assert outcome(asked, "L", {"L": rows("p+q-q; 2*q/2")})[0] == "right"
-    assert outcome(asked, "L", {"L": rows("p; 3")}) == ("wrong", "entry", "entry (2,1) is wrong", HALF)
+    assert outcome(asked, "L", {"L": rows("p; 3")}) == ["wrong", "entry", "entry (2,1) is wrong", "1/2"]
     assert outcome(asked, "L", {"L": rows("q; p")})[1] == "other_half"
     wrong = "with your L the polynomial is not the one asked for"
-    assert outcome(asked, "L", {"L": rows("2; 3")}) == ("wrong", "", wrong, 0)
+    assert outcome(asked, "L", {"L": rows("2; 3")}) == ["wrong", "", wrong, "0"]
     fixed = [{"p": (poly([k]), ONE), "q": (poly([3]), ONE)} for k in (2, 5)]
     monkeypatch.setattr(claims, "points", lambda *_: fixed)
-    assert outcome(asked, "L", {"L": rows("2; 3")}) == ("wrong", "", "", 0)
+    assert outcome(asked, "L", {"L": rows("2; 3")}) == ["wrong", "", "", "0"]
     monkeypatch.setattr(claims, "points", lambda *_: fixed[:1])
     assert outcome(asked, "L", {"L": rows("2; 3")})[0] == "right"
+
+
+def test_points_are_drawn_from_the_answer() -> None:
+    asked = question(names=("p", "q"))
+    first, second = points(asked, {"L": "1"})
+    assert first != second
+    assert first["p"] != first["q"]
+    assert points(asked, {"L": "1"}) == [first, second]
+    assert points(asked, {"L": "2"}) != [first, second]
+    assert points({**asked, "parts": [F]}, {"L": "1"}) != [first, second]
+    assert points(asked, {"K": "1", "L": "2"}) == points(asked, {"L": "2", "K": "1"})
+    assert all(2 <= number(entry) < 2**60 + 2 for point in (first, second) for entry in point.values())
+    assert points(question(), {"L": "1"}) == [{}]

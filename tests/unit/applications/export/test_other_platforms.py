@@ -186,13 +186,6 @@ def test_an_item_gives_full_marks_where_check_does(name: str) -> None:
         assert found["SCORE"] == sum(found[f"S{k}"] * w for k, w in enumerate(weights, 1))
 
 
-def test_items_of_2_1_are_the_same_in_other_names() -> None:
-    new, old = item_of(held("servo_observer")), item_of(held("servo_observer"), "qti21")
-    assert old.tag == "assessmentItem"
-    assert [re.sub(r"qti-|-", "", e.tag).lower() for e in new.iter()] == [e.tag.lower() for e in old.iter()]
-    assert [e.get("toleranceMode") for e in old.iter("equal")] == ["exact"] * 4
-
-
 # -- notebooks --------------------------------------------------------------------------------------------------------
 
 
@@ -228,3 +221,23 @@ def test_a_notebook_gives_the_marks_of_check() -> None:
     marks, printed = graded_cell(each, {"K": "[1 (", "F": F})
     assert (marks, "missing: L" in printed, "unreadable" in printed) == (1, True, True)
     assert graded_cell(each, {})[0] == 0
+
+
+def test_a_notebook_is_one_of_format_4_5_and_says_the_same_every_time() -> None:
+    each = held("servo_observer")
+    found = notebook_of(each)
+    assert (found["nbformat"], found["nbformat_minor"]) == (4, 5)
+    graded = [cell["metadata"]["nbgrader"] for cell in found["cells"]]
+    assert [(g["grade"], g["locked"], g["solution"], g.get("points")) for g in graded] == [
+        (False, True, False, None),
+        (False, False, True, None),
+        (True, True, False, 1.0),
+    ]
+    assert export("ipynb", [each]) == export("ipynb", [held("servo_observer")])
+
+
+def test_items_of_2_1_are_the_same_in_other_names() -> None:
+    new, old = item_of(held("servo_observer")), item_of(held("servo_observer"), "qti21")
+    assert old.tag == "assessmentItem"
+    assert [re.sub(r"qti-|-", "", e.tag).lower() for e in new.iter()] == [e.tag.lower() for e in old.iter()]
+    assert [e.get("toleranceMode") for e in old.iter("equal")] == ["exact"] * 4

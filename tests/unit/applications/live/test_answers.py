@@ -168,29 +168,10 @@ def test_peak_and_settling_are_those_of_the_whole_response(poles: str) -> None:
             assert -1e-3 * end <= float(line["settles"]) - settled <= drawn + 1e-2 * settled
 
 
-@pytest.mark.parametrize("poles", ["-1, -200, -200", "-1/10+134i, -1/10-134i, -1"])
-def test_what_changes_too_fast_to_be_seen_is_left_out(poles: str) -> None:
-    # The second component goes down to −L₁/e ≈ −74 within 1/200 of the first second; the other turns 10 times between instants.
-    chain = {"A": "[0 1 0; 0 0 1; 0 0 0]", "C": "[1 0 0]"}
-    found = asked({"task": "observer", "plant": chain, "specification": {"poles": poles}}, courses={})
-    assert (found["status"], found["courses"]) == ("done", None)
-    assert (
-        found["note"] == "The responses are left out: they change too fast for a picture that shows them to their end."
-    )
-
-
-def test_where_there_is_no_design_there_is_no_response() -> None:
-    # Two outputs that are both −x and x cannot follow two references: there is no feedforward.
-    plant = {"A": "[-b]", "B": "[2, 0]", "C": "[-1; 1]"}
-    poles = {"control_poles": "-p", "observer_poles": "-10"}
-    problem = {
-        "task": "feedforward",
-        "plant": plant,
-        "specification": poles,
-        "symbols": {"b": "nonzero", "p": "nonzero"},
-    }
-    found = asked(problem, courses={})
-    assert (found["status"], found["courses"]) == ("no", None)
+def test_of_a_measured_state_there_is_no_estimate() -> None:
+    servo = {"A": "[0 1; 0 -1]", "B": "[0; 1]", "C": "[1 0]"}
+    found = asked({"task": "feedforward", "plant": servo, "specification": {"control_poles": "-2, -2"}}, courses={})
+    assert [line["signal"] for line in found["courses"]["lines"]] == ["x", "x"]
 
 
 def test_a_value_takes_the_place_of_its_symbol() -> None:
@@ -242,17 +223,6 @@ def test_a_request_that_cannot_be_is_refused_at_its_place(change: dict[str, Any]
         found = answer({"schema": "symobs-live/1", "id": 7, "problem": SERVO, **change})
     assert found["status"] == "bad"
     assert where in [error["where"] for error in found["errors"]]
-
-
-def test_all_errors_are_said_at_once() -> None:
-    found = answer({"schema": "x", "want": "y", "cards": 1, "problem": SERVO})
-    assert {error["where"] for error in found["errors"]} == {"schema", "want", "cards"}
-    wrong = {
-        **SERVO,
-        "plant": {"A": "[0 1; q 0]", "B": "[0; 1", "C": "[1 0]"},
-        "specification": {"control_poles": "-2, ("},
-    }
-    assert len(asked(wrong)["errors"]) >= 3
 
 
 def test_the_size_of_a_request_is_bounded() -> None:

@@ -121,3 +121,17 @@ def test_what_is_something_else_is_refused_before_anything_is_written(
     assert left.value.code == 2
     assert "something else in this folder; give a new one" in capsys.readouterr().err
     assert [path.name for path in out.iterdir()] == ["mine.txt"]
+
+
+def test_an_installed_package_is_packed_once(
+    given: tuple[Path, Path], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for name in ("__init__.py", "worked_examples/servo.toml", "latex_templates/article.tex"):
+        (tmp_path / "symobs" / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / "symobs" / name).write_text("")
+    monkeypatch.setattr("symobs.applications.live.site._PACKAGE", tmp_path / "symobs")
+    build(tmp_path / "out", *given)
+    with zipfile.ZipFile(tmp_path / "out" / "symobs.zip") as archive:
+        names = archive.namelist()
+    assert "symobs/worked_examples/servo.toml" in names
+    assert len(names) == len(set(names))

@@ -12,12 +12,13 @@ import sympy as sp
 from symobs.applications.variants.constructions import CONSTRUCTIONS, Made
 from symobs.applications.variants.drawing import Draws
 from tests.kit import tabled
-from tests.support.independent_algebra.plain_fractions import determinant, eliminate, identity, inverse, plus, times
+from tests.support.algebra import determinant, identity, inverse, rank_of
+from tests.support.derivations import plus, times
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from tests.support.independent_algebra.plain import Rows
+    from tests.support.algebra import Rows
 
 s, h1, h2 = sp.symbols("s h1 h2")
 
@@ -73,22 +74,12 @@ def test_parts_are_hidden_where_the_sizes_say(sizes: list[int]) -> None:
     kept = 0
     for plant, _ in made("decomposition", 60, sizes=sizes):
         A, B, C = (table(plant[name]) for name in "ABC")
-        seen = eliminate(observability(A, C), len(A))[0]
-        moved = eliminate(observability(turned(A), turned(B)), len(A))[0]
+        seen = rank_of(observability(A, C))
+        moved = rank_of(observability(turned(A), turned(B)))
         assert seen <= sizes[0] + sizes[2]
         assert moved <= sizes[0] + sizes[1]
         kept += (seen, moved) == (sizes[0] + sizes[2], sizes[0] + sizes[1])
     assert kept > 30  # those with fewer are left out by the cheap test
-
-
-@pytest.mark.parametrize("hidden", ["stable", "unstable"])
-def test_hidden_modes_have_the_sign_that_is_wanted(hidden: str) -> None:
-    for plant, _ in made("ranks", 10, hidden=hidden, sizes=[2, 1, 0, 0]):
-        A, C = sp.Matrix(plant["A"]), sp.Matrix(plant["C"])
-        roots = sp.Poly(A.charpoly(s).as_expr(), s).ground_roots()
-        modes = [root for root in roots if (A - root * sp.eye(3)).col_join(C).rank() < 3]
-        assert len(modes) == 1
-        assert modes[0] < 0 if hidden == "stable" else modes[0] > 0
 
 
 def linear_forms(text: str) -> list[sp.Expr]:
@@ -100,3 +91,43 @@ def linear_forms(text: str) -> list[sp.Expr]:
         parts = [match for match in term.findall(form) if match[1] or match[2]]
         found.append(sum(int(f"{sign}{size or 1}") * letters[letter] for sign, size, letter in parts))
     return found
+
+
+def test_members_have_a_whole_gain_for_their_poles() -> None:
+    for c, (plant, asked) in enumerate(made("member", 12)):
+        draw = Draws(11, c)["L"]
+        L = sp.Matrix(3, 2, lambda _i, _j, draw=draw: draw.below(5) - 2)
+        A, C = sp.Matrix(plant["A"]), sp.Matrix(plant["C"])
+        phi = sp.prod(s - pole for pole, _ in asked["observer_poles"].pairs)
+        assert C.rank() == 2
+        assert sp.expand((A - L * C).charpoly(s).as_expr() - phi) == 0
+    for (plant, asked), (dual, wanted) in zip(made("member", 5), made("member", 5, of="state_feedback"), strict=True):
+        assert dual["A"] == tuple(zip(*plant["A"], strict=True))
+        assert dual["B"] == tuple(zip(*plant["C"], strict=True))
+        assert asked["observer_poles"] == wanted["control_poles"]
+
+
+def test_modes_and_their_vectors_are_whole() -> None:
+    for plant, _ in made("modal", 10):
+        A = sp.Matrix(plant["A"])
+        roots = sp.Poly(A.charpoly(s).as_expr(), s).ground_roots()
+        assert len(roots) == 3
+        assert all(root.is_integer for root in roots)
+        vectors = [(A - root * sp.eye(3)).nullspace()[0] for root in roots]
+        scaled = [vector * sp.ilcm(*(entry.q for entry in vector)) for vector in vectors]
+        primitive = [vector / sp.igcd(*vector) for vector in scaled]
+        assert abs(sp.Matrix.hstack(*primitive).det()) == 1
+
+
+def test_corners_of_regions_are_whole() -> None:
+    for _, asked in made("region", 25, region="triangle"):
+        middle, last = linear_forms(asked["polynomial"])
+        sides = [1 + middle + last, 1 - middle + last, 1 - last]  # Jury
+        for pair in ((0, 1), (0, 2), (1, 2)):
+            corner = sp.linsolve([sides[i] for i in pair], [h1, h2])
+            assert all(value.is_integer for value in next(iter(corner)))
+    for _, asked in made("region", 25, region="wedge"):
+        middle, last = linear_forms(asked["polynomial"])
+        a = int(re.fullmatch(r"s\^3 \+ (\d*) ?s\^2.*", asked["polynomial"])[1] or 1)  # type: ignore[index]
+        corner = sp.linsolve([last, a * middle - last], [h1, h2])  # Routh
+        assert all(value.is_integer for value in next(iter(corner)))

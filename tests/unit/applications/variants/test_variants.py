@@ -238,18 +238,6 @@ def test_what_nothing_meets_ends_after_the_attempts_with_the_reasons() -> None:
     assert "L has too many digits" in counts
 
 
-def test_where_the_first_is_of_a_rare_kind_the_message_says_so() -> None:
-    text = 'task = "observer"\n[plant]\nA = "[0 1; 0 a]"\nC = "[1 0]"\n[specification]\npoles = "p"\n'
-    text += "[variants.parameters]\na = { set = [1] }\np = { poles = 2, from = [-9, -1] }\n"
-    double = next(seed for seed in range(99) if len(set(poles_of(text, seed))) == 1)
-    with pytest.raises(TooFew, match=r"another structure; the first one is of a rare kind: draw distinct poles"):
-        list(found(text, 12, double, attempts=60))
-
-
-def poles_of(text: str, seed: int) -> list[str]:
-    return str(candidate(read_table(text), seed, 0).data["specification"]["poles"]).split(", ")
-
-
 def test_what_is_no_problem_file_is_refused() -> None:
     for wrong in ({"task": "observer"}, None):
         with pytest.raises(UsageError, match="problem: a problem file is expected"):
@@ -323,10 +311,15 @@ def test_cheap_gains_that_the_engine_does_not_find_are_a_bug() -> None:
         run({"problem": problem, "constraints": {}, "gains": {"L": [[2], [2]]}})
 
 
-def test_the_function_reads_paths_and_texts(tmp_path: Any) -> None:
-    (tmp_path / "problem.toml").write_text(OBSERVER, encoding="utf-8")
-    assert len(so.variants(tmp_path / "problem.toml", 5)) == len(so.variants(OBSERVER, 5)) == 5
-    with pytest.raises(so.InputError, match="give the path"):
-        so.variants("nothing.toml", 5)
-    with pytest.raises(so.InputError, match="no table"):
-        so.variants('task = "observer"\n', 5)
+def test_relations_among_parameters_are_read_with_the_table() -> None:
+    text = 'task = "observer"\n[plant]\nA = "[0 1; a b]"\nC = "[1 0]"\n[specification]\npoles = "-1, -2"\n'
+    text += (
+        '[variants.parameters]\na = { integers = [5, -5] }\nb = { set = ["1"] }\nwhen = ["a < c", "a <", "a != b"]\n'
+    )
+    with pytest.raises(ProblemErrors) as raised:
+        Variants(text, 1)
+    assert [str(error) for error in raised.value.errors if "when" in error.where] == [
+        "variants.parameters.when[0]: c is no parameter; use those of [variants.parameters]: a, b",
+        'variants.parameters.when[1]: "a <" is no relation; write when = ["a < b"]',
+    ]
+    assert "variants.parameters.a.integers" in {error.where for error in raised.value.errors}

@@ -27,7 +27,7 @@ from symobs.exact.core.modular import Point, VanishingDenominator, random_prime
 from symobs.exact.linear_algebra.krylov import Krylov
 from symobs.exact.sympy_bridge.conversion import matrix_from_sympy, matrix_to_sympy, scalar_to_sympy
 from symobs.formula.expression import parse_matrix
-from tests.support.independent_algebra.plain import matrix_at, seeded, value_at
+from tests.support.algebra import matrix_at, seeded, value_at
 from tests.support.problems.strategies import (
     Twin,
     fraction_entries,

@@ -6,7 +6,7 @@ import sympy
 from hypothesis import assume, example, given, settings
 from hypothesis import strategies as st
 
-from symobs.exact import Ideal, Scalar, apart_from_zero
+from symobs.exact import Ideal, Scalar
 from symobs.exact.ideals import conjugate_points
 from symobs.formula.expression import parse_scalar
 from tests.kit import tabled
@@ -86,9 +86,3 @@ def test_a_basis_is_the_reduced_one(one: Scalar, other: Scalar, third: Scalar) -
     found = sympy.groebner([in_sympy(each) for each in (one, other, third)], *symbols, order="grevlex")
     wanted = {sympy.Poly(each, *symbols).monic().as_expr() for each in found.exprs}
     assert monic(ideal.generators, *ideal.field.names) == wanted
-
-
-def test_what_is_not_0_matters_where_an_ideal_is_not_prime() -> None:
-    assert b in Ideal.where((a * b, apart_from_zero(a)))
-    assert Ideal.where((b**2, apart_from_zero(a * b))).is_whole
-    assert Ideal.where((b**2 - a**3, apart_from_zero((b**2 - a**3) * a))).is_whole

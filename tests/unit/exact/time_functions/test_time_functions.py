@@ -186,10 +186,10 @@ def test_equal_rates_are_a_case() -> None:
 
 
 def test_what_has_no_closed_form_says_so() -> None:
-    plant = symobs.StateSpace("[0 1 0; 0 0 1; -1 -1 0]", C="[1 0 0]")
+    plant = symobs.StateSpace("[0 1 0; 0 0 1; -a -1 0]", C="[1 0 0]")
     for result in (symobs.gramian(plant), symobs.initial_state(plant, output="1")):
         assert result.verdict == "undecided"
-        assert "s**3 + s + 1" in result.question
+        assert "s**3 + s + a" in result.question
         assert result.derivation.check() is not None
 
 
@@ -278,8 +278,6 @@ def test_wrong_questions_are_refused() -> None:
         symobs.gramian(plant, horizon="-1")
     with pytest.raises(InputError, match=r"specification\.R: the intensity R of the output noise is missing"):
         symobs.initial_state_covariance(plant, Q="1")
-    with pytest.raises(InputError, match=r"plant\.dt: matrix_exponential belongs to continuous time"):
-        symobs.matrix_exponential(symobs.StateSpace("[0 1; 0 0]", dt=True))
 
 
 # -- the kernel ----------------------------------------------------------------------------------------------------------

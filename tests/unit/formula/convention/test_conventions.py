@@ -155,21 +155,6 @@ def test_every_page_holds_in_every_convention(path: Path) -> None:
         assert render(Document(found.title, found.source, results, convention_named(name)), "text")
 
 
-def test_given_gains_are_read_in_the_file_s_letters() -> None:
-    observer = 'task = "observer"\n' + PLANT + "[specification]\n"
-    polynomial = {"polynomial": "s^2 + 3 s + 2"}
-    for name, gain in (
-        ("S1", 'M = "[-3; -2]"'),
-        ("S1", 'L = "[3; 2]"'),
-        ("S4", 'H = "[3; 2]"'),
-        ("S0", 'L = "[3; 2]"'),
-    ):
-        assert unmet(problem(observer + gain, name, polynomial)) == []
-    feedback = 'task = "state_feedback"\n' + PLANT + '[specification]\nK = "[-2 -2]"\n'
-    assert unmet(problem(feedback, "S4", {"polynomial": "s^2 + 2 s + 2", "K": "[-2 -2]"})) == []
-    assert len(unmet(problem(feedback, "S0", {"polynomial": "s^2 + 2 s + 2"}))) == 1
-
-
 def test_json_and_python_stay_standard() -> None:
     (shown,) = json.loads(page(problem(DESIGN, "S1"), "json"))["results"]
     assert (shown["K"], shown["L"]) == ([["2", "2"]], [["3"], ["2"]])

@@ -62,49 +62,14 @@ def test_number(text: str, expected: str) -> None:
     assert parse_scalar(text).fraction() == Fraction(expected)
 
 
-@pytest.mark.parametrize(
-    ("text", "expected"),
-    [
-        ("4 s", s * 4),
-        ("4s", s * 4),
-        ("s 4", s * 4),
-        ("(s+1)(s+2)", (s + 1) * (s + 2)),
-        ("(s+1) s", (s + 1) * s),
-        ("omega^2 (1 - h1)", omega * omega * (one - h1)),
-        ("2 a b c", a * b * c * 2),
-        ("a b^2", a * b * b),
-        ("-a^2", -(a * a)),
-        ("s -1", s - 1),
-        ("a^-2", one / (a * a)),
-        ("(a - b)^3", (a - b) * (a - b) * (a - b)),
-        ("(a^2 - b^2)/(a - b)", a + b),
-        ("a - a", q(0)),
-        ("e1 + x_2", Scalar.symbol("e1") + Scalar.symbol("x_2")),
-        ("2e", Scalar.symbol("e") * 2),
-        ("2e3e", Scalar.symbol("e") * 2000),
-        ("A" * 64, Scalar.symbol("A" * 64)),
-        ("−2·a\u00a0b² × ω₀⁻¹", a * b * b * -2 / Scalar.symbol("omega0")),
-        ("(a − b)³", (a - b) * (a - b) * (a - b)),
-    ],
-)
-def test_symbols(text: str, expected: Scalar) -> None:
-    assert parse_scalar(text) == expected
+@tabled
+def test_symbols(text: str, expected: str) -> None:
+    assert str(parse_scalar(text)) == expected
 
 
-@pytest.mark.parametrize(
-    ("text", "expected"),
-    [
-        ("b(1 - h1)", b * (one - h1)),
-        ("b (1 - h1)", b * (one - h1)),
-        ("i", i),
-        ("20i", i * 20),
-        ("i^2", i * i),
-        ("I^2 + i", i - 1),
-        ("j^2", q(-1)),
-    ],
-)
-def test_declared_name_is_a_factor_and_may_be_i(text: str, expected: Scalar) -> None:
-    assert parse_scalar(text, {"b": "positive", "h1": "real", "i": "real"}) == expected
+@tabled
+def test_declared_name_is_a_factor_and_may_be_i(text: str, expected: str) -> None:
+    assert str(parse_scalar(text, {"b": "positive", "h1": "real", "i": "real"})) == expected
 
 
 @tabled
@@ -123,15 +88,6 @@ def test_a_pair_of_poles_is_two(poles: object) -> None:
 @tabled
 def test_matrix_of_numbers(text: str, expected: list[list[str]]) -> None:
     assert fractions_of(parse_matrix(text)) == [[Fraction(entry) for entry in row] for row in expected]
-
-
-@tabled
-def test_ragged_rows_name_the_row_and_both_lengths(value: object, row: int, message: str) -> None:
-    with pytest.raises(ShapeMismatch) as caught:
-        parse_matrix(value, where="plant.A")
-    assert message in str(caught.value)
-    assert caught.value.where == "plant.A"
-    assert caught.value.facts["row"] == row
 
 
 @pytest.mark.parametrize(
@@ -154,28 +110,15 @@ def test_lists_without_the_shape_of_a_matrix(value: object, message: str) -> Non
 # -- poles and polynomials ----------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize(
-    ("value", "expected"),
-    [
-        ("-10, -10", [(-10, 0), (-10, 0)]),
-        ("-20+20i, -20-20i", [(-20, 20), (-20, -20)]),
-        ("-1/2", [(Fraction(-1, 2), 0)]),
-        ("-1 + 2*I, -1 - 2j", [(-1, 2), (-1, -2)]),
-        ("1/2i", [(0, Fraction(1, 2))]),
-        ("(1+i)^2", [(0, 2)]),
-        ("1/(1+i)", [(Fraction(1, 2), Fraction(-1, 2))]),
-        ("[-1 -2]", [(-1, 0), (-2, 0)]),
-        ("[-1+i; -1-i]", [(-1, 1), (-1, -1)]),
-        ([-2, "-2"], [(-2, 0), (-2, 0)]),
-        (["-1+i", "-1 - i"], [(-1, 1), (-1, -1)]),
-        ((Fraction(-1, 2),), [(Fraction(-1, 2), 0)]),
-        (np.array([-1, -2]), [(-1, 0), (-2, 0)]),
-        ([], []),
-    ],
-)
-def test_poles(value: object, expected: list[tuple[Fraction | int, Fraction | int]]) -> None:
-    poles = [(pole.real.fraction(), pole.imaginary.fraction()) for pole in parse_poles(value)]
+@tabled
+def test_poles(value: object, expected: list[list[str]]) -> None:
+    poles = [[str(pole.real), str(pole.imaginary)] for pole in parse_poles(value)]
     assert poles == expected
+
+
+def test_poles_may_be_fractions_and_arrays() -> None:
+    assert parse_poles((Fraction(-1, 2),)) == parse_poles("-1/2")
+    assert parse_poles(np.array([-1, -2])) == parse_poles("-1, -2")
 
 
 @pytest.mark.parametrize("value", [-2, None, {"a": 1}, 0.5])
@@ -184,21 +127,9 @@ def test_poles_are_a_list(value: object) -> None:
         parse_poles(value)
 
 
-@pytest.mark.parametrize(
-    ("text", "variable", "expected"),
-    [
-        ("s^2 + 4 s + 4", "s", (s + 2) * (s + 2)),
-        ("(s+10)^2", "s", (s + 10) * (s + 10)),
-        ("s(s+1)/2", "s", s * (s + 1) / 2),
-        ("s^2 + (b + h1) s + omega^2 (1 - h1)", "s", s * s + (b + h1) * s + omega * omega * (one - h1)),
-        ("s/b + 1", "s", s / b + 1),
-        ("(s + 1 + i)(s + 1 - i)", "s", s * s + s * 2 + 2),
-        ("(s^2 - 1)/(s - 1)", "s", s + 1),
-        ("z - 1/2", "z", z - Fraction(1, 2)),
-    ],
-)
-def test_polynomial(text: str, variable: str, expected: Scalar) -> None:
-    assert parse_polynomial(text, variable) == expected
+@tabled
+def test_polynomial(text: str, variable: str, expected: str) -> None:
+    assert str(parse_polynomial(text, variable)) == expected
 
 
 @tabled

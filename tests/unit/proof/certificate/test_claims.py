@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-import itertools
 import random
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import pytest
 
@@ -176,46 +175,8 @@ def test_named_coefficients_stand_for_their_meaning() -> None:
 # -- random points ------------------------------------------------------------------------------------------------------
 
 
-def test_points_where_a_denominator_vanishes_are_drawn_again(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(claims, "EXACT_UP_TO", -1)
-    meet, draws = claims._holds_at, itertools.count()
-
-    def unlucky(*arguments: Any) -> bool:
-        if next(draws) < 3:
-            raise VanishingDenominator
-        return meet(*arguments)
-
-    monkeypatch.setattr(claims, "_holds_at", unlucky)
-    assert verify(said(a / b, Quotient(literal(a), literal(b))), Environment())[0]
-
-    def hopeless(*_: Any) -> bool:
-        raise VanishingDenominator
-
-    monkeypatch.setattr(claims, "_holds_at", hopeless)
-    assert verify(said(a, a), Environment()) == ("", 0.0)
-
-
 def test_a_denominator_that_is_zero_at_the_point_is_noticed(monkeypatch: pytest.MonkeyPatch) -> None:
     point = Point({"a"}, random.Random(0))  # noqa: S311
     monkeypatch.setitem(point.values, "a", 5)
     with pytest.raises(VanishingDenominator):
         point.scalar(1 / (a - 5))
-
-
-# -- rows that span the same space ----------------------------------------------------------------------------------------
-
-
-@pytest.mark.parametrize(
-    ("left", "right", "same"),
-    [
-        ([[2, 4], [1, 3]], [[1, 0], [0, 1]], True),
-        ([[1, 2, 3], [2, 4, 6]], [[1, 2, 3]], True),
-        ([[a, 1, 0], [0, b, 1]], [[1, 0, -1 / (a * b)], [0, 1, 1 / b]], True),
-        ([[1, 2, 3], [2, 4, 6]], [[1, 2, 4]], False),
-        ([[1, 0, 0], [0, 1, 0]], [[1, 0, 0]], False),
-        ([[1, 0]], [[1, 0], [0, 1]], False),
-    ],
-)
-def test_matrices_are_equivalent_where_their_rows_span_the_same_space(left: Any, right: Any, *, same: bool) -> None:
-    relation = said(Matrix.of(left), "~", Matrix.of(right))
-    assert (verify(relation, Environment())[0] == "exact") == same

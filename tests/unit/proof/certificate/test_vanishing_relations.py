@@ -8,7 +8,7 @@ from symobs.exact import EIGENVALUE, Ideal, Matrix, Scalar, TooLarge
 from symobs.formula.tree import Apply, Environment, Letter, Literal, Power, Product, Relation
 from symobs.proof.certificate.claims import verify
 from symobs.proof.certificate.pointwise import never_together_zero
-from tests.support.independent_algebra.plain import seeded
+from tests.support.algebra import seeded
 
 a, b, c, d = (Scalar.symbol(name) for name in "abcd")
 

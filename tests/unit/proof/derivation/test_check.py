@@ -163,17 +163,7 @@ def loop(estimate: Formula) -> tuple[Step, ...]:
 
 INNOVATION = Sum((Y, Negative(Product((C, ESTIMATE)))))
 OBSERVER = loop(Sum((Product((A, ESTIMATE)), Product((B, U)), Product((L, INNOVATION)))))
-WRONG_SIGN = loop(Sum((Product((A, ESTIMATE)), Product((B, U)), Negative(Product((L, INNOVATION))))))
 ERROR = said(Derivative(E), Product((Sum((A, Negative(Product((L, C))))), E)))
-
-
-def test_an_error_equation_is_checked_on_signals() -> None:
-    checked(*OBSERVER, Equal((ERROR,)))
-    refused(*WRONG_SIGN, Equal((ERROR,)))
-    refused(*OBSERVER, Equal((said(Derivative(E), Product((A, E))),)))
-    refused(
-        *OBSERVER[:-2], Define(said(E, Sum((X, Negative(ESTIMATE))))), Equal((ERROR,)), match="cannot be read|not true"
-    )
 
 
 def test_a_signal_is_defined_or_given_a_derivative_once() -> None:
@@ -240,13 +230,6 @@ def test_a_letter_that_means_nothing_on_the_stratum_may_not_be_used_there() -> N
 
 
 # -- derivations -------------------------------------------------------------------------------------------------------
-
-
-def test_sections_share_what_is_established() -> None:
-    inner = Section(Sentence("test_plain"), (A_IS, Section(Sentence("test_plain"), (CHI,))))
-    assert checked(inner, Equal((said(Letter("chi"), s**2 + 3 * s + 2),))).defines("chi")
-    refused(Section(Sentence("test_plain"), (CHI,)), A_IS)
-    refused(Section(slot(said(1, 2)), ()))
 
 
 def test_only_steps_are_steps() -> None:

@@ -15,8 +15,10 @@ from symobs.formula.tree import (
     Letter,
     Negative,
     Product,
+    SignReversal,
     Sum,
     SymbolList,
+    Transpose,
 )
 from symobs.ground.errors import DerivationRejected, UsageError
 from symobs.proof.derivation import (
@@ -33,7 +35,7 @@ from symobs.proof.derivation import (
     translated,
 )
 from symobs.proof.derivation.convention_signs import set_apart
-from tests.support.problems.steps import START, said
+from tests.support.problems.steps import START, literal, said
 
 pytestmark = pytest.mark.usefixtures("own_phrases")
 
@@ -179,14 +181,6 @@ def test_no_page_writes_two_things_alike() -> None:
     assert steps_in(Convention("book", letters={"L": "N"}), *own) == own
 
 
-def test_two_letters_for_the_gain_that_is_sought_may_be_written_alike() -> None:
-    book = Convention("book", letters={"L": "H", "A": "V"})
-    sought = (PLANT, L_IS, Define(said(Letter("H_x"), Matrix.column([h1, 7]))))
-    assert steps_in(book, *sought)[:2] == sought[:2]
-    with pytest.raises(UsageError, match="writes H for two things"):
-        steps_in(Convention("book", letters={"A": "H"}), *sought)
-
-
 def test_parameters_that_are_printed_like_a_letter_are_set_apart() -> None:
     mass, matrix = Scalar.symbol("M"), Scalar.symbol("A")
     plant = Given((said(A, Matrix.of([[mass, 1], [matrix, -3]])), said(C, Matrix.of([[1, 0]]))), silent=True)
@@ -237,11 +231,51 @@ def test_unknown_entries_are_called_after_their_letter() -> None:
     assert both == (sought(K, -r1), sought(L, -m1))
 
 
-@pytest.mark.parametrize("other", ["m1", "m_1"])
-def test_an_entry_is_not_called_like_a_parameter(other: str) -> None:
-    steps = sought(L, l1, l2), sought(A, Scalar.symbol(other))
-    assert own(PLUS, *steps) == steps
-    assert own(PLUS, steps[0], final=Environment(signs={other: "real"})) == steps[:1]
-    underlined = sought(L, Scalar.symbol("l_1")), steps[1]
-    assert own(PLUS, *underlined) == underlined
-    assert own(PLUS, sought(A, Scalar.symbol("m3")), steps[0]) == (sought(A, Scalar.symbol("m3")), sought(L, -m1, -m2))
+def test_data_that_are_equal_to_a_gain_keep_their_sign() -> None:
+    plant = Given((said(A, Matrix.of([[0, 1], [-2, -3]])), said(C, Matrix.of([[5, 7]]))), silent=True)
+    written = Product((literal(Matrix.of([[5, 7]])), literal(GAIN)))
+    turned = Product((literal(Matrix.of([[5, 7]])), literal(-GAIN)))
+    product = Define(said(Letter("P"), Product((C, L)), written))
+    found = steps_in(PLUS, plant, L_IS, product)
+    assert found[2] == Define(said(Letter("P"), Negative(Product((C, L))), written))
+    (other,) = sign_translation.in_signs((product,), SignReversal(frozenset({"L"}), {GAIN}))
+    assert other == Define(said(Letter("P"), Negative(Product((C, L))), Negative(turned)))
+    scalar = Define(said(Letter("D"), 3))
+    assert steps_in(PLUS, plant, scalar, L_IS)[1] == scalar
+    # Where no data are equal to it the gain that is written out is the new one.
+    plant = Given((said(A, Matrix.of([[0, 1], [-2, -3]])), said(C, Matrix.of([[5, 8]]))), silent=True)
+    written = Product((literal(Matrix.of([[5, 8]])), literal(GAIN)))
+    product = Define(said(Letter("P"), Product((C, L)), written))
+    turned = Product((literal(Matrix.of([[5, 8]])), literal(-GAIN)))
+    assert steps_in(PLUS, plant, L_IS, product)[2] == Define(
+        said(Letter("P"), Negative(Product((C, L))), Negative(turned))
+    )
+
+
+def test_the_values_of_a_gain_are_what_relations_say_it_is() -> None:
+    def values(*items: Any) -> list[Matrix]:
+        return list(convention_signs._values(said(*items), GAINS))
+
+    assert values(L, GAIN) == [GAIN, GAIN.T]
+    assert values(Transpose(L), GAIN.T) == [GAIN.T, GAIN]
+    assert values(L, A, GAIN, 2 * GAIN) == [GAIN, GAIN.T, 2 * GAIN, 2 * GAIN.T]
+    for items in ((A, GAIN), (Product((L, C)), GAIN), (L, A), (L, 3), (L, Matrix.zeros(2, 1)), (GAIN, L)):
+        assert values(*items) == []
+
+
+def test_the_minus_of_unknown_entries_goes_into_the_matrix_before_them() -> None:
+    def replaced(item: Formula) -> Any:
+        return sign_translation._substituted(item, {"l1": -m1, "l2": -m2})
+
+    table, minus = literal(Matrix.of([[1, 2]])), literal(Matrix.of([[-1, -2]]))
+    assert replaced(Product((table, literal(Matrix.column([l1, l2]))))) == Product(
+        (minus, literal(Matrix.column([m1, m2])))
+    )
+    mixed = Product((table, literal(Matrix.column([l1, a]))))
+    assert replaced(mixed) == Product((table, literal(Matrix.column([-m1, a]))))
+    doubled = Product((table, literal(Matrix.column([2 * l1, l2]))))
+    assert replaced(doubled) == Product((table, literal(Matrix.column([-2 * m1, -m2]))))
+    as_given = Product((table, literal(Matrix.column([-a, -k1]))))
+    assert replaced(as_given) is as_given
+    three = Product((A, table, literal(Matrix.column([l1, l2]))))
+    assert replaced(three) == Product((A, table, literal(Matrix.column([-m1, -m2]))))

@@ -45,7 +45,6 @@ from symobs.stability.criteria.routh_table import routh_table
 from tests.support.problems.steps import (
     A_IS,
     C_IS,
-    CHI,
     COMPANION,
     START,
     A,
@@ -317,13 +316,6 @@ def test_what_is_introduced_is_named_by_an_equation() -> None:
     refused(Define(Relation((F, literal(1), literal(2)), ("=", "="))))
     checked(Define(Relation((F, literal(1), literal(2)), ("=", "<"))))
     refused(Define(Relation((F, literal(2), literal(1)), ("=", "<"))))
-
-
-def test_a_letter_means_the_last_value_written_out() -> None:
-    known = checked(A_IS, CHI, Define(said(F, chi, s**2 + 3 * s + 2)), Define(said(Letter("H"), chi)))
-    assert known.values["F"] == known.values["H"] == s**2 + 3 * s + 2
-    known = checked(Define(said(F, Scalar.of(2), Sum((literal(1), literal(1))))))
-    assert known.values["F"] == Scalar.of(2)
 
 
 def test_a_written_value_stands_as_it_is_written() -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from random import Random
 from typing import Any
 
@@ -92,3 +93,76 @@ def test_what_is_no_equilibrium_is_refused_with_the_reason(changes: dict[str, An
     }
     with pytest.raises(InputError, match=reason):
         symobs.linearize(**{**given, **changes})
+
+
+#: f, the state's name, its equilibrium, the input there: roots, powers and functions of a state, by hand at rest.
+SCALAR = [
+    ("u - 0.5*sqrt(x)", "4", "1"),
+    ("u - k*sqrt(x)", "c", "k*sqrt(c)"),
+    ("u/m - k/m*sqrt(2*g*x)", "c", "k*sqrt(2*g*c)"),
+    ("u - k*x^0.5", "c", "k*c^(1/2)"),
+    ("u - x^1.5", "c", "c^1.5"),
+    ("u - x^(-1/2)", "c", "1/sqrt(c)"),
+    ("u - 2*sqrt(x + 1)", "3", "4"),
+    ("u - sqrt(x)", "2", "sqrt(2)"),
+    ("u - sqrt(sin(x))", "pi/6", "1/sqrt(2)"),
+    ("u - sqrt(1 + x^2)", "c", "sqrt(1 + c^2)"),
+    ("u - x/sqrt(1 + x^2)", "c", "c/sqrt(1 + c^2)"),
+    ("u*sqrt(k/m) - g*x^2", "sqrt(m*g/k)", "m*g^2/k*sqrt(m/k)"),
+    ("u - exp(-x)", "c", "exp(-c)"),
+    ("u - exp(-1/x)", "c", "exp(-1/c)"),
+    ("u - x*exp(-x)", "1", "exp(-1)"),
+    ("u - sinh(x)", "c", "sinh(c)"),
+    ("u - tanh(x)", "c", "tanh(c)"),
+]
+
+
+@pytest.mark.parametrize(("f", "at", "there"), SCALAR)
+def test_roots_and_functions_of_a_state_have_their_derivative_and_pages(f: str, at: str, there: str) -> None:
+    signs = dict.fromkeys("ckmg", "positive")
+    point = {"x": at, "u": there}
+    plant = symobs.linearize(f, "x", states="x", inputs="u", equilibrium=point, symbols=signs)
+    values = {name: sp.Rational(k, 3) for k, name in enumerate("ckmg", 4)}
+    x = sp.Symbol("x")
+    read = partial(sp.sympify, rational=True)  # noqa: TID251 - texts of this file
+    rest = {name: read(value.replace("^", "**")).subs(values) for name, value in point.items()}
+    slope = sp.diff(read(f.replace("^", "**")), x).subs(values).subs(rest)
+    assert abs(sp.N(plant.A[0].subs(values) - slope, 30)) < 1e-20
+    for result in (
+        symobs.observer(plant, poles="-2"),
+        symobs.transfer_function(plant),
+        symobs.matrix_exponential(plant),
+    ):
+        assert result.to("text")
+
+
+def test_a_root_of_what_may_be_negative_asks_for_signs() -> None:
+    with pytest.raises(InputError, match=r"sqrt\(c\) has no exact value here: it may not be real; declare signs"):
+        symobs.linearize("u - sqrt(x)", "x", states="x", inputs="u", equilibrium={"x": "c", "u": "sqrt(c)"})
+
+
+def test_a_magnetic_levitator_has_the_root_of_its_balance_of_forces() -> None:
+    """m v' = m g - K i²/y²: at rest i = y √(m g/K), so that ∂v'/∂y = 2 g/y and ∂v'/∂i = -2 √(K g/m)/y."""
+    signs = dict.fromkeys(("K", "g", "m", "r", "L", "h"), "positive")
+    point = {"y": "h", "v": 0, "c": "h*sqrt(m*g/K)", "u": "r*h*sqrt(m*g/K)"}
+    f = "[v; g - K/m*c^2/y^2; (u - r*c)/L]"
+    plant = symobs.linearize(f, "y", states="y, v, c", inputs="u", equilibrium=point, symbols=signs)
+    K, g, m, h = sp.symbols("K g m h", positive=True)
+    found = plant.A.subs({sp.Symbol(str(name)): name for name in (K, g, m, h)})
+    assert sp.simplify(found[1, 0] - 2 * g / h) == sp.simplify(found[1, 2] + 2 * sp.sqrt(K * g / m) / h) == 0
+    assert symobs.controllability(plant).verdict == "yes"
+    assert symobs.observer(plant, poles="-1, -2, -3").to("text")
+
+
+@tabled
+def test_rounded_values_are_told_the_equilibrium_they_round(f: str, point: dict[str, Any], exact: str) -> None:
+    """The exact point is a zero of f by hand, and is taken; where none is simple, none is named."""
+    given: dict[str, Any] = {"f": f, "states": ", ".join(name for name in point if name != "u")}
+    given["inputs"] = "u" if "u" in point else ""
+    with pytest.raises(InputError) as refused:
+        symobs.linearize(**given, equilibrium=point)
+    assert ("rounded ones" in refused.value.repair) == bool(exact)
+    assert exact in refused.value.repair
+    if exact:
+        named = dict(entry.split(" = ") for entry in exact.strip("{} ").split(", "))
+        symobs.linearize(**given, equilibrium={name: value.strip('"') for name, value in named.items()})

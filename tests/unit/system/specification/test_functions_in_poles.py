@@ -8,7 +8,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-import sympy
 
 import symobs
 from symobs.ground.errors import InputError
@@ -66,13 +65,6 @@ def test_both_gains_place_the_poles_at_values_of_the_parameters(name: str) -> No
         assert np.poly(A - L @ C) == expected
     if name != "spiral":
         assert "as required" in feedback.to("text")
-
-
-def test_cosine_and_sine_of_one_angle_leave_no_sum_of_squares() -> None:
-    design = symobs.observer(symobs.StateSpace(*SERVO), poles=PAIR)
-    a, theta = sympy.symbols("a theta")
-    assert list(design.L) == [2 * a * sympy.cos(theta) - 1, a**2 - 2 * a * sympy.cos(theta) + 1]
-    assert list(design.at(a=2, theta="pi/3").L) == [1, 3]
 
 
 @tabled

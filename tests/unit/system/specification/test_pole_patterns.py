@@ -56,14 +56,6 @@ def test_an_itae_polynomial_has_the_tabulated_poles(order: int) -> None:
     assert polynomial(order, {"itae": 1}) == pytest.approx(np.poly(poles).real.tolist(), abs=0.015)
 
 
-@pytest.mark.parametrize("overshoot", ["0.05", "0.163", "1e-4"])
-def test_a_pair_by_settling_time_and_overshoot_has_both_and_hardly_less(overshoot: str) -> None:
-    _, twice, square = polynomial(2, f"settling_time = 2, overshoot = {overshoot}")
-    sigma, omega = twice / 2, math.sqrt(square - twice**2 / 4)
-    assert sigma == 4 / 2
-    assert 0.97 * float(overshoot) < math.exp(-math.pi * sigma / omega) <= float(overshoot)
-
-
 #: The filters of order two for ω₀ = e⁻ᵀ: s² + c ω₀ s + d ω₀².
 OF_AN_EXPONENTIAL = [
     ("damping = exp(-T), natural_frequency = 2", 2 * math.exp(-1) * 2, 4),

@@ -7,34 +7,18 @@ from typing import Any
 import pytest
 
 import symobs
+from tests.kit import tabled
 
 S = symobs.StateSpace
-B_AND_EXP = ("[b 0; 0 -exp(b)]", "[1; 1]", "[1 1]")
 
 
-@pytest.mark.parametrize(
-    ("task", "data", "asked", "conditions", "cases"),
-    [
-        ("transfer_function", ("[1 1-exp(-T); 0 exp(-T)]", "[0; 1]", "[1 0]"), {}, ["exp(T) - 1"], ["exp(T) - 1"]),
-        ("transfer_function", B_AND_EXP, {}, ["b + exp(b)"], ["b + exp(b)"]),
-        ("decomposition", B_AND_EXP, {}, ["b + exp(b)"], ["b + exp(b)"]),
-        ("gramian", B_AND_EXP, {}, ["T", "b"], ["b + exp(b)", "b"]),
-        ("observer", B_AND_EXP, {"poles": "-1, -2"}, ["b + exp(b)"], ["b + exp(b)"]),
-        ("reduced_order_observer", ("[0 1; 0 -b]", None, "[1 exp(b)]"), {"poles": "-1"}, ["b*exp(b) - 1"], ["b*exp(b) - 1"]),
-        ("state_feedback", ("[-1 0; 0 -2]", "[1; b]"), {"poles": "-exp(b), -1"}, ["b"], ["b"]),
-        ("pbh", ("[cos(th) 0; 0 -1]", None, "[0 1]"), {}, [], ["sin(th)"]),
-        ("detectability", ("[cos(th) 0; 0 -1]", None, "[0 1]"), {}, ["-cos(th)"], ["sin(th)"]),
-        ("stabilizability", ("[cos(th) 0; 0 -1]", "[0; 1]"), {}, ["-cos(th)"], ["sin(th)"]),
-        ("detectability", ("[0 1 0; sin(th) -1 0; 0 0 -2]", None, "[0 0 1]"), {}, ["-sin(th)"], None),
-        ("detectability", ("[1-exp(b) 0; 0 -2]", None, "[b 1]"), {}, ["b"], ["b", "exp(b) - 3"]),
-    ],
-)  # fmt: skip
+@tabled
 def test_conditions_cases_and_page(
-    task: str, data: tuple[str | None, ...], asked: Any, conditions: list[str], cases: list[str] | None
+    task: str, data: dict[str, Any], asked: Any, conditions: list[str], cases: list[str]
 ) -> None:
-    result = getattr(symobs, task)(S(*data), **asked)
+    result = getattr(symobs, task)(symobs.StateSpace(**data), **asked)
     assert [str(relation.lhs) for relation in result.conditions] == conditions
-    assert cases is None or [str(case.when[0].lhs) for case in result.cases] == cases
+    assert not cases or [str(case.when[0].lhs) for case in result.cases] == cases
     assert result.to("latex")
     assert result.to_json()
 
@@ -46,3 +30,20 @@ def test_a_rank_that_drops_where_a_cosine_vanishes_has_a_page() -> None:
         ["cos(b)", f"sin(b) {sign} 1", "a*exp(b) - a + b*exp(a)"] for sign in "+-"
     ]
     assert found.to("text").count("Case ") == 2
+
+
+@pytest.mark.parametrize(
+    ("task", "data", "asked"),
+    [
+        # a fixed mode with a letter among the poles that are asked for
+        ("state_feedback", ("[-2 0 0; 0 b a-b; 0 0 a]", "[0; 1+c; c]"), {"poles": "-p, -2*p, a"}),
+        ("observer", ("[-1 b+a^2+1 0; 0 a^2 0; 0 0 a]", None, "[a b-a 0]"), {"poles": "-q, a^2, -1"}),
+        # roots of numbers beside the root of a discriminant
+        ("matrix_exponential", ("[1-sqrt(3) 2; a-sqrt(2) sqrt(2)]",), {}),
+        ("zero_order_hold", ("[-2 a; -1 sqrt(3)-1]", "[sqrt(2); -2]"), {}),
+        # several inputs, and no family is known
+        ("state_feedback", ("[0 0; cos(b) a]", "[exp(-a) 1; 0 -b]"), {"poles": "-1, -2"}),
+    ],
+)
+def test_pages_beside_letters_and_roots(task: str, data: tuple[str | None, ...], asked: dict[str, str]) -> None:
+    assert getattr(symobs, task)(S(*data), **asked).to("text")

@@ -7,11 +7,14 @@ from typing import Any
 
 import numpy as np
 import pytest
-from scipy.linalg import solve_continuous_lyapunov, solve_discrete_lyapunov
+from scipy.linalg import (  # type: ignore[import-untyped]
+    solve_continuous_lyapunov,
+    solve_discrete_lyapunov,
+)
 
 import symobs
 from symobs.ground.errors import InputError
-from tests.support.independent_algebra.plain import seeded
+from tests.support.algebra import seeded
 
 
 def hold(seed: int) -> None:

@@ -11,7 +11,7 @@ from scipy.linalg import expm
 
 import symobs
 from symobs.ground.errors import InputError
-from tests.support.independent_algebra.plain import seeded
+from tests.support.algebra import seeded
 
 
 def text(rows: list[list[int]]) -> str:

@@ -8,14 +8,13 @@ from typing import Any
 import pytest
 import sympy
 from hypothesis import given, settings
-from hypothesis import strategies as st
 
 import symobs
 from symobs.exact import Scalar, stable_roots
 from symobs.ground.errors import CertificateRejected, InputError
 from symobs.stability.criteria.stability import is_beyond, is_marginal, on_boundary
 from symobs.tasks.analysis.modes import modes
-from tests.kit import tabled
+from tests.kit import scalar, tabled
 from tests.support.problems.strategies import Sample, plants
 
 numeric = plants(("dense", "hidden", "defective"))
@@ -27,25 +26,6 @@ def plant_of(sample: Sample) -> Any:
 
 
 # -- identities ----------------------------------------------------------------------------------------------------------
-
-
-@given(numeric, st.sampled_from([1, -1]))
-@settings(max_examples=25)
-def test_dual_pairs_have_the_same_ranks(sample: Sample, sign: int) -> None:
-    plant = plant_of(sample)
-    found: Any = symobs.dual(plant, sign=sign)
-    dual = symobs.StateSpace(found.A, found.B, found.C, found.D)
-    assert symobs.controllability(dual).fields["rank"] == symobs.observability(plant).fields["rank"]
-    assert symobs.observability(dual).fields["rank"] == symobs.controllability(plant).fields["rank"]
-    assert found.dual_controllability_rank == found.observability_rank == symobs.observability(plant).fields["rank"]
-    again: Any = symobs.dual(dual, sign=sign)
-    assert (again.A, again.B, again.C, again.D) == (plant.A, plant.B, plant.C, plant.D)
-    if sign == 1:
-        assert symobs.stabilizability(dual).verdict == symobs.detectability(plant).verdict
-        assert (
-            symobs.pbh(dual, of="controllability").fields["fixed_polynomial"]
-            == (symobs.pbh(plant).fields["fixed_polynomial"])
-        )
 
 
 @given(numeric)
@@ -74,6 +54,47 @@ def test_the_parts_have_the_zeros_and_the_spectra_they_should(sample: Sample) ->
     expected = (plant.C * (s * sympy.eye(order) - plant.A).adjugate() * plant.B)[0] / plant.A.charpoly(s).as_expr()
     assert sympy.cancel(found.transfer_function - expected) == 0
     assert sympy.degree(sympy.fraction(sympy.cancel(expected))[1], s) == found.minimal_order
+
+
+@pytest.mark.parametrize("missing", ["input", "output"])
+@given(numeric)
+@settings(max_examples=100)
+def test_without_input_or_output_there_are_two_parts(missing: str, sample: Sample) -> None:
+    """As many states are reached (seen) as the rank of the test matrix says, and none of the others drives (shows) them."""
+    plant = plant_of(sample)
+    order, A, B, C = sample.order, plant.A, plant.B, plant.C
+    if missing == "output":
+        found: Any = symobs.decomposition(symobs.StateSpace(sample.A, sample.B))
+        test, names = sympy.Matrix.hstack(*(A**k * B for k in range(order))), ["c", "no c"]
+    else:
+        found = symobs.decomposition(symobs.StateSpace(sample.A, None, sample.C))
+        test, names = sympy.Matrix.vstack(*(C * A**k for k in range(order))), ["o", "no o"]
+    first = test.rank()
+    assert dict(found.sizes) == dict(zip(names, [first, order - first], strict=True))
+    assert "transfer_function" not in found.fields
+    assert found.T * A == found.A * found.T
+    assert found.T.rank() == order
+    if missing == "output":
+        assert found.B == found.T * B
+        assert found.A[first:, :first].is_zero_matrix is not False
+        assert found.B[first:, :].is_zero_matrix is not False
+    else:
+        assert C == found.C * found.T
+        assert found.A[:first, first:].is_zero_matrix is not False
+        assert found.C[:, first:].is_zero_matrix is not False
+
+
+def test_a_decomposition_without_output_has_its_cases_and_its_sentences() -> None:
+    found = symobs.decomposition(symobs.StateSpace("[0 1; -2 -3]", "[1; b]"))
+    assert {str(case.when[0]): case.result.sizes["no c"] for case in found.cases} == {
+        "Eq(b + 1, 0)": 1,
+        "Eq(b + 2, 0)": 1,
+    }
+    text = found.to("text")
+    assert "controllable; uncontrollable" in text
+    assert "observable" not in text
+    with pytest.raises(InputError, match="B"):
+        symobs.decomposition(symobs.StateSpace("[0 1; -2 -3]"))
 
 
 @given(plants(("dense", "hidden", "defective", "parametric"), largest=4))
@@ -147,34 +168,18 @@ def test_conditions_of_detectability() -> None:
 x = Scalar.symbol("s")
 
 
-@pytest.mark.parametrize(
-    ("polynomial", "discrete", "boundary", "marginal", "beyond"),
-    [
-        (x, False, True, True, False),
-        (x**2, False, None, False, False),
-        (x**2 * (x + 1), False, None, False, False),
-        (x**2 + 4, False, True, True, False),
-        (x**4 + x**2 * 3 + 1, False, True, True, False),
-        (x**4 - x**2 - 1, False, False, False, True),
-        (x**4 + 1, False, False, False, True),
-        (x**3 - x - 1, False, False, False, True),
-        (x - 1, True, True, True, False),
-        (x**2 + x + 1, True, True, True, False),
-        (x**2 + x * 3 + 1, True, False, False, True),
-        (x * 2 - 1, True, False, True, False),
-    ],
-)
+@tabled
 def test_what_lies_on_the_boundary_and_beyond(
-    polynomial: Scalar,
+    polynomial: str,
     discrete: bool,  # noqa: FBT001
-    boundary: bool | None,  # noqa: FBT001
+    boundary: bool | str,  # noqa: FBT001
     marginal: bool,  # noqa: FBT001
     beyond: bool,  # noqa: FBT001
 ) -> None:
-    if boundary is not None:
-        assert on_boundary(polynomial, "s", {}, discrete=discrete) == boundary
-    assert is_marginal(polynomial, "s", {}, discrete=discrete) == marginal
-    assert is_beyond(polynomial, "s", {}, discrete=discrete) == beyond
+    if boundary != "open":
+        assert on_boundary(scalar(polynomial), "s", {}, discrete=discrete) == boundary
+    assert is_marginal(scalar(polynomial), "s", {}, discrete=discrete) == marginal
+    assert is_beyond(scalar(polynomial), "s", {}, discrete=discrete) == beyond
 
 
 # -- nothing false gets through ------------------------------------------------------------------------------------------
@@ -185,19 +190,6 @@ def test_a_wrong_rank_at_an_eigenvalue_is_rejected() -> None:
     for ranks in ((3, 3), (4, 4), (4, 2), (4,)):
         with pytest.raises((CertificateRejected, ValueError)):
             result.with_answer("ranks", ranks)
-
-
-@pytest.mark.parametrize("call", [
-    lambda p: symobs.pbh(p, of="beauty"),
-    lambda p: symobs.detectability(p, meaning="somehow"),
-    lambda p: symobs.dual(p, sign=2),
-    lambda p: symobs.canonical_form(p, kind="normal"),
-])  # fmt: skip
-def test_what_is_not_known_is_refused_with_the_repair(call: Any) -> None:
-    with pytest.raises(InputError) as caught:
-        call(symobs.StateSpace("[0 1; 0 -1]", "[0; 1]", "[1 0]"))
-    assert caught.value.where.startswith("specification.")
-    assert caught.value.repair.startswith("write ")
 
 
 @tabled
@@ -260,3 +252,35 @@ def test_a_mode_that_grows_on_strata_that_are_not_known_is_undecided(monkeypatch
     found = symobs.detectability(symobs.StateSpace(*plant), **asked)
     assert found.verdict == "undecided"
     assert "is not detectable" not in found.to("text")
+
+
+@given(plants(("dense", "hidden", "defective", "parametric"), largest=3))
+@settings(max_examples=50)
+def test_a_plant_in_other_coordinates_is_a_plant(sample: Sample) -> None:
+    """C (sI − A)⁻¹ B is the same in all coordinates, transposed for the dual; what the coordinates need is kept."""
+    plant = plant_of(sample)
+    own = symobs.transfer_function(plant).transfer_function
+    for found in (symobs.decomposition(plant), symobs.canonical_form(plant, kind="modal"), symobs.dual(plant)):
+        there = symobs.transfer_function(found)
+        assert sympy.cancel(there.transfer_function - own) == 0
+        if found.task != "dual":
+            assert set(found.conditions) <= set(there.conditions)
+    twice = plant * symobs.dual(plant)
+    assert sympy.cancel(symobs.transfer_function(twice).transfer_function - own**2) == 0
+
+
+def test_what_is_no_plant_in_any_coordinates_is_refused() -> None:
+    hidden = symobs.StateSpace("[-1 0; 0 -2]", "[1; 0]", "[1 1]")
+    with pytest.raises(InputError, match="no controllable canonical form"):
+        symobs.observability(symobs.canonical_form(hidden, kind="controllable"))
+    with pytest.raises(InputError, match="a plant is expected"):
+        symobs.observability(symobs.pbh(hidden))  # type: ignore[arg-type]
+
+
+def test_a_design_in_canonical_form_says_where_that_is() -> None:
+    """For C = [1 c] the observable form is there unless (c − 1)(2c − 1) = 0, and L is φ less χ: no letter is left in it."""
+    found = symobs.canonical_form(symobs.StateSpace("[0 1; -2 -3]", "[0; 1]", "[1 c]"), kind="observable")
+    design = symobs.observer(found, poles=[-5, -6])
+    assert list(design.L) == [28, 8]
+    assert {str(condition) for condition in design.conditions} == {"Ne(2*c - 1, 0)", "Ne(c - 1, 0)"}
+    assert "2c - 1 ≠ 0" in design.to("text")

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import pytest
-
 import symobs
 from symobs.exact import Scalar
 from symobs.pages.formats.json import result_object
@@ -35,13 +33,6 @@ def test_where_a_denominator_vanishes_there_is_no_stratum() -> None:
     plant = Region(REAL, frozenset({a + b}))
     assert found(a - 1, b + 1, region=plant) == set()
     assert found(a - 1, b - 1, region=plant) == {frozenset({"a - 1", "b - 1"})}
-
-
-@pytest.mark.parametrize("equation", ["a^2-a+1", "a^4+a+1"])
-def test_a_stratum_without_real_points_is_no_case(equation: str) -> None:
-    plant = symobs.StateSpace("[0 1; -1 -2]", C=f"[{equation} 0]", symbols={"a": "real"})
-    told = result_object(symobs.observability(plant))
-    assert (told["verdict"], told["conditions"], told["cases"]) == ("yes", [], [])
 
 
 def test_different_irreducible_polynomials_in_one_name_have_no_zero_in_common() -> None:

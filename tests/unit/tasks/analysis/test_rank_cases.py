@@ -11,6 +11,7 @@ from copy import copy
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import cache
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import pytest
@@ -18,26 +19,27 @@ import pytest
 import symobs
 from symobs.exact import Ideal, Matrix, Scalar, TooLarge
 from symobs.formula.expression import parse_scalar
-from symobs.formula.tree import Conjunction, Environment, Letter, Literal, Relation
+from symobs.formula.tree import Conjunction, Letter, Literal, Relation
 from symobs.ground.errors import CertificateRejected, DerivationRejected
 from symobs.proof.derivation import CaseStep, Given
 from symobs.tasks.analysis.rank import rank_test as missing_measurements
 from symobs.tasks.analysis.rank.rank_test import RankResult
 from symobs.tasks.analysis.strata.loci import Locus, Region, loci, maximal
-from tests.kit import tabled
-from tests.support.claims.claims import Setting, applicable, conditions_hold, rank_holds
-from tests.support.independent_algebra.plain import (
+from tests.kit import tabled, tables
+from tests.support.algebra import (
     has_sign,
     matrix_at,
     observability_rows,
     random_fraction,
     rank_of,
     seeded,
+    value_at,
 )
+from tests.support.claims.claims import Setting, applicable, conditions_hold, rank_holds
 from tests.support.sampling import FULL
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Mapping
+    from collections.abc import Iterator, Mapping, Sequence
 
 pytestmark = pytest.mark.slow
 
@@ -55,202 +57,14 @@ class Plant:
     signs: Mapping[str, str]
     rank: int
     exceptions: Mapping[str, int] = field(default_factory=dict)
-    onto: tuple[Callable[[Point], Mapping[str, Any]], ...] = ()
+    onto: Sequence[Mapping[str, str]] = ()
 
 
 def real(names: str) -> dict[str, str]:
     return dict.fromkeys(names.split(), "real")
 
 
-def positive(names: str) -> dict[str, str]:
-    return dict.fromkeys(names.split(), "positive")
-
-
-PENDULUM, DAMPED = "[0 1; -w^2 -b]", positive("w b")
-MASSES = "[0 1 0 0; -(k1+k)/m1 0 k/m1 0; 0 0 0 1; k/m2 0 -(k2+k)/m2 0]"
-SPRINGS = positive("m1 m2 k1 k2") | {"k": "nonnegative"}
-CART = "[0 1 0 0; 0 0 -m*g/M 0; 0 0 0 1; 0 0 (M+m)*g/(M*l) 0]"
-CHAIN = (
-    "[0 1 0 0 0 0; -(k1+ka)/m1 0 ka/m1 0 0 0; 0 0 0 1 0 0; ka/m2 0 -(ka+kb)/m2 0 kb/m2 0; 0 0 0 0 0 1;"
-    " 0 0 kb/m3 0 -kb/m3 0]"
-)
-THREE = positive("m1 m2 m3 k1 ka kb")
-
-PLANTS = {
-    "C = [a 0]": Plant(PENDULUM, "[a 0]", DAMPED | real("a"), 2, {"a": 0}, (lambda _: {"a": 0},)),
-    "C = [a c]": Plant(
-        PENDULUM,
-        "[a c]",
-        DAMPED | real("a c"),
-        2,
-        {"a^2 - a b c + w^2 c^2": 1, "a, c": 0},
-        (lambda p: {"b": (p["a"] ** 2 + p["w"] ** 2 * p["c"] ** 2) / (p["a"] * p["c"])}, lambda _: {"a": 0, "c": 0}),
-    ),
-    "C = [0 1]": Plant(PENDULUM, "[0 1]", DAMPED, 2),
-    "4×2 without common root": Plant(PENDULUM, "[a 0; 1-a 0]", DAMPED | real("a"), 2),
-    "4×2 with common root": Plant(
-        "[0 1; 0 0]", "[a 0; b 0]", real("a b"), 2, {"a, b": 0}, (lambda _: {"a": 0, "b": 0},)
-    ),
-    "two masses, one position": Plant(MASSES, "[1 0 0 0]", SPRINGS, 4, {"k": 2}, (lambda _: {"k": 0},)),
-    "two masses, other position": Plant(MASSES, "[0 0 1 0]", SPRINGS, 4, {"k": 2}, (lambda _: {"k": 0},)),
-    "two masses, sum": Plant(
-        MASSES,
-        "[1 0 1 0]",
-        SPRINGS,
-        4,
-        {"m2 k1 - m1 k2 + 2 k (m2 - m1)": 2},
-        (lambda p: {"k1": (p["m1"] * p["k2"] - 2 * p["k"] * (p["m2"] - p["m1"])) / p["m2"]},),
-    ),
-    "two masses, combination": Plant(
-        MASSES,
-        "[c1 0 c2 0]",
-        SPRINGS | real("c1 c2"),
-        4,
-        {"m2 k c1^2 + (m2 k1 - m1 k2 - m1 k + m2 k) c1 c2 - m1 k c2^2": 2, "c1, c2": 0, "c2, k": 2},
-        (
-            lambda _: {"c1": 0, "c2": 0},
-            lambda _: {"c2": 0, "k": 0},
-            lambda _: {"c1": 0, "k": 0},
-            lambda p: {
-                "k1": (
-                    p["m1"] * p["k"] * p["c2"] ** 2
-                    - p["m2"] * p["k"] * p["c1"] ** 2
-                    - (p["m2"] * p["k"] - p["m1"] * p["k"] - p["m1"] * p["k2"]) * p["c1"] * p["c2"]
-                )
-                / (p["m2"] * p["c1"] * p["c2"])
-            },
-        ),
-    ),
-    "free masses, difference": Plant(
-        "[0 1 0 0; -k/m1 0 k/m1 0; 0 0 0 1; k/m2 0 -k/m2 0]", "[1 0 -1 0]", positive("m1 m2 k"), 2
-    ),
-    "cart-pole, position": Plant(CART, "[1 0 0 0]", positive("m M g l"), 4),
-    "cart-pole, velocity": Plant(CART, "[0 1 0 0]", positive("m M g l"), 3),
-    "cart-pole, angle": Plant(CART, "[0 0 1 0]", positive("m M g l"), 2),
-    "cart-pole, rate": Plant(CART, "[0 0 0 1]", positive("m M g l"), 2),
-    "cart-pole, combination": Plant(
-        CART,
-        "[c1 0 c2 0]",
-        positive("m M g l") | real("c1 c2"),
-        4,
-        {"c1": 2, "m l c1 - (M + m) c2": 2, "c1, c2": 0},
-        (
-            lambda _: {"c1": 0},
-            lambda p: {"c1": (p["M"] + p["m"]) * p["c2"] / (p["m"] * p["l"])},
-            lambda _: {"c1": 0, "c2": 0},
-        ),
-    ),
-    "cart-pole, two outputs": Plant(
-        CART,
-        "[c1 0 0 0; 0 0 c2 0]",
-        positive("m M g l") | real("c1 c2"),
-        4,
-        {"c1": 2, "c1, c2": 0},
-        (lambda _: {"c1": 0}, lambda _: {"c1": 0, "c2": 0}, lambda _: {"c2": 0}),
-    ),
-    "bridge": Plant(
-        "[-1/(R1*C1) 0; 0 -1/(R2*C2)]",
-        "[1 -1]",
-        positive("R1 R2 C1 C2"),
-        2,
-        {"R1 C1 - R2 C2": 1},
-        (lambda p: {"R1": p["R2"] * p["C2"] / p["C1"]},),
-    ),
-    "two outputs a, b": Plant(
-        "[0 1 0; 0 0 a; b 0 0]",
-        "[1 0 0; 0 a b]",
-        real("a b"),
-        3,
-        {"a, b": 2},
-        (lambda _: {"a": 0, "b": 0}, lambda _: {"a": 0}, lambda _: {"b": 0}),
-    ),
-    "diag(a, b, 1)": Plant(
-        "[a 0 0; 0 b 0; 0 0 1]",
-        "[1 1 0; 0 1 1]",
-        real("a b"),
-        3,
-        {"a - 1, b - 1": 2},
-        (lambda _: {"a": 1, "b": 1}, lambda _: {"a": 1}, lambda p: {"a": p["b"]}),
-    ),
-    "diag(a, b, c)": Plant(
-        "[a 0 0; 0 b 0; 0 0 c]",
-        "[1 1 1]",
-        real("a b c"),
-        3,
-        {"a - b": 2, "a - c": 2, "b - c": 2, "a - c, b - c": 1},
-        (
-            lambda p: {"a": p["b"]},
-            lambda p: {"a": p["c"]},
-            lambda p: {"b": p["c"]},
-            lambda p: {"a": p["c"], "b": p["c"]},
-        ),
-    ),
-    "rank 2 at one value of k": Plant(  # sympy issue 24613
-        "[0 0 0; 0 0 0; 0 0 0]",
-        "[2 -1 7; 1 2 2; 0 5 -3; 5 0 5+k]",
-        real("k"),
-        3,
-        {"k - 11": 2},
-        (lambda _: {"k": 11},),
-    ),
-    "for which k": Plant("[0 1; -2 k]", "[1 1]", real("k"), 2, {"k + 3": 1}, (lambda _: {"k": -3},)),
-    "a row of three": Plant(
-        "[0 0 0; 0 0 0; 0 0 0]",
-        "[a b c]",
-        real("a b c"),
-        1,
-        {"a, b, c": 0, "a": 1},
-        (lambda _: {"a": 0}, lambda _: {"a": 0, "b": 0}, lambda _: {"a": 0, "b": 0, "c": 0}),
-    ),
-    "a circle": Plant(  # not linear in a parameter; 3² + 4² = 5²
-        "[0 1; 0 0]",
-        "[a^2 + b^2 - 25 0]",
-        real("a b"),
-        2,
-        {"a^2 + b^2 - 25": 0},
-        (lambda _: {"a": 3, "b": 4}, lambda _: {"a": -5, "b": 0}),
-    ),
-    "squares": Plant("[0 1; 0 0]", "[a^2 + b^2 0]", real("a b"), 2, {"a, b": 0}, (lambda _: {"a": 0, "b": 0},)),
-    "never zero": Plant("[0 1; 0 0]", "[a^2 + a*b + b^2 + 1 0]", real("a b"), 2),
-    "two points": Plant(
-        "[0 1; 0 0]",
-        "[a*b-1 0; a-b 0]",
-        real("a b"),
-        2,
-        {"a - 1, b - 1": 0, "a + 1, b + 1": 0},
-        (lambda _: {"a": 1, "b": 1}, lambda _: {"a": -1, "b": -1}),
-    ),
-    "an elliptic curve": Plant(  # no equation can be solved rationally
-        "[a 0 0; 0 b 0; 0 0 0]",
-        "[1 1 0; 0 0 b^2 - a^3 - a^2 - 4]",
-        real("a b"),
-        3,
-        {"b^2 - a^3 - a^2 - 4": 2, "a - b": 2, "a - b, b^3 + 4": 1},
-        (lambda _: {"a": 0, "b": 2}, lambda p: {"a": p["b"]}, lambda _: {"a": 2, "b": 4}, lambda _: {"a": 0, "b": 0}),
-    ),
-    "chain of three masses": Plant(
-        CHAIN,
-        "[0 0 1 0 0 0]",
-        THREE,
-        6,
-        {"m3 k1 + m3 ka - m1 kb": 4},
-        (lambda p: {"kb": p["m3"] * (p["k1"] + p["ka"]) / p["m1"]},),
-    ),
-    "chain, two outputs": Plant(
-        CHAIN,
-        "[0 0 1 0 0 0; c1 0 0 0 c3 0]",
-        THREE | real("c1 c3"),
-        6,
-        {"m3 k1 + m3 ka - m1 kb, kb c1 - ka c3": 4},
-        (
-            lambda p: {
-                "kb": p["m3"] * (p["k1"] + p["ka"]) / p["m1"],
-                "c1": p["ka"] * p["c3"] * p["m1"] / (p["m3"] * (p["k1"] + p["ka"])),
-            },
-            lambda p: {"kb": p["m3"] * (p["k1"] + p["ka"]) / p["m1"]},
-        ),
-    ),
-}
+PLANTS = {name: Plant(**table) for name, table in tables(Path(__file__))["plants"].items()}
 every_plant = pytest.mark.parametrize("name", PLANTS)
 
 
@@ -274,7 +88,7 @@ def points(name: str) -> Iterator[Point]:
     for onto in plant.onto:
         for _ in range(ON_EACH):
             point = {n: random_fraction(generator, sign) for n, sign in plant.signs.items()}
-            moved = {**point, **{n: Fraction(value) for n, value in onto(point).items()}}
+            moved = {**point, **{n: value_at(parse_scalar(text, plant.signs), point) for n, text in onto.items()}}
             if all(has_sign(value, plant.signs[n]) for n, value in moved.items()):
                 yield moved
 
@@ -410,21 +224,6 @@ def test_loci(equations: list[str], signs: dict[str, str], expected: list[str]) 
     found = loci([parse_scalar(text, names) for text in equations], Region(names))
     wanted = {ideal_of([parse_scalar(text, names) for text in texts.split(",")]) for texts in expected}
     assert {ideal_of(list(locus.equations)) for locus in found} == wanted
-
-
-def test_a_set_beyond_the_limits_leaves_the_smallest_sets_undecided(monkeypatch: pytest.MonkeyPatch) -> None:
-    """With the first state alone undecided, the second alone is not known to be among the smallest."""
-    asked = iter([TooLarge("too many terms")])
-
-    def undecided_at_first(*_: object) -> bool:
-        for error in asked:
-            raise error
-        return True
-
-    monkeypatch.setattr(missing_measurements, "never_together_zero", undecided_at_first)
-    N, X = Matrix.of([[1, 0], [0, 1]]), Matrix.of([[1, 1], [1, 2]])
-    assert missing_measurements.smallest_sets(N, X, Environment()) is None
-    assert missing_measurements.smallest_sets(N, X, Environment()) == ((1,), (2,))
 
 
 # -- searches that give up -------------------------------------------------------------------------------------------------

@@ -88,3 +88,16 @@ def test_beside_a_parameter_called_t_in_capitals_the_horizon_is_not_called_t() -
     plant = symobs.StateSpace("[0 T; 0 0]", "[0; 1]", "[1 0]")
     with pytest.raises(InputError, match="where T is a parameter"):
         symobs.initial_state_covariance(plant, horizon="t", R="[1]")
+
+
+@pytest.mark.parametrize("data", [{}, {"Q": "[1]"}])
+def test_the_covariance_may_end_at_a_horizon_called_t(data: dict[str, str]) -> None:
+    plant = symobs.StateSpace("[0 1; 0 0]", "[0; 1]", "[1 0]")
+    called, usual = (symobs.initial_state_covariance(plant, horizon=end, R="[1]", **data) for end in ("t", "T"))
+    T = sympy.Symbol("T")
+    assert called.covariance == usual.covariance.subs(T, t)
+    assert called.output_part == sympy.Matrix([[4 / t, -6 / t**2], [-6 / t**2, 12 / t**3]]).as_immutable()
+    assert [None if each is None else each.replace("t", "T") for each in called.best_horizon] == usual.best_horizon
+    told, plain = (" ".join(each.to("text").split()) for each in (called, usual))
+    assert "called t in the question, is therefore written T" in told
+    assert "is written T" not in plain

@@ -23,12 +23,12 @@ from symobs.exact import EIGENVALUE, Scalar
 from symobs.exact import ideals as ideal
 from symobs.formula.tree import Conjunction, Environment
 from symobs.ground.errors import CertificateRejected, DerivationRejected
-from symobs.proof.certificate.claims import Claim, verify
+from symobs.proof.certificate.claims import verify
 from symobs.proof.derivation import CaseStep, Derivation, Section
 from symobs.proof.derivation.builder import relation
-from symobs.tasks.analysis.strata.strata import distances
 from tests.kit import tabled
-from tests.programs.campaign.points import answer_at, holds
+from tests.programs.campaign.points import answer_at
+from tests.support.algebra import holds
 from tests.support.problems.strategies import unimodular
 
 pytestmark = pytest.mark.slow
@@ -209,16 +209,6 @@ def test_a_drop_on_several_equations_is_excluded_as_one() -> None:
     assert [str(c) for c in found.holds_where] == ["a**2 + b**2 != 0"]
 
 
-def test_a_system_beyond_the_limits_is_kept_apart_as_it_stands(monkeypatch: pytest.MonkeyPatch) -> None:
-    a, b, c = (Scalar.symbol(name) for name in "abc")
-    system, point = (a * b - 17, a**2 - b + 19), (c - 1,)
-    within = distances([system, point])
-    monkeypatch.setattr(ideal, "TERMS", 1)
-    ideal._ideal.cache_clear()
-    assert set(distances([system, point])) == {(a * b - 17) ** 2 + (a**2 - b + 19) ** 2, c - 1}
-    assert within != distances([system, point])  # a basis of it is another system
-
-
 @pytest.mark.parametrize("meaning", ["asymptotic", "lyapunov"])
 def test_no_limit_leaves_a_verdict_as_an_exception(monkeypatch: pytest.MonkeyPatch, meaning: str) -> None:
     plants = [
@@ -259,21 +249,6 @@ def test_minors_of_another_order_are_rejected() -> None:
     smaller = tuple(replace(where, minors=(((), ()),)) for where in found.answer["constancy"])
     with pytest.raises(CertificateRejected):
         found.with_answer("constancy", smaller)
-
-
-def test_a_rank_about_which_nothing_is_claimed_leaves_an_open_case() -> None:
-    found = symobs.detectability(symobs.StateSpace("[1-a 0; 0 -1]", None, "[0 0]"))
-    silent = found.with_answer("constancy", (None, None))
-    assert [mode["conditions"] for mode in silent.fields["modes"]] == [None, None]
-    assert [(case.when, case.result) for case in silent.case_tree] == [((), None)]
-
-
-def test_an_eigenvalue_may_be_complex() -> None:
-    # λ² + 1 = 0 has solutions, though no real number is one: signs say nothing of an eigenvalue.
-    square = Scalar.symbol(EIGENVALUE) ** 2 + 1
-    e = Environment(relations=(square,))
-    assert verify(Claim(relation(square, "!=", 0), e).relation, e)[0] == ""
-    assert verify(relation(square + 1, "!=", 0), e)[0] == "exact"
 
 
 def test_what_an_eigenvalue_leaves_to_the_parameters_is_real() -> None:

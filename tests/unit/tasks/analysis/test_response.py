@@ -68,23 +68,6 @@ def pictures(result: Any) -> list[TimeResponse]:
     return [step.picture for step in steps if isinstance(step, Plot) and isinstance(step.picture, TimeResponse)]
 
 
-@pytest.mark.parametrize("strength", [1, -3])
-def test_impulses_are_those_of_python_control(strength: int) -> None:
-    A, B, C = [[0, 1], [-2, -3]], [[1], [1]], [[1, 2]]
-    found = symobs.response(StateSpace(A, B, C), impulse=strength)
-    times = np.linspace(0, 4, 21)
-    wanted = control.impulse_response(control.ss(A, B, C, 0), times).outputs
-    assert np.allclose(heights(sympy.Matrix([found.output])[0], times), strength * wanted)
-    assert found.state.subs(t, 0) == sympy.Matrix([strength, strength])
-    moved = symobs.response(StateSpace(A, B, C), impulse="v", initial=["p", 0], input=1)
-    whole = sum(
-        (symobs.response(StateSpace(A, B, C), **each).state for each in ({"input": 1}, {"impulse": "v"})),
-        sympy.zeros(2, 1),
-    )
-    whole += symobs.response(StateSpace(A, B, C), initial=["p", 0]).state
-    assert (moved.state - whole).expand() == sympy.zeros(2, 1)
-
-
 def test_an_impulse_without_effect_and_a_wrong_one() -> None:
     plant = StateSpace("[-1]", "[1]", "[1]")
     assert "x₀ = B·0 = 0" in symobs.response(plant, impulse=0).to("text")
@@ -132,7 +115,7 @@ def test_outputs_that_contradict_each_other_agree_somewhere() -> None:
 
 
 def test_modes_without_a_closed_form_are_undecided_and_another_answer_is_rejected() -> None:
-    cubic = symobs.response(StateSpace("[0 1 0; 0 0 1; -1 -1 -3]", "[0; 0; 1]"), input=1)
+    cubic = symobs.response(StateSpace("[0 1 0; 0 0 1; -a -1 -3]", "[0; 0; 1]"), input=1)
     assert (cubic.verdict, cubic.state) == ("undecided", None)
     for language, said in (("en", "the response is not given"), ("de", "die Zeitantwort nicht angegeben")):
         assert said in cubic.to("text", language=language)
@@ -155,7 +138,12 @@ def test_modes_without_a_closed_form_are_undecided_and_another_answer_is_rejecte
         (StateSpace("[-1]", "[1]", "[1]", "[1]"), {"impulse": 1}, InputError, "goes through D to the output"),
         (StateSpace("[-1]", "[1]"), {"impulse": [1, 2]}, ShapeMismatch, "impulse"),
         (StateSpace("[-1]"), {"impulse": 1}, InputError, "B"),
-        (StateSpace("[-1]", "[1]", dt=1), {"input": 1}, InputError, "response belongs to continuous time"),
+        (StateSpace("[-1]", "[1]", dt=1), {"input": "sin(k)"}, InputError, "sin"),
+        (StateSpace("[-1]", "[1]", dt=1), {"input": "2^k*3^k"}, InputError, "no sum of powers of k"),
+        (StateSpace("[-1]", "[1]", dt=1), {"input": "1/(k + 1)"}, InputError, "no sum of powers of k"),
+        (StateSpace("[-1]", "[1]", dt=1), {"input": "1, k"}, InputError, "the entries of a sequence depend on k"),
+        (StateSpace("[-1]", "[1]", dt=1), {"impulse": 1}, InputError, "an impulse in discrete time is an input"),
+        (StateSpace("[k]", "[1]", dt=1), {"input": 1}, InputError, "k is the number of the instant"),
         (StateSpace("[-1]", "[1]"), {"initial": "t"}, InputError, "does not depend on the time t"),
         (StateSpace("[-1]"), {"input": 1}, InputError, "B"),
         (StateSpace("[-1]", "[1]"), {"initial": [1, 2]}, ShapeMismatch, "initial"),
@@ -182,3 +170,9 @@ def test_what_roots_and_functions_leave_open_is_not_told_as_no() -> None:
     lag = StateSpace("[-1]", C="[1]", symbols={"a": "real"})
     (case,) = symobs.initial_state(lag, output="(exp(a) - 1)*exp(-2*t)", horizon="1").cases
     assert (str(case.when[0].lhs), case.result) == ("exp(a) - 1", None)
+
+
+def test_irrational_waves_with_rational_derivatives_are_drawn() -> None:
+    """The derivatives of sqrt(2) sin(sqrt(2) t) at 0 are 0, 2, 0, -4, …"""
+    (picture,) = pictures(symobs.response(StateSpace("[-1]", "[1]"), input="sqrt(2)*sin(sqrt(2)*t)"))
+    assert [list(map(int, start)) for start in picture.starts] == [[0], [0, 2]]

@@ -16,7 +16,7 @@ from symobs.ground.errors import CertificateRejected, InputError
 from symobs.stability.criteria.critical_polynomials import CriticalPolynomials, StabilityBoundary
 from symobs.stability.regions.region import LineRegion, PlaneRegion, RegionInequality, plane_region, short_list
 from symobs.stability.regions.region_check import is_region
-from tests.kit import tabled
+from tests.kit import scalar, tabled
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -33,28 +33,11 @@ def region(text: Any, **keywords: Any) -> Any:
 
 
 #: Questions with the exact answers, worked by hand: polynomial, signs, verdict, stable_if.
-BY_HAND: list[tuple[str, Mapping[str, str] | None, str, list[str]]] = [
-    ("s + h", None, "conditional", ["h > 0"]),
-    ("h s + 1", None, "conditional", ["h > 0"]),
-    ("s^2 + s/h + 1", None, "conditional", ["h > 0"]),
-    ("s + 1 - k", {"k": "positive"}, "conditional", ["k < 1"]),
-    ("s^2 + (1 + h1) s + 1 + h2", {"h1": "positive", "h2": "positive"}, "yes", []),
-    ("s + h1", {"h1": "nonnegative"}, "conditional", ["h1 > 0"]),
-    ("s + 1 + h1", {"h1": "nonnegative"}, "yes", []),
-    ("s^2 + s + h1^2 + h2^2", {"h1": "nonnegative", "h2": "nonnegative"}, "conditional", ["h1**2 + h2**2 > 0"]),
-    ("s + h1 - 10^17", None, "conditional", ["h1 > 100000000000000000"]),
-    ("s^2 + (h1 - 10000) s + h2 - 1/10000", None, "conditional", ["h2 > 1/10000", "h1 > 10000"]),
-    ("s^3 + s + h", None, "no", ["False"]),
-    ("s^2 + s + 1", None, "yes", []),
-    ("s^2 + s + (h1 - h2)^2", None, "conditional", ["h1 != h2"]),
-]
 
 
-@pytest.mark.parametrize(("text", "signs", "verdict", "inequalities"), BY_HAND)
-def test_answers_worked_by_hand(
-    text: str, signs: Mapping[str, str] | None, verdict: str, inequalities: list[str]
-) -> None:
-    found = region(text, symbols=signs)
+@tabled
+def test_answers_worked_by_hand(text: str, signs: Mapping[str, str], verdict: str, inequalities: list[str]) -> None:
+    found = region(text, symbols=signs or None)
     assert (found.verdict, list(found.stable_if)) == (verdict, inequalities)
 
 
@@ -145,24 +128,11 @@ def test_a_region_whose_cells_hold_allowed_and_forbidden_values_is_none() -> Non
 
 
 #: Regions with turning branches, crossings, holes, slivers, vertical lines and several pieces.
-TWO_WAYS = [
-    s**3 + (2 + h1) * s**2 + (h1**2 + h2**2 - 4) * s + h1 * h2 + 1,
-    s**2 + (5 - h1**2 - h2**2) * s + h1**2 + h2**2 - 1,
-    s**2 + (h1**2 - 1) * s + 1 - h2**2,
-    s**2 + s + h1**2 + h2**2,
-    s**2 + s + (h1**2 - 2) ** 2 + (h2**2 - 3) ** 2,
-    s**2 + s + (h1**2 - h2**3) ** 2,
-    s + h1**2 * (h1 + 1) - h2**2,
-    s + (h1 * h2 - 1) * (h1**2 - 2),
-    s**4 + 3 * s**3 + h1 * s**2 + h2 * s + 1,
-    s**4 + (2 + h1) * s**3 + (3 + h2**2) * s**2 + (2 + h1 * h2) * s + 1 + h1 - h2,
-    h1 * s**2 + (h1 - h2) * s + h2**2 - 2,
-]
 
 
-@pytest.mark.parametrize("polynomial", TWO_WAYS, ids=str)
-def test_pieces_bounds_and_holes_do_not_depend_on_which_parameter_is_across(polynomial: Scalar) -> None:
-    critical = CriticalPolynomials(polynomial, StabilityBoundary("s"))
+@tabled
+def test_pieces_bounds_and_holes_do_not_depend_on_which_parameter_is_across(polynomial: str) -> None:
+    critical = CriticalPolynomials(scalar(polynomial), StabilityBoundary("s"))
     one, other = (PlaneRegion(critical, names) for names in (("h1", "h2"), ("h2", "h1")))
     assert sorted(c.bounded for c in one.components) == sorted(c.bounded for c in other.components)
     assert len(one.holes) == len(other.holes)
@@ -216,3 +186,10 @@ def test_an_interval_that_begins_at_the_declared_sign_is_printed() -> None:
         p, q, r = 3 - 2 * a, a * a - 6 * a + Fraction(3, 10), 3 * a * a - Fraction(3, 10) * a + Fraction(3, 100)
         assert (p > 0 and q > 0 and r > 0 and p * q > r) is stable
         assert (found.at(a=a).verdict == "yes") is stable
+
+
+def test_a_parameter_in_the_numerator_alone_says_how_the_loop_is_asked_for() -> None:
+    found = symobs.stability_region(symobs.StateSpace.from_transfer_function("K/(s*(s+1)*(s+2))"), parameters="K")
+    page = " ".join(found.to("text").split())
+    assert "The loop with unity feedback is asked for by polynomial = s**3 + 3*s**2 + 2*s + K." in page
+    assert symobs.stability_region("s**3 + 3*s**2 + 2*s + K", parameters="K").stable_if == ["K > 0", "K < 6"]

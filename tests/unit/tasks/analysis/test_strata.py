@@ -139,22 +139,6 @@ def test_the_decomposition_on_a_curve(name: str) -> None:
         assert order == degree
 
 
-@tabled
-def test_the_observer_on_a_curve(name: str, polynomial: str, verdict: str) -> None:
-    curve = CURVES[name]
-    plant = symobs.StateSpace(curve.A, None, curve.C)
-    result = on(curve, symobs.observer(plant, polynomial=polynomial))
-    assert result.verdict == verdict
-    for point in curve.points:
-        A, _, C = numbers(curve, point)
-        left = fixed(A, C)
-        phi = at(result.polynomial, point)
-        assert (sympy.rem(phi, left, s) == 0) == (verdict == "yes")
-        if verdict == "yes":
-            L = sympy.Matrix(at(result.L, point))
-            assert sympy.expand((A - L * C).charpoly(s).as_expr() - phi) == 0
-
-
 TASKS: dict[str, dict[str, Any]] = {
     "observability": {},
     "controllability": {},

@@ -5,8 +5,8 @@ Pages are read by the second reader, with SymPy's `diff` and `integrate`; the wi
 
 from __future__ import annotations
 
-import itertools
 from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -15,70 +15,21 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 import symobs
-from symobs.exact import Matrix, Scalar, antiderivative, derivative
+from symobs.exact import Scalar, antiderivative, derivative
 from symobs.formula.expression import parse_scalar
 from symobs.ground.errors import BudgetExceeded, CertificateRejected, DerivationRejected, InputError
-from symobs.problem import read
 from symobs.tasks.result import tasks
-from tests.kit import tabled
-from tests.support.independent_algebra.second_reader import sympy_scalar
-from tests.support.paths import ROOT
+from tests.kit import tabled, tables
 from tests.support.problems.problems_by_hand import is_zero
 from tests.support.sampling import FULL
-from tests.support.tampering.mutations import answer_changes
+from tests.support.second_reader import sympy_scalar
 
 pytestmark = pytest.mark.slow
 
 t, t0, t1, T, a, b = sympy.symbols("t t0 t1 T a b")
-EXAMPLE = ROOT / "worked_examples" / "time_varying_integrator.toml"
 
 #: name → (A, C, rank, verdict, Φ where it is rational)
-PLANTS: dict[str, tuple[str, str, int, str, str | None]] = {
-    "integrator": ("[0 t; 0 0]", "[1 0]", 2, "yes", "[[1, (t**2 - t0**2)/2], [0, 1]]"),
-    "strictly_triangular": (
-        "[0 t 1; 0 0 t^2; 0 0 0]",
-        "[1 0 0]",
-        3,
-        "yes",
-        "[[1, (t**2-t0**2)/2, t - t0 + t**5/15 - t0**3*t**2/6 + t0**5/10], [0, 1, (t**3-t0**3)/3], [0, 0, 1]]",
-    ),
-    "commuting": (
-        "[t -t; t -t]",
-        "[1 0]",
-        2,
-        "yes",
-        "[[1 + (t**2-t0**2)/2, -(t**2-t0**2)/2], [(t**2-t0**2)/2, 1 - (t**2-t0**2)/2]]",
-    ),
-    "triangular": ("[1/t 1; 0 2/t]", "[1 0]", 2, "yes", "[[t/t0, (t**3 - t*t0**2)/(2*t0**2)], [0, t**2/t0**2]]"),
-    "direction": (
-        "[0 1/t; 2/t 1/t]",
-        "[1 1]",
-        1,
-        "no",
-        "[[(t**3+2*t0**3)/(3*t*t0**2), (t**3-t0**3)/(3*t*t0**2)], [2*(t**3-t0**3)/(3*t*t0**2), (2*t**3+t0**3)/(3*t*t0**2)]]",
-    ),
-    "frozen_misleads_no": ("[0 1; 0 0]", "[1 -t]", 1, "no", "[[1, t - t0], [0, 1]]"),
-    "frozen_misleads_yes": ("[0 0; 0 0]", "[1 t]", 2, "yes", "[[1, 0], [0, 1]]"),
-    "airy": ("[0 1; -t 0]", "[1 0]", 2, "yes", None),
-    "exponential_hidden": ("[t 0; 0 t]", "[1 1]", 1, "no", "[[exp(t^2/2 - t0^2/2), 0], [0, exp(t^2/2 - t0^2/2)]]"),
-    "decaying": ("[-1 t; 0 -1]", "[1 0]", 2, "yes", "[[exp(t0-t), exp(t0-t)*(t^2-t0^2)/2], [0, exp(t0-t)]]"),
-    "turning": (
-        "[0 t; -t 0]",
-        "[1 0]",
-        2,
-        "yes",
-        "[[cos(t^2/2-t0^2/2), sin(t^2/2-t0^2/2)], [-sin(t^2/2-t0^2/2), cos(t^2/2-t0^2/2)]]",
-    ),
-    "two_rates": (
-        "[-1 0; t -2]",
-        "[0 1]",
-        2,
-        "yes",
-        "[[exp(t0-t), 0], [(t-1)*exp(t0-t) - (t0-1)*exp(2*t0-2*t), exp(2*t0-2*t)]]",
-    ),
-    "error_function": ("[-1 1; 0 -2*t]", "[1 0]", 2, "yes", None),
-    "parametric": ("[0 a*t; 0 0]", "[1 0]", 2, "conditional", "[[1, a*(t**2 - t0**2)/2], [0, 1]]"),
-}
+PLANTS = tables(Path(__file__))["plants"]
 
 
 def solved(name: str, **specification: Any) -> Any:
@@ -114,7 +65,7 @@ def test_stack_and_rank_are_those_of_sympy(name: str) -> None:
 @every_plant
 def test_transition_matrices_are_those_worked_out_by_hand(name: str) -> None:
     result, wanted = solved(name), PLANTS[name][4]
-    if wanted is None:
+    if not wanted:
         assert "transition_matrix" not in result.fields
         assert "gramian" not in result.fields
         return
@@ -130,17 +81,6 @@ def eval_rows(text: str, names: dict[str, Any]) -> Any:
         [sympy_scalar(parse_scalar(entry, functions=True), names) for entry in row.split(",")]
         for row in (part.strip(" [],") for part in text.split("],"))
     ]
-
-
-@pytest.mark.parametrize("name", ["integrator", "commuting", "frozen_misleads_no", "frozen_misleads_yes", "decaying"])
-def test_gramians_are_integrals_of_sympy(name: str) -> None:
-    result = solved(name, interval="1, 1 + T" if name == "commuting" else "0, T")
-    start = 1 if name == "commuting" else 0
-    seen = result.plant.C * result.transition_matrix.subs(t0, start)
-    expected = (seen.T * seen).applyfunc(lambda entry: sympy.integrate(sympy.expand(entry), (t, start, start + T)))
-    assert zero(result.gramian - expected)
-    assert zero(result.determinant - expected.det())
-    assert (result.determinant == 0) == (result.verdict == "no")
 
 
 @pytest.mark.parametrize("name", ["direction", "frozen_misleads_no"])
@@ -218,24 +158,10 @@ def test_every_other_task_refuses_the_time_and_names_this_one(task: str) -> None
     assert task in caught.value.message
 
 
-@pytest.mark.parametrize(
-    ("plant", "specification", "said"),
-    [
-        (("[1/t]", None, "[1]"), {"interval": "-1, 1"}, "pole"),
-        (("[1/(t^2 - 3*t + 2)]", None, "[1]"), {"interval": "0, 5"}, "pole"),
-        (("[1/(t^2 - 2)]", None, "[1]"), {"interval": "-2, 2"}, "pole"),
-        (("[t]", None, "[1]"), {"interval": "1, 1"}, "no length"),
-        (("[t]", None, "[1]"), {"interval": "0, t"}, "contain the time"),
-        (("[t]", None, "[1]"), {"interval": "0, 1, 2"}, "two real ends"),
-        (("[t]", None, "[1]"), {"output": "[t; 1]"}, "expected a column of 1"),
-        (("[t]", None, "[1]"), {"output": "t", "input": "1"}, "needs B"),
-        (("[t]",), {}, "needs C"),
-        (("[t0*t]", None, "[1]"), {}, "instant"),
-    ],
-)
+@tabled
 def test_wrong_input_is_refused(plant: Any, specification: Any, said: str) -> None:
     with pytest.raises(InputError, match=said):
-        symobs.time_varying_observability(symobs.StateSpace(*plant), **specification)
+        symobs.time_varying_observability(symobs.StateSpace(**plant), **specification)
 
 
 def test_what_would_grow_too_long_is_refused() -> None:
@@ -304,29 +230,6 @@ def test_a_zero_of_a_denominator_is_a_case() -> None:
 
 
 # -- pages -------------------------------------------------------------------------------------------------------------
-
-
-@pytest.mark.parametrize("name", [*PLANTS, "example"])
-def test_a_changed_answer_is_rejected(name: str) -> None:
-    result = read(EXAMPLE.read_text(encoding="utf-8")).solve()[0] if name == "example" else solved(name)
-    tried = 0
-    scaled = {"hidden", "kernel"}  # another basis of the same space is an answer as well
-    chosen = {"point", "rows", "columns", "free"}  # another minor or instant shows the same
-    for key, value in result.answer.items():
-        for change in itertools.islice(answer_changes(value), 40):
-            if change.value is None or (key in scaled and _same_space(value, change.value)) or key in chosen:
-                continue
-            tried += 1
-            with pytest.raises(CertificateRejected):
-                result.with_answer(key, change.value)
-    assert tried >= 20
-
-
-def _same_space(one: Matrix, other: Matrix) -> bool:
-    tables = [sympy.Matrix(*m.shape, [sympy_scalar(e, {}) for e in m.entries]) for m in (one, other)]
-    if tables[0].shape != tables[1].shape:
-        return False
-    return bool(sympy.Matrix.hstack(*tables).rank() == tables[0].rank() == tables[1].rank())
 
 
 def test_a_rank_on_a_stratum_is_said_outside_its_own_cases() -> None:

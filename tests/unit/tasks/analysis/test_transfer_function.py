@@ -9,7 +9,7 @@ import sympy
 
 import symobs
 from symobs import StateSpace
-from tests.support.independent_algebra.plain import multiply, observability_rows, rank_of, transposed
+from tests.support.algebra import multiply, observability_rows, rank_of, transposed
 
 c = sympy.Symbol("c")
 

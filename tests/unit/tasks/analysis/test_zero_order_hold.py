@@ -9,7 +9,7 @@ import control  # type: ignore[import-untyped]
 import numpy as np
 import pytest
 import sympy
-from sympy import cos, exp, sin
+from sympy import exp
 
 import symobs
 from symobs import StateSpace
@@ -20,27 +20,16 @@ T, a, omega = sympy.symbols("T a omega")
 
 #: K. J. Åström and B. Wittenmark, Computer-Controlled Systems, 3rd ed., ch. 2 and Table 2.1; G. F. Franklin, J. D. Powell
 #: and M. Workman, Digital Control of Dynamic Systems, 3rd ed., sec. 4.3: A, B and the sampled matrices.
-TEXTBOOK: list[tuple[str, str, Any, Any]] = [
-    ("[0 1; 0 0]", "[0; 1]", [[1, T], [0, 1]], [[T**2 / 2], [T]]),
-    ("[-1 0; 1 0]", "[1; 0]", [[exp(-T), 0], [1 - exp(-T), 1]], [[1 - exp(-T)], [T - 1 + exp(-T)]]),
-    ("[0]", "[1]", [[1]], [[T]]),
-    ("[-a]", "[a]", [[exp(-a * T)]], [[1 - exp(-a * T)]]),
-    (
-        "[0 omega; -omega 0]",
-        "[0; omega]",
-        [[cos(omega * T), sin(omega * T)], [-sin(omega * T), cos(omega * T)]],
-        [[1 - cos(omega * T)], [sin(omega * T)]],
-    ),
-]
 
 
-@pytest.mark.parametrize(("A", "B", "A_d", "B_d"), TEXTBOOK)
+@tabled
 def test_sampled_plants_of_textbooks(A: str, B: str, A_d: Any, B_d: Any) -> None:
     signs = {"a": "positive", "omega": "positive", "T": "positive"}
     found = symobs.zero_order_hold(StateSpace(A, B, symbols=signs), sampling_period="T")
     assert found.verdict == "yes"
-    assert sympy.simplify(found.A - sympy.Matrix(A_d)) == sympy.zeros(*found.A.shape)
-    assert sympy.simplify(found.B - sympy.Matrix(B_d)) == sympy.zeros(*found.B.shape)
+    wanted = StateSpace(A_d, B_d, symbols=signs)
+    assert sympy.simplify(found.A - wanted.A) == sympy.zeros(*found.A.shape)
+    assert sympy.simplify(found.B - wanted.B) == sympy.zeros(*found.B.shape)
     found.derivation.check()
 
 
@@ -80,7 +69,7 @@ def test_a_plant_that_depends_on_an_open_sign_is_not_taken_for_one() -> None:
     with pytest.raises(InputError, match="the sampled plant is another one for each sign of"):
         _ = found.sampled
     assert found.at(a=1).sampled.order == 2
-    cubic = symobs.zero_order_hold(StateSpace("[0 1 0; 0 0 1; -1 -1 -3]", "[0; 0; 1]"))
+    cubic = symobs.zero_order_hold(StateSpace("[0 1 0; 0 0 1; -a -1 -3]", "[0; 0; 1]"))
     assert (cubic.verdict, cubic.A) == ("undecided", None)
     with pytest.raises(InputError, match="no sampled plant in closed form: what is open is the roots of"):
         _ = cubic.sampled

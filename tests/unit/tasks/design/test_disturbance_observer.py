@@ -15,23 +15,6 @@ from tests.kit import tabled
 if TYPE_CHECKING:
     from symobs.tasks.design.disturbance.disturbance_observer import DisturbanceObserver
 
-A, B, C, D, E = (sympy.Matrix(rows) for rows in ([[0, 1], [-2, -3]], [[0], [1]], [[1, 0]], [[2]], [[1], [1]]))
-SINUSOID = sympy.Matrix([[sympy.Rational(3, 5), sympy.Rational(4, 5)], [sympy.Rational(-4, 5), sympy.Rational(3, 5)]])
-
-
-@pytest.mark.parametrize("S", [None, SINUSOID], ids=["constant", "sinusoid"])
-def test_deadbeat_finds_state_and_disturbance_whatever_the_input(S: Any) -> None:
-    model = sympy.eye(1) if S is None else S
-    plant = symobs.StateSpace(A, B, C, D, dt=True)
-    n = 2 + model.rows
-    found = symobs.disturbance_observer(plant, E=E, S=S, polynomial=f"z^{n}")
-    x, w, estimate = sympy.Matrix([3, -1]), sympy.ones(model.rows, 1), sympy.zeros(n, 1)
-    for k in range(n):  # all poles at 0: after so many steps the estimates are right
-        u = sympy.Matrix([k**2 - 1])
-        estimate = found.A * estimate + found.B_u * u + found.B_y * (C * x + D * u)
-        x, w = A * x + B * u + E * w[0], model * w
-    assert estimate == x.col_join(w)
-
 
 def test_a_zero_at_an_eigenvalue_of_the_exosystem_is_a_case_and_a_reason() -> None:
     """From d to y the plant has the transfer function (s + c)/((s + 1) (s + 2)), which at s = 0 is c/2."""

@@ -17,7 +17,7 @@ from sympy import Matrix, Rational
 import symobs
 from symobs.ground.errors import CertificateRejected, InputError
 from tests.kit import tabled
-from tests.support.independent_algebra.plain import (
+from tests.support.algebra import (
     characteristic,
     matrix_at,
     multiply,

@@ -67,16 +67,6 @@ def test_where_a_loop_with_a_parameter_is_stable() -> None:
         assert all(holds) == (value > 0), value
 
 
-def test_one_gain_is_given_and_the_other_placed() -> None:
-    found = symobs.compensator(SERVO, K=[1, 2], observer_poles=[-3, -4])
-    assert sympy.expand(found.closed_loop_polynomial - (s**2 + 3 * s + 1) * (s + 3) * (s + 4)) == 0
-    other = symobs.compensator(SERVO, control_poles=[-1, -1], L=[3, 4])
-    assert sympy.expand(other.closed_loop_polynomial - (s + 1) ** 2 * (s**2 + 4 * s + 7)) == 0
-    minimal = symobs.compensator(SERVO, K=[1, 2], observer_poles=[-3], observer="minimal")
-    assert sympy.expand(minimal.closed_loop_polynomial - (s**2 + 3 * s + 1) * (s + 3)) == 0
-    assert "asked for" not in str(minimal.to("text")).split("Compensator\n")[1]
-
-
 def test_a_wrong_answer_for_given_gains_does_not_exist() -> None:
     found = symobs.compensator(SERVO, K=[1, 2], L=[3, 4])
     with pytest.raises(CertificateRejected, match=r"the claim F\(s\) = K\*\(s\*I - A \+ B\*K \+ L\*C\)\*\*\(-1\)\*L"):

@@ -12,7 +12,7 @@ import sympy
 
 import symobs
 from symobs.exact import Matrix
-from symobs.ground.errors import CertificateRejected, DerivationRejected, InputError
+from symobs.ground.errors import CertificateRejected, DerivationRejected
 from tests.kit import tabled
 
 if TYPE_CHECKING:
@@ -85,13 +85,6 @@ def test_a_wrong_answer_is_rejected(name: str, value: Matrix) -> None:
     )
     with pytest.raises((CertificateRejected, DerivationRejected)):
         design.with_answer(name, value)
-
-
-def test_as_many_poles_as_states_and_outputs_are_asked_for() -> None:
-    with pytest.raises(InputError, match="2 poles given, 3 needed"):
-        symobs.integral_action(symobs.StateSpace("[0 1; 0 -1]", "[0; 1]", "[1 0]"), poles="-1, -2")
-    with pytest.raises(InputError, match="integral_action needs C"):
-        symobs.integral_action(symobs.StateSpace("[0 1; 0 -1]", "[0; 1]"), poles="-1, -2, -3")
 
 
 @tabled

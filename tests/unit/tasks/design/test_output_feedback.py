@@ -13,9 +13,12 @@ from symobs import StateSpace
 from symobs.exact import Matrix
 from symobs.ground.errors import CertificateRejected, InputError
 from tests.kit import tabled
-from tests.support.independent_algebra.plain import (
+from tests.support.algebra import (
     at_number,
     characteristic,
+    determinant,
+    identity,
+    inverse,
     matrix_at,
     multiply,
     observability_rows,
@@ -25,13 +28,13 @@ from tests.support.independent_algebra.plain import (
     subtract,
     transposed,
 )
-from tests.support.independent_algebra.plain_fractions import determinant, identity, inverse, plus, times
+from tests.support.derivations import plus, times
 from tests.support.sampling import FULL
 
 if TYPE_CHECKING:
     import random
 
-    from tests.support.independent_algebra.plain import Rows
+    from tests.support.algebra import Rows
 
 DRAWS = 400 if FULL else 40
 #: order, inputs, outputs
@@ -289,3 +292,59 @@ def test_the_unity_loop_divides_by_no_parameter_that_stands_in_front(A: str, B: 
     P = (plant.C * (s * sympy.eye(2) - plant.A).inv() * plant.B)[0]
     assert sympy.simplify(found.closed_loop_unity - P * found.F / (1 + P * found.F)) == 0
     assert all(factor.denominator.is_constant for factor, _ in form.factors)
+
+
+def test_a_compensator_that_is_stable_for_some_parameters_says_for_which() -> None:
+    """s² + (10 − a) s + a² − 10 a + 35, whose last coefficient is (a − 5)² + 10, has its roots in Re s < 0 for a < 10."""
+    plant = symobs.StateSpace("[0 1; 0 -a]", "[0; 1]", "[1 0]")
+    found = symobs.compensator(plant, control_poles="-1, -2", observer_poles="-3, -4")
+    assert (found.F_stable, list(found.F_stable_if)) == ("conditional", ["a < 10"])
+    assert found.at(a=1).F_stable_if is None
+
+
+@pytest.mark.parametrize("size", SIZES, ids=str)
+@pytest.mark.parametrize("time", [0, 1], ids=["continuous", "discrete"])
+def test_a_feedforward_of_the_state_gives_unit_dc_gain(size: tuple[int, int, int], time: int) -> None:
+    """(C − DK)(sI − A + BK)⁻¹BF + DF = I at s = 0, in discrete time at 1, K having placed the poles or being given."""
+    order, inputs, outputs = size
+    for draw in range(max(2, DRAWS // (2 * len(SIZES)))):
+        generator = seeded((size, time, draw, "feedforward"))
+        A, B, C, D = plant(generator, order, inputs, outputs, feedthrough=bool(draw % 2))
+        poles, phi = wanted(generator, order)
+        given = {"K": texts(drawn(generator, inputs, order))} if draw % 3 == 2 else {"control_poles": poles}
+        found = symobs.feedforward(StateSpace(texts(A), texts(B), texts(C), texts(D), dt=bool(time)), **given)
+        assert "L" not in found.fields
+        K = matrix_at(found.loop.answer["K"], {})
+        closed, seen = subtract(A, multiply(B, K)), subtract(C, multiply(D, K))
+        if "K" not in given:
+            assert characteristic(closed) == phi
+        moving = subtract(times(Fraction(time), identity(order)), closed)
+        if found.verdict == "no":
+            gain = determinant(moving) and plus(multiply(multiply(seen, inverse(moving)), B), D)
+            assert not gain or not determinant(multiply(gain, [list(row) for row in zip(*gain, strict=True)]))
+            continue
+        F = found.answer["F"] if isinstance(found.answer["F"], Matrix) else Matrix.of([[found.answer["F"]]])
+        gain = plus(multiply(multiply(seen, inverse(moving)), B), D)
+        assert multiply(gain, matrix_at(F, {})) == identity(outputs)
+
+
+def test_the_feedforward_of_a_state_says_where_the_dc_gain_vanishes() -> None:
+    """G = c/k for u = −[k 1] x + F v: F = k/c, none where c = 0, and no steady state where k = 0."""
+    found = symobs.feedforward(StateSpace("[0 1; 0 -1]", "[0; 1]", "[c 1]"), K="[k 1]")
+    c, k = sympy.symbols("c k")
+    assert k / c == found.F
+    assert {str(case.when[0]): case.result.verdict for case in found.cases} == {"Eq(c, 0)": "no", "Eq(k, 0)": "no"}
+    text = found.to("text")
+    assert "Observer" not in text
+    assert "provided that" in text
+    assert "Case c = 0" in text
+
+
+def test_a_feedforward_has_control_poles_or_a_gain() -> None:
+    plant = StateSpace("[0 1; 0 -1]", "[0; 1]", "[1 0]")
+    with pytest.raises(InputError, match="control_poles are missing"):
+        symobs.feedforward(plant)
+    with pytest.raises(InputError, match="both K and control_poles"):
+        symobs.feedforward(plant, K="[1 1]", control_poles=[-1, -2])
+    with pytest.raises(InputError, match="observer_poles are missing"):
+        symobs.feedforward(plant, K="[1 1]", observer="minimal")

@@ -17,13 +17,11 @@ from hypothesis import strategies as st
 
 import symobs
 from symobs.exact import Factored, Scalar
-from symobs.exact.core.generators import square_root
 from symobs.ground.errors import CertificateRejected, InputError
-from symobs.system.conditions import sign_of
 from tests.kit import tabled
+from tests.support.algebra import has_sign
 from tests.support.claims.claims import Setting, applicable
 from tests.support.claims.claims_of_advice import advice_holds, numerator
-from tests.support.independent_algebra.plain import has_sign
 
 s = sympy.Symbol("s")
 
@@ -37,14 +35,6 @@ def advice(transfer_function: str, **asked: Any) -> Any:
 
 
 # -- the circle --------------------------------------------------------------------------------------------------------
-
-
-@pytest.mark.parametrize("count", [1, 2, 3, 4])
-def test_butterworths_identity_holds_in_sympy(count: int) -> None:
-    radius = sympy.Symbol("omega_0", positive=True)
-    p = advice(f"1/s^{count}", radius=radius).polynomial
-    whole = sympy.expand(p * p.subs(s, -s)) - radius ** (2 * count) - (-1) ** count * s ** (2 * count)
-    assert all(sympy.simplify(c) == 0 for c in sympy.Poly(whole, s).all_coeffs())
 
 
 def test_a_circle_without_square_roots_is_refused() -> None:
@@ -70,12 +60,6 @@ def test_with_all_poles_at_zeros_none_remains() -> None:
     assert (result.poles, result.verdict) == (result.zeros_used, "yes")
     assert sympy.expand(result.polynomial - (s + 1) * (s + 2)) == 0
     assert "none remains" in result.to("text")
-
-
-def test_irrational_and_complex_zeros_are_used_with_multiplicity() -> None:
-    assert advice("(s^2 - 2)/(s + 1)^3", radius=3).zeros_used == (-sympy.sqrt(2),)
-    pair = (sympy.Rational(-1, 2) + sympy.sqrt(3) * sympy.I / 2, sympy.Rational(-1, 2) - sympy.sqrt(3) * sympy.I / 2)
-    assert advice("(s^2 + s + 1)^2/s^5", radius=3).zeros_used == pair * 2
 
 
 # -- the pair ----------------------------------------------------------------------------------------------------------
@@ -244,19 +228,3 @@ def test_a_faster_oscillation_is_rejected() -> None:
             continue
         with pytest.raises(CertificateRejected, match=r"the claim exp\(-20\*pi/21\) <= 1/20"):
             replace(result, answer={**result.answer, **told})
-
-
-# -- signs of numbers --------------------------------------------------------------------------------------------------
-
-
-@given(st.lists(st.tuples(st.integers(-9, 9), st.integers(1, 9), st.integers(1, 9)), min_size=1, max_size=4))
-@settings(max_examples=60)
-def test_signs_of_numbers_are_those_of_50_digits(parts: list[tuple[int, int, int]]) -> None:
-    """Of Σ a √(b + √c): a number with too few digits to tell is left open."""
-    value, number = Scalar.of(0), sympy.Integer(0)
-    for a, b, c in parts:
-        value = value + square_root(square_root(Scalar.of(c)) + b) * a
-        number += a * sympy.sqrt(b + sympy.sqrt(c))
-    digits = number.evalf(50)
-    expected = "positive" if digits > 1e-40 else "negative" if digits < -1e-40 else "zero"
-    assert sign_of(value, {}) in ({expected} if expected != "zero" else {"zero", "real"})

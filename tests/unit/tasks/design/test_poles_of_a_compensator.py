@@ -19,16 +19,6 @@ HALVES = """
 """
 
 
-def test_halves_of_a_compensator_read_its_poles_where_nothing_else_is_said_of_them() -> None:
-    # S0-Ex4.2: K = [4 3], L = [19; 81]; (s + 1)(s + 2) asks for K = [2 2].
-    feedback, observer, compensator = read(HALVES, "problem.toml").solve()
-    assert [str(feedback.answer["K"]), str(observer.answer["L"])] == ["[4 3]", "[19; 81]"]
-    assert [str(compensator.answer[name]) for name in "KL"] == ["[4 3]", "[19; 81]"]
-    own = HALVES.replace('"observer", ', "") + '    poles = "-1, -2"\n'
-    feedback, compensator = read(own, "problem.toml").solve()
-    assert [str(design.answer["K"]) for design in (feedback, compensator)] == ["[2 2]", "[4 3]"]
-
-
 def test_what_is_wrong_with_poles_of_a_half_is_said_where_they_stand() -> None:
     text = HALVES.replace("-2, -2", "-2, -2+i").replace("^2", "^3").replace(', "compensator"', "")
     with pytest.raises(ProblemErrors) as caught:

@@ -73,21 +73,6 @@ def test_the_equations_hold_for_any_plant(drawn: tuple[Any, Any, Any, Any], pole
         assert found.fixed_modes
 
 
-def test_the_exceptions_of_a_parameter_are_cases() -> None:
-    a, b, p = sympy.symbols("a b p")
-    plant = StateSpace("[0 1; -2 -3]", "[0; 1]", "[a b]")
-    found = symobs.reduced_order_observer(plant, poles=["-p"])
-    holds(found, plant.A, plant.B, plant.C, Matrix([[0]]), s + p)
-    assert found.verdict == "conditional"
-    assert {sympy.factor(c.lhs) for c in found.conditions} == {a, a - b, a - 2 * b}
-    cases = {case.when[0].lhs: case.result for case in found.cases}
-    assert set(cases) == {a, a - b, a - 2 * b}
-    assert [cases[value].verdict for value in (a - b, a - 2 * b)] == ["no", "no"]
-    there = cases[a]
-    assert Matrix([[0, b], [1, 0]]) == there.T
-    holds(there, plant.A, plant.B, Matrix([[0, b]]), Matrix([[0]]), s + p)
-
-
 @tabled
 def test_no_entry_can_be_changed(name: str) -> None:
     found = symobs.reduced_order_observer(THIRD_ORDER, poles="-5, -6")
@@ -120,24 +105,6 @@ def test_nothing_left_to_estimate() -> None:
         symobs.reduced_order_observer(StateSpace("[0 1; 0 0]", "[0; 1]", "[0 0]"), poles=[-1])
     with pytest.raises(InputError, match="depend on each other"):  # as many outputs as states, and C is singular
         symobs.reduced_order_observer(StateSpace("[0 1; 0 0]", "[0; 1]", "[1 2; 2 4]"), poles=[])
-
-
-@pytest.mark.parametrize(
-    ("plant", "poles"),
-    [
-        (THIRD_ORDER, "-5, -6"),
-        (StateSpace("[0 1; 0 -1]", "[0; 1]", "[1 0]", "[2]"), "-10"),
-        (StateSpace("[0 1; 0 -1]", None, "[1 0]"), "-10"),
-        (StateSpace("[1 1; 0 1]", "[0; 1]", "[1 0]", "[3]", dt=True), "0"),
-        (StateSpace("[0 1 0; 0 0 1; 1 2 3]", "[0; 0; 1]", "[1 0 0; 0 0 1]"), "-2"),
-        (StateSpace("[0 1; 0 -b]", "[0; 1]", "[c 1]"), "-p"),
-    ],
-)
-def test_both_ways_lead_to_the_same_observer(plant: StateSpace, poles: str) -> None:
-    there, here = (symobs.reduced_order_observer(plant, poles=poles, method=m) for m in ("partition", "undetermined"))
-    assert dict(there.answer) == dict(here.answer)
-    assert "which requires" in " ".join(here.to("text").split())
-    assert "which requires" not in " ".join(there.to("text").split())
 
 
 DEPENDENT = StateSpace(

@@ -79,14 +79,3 @@ def test_modes_of_plant_and_integrator_are_told_where_their_basis_is_one() -> No
     page = text_of(symobs.integral_action(plant, poles="1/4, 1/2+3*I, -1/3, 1/2, 1/2-3*I"))
     assert "Case 2a + 1 = 0, 2b + 1 ≠ 0." in page
     assert "Case b - 1 ≠ 0. The roots of z² - 2z + 1 are uncontrollable modes" in page
-
-
-def test_a_page_of_reduced_order_tells_the_gains_of_its_cases() -> None:
-    result = solved("reduced_order_observer", "[0 1; a b]", C="[a 1]", poles="-1")
-    page = text_of(result)
-    gains = [case.result.L for case in result.cases if case.result.L is not None]
-    inner = [deep.result.L for case in result.cases for deep in case.result.cases if deep.result.L is not None]
-    assert gains or inner
-    for gain in (*gains, *inner):
-        assert f"L = │ {gain[0, 0]} │" in page
-    assert "Case a = 0." in page

@@ -191,3 +191,26 @@ def test_a_pattern_that_is_too_much_work_is_undecided(monkeypatch: pytest.Monkey
     monkeypatch.setattr(zero_pattern, "Ideal", SimpleNamespace(of=too_large))
     assert (found().needed, found().verdict) == (None, "undecided")
     assert "whether one exists is undecided" in " ".join(found().to("text").split())
+
+
+SCIPY_6692 = "[0 0 0 1; -42.7207306947135 0 0 0; 0 0 0 0; 47.0334901743703 0 0 0]"
+CART = "[0 1 0 0; 0 -d/M -m*g/M 0; 0 0 0 1; 0 d/(M*l) (M+m)*g/(M*l) 0]"
+
+
+@pytest.mark.parametrize(
+    ("A", "C", "poles"),
+    [
+        (SCIPY_6692, "[1 0 0 0; 0 1 0 0; 0 0 1 0; 0 0 0 1]", "-1, -0.5, -0.4, -1.5"),
+        (CART, "[1 0 0 0; 0 0 1 0]", "-1, -2, -3, -4"),
+        ("[0 k 0 k; 1 1 0 -c; 0 0 0 -1; 0 -1 1 k]", "[0 1 0 0; 0 0 0 1]", "-1, -2, -3, -4"),
+    ],
+)
+def test_the_pattern_of_the_decoupled_member_is_one_that_can_be_met(A: str, C: str, poles: str) -> None:
+    plant = symobs.StateSpace(A, C=C, symbols=dict.fromkeys(("c", "d", "g", "k", "l", "m", "M"), "positive"))
+    member = symobs.observer(plant, poles=poles, member="decoupled").L
+    rows, columns = member.shape
+    places = [(i, j) for i in range(1, rows + 1) for j in range(1, columns + 1) if member[i - 1, j - 1] == 0]
+    found = symobs.observer(plant, poles=poles, zero=str(places)[1:-1])
+    assert found.verdict == "yes"
+    assert places
+    assert all(found.L[i - 1, j - 1] == 0 for i, j in places)

@@ -69,19 +69,6 @@ def test_the_compensator_in_the_return_path_closes_the_loop() -> None:
         np.testing.assert_allclose(np.sort(found["closed_loop"].poles().real), expected, rtol=1e-6)
 
 
-def test_the_observer_follows_the_plant() -> None:
-    plant = symobs.StateSpace("[0 1; -2 -3/7]", "[0; 1]", "[1 0]", "[1/5]")
-    t = np.linspace(0, 6, 3000)
-    for design in (symobs.observer(plant, poles="-4, -5"), symobs.reduced_order_observer(plant, poles="-4")):
-        found = design.to_control()
-        u = np.sin(t)
-        true = control.forced_response(found["plant"], t, u, X0=[1, -1])
-        seen = control.forced_response(found["observer"], t, np.vstack([u, true.outputs]))
-        np.testing.assert_allclose(seen.outputs[:, -1], true.states[:, -1], atol=1e-5)
-        assert found["observer"].input_labels == ["u", "y"]
-        assert found["observer"].output_labels == ["x_hat[0]", "x_hat[1]"]
-
-
 def test_refusals(monkeypatch: pytest.MonkeyPatch) -> None:
     plant = symobs.StateSpace("[0 1; -2 -k]", "[0; 1]", "[1 h]")
     result = symobs.observer(plant, poles="-1, -2")

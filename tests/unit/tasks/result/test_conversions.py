@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import json
-import pickle
 import random
-from typing import Any
 
 import pytest
 import sympy
@@ -69,37 +67,6 @@ def test_json_says_an_answer_once() -> None:
     assert json.loads(design.to_json())["results"][0]["in_convention"] == {"name": "standard"}
     other = json.loads(str(design.to("json", convention="plusK-plusMC")))["results"][0]["in_convention"]
     assert other == {"name": "plusK-plusMC", "M": [["-19"], ["-81"]]}
-
-
-def test_json_says_what_was_asked() -> None:
-    plant = symobs.StateSpace("[0 1; 0 -b]", "[0; 1]", "[1 0]", dt=sympy.Rational(1, 10), symbols={"b": "positive"})
-    asked: dict[str, Any] = {"poles": [sympy.Rational(1, 2), "1/4"], "method": "auto"}
-    (found,) = json.loads(symobs.observer(plant, **asked).to_json())["results"]
-    assert found["plant"] == {
-        "A": [["0", "1"], ["0", "-b"]],
-        "B": [["0"], ["1"]],
-        "C": [["1", "0"]],
-        "D": [["0"]],
-        "dt": "1/10",
-        "symbols": {"b": "positive"},
-    }
-    assert found["specification"] == {"poles": ["1/2", "1/4"], "method": "auto"}
-    without_input = symobs.observability(symobs.StateSpace("[0 1; 0 -1]", C="[1 0]"))
-    (found,) = json.loads(without_input.to_json())["results"]
-    assert found["plant"] == {"A": [["0", "1"], ["0", "-1"]], "C": [["1", "0"]], "dt": 0, "symbols": {}}
-    assert found["specification"] == {}
-
-
-def test_what_was_asked_is_kept() -> None:
-    asked = {"polynomial": "(s+1)^2"}
-    design = symobs.observer(symobs.StateSpace("[0 1; 0 -1]", C="[1 0]"), **asked)
-    kept = [
-        design,
-        pickle.loads(pickle.dumps(design)),  # noqa: S301 - our own bytes
-        design.asked("matching"),
-        design.with_answer("L", design.answer["L"]),
-    ]
-    assert [dict(one.specification) for one in kept] == [asked] * 4
 
 
 def test_options_that_no_page_has_are_refused_with_those_that_it_has() -> None:

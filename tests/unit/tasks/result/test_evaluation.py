@@ -21,21 +21,6 @@ def exactly(matrix: Any, **values: float) -> Any:
     return np.array(matrix.subs(numbers)).astype(float)
 
 
-def test_arrays_are_broadcast_and_matrices_stand_behind() -> None:
-    result = symobs.observer(HIDDEN, poles="-k, -5")
-    c, k = np.array([[0.25], [3.0]]), np.array([2.0, 3.0, 4.0])
-    found = result.evaluate({"c": c, "k": k})
-    assert {name: array.shape for name, array in found.items()} == {
-        "L": (2, 3, 2, 1), "A": (2, 3, 2, 2), "B_u": (2, 3, 2, 1), "B_y": (2, 3, 2, 1)
-    }  # fmt: skip
-    for i in range(2):
-        for j in range(3):
-            np.testing.assert_allclose(found["L"][i, j], exactly(result.L, c=float(c[i, 0]), k=float(k[j])), rtol=1e-12)
-    alone = result.evaluate({sympy.Symbol("c"): 3, "k": 2})
-    assert alone["L"].shape == (2, 1)
-    np.testing.assert_array_equal(alone["L"], found["L"][1, 0])
-
-
 def test_where_a_condition_fails_there_stands_what_holds_in_that_case() -> None:
     """At c = 1/2 the mode −2 is unobservable, at c = 1 the mode −1: with k = 2, or k = 1, it is among the desired poles."""
     result = symobs.observer(HIDDEN, poles="-k, -5")
@@ -51,14 +36,6 @@ def test_beside_a_condition_the_value_is_exact() -> None:
         c = float(f"0.5{'0' * (places - 2)}1")
         tolerance = 1e-15 if places > 12 else 10 ** (places - 15.0)
         np.testing.assert_allclose(result.evaluate({"c": c})["L"], exactly(result.L, c=c), rtol=tolerance)
-
-
-def test_a_sign_that_is_not_the_declared_one_is_nan() -> None:
-    plant = symobs.StateSpace("[0 1; -k/m 0]", None, "[1 0]", symbols={"k": "positive", "m": "nonzero"})
-    found = symobs.observer(plant, poles="-1, -2").evaluate(
-        {"k": [1, -1, 0, 1, np.inf, np.nan], "m": [2, 2, 2, 0, 2, 2]}
-    )
-    assert np.isnan(found["L"][:, 0, 0]).tolist() == [False, True, True, True, True, True]
 
 
 @tabled

@@ -45,43 +45,6 @@ RATE = equal(Derivative(x), Sum((Product((A, x)), Product((B, u)))))
 PLANT = Conjunction((RATE, equal(y, Product((C, x)))))
 
 
-def test_a_loop_of_transfer_functions() -> None:
-    loop: Labels = {"P": P, "F": F, "response": T}
-    assert said("loop", **loop) == ["P(s) = P(s)", "F(s) = F(s)", "T = P(s)*(I + F(s)*T)", "T = T"]
-    unity = said("unity_loop", U=MINUS, **loop)
-    assert unity == ["P(s) = P(s)", "F(s) = F(s)", "T = P(s)*F(s)*(I + (-1)*T)", "T = T"]
-    (_, _, around, _) = equations_of("loop", loop, KNOWN)
-    assert "Identity(order=2)" in str(around)
-    (_, _, around, _) = equations_of("loop", loop, Environment())
-    assert "Identity(order=1)" in str(around)
-    negative: Labels = {**loop, "F": Negative(F)}
-    assert said("loop", **negative)[1:3] == ["F(s) = F(s)", "T = P(s)*(I + (-F(s))*T)"]
-
-
-def test_an_integrator_takes_in_the_sum_of_its_wires() -> None:
-    gains: Labels = {"A": A, "L": L, "x": x_hat, "u": u, "y": y}
-    assert said("observer_closed", B=B, **gains) == ["d/dt x_hat = B*u + L*y + A*x_hat", "x_hat = x_hat"]
-    assert said("observer_closed", **gains) == ["d/dt x_hat = L*y + A*x_hat", "x_hat = x_hat"]
-    copy = said("observer_copy", B=B, C=C, U=MINUS, **gains)
-    assert copy == ["d/dt x_hat = B*u + L*(y + (-1)*C*x_hat) + A*x_hat", "x_hat = x_hat"]
-    through = said("observer_copy", B=B, C=C, D=D, U=MINUS, w=y_hat, **gains)
-    assert through == ["y_hat = C*x_hat", "d/dt x_hat = B*u + L*(y + (-1)*y_hat + D*u) + A*x_hat", "x_hat = x_hat"]
-
-
-def test_a_box_may_be_drawn_twice() -> None:
-    """A′, B′ and C′ are the model's A, B and C."""
-    gains: Labels = {"A": A, "B": B, "C": C, "K": K, "L": L, "U": MINUS}
-    signals: Labels = {"u": u, "x": x, "y": y, "w": x_hat, "v": y_hat}
-    assert said("observer_compensator", **gains, **signals) == [
-        "d/dt x = B*u + A*x",
-        "y = C*x",
-        "y = y",
-        "u = K*x_hat",
-        "d/dt x_hat = B*u + A*x_hat + L*((-1)*y_hat + y)",
-        "y_hat = C*x_hat",
-    ]
-
-
 def test_a_loop_without_end_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
     figure = figure_of("loop")
     wires = (*figure.wires, Wire("u", ">", "a"), Wire("a", ">", "u"))
@@ -98,14 +61,6 @@ def test_a_loop_without_end_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_a_box_may_take_in_several_signals() -> None:
     found = said("minimal_order_observer", F=F, G=G, H=H, M=M, x=x_hat, u=u, y=y, z=z)
     assert found == ["d/dt z_o = G*u + H*y + F(s)*z_o", "x_hat = M*[y; z_o]"]
-
-
-def test_a_whole_system_says_its_equations() -> None:
-    observer: Labels = {"A": A, "B": B, "K": K, "L": L, "x": x_hat, "u": u, "y": y}
-    rest = ["u = K*x_hat", "d/dt x_hat = L*y + A*x_hat + B*u"]
-    said_by = ["d/dt x = A*x + B*u", "y = C*x"]
-    assert said("observer_controller", Plant=PLANT, **observer) == [*said_by, "y = y", *rest]
-    assert said("observer_controller", Plant=P, **observer) == ["y = P(s)*u", "y = y", *rest]
 
 
 @pytest.mark.parametrize(

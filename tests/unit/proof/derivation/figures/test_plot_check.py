@@ -359,3 +359,28 @@ def test_too_few_bits_are_not_taken_for_enough(monkeypatch: pytest.MonkeyPatch) 
             t = mpmath.mpf(k) / 100
             for part, factor in zip(state, (1 + 1000 * t, 1000 * t), strict=True):
                 assert abs(part - mpmath.exp(-t) * factor * 2**64) <= 1
+
+
+def test_a_root_is_surely_near() -> None:
+    """By |w|ᵏ ≤ C(n, k) |c₀/cₖ| for one root w."""
+
+    def is_near(*coefficients: Any, within: Any) -> bool:
+        shifted = [(Fraction(c), Fraction(0)) for c in coefficients]
+        return root_locus_check._has_root_near(shifted, Fraction(within))
+
+    assert is_near(1, 2, 0, within=1)
+    assert not is_near(1, 2, 0, within="0.99")
+    assert is_near(1, 0, 1, within=1)
+    assert not is_near(1, 0, 1, within="1/2")
+    assert is_near("2/5", 1, within="1/2")
+    assert not is_near("3/5", 1, within="1/2")
+    assert not is_near(1, 1, 0, within=1)
+    assert not is_near(0, 0, within=1)
+    assert is_near(0, 1, within=1)
+
+
+def test_moduli_and_distances() -> None:
+    assert root_locus_check._square(at(3, 4)) == 25
+    assert root_locus_check._square(at(3, -1)) == 10
+    assert root_locus_check._distance(at(1, 2), at(4, 6)) == 25
+    assert root_locus_check._distance(at(1, 3), at(0, -2)) == 26

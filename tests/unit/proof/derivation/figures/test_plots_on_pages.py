@@ -10,13 +10,13 @@ import pytest
 
 from symobs.exact import Scalar
 from symobs.exact.core.generators import square_root
-from symobs.formula.figures import End, LinePicture, MarkedPoint, RegionPicture
-from symobs.formula.tree import Apply, Environment, Letter, Literal, Negative, Sum
+from symobs.formula.figures import End, LinePicture, RegionPicture
+from symobs.formula.tree import Environment, Letter, Literal
 from symobs.ground.errors import DerivationRejected
 from symobs.proof.derivation import Derivation, Plot
 from tests.support.problems.steps import checked, refused
 from tests.support.regions import drawn_by_hand as hand
-from tests.support.regions.drawn_by_hand import ALL, equation, h1, h2, k, s
+from tests.support.regions.drawn_by_hand import ALL, h1, k, s
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -65,15 +65,6 @@ def test_a_picture_is_one_of_a_letters_polynomial() -> None:
     refuse(picture, hand.HYPERBOLA + Scalar.symbol("c"), "depends on h1, h2 alone")
 
 
-def test_a_shifted_polynomial_is_a_subject() -> None:
-    """Re s < −1 for s + 3 + k: the roots of χ(s − 1) are stable where k > −2."""
-    chi, low, high = s + 3 + k, Fraction(-4), Fraction(4)
-    picture = LinePicture("k", (low, high), ((End(Fraction(-2), Scalar.of(-2)), None),))
-    subject = Apply("chi_at", Sum((Letter("s"), Negative(Literal(Scalar.of(1))))))
-    Derivation((Plot(picture, subject),), start(chi)).check()
-    refuse(picture, chi, "-2 is an end|is not stable")
-
-
 @pytest.mark.parametrize("make", [hand.pendulum, lambda: LinePicture("k", LINE, ((END, None),))])
 def test_what_was_true_of_one_polynomial_is_asked_anew_of_another(make: Callable[[], Picture]) -> None:
     """The same picture, found true twice, is no truer of what it was not found true of."""
@@ -104,23 +95,6 @@ def with_curve(picture: RegionPicture, **changes: Any) -> RegionPicture:
 def test_two_branches_are_not_joined() -> None:
     ends = at("-1", "-1"), at("2", "1/2")
     refuse(with_curve(hand.hyperbola(), points=ends), hand.HYPERBOLA, "h1")
-
-
-def test_an_equation_may_be_solved_or_squared() -> None:
-    solved = equation(h2, 1 / h1)
-    squared = equation((h1 * h2 - 1) ** 2, 0)
-    for relation in (solved, squared):
-        accept(with_curve(hand.hyperbola(), equation=relation), hand.HYPERBOLA)
-
-
-def test_a_hole_may_be_irrational() -> None:
-    near = Fraction(14142136, 10**7)
-    chi = s**2 + s + (h1**2 - 2) ** 2 + h2**2
-    window = ((Fraction(-1), Fraction(3)), (Fraction(-2), Fraction(2)))
-    corners = at(-1, -2), at(3, -2), at(3, 2), at(-1, 2)
-    picture = RegionPicture(("h1", "h2"), window, (corners,), (), (MarkedPoint((near, Fraction(0)), "excluded"),))
-    accept(picture, chi)
-    refuse(replace(picture, marks=(MarkedPoint(at(1, 1), "excluded"),)), chi, "is excluded")
 
 
 # -- intervals --------------------------------------------------------------------------------------------------------

@@ -9,16 +9,15 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from symobs.exact import Matrix, Scalar
-from symobs.exact.algebraic.root_location import vanishes_near
-from symobs.exact.cad.decomposition import PlaneCurve
+from symobs.exact import Scalar
 from symobs.exact.core.generators import square_root
 from symobs.formula.figures import Curve, End, LinePicture, MarkedPoint, RegionPicture
 from symobs.formula.tree import Environment, Letter
 from symobs.proof.derivation import figures_check as region_plot_check
 from symobs.proof.derivation import plot_check
 from symobs.proof.derivation.figures_check import Stability
-from symobs.proof.derivation.plot_check import faults, is_faithful
+from symobs.proof.derivation.plot_check import faults
+from tests.kit import scalar, tabled
 from tests.support.problems.steps import said
 from tests.support.regions.drawn_by_hand import h1, h2, k, s
 
@@ -44,20 +43,6 @@ def told(picture: Picture, chi: Scalar, *, discrete: bool = False, **signs: str)
 def asked(polynomial: Scalar, *axes: str, discrete: bool = False, **signs: str) -> Stability:
     declared = tuple(signs.get(name, "real") for name in axes)
     return Stability(polynomial, "z" if discrete else "s", axes, declared, discrete)
-
-
-def test_a_place_is_stable_or_not() -> None:
-    test = asked(h2 * s**2 + (h1 + 1) * s + h2, "h1", "h2", h1="positive")
-    for place, expected in (((1, 1), True), ((1, -1), False), ((1, 0), False), (("-1/2", 1), False), ((0, 1), False)):
-        assert test.is_stable(*at(*place)) is expected
-    assert asked(s + 1 / h1, "h1").is_stable(Fraction(0)) is False
-    assert asked(s + 1 / h1, "h1").is_stable(Fraction(1)) is True
-    for value, expected in (("1/2", True), ("-1/2", True), (1, False), (-2, False)):
-        assert asked(z + h1, "h1", discrete=True).is_stable(Fraction(value)) is expected
-    assert len({asked(s + h1, "h1"), asked(h1 + s, "h1"), asked(s + h1, "h1", h1="positive")}) == 2  # plain values
-    dropped = asked(h2 * s**2 + s + 1, "h2")
-    assert dropped.is_stable(Fraction(1)) is True
-    assert dropped.is_stable(Fraction(0)) is False  # a root has gone to infinity
 
 
 def test_a_point_that_is_taken_out_is_all_but_unstable() -> None:
@@ -87,52 +72,10 @@ def test_a_point_that_is_taken_out_is_all_but_unstable() -> None:
 # -- curves ---------------------------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize(
-    ("value", "place", "expected"),
-    [
-        (h1 - 1, ("0.9", 5), True),
-        (h1 - 1, ("1.1", 5), True),
-        (h1 - 1, ("0.89", 5), False),
-        (h1 - 1, ("1.11", 5), False),
-        (h2 - 1, (5, "0.8"), True),
-        (h2 - 1, (5, "1.2"), True),
-        (h2 - 1, (5, "0.79"), False),
-        (h2 - 1, (5, "1.21"), False),
-        (h1 * h2, (5, 0), True),
-        ((h1 - 1) ** 2, ("1.05", 5), True),  # no sign changes
-        ((h1 - 1) ** 2, ("0.95", 5), True),
-        ((h1 - 1) ** 2, ("1.11", 5), False),
-        ((h2 - 1) ** 2, (5, "1.1"), True),
-        ((h2 - 1) ** 2, (5, "0.9"), True),
-        ((h2 - 1) ** 2, (5, "1.21"), False),
-        ((h1 - Fraction(1, 20)) * (h1 - Fraction(1, 30)), (0, 0), True),  # two branches within one arm
-        (h1**2 + h2**2, ("0.01", "0.01"), False),  # the point is not on the cross
-        (h1**2 + h2**2 + 1, (0, 0), False),
-        (h1**2 + 1, (0, 0), False),
-        (Scalar.of(1), (0, 0), False),
-    ],
-)
-def test_a_curve_passes_where_it_meets_a_cross(value: Scalar, place: tuple[Any, Any], *, expected: bool) -> None:
+@tabled
+def test_a_curve_passes_where_it_meets_a_cross(value: str, place: list[Any], *, expected: bool) -> None:
     """Of a place, 0.1 to the sides and 0.2 up and down."""
-    assert region_plot_check.passes(value, AXES, at(*place), at("0.1", "0.2")) is expected
-
-
-def test_a_polynomial_vanishes_near_a_number_or_not() -> None:
-    cubic = PlaneCurve((h1 - 1) * (h1 - 2) * (h1 + 5) + 0 * h2, AXES).on_horizontal(Fraction(0))
-    for middle, off, expected in (
-        ("3/2", "1/2", True),  # both ends are roots
-        ("3/2", "0.49", False),
-        ("3/2", "0.51", True),  # two roots and no change of sign: by Sturm's theorem
-        (0, 1, True),
-        (0, "0.99", False),
-        (-5, "0.01", True),
-        (-4, "0.9", False),
-        (10, 100, True),
-    ):
-        assert vanishes_near(cubic, Fraction(middle), Fraction(off)) is expected
-    double = PlaneCurve((h1 - 1) ** 2 + h2, AXES).on_horizontal
-    assert vanishes_near(double(Fraction(0)), Fraction("9/10"), Fraction("1/5"))
-    assert not vanishes_near(double(Fraction(1, 10**12)), Fraction("9/10"), Fraction("1/5"))
+    assert region_plot_check.passes(scalar(value), AXES, at(*place), at("0.1", "0.2")) is expected
 
 
 @pytest.mark.parametrize("discrete", [False, True])
@@ -169,23 +112,6 @@ STABLE = s + h1 + 0 * h2
 def shifted(index: int, x: int, y: int) -> tuple[Place, ...]:
     place = RIGHT[index][0] + x, RIGHT[index][1] + y
     return (*RIGHT[:index], place, *RIGHT[index + 1 :])
-
-
-def test_a_half_plane_is_drawn_as_it_is() -> None:
-    assert told(HALF, STABLE) == []
-    assert told(replace(HALF, areas=()), STABLE)[0] == "(100, 3) is stable"
-    assert "(-100, 3) is unstable" in told(HALF, s - h1)
-    other = replace(
-        HALF,
-        marks=(
-            MarkedPoint(at(100, 3), "unstable"),
-            MarkedPoint(at(-100, 3), "stable"),
-            MarkedPoint(at(0, 3), "excluded"),
-        ),
-    )
-    assert told(other, STABLE) == ["(100, 3) is unstable", "(-100, 3) is stable"]
-    assert told(replace(HALF, marks=(MarkedPoint(at(100, 3), "excluded"),)), STABLE) == ["(100, 3) is excluded"]
-    assert told(replace(HALF, marks=(MarkedPoint(at(100, 3), "other"),)), STABLE) == ["(100, 3) is other"]
 
 
 def test_a_curve_is_drawn_where_it_is() -> None:
@@ -320,13 +246,6 @@ def test_a_mark_speaks_of_its_place_and_of_the_shade_there() -> None:
     for kind in ("stable", "unstable"):
         marks = (MarkedPoint(at(-100, 3), kind),)
         assert f"(-100, 3) is {kind}" in told(replace(HALF, areas=(whole,), marks=marks), STABLE)
-
-
-def test_a_place_beside_a_curve_may_be_shaded_or_not() -> None:
-    """Of the places all over the window seven have h1 = −11.04, between where it ends and where it is drawn to end."""
-    right = tuple((x - 10 if x == 0 else x, y) for x, y in RIGHT)
-    wall = Curve((at(-12, -1000), at(-12, 1000)), said(h1, -12))
-    assert told(replace(HALF, areas=(right,), curves=(wall,), marks=()), STABLE + 12) == []
 
 
 def test_what_is_too_narrow_to_be_seen_is_not_asked_for() -> None:
@@ -494,18 +413,15 @@ def test_a_picture_is_looked_at_once_for_one_polynomial(monkeypatch: pytest.Monk
         assert found(picture) == []
 
 
-def test_an_equation_that_means_another_thing_is_looked_at_anew(monkeypatch: pytest.MonkeyPatch) -> None:
-    picture = replace(HALF, curves=(replace(WALL, equation=said(Letter("P"), 0)),))
-    monkeypatch.setattr(plot_check, "_FAITHFUL", plot_check._FAITHFUL.copy())
-    known = Environment(values={"chi": STABLE, "P": h1})
-    assert list(faults(picture, CHI, known, discrete=False)) == []
-    other = replace(known, values={"chi": STABLE, "P": h2})
-    assert list(faults(picture, CHI, other, discrete=False)) != []
-
-
-def test_the_polynomial_may_stand_in_a_matrix_of_one_entry() -> None:
-    picture = LinePicture("k", LINE, ((end(0), None),))
-    known = Environment(values={"chi": Matrix.of([[s + k]])})
-    assert list(faults(picture, CHI, known, discrete=False)) == []
-    assert is_faithful(picture, CHI, known, discrete=False) is True
-    assert is_faithful(picture, Letter("phi"), known, discrete=False) is False
+def test_a_place_is_stable_or_not() -> None:
+    test = asked(h2 * s**2 + (h1 + 1) * s + h2, "h1", "h2", h1="positive")
+    for place, expected in (((1, 1), True), ((1, -1), False), ((1, 0), False), (("-1/2", 1), False), ((0, 1), False)):
+        assert test.is_stable(*at(*place)) is expected
+    assert asked(s + 1 / h1, "h1").is_stable(Fraction(0)) is False
+    assert asked(s + 1 / h1, "h1").is_stable(Fraction(1)) is True
+    for value, expected in (("1/2", True), ("-1/2", True), (1, False), (-2, False)):
+        assert asked(z + h1, "h1", discrete=True).is_stable(Fraction(value)) is expected
+    assert len({asked(s + h1, "h1"), asked(h1 + s, "h1"), asked(s + h1, "h1", h1="positive")}) == 2  # plain values
+    dropped = asked(h2 * s**2 + s + 1, "h2")
+    assert dropped.is_stable(Fraction(1)) is True
+    assert dropped.is_stable(Fraction(0)) is False  # a root has gone to infinity

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from dataclasses import replace
 from fractions import Fraction
-from math import exp
 from typing import TYPE_CHECKING
 
 import mpmath
@@ -19,7 +18,7 @@ from symobs.ground.errors import DerivationRejected
 from symobs.proof.derivation import Derivation, Plot, Section
 from symobs.system import StateSpace
 from tests.kit import tabled
-from tests.support.independent_algebra.responses import untrue_responses
+from tests.support.derivations import untrue_responses
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -71,16 +70,6 @@ def within(steps: tuple[Step, ...]) -> Iterator[Step]:
 def plots(result: Result) -> list[tuple[Plot, TimeResponse]]:
     found = (step for step in within(result.derivation.steps) if isinstance(step, Plot))
     return [(step, step.picture) for step in found if isinstance(step.picture, TimeResponse)]
-
-
-def test_the_error_of_the_servo_by_its_formula() -> None:
-    """The double pole -10: e(t) = exp(-10 t) (I + (A - LC + 10 I) t) e(0), worked out by hand for e(0) = (1, 1)."""
-    ((_, picture),) = plots(PAGES["observer"]())
-    first, second = picture.responses
-    assert (first.signal, first.component, second.component) == ("e", 1, 2)
-    for (t, one), (_, two) in zip(picture.points(first), picture.points(second), strict=True):
-        assert float(one) == pytest.approx(exp(-10 * t) * (1 - 8 * t), abs=1e-5)
-        assert float(two) == pytest.approx(exp(-10 * t) * (1 - 72 * t), abs=1e-5)
 
 
 @every_page
@@ -189,13 +178,6 @@ def replaced(derivation: Derivation, old: Plot, new: Plot) -> Derivation:
 # -- the kernel -------------------------------------------------------------------------------------------------------
 
 
-def test_what_takes_too_many_bits_is_not_drawn() -> None:
-    with pytest.raises(ArithmeticError):
-        state_response(Matrix.of([[200]]), [Fraction(1)], Fraction(1), 100, 10**9)
-    steep = StateSpace([[0, 10**9], [-(10**9), -1]], None, [[1, 0]])
-    assert plots(symobs.observer(steep, L=[[0], [0]])) == []
-
-
 @tabled
 def test_bits_are_lost_to_what_grows_and_not_to_large_entries(
     control: str, observer: str, monkeypatch: pytest.MonkeyPatch
@@ -223,14 +205,3 @@ def test_bits_are_lost_to_what_grows_and_not_to_large_entries(
 
 def numbers(table: Matrix) -> list[list[Fraction]]:
     return [[entry.fraction() for entry in row] for row in table.rows]
-
-
-# -- what is written --------------------------------------------------------------------------------------------------
-
-
-def test_an_estimate_that_catches_up_at_once_is_drawn_with_more_segments() -> None:
-    """With observer poles ten times as fast, x̂ has gone half of its way within the first of 400 segments."""
-    plant = symobs.StateSpace("[0 1 0; 0 0 1; -6 -11 -5]", "[0; 0; 1]", "[1 0 0]")
-    design = symobs.compensator(plant, control_poles=[-1, -2, -3], observer_poles=[-10, -12, -14])
-    ((_, picture),) = plots(design)
-    assert [len(response.heights) for response in picture.responses] == [801] * 6
