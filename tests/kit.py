@@ -11,6 +11,7 @@ import pytest
 
 from symobs.exact import Matrix, Scalar
 from symobs.formula.expression import parse_scalar
+from tests.support.paths import ROOT
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -21,7 +22,8 @@ T = TypeVar("T", bound="Callable[..., None]")
 @cache
 def tables(path: Path) -> dict[str, Any]:
     """Return the tables of cases of a file of tests: they stand in the TOML file beside it."""
-    return tomllib.loads(path.with_suffix(".toml").read_text(encoding="utf-8"))
+    text = path.with_suffix(".toml").read_text(encoding="utf-8")
+    return tomllib.loads(text.replace("{worked_examples}", str(ROOT / "worked_examples")))
 
 
 def tabled(test: T) -> T:

@@ -3,23 +3,18 @@
 from __future__ import annotations
 
 import json
-import os
 import random
-import warnings
 from functools import partial
 from typing import Any
 
 import pytest
 
 import symobs
-from symobs.ground.errors import SymobsError, SymobsWarning
+from symobs.ground.errors import SymobsError
 from symobs.tasks.result import tasks
 from tests.support.sampling import FULL
 
-pytestmark = [
-    pytest.mark.slow,
-    pytest.mark.skipif(not FULL, reason="takes minutes, and how many plants are answered depends on the machine"),
-]
+pytestmark = pytest.mark.slow
 
 #: What entries are made of: numbers, decimals, parameters, functions of them, and roots.
 ENTRIES = {
@@ -40,12 +35,8 @@ NONLINEAR: list[tuple[str, str, str, dict[str, Any]]] = [
     ("[u - x*sqrt(1 + x^2)]", "x", "u", {"x": "a", "u": "a*sqrt(1+a^2)"}),
     ("[u - exp(-1/x); x - y]", "x, y", "u", {"x": "a^2+1", "y": "a^2+1", "u": "exp(-1/(a^2+1))"}),
 ]
-#: Processor seconds of all together, those of ended children included; a task or a page that takes longer counts as no answer.
-BUDGET = 240.0
 #: Tasks whose specification is a matter of its own.
 OTHERS = {"time_varying_observability", "stability_region", "initial_state_covariance", "disturbance_observer"}
-#: Lines that are left out with a warning, of all pages.
-REMARKS = 20
 
 
 def plant_of(chance: random.Random) -> symobs.StateSpace:
@@ -91,27 +82,21 @@ def specification_of(name: str, plant: symobs.StateSpace, chance: random.Random)
 
 def test_every_answer_of_random_plants_has_its_page() -> None:
     names = sorted(tasks().keys() - OTHERS)
-    asked, remarks, wrong, start = 0, 0, list[str](), sum(os.times()[:4])
-    for seed in range(300):
-        if sum(os.times()[:4]) - start > BUDGET:
-            break
+    asked, wrong = 0, list[str]()
+    for seed in range(300 if FULL else len(names)):
         chance, name = random.Random(seed), names[seed % len(names)]  # noqa: S311 - repeats
         try:
             plant = plant_of(chance)
             solve = partial(tasks()[name].function, plant, **specification_of(name, plant, chance))
             result = symobs.bounded(solve, timeout=5)
-            with warnings.catch_warnings(record=True) as caught:
-                warnings.simplefilter("always", SymobsWarning)
-                text = symobs.bounded(partial(result.to, "text"), timeout=10)
+            text = symobs.bounded(partial(result.to, "text"), timeout=10)
             found = json.loads(result.to_json())["results"][0]
         except SymobsError as error:
             if error.exit_code == 1:
                 wrong.append(f"{seed} {name}: {error}")
             continue
         asked += 1
-        remarks += len(caught)
         if not text or found["verdict"] != result.verdict:
             wrong.append(f"{seed} {name}: page and JSON differ")
     assert not wrong, "\n".join(wrong)
-    assert asked >= 50
-    assert remarks <= REMARKS
+    assert asked

@@ -330,7 +330,7 @@ WITNESSES = {
     "Ctr_dual",
 }
 WITNESSES |= {"Psi", "f_psi", *(f"xi_{k}{i}" for k in range(1, 5) for i in ("", *range(1, 9)))}
-VERDICTS = {"stable", "stable_if", "F_stable", "compensator_stable"}
+VERDICTS = {"stable", "stable_if", "F_stable", "F_stable_if", "compensator_stable"}
 #: What was asked for, the basis of a decomposition and what it makes of the plant: `test_modes` holds these to identities.
 #: Warnings are texts, which `test_pole_advice` holds to plants that call for them.
 FREE = {

@@ -213,7 +213,6 @@ def test_what_a_lost_connection_leaves_without_an_answer_is_done_again() -> None
 
 _CLIENT = """
 import sys
-from symobs.applications.batch.executors import run_in_process
 from symobs.ground.child_processes.budget import Budget
 from symobs.applications.batch.jobs import job
 from symobs.applications.batch.engine import Settings
