@@ -4,8 +4,17 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from tests.support.algebra import determinant, identity, matrix_at, multiply, rank_of, subtract, transposed, value_at
-from tests.support.derivations import plus, times
+from tests.support.algebra import (
+    determinant,
+    identity,
+    matrix_at,
+    multiply,
+    plus,
+    rank_of,
+    subtract,
+    transposed,
+    value_at,
+)
 
 if TYPE_CHECKING:
     from tests.support.algebra import Rows
@@ -47,4 +56,4 @@ def system(A: Rows, *, discrete: bool) -> Rows:
 
 def kron(left: Rows, right: Rows) -> Rows:
     """Return the Kronecker product."""
-    return [[entry for a in row for entry in times(a, [other])[0]] for row in left for other in right]
+    return [[a * b for a in row for b in other] for row in left for other in right]

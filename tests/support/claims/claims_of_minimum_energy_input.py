@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from tests.support.algebra import digits, multiply, observability_rows, transposed
-from tests.support.claims.claims_in_time import CONTEXT, digits_of, gramian_of, near, table, world_at
+from tests.support.algebra import CONTEXT, digits, multiply, observability_rows, transposed
+from tests.support.claims.claims_in_time import digits_of, gramian_of, near, table, world_at
 
 if TYPE_CHECKING:
     from tests.support.claims.claims import Setting

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 import sympy
-from scipy.linalg import expm
+from scipy.linalg import expm  # type: ignore[import-untyped]
 
 import symobs
 from symobs.ground.errors import InputError
