@@ -145,9 +145,8 @@ DEMANDED = {
     "observable Bᵀ Aᵀ, canonical": "already_canonical",
     "observable C A": """
         any_observer assignable_observer frozen_instant frozen_misled_yes initial_found
-        no_fixed_modes_observability pbh_yes_observability stack_yes_if yes_observability
+        no_fixed_modes_observability pbh_yes_observability samples_found stack_yes_if yes_observability
     """,
-    "observable C A": "samples_found",
     "observable C_hat A_hat": "disturbance_zeros_model",
     "one_rank C E_d": "uio_decoupled",
     "pole_defective": "defective defective_instead",
