@@ -30,6 +30,7 @@ from symobs.ground.errors import UsageError as UsageError
 from symobs.live import live as live
 from symobs.system import StateSpace as StateSpace
 from symobs.system.linearize import linearize as linearize
+from symobs.tasks.analysis.lyapunov.lyapunov import LyapunovSolution as _LyapunovSolution
 from symobs.tasks.analysis.modes.detectability import Detectability as _Detectability
 from symobs.tasks.analysis.modes.detectability import Stabilizability as _Stabilizability
 from symobs.tasks.analysis.modes.pbh import PopovBelevitchHautus as _PopovBelevitchHautus
@@ -46,6 +47,7 @@ from symobs.tasks.analysis.time_response.gramian import Gramian as _Gramian
 from symobs.tasks.analysis.time_response.initial_state import InitialState as _InitialState
 from symobs.tasks.analysis.time_response.initial_state_covariance import InitialStateCovariance as _InitialStateCovariance
 from symobs.tasks.analysis.time_response.matrix_exponential import MatrixExponential as _MatrixExponential
+from symobs.tasks.analysis.time_response.minimum_energy_input import MinimumEnergyInput as _MinimumEnergyInput
 from symobs.tasks.analysis.time_response.response import Response as _Response
 from symobs.tasks.analysis.time_response.zero_order_hold import ZeroOrderHold as _ZeroOrderHold
 from symobs.tasks.analysis.time_varying.time_varying_observability import TimeVaryingObservability as _TimeVaryingObservability
@@ -450,6 +452,33 @@ def integral_action(
 ) -> _IntegralActionResult:
     """Let y follow constant references by u = −K x + k_I ξ, ξ' = r − y, with n + p given poles."""
 
+class _LyapunovResult(_LyapunovSolution):
+    """What `lyapunov` returns."""
+
+    @property
+    def P(self) -> ImmutableMatrix: ...
+    @property
+    def solvable(self) -> str: ...
+    @property
+    def positive_definite(self) -> str: ...
+    @property
+    def positive_if(self) -> tuple[str, ...]: ...
+    @property
+    def minors(self) -> tuple[Any, ...]: ...
+    @property
+    def determinant(self) -> Expr: ...
+    @property
+    def homogeneous(self) -> Any: ...
+
+def lyapunov(
+    plant: _Plant,
+    *,
+    Q: _Number | _Matrix | None = None,
+    method: str = "auto",
+    floats: str | None = None,
+) -> _LyapunovResult:
+    """Solve Lyapunov's equation AᵀP + PA = −Q, in discrete time AᵀPA − P = −Q, for a symmetric P."""
+
 class _MatrixExponentialResult(_MatrixExponential):
     """What `matrix_exponential` returns."""
 
@@ -463,6 +492,29 @@ def matrix_exponential(
     floats: str | None = None,
 ) -> _MatrixExponentialResult:
     """Return e^{At} as a real matrix of exponentials, cosines, sines, cosh, sinh and powers of t; Aᵏ in discrete time."""
+
+class _MinimumEnergyInputResult(_MinimumEnergyInput):
+    """What `minimum_energy_input` returns."""
+
+    @property
+    def input(self) -> Expr | tuple[Any, ...]: ...
+    @property
+    def energy(self) -> Expr: ...
+    @property
+    def gramian(self) -> ImmutableMatrix: ...
+    @property
+    def unreachable(self) -> Any: ...
+
+def minimum_energy_input(
+    plant: _Plant,
+    *,
+    initial: _Matrix | None = None,
+    final: _Matrix | None = None,
+    horizon: _Number | None = None,
+    method: str = "auto",
+    floats: str | None = None,
+) -> _MinimumEnergyInputResult:
+    """Return the input of least energy ∫ uᵀu dt (Σ uᵀu) from x₀ to x_f: u = Bᵀ e^{Aᵀ(T−t)} W⁻¹ (x_f − e^{AT} x₀)."""
 
 class _ObservabilityResult(_Observability):
     """What `observability` returns."""

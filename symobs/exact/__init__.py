@@ -30,6 +30,7 @@ from symobs.exact.linear_algebra.elimination import (
     primitive_kernel,
     rank,
     reduced_echelon,
+    solve_or_refute,
     unit_rows,
 )
 from symobs.exact.linear_algebra.transfer_function import (
@@ -92,6 +93,7 @@ __all__ = [
     "roots_of",
     "rounded",
     "significant",
+    "solve_or_refute",
     "stable_roots",
     "transfer",
     "transfer_matrix",

@@ -30,6 +30,7 @@ DEMANDED = {
     "about F unstable": "minimal_unstable",
     "about F unstable, loop stable": "minimal_unstable_alone",
     "about P": "no_stable_compensator",
+    "about P_l positive_definite": "lyapunov_definite lyapunov_definite_if",
     "about phi_c": "integral_rest_stable",
     "about phi_c unstable marginal, continuous_time": "drifts_state_feedback_continuous",
     "about phi_c unstable marginal, discrete_time": "drifts_state_feedback_discrete",
@@ -47,6 +48,7 @@ DEMANDED = {
     "annuls w_0 G_0": "no_feedforward_low",
     "annuls w_d B": "tracking_impossible_one",
     "annuls w_d B A−A_ref": "tracking_impossible",
+    "annuls w_d Ctr d_r": "energy_unreachable",
     "applies_image": "mapped mapped_from_v",
     "bounded X mu": "semisimple",
     "chained X mu": "grows",
@@ -55,6 +57,9 @@ DEMANDED = {
         hides_continuous integral_state_continuous lowest_terms_unstable_continuous marginal_continuous
         nonlinear_continuous sought_continuous
     """,
+    "continuous_time, of_pairs A, ends !=, continuous_time": "lyapunov_regular_continuous",
+    "continuous_time, of_pairs A, ends =, continuous_time": "lyapunov_singular_continuous",
+    "continuous_time, refutes_lyapunov A Q_l X_l, continuous_time": "lyapunov_impossible_continuous",
     "counts_degree": "pair_remains some_on_circle",
     "counts_dominant": "pair_dominates",
     "counts_names": "crossing crossing_infinite crossing_one",
@@ -67,6 +72,9 @@ DEMANDED = {
         hides_discrete integral_state_discrete lowest_terms_unstable_discrete marginal_discrete
         nonlinear_discrete sought_discrete
     """,
+    "discrete_time, of_pairs A, ends !=, discrete_time": "lyapunov_regular_discrete",
+    "discrete_time, of_pairs A, ends =, discrete_time": "lyapunov_singular_discrete",
+    "discrete_time, refutes_lyapunov A Q_l X_l, discrete_time": "lyapunov_impossible_discrete",
     "duals Bᵀ Aᵀ C_dual A_dual": "dual_ranks_controlling",
     "duals C A B_dualᵀ A_dualᵀ": "dual_ranks_observing",
     "eigenvalues_of A": "eigenvalues its_roots open_eigenvalues_observer open_eigenvalues_state_feedback",
@@ -97,6 +105,7 @@ DEMANDED = {
     "fixes C_hat A_hat N X phi_o": "disturbance_fixed disturbance_impossible disturbance_unassignable",
     "introduces_degree_one": "one_from_settling one_on_circle",
     "is A_dual Aᵀ": "dual_positive",
+    "is_characteristic chi A": "lyapunov_polynomial",
     "is_constant b_P": "no_zeros",
     "is_constant phi_r": "none_remains",
     "is_constant phi_z": "no_zeros_taken",
@@ -104,6 +113,7 @@ DEMANDED = {
     "loop unstable, continuous_time": "loop_unstable_continuous",
     "loop unstable, discrete_time": "loop_unstable_discrete",
     "lower_rank C E_d": "uio_not_decoupled uio_not_decoupled_along",
+    "minors P_l": "lyapunov_minors lyapunov_not_definite",
     "modes Bᵀ Aᵀ N X": "fixed_modes_controllability on_kernel_controllability",
     "modes Bᵀ Aᵀ N_K X_K N X": "modes_controllability",
     "modes C A N X": "fixed_modes_observability modes_observability on_kernel_observability",
@@ -135,7 +145,7 @@ DEMANDED = {
     "observable Bᵀ Aᵀ, canonical": "already_canonical",
     "observable C A": """
         any_observer assignable_observer frozen_instant frozen_misled_yes initial_found
-        no_fixed_modes_observability pbh_yes_observability stack_yes_if yes_observability
+        no_fixed_modes_observability pbh_yes_observability samples_found stack_yes_if yes_observability
     """,
     "observable C_hat A_hat": "disturbance_zeros_model",
     "one_rank C E_d": "uio_decoupled",
@@ -145,6 +155,7 @@ DEMANDED = {
     "poles_of phi_o": "observer_pole observer_poles observer_polynomial",
     "repairs Bᵀ Aᵀ": "repair_one_controllability repair_several_controllability",
     "repairs C A": "repair_one_observability repair_several_observability",
+    "reverses chi_r chi": "lyapunov_reversed",
     "says_decay": "decayed",
     "says_observable Bᵀ Aᵀ": "generic_rank_controllability",
     "says_observable C A": "case_stack_yes generic_rank_observability stack_yes",
@@ -177,6 +188,11 @@ DEMANDED = {
     "shown, discrete_time": "stable_discrete stable_if_discrete unstable_discrete",
     "single Bᵀ": "one_gain_only_state_feedback row_reduced_unique_state_feedback",
     "single C": "one_gain_only_observer row_reduced_unique_observer",
+    "solves W lam_e d_r": "energy_multiplier",
+    "solves W lam_e d_r, continuous_time": "energy_input energy_spent",
+    "solves W lam_e d_r, discrete_time": "energy_sequence",
+    "solves_homogeneous A N_l": "lyapunov_added lyapunov_one_of_many",
+    "solves_lyapunov P_l Q_l A": "lyapunov_stable lyapunov_stable_if lyapunov_unstable",
     "spans_kernel": "steps_kernel_controllability steps_kernel_observability",
     "spans_unseen Bᵀ Aᵀ": "kernel_basis_controllability",
     "spans_unseen C A": "kernel_basis_observability",
@@ -222,6 +238,9 @@ ASSERTED = {
         case_no_observer case_no_state_feedback impossible_observer impossible_state_feedback
         integral_impossible reduced_impossible
     """,
+    "positive_definite": "lyapunov_definite lyapunov_stable_if",
+    "positive_definite stable": "lyapunov_stable",
+    "positive_definite unstable": "lyapunov_unstable",
     "polynomial": """
         case_other_observer case_other_state_feedback case_same_observer case_same_state_feedback
         case_survives_observer case_survives_state_feedback fixed_but_wanted_observer

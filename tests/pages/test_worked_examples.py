@@ -189,7 +189,7 @@ def spoiled_intervals(value: list[list[str]]) -> Iterator[list[list[str]]]:
 
 def spoiled_list(value: list[Any], key: str, names: Mapping[str, str]) -> Iterator[Any]:
     """Yield a list of roots, relations or vectors with one entry changed, left out or added."""
-    relations = key in {"conditions", "stable_if", "best_horizon"}
+    relations = key in {"conditions", "stable_if", "positive_if", "best_horizon"}
     if not relations:
         yield [*value, [1, 0, 0] if key == "kernel" else -1234]
     elif key == "stable_if":  # a set: what is added has to take something away from it

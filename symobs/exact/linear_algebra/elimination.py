@@ -122,6 +122,23 @@ def independent_rows(matrix: Matrix, relations: Ideal | None = None) -> tuple[in
     return echelon(matrix.T, relations)[0] if matrix.shape[1] else ()
 
 
+def solve_or_refute(M: Matrix, right: Matrix, relations: Ideal | None = None) -> tuple[Matrix | None, Matrix | None]:
+    """Return a Y with M Y = right, or else a row w with w M = 0 and w right ≠ 0 (where the relations hold)."""
+    rows, columns = independent_rows(M, relations), independent_rows(M.T, relations)
+    parts = right.select(rows, range(right.shape[1]))
+    lines = dict(zip(columns, M.select(rows, columns).solve(parts).rows, strict=True)) if columns else {}
+    nothing = [Scalar.of(0)] * right.shape[1]
+    Y = Matrix.of([list(lines.get(i, nothing)) for i in range(M.shape[1])], right.shape[1])
+    if modulo((M @ Y - right).normal(), relations).is_zero:
+        return Y, None
+    left = primitive_kernel(M.T, relations)
+    for j in range(left.shape[1]):
+        w = left.select(range(left.shape[0]), [j]).T
+        if not modulo((w @ right).normal(), relations).is_zero:
+            return None, w
+    raise AssertionError(left)
+
+
 def unit_rows(order: int, rows: tuple[int, ...]) -> Matrix:
     """Return the rows eᵢᵀ of the identity."""
     return Matrix.of([[int(j == i) for j in range(order)] for i in rows], order)

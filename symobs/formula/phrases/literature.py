@@ -204,6 +204,15 @@ _article(
     "189–213",
 )
 _article(
+    "kalman1960a",
+    "R. E. Kalman and J. E. Bertram",
+    "Control system analysis and design via the second method of Lyapunov, I and II",
+    "J. Basic Eng.",
+    "82",
+    "1960",
+    "371–400",
+)
+_article(
     "kalman1961",
     "R. E. Kalman and R. S. Bucy",
     "New results in linear filtering and prediction theory",
@@ -320,6 +329,7 @@ _book("brogan1991", "W. L. Brogan", "Modern Control Theory", "Prentice Hall", "1
 _book("chen1999", "C.-T. Chen", "Linear System Theory and Design", "Oxford University Press", "1999", "3rd")
 _book("jury1964", "E. I. Jury", "Theory and Application of the z-Transform Method", "Wiley", "1964")
 _book("astrom1997", "K. J. Åström and B. Wittenmark", "Computer-Controlled Systems", "Prentice Hall", "1997", "3rd")
+_book("lancaster1985", "P. Lancaster and M. Tismenetsky", "The Theory of Matrices", "Academic Press", "1985", "2nd")
 _book("kailath1980", "T. Kailath", "Linear Systems", "Prentice Hall", "1980")
 _book("popov1973", "V. M. Popov", "Hyperstability of Control Systems", "Springer", "1973")
 _book("routh1877", "E. J. Routh", "A Treatise on the Stability of a Given State of Motion", "Macmillan", "1877")

@@ -270,11 +270,13 @@ def _fact(fact: Fact, environment: Environment, discrete: bool) -> None:  # noqa
     if isinstance(fact, HoldsExactlyWhere):
         _about_letters(fact.property.subject, environment)
         found = evaluate(fact.property.subject, environment, Exact(environment))
-        (value,) = subjects(fact.property.name, found, environment.variable)
-        polynomial = polynomial_of(value, environment)
-        if not is_exactly(fact, polynomial, environment, discrete=discrete):
+        values: Scalar | tuple[Scalar, ...] = subjects(fact.property.name, found, environment.variable)
+        if fact.property.name != "positive_definite" and isinstance(values, tuple):
+            (value,) = values
+            values = polynomial_of(value, environment)
+        if not is_exactly(fact, values, environment, discrete=discrete):
             reject(
-                f"{polynomial} is {fact.property.name} exactly where "
+                f"{found} is {fact.property.name} exactly where "
                 f"{', '.join(plain_relation(relation, environment.variable) for relation in fact.where)}"
             )
         return

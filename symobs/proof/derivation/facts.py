@@ -107,6 +107,8 @@ def subjects(name: str, value: Any, variable: str) -> tuple[Scalar, ...]:
 
     Raises TypeError for a matrix without poles: a constant matrix would be stable whatever its eigenvalues.
     """
+    if name == "positive_definite":
+        return leading_minors(value)
     if not isinstance(value, Matrix) or value.shape == (1, 1):
         return (as_scalar(value),)
     if name == "strictly_proper":
@@ -118,26 +120,46 @@ def subjects(name: str, value: Any, variable: str) -> tuple[Scalar, ...]:
     return (denominator,)
 
 
+def leading_minors(value: Any) -> tuple[Scalar, ...]:
+    """Return the leading principal minors of a symmetric matrix; raises `WrongKind` for another value."""
+    if not isinstance(value, Matrix) or value != value.T:
+        message = "what is positive definite is a symmetric matrix"
+        raise WrongKind(message)
+    return tuple(value.select(range(k), range(k)).determinant() for k in range(1, value.shape[0] + 1))
+
+
 def needed(name: str, polynomial: Scalar, environment: Environment, discrete: bool) -> tuple[Scalar, ...]:  # noqa: FBT001
     """Return what must be positive for a polynomial to be stable, not negative for it to be marginal; nothing if unknown."""
     variable, signs = environment.variable, environment.signs
+    if name == "positive_definite":
+        return (polynomial,) if sign_of(polynomial, signs) != "positive" else ()
     if name == "marginal":
         return marginal_where(polynomial, variable, signs, discrete=discrete)
     return stability(polynomial, variable, signs, discrete=discrete).positive if name == "stable" else ()
 
 
+def _has_sign_of(bound: Scalar, value: Scalar, signs: Mapping[str, str]) -> bool:
+    """Return whether a value is a positive multiple of another wherever that is defined."""
+    ratio, undefined = value / bound, vanishing_factors([bound.denominator], signs)
+    if sign_of(ratio, signs) not in {"positive", "nonnegative"}:
+        return False
+    return {*vanishing_factors([ratio.numerator, ratio.denominator], signs)} <= {*undefined}
+
+
 def is_criterion(
     name: str,
-    polynomial: Scalar,
+    polynomial: Scalar | tuple[Scalar, ...],
     said: Sequence[Scalar],
     environment: Environment,
     discrete: bool,  # noqa: FBT001
 ) -> bool:
     """Return whether the stated inequalities are those of the criterion, each up to a positive factor."""
-    signs, bounds = environment.signs, needed(name, polynomial, environment, discrete)
+    signs = environment.signs
+    polynomials = polynomial if isinstance(polynomial, tuple) else (polynomial,)
+    bounds = [bound for each in polynomials for bound in needed(name, each, environment, discrete)]
     if not said:
         return False
-    same = [[sign_of(value / bound, signs) == "positive" for bound in bounds] for value in said]
+    same = [[_has_sign_of(bound, value, signs) for bound in bounds] for value in said]
     return all(map(any, same)) and all(map(any, zip(*same, strict=True)))
 
 
@@ -161,6 +183,7 @@ PREDICATES: dict[str, Callable[[Scalar, Environment, bool], bool]] = {
     "beyond": lambda value, environment, discrete: is_beyond(
         value, environment.variable, environment.signs, discrete=discrete
     ),
+    "positive_definite": lambda value, environment, _: sign_of(value, environment.signs) == "positive",
     "never_zero": lambda value, environment, _: never_zero(value, environment.signs),
 }
 
@@ -287,8 +310,10 @@ def _left_of(when: Conjunction, substitution: dict[str, Scalar], environment: En
 # Check that inequalities hold exactly where a polynomial has a property (trusted).
 
 
-def is_exactly(fact: HoldsExactlyWhere, polynomial: Scalar, environment: Environment, *, discrete: bool) -> bool:
-    """Return whether a polynomial has a property exactly where some inequalities hold.
+def is_exactly(
+    fact: HoldsExactlyWhere, polynomial: Scalar | tuple[Scalar, ...], environment: Environment, *, discrete: bool
+) -> bool:
+    """Return whether a polynomial, or each leading minor of a matrix, has a property exactly where some inequalities hold.
 
     They are those that the criterion asks for, or proved to say the same; with one or two parameters by the region itself.
     """
@@ -298,13 +323,13 @@ def is_exactly(fact: HoldsExactlyWhere, polynomial: Scalar, environment: Environ
         values = [as_scalar(evaluate(member, environment, arithmetic)) for member in relation.members]
         for (left, right), operator in zip(pairwise(values), relation.operators, strict=True):
             said.append((right - left if operator[0] == "<" else left - right, operator))
-    allowed = {">", "<", "!="} if name == "stable" else {">=", "<="}
+    allowed = {">", "<", "!="} if name in {"stable", "positive_definite"} else {">=", "<="}
     if not {operator for _, operator in said} <= allowed:
         return False
     positive = tuple(value**2 if operator == "!=" else value for value, operator in said)
     if is_criterion(name, polynomial, positive, environment, discrete):
         return True
-    if name != "stable" or not said:
+    if name != "stable" or not said or isinstance(polynomial, tuple):
         return False
     from symobs.proof.derivation.region_check import holds_exactly, region_of  # noqa: PLC0415 - only pages of regions pay for it
     from symobs.stability.criteria.stability_conditions import is_stable_where  # noqa: PLC0415 - the same

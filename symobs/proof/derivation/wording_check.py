@@ -432,6 +432,74 @@ def _spans_kernel(said: Said) -> bool:
     return whole and _vanishes(here, Product((W, N)))
 
 
+def _left_side(here: Environment, of: Formula, P: Formula) -> Formula:
+    """Return AᵀP + PA, in discrete time AᵀPA − P."""
+    if here.variable == "z":
+        return Sum((Product((Transpose(of), P, of)), Negative(P)))
+    return Sum((Product((Transpose(of), P)), Product((P, of))))
+
+
+def _reverses(here: Environment, letter: str, of: str) -> bool:
+    """Return whether a polynomial has the coefficients of another in reverse order."""
+    own, other = (as_scalar(here.values[name]) for name in (letter, of))
+    coefficients = tuple(reversed(other.coefficients(here.variable)))
+    return own == sum(
+        (c * Scalar.symbol(here.variable) ** k for k, c in enumerate(reversed(coefficients))), Scalar.of(0)
+    )
+
+
+def _is_of_pairs(said: Said, of: str) -> bool:
+    """Return whether what is told is det χ(−A), in discrete time det χ*(A)."""
+    here, A, told = said.environment, Letter(of), said.of(Relation)
+    image = Apply("chi_r_at", A) if here.variable == "z" else Apply("chi_at", Negative(A))
+    known = _holds(here, Letter("chi"), "=", _characteristic(of, here))
+    known = known and (here.variable != "z" or _reverses(here, "chi_r", "chi"))
+    return known and bool(told) and all(relation.members[0] == Apply("det", image) for relation in told)
+
+
+def _solves_homogeneous(said: Said, of: str, N: str) -> bool:
+    """Return whether a symmetric matrix other than 0 solves Lyapunov's equation with 0 on the right."""
+    here, matrix = said.environment, Letter(N)
+    symmetric = _holds(here, matrix, "=", Transpose(matrix))
+    return symmetric and _vanishes(here, _left_side(here, _letter(of), matrix)) and _differs(here, matrix)
+
+
+def _refutes_lyapunov(said: Said, of: str, Q: str, X: str) -> bool:
+    """Return whether X, symmetric, solves the transposed homogeneous equation and the trace told is that of Q X, and not 0."""
+    here, matrix = said.environment, Letter(X)
+    right, left = (evaluate(Letter(name), here, Exact(here)) for name in (Q, X))
+    trace = Literal(sum((a * b for a, b in zip(right.entries, left.entries, strict=True)), Scalar.of(0)))
+    symmetric = all(_holds(here, Letter(name), "=", Transpose(Letter(name))) for name in (Q, X))
+    told = said.slots["trace"]
+    return (
+        symmetric
+        and isinstance(told, Formula)
+        and _vanishes(here, _left_side(here, Transpose(_letter(of)), matrix))
+        and _holds(here, told, "=", trace)
+        and _differs(here, trace)
+    )
+
+
+def _are_minors(said: Said, of: str) -> bool:
+    """Return whether Δ₁, Δ₂, … are the leading principal minors of a matrix."""
+    here, order = said.environment, _sizes(of, said.environment)[0]
+    matrix = evaluate(Letter(of), here, Exact(here))
+    parts = [matrix.select(range(k), range(k)) for k in range(1, order + 1)]
+    names = [name for name in here.values if name.startswith("Delta_")]
+    return len(names) == order and all(
+        _holds(here, Letter(f"Delta_{k}"), "=", Apply("det", Literal(part))) for k, part in enumerate(parts, 1)
+    )
+
+
+def _is_lyapunov(said: Said, P: str, Q: str, of: str) -> bool:
+    """Return whether P solves Lyapunov's equation, Q is said to be positive definite, and χ to be stable or not."""
+    here = said.environment
+    solves = _holds(here, _left_side(here, _letter(of), Letter(P)), "=", Negative(Letter(Q)))
+    known = _holds(here, Letter("chi"), "=", _characteristic(of, here))
+    told = said.subjects("positive_definite"), said.subjects("stable", "unstable")
+    return solves and known and told == ([Letter(Q)], [Letter("chi")])
+
+
 def _has_rank(said: Said, *, is_full: bool) -> bool:
     return any(
         _is_of_rank(fact, said.environment, is_full=is_full) for fact in said.facts if isinstance(fact, Relation)
@@ -643,6 +711,19 @@ _OF_STEP: dict[str, Callable[..., bool]] = {
     "zero": lambda said, *names: any(
         name in said.environment.values and _vanishes(said.environment, Letter(name)) for name in names
     ),
+    "is_characteristic": lambda said, letter, of: _holds(
+        said.environment, Letter(letter), "=", _characteristic(of, said.environment)
+    ),
+    "reverses": lambda said, letter, of: _reverses(said.environment, letter, of),
+    "of_pairs": _is_of_pairs,
+    "ends": lambda said, operator: all(
+        (told.operators[-1], told.members[-1]) == (operator, _number(0)) for told in said.of(Relation)
+    ),
+    "solves": lambda said, M, x, b: _holds(said.environment, Product((Letter(M), Letter(x))), "=", Letter(b)),
+    "solves_homogeneous": _solves_homogeneous,
+    "refutes_lyapunov": _refutes_lyapunov,
+    "minors": _are_minors,
+    "solves_lyapunov": _is_lyapunov,
     "vanishes": _vanishes_of,
     "annuls": _annuls,
     "one_rank": lambda said, C, E: _holds(said.environment, *_ranks(C, E, "=")),

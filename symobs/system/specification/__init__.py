@@ -30,6 +30,7 @@ from symobs.system.specification.keywords import (
     read_poles,
     read_quantity,
     read_signal,
+    read_symmetric,
     reject_both,
 )
 from symobs.system.specification.pole_patterns import PolePattern, is_pattern
@@ -66,5 +67,6 @@ __all__ = [
     "read_poles",
     "read_quantity",
     "read_signal",
+    "read_symmetric",
     "reject_both",
 ]

@@ -125,7 +125,7 @@ KINDS: dict[str, dict[str, Any]] = {
         "oneOf": [{"type": "string"}, {"type": "array"}, {"type": "number"}],
     },
     "Intensity": {
-        "description": 'the intensity of white noise, symmetric: "q" or "[q1 0; 0 q2]"',
+        "description": 'a symmetric matrix, as the intensity of white noise: "q" (for q I) or "[q1 0; 0 q2]"',
         "oneOf": [{"type": "string"}, {"type": "array"}, {"type": "number"}],
     },
 }
@@ -392,6 +392,23 @@ def read_gain(value: object, plant: StateSpace, name: str, shape: tuple[int, int
         message = f"{name} is {gain.shape[0]}×{gain.shape[1]}, expected {shape[0]}×{shape[1]}"
         raise ShapeMismatch(message, where=where, repair=f"write {name} as a {shape[0]}×{shape[1]} matrix")
     return gain
+
+
+def read_symmetric(value: object, plant: StateSpace, name: str, size: int) -> Matrix:
+    """Return a symmetric matrix; a single value q stands for q I.  Raises `InputError`, `ShapeMismatch`."""
+    where = f"specification.{name}"
+    listed = value if isinstance(value, (str, list, tuple)) or hasattr(value, "shape") else [[value]]
+    found = read_matrix(listed, plant.symbols.seen(value), where)
+    if found.shape == (1, 1):
+        found = Matrix.identity(size) * found[0, 0]
+    if found.shape != (size, size):
+        message = f"{name} is {found.shape[0]}×{found.shape[1]}, expected {size}×{size}"
+        raise ShapeMismatch(message, where=where, repair=f"write {name} as a symmetric {size}×{size} matrix")
+    if found != found.T:
+        i, j = next((i, j) for i in range(size) for j in range(i) if found[i, j] != found[j, i])
+        message = f"{name} is not symmetric: its entries ({j + 1}, {i + 1}) and ({i + 1}, {j + 1}) differ"
+        raise InputError(message, where=where, repair=f"write {name} as a symmetric {size}×{size} matrix")
+    return found
 
 
 def read_quantity(value: object, plant: StateSpace, name: str, where: str = "", *, functions: bool = False) -> Scalar:

@@ -28,9 +28,11 @@ OTHER_QUESTIONS = {"compensator/minimal_order", "pole_advice/dominant_pair"}
 #: Which of a task's keywords for quantities, and which inputs, are asked for, and with what: not all of them go together.
 QUANTITIES = {"pole_advice/dominant_pair": {"settling_time": "2", "overshoot": "1/20"}}
 QUANTITIES["response"] = QUANTITIES["response/superposition"] = QUANTITIES["response/auto"] = {"input": "1 - exp(-t)"}
-#: Tasks about plants with disturbances, which are asked for plants with two states.
+#: Tasks about plants with disturbances, or between given states, which are asked for plants with two states.
 DISTURBED = {name: {"E": "[1; 0]"} for name in ("unknown_input_observer", "disturbance_observer")}
+DISTURBED["minimum_energy_input"] = {"final": "[1; 0]"}
 QUANTITIES |= {name: given for task, given in DISTURBED.items() for name in (task, f"{task}/auto")}
+QUANTITIES |= {"minimum_energy_input/gramian": DISTURBED["minimum_energy_input"]}
 QUANTITIES |= {"unknown_input_observer/decoupled": DISTURBED["unknown_input_observer"]}
 QUANTITIES |= {"disturbance_observer/extended_state": DISTURBED["disturbance_observer"]}
 QUANTITIES |= {name: {"radius": "3"} for name in ("pole_advice", "pole_advice/butterworth", "pole_advice/auto")}

@@ -87,6 +87,7 @@ UNSAID = (
     "auto",
     "basis",
     "decoupled",
+    "entries",
     "derivatives",
     "determinant",
     "eigenvalues",

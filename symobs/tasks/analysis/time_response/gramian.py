@@ -56,11 +56,12 @@ from symobs.tasks.analysis.time_response.horizons import (
     INFINITE,
     infinite_gramian,
     lyapunov,
-    lyapunov_map,
+    lyapunov_operator,
     over_horizon,
     read_horizon,
     steps_gramian,
-    symmetric_places,
+    symmetric,
+    upper_entries,
 )
 from symobs.tasks.analysis.time_response.matrix_exponential import (
     TIME,
@@ -308,15 +309,12 @@ def _with_sums(plant: StateSpace, A: Matrix, C: Matrix) -> Matrix:
 
     The motion of its n(n+1)/2 different entries beside a constant.  Raises `NoClosedForm` where these are too many.
     """
-    places = symmetric_places(plant.order)
-    Q = (C.T @ C).normal()
-    constant = Matrix.column([Q[place] for place in places])
-    count = len(places)
-    whole = Matrix.block([[lyapunov_map(A), constant], [Matrix.zeros(1, count + 1)]])
+    constant = upper_entries(C.T @ C).normal()
+    count = constant.shape[0]
+    operator = lyapunov_operator(A, discrete=False)
+    whole = Matrix.block([[operator, constant], [Matrix.zeros(1, count + 1)]])
     found = motion(plant, whole, Matrix.unit(count + 1, count)).matrix(TIME)
-    values = {place: found[k, 0] for k, place in enumerate(places)}
-    order = range(plant.order)
-    return Matrix.of([[values[min(i, j), max(i, j)] for j in order] for i in order])
+    return symmetric(found.select(range(count), [0]))
 
 
 def _at_horizon(values: Mapping[str, Any], horizon: Any) -> dict[str, Any]:
@@ -414,7 +412,7 @@ def _tell_lyapunov(result: Gramian, page: Builder) -> None:
     if result.plant.order > _LYAPUNOV_UP_TO or any(map(function_named, result.plant.field.names)):
         return
     A, C = _letters(result, page)
-    P = lyapunov(A.value, C.value, discrete=False)
+    P = lyapunov(A.value, C.value.T @ C.value, discrete=False)
     if P is None:
         return
     page.set("P_l", P)

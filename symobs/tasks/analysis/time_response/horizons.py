@@ -32,7 +32,7 @@ _MOST_STEPS = 60
 
 
 #: Lyapunov's equation is solved for up to this many states, without and with parameters.
-_MOST_STATES, _MOST_WITH_PARAMETERS = 12, 4
+MOST_STATES, MOST_WITH_PARAMETERS = 12, 4
 
 
 def read_horizon(plant: StateSpace, value: object, name: str = "horizon") -> Any:
@@ -91,7 +91,7 @@ def infinite_gramian(plant: StateSpace, A: Matrix, C: Matrix, test: Mapping[str,
     if found.verdict == "no":
         return nothing
     order = A.shape[0]
-    if order > (_MOST_WITH_PARAMETERS if (A.names | C.names) else _MOST_STATES):
+    if order > (MOST_WITH_PARAMETERS if (A.names | C.names) else MOST_STATES):
         return {**nothing, "question": f"Lyapunov's equation for {order} states"}
     W = _of_what_is_seen(A, C, test, discrete=plant.is_discrete)
     if W is None:
@@ -105,44 +105,53 @@ def _of_what_is_seen(A: Matrix, C: Matrix, test: Mapping[str, Any], *, discrete:
     if not test["rank"]:
         return Matrix.zeros(*A.shape)
     if test["rank"] == A.shape[0]:
-        return lyapunov(A, C, discrete=discrete)
+        return lyapunov(A, C.T @ C, discrete=discrete)
     Q: Matrix = test["matrix"].select(test["rows"], order)
     square = Q.select(range(Q.shape[0]), test["columns"]).T
 
     def through(rows: Matrix) -> Matrix:  # Y with Y Q = rows
         return square.solve(rows.select(range(rows.shape[0]), test["columns"]).T).T.normal()
 
-    W = lyapunov(through(Q @ A), through(C), discrete=discrete)
+    seen = through(C)
+    W = lyapunov(through(Q @ A), seen.T @ seen, discrete=discrete)
     return None if W is None else (Q.T @ W @ Q).normal()
 
 
-def symmetric_places(order: int) -> list[tuple[int, int]]:
-    """Return the places on and above the diagonal."""
+def lyapunov(A: Matrix, Q: Matrix, *, discrete: bool) -> Matrix | None:
+    """Return the symmetric P with AᵀP + PA = −Q (AᵀPA − P = −Q), None where it is not unique."""
+    try:
+        found = lyapunov_operator(A, discrete=discrete).solve(-upper_entries(Q)).normal()
+    except ZeroDivisionError:
+        return None
+    return symmetric(found)
+
+
+def lyapunov_operator(A: Matrix, *, discrete: bool) -> Matrix:
+    """Return the matrix of P ↦ AᵀP + PA (P ↦ AᵀPA − P) on the entries of a symmetric P on and above the diagonal."""
+    order = A.shape[0]
+    columns = []
+    for i, j in _upper(order):
+        unit = Matrix.of([[int((r, c) in {(i, j), (j, i)}) for c in range(order)] for r in range(order)])
+        columns.append(upper_entries(A.T @ unit @ A - unit if discrete else A.T @ unit + unit @ A))
+    return Matrix.block([columns])
+
+
+def _upper(order: int) -> list[tuple[int, int]]:
     return [(i, j) for i in range(order) for j in range(i, order)]
 
 
-def lyapunov_map(A: Matrix, *, discrete: bool = False) -> Matrix:
-    """Return the matrix of P ↦ AᵀP + PA (AᵀPA − P) for symmetric P, in the order of their places."""
-    order, columns = A.shape[0], []
-    places = symmetric_places(order)
-    for i, j in places:
-        unit = Matrix.of([[int((r, c) in {(i, j), (j, i)}) for c in range(order)] for r in range(order)])
-        image = A.T @ unit @ A - unit if discrete else A.T @ unit + unit @ A
-        columns.append([image[place] for place in places])
-    return Matrix.of(columns).T
+def upper_entries(P: Matrix) -> Matrix:
+    """Return the entries on and above the diagonal, as a column."""
+    return Matrix.column([P[place] for place in _upper(P.shape[0])])
 
 
-def lyapunov(A: Matrix, C: Matrix, *, discrete: bool) -> Matrix | None:
-    """Return the symmetric P with AᵀP + PA = −CᵀC (AᵀPA − P = −CᵀC), None where it is not unique."""
-    order = A.shape[0]
-    places = symmetric_places(order)
-    Q = (C.T @ C).normal()
-    try:
-        found = lyapunov_map(A, discrete=discrete).solve(Matrix.column([-Q[place] for place in places])).normal()
-    except ZeroDivisionError:
-        return None
-    values = {place: found[k, 0] for k, place in enumerate(places)}
-    return Matrix.of([[values[min(i, j), max(i, j)] for j in range(order)] for i in range(order)])
+def symmetric(entries: Matrix, off_diagonal: Scalar | int = 1) -> Matrix:
+    """Return the symmetric matrix with these entries on and above the diagonal, those above it times a factor."""
+    order = int((8 * entries.shape[0] + 1) ** 0.5 - 1) // 2
+    values = {place: entries[k, 0] for k, place in enumerate(_upper(order))}
+    return Matrix.of(
+        [[values[min(i, j), max(i, j)] * (1 if i == j else off_diagonal) for j in range(order)] for i in range(order)]
+    )
 
 
 # Stationary points of a variance as a function of the horizon.

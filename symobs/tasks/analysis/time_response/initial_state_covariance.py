@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 from symobs.exact import Matrix, Scalar
 from symobs.exact.core.generators import derivative, identities, roots_in, substitute
-from symobs.exact.time_functions.matrix_exponential import Exponential, NoClosedForm
+from symobs.exact.time_functions.matrix_exponential import NoClosedForm
 from symobs.exact.time_functions.quasipolynomial import (
     Quasipolynomial,
     Table,
@@ -27,11 +27,11 @@ from symobs.formula.tree import Literal, Power
 from symobs.formula.tree.calculus import since_start
 from symobs.formula.tree.term import Term, identity, letter
 from symobs.ground.dataclass import dataclass
-from symobs.ground.errors import InputError, ShapeMismatch
+from symobs.ground.errors import InputError
 from symobs.proof.certificate.claims import Claim
 from symobs.proof.derivation.builder import relation
-from symobs.system import read_matrix
 from symobs.system.conditions import Condition, never_zero, sign_of
+from symobs.system.specification import read_symmetric
 from symobs.tasks.analysis.rank.rank_test import rank_answer
 from symobs.tasks.analysis.time_response.damping_cases import Signs, from_zero, rate_of, time_environment
 from symobs.tasks.analysis.time_response.horizons import (
@@ -98,7 +98,7 @@ class InitialStateCovariance(OfTheInitialState):
             found, chosen = closed_form(plant, taken)
         except NoClosedForm as error:
             return cls(plant, method_name, {**shared, "question": question_of(error), "factor": error.factor})
-        if question := _too_long(plant, found):
+        if question := too_long(plant.matrices.A, plant.matrices.C, found.table()):
             return cls(plant, method_name, {**shared, "question": question, "factor": None, "chosen": chosen})
         return cls(plant, method_name, {**shared, "chosen": chosen, **_parts(plant, found.table(), data)})
 
@@ -189,14 +189,14 @@ class InitialStateCovariance(OfTheInitialState):
         return {**found, **({"question": asked} if asked else {})}
 
 
-def _too_long(plant: StateSpace, found: Exponential) -> str:
-    """Return the question that stays open where the Gramian cannot be inverted readably."""
-    table, order = found.table(), plant.order
-    if plant.matrices.A.names and any(roots_of_frequencies(entry) for row in table for entry in row):
+def too_long(A: Matrix, C: Matrix, table: Table) -> str:
+    """Return the question that stays open where the Gramian of (A, C), with e^{At}, cannot be inverted readably."""
+    order = A.shape[0]
+    if A.names and any(roots_of_frequencies(entry) for row in table for entry in row):
         return (
             f"the inverse of the {order}x{order} Gramian, whose functions have square roots of the parameters in them"
         )
-    seen = product(table_of(plant.matrices.C), table)
+    seen = product(table_of(C), table)
     terms = sum(len(entry.terms) for row in product(transposed(seen), seen) for entry in row)
     return (
         f"the inverse of the {order}x{order} Gramian, of {terms} terms, more than {_MOST_TERMS}"
@@ -301,21 +301,13 @@ def read_intensity(value: object, plant: StateSpace, name: str, size: int) -> Ma
     """Return a symmetric matrix; a single value q stands for q I.  Raises `InputError`, `ShapeMismatch`."""
     if value is None:
         return None
-    where = f"specification.{name}"
-    found = read_matrix(
-        [[value]] if not isinstance(value, (str, list, tuple)) else value, plant.symbols.seen(value), where
-    )
-    if found.shape == (1, 1):
-        found = Matrix.identity(size) * found[0, 0]
-    if found.shape != (size, size):
-        message = f"{name} is {found.shape[0]}×{found.shape[1]}, expected {size}×{size}"
-        raise ShapeMismatch(message, where=where, repair=f"write {name} as a symmetric {size}×{size} matrix")
-    if found != found.T:
-        raise InputError(f"{name} is not symmetric", where=where, repair="an intensity is a symmetric matrix")
+    found = read_symmetric(value, plant, name, size)
     for i in range(size):
         if sign_of(found[i, i], plant.symbols.signs) == "negative":
             raise InputError(
-                f"{name} has a negative entry on its diagonal", where=where, repair="variances are not negative"
+                f"{name} has a negative entry on its diagonal",
+                where=f"specification.{name}",
+                repair="variances are not negative",
             )
     return found
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
-from symobs.exact import Matrix, Scalar, independent_rows, kernel, modulo
+from symobs.exact import Matrix, Scalar, independent_rows, solve_or_refute
 from symobs.formula.tree import Environment
 from symobs.formula.tree.term import block, identity, letter
 from symobs.ground.dataclass import dataclass
@@ -73,19 +73,12 @@ class TrackingDesign(Result):
         B, ideal = loop.plant.matrices.B, loop.plant.ideal
         passed = trajectory(reference, start)
         wanted = ((loop.plant.matrices.A - reference) @ passed).normal()
-        rows, columns = independent_rows(B, ideal), independent_rows(B.T, ideal)
-        found = B.select(rows, columns).solve(wanted.select(rows, range(wanted.shape[1])))
-        Y = placed(found, columns, B.shape[1])
-        answer: dict[str, Any] = {"K_d": None, "w": None}
-        if modulo((B @ Y - wanted).normal(), ideal).is_zero:
+        Y, w = solve_or_refute(B, wanted, ideal)
+        answer: dict[str, Any] = {"K_d": None, "w": w}
+        if Y is not None:
             square = passed.shape[0] == passed.shape[1]
             back = passed.inverse() if square else (passed.T @ passed).inverse() @ passed.T
             answer["K_d"] = (Y @ back).normal()
-        else:
-            left = kernel(B.T, ideal)
-            free = modulo((left.T @ wanted).normal(), ideal)
-            index = next(i for i in range(free.shape[0]) if not free.select([i], range(free.shape[1])).is_zero)
-            answer["w"] = left.select(range(B.shape[0]), [index]).T
         return cls(loop.plant, method_name, answer, loop, reference, start)
 
     def with_gains(self, gains: Mapping[str, Matrix]) -> Self:
@@ -249,13 +242,6 @@ def trajectory(reference: Matrix, start: Matrix | None) -> Matrix:
         columns.append((reference @ columns[-1]).normal())
     every = Matrix.block([columns])
     return every.select(range(order), independent_rows(every.T))
-
-
-def placed(rows: Matrix, places: tuple[int, ...] | list[int], height: int) -> Matrix:
-    """Return the matrix with these rows in these places and zeros elsewhere."""
-    found = {place: rows.rows[i] for i, place in enumerate(places)}
-    nothing = [Scalar.of(0)] * rows.shape[1]
-    return Matrix.of([list(found.get(i, nothing)) for i in range(height)], rows.shape[1])
 
 
 @method("tracking/reference_model", source="francis1976")

@@ -1,0 +1,407 @@
+"""Lyapunov's equation  AᵀP + PA = −Q,  in discrete time  AᵀPA − P = −Q,  for a symmetric P.
+
+It has one solution for every Q if and only if no λᵢ + λⱼ (no λᵢ λⱼ − 1) vanishes, that is det χ(−A) ≠ 0 (det χ*(A) ≠ 0 with
+χ*(z) = zⁿ χ(1/z)).  Where it has none there is a symmetric X with A X + X Aᵀ = 0 (A X Aᵀ = X) and tr Q X ≠ 0.
+"""
+
+from __future__ import annotations
+
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, ClassVar, Self
+
+from symobs.exact import (
+    Matrix,
+    Scalar,
+    from_coefficients,
+    modulo,
+    primitive,
+    primitive_kernel,
+    product_of,
+    solve_or_refute,
+)
+from symobs.formula.tree import Environment, HoldsExactlyWhere
+from symobs.formula.tree.term import letter
+from symobs.ground.dataclass import dataclass
+from symobs.ground.errors import CertificateRejected, Undecided
+from symobs.proof.certificate.claims import Claim
+from symobs.proof.derivation.builder import Builder, predicate, relation
+from symobs.proof.derivation.facts import leading_minors
+from symobs.stability.criteria.stability import StabilityVerdict, essential, stability
+from symobs.stability.inequalities.simplify import as_inequality
+from symobs.system.conditions import Condition, sign_of, vanishing_factors
+from symobs.system.specification import over_common_data, read_symmetric
+from symobs.tasks.analysis.page_parts import case_steps, determinant_form, given
+from symobs.tasks.analysis.strata.strata import common_places, places, solved
+from symobs.tasks.analysis.time_response.horizons import (
+    MOST_STATES,
+    MOST_WITH_PARAMETERS,
+    lyapunov_operator,
+    symmetric,
+    upper_entries,
+)
+from symobs.tasks.result import Case, Result, choose, method, page_of, task
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
+
+    from symobs.formula.tree.term import Term
+    from symobs.system import StateSpace
+    from symobs.system.specification import Intensity, Name
+    from symobs.tasks.analysis.strata.strata import Place
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class LyapunovSolution(Result):
+    """P with AᵀP + PA = −Q, the only one where det χ(−A) ≠ 0.
+
+    Where that vanishes, N ≠ 0 with AᵀN + NA = 0 may be added to P, or an X with AX + XAᵀ = 0 and tr QX ≠ 0 excludes a P.
+    """
+
+    weight: Matrix
+
+    task: ClassVar[str] = "lyapunov"
+    answered_by = ("P", "positive_definite")
+    claimed = ("P",)
+    letters = {"P": "P_l", "minors": "Delta"}
+    cards = ("P",)
+
+    @classmethod
+    def of(cls, plant: StateSpace, Q: Matrix, method_name: str) -> Self:
+        """Return the solution, or why there is none or more than one."""
+        A, ideal = plant.matrices.A, plant.ideal
+        answer: dict[str, Any] = dict.fromkeys(("P", "N", "X"))
+        answer["determinant"] = plant.simplified(_image(plant).determinant())
+        operator = lyapunov_operator(A, discrete=plant.is_discrete)
+        found, row = solve_or_refute(operator, -upper_entries(Q), ideal)
+        if found is None:
+            answer["X"] = _as_matrix(row)
+        else:
+            answer["P"] = modulo(symmetric(found).normal(), ideal)
+            if answer["determinant"].is_zero:
+                null = primitive_kernel(operator, ideal)
+                answer["N"] = symmetric(null.select(range(null.shape[0]), [0]))
+        return cls(plant, method_name, answer, Q)
+
+    def claims(self) -> Iterator[Claim]:
+        """Yield the equation of P and its symmetry; that it is the only one, or not; or that there is none."""
+        answer, discrete = self.answer, self.plant.is_discrete
+        given_values = {name: value for name, value in answer.items() if value is not None}
+        is_unique = not answer["determinant"].is_zero
+        if (answer["P"] is None) != (answer["X"] is not None) or (answer["N"] is None) != (
+            is_unique or answer["P"] is None
+        ):
+            message = (
+                "there is no P exactly where an X shows that there is none, and one P where the determinant is not 0"
+            )
+            raise CertificateRejected(message, repair="please report this: it is a bug of symobs")
+        values = given_values | {"A": self.plant.matrices.A, "Q": self.weight, "image": _image(self.plant)}
+        e = Environment(variable=self.plant.variable, values=values, signs=self.plant.symbols.signs)
+        A, Q = letter("A", e), letter("Q", e)
+        zero = Matrix.zeros(*self.weight.shape)
+        yield Claim(relation(Q, Q.T), e, "Q = Q.T")
+        yield Claim(
+            relation(letter("image", e).apply("det"), letter("determinant", e)), e, "determinant of the image of A"
+        )
+        if is_unique:
+            yield Claim(relation(letter("determinant", e), "!==", 0), e, "the determinant is not 0")
+        if answer["X"] is not None:
+            X = letter("X", e)
+            moved = A @ X @ A.T - X if discrete else A @ X + X @ A.T
+            yield Claim(relation(moved, zero), e, "A*X*A.T - X = 0" if discrete else "A*X + X*A.T = 0")
+            yield Claim(relation(X, X.T), e, "X = X.T")
+            yield Claim(relation(trace(self.weight, answer["X"]), "!==", 0), e, "trace of Q*X is not 0")
+            return
+        P = letter("P", e)
+        said = "A.T*P*A - P = -Q" if discrete else "A.T*P + P*A = -Q"
+        yield Claim(relation(_moved(A, P, discrete=discrete), -Q), e, said)
+        yield Claim(relation(P, P.T), e, "P = P.T")
+        if answer["N"] is not None:
+            N = letter("N", e)
+            yield Claim(relation(_moved(A, N, discrete=discrete), zero), e, said.replace("P", "N").replace("-Q", "0"))
+            yield Claim(relation(N, N.T), e, "N = N.T")
+            yield Claim(relation(N, "!==", zero), e, "N is not 0")
+        yield from self._about_minors(e)
+
+    def _about_minors(self, e: Environment) -> Iterator[Claim]:
+        """Yield the signs from which it follows whether P is positive definite."""
+        of_Q, found = self.has_definite_weight, self.definite
+        if of_Q or found.verdict == "yes":
+            minors = leading_minors(self.weight) if of_Q else self.leading
+            yield from (Claim(relation(m, ">", 0), e, "a leading principal minor is positive") for m in minors)
+        elif self.lowest_minor is not None:
+            yield Claim(
+                relation(self.leading[self.lowest_minor], "<=", 0), e, "a leading principal minor is not positive"
+            )
+
+    @property
+    def verdict(self) -> str:
+        """`no` where there is no solution or more than one."""
+        return "no" if self.answer["determinant"].is_zero else super().verdict
+
+    @cached_property
+    def leading(self) -> tuple[Scalar, ...]:
+        """The leading principal minors of P, none where there is no P or more than one."""
+        P = self.answer["P"]
+        return () if P is None or self.answer["N"] is not None else leading_minors(P)
+
+    @property
+    def has_definite_weight(self) -> bool:
+        """Whether Q is certainly positive definite: P is then, exactly where A is stable."""
+        signs = self.plant.symbols.signs
+        return all(sign_of(minor, signs) == "positive" for minor in leading_minors(self.weight))
+
+    @property
+    def lowest_minor(self) -> int | None:
+        """The place of a minor that is never positive, where there is one."""
+        never = {"negative", "nonpositive", "zero"}
+        return next((k for k, m in enumerate(self.leading) if sign_of(m, self.plant.symbols.signs) in never), None)
+
+    @cached_property
+    def definite(self) -> StabilityVerdict:
+        """Whether P is positive definite: yes, no, or what must be positive for it to be."""
+        plant, signs = self.plant, self.plant.symbols.signs
+        if self.leading and self.has_definite_weight:
+            chi = plant.matrices.A.characteristic_polynomial(plant.variable)
+            return stability(chi, plant.variable, signs, discrete=plant.is_discrete)
+        if not self.leading or self.lowest_minor is not None:
+            return StabilityVerdict("no")
+        needed = tuple(dict.fromkeys(_odd_part(m, signs) for m in self.leading if sign_of(m, signs) != "positive"))
+        return StabilityVerdict("conditional", needed) if needed else StabilityVerdict("yes")
+
+    @cached_property
+    def domain(self) -> tuple[Condition, ...]:
+        """What must not vanish for there to be a plant and Q."""
+        own, signs = super().domain, self.plant.symbols.signs
+        known = {condition.expression for condition in own}
+        factors = vanishing_factors([self.weight.common_denominator()], signs)
+        return (*own, *(Condition("domain", factor) for factor in factors if factor not in known))
+
+    @property
+    def existence(self) -> tuple[Scalar, ...]:
+        """The determinant that vanishes where the solution is not unique."""
+        return () if self.answer["determinant"].is_zero else (self.answer["determinant"],)
+
+    @cached_property
+    def holds_where(self) -> tuple[Condition, ...]:
+        """The domain, the determinant, and the denominators of P where it is one of many."""
+        found = [Condition("existence", f) for f in vanishing_factors(self.existence, self.plant.symbols.signs)]
+        known = {c.expression for c in (*self.domain, *found)}
+        return (*self.domain, *found, *(c for c in super().holds_where if c.expression not in known))
+
+    @cached_property
+    def case_tree(self) -> tuple[Case, ...]:
+        """The question again where the solution is not unique, or where there is one after all."""
+
+        def on(there: StateSpace, values: dict[str, Scalar]) -> Result:
+            Q = modulo(self.weight.substitute(values), there.ideal)
+            found: Result = there.once((type(self), Q, self.method), lambda: type(self).of(there, Q, self.method))
+            return found
+
+        return solved(self.plant, self._places, on)
+
+    @property
+    def _places(self) -> tuple[Place, ...]:
+        if self.answer["X"] is not None:
+            obstacle = trace(self.weight, self.answer["X"]).numerator
+            return () if obstacle.is_constant else common_places(self.plant, [obstacle])
+        return places(self.plant, [c.expression for c in self.holds_where if c.kind != "domain"])
+
+    @cached_property
+    def fields(self) -> Mapping[str, Any]:
+        """P, whether it is the only solution, and whether it is positive definite, or exactly where."""
+        P, definite, signs = self.answer["P"], self.definite, self.plant.symbols.signs
+        found = {"P": P, "solvable": self.verdict, "positive_definite": definite.verdict if self.leading else None}
+        found |= {"positive_if": definite.inequalities(signs) if self.leading else None, "minors": list(self.leading)}
+        return found | {"determinant": self.answer["determinant"], "homogeneous": self.answer["N"]}
+
+
+def _as_matrix(row: Matrix | None) -> Matrix:
+    """Return the symmetric X for which tr X S is a row times the entries of S on and above the diagonal, up to a factor."""
+    assert row is not None  # noqa: S101 - where there is no solution there is a row
+    whole = symmetric(row.T * 2, Scalar.of(1) / 2)
+    return symmetric(Matrix.column(primitive(upper_entries(whole).entries)))
+
+
+def _image(plant: StateSpace) -> Matrix:
+    """Return χ(−A), in discrete time χ*(A): its determinant is the product of all −λᵢ − λⱼ, of all 1 − λᵢ λⱼ."""
+    A, variable = plant.matrices.A, plant.variable
+    coefficients = A.characteristic_polynomial(variable).coefficients(variable)
+    moved, total = (A, coefficients[::-1]) if plant.is_discrete else (-A, coefficients)
+    found = Matrix.zeros(*A.shape)
+    for coefficient in total:
+        found = found @ moved + Matrix.identity(A.shape[0]) * coefficient
+    return modulo(found.normal(), plant.ideal)
+
+
+def _odd_part(minor: Scalar, signs: Mapping[str, str]) -> Scalar:
+    """Return what has the sign of a minor wherever that is defined: even powers in the denominator are positive there."""
+    below = [(f, power) for f, power in minor.denominator.factors()[1] if power % 2 == 0]
+    even = product_of(f**power for f, power in below) if below else Scalar.of(1)
+    return essential(minor * even, signs)
+
+
+def _moved(A: Term, P: Term, *, discrete: bool) -> Term:
+    return A.T @ P @ A - P if discrete else A.T @ P + P @ A
+
+
+def trace(Q: Matrix, X: Matrix) -> Scalar:
+    """Return tr Q X of symmetric matrices: the sum of the products of their entries."""
+    return (Matrix.row(Q.entries) @ Matrix.column(X.entries))[0, 0]
+
+
+@method("lyapunov/entries", source="kalman1960a")
+def by_entries(plant: StateSpace, Q: Matrix) -> LyapunovSolution:
+    """Solve the linear equations of the entries of P on and above the diagonal."""
+    return LyapunovSolution.of(plant, Q, "entries")
+
+
+@task
+def lyapunov(plant: StateSpace, *, Q: Intensity = None, method: Name = "auto") -> Result:
+    """Solve Lyapunov's equation AᵀP + PA = −Q, in discrete time AᵀPA − P = −Q, for a symmetric P.
+
+    plant    A with n states
+    Q        n×n, symmetric; q stands for q I, and I where it is left out
+    Returns P, solvable (yes, no, conditional: whether there is one and only one P; where there are several P is one of them),
+    positive_definite (yes, no, conditional), positive_if (conditions for it), minors (the leading principal ones), determinant
+    (0 where some λᵢ + λⱼ, λᵢ λⱼ − 1, is 0) and homogeneous (where P is not unique, what may be added to it).
+    Raises `InputError` where Q is not symmetric, `ShapeMismatch`; `Undecided` for too many states.
+    Source: R. E. Kalman and J. E. Bertram (1960); P. Lancaster and M. Tismenetsky, The Theory of Matrices, ch. 12, 13.
+    """
+    plant = plant.knowing(Q)
+    order = plant.order
+    weight = Matrix.identity(order) if Q is None else read_symmetric(Q, plant, "Q", order)
+    if order > (MOST_WITH_PARAMETERS if plant.matrices.A.names else MOST_STATES):
+        raise Undecided(f"lyapunov is undecided: {order} states are too many")
+    plant, (weight,) = over_common_data(plant, weight)
+    return choose("lyapunov", method, "entries").solve(plant, weight).asked(method)
+
+
+# The page: the equation, when its solution is unique, P and its check, the leading principal minors.
+
+
+#: The left side is written out in the entries of P for plants of up to this order.
+_WRITTEN_OUT_UP_TO = 3
+
+
+@page_of(LyapunovSolution)
+def write_lyapunov(page: Builder, result: LyapunovSolution) -> None:
+    """Write the whole page."""
+    given(page)
+    with page.section("lyapunov_equation"):
+        time = "discrete" if page.plant.is_discrete else "continuous"
+        page.define("Q_l", page.value(result.weight), say=f"lyapunov_sought_{time}", closing=False)
+        _solve(page, result)
+        page.steps += case_steps(page, result, _case)
+
+
+def _case(page: Builder, result: LyapunovSolution) -> None:
+    page.set("Q_l", result.weight)
+    _solve(page, result)
+
+
+def _solve(page: Builder, result: LyapunovSolution) -> None:
+    _tell_uniqueness(page, result)
+    if result.answer["X"] is not None:
+        _tell_refusal(page, result)
+        return
+    _tell_entries(page)
+    discrete, zero = page.plant.is_discrete, Matrix.zeros(*result.weight.shape)
+    if result.answer["N"] is not None:
+        page.set("N_l", result.answer["N"])
+    say = "lyapunov_solution" if result.answer["N"] is None else "lyapunov_one_of_many"
+    P = page.define("P_l", page.value(result.answer["P"]), say=say, answer=True, closing=False)
+    equation = relation(_moved(page["A"], P, discrete=discrete), -page["Q_l"])
+    page.verified("lyapunov_checked", equation=equation)
+    if result.answer["N"] is not None:
+        N = page["N_l"]
+        nothing = relation(_moved(page["A"], N, discrete=discrete), zero)
+        page.equal(relation(N, N.as_value), nothing, say="lyapunov_added")
+        return
+    _tell_definiteness(page, result)
+
+
+def _tell_uniqueness(page: Builder, result: LyapunovSolution) -> None:
+    """Write χ, and the determinant that says whether the solution is unique."""
+    plant, A = page.plant, page["A"]
+    polynomial = plant.matrices.A.characteristic_polynomial(plant.variable)
+    page.define(
+        "chi",
+        page.resolvent(A, plant.order).apply("det"),
+        page.value(polynomial),
+        say="lyapunov_polynomial",
+        closing=False,
+    )
+    found = result.answer["determinant"]
+    if plant.is_discrete:
+        reversed_polynomial = from_coefficients(polynomial.coefficients(plant.variable)[::-1], plant.variable)
+        page.define("chi_r", page.value(reversed_polynomial), say="lyapunov_reversed", closing=False)
+    image = A.apply("chi_r_at") if plant.is_discrete else (-A).apply("chi_at")
+    shown = relation(image.apply("det"), determinant_form(page, found))
+    time = "discrete" if plant.is_discrete else "continuous"
+    if found.is_zero:
+        page.conclude(f"lyapunov_singular_{time}", determinant=relation(image.apply("det"), 0))
+        return
+    factors = vanishing_factors([found], plant.symbols.signs)
+    if factors:
+        page.conclude(f"lyapunov_regular_if_{time}", determinant=shown)
+        page.assume("lyapunov_provided", *factors)
+    else:
+        page.conclude(
+            f"lyapunov_regular_{time}", determinant=relation(image.apply("det"), determinant_form(page, found), "!=", 0)
+        )
+
+
+def _tell_entries(page: Builder) -> None:
+    """Write the left side in the entries of P, for plants of few states."""
+    order = page.plant.order
+    unknown = [f"p{i + 1}{j + 1}" for i in range(order) for j in range(i, order)]
+    if order > _WRITTEN_OUT_UP_TO or {*unknown} & {
+        *page.plant.symbols.signs,
+        *page.environment.coefficients,
+        *page.plant.field.names,
+    }:
+        return
+    P = page.value(symmetric(Matrix.column([Scalar.symbol(name) for name in unknown])))
+    left = _moved(page["A"], P, discrete=page.plant.is_discrete)
+    page.equal(relation(left, left.as_value), say="lyapunov_written_out")
+
+
+def _tell_refusal(page: Builder, result: LyapunovSolution) -> None:
+    """Write the X with tr QX ≠ 0 that shows that there is no solution."""
+    X, A = page.set("X_l", result.answer["X"]), page["A"]
+    moved = A @ X @ A.T - X if page.plant.is_discrete else A @ X + X @ A.T
+    page.equal(relation(X, X.as_value), relation(moved, Matrix.zeros(*X.value.shape)), say="lyapunov_obstacle")
+    found, time = trace(result.weight, result.answer["X"]), "discrete" if page.plant.is_discrete else "continuous"
+    page.conclude(f"lyapunov_impossible_{time}", trace=page.value(found))
+
+
+def _tell_definiteness(page: Builder, result: LyapunovSolution) -> None:
+    """Write the leading principal minors, and what follows for P and for the stability of A."""
+    signs, P, lowest = page.plant.symbols.signs, page["P_l"], result.lowest_minor
+    for k, minor in enumerate(result.leading, 1):
+        page.set(f"Delta_{k}", minor)
+    page.equal(
+        *(relation(page[f"Delta_{k}"], determinant_form(page, m)) for k, m in enumerate(result.leading, 1)),
+        say="lyapunov_minors",
+    )
+    of_Q = result.has_definite_weight
+    if lowest is not None:
+        page.conclude("lyapunov_not_definite", minor=relation(page[f"Delta_{lowest + 1}"], "<=", 0))
+    elif all(sign_of(minor, signs) == "positive" for minor in result.leading):
+        page.conclude("lyapunov_definite", predicate("positive_definite", P))
+    elif not of_Q:
+        where = tuple(relation(*as_inequality(value, signs)) for value in result.definite.positive)
+        page.conclude("lyapunov_definite_if", where=HoldsExactlyWhere(predicate("positive_definite", P), where))
+    if not of_Q:
+        return
+    positive, chi = predicate("positive_definite", page["Q_l"]), page["chi"]
+    if result.definite.verdict == "conditional":
+        where = tuple(relation(*as_inequality(value, signs)) for value in result.definite.positive)
+        page.conclude("lyapunov_stable_if", positive, where=HoldsExactlyWhere(predicate("stable", chi), where))
+        return
+    stable = result.definite.verdict == "yes"
+    page.conclude(
+        "lyapunov_stable" if stable else "lyapunov_unstable",
+        positive,
+        predicate("stable" if stable else "unstable", chi),
+    )

@@ -1,0 +1,33 @@
+"""What an input of minimum energy claims: u = Bᵀ e^{Aᵀ(T−t)} λ with W λ = d, with mpmath's exponential and Gramian."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from tests.support.algebra import CONTEXT, digits, multiply, observability_rows, transposed
+from tests.support.claims.claims_in_time import digits_of, gramian_of, near, table, world_at
+
+if TYPE_CHECKING:
+    from tests.support.claims.claims import Setting
+
+
+def holds(result: Any, at: Setting) -> None:
+    """Hold the input to the Gramian and to d; a refusal to the reachable states."""
+    if result.verdict == "undecided":
+        return
+    world, w = world_at(result, at), result.fields["unreachable"]
+    end = digits_of(world, result.answer["horizon"])
+    A, B = table(at.A), table(at.B)
+    start, final = (table(world.value(result.answer[name])) for name in ("initial", "final"))
+    d = final - CONTEXT.expm(A * end) * start
+    if w is not None:
+        row = [[world.value(entry) for entry in w]]
+        assert not any(map(any, multiply(row, transposed(observability_rows(transposed(at.A), transposed(at.B))))))
+        assert abs((table(row) * d)[0]) > 1e-12
+        return
+    W = gramian_of(A.T, B * B.T, end)
+    lam = table(world.value(result.answer["multiplier"]))
+    assert near(W * lam, d)
+    t = digits(world.number("t"))
+    assert near(table(world.value(result.answer["input"])), B.T * CONTEXT.expm(A.T * (end - t)) * lam)
+    assert near(table([[world.value(result.fields["energy"])]]), d.T * lam)
