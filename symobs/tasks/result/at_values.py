@@ -369,7 +369,7 @@ def _read(points: Mapping[Any, Any], result: Any, fields: Mapping[str, Any]) -> 
         shapes = ", ".join(f"{name} {array.shape}" for name, array in found.items())
         message = f"the arrays do not fit together: {shapes}"
         raise InputError(message, where="evaluate", repair="give arrays that broadcast to one shape") from None
-    return {name: found[name] for name in found if name in needed}
+    return found
 
 
 def _outside(result: Any, points: Mapping[str, Any]) -> Any:
@@ -440,7 +440,7 @@ def _shaped(fields: Mapping[str, Any], values: Any, shape: tuple[int, ...]) -> d
     start = 0
     for name, field in fields.items():
         size = getattr(field, "shape", ())
-        own = values[start : start + len(_scalars_of(field))].reshape(*size, *shape)
+        own = values[start : start + len(_scalars_of(field))].reshape((*size, *shape))
         found[name] = np.moveaxis(own, (0, 1), (-2, -1)) if size else own
         start += len(_scalars_of(field))
     return found
