@@ -280,9 +280,9 @@ def _fill(result: Any, fields: Mapping[str, Any], points: Mapping[str, Any], whe
         known = [index for index, entry in enumerate(entries) if entry is not None]
         found = [entry for entry in entries if entry is not None]
         plain = not there or not any(entry.names for entry in found)
-        values[np.ix_(known, where[left])] = (
-            [[nearest_double(entry)] for entry in found] if plain else ArrayFunction(found)(there)
-        )
+        if found:
+            numbers = [[nearest_double(entry)] for entry in found] if plain else ArrayFunction(found)(there)
+            values[np.ix_(known, where[left])] = numbers
     return np.concatenate(opened)
 
 
