@@ -85,7 +85,7 @@ DEMANDED = {
     "exhausts C A N X phi_o": "no_others_observer",
     "finding": """
         box_bounded box_unbounded cells_decide connected_bounded connected_unbounded curve_missing hole
-        number_is_root pieces point_decides point_missing points_decide region_empty region_everywhere
+        number_is_root pieces numbers_are_roots point_missing zero_decides zeros_decide values_decide region_empty region_everywhere
         routh_changes routh_changes_axis routh_criterion_negative routh_criterion_positive
         routh_criterion_where routh_divides routh_epsilon routh_misleads routh_negative routh_not_stable
         routh_positive routh_zero_row

@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 
 from symobs.exact import Ideal, Matrix, Scalar, companion, echelon, from_coefficients, independent_rows, rank, unit_rows
 from symobs.exact.core.generators import PI, function
+from symobs.exact.time_functions.matrix_power import modes_of
 from symobs.formula.phrases import DEMANDS
 from symobs.formula.phrases.languages import Counted, StateChoice
 from symobs.formula.tree import (
@@ -594,7 +595,30 @@ def _is_defective(said: Said) -> bool:
         return False
     times = sum(1 for _ in takewhile(lambda c: c.is_zero, reversed(polynomial.coefficients(variable))))
     lacking: int = polynomial.degree(variable) - rank(X)
-    return lacking < times
+    told = tuple(said.slots[name] for name in ("mode", "times"))
+    return lacking < times and told == tuple(map(Literal, modes_of_double(pole, variable)))
+
+
+def modes_of_double(pole: Scalar, variable: str) -> tuple[Scalar, Scalar]:
+    """Return e^{λt} and t e^{λt}, in discrete time λᵏ and k λᵏ."""
+    if variable == "z":
+        first, second = modes_of((Scalar.symbol("z") - pole) ** 2, "z")
+        return first, second
+    mode = function("exp", pole * Scalar.symbol(TIME))
+    return mode, Scalar.symbol(TIME) * mode
+
+
+def _is_of_damping(said: Said) -> bool:
+    """Return whether the factor s² + 2ζω s + ω² is there, of the damping ratio and the frequency told."""
+    damping, frequency, s = said.slots["damping"], said.slots["frequency"], Letter("s")
+    pair = Sum((Power(s, 2), Product((_number(2), damping, frequency, s)), Power(frequency, 2)))
+    return pair in everything_in(said.slots["pair"])
+
+
+def _shares_roots(said: Said, of: str, phi: str) -> bool:
+    """Return whether the polynomials of the roots told divide φ and det(sI − A)."""
+    here, both = said.environment, (_letter(phi), _characteristic(of, said.environment))
+    return all(_is(here, "polynomial", Quotient(each, told.polynomial)) for told in said.of(Roots) for each in both)
 
 
 def _ranked(relation: Relation) -> Formula | None:
@@ -763,6 +787,8 @@ _OF_STEP: dict[str, Callable[..., bool]] = {
         formula == Power(Letter(letter), -1) for formula in (*said.subjects(), *(t.polynomial for t in said.of(Roots)))
     ),
     "pole_defective": _is_defective,
+    "of_damping": _is_of_damping,
+    "shared_roots": _shares_roots,
     "counts_degree": _counts_degree,
     "counts_dominant": _counts_dominant,
     "counts_names": _counts_names,

@@ -38,9 +38,16 @@ WORDS: dict[str, str] = {
 COUNTS: dict[str, dict[str, str]] = {
     "number": {"other": "{word}"},
     "varies": {"1": "varies", "other": "vary"},
-    "point": {"1": "one point", "other": "{word} points"},
     "interval": {"1": "one interval", "other": "{word} intervals"},
-    "open_piece": {"1": "one open piece", "other": "{word} open pieces"},
+    "plane": {"0": "the plane", "other": "the admissible part of the plane"},
+    "cell": {"1": "one cell", "other": "{word} cells"},
+    "stable_cell": {
+        "0": "in none of them are all roots stable",
+        "all": "in each of them all roots are stable",
+        "1": "in exactly one cell all roots are stable",
+        "other": "in exactly {word} cells all roots are stable",
+    },
+    "on_interval": {"0": "none of them", "all": "all of them", "1": "one of them", "other": "{word} of them"},
     "piece": {"1": "one piece", "other": "{word} pieces"},
     "of_them": {
         "0": "none of them is",

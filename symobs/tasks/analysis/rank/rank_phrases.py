@@ -5,8 +5,8 @@ from __future__ import annotations
 PHRASES: dict[str, str] = {
     "observability_matrix": "The observability matrix is",
     "controllability_matrix": "The controllability matrix is",
-    "yes_observability": "It has full rank, so the pair ($C$, $A$) is observable.",
-    "yes_controllability": "It has full rank, so the pair ($A$, $B$) is controllable.",
+    "yes_observability": "Hence $O$ has full rank and ($C$, $A$) is observable.",
+    "yes_controllability": "Hence $Ctr$ has full rank and ($A$, $B$) is controllable.",
     "full_rank_observability": "Since {rank}, the pair ($C$, $A$) is observable.",
     "full_rank_controllability": "Since {rank}, the pair ($A$, $B$) is controllable.",
     "generic_rank_observability": "For generic parameter values {rank}, and the pair ($C$, $A$) is observable; the exceptions follow.",

@@ -3,20 +3,20 @@
 from __future__ import annotations
 
 PHRASES: dict[str, str] = {
-    "assignable_observer": "By the pole-placement theorem§, the eigenvalues of $A - L C$ can therefore be assigned arbitrarily.",
-    "assignable_state_feedback": "By the pole-placement theorem§, the eigenvalues of $A - B K$ can therefore be assigned arbitrarily.",
+    "assignable_observer": "By the pole-placement theorem§, the eigenvalues of $A - L C$ can therefore be assigned arbitrarily, complex ones in conjugate pairs.",
+    "assignable_state_feedback": "By the pole-placement theorem§, the eigenvalues of $A - B K$ can therefore be assigned arbitrarily, complex ones in conjugate pairs.",
     "asks_observer": "The desired observer polynomial is",
     "asks_state_feedback": "The desired closed-loop polynomial is",
     "coefficients": "with the coefficients",
-    "already_canonical": "The pair ($A$, $B$) is in controllable canonical form, hence controllable. With {chi} the gain consists of the differences between desired and open-loop coefficients, in ascending order.",
+    "already_canonical": "The pair ($A$, $B$) is in controllable canonical form, hence controllable. With {chi} the gain consists of the differences between desired and open-loop coefficients, constant term first.",
     "polynomials_observer": "By duality§ we design for the pair ($Aᵀ$, $Cᵀ$), whose controllability matrix is $Oᵀ$. The desired observer polynomial and the characteristic polynomial of the plant are",
     "polynomials_state_feedback": "The desired closed-loop polynomial and the characteristic polynomial of the plant are",
     "open_observer": "By duality§ we design for the pair ($Aᵀ$, $Cᵀ$), whose controllability matrix is $Oᵀ$ and whose characteristic polynomial is",
     "open_state_feedback": "The characteristic polynomial of $A$ is",
     "canonical_observer": "The dual pair is transformed to controllable canonical form§ by",
     "canonical_state_feedback": "The pair is transformed to controllable canonical form§ by",
-    "row_observer": "Here the gain is the row of differences between desired and open-loop coefficients, in ascending order; transformed back, it is",
-    "row_state_feedback": "Here the gain is the row of differences between desired and open-loop coefficients, in ascending order; transformed back, it is",
+    "row_observer": "In these coordinates the gain consists of the differences of the coefficients, constant term first; hence",
+    "row_state_feedback": "In these coordinates the gain consists of the differences of the coefficients, constant term first; hence",
     "unknown_gain": "Let the entries of the gain be unknowns,",
     "polynomial_of_unknown": "so that the characteristic polynomial is",
     "equal_coefficients": "Equating its coefficients to those of the desired polynomial gives",
@@ -75,8 +75,8 @@ PHRASES: dict[str, str] = {
     "case_same_state_feedback": "In this case the pair ($A$, $B$) is not controllable, but its fixed <mode|modes> {modes} <is|are> among the desired poles, so this $K$ remains a solution.",
     "case_other_observer": "In this case the pair ($C$, $A$) is not observable, but its fixed <mode|modes> {modes} <is|are> among the desired poles. One solution is",
     "case_other_state_feedback": "In this case the pair ($A$, $B$) is not controllable, but its fixed <mode|modes> {modes} <is|are> among the desired poles. One solution is",
-    "case_no_observer": "In this case the pair ($C$, $A$) is not observable, and its fixed <mode|modes> {modes} <is not|are not all> among the desired poles: no gain places them.",
-    "case_no_state_feedback": "In this case the pair ($A$, $B$) is not controllable, and its fixed <mode|modes> {modes} <is not|are not all> among the desired poles: no gain places them.",
+    "case_no_observer": "Here {modes} <is unobservable, hence a pole|are unobservable, hence poles> for every gain; <it is not|not all of them are> among the desired poles, so no gain exists.",
+    "case_no_state_feedback": "Here {modes} <is uncontrollable, hence a pole|are uncontrollable, hence poles> for every gain; <it is not|not all of them are> among the desired poles, so no gain exists.",
 }
 
 ASSERTS: dict[str, tuple[str, ...]] = {

@@ -311,7 +311,7 @@ def _of_zeros(zeros: PlantZeros, variable: str) -> Iterator[PoleWarning]:
         yield PoleWarning("no_response")
     for factor, _, reason in zeros.unused:
         alone = reason == "zero_at_origin" or factor.degree(variable) == 1
-        yield PoleWarning(reason if alone else f"{reason}s", (("zero", factor),), variable)
+        yield PoleWarning(reason if alone or reason == "zero_slow" else f"{reason}s", (("zero", factor),), variable)
 
 
 def _of_cancellations(plant: StateSpace, zeros: PlantZeros) -> Iterator[PoleWarning]:
