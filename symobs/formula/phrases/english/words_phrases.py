@@ -15,6 +15,7 @@ WORDS: dict[str, str] = {
     "numbers": "no one two three four five six seven eight nine ten eleven twelve",
     "rank": "rank",
     "and": " and ",
+    "rounded": " and, rounded, ",
     "state": "state {number}",
     "or": " or ",
     "one_of_states": "any one of the states {numbers}",
@@ -65,6 +66,12 @@ COUNTS: dict[str, dict[str, str]] = {
         "6": "the sixth real root from the left",
         "other": "the {digits}th real root from the left",
     },
+    "free_parameter": {
+        "0": "no parameter is free",
+        "1": "one parameter is free",
+        "other": "{word} parameters are free",
+    },
+    "free_entry": {"1": "one entry is arbitrary", "other": "{word} entries are arbitrary"},
     "step": {"1": "one step", "other": "{word} steps"},
     "root_lies": {"0": "no root lies", "1": "one root lies", "other": "{word} roots lie"},
     "sign_changes": {

@@ -6,7 +6,7 @@ PHRASES: dict[str, str] = {
     "unknown_input_observer": "Unknown-input observer.",
     "uio_independent": "The columns of $E_d$ are linearly dependent, {rank}. Independent ones are those of",
     "uio_seen": "Such an observer requires that $C E_d$ and $E_d$ have the same rank§. Here",
-    "uio_provided": "In what follows we assume {condition}.",
+    "uio_provided": "What follows holds for {condition}.",
     "uio_decoupled": "Here {rank}.",
     "uio_output_matrix": "A solution of $H_d C E_d = E_d$ is",
     "uio_nothing": "There is no unknown input to decouple from, so we take",

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from symobs.exact import EIGENVALUE, Matrix, Scalar, companion, roots_of
+from symobs.formula.phrases.languages import Counted
 from symobs.formula.tree import Roots
 from symobs.proof.derivation import CaseStep, Note
 from symobs.proof.derivation.builder import Builder, Slot, relation, sentence
@@ -70,7 +71,13 @@ def write_hidden_family(page: Builder, design: GainDesign, side: PlacementProble
     key = of_the_others(design)
     page.define(side.gain, design.answer[side.gain], say=f"{key}_{side.kind}", answer=True)
     if key == "one_gain":
-        page.remark(f"family_hidden_{side.kind}", count=str(len(design.chart.names)))
+        outputs, hidden = design.dual_pair(page.plant).c.shape[0], design.pair.kernel.shape[1]
+        free = (page.plant.order - hidden) * (outputs - 1)
+        page.remark(
+            f"family_hidden_{side.kind}",
+            free=Counted("free_parameter", free),
+            rest=Counted("free_entry", hidden * outputs),
+        )
 
 
 def of_the_others(design: GainDesign) -> str:

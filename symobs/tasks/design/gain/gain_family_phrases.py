@@ -42,17 +42,17 @@ PHRASES: dict[str, str] = {
     "undecided_zero": "No rational gain with zero entries at {places} was found; whether one exists is undecided.",
     "gain_follows": "The gain is",
     "no_member": "A gain with simple entries, whose closed-loop matrix is not cyclic, is",
-    "family_hidden_observer": "The gain is not unique. The gains form a family of dimension {count}: on the observable part there is the freedom of Sylvester's equation, and on the unobservable subspace the gain is arbitrary.",
-    "family_hidden_state_feedback": "The gain is not unique. The gains form a family of dimension {count}: on the controllable part there is the freedom of Sylvester's equation, and on the uncontrollable modes the gain is arbitrary.",
+    "family_hidden_observer": "The gain is not unique: {free} on the observable part; on the unobservable subspace {rest}.",
+    "family_hidden_state_feedback": "The gain is not unique: {free} on the controllable part; on the uncontrollable modes {rest}.",
 }
 
 DEMANDS: dict[str, str] = {
     "spectra_meet_observer": "shared_roots A phi_o",
     "spectra_meet_state_feedback": "shared_roots A phi_c",
     "dimension_observer": "dimension C A",
-    "family_hidden_observer": "dimension C A",
+    "family_hidden_observer": "free_parts C A",
     "dimension_state_feedback": "dimension Bᵀ Aᵀ",
-    "family_hidden_state_feedback": "dimension Bᵀ Aᵀ",
+    "family_hidden_state_feedback": "free_parts Bᵀ Aᵀ",
     "one_gain_only_observer": "single C",
     "one_gain_only_state_feedback": "single Bᵀ",
     "impossible_zero": "no_gain",

@@ -37,7 +37,7 @@ PHRASES: dict[str, str] = {
     "generalised": "The repeated pole {pole} has no further independent null vector; a generalised eigenvector is found by placing the preceding vector, with opposite sign, on the right-hand side. The row-reduced echelon form is",
     "relations_read_off": "The components of a null vector therefore satisfy",
     "free_chosen": "Choosing the free components, we obtain",
-    "vectors_chosen": "Choosing the free components, with the upper parts placed before the lower ones, gives",
+    "vectors_chosen": "Choosing the free components, we obtain the null vector",
     "upper_parts": "The upper and the lower parts of these vectors form the columns of",
     "with_determinant": "with the determinant",
     "row_reduced_observer": "The gain maps each upper part to the corresponding lower part:",
@@ -61,10 +61,14 @@ PHRASES: dict[str, str] = {
     "no_others_state_feedback": "No other poles remain to be placed, so any gain will do, for example",
     "family_observer": "The gain is not unique; the general solution is {gain}.",
     "family_state_feedback": "The gain is not unique; the general solution is {gain}.",
-    "impossible_observer": "The factor {fixed} of the characteristic polynomial of $A - L C$ is the same for every gain, and it does not divide {polynomial}: these poles cannot be assigned.",
-    "impossible_state_feedback": "The factor {fixed} of the characteristic polynomial of $A - B K$ is the same for every gain, and it does not divide {polynomial}: these poles cannot be assigned.",
-    "unassignable_observer": "The factor {fixed} of the characteristic polynomial of $A - L C$ is the same for every gain, and the division of {polynomial} by it leaves the remainder {rest}: these poles can be assigned only where this remainder is the zero polynomial.",
-    "unassignable_state_feedback": "The factor {fixed} of the characteristic polynomial of $A - B K$ is the same for every gain, and the division of {polynomial} by it leaves the remainder {rest}: these poles can be assigned only where this remainder is the zero polynomial.",
+    "impossible_observer": "{fixed} divides the characteristic polynomial of $A - L C$ for every gain, but not the desired polynomial {polynomial}: these poles cannot be assigned.",
+    "impossible_state_feedback": "{fixed} divides the characteristic polynomial of $A - B K$ for every gain, but not the desired polynomial {polynomial}: these poles cannot be assigned.",
+    "impossible_roots_observer": "{fixed} divides the characteristic polynomial of $A - L C$ for every gain, but <{missing} is|{missing} are> not among the desired poles, the roots of {polynomial}.",
+    "impossible_roots_state_feedback": "{fixed} divides the characteristic polynomial of $A - B K$ for every gain, but <{missing} is|{missing} are> not among the desired poles, the roots of {polynomial}.",
+    "never_converges_observer": "Since not all unobservable modes are stable, no observer converges.",
+    "never_converges_state_feedback": "Since not all uncontrollable modes are stable, no state feedback stabilises the plant.",
+    "unassignable_observer": "{fixed} divides the characteristic polynomial of $A - L C$ for every gain, and the division of {polynomial} by it leaves the remainder {rest}: these poles can be assigned only where this remainder is the zero polynomial.",
+    "unassignable_state_feedback": "{fixed} divides the characteristic polynomial of $A - B K$ for every gain, and the division of {polynomial} by it leaves the remainder {rest}: these poles can be assigned only where this remainder is the zero polynomial.",
     "gain_given_observer": "The observer gain is given,",
     "gain_given_state_feedback": "The feedback gain is given,",
     "closed_matrix": "so that",
@@ -80,6 +84,10 @@ PHRASES: dict[str, str] = {
 }
 
 ASSERTS: dict[str, tuple[str, ...]] = {
+    "impossible_roots_observer": ("not_polynomial",),
+    "impossible_roots_state_feedback": ("not_polynomial",),
+    "never_converges_observer": ("unstable",),
+    "never_converges_state_feedback": ("unstable",),
     "unassignable_observer": ("strictly_proper",),
     "unassignable_state_feedback": ("strictly_proper",),
     "fixed_but_wanted_observer": ("polynomial",),
@@ -97,6 +105,10 @@ ASSERTS: dict[str, tuple[str, ...]] = {
 }
 
 DEMANDS: dict[str, str] = {
+    "impossible_roots_observer": "fixes C A N X phi_o, misses X phi_o",
+    "impossible_roots_state_feedback": "fixes Bᵀ Aᵀ N_K X_K phi_c, misses X_K phi_c",
+    "never_converges_observer": "modes_unstable C A N X mu",
+    "never_converges_state_feedback": "modes_unstable Bᵀ Aᵀ N_K X_K mu",
     "assignable_observer": "observable C A",
     "assignable_state_feedback": "observable Bᵀ Aᵀ",
     "already_canonical": "observable Bᵀ Aᵀ, canonical",
