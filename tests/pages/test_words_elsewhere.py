@@ -295,7 +295,7 @@ def test_a_radius_is_said_to_be_positive() -> None:
 def test_a_zero_that_is_stable_and_slow_is_not_denied() -> None:
     plant = symobs.StateSpace("[0 1 0; 0 0 1; 0 0 0]", "[0; 0; 1]", "[1/10 1 0]")
     text = text_of(symobs.pole_advice(plant, settling_time=2, overshoot="1/20"))
-    assert "The zero -0.1 is too slow for the settling time" in text
+    assert "The zero -1/10 is too slow for the settling time and is not used." in text
     assert "No stable zero" not in text
 
 
