@@ -199,7 +199,7 @@ def _nearest(region: PlaneRegion, cell: Cell) -> tuple[list[Fraction], list[Frac
                 away, outermost = cylinder.x - line, 1 if len(ends) > 1 else 12
                 inside = [line + away * Fraction(2) ** n for n in range(-6, outermost)]
                 heights = {x: _heights(region, x)[k] for x in inside}
-                best = sorted(heights, key=lambda x: max(abs(x - line), abs(heights[x])))[:3]  # noqa: B023 - used at once
+                best = sorted(heights, key=lambda x: max(abs(x - line), abs(heights[x])))[:3]
                 return [line, *best], [heights[x] for x in best]
     return _corners(region, cell)
 
