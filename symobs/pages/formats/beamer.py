@@ -7,7 +7,19 @@ from typing import TYPE_CHECKING, Any, ClassVar
 from symobs.formula.phrases.languages import Language, language_named
 from symobs.pages.formats.latex import LatexWriter, has_drawings, head_of
 from symobs.pages.formats.templates import fill
-from symobs.pages.page.blocks import AnswerSpace, Columns, Display, Drawing, Heading, PictureBlock, TableBlock, opened
+from symobs.pages.page.blocks import (
+    AnswerSpace,
+    Caution,
+    Columns,
+    Display,
+    Drawing,
+    Heading,
+    Paragraph,
+    PictureBlock,
+    TableBlock,
+    Verified,
+    opened,
+)
 from symobs.pages.page.narrator import narrate, printer_for
 from symobs.pages.printers.latex_printer import LatexPrinter, escape
 from symobs.tasks.result import output_format
@@ -22,7 +34,7 @@ if TYPE_CHECKING:
 
 #: em of 10 pt: 145 mm of a slide 160 mm wide, less than a sheet of paper has.
 WIDTH = 39.5
-#: Displays of more rows than this may be too high for a slide.
+#: A box of more rows than this may be too high for a slide; other displays break between rows.
 _TALL = 6
 
 
@@ -93,13 +105,20 @@ def _frames(blocks: Sequence[Block]) -> Iterator[tuple[Heading, tuple[Block, ...
     for block in blocks:
         if not isinstance(block, Heading) or block.number.count(".") > 1:
             body.append(block)
-        elif title.inlines and body:
+        elif title.inlines and (body and not _is_a_sentence(body)):
             yield title, tuple(body)
             title, body = block, []
+        elif body:
+            body.append(block)
         else:
             title = block
     if body:
         yield title, tuple(body)
+
+
+def _is_a_sentence(body: Sequence[Block]) -> bool:
+    """Return whether a slide would have nothing but one paragraph."""
+    return len(body) == 1 and isinstance(body[0], Paragraph | Verified)
 
 
 class _SlideWriter(LatexWriter):
@@ -108,14 +127,17 @@ class _SlideWriter(LatexWriter):
     def frame(self, heading: Heading, body: tuple[Block, ...]) -> dict[str, str]:
         """Return the template values of a frame."""
         self.printer.keep_time(heading.time)
-        return {"title": self.sentence(heading.inlines).removesuffix("."), "body": self.body(body)}
+        *before, last = body
+        ends = isinstance(last, Paragraph | Verified | Caution) and bool(before)  # it is no slide of its own
+        written = f"{self.body(before)}\n\\nopagebreak\n{self.body([last])}" if ends else self.body(body)
+        return {"title": self.sentence(heading.inlines).removesuffix("."), "body": written}
 
     def block(self, block: Block) -> str:
         """Return one block."""
         if isinstance(block, AnswerSpace):  # nobody writes on a slide
             return ""
         written = super().block(block)
-        is_tall = isinstance(block, Display) and written.count(r"\\") > _TALL
+        is_tall = isinstance(block, Display) and block.boxed and written.count(r"\\") > _TALL
         if is_tall or isinstance(block, Columns | Drawing | PictureBlock | TableBlock):
             return f"\\begin{{fitted}}\n{written}\n\\end{{fitted}}"
         return written

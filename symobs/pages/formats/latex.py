@@ -267,5 +267,7 @@ def _gap(before: Block, after: Block) -> str:
     """Return the separator of two blocks; an empty line begins a new paragraph."""
     if isinstance(before, Heading) and isinstance(after, Paragraph):
         return " "
-    begins = isinstance(after, Heading | CaseBlock) or (isinstance(before, Paragraph) and isinstance(after, Paragraph))
+    if isinstance(after, Heading):
+        return "\n\n\\addvspace{4pt plus 1pt}\n"
+    begins = isinstance(after, CaseBlock) or (isinstance(before, Paragraph) and isinstance(after, Paragraph))
     return "\n\n" if begins else "\n"
