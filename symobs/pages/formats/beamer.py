@@ -16,6 +16,7 @@ from symobs.pages.page.blocks import (
     Heading,
     Paragraph,
     PictureBlock,
+    References,
     TableBlock,
     Verified,
     opened,
@@ -36,6 +37,10 @@ if TYPE_CHECKING:
 WIDTH = 39.5
 #: A box of more rows than this may be too high for a slide; other displays break between rows.
 _TALL = 6
+#: What keeps two blocks together, a list before the second one, too.
+_KEPT, _INSET, _UNPARTED = "\n\\nopagebreak\n", r"\end{inset}", r"\csname @endparpenalty\endcsname=10000"
+#: So many references fit below what is before them; what is not broken has no room below it.
+_FEW, _UNBROKEN = 5, (Columns, Drawing, PictureBlock, TableBlock)
 
 
 @output_format
@@ -121,15 +126,23 @@ def _is_a_sentence(body: Sequence[Block]) -> bool:
     return len(body) == 1 and isinstance(body[0], Paragraph | Verified)
 
 
+def _is_no_slide(before: Block, last: Block) -> bool:
+    """Return whether the end of a frame stays with what is before it: a sentence, and a short list of references."""
+    if isinstance(last, References):
+        return len(last.entries) <= _FEW and not isinstance(before, _UNBROKEN)
+    return isinstance(last, Paragraph | Verified | Caution)
+
+
 class _SlideWriter(LatexWriter):
     """Writer of blocks for slides, which fits unbreakable ones."""
 
     def frame(self, heading: Heading, body: tuple[Block, ...]) -> dict[str, str]:
         """Return the template values of a frame."""
         self.printer.keep_time(heading.time)
-        *before, last = body
-        ends = isinstance(last, Paragraph | Verified | Caution) and bool(before)  # it is no slide of its own
-        written = f"{self.body(before)}\n\\nopagebreak\n{self.body([last])}" if ends else self.body(body)
+        parts = [body]
+        while len(parts[0]) > 1 and _is_no_slide(*parts[0][-2:]):
+            parts[:1] = [parts[0][:-1], parts[0][-1:]]
+        written = _KEPT.join(map(self.body, parts)).replace(_INSET + _KEPT, rf"{_UNPARTED} {_INSET}{_KEPT}")
         return {"title": self.sentence(heading.inlines).removesuffix("."), "body": written}
 
     def block(self, block: Block) -> str:
@@ -138,6 +151,6 @@ class _SlideWriter(LatexWriter):
             return ""
         written = super().block(block)
         is_tall = isinstance(block, Display) and block.boxed and written.count(r"\\") > _TALL
-        if is_tall or isinstance(block, Columns | Drawing | PictureBlock | TableBlock):
+        if is_tall or isinstance(block, (*_UNBROKEN, References)):
             return f"\\begin{{fitted}}\n{written}\n\\end{{fitted}}"
         return written
