@@ -5,18 +5,18 @@ from __future__ import annotations
 PHRASES: dict[str, str] = {
     "unknown_input_observer": "Unknown-input observer.",
     "uio_independent": "The columns of $E_d$ are linearly dependent, {rank}. Independent ones are those of",
-    "uio_seen": "The existence test needs the product",
-    "uio_provided": "In what follows we assume {condition}.",
-    "uio_decoupled": "The estimation error can be decoupled from the unknown input, that is, $H_d C E_d = E_d$ has a solution $H_d$, if and only if $C E_d$ and $E_d$ have the same rank§, which they do: {rank}.",
-    "uio_output_matrix": "A solution is",
+    "uio_seen": "Such an observer requires that $C E_d$ and $E_d$ have the same rank§. Here",
+    "uio_provided": "What follows holds for {condition}.",
+    "uio_decoupled": "Here {rank}.",
+    "uio_output_matrix": "A solution of $H_d C E_d = E_d$ is",
     "uio_nothing": "There is no unknown input to decouple from, so we take",
     "uio_projection": "With it we obtain",
     "uio_not_decoupled": "Since {unseen} whereas {nonzero}, the ranks of $C E_d$ and $E_d$ differ. No matrix $H$ therefore satisfies $H C E_d = E_d$, and no such observer exists§.",
     "uio_direction": "For the direction",
     "uio_not_decoupled_along": "of the unknown input we obtain {unseen} whereas {nonzero}, so that the ranks of $C E_d$ and $E_d$ differ. No matrix $H$ therefore satisfies $H C E_d = E_d$, and no such observer exists§.",
     "uio_observable": "The pair ($C$, $A_T$) is observable, {rank}: the plant has no invariant zeros from the unknown input to the output, and all poles of the observer can be assigned§.",
-    "uio_zeros_desired": "No observer of this kind moves the invariant <zero|zeros> {zeros} of the plant from the unknown input to the output, the unobservable <mode|modes> of the pair ($C$, $A_T$)§, but <it is|they are> among the desired poles.",
-    "uio_impossible": "No observer of this kind moves the invariant <zero|zeros> {zeros} of the plant from the unknown input to the output, the unobservable <mode|modes> of the pair ($C$, $A_T$)§, and <it is not|they are not all> among the desired poles: no such observer has these poles.",
+    "uio_zeros_desired": "The invariant <zero|zeros> {zeros} of the plant from the unknown input to the output <is an unobservable mode|are unobservable modes> of ($C$, $A_T$)§, hence <a pole|poles> of every such observer; <it is|they are> among the desired ones.",
+    "uio_impossible": "The invariant <zero|zeros> {zeros} of the plant from the unknown input to the output <is an unobservable mode|are unobservable modes> of ($C$, $A_T$)§, hence <a pole|poles> of every such observer; <it is not|they are not all> among the desired ones, so no such observer has these poles.",
     "uio_unassignable": "The factor {fixed} of the characteristic polynomial of $A_T - L C$ is the same for every $L$, and the division of {polynomial} by it leaves the remainder {rest}: an observer with these poles exists only where this remainder is the zero polynomial.",
     "uio_zeros_stable": "Since no zero of the plant from the unknown input to the output is unstable, an observer with a convergent error exists; its poles include the zeros.",
     "uio_zeros_unstable": "Since the plant has an unstable zero from the unknown input to the output, no observer of this kind has an error that converges.",
@@ -56,7 +56,7 @@ DEMANDS: dict[str, str] = {
 }
 
 RESTS_ON: dict[str, str] = {
-    "uio_decoupled": "unknown_input",
+    "uio_seen": "unknown_input",
     "uio_not_decoupled": "unknown_input",
     "uio_not_decoupled_along": "unknown_input",
     "uio_observable": "unknown_input_zeros",

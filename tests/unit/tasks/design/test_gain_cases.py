@@ -156,7 +156,9 @@ def test_a_page_says_where_within_a_stratum_a_fixed_mode_is_wanted() -> None:
         assert sympy.simplify(error.charpoly(s).as_expr() - (s + 1) * (s + 2)) == 0
     assert len(case.result.cases) == 2
     page = " ".join(found.to("text").split())
-    assert "Case a c - b c - 1 = 0. Case b + 1 ≠ 0, b + 2 ≠ 0. In this case" in page
+    assert (
+        "Case a c - b c - 1 = 0. Case b + 1 ≠ 0, b + 2 ≠ 0. Here b is unobservable, hence a pole for every gain" in page
+    )
 
 
 def test_a_family_says_where_none_of_its_members_has_a_value() -> None:
