@@ -282,12 +282,30 @@ def in_blocks(page: Builder, value: Matrix, heights: Sequence[int], widths: Sequ
         [range(end - size, end) for size, end in zip(sizes, accumulate(sizes), strict=True) if size]
         for sizes in (heights, widths)
     ]
-    return block([[page.value(value.select(rows, columns)) for columns in parts[1]] for rows in parts[0]])
+    return block([[spread(page, value.select(rows, columns)) for columns in parts[1]] for rows in parts[0]])
 
 
-def is_narrow(*matrices: Matrix) -> bool:
+def spread(page: Builder, value: Matrix) -> Term:
+    """Return a matrix written out, the letters in an entry apart from the data where it is shorter: −k/m − l₁."""
+    letters = page.environment.coefficients.keys() & value.names
+    if not letters:
+        return page.value(value)
+    nothing = dict.fromkeys(letters, Scalar.of(0))
+    rows = []
+    for row in value.rows:
+        line = []
+        for entry in row:
+            data = entry if letters & entry.denominator.names else entry.substitute(nothing)
+            added = entry - data
+            is_shorter = not data.is_zero and len(f"{data}{added}") < len(str(entry))
+            line.append(page.value(data) + page.value(added) if is_shorter else page.value(entry))
+        rows.append(line)
+    return block(rows)
+
+
+def is_narrow(*matrices: Matrix, within: int = _WIDEST) -> bool:
     """Return whether matrices can be read on a page: the widest row, with its fractions in one line."""
-    return all(sum(len(str(entry)) for entry in row) <= _WIDEST for matrix in matrices for row in matrix.rows)
+    return all(sum(len(str(entry)) for entry in row) <= within for matrix in matrices for row in matrix.rows)
 
 
 def determinant_form(page: Builder, value: Scalar) -> Term:

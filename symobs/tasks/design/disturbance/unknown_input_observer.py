@@ -31,7 +31,7 @@ from symobs.tasks.design.full_order.observer import ObserverDesign
 from symobs.tasks.design.gain.gain_cases import design_of, places_beside
 from symobs.tasks.design.gain.gain_design import letters_of
 from symobs.tasks.design.gain.gain_page import say_as_required
-from symobs.tasks.design.page_parts import caution_poles, combination, plot_error, say_unassignable, summed
+from symobs.tasks.design.page_parts import caution_poles, combination, define_gain, plot_error, say_unassignable, summed
 from symobs.tasks.result import Case, Result, choose, method, page_of, task
 from symobs.tasks.result.control_systems import Controller, observer_of
 
@@ -457,7 +457,7 @@ def _zeros(page: Builder, design: UnknownInputObserver) -> None:
 
 def _gain(page: Builder, design: UnknownInputObserver) -> None:
     """Write L, F = T A − L C, and what multiplies y in the equation of z."""
-    L = page.define("L", page.value(design.answer["L"]), say="uio_gain", closing=False, answer=True)
+    L = define_gain(page, "L", design.answer["L"], say="uio_gain")
     F = page.define("F_d", page["A_T"] - L @ page["C"], say="uio_state_matrix")
     page.define("L_y", page["L"] + F @ page["H_d"])
     page.conclude_silently(*(relation(page[name], design.answer[of]) for name, of in _LETTERS.items()))

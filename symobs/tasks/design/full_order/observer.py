@@ -10,7 +10,7 @@ from symobs.exact.linear_algebra.transfer_function import Realisation
 from symobs.formula.tree.term import Term, letter
 from symobs.ground.dataclass import dataclass
 from symobs.proof.derivation.builder import Builder, relation
-from symobs.tasks.analysis.page_parts import given
+from symobs.tasks.analysis.page_parts import given, spread
 from symobs.tasks.analysis.rank.observability import Observability
 from symobs.tasks.design.full_order.placement_methods import register_methods
 from symobs.tasks.design.gain.gain_design import OBSERVER, GainDesign, design_gain, page_style
@@ -67,7 +67,7 @@ def write_found(page: Builder) -> None:
     m, L = page.plant.matrices, page["L"]
     page.conclude_silently(relation(page["H_x"], L))
     closed = page["A"] - L @ page["C"]
-    collected, numbers = closed @ page["x_hat"], closed.as_value @ page["x_hat"]
+    collected, numbers = closed @ page["x_hat"], spread(page, closed.value) @ page["x_hat"]
     if m.has_input:
         driven = page["B"] - L @ page["D"] if m.has_feedthrough else page["B"]
         collected, numbers = collected + driven @ page["u"], numbers + driven.as_value @ page["u"]
@@ -207,20 +207,18 @@ def write_observer(page: Builder, *, drawn: bool = False, alone: bool = True) ->
     rate = A @ page["x"] + page["B"] @ page["u"] if m.has_input else A @ page["x"]
     if m.has_feedthrough:
         page.equal(relation(innovation, C @ page["e"]), say="feedthrough_cancels")
-    page.equal(
-        relation(
-            page["e"].derivative, rate - (model + L @ innovation), closed @ page["e"], closed.as_value @ page["e"]
-        ),
-        say="error_equation",
-        error=relation(page["e"], page["x"] - page["x_hat"]),
-    )
+    is_collected = alone or m.has_feedthrough  # then A − LC is written out there
+    members = [rate - (model + L @ innovation), closed @ page["e"]]
+    members += [] if is_collected else [spread(page, closed.value) @ page["e"]]
+    error = relation(page["e"], page["x"] - page["x_hat"])
+    page.equal(relation(page["e"].derivative, *members), say="error_equation", error=error)
     _say_deadbeat(page, closed)
-    collected, numbers, driven = closed @ x_hat, closed.as_value @ x_hat, None
+    collected, numbers, driven = closed @ x_hat, spread(page, closed.value) @ x_hat, None
     if m.has_input:
         driven = page["B"] - L @ page["D"] if m.has_feedthrough else page["B"]
         collected, numbers = collected + driven @ page["u"], numbers + driven.as_value @ page["u"]
     whole = relation(x_hat.derivative, collected + L @ y, numbers + L.as_value @ y)
-    if not alone and not m.has_feedthrough:  # its matrix stands in the equation of the error
+    if not is_collected:
         page.conclude_silently(whole)
         return
     said = "observer_collected_with_feedthrough" if m.has_feedthrough else "observer_collected"
