@@ -84,7 +84,7 @@ def filled(
         if name is not None:
             slot = slots[name]
             number = numbers.get(slot) if form == NUMBER and isinstance(slot, Relation) else None
-            inlines += _shown(slot, language) if number is None else (f"({number})",)
+            inlines += shown(slot, language) if number is None else (f"({number})",)
     return joined(inlines)
 
 
@@ -113,7 +113,7 @@ def joined(inlines: Iterable[Inline]) -> Inlines:
     return tuple(result)
 
 
-def _shown(slot: Formula | Fact | Counted | StateChoice | str, language: Language) -> Iterator[Inline]:
+def shown(slot: Formula | Fact | Counted | StateChoice | str, language: Language) -> Iterator[Inline]:
     """Yield the content of a slot: of a property its subject, of a region its inequalities."""
     if isinstance(slot, SPOKEN):
         yield language.put(slot)

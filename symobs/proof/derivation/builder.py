@@ -48,6 +48,7 @@ from symobs.proof.derivation.steps import (
     Step,
     Tabulate,
 )
+from symobs.system.conditions import solved
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -242,7 +243,7 @@ class Builder:
         """State that polynomials are not zero from here on."""
         factors = [factor for value in values for factor, _ in value.numerator.factors()[1]]
         self.environment = replace(self.environment, nonzero=(*self.environment.nonzero, *factors))
-        conditions = tuple(relation(value, "!=", 0) for value in values)
+        conditions = tuple(relation(left, "!=", right) for left, right in map(solved, values))
         self.steps.append(Given(conditions, sentence(key, {"condition": Conjunction(conditions)})))
 
     def set(self, name: str, value: Scalar | Matrix) -> Term:

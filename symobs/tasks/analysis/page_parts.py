@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from itertools import accumulate
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
@@ -37,7 +36,7 @@ from symobs.proof.derivation.builder import Builder, predicate, relation, senten
 from symobs.proof.derivation.facts import on_stratum
 from symobs.stability.criteria.stability import monic, stability
 from symobs.stability.inequalities.simplify import as_inequality
-from symobs.system.conditions import Condition, sign_of, vanishing_factors
+from symobs.system.conditions import Condition, sign_of, solved, vanishing_factors
 from symobs.system.reading import is_identity
 from symobs.system.transfer_function_text import REALISATIONS
 from symobs.system.transfer_matrix import WrittenTransferMatrix
@@ -317,27 +316,30 @@ def determinant_form(page: Builder, value: Scalar) -> Term:
 
 
 def conditions_of(case: Case) -> Relation | Conjunction:
-    """Return the equations and inequations of a case; p = q is written for p − q = 0 of two terms."""
-    relations = tuple(as_written(condition) for condition in case.when)
+    """Return the equations and inequations of a case, solved where that is possible."""
+    relations = tuple(as_written(condition) for part in case.when for condition in _left_of(part, case))
     return relations[0] if len(relations) == 1 and len(case.substitution) == 1 else Conjunction(relations)
 
 
+def _left_of(condition: Condition, case: Case) -> list[Condition]:
+    """Return what an inequation of a case says beside its equations; an equation, itself."""
+    if condition.operator != "!=" or case.result is None:
+        return [condition]
+    there = condition.expression.substitute(case.substitution)
+    signs = case.result.plant.symbols.signs
+    return [Condition(condition.kind, factor, "!=") for factor in vanishing_factors([there], signs)]
+
+
 def stratum_of(case: Case) -> Relation | Conjunction:
-    """Return the conditions of a case: a single equation as p = 0."""
-    return relation(case.when[0].expression, 0) if len(case.when) == 1 else conditions_of(case)
+    """Return the conditions of a case, a single one alone."""
+    return as_written(case.when[0]) if len(case.when) == 1 else conditions_of(case)
 
 
 def as_written(condition: Condition) -> Relation:
-    """Return a condition with p = q for p − q = 0 of two terms."""
-    value, operator = condition.expression, condition.operator.replace("==", "=")
-    terms = value.terms()
-    if [coefficient > 0 for coefficient, _ in terms] in ([True, False], [False, True]):
-        first, second = (
-            math.prod((Scalar.symbol(name) ** power for name, power in powers), start=Scalar.of(abs(coefficient)))
-            for coefficient, powers in sorted(terms, key=lambda term: term[0] < 0)
-        )
-        return relation(first, operator, second)
-    return relation(value, operator, 0)
+    """Return a condition, solved where that is possible."""
+    operator = condition.operator.replace("==", "=")
+    left, right = solved(condition.expression, operator)
+    return relation(left, operator, right)
 
 
 def undecided(page: Builder, case: Case) -> Step:

@@ -27,13 +27,14 @@ from symobs.proof.derivation.builder import Builder, predicate, relation, senten
 from symobs.proof.derivation.facts import PREDICATES
 from symobs.proof.derivation.wording_check import Said, rests
 from symobs.stability.criteria.stability import is_beyond, is_marginal, stability
+from symobs.system.conditions import solved
 from symobs.tasks.analysis.page_parts import environment_on, is_narrow, spread
 from symobs.tasks.analysis.strata.strata import distances, systems_of
 from symobs.tasks.analysis.time_response.response import TIMES, Signals, plot_courses, rounded_up, rows_of, window_of
 from symobs.tasks.design.pole_placement.sylvester import fresh_names, taken_names
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterable, Sequence
 
     from symobs.exact import Scalar
     from symobs.formula.tree import Environment, Formula
@@ -340,13 +341,17 @@ def _outside_lines(cases: Sequence[Case]) -> Conjunction:
     systems = systems_of(case for case in cases if not _is_unassignable(case))
     if systems is None or any(len(system) > 1 for system in systems):
         return Conjunction(())
-    return Conjunction(tuple(relation(equation, "!=", 0) for (equation,) in dict.fromkeys(systems)))
+    return _apart(equation for (equation,) in dict.fromkeys(systems))
 
 
 def _outside(cases: Sequence[Case]) -> Conjunction:
     """Return that parameters are outside all cases; nothing where one of them is everywhere."""
     systems = systems_of(cases)
-    return Conjunction(() if systems is None else tuple(relation(value, "!=", 0) for value in distances(systems)))
+    return _apart(() if systems is None else distances(systems))
+
+
+def _apart(values: Iterable[Scalar]) -> Conjunction:
+    return Conjunction(tuple(relation(left, "!=", right) for left, right in map(solved, values)))
 
 
 def _is_unassignable(case: Case) -> bool:
@@ -527,6 +532,11 @@ def define_gain(
 
 
 # Sums of matrices times signals with their numbers, and equations component by component beside the matrix form.
+
+
+def stand_in_line(page: Builder, *names: str) -> bool:
+    """Return whether matrices of as many rows fit beside one another."""
+    return is_narrow(Matrix.block([[page[name].value for name in names]]))
 
 
 def summed(pairs: list[tuple[Term, Term]]) -> Term:

@@ -4,6 +4,9 @@ from __future__ import annotations
 
 PHRASES: dict[str, str] = {
     "given": "Given.",
+    "row_where": "where",
+    "row_modes": "fixed modes",
+    "row_answer": "answer",
     "observability": "Observability.",
     "controllability": "Controllability.",
     "characteristic_polynomial": "Characteristic polynomial.",
@@ -68,3 +71,5 @@ DEMANDS: dict[str, str] = {
 }
 
 NAMING = ("without_serifs",)
+
+CONTINUES = ("row_where", "row_modes", "row_answer")

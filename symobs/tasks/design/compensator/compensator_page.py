@@ -21,7 +21,7 @@ from symobs.tasks.design.compensator.output_feedback import caution_hidden
 from symobs.tasks.design.full_order.observer import model_and_innovation, write_observer
 from symobs.tasks.design.full_order.state_feedback import StateFeedbackDesign
 from symobs.tasks.design.gain.gain_design import FEEDBACK, OBSERVER, PlacementProblem, page_style
-from symobs.tasks.design.gain.gain_page import name_coefficients, say_as_required, write_case, write_gain
+from symobs.tasks.design.gain.gain_page import name_coefficients, say_as_required, write_case, write_cases, write_gain
 from symobs.tasks.design.page_parts import caution_poles, draw_compensator, draw_loop, draw_unity_loop, plot_estimate
 from symobs.tasks.design.pole_placement.sylvester import fresh_names, taken_names
 from symobs.tasks.result import page_of
@@ -179,9 +179,11 @@ def write_compensator(page: Builder, design: CompensatorDesign) -> None:
     with page.section("observer"):
         if not beside:
             style = page_style("auto", plant, several=plant.outputs > 1)
-            write_gain(page, design.estimator, OBSERVER, style, of_loop=True)
+            write_gain(page, design.estimator, OBSERVER, style, of_loop=True, cases=False)
         if design.answer["L"] is not None:
             write_observer(page, alone=False)
+        if not beside:
+            write_cases(page, design.estimator, OBSERVER)
     if design.answer["F"] is None:
         return
     with page.section("compensator"):

@@ -28,7 +28,7 @@ from symobs.tasks.design.compensator.minimal_order_compensator import MinimalOrd
 from symobs.tasks.design.compensator.output_feedback import caution_hidden
 from symobs.tasks.design.full_order.observer import write_observer
 from symobs.tasks.design.gain.gain_design import FEEDBACK, OBSERVER, page_style
-from symobs.tasks.design.gain.gain_page import write_gain
+from symobs.tasks.design.gain.gain_page import write_cases, write_gain
 from symobs.tasks.design.page_parts import combination, plot_estimate
 from symobs.tasks.design.reduced_order.reduced_order_observer import ReducedOrderObserver
 from symobs.tasks.design.reduced_order.reduced_order_observer_page import observer_state, write_observer_of_rest
@@ -255,9 +255,11 @@ def write_both_gains(page: Builder, loop: OutputFeedback) -> None:
         write_observer_of_rest(page, loop.estimator)
         return
     with page.section("observer"):
-        write_gain(page, loop.estimator, OBSERVER, page_style("auto", plant, several=plant.outputs > 1))
+        style = page_style("auto", plant, several=plant.outputs > 1)
+        write_gain(page, loop.estimator, OBSERVER, style, cases=False)
         if loop.answer["L"] is not None:
             write_observer(page)
+        write_cases(page, loop.estimator, OBSERVER)
 
 
 def is_ill_posed(page: Builder, loop: OutputFeedback) -> bool:

@@ -14,7 +14,7 @@ from symobs.tasks.analysis.page_parts import given, spread
 from symobs.tasks.analysis.rank.observability import Observability
 from symobs.tasks.design.full_order.placement_methods import register_methods
 from symobs.tasks.design.gain.gain_design import OBSERVER, GainDesign, design_gain, page_style
-from symobs.tasks.design.gain.gain_page import write_gain
+from symobs.tasks.design.gain.gain_page import write_cases, write_gain
 from symobs.tasks.design.page_parts import draw_collected, draw_copy, plot_error, write_components
 from symobs.tasks.design.pole_placement.multiple_outputs import pair_of
 from symobs.tasks.design.pole_placement.sylvester import fresh_names, taken_names
@@ -171,7 +171,8 @@ class ObserverDesign(GainDesign):
                 write_ansatz(page, self.answer["L"])
         with page.section("observer"):
             style = "auto" if self.page_method == "existence" else self.page_method
-            write_gain(page, self, OBSERVER, page_style(style, self.plant, several=self.plant.outputs > 1))
+            style = page_style(style, self.plant, several=self.plant.outputs > 1)
+            write_gain(page, self, OBSERVER, style, cases=False)
             if by_ansatz:
                 write_found(page)
             elif self.answer["L"] is not None:
@@ -179,6 +180,7 @@ class ObserverDesign(GainDesign):
             if self.answer["L"] is not None:
                 draw_collected(page)
                 plot_error(page, "e", page["A"] - page["L"] @ page["C"])
+            write_cases(page, self, OBSERVER)
 
 
 def model_and_innovation(page: Builder) -> tuple[Term, Term]:

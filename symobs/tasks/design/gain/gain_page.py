@@ -267,8 +267,16 @@ def _named(page: Builder, part: Reduction) -> Evaluated:
 _PAIR = 2
 
 
-def write_gain(page: Builder, design: GainDesign, side: PlacementProblem, style: str, *, of_loop: bool = False) -> None:
-    """Write how the gain is found, in the style of a method, and the check the reader is shown.
+def write_gain(
+    page: Builder,
+    design: GainDesign,
+    side: PlacementProblem,
+    style: str,
+    *,
+    of_loop: bool = False,
+    cases: bool = True,
+) -> None:
+    """Write how the gain is found, in the style of a method, the check the reader is shown, and the special cases.
 
     Where it is given as a half of a loop, its polynomial has the letter that the page of the loop goes on with.
     """
@@ -291,8 +299,15 @@ def write_gain(page: Builder, design: GainDesign, side: PlacementProblem, style:
     page.conclude_silently(relation(page[side.gain], design.answer[side.gain]))
     page.in_decimals(side.gain)
     _verified(page, design, side)
-    for case in design.case_tree:
-        write_case(page, case, side)
+    if cases:
+        write_cases(page, design, side)
+
+
+def write_cases(page: Builder, design: GainDesign, side: PlacementProblem) -> None:
+    """Write the special cases of a gain that exists in general."""
+    if design.answer[side.gain] is not None and design.desired is not None:
+        for case in design.case_tree:
+            write_case(page, case, side)
 
 
 def _write_gain_alone(page: Builder, design: GainDesign, side: PlacementProblem, _: DesiredPolynomial) -> None:
