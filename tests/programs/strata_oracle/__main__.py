@@ -151,7 +151,7 @@ def examine(
         return
     found.counted[task, "answers"] += 1
     if functions:
-        signs = dict(_LETTERS.get(name, (name, sign)) for name, sign in problem["symbols"].items())
+        signs: dict[str, str] = dict(_LETTERS.get(name, (name, sign)) for name, sign in problem["symbols"].items())
         problem, answer = meant(problem) | {"symbols": signs}, meant(answer) | {"symbols": signs}
     curves = [str(fraction(together(text))[0]) for text in relations(answer)] if functions else relations(answer)
     for point in points_on(curves, problem["symbols"], most):
