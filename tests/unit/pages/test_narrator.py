@@ -93,7 +93,7 @@ def test_literature_is_told_as_asked_for() -> None:
     full, none = (str(design.to("text", references=how)) for how in ("full", "none"))
     assert "[1] R. E. Kalman, Mathematical description of linear dynamical systems" in " ".join(full.split())
     assert "References" not in none
-    with pytest.raises(UsageError, match="long.*is no way to cite"):
+    with pytest.raises(UsageError, match="is no way to cite"):
         design.to("text", references="long")
 
 
