@@ -9,6 +9,7 @@ not repeated.
 
 from __future__ import annotations
 
+from math import prod
 from typing import TYPE_CHECKING
 
 from symobs.exact import EIGENVALUE, Scalar
@@ -260,3 +261,27 @@ def _radical(powers: tuple[tuple[str, int], ...], signs: Mapping[str, str]) -> S
 def opposite(sign: str) -> str:
     """Return the sign of −x for the sign of x."""
     return _OPPOSITE.get(sign, sign)
+
+
+#: A right-hand side of more terms is no solution that can be read.
+_SOLVED_UP_TO = 3
+
+
+def solved(value: Scalar, operator: str = "!=") -> tuple[Scalar, Scalar]:
+    """Return the sides of p = 0 or p ≠ 0 solved for a parameter that stands in it alone, c and 2b of c − 2b.
+
+    Of two terms with different signs each is a side, whatever the operator.
+    """
+    if operator in {"=", "!="} and value.denominator.is_constant:
+        for name in sorted(name for name in value.names - {EIGENVALUE} if not function_named(name)):
+            lead, *rest = value.coefficients(name)
+            if len(rest) == 1 and lead.is_constant and rest[0].size - 1 <= _SOLVED_UP_TO:
+                return Scalar.symbol(name), -rest[0] / lead
+    terms = value.terms()
+    if [coefficient > 0 for coefficient, _ in terms] in ([True, False], [False, True]):
+        first, second = (
+            prod((Scalar.symbol(name) ** power for name, power in powers), start=Scalar.of(abs(coefficient)))
+            for coefficient, powers in sorted(terms, key=lambda term: term[0] < 0)
+        )
+        return first, second
+    return value, Scalar.of(0)

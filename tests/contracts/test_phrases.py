@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 FILES = sorted((ROOT / "symobs").rglob("*_phrases.py"))
-TABLES = {"PHRASES", "QUESTIONS", "ASSERTS", "DEMANDS", "RESTS_ON", "THEOREMS", "FIGURES", "WORDS", "COUNTS"}
+TABLES = {"PHRASES", "QUESTIONS", "ASSERTS", "DEMANDS", "ROWS", "RESTS_ON", "THEOREMS", "FIGURES", "WORDS", "COUNTS"}
 LISTS = {"NAMING", "OPENS", "EXPLAINS", "BESIDE", "SPELLS_OUT", "UNSAID", "CONTINUES"}
 TASKS = sorted(tasks().values(), key=lambda task: task.name)
 

@@ -2,7 +2,17 @@
 
 from __future__ import annotations
 
+import re
+from typing import TYPE_CHECKING
+
+import pytest
+
 import symobs
+from symobs.tasks.result import render
+from tests.support.examples import EXAMPLES, document_of
+
+if TYPE_CHECKING:
+    from pathlib import Path
 
 
 def latex(order: int, *, fractions: bool = False) -> str:
@@ -24,3 +34,58 @@ def test_stages_of_a_high_order_are_left_out() -> None:
     assert "s^6" in stages
     assert r"s^5&" not in stages  # of an adjugate; K, sI - A_c and L fit
     assert r"A_{\mathrm{cl}}=\begin{bmatrix}A-BK&BK\\0&A-LC\end{bmatrix},\qquad" in page
+
+
+# -- long gains have letters ------------------------------------------------------------------------------------------
+
+#: Of a display, a line that begins with a gain or the matrices of an observer, A − LC among them.
+_HEAD = re.compile(r"(?:\\frac\{d\}\{dt\})?\s*([A-Za-z\\]+)[^&=]*&?=")
+
+
+def named_by_stars(latex: str) -> set[str]:
+    """Return the letters in whose displays an entry is named by a star."""
+    found: set[str] = set()
+    for display in re.findall(r"\\begin\{(?:align|gather)\*\}(.*?)\\end\{(?:align|gather)\*\}", latex, re.DOTALL):
+        head = ""
+        for line in re.split(r"\\\\\[3pt\]\n", display):
+            begun = _HEAD.match(line.strip())
+            head = begun[1] if begun and not line.startswith("&") else head
+            if r"\ast_" in line:
+                found.add(head)
+    return found
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.stem)
+def test_no_gain_of_a_worked_example_has_a_star(path: Path) -> None:
+    page = str(render(document_of(path.stem), "latex"))
+    assert named_by_stars(page).isdisjoint({"K", "L", "F", "G", "H", r"\dot"})
+
+
+SIGNS = dict.fromkeys(["m_s", "m_u", "k_s", "k_t", "c", "m_1", "m_2", "k"], "positive")
+QUARTER_CAR = symobs.StateSpace(
+    "[0 1 0 0; -k_s/m_s -c/m_s k_s/m_s c/m_s; 0 0 0 1; k_s/m_u c/m_u -(k_s+k_t)/m_u -c/m_u]",
+    "[0; 1/m_s; 0; -1/m_u]",
+    "[1 0 0 0]",
+    symbols=SIGNS,
+)
+TWO_MASSES = symobs.StateSpace(
+    "[0 1 0 0; -k/m_1 -c/m_1 k/m_1 c/m_1; 0 0 0 1; k/m_2 c/m_2 -k/m_2 -c/m_2]",
+    "[0; 1/m_1; 0; 0]",
+    "[1 0 0 0]",
+    symbols=SIGNS,
+)
+
+
+def test_long_gains_have_letters_in_which_the_page_goes_on() -> None:
+    """A − LC, F, G, H and F(s) are printed in the letters; k is a spring, hence f for the feedback."""
+    observer = symobs.observer(QUARTER_CAR, poles="-10, -10, -10, -10")
+    loop = symobs.compensator(
+        TWO_MASSES, control_poles="-1, -1, -2, -2", observer_poles="-5, -5, -5", observer="minimal"
+    )
+    pages = [str(design.to("text")) for design in (observer, loop)]
+    assert not any("*" in page for page in pages)
+    assert not any(named_by_stars(str(design.to("latex"))) for design in (observer, loop))
+    assert re.search(r"⎡ +-l₁ +1 +0 +0⎤", pages[0])
+    assert pages[0].count("-k_s/m_s - l₂") == 1
+    assert "K = [K₁  K₂] = [f₁  f₂  f₃  f₄]" in pages[1]

@@ -73,7 +73,7 @@ def test_a_gain_of_many_is_not_called_the_only_one() -> None:
     # Two outputs see the modes -1, -2, c: for c = -2 one of two modes -2 is hidden.
     plant = symobs.StateSpace("[-1 0 0; 0 -2 0; 0 0 c]", C="[1 0 0; 0 1 c]")
     text = text_of(symobs.observer(plant, poles=[-1, -2, -3]))
-    assert "is among the desired poles, so this L remains a solution." in text
+    assert "c = -2 │ -2 │ this L " in " ".join(text.split())
     assert "only one" not in text
 
 
@@ -315,7 +315,7 @@ def test_where_two_decays_are_equal_the_kernel_of_the_gramian_is_told() -> None:
     """With A = diag(−a, −b) and C = [1 1] the difference of the states is unseen at a = b, and (C; CA)(−1, 1)ᵀ = 0 there."""
     plant = symobs.StateSpace("[-a 0; 0 -b]", C="[1 1]", symbols={"a": "positive", "b": "positive"})
     _, _, sums = str(symobs.gramian(plant, horizon="inf").to("text")).partition("2. Finite sum")
-    _, _, equal = sums.partition("Case a - b = 0.")
+    _, _, equal = sums.partition("Case a = b.")
     lines = "\n".join(line.strip() for line in equal.splitlines())
     assert "have the same kernel. For" in lines
     assert "v = ⎡-1⎤\n⎣ 1⎦" in lines

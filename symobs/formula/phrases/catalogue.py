@@ -111,6 +111,10 @@ EXPLAINS = _listing("EXPLAINS")
 #: Titles of sections whose own sections stand side by side on the page, row by row.
 BESIDE = _listing("BESIDE")
 
+#: How a table of special cases says a phrase: what goes before the table, and what stands in the last cell of a row.
+ROWS: dict[str, str] = _table("ROWS")
+_require_phrases("ROWS", (key for row in ROWS.values() for key in row.split()))
+
 #: Phrases before a display that says what the short names stand for in which answers are written: no page goes without.
 SPELLS_OUT = _listing("SPELLS_OUT")
 

@@ -262,7 +262,10 @@ class _Writer:
         return next((shown for shown in written if not any(map(is_rounded, shown.members))), relation)
 
     def _is_condition(self, relation: Relation) -> bool:
-        """Return whether a relation is one between parameters alone."""
+        """Return whether a relation is one between parameters alone, which defines no letter for one."""
+        first = relation.members[0]
+        if isinstance(first, Literal) and first.value.names and not first.value.names & self.parameters:
+            return False
         return not any(map(letters, relation.members)) and any(map(self._names, relation.members))
 
     def _names(self, formula: Formula) -> frozenset[str]:

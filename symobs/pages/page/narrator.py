@@ -7,13 +7,13 @@ displays without a sentence between them on one line, what is given said once, s
 from __future__ import annotations
 
 from dataclasses import replace
-from itertools import count, zip_longest
-from typing import TYPE_CHECKING, Any, TypeVar
+from itertools import count, groupby, zip_longest
+from typing import TYPE_CHECKING, Any, TypeAlias, TypeVar
 
 from symobs.formula.convention import OF_REDUCED_ORDER, STANDARD
-from symobs.formula.phrases import BESIDE, CONTINUES, OPENS, RESTS_ON
+from symobs.formula.phrases import BESIDE, CONTINUES, OPENS, RESTS_ON, ROWS, slots_of
 from symobs.formula.phrases.languages import ENGLISH, language_named
-from symobs.formula.tree import Conjunction, Literal
+from symobs.formula.tree import Conjunction, Evaluated, Literal, Roots
 from symobs.pages.page.blocks import (
     Block,
     CaseBlock,
@@ -34,7 +34,7 @@ from symobs.pages.page.blocks import (
 )
 from symobs.pages.page.convention_notes import letters_used, title_of
 from symobs.pages.page.detail_level import FINAL, at_detail
-from symobs.pages.page.prose import cited_literature, filled, joined, referred_to, with_reference
+from symobs.pages.page.prose import cited_literature, filled, joined, referred_to, shown, with_reference
 from symobs.pages.page.sheet import handed_out
 from symobs.proof.derivation import (
     CaseStep,
@@ -67,6 +67,9 @@ if TYPE_CHECKING:
 
 
 P = TypeVar("P", bound="Printer[Any]")
+
+#: The conditions of a case, its fixed modes, and the answer there.
+Row: TypeAlias = "tuple[tuple[Relation, ...], Inlines, Inlines]"
 
 
 #: The sections of a question.
@@ -101,8 +104,7 @@ def narrate(document: Document) -> tuple[Block, ...]:
             page.emit_given(apart[index])
         start = len(page.blocks)
         told = [step for step in steps if not _is_statement(step)]
-        for step in told:
-            page.emit_step(step)
+        page.emit_steps(told)
         is_silent = not any(isinstance(block, Heading) for block in page.blocks[start:])
         if is_silent and told and isinstance(told[-1], Section):
             page.emit_again(told[-1])
@@ -206,9 +208,7 @@ class _PageBlocks:
     def emit(self, steps: Sequence[Step]) -> None:
         """Emit a derivation, the given data first."""
         self.emit_given([step for step in steps if _is_statement(step)])
-        for step in steps:
-            if not _is_statement(step):
-                self.emit_step(step)
+        self.emit_steps([step for step in steps if not _is_statement(step)])
 
     def emit_given(self, statement: Sequence[Step]) -> None:
         """Emit the given data that are not printed yet."""
@@ -237,6 +237,68 @@ class _PageBlocks:
                     yield step
             case _:
                 yield step
+
+    def emit_steps(self, steps: Sequence[Step]) -> None:
+        """Emit steps, special cases that follow one another in a table where each is a row of the same."""
+        for opening, run in groupby(steps, self.opening_of_rows):
+            cases = list(run)
+            rows = [row for case in cases for row in self.rows(case)] if opening else []
+            if len(rows) > 1:
+                self.emit_sentence(Sentence(opening))
+                self.blocks.append(self.table(rows))
+            else:
+                for step in cases:
+                    self.emit_step(step)
+
+    def opening_of_rows(self, step: Step) -> str:
+        """Return the key of what goes before the table in which a case is a row; nothing for other steps."""
+        if not isinstance(step, CaseStep) or step.sentence is not None:
+            return ""
+        found = set()
+        for inner in step.steps:
+            said = getattr(inner, "sentence", None)
+            if isinstance(inner, CaseStep):
+                found.add(self.opening_of_rows(inner))
+            elif said is not None and not (isinstance(inner, Given) and _is_condition(inner)):
+                found.add(ROWS.get(said.key, "").partition(" ")[0])
+        return found.pop() if len(found) == 1 else ""
+
+    def rows(self, case: CaseStep, around: tuple[Relation, ...] = ()) -> Iterator[Row]:
+        """Yield the conditions, the fixed modes and the answer of a case, or of those within it."""
+        own = case.when.relations if isinstance(case.when, Conjunction) else (case.when,)
+        where = (*(relation for relation in around if not _follows(relation, own)), *own)
+        modes: Inlines = ("–",)
+        answer: list[Inline] = []
+        for step in case.steps:
+            said = getattr(step, "sentence", None)
+            if isinstance(step, Given) and said:
+                where = (*where, *step.relations)
+            elif said:
+                key, slots = ROWS[said.key].partition(" ")[2], dict(said.slots)
+                modes = next(
+                    (shown(s, self.language) for s in slots.values() if isinstance(s, Roots | Evaluated)), modes
+                )
+                answer += [" ", *self.filled(Sentence(key, tuple((name, slots[name]) for name in slots_of(key))))]
+            if isinstance(step, Define | Equal) and not getattr(step, "silent", False):
+                relations = (step.relation,) if isinstance(step, Define) else step.relations
+                answer += [part for relation in relations for part in (" ", relation)]
+        if answer:
+            yield where, tuple(modes), joined(answer[1:])
+        for step in case.steps:
+            if isinstance(step, CaseStep):
+                yield from self.rows(step, where)
+
+    def table(self, rows: Sequence[Row]) -> Columns:
+        """Return the table of cases; those with the same modes and answer share a row."""
+        places: dict[tuple[Inlines, Inlines], list[Inline]] = {}
+        for where, modes, answer in rows:
+            place = places.setdefault((modes, answer), [])
+            place += ["; "] if place else []
+            for index, relation in enumerate(dict.fromkeys(where)):
+                place += [", ", relation] if index else [relation]
+        heads = tuple((self.language.phrases[key],) for key in ("row_where", "row_modes", "row_answer"))
+        cells = [(tuple(place), *row) for row, place in places.items()]
+        return Columns(heads, tuple(tuple((Paragraph(cell),) for cell in row) for row in cells))
 
     def emit_step(self, step: Step) -> None:
         match step:
@@ -294,9 +356,9 @@ class _PageBlocks:
         self.numbers.append(0)
         columns = [step for step in steps if isinstance(step, Section)] if title.key in BESIDE else []
         self.blocks += self.side_by_side(columns)
-        for step in steps:
-            if step not in columns and (isinstance(step, Section) or step not in self.printed):
-                self.emit_step(step)
+        self.emit_steps(
+            [step for step in steps if step not in columns and (isinstance(step, Section) or step not in self.printed)]
+        )
         self.numbers.pop()
         self.blocks[start:] = with_few_boxes(self.blocks[start:])
         if self.blocks[-1] is heading and not self.printed.isdisjoint(steps):  # all of it is printed already
@@ -383,6 +445,21 @@ def _is_statement(step: Step) -> bool:
     if isinstance(step, Section):
         return step.title.key == "given"
     return isinstance(step, Given) and not _is_condition(step)
+
+
+def _follows(condition: Relation, equations: Sequence[Relation]) -> bool:
+    """Return whether a condition says only that a parameter differs from a number while an equation gives it another."""
+    return condition.operators == ("!=",) and any(
+        equation.operators == ("=",)
+        and equation.members[0] == condition.members[0]
+        and _are_numbers(condition, equation)
+        for equation in equations
+    )
+
+
+def _are_numbers(*relations: Relation) -> bool:
+    ends = [relation.members[-1] for relation in relations]
+    return ends[0] != ends[1] and all(isinstance(end, Literal) and not end.value.names for end in ends)
 
 
 def _is_condition(step: Given) -> bool:

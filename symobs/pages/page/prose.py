@@ -89,7 +89,7 @@ def filled(
             slot = slots[name]
             number = numbers.get(slot) if form == NUMBER and isinstance(slot, Relation) else None
             apart = ", " if form == LIST else language.words["and"]
-            inlines += _shown(slot, language, apart) if number is None else (f"({number})",)
+            inlines += shown(slot, language, apart) if number is None else (f"({number})",)
     return joined(inlines)
 
 
@@ -118,7 +118,7 @@ def joined(inlines: Iterable[Inline]) -> Inlines:
     return tuple(result)
 
 
-def _shown(slot: Formula | Fact | Counted | StateChoice | str, language: Language, last: str) -> Iterator[Inline]:
+def shown(slot: Formula | Fact | Counted | StateChoice | str, language: Language, last: str = ", ") -> Iterator[Inline]:
     """Yield the content of a slot: of a property its subject, of a region its inequalities; `last` before a last name."""
     if isinstance(slot, SPOKEN):
         yield language.put(slot)

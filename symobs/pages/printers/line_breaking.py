@@ -34,7 +34,7 @@ from symobs.ground.dataclass import dataclass
 from symobs.pages.printers.glyphs import B, Level
 from symobs.pages.printers.printer import shifted, signed_terms
 from symobs.pages.printers.rational_formula import digits_of, is_leaf
-from symobs.pages.printers.scalar_formula import factors, formula_of, formula_of_matrix, partitioned
+from symobs.pages.printers.scalar_formula import factors, formula_of, formula_of_matrix, is_number, partitioned
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -335,11 +335,7 @@ def _is_table(formula: Formula) -> bool:
     """Return whether a formula is a matrix with its entries written out."""
     if isinstance(formula, Block):
         entries = [entry for row in formula.rows for entry in row]
-        return all(
-            isinstance(entry.value if isinstance(entry, Literal) else entry, (Quotient, Scalar))
-            or contains(entry, (Numeral,))
-            for entry in entries
-        )
+        return all(is_number(entry) or isinstance(entry, Quotient) or contains(entry, (Numeral,)) for entry in entries)
     return isinstance(formula, Literal) and isinstance(formula.value, Matrix)
 
 

@@ -87,13 +87,16 @@ def _entries_of(block: Formula) -> Sequence[Sequence[Formula]]:
     match block:
         case Literal(Matrix() as value) if 0 not in value.shape:
             return [[Literal(entry) for entry in row] for row in value.rows]
-        case Block(rows) if all(_is_number(entry) for row in rows for entry in row):
+        case Block(rows) if all(is_number(entry) for row in rows for entry in row):
             return rows
     return ()
 
 
-def _is_number(formula: Formula) -> bool:
+def is_number(formula: Formula) -> bool:
+    """Return whether a formula is a value of one entry, exact or in decimals, or a sum of such values."""
     inner = formula.operand if isinstance(formula, Negative) else formula
+    if isinstance(inner, Sum):
+        return all(map(is_number, inner.terms))
     return isinstance(inner, Numeral) or (isinstance(inner, Literal) and isinstance(inner.value, Scalar))
 
 

@@ -48,6 +48,7 @@ from symobs.proof.derivation.steps import (
     Step,
     Tabulate,
 )
+from symobs.system.conditions import solved
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -152,6 +153,8 @@ class Builder:
         self.steps: list[Step] = []
         self.forms: dict[str, str] = {}
         self.asked: frozenset[str] = frozenset()
+        #: Whether the entries of gains have letters even where they are short.
+        self.in_letters = False
 
     def asked_for(self, specification: Mapping[str, object]) -> None:
         """Take note of the names in a specification: the signs declared of them are assumptions, too.
@@ -240,7 +243,7 @@ class Builder:
         """State that polynomials are not zero from here on."""
         factors = [factor for value in values for factor, _ in value.numerator.factors()[1]]
         self.environment = replace(self.environment, nonzero=(*self.environment.nonzero, *factors))
-        conditions = tuple(relation(value, "!=", 0) for value in values)
+        conditions = tuple(relation(left, "!=", right) for left, right in map(solved, values))
         self.steps.append(Given(conditions, sentence(key, {"condition": Conjunction(conditions)})))
 
     def set(self, name: str, value: Scalar | Matrix) -> Term:
@@ -280,15 +283,6 @@ class Builder:
         shown = self.decimals(self[name].value)
         if shown:
             self.equal(relation(self[name], *shown), say="in_decimals")
-
-    def define_transposed(self, name: str, *members: Term, say: str, **slots: Slot) -> Term:
-        """Introduce a letter through its transpose: nameᵀ = …, then name itself as the answer."""
-        value = members[-1].value.T
-        self.steps.append(Given((relation(self[name], value),), silent=True))
-        self.environment = self.environment.extended_by(values={name: value})
-        rows = relation(self[name].T, *members, members[-1].as_value)
-        self.equal(rows, relation(self[name], value), say=say, answer=True, **slots)
-        return self[name]
 
     def conclude_silently(self, *facts: Fact) -> None:
         """Hold the page to facts that need no words."""

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from itertools import accumulate
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
@@ -37,7 +36,7 @@ from symobs.proof.derivation.builder import Builder, predicate, relation, senten
 from symobs.proof.derivation.facts import on_stratum
 from symobs.stability.criteria.stability import monic, stability
 from symobs.stability.inequalities.simplify import as_inequality
-from symobs.system.conditions import Condition, sign_of, vanishing_factors
+from symobs.system.conditions import Condition, sign_of, solved, vanishing_factors
 from symobs.system.reading import is_identity
 from symobs.system.transfer_function_text import REALISATIONS
 from symobs.system.transfer_matrix import WrittenTransferMatrix
@@ -283,12 +282,30 @@ def in_blocks(page: Builder, value: Matrix, heights: Sequence[int], widths: Sequ
         [range(end - size, end) for size, end in zip(sizes, accumulate(sizes), strict=True) if size]
         for sizes in (heights, widths)
     ]
-    return block([[page.value(value.select(rows, columns)) for columns in parts[1]] for rows in parts[0]])
+    return block([[spread(page, value.select(rows, columns)) for columns in parts[1]] for rows in parts[0]])
 
 
-def is_narrow(*matrices: Matrix) -> bool:
+def spread(page: Builder, value: Matrix) -> Term:
+    """Return a matrix written out, the letters in an entry apart from the data where it is shorter: −k/m − l₁."""
+    letters = page.environment.coefficients.keys() & value.names
+    if not letters:
+        return page.value(value)
+    nothing = dict.fromkeys(letters, Scalar.of(0))
+    rows = []
+    for row in value.rows:
+        line = []
+        for entry in row:
+            data = entry if letters & entry.denominator.names else entry.substitute(nothing)
+            added = entry - data
+            is_shorter = not data.is_zero and len(f"{data}{added}") < len(str(entry))
+            line.append(page.value(data) + page.value(added) if is_shorter else page.value(entry))
+        rows.append(line)
+    return block(rows)
+
+
+def is_narrow(*matrices: Matrix, within: int = _WIDEST) -> bool:
     """Return whether matrices can be read on a page: the widest row, with its fractions in one line."""
-    return all(sum(len(str(entry)) for entry in row) <= _WIDEST for matrix in matrices for row in matrix.rows)
+    return all(sum(len(str(entry)) for entry in row) <= within for matrix in matrices for row in matrix.rows)
 
 
 def determinant_form(page: Builder, value: Scalar) -> Term:
@@ -300,27 +317,30 @@ def determinant_form(page: Builder, value: Scalar) -> Term:
 
 
 def conditions_of(case: Case) -> Relation | Conjunction:
-    """Return the equations and inequations of a case; p = q is written for p − q = 0 of two terms."""
-    relations = tuple(as_written(condition) for condition in case.when)
+    """Return the equations and inequations of a case, solved where that is possible."""
+    relations = tuple(as_written(condition) for part in case.when for condition in _left_of(part, case))
     return relations[0] if len(relations) == 1 and len(case.substitution) == 1 else Conjunction(relations)
 
 
+def _left_of(condition: Condition, case: Case) -> list[Condition]:
+    """Return what an inequation of a case says beside its equations; an equation, itself."""
+    if condition.operator != "!=" or case.result is None:
+        return [condition]
+    there = condition.expression.substitute(case.substitution)
+    signs = case.result.plant.symbols.signs
+    return [Condition(condition.kind, factor, "!=") for factor in vanishing_factors([there], signs)]
+
+
 def stratum_of(case: Case) -> Relation | Conjunction:
-    """Return the conditions of a case: a single equation as p = 0."""
-    return relation(case.when[0].expression, 0) if len(case.when) == 1 else conditions_of(case)
+    """Return the conditions of a case, a single one alone."""
+    return as_written(case.when[0]) if len(case.when) == 1 else conditions_of(case)
 
 
 def as_written(condition: Condition) -> Relation:
-    """Return a condition with p = q for p − q = 0 of two terms."""
-    value, operator = condition.expression, condition.operator.replace("==", "=")
-    terms = value.terms()
-    if [coefficient > 0 for coefficient, _ in terms] in ([True, False], [False, True]):
-        first, second = (
-            math.prod((Scalar.symbol(name) ** power for name, power in powers), start=Scalar.of(abs(coefficient)))
-            for coefficient, powers in sorted(terms, key=lambda term: term[0] < 0)
-        )
-        return relation(first, operator, second)
-    return relation(value, operator, 0)
+    """Return a condition, solved where that is possible."""
+    operator = condition.operator.replace("==", "=")
+    left, right = solved(condition.expression, operator)
+    return relation(left, operator, right)
 
 
 def undecided(page: Builder, case: Case) -> Step:

@@ -9,7 +9,17 @@ from typing import TYPE_CHECKING
 
 from symobs.exact import Matrix, remainder
 from symobs.formula.figures import PlottedResponse, TimeResponse
-from symobs.formula.tree import Conjunction, Evaluated, Letter, Literal, Negative, Predicate, Quotient, Relation
+from symobs.formula.tree import (
+    Conjunction,
+    Evaluated,
+    Letter,
+    Literal,
+    Negative,
+    Predicate,
+    Quotient,
+    Relation,
+    children,
+)
 from symobs.formula.tree.term import Term, block
 from symobs.proof.certificate.claims import verify
 from symobs.proof.derivation import CaseStep, Conclude
@@ -17,15 +27,17 @@ from symobs.proof.derivation.builder import Builder, predicate, relation, senten
 from symobs.proof.derivation.facts import PREDICATES
 from symobs.proof.derivation.wording_check import Said, rests
 from symobs.stability.criteria.stability import is_beyond, is_marginal, stability
-from symobs.tasks.analysis.page_parts import environment_on
+from symobs.system.conditions import solved
+from symobs.tasks.analysis.page_parts import environment_on, is_narrow, spread
 from symobs.tasks.analysis.strata.strata import distances, systems_of
 from symobs.tasks.analysis.time_response.response import TIMES, Signals, plot_courses, rounded_up, rows_of, window_of
+from symobs.tasks.design.pole_placement.sylvester import fresh_names, taken_names
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterable, Sequence
 
     from symobs.exact import Scalar
-    from symobs.formula.tree import Environment
+    from symobs.formula.tree import Environment, Formula
     from symobs.proof.derivation.builder import Member, Slot
     from symobs.system.specification import DesiredPolynomial
     from symobs.tasks.result import Case
@@ -329,13 +341,17 @@ def _outside_lines(cases: Sequence[Case]) -> Conjunction:
     systems = systems_of(case for case in cases if not _is_unassignable(case))
     if systems is None or any(len(system) > 1 for system in systems):
         return Conjunction(())
-    return Conjunction(tuple(relation(equation, "!=", 0) for (equation,) in dict.fromkeys(systems)))
+    return _apart(equation for (equation,) in dict.fromkeys(systems))
 
 
 def _outside(cases: Sequence[Case]) -> Conjunction:
     """Return that parameters are outside all cases; nothing where one of them is everywhere."""
     systems = systems_of(cases)
-    return Conjunction(() if systems is None else tuple(relation(value, "!=", 0) for value in distances(systems)))
+    return _apart(() if systems is None else distances(systems))
+
+
+def _apart(values: Iterable[Scalar]) -> Conjunction:
+    return Conjunction(tuple(relation(left, "!=", right) for left, right in map(solved, values)))
 
 
 def _is_unassignable(case: Case) -> bool:
@@ -375,6 +391,10 @@ PARAMETRIC_CANONICAL_FORM_ORDER = 2
 
 #: A longer coefficient of φ gets a letter of its own.
 COEFFICIENT = 4
+
+
+#: A gain with a longer row, written in one line, has letters for its entries.
+GAIN = 40
 
 
 #: The longest row-reduced form, and the most null vectors: there are no more letters for them.
@@ -429,7 +449,7 @@ UNKNOWN_ENTRIES = 2
 # -- compensators ------------------------------------------------------------------------------------------------------
 
 #: With a longer F(s) the page works with letters for the entries of the gains and the coefficients of F.
-COMPENSATOR = 60
+COMPENSATOR = 24
 
 
 #: A matrix of numbers or rational functions.
@@ -455,7 +475,68 @@ LOOP_ORDER = 4
 OFFSET_ORDER = 2
 
 
+# Gains: a long one is a matrix of letters, in which the page goes on.
+
+
+#: The letters for the entries of gains; one that the data use, too, is passed over.
+_ENTRIES = {"K": ("k", "f", "g"), "L": ("l", "h", "g")}
+
+
+def gain_letters(page: Builder, gain: str, value: Matrix, *, numbers: bool = False) -> Matrix:
+    """Return a gain with letters for its entries from here on, unless `numbers` stay."""
+    taken = taken_names(page)
+    data = {name.rstrip("0123456789").partition("_")[0] for name in taken - page.environment.coefficients.keys()}
+    stem = next((letter for letter in _ENTRIES[gain[0]] if letter not in data), _ENTRIES[gain[0]][0])
+    names = iter(fresh_names(f"{stem}_", len(value.entries), taken))
+    rows = [
+        [e if numbers and e.is_constant else page.name_coefficient(next(names), e) for e in row] for row in value.rows
+    ]
+    return Matrix.of(rows)
+
+
+def _is_brief(formula: Formula) -> bool:
+    """Return whether matrices written out in a formula are narrow."""
+    if isinstance(formula, Literal):
+        return not isinstance(formula.value, Matrix) or is_narrow(formula.value, within=GAIN)
+    return all(map(_is_brief, children(formula)))
+
+
+def define_gain(
+    page: Builder, gain: str, *members: Term | Matrix, say: str = "", transposed: bool = False, answer: bool = True
+) -> Term:
+    """Introduce a gain (`transposed`, through its transpose); a long one with letters, and what they stand for."""
+    *before, last = (page.value(member) if isinstance(member, Matrix) else member for member in members)
+    value = last.value.T if transposed else last.value
+    if not value.names or (is_narrow(value, within=GAIN) and not page.in_letters):
+        shown, before = value, [*before, last]
+    elif page.defines(gain) and page[gain].value.substitute(page.environment.coefficients) == value:
+        shown = page[gain].value
+    else:
+        shown = gain_letters(page, gain, value, numbers=True)
+        before = [member for member in [*before, last] if _is_brief(member.formula)]
+    meanings = [
+        relation(name, entry) for name, entry in zip(shown.entries, value.entries, strict=True) if name != entry
+    ]
+    if page.defines(gain) and page[gain].value == shown and 1 in shown.shape:
+        page.equal(*meanings, say=say)
+        return page[gain]
+    if transposed:
+        page.set(gain, shown)
+        closing = [] if meanings else [last.as_value]
+        page.equal(relation(page[gain].T, *before, *closing), relation(page[gain], shown), say=say, answer=answer)
+    else:
+        page.define(gain, *before, *([shown] if meanings else []), say=say, answer=answer)
+    if meanings:
+        page.equal(*meanings, say="with_coefficients")
+    return page[gain]
+
+
 # Sums of matrices times signals with their numbers, and equations component by component beside the matrix form.
+
+
+def stand_in_line(page: Builder, *names: str) -> bool:
+    """Return whether matrices of as many rows fit beside one another."""
+    return is_narrow(Matrix.block([[page[name].value for name in names]]))
 
 
 def summed(pairs: list[tuple[Term, Term]]) -> Term:
@@ -479,7 +560,7 @@ def combination(page: Builder, pairs: list[tuple[Term, Term]]) -> Term:
             size = -single if negative else single
             part = signal if size.is_one else page.value(size) * signal
         else:
-            part = page.value(value) @ signal
+            part = spread(page, value) @ signal
         part = -part if negative and total is None else part
         total = part if total is None else total - part if negative else total + part
     return summed(pairs) if total is None else total

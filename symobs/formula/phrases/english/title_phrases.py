@@ -4,6 +4,9 @@ from __future__ import annotations
 
 PHRASES: dict[str, str] = {
     "given": "Given.",
+    "row_where": "where",
+    "row_modes": "fixed modes",
+    "row_answer": "answer",
     "observability": "Observability.",
     "controllability": "Controllability.",
     "characteristic_polynomial": "Characteristic polynomial.",
@@ -69,3 +72,5 @@ DEMANDS: dict[str, str] = {
 }
 
 NAMING = ("without_serifs", "nonlinear_input")
+
+CONTINUES = ("row_where", "row_modes", "row_answer")

@@ -11,7 +11,7 @@ from symobs.formula.tree.term import block
 from symobs.proof.derivation import CaseStep, Conclude, Equal, Step
 from symobs.proof.derivation.builder import Builder, relation, sentence, shows
 from symobs.proof.derivation.wording_check import fits
-from symobs.system.conditions import vanishing_factors
+from symobs.system.conditions import solved, vanishing_factors
 from symobs.tasks.analysis.page_parts import (
     HIDDEN,
     WRITTEN_UP_TO,
@@ -163,7 +163,7 @@ def outside_cases(page: Builder, result: Result, steps: list[Step]) -> list[Step
     apart = _distances(result)
     if not apart or not steps:
         return steps if apart == () else []
-    where = Conjunction(tuple(relation(distance, "!=", 0) for distance in apart))
+    where = Conjunction(tuple(relation(left, "!=", right) for left, right in map(solved, apart)))
     return [] if environment_on(page, where) is None else [CaseStep(where, (), tuple(steps))]
 
 

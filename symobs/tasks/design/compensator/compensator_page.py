@@ -22,7 +22,7 @@ from symobs.tasks.design.compensator.output_feedback import caution_hidden
 from symobs.tasks.design.full_order.observer import model_and_innovation, write_observer
 from symobs.tasks.design.full_order.state_feedback import StateFeedbackDesign
 from symobs.tasks.design.gain.gain_design import FEEDBACK, OBSERVER, PlacementProblem, page_style
-from symobs.tasks.design.gain.gain_page import name_coefficients, name_entries, say_as_required, write_case, write_gain
+from symobs.tasks.design.gain.gain_page import name_coefficients, say_as_required, write_case, write_cases, write_gain
 from symobs.tasks.design.page_parts import caution_poles, draw_compensator, draw_loop, draw_unity_loop, plot_estimate
 from symobs.tasks.design.pole_placement.sylvester import fresh_names, taken_names
 from symobs.tasks.result import page_of
@@ -170,7 +170,7 @@ def write_compensator(page: Builder, design: CompensatorDesign) -> None:
     """Write the whole page."""
     given(page, ("control", design.feedback.desired), ("observer", design.estimator.desired))
     plant = design.plant
-    large = design.answer["F"] is not None and design.answer["F"].size > readability.COMPENSATOR
+    page.in_letters = large = design.answer["F"] is not None and design.answer["F"].size > readability.COMPENSATOR
     beside = design.method == "duality" and can_stand_side_by_side(design)
     if beside:
         write_side_by_side(page, design)
@@ -180,16 +180,14 @@ def write_compensator(page: Builder, design: CompensatorDesign) -> None:
                 page, design.feedback, FEEDBACK, page_style("auto", plant, several=plant.inputs > 1), of_loop=True
             )
     caution_repeated(page, design)
-    if large:
-        name_entries(page, "K")
     with page.section("observer"):
         if not beside:
             style = page_style("auto", plant, several=plant.outputs > 1)
-            write_gain(page, design.estimator, OBSERVER, style, of_loop=True)
-        if large:
-            name_entries(page, "L")
+            write_gain(page, design.estimator, OBSERVER, style, of_loop=True, cases=False)
         if design.answer["L"] is not None:
             write_observer(page, alone=False)
+        if not beside:
+            write_cases(page, design.estimator, OBSERVER)
     if design.answer["F"] is None:
         return
     with page.section("compensator"):
@@ -369,7 +367,8 @@ def return_path(page: Builder, design: OutputFeedback) -> None:
         below = factored_form(page, inserted.scalar.denominator)
         together = page.value(inserted.scalar.numerator) / below
         page.equal(relation(page.value(1) + page["P"] @ page["F"], inserted, together), say="return_difference")
-    members = [definition, expanded, factors] if page.plant.order <= readability.LOOP_ORDER else [definition, factors]
+    is_short = page.plant.order <= readability.LOOP_ORDER and is_narrow(Matrix.of([[denominator]]))
+    members = [definition, expanded, factors] if is_short else [definition, factors]
     page.define("G_cl", *members, say="" if few else "return_path", answer=True, closing=False)
     draw_loop(page, plant_form, page.value(design.answer["F"]))
     _say_poles(page, design, form.value)

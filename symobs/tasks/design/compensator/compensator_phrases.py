@@ -28,7 +28,6 @@ PHRASES: dict[str, str] = {
     "return_difference": "With $F$ in negative feedback, the return difference and the closed-loop transfer function are",
     "no_stable_compensator": "At a real zero of $P$ in the right half-plane the characteristic polynomial is negative: the plant lacks the parity interlacing property and cannot be stabilised by a stable compensator.",
     "with_coefficients": "where",
-    "named_entries": "In what follows, its entries are denoted by",
     "loop_matrix_poles": "The poles of its entries are control poles or observer poles.",
     "loop_poles_left": "The poles {poles} are control or observer poles, as expected; cancellation removes {lost}.",
     "loop_pole_left": "The only pole, {poles}, is a control or observer pole, as expected; cancellation removes {lost}.",
@@ -129,10 +128,7 @@ NAMING = (
 #: Titles of sections whose sections stand side by side, a step with a sentence beginning a row.
 BESIDE = ("side_by_side",)
 
-SPELLS_OUT = (
-    "named_entries",
-    "with_coefficients",
-)
+SPELLS_OUT = ("with_coefficients",)
 
 FIGURES: dict[str, dict[str, object]] = {
     "loop": {

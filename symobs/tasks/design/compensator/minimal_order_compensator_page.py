@@ -10,7 +10,7 @@ from symobs.formula.tree.term import Term, block
 from symobs.proof.derivation import CaseStep, Conclude
 from symobs.proof.derivation.builder import Builder, predicate, relation, sentence
 from symobs.system.conditions import vanishing_factors
-from symobs.tasks.analysis.page_parts import formula_of_factored, given, in_blocks
+from symobs.tasks.analysis.page_parts import formula_of_factored, given, in_blocks, is_narrow
 from symobs.tasks.design import page_parts as readability
 from symobs.tasks.design.compensator.compensator import KnownState
 from symobs.tasks.design.compensator.compensator_page import (
@@ -28,7 +28,7 @@ from symobs.tasks.design.compensator.minimal_order_compensator import MinimalOrd
 from symobs.tasks.design.compensator.output_feedback import caution_hidden
 from symobs.tasks.design.full_order.observer import write_observer
 from symobs.tasks.design.gain.gain_design import FEEDBACK, OBSERVER, page_style
-from symobs.tasks.design.gain.gain_page import name_entries, write_gain
+from symobs.tasks.design.gain.gain_page import write_cases, write_gain
 from symobs.tasks.design.page_parts import combination, plot_estimate
 from symobs.tasks.design.reduced_order.reduced_order_observer import ReducedOrderObserver
 from symobs.tasks.design.reduced_order.reduced_order_observer_page import observer_state, write_observer_of_rest
@@ -42,12 +42,10 @@ if TYPE_CHECKING:
 def write_minimal_order(page: Builder, design: MinimalOrderCompensator) -> None:
     """Write the whole page."""
     given(page, ("control", design.feedback.desired), ("observer", design.estimator.desired))
-    large = design.exists and design.answer["F"].size > readability.COMPENSATOR
+    page.in_letters = large = design.exists and design.answer["F"].size > readability.COMPENSATOR
     with page.section("state_feedback"):
         style = page_style("auto", design.plant, several=design.plant.inputs > 1)
         write_gain(page, design.feedback, FEEDBACK, style, of_loop=True)
-        if large:
-            name_entries(page, "K")
     caution_repeated(page, design)
     write_observer_of_rest(page, design.estimator)
     if design.answer["K"] is None or design.answer["L"] is None:
@@ -60,7 +58,7 @@ def write_minimal_order(page: Builder, design: MinimalOrderCompensator) -> None:
         _transfer_function(page, design, large=large)
         caution_hidden(page, design.answer["F"], design.own_matrix)
     with page.section("closed_loop"):
-        _error_coordinates(page, design)
+        _error_coordinates(page, design, large=large)
         if not design.is_single:
             return_path_of_several(page, design)
         elif large:
@@ -206,7 +204,7 @@ def _transfer_function(page: Builder, design: MinimalOrderCompensator, *, large:
     say_stability(page, design, "minimal", remainder, direct=relation(direct, direct.as_value))
 
 
-def _error_coordinates(page: Builder, design: MinimalOrderCompensator) -> None:
+def _error_coordinates(page: Builder, design: MinimalOrderCompensator, *, large: bool) -> None:
     """Write u = −Kx + K₂e₂, ẋ = (A − BK) x + BK₂e₂, block triangular; and the same in (x, z)."""
     A, B, C, K, F, K_2, K_y = (page[name] for name in ("A", "B", "C", "K", "F_z", "K_2", "K_y"))
     x, e, z, order = page["x"], page["e_2"], page[observer_state(page)], page.plant.order
@@ -215,8 +213,8 @@ def _error_coordinates(page: Builder, design: MinimalOrderCompensator) -> None:
     estimated = order - page.plant.outputs
     zero = page.value(Matrix.zeros(estimated, order))
     matrix, sizes = block([[A - B @ K, B @ K_2], [zero, F]]), [order, estimated]
-    numbers = in_blocks(page, matrix.value, sizes, sizes)
-    page.define("A_cl", matrix, numbers, say="closed_loop_matrix", closing=False, control=control, rate=rate)
+    numbers = [in_blocks(page, matrix.value, sizes, sizes)] if not large and is_narrow(matrix.value) else []
+    page.define("A_cl", matrix, *numbers, say="closed_loop_matrix", closing=False, control=control, rate=rate)
     state = block([[x], [e]])
     page.equal(relation(state.derivative, page["A_cl"] @ state))
     determinant = (page.s @ page.identity(order + estimated) - page["A_cl"]).apply("det")
@@ -228,10 +226,8 @@ def _error_coordinates(page: Builder, design: MinimalOrderCompensator) -> None:
     driven = G + H @ page["D"] if page.plant.matrices.has_feedthrough else G
     second = block([[A - B @ K_y @ C, -(B @ K_2)], [(H - driven @ K_y) @ C, F - driven @ K_2]])
     states = block([[x], [z]])
-    page.equal(
-        relation(states.derivative, second @ states, in_blocks(page, second.value, sizes, sizes) @ states),
-        say="reduced_coordinates",
-    )
+    numbers = [in_blocks(page, second.value, sizes, sizes) @ states] if not large and is_narrow(second.value) else []
+    page.equal(relation(states.derivative, second @ states, *numbers), say="reduced_coordinates")
     plot_estimate(
         page, "e_2", page["A_cl"], (page["T"].inverse.value).select(range(order), range(order - estimated, order))
     )
@@ -259,9 +255,11 @@ def write_both_gains(page: Builder, loop: OutputFeedback) -> None:
         write_observer_of_rest(page, loop.estimator)
         return
     with page.section("observer"):
-        write_gain(page, loop.estimator, OBSERVER, page_style("auto", plant, several=plant.outputs > 1))
+        style = page_style("auto", plant, several=plant.outputs > 1)
+        write_gain(page, loop.estimator, OBSERVER, style, cases=False)
         if loop.answer["L"] is not None:
             write_observer(page)
+        write_cases(page, loop.estimator, OBSERVER)
 
 
 def is_ill_posed(page: Builder, loop: OutputFeedback) -> bool:

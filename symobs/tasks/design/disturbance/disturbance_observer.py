@@ -31,7 +31,7 @@ from symobs.tasks.design.gain.gain_cases import design_of, places_beside
 from symobs.tasks.design.gain.gain_design import letters_of
 from symobs.tasks.design.gain.gain_kind import AssignedGain
 from symobs.tasks.design.gain.gain_page import say_as_required
-from symobs.tasks.design.page_parts import caution_poles, say_unassignable
+from symobs.tasks.design.page_parts import caution_poles, define_gain, say_unassignable
 from symobs.tasks.result import Case, Result, choose, method, page_of, poles_of, task
 from symobs.tasks.result.control_systems import Controller
 
@@ -366,7 +366,7 @@ def _design(page: Builder, design: DisturbanceObserver) -> None:
             _zeros(page, design)
             return
         page.conclude("disturbance_fixed", predicate("polynomial", page["phi_o"] / fixed), modes=roots)
-    L = page.define("L", page.value(design.inner.answer["L"]), say="disturbance_gain", closing=False, answer=True)
+    L = define_gain(page, "L", design.inner.answer["L"], say="disturbance_gain")
     pencil = (page.s @ page.identity(order) - A + L @ C).apply("det")
     say_as_required(page, design.desired, pencil, page.value(design.desired.polynomial))
     caution_poles(page, design.desired, "phi_o", "observer")

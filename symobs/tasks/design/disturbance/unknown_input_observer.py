@@ -22,7 +22,7 @@ from symobs.stability.criteria.stability import stability
 from symobs.system import StateSpace
 from symobs.system.conditions import Condition, vanishing_factors
 from symobs.system.specification import DesiredPolynomial, desired_polynomial, over_common_data
-from symobs.tasks.analysis.page_parts import case_steps, given, say_stability
+from symobs.tasks.analysis.page_parts import case_steps, given, is_narrow, say_stability, spread
 from symobs.tasks.analysis.rank.rank_page import assume_rank
 from symobs.tasks.analysis.strata.rank_stratification import maximal_minors
 from symobs.tasks.analysis.strata.strata import common_places, solved
@@ -31,7 +31,15 @@ from symobs.tasks.design.full_order.observer import ObserverDesign
 from symobs.tasks.design.gain.gain_cases import design_of, places_beside
 from symobs.tasks.design.gain.gain_design import letters_of
 from symobs.tasks.design.gain.gain_page import say_as_required
-from symobs.tasks.design.page_parts import caution_poles, combination, plot_error, say_unassignable, summed
+from symobs.tasks.design.page_parts import (
+    caution_poles,
+    combination,
+    define_gain,
+    plot_error,
+    say_unassignable,
+    stand_in_line,
+    summed,
+)
 from symobs.tasks.result import Case, Result, choose, method, page_of, task
 from symobs.tasks.result.control_systems import Controller, observer_of
 
@@ -363,10 +371,25 @@ def write_unknown_input_observer(page: Builder, design: UnknownInputObserver) ->
 
 
 def _case(page: Builder, design: UnknownInputObserver) -> None:
-    """Write the design on a stratum."""
+    """Write the design on a stratum: whether d can be decoupled, the zeros, and a gain; the rest is made as in general."""
     page.set("E_d", design.disturbance_input)
     page.set("phi_o", design.desired.polynomial)
-    _design(page, design)
+    if design.inner is None:
+        _not_decoupled(page, design)
+        return
+    conditions = [c.expression for c in design.holds_where if c.kind != "domain"]
+    if conditions:
+        page.assume("uio_provided", *conditions)
+    H, C, identity = page.set("H_d", design.answer["H"]), page["C"], page.identity(page.plant.order)
+    page.conclude_silently(relation((H @ C - identity) @ page["E_d"], Matrix.zeros(*design.disturbance_input.shape)))
+    T = page.define("T_d", identity - H @ C, silent=True)
+    page.define("A_T", T @ page["A"], silent=True)
+    _zeros(page, design)
+    if design.answer["L"] is not None:
+        L = define_gain(page, "L", design.answer["L"])
+        page.define("F_d", page["A_T"] - L @ C, silent=True)
+        pencil = (page.s @ identity - page["F_d"]).apply("det")
+        page.conclude_silently(relation(pencil, page.value(design.desired.polynomial)))
 
 
 def _design(page: Builder, design: UnknownInputObserver) -> None:
@@ -457,9 +480,13 @@ def _zeros(page: Builder, design: UnknownInputObserver) -> None:
 
 def _gain(page: Builder, design: UnknownInputObserver) -> None:
     """Write L, F = T A − L C, and what multiplies y in the equation of z."""
-    L = page.define("L", page.value(design.answer["L"]), say="uio_gain", closing=False, answer=True)
-    F = page.define("F_d", page["A_T"] - L @ page["C"], say="uio_state_matrix")
-    page.define("L_y", page["L"] + F @ page["H_d"])
+    L = define_gain(page, "L", design.answer["L"], say="uio_gain")
+    state = page["A_T"] - L @ page["C"]
+    driven = L + state @ page["H_d"]
+    is_short = is_narrow(Matrix.block([[state.value, driven.value]]))  # then the observer has the values
+    shown = [[] if is_short else [spread(page, part.value)] for part in (state, driven)]
+    F = page.define("F_d", state, *shown[0], say="uio_state_matrix", closing=False)
+    page.define("L_y", page["L"] + F @ page["H_d"], *shown[1], closing=False)
     page.conclude_silently(*(relation(page[name], design.answer[of]) for name, of in _LETTERS.items()))
     pencil, asked = (page.s @ page.identity(page.plant.order) - F).apply("det"), design.desired
     say_as_required(page, asked, pencil, page.value(asked.polynomial))
@@ -490,7 +517,9 @@ def _observer(page: Builder, design: UnknownInputObserver) -> None:
     page.dynamics(name, summed(pairs), silent=True)
     page.signal("x_hat", z + H @ C @ x, silent=True)  # y − D u, whose parts D u have no derivatives that are known
     page.equal(
-        relation(z.derivative, summed(pairs), combination(page, pairs)),
+        relation(
+            z.derivative, summed(pairs), *([combination(page, pairs)] if stand_in_line(page, "F_d", "L_y") else [])
+        ),
         relation(page["x_hat"], z + H @ known, z + H.as_value @ known),
         say="uio_observer",
         answer=True,
@@ -499,7 +528,7 @@ def _observer(page: Builder, design: UnknownInputObserver) -> None:
     error = relation(page["e"], x - page["x_hat"], T @ x - z)
     rate = F @ page["e"]
     page.equal(
-        relation(page["e"].derivative, rate + T @ E @ page["d"], rate, F.as_value @ page["e"]),
+        relation(page["e"].derivative, rate + T @ E @ page["d"], rate),
         say="uio_error",
         error=error,
     )

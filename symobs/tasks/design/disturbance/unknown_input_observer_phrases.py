@@ -4,6 +4,10 @@ from __future__ import annotations
 
 PHRASES: dict[str, str] = {
     "unknown_input_observer": "Unknown-input observer.",
+    "cases_uio": "Special cases, in which the fixed modes are the invariant zeros of the plant from the unknown input to the output:",
+    "row_not_decoupled": "none, since $H_d C E_d = E_d$ has no solution $H_d$",
+    "row_converges": "of these poles",
+    "row_diverges": "whose error converges",
     "uio_independent": "The columns of $E_d$ are linearly dependent, {rank}. Independent ones are those of",
     "uio_seen": "Such an observer requires that $C E_d$ and $E_d$ have the same rank§. Here",
     "uio_provided": "What follows holds for {condition}.",
@@ -42,6 +46,18 @@ QUESTIONS: dict[str, str] = {
     "also unknown_input_observer E": "The term $E_d d$ with the unknown input $d$ is added to the state equation.",
 }
 
+#: In a table of special cases: what goes before it, and the answer in a row.
+ROWS: dict[str, str] = {
+    "uio_not_decoupled": "cases_uio row_not_decoupled",
+    "uio_not_decoupled_along": "cases_uio row_not_decoupled",
+    "uio_direction": "cases_uio uio_direction",
+    "uio_observable": "cases_uio row_other",
+    "uio_zeros_desired": "cases_uio row_other",
+    "uio_impossible": "cases_uio row_no",
+    "uio_zeros_stable": "cases_uio row_converges",
+    "uio_zeros_unstable": "cases_uio row_diverges",
+}
+
 DEMANDS: dict[str, str] = {
     "uio_decoupled": "one_rank C E_d",
     "uio_not_decoupled": "lower_rank C E_d",
@@ -70,4 +86,4 @@ THEOREMS: dict[str, str] = {
 }
 
 #: Phrases that go on with the sentence before them.
-CONTINUES = ("uio_state_matrix", "uio_not_decoupled_along")
+CONTINUES = ("uio_state_matrix", "uio_not_decoupled_along", "row_not_decoupled", "row_converges", "row_diverges")

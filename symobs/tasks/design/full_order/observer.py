@@ -10,11 +10,11 @@ from symobs.exact.linear_algebra.transfer_function import Realisation
 from symobs.formula.tree.term import Term, letter
 from symobs.ground.dataclass import dataclass
 from symobs.proof.derivation.builder import Builder, relation
-from symobs.tasks.analysis.page_parts import given
+from symobs.tasks.analysis.page_parts import given, spread
 from symobs.tasks.analysis.rank.observability import Observability
 from symobs.tasks.design.full_order.placement_methods import register_methods
 from symobs.tasks.design.gain.gain_design import OBSERVER, GainDesign, design_gain, page_style
-from symobs.tasks.design.gain.gain_page import write_gain
+from symobs.tasks.design.gain.gain_page import write_cases, write_gain
 from symobs.tasks.design.page_parts import draw_collected, draw_copy, plot_error, write_components
 from symobs.tasks.design.pole_placement.multiple_outputs import pair_of
 from symobs.tasks.design.pole_placement.sylvester import fresh_names, taken_names
@@ -67,7 +67,7 @@ def write_found(page: Builder) -> None:
     m, L = page.plant.matrices, page["L"]
     page.conclude_silently(relation(page["H_x"], L))
     closed = page["A"] - L @ page["C"]
-    collected, numbers = closed @ page["x_hat"], closed.as_value @ page["x_hat"]
+    collected, numbers = closed @ page["x_hat"], spread(page, closed.value) @ page["x_hat"]
     if m.has_input:
         driven = page["B"] - L @ page["D"] if m.has_feedthrough else page["B"]
         collected, numbers = collected + driven @ page["u"], numbers + driven.as_value @ page["u"]
@@ -171,7 +171,8 @@ class ObserverDesign(GainDesign):
                 write_ansatz(page, self.answer["L"])
         with page.section("observer"):
             style = "auto" if self.page_method == "existence" else self.page_method
-            write_gain(page, self, OBSERVER, page_style(style, self.plant, several=self.plant.outputs > 1))
+            style = page_style(style, self.plant, several=self.plant.outputs > 1)
+            write_gain(page, self, OBSERVER, style, cases=False)
             if by_ansatz:
                 write_found(page)
             elif self.answer["L"] is not None:
@@ -179,6 +180,7 @@ class ObserverDesign(GainDesign):
             if self.answer["L"] is not None:
                 draw_collected(page)
                 plot_error(page, "e", page["A"] - page["L"] @ page["C"])
+            write_cases(page, self, OBSERVER)
 
 
 def model_and_innovation(page: Builder) -> tuple[Term, Term]:
@@ -207,20 +209,18 @@ def write_observer(page: Builder, *, drawn: bool = False, alone: bool = True) ->
     rate = A @ page["x"] + page["B"] @ page["u"] if m.has_input else A @ page["x"]
     if m.has_feedthrough:
         page.equal(relation(innovation, C @ page["e"]), say="feedthrough_cancels")
-    page.equal(
-        relation(
-            page["e"].derivative, rate - (model + L @ innovation), closed @ page["e"], closed.as_value @ page["e"]
-        ),
-        say="error_equation",
-        error=relation(page["e"], page["x"] - page["x_hat"]),
-    )
+    is_collected = alone or m.has_feedthrough  # then A − LC is written out there
+    members = [rate - (model + L @ innovation), closed @ page["e"]]
+    members += [] if is_collected else [spread(page, closed.value) @ page["e"]]
+    error = relation(page["e"], page["x"] - page["x_hat"])
+    page.equal(relation(page["e"].derivative, *members), say="error_equation", error=error)
     _say_deadbeat(page, closed)
-    collected, numbers, driven = closed @ x_hat, closed.as_value @ x_hat, None
+    collected, numbers, driven = closed @ x_hat, spread(page, closed.value) @ x_hat, None
     if m.has_input:
         driven = page["B"] - L @ page["D"] if m.has_feedthrough else page["B"]
         collected, numbers = collected + driven @ page["u"], numbers + driven.as_value @ page["u"]
     whole = relation(x_hat.derivative, collected + L @ y, numbers + L.as_value @ y)
-    if not alone and not m.has_feedthrough:  # its matrix stands in the equation of the error
+    if not is_collected:
         page.conclude_silently(whole)
         return
     said = "observer_collected_with_feedthrough" if m.has_feedthrough else "observer_collected"

@@ -15,6 +15,7 @@ from symobs.tasks.analysis.page_parts import determinant_form, stratum_of, undec
 from symobs.tasks.design import page_parts as readability
 from symobs.tasks.design.gain.gain_design import GainDesign
 from symobs.tasks.design.gain.gain_kind import AlgebraicGain
+from symobs.tasks.design.page_parts import define_gain
 from symobs.tasks.design.pole_placement.sylvester import Sylvester, charts_of
 
 if TYPE_CHECKING:
@@ -31,7 +32,7 @@ def write_sylvester(page: Builder, design: GainDesign, side: PlacementProblem, d
     """Write the equation, its solution, and for several outputs (inputs) the family and one member of it."""
     chart = design.chart
     if chart is None and design.dual_pair(page.plant).c.shape[0] > 1:  # whether the rows of G are free is not known
-        page.define(side.gain, design.answer[side.gain], say="gain_stated", answer=True)
+        define_gain(page, side.gain, design.answer[side.gain], say="gain_stated")
         return
     page.define(f"F_{side.index}", companion(desired.coefficients), say="companion_of_wish")
     if chart is None:
@@ -43,15 +44,11 @@ def write_sylvester(page: Builder, design: GainDesign, side: PlacementProblem, d
     page.remark(f"dimension_{side.kind}", count=str(len(chart.names)))
     if chart.general is not None and chart.general.size <= readability.GENERAL_GAIN:
         general = design.transpose_for_task(chart.general)
-        page.define(f"{side.gain}_G", _gain(page, side, "", equation), general, say="general_gain")
+        define_gain(page, f"{side.gain}_G", _gain(page, side, "", equation), general, say="general_gain", answer=False)
     own = chart.own_G
     if own is None:
-        page.define(
-            side.gain,
-            design.answer[side.gain],
-            say=f"alone_decoupled_{side.kind}" if design.decoupled else "no_member",
-            answer=True,
-        )
+        say = f"alone_decoupled_{side.kind}" if design.decoupled else "no_member"
+        define_gain(page, side.gain, design.answer[side.gain], say=say)
         return
     words = f"decoupled_{side.kind}" if design.decoupled else "zero" if design.zero else "several"
     page.define(f"G_{side.index}1", own, say=f"member_{words}")
@@ -62,14 +59,14 @@ def write_sylvester(page: Builder, design: GainDesign, side: PlacementProblem, d
     else:
         page.equal(determinant, say="solution_long")
     page.conclude_silently(_sylvester(page, side, "1", equation))
-    page.define(side.gain, _gain(page, side, "1", equation), say="gain_follows", answer=True)
+    define_gain(page, side.gain, _gain(page, side, "1", equation), say="gain_follows")
 
 
 def write_hidden_family(page: Builder, design: GainDesign, side: PlacementProblem) -> None:
     """Write one gain and the dimension of the family where some modes are fixed."""
     assert design.chart is not None  # noqa: S101 - several outputs have a chart wherever there is a gain
     key = of_the_others(design)
-    page.define(side.gain, design.answer[side.gain], say=f"{key}_{side.kind}", answer=True)
+    define_gain(page, side.gain, design.answer[side.gain], say=f"{key}_{side.kind}")
     if key == "one_gain":
         outputs, hidden = design.dual_pair(page.plant).c.shape[0], design.pair.kernel.shape[1]
         free = (page.plant.order - hidden) * (outputs - 1)
@@ -91,7 +88,7 @@ def _only_gain(page: Builder, design: GainDesign, side: PlacementProblem, desire
     (equation,) = charts_of(pair.A, pair.c, desired.factors, pair.variable, ())
     _shift(page, equation, side, design)
     _equation(page, side, "", equation, equation.G)
-    page.define(side.gain, _gain(page, side, "", equation), say="gain_follows", answer=True)
+    define_gain(page, side.gain, _gain(page, side, "", equation), say="gain_follows")
 
 
 def _shift(page: Builder, equation: Sylvester, side: PlacementProblem, design: GainDesign) -> None:
@@ -222,7 +219,7 @@ def _algebraic(page: Builder, design: GainDesign, kind: AlgebraicGain, side: Pla
     at_ends = [found.polynomial.substitute({EIGENVALUE: end}) for end in (low, high)]
     inner, page.steps, before = page.steps, [], page.environment
     page.environment = before.with_relations((found.polynomial,))
-    page.define(side.gain, design.transpose_for_task(found.gain), answer=True)
+    define_gain(page, side.gain, design.transpose_for_task(found.gain))
     page.verified("as_required", check=relation(side.error_determinant(page), page[side.phi]))
     steps, page.steps, page.environment = tuple(page.steps), inner, before
     changes = relation(page.value(at_ends[0]) @ page.value(at_ends[1]), "<", 0)
@@ -247,7 +244,7 @@ def another_gain(page: Builder, case: Case, side: PlacementProblem, say: str) ->
     assert isinstance(result, GainDesign)  # noqa: S101 - the case is decided
     inner, page.steps, before = page.steps, [], page.environment
     page.with_roots(result.answer[side.gain])
-    page.define(side.gain, result.answer[side.gain], say=say, answer=True)
+    define_gain(page, side.gain, result.answer[side.gain], say=say)
     page.conclude_silently(relation(side.error_determinant(page), page[side.phi]))
     conditions = [c.expression for c in result.holds_where if c.kind == "claim" and c.operator == "!="]
     if conditions:

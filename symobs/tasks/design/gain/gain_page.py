@@ -50,7 +50,7 @@ from symobs.tasks.design.gain.gain_family_page import (
     write_sylvester,
 )
 from symobs.tasks.design.gain.gain_kind import GivenGain, UnassignableGain
-from symobs.tasks.design.page_parts import caution_poles, over_fixed, say_unassignable
+from symobs.tasks.design.page_parts import caution_poles, define_gain, gain_letters, over_fixed, say_unassignable
 from symobs.tasks.design.pole_placement.row_reduction import Reduction, gain_of, row_reduction
 from symobs.tasks.design.pole_placement.single_output import matching
 from symobs.tasks.design.pole_placement.sylvester import fresh_names, taken_names
@@ -81,9 +81,9 @@ def write_ackermann_formula(page: Builder, _: GainDesign, side: PlacementProblem
     factors = [_factor_at(page, factor, power) for factor, power in desired.grouped()]
     at = product(factors)
     if side.gain == "L":
-        page.define("L", polynomial @ last, at @ last, say="ackermann_observer", answer=True)
+        define_gain(page, "L", polynomial @ last, at @ last, say="ackermann_observer")
     else:
-        page.define("K", last @ polynomial, last @ at, say="ackermann_state_feedback", answer=True)
+        define_gain(page, "K", last @ polynomial, last @ at, say="ackermann_state_feedback")
 
 
 def _factor_at(page: Builder, factor: Scalar, power: int) -> Term:
@@ -107,10 +107,7 @@ def write_matching(page: Builder, design: GainDesign, side: PlacementProblem, de
     """Write det(sI − A + LC) with unknown l₁ … lₙ, its coefficients equated to those of φ, the linear system, its solution."""
     order, variable = page.plant.order, page.plant.variable
     system = matching(design.dual_pair(page.plant), desired)
-    names = fresh_names(f"{side.gain.lower()}_", order, taken_names(page))
-    unknown = Matrix.column([Scalar.symbol(name) for name in names])
-    for name, entry in zip(names, system.solution.entries, strict=True):
-        page.name_coefficient(name, entry)
+    unknown = gain_letters(page, side.gain, system.solution)
     gain = page.define(side.gain, design.transpose_for_task(unknown), say="unknown_gain")
     moved = gain @ page["C"] if side.gain == "L" else page["B"] @ gain
     determinant = (page.s @ page.identity(order) - page["A"] + moved).apply("det")
@@ -119,9 +116,7 @@ def write_matching(page: Builder, design: GainDesign, side: PlacementProblem, de
     pairs = zip(polynomial.coefficients(variable)[1:], desired.coefficients, strict=True)
     page.equal(*(relation(found, target) for found, target in pairs), say="equal_coefficients")
     page.equal(relation(page.value(system.M) @ page.value(unknown), system.r), say="linear_system")
-    solution = design.transpose_for_task(system.solution)
-    page.equal(relation(gain, solution), say="solution_of_system", answer=True)
-    page.set(side.gain, solution)
+    define_gain(page, side.gain, design.transpose_for_task(system.solution), say="solution_of_system")
 
 
 def write_companion(page: Builder, _: GainDesign, side: PlacementProblem, desired: DesiredPolynomial) -> None:
@@ -140,9 +135,9 @@ def write_companion(page: Builder, _: GainDesign, side: PlacementProblem, desire
     wanted = [page.value(c) for c in reversed(desired.coefficients)]
     row = block([[w - page.value(a) for w, a in zip(wanted, reversed(found), strict=True)]])
     if side.gain == "L":
-        page.define_transposed("L", row @ T, row.as_value @ T.as_value, say="row_observer")
+        define_gain(page, "L", row @ T, row.as_value @ T.as_value, say="row_observer", transposed=True)
     else:
-        page.define("K", row @ T, row.as_value @ T.as_value, say="row_state_feedback", answer=True)
+        define_gain(page, "K", row @ T, row.as_value @ T.as_value, say="row_state_feedback")
 
 
 def readable(design: GainDesign) -> bool:
@@ -176,9 +171,9 @@ def write_row_reduction(page: Builder, design: GainDesign, side: PlacementProble
     gain, shown = f @ psi.inverse, f.as_value @ psi.as_value.inverse
     unique = "_unique" if (page.plant.outputs if side.gain == "L" else page.plant.inputs) == 1 else ""
     if side.gain == "L":
-        page.define_transposed("L", gain, shown, say=f"row_reduced{unique}_observer")
+        define_gain(page, "L", gain, shown, say=f"row_reduced{unique}_observer", transposed=True)
     else:
-        page.define("K", gain, shown, say=f"row_reduced{unique}_state_feedback", answer=True)
+        define_gain(page, "K", gain, shown, say=f"row_reduced{unique}_state_feedback")
     _rounded_too_early(page, gain.value)
 
 
@@ -285,8 +280,16 @@ def _named(page: Builder, part: Reduction) -> Evaluated:
 _PAIR = 2
 
 
-def write_gain(page: Builder, design: GainDesign, side: PlacementProblem, style: str, *, of_loop: bool = False) -> None:
-    """Write how the gain is found, in the style of a method, and the check the reader is shown.
+def write_gain(
+    page: Builder,
+    design: GainDesign,
+    side: PlacementProblem,
+    style: str,
+    *,
+    of_loop: bool = False,
+    cases: bool = True,
+) -> None:
+    """Write how the gain is found, in the style of a method, the check the reader is shown, and the special cases.
 
     Where it is given as a half of a loop, its polynomial has the letter that the page of the loop goes on with.
     """
@@ -309,13 +312,20 @@ def write_gain(page: Builder, design: GainDesign, side: PlacementProblem, style:
     page.conclude_silently(relation(page[side.gain], design.answer[side.gain]))
     page.in_decimals(side.gain)
     _verified(page, design, side)
-    for case in design.case_tree:
-        write_case(page, case, side)
+    if cases:
+        write_cases(page, design, side)
+
+
+def write_cases(page: Builder, design: GainDesign, side: PlacementProblem) -> None:
+    """Write the special cases of a gain that exists in general."""
+    if design.answer[side.gain] is not None and design.desired is not None:
+        for case in design.case_tree:
+            write_case(page, case, side)
 
 
 def _write_gain_alone(page: Builder, design: GainDesign, side: PlacementProblem, _: DesiredPolynomial) -> None:
     """State the gain of a method without a page; the check below proves it."""
-    page.define(side.gain, design.answer[side.gain], say="gain_stated", answer=True)
+    define_gain(page, side.gain, design.answer[side.gain], say="gain_stated")
 
 
 def write_reduction(page: Builder, design: GainDesign, side: PlacementProblem, desired: DesiredPolynomial) -> None:
@@ -333,7 +343,7 @@ def write_member(page: Builder, design: GainDesign, side: PlacementProblem, desi
     """Write how a gain lies in the family of all: as a solution of the Sylvester equation, unless it is a special one."""
     if _roots_found(design, side):
         page.with_roots(design.answer[side.gain])
-        page.define(side.gain, design.answer[side.gain], say="gain_with_roots", answer=True)
+        define_gain(page, side.gain, design.answer[side.gain], say="gain_with_roots")
     else:
         write_sylvester(page, design, side, desired)
 
@@ -414,17 +424,6 @@ def _say_canonical(page: Builder) -> None:
     )
 
 
-def name_entries(page: Builder, gain: str) -> None:
-    """Give the entries of a gain letters of their own, in which the page goes on."""
-    value = page[gain].value
-    names = fresh_names(f"{gain.lower()}_", len(value.entries), taken_names(page))
-    letters = [page.name_coefficient(name, entry) for name, entry in zip(names, value.entries, strict=True)]
-    columns = value.shape[1]
-    named = Matrix.of([letters[k : k + columns] for k in range(0, len(letters), columns)])
-    page.equal(relation(page[gain], named), say="named_entries")
-    page.set(gain, named)
-
-
 def write_canonical(page: Builder, _: GainDesign, side: PlacementProblem, desired: DesiredPolynomial) -> None:
     """Write the difference of coefficients, constant first, carried back by V⁻¹."""
     plant, order = page.plant, page.plant.order
@@ -432,7 +431,7 @@ def write_canonical(page: Builder, _: GainDesign, side: PlacementProblem, desire
     wanted = [page.value(c) for c in reversed(desired.coefficients)]
     if side.gain == "K" and _is_canonical(page):
         found = plant.matrices.A.characteristic_polynomial(variable).coefficients(variable)[1:]
-        page.define("K", _difference(page, wanted, list(found)), answer=True)
+        define_gain(page, "K", _difference(page, wanted, list(found)))
         return
     A = page["A"].T if side.gain == "L" else page["A"]
     matrix = page[side.matrix].T if side.gain == "L" else page[side.matrix]
@@ -450,9 +449,9 @@ def write_canonical(page: Builder, _: GainDesign, side: PlacementProblem, desire
     )
     row = _difference(page, wanted, list(found))
     if side.gain == "L":
-        page.define_transposed("L", row @ V.inverse, row.as_value @ V.inverse.as_value, say="row_observer")
+        define_gain(page, "L", row @ V.inverse, row.as_value @ V.inverse.as_value, say="row_observer", transposed=True)
     else:
-        page.define("K", row @ V.inverse, row.as_value @ V.inverse.as_value, say="row_state_feedback", answer=True)
+        define_gain(page, "K", row @ V.inverse, row.as_value @ V.inverse.as_value, say="row_state_feedback")
 
 
 def _difference(page: Builder, wanted: list[Term], found: list[Scalar]) -> Term:
@@ -473,7 +472,7 @@ def _with_fixed_modes(page: Builder, design: GainDesign, side: PlacementProblem)
     if design.chart is not None:
         write_hidden_family(page, design, side)
         return
-    gain = page.define(side.gain, design.answer[side.gain], say=f"{of_the_others(design)}_{side.kind}", answer=True)
+    gain = define_gain(page, side.gain, design.answer[side.gain], say=f"{of_the_others(design)}_{side.kind}")
     free = page[side.hidden[0]] @ page.value(Matrix.column([Scalar.symbol(name) for name in family["parameters"]]))
     general = gain + (free if side is OBSERVER else free.T)
     page.remark(f"family_{side.kind}", gain=Evaluated(general.formula, Literal(family[side.gain])))

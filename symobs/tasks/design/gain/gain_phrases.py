@@ -73,6 +73,14 @@ PHRASES: dict[str, str] = {
     "gain_given_state_feedback": "The feedback gain is given,",
     "closed_matrix": "so that",
     "its_polynomial": "The characteristic polynomial is",
+    "cases_observer": "Special cases, in which ($C$, $A$) is not observable and the fixed modes decide:",
+    "cases_state_feedback": "Special cases, in which ($A$, $B$) is not controllable and the fixed modes decide:",
+    "row_survives_observer": "this $L$, among others",
+    "row_survives_state_feedback": "this $K$, among others",
+    "row_same_observer": "this $L$",
+    "row_same_state_feedback": "this $K$",
+    "row_other": "for example",
+    "row_no": "none",
     "case_survives_observer": "In this case the pair ($C$, $A$) is not observable, but its fixed <mode|modes> {modes} <is|are> among the desired poles, so this $L$ remains a solution, although no longer the only one.",
     "case_survives_state_feedback": "In this case the pair ($A$, $B$) is not controllable, but its fixed <mode|modes> {modes} <is|are> among the desired poles, so this $K$ remains a solution, although no longer the only one.",
     "case_same_observer": "In this case the pair ($C$, $A$) is not observable, but its fixed <mode|modes> {modes} <is|are> among the desired poles, so this $L$ remains a solution.",
@@ -102,6 +110,18 @@ ASSERTS: dict[str, tuple[str, ...]] = {
     "case_other_state_feedback": ("polynomial",),
     "case_no_state_feedback": ("not_polynomial",),
     "impossible_state_feedback": ("not_polynomial",),
+}
+
+#: In a table of special cases: what goes before it, and the answer in a row.
+ROWS: dict[str, str] = {
+    "case_survives_observer": "cases_observer row_survives_observer",
+    "case_survives_state_feedback": "cases_state_feedback row_survives_state_feedback",
+    "case_same_observer": "cases_observer row_same_observer",
+    "case_same_state_feedback": "cases_state_feedback row_same_state_feedback",
+    "case_other_observer": "cases_observer row_other",
+    "case_other_state_feedback": "cases_state_feedback row_other",
+    "case_no_observer": "cases_observer row_no",
+    "case_no_state_feedback": "cases_state_feedback row_no",
 }
 
 DEMANDS: dict[str, str] = {
@@ -175,6 +195,12 @@ SPELLS_OUT = ("coefficients",)
 
 #: Phrases that go on with the sentence before them.
 CONTINUES = (
+    "row_survives_observer",
+    "row_survives_state_feedback",
+    "row_same_observer",
+    "row_same_state_feedback",
+    "row_other",
+    "row_no",
     "coefficients",
     "polynomial_of_unknown",
     "solution_of_system",

@@ -21,12 +21,13 @@ from symobs.tasks.design.gain.gain_page import define_test_matrix, say_as_requir
 from symobs.tasks.design.page_parts import (
     caution_poles,
     combination,
+    define_gain,
     draw_minimal_order,
+    gain_letters,
     plot_error,
     say_unassignable,
     summed,
 )
-from symobs.tasks.design.pole_placement.sylvester import fresh_names, taken_names
 from symobs.tasks.design.reduced_order.reduced_order_observer import DependentOutputs, ReducedOrderObserver, partition
 from symobs.tasks.result import page_of
 
@@ -42,9 +43,7 @@ if TYPE_CHECKING:
 def write_undetermined(page: Builder, design: ReducedOrderObserver) -> None:
     """Write the error of the ansatz, collected by signals, and the choice of F, G and H that frees it of x and u."""
     m, name = page.plant.matrices, "w_o" if page.plant.is_discrete else "z_o"
-    letters = iter(fresh_names("l_", len(design.answer["L"].entries), taken_names(page)))
-    entries = [[page.name_coefficient(next(letters), entry) for entry in row] for row in design.answer["L"].rows]
-    page.set("L", Matrix.of(entries))
+    page.set("L", gain_letters(page, "L", design.answer["L"]))
     for letter, stem in (("F_z", "f_"), ("H_z", "h_"), ("G_z", "g_")):
         value = design.answer[letter[0]]
         if value is not None:
@@ -134,7 +133,7 @@ def _case(page: Builder, design: ReducedOrderObserver) -> None:
     key = "gain_follows" if design.inner.fixed_polynomial.is_one else ""
     if not key:
         _say_fixed_modes(page, design)
-    page.define("L", design.answer["L"], say=key, answer=True)
+    define_gain(page, "L", design.answer["L"], say=key)
     conditions = [c.expression for c in design.holds_where if c.kind == "claim" and c.operator == "!="]
     if conditions:
         page.assume("gain_provided", *conditions)
@@ -206,15 +205,13 @@ def _parts(page: Builder, design: ReducedOrderObserver) -> None:
         "unmeasured": relation(x_2, (page["R"].as_value if trivial else page["R"]) @ page["x"]),
     }
     key = "parts_with_feedthrough" if feedthrough else "parts"
+    lines = [(x_1, first), (x_2, second)]
     if trivial and page.plant.order > readability.BLOCKS_ORDER:
         page.equal(*_in_parts(page, [], []), say=f"{key}_blocks", **said)
-        key, said = "two_parts", {}
-    page.equal(
-        relation(x_1.derivative, summed(first), combination(page, first)),
-        relation(x_2.derivative, summed(second), combination(page, second)),
-        say=key,
-        **said,
-    )
+        page.equal(*(relation(part.derivative, summed(pairs)) for part, pairs in lines), say="two_parts")
+    else:
+        rates = (relation(part.derivative, summed(pairs), combination(page, pairs)) for part, pairs in lines)
+        page.equal(*rates, say=key, **said)
     _mere_copy(page)
     if design.inner.fixed_polynomial.is_one:
         row, order = page["A_12"], page.plant.order - page.plant.outputs
@@ -226,10 +223,7 @@ def _parts(page: Builder, design: ReducedOrderObserver) -> None:
 
 def _observer(page: Builder, design: ReducedOrderObserver) -> None:
     """Write (4.37) and (4.38), the gain a matrix of unknowns."""
-    gain: Matrix = design.answer["L"]
-    names = iter(fresh_names("l_", len(gain.entries), taken_names(page)))
-    rows = [[page.name_coefficient(next(names), entry) for entry in row] for row in gain.rows]
-    page.set("L", Matrix.of(rows))
+    gain = page.set("L", gain_letters(page, "L", design.answer["L"])).value
     L, x_1, x_2_hat, u = (page[name] for name in ("L", "x_1", "x_2_hat", "u"))
     copy = page["A_21"] @ x_1 + page["A_22"] @ x_2_hat
     innovation = x_1.derivative - page["A_11"] @ x_1
@@ -298,7 +292,7 @@ def write_inner_gain(page: Builder, design: ReducedOrderObserver) -> None:
         _say_fixed_modes(page, design)
     key = "one_of_several" if several else "hence_gain"
     key = key if design.inner.fixed_polynomial.is_one else ""
-    page.define("L", design.answer["L"], say=key, answer=True)
+    define_gain(page, "L", design.answer["L"], say=key)
     page.in_decimals("L")
     members = [_determinant(page), plain] if desired.is_expanded else [_determinant(page), plain, grouped]
     say_as_required(page, desired, *members)
@@ -337,9 +331,7 @@ def _without_derivative(page: Builder) -> None:
     rate, fed = closed @ z, closed @ L + page["A_21"] - L @ page["A_11"]
     if m.has_input:
         rate = rate + (page["B_2"] - L @ page["B_1"]) @ u
-    pairs = _collected(page)
-    if sum(matrix.value.size for matrix, _ in pairs) <= readability.OUTPUT_DERIVATIVE:
-        page.equal(relation(x_2_hat.derivative, summed(pairs), combination(page, pairs)), say="right_side_collected")
+    page.equal(relation(x_2_hat.derivative, summed(_collected(page))), say="right_side_collected")
     page.equal(
         relation(z.derivative, rate + fed @ x_1),
         say="next_output" if page.plant.is_discrete else "derivative_of_output",
@@ -350,7 +342,7 @@ def _without_derivative(page: Builder) -> None:
 def _assembled(page: Builder, design: ReducedOrderObserver, say: tuple[str, str]) -> None:
     """Write F, G, H and the observer, and (4.41): the estimate put together again."""
     m, L, u, x_1, z = page.plant.matrices, page["L"], page["u"], page["x_1"], page[observer_state(page)]
-    _matrices(page, design, say[0])
+    _matrices(page, design, say[0], closing=False)  # the observer has their values
     pairs = [(page["F_z"], z)]
     if design.answer["G"] is not None:
         pairs.append((page["G_z"], u))
@@ -377,15 +369,15 @@ def _assembled(page: Builder, design: ReducedOrderObserver, say: tuple[str, str]
     page.conclude_silently(relation(page["x"] - page["x_hat"], page["T"].inverse @ unseen))
 
 
-def _matrices(page: Builder, design: ReducedOrderObserver, say: str) -> None:
+def _matrices(page: Builder, design: ReducedOrderObserver, say: str, *, closing: bool = True) -> None:
     """Write F = A₂₂ − L A₁₂, H = F L + A₂₁ − L A₁₁, G = B₂ − L B₁, which a feedthrough changes by −H D."""
     L, m = page["L"], page.plant.matrices
-    page.define("F_z", _error_matrix(page), say=say)
+    page.define("F_z", _error_matrix(page), say=say, closing=closing)
     if m.has_input and not m.has_feedthrough:
-        page.define("G_z", page["B_2"] - L @ page["B_1"])
-    page.define("H_z", page["F_z"] @ L + page["A_21"] - L @ page["A_11"])
+        page.define("G_z", page["B_2"] - L @ page["B_1"], closing=closing)
+    page.define("H_z", page["F_z"] @ L + page["A_21"] - L @ page["A_11"], closing=closing)
     if m.has_input and m.has_feedthrough:
-        page.define("G_z", page["B_2"] - L @ page["B_1"] - page["H_z"] @ page["D"])
+        page.define("G_z", page["B_2"] - L @ page["B_1"] - page["H_z"] @ page["D"], closing=closing)
     page.conclude_silently(
         *(relation(page[f"{name}_z"], design.answer[name]) for name in "FGH" if design.answer[name] is not None)
     )

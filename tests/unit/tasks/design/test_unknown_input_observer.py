@@ -68,7 +68,7 @@ def test_conditions_and_cases_are_those_of_the_rank_and_of_the_zeros() -> None:
     assert (when, undisturbed.verdict, undisturbed.H) == ((sympy.Eq(b, 0),), "yes", sympy.zeros(2, 1))
     assert found.at(a=1, b=-1).verdict == "yes"
     assert found.at(a=0, b=1).solvable is False
-    assert "Case b = 0" in found.to("text")
+    assert "b = 0, a ≠ 0 " in found.to("text")
 
 
 @tabled
@@ -99,3 +99,20 @@ def test_a_direction_that_is_seen_is_no_reason_for_a_no() -> None:
 def test_a_wrong_disturbance_input_is_refused(E: Any, said: str) -> None:
     with pytest.raises(InputError, match=said):
         symobs.unknown_input_observer(symobs.StateSpace("[0 1; 0 0]", C="[1 0]"), E=E, poles="-1, -2")
+
+
+def test_many_special_cases_are_the_rows_of_one_table() -> None:
+    """C E = (a, b): the zeros at b = 0 are -1/a; H, T and A₁ stand on the page once, in general."""
+    plant = symobs.StateSpace("[-1 1 0; -a 0 0; 0 -b -1]", "[0; 1; 0]", "[1 0 0; 0 0 1]")
+    found = symobs.unknown_input_observer(plant, E="[a; 1; b]", poles="-2, -3, -4")
+    page = " ".join(found.to("text").split())
+    assert page.count("A₁ = T A") == page.count("H = E") == page.count("The existence test") == 1
+    table = page[page.index("Special cases") : page.index("References")]
+    for row in (
+        "a = 0, b = 0 │ – │ none",
+        "b = 0, a = 1/2 │ -2 │ for example",
+        "a = -1 │ 1 │ none",
+        "a = 0, b ≠ 0 │ – │",
+    ):
+        assert row in table
+    assert "Case" not in page
