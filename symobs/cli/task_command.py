@@ -84,7 +84,7 @@ def _run_task(task: Any, options_given: dict[str, Any]) -> None:
     default = "text" if options_given["printed"] else "latex"
     chosen = chosen_format(options_given["format_name"], options_given["target"], default=default)
     check_targets(options_given["target"], options_given["plot"], options_given["bibliography"])
-    of_numbers = {name: options_given[name] for name in ("digits", "exact", "printed", "period", "hold")}
+    of_numbers = {name: options_given[name] for name in ("digits", "exact", "printed", "period", "hold", "references")}
     detail, language, templates = (options_given[name] for name in ("detail", "language", "templates"))
     web = WebPage(options_given["details"], options_given["copy"])
     page = page_of(detail, language, templates, chosen, web, **of_numbers)

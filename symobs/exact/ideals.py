@@ -455,7 +455,8 @@ class Ideal:
             return None
         leading = [polynomial.monoms()[0] for polynomial in self.basis]
         found = [p for p in product(*map(range, self._bounds)) if not any(_divides(lead, p) for lead in leading)]
-        names = [Scalar.symbol(name) for name in self.home.names()]
+        generators = {str(name): name for name in self.field.names}
+        names = [Scalar.symbol(generators[name]) for name in self.home.names()]
         monomials = [prod((x**k for x, k in zip(names, p, strict=True)), start=Scalar.of(1)) for p in found]
         return QuotientRing(monomials, self.field.names, self.reduced_column)
 

@@ -20,9 +20,10 @@ from symobs.problem.schema import keys_of
 from symobs.proof.derivation import Note, Section, translated
 from symobs.proof.derivation.builder import Builder, relation, sentence
 from symobs.system import read_matrix, read_scalar
-from symobs.system.reading import as_rows, has_decimals
+from symobs.system.reading import has_decimals
 from symobs.system.specification import (
     desired_polynomial,
+    from_list,
     is_pattern,
     parse_in_steps,
     parse_signal,
@@ -236,8 +237,8 @@ def _read(value: object, kind: str, name: str, plant: StateSpace, task: str) -> 
         case "PolynomialText":
             return parse_polynomial(value, plant.variable, plant.symbols.names, where=where, functions=True)
         case "GainText" | "MatrixText":
-            rows = as_rows("B", value) if name in {"E", "impulse"} else value
-            return read_matrix(rows, plant.symbols.seen(value), where)
+            column = name in {"L", "E", "impulse", "initial", "final"}
+            return read_matrix(from_list(value, column=column), plant.symbols.seen(value), where, functions=True)
         case "IntervalText":
             return read_interval(value, plant)
         case "SignalText" | "TimeFunctions":

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from fractions import Fraction
 from itertools import pairwise
-from math import cos, pi
+from math import cos, pi, prod
 from typing import TYPE_CHECKING
 
 from symobs.exact import Scalar
@@ -35,6 +35,10 @@ NODES = 48
 
 #: This part of the way from a critical line to the middle of a cylinder is close to the critical line.
 _CLOSE = 64
+
+
+#: The corners of a box are sought at this part, extremes of branches between so many points, halved so many times.
+_CLOSEST, _ACROSS, _SEARCHED = 1 << 16, 12, 6
 
 
 #: Beyond this many samples only the stable ones are marked.
@@ -107,28 +111,104 @@ def oriented(picture: RegionPicture, names: Sequence[str]) -> RegionPicture:
 
 
 def _window(region: PlaneRegion) -> tuple[Interval, Interval]:
-    """Return the ranges of both parameters: the corners and the samples of the region, and room around them."""
-    xs, ys = [], []
-    for cell in region.cells:
-        if not cell.stable:
-            continue
-        cylinder = region.plane.cylinders[cell.cylinder]
-        xs += [cell.sample[0], *(_middle(end) for end in (cylinder.left, cylinder.right) if end is not None)]
-        ys.append(cell.sample[1])
-        for x in (cylinder.x, *_near_ends(cylinder)):
-            heights = _heights(region, x)
-            ys += [heights[k] for k in (cell.height - 1, cell.height) if 0 <= k < len(heights)]
-    if not xs:
-        xs = [_middle(line.x) for line in region.plane.critical_lines]
-        ys = [cell.sample[1] for cell in region.cells]
-    return range_around(xs), range_around(ys)
+    """Return the ranges of both parameters: the boxes around the bounded components, a tenth of their size around them.
+
+    Of an unbounded component, its corners and samples with room around them.
+    """
+    boxed: list[Place] = []
+    unbounded: list[Cell] = []
+    for component in region.components:
+        for cell in (region.cells[number] for number in component.cells):
+            if component.bounded:
+                boxed += _extremes(region, cell)
+            else:
+                unbounded.append(cell)
+    found = []
+    if boxed:
+        found.append(tuple(_around(min(values), max(values)) for values in zip(*boxed, strict=True)))
+    if unbounded:
+        tried = []
+        for near in (_corners, _nearest):
+            places = [near(region, cell) for cell in unbounded]
+            tried.append(tuple(range_around(x for each in places for x in each[k]) for k in (0, 1)))
+        found.append(min(tried, key=lambda window: prod(high - low for low, high in window)))
+    if not found:
+        lines = [_middle(line.x) for line in region.plane.critical_lines]
+        found.append((range_around(lines), range_around([cell.sample[1] for cell in region.cells])))
+    first, second = ((min(low for low, _ in each), max(high for _, high in each)) for each in zip(*found, strict=True))
+    return first, second
 
 
-def _near_ends(cylinder: Cylinder) -> list[Fraction]:
+def _around(low: Fraction, high: Fraction) -> Interval:
+    """Return a range with a tenth of its size on both sides, with round ends."""
+    room = (high - low) / 10
+    step = _round_step(high - low + 2 * room)
+    return _down(low - room, step), -_down(-high - room, step)
+
+
+def _extremes(region: PlaneRegion, cell: Cell) -> Iterator[Place]:
+    """Yield corners of a box around a bounded cell: its critical lines, and the extremes of its two branches between them."""
+    cylinder = region.plane.cylinders[cell.cylinder]
+    assert cylinder.left is not None  # noqa: S101 - the cell is bounded
+    assert cylinder.right is not None  # noqa: S101
+    left, right = cylinder.left.interval()[0], cylinder.right.interval()[1]
+    for place, sign in ((cell.height - 1, -1), (cell.height, 1)):
+        heights = {x: sign * _heights(region, x)[place] for x in (*_spread(cylinder), *_near_ends(cylinder, _CLOSEST))}
+        for _ in range(_SEARCHED):
+            xs = sorted(heights)
+            k = max(range(len(xs)), key=lambda i: heights[xs[i]])
+            for one, other in pairwise(xs[max(k - 1, 0) : k + 2]):
+                x = (one + other) / 2
+                heights[x] = sign * _heights(region, x)[place]
+        top = sign * max(heights.values())
+        yield from ((left, top), (right, top))
+
+
+def _spread(cylinder: Cylinder) -> list[Fraction]:
+    """Return points of a bounded cylinder, evenly spaced."""
+    assert cylinder.left is not None  # noqa: S101 - the caller's cell is bounded
+    assert cylinder.right is not None  # noqa: S101
+    low, high = cylinder.left.interval()[1], cylinder.right.interval()[0]
+    return (
+        [(low + (high - low) * k / _ACROSS).limit_denominator(1 << 24) for k in range(1, _ACROSS)] if low < high else []
+    )
+
+
+def _corners(region: PlaneRegion, cell: Cell) -> tuple[list[Fraction], list[Fraction]]:
+    """Return the coordinates of the corners of a cell, and of its sample."""
+    cylinder = region.plane.cylinders[cell.cylinder]
+    xs = [cell.sample[0], *(_middle(end) for end in (cylinder.left, cylinder.right) if end is not None)]
+    ys = [cell.sample[1]]
+    for x in (cylinder.x, *_near_ends(cylinder)):
+        ys += [_heights(region, x)[k] for k in _sides(cell, cylinder)]
+    return xs, ys
+
+
+def _sides(cell: Cell, cylinder: Cylinder) -> list[int]:
+    """Return the numbers of the branches below and above a cell."""
+    return [k for k in (cell.height - 1, cell.height) if 0 <= k < len(cylinder.branches)]
+
+
+def _nearest(region: PlaneRegion, cell: Cell) -> tuple[list[Fraction], list[Fraction]]:
+    """Return the same where no branch runs off at a critical line, else its places that are least far from there and from 0."""
+    cylinder = region.plane.cylinders[cell.cylinder]
+    ends = [_middle(end) for end in (cylinder.left, cylinder.right) if end is not None]
+    for line, near, nearer in zip(ends, _near_ends(cylinder), _near_ends(cylinder, _CLOSEST), strict=False):
+        for k in _sides(cell, cylinder):
+            if abs(_heights(region, nearer)[k]) > _FAR * (abs(_heights(region, near)[k]) + 1):
+                away, outermost = cylinder.x - line, 1 if len(ends) > 1 else 12
+                inside = [line + away * Fraction(2) ** n for n in range(-6, outermost)]
+                heights = {x: _heights(region, x)[k] for x in inside}
+                best = sorted(heights, key=lambda x: max(abs(x - line), abs(heights[x])))[:3]
+                return [line, *best], [heights[x] for x in best]
+    return _corners(region, cell)
+
+
+def _near_ends(cylinder: Cylinder, close: int = _CLOSE) -> list[Fraction]:
     """Return points of a cylinder close to its critical lines."""
     ends = [cylinder.left.interval()[1]] if cylinder.left is not None else []
     ends += [cylinder.right.interval()[0]] if cylinder.right is not None else []
-    near = [(end + (cylinder.x - end) / _CLOSE).limit_denominator(1 << 20) for end in ends]
+    near = [(end + (cylinder.x - end) / close).limit_denominator(1 << 30) for end in ends]
     inside = [x for x in near if cylinder.left is None or cylinder.left < RealNumber.of(x)]
     return [x for x in inside if cylinder.right is None or RealNumber.of(x) < cylinder.right]
 

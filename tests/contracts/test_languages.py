@@ -85,7 +85,7 @@ def copy_of_german(tmp_path: Path) -> Path:
         ),
         ("rank.toml", "Wegen {rank}", "Also", '"full_rank_observability" differs in its slots'),
         ("rank.toml", "das Paar ($C$, $A$) beobachtbar", "es beobachtbar", "differs in its formulas"),
-        ("rank.toml", "ist§. Im Folgenden", "ist. Im Folgenden", "differs in its place of a citation"),
+        ("rank.toml", "ist§. Das Folgende", "ist. Das Folgende", "differs in its place of a citation"),
         (
             "modes.toml",
             "<Der einzige Eigenwert ist|Die Eigenwerte sind>",

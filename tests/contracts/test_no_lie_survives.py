@@ -98,9 +98,9 @@ def test_every_line_holds_in_plain_fractions(path: Path) -> None:
         ("boundary_mode", "no_observability", ".sentence.slots[0][1].members[2].value+1"),  # of 2 states, 1 < 3 as well
         ("boundary_mode", "no_observability", ".sentence.words"),
         ("hidden_state_two_outputs", "no_observability", ".sentence.words"),
-        ("not_detectable", "no_detectability", ".sentence.words"),
+        ("not_detectable", "never_detectability", ".sentence.words"),
         ("detectable", "yes_detectability", ".sentence.words"),
-        ("boundary_mode", "no_detectability", ".sentence.words"),
+        ("boundary_mode", "never_detectability", ".sentence.words"),
         ("boundary_mode_lyapunov", "yes_detectability", ".sentence.words"),
         ("eigenvalue_test_servo", "pbh_yes_observability", ".sentence.words"),
         ("frozen_time_misleads", "stack_no", ".sentence.words"),

@@ -65,8 +65,19 @@ DEMANDED = {
     "counts_names": "crossing crossing_infinite crossing_one",
     "counts_names, discrete_time": "crossing_discrete crossing_one_discrete",
     "counts_steps": "gramian_steps",
-    "dimension Bᵀ Aᵀ": "dimension_state_feedback family_hidden_state_feedback",
-    "dimension C A": "dimension_observer family_hidden_observer",
+    "dimension Bᵀ Aᵀ": "dimension_state_feedback",
+    "dimension C A": "dimension_observer",
+    "free_parts C A": "family_hidden_observer",
+    "free_parts Bᵀ Aᵀ": "family_hidden_state_feedback",
+    "shared_roots A phi_o": "spectra_meet_observer",
+    "shared_roots A phi_c": "spectra_meet_state_feedback",
+    "of_damping": "pattern_damping",
+    "finding, discrete_time": "cells_decide_discrete",
+    "fixes C A N X phi_o, misses X phi_o": "impossible_roots_observer",
+    "fixes Bᵀ Aᵀ N_K X_K phi_c, misses X_K phi_c": "impossible_roots_state_feedback",
+    "modes_unstable Bᵀ Aᵀ N_K X_K mu": "never_converges_state_feedback",
+    "unseen C A, of_low_rank": "pbh_low_observability",
+    "unseen Bᵀ Aᵀ, of_low_rank": "pbh_low_controllability",
     "discrete_time": """
         asks_detectability_discrete asks_stabilizability_discrete beyond_discrete equilibrium_discrete
         hides_discrete integral_state_discrete lowest_terms_unstable_discrete marginal_discrete
@@ -85,7 +96,8 @@ DEMANDED = {
     "exhausts C A N X phi_o": "no_others_observer",
     "finding": """
         box_bounded box_unbounded cells_decide connected_bounded connected_unbounded curve_missing hole
-        number_is_root pieces point_decides point_missing points_decide region_empty region_everywhere
+        number_is_root pieces numbers_are_roots point_missing region_empty region_everywhere
+        values_decide zero_decides zeros_decide
         routh_changes routh_changes_axis routh_criterion_negative routh_criterion_positive
         routh_criterion_where routh_divides routh_epsilon routh_misleads routh_negative routh_not_stable
         routh_positive routh_zero_row
@@ -210,8 +222,8 @@ DEMANDED = {
     "unobservable B_hatᵀ A_hatᵀ": "integral_blocked",
     "unobservable Bᵀ Aᵀ": "pbh_no_controllability",
     "unobservable C A": "frozen_misled_no initial_not_unique pbh_no_observability x0_not_unique",
-    "unseen Bᵀ Aᵀ": "kernel_controllability kernel_several_controllability pbh_low_controllability",
-    "unseen C A": "kernel_observability kernel_several_observability pbh_low_observability",
+    "unseen Bᵀ Aᵀ": "kernel_controllability kernel_several_controllability",
+    "unseen C A": "kernel_observability kernel_several_observability",
     "vanishes C Phi v": "gramian_singular never_seen_start",
     "vanishes C exp_At v": "kernel_unseen kernel_unseen_several",
     "zero G_0": "no_feedforward_single",

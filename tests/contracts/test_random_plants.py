@@ -5,79 +5,19 @@ from __future__ import annotations
 import json
 import random
 from functools import partial
-from typing import Any
 
 import pytest
 
 import symobs
 from symobs.ground.errors import SymobsError
 from symobs.tasks.result import tasks
+from tests.support.problems.random_plants import plant_of, specification_of
 from tests.support.sampling import FULL
 
 pytestmark = pytest.mark.slow
 
-#: What entries are made of: numbers, decimals, parameters, functions of them, and roots.
-ENTRIES = {
-    "numbers": ["-3", "-2", "-1", "1", "2", "3"],
-    "decimals": ["1.2345", "-0.6789", "3.1416", "-2.7183", "0.0123"],
-    "parameters": ["1", "-1", "2", "a", "b", "-a", "a-b", "a*b", "1+a", "b^2"],
-    "functions": ["1", "-1", "exp(-a)", "cos(b)", "sin(b)", "a", "1-exp(b)", "-b"],
-    "roots": ["1", "-1", "sqrt(2)", "sqrt(3)-1", "a", "-2", "a-sqrt(2)"],
-}
-#: Those of which answers are long with three states.
-SHORT = [ENTRIES[kind] for kind in ("parameters", "functions", "roots")]
-#: f, its states, its inputs, and their values at rest.
-NONLINEAR: list[tuple[str, str, str, dict[str, Any]]] = [
-    ("[u - 0.5*sqrt(h)]", "h", "u", {"h": "4", "u": "1"}),
-    ("[v; -a*sin(x) - v + u]", "x, v", "u", {"x": "b", "v": 0, "u": "a*sin(b)"}),
-    ("[u - exp(-x)]", "x", "u", {"x": "a", "u": "exp(-a)"}),
-    ("[y; u - sinh(x)]", "x, y", "u", {"x": "a", "y": 0, "u": "sinh(a)"}),
-    ("[u - x*sqrt(1 + x^2)]", "x", "u", {"x": "a", "u": "a*sqrt(1+a^2)"}),
-    ("[u - exp(-1/x); x - y]", "x, y", "u", {"x": "a^2+1", "y": "a^2+1", "u": "exp(-1/(a^2+1))"}),
-]
 #: Tasks whose specification is a matter of its own.
 OTHERS = {"time_varying_observability", "stability_region", "initial_state_covariance", "disturbance_observer"}
-
-
-def plant_of(chance: random.Random) -> symobs.StateSpace:
-    """Return a plant of one to three states, one or two inputs and outputs, in either time."""
-    if chance.random() < 0.1:
-        f, states, inputs, point = chance.choice(NONLINEAR)
-        return symobs.linearize(f, states.partition(",")[0], states=states, inputs=inputs, equilibrium=point)
-    entries = ENTRIES[chance.choice(list(ENTRIES))]
-    n, m, p = (
-        chance.choice(sizes) for sizes in ([1, 2, 2] if entries in SHORT else [1, 2, 2, 3], [1, 1, 2], [1, 1, 2])
-    )
-
-    def matrix(rows: int, columns: int) -> list[list[str]]:
-        return [["0" if chance.random() < 0.3 else chance.choice(entries) for _ in range(columns)] for _ in range(rows)]
-
-    return symobs.StateSpace(matrix(n, n), matrix(n, m), matrix(p, n), dt=chance.choice([0, 0, True]))
-
-
-def specification_of(name: str, plant: symobs.StateSpace, chance: random.Random) -> dict[str, Any]:
-    """Return what a task is asked for: poles with and without letters, horizons, kinds."""
-    listed = "0 1/2 -1/2 1/3 -1/3 1/4" if plant.is_discrete else "-1 -2 -3 -4 -5 -6"
-    poles = ("-p -2*p -q -1 a -3" if chance.random() < 0.3 else listed).split()
-    horizon = "2" if plant.is_discrete else chance.choice(["1", "T"])
-    task, asked = tasks()[name], dict[str, Any]()
-    for keyword in task.keywords:
-        if keyword in {"poles", "control_poles", "observer_poles"}:
-            asked[keyword] = poles[: task.degree(keyword, plant, asked)]
-        elif keyword == "horizon":
-            asked[keyword] = horizon
-        elif keyword == "reference_matrix":
-            asked[keyword] = [[0] * plant.order] * plant.order
-        elif keyword == "E":
-            asked[keyword] = [[chance.choice(["0", "1", "a"])] for _ in range(plant.order)]
-    kinds = {"gramian": "of", "pbh": "of", "canonical_form": "kind"}
-    if name in kinds:
-        choices = (
-            ["controllable", "observable", "modal"] if kinds[name] == "kind" else ["observability", "controllability"]
-        )
-        asked[kinds[name]] = chance.choice(choices)
-    own: dict[str, dict[str, Any]] = {"response": {"input": ["1"] * plant.inputs}, "pole_advice": {"radius": "1"}}
-    return own.get(name, {"horizon": horizon, "output": ["1"] * plant.outputs} if name == "initial_state" else asked)
 
 
 def test_every_answer_of_random_plants_has_its_page() -> None:

@@ -253,3 +253,11 @@ def test_a_case_has_a_page_of_its_own(task: str, signs: str, plant: str, given: 
     first = result.case_tree[0].result
     assert first is not None
     assert first.derivation.steps
+
+
+def test_a_handful_of_random_plants_with_functions() -> None:
+    found = Found()
+    for seed in range(8):
+        examine(seed, found, seconds=600, most=5, functions=True)
+    assert not found.wrong, "\n".join(found.wrong)
+    assert sum(count for (_, kind), count in found.counted.items() if kind == "points") > 10

@@ -213,8 +213,8 @@ def test_python_and_the_shell_know_the_levels() -> None:
     assert "as required" in answer
     run = inside("solve", str(SERVO), "--format", "text", "--detail", "answer")
     assert run.code == 0
-    assert "transformed back, it is" in full
-    assert "transformed back, it is" not in run.out
+    assert "In these coordinates the gain" in full
+    assert "In these coordinates the gain" not in run.out
     assert (
         inside("observer", "--A", "[0 1; 0 -1]", "--C", "[1 0]", "--poles", "-1, -1", "--detail", "outline").code == 0
     )

@@ -67,4 +67,4 @@ def test_a_part_that_is_answered_already_keeps_its_heading_and_says_where(detail
     (again,) = re.findall(r"2\. Observability\n-+\n(.*?)\n3\. ", text, re.DOTALL)
     assert "This has been shown in section 1." in again
     assert "det 𝒪 = 1 ≠ 0" in again
-    assert "the pair (C, A) is observable" in again
+    assert "(C, A) is observable" in again

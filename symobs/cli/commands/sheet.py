@@ -24,7 +24,7 @@ from symobs.cli.shared.common import (
     write_message,
 )
 from symobs.cli.shared.options import LIMITS, AFile, options
-from symobs.cli.shared.outcome import convention_of, page_of
+from symobs.cli.shared.outcome import convention_of, page_of, runs_tex, typeset_slides
 from symobs.cli.shared.output import check_target, write
 from symobs.cli.shared.sheet_entries import Wanted, worked_out_all
 from symobs.formula.expression.source import shown
@@ -47,7 +47,9 @@ _WORST_FIRST = (EXIT_BUG, InputError.exit_code, EXIT_NO, EXIT_UNDECIDED)
 @click.option("--title", default="", metavar="TEXT", help="The title of the sheet.")
 @click.option("--questions", is_flag=True, help="The questions only.")
 @click.option("--solutions", is_flag=True, help="The solutions only; they begin with the data.")
-@options("detail", "language", "digits", "exact", "details", "copy", "live", "templates", "convention", *LIMITS)
+@options(
+    "detail", "references", "language", "digits", "exact", "details", "copy", "live", "templates", "convention", *LIMITS
+)
 def command(
     files: tuple[str, ...],
     target: str | None,
@@ -55,7 +57,8 @@ def command(
     title: str,
     questions: bool,  # noqa: FBT001 - click's signature
     solutions: bool,  # noqa: FBT001
-    detail: str,
+    detail: str | None,
+    references: str,
     language: str | None,
     digits: object,
     exact: bool,  # noqa: FBT001
@@ -78,7 +81,8 @@ def command(
         raise UsageError("both --questions and --solutions are given", repair="leave both out for both")
     chosen = _sheet_format(format_name, target)
     web = WebPage(details, copy, live)
-    page_options = page_of(detail, language, templates, chosen.name, web, digits=digits, exact=exact)
+    of_numbers = {"digits": digits, "exact": exact}
+    page_options = page_of(detail, language, templates, chosen.name, web, references=references, **of_numbers)
     check_target(target)
     file = _sheet_file(files)
     if language is None and file.language:
@@ -108,11 +112,11 @@ def command(
         progress.clear()
         for message in messages:
             write_message(message if message.startswith(f"{name}, ") else f"{name}: {message}")
-    progress.say("typesetting" if wanted.format.name == "pdf" else "writing")
+    progress.say("typesetting" if runs_tex(wanted.format.name, target) else "writing")
     halves = (wanted.questions, wanted.solutions)
     offered: dict[str, Any] = {"web": wanted.web, "detail": wanted.detail}
     sheet = Sheet(title or file.title, tuple(entries), *halves, wanted.templates, header, **offered)
-    whole = wanted.format.sheet(sheet)
+    whole = typeset_slides(wanted.format.sheet(sheet), wanted.format.name, target)
     progress.clear()
     write(whole, target)
     sys.exit(next((code for code in _WORST_FIRST if code in codes), 0))

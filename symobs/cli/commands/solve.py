@@ -34,7 +34,8 @@ def command(
     plot: str | None,
     bibliography: str | None,
     convention_name: str | None,
-    detail: str,
+    detail: str | None,
+    references: str,
     language: str | None,
     digits: object,
     exact: bool,  # noqa: FBT001 - click's signature
@@ -55,7 +56,7 @@ def command(
         raise UsageError(f"{quoted(task_name)} is not a task", repair=f"known tasks are {', '.join(sorted(tasks()))}")
     check_targets(target, plot, bibliography)
     convention = convention_of(convention_name)
-    numbers = {"printed": printed, "period": period, "hold": hold}
+    numbers = {"printed": printed, "period": period, "hold": hold, "references": references}
     web = WebPage(details, copy, live)
     page = page_of(detail, language, templates, chosen, web, digits=digits, exact=exact, **numbers)
 

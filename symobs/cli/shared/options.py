@@ -139,6 +139,12 @@ def _details() -> Iterable[str]:
     return DETAILS
 
 
+def _references() -> Iterable[str]:
+    from symobs.tasks.result.output_methods import REFERENCES  # noqa: PLC0415 - for help and completion only
+
+    return REFERENCES
+
+
 #: The options that several commands share, in the order in which their help lists them.
 OPTIONS: dict[str, Callable[[Any], Any]] = {
     "format": click.option(
@@ -157,9 +163,14 @@ OPTIONS: dict[str, Callable[[Any], Any]] = {
     ),
     "detail": click.option(
         "--detail",
-        default="full",
         type=OneOf(_details),
-        help="Level of detail of the derivation; full where nothing is said.",
+        help="Level of detail of the derivation; full where nothing is said, outline on slides.",
+    ),
+    "references": click.option(
+        "--references",
+        default="short",
+        type=OneOf(_references),
+        help="How the literature is told below the page: none, short (a line each) or full; short where nothing is said.",
     ),
     "language": click.option(
         "--language",

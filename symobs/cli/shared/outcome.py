@@ -43,7 +43,7 @@ def convention_of(name: str | None) -> Any:
 
 
 def page_of(
-    detail: str,
+    detail: str | None,
     language: str | None,
     templates: str | None,
     format_name: str,
@@ -51,6 +51,7 @@ def page_of(
     *,
     digits: object = None,
     exact: bool = False,
+    references: str = "short",
     **others: Any,
 ) -> dict[str, Any]:
     """Return the options of a page: --detail, --language, --digits, --templates, web pages; the others as they are.
@@ -58,12 +59,13 @@ def page_of(
     Raises `UsageError` for unknown values, and for options of pages that the format does not write.
     """
     from symobs.pages.page.detail_level import detail_named  # noqa: PLC0415 - it imports the steps
-    from symobs.tasks.result.output_methods import digits_asked  # noqa: PLC0415
+    from symobs.tasks.result.output_methods import detail_of, digits_asked  # noqa: PLC0415
 
     asked = digits_asked(digits, exact=exact, where="--digits")
     page = {
-        "detail": detail_named(detail, "--detail"),
+        "detail": detail_named(detail or detail_of(format_name), "--detail"),
         "web": web,
+        "references": references,
         **({} if asked is None else {"digits": asked}),
         **others,
     }
@@ -94,6 +96,20 @@ def of_problem(web: WebPage, data: Mapping[str, Any]) -> WebPage:
     from symobs.applications.live.request import link_of  # noqa: PLC0415 - only with --live
 
     return replace(web, live=f"{web.live}#{link_of(data)}")
+
+
+def runs_tex(format_name: str, target: str | None) -> bool:
+    """Return whether TeX makes the file: a PDF, and slides of which a PDF is asked for."""
+    return format_name == "pdf" or (format_name == "beamer" and Path(target or "").suffix == ".pdf")
+
+
+def typeset_slides(content: str | bytes, format_name: str, target: str | None) -> str | bytes:
+    """Return slides as PDF where the target is one; anything else as it is."""
+    if isinstance(content, bytes) or not runs_tex(format_name, target):
+        return content
+    from symobs.pages.formats.pdf import compiled  # noqa: PLC0415 - only with -o slides.pdf
+
+    return compiled(content)
 
 
 def check_targets(target: str | None, plot: str | None, bibliography: str | None = None) -> None:
@@ -135,12 +151,14 @@ def solved(
         return replace(found.document(results, convention), **page)
 
     def rendered(results: tuple[Any, ...]) -> str | bytes:
-        return render(document_of(results), format_name)
+        return typeset_slides(render(document_of(results), format_name), format_name, target)
 
     def begins(name: str, so_far: tuple[Any, ...]) -> None:
         if format_name == "json":
             report_progress(partial(_as_far_as, found, so_far, convention, target))
-        elif so_far and format_name != "pdf" and not page.get("printed"):  # TeX's time; answers of tasks not yet begun
+        elif (
+            so_far and not runs_tex(format_name, target) and not page.get("printed")
+        ):  # TeX's time; answers of tasks not yet begun
             report_progress(lambda: Outcome(((rendered(so_far), target),), (), EXIT_UNDECIDED))
         report_progress(name)
 

@@ -51,6 +51,7 @@ class Wanted:
     questions: bool
     solutions: bool
     detail: str
+    references: str = "short"
     digits: int | None = None
     templates: Path | None = None
     web: WebPage = PLAIN
@@ -239,6 +240,7 @@ def _part(document: Document, wanted: Wanted) -> Any:
     digits = document.digits if wanted.digits is None else wanted.digits
     of_page: dict[str, Any] = {
         "detail": wanted.detail,
+        "references": wanted.references,
         "digits": digits,
         "language": wanted.language or document.language,
     }

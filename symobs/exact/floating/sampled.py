@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
 from flint import arb, arb_mat
 
 from symobs.exact.algebraic.enclosure import _ball, decimal, is_number, near
-from symobs.exact.core.generators import PI, function_named
+from symobs.exact.core.generators import PI, NotWritten, function_named, substitute
 from symobs.exact.core.matrix import Matrix
 from symobs.exact.core.ring import Precision
 from symobs.exact.core.scalar import Scalar
@@ -193,12 +193,22 @@ def at_points(name: str, points: Mapping[str, Any]) -> Any:
     argument: Scalar = function.argument
     if is_number(argument) or function.kind == "CRootOf":
         return decimal(_symbol(name))
+    if function.kind == "RootSum":
+        given = np.broadcast_arrays(*(points[symbol] for symbol in sorted(function.symbols)))
+        rows = zip(*(array.tolist() for array in given), strict=True)
+        return np.array([_sum_at(name, dict(zip(sorted(function.symbols), row, strict=True))) for row in rows])
     return getattr(np, function.kind)(ArrayFunction([argument])(points)[0])
 
 
-def _symbol(name: str) -> Scalar:
-    from symobs.exact.core.scalar import Scalar  # noqa: PLC0415 - for annotations above
+def _sum_at(name: str, point: Mapping[str, float]) -> float:
+    """Return the double nearest to a sum over roots at a point, nan where it has no value."""
+    try:
+        return nearest_double(substitute(_symbol(name), {key: Scalar.of(shortest(x)) for key, x in point.items()}))
+    except (ArithmeticError, ValueError, NotWritten, InputError):
+        return float("nan")
 
+
+def _symbol(name: str) -> Scalar:
     return Scalar.symbol(name)
 
 

@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from symobs.formula.phrases.catalogue import COUNTS, PHRASES, WORDS, phrases_of_modules
-from symobs.formula.phrases.literature import reference
+from symobs.formula.phrases.literature import reference, short_reference
 from symobs.ground.dataclass import dataclass
 from symobs.ground.errors import UsageError
 
@@ -120,9 +120,9 @@ class Language:
             return told
         return self.words["date_and_time"].format(date=told, time=f"{value:%H:%M}")
 
-    def reference(self, key: str) -> str:
-        """Return one entry of the literature in standard form."""
-        return reference(key, self.words)
+    def reference(self, key: str, *, short: bool) -> str:
+        """Return one entry of the literature in standard form, or on one line."""
+        return (short_reference if short else reference)(key, self.words)
 
     def place(self, text: str) -> str:
         """Return the place in a work, `ch. 3`."""

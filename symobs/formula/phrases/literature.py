@@ -371,6 +371,18 @@ def written_out(references: str) -> str:
     return "; ".join(f"{reference(key)}{', ' * bool(place)}{place}" for key, place in cited(references))
 
 
+def short_reference(key: str, words: Mapping[str, str] = WORDS) -> str:
+    """Return authors, year and place of one entry, on one line; of a book the title."""
+    if key not in LITERATURE:
+        return key
+    _, of = LITERATURE[key]
+    authors = " ".join(part for part in of["author"].split() if not part.rstrip(",").endswith("."))
+    pages = f", {of['pages']}" if of.get("pages") else ""
+    volume = f" {of['volume']}" if of.get("volume") else ""
+    place = of.get("journal") or of.get("booktitle") or of["title"]
+    return f"{authors.replace(' and ', words['authors'])} ({of['year']}), {place}{volume}{pages}"
+
+
 def reference(key: str, words: Mapping[str, str] = WORDS) -> str:
     """Return one entry in standard form, with the words of a language; what is no key is returned."""
     if key not in LITERATURE:

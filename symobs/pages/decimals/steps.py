@@ -51,6 +51,7 @@ from symobs.proof.derivation.decimals_check import check_decimals, is_in_order
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
 
+    from symobs.exact import Root
     from symobs.formula.figures import Label
     from symobs.proof.derivation import Derivation, Step
 
@@ -60,6 +61,8 @@ _NUMERICALLY = "in_decimals"
 _WIDEST_ENTRY, _WIDEST_ROW = 11, 40
 #: What may not be rounded is written in decimals of up to so many digits.
 _EXACT_DIGITS = 12
+#: Square roots of negative whole numbers below this stay, -1 ± √3 i.
+_SHORT = 100
 
 
 def in_decimals(derivation: Derivation, steps: Sequence[Step], digits: int) -> tuple[Step, ...]:
@@ -96,6 +99,15 @@ def _saying_so(step: Step, digits: int) -> Step:
     if not isinstance(step, Section) or step.title.key != "given":
         return step
     return replace(step, steps=(*step.steps, Note(Sentence("rounded_digits", (("digits", str(digits)),)))))
+
+
+def _is_short_surd(root: Root) -> bool:
+    """Return whether a root is a short whole number c, or c ± n√r i with short whole numbers."""
+    if not root.is_closed or not root.radicand.is_constant or not root.centre.is_constant:
+        return False
+    outside, inside, imaginary = root.surd()
+    is_short = all(part.denominator == 1 and abs(part) < _SHORT for part in (root.centre.fraction(), outside, inside))
+    return is_short and (imaginary or root.radicand.is_zero)
 
 
 def _is_rounded(part: Any) -> bool:
@@ -218,7 +230,9 @@ class _Writer:
         return shown if is_kept and not is_rounded(shown) else letter_for(figure, place, label) or label
 
     def roots(self, roots: Roots) -> Roots:
-        """Return roots in decimals, where they have them."""
+        """Return roots in decimals, where they have them; -1 ± √3 i stays."""
+        if all(map(_is_short_surd, roots.values)):
+            return roots
         texts = rounded_roots(roots.values, self.digits)
         return roots if texts is None else RoundedRoots(roots.polynomial, roots.values, texts)
 

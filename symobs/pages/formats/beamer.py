@@ -7,7 +7,20 @@ from typing import TYPE_CHECKING, Any, ClassVar
 from symobs.formula.phrases.languages import Language, language_named
 from symobs.pages.formats.latex import LatexWriter, has_drawings, head_of
 from symobs.pages.formats.templates import fill
-from symobs.pages.page.blocks import AnswerSpace, Columns, Display, Drawing, Heading, PictureBlock, TableBlock, opened
+from symobs.pages.page.blocks import (
+    AnswerSpace,
+    Caution,
+    Columns,
+    Display,
+    Drawing,
+    Heading,
+    Paragraph,
+    PictureBlock,
+    References,
+    TableBlock,
+    Verified,
+    opened,
+)
 from symobs.pages.page.narrator import narrate, printer_for
 from symobs.pages.printers.latex_printer import LatexPrinter, escape
 from symobs.tasks.result import output_format
@@ -22,8 +35,12 @@ if TYPE_CHECKING:
 
 #: em of 10 pt: 145 mm of a slide 160 mm wide, less than a sheet of paper has.
 WIDTH = 39.5
-#: Displays of more rows than this may be too high for a slide.
+#: A box of more rows than this may be too high for a slide; other displays break between rows.
 _TALL = 6
+#: What keeps two blocks together, a list before the second one, too.
+_KEPT, _INSET, _UNPARTED = "\n\\nopagebreak\n", r"\end{inset}", r"\csname @endparpenalty\endcsname=10000"
+#: So many references fit below what is before them; what is not broken has no room below it.
+_FEW, _UNBROKEN = 5, (Columns, Drawing, PictureBlock, TableBlock)
 
 
 @output_format
@@ -93,13 +110,27 @@ def _frames(blocks: Sequence[Block]) -> Iterator[tuple[Heading, tuple[Block, ...
     for block in blocks:
         if not isinstance(block, Heading) or block.number.count(".") > 1:
             body.append(block)
-        elif title.inlines and body:
+        elif title.inlines and (body and not _is_a_sentence(body)):
             yield title, tuple(body)
             title, body = block, []
+        elif body:
+            body.append(block)
         else:
             title = block
     if body:
         yield title, tuple(body)
+
+
+def _is_a_sentence(body: Sequence[Block]) -> bool:
+    """Return whether a slide would have nothing but one paragraph."""
+    return len(body) == 1 and isinstance(body[0], Paragraph | Verified)
+
+
+def _is_no_slide(before: Block, last: Block) -> bool:
+    """Return whether the end of a frame stays with what is before it: a sentence, and a short list of references."""
+    if isinstance(last, References):
+        return len(last.entries) <= _FEW and not isinstance(before, _UNBROKEN)
+    return isinstance(last, Paragraph | Verified | Caution)
 
 
 class _SlideWriter(LatexWriter):
@@ -108,14 +139,18 @@ class _SlideWriter(LatexWriter):
     def frame(self, heading: Heading, body: tuple[Block, ...]) -> dict[str, str]:
         """Return the template values of a frame."""
         self.printer.keep_time(heading.time)
-        return {"title": self.sentence(heading.inlines).removesuffix("."), "body": self.body(body)}
+        parts = [body]
+        while len(parts[0]) > 1 and _is_no_slide(*parts[0][-2:]):
+            parts[:1] = [parts[0][:-1], parts[0][-1:]]
+        written = _KEPT.join(map(self.body, parts)).replace(_INSET + _KEPT, rf"{_UNPARTED} {_INSET}{_KEPT}")
+        return {"title": self.sentence(heading.inlines).removesuffix("."), "body": written}
 
     def block(self, block: Block) -> str:
         """Return one block."""
         if isinstance(block, AnswerSpace):  # nobody writes on a slide
             return ""
         written = super().block(block)
-        is_tall = isinstance(block, Display) and written.count(r"\\") > _TALL
-        if is_tall or isinstance(block, Columns | Drawing | PictureBlock | TableBlock):
+        is_tall = isinstance(block, Display) and block.boxed and written.count(r"\\") > _TALL
+        if is_tall or isinstance(block, (*_UNBROKEN, References)):
             return f"\\begin{{fitted}}\n{written}\n\\end{{fitted}}"
         return written

@@ -41,7 +41,7 @@ from symobs.pages.page.narrator import narrate, printer_for
 from symobs.pages.printers.latex_printer import LatexPrinter
 from symobs.pages.printers.latex_to_mathml import MINUS, PLUS, THIN
 from symobs.pages.printers.mathml import MathmlPrinter
-from symobs.pages.printers.root_lists import RootGlyphs, listed
+from symobs.pages.printers.root_lists import RootGlyphs, in_a_row
 from symobs.pages.printers.text_printer import TextPrinter
 from symobs.pages.tables import html_table
 from symobs.tasks.result import output_format
@@ -357,7 +357,7 @@ class HtmlWriter:
         if isinstance(part, str):
             return plain(part)
         if isinstance(part, Roots):
-            return ", ".join(f"<math>{root}</math>" for root in listed(part, self.printer, _ROOTS))
+            return in_a_row(part, self.printer, _ROOTS, "<math>{}</math>".format)
         return self.printer.inline(part)
 
     def _title(self, text: str, below: str) -> str:

@@ -29,7 +29,7 @@ from symobs.pages.page.blocks import (
 )
 from symobs.pages.page.narrator import narrate, printer_for
 from symobs.pages.printers.latex_printer import LatexPrinter, escape
-from symobs.pages.printers.root_lists import LATEX, listed
+from symobs.pages.printers.root_lists import LATEX, in_a_row
 from symobs.tasks.result import output_format
 
 if TYPE_CHECKING:
@@ -244,7 +244,7 @@ class LatexWriter:
         if isinstance(part, str):
             return escape(part)
         if isinstance(part, Roots):
-            return ", ".join(f"${root}$" for root in listed(part, self.printer, LATEX))
+            return in_a_row(part, self.printer, LATEX, "${}$".format)
         return f"${self.printer.inline(part)}$"
 
 
@@ -267,5 +267,7 @@ def _gap(before: Block, after: Block) -> str:
     """Return the separator of two blocks; an empty line begins a new paragraph."""
     if isinstance(before, Heading) and isinstance(after, Paragraph):
         return " "
-    begins = isinstance(after, Heading | CaseBlock) or (isinstance(before, Paragraph) and isinstance(after, Paragraph))
+    if isinstance(after, Heading):
+        return "\n\n\\addvspace{4pt plus 1pt}\n"
+    begins = isinstance(after, CaseBlock) or (isinstance(before, Paragraph) and isinstance(after, Paragraph))
     return "\n\n" if begins else "\n"

@@ -34,7 +34,7 @@ from symobs.pages.page.blocks import (
 from symobs.pages.page.narrator import narrate, printer_for
 from symobs.pages.printers.latex_printer import LatexPrinter
 from symobs.pages.printers.line_breaking import Layout
-from symobs.pages.printers.root_lists import LATEX, listed
+from symobs.pages.printers.root_lists import LATEX, in_a_row
 from symobs.pages.printers.text_printer import TextPrinter
 from symobs.pages.tables import markdown_table
 from symobs.tasks.result import output_format
@@ -220,7 +220,7 @@ class MarkdownWriter:
         if isinstance(part, str):
             return plain(part)
         if isinstance(part, Roots):
-            return ", ".join(self.mathematics(root) for root in listed(part, self.printer, LATEX))
+            return in_a_row(part, self.printer, LATEX, self.mathematics)
         return self.mathematics(self.printer.inline(part))
 
     def mathematics(self, latex: str) -> str:

@@ -27,7 +27,7 @@ from symobs.pages.page.blocks import (
     opened,
 )
 from symobs.pages.page.narrator import narrate, printer_for
-from symobs.pages.printers.root_lists import TEXT, listed
+from symobs.pages.printers.root_lists import TEXT, in_a_row
 from symobs.pages.printers.text_printer import RULE, TextPrinter, beside, text_width
 from symobs.tasks.result import output_format
 
@@ -184,7 +184,7 @@ class TextWriter:
         if isinstance(part, str):
             return printable(part)
         if isinstance(part, Roots):
-            return ", ".join(root.replace(" ", _NO_BREAK) for root in listed(part, self.printer, TEXT))
+            return in_a_row(part, self.printer, TEXT, lambda root: root.replace(" ", _NO_BREAK))
         written = self.printer.inline(part)
         return written.replace(" ", _NO_BREAK) if text_width(written) <= _KEPT_TOGETHER else _kept_inside(written)
 

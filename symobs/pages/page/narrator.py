@@ -87,7 +87,8 @@ def narrate(document: Document) -> tuple[Block, ...]:
         parts = [in_decimals(*pair, digits) for pair in zip(document.derivations, parts, strict=True)]
     is_final = document.detail == FINAL
     language = language_named(document.language)
-    works, citations = cited_literature(() if is_final else (step for steps in parts for step in steps), language)
+    is_cited = not is_final and document.references != "none"
+    works, citations = cited_literature((step for steps in parts for step in steps) if is_cited else (), language)
     page = _PageBlocks(document.convention, language, citations=citations)
     page.referred = dict.fromkeys((each for steps in parts for each in referred_to(steps)), 0)
     page.blocks.append(title_of(document, language))
@@ -109,7 +110,9 @@ def narrate(document: Document) -> tuple[Block, ...]:
             page.emit_again(told[-1])
         page.printed |= _inside(steps)
     if works:
-        page.blocks.append(References(language.words["sources"], tuple(f"{language.reference(key)}." for key in works)))
+        short = document.references == "short"
+        entries = tuple(f"{language.reference(key, short=short)}." for key in works)
+        page.blocks.append(References(language.words["sources"], entries))
     return handed_out(_punctuated(page.blocks), document.handout)
 
 

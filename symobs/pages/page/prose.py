@@ -56,6 +56,10 @@ MARK = "§"
 NUMBER = "number"
 
 
+#: How a slot is written whose names stand between parentheses.
+LIST = "list"
+
+
 #: A pair of matrices in a phrase, `($C$, $A$)`, and the first members of those that are observable.
 _PAIR = re.compile(r"\((\$[^$]*\$), (\$[^$]*\$)\)")
 
@@ -84,7 +88,8 @@ def filled(
         if name is not None:
             slot = slots[name]
             number = numbers.get(slot) if form == NUMBER and isinstance(slot, Relation) else None
-            inlines += shown(slot, language) if number is None else (f"({number})",)
+            apart = ", " if form == LIST else language.words["and"]
+            inlines += shown(slot, language, apart) if number is None else (f"({number})",)
     return joined(inlines)
 
 
@@ -113,8 +118,8 @@ def joined(inlines: Iterable[Inline]) -> Inlines:
     return tuple(result)
 
 
-def shown(slot: Formula | Fact | Counted | StateChoice | str, language: Language) -> Iterator[Inline]:
-    """Yield the content of a slot: of a property its subject, of a region its inequalities."""
+def shown(slot: Formula | Fact | Counted | StateChoice | str, language: Language, last: str = ", ") -> Iterator[Inline]:
+    """Yield the content of a slot: of a property its subject, of a region its inequalities; `last` before a last name."""
     if isinstance(slot, SPOKEN):
         yield language.put(slot)
         return
@@ -125,7 +130,7 @@ def shown(slot: Formula | Fact | Counted | StateChoice | str, language: Language
             yield value
         case SymbolList(names):
             for place, name in enumerate(names):
-                between = "" if not place else language.words["and"] if place + 1 == len(names) else ", "
+                between = "" if not place else last if place + 1 == len(names) else ", "
                 yield from (between, Literal(Scalar.symbol(name)))
         case HoldsExactlyWhere(where=where) | Conjunction(relations=where):
             apart = "; " if language.has_comma and any(map(_has_decimals, where)) else ", "

@@ -28,6 +28,10 @@ if TYPE_CHECKING:
 _WORD = r"\mathit"
 
 
+#: Behind a number it would be read as a mixed one.
+_NUMERIC_FRACTION = re.compile(r"\\[dt]?frac\{?\d")
+
+
 _FRACTION_OF_LETTERS = re.compile(r"-?\\frac\{(?!\d+\}\{\d+\}$)")
 
 
@@ -163,7 +167,7 @@ class LatexPrinter(Printer[LatexBox]):
 
     def between(self, left: LatexBox, right: LatexBox) -> LatexBox | None:
         r"""Return `\cdot` before a number, a thin space beside a word."""
-        if right.source[0].isdigit():
+        if right.source[0].isdigit() or (left.source[-1].isdigit() and _NUMERIC_FRACTION.match(right.source)):
             return LatexBox(0.7, Level.PRODUCT, r"\cdot ")
         if self.running and left.width + right.width > _WIDE:
             return LatexBox(0.0, Level.PRODUCT, r"\allowbreak ")

@@ -62,6 +62,16 @@ def listed(roots: Roots, printer: Printer[Any], glyphs: RootGlyphs) -> list[str]
     return [_written(root, paired, printer, glyphs) for root, paired in _grouped(roots.values)]
 
 
+def in_a_row(roots: Roots, printer: Printer[Any], glyphs: RootGlyphs, wrapped: Callable[[str], str]) -> str:
+    """Return the roots as one text; exact ones beside rounded ones come first, `0 and, rounded, -0.3695 ± 0.88597i`."""
+    found = listed(roots, printer, glyphs)
+    exact = [wrapped(root) for root in found if not root.startswith(glyphs.about)]
+    rounded = [root.removeprefix(glyphs.about) for root in found if root.startswith(glyphs.about)]
+    if not exact or not rounded:
+        return ", ".join(map(wrapped, found))
+    return f"{', '.join(exact)}{printer.language.words['rounded']}{', '.join(map(wrapped, rounded))}"
+
+
 def _grouped(values: tuple[Root, ...]) -> Iterator[tuple[Root, bool]]:
     """Yield each root with whether it stands for a pair; the open roots of a factor are one group."""
     remaining = list(values)

@@ -16,7 +16,7 @@ from symobs.formula.tree import Exact, Letter, Literal, Relation, SignReversal, 
 from symobs.ground.errors import UsageError
 from symobs.proof.derivation.facts import reject
 from symobs.proof.derivation.sign_translation import in_signs, with_own_unknowns
-from symobs.proof.derivation.steps import Note, Section, Sentence, literals, relations
+from symobs.proof.derivation.steps import Note, Section, Sentence, everything_in, literals, relations
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Iterator, Mapping
@@ -62,12 +62,30 @@ def set_apart(derivation: Derivation, letters: Iterable[str], forms: Mapping[str
     shared = sorted({*printed_alike(letters, forms, named), *_MARKS & named})
     if not shared:
         return derivation
-    notes = [Note(Sentence("without_serifs", (("parameter", SymbolList((name,))),))) for name in shared]
+    alone = _single_input(derivation)
+    notes = [
+        Note(
+            Sentence(
+                "nonlinear_input" if name == alone == "u" else "without_serifs", (("parameter", SymbolList((name,))),)
+            )
+        )
+        for name in shared
+    ]
     first, *rest = derivation.steps
     if isinstance(first, Section):
         first = replace(first, steps=(*first.steps, *notes))
     symbols = {**derivation.symbols, **{name: sans_serif(name) for name in shared}}
     return replace(derivation, steps=(first, *rest), symbols=symbols)
+
+
+def _single_input(derivation: Derivation) -> str:
+    """Return the input of a nonlinear plant that has one."""
+    for part in everything_in(derivation.steps):
+        if isinstance(part, Sentence) and "arguments" in (slots := dict(part.slots)):
+            named = [slot.names for slot in (slots["states"], slots["arguments"]) if isinstance(slot, SymbolList)]
+            inputs = named[1][len(named[0]) :]
+            return inputs[0] if len(inputs) == 1 else ""
+    return ""
 
 
 def _no_letter_twice(

@@ -6,11 +6,11 @@ from functools import lru_cache
 from typing import TYPE_CHECKING
 
 from symobs.exact import Scalar
-from symobs.exact.algebraic.real_algebraic import real_roots
+from symobs.exact.algebraic.real_algebraic import real_roots, roots_of_scalar
 from symobs.formula.phrases.languages import Counted
-from symobs.formula.tree import Literal, Relation, SymbolList
+from symobs.formula.tree import Conjunction, Literal, Relation, SymbolList
 from symobs.proof.derivation.steps import Sentence
-from symobs.stability.criteria.critical_polynomials import CriticalPolynomials, StabilityBoundary
+from symobs.stability.criteria.critical_polynomials import CriticalPolynomials, StabilityBoundary, irreducible
 from symobs.stability.criteria.stability_conditions import is_stable_where, stable_where
 from symobs.stability.inequalities.simplify import box
 from symobs.stability.regions.description import are_whole, between, parts, relations_of
@@ -21,9 +21,12 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
     from symobs.exact import RealNumber
-    from symobs.formula.tree import Environment
+    from symobs.formula.tree import Environment, Formula
     from symobs.proof.derivation.steps import RegionSummary
     from symobs.stability.regions.region import PlaneRegion
+
+#: So many zeros are listed in a sentence.
+MOST_ZEROS = 5
 
 
 def is_survey(step: RegionSummary, value: Scalar, environment: Environment, *, discrete: bool) -> bool:
@@ -77,10 +80,18 @@ def _of_everything(region: LineRegion | PlaneRegion, names: tuple[str, ...]) -> 
 
 
 def _of_line(region: LineRegion) -> Iterator[Sentence]:
-    if region.points:
-        slots = {"points": Counted("point", len(region.points))} if len(region.points) > 1 else {}
-        slots["stable"] = Counted("interval", len(region.intervals))
-        yield Sentence("points_decide" if len(region.points) > 1 else "point_decides", tuple(slots.items()))
+    inner = [piece.low for piece in region.pieces[1:] if piece.low is not None]
+    if inner:
+        pieces, intervals = len(region.pieces), len(region.intervals)
+        counts = ("intervals", Counted("interval", pieces)), ("stable", Counted("on_interval", intervals, pieces))
+        values = irreducible(region.critical.values)
+        are_zeros = {root for factor in values for root in roots_of_scalar(factor, region.name)}.issuperset(inner)
+        symbol = Literal(Scalar.symbol(region.name))
+        zeros = Conjunction(tuple(Relation((symbol, Literal(x.scalar(region.name))), ("=",)) for x in inner))
+        if are_zeros and len(inner) <= MOST_ZEROS:
+            yield Sentence("zeros_decide" if len(inner) > 1 else "zero_decides", (("zeros", zeros), *counts))
+        else:
+            yield Sentence("values_decide", counts)
     for point in region.cuts:
         number = Literal(point.scalar(region.name))
         yield Sentence("point_missing", (("name", Literal(Scalar.symbol(region.name))), ("point", number)))
@@ -91,8 +102,13 @@ def _how_plane(region: PlaneRegion) -> Iterator[Sentence]:
     allowed = [cell for cell in region.cells if cell.allowed]
     if len(allowed) > 1:
         stable = sum(cell.stable for cell in allowed)
-        counts = {"cells": Counted("open_piece", len(allowed)), "stable": Counted("of_them", stable, len(allowed))}
-        yield Sentence("cells_decide", (("lines", Literal(Scalar.symbol(region.plane.names[0]))), *counts.items()))
+        counts = {
+            "plane": Counted("plane", len(region.cells) - len(allowed)),
+            "cells": Counted("cell", len(allowed)),
+            "stable": Counted("stable_cell", stable, len(allowed)),
+        }
+        key = "cells_decide_discrete" if region.critical.boundary.discrete else "cells_decide"
+        yield Sentence(key, (("lines", Literal(Scalar.symbol(region.plane.names[0]))), *counts.items()))
 
 
 def _of_plane(region: PlaneRegion) -> Iterator[Sentence]:
@@ -115,14 +131,20 @@ def _of_plane(region: PlaneRegion) -> Iterator[Sentence]:
 
 
 def _numbers(ends: Iterable[RealNumber | None], name: str) -> Iterator[Sentence]:
-    """Yield which roots the numbers without a closed form are."""
-    for number in dict.fromkeys(end for end in ends if end is not None and end.closed_form() is None):
-        polynomial = number.minimal_polynomial(name)
-        equation = Relation((Literal(polynomial), Literal(Scalar.of(0))), ("=",))
-        is_only = len(real_roots(number.polynomial)) == 1
-        which = Counted("only_real_root" if is_only else "real_root", number.index + 1)
-        slots = (("number", Literal(number.scalar(name))), ("which", which), ("equation", equation))
-        yield Sentence("number_is_root", slots)
+    """Yield which roots the numbers without a closed form are, two that are only ones together."""
+    numbers = list(dict.fromkeys(end for end in ends if end is not None and end.closed_form() is None))
+    only = [number for number in numbers if len(real_roots(number.polynomial)) == 1]
+
+    def told(number: RealNumber, *slots: str) -> tuple[tuple[str, Formula | Relation], ...]:
+        equation = Relation((Literal(number.minimal_polynomial(name)), Literal(Scalar.of(0))), ("=",))
+        return tuple(zip(slots, (Literal(number.scalar(name)), equation), strict=True))
+
+    if len(numbers) == len(only) == 2:
+        yield Sentence("numbers_are_roots", (*told(only[0], "number", "equation"), *told(only[1], "other", "another")))
+        return
+    for number in numbers:
+        which = Counted("only_real_root" if number in only else "real_root", number.index + 1)
+        yield Sentence("number_is_root", (*told(number, "number", "equation"), ("which", which)))
 
 
 def region_of(

@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 
 from symobs.exact import Ideal, Matrix, Scalar, companion, echelon, from_coefficients, independent_rows, rank, unit_rows
 from symobs.exact.core.generators import PI, function
+from symobs.exact.time_functions.matrix_power import modes_of
 from symobs.formula.phrases import DEMANDS
 from symobs.formula.phrases.languages import Counted, StateChoice
 from symobs.formula.tree import (
@@ -233,7 +234,8 @@ def _fixes(said: Said, row: str, of: str, N: str, X: str, phi: str) -> bool:
     remainder.
     """
     here, fixed, wanted = said.environment, _characteristic(X, said.environment), _letter(phi)
-    told = [roots.polynomial for roots in said.of(Roots)]
+    told = [slot.polynomial for name, slot in said.slots.items() if isinstance(slot, Roots) and name != "missing"]
+    told += [roots.polynomial for roots in said.facts if isinstance(roots, Roots)]
     told += [slot.formula for name, slot in said.slots.items() if name == "fixed" and isinstance(slot, Evaluated)]
     told += [slot.members[0] for slot in said.slots.values() if isinstance(slot, Relation)]
     rest = said.slots.get("rest")
@@ -247,6 +249,17 @@ def _fixes(said: Said, row: str, of: str, N: str, X: str, phi: str) -> bool:
         and all(_holds(here, polynomial, "=", fixed) for polynomial in told)
         and all(_holds(here, Product((subject, fixed)), "=", wanted) for subject in said.subjects())
     )
+
+
+def _misses(said: Said, X: str, phi: str) -> bool:
+    """Return whether the roots told as missing are eigenvalues of X, and none of them is a root of φ for any parameters."""
+    here, told = said.environment, said.slots["missing"]
+    if not isinstance(told, Roots):
+        return False
+    value = as_scalar(evaluate(told.polynomial, here, Exact(here)))
+    factors = [Literal(f) for f, _ in value.numerator.factors()[1] if f.degree(here.variable)]
+    is_part = _is(here, "polynomial", Quotient(_characteristic(X, here), told.polynomial))
+    return is_part and all(_is(here, "not_polynomial", Quotient(_letter(phi), factor)) for factor in factors)
 
 
 def _is(here: Environment, name: str, formula: Formula) -> bool:
@@ -549,6 +562,22 @@ def _has_freedom(said: Said, row: str, of: str) -> int:
     return outputs * order - len(echelon(stack, Ideal.where(here.relations))[0])
 
 
+def _counts_free(said: Said, row: str, of: str) -> bool:
+    """Return whether r(p − 1) parameters are said to be free and (n − r)p entries, r the rank of the test matrix."""
+    outputs, order = _sizes(row, said.environment)
+    seen = outputs * order - _has_freedom(said, row, of)
+    told = Counted("free_parameter", seen * (outputs - 1)), Counted("free_entry", (order - seen) * outputs)
+    return (said.slots["free"], said.slots["rest"]) == told
+
+
+def _is_of_low_rank(said: Said) -> bool:
+    """Return whether the rank told is that of the matrix whose kernel, or left kernel, a vector is shown to be in."""
+    rank_of = said.slots["rank"]
+    matrix = rank_of.formula.argument if isinstance(rank_of, Evaluated) and isinstance(rank_of.formula, Apply) else None
+    shown = [fact.members[0] for fact in said.facts if isinstance(fact, Relation)]
+    return matrix is not None and all(isinstance(each, Product) and matrix in each.factors for each in shown)
+
+
 def _is_canonical(said: Said) -> bool:
     """Return whether (A, B) is in controllable canonical form."""
     A, B = (evaluate(Letter(name), said.environment, Exact(said.environment)) for name in "AB")
@@ -594,7 +623,30 @@ def _is_defective(said: Said) -> bool:
         return False
     times = sum(1 for _ in takewhile(lambda c: c.is_zero, reversed(polynomial.coefficients(variable))))
     lacking: int = polynomial.degree(variable) - rank(X)
-    return lacking < times
+    told = tuple(said.slots[name] for name in ("mode", "times"))
+    return lacking < times and told == tuple(map(Literal, modes_of_double(pole, variable)))
+
+
+def modes_of_double(pole: Scalar, variable: str) -> tuple[Scalar, Scalar]:
+    """Return e^{λt} and t e^{λt}, in discrete time λᵏ and k λᵏ."""
+    if variable == "z":
+        first, second = modes_of((Scalar.symbol("z") - pole) ** 2, "z")
+        return first, second
+    mode = function("exp", pole * Scalar.symbol(TIME))
+    return mode, Scalar.symbol(TIME) * mode
+
+
+def _is_of_damping(said: Said) -> bool:
+    """Return whether the factor s² + 2ζω s + ω² is there, of the damping ratio and the frequency told."""
+    damping, frequency, s = said.slots["damping"], said.slots["frequency"], Letter("s")
+    pair = Sum((Power(s, 2), Product((_number(2), damping, frequency, s)), Power(frequency, 2)))
+    return pair in everything_in(said.slots["pair"])
+
+
+def _shares_roots(said: Said, of: str, phi: str) -> bool:
+    """Return whether the polynomials of the roots told divide φ and det(sI − A)."""
+    here, both = said.environment, (_letter(phi), _characteristic(of, said.environment))
+    return all(_is(here, "polynomial", Quotient(each, told.polynomial)) for told in said.of(Roots) for each in both)
 
 
 def _ranked(relation: Relation) -> Formula | None:
@@ -763,6 +815,11 @@ _OF_STEP: dict[str, Callable[..., bool]] = {
         formula == Power(Letter(letter), -1) for formula in (*said.subjects(), *(t.polynomial for t in said.of(Roots)))
     ),
     "pole_defective": _is_defective,
+    "of_damping": _is_of_damping,
+    "of_low_rank": _is_of_low_rank,
+    "free_parts": _counts_free,
+    "misses": _misses,
+    "shared_roots": _shares_roots,
     "counts_degree": _counts_degree,
     "counts_dominant": _counts_dominant,
     "counts_names": _counts_names,

@@ -381,13 +381,17 @@ def _monic_factors(polynomial: Scalar, variable: str) -> tuple[Scalar, ...]:
     return tuple(sorted(factors, key=lambda f: f.degree(variable)))
 
 
+def from_list(value: Any, *, column: bool) -> Any:
+    """Return a flat list, or the text of one, as a column or a row, anything else as it is."""
+    if isinstance(value, str) and "[" not in value and "," in value:
+        return f"[{value.replace(',', ';') if column else value}]"
+    return as_rows("B" if column else "C", value)
+
+
 def read_gain(value: object, plant: StateSpace, name: str, shape: tuple[int, int]) -> Matrix:
     """Return a given gain, a flat list where it is a row or a column; raises ShapeMismatch for another shape."""
     where = f"specification.{name}"
-    if isinstance(value, str) and "[" not in value and "," in value:
-        value = f"[{value.replace(',', ';') if shape[1] == 1 else value}]"
-    rows = as_rows("B" if shape[1] == 1 else "C", value)
-    gain = read_matrix(rows, plant.symbols.seen(value), where, functions=True)
+    gain = read_matrix(from_list(value, column=shape[1] == 1), plant.symbols.seen(value), where, functions=True)
     if gain.shape != shape:
         message = f"{name} is {gain.shape[0]}×{gain.shape[1]}, expected {shape[0]}×{shape[1]}"
         raise ShapeMismatch(message, where=where, repair=f"write {name} as a {shape[0]}×{shape[1]} matrix")

@@ -30,8 +30,8 @@ def state_linearisation(page: Builder) -> None:
     moved = [value for function in (*functions, *jacobians) for value in _step_by_step(given, function)]
     page.in_time(*functions, *moved, *(value for _, value in given.equilibrium), m.A, m.B, m.C, m.D)
     time = "discrete" if plant.is_discrete else "continuous"
-    states, inputs = SymbolList(given.states), SymbolList(given.inputs)
-    page.remark(f"nonlinear_{time}" if given.inputs else f"nonlinear_{time}_free", states=states, inputs=inputs)
+    states, arguments = SymbolList(given.states), SymbolList((*given.states, *given.inputs))
+    page.remark(f"nonlinear_{'state_' if given.h is None else ''}{time}", states=states, arguments=arguments)
     page.assume_positive(_radicands(given, functions))
     f = page.set("f_x", given.f)
     shown = [relation(f, given.f)]

@@ -55,7 +55,10 @@ def _say_pair(
         damping = page.value(values["damping"])
         frequency = page.value(values.get("natural_frequency", sigma / values["damping"]))
         pair = s**2 + page.value(2) @ damping @ frequency @ s + frequency**2
-        page.conclude("pattern_damping" if "natural_frequency" in values else "pattern_damped", pair=written(pair))
+        if "natural_frequency" in values:
+            page.conclude("pattern_damping", damping=damping, frequency=frequency, pair=written(pair))
+        else:
+            page.conclude("pattern_damped", pair=written(pair))
     if "settling_time" in values:
         pair = (s + page.value(sigma)) ** 2 + page.value(square - sigma**2)
         decayed = relation(function("exp", Scalar.of(-TIME_CONSTANTS)), "<=", Scalar.of(1) / 50)

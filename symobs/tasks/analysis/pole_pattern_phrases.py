@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 PHRASES: dict[str, str] = {
-    "pattern_damping": "It has a pair of roots with the specified damping ratio and natural frequency: {pair}.",
+    "pattern_damping": "Damping ratio {damping} and natural frequency {frequency} give {pair}.",
     "pattern_damped": "It has a pair of roots with the specified damping ratio: {pair}.",
     "pattern_settling": "The amplitude of the mode of its pair of roots decays to less than 2 % of its initial value within the specified settling time {time}: {pair}, and {bound}.",
     "pattern_overshoot": "The imaginary part of this pair is as large as the specified overshoot of the step response allows: {bound}.",
@@ -13,6 +13,10 @@ PHRASES: dict[str, str] = {
     "pattern_bessel_beside": "It has a Bessel polynomial§ as a factor; by its recursion {recursion}.",
     "pattern_itae": "It is the tabulated ITAE polynomial§ of its degree.",
     "pattern_itae_beside": "It has a tabulated ITAE polynomial§ as a factor: {polynomial}.",
+}
+
+DEMANDS: dict[str, str] = {
+    "pattern_damping": "of_damping",
 }
 
 RESTS_ON: dict[str, str] = {
@@ -28,3 +32,5 @@ THEOREMS: dict[str, str] = {
     "bessel_filter": "thomson1949",
     "itae": "graham1953",
 }
+
+NAMING = ("pattern_damping",)

@@ -19,7 +19,15 @@ from symobs.ground.errors import CertificateRejected, InputError, ProblemErrors,
 from symobs.system import StateSpace, read_matrix, read_scalar
 from symobs.system.conditions import sign_of
 from symobs.system.reading import has_decimals, inserted, read_values
-from symobs.system.specification import is_pattern, parse_in_steps, parse_signal, read_names, read_pattern, read_poles
+from symobs.system.specification import (
+    is_pattern,
+    over_common_data,
+    parse_in_steps,
+    parse_signal,
+    read_names,
+    read_pattern,
+    read_poles,
+)
 from symobs.system.specification.pole_patterns import OTHERS
 
 if TYPE_CHECKING:
@@ -101,7 +109,7 @@ def _with_chosen(result: Any, found: Any, values: dict[str, Scalar]) -> Any:
         if not isinstance(chosen, Matrix) or not isinstance(here, Matrix):
             continue
         try:
-            kept = substitute(chosen, values)
+            _, (kept,) = over_common_data(found.plant, substitute(chosen, values))
             found = found if kept == here or not found.plant.admits(kept) else found.with_answer(letter, kept)
         except (ZeroDivisionError, CertificateRejected):  # it divides by zero here, or serves in general only
             continue
@@ -266,23 +274,27 @@ def _fill(result: Any, fields: Mapping[str, Any], points: Mapping[str, Any], whe
     known = _all_hold(result.holds_where, result, here, len(where))
     opened.append(where[left & (known == _OPEN)])
     left &= known == _HOLDS
-    own = _alike(result, fields)
-    if own is not None and left.any():
+    if left.any():
         there = {name: array[left] for name, array in here.items()}
-        entries = [entry for field in own for entry in _scalars_of(field)]
-        plain = not there or not any(entry.names for entry in entries)
-        found = [[nearest_double(entry)] for entry in entries] if plain else ArrayFunction(entries)(there)
-        values[:, where[left]] = found
+        entries = _entries_of(result, fields)
+        known = [index for index, entry in enumerate(entries) if entry is not None]
+        found = [entry for entry in entries if entry is not None]
+        plain = not there or not any(entry.names for entry in found)
+        if found:
+            numbers = [[nearest_double(entry)] for entry in found] if plain else ArrayFunction(found)(there)
+            values[np.ix_(known, where[left])] = numbers
     return np.concatenate(opened)
 
 
-def _alike(result: Any, fields: Mapping[str, Any]) -> list[Any] | None:
-    """Return the fields of a case; None where one is missing or of another shape."""
-    own = [result.fields.get(name) for name in fields]
-    shapes = [getattr(field, "shape", None) for field in fields.values()]
-    if any(field is None or getattr(field, "shape", None) != shape for field, shape in zip(own, shapes, strict=True)):
-        return None
-    return own
+def _entries_of(result: Any, fields: Mapping[str, Any]) -> list[Scalar | None]:
+    """Return the entries of the fields of a case; None for those of a field that is missing there or has another shape."""
+    apart, found = {result.plant.variable, "t"}, list[Scalar | None]()
+    for name, field in fields.items():
+        own = result.fields.get(name)
+        alike = own is not None and getattr(own, "shape", None) == getattr(field, "shape", None)
+        alike = alike and not (isinstance(own, (Matrix, Scalar)) and symbols_in(own) & apart)
+        found += _scalars_of(own) if alike else [None] * len(_scalars_of(field))
+    return found
 
 
 def _all_hold(conditions: Iterable[Condition], result: Any, points: Mapping[str, Any], count: int) -> Any:
@@ -369,7 +381,7 @@ def _read(points: Mapping[Any, Any], result: Any, fields: Mapping[str, Any]) -> 
         shapes = ", ".join(f"{name} {array.shape}" for name, array in found.items())
         message = f"the arrays do not fit together: {shapes}"
         raise InputError(message, where="evaluate", repair="give arrays that broadcast to one shape") from None
-    return {name: found[name] for name in found if name in needed}
+    return found
 
 
 def _outside(result: Any, points: Mapping[str, Any]) -> Any:
@@ -392,10 +404,10 @@ def _exactly(result: Any, fields: Mapping[str, Any], points: Mapping[str, Any], 
     nothing = [float("nan")] * sum(len(_scalars_of(field)) for field in fields.values())
     try:
         there = result.at(**values) if there is _UNDECIDED else there
-        own = None if there is None else _alike(there, fields)
-        if own is None:
+        if there is None:
             return nothing
-        return [nearest_double(substitute(entry, values)) for field in own for entry in _scalars_of(field)]
+        entries = _entries_of(there, fields)
+        return [nothing[0] if entry is None else nearest_double(substitute(entry, values)) for entry in entries]
     except (ZeroDivisionError, NotWritten, ValueError, SymobsError):
         return nothing
 
@@ -440,7 +452,7 @@ def _shaped(fields: Mapping[str, Any], values: Any, shape: tuple[int, ...]) -> d
     start = 0
     for name, field in fields.items():
         size = getattr(field, "shape", ())
-        own = values[start : start + len(_scalars_of(field))].reshape(*size, *shape)
+        own = values[start : start + len(_scalars_of(field))].reshape((*size, *shape))
         found[name] = np.moveaxis(own, (0, 1), (-2, -1)) if size else own
         start += len(_scalars_of(field))
     return found

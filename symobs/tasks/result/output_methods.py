@@ -247,12 +247,17 @@ class OutputMethods:
 DIGITS, MOST_DIGITS = 5, 40
 
 
+#: How the literature is told below a page.
+REFERENCES = ("none", "short", "full")
+
+
 class PageOptions(TypedDict, total=False):
     """Options of `result.to`: significant digits, or exact numbers."""
 
     convention: str
     detail: str
     language: str
+    references: str
     digits: int | None
     exact: bool
 
@@ -262,6 +267,7 @@ def document_options(
     convention: str = "standard",
     detail: str = "full",
     language: str = "en",
+    references: str = "short",
     digits: int | None = None,
     exact: bool = False,
     **unknown: object,
@@ -274,7 +280,16 @@ def document_options(
         repair = f"known options are {', '.join(PageOptions.__annotations__)}"
         raise UsageError("no page has this option", where=shown(next(iter(unknown)), 40), repair=repair)
     asked = digits_asked(digits, exact=exact)
-    return {"convention": convention_named(convention), "detail": detail, "language": language, "digits": asked}
+    if references not in REFERENCES:
+        message, repair = f"{shown(str(references), 40)!r} is no way to cite", f"use one of {', '.join(REFERENCES)}"
+        raise UsageError(message, where="references", repair=repair)
+    told = {"detail": detail, "language": language, "references": references, "digits": asked}
+    return {"convention": convention_named(convention), **told}
+
+
+def detail_of(format_name: str) -> str:
+    """Return the level of detail of a format where none is asked for."""
+    return "outline" if format_name == "beamer" else "full"
 
 
 def digits_asked(digits: object = None, *, exact: bool = False, where: str = "digits") -> int | None:

@@ -19,7 +19,7 @@ from symobs.proof.certificate.claims import BEYOND_LIMITS, UNREADABLE, Certifica
 from symobs.proof.derivation import translated
 from symobs.proof.derivation.builder import Builder
 from symobs.system.conditions import Condition, vanishing_factors
-from symobs.tasks.result.output_methods import PLAIN, WebPage, document_options, to_sympy
+from symobs.tasks.result.output_methods import PLAIN, WebPage, detail_of, document_options, to_sympy
 from symobs.tasks.result.task_traits import TaskTraits
 from symobs.tasks.result.writers import render, writer_of
 
@@ -277,12 +277,13 @@ class Result(TaskTraits):
     ) -> str | bytes:
         """Return the result in a format: latex, html, text, json, pdf, …; in a convention, by name or TOML file.
 
-        `detail` says how much of the derivation is told: full, outline or answer; `language` is en or de.  Data typed as
+        `detail` says how much of the derivation is told: full, outline or answer; `references` how the literature is: none,
+        short or full; `language` is en or de.  Data typed as
         decimals make a page of decimals; `digits` asks for so many significant ones, `exact` for none.  python, matlab, c
         and modelica are the observer or compensator as a program, sampled with a `period` such as "1/100" by a zero-order
         hold (zoh) or by the bilinear map (tustin); numpy and csv the numbers alone.
         """
-        asked = document_options(**page)
+        asked = document_options(**{"detail": detail_of(format_name), **page})
         return render(Document("", "", (self,), period=period, hold=hold, **asked), format_name)
 
 
@@ -307,6 +308,8 @@ class Document:
     convention: Convention = STANDARD
     text: str = ""
     detail: str = field(default="full", kw_only=True)
+    #: How the literature is told below the page: not at all, on a line each, or in full.
+    references: str = field(default="short", kw_only=True)
     #: The code of the language of the page.
     language: str = field(default="en", kw_only=True)
     templates: Path | None = field(default=None, kw_only=True)

@@ -4,18 +4,22 @@ Run it by `python -m tests.programs.strata_oracle --plants 20000`.
 
 For a random plant of order two to four with one to three parameters, and one task, points are taken on every curve that
 stands in a condition or a case of the answer.  The plant is specialised there and solved anew, and every branch of the
-answer that covers the point is held to that.
+answer that covers the point is held to that.  With `--functions` the entries are functions of parameters: exp(x) is read
+as a > 0, and cos(y), sin(y) as (1 − b²)/(1 + b²), 2b/(1 + b²), so that points are rational there too.
 """
 
 from __future__ import annotations
 
 import argparse
+import re
 import sys
 import time
 from collections import Counter
 from dataclasses import dataclass, field
 from random import Random
 from typing import TYPE_CHECKING, Any
+
+from sympy import fraction, together
 
 from tests.programs.campaign.points import texts_at
 from tests.programs.campaign.solving import solved
@@ -31,29 +35,57 @@ if TYPE_CHECKING:
 
 _SIGNS = ["real", "real", "real", "positive", "nonzero", "nonnegative", "negative"]
 _FORMS = ["a", "b", "c", "a+b", "a-1", "b+1", "a*b", "b^2-a", "a^2+b^2", "a-b", "-a", "c*a", "c-b", "1-c", "a^2-1"]
+_OF_FUNCTIONS = [
+    "exp(x)",
+    "exp(-x)",
+    "cos(y)",
+    "sin(y)",
+    "c",
+    "1-exp(x)",
+    "c-cos(y)",
+    "c*sin(y)",
+    "exp(-x)-c",
+    "1+cos(y)",
+]
+#: What functions of x and y are in a = exp(x) and b = tan(y/2).
+_MEANINGS = {"cos": "((1-b**2)/(1+b**2))", "sin": "(2*b/(1+b**2))"}
+_LETTERS = {"x": ("a", "positive"), "y": ("b", "real")}
 _NUMBERS = ["0", "0", "0", "1", "-1", "2"]
 #: Regions have points of their own, and what is read off signals is no matter of a plant alone.
 _ASKED_TASKS = sorted(set(TASKS) - {"stability_region", "initial_state", "initial_state_covariance"})
 
 
-def drawn(seed: int, tasks: Sequence[str] = ()) -> Tables:
+def meant(thing: Any) -> Any:
+    """Return a problem or an answer with its functions of x and y as rational functions of a and b."""
+    if isinstance(thing, dict):
+        return {key: meant(value) for key, value in thing.items()}
+    if isinstance(thing, list):
+        return [meant(value) for value in thing]
+    if not isinstance(thing, str):
+        return thing
+    text = re.sub(r"(cos|sin)\(y\)", lambda found: _MEANINGS[found[1]], thing)
+    return re.sub(r"exp\((-?)(\d*)\*?x\)", lambda found: f"(a**({found[1]}{found[2] or 1}))", text)
+
+
+def drawn(seed: int, tasks: Sequence[str] = (), *, functions: bool = False) -> Tables:
     """Return the problem of a seed: a plant whose entries are small numbers and short expressions, and one task."""
     random = Random(f"strata {seed}")  # noqa: S311 - test problems, no secrets
     while True:
         task = random.choice(list(tasks) or _ASKED_TASKS)
-        shape = _shape(random, task)
+        shape = _shape(random, task, functions=functions)
         asked: dict[str, Any] | None = {"radius": "2"} if task == "pole_advice" else specification(random, task, shape)
         if not shape.signs or asked is None or (task == "pole_advice" and shape.discrete):
             continue
         return assembled(task, shape, asked)
 
 
-def _shape(random: Random, task: str) -> Shape:
-    order = random.choice([2, 2, 2, 2, 3, 3, 4])
+def _shape(random: Random, task: str, *, functions: bool) -> Shape:
+    order = random.choice([2] if functions else [2, 2, 2, 2, 3, 3, 4])
     single = task in {"feedforward", "pole_advice"} or random.random() < 0.6
     inputs, outputs = (1, 1) if single else random.choice([(1, 2), (2, 1), (2, 2)])
     names = ["a", "b", "c"][: random.choice([1, 2, 2, 2, 3])]
-    forms = [form for form in _FORMS if not {"a", "b", "c"} - set(names) & set(form)]
+    names = [*_LETTERS, "c"] if functions else names
+    forms = _OF_FUNCTIONS if functions else [form for form in _FORMS if not {"a", "b", "c"} - set(names) & set(form)]
     density = random.choice([0.15, 0.3, 0.5])
 
     def table(rows: int, columns: int) -> list[list[str]]:
@@ -64,8 +96,10 @@ def _shape(random: Random, task: str) -> Shape:
 
     A, B, C = table(order, order), table(order, inputs), table(outputs, order)
     D = table(outputs, inputs) if random.random() < 0.15 else zeros(outputs, inputs)
-    used = {name for part in (A, B, C, D) for row in part for entry in row for name in names if name in entry}
-    return Shape(A, B, C, D, {name: random.choice(_SIGNS) for name in sorted(used)}, random.random() < 0.3)
+    entries = [entry for part in (A, B, C, D) for row in part for entry in row]
+    used = {name for entry in entries for name in names if re.search(rf"\b{name}\b", entry)}
+    signs = {name: "real" if name in _LETTERS else random.choice(_SIGNS) for name in sorted(used)}
+    return Shape(A, B, C, D, signs, random.random() < 0.3)
 
 
 @dataclass
@@ -94,9 +128,17 @@ class Found:
         return "\n".join([*lines, f"{'all':28}" + "".join(f"{number:15}" for number in whole)])
 
 
-def examine(seed: int, found: Found, tasks: Sequence[str] = (), seconds: float = 20, most: int = 10) -> None:
+def examine(
+    seed: int,
+    found: Found,
+    tasks: Sequence[str] = (),
+    seconds: float = 20,
+    most: int = 10,
+    *,
+    functions: bool = False,
+) -> None:
     """Draw a plant, solve it, and hold its answer to the plants at points of its strata."""
-    problem = drawn(seed, tasks)
+    problem = drawn(seed, tasks, functions=functions)
     task = problem["task"]
     try:
         answer = solved(problem, seconds)
@@ -108,7 +150,11 @@ def examine(seed: int, found: Found, tasks: Sequence[str] = (), seconds: float =
         found.counted[task, "given up"] += 1
         return
     found.counted[task, "answers"] += 1
-    for point in points_on(relations(answer), problem["symbols"], most):
+    if functions:
+        signs: dict[str, str] = dict(_LETTERS.get(name, (name, sign)) for name, sign in problem["symbols"].items())
+        problem, answer = meant(problem) | {"symbols": signs}, meant(answer) | {"symbols": signs}
+    curves = [str(fraction(together(text))[0]) for text in relations(answer)] if functions else relations(answer)
+    for point in points_on(curves, problem["symbols"], most):
         for kind, said in _judged(problem, answer, point, seconds):
             found.counted[task, kind] += 1
             if said:
@@ -153,16 +199,17 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("--seconds", type=float, default=20, help="time for one answer")
     parser.add_argument("--points", type=int, default=10, help="points of one answer")
     parser.add_argument("--task", action="append", default=[], help="ask this task alone; may be repeated")
+    parser.add_argument("--functions", action="store_true", help="entries are functions of parameters")
     parser.add_argument("--show", action="store_true", help="print the problems as files")
     options = parser.parse_args(arguments)
     sys.setrecursionlimit(50_000)  # a relation of a thousand terms is a sum nested as deep
     found, begun, shown = Found(), time.perf_counter(), 0
     for seed in range(options.seed, options.seed + options.plants):
-        examine(seed, found, options.task, options.seconds, options.points)
+        examine(seed, found, options.task, options.seconds, options.points, functions=options.functions)
         for line in found.wrong[shown:]:
             sys.stdout.write(f"{line}\n")
         if options.show and found.wrong[shown:]:
-            sys.stdout.write(to_toml(drawn(seed, options.task)))
+            sys.stdout.write(to_toml(drawn(seed, options.task, functions=options.functions)))
         sys.stdout.flush()
         shown = len(found.wrong)
     sys.stdout.write(f"{found.table()}\n")

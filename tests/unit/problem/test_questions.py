@@ -50,6 +50,11 @@ def test_the_question_states_what_was_asked(task: str, specification: str, said:
     assert said in asked(specification, task)
 
 
+@pytest.mark.parametrize("gain", ['"2, 3"', "[2, 3]", '"[2 3]"', "[[2, 3]]"])
+def test_a_gain_of_a_flat_list_is_asked_as_a_row(gain: str) -> None:
+    assert asked(f"K = {gain}", "state_feedback") == asked('K = "[2, 3]"', "state_feedback")
+
+
 def test_several_tasks_have_letters_and_given_gains_stand_among_the_data() -> None:
     text = 'tasks = ["observability", "observer"]\n[plant]\nA = "[0 1; 0 -1]"\nC = "[1 0]"\n[specification]\nL = "[19; 81]"\n'
     said = " ".join(str(render(question_of(read(text)), "latex")).split())

@@ -24,10 +24,10 @@ PHRASES: dict[str, str] = {
     "lowest_terms_unstable_continuous": "The <pole|poles> {poles} <cancels|cancel>; what follows refers to the transfer function in lowest terms. In a plant with <this mode|these modes> <it is|they are> uncontrollable or unobservable, and <it does not lie|not all lie> in the open left half-plane.",
     "lowest_terms_unstable_discrete": "The <pole|poles> {poles} <cancels|cancel>; what follows refers to the transfer function in lowest terms. In a plant with <this mode|these modes> <it is|they are> uncontrollable or unobservable, and <it does not lie|not all lie> inside the unit circle.",
     "lowest_terms_where": "The <pole|poles> {poles} <cancels|cancel>; what follows refers to the transfer function in lowest terms. In a plant with <this mode|these modes> <it is|they are> uncontrollable or unobservable, and stable if and only if {where}.",
-    "nonlinear_continuous": "The plant is nonlinear: $f$ is the rate of change of the states {states} and $h$ the output, with the input {inputs}.",
-    "nonlinear_continuous_free": "The plant is nonlinear: $f$ is the rate of change of the states {states} and $h$ the output.",
-    "nonlinear_discrete": "The plant is nonlinear: $f$ is the next value of the states {states} and $h$ the output, with the input {inputs}.",
-    "nonlinear_discrete_free": "The plant is nonlinear: $f$ is the next value of the states {states} and $h$ the output.",
+    "nonlinear_continuous": "The plant is d/dt ({states:list}) = $f$({arguments:list}), $y = h$({arguments:list}).",
+    "nonlinear_state_continuous": "The plant is d/dt ({states:list}) = $f$({arguments:list}).",
+    "nonlinear_discrete": "The next value of ({states:list}) is $f$({arguments:list}), and $y = h$({arguments:list}).",
+    "nonlinear_state_discrete": "The next value of ({states:list}) is $f$({arguments:list}).",
     "equilibrium_continuous": "The states are at rest at the equilibrium:",
     "equilibrium_discrete": "The states keep their values at the equilibrium:",
     "linearised": "For small deviations $x$, $u$ and $y$ from the equilibrium, the linearised plant has the matrices",
@@ -37,6 +37,7 @@ PHRASES: dict[str, str] = {
     "rounded_digits": "Numbers after ≈ are exact values rounded to {digits} significant digits.",
     "shown_in_section": "This has been shown in section {number}.",
     "without_serifs": "The sans-serif {parameter} denotes a symbol of the data, not the matrix or signal with that letter.",
+    "nonlinear_input": "Here {parameter} is the input of the nonlinear plant, and $u$ its deviation from the equilibrium.",
     "declared": "Throughout, we assume {signs}.",
     "stratum": "Here we consider the case {condition}.",
     "desired_pole": "The desired pole is {poles}.",
@@ -70,6 +71,6 @@ DEMANDS: dict[str, str] = {
     "observer_polynomial": "poles_of phi_o",
 }
 
-NAMING = ("without_serifs",)
+NAMING = ("without_serifs", "nonlinear_input")
 
 CONTINUES = ("row_where", "row_modes", "row_answer")

@@ -15,6 +15,7 @@ WORDS: dict[str, str] = {
     "numbers": "no one two three four five six seven eight nine ten eleven twelve",
     "rank": "rank",
     "and": " and ",
+    "rounded": " and, rounded, ",
     "state": "state {number}",
     "or": " or ",
     "one_of_states": "any one of the states {numbers}",
@@ -38,9 +39,16 @@ WORDS: dict[str, str] = {
 COUNTS: dict[str, dict[str, str]] = {
     "number": {"other": "{word}"},
     "varies": {"1": "varies", "other": "vary"},
-    "point": {"1": "one point", "other": "{word} points"},
     "interval": {"1": "one interval", "other": "{word} intervals"},
-    "open_piece": {"1": "one open piece", "other": "{word} open pieces"},
+    "plane": {"0": "the plane", "other": "the admissible part of the plane"},
+    "cell": {"1": "one cell", "other": "{word} cells"},
+    "stable_cell": {
+        "0": "in none of them are all roots stable",
+        "all": "in each of them all roots are stable",
+        "1": "in exactly one cell all roots are stable",
+        "other": "in exactly {word} cells all roots are stable",
+    },
+    "on_interval": {"0": "none of them", "all": "all of them", "1": "one of them", "other": "{word} of them"},
     "piece": {"1": "one piece", "other": "{word} pieces"},
     "of_them": {
         "0": "none of them is",
@@ -58,6 +66,12 @@ COUNTS: dict[str, dict[str, str]] = {
         "6": "the sixth real root from the left",
         "other": "the {digits}th real root from the left",
     },
+    "free_parameter": {
+        "0": "no parameter is free",
+        "1": "one parameter is free",
+        "other": "{word} parameters are free",
+    },
+    "free_entry": {"1": "one entry is arbitrary", "other": "{word} entries are arbitrary"},
     "step": {"1": "one step", "other": "{word} steps"},
     "root_lies": {"0": "no root lies", "1": "one root lies", "other": "{word} roots lie"},
     "sign_changes": {

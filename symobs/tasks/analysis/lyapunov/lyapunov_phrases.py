@@ -14,7 +14,7 @@ PHRASES: dict[str, str] = {
     "lyapunov_regular_if_discrete": "The solution is unique if and only if no two eigenvalues of $A$, nor an eigenvalue and itself, have the product 1§, that is, where {determinant} is not 0.",
     "lyapunov_singular_continuous": "Since {determinant}, there are eigenvalues of $A$ with the sum 0: the equation does not have a unique solution§.",
     "lyapunov_singular_discrete": "Since {determinant}, there are eigenvalues of $A$ with the product 1: the equation does not have a unique solution§.",
-    "lyapunov_provided": "In what follows we assume {condition}.",
+    "lyapunov_provided": "What follows holds for {condition}.",
     "lyapunov_written_out": "In the entries of a symmetric matrix the left-hand side is",
     "lyapunov_solution": "Equating the left-hand side to $- Q_l$ gives",
     "lyapunov_one_of_many": "It has infinitely many solutions. One of them is",

@@ -379,6 +379,9 @@ def _judge(page: Builder, result: HiddenStability, about: Term) -> None:
     elif found.verdict == "conditional":
         _where(page, result, about)
         return
+    elif result.meaning == "asymptotic" and result.hidden.verdict == "no":
+        page.conclude(f"never_{result.task}", fact)
+        return
     else:
         page.conclude(f"unstable_{time}", fact)
     if result.hidden.verdict == "yes" or (result.hidden.verdict == "no" and result.grows_where == ()):

@@ -27,7 +27,7 @@ from symobs.exact import (
     roots_of,
     stable_roots,
 )
-from symobs.formula.tree import Conjunction, Environment, Literal, Roots
+from symobs.formula.tree import Conjunction, Environment, Evaluated, Literal, Roots
 from symobs.formula.tree.term import Term, block, identity, letter
 from symobs.ground.dataclass import dataclass
 from symobs.proof.certificate.claims import Claim, verify
@@ -455,7 +455,8 @@ def _at(page: Builder, result: ModeResult, part: Eigenvalues, rank: int, conditi
         v = page.value(kernel.select(range(page.plant.order), [j]))
         zero = Matrix.zeros(part.matrix.shape[0], 1)
         image = relation(v.T @ pencil, zero.T) if dual else relation(pencil @ v, zero)
-        steps.append(Equal((image,), sentence(f"pbh_low_{result.kind}", {}) if not j else None))
+        low = sentence(f"pbh_low_{result.kind}", {"rank": Evaluated(ranks.members[0], ranks.members[-1])})
+        steps.append(Equal((image,), low if not j else None))
     return [CaseStep(when, (), tuple(steps))]
 
 

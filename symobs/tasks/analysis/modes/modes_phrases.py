@@ -11,8 +11,8 @@ PHRASES: dict[str, str] = {
     "eigenvalues_open": "For a factor without roots in closed form, λ denotes any of its roots.",
     "pbh_asks_observability": "The pair ($C$, $A$) is observable if and only if the matrix with $A - lambda I$ above $C$ has full column rank at every eigenvalue.",
     "pbh_asks_controllability": "The pair ($A$, $B$) is controllable if and only if the matrix with $A - lambda I$ beside $B$ has full row rank at every eigenvalue.",
-    "pbh_low_observability": "The matrix loses rank: an eigenvector is unobservable,",
-    "pbh_low_controllability": "The matrix loses rank: a left eigenvector is orthogonal to the columns of the input matrix,",
+    "pbh_low_observability": "The rank is only {rank}: an eigenvector is not seen in the output,",
+    "pbh_low_controllability": "The rank is only {rank}: a left eigenvector is orthogonal to the columns of the input matrix,",
     "pbh_yes_observability": "The rank is full at every eigenvalue, so the pair ($C$, $A$) is observable.",
     "pbh_yes_controllability": "The rank is full at every eigenvalue, so the pair ($A$, $B$) is controllable.",
     "pbh_no_observability": "The rank drops at some eigenvalue, so the pair ($C$, $A$) is not observable.",
@@ -21,8 +21,8 @@ PHRASES: dict[str, str] = {
     "ranks_meet": "In this case a rank drops below its generic value.",
     "fixed_modes_observability": "The unobservable modes, which no observer gain can move, are the eigenvalues of $A$ restricted to the unobservable subspace:",
     "fixed_modes_controllability": "The uncontrollable modes, which no feedback gain can move, are the eigenvalues of $Aᵀ$ restricted to the left kernel of the controllability matrix:",
-    "on_kernel_observability": "The columns of $N$ form a basis of the unobservable subspace, on which $A$ is represented by $X$:",
-    "on_kernel_controllability": "The columns of $N$ form a basis of the left kernel of the controllability matrix, on which $Aᵀ$ is represented by $X$:",
+    "on_kernel_observability": "The unobservable subspace is spanned by the columns of $N$, and $A$ acts on it as $X$:",
+    "on_kernel_controllability": "The left kernel of the controllability matrix is spanned by the columns of $N$, and $Aᵀ$ acts on it as $X$:",
     "no_fixed_modes_observability": "There are no unobservable modes.",
     "no_fixed_modes_controllability": "There are no uncontrollable modes.",
     "asks_detectability_continuous": "The pair ($C$, $A$) is detectable if and only if the matrix with $A - lambda I$ above $C$ has full column rank at every eigenvalue with nonnegative real part.",
@@ -37,6 +37,8 @@ PHRASES: dict[str, str] = {
     "yes_stabilizability": "Hence the pair ($A$, $B$) is stabilizable.",
     "no_detectability": "Hence the pair ($C$, $A$) is not detectable.",
     "no_stabilizability": "Hence the pair ($A$, $B$) is not stabilizable.",
+    "never_detectability": "This polynomial is not stable, so ($C$, $A$) is not detectable: no observer makes this part of the error decay.",
+    "never_stabilizability": "This polynomial is not stable, so ($A$, $B$) is not stabilizable: no state feedback makes this part of the state decay.",
     "seen_detectability": "An observable pair is detectable.",
     "seen_stabilizability": "A controllable pair is stabilizable.",
     "marginal_continuous": "No root lies in the open right half-plane.",
@@ -69,6 +71,8 @@ QUESTIONS: dict[str, str] = {
 }
 
 ASSERTS: dict[str, tuple[str, ...]] = {
+    "never_detectability": ("unstable",),
+    "never_stabilizability": ("unstable",),
     "only_stable": ("stable",),
     "marginal_continuous": ("marginal",),
     "marginal_discrete": ("marginal",),
@@ -77,9 +81,11 @@ ASSERTS: dict[str, tuple[str, ...]] = {
 }
 
 DEMANDS: dict[str, str] = {
+    "never_detectability": "modes_unstable C A N X mu",
+    "never_stabilizability": "modes_unstable Bᵀ Aᵀ N X mu",
+    "pbh_low_observability": "unseen C A, of_low_rank",
+    "pbh_low_controllability": "unseen Bᵀ Aᵀ, of_low_rank",
     "eigenvalues": "eigenvalues_of A",
-    "pbh_low_observability": "unseen C A",
-    "pbh_low_controllability": "unseen Bᵀ Aᵀ",
     "pbh_yes_observability": "observable C A",
     "pbh_yes_controllability": "observable Bᵀ Aᵀ",
     "pbh_no_observability": "unobservable C A",

@@ -25,7 +25,7 @@ PHRASES: dict[str, str] = {
     "modal_basis": "The columns of $S$ are bases of the invariant subspaces belonging to the factors: eigenvectors for rational roots, chains of generalised eigenvectors for defective ones, and $v$ with its images under $A$ for a factor without rational roots.",
     "canonical_impossible_controllable": "Only a controllable pair has a controllable canonical form.",
     "canonical_impossible_observable": "Only an observable pair has an observable canonical form.",
-    "distinct_provided": "For generic parameter values these vectors are linearly independent. In what follows we assume {condition}.",
+    "distinct_provided": "For generic parameter values these vectors are linearly independent. What follows holds for {condition}.",
     "structure_provided": "These are the dimensions for generic parameter values. In what follows we assume {condition}.",
 }
 

@@ -28,7 +28,8 @@ if TYPE_CHECKING:
 #: A region in more parts than this is left to its inequalities and its picture.
 MOST_PARTS = 8
 #: Findings that say how a region was found.
-HOW = {"points_decide", "point_decides", "cells_decide"}
+NUMBERS = {"number_is_root", "numbers_are_roots"}
+HOW = {"zeros_decide", "zero_decides", "values_decide", "cells_decide", "cells_decide_discrete"}
 #: Hurwitz' matrix is written out up to this order.
 WRITTEN_ORDER = 4
 
@@ -265,9 +266,9 @@ def _region(page: Builder, result: StabilityRegion, written: str, chi: str) -> N
         page.steps.append(Inequalities(fact, sentence("region_is", {}), answer=True))
         _pictures(page, result, written, chi)
     parts = _parts(result, region)
-    others = tuple(finding for finding in found if finding not in decided and finding.key != "number_is_root")
+    others = tuple(finding for finding in found if finding not in decided and finding.key not in NUMBERS)
     if others or parts:
-        numbers = tuple(finding for finding in found if finding.key == "number_is_root") if parts else ()
+        numbers = tuple(finding for finding in found if finding.key in NUMBERS) if parts else ()
         say = sentence("parts_are", {}) if parts else None
         page.steps.append(RegionSummary(page[chi].formula, names, others, parts, say))
         if numbers:

@@ -270,12 +270,14 @@ def _plain(delta: Scalar) -> Scalar:
 
 
 def vanishing_denominators(values: Any, signs: Mapping[str, str]) -> tuple[Scalar, ...]:
-    """Return the factors of denominators in plain symbols that the signs do not keep from 0."""
+    """Return the factors of denominators without the time t that the signs do not keep from 0."""
     found: dict[Scalar, None] = {}
-    for value in values:
-        for factor in vanishing_factors([value.common_denominator()], signs):
-            if not any(function_named(name) for name in factor.names):
-                found[factor] = None
+    for factor in vanishing_factors([value.common_denominator() for value in values], signs):
+        root = function_named(min(factor.names))
+        if root is not None and root.kind == "sqrt" and root.value == factor:  # √δ vanishes with δ
+            found |= dict.fromkeys(vanishing_factors([root.argument], signs))
+        elif "t" not in symbols_in(factor):
+            found[factor] = None
     return tuple(found)
 
 

@@ -10,6 +10,7 @@ from symobs.formula.phrases import PHRASES
 from symobs.formula.tree import Evaluated, HoldsExactlyWhere, Literal, Quotient, Roots
 from symobs.formula.tree.term import Term, block
 from symobs.proof.derivation.builder import Builder, predicate, relation
+from symobs.proof.derivation.wording_check import modes_of_double
 from symobs.stability.criteria.stability import monic, no_stable_compensator, stability
 from symobs.stability.inequalities.simplify import as_inequality
 from symobs.system.specification import DesiredPolynomial
@@ -57,10 +58,13 @@ def caution_repeated(page: Builder, design: OutputFeedback) -> None:
             held = relation(offset.apply("rank"), found)
             single = page["phi_c"] / page.value(desired.polynomial / factor)
             instead = _with_distinct_poles(page, desired)
+            mode, times = modes_of_double(pole, plant.variable)
             page.caution(
                 "defective" if instead is None else "defective_instead",
                 held,
                 pole=Roots(single.formula, roots_of(factor, plant.variable)),
+                mode=mode,
+                times=times,
                 matrix=relation(offset, offset.as_value) if plant.order == readability.OFFSET_ORDER else held,
                 **({} if instead is None else {"instead": instead}),
             )

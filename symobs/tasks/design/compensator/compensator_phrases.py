@@ -9,8 +9,8 @@ PHRASES: dict[str, str] = {
     "observer_closed": "Substituting {law:number} into {rate:number} gives a system of the plant's order, driven by $y$ alone,",
     "observer_closed_matrix": "Substituting {law:number} into {rate:number} gives a system of the plant's order, driven by $y$ alone, with the matrix",
     "compensator_matrix": "with the matrix",
-    "compensator_written": "that is,",
-    "transfer_function_of_compensator": "Its transfer function from $y$ to $-u$ is",
+    "compensator_written": "Hence the compensator is",
+    "transfer_function_of_compensator": "The compensator has the transfer function, from $y$ to $-u$,",
     "compensator_stable": "It is strictly proper and stable.",
     "compensator_stable_low": "It is strictly proper and stable, since all coefficients of {polynomial} are positive§.",
     "compensator_unstable": "It is strictly proper, but the compensator itself is not stable.",
@@ -24,8 +24,8 @@ PHRASES: dict[str, str] = {
     "estimate_coordinates": "By the change of coordinates {turned}, the closed loop in terms of state and estimate is",
     "unity_feedback": "With $F$ in the forward path and unity feedback, the transfer function from the reference to the output has the same denominator but a different numerator,",
     "plant_transfer": "The transfer function of the plant is",
-    "return_path": "With $F$ in the feedback path, and the minus sign of the control law at the summing junction, the closed-loop transfer function is",
-    "return_difference": "With $F$ in the feedback path, and the minus sign of the control law at the summing junction, the return difference and the closed-loop transfer function are",
+    "return_path": "With $F$ in negative feedback, the closed-loop transfer function is",
+    "return_difference": "With $F$ in negative feedback, the return difference and the closed-loop transfer function are",
     "no_stable_compensator": "At a real zero of $P$ in the right half-plane the characteristic polynomial is negative: the plant lacks the parity interlacing property and cannot be stabilised by a stable compensator.",
     "with_coefficients": "where",
     "loop_matrix_poles": "The poles of its entries are control poles or observer poles.",
@@ -34,8 +34,8 @@ PHRASES: dict[str, str] = {
     "loop_no_poles": "It has no poles: all control and observer poles, {lost}, cancel.",
     "loop_polynomial_divides": "The denominator divides the product of the two desired polynomials, as expected.",
     "loop_polynomial": "The denominator is the product of the two desired polynomials, as expected.",
-    "defective": "The repeated pole {pole} is a defective eigenvalue, {matrix}, so the transients contain its exponential multiplied by powers of time.",
-    "defective_instead": "The repeated pole {pole} is a defective eigenvalue, {matrix}, so the transients contain its exponential multiplied by powers of time. Distinct poles avoid this, for example {instead}.",
+    "defective": "Since {matrix}, the repeated pole {pole} gives transients with {times} beside {mode}.",
+    "defective_instead": "Since {matrix}, the repeated pole {pole} gives transients with {times} beside {mode}. Distinct poles avoid this, for example {instead}.",
     "side_by_side": "Pole placement for observer and state feedback.",
     "polynomial_splits_given": "and the closed-loop characteristic polynomial is the product of the two:",
     "loop_unstable_continuous": "Not all closed-loop poles lie in the open left half-plane: with these gains the closed loop is unstable.",
@@ -46,8 +46,8 @@ PHRASES: dict[str, str] = {
     "right_state_feedback": "State feedback",
     "test_observer": "The dual pair ($Aᵀ$, $Cᵀ$)§ has the controllability matrix",
     "test_state_feedback": "The pair ($A$, $B$) has the controllability matrix",
-    "any_observer": "Hence the eigenvalues of $Aᵀ - Cᵀ Lᵀ$ can be assigned arbitrarily§.",
-    "any_state_feedback": "Hence the eigenvalues of $A - B K$ can be assigned arbitrarily§.",
+    "any_observer": "Hence the eigenvalues of $Aᵀ - Cᵀ Lᵀ$ can be assigned arbitrarily§, complex ones in conjugate pairs.",
+    "any_state_feedback": "Hence the eigenvalues of $A - B K$ can be assigned arbitrarily§, complex ones in conjugate pairs.",
     "gain_observer": "Ackermann's formula§ for the dual pair gives",
     "gain_state_feedback": "Ackermann's formula§ gives",
     "transposed_back": "A matrix and its transpose have the same characteristic polynomial, so the result for $Aᵀ - Cᵀ Lᵀ$ in the left column holds for $A - L C$,",
@@ -120,8 +120,10 @@ THEOREMS: dict[str, str] = {
     "closed_loop": "luenberger1971",
 }
 
-#: A new thought begins here.
-OPENS = ()
+NAMING = (
+    "defective",
+    "defective_instead",
+)
 
 #: Titles of sections whose sections stand side by side, a step with a sentence beginning a row.
 BESIDE = ("side_by_side",)
@@ -194,7 +196,6 @@ FIGURES: dict[str, dict[str, object]] = {
 #: Phrases that go on with the sentence before them.
 CONTINUES = (
     "compensator_matrix",
-    "compensator_written",
     "polynomial_splits",
     "with_coefficients",
     "polynomial_splits_given",

@@ -13,7 +13,7 @@ PHRASES: dict[str, str] = {
     "ill_posed_for_some": "Since {determinant}, this equation cannot be solved for $u$ with these gains: through the feedthrough the measured output contains the input, and the algebraic loop is not well posed. Other gains with the same poles were not tried.",
     "ill_posed_there": "In this case {determinant}: the output contains the input, and the algebraic loop is not well posed. No compensator exists with these gains.",
     "minimal_closed": "Substitution into the observer, with {state} and {input}, gives a system driven by $y$ alone:",
-    "minimal_transfer": "Its transfer function from $y$ to $-u$ is",
+    "minimal_transfer": "The compensator has the transfer function, from $y$ to $-u$,",
     "minimal_stable": "Its direct feedthrough, through which the measured states act instantaneously, is {direct}. The compensator itself is stable.",
     "minimal_unstable": "Its direct feedthrough, through which the measured states act instantaneously, is {direct}. The compensator itself is not stable.",
     "minimal_unstable_alone": "Its direct feedthrough, through which the measured states act instantaneously, is {direct}. The compensator itself is not stable, although the closed loop is.",

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from symobs.exact import EIGENVALUE, Factored, Matrix, Scalar, companion, rank
+from symobs.exact import EIGENVALUE, Factored, Matrix, Scalar, companion, rank, roots_of
+from symobs.formula.phrases.languages import Counted
+from symobs.formula.tree import Roots
 from symobs.proof.derivation import CaseStep, Note
-from symobs.proof.derivation.builder import Builder, relation, sentence
+from symobs.proof.derivation.builder import Builder, Slot, relation, sentence
 from symobs.stability.criteria.stability import monic
 from symobs.system.conditions import vanishing_factors
 from symobs.tasks.analysis.page_parts import determinant_form, formula_of_factored, spread, stratum_of, undecided
@@ -128,7 +130,13 @@ def write_hidden_family(page: Builder, design: GainDesign, side: PlacementProble
     key = of_the_others(design)
     define_gain(page, side.gain, design.answer[side.gain], say=f"{key}_{side.kind}")
     if key == "one_gain":
-        page.remark(f"family_hidden_{side.kind}", count=str(len(design.chart.names)))
+        outputs, hidden = design.dual_pair(page.plant).c.shape[0], design.pair.kernel.shape[1]
+        free = (page.plant.order - hidden) * (outputs - 1)
+        page.remark(
+            f"family_hidden_{side.kind}",
+            free=Counted("free_parameter", free),
+            rest=Counted("free_entry", hidden * outputs),
+        )
 
 
 def of_the_others(design: GainDesign) -> str:
@@ -149,7 +157,14 @@ def _shift(page: Builder, equation: Sylvester, side: PlacementProblem, design: G
     """Part the spectra where they meet."""
     if equation.shift is None:
         return
-    gain = page.define(f"{side.gain}_0", design.transpose_for_task(equation.shift), say="spectra_meet")
+    phi, variable = page[side.phi], page.plant.variable
+    rest = (page.plant.matrices.A.characteristic_polynomial(variable) / phi.scalar).denominator
+    shared = monic(phi.scalar / rest, variable)
+    told: dict[str, Slot] = {"say": "spectra_parted"}
+    if shared.degree(variable):
+        roots = Roots((phi / page.value(phi.scalar / shared)).formula, roots_of(shared, variable))
+        told = {"say": f"spectra_meet_{side.kind}", "roots": roots}
+    gain = page.define(f"{side.gain}_0", design.transpose_for_task(equation.shift), **told)
     moved = gain @ page["C"] if side.gain == "L" else page["B"] @ gain
     page.define(f"A_{side.index}0", page["A"] - moved)
 

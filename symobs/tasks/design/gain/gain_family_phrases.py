@@ -4,7 +4,9 @@ from __future__ import annotations
 
 PHRASES: dict[str, str] = {
     "companion_of_wish": "The companion matrix of this polynomial is",
-    "spectra_meet": "It shares roots with the characteristic polynomial of the plant. We therefore split off a fixed preliminary gain,",
+    "spectra_meet_observer": "It and the characteristic polynomial of $A$ have the <root|roots> {roots} in common, so that Sylvester's equation need not be solvable for every $G_o$. A preliminary gain removes <it|them>:",
+    "spectra_meet_state_feedback": "It and the characteristic polynomial of $A$ have the <root|roots> {roots} in common, so that Sylvester's equation need not be solvable for every $G_c$. A preliminary gain removes <it|them>:",
+    "spectra_parted": "A preliminary gain is split off,",
     "sylvester_observer": "For a matrix $G_o$ let $X_o$ be the solution of Sylvester's equation",
     "sylvester_state_feedback": "For a matrix $G_c$ let $X_c$ be the solution of Sylvester's equation",
     "similar_observer": "If $X_o$ is nonsingular, the following gain makes the transpose of $A - L C$ similar to $F_o$:",
@@ -46,17 +48,19 @@ PHRASES: dict[str, str] = {
     "undecided_zero": "No rational gain with zero entries at {places} was found; whether one exists is undecided.",
     "gain_follows": "The gain is",
     "no_member": "A gain with simple entries, whose closed-loop matrix is not cyclic, is",
-    "family_hidden_observer": "The gain is not unique. The gains form a family of dimension {count}: on the observable part there is the freedom of Sylvester's equation, and on the unobservable subspace the gain is arbitrary.",
-    "family_hidden_state_feedback": "The gain is not unique. The gains form a family of dimension {count}: on the controllable part there is the freedom of Sylvester's equation, and on the uncontrollable modes the gain is arbitrary.",
+    "family_hidden_observer": "The gain is not unique: {free} on the observable part; on the unobservable subspace {rest}.",
+    "family_hidden_state_feedback": "The gain is not unique: {free} on the controllable part; on the uncontrollable modes {rest}.",
 }
 
 DEMANDS: dict[str, str] = {
+    "spectra_meet_observer": "shared_roots A phi_o",
+    "spectra_meet_state_feedback": "shared_roots A phi_c",
     "dimension_observer": "dimension C A",
-    "family_hidden_observer": "dimension C A",
+    "family_hidden_observer": "free_parts C A",
     "others_observer": "dimension C A",
     "others_state_feedback": "dimension Bᵀ Aᵀ",
     "dimension_state_feedback": "dimension Bᵀ Aᵀ",
-    "family_hidden_state_feedback": "dimension Bᵀ Aᵀ",
+    "family_hidden_state_feedback": "free_parts Bᵀ Aᵀ",
     "one_gain_only_observer": "single C",
     "one_gain_only_state_feedback": "single Bᵀ",
     "impossible_zero": "no_gain",

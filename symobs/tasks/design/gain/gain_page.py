@@ -4,15 +4,28 @@ from __future__ import annotations
 
 from dataclasses import replace
 from fractions import Fraction
+from math import prod
 from typing import TYPE_CHECKING
 
-from symobs.exact import Factored, Matrix, Scalar, companion, from_coefficients, hankel_of, root_of_pole, roots_of
+from symobs.exact import (
+    Factored,
+    Matrix,
+    Scalar,
+    companion,
+    factored,
+    from_coefficients,
+    hankel_of,
+    root_of_pole,
+    roots_of,
+)
 from symobs.exact.core.generators import all_roots
 from symobs.formula.tree import Evaluated, Literal, Roots
 from symobs.formula.tree.term import Term, block, product
 from symobs.proof.derivation import CaseStep
 from symobs.proof.derivation.builder import Builder, predicate, relation
+from symobs.proof.derivation.facts import PREDICATES
 from symobs.proof.derivation.wording_check import Said, rests
+from symobs.stability.criteria.stability import stability
 from symobs.system.specification import DesiredPolynomial
 from symobs.tasks.analysis.page_parts import (
     determinant_form,
@@ -471,16 +484,30 @@ def _impossible(page: Builder, design: GainDesign, side: PlacementProblem) -> No
         write_no_gain(page, design, side)
         return
     fixed = _fixed(page, side, design.pair.kernel, design.pair.restricted)
+    phi, variable, told = page[side.phi], page.plant.variable, dict[str, Roots]()
+    never_divides, discrete = PREDICATES["not_polynomial"], page.plant.is_discrete
+    factors = factored(design.fixed_polynomial, variable).factors
+    lacking = [f**k for f, k in factors if never_divides(phi.scalar / f, page.environment, discrete)]
+    missing = prod(lacking, start=Scalar.of(1))
+    key = f"impossible_{side.kind}"
+    if missing.degree(variable):
+        rest = page.value(design.fixed_polynomial / missing)
+        told = {"missing": Roots((fixed / rest).formula, roots_of(missing, variable))}
+        key = f"impossible_roots_{side.kind}"
     say_unassignable(
         page,
-        (f"impossible_{side.kind}", f"unassignable_{side.kind}"),
-        page[side.phi],
+        (key, f"unassignable_{side.kind}"),
+        phi,
         design.answer["polynomial"],
         fixed,
         design.case_tree,
-        fixed=Evaluated(fixed.formula, Literal(design.fixed_polynomial)),
-        polynomial=Evaluated(page[side.phi].formula, Literal(page[side.phi].value)),
+        fixed=Evaluated(fixed.formula, formula_of_factored(factored(design.fixed_polynomial, variable))),
+        polynomial=Evaluated(phi.formula, Literal(phi.value)),
+        **told,
     )
+    found = stability(design.fixed_polynomial, variable, page.plant.symbols.signs, discrete=discrete)
+    if found.verdict == "no":
+        page.remark(f"never_converges_{side.kind}", predicate("unstable", fixed))
 
 
 def _fixed(page: Builder, side: PlacementProblem, kernel: Matrix, restricted: Matrix) -> Term:

@@ -24,6 +24,7 @@ from symobs.exact.algebraic.enclosure import is_number, sign_of_number
 from symobs.exact.core.generators import NotWritten, function, function_named, identities, square_root
 from symobs.exact.time_functions.antiderivative import butterworth, butterworth_angles, twice_cosine
 from symobs.formula.phrases import PHRASES
+from symobs.formula.phrases.languages import COUNTED
 from symobs.formula.tree import Environment, Literal
 from symobs.formula.tree.term import Term, identity, letter
 from symobs.ground.dataclass import dataclass
@@ -283,7 +284,9 @@ class PoleWarning:
     variable: str = "s"
 
     def __str__(self) -> str:
-        return PHRASES[self.key].replace("$", "").format(**{name: self._text(name, v) for name, v in self.slots})
+        several = any(name == "zero" and value.degree(self.variable) > 1 for name, value in self.slots)
+        phrase = COUNTED.sub(lambda words: words[2 if several else 1], PHRASES[self.key])
+        return phrase.replace("$", "").format(**{name: self._text(name, v) for name, v in self.slots})
 
     def _text(self, name: str, value: Scalar) -> str:
         if name == "pole":
@@ -311,7 +314,7 @@ def _of_zeros(zeros: PlantZeros, variable: str) -> Iterator[PoleWarning]:
         yield PoleWarning("no_response")
     for factor, _, reason in zeros.unused:
         alone = reason == "zero_at_origin" or factor.degree(variable) == 1
-        yield PoleWarning(reason if alone else f"{reason}s", (("zero", factor),), variable)
+        yield PoleWarning(reason if alone or reason == "zero_slow" else f"{reason}s", (("zero", factor),), variable)
 
 
 def _of_cancellations(plant: StateSpace, zeros: PlantZeros) -> Iterator[PoleWarning]:

@@ -372,6 +372,10 @@ def _caution(page: Builder, advice: PoleAdvice, warning: PoleWarning) -> None:
     elif "pole" in slots:
         root = (page.value(slots["pole"]) @ page.identity(n) - page["A"]).apply("det")
         page.caution(warning.key, zero=_vanishing(page, advice, slots["zero"]), pole=relation(root, 0))
+    elif warning.key == "zero_slow":
+        numerator, factor = page["b_P"], slots["zero"]
+        alone = numerator / page.value(numerator.scalar / factor)
+        page.caution(warning.key, zero=Roots(alone.formula, roots_of(factor, page.plant.variable)))
     elif "zero" in slots:
         page.caution(warning.key, zero=_vanishing(page, advice, slots["zero"]))
     elif warning.key == "no_response":

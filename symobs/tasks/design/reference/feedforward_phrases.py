@@ -10,7 +10,7 @@ PHRASES: dict[str, str] = {
     "feedforward_state_response": "The transfer function from $v_r$ to $y$ is",
     "feedforward_polynomial": "The error dynamics are autonomous and not driven by $v_r$, and the closed-loop characteristic polynomial is",
     "feedforward_assumed": "A DC gain is defined, and some $F_v$ makes it one, provided that {condition}.",
-    "gain_at_rest": "With a constant input in place of $F_v v_r$, the steady-state output is this input multiplied by the DC gain",
+    "gain_at_rest": "For constant $v_r$ the steady-state output is $G_0 F_v v_r$ with the DC gain",
     "feedforward_gain": "For the steady-state output to equal $v_r$,",
     "feedforward_smallest": "There are more inputs than outputs. The $F_v$ of smallest norm for which the steady-state output equals $v_r$ is",
     "feedforward_response": "The error is not excited by $v_r$, so the observer poles do not appear in the transfer function from $v_r$ to $y$:",

@@ -9,7 +9,7 @@ import pytest
 from symobs.exact import Scalar
 from symobs.exact.core.generators import square_root
 from symobs.formula.phrases.languages import ENGLISH, Counted
-from symobs.formula.tree import Environment, Letter, Literal, Relation
+from symobs.formula.tree import Conjunction, Environment, Letter, Literal, Relation
 from symobs.formula.tree.plain_text import plain_relation
 from symobs.proof.derivation import region_check
 from symobs.proof.derivation.region_check import (
@@ -45,6 +45,8 @@ def written(slot: object) -> str:
         if isinstance(slot, Counted)
         else plain_relation(slot, "s")
         if isinstance(slot, Relation)
+        else "; ".join(map(written, slot.relations))
+        if isinstance(slot, Conjunction)
         else str(slot)
     )
 
@@ -57,19 +59,24 @@ def found(polynomial: Scalar, known: Environment = IN_S) -> list[tuple[str, ...]
 
 ROOT_OF_TWO = square_root(Scalar.of(2))
 CUT = s**2 + s + (h - 1) ** 2 * (2 - h)
-ROOT = ("number_is_root", "CRootOf(h**3 - 2, 0)", "the only real root", "h**3 - 2 = 0")
+ROOT = ("number_is_root", "CRootOf(h**3 - 2, 0)", "h**3 - 2 = 0", "the only real root")
+IN_ONE = "in exactly one cell all roots are stable"
 ON_A_LINE = {
-    "half": (s + h, [("point_decides", "one interval")], ["h > 0"]),
+    "half": (s + h, [("zero_decides", "h = 0", "two intervals", "one of them")], ["h > 0"]),
     "empty": ((s - 1) * (s + h), [("region_empty",)], []),
     "cut": (
         CUT,
-        [("points_decide", "two points", "two intervals"), ("point_missing", "h", "1")],
+        [("zeros_decide", "h = 1; h = 2", "three intervals", "two of them"), ("point_missing", "h", "1")],
         ["h < 1", "1 < h < 2"],
     ),
-    "root": (s + h**3 - 2, [("point_decides", "one interval"), ROOT], ["h > CRootOf(h**3 - 2, 0)"]),
+    "root": (
+        s + h**3 - 2,
+        [("zero_decides", "h = CRootOf(h**3 - 2, 0)", "two intervals", "one of them"), ROOT],
+        ["h > CRootOf(h**3 - 2, 0)"],
+    ),
     "three": (
         s + (h**2 - 1) * (h**2 - 4),
-        [("points_decide", "four points", "three intervals")],
+        [("zeros_decide", "h = -2; h = -1; h = 1; h = 2", "five intervals", "three of them")],
         ["h < -2", "-1 < h < 1", "h > 2"],
     ),
     "whole": (s + h**2 + 1, [("region_everywhere", "SymbolList(names=('h',))")], [""]),
@@ -77,7 +84,7 @@ ON_A_LINE = {
     "two cuts": (
         s**2 + s + (h - 1) ** 2 * (h - 2) ** 2,
         [
-            ("points_decide", "two points", "three intervals"),
+            ("zeros_decide", "h = 1; h = 2", "three intervals", "all of them"),
             ("point_missing", "h", "1"),
             ("point_missing", "h", "2"),
         ],
@@ -86,9 +93,8 @@ ON_A_LINE = {
     "two roots": (
         s + (h**3 - 2) * (5 - h**3),
         [
-            ("points_decide", "two points", "one interval"),
-            ROOT,
-            ("number_is_root", "CRootOf(h**3 - 5, 0)", "the only real root", "h**3 - 5 = 0"),
+            ("zeros_decide", "h = CRootOf(h**3 - 2, 0); h = CRootOf(h**3 - 5, 0)", "three intervals", "one of them"),
+            ("numbers_are_roots", "CRootOf(h**3 - 2, 0)", "h**3 - 2 = 0", "CRootOf(h**3 - 5, 0)", "h**3 - 5 = 0"),
         ],
         ["CRootOf(h**3 - 2, 0) < h < CRootOf(h**3 - 5, 0)"],
     ),
@@ -116,7 +122,7 @@ def test_what_is_said_of_intervals(polynomial: Scalar, findings: list[tuple[str,
 
 def test_what_is_said_of_pieces_of_a_plane() -> None:
     quadrant = found(s**2 + h * s + k)
-    assert quadrant == [("cells_decide", "h", "four open pieces", "one of them is"), ("connected_unbounded",)]
+    assert quadrant == [("cells_decide", "h", "the plane", "four cells", IN_ONE), ("connected_unbounded",)]
     assert ("pieces", "two pieces", "none of them is") in found(s**2 + s + h * k)
     without_origin = found(s**2 + s + h**2 + k**2)
     assert ("hole", "0", "0", "h", "k") in without_origin
@@ -141,9 +147,9 @@ def test_the_lines_of_a_division_are_those_over_whose_points_its_pieces_are_stac
     region = region_of(triangle, in_z, discrete=True)
     assert isinstance(region, PlaneRegion)
     first, *others = findings_of_region(region)
-    assert words(first) == ("cells_decide", "k", "nine open pieces", "one of them is")
+    assert words(first) == ("cells_decide_discrete", "k", "the plane", "nine cells", IN_ONE)
     lines = dict(first.slots) | {"lines": Literal(h)}
-    step = RegionSummary(CHI, ("h", "k"), (Sentence("cells_decide", tuple(lines.items())), *others), ())
+    step = RegionSummary(CHI, ("h", "k"), (Sentence(first.key, tuple(lines.items())), *others), ())
     assert is_survey(replace(step, findings=(first, *others)), triangle, in_z, discrete=True)
     assert not is_survey(step, triangle, in_z, discrete=True)
 
@@ -151,7 +157,7 @@ def test_the_lines_of_a_division_are_those_over_whose_points_its_pieces_are_stac
 def test_only_pieces_that_the_signs_allow_are_counted() -> None:
     known = Environment(signs={"a": "positive", "k": "positive"})
     assert found(s**2 + h * s + a, known) == [
-        ("cells_decide", "a", "two open pieces", "one of them is"),
+        ("cells_decide", "a", "the admissible part of the plane", "two cells", IN_ONE),
         ("connected_unbounded",),
     ]
     assert found(s + a + k, known) == [("region_everywhere", "SymbolList(names=('a', 'k'))")]
@@ -193,7 +199,9 @@ def test_a_region_is_of_its_own_parameters_and_kind_of_time() -> None:
     assert isinstance(both, PlaneRegion)
     assert both.names == ("k", "h")
     assert region_of((s + h) * (s + k) * (s + m), IN_S, discrete=False) is None
-    assert found(z + h, Environment(variable="z")) == [("points_decide", "two points", "one interval")]
+    assert found(z + h, Environment(variable="z")) == [
+        ("zeros_decide", "h = -1; h = 1", "three intervals", "one of them")
+    ]
 
 
 def test_a_region_that_is_not_proved_is_not_told(monkeypatch: pytest.MonkeyPatch) -> None:

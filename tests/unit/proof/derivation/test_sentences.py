@@ -6,14 +6,15 @@ from fractions import Fraction
 from typing import TYPE_CHECKING
 
 from symobs.exact import Matrix, Scalar, roots_of
-from symobs.formula.tree import Apply, Environment, Letter, Literal, Predicate, Product, Relation, Roots
+from symobs.exact.core.generators import function
+from symobs.formula.tree import Apply, Environment, Letter, Literal, Power, Predicate, Product, Relation, Roots, Sum
 from symobs.proof.derivation.wording_check import Said
 from symobs.proof.derivation.wording_check import rests as rests_on
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from symobs.formula.tree import Fact
+    from symobs.formula.tree import Fact, Formula
 
 
 def rests(key: str, facts: Sequence[Fact], here: Environment) -> bool:
@@ -49,20 +50,54 @@ def test_a_pole_is_defective_where_it_has_fewer_eigenvectors_than_places() -> No
     here = Environment(values=values)
 
     def held(letter: str, pole: Scalar, *more: Relation) -> bool:
-        poles = Roots(Literal(pole), roots_of(pole, "s"))
-        return rests("defective", [compared(letter, "=", 2), *more, poles], here)
+        return defective([compared(letter, "=", 2), *more, Roots(Literal(pole), roots_of(pole, "s"))])
 
+    def defective(facts: list[Fact], known: Environment = here, **other: Scalar) -> bool:
+        mode = function("exp", -2 * t)
+        slots = {"mode": mode, "times": t * mode, **other}
+        return rests_on("defective", Said(facts, known, {name: Literal(value) for name, value in slots.items()}))
+
+    t = Scalar.symbol("t")
     assert held("M", s + 2)
     assert not held("N", s + 2)  # two eigenvectors
     assert not held("O", s + 2)  # another matrix
     assert not held("M", s + 3)  # another pole
     assert not held("M", (s + 2) * (s + 3))  # which of them?
     assert not held("M", s + 2, compared("N", "=", 1))  # rank of which?
-    assert not rests("defective", [Roots(Literal(s + 2), roots_of(s + 2, "s"))], here)
-    assert not rests("defective", [compared("M", "=", 2)], here)
     poles = Roots(Literal(s + 2), roots_of(s + 2, "s"))
-    assert not rests("defective_instead", [compared("M", "=", 2), poles], Environment(values={"M": chain}))
-    assert not rests("defective", [compared(Scalar.of(1), "=", 1), poles], here)
+    assert not defective([poles])
+    assert not defective([compared("M", "=", 2)])
+    assert not defective([compared("M", "=", 2), poles], Environment(values={"M": chain}))
+    assert not defective([compared(Scalar.of(1), "=", 1), poles])
+    assert not defective([compared("M", "=", 2), poles], mode=function("exp", -3 * t))
+    assert not defective([compared("M", "=", 2), poles], times=t * t * function("exp", -2 * t))
+
+
+def test_a_pair_has_the_damping_ratio_and_the_frequency_told() -> None:
+    two, ratio, frequency = (Literal(Scalar.of(Fraction(number))) for number in ("2", "4/5", "3"))
+    s, phi = Letter("s"), Letter("phi_c")
+    pair = Sum((Power(s, 2), Product((two, ratio, frequency, s)), Power(frequency, 2)))
+
+    def told(damping: Formula, speed: Formula, said: Formula) -> bool:
+        slots = {"damping": damping, "frequency": speed, "pair": Relation((phi, said), ("=",))}
+        return rests_on("pattern_damping", Said([], E, slots))
+
+    assert told(ratio, frequency, pair)
+    assert told(ratio, frequency, Product((pair, Sum((s, two)))))
+    assert not told(frequency, ratio, pair)
+    assert not told(ratio, two, pair)
+    assert not told(ratio, frequency, phi)
+
+
+def test_shared_roots_are_roots_of_both_polynomials() -> None:
+    s = Scalar.symbol("s")
+    here = Environment(values={"A": Matrix.of([[-1, 0], [0, -2]]), "phi_o": (s + 1) * (s + 3)})
+
+    def shared(polynomial: Scalar) -> bool:
+        return rests("spectra_meet_observer", [Roots(Literal(polynomial), roots_of(polynomial, "s"))], here)
+
+    assert shared(s + 1)
+    assert not any(map(shared, (s + 2, s + 3, (s + 1) ** 2)))
 
 
 def test_a_loop_is_stable_where_both_its_polynomials_are() -> None:

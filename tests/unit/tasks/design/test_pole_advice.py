@@ -93,7 +93,7 @@ def test_one_pole_has_no_overshoot() -> None:
 def test_zeros_slower_than_the_settling_time_are_not_used() -> None:
     result = advice("(s + 1) (s + 9)/s^4", settling_time=1, overshoot="0.05")
     assert result.zeros_used == (-9,)
-    assert any("s = -1, is too slow for the specified settling time" in warning for warning in result.warnings)
+    assert any("The zero s = -1 is too slow for the settling time" in warning for warning in result.warnings)
 
 
 # -- warnings ----------------------------------------------------------------------------------------------------------

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 import sympy
+from scipy.linalg import expm  # type: ignore[import-untyped]
 
 import symobs
 from symobs.ground.errors import InputError
@@ -56,3 +57,11 @@ def test_refusals(points: dict[str, Any], message: str) -> None:
 def test_functions_of_time_alone_are_refused(result: Any, points: dict[str, Any]) -> None:
     with pytest.raises(InputError, match="has no field of numbers: its answers are functions of t"):
         result.evaluate(points)
+
+
+def test_sums_over_roots_have_values_at_points() -> None:
+    """The cubic factor of A has no roots in radicals: the entries are sums over them, with e^(λ T) as terms."""
+    A = [[0, 1, 0], [0, 0, 1], [-5, -2, -3]]
+    found = symobs.zero_order_hold(symobs.StateSpace(A, [0, 0, 1]), sampling_period="T").evaluate({"T": [0.25, 2.0]})
+    for index, period in enumerate([0.25, 2.0]):
+        np.testing.assert_allclose(found["A"][index], expm(np.array(A) * period), rtol=1e-12)

@@ -8,18 +8,22 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from symobs.exact import Scalar
+from symobs.exact import RealNumber, Scalar
 from symobs.exact.core.generators import square_root
 from symobs.formula.figures import End, LinePicture, RegionPicture
 from symobs.formula.tree import Environment, Letter, Literal
 from symobs.ground.errors import DerivationRejected
 from symobs.proof.derivation import Derivation, Plot
+from symobs.stability.criteria.critical_polynomials import CriticalPolynomials, StabilityBoundary
+from symobs.stability.plots import picture_of_plane
+from symobs.stability.regions.region import PlaneRegion
+from tests.support.examples import NAMES, results_of
 from tests.support.problems.steps import checked, refused
 from tests.support.regions import drawn_by_hand as hand
 from tests.support.regions.drawn_by_hand import ALL, h1, k, s
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterator
 
     from symobs.formula.figures import Picture, Place
 
@@ -116,3 +120,33 @@ def test_ends_may_be_roots_or_decimals() -> None:
 def test_poles_that_never_part_are_drawn_twice() -> None:
     chi = (s + 1) ** 2 * (s + 2 + k)
     accept(hand.pole_map(chi, (0, 3), ((-6, 1), (-2, 2))), chi)
+
+
+# -- the window -------------------------------------------------------------------------------------------------------
+
+
+def drawn_regions() -> Iterator[PlaneRegion]:
+    """Yield the regions of the worked examples, of a loop with PI control, and of cubic polynomials."""
+    for name, path in NAMES.items():
+        if "stability_region" in path.read_text(encoding="utf-8"):
+            yield from (found for result in results_of(name) if isinstance(found := result.region, PlaneRegion))
+    x, y = Scalar.symbol("x"), Scalar.symbol("y")
+    several = [s**3 + n * s**2 + (x * (7 * n % 90) + 9 - n) * s + y - x**2 for n in range(1, 9)]
+    for chi in (s**4 + 10 * s**3 + 35 * s**2 + (50 + x) * s + 24 + y, s**3 + 6 * s**2 + (11 - y) * s + 6 + y, *several):
+        yield PlaneRegion(CriticalPolynomials(chi, StabilityBoundary("s")), ("x", "y"))
+
+
+def test_every_bounded_component_lies_in_the_window() -> None:
+    """Its exact limits in a direction are critical lines of the plane that is divided across that direction."""
+    boxes = 0
+    for region in drawn_regions():
+        picture = picture_of_plane(region)
+        for names, (low, high) in zip((region.names, region.names[::-1]), picture.window, strict=True):
+            across = PlaneRegion(region.critical, names)
+            for component in across.components:
+                cylinders = [across.plane.cylinders[across.cells[number].cylinder] for number in component.cells]
+                ends = [end for cylinder in cylinders for end in (cylinder.left, cylinder.right)]
+                if component.bounded:
+                    boxes += 1
+                    assert all(end is not None and RealNumber.of(low) < end < RealNumber.of(high) for end in ends)
+    assert boxes >= 12
