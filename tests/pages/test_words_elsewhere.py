@@ -69,10 +69,21 @@ def test_a_horizon_of_no_length_is_no_case() -> None:
 # -- gains ------------------------------------------------------------------------------------------------------------
 
 
+def test_a_gain_is_found_chain_by_chain_where_its_entries_part_the_polynomial() -> None:
+    """A triple integrator and a lag: (s + 1)(s + 2)(s + 3) = s³ + 6s² + 11s + 6 for the one, s + 4 for the other."""
+    plant = symobs.StateSpace("[0 1 0 0; 0 0 1 0; 0 0 0 0; 0 0 0 -1]", "[0 0; 0 0; 1 0; 0 1]")
+    found = symobs.state_feedback(plant, poles=[-1, -2, -3, -4])
+    text = text_of(found)
+    assert found.K.tolist() == [[6, 11, 6, 0], [0, 0, 0, 3]]
+    assert "k₄ + 1 = 4, k₃ = 6, k₂ = 11, k₁ = 6" in text
+    assert "a family of dimension 4" in text
+    assert "Sylvester" not in text
+
+
 def test_a_gain_of_many_is_not_called_the_only_one() -> None:
     # Two outputs see the modes -1, -2, c: for c = -2 one of two modes -2 is hidden.
     plant = symobs.StateSpace("[-1 0 0; 0 -2 0; 0 0 c]", C="[1 0 0; 0 1 c]")
-    text = text_of(symobs.observer(plant, poles=[-1, -2, -3]))
+    text = text_of(symobs.observer(plant, poles=[-1, -2, -3], method="sylvester"))
     assert "c = -2 │ -2 │ this L " in " ".join(text.split())
     assert "only one" not in text
 
@@ -80,14 +91,14 @@ def test_a_gain_of_many_is_not_called_the_only_one() -> None:
 def test_the_equation_is_solved_where_its_own_spectra_are_apart() -> None:
     # The plant has the poles -1 and -2 that are asked for; a gain taken out first moves them away.
     plant = symobs.StateSpace("[-1 0 0; 0 -2 0; 0 0 c]", C="[1 0 0; 0 1 c]")
-    text = text_of(symobs.observer(plant, poles=[-1, -2, -3]))
+    text = text_of(symobs.observer(plant, poles=[-1, -2, -3], method="sylvester"))
     assert "if and only if no desired pole is an eigenvalue of the plant" not in text
     assert "if and only if the two coefficient matrices have no common eigenvalue" in text
 
 
 def test_gains_that_a_family_leaves_out_are_told() -> None:
     # L = [3 0] places -1 as well, and has no G with 1 in its second row.
-    text = text_of(symobs.observer(symobs.StateSpace("[2]", C="[1; 3]"), poles=[-1]))
+    text = text_of(symobs.observer(symobs.StateSpace("[2]", C="[1; 3]"), poles=[-1], method="sylvester"))
     assert "and nongeneric ones for which that row cannot be fixed." in text
 
 

@@ -7,7 +7,7 @@ from math import ceil, lcm, log
 from operator import mul
 from typing import TYPE_CHECKING
 
-from symobs.exact import Matrix, remainder
+from symobs.exact import Matrix, Scalar, remainder
 from symobs.formula.figures import PlottedResponse, TimeResponse
 from symobs.formula.tree import (
     Conjunction,
@@ -34,9 +34,8 @@ from symobs.tasks.analysis.time_response.response import TIMES, Signals, plot_co
 from symobs.tasks.design.pole_placement.sylvester import fresh_names, taken_names
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
+    from collections.abc import Callable, Iterable, Sequence
 
-    from symobs.exact import Scalar
     from symobs.formula.tree import Environment, Formula
     from symobs.proof.derivation.builder import Member, Slot
     from symobs.system.specification import DesiredPolynomial
@@ -482,16 +481,22 @@ OFFSET_ORDER = 2
 _ENTRIES = {"K": ("k", "f", "g"), "L": ("l", "h", "g")}
 
 
-def gain_letters(page: Builder, gain: str, value: Matrix, *, numbers: bool = False) -> Matrix:
-    """Return a gain with letters for its entries from here on, unless `numbers` stay."""
+def entry_letters(page: Builder, gain: str, value: Matrix, kept: Callable[[Scalar], bool]) -> Matrix:
+    """Return a gain with letters that are free for its entries, but for those that are kept."""
     taken = taken_names(page)
     data = {name.rstrip("0123456789").partition("_")[0] for name in taken - page.environment.coefficients.keys()}
     stem = next((letter for letter in _ENTRIES[gain[0]] if letter not in data), _ENTRIES[gain[0]][0])
     names = iter(fresh_names(f"{stem}_", len(value.entries), taken))
-    rows = [
-        [e if numbers and e.is_constant else page.name_coefficient(next(names), e) for e in row] for row in value.rows
-    ]
-    return Matrix.of(rows)
+    return Matrix.of([[e if kept(e) else Scalar.symbol(next(names)) for e in row] for row in value.rows])
+
+
+def gain_letters(page: Builder, gain: str, value: Matrix, kept: Callable[[Scalar], bool] = lambda _: False) -> Matrix:
+    """Return a gain with letters that stand for its entries from here on, but for those that are kept."""
+    letters = entry_letters(page, gain, value, kept)
+    for letter, entry in zip(letters.entries, value.entries, strict=True):
+        if not kept(entry):
+            page.name_coefficient(str(letter), entry)
+    return letters
 
 
 def _is_brief(formula: Formula) -> bool:
@@ -512,7 +517,7 @@ def define_gain(
     elif page.defines(gain) and page[gain].value.substitute(page.environment.coefficients) == value:
         shown = page[gain].value
     else:
-        shown = gain_letters(page, gain, value, numbers=True)
+        shown = gain_letters(page, gain, value, lambda entry: entry.is_constant)
         before = [member for member in [*before, last] if _is_brief(member.formula)]
     meanings = [
         relation(name, entry) for name, entry in zip(shown.entries, value.entries, strict=True) if name != entry

@@ -24,6 +24,12 @@ PHRASES: dict[str, str] = {
     "general_gain": "The general gain is",
     "dimension_observer": "The gains that place these poles form a family of dimension {count}, with the free entries of $G_o$ as parameters. Excluded are gains whose closed-loop matrix is not cyclic, and nongeneric ones for which that row cannot be fixed.",
     "dimension_state_feedback": "The gains that place these poles form a family of dimension {count}, with the free entries of $G_c$ as parameters. Excluded are gains whose closed-loop matrix is not cyclic, and nongeneric ones for which that row cannot be fixed.",
+    "structured_gain": "We look for a gain of the form",
+    "structured_matrix": "for which the closed-loop matrix is",
+    "structured_wish": "The desired polynomial is the product",
+    "equal_factors": "Equating the coefficients factor by factor gives",
+    "others_observer": "Other gains place the same poles: they form a family of dimension {count}.",
+    "others_state_feedback": "Other gains place the same poles: they form a family of dimension {count}.",
     "member_several": "A gain with simple entries is obtained for",
     "member_decoupled_observer": "The output errors are decoupled, each satisfying an equation of its own, by the gain obtained for",
     "alone_decoupled_observer": "The output errors are decoupled, each satisfying an equation of its own, by the gain",
@@ -51,6 +57,8 @@ DEMANDS: dict[str, str] = {
     "spectra_meet_state_feedback": "shared_roots A phi_c",
     "dimension_observer": "dimension C A",
     "family_hidden_observer": "free_parts C A",
+    "others_observer": "dimension C A",
+    "others_state_feedback": "dimension Bᵀ Aᵀ",
     "dimension_state_feedback": "dimension Bᵀ Aᵀ",
     "family_hidden_state_feedback": "free_parts Bᵀ Aᵀ",
     "one_gain_only_observer": "single C",
@@ -72,6 +80,7 @@ NAMING = ("impossible_zero_unless",)
 
 #: Phrases that go on with the sentence before them.
 CONTINUES = (
+    "structured_matrix",
     "determinant_free",
     "solution_long",
     "solution_of_member",
