@@ -388,13 +388,13 @@ def sans_serif(name: str) -> str:
 
 
 def symbol_text(name: str, declared: str | None = None) -> str:
-    """Return a parameter's name on a terminal: `omega` → ω, `h1` → h₁; other names stay as they are."""
+    """Return a parameter's name on a terminal: `omega_c` → ω_c, `h1` → h₁; other names stay as they are."""
     if declared == sans_serif(name):
         return "".join(_SANS_SERIF.get(character, character) for character in name)
     stem, digits, rest = _split(name)
-    if rest or (len(stem) > 1 and stem not in GREEK_LETTERS):
+    if stem not in GREEK_LETTERS and (rest or len(stem) > 1):
         return name
-    return GREEK_LETTERS.get(stem, stem) + digits.translate(SUBSCRIPTS)
+    return "_".join((GREEK_LETTERS.get(stem, stem) + digits.translate(SUBSCRIPTS), *rest))
 
 
 def printed_alike(letters: Iterable[str], forms: Mapping[str, LetterForm], parameters: Iterable[str]) -> list[str]:

@@ -202,7 +202,7 @@ def exact_and_shown(result: Result) -> Iterator[tuple[Any, Any]]:
     shown = [leaf for step in in_decimals(derivation, derivation.steps, 5) for leaf in leaves(step)]
     exact = [leaf for step in derivation.steps for leaf in leaves(step)]
     yield from zip(
-        (leaf for leaf in exact if key_of(leaf) != "in_decimals"),
+        (leaf for leaf in exact if key_of(leaf) not in {"in_decimals", "exact_decimals"}),
         (leaf for leaf in shown if key_of(leaf) != "rounded_digits"),
         strict=True,
     )

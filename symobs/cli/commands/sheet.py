@@ -81,7 +81,7 @@ def command(
         raise UsageError("both --questions and --solutions are given", repair="leave both out for both")
     chosen = _sheet_format(format_name, target)
     web = WebPage(details, copy, live)
-    of_numbers = {"digits": digits, "exact": exact}
+    of_numbers: dict[str, Any] = {"digits": digits, "exact": exact}
     page_options = page_of(detail, language, templates, chosen.name, web, references=references, **of_numbers)
     check_target(target)
     file = _sheet_file(files)

@@ -56,7 +56,7 @@ def command(
         raise UsageError(f"{quoted(task_name)} is not a task", repair=f"known tasks are {', '.join(sorted(tasks()))}")
     check_targets(target, plot, bibliography)
     convention = convention_of(convention_name)
-    numbers = {"printed": printed, "period": period, "hold": hold, "references": references}
+    numbers: dict[str, Any] = {"printed": printed, "period": period, "hold": hold, "references": references}
     web = WebPage(details, copy, live)
     page = page_of(detail, language, templates, chosen, web, digits=digits, exact=exact, **numbers)
 

@@ -55,8 +55,8 @@ if TYPE_CHECKING:
     from symobs.formula.figures import Label
     from symobs.proof.derivation import Derivation, Step
 
-#: The sentence before an answer in decimals on a page of fractions.
-_NUMERICALLY = "in_decimals"
+#: Sentences of a page of fractions: before an answer in decimals, and that the decimals of the data are exact.
+_OF_FRACTIONS = ("in_decimals", "exact_decimals")
 #: An exact answer stands beside its decimals where no entry, and no row, has more characters than this.
 _WIDEST_ENTRY, _WIDEST_ROW = 11, 40
 #: What may not be rounded is written in decimals of up to so many digits.
@@ -127,7 +127,7 @@ def _without_decimals(steps: Iterable[Step]) -> Iterator[Step]:
         match step:
             case Section(steps=inner) | CaseStep(steps=inner):
                 yield replace(step, steps=tuple(_without_decimals(inner)))
-            case Equal(sentence=Sentence(key=key)) if key == _NUMERICALLY:
+            case Equal(sentence=Sentence(key=key)) | Note(sentence=Sentence(key=key)) if key in _OF_FRACTIONS:
                 pass
             case Define(relation=relation):
                 yield replace(step, relation=_without_last(relation))

@@ -110,13 +110,13 @@ def _frames(blocks: Sequence[Block]) -> Iterator[tuple[Heading, tuple[Block, ...
     for block in blocks:
         if not isinstance(block, Heading) or block.number.count(".") > 1:
             body.append(block)
-        elif title.inlines and (body and not _is_a_sentence(body)):
-            yield title, tuple(body)
-            title, body = block, []
-        elif body:
+        elif not title.inlines or not body:
+            title = block
+        elif _is_a_sentence(body):
             body.append(block)
         else:
-            title = block
+            yield title, tuple(body)
+            title, body = block, []
     if body:
         yield title, tuple(body)
 

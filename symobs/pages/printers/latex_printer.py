@@ -112,7 +112,11 @@ class LatexPrinter(Printer[LatexBox]):
         breaks = [r"\\[3pt]" if max(a.right.height, b.right.height) else r"\\" for a, b in pairwise(rows)]
         body = "\n".join(line + after for line, after in zip(lines, [*breaks, ""], strict=True))
         written = f"\\begin{{{environment}}}\n{body}\n\\end{{{environment}}}"
-        return f"{{\\allowdisplaybreaks\n{written}}}" if self.paged and len(rows) > _PAGE_OF_ROWS else written
+        return (
+            f"{{\\allowdisplaybreaks\n{written}}}\\ignorespaces"
+            if self.paged and len(rows) > _PAGE_OF_ROWS
+            else written
+        )
 
     # -- glyphs ---------------------------------------------------------------------------------------------------
 
@@ -340,7 +344,7 @@ class LatexPrinter(Printer[LatexBox]):
         first, *rest = lines
         indented = [first, *(self.joined([self.indent(), line], Level.SUM) for line in rest)]
         sources = [rf"\displaystyle {line.source}" for line in indented]
-        body = under_one_another(sources, [2 * line.height for line in lines])
+        body = under_one_another(sources, [max(1, 2 * line.height) for line in lines])
         width = max(line.width for line in indented) + widths.COLUMN_GAP
         return LatexBox(width, Level.SUM, rf"\begin{{array}}{{l}}{body}\end{{array}}", 2)
 
@@ -368,7 +372,9 @@ def under_one_another(rows: Sequence[str], heights: Sequence[int], ruled: Sequen
     body = rows[0]
     for number, (row, above, below) in enumerate(zip(rows[1:], heights, heights[1:], strict=False), 1):
         body += r"\\[12pt]" if above > 1 else r"\\[4pt]" if max(above, below) else r"\\"
-        body += (r"\hline\rule{0pt}{2.4ex}" if number in ruled else "") + row
+        body += (
+            rf"\hline {row}\rule{{0pt}}{{2.4ex}}" if number in ruled else row
+        )  # before -2 it would make a binary minus
     return body
 
 

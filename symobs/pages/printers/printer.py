@@ -322,7 +322,7 @@ class Printer(FormulaWriter[B]):
 
     def derivative(self, operand: Formula, name: str) -> B:
         """Return ẋ, or d/dt of a stack, or ∂f/∂θ; in discrete time the next instant."""
-        if name not in {"t", "s", "z"} and isinstance(operand, Letter):
+        if isinstance(operand, Letter) and (name not in {"t", "s", "z"} or operand.name in {"f_x", "h_x"}):
             partial, above, below = self.letter("partial", ""), self.letter(operand.name, ""), self.symbol(name)
             return self.fraction(*(self.joined((partial, box), Level.ATOM) for box in (above, below)))
         if name != "t":

@@ -81,12 +81,12 @@ def _within(
 def _parts(ideal: Ideal, signs: Mapping[str, str], nonzero: tuple[Scalar, ...]) -> Iterator[Ideal]:
     """Yield ideals one of which vanishes at each real point of these signs where an ideal does.
 
-    A polynomial of the ideal in one parameter alone tells points apart where different factors of it vanish, and leaves out
-    those where none can; among finitely many points there is one for each parameter.
+    A polynomial of the ideal tells points apart where different factors of it vanish, and leaves out those where none can;
+    among finitely many points there is one in each parameter alone.
     """
     quotient = ideal.quotient if EIGENVALUE not in ideal.field.position else None
     if quotient is None:
-        split = (vanishing_factors([g], signs) for g in ideal.generators if len(g.names) == 1)
+        split = (vanishing_factors([g], signs) for g in ideal.generators)
         several = next((factors for factors in split if len(factors) > 1), ())
         if not several:
             yield ideal

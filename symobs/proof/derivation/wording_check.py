@@ -639,6 +639,8 @@ def modes_of_double(pole: Scalar, variable: str) -> tuple[Scalar, Scalar]:
 def _is_of_damping(said: Said) -> bool:
     """Return whether the factor s² + 2ζω s + ω² is there, of the damping ratio and the frequency told."""
     damping, frequency, s = said.slots["damping"], said.slots["frequency"], Letter("s")
+    if not isinstance(damping, Formula) or not isinstance(frequency, Formula):
+        return False
     pair = Sum((Power(s, 2), Product((_number(2), damping, frequency, s)), Power(frequency, 2)))
     return pair in everything_in(said.slots["pair"])
 

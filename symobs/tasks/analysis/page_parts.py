@@ -203,7 +203,8 @@ def given(
 
 def _as_given(page: Builder, matrix: Matrix) -> Term:
     """Return a matrix of the data: in decimals where the data are, and all its entries can be."""
-    if page.plant.is_in_decimals and all(decimal_places(entry) is not None for entry in matrix.entries):
+    places = [decimal_places(entry) for entry in matrix.entries]
+    if page.plant.is_in_decimals and any(places) and None not in places:
         return page.term(Decimals(matrix))
     return page.value(matrix)
 

@@ -283,7 +283,8 @@ class Result(TaskTraits):
         and modelica are the observer or compensator as a program, sampled with a `period` such as "1/100" by a zero-order
         hold (zoh) or by the bilinear map (tustin); numpy and csv the numbers alone.
         """
-        asked = document_options(**{"detail": detail_of(format_name), **page})
+        page.setdefault("detail", detail_of(format_name))
+        asked = document_options(**page)
         return render(Document("", "", (self,), period=period, hold=hold, **asked), format_name)
 
 

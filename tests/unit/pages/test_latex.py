@@ -188,7 +188,7 @@ def test_blocks_of_numbers_in_decimals_are_one_matrix_with_lines_between_them() 
         (Literal(Matrix.of([[3, 4]])), Block(((Negative(third),),))),
     )
     assert LatexPrinter().typeset(Block(rows)).source == (
-        r"\left[\begin{array}{cc|c}1&2&0.33333\\\hline\rule{0pt}{2.4ex}3&4&-0.33333\end{array}\right]"
+        r"\left[\begin{array}{cc|c}1&2&0.33333\\\hline 3&4&-0.33333\rule{0pt}{2.4ex}\end{array}\right]"
     )
     names = (Block(((Letter("A"),),)), Block(((Letter("B"),),)))
     assert r"\hline" not in LatexPrinter().typeset(Block((names, names))).source

@@ -10,7 +10,7 @@ from symobs import StateSpace, observer
 from symobs.exact import Scalar
 from symobs.formula.phrases import CONTINUES, PHRASES, WORDS
 from symobs.formula.tree import Environment, Letter, Literal, Relation, Transpose
-from symobs.ground.errors import DerivationRejected, ProblemErrors
+from symobs.ground.errors import DerivationRejected, ProblemErrors, UsageError
 from symobs.pages.page import narrator
 from symobs.pages.page.blocks import Block, CaseBlock, Display, Paragraph, Title, every
 from symobs.pages.page.narrator import narrate
@@ -85,7 +85,16 @@ def test_numbers_in_the_text_are_those_of_the_sources() -> None:
     assert listed == sorted(listed)
     assert [number for number in cited if number in listed][:2] == ["1", "3"]
     assert set(cited) <= set(listed)
-    assert "[1] R. E. Kalman, Mathematical description of linear dynamical systems" in " ".join(sources.split())
+    assert "[1] Kalman (1963), SIAM J. Control 1, 152–192." in sources
+
+
+def test_literature_is_told_as_asked_for() -> None:
+    design = observer(StateSpace("[0 1; 0 -1]", "[0; 1]", "[1 0]"), poles=[-10, -10])
+    full, none = (str(design.to("text", references=how)) for how in ("full", "none"))
+    assert "[1] R. E. Kalman, Mathematical description of linear dynamical systems" in " ".join(full.split())
+    assert "References" not in none
+    with pytest.raises(UsageError, match="is no way to cite"):
+        design.to("text", references="long")
 
 
 def test_words_that_are_no_text_are_refused() -> None:

@@ -127,7 +127,7 @@ def test_the_page_says_what_the_table_says_and_names_the_theorem() -> None:
             "All entries of the first column are positive, so all roots lie in the open left half-plane\N{NO-BREAK SPACE}[1].",
         )
     )
-    assert "Routh, A Treatise" in str(sources)
+    assert "Routh (1877), A Treatise" in str(sources)
 
 
 def test_powers_stand_left_of_a_rule() -> None:

@@ -471,7 +471,7 @@ def _write_branch(page: Builder, result: Gramian) -> None:
     integrand = seen @ page["B"].T @ Phi.T if is_dual else Phi.T @ page["C"].T @ seen
     whole = page.term(since_start(integrand.formula, Literal(answer["function"]), answer["horizon"]))
     W: Matrix = answer["matrix"]
-    if page.defines("P_l") and not is_dual:
+    if page.defines("P_l") and not is_dual and result.plant.admits(page["P_l"].value):
         over = page.set("Phi_T", substitute(shown, {"t": answer["horizon"]}))
         page.set("W", W)
         page.equal(relation(page["W"], whole, page["P_l"] - over.T @ page["P_l"] @ over), say="gramian_by_lyapunov")

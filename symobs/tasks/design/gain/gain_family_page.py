@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from symobs.exact import EIGENVALUE, Factored, Matrix, Scalar, companion, rank, roots_of
 from symobs.formula.phrases.languages import Counted
 from symobs.formula.tree import Roots
 from symobs.proof.derivation import CaseStep, Note
-from symobs.proof.derivation.builder import Builder, Slot, relation, sentence
+from symobs.proof.derivation.builder import Builder, relation, sentence
 from symobs.stability.criteria.stability import monic
 from symobs.system.conditions import vanishing_factors
 from symobs.tasks.analysis.page_parts import determinant_form, formula_of_factored, spread, stratum_of, undecided
@@ -160,11 +160,11 @@ def _shift(page: Builder, equation: Sylvester, side: PlacementProblem, design: G
     phi, variable = page[side.phi], page.plant.variable
     rest = (page.plant.matrices.A.characteristic_polynomial(variable) / phi.scalar).denominator
     shared = monic(phi.scalar / rest, variable)
-    told: dict[str, Slot] = {"say": "spectra_parted"}
+    say, told = "spectra_parted", dict[str, Any]()
     if shared.degree(variable):
         roots = Roots((phi / page.value(phi.scalar / shared)).formula, roots_of(shared, variable))
-        told = {"say": f"spectra_meet_{side.kind}", "roots": roots}
-    gain = page.define(f"{side.gain}_0", design.transpose_for_task(equation.shift), **told)
+        say, told = f"spectra_meet_{side.kind}", {"roots": roots}
+    gain = page.define(f"{side.gain}_0", design.transpose_for_task(equation.shift), say=say, **told)
     moved = gain @ page["C"] if side.gain == "L" else page["B"] @ gain
     page.define(f"A_{side.index}0", page["A"] - moved)
 

@@ -107,15 +107,15 @@ LINES = {
     "standard": [
         "u = -K x̂",
         "A - L C",
-        "the pair (C, A) is observable",
+        "(C, A) is observable",
         "u = -K x + K e",
         "dx̂/dt = A x̂ + B u + L(y - C x̂)",
     ],
-    "S0": ["r_o(s) = (s + 1)(s + 2)", "the pair (C, A) is observable"],
+    "S0": ["r_o(s) = (s + 1)(s + 2)", "(C, A) is observable"],
     "S1": [
         "u = K x̂",
         "A + M C",
-        "the pair {A, C} is observable",
+        "{A, C} is observable",
         "dx̂/dt = A x̂ + B u - M(y - C x̂)",
         "u = K x - K x̄",
         "dx̂/dt = A_c x̂ - M y",
@@ -124,13 +124,13 @@ LINES = {
         "u = [-2 -2] x̂",
     ],
     "S2": [
-        "the pair (A, C) is observable",
+        "(A, C) is observable",
         "u = -K x₀",
         "e₀ = x - x₀",
         "dx₀/dt = A x₀ + B u + L(y - C x₀)",
     ],
-    "S3": ["the pair (A, C) is observable", "u = -K x̂"],
-    "S4": ["u = K x̂", "A - H C", "the pair [A, C] is observable", "u = K x - K e", "H(y - C x̂)", "u = [-2 -2] x̂"],
+    "S3": ["(A, C) is observable", "u = -K x̂"],
+    "S4": ["u = K x̂", "A - H C", "[A, C] is observable", "u = K x - K e", "H(y - C x̂)", "u = [-2 -2] x̂"],
 }
 
 
