@@ -300,9 +300,8 @@ def test_which_gains_survive_the_loss_of_observability(poles: list[int], survivo
         assert [str(root) for root in found.fields["fixed_modes"]] == [str(mode)]
         HOLDS["observer"](found, at)
     page = " ".join(str(result.to("text")).split())
-    for mode in (-1, -2):
-        survives = "is among" if mode in poles else "is not among"
-        assert f"its fixed mode {mode} {survives} the desired poles" in page
+    for where, mode in (("c = 1", -1), ("c = 1/2", -2)):
+        assert f"{where} │ {mode} │ {'this L, among others' if mode in poles else 'none'}" in page
     if -2 not in poles:  # the factor c − 1 of det 𝒪 cancelled from the gain, which therefore survives at c = 1
         assert matrix_at(result.answer["L"], {"c": Fraction(1)}) == [[-3], [6]]
         with pytest.raises(ZeroDivisionError):

@@ -242,7 +242,7 @@ class _PageBlocks:
         """Emit steps, special cases that follow one another in a table where each is a row of the same."""
         for opening, run in groupby(steps, self.opening_of_rows):
             cases = list(run)
-            rows = [row for case in cases for row in self.rows(case)] if opening else []
+            rows = [row for case in cases if isinstance(case, CaseStep) and opening for row in self.rows(case)]
             if len(rows) > 1:
                 self.emit_sentence(Sentence(opening))
                 self.blocks.append(self.table(rows))
@@ -276,7 +276,7 @@ class _PageBlocks:
             elif said:
                 key, slots = ROWS[said.key].partition(" ")[2], dict(said.slots)
                 modes = next(
-                    (shown(s, self.language) for s in slots.values() if isinstance(s, Roots | Evaluated)), modes
+                    (tuple(shown(s, self.language)) for s in slots.values() if isinstance(s, Roots | Evaluated)), modes
                 )
                 answer += [" ", *self.filled(Sentence(key, tuple((name, slots[name]) for name in slots_of(key))))]
             if isinstance(step, Define | Equal) and not getattr(step, "silent", False):
