@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 
 #: em of 10 pt: 145 mm of a slide 160 mm wide, less than a sheet of paper has.
 WIDTH = 39.5
-#: A box of more rows than this may be too high for a slide; other displays break between rows.
+#: A boxed answer of more rows than this may be too high for a slide; other displays break between rows.
 _TALL = 6
 #: What keeps two blocks together, a list before the second one, too.
 _KEPT, _INSET, _UNPARTED = "\n\\nopagebreak\n", r"\end{inset}", r"\csname @endparpenalty\endcsname=10000"
@@ -150,7 +150,7 @@ class _SlideWriter(LatexWriter):
         if isinstance(block, AnswerSpace):  # nobody writes on a slide
             return ""
         written = super().block(block)
-        is_tall = isinstance(block, Display) and block.boxed and written.count(r"\\") > _TALL
+        is_tall = isinstance(block, Display) and written.partition(r"\answer{")[2].count(r"\\") > _TALL
         if is_tall or isinstance(block, (*_UNBROKEN, References)):
             return f"\\begin{{fitted}}\n{written}\n\\end{{fitted}}"
         return written
