@@ -71,6 +71,8 @@ _OTHER_WORDS = [
     ("full_rank_controllability", "no_controllability"),
     ("yes_detectability", "no_detectability"),
     ("yes_stabilizability", "no_stabilizability"),
+    ("zero_decides", "zeros_decide"),
+    ("cells_decide", "cells_decide_discrete"),
     ("pbh_yes_observability", "pbh_no_observability"),
     ("pbh_yes_controllability", "pbh_no_controllability"),
     ("stack_yes", "stack_no"),
@@ -92,11 +94,13 @@ _OTHER_WORDS = [
 _UNDECIDED = {"undecided_case", "undecided_together", "undecided_many"}
 #: What else may be said to be counted.
 _OTHER_THINGS = {"only_real_root": "real_root", "real_root": "only_real_root"}
-#: Sentences that say more with the same slots; what says less is as true.
+#: Sentences that say more, or otherwise, with the same slots; what says less is as true.
 _MORE_WORDS = {
     "compensator_unstable": "compensator_unstable_alone",
     "compensator_unstable_low": "compensator_unstable_low_alone",
     "minimal_unstable": "minimal_unstable_alone",
+    "never_detectability": "yes_detectability",
+    "never_stabilizability": "yes_stabilizability",
 }
 OTHER_WORDS = dict(_OTHER_WORDS) | {second: first for first, second in _OTHER_WORDS} | _MORE_WORDS
 #: Where a sentence is changed into one that is true of no page of which it is.

@@ -15,6 +15,7 @@ from symobs.exact.algebraic.root_sum import RootSum
 from symobs.exact.core.generators import (
     all_roots,
     function_named,
+    functions_in,
     identities,
     substitute,
     symbols_in,
@@ -106,7 +107,7 @@ class DampingCases(Result):
     @cached_property
     def denominators(self) -> tuple[Scalar, ...]:
         """The polynomials in the parameters that the answer divides by."""
-        return vanishing_denominators(self.matrices, self.plant.symbols.signs)
+        return vanishing_denominators(self.matrices, self.plant)
 
     @cached_property
     def holds_where(self) -> tuple[Condition, ...]:
@@ -269,16 +270,21 @@ def _plain(delta: Scalar) -> Scalar:
     return delta * delta.denominator if delta.denominator.is_constant else delta
 
 
-def vanishing_denominators(values: Any, signs: Mapping[str, str]) -> tuple[Scalar, ...]:
-    """Return the factors of denominators without the time t that the signs do not keep from 0."""
-    found: dict[Scalar, None] = {}
-    for factor in vanishing_factors([value.common_denominator() for value in values], signs):
-        root = function_named(min(factor.names))
-        if root is not None and root.kind == "sqrt" and root.value == factor:  # √δ vanishes with δ
-            found |= dict.fromkeys(vanishing_factors([root.argument], signs))
-        elif "t" not in symbols_in(factor):
-            found[factor] = None
-    return tuple(found)
+def vanishing_denominators(values: Any, plant: StateSpace) -> tuple[Scalar, ...]:
+    """Return the factors of denominators in the plant's data that its signs do not keep from 0.
+
+    Functions of time or of a horizon, such as 1 − e^(−2aT), are no data: what divides by these is a matter of the rank.
+    """
+    m = plant.matrices
+    data = [*functions_in([m.A, m.B, m.C, m.D, *plant.equations])]
+    arguments = {symbol for function in data for symbol in function.symbols} - {"t"}
+
+    def is_of_data(factor: Scalar) -> bool:
+        found = [f for name in factor.names if (f := function_named(name)) is not None and f not in data]
+        return all(f.kind != "sqrt" and f.symbols <= arguments and not functions_in([f.argument]) for f in found)
+
+    denominators = [value.common_denominator() for value in values]
+    return tuple(factor for factor in vanishing_factors(denominators, plant.symbols.signs) if is_of_data(factor))
 
 
 def with_signs(plant: StateSpace, taken: Signs, solve: Callable[[Callable[[Scalar], str]], Any]) -> tuple[Any, Signs]:

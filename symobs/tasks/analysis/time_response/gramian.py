@@ -206,7 +206,7 @@ class Gramian(DampingCases):
     def denominators(self) -> tuple[Scalar, ...]:
         """Also those of what is seen: on a curve its coefficients may have poles, where it decays or not anew."""
         divided = [*self.matrices, self.answer["seen"]] if "seen" in self.answer else self.matrices
-        return vanishing_denominators(divided, self.plant.symbols.signs)
+        return vanishing_denominators(divided, self.plant)
 
     @property
     def further_zeros(self) -> tuple[Scalar, ...]:

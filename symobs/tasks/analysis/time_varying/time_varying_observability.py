@@ -251,7 +251,7 @@ class TimeVaryingObservability(Result):
         """The polynomials in the parameters that Φ, the Gramian and x₀ divide by and the plant does not."""
         m, domain = self.plant.matrices, {condition.expression for condition in self.domain}
         names = (m.A.names | m.B.names | m.C.names) - {TIME}
-        found = vanishing_denominators(self.closed_forms, self.plant.symbols.signs)
+        found = vanishing_denominators(self.closed_forms, self.plant)
         return tuple(f for f in found if f.names <= names and f not in domain)
 
     @cached_property
