@@ -242,7 +242,7 @@ class _PageBlocks:
         """Emit steps, special cases that follow one another in a table where each is a row of the same."""
         for opening, run in groupby(steps, self.opening_of_rows):
             cases = list(run)
-            rows = [row for case in cases if isinstance(case, CaseStep) and opening for row in self.rows(case)]
+            rows = [row for case in cases if isinstance(case, CaseStep) for row in self.rows(case)] if opening else []
             if len(rows) > 1:
                 self.emit_sentence(Sentence(opening))
                 self.blocks.append(self.table(rows))
@@ -275,15 +275,14 @@ class _PageBlocks:
                 where = (*where, *step.relations)
             elif said:
                 key, slots = ROWS[said.key].partition(" ")[2], dict(said.slots)
-                modes = next(
-                    (tuple(shown(s, self.language)) for s in slots.values() if isinstance(s, Roots | Evaluated)), modes
-                )
+                found = [slot for slot in slots.values() if isinstance(slot, Roots | Evaluated)]
+                modes = tuple(shown(found[0], self.language)) if found else modes
                 answer += [" ", *self.filled(Sentence(key, tuple((name, slots[name]) for name in slots_of(key))))]
             if isinstance(step, Define | Equal) and not getattr(step, "silent", False):
                 relations = (step.relation,) if isinstance(step, Define) else step.relations
                 answer += [part for relation in relations for part in (" ", relation)]
         if answer:
-            yield where, tuple(modes), joined(answer[1:])
+            yield where, modes, joined(answer[1:])
         for step in case.steps:
             if isinstance(step, CaseStep):
                 yield from self.rows(step, where)

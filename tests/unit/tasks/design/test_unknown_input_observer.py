@@ -106,7 +106,7 @@ def test_many_special_cases_are_the_rows_of_one_table() -> None:
     plant = symobs.StateSpace("[-1 1 0; -a 0 0; 0 -b -1]", "[0; 1; 0]", "[1 0 0; 0 0 1]")
     found = symobs.unknown_input_observer(plant, E="[a; 1; b]", poles="-2, -3, -4")
     page = " ".join(found.to("text").split())
-    assert page.count("A₁ = T A") == page.count("H = E") == page.count("requires rank(C E)") == 1
+    assert page.count("A₁ = T A") == page.count("H = E") == page.count("Such an observer requires") == 1
     table = page[page.index("Special cases") : page.index("References")]
     for row in (
         "a = 0, b = 0 │ – │ none",
