@@ -165,7 +165,7 @@ _SANS_SERIF = "\U0001d5a0-\U0001d5d3"
 
 
 #: A name as it is typed, or a Greek letter or one without serifs, with indices below.
-PRINTED_NAME = rf"(?:[A-Za-z][A-Za-z0-9_]*|[{''.join(_SPELT)}{_SANS_SERIF}])[{_BELOW}]*"
+PRINTED_NAME = rf"(?:[A-Za-z][A-Za-z0-9_]*|[{''.join(_SPELT)}{_SANS_SERIF}](?:_[A-Za-z0-9_]+)?)[{_BELOW}]*"
 
 
 _PAIR = re.compile(r"([^±]*)±([^±]*)")
@@ -184,10 +184,11 @@ def ascii_of(glyphs: str) -> str:
 
 
 def spellings(printed: str) -> tuple[str, ...]:
-    """Return the names that are printed like this: ω₀ is omega0 or omega_0."""
+    """Return the names that are printed like this: ω₀ is omega0 or omega_0, ω_c omega_c."""
     stem = printed.rstrip(_BELOW)
     digits = unicodedata.normalize("NFKC", printed[len(stem) :])
-    plain = _SPELT.get(stem) or unicodedata.normalize("NFKC", stem)
+    letter, index = (stem[:1], stem[1:]) if stem[:1] in _SPELT else (stem, "")
+    plain = _SPELT.get(letter, unicodedata.normalize("NFKC", letter)) + index
     return (plain + digits, f"{plain}_{digits}") if digits else (plain,)
 
 
