@@ -78,7 +78,7 @@ def test_shell_lines_run_on_the_problem_file(require_tool: Callable[[str], str],
     _, lecture, _ = blocks("toml")
     (tmp_path / "lecture.toml").write_text(lecture, encoding="utf-8")
     lines = [line for block in blocks("sh") for line in block.splitlines() if line.startswith("symobs ")]
-    assert len(lines) == 31
+    assert len(lines) == 33
     for line in lines:
         words = shlex.split(line, comments=True)
         target = words.pop() if ">" in words else ""
