@@ -99,6 +99,12 @@ def summary(
             for report in reports
             if (reasons := [part.reason for part in report.parts if part.verdict == "unreadable"])
         ],
+        "by_hand": [
+            {"student": report.student, "part": part.part, "text": part.given, "reason": part.reason}
+            for report in reports
+            for part in report.parts
+            if part.credit is None and part.weight
+        ],
     }
 
 
@@ -180,6 +186,12 @@ def as_markdown(found: Mapping[str, Any]) -> str:
         lines += [
             f"| {plain(name)} | {each['students']} | {each['mean_decimal']} |"
             for name, each in found["variants"].items()
+        ]
+    if found["by_hand"]:
+        lines += ["", "## To be looked at by hand", "", "| student | part | text | reason |", "|---|---|---|---|"]
+        lines += [
+            f"| {plain(each['student'])} | {plain(each['part'])} | {plain(each['text'])} | {plain(each['reason'])} |"
+            for each in found["by_hand"]
         ]
     if found["without_variant"]:
         lines += ["", f"Without a known variant, not in the average: {plain(', '.join(found['without_variant']))}."]

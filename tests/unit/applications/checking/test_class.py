@@ -79,6 +79,10 @@ def test_a_class_is_marked_and_counted(folder: Path) -> None:
     assert summary["slips"]["compensator.L"][0] == {"slip": "entry", "count": 1, "students": ["s1"]}
     assert {"given": "[7; 7]", "count": 2, "students": ["s3", "s4"]} in summary["agreement"]["compensator.L"]
     assert "larger than 64 kB" in summary["unreadable"][0]["message"]
+    assert {row[0]: row[3] for row in marks if row[2] == "unreadable"} == {"big": "", "../../etc": ""}
+    by_hand = [entry for entry in summary["by_hand"] if entry["student"] == "big"]
+    assert [entry["part"] for entry in by_hand] == [f"compensator.{name}" for name in "KLF"]
+    assert all("larger than 64 kB" in entry["reason"] for entry in by_hand)
     pages = {path.name for path in (results / "feedback").iterdir()}
     assert pages == {hashlib.sha256(name.encode()).hexdigest()[:16] + ".html" for name in verdicts}
 

@@ -87,8 +87,8 @@ h,,[3; 2]
         "d": ("v002", "right", "4.00"),
         "e": ("v002", "wrong", "0.00"),
         "f": ("v001", "wrong", "0.00"),
-        "g": ("v9", "unreadable", "0.00"),
-        "h": ("", "unreadable", "0.00"),
+        "g": ("v9", "unreadable", ""),
+        "h": ("", "unreadable", ""),
     }
     reports = [json.loads(line) for line in (folder / "OUT" / "results.jsonl").read_text(encoding="utf-8").splitlines()]
     assert [report["title"] for report in reports[:3]] == ["v001", "v002", "v003"]
@@ -112,7 +112,7 @@ def test_the_assignment_beside_the_manifest_says_who_has_which(folder: Path) -> 
     assert marks(folder) == {
         "a": ("v002", "right", "4.00"),
         "'=b": ("v003", "right", "4.00"),
-        "c": ("", "unreadable", "0.00"),
+        "c": ("", "unreadable", ""),
     }
     assert run(folder, "student,variant,L\na,v001,[8; 15]\n").code == 0  # what is handed in goes before
     assert marks(folder) == {"a": ("v001", "wrong", "0.00")}
