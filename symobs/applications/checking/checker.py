@@ -92,7 +92,7 @@ def part_of(
     match judged.verdict:
         case "right":
             return replace(part, credit=Fraction(1), effect=_effect(view, judgement, judged))
-        case "undecided" | "unreadable":
+        case "undecided":
             return replace(part, credit=None)
         case "follows":
             origins = tuple(f"{view.task}.{origin}" for origin in judged.origins)
@@ -416,9 +416,10 @@ class Checked:
         self, student: str, variant: str | None, verdict: str, reason: str, show: str = "reason"
     ) -> CheckReport:
         """Return the report on an answer that as a whole cannot be read (`unreadable`), or checked (`undecided`)."""
+        credit = None if verdict == "undecided" else Fraction(0)
         marking, title = self.problem.marking, self.problem.title
         parts = tuple(
-            replace(missing(view, name, marking), verdict=verdict, reason=reason, credit=None)
+            replace(missing(view, name, marking), verdict=verdict, reason=reason, credit=credit)
             for view, name in self.asked(self.views())
         )
         points = tuple((each.relation, each.points, False) for each in marking.milestones)

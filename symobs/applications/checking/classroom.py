@@ -49,6 +49,16 @@ def safe(cell: str) -> str:
     return f"'{cell}" if cell.startswith(_FORMULA) and not _NUMBER.fullmatch(cell) else cell
 
 
+def by_hand(report: CheckReport) -> list[Part]:
+    """Return the parts that a human has to look at: those that count and cannot be read, or are undecided."""
+    return [part for part in report.parts if part.weight and part.verdict in {"unreadable", "undecided"}]
+
+
+def score_of(report: CheckReport) -> Fraction | None:
+    """Return the marks of an answer in a class; None while a part is to be looked at by hand."""
+    return None if by_hand(report) else report.score
+
+
 def marks(reports: Sequence[CheckReport]) -> str:
     """Return the marks as CSV: a row a student, a column a part."""
     parts = list(dict.fromkeys(part.part for report in reports for part in report.parts if part.weight))
@@ -57,7 +67,7 @@ def marks(reports: Sequence[CheckReport]) -> str:
     writer.writerow(["student", "variant", "verdict", "score", *(f"part:{part}" for part in parts)])
     for report in reports:
         by_name = {part.part: part for part in report.parts}
-        score = "" if report.score is None else decimal(report.score)
+        score = "" if (found := score_of(report)) is None else decimal(found)
         cells = [report.student, report.variant or "", report.verdict, score]
         cells += [by_name[part].verdict if part in by_name else "" for part in parts]
         writer.writerow([safe(cell) for cell in cells])
@@ -72,7 +82,7 @@ def summary(
 ) -> dict[str, Any]:
     """Return the summary of a class as data; students without a known variant are not in the mean."""
     marked = [report for report in reports if report.student not in without_variant]
-    scores = [report.score for report in marked if report.score is not None]
+    scores = [score for report in marked if (score := score_of(report)) is not None]
     mean = sum(scores, Fraction(0)) / len(scores) if scores else None
     parts: dict[str, list[tuple[str, Part]]] = {}
     for report in reports:
@@ -102,8 +112,7 @@ def summary(
         "by_hand": [
             {"student": report.student, "part": part.part, "text": part.given, "reason": part.reason}
             for report in reports
-            for part in report.parts
-            if part.credit is None and part.weight
+            for part in by_hand(report)
         ],
     }
 
@@ -112,8 +121,8 @@ def _by_variant(reports: Sequence[CheckReport]) -> dict[str, Any]:
     """Return of each variant how many have marks, their mean, and the sum of the squared differences from it."""
     scores: dict[str, list[Fraction]] = {}
     for report in reports:
-        if report.variant is not None and report.score is not None:
-            scores.setdefault(report.variant, []).append(report.score)
+        if report.variant is not None and (score := score_of(report)) is not None:
+            scores.setdefault(report.variant, []).append(score)
     found = {}
     for name, own in sorted(scores.items()):
         mean = sum(own, Fraction(0)) / len(own)

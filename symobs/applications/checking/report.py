@@ -70,7 +70,7 @@ class Line:
 class ReportData:
     """The verdict on an answer: right, wrong, incomplete, unreadable or undecided, with its score and its parts.
 
-    The score is an exact fraction of the total, None where a part that counts cannot be read or is undecided.  `page` is the solution as HTML, in a report
+    The score is an exact fraction of the total, None where a part is undecided.  `page` is the solution as HTML, in a report
     that shows it.
     """
 
@@ -112,7 +112,7 @@ class ReportData:
     @property
     def score(self) -> Fraction | None:
         """The marks of this answer."""
-        if any(part.credit is None and part.weight for part in self.parts) or not self._weights:
+        if any(part.credit is None for part in self.parts) or not self._weights:
             return None
         got = sum((part.weight * (part.credit or 0) for part in self.parts), Fraction(0))
         return (got + sum((m[1] for m in self.milestones if m[2]), Fraction(0))) / self._weights * self.total
