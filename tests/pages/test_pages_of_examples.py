@@ -79,7 +79,7 @@ def glyphs_of_latex(source: str) -> str:
             glyphs += command if command in _SAID else _COMMANDS.get(command, "")
         elif sign[0] != "\\" and sign not in "{}^_& ~":
             glyphs += sign
-    return glyphs.replace("-", "−").replace("'", "′")
+    return glyphs.replace("-", "−").replace("'", "′").replace("*", "\N{ASTERISK OPERATOR}")
 
 
 def glyphs_of_mathml(node: ET.Element) -> str:

@@ -359,7 +359,7 @@ def test_slides_are_typeset_without_a_fault(tmp_path: Path, require_tool: Requir
     assert len(files) == len(names)
     faults, pages = typeset(run.out, tmp_path, require_tool("pdflatex"))
     assert faults == []
-    assert pages > 50
+    assert pages > 40
 
 
 def test_slides_of_one_problem_begin_with_their_title(tmp_path: Path, require_tool: RequireTool) -> None:

@@ -2,6 +2,7 @@ r"""Slides: the format `beamer`, one frame a section, broken by TeX."""
 
 from __future__ import annotations
 
+import re
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from symobs.formula.phrases.languages import Language, language_named
@@ -35,8 +36,8 @@ if TYPE_CHECKING:
 
 #: em of 10 pt: 145 mm of a slide 160 mm wide, less than a sheet of paper has.
 WIDTH = 39.5
-#: A boxed answer of more rows than this may be too high for a slide; other displays break between rows.
-_TALL = 6
+#: A boxed answer or a matrix of more rows than this may be too high for a slide; other displays break between rows.
+_TALL, _MATRIX = 6, re.compile(r"\\begin\{bmatrix\}(.*?)\\end\{bmatrix\}", re.DOTALL)
 #: What keeps two blocks together, a list before the second one, too.
 _KEPT, _INSET, _UNPARTED = "\n\\nopagebreak\n", r"\end{inset}", r"\csname @endparpenalty\endcsname=10000"
 #: So many references fit below what is before them; what is not broken has no room below it.
@@ -150,7 +151,8 @@ class _SlideWriter(LatexWriter):
         if isinstance(block, AnswerSpace):  # nobody writes on a slide
             return ""
         written = super().block(block)
-        is_tall = isinstance(block, Display) and written.partition(r"\answer{")[2].count(r"\\") > _TALL
+        unparted = [written.partition(r"\answer{")[2], *_MATRIX.findall(written)] if isinstance(block, Display) else []
+        is_tall = any(part.count(r"\\") > _TALL for part in unparted)
         if is_tall or isinstance(block, (*_UNBROKEN, References)):
             return f"\\begin{{fitted}}\n{written}\n\\end{{fitted}}"
         return written

@@ -242,7 +242,7 @@ def test_a_convention_of_one_s_own(tmp_path: Path) -> None:
     file.write_text('convention = "lecture"\n' + DESIGN + expect, encoding="utf-8")
     run = inside("solve", str(file), "--format", "text")
     assert (run.code, run.err) == (0, "")
-    for line in ("u = R x̂", "A + N C", "ε = x - x̂", "the pair [A, C]", "p_o(s)"):
+    for line in ("u = R x̂", "A + N C", "ε = x - x̂", "[A, C] is observable", "p_o(s)"):
         assert line in run.out
     latex = inside("solve", str(file), "--convention", str(tmp_path / "lecture.toml")).out
     assert r"\varepsilon" in latex or r"\epsilon" in latex
