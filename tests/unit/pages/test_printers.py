@@ -405,7 +405,11 @@ def read_text(source: str) -> Value:
 
 def right_side(display: str) -> str:
     """What stands behind the first sign of a display, its lines joined again."""
-    body = re.sub(r"\\(?:begin|end)\{(?:align|gather)\*\}|\\\[ | \\\]|\{\\allowdisplaybreaks\n|\}$", "", display)
+    body = re.sub(
+        r"\\(?:begin|end)\{(?:align|gather)\*\}|\\\[ | \\\]|\{\\allowdisplaybreaks\n|\}(?:\\ignorespaces)?$",
+        "",
+        display,
+    )
     lines = re.split(r"\\\\(?:\[\d+pt\])?\n", body)
     return "".join(line.strip().removeprefix("&").removeprefix(r"\quad") for line in lines).partition("=")[2]
 

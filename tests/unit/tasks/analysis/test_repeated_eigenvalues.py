@@ -200,7 +200,7 @@ def test_two_oscillators_in_a_chain_grow_where_they_meet() -> None:
     (case,) = found.case_tree
     assert case.result is not None
     assert case.result.verdict == "no"
-    assert "The modes on the boundary are distinct provided that v - w ≠ 0." in " ".join(found.to("text").split())
+    assert "The modes on the boundary are distinct provided that v ≠ w." in " ".join(found.to("text").split())
 
 
 def test_a_drop_on_several_equations_is_excluded_as_one() -> None:

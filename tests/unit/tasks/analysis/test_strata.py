@@ -194,7 +194,7 @@ def test_a_rank_that_drops_at_a_point_of_a_curve_is_said_outside_it() -> None:
     )
     page = " ".join(symobs.observability(plant).to("text").split())
     assert "Here we consider the case a³ = b²." in page
-    assert "In what follows we assume a ≠ 0. Since rank 𝒪 = 2" in page
+    assert "What follows holds for a ≠ 0. Since rank 𝒪 = 2" in page
 
 
 SMALL = [
