@@ -38,6 +38,7 @@ from tests.support.algebra import (
 from tests.support.claims.claims import Setting, conditions_hold
 from tests.support.claims.claims_in_time import FUNCTIONS_OF_TIME
 from tests.support.claims.claims_of_advice import advice_holds
+from tests.support.claims.claims_of_lyapunov import holds as lyapunov_holds
 from tests.support.claims.claims_of_regions import region_holds
 from tests.support.derivations import World, plus, times
 from tests.support.examples import results_of
@@ -54,6 +55,8 @@ if TYPE_CHECKING:
 pytestmark = pytest.mark.slow
 
 FOLDER = ROOT / "worked_examples"
+#: Tasks whose answers are held to equations of their own.
+HELD = {"lyapunov": lyapunov_holds, "pole_advice": advice_holds}
 #: Fractions know no roots: examples with roots in their plant are held to PARI.
 WITH_ROOTS = {"coupled_masses_irrational", "sensor_at_a_node"}
 TEXTS = {path.stem: path.read_text(encoding="utf-8") for path in sorted(FOLDER.glob("*.toml"))}
@@ -214,9 +217,9 @@ def computed(part: Result, point: Point) -> dict[str, Any]:
     if part.task == "stability_region":
         region_holds(part, point)  # type: ignore[arg-type]
         return {}
-    if part.task == "pole_advice":
-        advice_holds(part, Setting.of(part.plant, {}, point))
-        return {"polynomial": answer["zeros"] * at(part.answer["rest"], point)}
+    if part.task in HELD:
+        HELD[part.task](part, Setting.of(part.plant, {}, point))
+        return {"polynomial": answer["zeros"] * at(part.answer["rest"], point)} if "zeros" in answer else {}
     assert part.task == "compensator"
     if "F" not in answer:
         return {}

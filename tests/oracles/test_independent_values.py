@@ -17,6 +17,7 @@ from tests.support.examples import results_of
 from tests.support.paths import ROOT
 from tests.support.problems.problems_by_hand import (
     BY_HAND,
+    CLAIMED,
     FAMILIES,
     FREE_ENTRIES,
     Disturbed,
@@ -81,7 +82,7 @@ def known_letters(hand: Hand) -> dict[str, Any]:
         known |= {"C": C, "O": seen}
         known["y"] = {"x": C, "u": hand.feedthrough} if hand.D is not None else {"x": C}
         if hand.observer is not None or hand.L is not None:
-            known |= {"L": hand.observer_gain, **entries("l", hand.observer_gain)}
+            known |= {"L": hand.observer_gain, **entries("l", hand.observer_gain), **entries("h", hand.observer_gain)}
             if C.rows > 1:
                 known |= sylvester_letters(A.T, C.T, hand.observer_gain.T, hand.observer, s_, "o")
             else:
@@ -196,7 +197,7 @@ def is_positive(factor: sympy.Poly, signs: Mapping[str, str]) -> bool:
 def said_and_assumed(hand: Hand, reader: Reader) -> None:
     """Hold what sentences mention, and what is assumed from some line on, against the problem."""
     for where, value in reader.tally.spoken:
-        assert where == "defective.pole"
+        assert where in {"defective.pole", "defective_instead.mode"}
         for polynomial in (hand.control, sympy.diff(hand.control, hand.variable)):
             assert polynomial.subs(hand.variable, value) == 0
     if reader.assumed:
@@ -438,5 +439,5 @@ REGIONS = {path.stem for path in FOLDER.glob("*.toml") if "stability_region" in 
 
 
 def test_every_worked_example_is_written_out_here() -> None:
-    written = {*BY_HAND, *NAMES_IN_TIME, *VARYING, *FAMILIES, *REGIONS}
+    written = {*BY_HAND, *NAMES_IN_TIME, *VARYING, *FAMILIES, *REGIONS, *CLAIMED}
     assert {path.stem for path in FOLDER.glob("*.toml")} == written
