@@ -13,6 +13,11 @@ if TYPE_CHECKING:
 
 def holds(result: Any, at: Setting) -> None:
     """Hold the input to the Gramian and to d; a refusal to the reachable states."""
+    with CONTEXT.workdps(300):  # W has e^{2aT}, and what is left of it may be small
+        _holds(result, at)
+
+
+def _holds(result: Any, at: Setting) -> None:
     if result.verdict == "undecided":
         return
     world, w = world_at(result, at), result.fields["unreachable"]
