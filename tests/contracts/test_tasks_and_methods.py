@@ -371,8 +371,7 @@ def test_the_verdict_of_a_numeric_design_is_the_solvability_of_the_linear_system
     assert solve(f"{task}/auto", plant, sample.poles).verdict == ("yes" if possible else "no")
 
 
-# Open: an input of minimum energy is refused at A = [a b 0; 0 1] with some rational a b: "it is I at t = T".
-@pytest.mark.parametrize("name", [name for name in METHODS if not name.startswith("minimum_energy_input")])
+@pytest.mark.parametrize("name", METHODS)
 @given(plants(("parametric",)), st.integers(0, 2**16))
 @settings(max_examples=8)
 def test_a_result_survives_the_specialisation_of_its_parameters(name: str, sample: Sample, seed: int) -> None:

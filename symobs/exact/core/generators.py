@@ -31,6 +31,7 @@ _MOST_MULTIPLE, _MOST_POWER = 1000, 100_000
 _LARGEST_POWER = 1_000_000
 #: Relations of angles and of exponents with larger multiples need polynomials of a higher degree than claims have.
 _RELATED_ANGLES, _RELATED_POWERS = 30, 100
+_BASES = 3  # a base of the values with those at an instant may be another one
 ZERO, ONE = Scalar.of(0), Scalar.of(1)
 #: The number π, a generator like a parameter: no polynomial over Q vanishes at it.
 PI = "pi"
@@ -393,6 +394,25 @@ def identities(
         if meaning != f.value:
             meanings[f.name] = meaning
     return meanings, tuple(r.numerator for r in relations)
+
+
+def identities_at(
+    values: Iterable[Scalar | Matrix], instant: Scalar | None
+) -> tuple[dict[str, Scalar], tuple[Scalar, ...]]:
+    """Return the identities of values, and of what they and their common base are at t = instant."""
+    values, moved = tuple(values), list[Scalar | Matrix]()
+    if instant is None:
+        return identities(values)
+    for _ in range(_BASES):
+        meanings, _ = identities([*values, *moved])
+        last, moved = moved, [_at(value, instant) for value in [*values, *meanings.values()]]
+        if moved == last:
+            break
+    return identities([*values, *moved])
+
+
+def _at(value: Scalar | Matrix, instant: Scalar) -> Scalar | Matrix:
+    return substitute(value, {"t": instant})
 
 
 def _common_denominators(moving: Iterable[Function]) -> dict[Function, Scalar]:

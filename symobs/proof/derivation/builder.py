@@ -9,7 +9,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, TypeAlias
 
 from symobs.exact import Matrix, Scalar, rounded
-from symobs.exact.core.generators import function_named, identities, roots_in
+from symobs.exact.core.generators import function_named, identities, identities_at, roots_in
 from symobs.formula.notation import LETTERS
 from symobs.formula.phrases.languages import SPOKEN, Counted, StateChoice
 from symobs.formula.tree import (
@@ -173,9 +173,9 @@ class Builder:
         """Admit square roots: each squared is its radicand from the start."""
         self.where(*identities(values)[1])
 
-    def in_time(self, *values: Scalar | Matrix) -> None:
-        """Admit functions of time, with their algebraic dependences from the start."""
-        self.in_time_by(*identities(values))
+    def in_time(self, *values: Scalar | Matrix, at: Scalar | None = None) -> None:
+        """Admit functions of time, and what they are at an instant, with their algebraic dependences from the start."""
+        self.in_time_by(*identities_at(values, at))
         taken = {*self.plant.symbols.signs, *self.plant.field.names}
         letters = iter([form for form in _ROOTS if form.lstrip("\\") not in taken])
         for root in _roots_of_sums(values):

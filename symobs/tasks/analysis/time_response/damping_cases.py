@@ -16,7 +16,7 @@ from symobs.exact.core.generators import (
     all_roots,
     function_named,
     functions_in,
-    identities,
+    identities_at,
     substitute,
     symbols_in,
     symbols_named,
@@ -318,9 +318,9 @@ def from_zero(names: Iterable[str], e: Environment) -> Iterator[Claim]:
             yield Claim(relation(letter(name, e).at("t", 0), start), e, f"{name} is 0 at t = 0")
 
 
-def time_environment(plant: StateSpace, values: Mapping[str, Scalar | Matrix]) -> Environment:
-    """Return an environment for claims about functions of time."""
-    meanings, relations = identities(values.values())
+def time_environment(plant: StateSpace, values: Mapping[str, Scalar | Matrix], at: Scalar | None = None) -> Environment:
+    """Return an environment for claims about functions of time, and what they are at an instant."""
+    meanings, relations = identities_at(values.values(), at)
     return Environment(
         variable=plant.variable,
         values=values,

@@ -9,7 +9,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 from symobs.exact import Matrix, Scalar, modulo, product_of
-from symobs.exact.core.generators import function_named, substitute, symbols_in
+from symobs.exact.core.generators import function_named, substitute
 from symobs.exact.time_functions.matrix_exponential import NoClosedForm
 from symobs.exact.time_functions.quasipolynomial import (
     Table,
@@ -246,7 +246,7 @@ class Gramian(DampingCases):
             values["primitive"] = self.answer["function"]
         if "exponential" in self.answer:
             values["exp_At"] = self.answer["exponential"]
-        e = time_environment(self.plant, {**values, **_at_horizon(values, self.answer["horizon"])})
+        e = time_environment(self.plant, values, _instant(self.answer["horizon"]))
         yield from self._about_gramian(e)
 
     def _about_decay(self, e: Environment) -> Iterator[Claim]:
@@ -317,12 +317,9 @@ def _with_sums(plant: StateSpace, A: Matrix, C: Matrix) -> Matrix:
     return symmetric(found.select(range(count), [0]))
 
 
-def _at_horizon(values: Mapping[str, Any], horizon: Any) -> dict[str, Any]:
-    """Return the functions of time at the horizon, so that their generators are known as well."""
-    if not isinstance(horizon, Scalar):
-        return {}
-    moving = {name: value for name, value in values.items() if "t" in symbols_in(value)}
-    return {f"{name} at T": substitute(value, {"t": horizon}) for name, value in moving.items()}
+def _instant(horizon: Any) -> Scalar | None:
+    """Return the horizon where it is finite and of continuous time."""
+    return horizon if isinstance(horizon, Scalar) else None
 
 
 def _determinant(W: Table, horizon: Scalar) -> Scalar | None:
@@ -369,10 +366,7 @@ _LYAPUNOV_UP_TO = 3
 def write_gramian(page: Builder, result: Gramian) -> None:
     """Write the whole page."""
     horizon = result.answer["horizon"]
-    values = list(result.everything())
-    if isinstance(horizon, Scalar):
-        values += [substitute(value, {"t": horizon}) for value in values]
-    page.in_time(*values)
+    page.in_time(*result.everything(), at=_instant(horizon))
     result.state_data(page)
     is_dual = result.answer["of"] == "controllability"
     if is_dual:

@@ -163,21 +163,23 @@ class InitialState(OfTheInitialState):
         roots = {root.value for root in all_roots(*found)}
         return tuple(factor for factor in found if factor not in roots)
 
+    @property
+    def instant(self) -> Scalar | None:
+        """The horizon, where it is finite."""
+        return None if self.answer["horizon"] == INFINITE else self.answer["horizon"]
+
     def _values(self) -> dict[str, Any]:
         m, answer = self.plant.matrices, self.answer
         names = {"exp_At": "exponential", "y_t": "output", "u_t": "input", "x_f": "forced", "y_0": "free", "x_0": "x0"}
         names |= {"W_t": "gramian_function", "r_t": "moment_function", "candidate": "candidate"}
         values: dict[str, Any] = {"A": m.A, "B": m.B, "C": m.C, "D": m.D, "O": answer["rank"]["matrix"]}
-        values |= {letter: answer[name] for letter, name in names.items() if answer.get(name) is not None}
-        if answer["horizon"] != INFINITE:
-            values |= {f"{n} at T": substitute(v, {"t": answer["horizon"]}) for n, v in list(values.items())}
-        return values
+        return values | {letter: answer[name] for letter, name in names.items() if answer.get(name) is not None}
 
     def claims(self) -> Iterator[Claim]:
         """Yield the motion from rest, the output explained, the moment equations, and what excludes others."""
         yield from super().claims()
         if self.answer.get("question") is None:
-            e = time_environment(self.plant, self._values())
+            e = time_environment(self.plant, self._values(), self.instant)
             yield from self._about_motion(e)
             yield from self._about_state(e)
         yield from self.observability_claims()
@@ -356,10 +358,7 @@ _WARNED_UP_TO = 3
 @page_of(InitialState)
 def write_initial_state(page: Builder, result: InitialState) -> None:
     """Write the document's five steps."""
-    values = list(result.everything())
-    if result.answer["horizon"] != INFINITE:
-        values += [substitute(value, {"t": result.answer["horizon"]}) for value in values]
-    page.in_time(*values)
+    page.in_time(*result.everything(), at=result.instant)
     result.state_data(page)
     with page.section("initial_state"):
         tell_polynomial(page)

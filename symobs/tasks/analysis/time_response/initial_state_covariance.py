@@ -130,7 +130,7 @@ class InitialStateCovariance(OfTheInitialState):
         yield from self.observability_claims()
         if self.answer["covariance"] is None:
             return
-        yield from self._about_parts(time_environment(self.plant, self.values_by_letter()))
+        yield from self._about_parts(time_environment(self.plant, self.values_by_letter(), self.answer["horizon"]))
 
     def values_by_letter(self) -> dict[str, Any]:
         """Return the values of the letters of claims and page."""
@@ -358,8 +358,7 @@ def initial_state_covariance(
 @page_of(InitialStateCovariance)
 def write_covariance(page: Builder, result: InitialStateCovariance) -> None:
     """Write e^{At}, the Gramian, the two integrals, the covariance and the best horizon."""
-    values = list(result.everything())
-    page.in_time(*values, *(substitute(value, {"t": result.answer["horizon"]}) for value in values))
+    page.in_time(*result.everything(), at=result.answer["horizon"])
     result.state_data(page)
     with page.section("covariance"):
         if result.answer["called_t"]:

@@ -161,7 +161,8 @@ class MinimumEnergyInput(DampingCases):
         values |= {"A": m.A, "B": m.B, "W": answer["gramian"], "w": answer.get("w")}
         powers = _powers(self.plant, inner)
         values |= {f"Phi_{k}": power for k, power in enumerate(powers)}
-        e = time_environment(self.plant, {name: value for name, value in values.items() if value is not None})
+        known = {name: value for name, value in values.items() if value is not None}
+        e = time_environment(self.plant, known, None if self.plant.is_discrete else answer["horizon"])
         yield from self._about_powers(e, len(powers))
         d = letter("x_1f", e) - letter("Phi_0", e) @ letter("x_0", e)
         yield Claim(relation(letter("d_r", e), d), e, "d = final - exp(A*T)*initial")
@@ -302,11 +303,8 @@ def minimum_energy_input(
 @page_of(MinimumEnergyInput)
 def write_minimum_energy_input(page: Builder, result: MinimumEnergyInput) -> None:
     """Write the whole page."""
-    values = list(result.everything())
-    if not result.plant.is_discrete:
-        values += [substitute(value, {"t": result.answer["horizon"]}) for value in values]
-        values += _powers(result.plant, result.inner) if result.answer["gramian"] is not None else []
-    page.in_time(*values)
+    powers = _powers(result.plant, result.inner) if result.answer["gramian"] is not None else []
+    page.in_time(*result.everything(), *powers, at=None if result.plant.is_discrete else result.answer["horizon"])
     result.state_data(page)
     with page.section("minimum_energy_input"):
         if not result.plant.is_discrete:

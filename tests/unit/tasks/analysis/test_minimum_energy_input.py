@@ -91,3 +91,16 @@ def test_two_states_and_a_finite_horizon_are_needed() -> None:
         symobs.minimum_energy_input(plant)
     with pytest.raises(InputError, match="at a finite time"):
         symobs.minimum_energy_input(plant, final="[1; 0]", horizon="inf")
+
+
+@pytest.mark.parametrize("rate", [(-735, 16), (-735, 2)])
+def test_exponentials_far_from_each_other_meet_at_the_end_of_the_horizon(rate: tuple[int, int]) -> None:
+    """The exponents of e^{AT} e^{T} cancel those of e^{−A(T−t)} at t = T only in a base of both."""
+    r, T = sympy.Rational(*rate), sympy.Symbol("T", positive=True)
+    result: Any = symobs.minimum_energy_input(symobs.StateSpace([[r, 0], [0, 1]], [[1], [1]]), final=[1, 0])
+    rates = (r, 1)
+    W = sympy.Matrix(2, 2, lambda i, j: (sympy.exp((rates[i] + rates[j]) * T) - 1) / (rates[i] + rates[j]))
+    at = {T: sympy.Rational(1, 20)}
+    expected = (W.subs(at).evalf(60)).inv()[0, 0]
+    assert abs(result.energy.xreplace({sympy.Symbol("T"): at[T]}).evalf(60) / expected - 1) < 1e-30
+    result.derivation.check()
