@@ -31,7 +31,6 @@ _MOST_MULTIPLE, _MOST_POWER = 1000, 100_000
 _LARGEST_POWER = 1_000_000
 #: Relations of angles and of exponents with larger multiples need polynomials of a higher degree than claims have.
 _RELATED_ANGLES, _RELATED_POWERS = 30, 100
-_BASES = 3  # a base of the values with those at an instant may be another one
 ZERO, ONE = Scalar.of(0), Scalar.of(1)
 #: The number π, a generator like a parameter: no polynomial over Q vanishes at it.
 PI = "pi"
@@ -108,7 +107,8 @@ def generator(kind: str, argument: Scalar) -> Scalar:
 
 
 def function(kind: str, argument: Scalar) -> Scalar:
-    """Return kind(argument); arguments of even and odd functions are given a positive leading coefficient."""
+    """Return kind(argument), of the argument's normal form, with a positive leading coefficient for even and odd ones."""
+    argument = normal_form(argument)
     if kind in QUOTIENTS:
         return function(QUOTIENTS[kind][0], argument) / function(QUOTIENTS[kind][1], argument)
     if argument.is_zero:
@@ -399,15 +399,9 @@ def identities(
 def identities_at(
     values: Iterable[Scalar | Matrix], instant: Scalar | None
 ) -> tuple[dict[str, Scalar], tuple[Scalar, ...]]:
-    """Return the identities of values, and of what they and their common base are at t = instant."""
-    values, moved = tuple(values), list[Scalar | Matrix]()
-    if instant is None:
-        return identities(values)
-    for _ in range(_BASES):
-        meanings, _ = identities([*values, *moved])
-        last, moved = moved, [_at(value, instant) for value in [*values, *meanings.values()]]
-        if moved == last:
-            break
+    """Return the identities of values, and of what they are at t = instant."""
+    values = tuple(values)
+    moved = () if instant is None else tuple(_at(value, instant) for value in values)
     return identities([*values, *moved])
 
 

@@ -32,20 +32,18 @@ def rate(value: Any, name: str, *, constant: bool) -> Any:
     return derivative(exact(value), name)
 
 
-def at(value: Any, name: str, instant: Scalar, arithmetic: Arithmetic) -> Any:
+def at(value: Any, name: str, instant: Scalar) -> Any:
     """Return the value with the generator `name` replaced."""
-    return arithmetic.leaf(substitute(exact(value), {name: exact(arithmetic.leaf(instant))}))
+    return substitute(exact(value), {name: instant})
 
 
-def integral(integrand: Any, primitive: Any, name: str, limits: tuple[Scalar, Scalar], arithmetic: Arithmetic) -> Any:
-    """Return primitive(upper) − primitive(lower), after checking that the primitive's derivative is the integrand."""
+def check_primitive(integrand: Any, primitive: Any, name: str, arithmetic: Arithmetic) -> None:
+    """Raise `ArithmeticError` unless the derivative of the primitive is the integrand."""
     from symobs.formula.tree.arithmetic import agree  # noqa: PLC0415 - it stands on `evaluate`, which calls this
 
-    if not agree(derivative(exact(primitive), name), integrand, arithmetic):
+    if not agree(arithmetic.leaf(derivative(exact(primitive), name)), integrand, arithmetic):
         message = "the primitive is another function's"
         raise ArithmeticError(message)
-    lower, upper = (at(primitive, name, limit, arithmetic) for limit in limits)
-    return upper - lower
 
 
 def exact(value: Any) -> Any:

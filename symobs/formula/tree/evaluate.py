@@ -203,6 +203,8 @@ class Modular:
 
 
 _MINUS_ONE = Scalar.of(-1)
+#: A value at an instant is taken before functions get a common base, which may be another one there.
+_PLAIN = Exact(Environment())
 
 
 _OF_MATRICES = {"det", "adj", "rank"}
@@ -252,12 +254,14 @@ def evaluate(formula: Formula, environment: Environment, arithmetic: Arithmetic)
             value = evaluate(operand, environment, arithmetic)
             if isinstance(value, Signal):
                 return _derivative(value, environment, arithmetic)
-            return calculus.rate(value, name, constant=environment.variable == calculus.TIME)
+            return arithmetic.leaf(calculus.rate(value, name, constant=environment.variable == calculus.TIME))
         case At(operand, name, instant):
-            return calculus.at(evaluate(operand, environment, arithmetic), name, instant, arithmetic)
+            return arithmetic.leaf(calculus.at(evaluate(operand, environment, _PLAIN), name, instant))
         case Integral(integrand, primitive, name, lower, upper):
             slope, whole = evaluate(integrand, environment, arithmetic), evaluate(primitive, environment, arithmetic)
-            return calculus.integral(slope, whole, name, (lower, upper), arithmetic)
+            calculus.check_primitive(slope, whole, name, arithmetic)
+            whole = evaluate(primitive, environment, _PLAIN)
+            return arithmetic.leaf(calculus.at(whole, name, upper) - calculus.at(whole, name, lower))
 
 
 def _signal(name: str, environment: Environment, arithmetic: Arithmetic) -> Signal:
@@ -324,7 +328,9 @@ def _derivative(signal: Signal, environment: Environment, arithmetic: Arithmetic
         rate = evaluate(environment.dynamics[name], environment, arithmetic)
         image = times(coefficient, rate, arithmetic)
         if isinstance(arithmetic, Exact) and calculus.TIME in coefficient.names:
-            slope = Signal(signal.size, {name: calculus.rate(coefficient, calculus.TIME, constant=True)})
+            slope = Signal(
+                signal.size, {name: arithmetic.leaf(calculus.rate(coefficient, calculus.TIME, constant=True))}
+            )
             image = add(image, slope, arithmetic)
         total = image if total is None else add(total, image, arithmetic)
     assert total is not None  # noqa: S101 - a signal has at least one coefficient

@@ -10,7 +10,7 @@ from symobs.formula.tree import At, Block, Derivative, Letter, Literal, SymbolLi
 from symobs.proof.derivation.builder import relation
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Sequence
 
     from symobs.formula.tree import Formula
     from symobs.formula.tree.term import Term
@@ -27,7 +27,7 @@ def state_linearisation(page: Builder) -> None:
     jacobians = [
         given.jacobian(function, names) for function in functions for names in (given.states, given.inputs) if names
     ]
-    moved = [value for function in (*functions, *jacobians) for value in _step_by_step(given, function)]
+    moved = [_at_equilibrium(given, function) for function in (*functions, *jacobians)]
     page.in_time(*functions, *moved, *(value for _, value in given.equilibrium), m.A, m.B, m.C, m.D)
     time = "discrete" if plant.is_discrete else "continuous"
     states, arguments = SymbolList(given.states), SymbolList((*given.states, *given.inputs))
@@ -54,11 +54,10 @@ def state_linearisation(page: Builder) -> None:
     page.equal(*lines, say="linearised")
 
 
-def _step_by_step(given: Nonlinear, value: Matrix) -> Iterator[Matrix]:
-    """Yield a matrix with the values of the equilibrium inserted one by one, as a page writes it."""
+def _at_equilibrium(given: Nonlinear, value: Matrix) -> Matrix:
     for name, instead in given.equilibrium:
         value = substitute(value, {name: instead})
-        yield value
+    return value
 
 
 def _radicands(given: Nonlinear, functions: Sequence[Matrix]) -> list[Scalar]:
