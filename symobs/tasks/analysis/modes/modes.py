@@ -27,7 +27,7 @@ from symobs.exact import (
     roots_of,
     stable_roots,
 )
-from symobs.formula.tree import Conjunction, Environment, Evaluated, Literal, Roots
+from symobs.formula.tree import Conjunction, Environment, Evaluated, Literal, Relation, Roots
 from symobs.formula.tree.term import Term, block, identity, letter
 from symobs.ground.dataclass import dataclass
 from symobs.proof.certificate.claims import Claim, verify
@@ -426,15 +426,20 @@ def pencil_of(page: Builder, result: ModeResult, value: Scalar | None = None) ->
     return block([[shifted, page["B"]]])
 
 
-def at_eigenvalues(page: Builder, result: ModeResult, parts: Iterable[Eigenvalues]) -> None:
+def at_eigenvalues(page: Builder, result: ModeResult, parts: Iterable[Eigenvalues]) -> bool:
     """Write one matrix and one rank for each eigenvalue, and where the rank is too low the vectors that show it.
 
-    With parameters they hold under the conditions that are told with the eigenvalue.
+    With parameters they hold under the conditions that are told with the eigenvalue.  Return whether all were written.
     """
-    wanted = {part.factor for part in parts}
+    wanted, complete = {part.factor for part in parts}, True
     for part, found, where in result.parts:
-        if part.factor in wanted and part.witness is not None and where is not None:
-            page.steps += _at(page, result, part, found, holds_where(where))
+        if part.factor not in wanted:
+            continue
+        known = part.witness is not None and where is not None
+        steps = _at(page, result, part, found, holds_where(where)) if known else []  # type: ignore[arg-type]
+        page.steps += steps
+        complete = complete and bool(steps)
+    return complete
 
 
 def _at(page: Builder, result: ModeResult, part: Eigenvalues, rank: int, conditions: list[Condition]) -> list[Step]:
@@ -443,7 +448,15 @@ def _at(page: Builder, result: ModeResult, part: Eigenvalues, rank: int, conditi
     pencil, matrix = pencil_of(page, result), part.matrix.T if dual else part.matrix
     at = relation(unknown, part.value) if len(part.roots) == 1 else relation(part.relation, 0)
     ranks = relation(pencil.apply("rank"), page.value(matrix).apply("rank"), rank)
-    when = Conjunction((at, *map(as_written, conditions))) if conditions else at
+
+    def where(kept: list[Condition]) -> Relation | Conjunction:
+        return Conjunction((at, *map(as_written, kept))) if kept else at
+
+    for condition in conditions:
+        fewer = [each for each in conditions if each is not condition]
+        if verify(ranks, on_stratum(where(fewer), {}, page.environment))[0]:
+            conditions = fewer
+    when = where(conditions)
     if part.matrix.names - {EIGENVALUE} and not shows([ranks], on_stratum(when, {}, page.environment)):
         return []  # it is shown by the minors of X − λI, and too long to be shown by those of the whole matrix
     steps: list[Step] = [Equal((ranks,))]
@@ -469,19 +482,24 @@ def _are_independent(vectors: Matrix, here: Environment) -> bool:
 def meeting_steps(page: Builder, result: ModeResult) -> Iterator[Step]:
     """Yield a case for each stratum on which only eigenvectors are others than in general, with the ranks there."""
     for case in result.meeting_cases:
-        if case.result is None:
-            yield undecided(page, case)
-            continue
-        found: Any = case.result
-        inner = Builder(found.plant)
-        values = {name: getattr(found.plant.matrices, name) for name in "ABC" if name in page.environment.values}
-        inner.environment = page.environment.extended_by(values=values)
-        at_eigenvalues(inner, found, [part for part, rank, _ in found.parts if rank < found.plant.order])
-        inner.steps += meeting_steps(inner, found)
-        anew = set_anew(page.environment, inner.environment)
-        yield CaseStep(
-            conditions_of(case), tuple(case.substitution.items()), tuple(inner.steps), sentence("ranks_meet", {}), anew
-        )
+        yield undecided(page, case) if case.result is None else eigenvectors_there(page, case, "ranks_meet")[0]
+
+
+def eigenvectors_there(page: Builder, case: Case, say: str = "", *, closing: str = "") -> tuple[Step, bool]:
+    """Return a case with the ranks below n at eigenvalues, and whether all of them could be written."""
+    found: Any = case.result
+    inner = Builder(found.plant)
+    values = {name: getattr(found.plant.matrices, name) for name in "ABC" if name in page.environment.values}
+    inner.environment = page.environment.extended_by(values=values)
+    low = [part for part, rank, _ in found.parts if rank < found.plant.order]
+    is_whole = at_eigenvalues(inner, found, low)
+    if closing:
+        inner.conclude(closing)
+    inner.steps += meeting_steps(inner, found)
+    anew = set_anew(page.environment, inner.environment)
+    words = sentence(say, {}) if say else None
+    step = CaseStep(conditions_of(case), tuple(case.substitution.items()), tuple(inner.steps), words, anew)
+    return step, is_whole
 
 
 def fixed_modes(page: Builder, result: ModeResult) -> None:

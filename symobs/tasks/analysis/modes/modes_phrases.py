@@ -18,6 +18,7 @@ PHRASES: dict[str, str] = {
     "pbh_no_observability": "The rank drops at some eigenvalue, so the pair ($C$, $A$) is not observable.",
     "pbh_no_controllability": "The rank drops at some eigenvalue, so the pair ($A$, $B$) is not controllable.",
     "pbh_general": "For other parameter values the result is stated without using eigenvalues.",
+    "pbh_provided": "What follows holds for {condition}; the remaining cases are treated at the end.",
     "ranks_meet": "In this case a rank drops below its generic value.",
     "fixed_modes_observability": "The unobservable modes, which no observer gain can move, are the eigenvalues of $A$ restricted to the unobservable subspace:",
     "fixed_modes_controllability": "The uncontrollable modes, which no feedback gain can move, are the eigenvalues of $Aᵀ$ restricted to the left kernel of the controllability matrix:",

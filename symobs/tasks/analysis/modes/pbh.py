@@ -9,10 +9,13 @@ from symobs.exact import roots_of
 from symobs.formula.tree import Roots
 from symobs.ground.dataclass import dataclass
 from symobs.ground.errors import InputError
+from symobs.proof.derivation.builder import Builder
+from symobs.proof.derivation.wording_check import Said, rests
 from symobs.tasks.analysis.modes.modes import (
     TESTS,
     ModeResult,
     at_eigenvalues,
+    eigenvectors_there,
     fixed_modes,
     has_open_cases,
     meeting_steps,
@@ -26,7 +29,6 @@ from symobs.tasks.result import Case, Result, choose, method, task
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from symobs.proof.derivation.builder import Builder
     from symobs.system import StateSpace
     from symobs.system.conditions import Condition
     from symobs.system.specification import Name
@@ -93,9 +95,11 @@ class PopovBelevitchHautus(ModeResult):
         with page.section("pbh"):
             show_spectrum(page, self)
             page.conclude(f"pbh_asks_{self.kind}")
-            at_eigenvalues(page, self, self.spectrum)
+            is_whole = at_eigenvalues(page, self, self.spectrum)
             stack = stack_of(page, self.kind)
             if has_open_cases(self.test):
+                if is_whole and self._write_by_eigenvectors(page):
+                    return
                 page.remark("pbh_general")
                 letter = "O" if self.kind == "observability" else "Ctr"
                 say = "observability_matrix" if letter == "O" else "controllability_matrix"
@@ -114,6 +118,24 @@ class PopovBelevitchHautus(ModeResult):
             roots = roots_of(self.answer["fixed_polynomial"], self.plant.variable)
             page.conclude(f"modes_{self.kind}", modes=Roots(whole.formula, roots))
             page.steps += meeting_steps(page, self)
+
+    def _write_by_eigenvectors(self, page: Builder) -> bool:
+        """Write where the pair is observable, and the eigenvectors elsewhere; return False where these are not known."""
+        if self.test.answer["rank"] < self.plant.order or any(case.result is None for case in self.rank_cases):
+            return False
+        at_conditions = Builder(self.plant)
+        at_conditions.environment = page.environment
+        at_conditions.assume("pbh_provided", *(c.expression for c in self.holds_where if c.kind == "existence"))
+        if not rests(f"pbh_yes_{self.kind}", Said((), at_conditions.environment)):
+            return False
+        cases = [eigenvectors_there(page, case, closing=f"pbh_no_{self.kind}") for case in self.rank_cases]
+        if not all(is_whole for _, is_whole in cases):
+            return False
+        page.steps += at_conditions.steps
+        page.environment = at_conditions.environment
+        page.conclude(f"pbh_yes_{self.kind}")
+        page.steps += [*(step for step, _ in cases), *meeting_steps(page, self)]
+        return True
 
 
 def solve(plant: StateSpace, of: str, method_name: str) -> PopovBelevitchHautus:

@@ -284,3 +284,13 @@ def test_a_design_in_canonical_form_says_where_that_is() -> None:
     assert list(design.L) == [28, 8]
     assert {str(condition) for condition in design.conditions} == {"Ne(2*c - 1, 0)", "Ne(c - 1, 0)"}
     assert "c ≠ 1/2" in design.to("text")
+
+
+def test_each_eigenvalue_of_two_masses_has_a_condition_of_its_own() -> None:
+    """In phase (λ = 0) the masses are seen where a + b ≠ 0, in antiphase (λ² = −2k) where a ≠ b."""
+    A = "[0 1 0 0; -k 0 k 0; 0 0 0 1; k 0 -k 0]"
+    plant = symobs.StateSpace(A, C="[a 0 b 0]", symbols={"k": "positive", "a": "real", "b": "real"})
+    page = str(symobs.pbh(plant).to("text"))
+    for said in ("Case λ = 0, a ≠ -b.", "Case λ² + 2k = 0, a ≠ b.", "for a ≠ -b, a ≠ b; the remaining cases"):
+        assert said in page
+    assert "det 𝒪" not in page
