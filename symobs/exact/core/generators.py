@@ -31,6 +31,7 @@ _MOST_MULTIPLE, _MOST_POWER = 1000, 100_000
 _LARGEST_POWER = 1_000_000
 #: Relations of angles and of exponents with larger multiples need polynomials of a higher degree than claims have.
 _RELATED_ANGLES, _RELATED_POWERS = 30, 100
+_WHOLE_POWER = 1000
 ZERO, ONE = Scalar.of(0), Scalar.of(1)
 #: The number π, a generator like a parameter: no polynomial over Q vanishes at it.
 PI = "pi"
@@ -116,6 +117,8 @@ def function(kind: str, argument: Scalar) -> Scalar:
     if kind in {"cos", "sin"} and argument.names == {PI} and (argument / Scalar.symbol(PI)).is_constant:
         turns = (argument / Scalar.symbol(PI)).fraction()
         return _cosine(turns if kind == "cos" else turns - Fraction(1, 2))
+    if kind == "exp" and argument.is_constant and abs(power := argument.fraction().numerator) <= _WHOLE_POWER:
+        return generator("exp", argument / power) ** power  # equal numbers by equal generators
     if kind == "exp" or not leads_with_minus(argument):
         return generator(kind, argument)
     return generator(kind, -argument) * (-1 if kind in {"sin", "sinh"} else 1)
@@ -235,6 +238,16 @@ def normal_form(value: Scalar) -> Scalar:
         rational = above[0] * below[0] - above[1] * below[1] * root.argument
         value = rational / over + (above[1] * below[0] - above[0] * below[1]) / over * root.value
     return value
+
+
+def exponentials_in(polynomial: Scalar) -> dict[str, int]:
+    """Return the exponentials that divide a polynomial, each with its power."""
+    kinds = [name for name in polynomial.names if (f := function_named(name)) is not None and f.kind == "exp"]
+    if not kinds:
+        return {}
+    powers = [dict(monomial) for _, monomial in polynomial.terms()]
+    least = {name: min(each.get(name, 0) for each in powers) for name in sorted(kinds)}
+    return {name: power for name, power in least.items() if power}
 
 
 def _split(polynomial: Scalar, root: Function) -> tuple[Scalar, Scalar]:

@@ -46,9 +46,15 @@ def scalar_to_sympy(
     below = value.denominator
     if below.is_constant:
         return _polynomial(value.numerator, known, int(below.fraction()))
+    falling = functions.exponentials_in(below)
+    for name, power in falling.items():
+        below = below / Scalar.symbol(name) ** power
     if below not in made:
         made[below] = _polynomial(below, known)
     above, under = _polynomial(value.numerator, known), made[below]
+    if falling:  # 1 − e^{−T}, not (e^T − 1)/e^T
+        turned = [_generator(name, known) ** -power for name, power in falling.items()]
+        above = sympy.Add(*(sympy.Mul(term, *turned) for term in sympy.Add.make_args(above)))
     if not (above.is_Add and under.is_Add):
         return above / under
     # What SymPy makes of it too; but long sums it asks for their signs first, for minutes.

@@ -137,7 +137,7 @@ def _written(root: Root, paired: bool, printer: Printer[Any], glyphs: RootGlyphs
     if root.radicand.is_zero:
         return glyphs.written(printer, Literal(root.centre))
     centre = "" if root.centre.is_zero else glyphs.written(printer, Literal(root.centre))
-    distance = _distance(root, printer, glyphs)
+    distance = _distance(root, printer, glyphs, paired=paired)
     if paired:
         return f"{centre}{glyphs.plus_minus}{distance}".strip()
     sign = glyphs.minus if root.sign < 0 else glyphs.plus * bool(centre)
@@ -157,8 +157,8 @@ def _size_of_imaginary(radicand: Scalar) -> Scalar | None:
     return size if size**2 == -radicand and len(tuple(size.terms())) == 1 else None
 
 
-def _distance(root: Root, printer: Printer[Any], glyphs: RootGlyphs) -> str:
-    """Return √radicand, its square factors before the root, i behind it."""
+def _distance(root: Root, printer: Printer[Any], glyphs: RootGlyphs, *, paired: bool) -> str:
+    """Return √radicand, its square factors before the root, i behind it: a pair ±√(−2k) is ±√(2k) i, whatever k is."""
     if not root.radicand.is_constant:
         size = _size_of_imaginary(root.radicand)
         if size is not None:
@@ -167,9 +167,12 @@ def _distance(root: Root, printer: Printer[Any], glyphs: RootGlyphs) -> str:
         whole, below = root.radicand, root.radicand.denominator
         half = isqrt(below.fraction().numerator) if below.is_constant else 0
         if half > 1 and half**2 == below.fraction():
-            front = glyphs.fraction(glyphs.written(printer, Literal(Scalar.of(1) / half)))
-            return front + glyphs.square_root(glyphs.written(printer, Literal(whole * below)))
-        return glyphs.square_root(glyphs.written(printer, Literal(whole)))
+            front, whole = glyphs.fraction(glyphs.written(printer, Literal(Scalar.of(1) / half))), whole * below
+        else:
+            front = ""
+        is_turned = paired and all(coefficient < 0 for coefficient, _ in whole.terms())
+        behind = glyphs.space + glyphs.imaginary if is_turned else ""
+        return front + glyphs.square_root(glyphs.written(printer, Literal(-whole if is_turned else whole))) + behind
     outside, inside, imaginary = root.surd()
     under = "" if inside == 1 else glyphs.square_root(glyphs.number(int(inside)))
     unit = under + glyphs.imaginary * imaginary

@@ -11,8 +11,7 @@ from math import lcm
 from typing import TYPE_CHECKING
 
 from symobs.exact import Matrix, Scalar
-from symobs.exact.core.generators import function as function_of
-from symobs.exact.core.generators import function_named
+from symobs.exact.core.generators import exponentials_in, function_named, generator
 from symobs.exact.core.ring import number_of
 from symobs.formula.tree import Block, Formula, Literal, Negative, Numeral, Power, Product, Quotient, Sum
 from symobs.pages.printers.rational_formula import common_divisor, is_leaf, product, rational_formula, size, sum_of
@@ -128,6 +127,8 @@ def _time_function(value: Scalar) -> Formula:
     """Return the formula of a value that contains functions of time."""
     below = value.denominator
     if any(is_time_function(name) for name in below.names):
+        if (raised := _raised(value)) is not None:
+            return raised
         above = value.numerator
         negative = above.terms()[0][0] < 0 and len(above.terms()) == 1
         top = formula_of(-above if negative else above, "")
@@ -137,6 +138,26 @@ def _time_function(value: Scalar) -> Formula:
     if below.is_one:
         return separate
     whole = _over(value.numerator, below)
+    return whole if size(whole) < size(separate) else separate
+
+
+def _raised(value: Scalar) -> Formula | None:
+    """Return 1 − e^{−T} for (e^T − 1)/e^T: a value whose denominator has exponentials as factors only."""
+    falling = exponentials_in(value.denominator)
+    rest = value.denominator
+    for name, power in falling.items():
+        rest = rest / Scalar.symbol(name) ** power
+    if not falling or any(map(is_time_function, rest.names)):
+        return None
+    parts: dict[Part, dict[Part, Scalar]] = {}
+    for fading, group in _parts(value.numerator).items():
+        powers = dict(fading)
+        shifted = {name: powers.get(name, 0) - falling.get(name, 0) for name in {*powers, *falling}}
+        parts[tuple(sorted((name, power) for name, power in shifted.items() if power))] = group
+    separate = _grouped(parts, rest)
+    if rest.is_one:
+        return separate
+    whole = product((formula_of(1 / rest, ""), _grouped(parts, Scalar.of(1))))
     return whole if size(whole) < size(separate) else separate
 
 
@@ -276,7 +297,7 @@ def _power(name: str, exponent: int) -> Formula:
     """Return a power of a function; e^{x} to a power is one exponential again."""
     function = function_named(name)
     if function is not None and function.kind == "exp" and exponent != 1:
-        return Literal(function_of("exp", function.argument * exponent))
+        return Literal(generator("exp", function.argument * exponent))
     base = Literal(Scalar.symbol(name))
     return base if exponent == 1 else Power(base, exponent)
 

@@ -17,7 +17,7 @@ from symobs.exact import (
     root_of_pole,
     roots_of,
 )
-from symobs.exact.core.generators import symbols_named
+from symobs.exact.core.generators import exponentials_in, symbols_named
 from symobs.formula.tree import (
     Conjunction,
     Decimals,
@@ -311,7 +311,7 @@ def is_narrow(*matrices: Matrix, within: int = _WIDEST) -> bool:
 def determinant_form(page: Builder, value: Scalar) -> Term:
     """Return a determinant as its irreducible factors where it has several, else as it is."""
     unit, factors = value.factors()
-    if len(factors) < 2 and all(power == 1 for _, power in factors):
+    if exponentials_in(value.denominator) or (len(factors) < 2 and all(power == 1 for _, power in factors)):
         return page.value(value)
     return page.term(formula_of_factored(Factored(unit, factors)))
 

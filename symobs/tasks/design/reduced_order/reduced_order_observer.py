@@ -278,8 +278,9 @@ class ReducedOrderObserver(Result):
         """The whole question again where T is singular or the pair (A₁₂, A₂₂) loses its rank."""
 
         def solve(plant: StateSpace, values: dict[str, Scalar]) -> Result:
-            desired = self.desired.substitute(values)
-            return reduced_observer_of(plant, desired, self.answer["T"].substitute(values), self.method)
+            wanted = self.desired.substitute(values), self.answer["T"].substitute(values)
+            there, (desired, T) = over_common_data(plant, *wanted)
+            return reduced_observer_of(there, desired, T, self.method)
 
         return solved(self.plant, self.places, solve)
 
