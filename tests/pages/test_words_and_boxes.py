@@ -45,7 +45,7 @@ def test_no_condition_beside_one_that_implies_it(A: str, conditions: str) -> Non
     [
         ("[0 w; -w 0]", "± w i."),
         ("[0 1; -4*w^2 0]", "± 2w i."),
-        ("[0 1; -w 0]", "± √(-w)."),
+        ("[0 1; -w 0]", "± √w i."),
         ("[-1 w; -w -1]", "-1 ± w i."),
     ],
 )

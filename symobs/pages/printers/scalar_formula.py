@@ -60,6 +60,8 @@ def formula_of_matrix(matrix: Matrix, variable: str) -> Formula:
     denominators = [entry.denominator for entry in matrix.entries if not entry.is_zero]
     if len(denominators) < 2 or any(below.is_one for below in denominators):
         return Literal(matrix)
+    if len(denominators) == 2 and denominators[0] != denominators[1] and not denominators[0].is_constant:
+        return Literal(matrix)  # [0; 1/M; 0; −1/(lM)] as it was typed
     common = _least_common_multiple(dict.fromkeys(denominators))
     if common is None or 2 * denominators.count(common) < len(denominators):
         return Literal(matrix)
