@@ -16,7 +16,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from symobs.exact import Matrix, Scalar, TooLarge, is_rounding
-from symobs.exact.core.generators import NotWritten, symbols_named
+from symobs.exact.core.generators import NotWritten, function_named, symbols_named
 from symobs.exact.core.modular import POINT_BITS, PRIME_BITS, PRIMES_BELOW, Point, VanishingDenominator, squares_of
 from symobs.formula.tree import (
     Apply,
@@ -46,6 +46,7 @@ from symobs.ground.dataclass import dataclass
 from symobs.ground.errors import CertificateRejected, NotShown, Undecided, WrongKind
 from symobs.proof.certificate.pointwise import Bounds, Pointwise, SizeBound, never_together_zero
 from symobs.system.conditions import sign_where, vanishing_factors
+from symobs.system.reading import is_identity
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Sequence
@@ -201,12 +202,19 @@ def _needs_values(relation: Relation, environment: Environment, leaves: Sequence
 
 
 def _holds_exactly(relation: Relation, environment: Environment) -> bool:
-    arithmetic = Pointwise(environment) if environment.relations else Exact(environment)
+    on_stratum = not all(map(_is_of_angle, environment.relations))
+    arithmetic = Pointwise(environment, everywhere=on_stratum) if environment.relations else Exact(environment)
     values = [evaluate(member, environment, arithmetic) for member in relation.members]
     return all(
         _compare(left, operator, right, environment, arithmetic)
         for left, operator, right in zip(values[:-1], relation.operators, values[1:], strict=True)
     )
+
+
+def _is_of_angle(relation: Scalar) -> bool:
+    """Return whether a relation is cos² θ + sin² θ = 1: beside such ones, which are prime, a rank is the generic one."""
+    kinds = {found.kind for name in relation.names if (found := function_named(name)) is not None}
+    return kinds <= {"cos", "sin"} and is_identity(relation)
 
 
 def _compare(left: Any, operator: str, right: Any, environment: Environment, arithmetic: Exact) -> bool:

@@ -146,9 +146,10 @@ def _minors(matrix: Matrix, order: int) -> Iterator[tuple[tuple[int, ...], ...]]
 class Pointwise(ModuloIdeal):
     """The exact arithmetic modulo relations, with the rank of a matrix common to all points of the variety."""
 
-    def __init__(self, environment: Environment) -> None:
-        """Keep the signs and the nonzero values."""
+    def __init__(self, environment: Environment, *, everywhere: bool = True) -> None:
+        """Keep the signs and the nonzero values; a rank is the generic one unless it is asked for `everywhere`."""
         super().__init__(environment)
+        self.everywhere = everywhere
         self.signs = environment.signs
         self.nonzero = (*environment.nonzero, *environment.domain)
 
@@ -171,6 +172,8 @@ class Pointwise(ModuloIdeal):
         if function != "rank" or at_number:
             return super().apply(function, value)
         columns, vectors = echelon(value, self.ideal)
+        if not self.everywhere:
+            return Scalar.of(len(columns))
         kernel = Matrix.of([[v[i, 0] for v in vectors] for i in range(value.shape[1])], len(vectors))
         sent_to_zero = all(entry in self.ideal for entry in (value @ kernel).entries)
         rows = independent_rows(value.select(range(value.shape[0]), columns), self.ideal)
