@@ -120,7 +120,7 @@ def case_steps(page: Builder, result: Result, write: Callable[[Builder, Any], No
         inner.environment = here.extended_by(values=matrices)
         write(inner, found)
         inner.steps += case_steps(inner, found, write)
-        anew = set_anew(here, inner.environment)
+        anew = set_anew(here, inner.environment, page.environment)
         yield CaseStep(stratum_of(case), tuple(case.substitution.items()), tuple(inner.steps), anew=anew)
 
 
@@ -134,10 +134,14 @@ def environment_on(
         return None
 
 
-def set_anew(outer: Environment, inner: Environment) -> tuple[str, ...]:
-    """Return the letters, other than the data's, that a case redefines."""
-    both = (name for name in outer.values if name in inner.values and name not in "ABCD")
-    return tuple(name for name in both if inner.values[name] != outer.values[name])
+def set_anew(outer: Environment, inner: Environment, before: Environment | None = None) -> tuple[str, ...]:
+    """Return the letters, other than the data's, that a case redefines.
+
+    A letter of the page `before` the case may be undefined there with named gains, and defined with their values.
+    """
+    known = {**(before.values if before is not None else {}), **outer.values}
+    both = (name for name in known if name in inner.values and name not in "ABCD")
+    return tuple(name for name in both if inner.values[name] != outer.values.get(name))
 
 
 #: A polynomial of more terms is not written out among words.

@@ -320,7 +320,7 @@ def say_unassignable(
         if environment is not None and _holds(step, environment):
             page.steps.append(step if where is None else CaseStep(where, (), (step,)))
             return
-    page.steps.append(said)
+    page.remark("assignable_open")
 
 
 def _with_remainder(page: Builder, key: str, phi: Term, fixed: Term) -> Conclude:

@@ -90,7 +90,7 @@ def rank_cases(page: Builder, letter: str, result: RankResult, kind: str) -> Non
 
 
 def _rank_case(page: Builder, letter: str, case: Case, kind: str) -> Step:
-    if case.result is None:
+    if case.result is None or environment_on(page, conditions_of(case), case.substitution) is None:
         return undecided(page, case)
     result = cast("RankResult", case.result)
     answer, matrix = result.answer, page[letter] if kind == "observability" else page[letter].T

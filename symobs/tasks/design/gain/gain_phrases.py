@@ -67,6 +67,7 @@ PHRASES: dict[str, str] = {
     "impossible_roots_state_feedback": "{fixed} divides the characteristic polynomial of $A - B K$ for every gain, but <{missing} is|{missing} are> not among the desired poles, the roots of {polynomial}.",
     "never_converges_observer": "Since not all unobservable modes are stable, no observer converges.",
     "never_converges_state_feedback": "Since not all uncontrollable modes are stable, no state feedback stabilises the plant.",
+    "assignable_open": "For which values of the parameters the polynomial of the fixed modes divides the desired one is not decided here.",
     "unassignable_observer": "{fixed} divides the characteristic polynomial of $A - L C$ for every gain, and the division of {polynomial} by it leaves the remainder {rest}: these poles can be assigned only where this remainder is the zero polynomial.",
     "unassignable_state_feedback": "{fixed} divides the characteristic polynomial of $A - B K$ for every gain, and the division of {polynomial} by it leaves the remainder {rest}: these poles can be assigned only where this remainder is the zero polynomial.",
     "gain_given_observer": "The observer gain is given,",
