@@ -60,6 +60,7 @@ from symobs.tasks.design.pole_advice.pole_advice import PoleAdvice as _PoleAdvic
 from symobs.tasks.design.reduced_order.reduced_order_observer import ReducedOrderObserver as _ReducedOrderObserver
 from symobs.tasks.design.reference.feedforward import FeedforwardDesign as _FeedforwardDesign
 from symobs.tasks.design.reference.integral_action import IntegralAction as _IntegralAction
+from symobs.tasks.design.reference.output_regulation import OutputRegulation as _OutputRegulation
 from symobs.tasks.design.reference.tracking import TrackingDesign as _TrackingDesign
 
 _Number: TypeAlias = str | float | complex | Fraction | Decimal | Expr
@@ -576,6 +577,46 @@ def observer(
     floats: str | None = None,
 ) -> _ObserverResult:
     """Design the full-order observer  x̂' = (A − LC) x̂ + (B − LD) u + L y  with det(sI − A + LC) = φ(s)."""
+
+class _OutputRegulationResult(_OutputRegulation):
+    """What `output_regulation` returns."""
+
+    @property
+    def Pi(self) -> ImmutableMatrix: ...
+    @property
+    def Gamma(self) -> ImmutableMatrix: ...
+    @property
+    def K(self) -> ImmutableMatrix: ...
+    @property
+    def F(self) -> ImmutableMatrix: ...
+    @property
+    def solvable(self) -> bool: ...
+    @property
+    def blocked_modes(self) -> tuple[Any, ...]: ...
+    @property
+    def fixed_modes(self) -> tuple[Any, ...]: ...
+    @property
+    def polynomial(self) -> Expr: ...
+    @property
+    def closed_loop_matrix(self) -> ImmutableMatrix: ...
+    @property
+    def L(self) -> ImmutableMatrix: ...
+
+def output_regulation(
+    plant: _Plant,
+    *,
+    S: _Matrix | None = None,
+    reference: _Matrix | None = None,
+    E: _Matrix | None = None,
+    poles: str | Sequence[_Number] | Mapping[str, Any] | MatrixBase | None = None,
+    polynomial: str | Expr | None = None,
+    K: _Matrix | None = None,
+    observer_poles: str | Sequence[_Number] | Mapping[str, Any] | MatrixBase | None = None,
+    observer_polynomial: str | Expr | None = None,
+    method: str = "auto",
+    floats: str | None = None,
+) -> _OutputRegulationResult:
+    """Let y follow r = Q w, ẇ = S w, in spite of a disturbance E w, by u = −K x + (Γ + KΠ) w, ΠS = AΠ + BΓ + E, CΠ + DΓ = Q."""
 
 class _PbhResult(_PopovBelevitchHautus):
     """What `pbh` returns."""

@@ -50,7 +50,7 @@ if TYPE_CHECKING:
 
 #: Keywords whose matrices stand among the data, and the letters they have there.
 _DATA = {"K": "K", "L": "L", "T": "T", "reference_matrix": "A_ref", "reference_start": "x_d0"}
-_DATA |= {"E": "E_d", "S": "S_w", "V": "V_w"}  # of disturbances
+_DATA |= {"E": "E_d", "S": "S_w", "V": "V_w", "reference": "Q_r"}  # of exosystems
 #: Kinds of keyword whose value is a word: the word chooses the sentence.
 _WORDS = {"Name", "Sign"}
 

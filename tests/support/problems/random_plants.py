@@ -60,6 +60,16 @@ def specification_of(name: str, plant: symobs.StateSpace, chance: random.Random)
             asked[keyword] = horizon
         elif keyword == "reference_matrix":
             asked[keyword] = [[0] * plant.order] * plant.order
+        elif keyword == "S":
+            asked[keyword] = chance.choice(["[0]", "[1]", "[0 1; -1 0]", "[0 a; -a 0]"])
+        elif keyword == "reference":
+            asked[keyword] = [
+                [chance.choice(["0", "1"]) for _ in range(1 + (";" in asked["S"]))] for _ in range(plant.outputs)
+            ]
+        elif keyword == "E" and name == "output_regulation":
+            asked[keyword] = [
+                [chance.choice(["0", "1", "a"]) for _ in range(1 + (";" in asked["S"]))] for _ in range(plant.order)
+            ]
         elif keyword == "E":
             asked[keyword] = [[chance.choice(["0", "1", "a"])] for _ in range(plant.order)]
     kinds = {"gramian": "of", "pbh": "of", "canonical_form": "kind"}

@@ -99,6 +99,7 @@ UNSAID = (
     "partition",
     "rank",
     "reference_model",
+    "regulator_equations",
     "resolvent",
     "routh",
     "separation",
