@@ -399,7 +399,9 @@ def _zeros(page: Builder, design: DisturbanceObserver) -> None:
     found, place = rank(whole.value, plant.ideal), "one" if plant.is_discrete else "origin"
     if design.inner.pair.is_observable:
         page.remark(f"disturbance_zeros_{place}", rank=relation(whole.apply("rank"), n + q))
-    elif found < n + q and rank(block([[first], [C]]).value, plant.ideal) == n:  # so that d is not 0 in its kernel
+    elif (
+        q <= plant.outputs and found < n + q and rank(block([[first], [C]]).value, plant.ideal) == n
+    ):  # so that d is not 0 in its kernel
         page.remark(f"disturbance_blocked_{place}", rank=relation(whole.apply("rank"), found, "<", n + q))
 
 
