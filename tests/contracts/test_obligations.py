@@ -167,6 +167,9 @@ DEMANDED = {
     "poles_of P": "its_poles",
     "poles_of phi_c": "control_pole control_poles control_polynomial",
     "poles_of phi_o": "observer_pole observer_poles observer_polynomial",
+    "has_margins chi_cl chi_o": "margins_any_phase margins_are",
+    "is chi_cl chi_o": "margins_no_loop",
+    "about chi_cl": "margins_none margins_stable",
     "loop stable": "regulation_reached_estimated",
     "refutes_regulator": "regulation_impossible",
     "refutes_regulator E_d": "regulation_impossible_E",
@@ -265,7 +268,7 @@ ASSERTED = {
     """,
     "stable": """
         case_everywhere gramian_infinite_controllability gramian_infinite_observability only_stable
-        regulation_reached regulation_reached_estimated stable_continuous stable_discrete
+        margins_stable regulation_reached regulation_reached_estimated stable_continuous stable_discrete
     """,
     "stable strictly_proper": "compensator_stable compensator_stable_low minimal_stable",
     "stable strictly_proper unstable": "compensator_unstable_alone compensator_unstable_low_alone minimal_unstable_alone",

@@ -348,6 +348,14 @@ _book(
 )
 _book("kailath1980", "T. Kailath", "Linear Systems", "Prentice Hall", "1980")
 _book("popov1973", "V. M. Popov", "Hyperstability of Control Systems", "Springer", "1973")
+_book(
+    "skogestad2005",
+    "S. Skogestad and I. Postlethwaite",
+    "Multivariable Feedback Control",
+    "Wiley",
+    "2005",
+    "2nd",
+)
 _book("routh1877", "E. J. Routh", "A Treatise on the Stability of a Given State of Motion", "Macmillan", "1877")
 _book("rugh1996", "W. J. Rugh", "Linear System Theory", "Prentice Hall", "1996", "2nd")
 _proceedings(

@@ -27,6 +27,7 @@ from symobs.exact import (
     rank,
     unit_rows,
 )
+from symobs.exact.algebraic.loop_distances import INFINITE, MARGIN_DIGITS, Loop
 from symobs.exact.core.generators import PI, function
 from symobs.exact.time_functions.matrix_power import modes_of
 from symobs.formula.phrases import DEMANDS
@@ -35,6 +36,7 @@ from symobs.formula.tree import (
     Apply,
     At,
     Block,
+    Decimals,
     Derivative,
     Evaluated,
     Exact,
@@ -552,6 +554,20 @@ def _ideal(relations: tuple[Scalar, ...]) -> Ideal | None:
     return Ideal.of(relations) if relations else None
 
 
+def _has_margins(said: Said, closed: str, opened: str) -> bool:
+    """Return whether angle, distance and peak are told of a stable loop as they round; no angle where there is none."""
+    here, discrete = said.environment, said.environment.variable == "z"
+    known = (as_scalar(evaluate(Letter(name), here, Exact(here))) for name in (closed, opened))
+    parts = [[entry.fraction() for entry in value.coefficients(here.variable)] for value in known]
+    loop = Loop.of(*parts, discrete=discrete)
+    found = {"modulus": loop.modulus(MARGIN_DIGITS), "peak": loop.peak(MARGIN_DIGITS)}
+    phase = loop.phase(MARGIN_DIGITS)
+    found |= {} if phase == INFINITE else {"phase": phase}
+    told = {name: slot.value for name, slot in said.slots.items() if isinstance(slot, Decimals)}
+    right = {name: None if text is None else Scalar.of(Fraction(text)) for name, text in found.items()}
+    return told == right and told.keys() == said.slots.keys() and _is(here, "stable", Letter(closed))
+
+
 def _are_minors(said: Said, of: str) -> bool:
     """Return whether Δ₁, Δ₂, … are the leading principal minors of a matrix."""
     here, order = said.environment, _sizes(of, said.environment)[0]
@@ -838,6 +854,7 @@ _OF_STEP: dict[str, Callable[..., bool]] = {
     "refutes_regulator": _refutes_regulator,
     "blocked": lambda said, of: _is_blocked(said, of, everywhere=True),
     "blocked_there": lambda said, of: _is_blocked(said, of, everywhere=False),
+    "has_margins": _has_margins,
     "minors": _are_minors,
     "solves_lyapunov": _is_lyapunov,
     "vanishes": _vanishes_of,

@@ -40,6 +40,10 @@ QUANTITIES |= {"output_regulation/regulator_equations": DISTURBED["output_regula
 QUANTITIES |= {name: {"radius": "3"} for name in ("pole_advice", "pole_advice/butterworth", "pole_advice/auto")}
 
 
+#: Keywords that are not asked for together with the others.
+UNASKED = {"margins": {"control_poles", "control_polynomial", "observer_poles", "observer_polynomial"}}
+
+
 def fewer(asked: str, keyword: str) -> int:
     """Return by how many roots the polynomial of a keyword is shorter than the order, for `task` or `task/method`."""
     return int(any(_prefix(keyword) in FEWER.get(name, ()) for name in (asked, asked.partition("/")[0])))
@@ -54,6 +58,7 @@ def specification(asked: str, poles: Any) -> dict[str, Any]:
     values = {"Poles": poles, "TimeFunctions": "0", "Intensity": "1"}
     kinds = tasks()[asked.partition("/")[0]].keywords.items()
     given = {name: values[kind] for name, kind in kinds if kind in values and name != "input"}
+    given = {name: value for name, value in given.items() if name not in UNASKED.get(asked.partition("/")[0], ())}
     asked_for = {name: factors(asked, name, v) if v is poles and poles else v for name, v in given.items()}
     return asked_for | QUANTITIES.get(asked, {})
 
@@ -70,6 +75,8 @@ def is_for(asked: str, plant: StateSpace, poles: Sequence[str]) -> bool:
     """Whether a task can be asked about a plant at all: there is something left to estimate, and pairs stay whole."""
     if asked.partition("/")[0] in DISTURBED:
         return plant.order == 2 and (asked.partition("/")[0] not in MORE or plant.outputs == 1)
+    if asked.partition("/")[0] == "margins":
+        return plant.inputs == 1
     if asked.partition("/")[0] in MORE:
         return plant.outputs == 1
     if not {asked, asked.partition("/")[0]} & FEWER.keys():

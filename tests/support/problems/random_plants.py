@@ -80,6 +80,7 @@ def specification_of(name: str, plant: symobs.StateSpace, chance: random.Random)
         asked[kinds[name]] = chance.choice(choices)
     own: dict[str, dict[str, Any]] = {
         "response": {"input": ["1"] * plant.inputs},
+        "margins": {"controller": chance.choice(["2", "(s + 2)/(s + 3)"]).replace("s", plant.variable)},
         "pole_advice": {"radius": "1"},
         "minimum_energy_input": {"horizon": horizon, "final": ["1"] * plant.order},
         "lyapunov": {"Q": [[int(i == j) for j in range(plant.order)] for i in range(plant.order)]},

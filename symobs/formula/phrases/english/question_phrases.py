@@ -86,6 +86,7 @@ OPENS = ("part",)
 UNSAID = (
     "auto",
     "basis",
+    "boundary",
     "decoupled",
     "entries",
     "derivatives",
