@@ -19,15 +19,16 @@ from symobs.ground.dataclass import dataclass
 from symobs.ground.errors import InputError
 from symobs.proof.certificate.claims import Certificate, Claim, Statement
 from symobs.proof.derivation.builder import Builder, predicate, relation
-from symobs.system.specification import reject_both
+from symobs.system.specification import desired_polynomial, over_common_data, read_gain, reject_both
 from symobs.system.transfer_function_text import read_transfer_function
 from symobs.tasks.analysis.page_parts import factored_form, given
 from symobs.tasks.analysis.stability_region.margins import NotRational, gains_of, margins_of, numbers
 from symobs.tasks.analysis.stability_region.stability_region import stability_region
 from symobs.tasks.analysis.stability_region.stability_region_page import write_line
-from symobs.tasks.design.compensator.compensator import compensator, observer_order
-from symobs.tasks.design.full_order.observer import observer as full_observer
-from symobs.tasks.design.full_order.state_feedback import state_feedback
+from symobs.tasks.design.compensator.compensator import observer_based, observer_order
+from symobs.tasks.design.full_order.observer import ObserverDesign
+from symobs.tasks.design.full_order.state_feedback import StateFeedbackDesign
+from symobs.tasks.design.gain.gain_cases import design_of
 from symobs.tasks.result import Result, choose, method, page_of, poles_of, task
 
 if TYPE_CHECKING:
@@ -288,38 +289,52 @@ def margins(
     inputs or outputs, and for a loop with a gain at infinity.
     Source: S. Skogestad and I. Postlethwaite, Multivariable Feedback Control, 2nd ed., ch. 2.
     """
-    state = {"control_poles": control_poles, "control_polynomial": control_polynomial, "K": K}
-    estimate = {"observer_poles": observer_poles, "observer_polynomial": observer_polynomial, "L": L}
-    if not (poles is None and polynomial is None):
-        kept, names = (state, "control") if plant.matrices.has_input else (estimate, "observer")
-        for name, value in kept.items():
-            reject_both(name, value, poles, polynomial)
-        kept |= {f"{names}_poles": poles, f"{names}_polynomial": polynomial}
-    by_state, by_estimate = (any(value is not None for value in asked.values()) for asked in (state, estimate))
+    asked = {"poles": poles, "polynomial": polynomial, "K": K}
+    asked |= {"control_poles": control_poles, "control_polynomial": control_polynomial}
+    asked |= {"observer_poles": observer_poles, "observer_polynomial": observer_polynomial, "L": L}
     chosen = choose("margins", method, "boundary")
     if controller is not None:
         plant = plant.knowing(controller)
-        for name, value in (state | estimate).items():
+        for name, value in asked.items():
             reject_both("controller", controller, value, None, other=name)
         plant.require("B", "C", task="margins")
         written = read_transfer_function(controller, plant.symbols, plant.variable, "specification.controller")
         found: Result = chosen.solve(plant, None, written, _loop_of_controller(plant, written))
         return found.asked(method)
-    if not by_state and not by_estimate:
-        message = "nothing says which loop it is"
-        raise InputError(
-            message, where="specification", repair="give poles, control_poles, observer_poles or a controller"
-        )
-    design: Result
-    if by_state and by_estimate:
-        design = compensator(plant, **state, **estimate, observer=observer)
-    elif by_state:
-        design = state_feedback(plant, poles=state["control_poles"], polynomial=state["control_polynomial"], K=K)
-    else:
-        design = full_observer(plant, poles=estimate["observer_poles"], polynomial=estimate["observer_polynomial"], L=L)
+    design = _design(plant.knowing(*asked.values()), asked, observer)
     loop = None if design.verdict == "no" else loop_of(design)
     found = chosen.solve(design.plant, design, None, loop)
     return found.asked(method)
+
+
+def _design(plant: StateSpace, asked: Mapping[str, Any], observer: str) -> Result:
+    """Return the design that is asked for; raises `InputError` where nothing is, or too much."""
+    of_loops = {prefix: (f"{prefix}poles", f"{prefix}polynomial") for prefix in ("", "control_", "observer_")}
+    given = {prefix: any(asked[name] is not None for name in names) for prefix, names in of_loops.items()}
+    by_state, by_estimate = given["control_"] or asked["K"] is not None, given["observer_"] or asked["L"] is not None
+    if given[""]:
+        for name in ("control_poles", "control_polynomial", "observer_poles", "observer_polynomial", "K", "L"):
+            reject_both(name, asked[name], asked["poles"], asked["polynomial"])
+        by_state, by_estimate = plant.matrices.has_input, not plant.matrices.has_input
+    elif not by_state and not by_estimate:
+        message, repair = "nothing says which loop it is", "give poles, control_poles, observer_poles or a controller"
+        raise InputError(message, where="specification", repair=repair)
+    if by_state and by_estimate:
+        control, estimate = (tuple(asked[name] for name in of_loops[prefix]) for prefix in ("control_", "observer_"))
+        gains = asked["K"], asked["L"]
+        return observer_based(plant, task="margins", control=control, estimate=estimate, observer=observer, gains=gains)
+    kind: type[StateFeedbackDesign | ObserverDesign] = StateFeedbackDesign if by_state else ObserverDesign
+    names = of_loops["" if given[""] else "control_" if by_state else "observer_"]
+    plant.require("B" if by_state else "C", task="margins")
+    gain = asked[kind.letter]
+    if gain is not None:
+        reject_both(kind.letter, gain, asked[names[0]], asked[names[1]], other=names[0])
+        shape = (plant.inputs, plant.order) if by_state else (plant.order, plant.outputs)
+        return kind.of_given(plant, read_gain(gain, plant, kind.letter, shape))
+    desired = desired_polynomial(plant, asked[names[0]], asked[names[1]], names=names)
+    assert desired is not None  # noqa: S101 - required
+    plant, (desired,) = over_common_data(plant, desired)
+    return design_of(kind, plant, desired)
 
 
 # The page: the design, P and P + N, the gains that keep the loop stable, the rest.
