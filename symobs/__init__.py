@@ -18,7 +18,7 @@ FUNCTIONS = {
     "check": "symobs.applications.checking",
     "linearize": "symobs.system.linearize",
     "live": "symobs.live",
-    "margins": "symobs.tasks.analysis.stability_region.margins",
+    "margins": "symobs.tasks.design.margins.of_design",
     "sweep": "symobs.applications.batch.sweep",
     "variants": "symobs.applications.variants",
 }

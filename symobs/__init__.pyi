@@ -3,7 +3,7 @@
 from collections.abc import Mapping, Sequence
 from decimal import Decimal
 from fractions import Fraction
-from typing import Any, TypeAlias
+from typing import Any, TypeAlias, overload
 
 from sympy import Expr, ImmutableMatrix
 from sympy.matrices import MatrixBase
@@ -41,7 +41,6 @@ from symobs.tasks.analysis.realization.characteristic_polynomial import Characte
 from symobs.tasks.analysis.realization.dual import Dual as _Dual
 from symobs.tasks.analysis.realization.kalman_decomposition import Decomposition as _Decomposition
 from symobs.tasks.analysis.realization.transfer_function import TransferFunction as _TransferFunction
-from symobs.tasks.analysis.stability_region.margins import margins as margins
 from symobs.tasks.analysis.stability_region.stability_region import StabilityRegion as _StabilityRegion
 from symobs.tasks.analysis.time_response.gramian import Gramian as _Gramian
 from symobs.tasks.analysis.time_response.initial_state import InitialState as _InitialState
@@ -56,10 +55,12 @@ from symobs.tasks.design.disturbance.disturbance_observer import DisturbanceObse
 from symobs.tasks.design.disturbance.unknown_input_observer import UnknownInputObserver as _UnknownInputObserver
 from symobs.tasks.design.full_order.observer import ObserverDesign as _ObserverDesign
 from symobs.tasks.design.full_order.state_feedback import StateFeedbackDesign as _StateFeedbackDesign
+from symobs.tasks.design.margins.margins import Margins as _Margins
 from symobs.tasks.design.pole_advice.pole_advice import PoleAdvice as _PoleAdvice
 from symobs.tasks.design.reduced_order.reduced_order_observer import ReducedOrderObserver as _ReducedOrderObserver
 from symobs.tasks.design.reference.feedforward import FeedforwardDesign as _FeedforwardDesign
 from symobs.tasks.design.reference.integral_action import IntegralAction as _IntegralAction
+from symobs.tasks.design.reference.output_regulation import OutputRegulation as _OutputRegulation
 from symobs.tasks.design.reference.tracking import TrackingDesign as _TrackingDesign
 
 _Number: TypeAlias = str | float | complex | Fraction | Decimal | Expr
@@ -479,6 +480,46 @@ def lyapunov(
 ) -> _LyapunovResult:
     """Solve Lyapunov's equation AᵀP + PA = −Q, in discrete time AᵀPA − P = −Q, for a symmetric P."""
 
+class _MarginsResult(_Margins):
+    """What `margins` returns."""
+
+    @property
+    def gain_down(self) -> Expr: ...
+    @property
+    def gain_up(self) -> Expr: ...
+    @property
+    def phase_deg(self) -> str: ...
+    @property
+    def modulus(self) -> str: ...
+    @property
+    def peak(self) -> str: ...
+    @property
+    def slowest(self) -> Expr | str: ...
+    @property
+    def closed_loop_polynomial(self) -> Expr: ...
+    @property
+    def open_loop_polynomial(self) -> Expr: ...
+
+@overload
+def margins(design: _StateFeedbackResult | _ObserverResult | _CompensatorResult) -> Mapping[str, Any]: ...
+@overload
+def margins(
+    plant: _Plant,
+    *,
+    poles: str | Sequence[_Number] | Mapping[str, Any] | MatrixBase | None = None,
+    polynomial: str | Expr | None = None,
+    K: _Matrix | None = None,
+    control_poles: str | Sequence[_Number] | Mapping[str, Any] | MatrixBase | None = None,
+    control_polynomial: str | Expr | None = None,
+    observer_poles: str | Sequence[_Number] | Mapping[str, Any] | MatrixBase | None = None,
+    observer_polynomial: str | Expr | None = None,
+    L: _Matrix | None = None,
+    observer: str = "full",
+    controller: _Number | None = None,
+    method: str = "auto",
+    floats: str | None = None,
+) -> _MarginsResult: ...
+
 class _MatrixExponentialResult(_MatrixExponential):
     """What `matrix_exponential` returns."""
 
@@ -576,6 +617,46 @@ def observer(
     floats: str | None = None,
 ) -> _ObserverResult:
     """Design the full-order observer  x̂' = (A − LC) x̂ + (B − LD) u + L y  with det(sI − A + LC) = φ(s)."""
+
+class _OutputRegulationResult(_OutputRegulation):
+    """What `output_regulation` returns."""
+
+    @property
+    def Pi(self) -> ImmutableMatrix: ...
+    @property
+    def Gamma(self) -> ImmutableMatrix: ...
+    @property
+    def K(self) -> ImmutableMatrix: ...
+    @property
+    def F(self) -> ImmutableMatrix: ...
+    @property
+    def solvable(self) -> bool: ...
+    @property
+    def blocked_modes(self) -> tuple[Any, ...]: ...
+    @property
+    def fixed_modes(self) -> tuple[Any, ...]: ...
+    @property
+    def polynomial(self) -> Expr: ...
+    @property
+    def closed_loop_matrix(self) -> ImmutableMatrix: ...
+    @property
+    def L(self) -> ImmutableMatrix: ...
+
+def output_regulation(
+    plant: _Plant,
+    *,
+    S: _Matrix | None = None,
+    reference: _Matrix | None = None,
+    E: _Matrix | None = None,
+    poles: str | Sequence[_Number] | Mapping[str, Any] | MatrixBase | None = None,
+    polynomial: str | Expr | None = None,
+    K: _Matrix | None = None,
+    observer_poles: str | Sequence[_Number] | Mapping[str, Any] | MatrixBase | None = None,
+    observer_polynomial: str | Expr | None = None,
+    method: str = "auto",
+    floats: str | None = None,
+) -> _OutputRegulationResult:
+    """Let y follow r = Q w, ẇ = S w, in spite of a disturbance E w, by u = −K x + (Γ + KΠ) w, ΠS = AΠ + BΓ + E, CΠ + DΓ = Q."""
 
 class _PbhResult(_PopovBelevitchHautus):
     """What `pbh` returns."""

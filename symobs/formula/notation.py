@@ -140,6 +140,7 @@ LETTERS: dict[str, LetterForm] = {
     "y_hat": LetterForm(r"\hat y", "ŷ", "estimated output"),
     "s": LetterForm("{v}", "{v}", "variable"),
     "chi": LetterForm(r"\chi_A({v})", "χ_A({v})", "characteristic polynomial"),
+    "chi_o": LetterForm(r"\chi_{\mathrm o}({v})", "χ_o({v})", "characteristic polynomial of the loop that is cut"),
     "chi_r": LetterForm(r"\chi_A^*({v})", "χ*_A({v})", "characteristic polynomial in reverse order"),
     "chi_K": LetterForm(r"\chi_{A-BK}({v})", "χ_(A-BK)({v})", "polynomial of the state feedback"),
     "chi_L": LetterForm(r"\chi_{A-LC}({v})", "χ_(A-LC)({v})", "polynomial of the error"),
@@ -191,6 +192,14 @@ LETTERS: dict[str, LetterForm] = {
     "E_d": LetterForm("E", "E", "disturbance input matrix"),
     "S_w": LetterForm("S", "S", "state matrix of the exosystem"),
     "V_w": LetterForm("V", "V", "output matrix of the exosystem"),
+    "Q_r": LetterForm("Q", "Q", "output matrix of the exosystem for the reference"),
+    "Pi_w": LetterForm(r"\Pi", "Π", "state of the stationary response by the state of the exosystem"),
+    "Gamma_w": LetterForm(r"\Gamma", "Γ", "input of the stationary response by the state of the exosystem"),
+    "F_w": LetterForm("F", "F", "feedforward gain of the state of the exosystem"),
+    "U_r": LetterForm("U", "U", "what shows that the regulator equations have no solution"),
+    "V_r": LetterForm("V", "V", "what shows that the regulator equations have no solution"),
+    "r_w": LetterForm("r", "r", "reference of the output"),
+    "x_w": LetterForm(r"\tilde x", "x̃", "deviation of the state from the stationary response"),
     "w_e": LetterForm("w", "w", "state of the exosystem"),
     "w_hat": LetterForm(r"\hat w", "ŵ", "estimate of the state of the exosystem"),
     "d_hat": LetterForm(r"\hat d", "d̂", "estimate of the disturbance"),
@@ -260,7 +269,7 @@ _STATES = {"x", "x_1", "x_2", "x_d", "x_hat", "x_hat_1", "x_hat_2", "x_2_hat", "
 
 
 #: Signals; in discrete time they carry the index k.
-SIGNALS = frozenset({*_STATES, "u", "y", "y_hat", "d", "d_hat", "v_r", "e", "e_2", "e_d", "e_w"})
+SIGNALS = frozenset({*_STATES, "u", "y", "y_hat", "d", "d_hat", "v_r", "e", "e_2", "e_d", "e_w", "r_w", "x_w"})
 
 
 #: Letters that are functions of several times, and those times; an underscore after the name leaves them out.
@@ -293,6 +302,7 @@ FUNCTIONS: dict[str, tuple[str, str]] = {
     "chi_K_at": (r"\chi_{A-BK}", "χ_(A-BK)"),
     "chi_L_at": (r"\chi_{A-LC}", "χ_(A-LC)"),
     "chi_at": (r"\chi_A", "χ_A"),
+    "chi_o_at": (r"\chi_{\mathrm o}", "χ_o"),
     "chi_r_at": (r"\chi_A^*", "χ*_A"),
     "q_s_at": ("q", "q"),
     "phi_at": (r"\varphi", "φ"),

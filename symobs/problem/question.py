@@ -33,6 +33,7 @@ from symobs.system.specification import (
     read_poles,
     read_quantity,
 )
+from symobs.system.transfer_function_text import read_transfer_function
 from symobs.tasks.analysis.page_parts import formula_of_factored, given, state_signs
 from symobs.tasks.analysis.time_response.horizons import INFINITE, read_horizon
 from symobs.tasks.result import Document
@@ -50,7 +51,7 @@ if TYPE_CHECKING:
 
 #: Keywords whose matrices stand among the data, and the letters they have there.
 _DATA = {"K": "K", "L": "L", "T": "T", "reference_matrix": "A_ref", "reference_start": "x_d0"}
-_DATA |= {"E": "E_d", "S": "S_w", "V": "V_w"}  # of disturbances
+_DATA |= {"E": "E_d", "S": "S_w", "V": "V_w", "reference": "Q_r"}  # of exosystems
 #: Kinds of keyword whose value is a word: the word chooses the sentence.
 _WORDS = {"Name", "Sign"}
 
@@ -236,6 +237,8 @@ def _read(value: object, kind: str, name: str, plant: StateSpace, task: str) -> 
             return desired_polynomial(plant, value, None, names=(name, name), degree=len(poles))
         case "PolynomialText":
             return parse_polynomial(value, plant.variable, plant.symbols.names, where=where, functions=True)
+        case "TransferFunctionText":
+            return read_transfer_function(value, plant.symbols, plant.variable, where).value
         case "GainText" | "MatrixText":
             column = name in {"L", "E", "impulse", "initial", "final"}
             return read_matrix(from_list(value, column=column), plant.symbols.seen(value), where, functions=True)

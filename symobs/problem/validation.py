@@ -33,6 +33,7 @@ from symobs.system import StateSpace, Symbols, read_matrix, read_scalar
 from symobs.system.reading import read_time
 from symobs.system.specification import is_pattern, parse_signal, read_poles
 from symobs.system.specification.pole_patterns import OTHERS, named_parts, require_positive
+from symobs.system.transfer_function_text import read_transfer_function
 from symobs.tasks.result import Document, Result, Task, methods, result_type, task_named, tasks
 from symobs.tasks.result.in_convention import ResultInConvention, names_in
 from symobs.tasks.result.output_methods import digits_asked
@@ -373,6 +374,8 @@ def _read_alone(
                     read_poles(value, symbols, where)
                 case "PolynomialText":
                     parse_polynomial(value, variable, symbols.names, where=where, functions=True)
+                case "TransferFunctionText":
+                    read_transfer_function(value, symbols, variable, where)
                 case "IntervalText":
                     read_poles(value, symbols, where)
                 case "GainText" | "MatrixText":

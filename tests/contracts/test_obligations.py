@@ -31,7 +31,7 @@ DEMANDED = {
     "about F unstable, loop stable": "minimal_unstable_alone",
     "about P": "no_stable_compensator",
     "about P_l positive_definite": "lyapunov_definite lyapunov_definite_if",
-    "about phi_c": "integral_rest_stable",
+    "about phi_c": "integral_rest_stable regulation_reached",
     "about phi_c unstable marginal, continuous_time": "drifts_state_feedback_continuous",
     "about phi_c unstable marginal, discrete_time": "drifts_state_feedback_discrete",
     "about phi_c, continuous_time": """
@@ -50,6 +50,8 @@ DEMANDED = {
     "annuls w_d B A−A_ref": "tracking_impossible",
     "annuls w_d Ctr d_r": "energy_unreachable",
     "applies_image": "mapped mapped_from_v",
+    "blocked S_w": "regulation_rank",
+    "blocked_there S_w": "regulation_zeros",
     "bounded X mu": "semisimple",
     "chained X mu": "grows",
     "continuous_time": """
@@ -165,6 +167,12 @@ DEMANDED = {
     "poles_of P": "its_poles",
     "poles_of phi_c": "control_pole control_poles control_polynomial",
     "poles_of phi_o": "observer_pole observer_poles observer_polynomial",
+    "has_margins chi_cl chi_o": "margins_any_phase margins_are",
+    "is chi_cl chi_o": "margins_no_loop",
+    "about chi_cl": "margins_none margins_stable",
+    "loop stable": "regulation_reached_estimated",
+    "refutes_regulator": "regulation_impossible",
+    "refutes_regulator E_d": "regulation_impossible_E",
     "repairs Bᵀ Aᵀ": "repair_one_controllability repair_several_controllability",
     "repairs C A": "repair_one_observability repair_several_observability",
     "reverses chi_r chi": "lyapunov_reversed",
@@ -260,7 +268,7 @@ ASSERTED = {
     """,
     "stable": """
         case_everywhere gramian_infinite_controllability gramian_infinite_observability only_stable
-        stable_continuous stable_discrete
+        margins_stable regulation_reached regulation_reached_estimated stable_continuous stable_discrete
     """,
     "stable strictly_proper": "compensator_stable compensator_stable_low minimal_stable",
     "stable strictly_proper unstable": "compensator_unstable_alone compensator_unstable_low_alone minimal_unstable_alone",

@@ -21,6 +21,7 @@ STUB = ROOT / "symobs" / "__init__.pyi"
 KINDS = {
     "Poles": "str | Sequence[_Number] | Mapping[str, Any] | MatrixBase",
     "PolynomialText": "str | Expr",
+    "TransferFunctionText": "_Number",
     "GainText": "_Matrix",
     "MatrixText": "_Matrix",
     "IntervalText": "str | Sequence[_Number]",
@@ -39,7 +40,7 @@ HEAD = '''"""What type checkers and editors know of `symobs`; `python -m tests.p
 from collections.abc import Mapping, Sequence
 from decimal import Decimal
 from fractions import Fraction
-from typing import Any, TypeAlias
+from typing import Any, TypeAlias, overload
 
 from sympy import Expr, ImmutableMatrix
 from sympy.matrices import MatrixBase
@@ -135,6 +136,10 @@ def signature(task: Task) -> str:
     own = own_class(task)
     told = f'    """{task.summary}"""'
     star = "    *,\n" if keywords else ""
+    if task.name in symobs.FUNCTIONS:  # it takes a design as well
+        designs = " | ".join(own_class(tasks()[name]) for name in ("state_feedback", "observer", "compensator"))
+        told = f"@overload\ndef {task.name}(design: {designs}) -> Mapping[str, Any]: ...\n"
+        return told + f"@overload\ndef {task.name}(\n    {plant},\n{star}" + "\n".join(keywords) + f"\n) -> {own}: ..."
     return f"def {task.name}(\n    {plant},\n{star}" + "\n".join(keywords) + f"\n) -> {own}:\n{told}"
 
 
@@ -145,7 +150,9 @@ def stub() -> str:
     raised = sorted(name for name in vars(errors) if isinstance(getattr(errors, name), type) and name[0].isupper())
     raised = [name for name in raised if issubclass(getattr(errors, name), errors.SymobsError)]
     imports = {line for line, _ in classes.values()} | {"from symobs.system import StateSpace as StateSpace"}
-    imports |= {f"from {module} import {name} as {name}" for name, module in symobs.FUNCTIONS.items()}
+    imports |= {
+        f"from {module} import {name} as {name}" for name, module in symobs.FUNCTIONS.items() if name not in found
+    }
     imports |= {f"from symobs.ground.errors import {name} as {name}" for name in raised}
     bodies = [f"{classes[name][1]}\n\n{signature(tasks()[name])}" for name in found]
     return HEAD + "\n".join(sorted(imports)) + "\n" + NAMES + "\n" + "\n\n".join(bodies) + "\n"

@@ -34,6 +34,8 @@ if TYPE_CHECKING:
 
 #: What no distance is smaller than, where there is nothing to measure.
 INFINITE = "oo"
+#: Angles, distances and peaks are rounded to so many digits after the point.
+MARGIN_DIGITS = 6
 _MOST_BITS = 4096
 
 

@@ -114,6 +114,15 @@ _article(
     "457–465",
 )
 _article(
+    "francis1977",
+    "B. A. Francis",
+    "The linear multivariable regulator problem",
+    "SIAM J. Control Optim.",
+    "15",
+    "1977",
+    "486–505",
+)
+_article(
     "gilbert1963",
     "E. G. Gilbert",
     "Controllability and observability in multivariable control systems",
@@ -330,8 +339,23 @@ _book("chen1999", "C.-T. Chen", "Linear System Theory and Design", "Oxford Unive
 _book("jury1964", "E. I. Jury", "Theory and Application of the z-Transform Method", "Wiley", "1964")
 _book("astrom1997", "K. J. Åström and B. Wittenmark", "Computer-Controlled Systems", "Prentice Hall", "1997", "3rd")
 _book("lancaster1985", "P. Lancaster and M. Tismenetsky", "The Theory of Matrices", "Academic Press", "1985", "2nd")
+_book(
+    "trentelman2001",
+    "H. L. Trentelman, A. A. Stoorvogel and M. Hautus",
+    "Control Theory for Linear Systems",
+    "Springer",
+    "2001",
+)
 _book("kailath1980", "T. Kailath", "Linear Systems", "Prentice Hall", "1980")
 _book("popov1973", "V. M. Popov", "Hyperstability of Control Systems", "Springer", "1973")
+_book(
+    "skogestad2005",
+    "S. Skogestad and I. Postlethwaite",
+    "Multivariable Feedback Control",
+    "Wiley",
+    "2005",
+    "2nd",
+)
 _book("routh1877", "E. J. Routh", "A Treatise on the Stability of a Given State of Motion", "Macmillan", "1877")
 _book("rugh1996", "W. J. Rugh", "Linear System Theory", "Prentice Hall", "1996", "2nd")
 _proceedings(

@@ -15,7 +15,19 @@ from itertools import dropwhile, takewhile
 from re import findall
 from typing import TYPE_CHECKING, Any, TypeAlias
 
-from symobs.exact import Ideal, Matrix, Scalar, companion, echelon, from_coefficients, independent_rows, rank, unit_rows
+from symobs.exact import (
+    EIGENVALUE,
+    Ideal,
+    Matrix,
+    Scalar,
+    companion,
+    echelon,
+    from_coefficients,
+    independent_rows,
+    rank,
+    unit_rows,
+)
+from symobs.exact.algebraic.loop_distances import INFINITE, MARGIN_DIGITS, Loop
 from symobs.exact.core.generators import PI, function
 from symobs.exact.time_functions.matrix_power import modes_of
 from symobs.formula.phrases import DEMANDS
@@ -24,6 +36,7 @@ from symobs.formula.tree import (
     Apply,
     At,
     Block,
+    Decimals,
     Derivative,
     Evaluated,
     Exact,
@@ -493,6 +506,68 @@ def _refutes_lyapunov(said: Said, of: str, Q: str, X: str) -> bool:
     )
 
 
+def _refutes_regulator(said: Said, *disturbs: str) -> bool:
+    """Return whether U A + V C = S U, U B + V D = 0, and what is told is tr UE − tr VQ (tr VQ where E is 0), and not 0."""
+    here, told = said.environment, said.slots["trace"]
+    U, V, A, B, C, D, S = (Letter(name) for name in ("U_r", "V_r", "A", "B", "C", "D", "S_w"))
+    if not isinstance(told, Formula) or (not disturbs and "E_d" in here.values and _differs(here, Letter("E_d"))):
+        return False
+    driven = (Product((U, B)), Product((V, D))) if "D" in here.values else (Product((U, B)),)
+    pairs = [("V_r", "Q_r", -1 if disturbs else 1), *(("U_r", name, 1) for name in disturbs)]
+    trace = Scalar.of(0)
+    for one, other, sign in pairs:
+        left, right = (evaluate(Letter(name), here, Exact(here)) for name in (one, other))
+        trace += sum((a * b for a, b in zip(left.T.entries, right.entries, strict=True)), Scalar.of(0)) * sign
+    return (
+        _holds(here, Sum((Product((U, A)), Product((V, C)))), "=", Product((S, U)))
+        and _vanishes(here, Sum(driven))
+        and _holds(here, told, "=", Literal(trace))
+        and _differs(here, Literal(trace))
+    )
+
+
+def _is_blocked(said: Said, of: str, *, everywhere: bool) -> bool:
+    """Return whether [A − sI, B; C, D] has less than n + p independent rows at the roots told, eigenvalues of a matrix.
+
+    Where that is not so for every s, these are zeros of the plant.
+    """
+    here, told, s = said.environment, said.slots["modes"], Scalar.symbol(said.environment.variable)
+    A, B, C = (evaluate(Letter(name), here, Exact(here)) for name in "ABC")
+    D = evaluate(Letter("D"), here, Exact(here)) if "D" in here.values else Matrix.zeros(C.shape[0], B.shape[1])
+    full = A.shape[0] + C.shape[0]
+    own = Matrix.block([[A - Matrix.identity(A.shape[0]) * s, B], [C, D]])
+    shown = all(
+        isinstance(slot := said.slots[name], Formula) and _holds(here, slot, "=", Literal(value))
+        for name, value in (("pencil", own), ("size", Scalar.of(full)))
+    )
+    if not shown or not isinstance(told, Roots) or (everywhere == (rank(own, _ideal(here.relations)) == full)):
+        return False
+    polynomial = as_scalar(evaluate(told.polynomial, here, Exact(here)))
+    eigenvalue = {here.variable: Scalar.symbol(EIGENVALUE)}
+    there = own.substitute(eigenvalue)
+    factors = [f.substitute(eigenvalue) for f, _ in polynomial.numerator.factors()[1] if here.variable in f.names]
+    lost = all(rank(there, _ideal((*here.relations, factor))) < full for factor in factors)
+    return lost and _is(here, "polynomial", Quotient(_characteristic(of, here), told.polynomial))
+
+
+def _ideal(relations: tuple[Scalar, ...]) -> Ideal | None:
+    return Ideal.of(relations) if relations else None
+
+
+def _has_margins(said: Said, closed: str, opened: str) -> bool:
+    """Return whether angle, distance and peak are told of a stable loop as they round; no angle where there is none."""
+    here, discrete = said.environment, said.environment.variable == "z"
+    known = (as_scalar(evaluate(Letter(name), here, Exact(here))) for name in (closed, opened))
+    parts = [[entry.fraction() for entry in value.coefficients(here.variable)] for value in known]
+    loop = Loop.of(*parts, discrete=discrete)
+    found = {"modulus": loop.modulus(MARGIN_DIGITS), "peak": loop.peak(MARGIN_DIGITS)}
+    phase = loop.phase(MARGIN_DIGITS)
+    found |= {} if phase == INFINITE else {"phase": phase}
+    told = {name: slot.value for name, slot in said.slots.items() if isinstance(slot, Decimals)}
+    right = {name: None if text is None else Scalar.of(Fraction(text)) for name, text in found.items()}
+    return told == right and told.keys() == said.slots.keys() and _is(here, "stable", Letter(closed))
+
+
 def _are_minors(said: Said, of: str) -> bool:
     """Return whether Δ₁, Δ₂, … are the leading principal minors of a matrix."""
     here, order = said.environment, _sizes(of, said.environment)[0]
@@ -776,6 +851,10 @@ _OF_STEP: dict[str, Callable[..., bool]] = {
     "solves": lambda said, M, x, b: _holds(said.environment, Product((Letter(M), Letter(x))), "=", Letter(b)),
     "solves_homogeneous": _solves_homogeneous,
     "refutes_lyapunov": _refutes_lyapunov,
+    "refutes_regulator": _refutes_regulator,
+    "blocked": lambda said, of: _is_blocked(said, of, everywhere=True),
+    "blocked_there": lambda said, of: _is_blocked(said, of, everywhere=False),
+    "has_margins": _has_margins,
     "minors": _are_minors,
     "solves_lyapunov": _is_lyapunov,
     "vanishes": _vanishes_of,

@@ -45,6 +45,9 @@ Poles: TypeAlias = Annotated[Any, "Poles"]
 PolynomialText: TypeAlias = Annotated[Any, "PolynomialText"]
 
 
+TransferFunctionText: TypeAlias = Annotated[Any, "TransferFunctionText"]
+
+
 GainText: TypeAlias = Annotated[Any, "GainText"]
 
 
@@ -92,6 +95,7 @@ KINDS: dict[str, dict[str, Any]] = {
         ],
     },
     "PolynomialText": {"description": 'a monic polynomial, "(s + 10)^2"', "type": "string"},
+    "TransferFunctionText": {"description": 'a rational function, "10 (s + 1)/(s + 10)"', "type": ["string", "number"]},
     "GainText": {
         "description": 'a gain, "[19; 81]"',
         "oneOf": [{"type": "string"}, {"type": "array"}],

@@ -161,10 +161,11 @@ def given(
     *desired: tuple[str, DesiredPolynomial | None],
     where: Iterable[Condition] = (),
     disturbed: Matrix | None = None,
+    by: str = "d",
 ) -> None:
     """State the plant, and the desired poles or polynomials by name (`control`, `observer`, …).
 
-    `where` says further of which parameters the page speaks; `disturbed` is the E of ẋ = A x + B u + E d.
+    `where` says further of which parameters the page speaks; `disturbed` is the E of ẋ = A x + B u + E d, `by` the letter of d.
     """
     plant, m = page.plant, page.plant.matrices
     with page.section("given"):
@@ -182,7 +183,7 @@ def given(
             rate = rate + _as_given(page, m.B) @ page["u"]
         if disturbed is not None:
             page.set("E_d", disturbed)
-            rate = rate + _as_given(page, disturbed) @ page["d"]
+            rate = rate + _as_given(page, disturbed) @ page[by]
         relations.append(relation(page["x"].derivative, rate))
         page.environment = page.environment.extended_by(dynamics={"x": rate.formula})
         if m.has_output:
@@ -194,7 +195,7 @@ def given(
             relations.append(relation(page["y"], output))
             page.environment = page.environment.extended_by(signals={"y": output.formula})
         page.given(*relations)
-        _hold_to_letters(page)
+        _hold_to_letters(page, by)
         if plant.is_from_floats:
             page.remark("from_floats")
         _say_decimals(page)
@@ -222,12 +223,12 @@ def _say_decimals(page: Builder) -> None:
         page.remark("exact_decimals", numbers=Conjunction(tuple(relation(page.term(Decimals(v)), v) for v in sizes)))
 
 
-def _hold_to_letters(page: Builder) -> None:
+def _hold_to_letters(page: Builder, by: str) -> None:
     """Bind what is displayed to the letters: ẋ = A x + B u, y = C x + D u, and P to its realisation."""
     m, x, u = page.plant.matrices, page["x"], page["u"]
     rate = page["A"] @ x + page["B"] @ u if m.has_input else page["A"] @ x
     if page.defines("E_d"):
-        rate = rate + page["E_d"] @ page["d"]
+        rate = rate + page["E_d"] @ page[by]
     facts = [relation(x.derivative, rate)]
     if m.has_output:
         output = page["C"] @ x + page["D"] @ u if m.has_feedthrough else page["C"] @ x

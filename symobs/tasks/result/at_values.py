@@ -29,6 +29,7 @@ from symobs.system.specification import (
     read_poles,
 )
 from symobs.system.specification.pole_patterns import OTHERS
+from symobs.system.transfer_function_text import read_transfer_function
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Mapping
@@ -129,6 +130,10 @@ def _polynomial(value: object, plant: StateSpace, where: str) -> Scalar:
     return read_scalar(value, plant.symbols.seen(value, plant.variable), where, functions=True)
 
 
+def _rational(value: object, plant: StateSpace, where: str) -> Scalar:
+    return read_transfer_function(value, plant.symbols, plant.variable, where).value
+
+
 def _poles(value: object, plant: StateSpace, where: str) -> tuple[Complex, ...] | dict[str, Any]:
     if is_pattern(value):
         named, others = read_pattern(value, plant, where)
@@ -161,6 +166,7 @@ def _listed(value: object, _: StateSpace, where: str) -> frozenset[str]:
 _READERS: dict[str, Callable[[Any, StateSpace, str], Any]] = {
     "Poles": _poles,
     "PolynomialText": _polynomial,
+    "TransferFunctionText": _rational,
     "GainText": _entries,
     "MatrixText": _entries,
     "IntervalText": _poles,

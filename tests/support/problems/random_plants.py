@@ -60,6 +60,16 @@ def specification_of(name: str, plant: symobs.StateSpace, chance: random.Random)
             asked[keyword] = horizon
         elif keyword == "reference_matrix":
             asked[keyword] = [[0] * plant.order] * plant.order
+        elif keyword == "S":
+            asked[keyword] = chance.choice(["[0]", "[1]", "[0 1; -1 0]", "[0 a; -a 0]"])
+        elif keyword == "reference":
+            asked[keyword] = [
+                [chance.choice(["0", "1"]) for _ in range(1 + (";" in asked["S"]))] for _ in range(plant.outputs)
+            ]
+        elif keyword == "E" and name == "output_regulation":
+            asked[keyword] = [
+                [chance.choice(["0", "1", "a"]) for _ in range(1 + (";" in asked["S"]))] for _ in range(plant.order)
+            ]
         elif keyword == "E":
             asked[keyword] = [[chance.choice(["0", "1", "a"])] for _ in range(plant.order)]
     kinds = {"gramian": "of", "pbh": "of", "canonical_form": "kind"}
@@ -70,6 +80,7 @@ def specification_of(name: str, plant: symobs.StateSpace, chance: random.Random)
         asked[kinds[name]] = chance.choice(choices)
     own: dict[str, dict[str, Any]] = {
         "response": {"input": ["1"] * plant.inputs},
+        "margins": {"controller": chance.choice(["2", "(s + 2)/(s + 3)"]).replace("s", plant.variable)},
         "pole_advice": {"radius": "1"},
         "minimum_energy_input": {"horizon": horizon, "final": ["1"] * plant.order},
         "lyapunov": {"Q": [[int(i == j) for j in range(plant.order)] for i in range(plant.order)]},

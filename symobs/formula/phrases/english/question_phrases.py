@@ -86,6 +86,7 @@ OPENS = ("part",)
 UNSAID = (
     "auto",
     "basis",
+    "boundary",
     "decoupled",
     "entries",
     "derivatives",
@@ -99,6 +100,7 @@ UNSAID = (
     "partition",
     "rank",
     "reference_model",
+    "regulator_equations",
     "resolvent",
     "routh",
     "separation",

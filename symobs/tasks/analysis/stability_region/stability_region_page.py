@@ -64,6 +64,13 @@ def write_region(page: Builder, result: StabilityRegion) -> None:
             _conditions(page, result, moved)
 
 
+def write_line(page: Builder, result: StabilityRegion, chi: str) -> None:
+    """Write where a polynomial with one parameter is stable, without Routh's table."""
+    if result.critical.proper:
+        _crossing(page, result, chi)
+    _region(page, result, chi, chi)
+
+
 def _say_open_loop(page: Builder, result: StabilityRegion) -> None:
     """Say how a loop is asked for where parameters stand in the numerator of a transfer function alone."""
     written, chi = result.plant.written, result.answer["polynomial"]

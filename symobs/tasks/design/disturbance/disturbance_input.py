@@ -27,11 +27,8 @@ def read_exosystem(plant: StateSpace, E: Matrix, S: object, V: object) -> Exosys
     """Return the exosystem, that of a constant d where S is left out; raises `InputError` for shapes that do not fit."""
     q = E.shape[1]
     constant = Matrix.identity(q) if plant.is_discrete else Matrix.zeros(q, q)
-    model = constant if S is None else _matrix(plant, S, "S")
+    model = constant if S is None else read_generator(plant, S)
     order = model.shape[0]
-    if model.shape[1] != order:
-        message = f"S is {order}×{model.shape[1]}, and must be square"
-        raise ShapeMismatch(message, where="specification.S", repair='write for example S = "[0 omega; -omega 0]"')
     if V is None and order < q:
         message = f"S has fewer states, {order}, than E has columns, {q}"
         raise ShapeMismatch(message, where="specification.S", repair="give a larger S, or V")
@@ -40,6 +37,16 @@ def read_exosystem(plant: StateSpace, E: Matrix, S: object, V: object) -> Exosys
         message = f"V is {chosen.shape[0]}×{chosen.shape[1]}, expected {q}×{order}"
         raise ShapeMismatch(message, where="specification.V", repair=f"write V as a {q}×{order} matrix")
     return Exosystem(E, model, chosen)
+
+
+def read_generator(plant: StateSpace, S: object) -> Matrix:
+    """Return the state matrix of an exosystem; raises `ShapeMismatch` where it is not square."""
+    model = _matrix(plant, S, "S")
+    order = model.shape[0]
+    if model.shape[1] != order:
+        message = f"S is {order}×{model.shape[1]}, and must be square"
+        raise ShapeMismatch(message, where="specification.S", repair='write for example S = "[0 omega; -omega 0]"')
+    return model
 
 
 def _matrix(plant: StateSpace, value: object, name: str) -> Matrix:

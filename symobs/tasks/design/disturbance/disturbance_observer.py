@@ -39,6 +39,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
     from symobs.exact import Scalar
+    from symobs.formula.tree import Relation
     from symobs.system.specification import MatrixText, Name, Poles, PolynomialText
 
 
@@ -224,9 +225,12 @@ def with_exosystem(plant: StateSpace, exosystem: Exosystem) -> StateSpace:
 
 
 def extended(e: Environment, plant: StateSpace, exosystem: Exosystem) -> list[list[Term]]:
-    """Return the blocks of [A EV; 0 S]."""
-    A, E, S, V = (letter(name, e) for name in ("A", "E_d", "S_w", "V_w"))
-    return [[A, E @ V], [Term(Literal(Matrix.zeros(exosystem.order, plant.order)), e), S]]
+    """Return the blocks of [A EV; 0 S], of [A E; 0 S] where d = w and V has no letter."""
+    A, E, S = (letter(name, e) for name in ("A", "E_d", "S_w"))
+    return [
+        [A, E @ letter("V_w", e) if e.defines("V_w") else E],
+        [Term(Literal(Matrix.zeros(exosystem.order, plant.order)), e), S],
+    ]
 
 
 @method("disturbance_observer/extended_state", source="johnson1971; francis1976")
@@ -285,7 +289,7 @@ def write_disturbance_observer(page: Builder, design: DisturbanceObserver) -> No
     given(page, ("observer", design.desired), disturbed=design.exosystem.E)
     with page.section("disturbance_observer"):
         _together(page, design)
-        _design(page, design)
+        write_gain_of_both(page, design)
         if design.answer["L_x"] is not None:
             _observer(page, design)
         page.steps += case_steps(page, design, _case)
@@ -296,13 +300,13 @@ def _case(page: Builder, design: DisturbanceObserver) -> None:
     for name, value in zip(("E_d", "S_w", "V_w"), design.exosystem, strict=True):
         page.set(name, value)
     page.set("phi_o", design.desired.polynomial)
-    _name_extended(page, design, silent=True)
-    _design(page, design)
+    name_extended(page, design, silent=True)
+    write_gain_of_both(page, design)
 
 
 def _together(page: Builder, design: DisturbanceObserver) -> None:
     """Write ẇ = S w and d = V w, and both equations together."""
-    plant, m, (_, S, V) = page.plant, page.plant.matrices, design.exosystem
+    _, S, V = design.exosystem
     page.set("S_w", S)
     page.set("V_w", V)
     w = page["w_e"]
@@ -314,7 +318,13 @@ def _together(page: Builder, design: DisturbanceObserver) -> None:
     else:
         generated = [relation(w.derivative, page["S_w"].as_value @ w)]
         page.equal(*generated, relation(page["d"], page["V_w"].as_value @ w), say="disturbance_model")
-    _name_extended(page, design)
+    write_both_together(page, design)
+
+
+def write_both_together(page: Builder, design: DisturbanceObserver) -> None:
+    """Write plant and exosystem as one system."""
+    plant, m, S = page.plant, page.plant.matrices, design.exosystem.S
+    name_extended(page, design)
     state = block([[page["x"]], [page["w_e"]]])
     rate, seen = page["A_hat"] @ state, page["C_hat"] @ state
     if m.has_input:
@@ -326,7 +336,7 @@ def _together(page: Builder, design: DisturbanceObserver) -> None:
     page.equal(relation(state.derivative, rate), relation(page["y"], seen), say="disturbance_together")
 
 
-def _name_extended(page: Builder, design: DisturbanceObserver, *, silent: bool = False) -> None:
+def name_extended(page: Builder, design: DisturbanceObserver, *, silent: bool = False) -> None:
     """Define Â = [A EV; 0 S] and Ĉ = [C 0]."""
     outputs, order = page.plant.outputs, design.exosystem.order
     whole = block(extended(page.environment, page.plant, design.exosystem))
@@ -342,7 +352,7 @@ def _is_constant(design: DisturbanceObserver) -> bool:
     return still == S and Matrix.identity(order) == V
 
 
-def _design(page: Builder, design: DisturbanceObserver) -> None:
+def write_gain_of_both(page: Builder, design: DisturbanceObserver) -> None:
     """Write whether plant and exosystem are observable, and the gain or the reason why there is none."""
     pair, plant, C, A = design.inner.pair, page.plant, page["C_hat"], page["A_hat"]
     order = plant.order + design.exosystem.order
@@ -389,19 +399,31 @@ def _zeros(page: Builder, design: DisturbanceObserver) -> None:
     found, place = rank(whole.value, plant.ideal), "one" if plant.is_discrete else "origin"
     if design.inner.pair.is_observable:
         page.remark(f"disturbance_zeros_{place}", rank=relation(whole.apply("rank"), n + q))
-    elif found < n + q and rank(block([[first], [C]]).value, plant.ideal) == n:  # so that d is not 0 in its kernel
+    elif (
+        q <= plant.outputs and found < n + q and rank(block([[first], [C]]).value, plant.ideal) == n
+    ):  # so that d is not 0 in its kernel
         page.remark(f"disturbance_blocked_{place}", rank=relation(whole.apply("rank"), found, "<", n + q))
 
 
 def _observer(page: Builder, design: DisturbanceObserver) -> None:
     """Write the observer, the estimate of the disturbance, and the error equation."""
+    estimate = page["V_w"] @ page["w_hat"]
+    page.signal("d_hat", estimate, silent=True)
+    shown = relation(page["d_hat"], estimate, page["V_w"].as_value @ page["w_hat"])
+    write_observer_of_both(page, design, page["E_d"] @ estimate, shown, say="disturbance_equation")
+
+
+def write_observer_of_both(
+    page: Builder, design: DisturbanceObserver, driven: Term, *shown: Relation, say: str
+) -> None:
+    """Write the observer of plant and exosystem, where E d̂ drives the estimate, and the error equation."""
     L, C_hat, A_hat = page["L"], page["C_hat"], page["A_hat"]
     for name, value in (("L_x", design.answer["L_x"]), ("L_w", design.answer["L_w"])):
         page.set(name, value)
     page.conclude_silently(relation(page["L"], block([[page["L_x"]], [page["L_w"]]])))
     model, innovation = model_and_innovation(page)
     w_hat = page["w_hat"]
-    page.dynamics("x_hat", model + page["E_d"] @ page["V_w"] @ w_hat + page["L_x"] @ innovation, silent=True)
+    page.dynamics("x_hat", model + driven + page["L_x"] @ innovation, silent=True)
     page.dynamics("w_hat", page["S_w"] @ w_hat + page["L_w"] @ innovation, silent=True)
     state = block([[page["x_hat"]], [w_hat]])
     rate = A_hat @ state
@@ -409,12 +431,7 @@ def _observer(page: Builder, design: DisturbanceObserver) -> None:
     if page.plant.matrices.has_input:
         rate = rate + page["B_hat"] @ page["u"]
         left = left - page["D"] @ page["u"] if page.plant.matrices.has_feedthrough else left
-    page.signal("d_hat", page["V_w"] @ w_hat, silent=True)
-    page.equal(
-        relation(state.derivative, rate + L @ left),
-        relation(page["d_hat"], page["V_w"] @ w_hat, page["V_w"].as_value @ w_hat),
-        say="disturbance_equation",
-    )
+    page.equal(relation(state.derivative, rate + L @ left), *shown, say=say)
     page.signal("e", page["x"] - page["x_hat"], silent=True)
     page.signal("e_w", page["w_e"] - w_hat, silent=True)
     error, closed = block([[page["e"]], [page["e_w"]]]), page["A_hat"] - L @ C_hat

@@ -63,3 +63,10 @@ def test_a_page_says_observable_where_the_gain_has_no_need_of_it() -> None:
     rows = [sympy.Matrix([[a * b, b, a, 0]]) * A**k for k in range(4)]
     assert sympy.rem(sympy.Matrix.vstack(*rows).det(), a**3 * b + a**3 + a**2 * b + 2 * a**2 + 3 * a * b + b, b) == 0
     assert "a³ b + a³ + a² b + 2a² + 3a b + b ≠ 0" in " ".join(result.to("text").split())
+
+
+def test_more_disturbances_than_outputs_are_told_without_a_zero() -> None:
+    plant = symobs.StateSpace("[0 1; -1 -1]", C="[1 0]")
+    found = symobs.disturbance_observer(plant, E="[1 0; 0 1]", poles="-1, -2, -3, -4")
+    assert found.verdict == "no"
+    assert "zero at the origin" not in found.to("text")

@@ -1,0 +1,404 @@
+"""Margins of a loop of one input and one output: how far gain and phase may move, and how near to −1 it comes.
+
+The loop is K(sI − A)⁻¹B of a state feedback, C(sI − A)⁻¹L of an observer, F(s)G(s) of a compensator or a controller F, with
+negative feedback.  P is its denominator without any cancelling, P + N the characteristic polynomial of the closed loop.
+"""
+
+from __future__ import annotations
+
+from decimal import Decimal
+from fractions import Fraction
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, ClassVar, Self
+
+from symobs.exact import Factored, Matrix, RealNumber, Scalar, transfer
+from symobs.exact.algebraic.loop_distances import INFINITE, MARGIN_DIGITS, Loop, slowest_root
+from symobs.formula.tree import Decimals, Environment
+from symobs.formula.tree.term import Term, identity, letter
+from symobs.ground.dataclass import dataclass
+from symobs.ground.errors import InputError
+from symobs.proof.certificate.claims import Certificate, Claim, Statement
+from symobs.proof.derivation.builder import Builder, predicate, relation
+from symobs.system.specification import desired_polynomial, over_common_data, read_gain, reject_both
+from symobs.system.transfer_function_text import read_transfer_function
+from symobs.tasks.analysis.page_parts import factored_form, given
+from symobs.tasks.analysis.stability_region.margins import NotRational, gains_of, margins_of, numbers
+from symobs.tasks.analysis.stability_region.stability_region import stability_region
+from symobs.tasks.analysis.stability_region.stability_region_page import write_line
+from symobs.tasks.design.compensator.compensator import observer_based, observer_order
+from symobs.tasks.design.full_order.observer import ObserverDesign
+from symobs.tasks.design.full_order.state_feedback import StateFeedbackDesign
+from symobs.tasks.design.gain.gain_cases import design_of
+from symobs.tasks.result import Result, choose, method, page_of, poles_of, task
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
+
+    from symobs.system import StateSpace
+    from symobs.system.specification import GainText, Name, Poles, PolynomialText, TransferFunctionText
+    from symobs.system.transfer_function_text import WrittenTransferFunction
+    from symobs.tasks.analysis.stability_region.stability_region import StabilityRegion
+
+
+#: The margins, as they are called.
+MARGINS = ("gain_down", "gain_up", "phase_deg", "modulus", "peak", "slowest")
+#: The polynomial of the closed loop, the matrix of what is added to the plant, and where the loop is cut.
+_LOOPS = {
+    "state_feedback": ("polynomial", None, "inputs"),
+    "observer": ("polynomial", None, "outputs"),
+    "compensator": ("closed_loop_polynomial", "compensator_matrix", "inputs"),
+}
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Margins(Result):
+    """The margins of the loop with the polynomials P and P + N, of a design or of a controller; none where it is not stable.
+
+    `open` says why they are not found.
+    """
+
+    design: Result | None
+    written: WrittenTransferFunction | None
+
+    task: ClassVar[str] = "margins"
+    answered_by = ("gain_down", "gain_up", "phase_deg")
+
+    @classmethod
+    def of(
+        cls,
+        plant: StateSpace,
+        design: Result | None,
+        controller: WrittenTransferFunction | None,
+        loop: tuple[Scalar, Scalar] | None,
+        method_name: str = "boundary",
+    ) -> Self:
+        """Return the margins of the loop P + N, P; those of no loop where the design does not exist."""
+        answer: dict[str, Any] = dict.fromkeys(("closed", "opened", "open", *MARGINS))
+        if loop is not None:
+            answer["closed"], answer["opened"] = closed, opened = loop
+            try:
+                answer |= margins_of(closed, opened, plant.variable, plant.dt)
+            except NotRational as error:
+                answer["open"] = f"{error} is no rational number"
+            if None in (answer[name] for name in MARGINS) and answer["slowest"] is not None and answer["gain_up"]:
+                answer |= {**dict.fromkeys(MARGINS), "open": "the digits of the margins are not certain"}
+        return cls(plant, method_name, answer, design, controller)
+
+    def claims(self) -> Iterator[Claim | Statement]:
+        """Yield what P and P + N are, the slowest root, the ends of the gain, and the digits of the rest."""
+        answer, plant = self.answer, self.plant
+        if answer["closed"] is None:
+            return
+        m, closed, opened = plant.matrices, answer["closed"], answer["opened"]
+        values: dict[str, Any] = {"A": m.A, "chi_o": opened, "chi_cl": closed}
+        own = None if self.design is None else _LOOPS[self.design.task][1]
+        if self.design is not None and own is not None:
+            values["A_c"] = self.design.fields[own]
+        if self.written is not None:
+            values |= {"B": m.B, "C": m.C, "D": m.D, "F": self.written.value, "q": _monic(self.written)[1]}
+        e = Environment(variable=plant.variable, values=values)
+        whole = (letter("s", e) @ identity(plant.order, e) - letter("A", e)).apply("det")
+        if self.design is not None:
+            if own is not None:
+                inner = letter("s", e) @ identity(values["A_c"].shape[0], e) - letter("A_c", e)
+                whole = whole @ inner.apply("det")
+            yield Claim(relation(letter("chi_o", e), whole), e, "P = det(s*I - A), times that of the compensator")
+            yield Claim(
+                relation(closed, _plain(self.design.fields[_LOOPS[self.design.task][0]])), e, "P + N of the design"
+            )
+        else:
+            A, B, C, D, F = (letter(name, e) for name in "ABCDF")
+            yield Claim(relation(letter("chi_o", e), whole @ letter("q", e)), e, "P = det(s*I - A) times that of F")
+            G = C @ (letter("s", e) @ identity(plant.order, e) - A).inverse @ B + D
+            one = identity(1, e)
+            said = "P + N = P*(1 + F*G)"
+            yield Claim(relation(letter("chi_cl", e) @ one, letter("chi_o", e) @ (one + F @ G)), e, said)
+        if answer["slowest"] is not None:
+            yield Statement("the slowest root", lambda: "exact" if self._slowest == answer["slowest"] else "")
+        if answer["modulus"] is not None:
+            how = "every interval by the roots at a point of it"
+            ends = answer["gain_down"], answer["gain_up"]
+            yield Statement(
+                "the ends of the gains around 1", lambda: how if gains_of(closed, opened, plant.dt) == ends else ""
+            )
+            yield Statement("angle, distance and peak", lambda: "interval arithmetic" if self._are_certain else "")
+
+    @property
+    def _coefficients(self) -> list[list[Fraction]]:
+        return [[*numbers(self.answer[name], self.plant.variable)] for name in ("closed", "opened")]
+
+    @property
+    def _slowest(self) -> RealNumber:
+        return slowest_root(self._coefficients[0], discrete=self.plant.is_discrete)
+
+    @property
+    def _are_certain(self) -> bool:
+        """Whether angle, distance and peak round as they are written, by enclosures with twice the digits."""
+        loop = Loop.of(*self._coefficients, discrete=self.plant.is_discrete)
+        found = {"phase_deg": loop.phase, "modulus": loop.modulus, "peak": loop.peak}
+        unit = Decimal(1).scaleb(-MARGIN_DIGITS)
+        for name, value in found.items():
+            told, finer = self.answer[name], value(2 * MARGIN_DIGITS)
+            if INFINITE in (told, finer):
+                if told != finer:
+                    return False
+            elif finer is None or abs(Decimal(told) - Decimal(finer)) > unit / 2 + unit / 1000:
+                return False
+        return True
+
+    @property
+    def verdict(self) -> str:
+        """`no` where there is no design or it is not stable; `undecided` where margins are not found."""
+        if self.answer["open"]:
+            return "undecided"
+        return "no" if self.answer["modulus"] is None else super().verdict
+
+    @property
+    def all_certificates(self) -> tuple[Certificate, ...]:
+        """The certificates of the design and of the margins."""
+        return (*(() if self.design is None else self.design.all_certificates), *self.certificates)
+
+    @cached_property
+    def fields(self) -> Mapping[str, Any]:
+        """The margins: ends and slowest exactly, the others as decimals in texts; and the polynomials."""
+        found: dict[str, Any] = {name: _written(self.answer[name]) for name in MARGINS}
+        found |= {"closed_loop_polynomial": self.answer["closed"], "open_loop_polynomial": self.answer["opened"]}
+        return found | ({"question": self.answer["open"]} if self.answer["open"] else {})
+
+    def __getattr__(self, name: str) -> Any:
+        """Return a margin as a number of SymPy or a decimal, any other answer as usual."""
+        if name in MARGINS and self.answer[name] is not None:
+            return public(self.answer[name])
+        return super().__getattr__(name)
+
+    @cached_property
+    def region(self) -> StabilityRegion | None:
+        """Where P + kN is stable as k moves; None where k does not stand in it."""
+        moved = self.answer["opened"] + Scalar.symbol("k") * (self.answer["closed"] - self.answer["opened"])
+        if "k" not in moved.names:
+            return None
+        found: Any = stability_region(moved, dt=self.plant.dt, parameters="k")
+        return found  # type: ignore[no-any-return]
+
+
+def _written(value: Any) -> Any:
+    """Return a number with its closed form, a text where it has none."""
+    closed = value.closed_form() if isinstance(value, RealNumber) else None
+    return closed if closed is not None or value is None else str(value)
+
+
+def public(value: Any) -> Any:
+    """Return an exact number as SymPy has it, a rounded one as a decimal."""
+    from symobs.exact.sympy_bridge.conversion import real_to_sympy  # noqa: PLC0415 - only who asks in Python pays
+    from symobs.exact.sympy_bridge.sympy_import import sympy  # noqa: PLC0415
+
+    if value == INFINITE:
+        return sympy.oo
+    return real_to_sympy(value) if isinstance(value, RealNumber) else Decimal(value)
+
+
+def loop_of(design: Any) -> tuple[Scalar, Scalar]:
+    """Return P + N and P of a design; raises `InputError` where it has no such loop."""
+    kind = str(getattr(design, "task", type(design).__name__))
+    if kind not in _LOOPS or design.verdict == "no" or getattr(design.plant, _LOOPS[kind][2]) != 1:
+        message = (
+            "margins are those of one loop: a state feedback, an observer or a compensator with one input or output"
+        )
+        raise InputError(message, where="design", repair="give a design with numbers for a plant with one")
+    name, own, _ = _LOOPS[kind]
+    plant, fields = design.plant, design.fields
+    opened = plant.matrices.A.characteristic_polynomial(plant.variable)
+    if own is not None:
+        opened *= fields[own].characteristic_polynomial(plant.variable)
+        through: Matrix | None = fields.get("direct_term")
+        if through is not None and not through.is_zero and plant.matrices.has_feedthrough:
+            raise _not_proper("design", 'take a compensator with observer = "full"')
+    return _plain(fields[name]), opened
+
+
+def _not_proper(where: str, repair: str) -> InputError:
+    message = "the loop has a gain at infinity: neither the plant nor the compensator is strictly proper"
+    return InputError(message, where=where, repair=repair)
+
+
+def _plain(value: Any) -> Scalar:
+    found: Scalar = value.value if isinstance(value, Factored) else value
+    return found
+
+
+def _monic(controller: WrittenTransferFunction) -> tuple[Scalar, Scalar]:
+    """Return numerator and denominator, the lead of the denominator 1; nothing is cancelled."""
+    lead = controller.below.coefficients(controller.variable)[0]
+    return controller.above / lead, controller.below / lead
+
+
+def _loop_of_controller(plant: StateSpace, controller: WrittenTransferFunction) -> tuple[Scalar, Scalar]:
+    """Return P + N and P of F G; raises `InputError` where that is not strictly proper."""
+    m, where = plant.matrices, "specification.controller"
+    if (plant.inputs, plant.outputs) != (1, 1):
+        message = f"a loop with a controller has one input and one output, the plant {plant.inputs} and {plant.outputs}"
+        raise InputError(message, where=where, repair="give a plant with one of each")
+    above, below = _monic(controller)
+    numerator, chi = transfer(m.A, m.B, m.C, m.D[0, 0], plant.variable)
+    opened, moved = chi * below, numerator * above
+    if not moved.is_zero and moved.degree(plant.variable) >= opened.degree(plant.variable):
+        raise _not_proper(where, "give a controller with a pole more")
+    return opened + moved, opened
+
+
+@method("margins/boundary", source="skogestad2005, ch. 2")
+def boundary(
+    plant: StateSpace,
+    design: Result | None,
+    controller: WrittenTransferFunction | None,
+    loop: tuple[Scalar, Scalar] | None,
+) -> Margins:
+    """Find where roots meet the boundary of stability, and enclose |1 + loop| on it."""
+    return Margins.of(plant, design, controller, loop)
+
+
+@task
+@poles_of(observer_poles=observer_order)
+def margins(
+    plant: StateSpace,
+    *,
+    poles: Poles = None,
+    polynomial: PolynomialText = None,
+    K: GainText = None,
+    control_poles: Poles = None,
+    control_polynomial: PolynomialText = None,
+    observer_poles: Poles = None,
+    observer_polynomial: PolynomialText = None,
+    L: GainText = None,
+    observer: Name = "full",
+    controller: TransferFunctionText = None,
+    method: Name = "auto",
+) -> Result:
+    """Return how far a loop of one input and one output is from instability: gain, phase, distance from −1, sensitivity.
+
+    plant                                   n states, numbers without roots
+    poles or polynomial, or K               of A − BK: the loop K(sI − A)⁻¹B; of A − LC where the plant has no input
+    control_poles or control_polynomial     the same; together with an observer the loop is F(s)G(s)
+    observer_poles or observer_polynomial   alone: the loop C(sI − A)⁻¹L, and L a given gain
+    observer                                `full` or `minimal`
+    controller                              F(s), a rational function: the loop is F(s)G(s), with negative feedback
+    Returns gain_down and gain_up, the ends of the interval around 1 of the gains that keep the loop stable, and slowest, the
+    largest real part (modulus) of its poles, exactly; phase_deg, the smallest change of phase either way that does not,
+    modulus, the smallest distance from −1, and peak, the largest |1/(1 + loop)|, to six certain digits after the point.
+    The verdict is `no` where the closed loop is not stable, `undecided` with symbols.  Raises `InputError` for several
+    inputs or outputs, and for a loop with a gain at infinity.
+    Source: S. Skogestad and I. Postlethwaite, Multivariable Feedback Control, 2nd ed., ch. 2.
+    """
+    asked = {"poles": poles, "polynomial": polynomial, "K": K}
+    asked |= {"control_poles": control_poles, "control_polynomial": control_polynomial}
+    asked |= {"observer_poles": observer_poles, "observer_polynomial": observer_polynomial, "L": L}
+    chosen = choose("margins", method, "boundary")
+    if controller is not None:
+        plant = plant.knowing(controller)
+        for name, value in asked.items():
+            reject_both("controller", controller, value, None, other=name)
+        plant.require("B", "C", task="margins")
+        written = read_transfer_function(controller, plant.symbols, plant.variable, "specification.controller")
+        found: Result = chosen.solve(plant, None, written, _loop_of_controller(plant, written))
+        return found.asked(method)
+    design = _design(plant.knowing(*asked.values()), asked, observer)
+    loop = None if design.verdict == "no" else loop_of(design)
+    found = chosen.solve(design.plant, design, None, loop)
+    return found.asked(method)
+
+
+def _design(plant: StateSpace, asked: Mapping[str, Any], observer: str) -> Result:
+    """Return the design that is asked for; raises `InputError` where nothing is, or too much."""
+    of_loops = {prefix: (f"{prefix}poles", f"{prefix}polynomial") for prefix in ("", "control_", "observer_")}
+    given = {prefix: any(asked[name] is not None for name in names) for prefix, names in of_loops.items()}
+    by_state, by_estimate = given["control_"] or asked["K"] is not None, given["observer_"] or asked["L"] is not None
+    if given[""]:
+        for name in ("control_poles", "control_polynomial", "observer_poles", "observer_polynomial", "K", "L"):
+            reject_both(name, asked[name], asked["poles"], asked["polynomial"])
+        by_state, by_estimate = plant.matrices.has_input, not plant.matrices.has_input
+    elif not by_state and not by_estimate:
+        message, repair = "nothing says which loop it is", "give poles, control_poles, observer_poles or a controller"
+        raise InputError(message, where="specification", repair=repair)
+    if by_state and by_estimate:
+        control, estimate = (tuple(asked[name] for name in of_loops[prefix]) for prefix in ("control_", "observer_"))
+        gains = asked["K"], asked["L"]
+        return observer_based(plant, task="margins", control=control, estimate=estimate, observer=observer, gains=gains)
+    kind: type[StateFeedbackDesign | ObserverDesign] = StateFeedbackDesign if by_state else ObserverDesign
+    names = of_loops["" if given[""] else "control_" if by_state else "observer_"]
+    plant.require("B" if by_state else "C", task="margins")
+    gain = asked[kind.letter]
+    if gain is not None:
+        reject_both(kind.letter, gain, asked[names[0]], asked[names[1]], other=names[0])
+        shape = (plant.inputs, plant.order) if by_state else (plant.order, plant.outputs)
+        return kind.of_given(plant, read_gain(gain, plant, kind.letter, shape))
+    desired = desired_polynomial(plant, asked[names[0]], asked[names[1]], names=names)
+    assert desired is not None  # noqa: S101 - required
+    plant, (desired,) = over_common_data(plant, desired)
+    return design_of(kind, plant, desired)
+
+
+# The page: the design, P and P + N, the gains that keep the loop stable, the rest.
+
+
+@page_of(Margins)
+def write_margins(page: Builder, result: Margins) -> None:
+    """Write the whole page."""
+    if result.design is not None:
+        result.design.write(page)
+    else:
+        given(page)
+    if result.answer["closed"] is None:
+        return
+    with page.section("margins"):
+        _polynomials(page, result)
+        if result.answer["open"]:
+            page.remark("margins_open", question=result.answer["open"])
+            return
+        if result.answer["modulus"] is None:
+            page.conclude("margins_none", predicate("unstable", page["chi_cl"]))
+            return
+        page.conclude("margins_stable", predicate("stable", page["chi_cl"]))
+        _gains(page, result)
+        told = {"modulus": result.answer["modulus"], "peak": result.answer["peak"]}
+        told |= {} if result.answer["phase_deg"] == INFINITE else {"phase": result.answer["phase_deg"]}
+        slots = {name: page.term(Decimals(Scalar.of(Fraction(value)))) for name, value in told.items()}
+        page.remark("margins_are" if "phase" in told else "margins_any_phase", **slots)
+
+
+def _polynomials(page: Builder, result: Margins) -> None:
+    """Write P and P + N."""
+    plant, A, kind = page.plant, page["A"], None if result.design is None else result.design.task
+    pencil = page.s @ page.identity(plant.order) - A
+    opened: Term = pencil.apply("det")
+    closed: list[Term] = []
+    if kind == "state_feedback":
+        closed = [(pencil + page["B"] @ page["K"]).apply("det")]
+    elif kind == "observer":
+        closed = [(pencil + page["L"] @ page["C"]).apply("det")]
+    elif kind == "compensator":
+        assert result.design is not None  # noqa: S101 - it is one
+        own = page["A_c"] if page.defines("A_c") else page.set("A_c", result.design.fields["compensator_matrix"])
+        opened = opened @ (page.s @ page.identity(own.value.shape[0]) - own).apply("det")
+    else:
+        assert result.written is not None  # noqa: S101 - the other way to a loop
+        page.define("F", factored_form(page, result.written.value), say="margins_controller", closing=False)
+        below = _monic(result.written)[1]
+        opened = opened if below.is_one else opened @ page.value(below)
+    place = "output" if kind == "observer" else "input"
+    page.define("chi_o", opened, page.value(result.answer["opened"]), say=f"margins_cut_{place}", closing=False)
+    if not closed:
+        response = page["C"] @ pencil.inverse @ page["B"]
+        response = response + page["D"] if plant.matrices.has_feedthrough else response
+        closed = [page["chi_o"] @ (page.value(1) + page["F"] @ response)]
+    page.define("chi_cl", *closed, page.value(result.answer["closed"]), say="margins_closed", closing=False)
+
+
+def _gains(page: Builder, result: Margins) -> None:
+    """Write for which gains the loop stays stable."""
+    if result.region is None:
+        page.remark("margins_no_loop")
+        return
+    k = page.value(Scalar.symbol("k"))
+    moved = page["chi_o"] + k @ (page["chi_cl"] - page["chi_o"])
+    page.define("chi_p", moved, page.value(result.region.answer["polynomial"]), say="margins_gain", closing=False)
+    write_line(page, result.region, "chi_p")

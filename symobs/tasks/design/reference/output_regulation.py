@@ -1,0 +1,694 @@
+"""Output regulation:  ẋ = A x + B u + E w,  ẇ = S w,  y → r = Q w,  by  u = −K x + (Γ + KΠ) w.
+
+Where Π and Γ solve the regulator equations  Π S = A Π + B Γ + E,  C Π + D Γ = Q,  x − Π w obeys ẋ = (A − BK) x, and
+y − r = (C − DK)(x − Π w).  They have a solution for every E and Q if and only if rank [A − λI, B; C, D] = n + p at the
+eigenvalues λ of S.  Where they have none there are U and V with U A + V C = S U, U B + V D = 0 and tr UE ≠ tr VQ.
+"""
+
+from __future__ import annotations
+
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Self
+
+from symobs.exact import (
+    EIGENVALUE,
+    Ideal,
+    Matrix,
+    Scalar,
+    TooLarge,
+    kernel,
+    modulo,
+    product_of,
+    rank,
+    roots_of,
+    solve_or_refute,
+)
+from symobs.exact.linear_algebra.transfer_function import Realisation
+from symobs.formula.tree import Environment, Literal, Roots
+from symobs.formula.tree.term import Term, block, letter
+from symobs.ground.dataclass import dataclass
+from symobs.ground.errors import CertificateRejected, InputError, Undecided
+from symobs.proof.certificate.claims import Certificate, Claim
+from symobs.proof.derivation.builder import Builder, predicate, relation
+from symobs.stability.criteria.stability import stability
+from symobs.system.conditions import Condition, vanishing_factors
+from symobs.system.specification import desired_polynomial, over_common_data, read_gain, reject_both
+from symobs.tasks.analysis.page_parts import case_steps, given
+from symobs.tasks.analysis.strata.strata import common_places, places, solved
+from symobs.tasks.design.compensator.compensator import KnownState
+from symobs.tasks.design.disturbance.disturbance_input import Exosystem, read_generator
+from symobs.tasks.design.disturbance.disturbance_observer import (
+    DisturbanceObserver,
+    name_extended,
+    write_both_together,
+    write_gain_of_both,
+    write_observer_of_both,
+)
+from symobs.tasks.design.gain.gain_cases import places_beside
+from symobs.tasks.design.gain.gain_design import FEEDBACK, letters_of, page_style
+from symobs.tasks.design.gain.gain_page import write_gain
+from symobs.tasks.design.page_parts import caution_poles
+from symobs.tasks.result import Case, Result, choose, method, page_of, poles_of, task
+from symobs.tasks.result.control_systems import Controller
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
+
+    from symobs.exact import Root
+    from symobs.system import StateSpace
+    from symobs.system.specification import DesiredPolynomial, GainText, MatrixText, Name, Poles, PolynomialText
+    from symobs.tasks.analysis.strata.strata import Place
+    from symobs.tasks.design.gain.gain_design import GainDesign
+
+
+#: The regulator equations are solved for up to this many unknown entries, without and with parameters.
+_MOST_ENTRIES, _MOST_WITH_PARAMETERS = 120, 40
+
+
+class Exogenous(NamedTuple):
+    """S, Q and E of  ẇ = S w,  r = Q w,  ẋ = A x + B u + E w."""
+
+    S: Matrix
+    Q: Matrix
+    E: Matrix
+
+    @property
+    def order(self) -> int:
+        """The number of states of the exosystem."""
+        return self.S.shape[0]
+
+    @property
+    def disturbs(self) -> bool:
+        """Whether the exosystem acts on the state."""
+        return not self.E.is_zero
+
+
+#: The matrices of the exosystem by the letters of the page.
+_LETTERS = {"S_w": "S", "Q_r": "Q", "E_d": "E"}
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class OutputRegulation(Result):
+    """Π and Γ that solve the regulator equations and K, or why there are none; with an observer of (x, w) where asked for.
+
+    `loop` is the state feedback and `estimator` the observer, each with its own claims.
+    """
+
+    exogenous: Exogenous
+    loop: KnownState
+    estimator: DisturbanceObserver | None
+
+    task: ClassVar[str] = "output_regulation"
+    answered_by = ("Pi", "Gamma", "K")
+    gains: ClassVar[tuple[str, ...]] = ("K",)
+    claimed = ("Pi", "Gamma")
+    letters: ClassVar[Mapping[str, str]] = {"Pi": "Pi_w", "Gamma": "Gamma_w", "K": "K", "F": "F_w"}
+    cards: ClassVar[tuple[str, ...]] = ("K", "Pi", "Gamma", "F")
+
+    @classmethod
+    def of(
+        cls, exogenous: Exogenous, loop: KnownState, estimator: DisturbanceObserver | None, method_name: str
+    ) -> Self:
+        """Return the regulator, or the negative result."""
+        plant, q = loop.plant, exogenous.order
+        answer = solution(plant, exogenous, {})
+        answer["blocked"] = _blocked(plant, exogenous.S)
+        return cls(plant, method_name, answer | _law(loop, answer, q), exogenous, loop, estimator)
+
+    def with_answer(self, name: str, value: object) -> Self:
+        """Return the regulator with another K or L, or another Π (Γ) and the Γ (Π) that belongs to it."""
+        if name in self.gains and isinstance(value, Matrix):
+            return self.with_gains({name: value})
+        if name not in {"Pi", "Gamma"} or not isinstance(value, Matrix):
+            return super().with_answer(name, value)
+        found = solution(self.plant, self.exogenous, {name: value})
+        other = {key: part for key in ("Pi", "Gamma") if (part := found[key]) is not None}
+        answer = {**self.answer, name: value, **other}
+        answer |= _law(self.loop, answer, self.exogenous.order)
+        return type(self)(self.plant, self.method, answer, self.exogenous, self.loop, self.estimator).in_place_of(self)
+
+    def with_gains(self, gains: Mapping[str, Matrix]) -> Self:
+        """Return the regulator with other gains, which have to place the same poles."""
+        loop = self.loop.with_gains({"K": gains["K"]}) if "K" in gains else self.loop
+        estimator = self.estimator
+        if estimator is not None and "L" in gains:
+            estimator = estimator.with_gains(self._parts(gains["L"]))
+        return self._with(loop, estimator)
+
+    def following_from(self, gains: Mapping[str, Matrix]) -> Self:
+        """Return the regulator of given gains."""
+        loop = self.loop.following_from({"K": gains["K"]}) if "K" in gains else self.loop
+        estimator = self.estimator
+        if estimator is not None and "L" in gains:
+            estimator = estimator.following_from(self._parts(gains["L"]))
+        return self._with(loop, estimator)
+
+    def _with(self, loop: KnownState, estimator: DisturbanceObserver | None) -> Self:
+        answer = {**self.answer, **_law(loop, self.answer, self.exogenous.order)}
+        return type(self)(self.plant, self.method, answer, self.exogenous, loop, estimator).in_place_of(self)
+
+    def _parts(self, L: Matrix) -> dict[str, Matrix]:
+        """Return L_x and L_w."""
+        n, every = self.plant.order, range(L.shape[1])
+        return {"L_x": L.select(range(n), every), "L_w": L.select(range(n, L.shape[0]), every)}
+
+    def design_of(self, gain: str) -> GainDesign:
+        """Return the state feedback for K, the observer of plant and exosystem for L."""
+        return self.estimator.inner if gain == "L" and self.estimator is not None else self.loop.feedback
+
+    def claims(self) -> Iterator[Claim]:
+        """Yield the regulator equations, or that they have no solution; F; and where the plant has blocking zeros."""
+        answer, plant = self.answer, self.plant
+        Pi, U, K, F = (answer[name] for name in ("Pi", "U", "K", "F"))
+        if (
+            (Pi is None) != (answer["Gamma"] is None)
+            or (Pi is None) != (U is not None and answer["V"] is not None)
+            or (F is None) != (Pi is None or K is None)
+            or self.loop.plant is not plant
+            or (self.estimator is not None and self.estimator.plant is not plant)
+        ):
+            message = "the regulator equations have a solution exactly where nothing shows that they have none"
+            raise CertificateRejected(message, repair="please report this: it is a bug of symobs")
+        e = _environment(plant, self.exogenous, answer)
+        A, B, C, D, S, Q, E = (letter(name, e) for name in ("A", "B", "C", "D", "S_w", "Q_r", "E_d"))
+        if K is not self.loop.answer["K"]:
+            yield Claim(relation(K, self.loop.answer["K"]), e, "K is the certified gain")
+        if U is not None:
+            U_, V = letter("U_r", e), letter("V_r", e)
+            yield Claim(relation(U_ @ A + V @ C, S @ U_), e, "U*A + V*C = S*U")
+            yield Claim(relation(U_ @ B + V @ D, Matrix.zeros(self.exogenous.order, plant.inputs)), e, "U*B + V*D = 0")
+            yield Claim(relation(self.obstacle, "!==", 0), e, "trace of U*E - V*Q is not 0")
+        else:
+            Pi_, Gamma = letter("Pi_w", e), letter("Gamma_w", e)
+            yield Claim(relation(A @ Pi_ + B @ Gamma + E, Pi_ @ S), e, "A*Pi + B*Gamma + E = Pi*S")
+            yield Claim(relation(C @ Pi_ + D @ Gamma, Q), e, "C*Pi + D*Gamma = Q")
+            if F is not None:
+                yield Claim(relation(letter("F_w", e), Gamma + letter("K", e) @ Pi_), e, "F = Gamma + K*Pi")
+        yield from _blocking_claims(plant, self.exogenous.S, answer["blocked"])
+
+    @property
+    def obstacle(self) -> Scalar:
+        """Tr UE − tr VQ, which would be 0 if the regulator equations had a solution."""
+        _, Q, E = self.exogenous
+        return trace(self.answer["U"], E) - trace(self.answer["V"], Q)
+
+    @property
+    def has_law(self) -> bool:
+        """Whether the equations have a solution and all gains exist."""
+        return self.answer["F"] is not None and (self.estimator is None or self.estimator.answer["L_x"] is not None)
+
+    @property
+    def all_certificates(self) -> tuple[Certificate, ...]:
+        """The certificates of the gains and of the solution."""
+        observer = () if self.estimator is None else self.estimator.all_certificates
+        return (*self.loop.all_certificates, *observer, *self.certificates)
+
+    @property
+    def verdict(self) -> str:
+        """`no` where the equations have no solution or a gain does not exist."""
+        return super().verdict if self.has_law else "no"
+
+    @property
+    def data(self) -> Mapping[str, Scalar | Matrix]:
+        """The matrices of the plant, and those of the exosystem."""
+        return {**super().data, **{name: getattr(self.exogenous, of) for name, of in _LETTERS.items()}}
+
+    @cached_property
+    def domain(self) -> tuple[Condition, ...]:
+        """What must not vanish for there to be plant and exosystem."""
+        own, signs = super().domain, self.plant.symbols.signs
+        known = {condition.expression for condition in own}
+        factors = vanishing_factors([part.common_denominator() for part in self.exogenous], signs)
+        return (*own, *(Condition("domain", factor) for factor in factors if factor not in known))
+
+    @cached_property
+    def holds_where(self) -> tuple[Condition, ...]:
+        """The conditions of the solution and of the gains."""
+        found = {condition.expression: condition for condition in (*self.loop.holds_where, *super().holds_where)}
+        if self.estimator is not None:
+            found = {c.expression: c for c in self.estimator.holds_where} | found
+        found |= {condition.expression: condition for condition in self.domain}
+        return tuple(found.values())
+
+    @cached_property
+    def case_tree(self) -> tuple[Case, ...]:
+        """The strata of the gains, those of the solution, and where there is one after all."""
+
+        def on(there: StateSpace, values: dict[str, Scalar]) -> Result:
+            exogenous = Exogenous(*(modulo(part.substitute(values), there.ideal) for part in self.exogenous))
+            loop = self.loop.on(there, values)
+            desired = None if self.estimator is None else self.estimator.desired.substitute(values)
+            found: Result = there.once(
+                (type(self), self.method, exogenous, desired, *loop.asked_for),
+                lambda: type(self).of(exogenous, loop, _estimator(there, exogenous, desired), self.method),
+            )
+            return found
+
+        return solved(self.plant, {frozenset(place.when): place for place in self._places}.values(), on)
+
+    @property
+    def _places(self) -> tuple[Place, ...]:
+        further = () if self.estimator is None else places_beside(self, self.estimator.inner)
+        found = (*self.loop.gain_places, *further)
+        if self.answer["U"] is not None:
+            obstacle = self.obstacle.numerator
+            return found if obstacle.is_constant else (*found, *common_places(self.plant, [obstacle]))
+        known = {condition.expression for condition in self.loop.holds_where}
+        own = [c.expression for c in super().holds_where if c.kind == "claim" and c.expression not in known]
+        return (*found, *places(self.plant, own))
+
+    @cached_property
+    def fields(self) -> Mapping[str, Any]:
+        """Π, Γ, K, F = Γ + KΠ, whether the equations have a solution, and the eigenvalues of S that are zeros of the plant."""
+        found: dict[str, Any] = {name: self.answer[name] for name in ("Pi", "Gamma", "K", "F")}
+        found["solvable"] = self.answer["Pi"] is not None
+        found["blocked_modes"] = self._blocked_roots
+        found["fixed_modes"] = self.loop.unmoved_modes
+        if self.estimator is not None:
+            inner = self.estimator.inner
+            found |= {"L": inner.answer["L"], "fixed_modes": (*found["fixed_modes"], *inner.unmoved_modes)}
+        closed = self.closed_loop if self.has_law else None
+        polynomial = None
+        if closed is not None:
+            polynomial = self.loop.feedback.answer["polynomial"]
+            if self.estimator is not None:
+                polynomial = polynomial * self.estimator.answer["polynomial"]
+        return found | {"polynomial": polynomial, "closed_loop_matrix": closed}
+
+    @property
+    def _blocked_roots(self) -> tuple[Root, ...] | None:
+        """The eigenvalues λ of S with rank [A − λI, B; C, D] < n + p; None where that is not known."""
+        blocked = self.answer["blocked"]
+        if blocked is None:
+            return None
+        return tuple(root for factor, _ in blocked for root in roots_of(factor, self.plant.variable))
+
+    @property
+    def closed_loop(self) -> Matrix:
+        """A − BK, with an observer [A − BK, B [K, −F]; 0, Â − LĈ] in (x − Πw, e, e_w)."""
+        m, K, F = self.plant.matrices, self.answer["K"], self.answer["F"]
+        own: Matrix = (m.A - m.B @ K).normal()
+        if self.estimator is None:
+            return own
+        error = self.estimator.inner.fields["A"]
+        zero = Matrix.zeros(error.shape[0], self.plant.order)
+        return Matrix.block([[own, (m.B @ Matrix.block([[K, -F]])).normal()], [zero, error]])
+
+    @property
+    def free_signals(self) -> Mapping[str, int]:
+        """The state of the exosystem, and its estimate."""
+        return dict.fromkeys(("w_e", "w_hat"), self.exogenous.order)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class EstimatedOutputRegulation(OutputRegulation):
+    """The regulator u = −K x̂ + (Γ + KΠ) ŵ with an observer of plant and exosystem."""
+
+    estimator: DisturbanceObserver
+
+    gains = ("K", "L")
+    letters: ClassVar[Mapping[str, str]] = {
+        **OutputRegulation.letters,
+        "L": "L",
+        "polynomial": "chi_cl",
+        "closed_loop_matrix": "A_cl",
+    }
+    cards = ("K", "L", "Pi", "Gamma", "F")
+
+    @property
+    def controller(self) -> Controller | None:
+        """Y → u = −K x̂ + F ŵ."""
+        if not self.has_law:
+            return None
+        inner, law = self.estimator.inner, Matrix.block([[-self.answer["K"], self.answer["F"]]])
+        found = inner.fields
+        own = Realisation(
+            (found["A"] + found["B_u"] @ law).normal(),
+            found["B_y"],
+            law,
+            Matrix.zeros(law.shape[0], self.plant.outputs),
+        )
+        sizes = (("y", self.plant.outputs),), ("u", self.plant.inputs)
+        return Controller("compensator", own, *sizes, returns=True, gains=self.gains)
+
+
+def trace(left: Matrix, right: Matrix) -> Scalar:
+    """Return the trace of a product: the sum of the products of entries."""
+    return (Matrix.row(left.T.entries) @ Matrix.column(right.entries))[0, 0]
+
+
+def _law(loop: KnownState, answer: Mapping[str, Any], order: int) -> dict[str, Any]:
+    """Return K, and F = Γ + KΠ where there is a law."""
+    K, Pi, Gamma = loop.answer["K"], answer["Pi"], answer["Gamma"]
+    has_law = K is not None and Pi is not None
+    assert not has_law or Pi.shape[1] == order  # noqa: S101 - as read
+    return {"K": K, "F": (Gamma + K @ Pi).normal() if has_law else None}
+
+
+def solution(plant: StateSpace, exogenous: Exogenous, known: Mapping[str, Matrix]) -> dict[str, Any]:
+    """Return Π and Γ, some of them known, that solve the regulator equations, or else U and V."""
+    m, (S, Q, E) = plant.matrices, exogenous
+    n, q = plant.order, exogenous.order
+    shapes = {name: shape for name, shape in (("Pi", (n, q)), ("Gamma", (plant.inputs, q))) if name not in known}
+
+    def moved(parts: Mapping[str, Matrix]) -> Matrix:
+        Pi = parts.get("Pi", Matrix.zeros(n, q))
+        Gamma = parts.get("Gamma", Matrix.zeros(plant.inputs, q))
+        over, under = Pi @ S - m.A @ Pi - m.B @ Gamma, m.C @ Pi + m.D @ Gamma
+        return Matrix.column([*over.normal().entries, *under.normal().entries])
+
+    units = [
+        moved({name: Matrix.of([[int((i, j) == (k, l)) for l in range(q)] for k in range(rows)], q)})
+        for name, (rows, _) in shapes.items()
+        for i in range(rows)
+        for j in range(q)
+    ]
+    right = Matrix.column([*E.entries, *Q.entries]) - moved(known)
+    found, row = solve_or_refute(Matrix.block([units]), right.normal(), plant.ideal)
+    answer: dict[str, Any] = dict.fromkeys(("Pi", "Gamma", "U", "V"))
+    if found is None:
+        assert row is not None  # noqa: S101 - where there is no solution there is a row
+        entries, size = row.entries, n * q
+        answer["U"] = Matrix.of([entries[i * q : i * q + q] for i in range(n)], q).T
+        answer["V"] = -Matrix.of([entries[size + i * q : size + i * q + q] for i in range(plant.outputs)], q).T
+        return answer
+    values = list(modulo(found.normal(), plant.ideal).entries)
+    for name, (rows, _) in shapes.items():
+        answer[name] = Matrix.of([values[i * q : i * q + q] for i in range(rows)], q)
+        values = values[rows * q :]
+    return answer
+
+
+def _environment(plant: StateSpace, exogenous: Exogenous, answer: Mapping[str, Any]) -> Environment:
+    values = letters_of(plant) | {name: getattr(exogenous, of) for name, of in _LETTERS.items()}
+    own = {"Pi_w": "Pi", "Gamma_w": "Gamma", "K": "K", "F_w": "F", "U_r": "U", "V_r": "V"}
+    values |= {name: answer[of] for name, of in own.items() if answer[of] is not None}
+    return Environment(variable=plant.variable, values=values, signs=plant.symbols.signs)
+
+
+def _pencil(plant: StateSpace, factor: Scalar) -> tuple[Matrix, tuple[Scalar, ...]]:
+    """Return [A − λI, B; C, D] at the roots λ of a factor, and what vanishes there."""
+    m, variable = plant.matrices, plant.variable
+    if factor.degree(variable) == 1:
+        lead, constant = factor.coefficients(variable)
+        at, vanishing = -constant / lead, []
+    else:
+        at = Scalar.symbol(EIGENVALUE)
+        vanishing = [factor.substitute({variable: at})]
+    return Matrix.block([[m.A - Matrix.identity(plant.order) * at, m.B], [m.C, m.D]]).normal(), tuple(vanishing)
+
+
+def _blocked(plant: StateSpace, S: Matrix) -> tuple[tuple[Scalar, Matrix], ...] | None:
+    """Return the factors of χ_S at whose roots [A − λI, B; C, D] has dependent rows, and a row w ≠ 0 with w [ … ] = 0."""
+    found = []
+    chi = plant.simplified(S.characteristic_polynomial(plant.variable))
+    try:
+        for found_factor, _ in chi.numerator.factors()[1]:
+            if not found_factor.degree(plant.variable):
+                continue
+            factor = found_factor / found_factor.coefficients(plant.variable)[0]
+            matrix, relations = _pencil(plant, factor)
+            ideal = Ideal.of((*plant.equations, *relations)) if plant.equations or relations else None
+            left = kernel(matrix.T, ideal)
+            if left.shape[1]:
+                found.append((factor, left.select(range(left.shape[0]), [0]).T))
+    except TooLarge:
+        return None
+    return tuple(found)
+
+
+def _blocking_claims(
+    plant: StateSpace, S: Matrix, blocked: tuple[tuple[Scalar, Matrix], ...] | None
+) -> Iterator[Claim]:
+    """Yield that the factors are factors of χ_S, at whose roots rows of [A − λI, B; C, D] are dependent."""
+    for factor, row in blocked or ():
+        matrix, relations = _pencil(plant, factor)
+        e = Environment(variable=plant.variable, values={"w": row, "S_w": S}, relations=relations)
+        rest = S.characteristic_polynomial(plant.variable) / factor
+        if not plant.equations and not rest.is_polynomial_in(plant.variable):
+            message = f"{factor} is no factor of the characteristic polynomial of S"
+            raise CertificateRejected(message, repair="please report this: it is a bug of symobs")
+        w = letter("w", e)
+        annuls = relation(w @ Term(Literal(matrix), e), Matrix.zeros(1, matrix.shape[1]))
+        yield Claim(annuls, e, f"w*[A - lam*I, B; C, D] = 0 where {factor} = 0")
+        yield Claim(relation(w, "!==", Matrix.zeros(1, matrix.shape[0])), e, "w is not 0")
+
+
+def _estimator(
+    plant: StateSpace, exogenous: Exogenous, desired: DesiredPolynomial | None
+) -> DisturbanceObserver | None:
+    """Return the observer of plant and exosystem, where one is asked for."""
+    if desired is None:
+        return None
+    whole = Exosystem(exogenous.E, exogenous.S, Matrix.identity(exogenous.order))
+    return DisturbanceObserver.of(plant, whole, desired, "extended_state")
+
+
+@method("output_regulation/regulator_equations", source="francis1977; trentelman2001, ch. 9")
+def regulator_equations(exogenous: Exogenous, loop: KnownState, desired: DesiredPolynomial | None) -> OutputRegulation:
+    """Solve the regulator equations as linear equations of the entries of Π and Γ; u = −K x + (Γ + KΠ) w."""
+    kind = OutputRegulation if desired is None else EstimatedOutputRegulation
+    return kind.of(exogenous, loop, _estimator(loop.plant, exogenous, desired), "regulator_equations")
+
+
+def extended_order(plant: StateSpace, asked: Mapping[str, Any]) -> int:
+    """Return the number of poles of an observer of plant and exosystem."""
+    return plant.order + read_exogenous(plant, asked.get("S"), asked.get("reference"), asked.get("E")).order
+
+
+def read_exogenous(plant: StateSpace, S: object, reference: object, E: object) -> Exogenous:
+    """Return S, Q and E; raises `InputError`, `ShapeMismatch`."""
+    for name, value, example in (("S", S, "[0 1; -1 0]"), ("reference", reference, "[1 0]")):
+        if value is None:
+            message = f"{name} is missing"
+            repair = f'give {name} = "{example}", for example: r = Q w is to be followed, w\' = S w'
+            raise InputError(message, where=f"specification.{name}", repair=repair)
+    generator = read_generator(plant, S)
+    q = generator.shape[0]
+    Q = read_gain(reference, plant, "reference", (plant.outputs, q))
+    disturbs = Matrix.zeros(plant.order, q) if E is None else read_gain(E, plant, "E", (plant.order, q))
+    return Exogenous(generator, Q, disturbs)
+
+
+@task
+@poles_of(observer_poles=extended_order)
+def output_regulation(
+    plant: StateSpace,
+    *,
+    S: MatrixText = None,
+    reference: MatrixText = None,
+    E: MatrixText = None,
+    poles: Poles = None,
+    polynomial: PolynomialText = None,
+    K: GainText = None,
+    observer_poles: Poles = None,
+    observer_polynomial: PolynomialText = None,
+    method: Name = "auto",
+) -> Result:
+    """Let y follow r = Q w, ẇ = S w, in spite of a disturbance E w, by u = −K x + (Γ + KΠ) w, ΠS = AΠ + BΓ + E, CΠ + DΓ = Q.
+
+    plant                                   n states, m inputs, p outputs, D allowed
+    S                                       q×q: [0 omega; -omega 0] generates sinusoids, [0] constants
+    reference                               Q, p×q: r = Q w
+    E                                       n×q: how w disturbs the state; 0 where it is left out
+    poles or polynomial, or K               the n poles of A − BK, or a given m×n gain
+    observer_poles or observer_polynomial   the n + q poles of an observer of (x, w) from y; without them x and w are known
+    Returns Pi (n×q), Gamma (m×q), solvable, K, F (Γ + KΠ, of w), blocked_modes (the eigenvalues λ of S with
+    rank [A − λI, B; C, D] < n + p: zeros of the plant), fixed_modes, polynomial, closed_loop_matrix in x − Πw, and with an
+    observer L ((n + q)×p), polynomial and matrix of the whole loop.  The verdict is `no` where the equations have no
+    solution, or a gain does not exist.  Raises `InputError` for wrong poles or shapes; `Undecided` for too many entries.
+    Source: B. A. Francis (1977); H. L. Trentelman, A. A. Stoorvogel, M. Hautus, Control Theory for Linear Systems, ch. 9.
+    """
+    plant = plant.knowing(S, reference, E, poles, polynomial, K, observer_poles, observer_polynomial)
+    plant.require("B", "C", task="output_regulation")
+    exogenous = read_exogenous(plant, S, reference, E)
+    if K is not None:
+        reject_both("K", K, poles, polynomial)
+    gain = None if K is None else read_gain(K, plant, "K", (plant.inputs, plant.order))
+    asked = desired_polynomial(plant, poles, polynomial) if gain is None else gain
+    names = ("observer_poles", "observer_polynomial")
+    desired = desired_polynomial(
+        plant, observer_poles, observer_polynomial, names=names, degree=plant.order + exogenous.order, required=False
+    )
+    entries, letters = exogenous.order * (plant.order + plant.inputs), plant.field.names
+    if entries > (_MOST_WITH_PARAMETERS if letters else _MOST_ENTRIES):
+        raise Undecided(f"output_regulation is undecided: {entries} unknown entries are too many")
+    plant, (asked, desired, *parts) = over_common_data(plant, asked, desired, *exogenous)
+    loop = KnownState.design(plant, (asked,), "state_feedback")
+    found: Result = choose("output_regulation", method, "regulator_equations").solve(Exogenous(*parts), loop, desired)
+    return found.asked(method)
+
+
+# The page: the gain, the exosystem, the regulator equations, the law, the deviation from Πw; with an observer of (x, w).
+
+
+@page_of(OutputRegulation)
+def write_output_regulation(page: Builder, design: OutputRegulation) -> None:
+    """Write the whole page."""
+    loop, exogenous, estimator = design.loop, design.exogenous, design.estimator
+    asked = ("control", loop.feedback.desired), ("observer", None if estimator is None else estimator.desired)
+    given(page, *asked, disturbed=exogenous.E if exogenous.disturbs else None, by="w_e")
+    with page.section("state_feedback"):
+        write_gain(page, loop.feedback, FEEDBACK, page_style("auto", page.plant, several=page.plant.inputs > 1))
+    with page.section("output_regulation"):
+        _exosystem(page, design)
+        _solution(page, design)
+        if design.answer["F"] is not None and estimator is None:
+            _state_law(page, design)
+    if estimator is not None:
+        with page.section("regulation_observer"):
+            _observer(page, design, estimator)
+    page.steps += case_steps(page, design, _case)
+
+
+def _case(page: Builder, design: OutputRegulation) -> None:
+    """Write what is found on a stratum."""
+    for name, of in _LETTERS.items():
+        if page.defines(name) or name != "E_d":
+            page.set(name, getattr(design.exogenous, of))
+    _solution(page, design)
+    if design.answer["F"] is not None:
+        K = page.set("K", design.answer["K"])
+        page.define("F_w", page["Gamma_w"] + K @ page["Pi_w"], say="regulation_gain")
+    if design.estimator is not None:
+        page.set("phi_o", design.estimator.desired.polynomial)
+        name_extended(page, design.estimator, silent=True)
+        write_gain_of_both(page, design.estimator)
+
+
+def _exosystem(page: Builder, design: OutputRegulation) -> None:
+    """Write ẇ = S w and r = Q w."""
+    S, Q, E = design.exogenous
+    page.set("S_w", S)
+    page.set("Q_r", Q)
+    if design.estimator is not None and not page.defines("E_d"):
+        page.set("E_d", E)
+    w = page["w_e"]
+    page.dynamics("w_e", page["S_w"] @ w, silent=True)
+    page.signal("r_w", page["Q_r"] @ w, silent=True)
+    page.equal(
+        relation(w.derivative, page["S_w"] @ w, page["S_w"].as_value @ w),
+        relation(page["r_w"], page["Q_r"] @ w, page["Q_r"].as_value @ w),
+        say="regulation_exosystem_E" if design.exogenous.disturbs else "regulation_exosystem",
+    )
+    which = ("E" if design.exogenous.disturbs else "") + ("D" if page.plant.matrices.has_feedthrough else "")
+    page.remark(f"regulation_sought_{which}" if which else "regulation_sought")
+
+
+def _solution(page: Builder, design: OutputRegulation) -> None:
+    """Write the regulator equations and their solution, or what shows that there is none."""
+    m, answer = page.plant.matrices, design.answer
+    if answer["U"] is not None:
+        _impossible(page, design)
+        return
+    known = {condition.expression for condition in design.domain}
+    below = [answer[name].common_denominator() for name in ("Pi", "Gamma")]
+    factors = [f for f in vanishing_factors(below, page.plant.symbols.signs) if f not in known]
+    if factors:
+        page.assume("regulation_provided", *factors)
+    Pi, Gamma = page.set("Pi_w", answer["Pi"]), page.set("Gamma_w", answer["Gamma"])
+    page.equal(relation(Pi, Pi.as_value), relation(Gamma, Gamma.as_value), say="regulation_solution", answer=True)
+    A, B, C = (page[name] for name in "ABC")
+    left = A @ Pi + B @ Gamma + page["E_d"] if design.exogenous.disturbs else A @ Pi + B @ Gamma
+    seen = C @ Pi + page["D"] @ Gamma if m.has_feedthrough else C @ Pi
+    page.verified("regulation_checked", state=relation(left, Pi @ page["S_w"]), output=relation(seen, page["Q_r"]))
+
+
+def _impossible(page: Builder, design: OutputRegulation) -> None:
+    """Write U and V, and the zeros of the plant among the eigenvalues of S."""
+    plant, answer = page.plant, design.answer
+    n, p, q = plant.order, plant.outputs, design.exogenous.order
+    U, V = page.set("U_r", answer["U"]), page.set("V_r", answer["V"])
+    page.equal(relation(U, U.as_value), relation(V, V.as_value), say="regulation_obstacle")
+    D = page["D"] if plant.matrices.has_feedthrough else page.value(plant.matrices.D)
+    both = block([[page["A"], page["B"]], [page["C"], D]])
+    right = block([[page["S_w"] @ U, page.value(Matrix.zeros(q, plant.inputs))]])
+    say = "regulation_impossible_E" if design.exogenous.disturbs else "regulation_impossible"
+    found = design.obstacle if design.exogenous.disturbs else -design.obstacle
+    page.conclude(say, annuls=relation(block([[U, V]]) @ both, right), trace=page.value(found))
+    blocked = answer["blocked"]
+    if not blocked:
+        return
+    roots = product_of(factor for factor, _ in blocked)
+    of_S = (page.s @ page.identity(q) - page["S_w"]).apply("det")
+    pencil = block([[page["A"] - page.s @ page.identity(n), page["B"]], [page["C"], D]])
+    is_zero = rank(pencil.value, plant.ideal) == n + p
+    page.conclude(
+        "regulation_zeros" if is_zero else "regulation_rank",
+        modes=Roots((of_S / page.value(of_S.scalar / roots)).formula, roots_of(roots, plant.variable)),
+        pencil=pencil,
+        size=page.value(n + p),
+    )
+
+
+def _state_law(page: Builder, design: OutputRegulation) -> None:
+    """Write u = −K x + F w, and that x − Πw obeys the closed loop."""
+    K = page["K"]
+    F = page.define("F_w", page["Gamma_w"] + K @ page["Pi_w"], say="regulation_gain", answer=True)
+    page.signal("u", -K @ page["x"] + F @ page["w_e"], say="regulation_law")
+    _deviation(page, design)
+
+
+def _deviation(page: Builder, design: OutputRegulation) -> None:
+    """Write the equation of x − Πw and the control error, and whether they vanish."""
+    A, B, C, K, F = (page[name] for name in ("A", "B", "C", "K", "F_w"))
+    x = page.signal("x_w", page["x"] - page["Pi_w"] @ page["w_e"], silent=True)
+    rate, seen = (A - B @ K) @ x, C @ x
+    if page.plant.matrices.has_feedthrough:
+        seen = (C - page["D"] @ K) @ x
+    if design.estimator is not None:
+        law = K @ page["e"] - F @ page["e_w"]
+        rate, seen = rate + B @ law, seen + page["D"] @ law if page.plant.matrices.has_feedthrough else seen
+    page.equal(
+        relation(x.derivative, rate),
+        relation(page["y"] - page["r_w"], seen),
+        say="regulation_deviation",
+        deviation=relation(x, page["x"] - page["Pi_w"] @ page["w_e"]),
+    )
+    desired = design.loop.feedback.desired
+    if desired is not None:
+        caution_poles(page, desired, "phi_c", "state_feedback")
+    if design.estimator is None and _is_surely_stable(design):
+        loop = FEEDBACK.error_determinant(page)
+        page.conclude("regulation_reached", relation(loop, page["phi_c"]), predicate("stable", page["phi_c"]))
+
+
+def _is_surely_stable(design: OutputRegulation) -> bool:
+    """Return whether the desired polynomials are stable numbers."""
+    plant = design.plant
+    halves = [design.loop.feedback.desired, *([] if design.estimator is None else [design.estimator.desired])]
+    return all(
+        half is not None
+        and half.is_numeric
+        and stability(half.polynomial, plant.variable, {}, discrete=plant.is_discrete).verdict == "yes"
+        for half in halves
+    )
+
+
+def _observer(page: Builder, design: OutputRegulation, estimator: DisturbanceObserver) -> None:
+    """Write the observer of plant and exosystem, the law, and the whole loop."""
+    write_both_together(page, estimator)
+    write_gain_of_both(page, estimator)
+    if not design.has_law:
+        return
+    write_observer_of_both(page, estimator, page["E_d"] @ page["w_hat"], say="regulation_estimates")
+    K = page["K"]
+    F = page.define("F_w", page["Gamma_w"] + K @ page["Pi_w"], say="regulation_gain", answer=True)
+    page.signal("u", -K @ page["x_hat"] + F @ page["w_hat"], say="regulation_law")
+    _deviation(page, design)
+    A, B = page["A"], page["B"]
+    order = design.plant.order + design.exogenous.order
+    zero = page.value(Matrix.zeros(order, design.plant.order))
+    through = block([[B @ K, -B @ F]])
+    page.define(
+        "A_cl",
+        block([[A - B @ K, through], [zero, page["A_hat"] - page["L"] @ page["C_hat"]]]),
+        say="regulation_loop",
+    )
+    whole = (page.s @ page.identity(order + design.plant.order) - page["A_cl"]).apply("det")
+    if design.loop.feedback.desired is None:
+        return
+    both = page["phi_c"] @ page["phi_o"]
+    page.equal(relation(whole, both), say="regulation_polynomial")
+    if _is_surely_stable(design):
+        page.conclude("regulation_reached_estimated", relation(whole, both), predicate("stable", both))

@@ -1,0 +1,129 @@
+"""Output regulation against the linear equations of the entries in floating point, ranks at eigenvalues, and simulation."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+from scipy.linalg import expm  # type: ignore[import-untyped]
+
+import symobs
+from symobs.ground.errors import InputError, ShapeMismatch
+from tests.support.algebra import seeded
+
+GENERATORS = (
+    [[0]],
+    [[1]],
+    [[0, 1], [-1, 0]],
+    [[0, 2], [-2, 0]],
+    [[0, 1], [0, 0]],
+    [[-1]],
+    [[0, 0, 0], [0, 0, 1], [0, -1, 0]],
+)
+
+
+def drawn(seed: int) -> tuple[dict[str, np.ndarray[Any, Any]], Any]:
+    """Return the matrices of a random problem, and the result."""
+    draw = seeded(seed)
+    n, m, p = draw.randint(1, 3), draw.randint(1, 2), draw.randint(1, 2)
+
+    def matrix(rows: int, columns: int, zeros: float) -> list[list[int]]:
+        return [[0 if draw.random() < zeros else draw.randint(-2, 2) for _ in range(columns)] for _ in range(rows)]
+
+    S = [list(row) for row in draw.choice(GENERATORS)]
+    D = matrix(p, m, 0.5) if draw.random() < 0.3 else [[0] * m for _ in range(p)]
+    parts = {"A": matrix(n, n, 0.3), "B": matrix(n, m, 0.3), "C": matrix(p, n, 0.3), "D": D}
+    exogenous = {"S": S, "reference": matrix(p, len(S), 0.3), "E": matrix(n, len(S), 0.5)}
+    plant = symobs.StateSpace(parts["A"], parts["B"], parts["C"], D, dt=draw.choice([0, 1]))
+    result = symobs.output_regulation(plant, K=matrix(m, n, 0.3), **exogenous)  # type: ignore[arg-type]
+    return {name: np.array(part, dtype=float) for name, part in (parts | exogenous).items()}, result
+
+
+def hold(seed: int) -> None:
+    """Hold Π and Γ to the residual of least squares, F to its law, and the eigenvalues that block to their ranks."""
+    given, result = drawn(seed)
+    A, B, C, D, S, Q, E = given.values()
+    n, q, p = len(A), len(S), len(C)
+    one = np.eye(q)
+    table = np.block(
+        [[np.kron(np.eye(n), S.T) - np.kron(A, one), -np.kron(B, one)], [np.kron(C, one), np.kron(D, one)]]
+    )
+    right = np.concatenate([E.flatten(), Q.flatten()])
+    best = np.linalg.lstsq(table, right, rcond=1e-10)[0]
+    assert result.solvable == np.allclose(table @ best, right, atol=1e-8), given
+    assert result.verdict == ("yes" if result.solvable else "no")
+    lost = [
+        value
+        for value in np.linalg.eigvals(S)
+        if np.linalg.matrix_rank(np.block([[A - value * np.eye(n), B], [C, D]]), tol=1e-6) < n + p
+    ]
+    found = sorted({complex(mode) for mode in result.blocked_modes}, key=lambda mode: (mode.real, mode.imag))
+    assert len(found) == len({complex(round(v.real, 6), round(v.imag, 6)) for v in lost})
+    assert all(min(abs(mode - value) for value in lost) < 1e-6 for mode in found)
+    if not result.solvable:
+        assert lost, given
+        return
+    Pi, Gamma, K, F = (np.array(part.tolist(), dtype=float) for part in (result.Pi, result.Gamma, result.K, result.F))
+    assert np.allclose(A @ Pi + B @ Gamma + E, Pi @ S)
+    assert np.allclose(C @ Pi + D @ Gamma, Q)
+    assert np.allclose(F, Gamma + K @ Pi)
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_solutions_are_those_of_the_linear_equations(seed: int) -> None:
+    hold(seed)
+
+
+@pytest.mark.slow
+def test_many_solutions_are_those_of_the_linear_equations() -> None:
+    for seed in range(12, 220):
+        hold(seed)
+
+
+def test_the_compensator_follows_in_simulation() -> None:
+    plant = symobs.StateSpace("[0 1; 0 -1]", "[0; 1]", "[1 0]")
+    S, E = "[0 2; -2 0]", "[0 0; 1 0]"
+    design: Any = symobs.output_regulation(
+        plant, S=S, reference="[1 0]", E=E, poles="-2, -3", observer_poles="-2, -3, -4, -5"
+    )
+    K, F, L = (np.array(part.tolist(), dtype=float) for part in (design.K, design.F, design.L))
+    A, B, C = np.array([[0, 1], [0, -1.0]]), np.array([[0], [1.0]]), np.array([[1.0, 0]])
+    generator, driven = np.array([[0, 2.0], [-2, 0]]), np.array([[0, 0], [1.0, 0]])
+    wide, seen = np.block([[A, driven], [np.zeros((2, 2)), generator]]), np.hstack([C, np.zeros((1, 2))])
+    law, entered = np.hstack([-K, F]), np.vstack([B, np.zeros((2, 1))])
+    whole = np.block([[wide, entered @ law], [L @ seen, wide - L @ seen + entered @ law]])
+    state = expm(whole * 12.0) @ np.array([1, -1, 1, 2, 0, 0, 0, 0.0])
+    assert abs(state[0] - state[2]) < 1e-6
+
+
+def test_a_parameter_says_where_a_zero_blocks() -> None:
+    plant = symobs.StateSpace("[0 1; 0 -1]", "[0; 1]", "[z 1]")  # a zero at -z
+    found: Any = symobs.output_regulation(plant, S="[sigma]", reference="[1]", poles="-2, -3")
+    assert found.verdict == "conditional"
+    assert {str(condition) for condition in found.conditions} == {"Ne(sigma + z, 0)"}
+    (case,) = found.cases
+    assert (case.result.verdict, case.result.solvable) == ("no", False)
+    assert found.at(sigma=1, z=-1).solvable is False
+    assert [str(mode) for mode in found.at(sigma=1, z=-1).blocked_modes] == ["1"]
+    assert [str(entry) for entry in found.at(sigma=1, z=2).Pi] == ["1/3", "1/3"]  # x2 = sigma x1, z x1 + x2 = w
+
+
+def test_an_exosystem_that_the_output_does_not_show_has_no_observer() -> None:
+    plant = symobs.StateSpace("[0 1; 0 -1]", "[0; 1]", "[1 0]")
+    asked = {"S": "[0 2; -2 0]", "reference": "[1 0]", "poles": "-2, -3"}
+    found: Any = symobs.output_regulation(plant, **asked, observer_poles="-1, -2, -3, -4")
+    assert (found.verdict, found.solvable, found.L) == ("no", True, None)
+    assert {str(mode) for mode in found.fixed_modes} == {"2*I", "-2*I"}
+
+
+def test_what_does_not_fit_is_refused() -> None:
+    plant = symobs.StateSpace("[0 1; 0 -1]", "[0; 1]", "[1 0]")
+    with pytest.raises(InputError, match="S is missing"):
+        symobs.output_regulation(plant, reference="[1 0]", poles="-1, -2")
+    with pytest.raises(InputError, match="reference is missing"):
+        symobs.output_regulation(plant, S="[0]", poles="-1, -2")
+    with pytest.raises(ShapeMismatch, match="E is 2×2, expected 2×1"):
+        symobs.output_regulation(plant, S="[0]", reference="[1]", E="[1 0; 0 1]", poles="-1, -2")
+    with pytest.raises(ShapeMismatch, match="S is 1×2, and must be square"):
+        symobs.output_regulation(plant, S="[0 1]", reference="[1]", poles="-1, -2")
