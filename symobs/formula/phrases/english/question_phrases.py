@@ -100,6 +100,7 @@ UNSAID = (
     "rank",
     "reference_model",
     "resolvent",
+    "riccati",
     "routh",
     "separation",
     "stack",
