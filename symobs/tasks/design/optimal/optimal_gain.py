@@ -15,6 +15,7 @@ from symobs.exact import (
     Matrix,
     Root,
     Scalar,
+    apart_from_zero,
     from_coefficients,
     independent_rows,
     primitive_kernel,
@@ -30,6 +31,7 @@ from symobs.formula.tree.term import identity, letter
 from symobs.ground.dataclass import dataclass
 from symobs.ground.errors import CertificateRejected, InputError, Undecided
 from symobs.proof.certificate.claims import Claim, Statement
+from symobs.proof.certificate.pointwise import never_together_zero
 from symobs.proof.derivation.builder import relation
 from symobs.proof.derivation.facts import leading_minors
 from symobs.stability.criteria.stability import monic, on_boundary, stability
@@ -221,19 +223,19 @@ class OptimalGain(Result):
         """What vanishes where controllability is lost, or where the polynomial of H may have a root on the axis."""
         if self.answer["P"] is None or _is_numeric(self.regulator):
             return ()
-        even, regulator, plant = self.even, self.regulator, self.plant
-        coefficients = even.coefficients(plant.variable)
-        found = [coefficients[-1]]
-        A = regulator.uncrossed[0]
+        regulator, plant = self.regulator, self.plant
+        _, *_, c_2, _, c_0 = (Scalar.of(0), *self.even.coefficients(plant.variable))
+        chi = regulator.uncrossed[0].characteristic_polynomial(plant.variable).coefficients(plant.variable)
+        found, signs = [c_0], plant.symbols.signs
+        if plant.order == 2:  # p₁² is the sum of a² and the others, but for what is positive where b < 0
+            a, b = chi[1:]
+            found.append(a**2 + (2 * b - a**2 - c_2) + c_0 - b**2)
         if regulator.B.shape[1] == 1:
-            powers = [regulator.B, regulator.A @ regulator.B][: plant.order]
-            determinant = Matrix.block([powers]).determinant()
-            found += [] if determinant.is_zero else [determinant]
-        if plant.order == 2:  # p₁² = a² + what is not negative, and 2 (√(b² + …) − b)
-            chi = A.characteristic_polynomial(plant.variable)
-            _, a, b = chi.coefficients(plant.variable)
-            if not plant.is_discrete:
-                found.append(a**2 + (2 * b - a**2 - coefficients[2]) + coefficients[4] - b**2)
+            determinant = Matrix.block([[regulator.B, regulator.A @ regulator.B][: plant.order]]).determinant()
+            if not determinant.is_zero:
+                beside = [apart_from_zero(determinant)]
+                found = [value for value in found if not never_together_zero([value.numerator], beside, signs)]
+                found.append(determinant)
         return tuple(plant.simplified(value) for value in found)
 
     @cached_property
@@ -449,9 +451,10 @@ class Solution(NamedTuple):
 def _exact_solution(regulator: Regulator, plant: StateSpace) -> Solution:
     """Return P from p(H) [I; P] = 0; raises `NoFactor`."""
     n, variable, signs = plant.order, plant.variable, plant.symbols.signs
-    with_parameters = 1 if regulator.discrete else MOST_WITH_PARAMETERS
+    with_parameters = 0 if regulator.discrete else MOST_WITH_PARAMETERS
     if n > (_EXACT_UP_TO if _is_numeric(regulator) else with_parameters):
-        raise NoFactor(f"with parameters a closed form is looked for up to order {with_parameters}")
+        time = "discrete" if regulator.discrete else "continuous"
+        raise NoFactor(f"with parameters a closed form is looked for in {time} time up to order {with_parameters}")
     H = hamiltonian(regulator)
     factors = stable_factors(H.characteristic_polynomial(variable), variable, signs)
     if sum(factor.degree(variable) for factor in factors) != n:

@@ -6,7 +6,6 @@ even of degree two or come in pairs f(s), ± f(−s).  Roots are positive by mea
 
 from __future__ import annotations
 
-from math import gcd
 from typing import TYPE_CHECKING
 
 from symobs.exact import Field, Scalar, derivative, from_coefficients, product_of, resultant
@@ -15,7 +14,6 @@ from symobs.exact.core.generators import (
     generator,
     normal_form,
     roots_in,
-    square_part,
     square_root,
 )
 from symobs.stability.criteria.stability import monic, stability
@@ -118,18 +116,14 @@ def _root(radicand: Scalar, signs: Mapping[str, str]) -> Scalar:
     known = with_signs(signs, radicand)
     if sign_of(radicand, known) == "negative":
         raise NoFactor(f"{radicand} has no real root")
-    common = gcd(*(abs(coefficient) for coefficient, _ in radicand.terms())) or 1
-    part = square_part(common)
-    inner = radicand / part**2
-    root = square_root(inner)
-    if not root.denominator.is_constant or roots_in(root) != roots_in(inner):
-        known = with_signs(known, root)
+    root = square_root(radicand)
+    known = with_signs(signs, root)
     sign = sign_of(root, known)
     if sign in {"negative", "nonpositive"}:
-        return -root * part
-    if sign not in {"positive", "nonnegative", "zero"} and not _is_not_negative(root, known):
-        root = generator("sqrt", inner)
-    return root * part
+        return -root
+    if sign not in _NOT_NEGATIVE and not _is_not_negative(root, known):
+        root = generator("sqrt", radicand)
+    return root
 
 
 def _is_not_negative(value: Scalar, signs: Mapping[str, str]) -> bool:
