@@ -38,6 +38,8 @@ from tests.support.algebra import (
 from tests.support.claims.claims import Setting, conditions_hold
 from tests.support.claims.claims_in_time import FUNCTIONS_OF_TIME
 from tests.support.claims.claims_of_advice import advice_holds
+from tests.support.claims.claims_of_kalman import holds as kalman_holds
+from tests.support.claims.claims_of_lqr import holds as lqr_holds
 from tests.support.claims.claims_of_lyapunov import holds as lyapunov_holds
 from tests.support.claims.claims_of_regions import region_holds
 from tests.support.derivations import World, plus, times
@@ -56,7 +58,7 @@ pytestmark = pytest.mark.slow
 
 FOLDER = ROOT / "worked_examples"
 #: Tasks whose answers are held to equations of their own.
-HELD = {"lyapunov": lyapunov_holds, "pole_advice": advice_holds}
+HELD = {"kalman": kalman_holds, "lqr": lqr_holds, "lyapunov": lyapunov_holds, "pole_advice": advice_holds}
 #: Fractions know no roots: examples with roots in their plant are held to PARI.
 WITH_ROOTS = {"coupled_masses_irrational", "sensor_at_a_node"}
 TEXTS = {path.stem: path.read_text(encoding="utf-8") for path in sorted(FOLDER.glob("*.toml"))}

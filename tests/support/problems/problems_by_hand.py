@@ -746,7 +746,7 @@ FAMILIES = {
 IN_TIME = {"matrix_exponential", "gramian", "response", "zero_order_hold", "initial_state", "initial_state_covariance"}
 TASKS = {path.stem: tasks_of(path.stem) for path in sorted(FOLDER.glob("*.toml"))}
 #: Examples of tasks whose claims are held to equations of their own: `tests.support.claims`.
-CLAIMED = {name for name, tasks in TASKS.items() if {*tasks} & {"lyapunov", "minimum_energy_input"}}
+CLAIMED = {name for name, tasks in TASKS.items() if {*tasks} & {"kalman", "lqr", "lyapunov", "minimum_energy_input"}}
 #: The examples that are held to the formulas here: no regions, no families, nothing in functions of time.
 BY_HAND = [
     name

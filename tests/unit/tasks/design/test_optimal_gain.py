@@ -14,6 +14,8 @@ import sympy
 from scipy.linalg import solve_continuous_are, solve_discrete_are  # type: ignore[import-untyped]
 
 import symobs
+from symobs.exact.sympy_bridge.conversion import scalar_to_sympy
+from symobs.formula.expression import parse_poles
 from symobs.ground.errors import CertificateRejected, InputError, Undecided
 from tests.support.algebra import seeded
 
@@ -44,7 +46,9 @@ def drawn(seed: int) -> tuple[dict[str, Any], int]:
 def precise(data: dict[str, Any], dt: int) -> Any:
     """Return P from the eigenvectors of the Hamiltonian pencil at 60 digits and more."""
     with mpmath.workdps(90):
-        A, B, Q, R = (mpmath.matrix([[mpmath.mpf(e.numerator) / e.denominator for e in r] for r in data[k]]) for k in "ABQR")
+        A, B, Q, R = (
+            mpmath.matrix([[mpmath.mpf(e.numerator) / e.denominator for e in r] for r in data[k]]) for k in "ABQR"
+        )
         n = A.rows
         S, one = B * mpmath.inverse(R) * B.T, mpmath.eye(n)
         M, L = mpmath.zeros(2 * n), mpmath.zeros(2 * n)
@@ -104,9 +108,13 @@ def solved(problem: dict[str, Any]) -> Any:
     return symobs.lqr(plant, Q=problem["Q"], R=problem["R"], N=problem.get("N"))
 
 
+def entry_of(value: str) -> Any:
+    return scalar_to_sympy(parse_poles(value, functions=True)[0].real, {})
+
+
 def read(value: str) -> Any:
     rows = [row.split() if " + " not in row and " - " not in row else [row] for row in value.strip("[]").split(";")]
-    return sympy.Matrix([[sympy.sympify(entry.replace("^", "**")) for entry in row] for row in rows])
+    return sympy.Matrix([[entry_of(entry) for entry in row] for row in rows])
 
 
 @pytest.mark.parametrize("problem", PROBLEMS, ids=lambda problem: problem["source"][:40])
@@ -125,3 +133,120 @@ def test_textbook_problems(problem: dict[str, Any]) -> None:
     if result.verdict == "yes":
         result.to("text")
         result.to("text", language="de")
+
+
+SIGNS = {"a": "real", "b": "nonzero", "q": "positive", "r": "positive"}
+
+
+def against_numbers(count: int) -> None:
+    """Hold K and P of order two with four parameters to SciPy at random points, and to the conditions."""
+    plant = symobs.StateSpace("[0 1; a 0]", "[0; b]", symbols=SIGNS)
+    result: Any = symobs.lqr(plant, Q="[q 0; 0 0]", R="r")
+    assert (result.verdict, result.conditions) == ("yes", ())
+    draw = seeded(11)
+    for _ in range(count):
+        a, b = draw.randint(-20, 20) / 4, draw.choice([-1, 1]) * draw.randint(1, 20) / 4
+        q, r = draw.randint(1, 30) / 8, draw.randint(1, 30) / 8
+        values = {sympy.Symbol(name): sympy.Rational(value) for name, value in zip("abqr", (a, b, q, r), strict=True)}
+        P = np.array(result.P.subs(values).evalf().tolist(), dtype=complex)
+        K = np.array(result.K.subs(values).evalf().tolist(), dtype=complex)
+        A, B, R = np.array([[0, 1], [a, 0]]), np.array([[0], [b]]), np.array([[r]])
+        expected = solve_continuous_are(A, B, np.diag([q, 0.0]), R)
+        assert np.allclose(P, expected, rtol=1e-7, atol=1e-9), (a, b, q, r)
+        assert np.allclose(K, np.linalg.solve(R, B.T @ expected), rtol=1e-7, atol=1e-9)
+
+
+def test_four_parameters_agree_with_numbers() -> None:
+    against_numbers(12)
+
+
+@pytest.mark.slow
+def test_four_parameters_agree_with_numbers_at_many_points() -> None:
+    against_numbers(200)
+
+
+def test_conditions_and_what_is_true_where_they_fail() -> None:
+    plant = symobs.StateSpace("[0 1; 0 0]", "[0; b]", symbols={"b": "real", "q": "nonnegative", "r": "positive"})
+    result: Any = symobs.lqr(plant, Q="[q 0; 0 0]", R="r")
+    assert result.verdict == "conditional"
+    assert {str(condition) for condition in result.conditions} == {"Ne(b, 0)", "Ne(q, 0)"}
+    there = {str(case.when[0]): case.result for case in result.cases}
+    assert there["Eq(b, 0)"].verdict == there["Eq(q, 0)"].verdict == "no"
+    for b, q, r in ((1, 1, 1), (-2, 3, 5), (0, 1, 1), (1, 0, 1)):  # p(s) = s^2 + sqrt(2 w) s + w with w = |b| sqrt(q/r)
+        at = result.at(b=b, q=q, r=r)
+        assert at.verdict == ("yes" if b and q else "no")
+        if at.verdict == "yes":
+            w = abs(b) * sympy.sqrt(sympy.Rational(q, r))
+            assert (at.K - sympy.Matrix([[w / b, sympy.sqrt(2 * w) / b]])).applyfunc(sympy.simplify).is_zero_matrix
+
+
+def test_an_obstacle_is_named() -> None:
+    unmoved: Any = symobs.lqr(symobs.StateSpace("[1 0; 0 -1]", "[0; 1]"), Q="1", R="1")
+    unseen: Any = symobs.lqr(symobs.StateSpace("[0 1; -4 0]", "[0; 1]"), Q="0", R="1")
+    seen: Any = symobs.lqr(symobs.StateSpace("[0 1; -4 0]", "[0; 1]"), Q="[0 0; 0 1]", R="1")
+    on_circle: Any = symobs.lqr(symobs.StateSpace("[-1 0; 0 2]", "[1; 1]", dt=1), Q="[0 0; 0 1]", R="1")
+    assert [result.verdict for result in (unmoved, unseen, seen, on_circle)] == ["no", "no", "yes", "no"]
+    assert [sorted(map(str, result.modes)) for result in (unmoved, unseen, on_circle)] == [
+        ["1"],
+        ["-2*I", "2*I"],
+        ["-1"],
+    ]
+    hidden: Any = symobs.kalman(symobs.StateSpace("[1 0; 0 -1]", None, "[0 1]"), W="1", V="1")
+    undriven: Any = symobs.kalman(symobs.StateSpace("[0 1; 0 0]", None, "[1 0]"), W="1", V="1", G="[1; 0]")
+    for result in (unmoved, unseen, on_circle, hidden, undriven):
+        assert result.verdict == "no"
+        assert result.K is None if result.task == "lqr" else result.L is None
+        result.to("text")
+
+
+def test_the_filter_is_dual_to_the_regulator() -> None:
+    data, dt = drawn(3)
+    turned = {name: [list(row) for row in zip(*data[name], strict=True)] for name in "AB"}
+    feedback: Any = symobs.lqr(
+        symobs.StateSpace(text(data["A"]), text(data["B"]), dt=dt), Q=text(data["Q"]), R=text(data["R"])
+    )
+    found: Any = symobs.kalman(
+        symobs.StateSpace(text(turned["A"]), None, text(turned["B"]), dt=dt), W=text(data["Q"]), V=text(data["R"])
+    )
+    assert found.decimals["P"] == feedback.decimals["P"]
+    assert [list(row) for row in zip(*found.decimals["L"], strict=True)] == feedback.decimals["K"]
+
+
+def test_lies_are_rejected() -> None:
+    result: Any = symobs.lqr(symobs.StateSpace("[0 1; 2 0]", "[0; 1]"), Q="[5 0; 0 0]", R="1")
+    K, P = result.answer["K"], result.answer["P"]
+    for name, value in (("K", K * 2), ("P", P * 2), ("P", -P), ("polynomial", result.answer["polynomial"] + 1)):
+        with pytest.raises(CertificateRejected):
+            result.with_answer(name, value)
+    other: Any = symobs.lqr(symobs.StateSpace("[0 1 0; 0 0 1; 1 2 3]", "[0; 0; 1]"), Q="1", R="1")
+    digits = other.answer["digits"]
+    first = digits.K[0][0]
+    changed = f"{first[:-1]}{'1' if first[-1] != '1' else '2'}"
+    with pytest.raises(CertificateRejected):
+        other.with_answer("digits", digits._replace(K=((changed, *digits.K[0][1:]),)))
+    # The other solution of p^2 = 1 is no stabilising one.
+    scalar: Any = symobs.lqr(symobs.StateSpace("[0]", "[1]"), Q="1", R="1")
+    with pytest.raises(CertificateRejected):
+        scalar.with_answer("digits", scalar.answer["digits"]._replace(centre=-scalar.answer["digits"].centre))
+
+
+@pytest.mark.parametrize(
+    ("weights", "match"),
+    [
+        ({"Q": "[1 0; 0 -1]", "R": "1"}, "Q is not positive semidefinite"),
+        ({"Q": "1", "R": "0"}, "R is not positive definite"),
+        ({"Q": "1", "R": "r"}, "R is not known to be positive definite: the sign of r"),
+        ({"Q": "1"}, "the weight R is missing"),
+        ({"Q": "[1 1; 0 1]", "R": "1"}, "Q is not symmetric"),
+        ({"Q": "1", "R": "1", "N": "[2; 0]"}, "not known to be positive semidefinite"),
+    ],
+)
+def test_wrong_weights_are_refused(weights: dict[str, str], match: str) -> None:
+    with pytest.raises(InputError, match=match):
+        symobs.lqr(symobs.StateSpace("[0 1; 0 0]", "[0; 1]"), **weights)
+
+
+def test_what_no_square_roots_write_is_undecided_with_parameters() -> None:
+    plant = symobs.StateSpace("[0 1 0; 0 0 1; 0 0 a]", "[0; 0; 1]")
+    with pytest.raises(Undecided, match="up to order 2"):
+        symobs.lqr(plant, Q="1", R="1")
