@@ -21,6 +21,8 @@ def riccati_holds(result: Any, at: Setting, data: tuple[Any, ...], letter: str) 
     """Hold P and the gain, of the regulator that the problem is or is dual to."""
     with CONTEXT.workdps(60):
         A, B, Q, R, N = map(table, data)
+        if result.verdict == "undecided":
+            return
         if result.verdict == "no":
             assert not has_solution(A, B, Q, R, N, discrete=at.discrete)
             return

@@ -100,9 +100,10 @@ def kalman(
     Returns L (with x̂′ = A x̂ + Bu + L(y − C x̂ − Du); in discrete time from y(k) to x̂(k + 1)), P (the covariance of the
     error; the stabilising solution of Riccati's equation), polynomial and poles of A − LC: exact where square roots write them,
     else None; `decimals` with certain digits of L and P where the data are numbers; verdict `no` with the `modes` that the
-    output does not show, or that lie on the boundary and are not driven by the noise.
-    Raises `InputError` for intensities of other signs, `ShapeMismatch`; `Undecided` where with parameters no square roots
-    write P.  Source: R. E. Kalman and R. S. Bucy (1961); V. Kučera (1972).
+    output does not show, or that lie on the boundary and are not driven by the noise;
+    undecided, with the `question`, where with parameters no square roots write P.
+    Raises `InputError` for intensities of other signs, `ShapeMismatch`; `Undecided` for too many states.
+    Source: R. E. Kalman and R. S. Bucy (1961); V. Kučera (1972).
     """
     plant = plant.knowing(W, V, G)
     plant.require("C", task="kalman")

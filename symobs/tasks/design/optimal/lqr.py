@@ -94,8 +94,9 @@ def lqr(
     N        n×m, a cross weight with Q − N R⁻¹ Nᵀ positive semidefinite; 0 where it is left out
     Returns K, P (the stabilising solution of Riccati's equation: the least cost from x₀ is x₀ᵀ P x₀), polynomial and poles of
     A − BK: exact where square roots write them, else None; `decimals` with certain digits of K and P where the data are
-    numbers; verdict `no` with the `modes` that no input moves, or that lie on the boundary and are hidden from the cost.
-    Raises `InputError` for weights of other signs, `ShapeMismatch`; `Undecided` where with parameters no square roots write P.
+    numbers; verdict `no` with the `modes` that no input moves, or that lie on the boundary and are hidden from the cost;
+    undecided, with the `question`, where with parameters no square roots write P.
+    Raises `InputError` for weights of other signs, `ShapeMismatch`; `Undecided` for too many states.
     Source: R. E. Kalman (1960); V. Kučera (1972); S. S. L. Chang (1961), A. M. Letov (1960).
     """
     plant = plant.knowing(Q, R, N)

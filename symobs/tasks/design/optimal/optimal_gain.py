@@ -29,7 +29,7 @@ from symobs.exact.floating.riccati import enclosed_solution
 from symobs.formula.tree import Environment
 from symobs.formula.tree.term import identity, letter
 from symobs.ground.dataclass import dataclass
-from symobs.ground.errors import CertificateRejected, InputError, Undecided
+from symobs.ground.errors import CertificateRejected, InputError
 from symobs.proof.certificate.claims import Claim, Statement
 from symobs.proof.certificate.pointwise import never_together_zero
 from symobs.proof.derivation.builder import relation
@@ -99,14 +99,15 @@ class OptimalGain(Result):
 
     @classmethod
     def of(cls, plant: StateSpace, weights: Mapping[str, Matrix], method_name: str) -> Self:
-        """Return the optimal gain, exact and in certain digits, or the obstacle; raises `Undecided`."""
+        """Return the optimal gain, exact and in certain digits, or the obstacle, or the question that is open."""
         regulator = cls.regulator_of(plant, weights)
-        answer: dict[str, Any] = dict.fromkeys((cls.letter, "P", "polynomial", "factors", "digits", "obstacle"))
-        answer["obstacle"] = _obstacle(regulator, plant, cls.task)
-        if answer["obstacle"] is not None:
-            return cls(plant, method_name, answer, weights)
-        reason = "no precision that is tried proves its digits"
+        names = (cls.letter, "P", "polynomial", "factors", "digits", "obstacle", "question")
+        answer: dict[str, Any] = dict.fromkeys(names)
+        reason = "no precision that is tried proves the digits"
         try:
+            answer["obstacle"] = _obstacle(regulator, plant)
+            if answer["obstacle"] is not None:
+                return cls(plant, method_name, answer, weights)
             found = _exact_solution(regulator, plant)
             gain, polynomial = cls.turned(found.gain), found.polynomial
             answer |= {cls.letter: gain, "P": found.P, "polynomial": polynomial, "factors": found.factors}
@@ -115,7 +116,7 @@ class OptimalGain(Result):
         if _is_numeric(regulator):
             answer["digits"] = enclosed_solution(regulator)
         if answer["P"] is None and answer["digits"] is None:
-            raise Undecided(f"{cls.task} is undecided: {reason}; put numbers in for certain digits")
+            answer["question"] = reason
         return cls(plant, method_name, answer, weights)
 
     @cached_property
@@ -135,8 +136,9 @@ class OptimalGain(Result):
     def claims(self) -> Iterator[Claim | Statement]:
         """Yield the signs of the weights; Riccati's equation, the gain and a stable loop, or the obstacle; the digits."""
         answer, digits, regulator = self.answer, self.answer["digits"], self.regulator
-        if (answer["P"] is None and digits is None) == (answer["obstacle"] is None):
-            message = "there is a P exactly where there is no obstacle"
+        has_P = answer["P"] is not None or digits is not None
+        if [has_P, answer["obstacle"] is not None, answer["question"] is not None].count(True) != 1:
+            message = "there is a P, an obstacle, or an open question"
             raise CertificateRejected(message, repair=_BUG)
         signs = self.plant.symbols.signs
         yield Statement(
@@ -211,6 +213,8 @@ class OptimalGain(Result):
     @property
     def verdict(self) -> str:
         """`no` where there is an obstacle."""
+        if self.answer["question"] is not None:
+            return "undecided"
         return "no" if self.answer["obstacle"] is not None else super().verdict
 
     @cached_property
@@ -262,16 +266,14 @@ class OptimalGain(Result):
 
         def on(there: StateSpace, values: dict[str, Scalar]) -> Result | None:
             weights = {name: weight.substitute(values) for name, weight in self.weights.items()}
-            try:
-                return type(self).of(there, weights, self.method)
-            except (Undecided, InputError):
-                return None
+            found = type(self).of(there, weights, self.method)
+            return None if found.answer["question"] is not None else found
 
         found = [c.expression for c in self.holds_where if c.kind != "domain"]
         return solved(self.plant, places(self.plant, found), on)  # type: ignore[arg-type]
 
     @property
-    def modes(self) -> tuple[Root, ...]:
+    def hidden_modes(self) -> tuple[Root, ...]:
         """The modes that are the obstacle."""
         found = self.answer["obstacle"]
         plant = self.plant
@@ -294,7 +296,8 @@ class OptimalGain(Result):
         if factors is not None and plant.is_discrete:
             poles = tuple(root for f in map(self._in_disc, factors) for root in roots_of(f, plant.variable))
         found = {self.letter: answer[self.letter], "P": answer["P"], "polynomial": answer["polynomial"], "poles": poles}
-        return {**found, "modes": self.modes}
+        asked = answer["question"]
+        return {**found, "modes": self.hidden_modes, **({} if asked is None else {"question": asked})}
 
     def _in_disc(self, factor: Scalar) -> Scalar:
         return to_disc(factor, self.plant.variable)
@@ -367,8 +370,11 @@ def require_weights(regulator: Regulator, state: str, of_input: str, signs: Mapp
 # -- the obstacle ------------------------------------------------------------------------------------------------------
 
 
-def _obstacle(regulator: Regulator, plant: StateSpace, task: str) -> Obstacle | None:
-    """Return unstable modes that no input moves, else modes on the boundary that the cost does not contain, if any."""
+def _obstacle(regulator: Regulator, plant: StateSpace) -> Obstacle | None:
+    """Return unstable modes that no input moves, else modes on the boundary that the cost does not contain, if any.
+
+    Raises `NoFactor` where that depends on the parameters.
+    """
     signs, variable, discrete = plant.symbols.signs, plant.variable, plant.is_discrete
     hidden = _hidden(regulator.B.T, regulator.A.T, variable)
     if hidden is not None:
@@ -376,9 +382,7 @@ def _obstacle(regulator: Regulator, plant: StateSpace, task: str) -> Obstacle | 
         if found.verdict == "no":
             return Obstacle("uncontrollable", *hidden)
         if found.verdict != "yes":
-            raise Undecided(
-                f"{task} is undecided: whether all roots of {hidden[2]} are stable depends on the parameters"
-            )
+            raise NoFactor(f"whether all roots of {hidden[2]} are stable depends on the parameters")
     A, _, Q = regulator.uncrossed
     hidden = _hidden(Q, A, variable)
     if hidden is None:

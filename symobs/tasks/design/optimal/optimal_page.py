@@ -92,7 +92,9 @@ def _has_input_matrix(result: OptimalGain) -> bool:
 
 
 def _solve(page: Builder, result: OptimalGain) -> None:
-    if result.answer["obstacle"] is not None:
+    if result.answer["question"] is not None:
+        page.remark("optimal_open")
+    elif result.answer["obstacle"] is not None:
         _tell_obstacle(page, result, result.answer["obstacle"])
     elif result.answer["P"] is None:
         _tell_digits(page, result)

@@ -32,6 +32,7 @@ PHRASES: dict[str, str] = {
     "optimal_digits": "The solution is not written with square roots here. In decimals",
     "optimal_feedback_enclosed": "The stabilizing solution of Riccati's equation, and the gain that follows from it, round to these to the last of their places, of {radius}: Newton's map sends the box of this size around them into itself, and all of its loops are stable§.",
     "optimal_filter_enclosed": "The stabilizing solution of Riccati's equation, and the gain that follows from it, round to these to the last of their places, of {radius}: Newton's map sends the box of this size around them into itself, and all of its loops are stable§.",
+    "optimal_open": "No closed form of the solution is found here for all values of the parameters; with numbers in their places its digits can be given.",
     "optimal_uncontrollable_modes": "No input moves the modes with the polynomial",
     "optimal_unmeasured_modes": "The output does not show the modes with the polynomial",
     "optimal_not_stabilizable": "It is not stable, so no control law stabilises the loop, and there is no optimal one.",
@@ -57,14 +58,6 @@ ASSERTS: dict[str, tuple[str, ...]] = {
 }
 
 DEMANDS: dict[str, str] = {
-    "lqr_cost_continuous": "continuous_time",
-    "lqr_cost_discrete": "discrete_time",
-    "lqr_cost_cross_continuous": "continuous_time",
-    "lqr_cost_cross_discrete": "discrete_time",
-    "kalman_noise_continuous": "continuous_time",
-    "kalman_noise_discrete": "discrete_time",
-    "kalman_noise_through_continuous": "continuous_time",
-    "kalman_noise_through_discrete": "discrete_time",
     "optimal_factor": "splits c_even p_s",
     "optimal_feedback_found": "optimal A B Q_x R_u N_x P_x K chi_K",
     "optimal_filter_found": "optimal Aᵀ Cᵀ Q_x V_n N_x P_x Lᵀ chi_L",

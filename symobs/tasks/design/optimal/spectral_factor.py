@@ -90,6 +90,8 @@ def _of_pair(factor: Scalar, mirror: Scalar, variable: str, signs: Mapping[str, 
         if stability(one, variable, signs, discrete=False).verdict == "yes":
             return (one,)
     _, *rest = factor.coefficients(variable)
+    if len(rest) == 1:  # of s + c and s − c one is stable, and it is s + √c²
+        return (from_coefficients([Scalar.of(1), _root(rest[0] ** 2, signs)], variable),)
     if len(rest) == 2 and sign_of(rest[1], signs) == "negative":  # one root on either side
         half = _root(reduced(rest[0] ** 2 - 4 * rest[1]), signs)
         return (from_coefficients([Scalar.of(1), half, -rest[1]], variable),)
