@@ -56,6 +56,8 @@ from symobs.tasks.design.disturbance.unknown_input_observer import UnknownInputO
 from symobs.tasks.design.full_order.observer import ObserverDesign as _ObserverDesign
 from symobs.tasks.design.full_order.state_feedback import StateFeedbackDesign as _StateFeedbackDesign
 from symobs.tasks.design.margins.margins import Margins as _Margins
+from symobs.tasks.design.optimal.kalman import OptimalFilter as _OptimalFilter
+from symobs.tasks.design.optimal.lqr import OptimalFeedback as _OptimalFeedback
 from symobs.tasks.design.pole_advice.pole_advice import PoleAdvice as _PoleAdvice
 from symobs.tasks.design.reduced_order.reduced_order_observer import ReducedOrderObserver as _ReducedOrderObserver
 from symobs.tasks.design.reference.feedforward import FeedforwardDesign as _FeedforwardDesign
@@ -452,6 +454,56 @@ def integral_action(
     floats: str | None = None,
 ) -> _IntegralActionResult:
     """Let y follow constant references by u = −K x + k_I ξ, ξ' = r − y, with n + p given poles."""
+
+class _KalmanResult(_OptimalFilter):
+    """What `kalman` returns."""
+
+    @property
+    def L(self) -> ImmutableMatrix: ...
+    @property
+    def P(self) -> ImmutableMatrix: ...
+    @property
+    def polynomial(self) -> Expr: ...
+    @property
+    def poles(self) -> tuple[Any, ...]: ...
+    @property
+    def modes(self) -> tuple[Any, ...]: ...
+
+def kalman(
+    plant: _Plant,
+    *,
+    W: _Number | _Matrix | None = None,
+    V: _Number | _Matrix | None = None,
+    G: _Matrix | None = None,
+    method: str = "auto",
+    floats: str | None = None,
+) -> _KalmanResult:
+    """Return the observer gain with the smallest covariance of the error: the steady-state Kalman filter."""
+
+class _LqrResult(_OptimalFeedback):
+    """What `lqr` returns."""
+
+    @property
+    def K(self) -> ImmutableMatrix: ...
+    @property
+    def P(self) -> ImmutableMatrix: ...
+    @property
+    def polynomial(self) -> Expr: ...
+    @property
+    def poles(self) -> tuple[Any, ...]: ...
+    @property
+    def modes(self) -> tuple[Any, ...]: ...
+
+def lqr(
+    plant: _Plant,
+    *,
+    Q: _Number | _Matrix | None = None,
+    R: _Number | _Matrix | None = None,
+    N: _Matrix | None = None,
+    method: str = "auto",
+    floats: str | None = None,
+) -> _LqrResult:
+    """Return the state feedback u = −K x that minimises ∫ xᵀQx + 2xᵀNu + uᵀRu dt, in discrete time Σ."""
 
 class _LyapunovResult(_LyapunovSolution):
     """What `lyapunov` returns."""

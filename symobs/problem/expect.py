@@ -468,7 +468,8 @@ def met(result: Answered, name: str, expected: Any, where: str) -> bool:
     """Return whether an expected answer equals that of the result."""
     found, names, variable = found_in(result, name), names_of(result), result.plant.variable
     in_time = result.in_time or result.plant.is_time_varying
-    has_functions = any(not function.square for function in result.plant.field.functions.values())
+    fields = [result.plant.field, *([found.field] if isinstance(found, (Matrix, Scalar)) else [])]
+    has_functions = any(not function.square for field in fields for function in field.functions.values())
     if in_time and isinstance(found, (Matrix, Scalar)):
         names = names and {name: sign for name, sign in names.items() if name != "t"}
         read = parse_matrix if isinstance(found, Matrix) else parse_scalar

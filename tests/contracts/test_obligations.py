@@ -56,11 +56,13 @@ DEMANDED = {
     "chained X mu": "grows",
     "continuous_time": """
         asks_detectability_continuous asks_stabilizability_continuous beyond_continuous equilibrium_continuous
-        hides_continuous integral_state_continuous lowest_terms_unstable_continuous marginal_continuous
+        hides_continuous integral_state_continuous kalman_noise_continuous kalman_noise_through_continuous
+        lowest_terms_unstable_continuous lqr_cost_continuous lqr_cost_cross_continuous marginal_continuous
         nonlinear_continuous sought_continuous
     """,
     "continuous_time, of_pairs A, ends !=, continuous_time": "lyapunov_regular_continuous",
     "continuous_time, of_pairs A, ends =, continuous_time": "lyapunov_singular_continuous",
+    "continuous_time, optimal A B Q_x R_u N_x P_x K chi_K, zero N_x, single Bᵀ": "optimal_margins",
     "continuous_time, refutes_lyapunov A Q_l X_l, continuous_time": "lyapunov_impossible_continuous",
     "counts_degree": "pair_remains some_on_circle",
     "counts_dominant": "pair_dominates",
@@ -69,20 +71,28 @@ DEMANDED = {
     "counts_steps": "gramian_steps",
     "dimension Bᵀ Aᵀ": "dimension_state_feedback",
     "dimension C A": "dimension_observer",
+    "encloses A B Q_x R_u N_x P_r K_r": "optimal_feedback_enclosed",
+    "encloses Aᵀ Cᵀ Q_x V_n N_x P_r L_rᵀ": "optimal_filter_enclosed",
     "free_parts C A": "family_hidden_observer",
     "free_parts Bᵀ Aᵀ": "family_hidden_state_feedback",
+    "on_boundary Q_N A_N N X": "optimal_on_boundary",
+    "on_boundary Q_x Aᵀ N_K X_K": "optimal_filter_on_boundary",
+    "optimal A B Q_x R_u N_x P_x K chi_K": "optimal_feedback_found",
+    "optimal Aᵀ Cᵀ Q_x V_n N_x P_x Lᵀ chi_L": "optimal_filter_found",
     "shared_roots A phi_o": "spectra_meet_observer",
     "shared_roots A phi_c": "spectra_meet_state_feedback",
     "of_damping": "pattern_damping",
     "finding, discrete_time": "cells_decide_discrete",
     "fixes C A N X phi_o, misses X phi_o": "impossible_roots_observer",
     "fixes Bᵀ Aᵀ N_K X_K phi_c, misses X_K phi_c": "impossible_roots_state_feedback",
-    "modes_unstable Bᵀ Aᵀ N_K X_K mu": "never_converges_state_feedback",
+    "modes_unstable Bᵀ Aᵀ N_K X_K mu": "never_converges_state_feedback optimal_not_stabilizable",
+    "splits c_even p_s": "optimal_factor",
     "unseen C A, of_low_rank": "pbh_low_observability",
     "unseen Bᵀ Aᵀ, of_low_rank": "pbh_low_controllability",
     "discrete_time": """
         asks_detectability_discrete asks_stabilizability_discrete beyond_discrete equilibrium_discrete
-        hides_discrete integral_state_discrete lowest_terms_unstable_discrete marginal_discrete
+        hides_discrete integral_state_discrete kalman_noise_discrete kalman_noise_through_discrete
+        lowest_terms_unstable_discrete lqr_cost_cross_discrete lqr_cost_discrete marginal_discrete
         nonlinear_discrete sought_discrete
     """,
     "discrete_time, of_pairs A, ends !=, discrete_time": "lyapunov_regular_discrete",
@@ -135,7 +145,7 @@ DEMANDED = {
     "modes_stable C A N X mu": "yes_detectability",
     "modes_stable C A_T N X mu": "uio_zeros_stable",
     "modes_unstable Bᵀ Aᵀ N X mu": "no_stabilizability",
-    "modes_unstable C A N X mu": "no_detectability",
+    "modes_unstable C A N X mu": "no_detectability optimal_not_detectable",
     "modes_unstable C A_T N X mu": "uio_zeros_unstable",
     "moves_by_margin": "moved_right",
     "needs_rank_full, annuls w_0 G_0": "no_feedforward_zero",
@@ -268,7 +278,8 @@ ASSERTED = {
     """,
     "stable": """
         case_everywhere gramian_infinite_controllability gramian_infinite_observability only_stable
-        margins_stable regulation_reached regulation_reached_estimated stable_continuous stable_discrete
+        margins_stable optimal_feedback_found optimal_filter_found regulation_reached regulation_reached_estimated
+        stable_continuous stable_discrete
     """,
     "stable strictly_proper": "compensator_stable compensator_stable_low minimal_stable",
     "stable strictly_proper unstable": "compensator_unstable_alone compensator_unstable_low_alone minimal_unstable_alone",
@@ -278,11 +289,11 @@ ASSERTED = {
     """,
     "strictly_proper unstable": "compensator_unstable compensator_unstable_low minimal_unstable",
     "unstable": """
-        gramian_diverges_controllability gramian_diverges_observability hides_continuous
-        hides_discrete lasts_observer_continuous lasts_observer_discrete lasts_state_feedback_continuous
+        gramian_diverges_controllability gramian_diverges_observability hides_continuous hides_discrete
+        lasts_observer_continuous lasts_observer_discrete lasts_state_feedback_continuous
         lasts_state_feedback_discrete law_unstable_continuous law_unstable_discrete
-        lowest_terms_unstable_continuous lowest_terms_unstable_discrete unstable_continuous
-        unstable_discrete
+        lowest_terms_unstable_continuous lowest_terms_unstable_discrete optimal_not_detectable
+        optimal_not_stabilizable unstable_continuous unstable_discrete
     """,
 }
 

@@ -38,6 +38,8 @@ from tests.support.algebra import (
 from tests.support.claims.claims import Setting, conditions_hold
 from tests.support.claims.claims_in_time import FUNCTIONS_OF_TIME
 from tests.support.claims.claims_of_advice import advice_holds
+from tests.support.claims.claims_of_kalman import holds as kalman_holds
+from tests.support.claims.claims_of_lqr import holds as lqr_holds
 from tests.support.claims.claims_of_lyapunov import holds as lyapunov_holds
 from tests.support.claims.claims_of_margins import holds as margins_hold
 from tests.support.claims.claims_of_output_regulation import holds as regulation_holds
@@ -59,6 +61,8 @@ pytestmark = pytest.mark.slow
 FOLDER = ROOT / "worked_examples"
 #: Tasks whose answers are held to equations of their own.
 HELD = {
+    "kalman": kalman_holds,
+    "lqr": lqr_holds,
     "lyapunov": lyapunov_holds,
     "margins": margins_hold,
     "output_regulation": regulation_holds,

@@ -157,6 +157,11 @@ def square_root(radicand: Scalar) -> Scalar:
         odd = odd * factor if rest else odd
     if odd.is_one and number is not None:
         return front * _root_of_number(number)
+    if number is None:  # of a + b√2, a + b √(c + d√2) the common square is taken out
+        common = gcd(*(coefficient for coefficient, _ in unit.terms()))
+        below = unit.denominator.fraction() if unit.denominator.is_constant else Fraction(1)
+        part = square_part(abs(common) * int(below))
+        front, unit = front * Fraction(part, int(below)), unit * Fraction(int(below) ** 2, part**2)
     return front * generator("sqrt", odd * unit)
 
 

@@ -222,6 +222,51 @@ _article(
     "371–400",
 )
 _article(
+    "kalman1960b",
+    "R. E. Kalman",
+    "Contributions to the theory of optimal control",
+    "Bol. Soc. Mat. Mex.",
+    "5",
+    "1960",
+    "102–119",
+)
+_article(
+    "kucera1972",
+    "V. Kučera",
+    "A contribution to matrix quadratic equations",
+    _TAC,
+    "17",
+    "1972",
+    "344–347",
+)
+_article(
+    "kalman1964",
+    "R. E. Kalman",
+    "When is a linear control system optimal?",
+    "J. Basic Eng.",
+    "86",
+    "1964",
+    "51–60",
+)
+_article(
+    "pappas1980",
+    "T. Pappas, A. J. Laub and N. R. Sandell",
+    "On the numerical solution of the discrete-time algebraic Riccati equation",
+    _TAC,
+    "25",
+    "1980",
+    "631–641",
+)
+_article(
+    "safonov1977",
+    "M. G. Safonov and M. Athans",
+    "Gain and phase margin for multiloop LQG regulators",
+    _TAC,
+    "22",
+    "1977",
+    "173–179",
+)
+_article(
     "kalman1961",
     "R. E. Kalman and R. S. Bucy",
     "New results in linear filtering and prediction theory",
@@ -335,6 +380,13 @@ _article(
 _book("belevitch1968", "V. Belevitch", "Classical Network Theory", "Holden-Day", "1968")
 _book("brockett1970", "R. W. Brockett", "Finite Dimensional Linear Systems", "Wiley", "1970")
 _book("brogan1991", "W. L. Brogan", "Modern Control Theory", "Prentice Hall", "1991", "3rd")
+_book(
+    "anderson1990",
+    "B. D. O. Anderson and J. B. Moore",
+    "Optimal Control: Linear Quadratic Methods",
+    "Prentice Hall",
+    "1990",
+)
 _book("chen1999", "C.-T. Chen", "Linear System Theory and Design", "Oxford University Press", "1999", "3rd")
 _book("jury1964", "E. I. Jury", "Theory and Application of the z-Transform Method", "Wiley", "1964")
 _book("astrom1997", "K. J. Åström and B. Wittenmark", "Computer-Controlled Systems", "Prentice Hall", "1997", "3rd")

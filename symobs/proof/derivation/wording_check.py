@@ -29,6 +29,7 @@ from symobs.exact import (
 )
 from symobs.exact.algebraic.loop_distances import INFINITE, MARGIN_DIGITS, Loop
 from symobs.exact.core.generators import PI, function
+from symobs.exact.floating.riccati_check import Regulator, is_proved
 from symobs.exact.time_functions.matrix_power import modes_of
 from symobs.formula.phrases import DEMANDS
 from symobs.formula.phrases.languages import Counted, StateChoice
@@ -63,8 +64,10 @@ from symobs.formula.tree.plain_text import plain
 from symobs.ground.dataclass import dataclass
 from symobs.proof.certificate.claims import UNREADABLE, as_scalar, verify
 from symobs.proof.certificate.pointwise import Pointwise
-from symobs.proof.derivation.facts import PREDICATES, reject
+from symobs.proof.derivation.facts import PREDICATES, leading_minors, reject
 from symobs.proof.derivation.steps import everything_in, literals
+from symobs.stability.criteria.stability import on_boundary
+from symobs.system.conditions import sign_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -588,6 +591,60 @@ def _is_lyapunov(said: Said, P: str, Q: str, of: str) -> bool:
     return solves and known and told == ([Letter(Q)], [Letter("chi")])
 
 
+def _is_optimal(said: Said, of: str, by: str, Q: str, R: str, N: str, P: str, K: str, chi: str) -> bool:
+    """Return whether P and K solve Riccati's equation for weights of the right signs, and χ, that of the loop, is stable."""
+    here, (a, b, q, r, n, p, k) = said.environment, map(_letter, (of, by, Q, R, N, P, K))
+    discrete, order = here.variable == "z", _sizes(P, here)[0]
+    inner = Sum((r, Product((Transpose(b), p, b)))) if discrete else r
+    coupled = Product((Transpose(b), p, a)) if discrete else Product((Transpose(b), p))
+    pencil = Sum((Product((Letter("s"), Identity(order))), Negative(a), Product((b, k))))
+    problem = Regulator(*(evaluate(each, here, Exact(here)) for each in (a, b, q, r, n)), discrete)
+    sums = (-problem.uncrossed[2]).characteristic_polynomial("s").coefficients("s")
+    signs = {sign_of(c, here.signs) for c in sums}
+    equations = (
+        (p, Transpose(p)),
+        (Sum((_left_side(here, a, p), q)), Product((Transpose(k), inner, k))),
+        (Product((inner, k)), Sum((coupled, Transpose(n)))),
+        (Letter(chi), Apply("det", pencil)),
+    )
+    definite = all(sign_of(minor, here.signs) == "positive" for minor in leading_minors(problem.R))
+    solves = all(_holds(here, left, "=", right) for left, right in equations)
+    return (
+        definite
+        and solves
+        and signs <= {"positive", "nonnegative", "zero"}
+        and said.subjects("stable") == [Letter(chi)]
+    )
+
+
+def _encloses(said: Said, *names: str) -> bool:
+    """Return whether P and K are those of the stabilising solution, rounded to the decimal places told."""
+    here = said.environment
+    unit = as_scalar(evaluate(said.slots["radius"], here, Exact(here))).fraction()  # type: ignore[arg-type]
+    centre, K = (evaluate(_letter(name), here, Exact(here)) for name in names[-2:])
+    told = [[[(entry.fraction(), unit / 2) for entry in row] for row in matrix.rows] for matrix in (centre, K)]
+    problem = Regulator(*(evaluate(_letter(name), here, Exact(here)) for name in names[:-2]), here.variable == "z")
+    return is_proved(problem, centre, unit, told[0], told[1])
+
+
+def _splits(said: Said, even: str, of: str) -> bool:
+    """Return whether a polynomial is that of the stable p times its mirror image, up to a number."""
+    here, v = said.environment, said.environment.variable
+    whole, p = (as_scalar(here.values[name]) for name in (even, of))
+    s = Scalar.symbol(v)
+    product = p * (p.substitute({v: 1 / s}) * s ** p.degree(v) if v == "z" else p.substitute({v: -s}))
+    number = whole.coefficients(v)[0] / product.coefficients(v)[0]
+    return _holds(here, Letter(even), "=", Literal(number * product)) and _is(here, "stable", Letter(of))
+
+
+def _is_on_boundary(said: Said, row: str, of: str, N: str, X: str) -> bool:
+    """Return whether N is hidden, and the eigenvalues of X lie on the boundary."""
+    here, v = said.environment, said.environment.variable
+    factors = as_scalar(evaluate(_characteristic(X, here), here, Exact(here))).numerator.factors()[1]
+    on = (on_boundary(factor, v, here.signs, discrete=v == "z") for factor, _ in factors if factor.degree(v))
+    return _is_part(here, row, of, N, X) and all(on)
+
+
 def _has_rank(said: Said, *, is_full: bool) -> bool:
     return any(
         _is_of_rank(fact, said.environment, is_full=is_full) for fact in said.facts if isinstance(fact, Relation)
@@ -857,6 +914,10 @@ _OF_STEP: dict[str, Callable[..., bool]] = {
     "has_margins": _has_margins,
     "minors": _are_minors,
     "solves_lyapunov": _is_lyapunov,
+    "optimal": _is_optimal,
+    "encloses": _encloses,
+    "splits": _splits,
+    "on_boundary": _is_on_boundary,
     "vanishes": _vanishes_of,
     "annuls": _annuls,
     "one_rank": lambda said, C, E: _holds(said.environment, *_ranks(C, E, "=")),

@@ -749,7 +749,7 @@ TASKS = {path.stem: tasks_of(path.stem) for path in sorted(FOLDER.glob("*.toml")
 CLAIMED = {
     name
     for name, tasks in TASKS.items()
-    if {*tasks} & {"lyapunov", "margins", "minimum_energy_input", "output_regulation"}
+    if {*tasks} & {"kalman", "lqr", "lyapunov", "margins", "minimum_energy_input", "output_regulation"}
 }
 #: The examples that are held to the formulas here: no regions, no families, nothing in functions of time.
 BY_HAND = [

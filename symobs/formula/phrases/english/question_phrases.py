@@ -102,6 +102,7 @@ UNSAID = (
     "reference_model",
     "regulator_equations",
     "resolvent",
+    "riccati",
     "routh",
     "separation",
     "stack",

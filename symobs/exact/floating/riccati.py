@@ -1,0 +1,153 @@
+"""The stabilising solution of Riccati's equation in numbers: the sign of the Hamiltonian matrix, then Newton's method.
+
+What is found is an `Enclosure`, which `riccati_check` proves; the precision is doubled until it does.
+"""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from typing import NamedTuple
+
+from flint import arb, arb_mat
+
+from symobs.exact.core.matrix import Matrix
+from symobs.exact.core.ring import Precision
+from symobs.exact.floating.riccati_check import (
+    Regulator,
+    balls,
+    correction,
+    gain,
+    is_proved,
+    number,
+    solution_near,
+)
+
+#: Bits that are tried in turn, and the significant digits that are written.
+_BITS, _DIGITS = (128, 256, 512, 1024), 15
+#: The sign converges quadratically, from a scaled matrix in about ten steps; near the boundary it takes more.
+_STEPS = 60
+
+
+class Enclosure(NamedTuple):
+    """A rational matrix, how far the solution is from it at most in each entry, and the digits of P and of the gain."""
+
+    centre: Matrix
+    radius: Fraction
+    P: tuple[tuple[str, ...], ...]
+    K: tuple[tuple[str, ...], ...]
+    bits: int
+
+    def is_proved(self, regulator: Regulator) -> bool:
+        """Return whether every digit is certain, to half a unit of the last place."""
+        P, K = ([[(Fraction(text), _half_unit(text)) for text in row] for row in table] for table in (self.P, self.K))
+        return is_proved(regulator, self.centre, self.radius, P, K, self.bits)
+
+
+def _half_unit(text: str) -> Fraction:
+    return Fraction(1, 2 * 10 ** len(text.partition(".")[2]))
+
+
+def enclosed_solution(regulator: Regulator) -> Enclosure | None:
+    """Return certain digits of P and K; None where no precision that is tried suffices."""
+    for bits in _BITS:
+        with Precision(bits):
+            try:
+                found = _found(regulator, bits)
+            except ZeroDivisionError:
+                continue
+        if found is not None and found.is_proved(regulator):
+            return found
+    return None
+
+
+def _found(regulator: Regulator, bits: int) -> Enclosure | None:
+    X = _symmetric(_start(regulator))
+    nothing = arb_mat(X.nrows(), X.nrows())
+    size = float(_largest(X)) or 1.0
+    for _ in range(_STEPS):
+        step = correction(regulator, X, nothing)
+        X = _symmetric(X + step)
+        if _largest(step) < arb(2) ** (-bits // 2) * size:
+            break
+    error = _largest(correction(regulator, X, nothing)).upper()
+    radius = max(error * 4, arb(2) ** (-3 * bits // 5) * size, key=float).mid()
+    P = solution_near(regulator, X, radius)
+    if P is None:
+        return None
+    return Enclosure(
+        Matrix.of([[_rational(X[i, j]) for j in range(X.ncols())] for i in range(X.nrows())]),
+        _rational(radius),
+        _written(P),
+        _written(gain(regulator, P)),
+        bits,
+    )
+
+
+def _start(regulator: Regulator) -> arb_mat:
+    """Return an approximate solution: [I; P] spans the stable subspace, on which the sign of the matrix is −1."""
+    A, S, Q = (balls(part) for part in regulator.uncrossed)
+    n = A.nrows()
+    one, zero = _identity(n), arb_mat(n, n)
+    if regulator.discrete:  # (z − 1)/(z + 1) moves the unit disc to the left half-plane
+        M, L = _block(A, zero, -1 * Q, one), _block(one, S, zero, A.transpose())
+        Z = (M + L).mid().solve((M - L).mid()).mid()
+    else:
+        Z = _block(A, -1 * S, -1 * Q, -1 * A.transpose()).mid()
+    for _ in range(_STEPS):
+        inverse = Z.inv().mid()
+        scale = arb(abs(Z.det()).mid()) ** (arb(-1) / (2 * n))
+        moved = ((Z * scale.mid() + inverse * (1 / scale).mid()) * arb(0.5)).mid()
+        change, Z = _largest(moved - Z), moved
+        if change < arb(2) ** -40 * _largest(Z):
+            break
+    sign = Z + _identity(2 * n)
+    right = arb_mat([[-sign[i, j] for j in range(n)] for i in range(2 * n)])
+    left = arb_mat([[sign[i, n + j] for j in range(n)] for i in range(2 * n)])
+    normal = left.transpose()
+    return (normal * left).mid().solve((normal * right).mid()).mid()
+
+
+def _identity(order: int) -> arb_mat:
+    return arb_mat([[int(i == j) for j in range(order)] for i in range(order)])
+
+
+def _block(a: arb_mat, b: arb_mat, c: arb_mat, d: arb_mat) -> arb_mat:
+    n = a.nrows()
+    upper = [[a[i, j] for j in range(n)] + [b[i, j] for j in range(n)] for i in range(n)]
+    return arb_mat(upper + [[c[i, j] for j in range(n)] + [d[i, j] for j in range(n)] for i in range(n)])
+
+
+def _symmetric(matrix: arb_mat) -> arb_mat:
+    n = matrix.nrows()
+    return arb_mat([[matrix[min(i, j), max(i, j)].mid() for j in range(n)] for i in range(n)])
+
+
+def _largest(matrix: arb_mat) -> arb:
+    return max((abs(matrix[i, j]).upper() for i in range(matrix.nrows()) for j in range(matrix.ncols())), key=float)
+
+
+def _rational(value: arb) -> Fraction:
+    found = value.mid().fmpq()
+    return Fraction(int(found.p), int(found.q))
+
+
+def _written(value: arb_mat) -> tuple[tuple[str, ...], ...]:
+    """Return the entries in decimals, with as many digits as are certain."""
+    largest = float(_largest(value)) or 1.0
+    return tuple(tuple(_decimal(value[i, j], largest) for j in range(value.ncols())) for i in range(value.nrows()))
+
+
+def _decimal(value: arb, largest: float) -> str:
+    size = Fraction(float(abs(value).upper()) if not value.contains(0) else largest)
+    places = _DIGITS
+    while size < 1:
+        size, places = size * 10, places + 1
+    while size >= 10:
+        size, places = size / 10, places - 1
+    for count in range(max(places - 1, 0), -1, -1):
+        units = round(_rational(value) * 10**count)
+        if abs(value - number(Fraction(units, 10**count))) <= number(Fraction(1, 2 * 10**count)):
+            digits = str(abs(units)).rjust(count + 1, "0")
+            text = f"{digits[:-count]}.{digits[-count:]}" if count else digits
+            return f"-{text}" if units < 0 else text
+    return str(round(_rational(value)))

@@ -1,0 +1,1 @@
+"""Optimal gains: the linear-quadratic regulator, and the steady-state Kalman filter."""

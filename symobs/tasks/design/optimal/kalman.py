@@ -1,0 +1,136 @@
+"""The steady-state Kalman filter: the observer gain with the smallest covariance of the error, dual to the regulator."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, ClassVar
+
+from symobs.exact import Matrix
+from symobs.exact.floating.riccati_check import Regulator
+from symobs.ground.dataclass import dataclass
+from symobs.ground.errors import InputError, ShapeMismatch, Undecided
+from symobs.proof.derivation.builder import relation
+from symobs.system import read_matrix
+from symobs.system.specification import from_list, over_common_data, read_symmetric
+from symobs.tasks.design.optimal.optimal_gain import MOST_STATES, OptimalGain, require_weights
+from symobs.tasks.design.optimal.optimal_page import write_optimal
+from symobs.tasks.result import Result, choose, method, page_of, task
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+
+    from symobs.formula.tree import Relation
+    from symobs.formula.tree.term import Term
+    from symobs.system import StateSpace
+    from symobs.system.specification import Intensity, MatrixText, Name
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class OptimalFilter(OptimalGain):
+    """L and P with AP + PAᵀ + GWGᵀ = LVLᵀ and LV = PCᵀ; in discrete time APAᵀ − P + GWGᵀ = L(V + CPCᵀ)Lᵀ."""
+
+    task: ClassVar[str] = "kalman"
+    answered_by = ("L",)
+    claimed = ("L",)
+    letters = {"L": "L", "P": "P_x", "polynomial": "chi_L", "poles": "chi_L"}
+    cards = ("L", "P", "polynomial")
+    letter: ClassVar[str] = "L"
+
+    @staticmethod
+    def regulator_of(plant: StateSpace, weights: Mapping[str, Matrix]) -> Regulator:
+        """Return the regulator of (Aᵀ, Cᵀ) with the weights GWGᵀ and V."""
+        m, G = plant.matrices, weights["G"]
+        nothing = Matrix.zeros(plant.order, plant.outputs)
+        return Regulator(m.A.T, m.C.T, (G @ weights["W"] @ G.T).normal(), weights["V"], nothing, plant.is_discrete)
+
+    @staticmethod
+    def turned(matrix: Matrix) -> Matrix:
+        """Return the transpose."""
+        return matrix.T
+
+    @staticmethod
+    def equations(
+        of: Callable[[str], Term],
+        *,
+        discrete: bool,
+        cross: bool = True,  # noqa: ARG004 - of the regulator
+    ) -> tuple[tuple[Relation, str], ...]:
+        """Return Riccati's equation and that of L."""
+        A, C, V, L, P, noise = *map(of, ("A", "C", "V", "L", "P")), of("noise")
+        if discrete:
+            inner = V + C @ P @ C.T
+            return (
+                (relation(A @ P @ A.T - P + noise, L @ inner @ L.T), "A*P*A.T - P + G*W*G.T = L*(V + C*P*C.T)*L.T"),
+                (relation(L @ inner, A @ P @ C.T), "L*(V + C*P*C.T) = A*P*C.T"),
+            )
+        return (
+            (relation(A @ P + P @ A.T + noise, L @ V @ L.T), "A*P + P*A.T + G*W*G.T = L*V*L.T"),
+            (relation(L @ V, P @ C.T), "L*V = P*C.T"),
+        )
+
+    @staticmethod
+    def loop(of: Callable[[str], Term]) -> Term:
+        """Return A − LC."""
+        return of("A") - of("L") @ of("C")
+
+
+page_of(OptimalFilter)(write_optimal)
+
+
+@method("kalman/riccati", source="kalman1961; kucera1972")
+def by_riccati(plant: StateSpace, weights: Mapping[str, Matrix]) -> OptimalFilter:
+    """Solve Riccati's equation of the dual regulator for P; then L = PCᵀV⁻¹."""
+    return OptimalFilter.of(plant, weights, "riccati")
+
+
+@task
+def kalman(
+    plant: StateSpace,
+    *,
+    W: Intensity = None,
+    V: Intensity = None,
+    G: MatrixText = None,
+    method: Name = "auto",
+) -> Result:
+    """Return the observer gain with the smallest covariance of the error: the steady-state Kalman filter.
+
+    plant    ẋ = Ax + Bu + Gw, y = Cx + Du + v (x_{k+1} in discrete time), n states, p outputs
+    W        intensity (in discrete time covariance) of w, symmetric, positive semidefinite; q stands for q I
+    V        p×p, that of v, independent of w, symmetric, positive definite; r stands for r I
+    G        n×k, what w acts through; I where it is left out
+    Returns L (with x̂′ = A x̂ + Bu + L(y − C x̂ − Du); in discrete time from y(k) to x̂(k + 1)), P (the covariance of the
+    error; the stabilising solution of Riccati's equation), polynomial and poles of A − LC: exact where square roots write them,
+    else None; `decimals` with certain digits of L and P where the data are numbers; verdict `no` with the `modes` that the
+    output does not show, or that lie on the boundary and are not driven by the noise;
+    undecided, with the `question`, where with parameters no square roots write P.
+    Raises `InputError` for intensities of other signs, `ShapeMismatch`; `Undecided` for too many states.
+    Source: R. E. Kalman and R. S. Bucy (1961); V. Kučera (1972).
+    """
+    plant = plant.knowing(W, V, G)
+    plant.require("C", task="kalman")
+    n, p = plant.order, plant.outputs
+    entering = Matrix.identity(n) if G is None else read_entering(G, plant)
+    for name, value, size in (("W", W, entering.shape[1]), ("V", V, p)):
+        if value is None:
+            message = f"the intensity {name} is missing"
+            raise InputError(message, where=f"specification.{name}", repair=f"give a symmetric {size}×{size} matrix")
+    if n > MOST_STATES:
+        raise Undecided(f"kalman is undecided: {n} states are too many")
+    plant, (noise, of_output, entering) = over_common_data(
+        plant, read_symmetric(W, plant, "W", entering.shape[1]), read_symmetric(V, plant, "V", p), entering
+    )
+    require_weights(
+        Regulator(plant.matrices.A.T, plant.matrices.C.T, noise, of_output, Matrix.zeros(n, p), plant.is_discrete),
+        "W",
+        "V",
+        plant.symbols.signs,
+    )
+    return choose("kalman", method, "riccati").solve(plant, {"W": noise, "V": of_output, "G": entering}).asked(method)
+
+
+def read_entering(value: object, plant: StateSpace) -> Matrix:
+    """Return G with as many rows as there are states; raises `ShapeMismatch`."""
+    found = read_matrix(from_list(value, column=True), plant.symbols.seen(value), "specification.G")
+    if found.shape[0] != plant.order:
+        message = f"G has {found.shape[0]} rows, expected {plant.order}"
+        raise ShapeMismatch(message, where="specification.G", repair="write a row for each state")
+    return found

@@ -1,0 +1,117 @@
+"""The linear-quadratic regulator: u = −K x minimises the integral (the sum) of xᵀQx + 2xᵀNu + uᵀRu."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, ClassVar
+
+from symobs.exact import Matrix
+from symobs.exact.floating.riccati_check import Regulator
+from symobs.ground.dataclass import dataclass
+from symobs.ground.errors import InputError, Undecided
+from symobs.proof.derivation.builder import relation
+from symobs.system.specification import over_common_data, read_gain, read_symmetric
+from symobs.tasks.design.optimal.optimal_gain import MOST_STATES, OptimalGain, require_weights
+from symobs.tasks.design.optimal.optimal_page import write_optimal
+from symobs.tasks.result import Result, choose, method, page_of, task
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+
+    from symobs.formula.tree import Relation
+    from symobs.formula.tree.term import Term
+    from symobs.system import StateSpace
+    from symobs.system.specification import Intensity, MatrixText, Name
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class OptimalFeedback(OptimalGain):
+    """K and P with AᵀP + PA + Q = KᵀRK and RK = BᵀP + Nᵀ; in discrete time AᵀPA − P + Q = Kᵀ(R + BᵀPB)K."""
+
+    task: ClassVar[str] = "lqr"
+    answered_by = ("K",)
+    claimed = ("K",)
+    letters = {"K": "K", "P": "P_x", "polynomial": "chi_K", "poles": "chi_K"}
+    cards = ("K", "P", "polynomial")
+    letter: ClassVar[str] = "K"
+
+    @staticmethod
+    def regulator_of(plant: StateSpace, weights: Mapping[str, Matrix]) -> Regulator:
+        """Return the problem itself."""
+        m = plant.matrices
+        return Regulator(m.A, m.B, weights["Q"], weights["R"], weights["N"], plant.is_discrete)
+
+    @staticmethod
+    def turned(matrix: Matrix) -> Matrix:
+        """Return the gain."""
+        return matrix
+
+    @staticmethod
+    def equations(of: Callable[[str], Term], *, discrete: bool, cross: bool = True) -> tuple[tuple[Relation, str], ...]:
+        """Return Riccati's equation and that of K."""
+        A, B, Q, R, K, P = map(of, ("A", "B", "Q", "R", "K", "P"))
+        coupled = B.T @ P @ A if discrete else B.T @ P
+        coupled = coupled + of("N").T if cross else coupled
+        if discrete:
+            inner = R + B.T @ P @ B
+            return (
+                (relation(A.T @ P @ A - P + Q, K.T @ inner @ K), "A.T*P*A - P + Q = K.T*(R + B.T*P*B)*K"),
+                (relation(inner @ K, coupled), "(R + B.T*P*B)*K = B.T*P*A + N.T"),
+            )
+        return (
+            (relation(A.T @ P + P @ A + Q, K.T @ R @ K), "A.T*P + P*A + Q = K.T*R*K"),
+            (relation(R @ K, coupled), "R*K = B.T*P + N.T"),
+        )
+
+    @staticmethod
+    def loop(of: Callable[[str], Term]) -> Term:
+        """Return A − BK."""
+        return of("A") - of("B") @ of("K")
+
+
+page_of(OptimalFeedback)(write_optimal)
+
+
+@method("lqr/riccati", source="kalman1960b; kucera1972")
+def by_riccati(plant: StateSpace, weights: Mapping[str, Matrix]) -> OptimalFeedback:
+    """Solve Riccati's equation for P by the stable factor of the polynomial of H; then K = R⁻¹(BᵀP + Nᵀ)."""
+    return OptimalFeedback.of(plant, weights, "riccati")
+
+
+@task
+def lqr(
+    plant: StateSpace,
+    *,
+    Q: Intensity = None,
+    R: Intensity = None,
+    N: MatrixText = None,
+    method: Name = "auto",
+) -> Result:
+    """Return the state feedback u = −K x that minimises ∫ xᵀQx + 2xᵀNu + uᵀRu dt, in discrete time Σ.
+
+    plant    n states, m inputs
+    Q        n×n, symmetric, positive semidefinite; q stands for q I
+    R        m×m, symmetric, positive definite; r stands for r I
+    N        n×m, a cross weight with Q − N R⁻¹ Nᵀ positive semidefinite; 0 where it is left out
+    Returns K, P (the stabilising solution of Riccati's equation: the least cost from x₀ is x₀ᵀ P x₀), polynomial and poles of
+    A − BK: exact where square roots write them, else None; `decimals` with certain digits of K and P where the data are
+    numbers; verdict `no` with the `modes` that no input moves, or that lie on the boundary and are hidden from the cost;
+    undecided, with the `question`, where with parameters no square roots write P.
+    Raises `InputError` for weights of other signs, `ShapeMismatch`; `Undecided` for too many states.
+    Source: R. E. Kalman (1960); V. Kučera (1972); S. S. L. Chang (1961), A. M. Letov (1960).
+    """
+    plant = plant.knowing(Q, R, N)
+    plant.require("B", task="lqr")
+    n, m = plant.order, plant.inputs
+    for name, value, size in (("Q", Q, n), ("R", R, m)):
+        if value is None:
+            message = f"the weight {name} is missing"
+            raise InputError(message, where=f"specification.{name}", repair=f"give a symmetric {size}×{size} matrix")
+    if n > MOST_STATES:
+        raise Undecided(f"lqr is undecided: {n} states are too many")
+    cross = Matrix.zeros(n, m) if N is None else read_gain(N, plant, "N", (n, m))
+    plant, (state, of_input, cross) = over_common_data(
+        plant, read_symmetric(Q, plant, "Q", n), read_symmetric(R, plant, "R", m), cross
+    )
+    weights: dict[str, Any] = {"Q": state, "R": of_input, "N": cross}
+    require_weights(OptimalFeedback.regulator_of(plant, weights), "Q", "R", plant.symbols.signs)
+    return choose("lqr", method, "riccati").solve(plant, weights).asked(method)

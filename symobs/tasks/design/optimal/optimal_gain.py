@@ -1,0 +1,486 @@
+"""The gain that minimises a quadratic cost: the stabilising solution P of Riccati's equation, and what follows from it.
+
+The Kalman filter of (A, C) with noise W, V is dual to it: the regulator of (Aᵀ, Cᵀ) with the weights W, V.
+P exists if and only if (A, B) is stabilizable and no mode on the boundary is hidden from the cost.  Its loop has for its
+polynomial the stable factor of that of the Hamiltonian matrix H; where square roots write it, p(H) [I; P] = 0 is linear in P.
+"""
+
+from __future__ import annotations
+
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Self
+
+from symobs.exact import (
+    Ideal,
+    Matrix,
+    Root,
+    Scalar,
+    apart_from_zero,
+    from_coefficients,
+    independent_rows,
+    primitive_kernel,
+    product_of,
+    roots_of,
+    solve_or_refute,
+)
+from symobs.exact.algebraic.enclosure import is_number
+from symobs.exact.core.generators import identities
+from symobs.exact.floating.riccati import enclosed_solution
+from symobs.formula.tree import Environment
+from symobs.formula.tree.term import identity, letter
+from symobs.ground.dataclass import dataclass
+from symobs.ground.errors import CertificateRejected, InputError
+from symobs.proof.certificate.claims import Claim, Statement
+from symobs.proof.certificate.pointwise import never_together_zero
+from symobs.proof.derivation.builder import relation
+from symobs.proof.derivation.facts import leading_minors
+from symobs.stability.criteria.stability import monic, on_boundary, stability
+from symobs.system.conditions import Condition, sign_of, vanishing_factors
+from symobs.tasks.analysis.strata.strata import places, solved
+from symobs.tasks.design.optimal.spectral_factor import NoFactor, reduced, stable_factors, with_signs
+from symobs.tasks.result import Case, Result
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator, Mapping
+
+    from symobs.exact.floating.riccati import Enclosure
+    from symobs.exact.floating.riccati_check import Regulator
+    from symobs.formula.tree import Relation
+    from symobs.formula.tree.term import Term
+    from symobs.system import StateSpace
+
+#: With more states the proof of the digits takes seconds; with parameters no square roots write the factor in general.
+MOST_STATES, MOST_WITH_PARAMETERS = 12, 2
+#: With more states no exact solution is looked for.
+_EXACT_UP_TO = 6
+#: An exact solution whose entries have more terms says less than its digits.
+_MOST_TERMS = 60
+_BUG = "please report this: it is a bug of symobs"
+
+
+class Obstacle(NamedTuple):
+    """N and X with row N = 0 and of N = N X, of which the polynomial is unstable, or on the boundary."""
+
+    kind: str
+    N: Matrix
+    X: Matrix
+    polynomial: Scalar
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class OptimalGain(Result):
+    """P and the gain with their equations, and a stable loop; or why there is none."""
+
+    weights: Mapping[str, Matrix]
+
+    letter: ClassVar[str]
+
+    @staticmethod
+    def regulator_of(plant: StateSpace, weights: Mapping[str, Matrix]) -> Regulator:
+        """Return the regulator that this problem is or is dual to."""
+        raise NotImplementedError
+
+    @staticmethod
+    def turned(matrix: Matrix) -> Matrix:
+        """Return a gain of the regulator as this task's gain, and the other way round."""
+        raise NotImplementedError
+
+    @staticmethod
+    def equations(of: Callable[[str], Term], *, discrete: bool, cross: bool = True) -> tuple[tuple[Relation, str], ...]:
+        """Return Riccati's equation and that of the gain, with their texts."""
+        raise NotImplementedError
+
+    @staticmethod
+    def loop(of: Callable[[str], Term]) -> Term:
+        """Return A − BK or A − LC."""
+        raise NotImplementedError
+
+    # -- construction ------------------------------------------------------------------------------------------------
+
+    @classmethod
+    def of(cls, plant: StateSpace, weights: Mapping[str, Matrix], method_name: str) -> Self:
+        """Return the optimal gain, exact and in certain digits, or the obstacle, or the question that is open."""
+        regulator = cls.regulator_of(plant, weights)
+        names = (cls.letter, "P", "polynomial", "factors", "digits", "obstacle", "question")
+        answer: dict[str, Any] = dict.fromkeys(names)
+        reason = "no precision that is tried proves the digits"
+        try:
+            answer["obstacle"] = _obstacle(regulator, plant)
+            if answer["obstacle"] is not None:
+                return cls(plant, method_name, answer, weights)
+            found = _exact_solution(regulator, plant)
+            gain, polynomial = cls.turned(found.gain), found.polynomial
+            answer |= {cls.letter: gain, "P": found.P, "polynomial": polynomial, "factors": found.factors}
+        except NoFactor as error:
+            reason = str(error)
+        if _is_numeric(regulator):
+            answer["digits"] = enclosed_solution(regulator)
+        if answer["P"] is None and answer["digits"] is None:
+            answer["question"] = reason
+        return cls(plant, method_name, answer, weights)
+
+    @cached_property
+    def regulator(self) -> Regulator:
+        """The regulator that this problem is or is dual to."""
+        return self.regulator_of(self.plant, self.weights)
+
+    # -- claims ------------------------------------------------------------------------------------------------------
+
+    def values(self) -> dict[str, Matrix | Scalar]:
+        """Return the data and the exact answers by their letters; `noise` is GWGᵀ."""
+        m, answer = self.plant.matrices, self.answer
+        found: dict[str, Any] = {"A": m.A, **self.weights, self.letter: answer[self.letter], "P": answer["P"]}
+        found |= {"B": m.B} if self.letter == "K" else {"C": m.C, "noise": self.regulator.Q}
+        return {name: value for name, value in found.items() if value is not None}
+
+    def claims(self) -> Iterator[Claim | Statement]:
+        """Yield the signs of the weights; Riccati's equation, the gain and a stable loop, or the obstacle; the digits."""
+        answer, digits, regulator = self.answer, self.answer["digits"], self.regulator
+        has_P = answer["P"] is not None or digits is not None
+        if [has_P, answer["obstacle"] is not None, answer["question"] is not None].count(True) != 1:
+            message = "there is a P, an obstacle, or an open question"
+            raise CertificateRejected(message, repair=_BUG)
+        signs = self.plant.symbols.signs
+        yield Statement(
+            "the weight of the input is positive definite", lambda: _shown(_is_definite(regulator.R, signs))
+        )
+        weight = regulator.uncrossed[2]
+        yield Statement(
+            "the weight of the state is positive semidefinite", lambda: _shown(is_semidefinite(weight, signs))
+        )
+        if answer["obstacle"] is not None:
+            yield from self._about_obstacle(answer["obstacle"])
+            return
+        if digits is not None:
+            yield Statement(
+                "the digits are those of the stabilising solution", lambda: _shown(digits.is_proved(regulator))
+            )
+        if answer["P"] is not None:
+            yield from self._about_exact()
+
+    def _about_exact(self) -> Iterator[Claim | Statement]:
+        values, plant = self.values(), self.plant
+        polynomial = self.answer["polynomial"]
+        values["p"] = polynomial
+        signs = with_signs(plant.symbols.signs, *values.values())
+        relations = identities(values.values())[1]
+        e = Environment(variable=plant.variable, values=values, signs=signs, relations=relations)
+
+        def of(name: str) -> Term:
+            return letter(name, e)
+
+        yield Claim(relation(of("P"), of("P").T), e, "P = P.T")
+        for equation, says in self.equations(of, discrete=plant.is_discrete):
+            yield Claim(equation, e, says)
+        pencil = letter("s", e) @ identity(plant.order, e) - self.loop(of)
+        yield Claim(relation(pencil.apply("det"), of("p")), e, "the polynomial is that of the loop")
+        yield Statement(
+            "the loop is asymptotically stable",
+            lambda: _shown(
+                stability(polynomial, plant.variable, signs, discrete=plant.is_discrete).verdict == "yes"
+                and product_of(self.answer["factors"]).degree(plant.variable) == plant.order
+            ),
+        )
+        if not _is_numeric(self.regulator):
+            even, s = self.even, Scalar.symbol(plant.variable)
+            p = product_of(self.answer["factors"])
+            whole = p * p.substitute({plant.variable: -s})
+            e = Environment(variable=plant.variable, relations=identities([p, even])[1])
+            yield Claim(relation(whole, even * (-1) ** plant.order), e, "p(s)*p(-s) is the polynomial of H")
+
+    def _about_obstacle(self, found: Obstacle) -> Iterator[Claim | Statement]:
+        regulator, plant = self.regulator, self.plant
+        A, _, Q = regulator.uncrossed
+        row, of = (regulator.B.T, regulator.A.T) if found.kind == "uncontrollable" else (Q, A)
+        e = Environment(variable=plant.variable, values={"row": row, "of": of, "N": found.N, "X": found.X})
+        N, X = letter("N", e), letter("X", e)
+        yield Claim(relation(letter("row", e) @ N, Matrix.zeros(row.shape[0], found.N.shape[1])), e, "N is hidden")
+        yield Claim(relation(letter("of", e) @ N, N @ X), e, "N is invariant")
+        yield Claim(relation(N.apply("rank"), found.N.shape[1]), e, "N has full rank")
+        pencil = letter("s", e) @ identity(found.X.shape[0], e) - X
+        yield Claim(relation(pencil.apply("det"), found.polynomial), e, "the polynomial of the hidden modes")
+        signs, variable, discrete = plant.symbols.signs, plant.variable, plant.is_discrete
+        if found.kind == "uncontrollable":
+            is_unstable = stability(found.polynomial, variable, signs, discrete=discrete).verdict == "no"
+            yield Statement("it is not stable", lambda: _shown(is_unstable))
+        else:
+            factors = [f for f, _ in found.polynomial.numerator.factors()[1] if f.degree(variable)]
+            on = all(on_boundary(f, variable, signs, discrete=discrete) for f in factors)
+            yield Statement("its roots are on the boundary", lambda: _shown(on and bool(factors)))
+
+    # -- what follows ------------------------------------------------------------------------------------------------
+
+    @property
+    def verdict(self) -> str:
+        """`no` where there is an obstacle."""
+        if self.answer["question"] is not None:
+            return "undecided"
+        return "no" if self.answer["obstacle"] is not None else super().verdict
+
+    @cached_property
+    def even(self) -> Scalar:
+        """The polynomial of the Hamiltonian matrix."""
+        return hamiltonian(self.regulator).characteristic_polynomial(self.plant.variable)
+
+    @property
+    def existence(self) -> tuple[Scalar, ...]:
+        """What vanishes where controllability is lost, or where the polynomial of H may have a root on the axis."""
+        if self.answer["P"] is None or _is_numeric(self.regulator):
+            return ()
+        regulator, plant = self.regulator, self.plant
+        _, *_, c_2, _, c_0 = (Scalar.of(0), *self.even.coefficients(plant.variable))
+        chi = regulator.uncrossed[0].characteristic_polynomial(plant.variable).coefficients(plant.variable)
+        found, signs = [c_0], plant.symbols.signs
+        if plant.order == 2:  # p₁² is the sum of a² and the others, but for what is positive where b < 0
+            a, b = chi[1:]
+            found.append(a**2 + (2 * b - a**2 - c_2) + c_0 - b**2)
+        if regulator.B.shape[1] == 1:
+            determinant = Matrix.block([[regulator.B, regulator.A @ regulator.B][: plant.order]]).determinant()
+            if not determinant.is_zero:
+                beside = [apart_from_zero(determinant)]
+                found = [value for value in found if not never_together_zero([value.numerator], beside, signs)]
+                found.append(determinant)
+        return tuple(plant.simplified(value) for value in found)
+
+    @cached_property
+    def domain(self) -> tuple[Condition, ...]:
+        """What must not vanish for there to be a plant and weights."""
+        own, signs = super().domain, self.plant.symbols.signs
+        known = {condition.expression for condition in own}
+        factors = vanishing_factors([weight.common_denominator() for weight in self.weights.values()], signs)
+        return (*own, *(Condition("domain", factor) for factor in factors if factor not in known))
+
+    @cached_property
+    def holds_where(self) -> tuple[Condition, ...]:
+        """The domain, existence, and the denominators of the answer."""
+        values = [value for value in (self.answer[self.letter], self.answer["P"]) if value is not None]
+        signs = with_signs(self.plant.symbols.signs, *values)
+        found = [Condition("existence", f) for f in vanishing_factors(self.existence, signs)]
+        below = vanishing_factors([value.common_denominator() for value in values], signs)
+        known = {c.expression for c in (*self.domain, *found)}
+        return (*self.domain, *found, *(Condition("claim", f) for f in below if f not in known))
+
+    @cached_property
+    def case_tree(self) -> tuple[Case, ...]:
+        """The question again where the pair is not controllable, or a mode may be hidden on the boundary."""
+
+        def on(there: StateSpace, values: dict[str, Scalar]) -> Result | None:
+            weights = {name: weight.substitute(values) for name, weight in self.weights.items()}
+            found = type(self).of(there, weights, self.method)
+            return None if found.answer["question"] is not None else found
+
+        found = [c.expression for c in self.holds_where if c.kind != "domain"]
+        return solved(self.plant, places(self.plant, found), on)  # type: ignore[arg-type]
+
+    @property
+    def hidden_modes(self) -> tuple[Root, ...]:
+        """The modes that are the obstacle."""
+        found = self.answer["obstacle"]
+        plant = self.plant
+        if found is None:
+            return ()
+        bad = [
+            f
+            for f, _ in found.polynomial.numerator.factors()[1]
+            if f.degree(plant.variable)
+            and stability(f, plant.variable, plant.symbols.signs, discrete=plant.is_discrete).verdict != "yes"
+        ]
+        return roots_of(product_of(bad), plant.variable)
+
+    @cached_property
+    def fields(self) -> Mapping[str, Any]:
+        """The gain, P, the polynomial of the loop and its poles; the modes that are an obstacle."""
+        answer, plant = self.answer, self.plant
+        factors = answer["factors"]
+        poles = None if factors is None else tuple(root for f in factors for root in roots_of(f, plant.variable))
+        if factors is not None and plant.is_discrete:
+            poles = tuple(root for f in map(self._in_disc, factors) for root in roots_of(f, plant.variable))
+        found = {self.letter: answer[self.letter], "P": answer["P"], "polynomial": answer["polynomial"], "poles": poles}
+        asked = answer["question"]
+        return {**found, "modes": self.hidden_modes, **({} if asked is None else {"question": asked})}
+
+    def _in_disc(self, factor: Scalar) -> Scalar:
+        return to_disc(factor, self.plant.variable)
+
+    @property
+    def decimals(self) -> dict[str, Any]:
+        """Certain digits of the gain and of P, where the data are numbers: to half a unit of the last place."""
+        digits: Enclosure | None = self.answer["digits"]
+        if digits is None:
+            return {}
+        columns = [*map(list, zip(*digits.K, strict=True))]
+        gain = [list(row) for row in digits.K] if self.letter == "K" else columns
+        return {self.letter: gain, "P": [list(row) for row in digits.P]}
+
+
+def _shown(holds: bool) -> str:  # noqa: FBT001 - the outcome of a check
+    return "exact" if holds else ""
+
+
+def _is_numeric(regulator: Regulator) -> bool:
+    parts = (regulator.A, regulator.B, regulator.Q, regulator.R, regulator.N)
+    return all(is_number(entry) for part in parts for entry in part.entries)
+
+
+# -- what is asked of the weights --------------------------------------------------------------------------------------
+
+
+def _is_definite(matrix: Matrix, signs: Mapping[str, str]) -> bool:
+    return all(sign_of(minor, signs) == "positive" for minor in leading_minors(matrix))
+
+
+def is_semidefinite(matrix: Matrix, signs: Mapping[str, str]) -> bool:
+    """Return whether det(sI + M) has no negative coefficient."""
+    return all(sign_of(c, signs) in {"positive", "nonnegative", "zero"} for c in _sums_of_minors(matrix))
+
+
+def _sums_of_minors(matrix: Matrix) -> tuple[Scalar, ...]:
+    return (-matrix).characteristic_polynomial("s").coefficients("s")
+
+
+def require_weights(regulator: Regulator, state: str, of_input: str, signs: Mapping[str, str]) -> None:
+    """Refuse weights of the input that are not positive definite, of the state that are not positive semidefinite."""
+    checks = (
+        (of_input, regulator.R, leading_minors(regulator.R), "positive definite", {"positive"}),
+        (
+            state,
+            regulator.Q,
+            _sums_of_minors(regulator.Q),
+            "positive semidefinite",
+            {"positive", "nonnegative", "zero"},
+        ),
+    )
+    for name, matrix, values, wanted, allowed in checks:
+        open_value = next((value for value in values if sign_of(value, signs) not in allowed), None)
+        if open_value is None:
+            continue
+        where = f"specification.{name}"
+        if not open_value.names or sign_of(open_value, signs) in {"negative", "zero", "nonpositive"}:
+            message = f"{name} is not {wanted}"
+            size = matrix.shape[0]
+            raise InputError(message, where=where, repair=f"give a symmetric {wanted} {size}×{size} matrix")
+        message = f"{name} is not known to be {wanted}: the sign of {open_value} is open"
+        repair = "declare signs of the symbols that decide it, or put numbers in"
+        raise InputError(message, where=where, repair=repair)
+    if not regulator.N.is_zero and not is_semidefinite(regulator.uncrossed[2], signs):
+        message = "Q - N R^-1 N^T is not known to be positive semidefinite"
+        raise InputError(message, where="specification.N", repair="give a smaller N, or declare signs that decide it")
+
+
+# -- the obstacle ------------------------------------------------------------------------------------------------------
+
+
+def _obstacle(regulator: Regulator, plant: StateSpace) -> Obstacle | None:
+    """Return unstable modes that no input moves, else modes on the boundary that the cost does not contain, if any.
+
+    Raises `NoFactor` where that depends on the parameters.
+    """
+    signs, variable, discrete = plant.symbols.signs, plant.variable, plant.is_discrete
+    hidden = _hidden(regulator.B.T, regulator.A.T, variable)
+    if hidden is not None:
+        found = stability(hidden[2], variable, signs, discrete=discrete)
+        if found.verdict == "no":
+            return Obstacle("uncontrollable", *hidden)
+        if found.verdict != "yes":
+            raise NoFactor(f"whether all roots of {hidden[2]} are stable depends on the parameters")
+    A, _, Q = regulator.uncrossed
+    hidden = _hidden(Q, A, variable)
+    if hidden is None:
+        return None
+    N, X, polynomial = hidden
+    for factor, _ in polynomial.numerator.factors()[1]:
+        if factor.degree(variable) and on_boundary(factor, variable, signs, discrete=discrete):
+            part = primitive_kernel(_at(monic(factor, variable), variable, X), None)
+            inner = _restricted(X, part)
+            whole = (N @ part).normal()
+            return Obstacle("unseen", whole, inner, inner.characteristic_polynomial(variable))
+    return None
+
+
+def _hidden(row: Matrix, of: Matrix, variable: str) -> tuple[Matrix, Matrix, Scalar] | None:
+    """Return N and X with row N = 0 and of N = N X, N as large as can be, and the polynomial of X; None without such."""
+    rows = [row]
+    for _ in range(of.shape[0] - 1):
+        rows.append((rows[-1] @ of).normal())
+    N = primitive_kernel(Matrix.block([[part] for part in rows]), None)
+    if not N.shape[1]:
+        return None
+    X = _restricted(of, N)
+    return N, X, X.characteristic_polynomial(variable)
+
+
+def _restricted(of: Matrix, N: Matrix) -> Matrix:
+    rows, columns = independent_rows(N), range(N.shape[1])
+    return N.select(rows, columns).solve((of @ N).select(rows, columns)).normal()
+
+
+def _at(polynomial: Scalar, variable: str, matrix: Matrix) -> Matrix:
+    found = Matrix.zeros(*matrix.shape)
+    for coefficient in polynomial.coefficients(variable):
+        found = found @ matrix + Matrix.identity(matrix.shape[0]) * coefficient
+    return found.normal()
+
+
+# -- the exact solution ------------------------------------------------------------------------------------------------
+
+
+def hamiltonian(regulator: Regulator) -> Matrix:
+    """Return [A −S; −Q −Aᵀ]; in discrete time (M + L)⁻¹(M − L), M = [A 0; −Q I], L = [I S; 0 Aᵀ], in w = (z − 1)/(z + 1)."""
+    A, S, Q = regulator.uncrossed
+    if not regulator.discrete:
+        return Matrix.block([[A, -S], [-Q, -A.T]])
+    zero, one = Matrix.zeros(*A.shape), Matrix.identity(A.shape[0])
+    M, L = Matrix.block([[A, zero], [-Q, one]]), Matrix.block([[one, S], [zero, A.T]])
+    return (M + L).solve(M - L).normal()
+
+
+def to_disc(polynomial: Scalar, variable: str) -> Scalar:
+    """Return the monic polynomial with the roots z = (1 + w)/(1 − w)."""
+    z, coefficients = Scalar.symbol(variable), polynomial.coefficients(variable)
+    order = len(coefficients) - 1
+    moved = sum((c * (z - 1) ** (order - k) * (z + 1) ** k for k, c in enumerate(coefficients)), Scalar.of(0))
+    lead, *rest = moved.coefficients(variable)
+    return from_coefficients([Scalar.of(1), *(reduced(c / lead) for c in rest)], variable)
+
+
+class Solution(NamedTuple):
+    """P, the gain of the regulator, the polynomial of its loop, and the factors of that of H, in s or w."""
+
+    P: Matrix
+    gain: Matrix
+    polynomial: Scalar
+    factors: tuple[Scalar, ...]
+
+
+def _exact_solution(regulator: Regulator, plant: StateSpace) -> Solution:
+    """Return P from p(H) [I; P] = 0; raises `NoFactor`."""
+    n, variable, signs = plant.order, plant.variable, plant.symbols.signs
+    with_parameters = 0 if regulator.discrete else MOST_WITH_PARAMETERS
+    if n > (_EXACT_UP_TO if _is_numeric(regulator) else with_parameters):
+        time = "discrete" if regulator.discrete else "continuous"
+        raise NoFactor(f"with parameters a closed form is looked for in {time} time up to order {with_parameters}")
+    H = hamiltonian(regulator)
+    factors = stable_factors(H.characteristic_polynomial(variable), variable, signs)
+    if sum(factor.degree(variable) for factor in factors) != n:
+        raise NoFactor("the polynomial has roots on the boundary")
+    product = Matrix.identity(2 * n)
+    for factor in factors:
+        product = _normal(product @ _at(factor, variable, H))
+    left, right = product.select(range(2 * n), range(n, 2 * n)), product.select(range(2 * n), range(n))
+    relations = identities(factors)[1]
+    P, _ = solve_or_refute(left, -right, Ideal.of(relations) if relations else None)
+    if P is None:
+        raise NoFactor("the polynomial has roots on the boundary")
+    P = _normal(P)
+    A, B, R, N = regulator.A, regulator.B, regulator.R, regulator.N
+    weight, coupled = (R + B.T @ P @ B, B.T @ P @ A) if regulator.discrete else (R, B.T @ P)
+    gain = _normal(_normal(weight).solve(coupled + N.T))
+    loop = (A - B @ gain).characteristic_polynomial(variable)
+    polynomial = from_coefficients([reduced(c) for c in loop.coefficients(variable)], variable)
+    if max(entry.size for entry in (*P.entries, *gain.entries)) > _MOST_TERMS and _is_numeric(regulator):
+        raise NoFactor("its closed form is too long")
+    return Solution(P, gain, polynomial, factors)
+
+
+def _normal(matrix: Matrix) -> Matrix:
+    return Matrix.of([[reduced(entry) for entry in row] for row in matrix.normal().rows], matrix.shape[1])

@@ -1,0 +1,268 @@
+"""The page of an optimal gain: the polynomial of the loop, the gain, P and its check; or digits; or the obstacle."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from fractions import Fraction
+from typing import TYPE_CHECKING
+
+from symobs.exact import Matrix, Scalar
+from symobs.exact.core.generators import all_roots
+from symobs.exact.floating.riccati_check import is_proved
+from symobs.formula.tree import Decimals
+from symobs.formula.tree.term import block
+from symobs.proof.derivation.builder import predicate, relation
+from symobs.system.conditions import sign_of
+from symobs.tasks.analysis.page_parts import case_steps, given
+from symobs.tasks.design.optimal.spectral_factor import with_signs
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from symobs.formula.tree.term import Term
+    from symobs.proof.derivation.builder import Builder
+    from symobs.tasks.design.optimal.optimal_gain import Obstacle, OptimalGain
+
+#: Up to this order the coefficients of the loop are compared on the page.
+_MATCHED_UP_TO = 3
+#: Significant digits on the page, and how many more are tried.
+_DIGITS, _MORE = 6, 9
+_LETTERS = {"Q": "Q_x", "R": "R_u", "N": "N_x", "P": "P_x", "W": "W_n", "V": "V_n", "G": "G_n"}
+
+
+def write_optimal(page: Builder, result: OptimalGain) -> None:
+    """Write the whole page."""
+    _admit_roots(page, result)
+    given(page)
+    with page.section("optimal_feedback" if result.letter == "K" else "optimal_filter"):
+        _tell_weights(page, result)
+        _solve(page, result)
+        page.steps += case_steps(page, result, _case)
+
+
+def _case(page: Builder, result: OptimalGain) -> None:
+    _admit_roots(page, result)
+    _set_weights(page, result)
+    _solve(page, result)
+
+
+def _admit_roots(page: Builder, result: OptimalGain) -> None:
+    """Let the square roots of the answer have their relations and their sign from the start."""
+    values = [*result.values().values(), *(result.answer["factors"] or ())]
+    page.with_roots(*values)
+    signs, open_ones = with_signs(page.start.signs, *values), _open_radicands(page, values)
+    page.start, page.environment = (
+        replace(each, signs=signs, positive=(*each.positive, *open_ones)) for each in (page.start, page.environment)
+    )
+
+
+def _open_radicands(page: Builder, values: Iterable[Scalar | Matrix]) -> list[Scalar]:
+    """Return what stands under the roots and is positive by what c is, not by the declared signs alone."""
+    roots = sorted(all_roots(*values), key=lambda root: root.name)
+    signs = with_signs(page.plant.symbols.signs, *values)
+    return [root.argument for root in roots if sign_of(root.argument, signs) != "positive"]
+
+
+def _set_weights(page: Builder, result: OptimalGain) -> None:
+    """Give the weights, or the intensities of the noise, their letters."""
+    for name, value in result.weights.items():
+        page.set(_LETTERS[name], value)
+    if result.letter == "L":
+        page.set("N_x", result.regulator.N)
+        page.set("Q_x", result.regulator.Q)
+
+
+def _tell_weights(page: Builder, result: OptimalGain) -> None:
+    """State the weights, or the intensities of the noise."""
+    _set_weights(page, result)
+    time, names = "discrete" if page.plant.is_discrete else "continuous", list(result.weights)
+    if result.letter == "K":
+        names = names[:2] if result.regulator.N.is_zero else names
+        say = "lqr_cost" if result.regulator.N.is_zero else "lqr_cost_cross"
+    else:
+        names = names if _has_input_matrix(result) else names[:2]
+        say = "kalman_noise_through" if _has_input_matrix(result) else "kalman_noise"
+    shown = [relation(page[_LETTERS[name]], result.weights[name]) for name in names]
+    page.equal(*shown, say=f"{say}_{time}")
+
+
+def _has_input_matrix(result: OptimalGain) -> bool:
+    """Return whether the noise enters through a matrix of its own."""
+    return "G" in result.weights and result.weights["G"] != Matrix.identity(result.plant.order)
+
+
+def _solve(page: Builder, result: OptimalGain) -> None:
+    if result.answer["question"] is not None:
+        page.remark("optimal_open")
+    elif result.answer["obstacle"] is not None:
+        _tell_obstacle(page, result, result.answer["obstacle"])
+    elif result.answer["P"] is None:
+        _tell_digits(page, result)
+    else:
+        _tell_exact(page, result)
+
+
+def _problem(page: Builder, result: OptimalGain) -> tuple[Term, Term, Term, Term]:
+    """Return the terms of A, B, Q and R of the regulator, the cross weight removed."""
+    if result.letter == "L":
+        return page["A"].T, page["C"].T, _noise(page, result), page["V_n"]
+    A, B, Q, R = (page[name] for name in ("A", "B", "Q_x", "R_u"))
+    if result.regulator.N.is_zero:
+        return A, B, Q, R
+    N = page["N_x"]
+    if not page.defines("A_N"):
+        page.define("A_N", A - B @ R.inverse @ N.T, say="optimal_uncrossed")
+        page.define("Q_N", Q - N @ R.inverse @ N.T)
+    return page["A_N"], B, page["Q_N"], R
+
+
+def _noise(page: Builder, result: OptimalGain) -> Term:
+    """Return GWGᵀ, or W where the noise acts on each state."""
+    return page["G_n"] @ page["W_n"] @ page["G_n"].T if _has_input_matrix(result) else page["W_n"]
+
+
+# -- exact -------------------------------------------------------------------------------------------------------------
+
+
+def _tell_exact(page: Builder, result: OptimalGain) -> None:
+    """Write c, its stable factor p, the gain, P, the check and what follows."""
+    plant, answer, letter = page.plant, result.answer, result.letter
+    held = [condition.expression for condition in result.holds_where if condition.kind != "domain"]
+    if held:
+        page.assume("optimal_provided", *held)
+    A, B, Q, R = _problem(page, result)
+    if result.regulator.B.shape[1] == 1 and not plant.is_discrete:
+        _tell_root_square(page, A, B, Q, R)
+    else:
+        _tell_pencil(page, A, B, Q, R)
+    page.define("p_s", page.value(answer["polynomial"]), say="optimal_factor", closing=False)
+    if _open_radicands(page, [answer["P"], *answer["factors"]]):
+        page.remark("optimal_roots_real")
+    matched = result.regulator.B.shape[1] == 1 and plant.order <= _MATCHED_UP_TO and _is_controllable(result)
+    if matched:
+        _tell_matching(page, result)
+    page.define("P_x", page.value(answer["P"]), say="optimal_P", answer=True, closing=False)
+    if not matched:
+        page.define(letter, page.value(answer[letter]), say="optimal_gain", answer=True, closing=False)
+
+    def of(name: str) -> Term:
+        return _noise(page, result) if name == "noise" else page[_LETTERS.get(name, name)]
+
+    equations = result.equations(of, discrete=plant.is_discrete, cross=not result.regulator.N.is_zero)
+    page.verified("optimal_checked", riccati=equations[0][0], gain=equations[1][0])
+    chi = page.define(
+        f"chi_{letter}", _pencil(page, result, page[letter]).apply("det"), answer["polynomial"], silent=True
+    )
+    found = "optimal_feedback_found" if letter == "K" else "optimal_filter_found"
+    page.conclude(found, predicate("stable", chi))
+    if letter == "K" and plant.inputs == 1 and not plant.is_discrete and result.regulator.N.is_zero:
+        page.remark("optimal_margins", predicate("stable", chi))
+
+
+def _pencil(page: Builder, result: OptimalGain, gain: Term) -> Term:
+    """Return sI − A + BK, sI − A + LC, the gain in some form."""
+    moved = page["B"] @ gain if result.letter == "K" else gain @ page["C"]
+    return page.s @ page.identity(page.plant.order) - page["A"] + moved
+
+
+def _tell_root_square(page: Builder, A: Term, B: Term, Q: Term, R: Term) -> None:
+    """Write p(s) p(−s) = χ(s) χ(−s) + R⁻¹ v(−s)ᵀ Q v(s) with v(s) = adj(sI − A) B."""
+    one = page.identity(page.plant.order)
+    forward, backward = page.s @ one - A, -(page.s @ one) - A
+    page.define("chi_p", forward.apply("det"), say="optimal_open_loop")
+    page.define("chi_m", backward.apply("det"))
+    page.define("v_s", forward.apply("adj") @ B)
+    page.define("v_m", backward.apply("adj") @ B)
+    cost = R.inverse @ page["v_m"].T @ Q @ page["v_s"]
+    page.define("c_even", page["chi_p"] @ page["chi_m"] + cost, say="optimal_even")
+
+
+def _tell_pencil(page: Builder, A: Term, B: Term, Q: Term, R: Term) -> None:
+    """Write det(sI − H), in discrete time the determinant of the pencil of Riccati's equation."""
+    one, S = page.identity(page.plant.order), B @ R.inverse @ B.T
+    if page.plant.is_discrete:
+        pencil = block([[page.s @ one - A, page.s @ S], [Q, page.s @ A.T - one]])
+        page.define("c_even", pencil.apply("det"), say="optimal_even_of_pencil")
+        return
+    H = page.define("H_m", block([[A, -S], [-Q, -A.T]]), say="optimal_hamiltonian")
+    pencil = page.s @ page.identity(2 * page.plant.order) - H
+    page.define("c_even", pencil.apply("det"), say="optimal_even_of_pencil")
+
+
+def _is_controllable(result: OptimalGain) -> bool:
+    """Return whether the polynomial determines the gain."""
+    A, B = result.regulator.A, result.regulator.B
+    columns = [B]
+    for _ in range(A.shape[0] - 1):
+        columns.append(A @ columns[-1])
+    return not Matrix.block([columns]).determinant().is_zero
+
+
+def _tell_matching(page: Builder, result: OptimalGain) -> None:
+    """Write the polynomial of the loop in unknown entries of the gain, and the gain."""
+    letter, order = result.letter, page.plant.order
+    names = [f"{letter.lower()}{k + 1}" for k in range(order)]
+    taken = {*page.plant.symbols.signs, *page.plant.field.names, *page.environment.coefficients}
+    if not taken & {*names}:
+        unknown = [Scalar.symbol(name) for name in names]
+        pencil = _pencil(page, result, page.value(Matrix.row(unknown) if letter == "K" else Matrix.column(unknown)))
+        shown = pencil.apply("det")
+        page.equal(relation(shown, shown.as_value), say="optimal_matched")
+    page.define(letter, page.value(result.answer[letter]), say="optimal_matched_gain", answer=True, closing=False)
+
+
+# -- digits ------------------------------------------------------------------------------------------------------------
+
+
+def _tell_digits(page: Builder, result: OptimalGain) -> None:
+    """Write P and the gain in decimals, and how near they are."""
+    letter, digits = result.letter, result.decimals
+    tables = {f"{name}_r": [[Fraction(entry) for entry in row] for row in digits[name]] for name in ("P", letter)}
+    largest = max(abs(entry) for table in tables.values() for row in table for entry in row)
+    fewest = max(_DIGITS - len(str(int(largest))), 1)
+    for places in range(fewest, fewest + _MORE):  # where a coarse box is not mapped into itself, more digits are shown
+        near = {name: _rounded(table, places) for name, table in tables.items()}
+        unit = Fraction(1, 10**places)
+        P, K = near["P_r"], result.turned(near[f"{letter}_r"])
+        told = [[[(entry.fraction(), unit / 2) for entry in row] for row in table.rows] for table in (P, K)]
+        if is_proved(result.regulator, P, unit, told[0], told[1]):
+            break
+    shown = [relation(page.set(name, value), page.term(Decimals(value))) for name, value in near.items()]
+    page.equal(*shown, say="optimal_digits", answer=True)
+    radius = Scalar.of(Fraction(1, 10**places))
+    kind = "feedback" if letter == "K" else "filter"
+    page.conclude(f"optimal_{kind}_enclosed", radius=page.term(Decimals(radius)))
+
+
+def _rounded(table: list[list[Fraction]], places: int) -> Matrix:
+    return Matrix.of([[Fraction(round(entry * 10**places), 10**places) for entry in row] for row in table])
+
+
+# -- the obstacle ------------------------------------------------------------------------------------------------------
+
+
+def _tell_obstacle(page: Builder, result: OptimalGain, found: Obstacle) -> None:
+    """Write the hidden modes and why there is no stabilising solution."""
+    is_filter = result.letter == "L"
+    dual = (found.kind == "uncontrollable") != is_filter
+    names = ("N_K", "X_K") if dual else ("N", "X")
+    for name, value in zip(names, (found.N, found.X), strict=True):
+        page.set(name, value)
+    N, X = (page[name] for name in names)
+    A, _, Q, _ = _problem(page, result)
+    if found.kind == "uncontrollable":
+        A, row = (page["A"], page["C"]) if is_filter else (page["A"].T, page["B"].T)
+        said = "optimal_unmeasured_modes" if is_filter else "optimal_uncontrollable_modes"
+    else:
+        row, said = page["Q_x"] if is_filter else Q, "optimal_undriven_modes" if is_filter else "optimal_unseen_modes"
+        if not is_filter and result.regulator.N.is_zero:
+            page.set("A_N", result.regulator.A)
+            page.set("Q_N", result.regulator.Q)
+    order = found.X.shape[0]
+    mu = page.define("mu", (page.s @ page.identity(order) - X).apply("det"), found.polynomial, say=said)
+    nothing = Matrix.zeros(row.value.shape[0], order)
+    page.equal(relation(N, N.as_value), relation(row @ N, nothing), relation(A @ N, N @ X, (N @ X).as_value))
+    if found.kind == "uncontrollable":
+        page.conclude(f"optimal_not_{'detectable' if is_filter else 'stabilizable'}", predicate("unstable", mu))
+    else:
+        page.conclude("optimal_filter_on_boundary" if is_filter else "optimal_on_boundary")

@@ -1,0 +1,93 @@
+"""The linear-quadratic regulator and the steady-state Kalman filter."""
+
+from __future__ import annotations
+
+PHRASES: dict[str, str] = {
+    "optimal_feedback": "Optimal state feedback.",
+    "optimal_filter": "Steady-state Kalman filter.",
+    "lqr_cost_continuous": "The control law $u = - K x$ is sought that minimises the integral of $xᵀ Q_x x + uᵀ R_u u$ over all times from 0 on, where",
+    "lqr_cost_discrete": "The control law $u = - K x$ is sought that minimises the sum of $xᵀ Q_x x + uᵀ R_u u$ over all steps, where",
+    "lqr_cost_cross_continuous": "The control law $u = - K x$ is sought that minimises the integral of $xᵀ Q_x x + 2 xᵀ N_x u + uᵀ R_u u$ over all times from 0 on, where",
+    "lqr_cost_cross_discrete": "The control law $u = - K x$ is sought that minimises the sum of $xᵀ Q_x x + 2 xᵀ N_x u + uᵀ R_u u$ over all steps, where",
+    "kalman_noise_continuous": "White noise of intensity $W_n$ acts on the states, and independent white noise of intensity $V_n$ on the outputs. The observer gain $L$ for which the error has the smallest covariance is sought, where",
+    "kalman_noise_through_continuous": "White noise of intensity $W_n$ acts on the states through $G_n$, and independent white noise of intensity $V_n$ on the outputs. The observer gain $L$ for which the error has the smallest covariance is sought, where",
+    "kalman_noise_discrete": "White noise with the covariance $W_n$ acts on the states, and independent white noise with the covariance $V_n$ on the outputs. The observer gain $L$ for which the error has the smallest covariance is sought, where",
+    "kalman_noise_through_discrete": "White noise with the covariance $W_n$ acts on the states through $G_n$, and independent white noise with the covariance $V_n$ on the outputs. The observer gain $L$ for which the error has the smallest covariance is sought, where",
+    "optimal_uncrossed": "Completing the square removes the cross weight:",
+    "optimal_provided": "What follows holds for {condition}.",
+    "optimal_open_loop": "The characteristic polynomial and the numerators from the input to the states are, with their mirror images,",
+    "optimal_even": "From them follows the polynomial of the optimal loop times its mirror image§,",
+    "optimal_hamiltonian": "The stable modes of the Hamiltonian matrix are those of the optimal loop§:",
+    "optimal_even_of_pencil": "The polynomial of the optimal loop, times its mirror image, is up to a factor§",
+    "optimal_factor": "Its factor with all roots in the stable region is the polynomial of the loop,",
+    "optimal_roots_real": "The square roots are real and positive: on the boundary the polynomial above is not negative, and where the conditions hold it has no root there.",
+    "optimal_matched": "With unknown entries of the gain the polynomial of the loop is",
+    "optimal_matched_gain": "Comparing coefficients gives",
+    "optimal_P": "The stabilizing solution of Riccati's equation is",
+    "optimal_gain": "The gain follows from it:",
+    "optimal_checked": "{riccati}, and {gain}.",
+    "optimal_feedback_found": "The loop is asymptotically stable, hence no other control law costs less, and the least cost from $x_0$ is $x_0ᵀ P_x x_0$§.",
+    "optimal_filter_found": "The error is asymptotically stable, hence no other gain leads to a smaller covariance of the error, and this covariance is $P_x$§.",
+    "optimal_margins": "Without a cross weight such a loop has a phase margin of at least a sixth of a turn, and stays stable for every gain from one half of the nominal one upwards§.",
+    "optimal_digits": "The solution is not written with square roots here. In decimals",
+    "optimal_feedback_enclosed": "The stabilizing solution of Riccati's equation, and the gain that follows from it, round to these to the last of their places, of {radius}: Newton's map sends the box of this size around them into itself, and all of its loops are stable§.",
+    "optimal_filter_enclosed": "The stabilizing solution of Riccati's equation, and the gain that follows from it, round to these to the last of their places, of {radius}: Newton's map sends the box of this size around them into itself, and all of its loops are stable§.",
+    "optimal_open": "No closed form of the solution is found here for all values of the parameters; with numbers in their places its digits can be given.",
+    "optimal_uncontrollable_modes": "No input moves the modes with the polynomial",
+    "optimal_unmeasured_modes": "The output does not show the modes with the polynomial",
+    "optimal_not_stabilizable": "It is not stable, so no control law stabilises the loop, and there is no optimal one.",
+    "optimal_not_detectable": "It is not stable, so no gain stabilises the error, and there is no optimal one.",
+    "optimal_unseen_modes": "The cost does not contain the modes with the polynomial",
+    "optimal_undriven_modes": "The noise does not drive the modes with the polynomial",
+    "optimal_on_boundary": "Their eigenvalues lie on the boundary of stability, so the Hamiltonian matrix has them, too, and there is no stabilizing solution of Riccati's equation§.",
+    "optimal_filter_on_boundary": "Their eigenvalues lie on the boundary of stability, so the Hamiltonian matrix has them, too, and there is no stabilizing solution of Riccati's equation§.",
+}
+
+QUESTIONS: dict[str, str] = {
+    "ask lqr": "Find the state feedback that minimises the quadratic cost with the weights $Q_x$ of the state and $R_u$ of the input. What is the polynomial of the loop?",
+    "ask lqr N": "Find the state feedback that minimises the quadratic cost with the weights $Q_x$ of the state, $R_u$ of the input and $N_x$ of their products. What is the polynomial of the loop?",
+    "ask kalman": "Find the gain of the steady-state Kalman filter for input noise of intensity $W_n$ and output noise of intensity $V_n$. What is the covariance of the error?",
+    "ask kalman G": "Find the gain of the steady-state Kalman filter for noise of intensity $W_n$ that enters through $G_n$, and output noise of intensity $V_n$. What is the covariance of the error?",
+}
+
+ASSERTS: dict[str, tuple[str, ...]] = {
+    "optimal_feedback_found": ("stable",),
+    "optimal_filter_found": ("stable",),
+    "optimal_not_stabilizable": ("unstable",),
+    "optimal_not_detectable": ("unstable",),
+}
+
+DEMANDS: dict[str, str] = {
+    "optimal_factor": "splits c_even p_s",
+    "optimal_feedback_found": "optimal A B Q_x R_u N_x P_x K chi_K",
+    "optimal_filter_found": "optimal Aᵀ Cᵀ Q_x V_n N_x P_x Lᵀ chi_L",
+    "optimal_margins": "continuous_time, optimal A B Q_x R_u N_x P_x K chi_K, zero N_x, single Bᵀ",
+    "optimal_feedback_enclosed": "encloses A B Q_x R_u N_x P_r K_r",
+    "optimal_not_stabilizable": "modes_unstable Bᵀ Aᵀ N_K X_K mu",
+    "optimal_not_detectable": "modes_unstable C A N X mu",
+    "optimal_on_boundary": "on_boundary Q_N A_N N X",
+    "optimal_filter_on_boundary": "on_boundary Q_x Aᵀ N_K X_K",
+    "optimal_filter_enclosed": "encloses Aᵀ Cᵀ Q_x V_n N_x P_r L_rᵀ",
+}
+
+RESTS_ON: dict[str, str] = {
+    "optimal_even": "root_square",
+    "optimal_hamiltonian": "hamiltonian_modes",
+    "optimal_even_of_pencil": "hamiltonian_modes",
+    "optimal_feedback_found": "regulator_optimal",
+    "optimal_filter_found": "filter_optimal",
+    "optimal_margins": "regulator_margins",
+    "optimal_feedback_enclosed": "stabilizing_solution",
+    "optimal_on_boundary": "stabilizing_solution",
+    "optimal_filter_enclosed": "stabilizing_solution",
+    "optimal_filter_on_boundary": "stabilizing_solution",
+}
+
+THEOREMS: dict[str, str] = {
+    "root_square": "kalman1964; anderson1990, ch. 5",
+    "hamiltonian_modes": "kucera1972; pappas1980",
+    "regulator_optimal": "kalman1960b; kucera1972",
+    "filter_optimal": "kalman1961; kucera1972",
+    "regulator_margins": "safonov1977; anderson1990, ch. 5",
+    "stabilizing_solution": "kucera1972",
+}

@@ -1,0 +1,255 @@
+"""Optimal gains against SciPy, the eigenvectors of the Hamiltonian matrix at 60 digits, and printed answers."""
+
+from __future__ import annotations
+
+import tomllib
+from fractions import Fraction
+from pathlib import Path
+from typing import Any
+
+import mpmath  # type: ignore[import-untyped]
+import numpy as np
+import pytest
+import sympy
+from scipy.linalg import solve_continuous_are, solve_discrete_are  # type: ignore[import-untyped]
+
+import symobs
+from symobs.exact.sympy_bridge.conversion import scalar_to_sympy
+from symobs.formula.expression import parse_poles
+from symobs.ground.errors import CertificateRejected, InputError
+from tests.support.algebra import seeded
+
+PROBLEMS = tomllib.loads(Path(__file__).with_suffix(".toml").read_text(encoding="utf-8"))["problem"]
+
+
+def text(rows: Any) -> str:
+    return "[" + "; ".join(" ".join(map(str, row)) for row in rows) + "]"
+
+
+def drawn(seed: int) -> tuple[dict[str, Any], int]:
+    """Return A, B, Q, R of a random controllable plant with a cost that sees each mode, and its sampling period."""
+    draw = seeded(seed)
+    while True:
+        n, m, dt = draw.randint(1, 6), draw.randint(1, 2), draw.choice([0, 1])
+        A = [[Fraction(draw.randint(-3, 3), draw.choice([1, 2])) for _ in range(n)] for _ in range(n)]
+        B = [[Fraction(draw.randint(-2, 2)) for _ in range(m)] for _ in range(n)]
+        H = [[draw.randint(-2, 2) for _ in range(n)] for _ in range(draw.randint(1, n))]
+        Q = [[Fraction(sum(row[i] * row[j] for row in H)) for j in range(n)] for i in range(n)]
+        R = [[Fraction(draw.randint(1, 4) * int(i == j)) for j in range(m)] for i in range(m)]
+        a, b, h = (np.array(part, dtype=float) for part in (A, B, H))
+        powers = [np.linalg.matrix_power(a, k) for k in range(n)]
+        ranks = (np.hstack([p @ b for p in powers]), np.vstack([h @ p for p in powers]))
+        if all(np.linalg.matrix_rank(part, tol=1e-9) == n for part in ranks):
+            return {"A": A, "B": B, "Q": Q, "R": R}, dt
+
+
+def precise(data: dict[str, Any], dt: int) -> Any:
+    """Return P from the eigenvectors of the Hamiltonian pencil at 60 digits and more."""
+    with mpmath.workdps(90):
+        A, B, Q, R = (
+            mpmath.matrix([[mpmath.mpf(e.numerator) / e.denominator for e in r] for r in data[k]]) for k in "ABQR"
+        )
+        n = A.rows
+        S, one = B * mpmath.inverse(R) * B.T, mpmath.eye(n)
+        M, L = mpmath.zeros(2 * n), mpmath.zeros(2 * n)
+        if dt:
+            M[:n, :n], M[n:, :n], M[n:, n:], L[:n, :n], L[:n, n:], L[n:, n:] = A, -Q, one, one, S, A.T
+            H = mpmath.inverse(M + L) * (M - L)
+        else:
+            M[:n, :n], M[:n, n:], M[n:, :n], M[n:, n:] = A, -S, -Q, -A.T
+            H = M
+        values, vectors = mpmath.eig(H)
+        stable = [k for k, value in enumerate(values) if mpmath.re(value) < 0]
+        upper = mpmath.matrix([[vectors[i, k] for k in stable] for i in range(n)])
+        lower = mpmath.matrix([[vectors[n + i, k] for k in stable] for i in range(n)])
+        return (lower * mpmath.inverse(upper)).apply(mpmath.re)
+
+
+def hold(seed: int, *, digits: bool) -> None:
+    """Hold the digits of P to SciPy, and to a computation with 90 digits."""
+    data, dt = drawn(seed)
+    result: Any = symobs.lqr(
+        symobs.StateSpace(text(data["A"]), text(data["B"]), dt=dt), Q=text(data["Q"]), R=text(data["R"])
+    )
+    A, B, Q, R = (np.array(data[name], dtype=float) for name in "ABQR")
+    found = np.array([[float(entry) for entry in row] for row in result.decimals["P"]])
+    gain = np.array([[float(entry) for entry in row] for row in result.decimals["K"]])
+    expected = (solve_discrete_are if dt else solve_continuous_are)(A, B, Q, R)
+    assert np.allclose(found, expected, rtol=1e-5, atol=1e-5 * abs(expected).max()), data
+    poles = np.linalg.eigvals(A - B @ gain)
+    assert (abs(poles) < 1).all() if dt else (poles.real < 0).all()
+    if result.P is not None:
+        exact = np.array(result.P.evalf(30).tolist(), dtype=float)
+        assert np.allclose(exact, found, rtol=1e-12, atol=1e-12 * abs(found).max())
+    if digits:
+        P = precise(data, dt)
+        with mpmath.workdps(60):
+            for i, row in enumerate(result.decimals["P"]):
+                for j, entry in enumerate(row):
+                    half = mpmath.mpf(10) ** -len(entry.partition(".")[2]) / 2
+                    assert abs(P[i, j] - mpmath.mpf(entry)) <= half * (1 + mpmath.mpf(10) ** -20), (data, entry)
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_digits_are_those_of_scipy(seed: int) -> None:
+    hold(seed, digits=seed < 4)
+
+
+@pytest.mark.slow
+def test_many_digits_are_those_of_scipy_and_of_ninety_digits() -> None:
+    for seed in range(20, 320):
+        hold(seed, digits=seed % 4 == 0)
+
+
+def solved(problem: dict[str, Any]) -> Any:
+    plant = symobs.StateSpace(problem["A"], problem.get("B"), problem.get("C"), dt=problem.get("dt", 0))
+    if problem.get("task") == "kalman":
+        return symobs.kalman(plant, W=problem["W"], V=problem["V"])
+    return symobs.lqr(plant, Q=problem["Q"], R=problem["R"], N=problem.get("N"))
+
+
+def entry_of(value: str) -> Any:
+    return scalar_to_sympy(parse_poles(value, functions=True)[0].real, {})
+
+
+def read(value: str) -> Any:
+    rows = [row.split() if " + " not in row and " - " not in row else [row] for row in value.strip("[]").split(";")]
+    return sympy.Matrix([[entry_of(entry) for entry in row] for row in rows])
+
+
+@pytest.mark.parametrize("problem", PROBLEMS, ids=lambda problem: problem["source"][:40])
+def test_textbook_problems(problem: dict[str, Any]) -> None:
+    result = solved(problem)
+    assert result.verdict == problem.get("verdict", "yes")
+    for name in {"K", "L", "P"} & problem.keys():
+        assert (getattr(result, name) - read(problem[name])).applyfunc(sympy.nsimplify).applyfunc(
+            sympy.simplify
+        ) == sympy.zeros(*getattr(result, name).shape)
+    for name in {"K", "P"} if "K_decimals" in problem else ():
+        for found, printed in zip(result.decimals[name], problem.get(f"{name}_decimals", []), strict=False):
+            half = [Fraction(1, 2 * 10 ** len(entry.partition(".")[2])) for entry in printed]
+            pairs = zip(found, printed, half, strict=True)
+            assert all(abs(Fraction(one) - Fraction(other)) <= off for one, other, off in pairs), problem["source"]
+    if result.verdict == "yes":
+        result.to("text")
+        result.to("text", language="de")
+
+
+SIGNS = {"a": "real", "b": "nonzero", "q": "positive", "r": "positive"}
+
+
+def against_numbers(count: int) -> None:
+    """Hold K and P of order two with four parameters to SciPy at random points, and to the conditions."""
+    plant = symobs.StateSpace("[0 1; a 0]", "[0; b]", symbols=SIGNS)
+    result: Any = symobs.lqr(plant, Q="[q 0; 0 0]", R="r")
+    assert (result.verdict, result.conditions) == ("yes", ())
+    draw = seeded(11)
+    for _ in range(count):
+        a, b = draw.randint(-20, 20) / 4, draw.choice([-1, 1]) * draw.randint(1, 20) / 4
+        q, r = draw.randint(1, 30) / 8, draw.randint(1, 30) / 8
+        values = {sympy.Symbol(name): sympy.Rational(value) for name, value in zip("abqr", (a, b, q, r), strict=True)}
+        P = np.array(result.P.subs(values).evalf().tolist(), dtype=complex)
+        K = np.array(result.K.subs(values).evalf().tolist(), dtype=complex)
+        A, B, R = np.array([[0, 1], [a, 0]]), np.array([[0], [b]]), np.array([[r]])
+        expected = solve_continuous_are(A, B, np.diag([q, 0.0]), R)
+        assert np.allclose(P, expected, rtol=1e-7, atol=1e-9), (a, b, q, r)
+        assert np.allclose(K, np.linalg.solve(R, B.T @ expected), rtol=1e-7, atol=1e-9)
+
+
+def test_four_parameters_agree_with_numbers() -> None:
+    against_numbers(12)
+
+
+@pytest.mark.slow
+def test_four_parameters_agree_with_numbers_at_many_points() -> None:
+    against_numbers(200)
+
+
+def test_conditions_and_what_is_true_where_they_fail() -> None:
+    plant = symobs.StateSpace("[0 1; 0 0]", "[0; b]", symbols={"b": "real", "q": "nonnegative", "r": "positive"})
+    result: Any = symobs.lqr(plant, Q="[q 0; 0 0]", R="r")
+    assert result.verdict == "conditional"
+    assert {str(condition) for condition in result.conditions} == {"Ne(b, 0)", "Ne(q, 0)"}
+    there = {str(case.when[0]): case.result for case in result.cases}
+    assert there["Eq(b, 0)"].verdict == there["Eq(q, 0)"].verdict == "no"
+    for b, q, r in ((1, 1, 1), (-2, 3, 5), (0, 1, 1), (1, 0, 1)):  # p(s) = s^2 + sqrt(2 w) s + w with w = |b| sqrt(q/r)
+        at = result.at(b=b, q=q, r=r)
+        assert at.verdict == ("yes" if b and q else "no")
+        if at.verdict == "yes":
+            w = abs(b) * sympy.sqrt(sympy.Rational(q, r))
+            assert (at.K - sympy.Matrix([[w / b, sympy.sqrt(2 * w) / b]])).applyfunc(sympy.simplify).is_zero_matrix
+
+
+def test_an_obstacle_is_named() -> None:
+    unmoved: Any = symobs.lqr(symobs.StateSpace("[1 0; 0 -1]", "[0; 1]"), Q="1", R="1")
+    unseen: Any = symobs.lqr(symobs.StateSpace("[0 1; -4 0]", "[0; 1]"), Q="0", R="1")
+    seen: Any = symobs.lqr(symobs.StateSpace("[0 1; -4 0]", "[0; 1]"), Q="[0 0; 0 1]", R="1")
+    on_circle: Any = symobs.lqr(symobs.StateSpace("[-1 0; 0 2]", "[1; 1]", dt=1), Q="[0 0; 0 1]", R="1")
+    assert [result.verdict for result in (unmoved, unseen, seen, on_circle)] == ["no", "no", "yes", "no"]
+    assert [sorted(map(str, result.modes)) for result in (unmoved, unseen, on_circle)] == [
+        ["1"],
+        ["-2*I", "2*I"],
+        ["-1"],
+    ]
+    hidden: Any = symobs.kalman(symobs.StateSpace("[1 0; 0 -1]", None, "[0 1]"), W="1", V="1")
+    undriven: Any = symobs.kalman(symobs.StateSpace("[0 1; 0 0]", None, "[1 0]"), W="1", V="1", G="[1; 0]")
+    for result in (unmoved, unseen, on_circle, hidden, undriven):
+        assert result.verdict == "no"
+        assert result.K is None if result.task == "lqr" else result.L is None
+        result.to("text")
+
+
+def test_the_filter_is_dual_to_the_regulator() -> None:
+    data, dt = drawn(3)
+    turned = {name: [list(row) for row in zip(*data[name], strict=True)] for name in "AB"}
+    feedback: Any = symobs.lqr(
+        symobs.StateSpace(text(data["A"]), text(data["B"]), dt=dt), Q=text(data["Q"]), R=text(data["R"])
+    )
+    found: Any = symobs.kalman(
+        symobs.StateSpace(text(turned["A"]), None, text(turned["B"]), dt=dt), W=text(data["Q"]), V=text(data["R"])
+    )
+    assert found.decimals["P"] == feedback.decimals["P"]
+    assert [list(row) for row in zip(*found.decimals["L"], strict=True)] == feedback.decimals["K"]
+
+
+def test_lies_are_rejected() -> None:
+    result: Any = symobs.lqr(symobs.StateSpace("[0 1; 2 0]", "[0; 1]"), Q="[5 0; 0 0]", R="1")
+    K, P = result.answer["K"], result.answer["P"]
+    for name, value in (("K", K * 2), ("P", P * 2), ("P", -P), ("polynomial", result.answer["polynomial"] + 1)):
+        with pytest.raises(CertificateRejected):
+            result.with_answer(name, value)
+    other: Any = symobs.lqr(symobs.StateSpace("[0 1 0; 0 0 1; 1 2 3]", "[0; 0; 1]"), Q="1", R="1")
+    digits = other.answer["digits"]
+    first = digits.K[0][0]
+    changed = f"{first[:-1]}{'1' if first[-1] != '1' else '2'}"
+    with pytest.raises(CertificateRejected):
+        other.with_answer("digits", digits._replace(K=((changed, *digits.K[0][1:]),)))
+    # The other solution of p^2 = 1 is no stabilising one.
+    scalar: Any = symobs.lqr(symobs.StateSpace("[0]", "[1]"), Q="1", R="1")
+    with pytest.raises(CertificateRejected):
+        scalar.with_answer("digits", scalar.answer["digits"]._replace(centre=-scalar.answer["digits"].centre))
+
+
+@pytest.mark.parametrize(
+    ("weights", "match"),
+    [
+        ({"Q": "[1 0; 0 -1]", "R": "1"}, "Q is not positive semidefinite"),
+        ({"Q": "1", "R": "0"}, "R is not positive definite"),
+        ({"Q": "1", "R": "r"}, "R is not known to be positive definite: the sign of r"),
+        ({"Q": "1"}, "the weight R is missing"),
+        ({"Q": "[1 1; 0 1]", "R": "1"}, "Q is not symmetric"),
+        ({"Q": "1", "R": "1", "N": "[2; 0]"}, "not known to be positive semidefinite"),
+    ],
+)
+def test_wrong_weights_are_refused(weights: dict[str, str], match: str) -> None:
+    with pytest.raises(InputError, match=match):
+        symobs.lqr(symobs.StateSpace("[0 1; 0 0]", "[0; 1]"), **weights)
+
+
+def test_what_no_square_roots_write_is_undecided_with_parameters() -> None:
+    plant = symobs.StateSpace("[0 1 0; 0 0 1; 0 0 a]", "[0; 0; 1]")
+    result: Any = symobs.lqr(plant, Q="1", R="1")
+    assert (result.verdict, result.K, result.P) == ("undecided", None, None)
+    assert "up to order 2" in result.question
+    result.to("text")
+    assert result.at(a=0).verdict == "yes"
