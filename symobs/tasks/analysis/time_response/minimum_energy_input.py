@@ -70,12 +70,7 @@ class MinimumEnergyInput(DampingCases):
         answer |= {"taken": taken, "chosen": known["chosen"], "input": None, "gramian": known["matrix"]}
         if known["matrix"] is None:
             return cls(plant, method_name, answer | {n: known[n] for n in ("question", "factor")}, inner)
-        pair = plant.matrices.A.T, plant.matrices.B.T
-        if (
-            pair[0].names
-            and not plant.is_discrete
-            and (open_question := too_long(*pair, table_of(known["exponential"])))
-        ):
+        if not plant.is_discrete and (open_question := _open_question(plant, known)):
             return cls(plant, method_name, answer | {"question": open_question, "factor": None}, inner)
         powers = _powers(plant, inner)
         moved = (asked["final"] - powers[0] @ asked["initial"]).normal()
@@ -205,6 +200,14 @@ class MinimumEnergyInput(DampingCases):
         return {**found, **({"question": asked} if asked else {})}
 
 
+def _open_question(plant: StateSpace, known: Mapping[str, Any]) -> str:
+    """Return the question that stays open where the Gramian cannot be inverted readably."""
+    if "exponential" not in known:
+        return f"the inverse of the {plant.order}x{plant.order} Gramian, whose entries are sums over roots"
+    pair = plant.matrices.A.T, plant.matrices.B.T
+    return too_long(*pair, table_of(known["exponential"])) if pair[0].names else ""
+
+
 def _has_functions(value: Scalar) -> bool:
     return any(function_named(name) for name in value.names)
 
@@ -303,7 +306,7 @@ def minimum_energy_input(
 @page_of(MinimumEnergyInput)
 def write_minimum_energy_input(page: Builder, result: MinimumEnergyInput) -> None:
     """Write the whole page."""
-    powers = _powers(result.plant, result.inner) if result.answer["gramian"] is not None else []
+    powers = _powers(result.plant, result.inner) if result.answer.get("difference") is not None else []
     page.in_time(*result.everything(), *powers, at=None if result.plant.is_discrete else result.answer["horizon"])
     result.state_data(page)
     with page.section("minimum_energy_input"):

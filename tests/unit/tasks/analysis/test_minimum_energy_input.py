@@ -104,3 +104,13 @@ def test_exponentials_far_from_each_other_meet_at_the_end_of_the_horizon(rate: t
     expected = (W.subs(at).evalf(60)).inv()[0, 0]
     assert abs(result.energy.xreplace({sympy.Symbol("T"): at[T]}).evalf(60) / expected - 1) < 1e-30
     result.derivation.check()
+
+
+def test_what_is_a_sum_over_roots_is_undecided_with_its_reason() -> None:
+    """λ³ − λ − 1 is irreducible: e^{AT} has no closed form, and the Gramian is a sum over its roots."""
+    result: Any = symobs.minimum_energy_input(
+        symobs.StateSpace("[0 1 0; 0 0 1; 1 1 0]", "[0; 0; 1]"), final=[1, 0, 0], horizon=1
+    )
+    assert (result.verdict, result.input) == ("undecided", None)
+    assert "sums over roots" in result.question
+    assert "too long" in str(result.to("text"))
