@@ -32,6 +32,7 @@ COMMANDS = {
     "conventions": "List the conventions a page can be written in, or print the file of the one called NAME.",
     "examples": "List the worked examples, or print the one called NAME.",
     "export": "Export problems as questions of a learning platform, which accept what `symobs check` accepts.",
+    "mcp": "Serve the tasks, `check` and `audit` to an assistant over standard input (Model Context Protocol).",
     "methods": "List every task and its methods.",
     "schema": "Print the JSON schema of problem files, of the file of a sheet, or of the results of the command NAME.",
     "serve": "Move poles, parameters and entries in a browser, every answer checked; FILE is the problem to begin with.",
