@@ -97,15 +97,15 @@ def _solving(task: Task, limits: tuple[str, ...], timeout: float) -> Callable[..
     return solve
 
 
-async def _run(arguments: tuple[str, ...], text: str, timeout: float) -> dict[str, Any]:
+async def _run(arguments: tuple[str, ...], text: str, seconds: float) -> dict[str, Any]:
     """Run a command with a text as its standard input; return its exit code, messages and output."""
     import anyio  # noqa: PLC0415 - a part of the extra
 
-    with anyio.move_on_after(timeout + _GRACE) as limit:
+    with anyio.move_on_after(seconds + _GRACE) as limit:
         call = [sys.executable, "-m", "symobs", *arguments]
         done = await anyio.run_process(call, input=text.encode(), check=False)
     if limit.cancelled_caught:
-        return {"exit_code": 5, "messages": [f"undecided: {timeout:g} seconds were not enough"], "output": ""}
+        return {"exit_code": 5, "messages": [f"undecided: {seconds:g} seconds were not enough"], "output": ""}
     messages = done.stderr.decode(errors="replace").splitlines()
     return {"exit_code": done.returncode, "messages": messages, "output": done.stdout.decode(errors="replace")}
 

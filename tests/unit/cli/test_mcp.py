@@ -39,7 +39,7 @@ def test_every_task_is_a_tool_and_answers_with_certificates_and_a_page() -> None
                 (
                     "audited",
                     "audit",
-                    {"problem": f'task = "observability"{PROBLEM}\n[[printed]]\nrelation = "det(O) = 2"\n'},
+                    {"problem": f'task = "observer"{PROBLEM}\n[[printed]]\nrelation = "det(O) = 2"\n'},
                 ),
             ):
                 found[name] = (await client.call_tool(tool, text)).structured_content
