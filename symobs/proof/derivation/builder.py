@@ -18,6 +18,7 @@ from symobs.formula.tree import (
     Derivative,
     Environment,
     Evaluated,
+    Exact,
     Fact,
     Formula,
     HoldsExactlyWhere,
@@ -28,14 +29,16 @@ from symobs.formula.tree import (
     Relation,
     Roots,
     SymbolList,
+    evaluate,
 )
 from symobs.formula.tree.plain_text import plain_relation
 from symobs.formula.tree.term import Term
-from symobs.ground.errors import SymobsWarning
+from symobs.ground.errors import DerivationRejected, SymobsWarning
 from symobs.proof.certificate.claims import can_be_shown, verify
-from symobs.proof.derivation.check import Derivation, with_domain
+from symobs.proof.derivation.check import Derivation, after, inside_case, with_domain
 from symobs.proof.derivation.convention_signs import set_apart
 from symobs.proof.derivation.steps import (
+    CaseStep,
     Conclude,
     Define,
     Diagram,
@@ -68,6 +71,50 @@ def left_out(what: str) -> None:
     """Warn that a page lacks something since its check failed, which is a bug."""
     message = f"{what} is left out: its check failed; please report this: it is a bug of symobs"
     warnings.warn(message, SymobsWarning, stacklevel=3)
+
+
+def without_failing_cases(written: Derivation) -> Derivation:
+    """Return a derivation with the cases whose check fails named as undecided; raises where another step fails."""
+    steps, _ = _decided(written.steps, written.start, written)
+    return replace(written, steps=steps)
+
+
+def _decided(
+    steps: Sequence[Step], environment: Environment, whole: Derivation
+) -> tuple[tuple[Step, ...], Environment]:
+    found: list[Step] = []
+    for step in steps:
+        try:
+            environment, kept = after(step, environment, whole.discrete), step
+        except DerivationRejected:
+            if isinstance(step, Section):
+                inside, environment = _decided(step.steps, environment, whole)
+                kept = replace(step, steps=inside)
+            elif isinstance(step, CaseStep):
+                kept = _decided_case(step, environment, whole)
+            else:
+                raise
+        found.append(kept)
+    return tuple(found), environment
+
+
+def _decided_case(step: CaseStep, environment: Environment, whole: Derivation) -> Step:
+    """Return a case without the cases inside that fail, or, where it fails itself, the remark that it is undecided."""
+    try:
+        inside, _ = _decided(step.steps, inside_case(step, environment), whole)
+    except DerivationRejected:
+        left_out("a case")
+        relations = step.when.relations if isinstance(step.when, Conjunction) else (step.when,)
+        arithmetic = Exact(environment)
+        zeros = [
+            [evaluate(part, environment, arithmetic) for part in r.members] for r in relations if "=" in r.operators
+        ]
+        if not zeros:
+            raise
+        first, *others = sorted((left - right for left, right in zeros), key=lambda value: value.size)
+        many = {"count": str(len(others))} if others else {}
+        return Note(sentence("undecided_many" if others else "undecided_case", {"when": first, **many}))
+    return replace(step, steps=inside)
 
 
 def shows(facts: Iterable[Relation], environment: Environment) -> bool:

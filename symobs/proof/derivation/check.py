@@ -110,14 +110,20 @@ class Derivation:
 def _walk(steps: tuple[Step, ...], environment: Environment, discrete: bool) -> Environment:  # noqa: FBT001
     for step in steps:
         try:
-            environment = _after(step, environment, discrete)
+            environment = after(step, environment, discrete)
         except UNREADABLE as error:
             message = f"a step of kind {type(step).__name__} cannot be read: {error}"
             raise DerivationRejected(message, repair=BUG, line=str(step)) from error
     return environment
 
 
-def _after(step: Step, environment: Environment, discrete: bool) -> Environment:  # noqa: FBT001
+def inside_case(step: CaseStep, environment: Environment) -> Environment:
+    """Return the environment inside a case, after verifying that its substitution describes it."""
+    stratum = on_stratum(step.when, dict(step.substitution), environment)
+    return replace(stratum, values={name: value for name, value in stratum.values.items() if name not in step.anew})
+
+
+def after(step: Step, environment: Environment, discrete: bool) -> Environment:  # noqa: FBT001
     """Verify one step and return the environment after it."""
     match step:
         case Given(relations, sentence):
@@ -154,10 +160,8 @@ def _after(step: Step, environment: Environment, discrete: bool) -> Environment:
                 reject(f"that this is the region of {plain(polynomial, environment.variable)}")
         case Plot(picture, subject):
             _drawn(picture, subject, environment, discrete)
-        case CaseStep(when, substitution, inside, anew=anew):
-            stratum = on_stratum(when, dict(substitution), environment)
-            kept = {name: value for name, value in stratum.values.items() if name not in anew}
-            _walk(inside, replace(stratum, values=kept), discrete)
+        case CaseStep(steps=inside):
+            _walk(inside, inside_case(step, environment), discrete)
         case Section(title, inside):
             _sentence(title, environment, discrete)
             _owed(title, step, environment)

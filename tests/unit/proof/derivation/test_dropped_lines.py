@@ -10,9 +10,11 @@ import symobs
 from symobs.exact import Matrix, Scalar
 from symobs.formula.tree import Environment, Literal
 from symobs.formula.tree.term import Term
-from symobs.ground.errors import SymobsWarning
+from symobs.ground.errors import DerivationRejected, SymobsWarning
 from symobs.proof.certificate.claims import can_be_shown, verify
-from symobs.proof.derivation.builder import relation, shows
+from symobs.proof.derivation import CaseStep, Equal
+from symobs.proof.derivation.builder import Builder, relation, shows, without_failing_cases
+from symobs.proof.derivation.steps import Note
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -57,3 +59,21 @@ def test_a_bug_of_evaluation_is_no_false_claim(monkeypatch: pytest.MonkeyPatch) 
     fact, e = rank_is([[1, a], [0, 1]], 2, (a - b,))
     with pytest.raises(AttributeError, match="a bug"):
         verify(fact, e)
+
+
+def test_a_case_whose_check_fails_is_named_as_undecided_and_nothing_else_is() -> None:
+    """The line 1 = 2 in the case a = 0 is left out with its case; outside a case it stays an error."""
+    page = Builder(symobs.StateSpace("[a]", "[1]", symbols={"a": "real"}))
+    false = Equal((relation(page.value(1), 2),))
+    page.steps.append(CaseStep(relation(page.value(a), 0), (), (false,)))
+    written = page.derivation()
+    with pytest.raises(DerivationRejected):
+        written.check()
+    with pytest.warns(SymobsWarning, match="a case is left out"):
+        (step,) = without_failing_cases(written).steps
+    assert isinstance(step, Note)
+    assert step.sentence is not None
+    assert step.sentence.key == "undecided_case"
+    page.steps.append(false)
+    with pytest.warns(SymobsWarning), pytest.raises(DerivationRejected):
+        without_failing_cases(page.derivation())
