@@ -28,6 +28,7 @@ from symobs.system.specification import (
     read_pattern,
     read_poles,
 )
+from symobs.system.specification.keywords import from_list
 from symobs.system.specification.pole_patterns import OTHERS
 from symobs.system.transfer_function_text import read_transfer_function
 
@@ -39,6 +40,10 @@ if TYPE_CHECKING:
 
 #: The gains that are a choice among many where there are several inputs or outputs: the value of the one that was chosen.
 _CHOSEN = ("K", "L")
+
+
+#: The keywords for which a flat list is a row; it is a column for the others.
+_ROWS = {"K", "reference"}
 
 
 #: What a task takes where a keyword of some kind is not given.
@@ -121,6 +126,7 @@ def _with_chosen(result: Any, found: Any, values: dict[str, Scalar]) -> Any:
 
 
 def _entries(value: object, plant: StateSpace, where: str) -> Matrix:
+    value = from_list(value, column=where.rpartition(".")[2] not in _ROWS)
     return read_matrix(value, plant.symbols.seen(value), where, functions=True)
 
 
