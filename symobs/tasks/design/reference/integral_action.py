@@ -33,7 +33,13 @@ from symobs.tasks.design.full_order.state_feedback import StateFeedbackDesign
 from symobs.tasks.design.gain.gain_cases import design_of, places_where
 from symobs.tasks.design.gain.gain_design import letters_of
 from symobs.tasks.design.gain.gain_kind import AssignedGain
-from symobs.tasks.design.page_parts import caution_poles, say_unassignable
+from symobs.tasks.design.page_parts import (
+    OUTPUT_DERIVATIVE,
+    UNKNOWN_ENTRIES,
+    caution_poles,
+    gain_letters,
+    say_unassignable,
+)
 from symobs.tasks.result import Case, Result, choose, method, page_of, poles_of, task
 
 if TYPE_CHECKING:
@@ -426,13 +432,32 @@ def _gains(page: Builder, design: IntegralAction) -> None:
     K, k_I = page.set("K", design.answer["K"]), page.set("k_I", design.answer["k_I"])
     both = block([[K, -k_I]])
     A_hat, B_hat = page["A_hat"], page["B_hat"]
-    page.equal(relation(both, gain), say="integral_gains")
+    compared = plant.inputs == 1 and design.fields["family"] is None and _compare(page, gain, design.desired)
+    page.equal(relation(both, gain), say="hence_gain" if compared else "integral_gains")
     page.equal(relation(K, K.as_value), say="integral_parts", answer=True)
     page.equal(relation(k_I, k_I.as_value), answer=True)
     pencil = page.s @ page.identity(plant.order + plant.outputs) - A_hat + B_hat @ both
     page.verified("as_required", check=relation(pencil.apply("det"), page.value(design.desired.polynomial)))
     if not design.desired.is_numeric:
         say_stability(page, pencil.apply("det"))
+
+
+def _compare(page: Builder, gain: Matrix, desired: DesiredPolynomial) -> bool:
+    """Compare the coefficients of det(sI − Â + B̂ k), linear in k, with those of φ; return whether they are short enough."""
+    if len(gain.entries) > UNKNOWN_ENTRIES:
+        return False
+    before = page.environment
+    row = page.value(gain_letters(page, "K", gain))
+    variable = page.plant.variable
+    loop = (page.s @ page.identity(len(gain.entries)) - page["A_hat"] + page["B_hat"] @ row).apply("det")
+    coefficients = loop.scalar.coefficients(variable)
+    if sum(coefficient.size for coefficient in coefficients) > OUTPUT_DERIVATIVE:
+        page.environment = before
+        return False
+    page.equal(relation(loop, page.value(loop.scalar)), say="integral_unknown")
+    pairs = zip(coefficients[1:], desired.polynomial.coefficients(variable)[1:], strict=True)
+    page.equal(*(relation(have, want) for have, want in pairs if not have.is_constant), say="compare")
+    return True
 
 
 def _closed_loop(page: Builder) -> None:

@@ -15,6 +15,7 @@ PHRASES: dict[str, str] = {
     "integral_impossible": "The roots of {fixed} are uncontrollable modes of plant and integrator, and not all of them are among the desired poles: no gains exist.",
     "integral_unassignable": "The roots of {fixed} are uncontrollable modes of plant and integrator, and the division of {polynomial} by it leaves the remainder {rest}: gains exist only where this remainder is the zero polynomial.",
     "integral_provided": "What follows holds for {condition}.",
+    "integral_unknown": "With unknown gains, the characteristic polynomial of plant and integrator is",
     "integral_gains": "The design of state feedback for plant and integrator together gives",
     "integral_parts": "so that the gains of the state and of the integral are",
     "integral_law": "The control law is",
