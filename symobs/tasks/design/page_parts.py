@@ -112,6 +112,11 @@ def draw_state_feedforward(page: Builder) -> None:
     page.diagram("state_feedforward", say="drawn_state_feedforward", Plant=_plant(page), **gains)
 
 
+def draw_integral_action(page: Builder) -> None:
+    """Draw feedback from the state and from the integral of the control error."""
+    page.diagram("integral_loop", say="drawn_integral", Plant=_plant(page), K=-page["K"], Ki=page["k_I"])
+
+
 def draw_tracking(page: Builder, *, minimal: bool) -> None:
     """Draw the generator of the reference, K and K_d, plant and observer."""
     observer = _minimal_order_observer(page) if minimal else _observer(page)

@@ -12,6 +12,7 @@ PHRASES: dict[str, str] = {
     "drawn_loop": "The loop with the transfer function $G_cl$ from $r_in$ to $y$.",
     "drawn_unity_loop": "The loop with the transfer function $G_r$ from $r_in$ to $y$.",
     "drawn_feedforward": "Plant, observer, state feedback and feedforward.",
+    "drawn_integral": "State feedback with the integral of the control error.",
     "drawn_state_feedforward": "Plant, state feedback and feedforward.",
     "drawn_tracking": "Tracking: the reference model stands on the left.",
     "drawn_feedforward_minimal": "Plant, observer, state feedback and feedforward; $M_z$ assembles the estimate from the output and the observer state.",

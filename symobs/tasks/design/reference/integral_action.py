@@ -37,6 +37,7 @@ from symobs.tasks.design.page_parts import (
     OUTPUT_DERIVATIVE,
     UNKNOWN_ENTRIES,
     caution_poles,
+    draw_integral_action,
     gain_letters,
     say_unassignable,
 )
@@ -316,6 +317,8 @@ def write_integral_action(page: Builder, design: IntegralAction) -> None:
             page.equal(
                 relation(state.derivative, page["A_cl"] @ state + _enters(page) @ page["r_in"]), say="integral_closed"
             )
+            if not page.plant.is_discrete:
+                draw_integral_action(page)
             _at_rest(page, design)
             caution_poles(page, design.desired, "phi_c", "servo")
         page.steps += case_steps(page, design, _case)

@@ -59,4 +59,20 @@ THEOREMS: dict[str, str] = {
 }
 
 #: Phrases that go on with the sentence before them.
+FIGURES: dict[str, dict[str, object]] = {
+    "integral_loop": {
+        "grid": """
+        r  e  ∫xi  Ki  u  Plant  y'  y
+        .  .  .    .   K  x      .   .
+        .  .  .    .   .  c      .   .
+        """,
+        "routes": (
+            "r > e > ∫xi > Ki > u > Plant > y' > y",
+            "Plant > x > K > u",
+            "y' |- c -|[U] e",
+        ),
+        "signals": {"r": "r_in", "u": "u", "y": "y", "x": "x", "xi": "xi_I"},
+    },
+}
+
 CONTINUES = ("integral_parts", "integral_together")
