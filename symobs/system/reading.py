@@ -168,8 +168,8 @@ def over_a_base(
 ) -> tuple[dict[str, Matrix | None], tuple[Scalar, ...]]:
     """Return matrices with their functions in a common base, and the polynomials in the base that vanish.
 
-    Raises `InputError` for a function of time, which those of a plant may be `in_time`, a root of what may be negative, roots that may depend on each other, and an
-    entry that divides by 0.
+    Functions of time are admitted `in_time`.  Raises `InputError` for others of them, a root of what may be negative, roots
+    that may depend on each other, and an entry that divides by 0.
     """
     given = [matrix for matrix in matrices.values() if matrix is not None]
     if all(f.square for f in require_known(given, signs, where, in_time=in_time)):

@@ -48,6 +48,10 @@ if TYPE_CHECKING:
     from symobs.system.specification import IntervalText, Name, SignalText
 
 
+#: A determinant of a Gramian with functions whose products have more terms than this would be read by nobody.
+_DETERMINANT_UP_TO = 3_000
+
+
 def stack_of(A: Matrix, C: Matrix, ideal: Ideal | None = None) -> tuple[Matrix, ...]:
     """Return N₀ = C, N₁ = N₀ A + N₀', …, N_{n−1}; raises `BudgetExceeded` where they grow too long.
 
@@ -321,8 +325,7 @@ class TimeVaryingObservability(Result):
         """The matrices that may be functions of time, with the given signals."""
         names = ("transition_matrix", "gramian", "gramian_in_time", "forced", "x0", "candidate", "moment")
         found = (*(self.answer[name] for name in names), self.asked_for.output, self.asked_for.input)
-        determinant = () if self.answer["gramian"] is None else (self.gramian_determinant,)
-        return (*(value for value in found if value is not None), *determinant)
+        return tuple(value for value in (*found, self.gramian_determinant) if value is not None)
 
     @property
     def never_seen(self) -> Matrix:
@@ -332,9 +335,14 @@ class TimeVaryingObservability(Result):
         return hidden if found is None else found
 
     @cached_property
-    def gramian_determinant(self) -> Scalar:
-        """The determinant of the Gramian."""
-        return collected(self.answer["gramian"].determinant())
+    def gramian_determinant(self) -> Scalar | None:
+        """The determinant of the Gramian, None where that has no closed form or so many functions that nobody reads it."""
+        W = self.answer["gramian"]
+        if W is None or (
+            has_functions(W) and max(entry.size for entry in W.entries) ** W.shape[0] > _DETERMINANT_UP_TO
+        ):
+            return None
+        return collected(W.determinant())
 
     @cached_property
     def fields(self) -> Mapping[str, Any]:
@@ -346,7 +354,7 @@ class TimeVaryingObservability(Result):
         for name in ("transition_matrix", "gramian"):
             if answer[name] is not None:
                 found[name] = answer[name]
-        if answer["gramian"] is not None:
+        if self.gramian_determinant is not None:
             found["determinant"] = self.gramian_determinant
         if self.asked_for.output is not None:
             found["x0"] = None if answer["x0"] is None else [*answer["x0"].entries]
@@ -396,7 +404,7 @@ def time_varying_observability(
 ) -> Result:
     """Decide whether ẋ = A(t) x, y = C(t) x is observable, by N₀ = C, N_{k+1} = N_k A + N_k'.
 
-    plant      n states, p ≥ 1 outputs; t in A, B, C is the time
+    plant      n states, p ≥ 1 outputs; t in A, B, C is the time: rational in t, cos ωt, sin ωt, e^{at}
     interval   "0, T": the interval of time; without it any interval without a pole of A and C
     output     y(t), in t, exp, cos, sin, from which the initial state is to be found; with
     input      u(t), 0 if left out

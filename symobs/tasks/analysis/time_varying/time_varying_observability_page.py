@@ -167,17 +167,21 @@ def _gramian(page: Builder, result: TimeVaryingObservability) -> None:
         seen = _seen(page, result)
         (product,), order = _squares(result), page.plant.order
         places = [(i, j) for i in range(order) for j in range(order)]
-        i, j = next((p for p in places if antiderivative(product[p], TIME) is None), (0, 0))
-        unit = Matrix.identity(order)
-        row, column = (page.value(unit.select(range(order), [k])) for k in (i, j))
-        entry = row.T @ seen.T @ seen @ column
-        page.remark("gramian_open_integral", integrand=Evaluated(entry.formula, Literal(product[i, j])))
+        open_places = [p for p in places if antiderivative(product[p], TIME) is None]
+        if open_places:
+            i, j = open_places[0]
+            unit = Matrix.identity(order)
+            row, column = (page.value(unit.select(range(order), [k])) for k in (i, j))
+            entry = row.T @ seen.T @ seen @ column
+            page.remark("gramian_open_integral", integrand=Evaluated(entry.formula, Literal(product[i, j])))
+        else:
+            page.remark("gramian_long")
     else:
         Phi = page["Phi"].at(START, asked.start)
         squared = Phi.T @ page["C"].T @ page["C"] @ Phi
         whole = integral(page, squared, TIME, asked.start, asked.end, answer["gramian_in_time"])
         page.define("W", whole, page.value(answer["gramian"]), say="gramian", answer=True, closing=False)
-        if answer["rank"] == page.plant.order:
+        if answer["rank"] == page.plant.order and result.gramian_determinant is not None:
             _determinant(page, result.gramian_determinant)
     if answer["kernel"] is None or not answer["kernel"].shape[1]:
         return
@@ -319,7 +323,7 @@ def _frozen(page: Builder, result: TimeVaryingObservability) -> None:
     generic = rank(frozen.value, page.plant.ideal)
     if TIME not in symbols_in(A.value) | symbols_in(C.value):
         return
-    if (generic < order) != (found < order):
+    if (generic < order) != (found < order) and not has_functions(frozen.value):
         key = "frozen_misled_no" if found < order else "frozen_misled_yes"
         page.caution(key, frozen=relation(frozen.apply("rank"), generic))
         return

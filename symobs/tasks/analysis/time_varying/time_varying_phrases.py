@@ -25,6 +25,7 @@ PHRASES: dict[str, str] = {
     "commute, so $Phi$ is the product of the exponentials of their integrals:",
     "gramian": "After subtraction of the forced response the output is $C Phi x_0$. Multiplying by $Phiᵀ Cᵀ$ and integrating over the interval gives $W x_0$ with",
     "gramian_open_integral": "After subtraction of the forced response the output is $C Phi x_0$. The Gramian, the integral of $Phiᵀ Cᵀ C Phi$, contains the integral of {integrand} over $t$, for which no closed form was found, so it is not given.",
+    "gramian_long": "After subtraction of the forced response the output is $C Phi x_0$. The Gramian, the integral of $Phiᵀ Cᵀ C Phi$, has too many terms to be given here.",
     "gramian_regular": "Its determinant is nonzero, so the kernel of $W$ is trivial, and distinct initial states give distinct outputs.",
     "gramian_generic": "The initial state is uniquely determined if and only if this is nonzero; the rank test shows when.",
     "gramian_singular": "It is singular, and the initial states in its kernel are unobservable:",

@@ -12,7 +12,7 @@ from itertools import combinations
 from typing import TYPE_CHECKING
 
 from symobs.exact import Matrix, Scalar, antiderivative, exponential_of_integral, roots_of
-from symobs.exact.core.generators import function_named, substitute, symbols_in, symbols_named
+from symobs.exact.core.generators import function_named, functions_in, substitute, symbols_in, symbols_named
 from symobs.exact.time_functions.antiderivative import collected
 from symobs.exact.time_functions.matrix_exponential import NoClosedForm, OpenBranch, exponential
 from symobs.ground.dataclass import dataclass
@@ -24,6 +24,8 @@ if TYPE_CHECKING:
 TIME, START = "t", "t0"
 #: A series or a solution whose terms grow beyond this is given up: it would be read by nobody.
 TERMS_UP_TO = 2_000
+#: The same with exponentials, cosines and sines, whose dependences are looked through in every check.
+_WITH_FUNCTIONS_UP_TO = 300
 
 
 @dataclass(frozen=True)
@@ -52,7 +54,7 @@ def transition(A: Matrix, signs: Mapping[str, str]) -> Transition | None:
 def antiderivative_since(value: Matrix, start: Scalar) -> Matrix | None:
     """Return the antiderivative in t that is 0 at `start`, None where none is found (or it is too large)."""
     found = antiderivative(value, TIME)
-    if found is None or found.size > TERMS_UP_TO:
+    if found is None or found.size > (_WITH_FUNCTIONS_UP_TO if functions_in([found]) else TERMS_UP_TO):
         return None
     try:
         return tidied(found - substitute(found, {TIME: start}))

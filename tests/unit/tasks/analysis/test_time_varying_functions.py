@@ -15,21 +15,8 @@ from tests.support.algebra import seeded
 
 t = sympy.Symbol("t")
 ENTRIES = [
-    "0",
-    "0",
-    "0",
-    "1",
-    "-1",
-    "t",
-    "cos(t)",
-    "sin(t)",
-    "exp(-t)",
-    "exp(t)",
-    "cos(2*t)",
-    "sin(2*t)*exp(-t)",
-    "1+cos(t)",
-    "t*sin(t)",
-    "exp(-2*t)",
+    *("0", "0", "0", "1", "-1", "t", "cos(t)", "sin(t)", "exp(-t)", "exp(t)", "cos(2*t)"),
+    *("sin(2*t)*exp(-t)", "1+cos(t)", "t*sin(t)", "exp(-2*t)"),
 ]
 
 
@@ -38,7 +25,7 @@ def rank_of(matrix: Any, instant: Any) -> int:
     with mpmath.workdps(50):
         values = mpmath.matrix(matrix.subs(t, instant).evalf(50).tolist())
         sizes = mpmath.svd_r(values, compute_uv=False)
-        return sum(1 for size in sizes if size > mpmath.mpf(10) ** -25 * max(1, max(sizes)))
+        return sum(1 for size in sizes if size > mpmath.mpf(10) ** -25 * max(1, *sizes))
 
 
 def stack(A: Any, C: Any) -> Any:
@@ -51,7 +38,7 @@ def stack(A: Any, C: Any) -> Any:
 def hold(seed: int) -> None:
     """Hold the rank to that at random instants, the hidden states and Φ to their equations there."""
     draw = seeded(seed)
-    n, p = draw.randint(1, 3), draw.randint(1, 2)
+    n, p = draw.choice([1, 2, 2, 2, 3]), draw.randint(1, 2)
     A, C = ([[draw.choice(ENTRIES) for _ in range(n)] for _ in range(rows)] for rows in (n, p))
     if draw.random() < 0.4:
         A = [[entry if j > i else "0" for j, entry in enumerate(row)] for i, row in enumerate(A)]
@@ -106,10 +93,13 @@ def test_the_exceptional_parameters_are_all(
 ) -> None:
     found: Any = symobs.time_varying_observability(StateSpace(A, C=C))
     assert found.verdict == "conditional"
-    assert "O" in found.to("text") or found.to("text")
+    assert "Case" in found.to("text")
 
     def hold_at(values: dict[str, Any], *, met: bool) -> None:
-        put = {sympy.Symbol(name): sympy.sympify(value) for name, value in values.items()}
+        put = {
+            sympy.Symbol(name): sympy.pi / 2 if value == "pi/2" else sympy.Integer(value)
+            for name, value in values.items()
+        }
         conditions = [sympy.simplify(condition.subs(put)) for condition in found.conditions]
         assert all(condition == sympy.true for condition in conditions) == met, values
         M, N = (sympy.Matrix(matrix).subs(put) for matrix in (found.plant.A, found.plant.C))
@@ -130,7 +120,7 @@ def test_an_initial_state_is_found_where_the_plant_moves_with_cosines() -> None:
 
 def test_what_is_no_function_of_time_here_is_refused() -> None:
     for entry in ("exp(t^2)", "cos(1/t)", "sqrt(t)", "exp(cos(t))"):
-        with pytest.raises(InputError, match="entries are rational in t|is a function of t|sqrt"):
+        with pytest.raises(InputError, match=r"rational in t|function of t|sqrt"):
             StateSpace("[0 1; 0 0]", C=[[entry, 0]])
     plant = StateSpace("[0 1; 0 0]", C="[1/(1 + 2*cos(t)) 0]")
     with pytest.raises(Undecided, match="vanishes in the interval"):
