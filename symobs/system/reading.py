@@ -11,6 +11,7 @@ from typing import Any
 from symobs.exact import Complex, Ideal, Matrix, Scalar
 from symobs.exact.algebraic.real_algebraic import RealRoot
 from symobs.exact.core.generators import (
+    KINDS,
     Function,
     NotWritten,
     all_roots,
@@ -163,15 +164,15 @@ def read_complex(value: object, where: str) -> Complex:
 
 
 def over_a_base(
-    matrices: Mapping[str, Matrix | None], signs: Mapping[str, str], where: str = "plant"
+    matrices: Mapping[str, Matrix | None], signs: Mapping[str, str], where: str = "plant", *, in_time: bool = False
 ) -> tuple[dict[str, Matrix | None], tuple[Scalar, ...]]:
     """Return matrices with their functions in a common base, and the polynomials in the base that vanish.
 
-    Raises `InputError` for a function of time, a root of what may be negative, roots that may depend on each other, and an
-    entry that divides by 0.
+    Functions of time are admitted `in_time`.  Raises `InputError` for others of them, a root of what may be negative, roots
+    that may depend on each other, and an entry that divides by 0.
     """
     given = [matrix for matrix in matrices.values() if matrix is not None]
-    if all(f.square for f in require_known(given, signs, where)):
+    if all(f.square for f in require_known(given, signs, where, in_time=in_time)):
         return dict(matrices), ()
     try:
         meanings, relations = identities(given)
@@ -187,17 +188,21 @@ def over_a_base(
     return moved, relations
 
 
-def require_known(values: Sequence[Matrix | Scalar], signs: Mapping[str, str], where: str) -> frozenset[Function]:
+def require_known(
+    values: Sequence[Matrix | Scalar], signs: Mapping[str, str], where: str, *, in_time: bool = False
+) -> frozenset[Function]:
     """Return the functions in values; raises `InputError` where one is not of parameters or equals another one.
+
+    With `in_time`, exponentials, cosines and sines of multiples of t are admitted, too: with t they are analytic.
 
     Roots are of what the declared signs make positive, since only these are known to be real, and no product of radicands
     is a square; of several roots of numbers, the degrees have no common factor.  So no equation ties them to each other.
     """
     functions = functions_in(values)
     for f in sorted(functions | all_roots(*values), key=lambda f: f.text):
-        if f.symbols & {"t", "s", "z"}:
+        if f.symbols & {"t", "s", "z"} and not (in_time and _is_of_time(f)):
             message = f"{f.text} is a function of {', '.join(f.symbols & {'t', 's', 'z'})}"
-            repair = "entries are rational in t, and have no s or z"
+            repair = "entries are rational in t, cos(omega*t), sin(omega*t) and exp(a*t), and have no s or z"
             if f.kind == "exp" and f.symbols & {"s"}:
                 message = f"{message}: dead time is not rational"
                 repair = "write a Padé approximation, (2 - s)/(2 + s) for exp(-s)"
@@ -222,6 +227,12 @@ def require_known(values: Sequence[Matrix | Scalar], signs: Mapping[str, str], w
         message = f"roots that may depend on each other: {listed}"
         raise InputError(message, where=where, repair="write all of them with one root, r^2 for another")
     return functions
+
+
+def _is_of_time(f: Function) -> bool:
+    """Return whether this is an exponential, a cosine or a sine of a + b t."""
+    rate = derivative(f.argument)
+    return f.kind in KINDS and not rate.is_zero and not (symbols_in(rate) & {"t"}) and not f.symbols & {"s", "z"}
 
 
 def _in_base(matrix: Matrix, meanings: Mapping[str, Scalar]) -> Matrix:

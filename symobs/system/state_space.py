@@ -11,7 +11,7 @@ from math import isfinite
 from typing import TYPE_CHECKING, Any, NamedTuple, cast
 
 from symobs.exact import Complex, Field, Ideal, Matrix, Scalar, apart_from_zero, companion, modulo
-from symobs.exact.core.generators import NotWritten, substitute
+from symobs.exact.core.generators import NotWritten, substitute, symbols_in
 from symobs.exact.floating.sampled import nearest_double
 from symobs.ground.errors import InputError, SymobsError, raise_all
 from symobs.system.findings import Findings
@@ -194,7 +194,7 @@ class StateSpace:
         if "A" in parts:
             errors += shape_errors({name: parts.get(name) for name in "ABC"} | {"D": None if errors else parts["D"]})
         raise_all(errors)
-        parts, relations = over_a_base(parts, known.signs)
+        parts, relations = over_a_base(parts, known.signs, in_time=True)
         self.matrices = Matrices(parts["A"], parts["B"], parts["C"], parts["D"])  # type: ignore[arg-type]
         self.symbols = known
         self.time = read_time(dt, known)
@@ -207,7 +207,7 @@ class StateSpace:
         self.is_stratum = False
         given = [part for part in parts.values() if part is not None]
         known.refuse_alike({*known.signs}.union(*(part.names for part in given)), "symbols")
-        if any("t" in part.field.position and "t" in part.names for part in given):
+        if any("t" in symbols_in(part) for part in given):
             self._let_vary()
         given = [part for part in given if self.variable in part.field.position]
         clash = self.variable in known.signs or any(self.variable in part.names for part in given)

@@ -60,6 +60,9 @@ def antiderivative_of_waves(value: Scalar, name: str) -> tuple[Scalar, Scalar] |
     rest = groups.pop((ZERO, ZERO), {}).get("", ZERO)
     found: list[tuple[Key, Scalar]] = []
     for (p, q), parts in groups.items():
+        if derivative(p, name).is_zero and derivative(q, name).is_zero:  # e^t e^(t0 - t) is constant
+            rest = rest + value_of(Quasipolynomial.of((Key(0, p, wave, q), c) for wave, c in parts.items()))
+            continue
         pair = _solved(p, q, (parts.get("cos", parts.get("", ZERO)), parts.get("sin", ZERO)), name)
         if pair is None:
             return None

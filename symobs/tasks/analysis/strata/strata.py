@@ -264,11 +264,13 @@ def places(plant: StateSpace, existence: Iterable[Scalar]) -> tuple[Place, ...]:
     """
     signs = plant.symbols.signs
     found: list[Place] = []
-    region = region_of(plant)
+    region, equations = region_of(plant), plant.equations
+    if plant.is_time_varying:  # cos² ωt + sin² ωt = 1 is no equation of parameters
+        equations = tuple(equation for equation in equations if not is_identity(equation))
     for factor in vanishing_factors(existence, signs):
         if factor in region.nonzero:
             continue
-        linear = None if plant.equations else _linear(factor, signs)
+        linear = None if equations else _linear(factor, signs)
         if linear is None:
             found += _below([factor], region)
             continue

@@ -9,11 +9,13 @@ from __future__ import annotations
 
 from dataclasses import replace
 from functools import cached_property
+from itertools import combinations
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
-from symobs.exact import Matrix, Scalar, derivative, echelon, independent_rows
+from symobs.exact import Matrix, Scalar, derivative, echelon, independent_rows, modulo
 from symobs.exact.core.generators import substitute
 from symobs.exact.time_functions.antiderivative import collected
+from symobs.exact.time_functions.quasipolynomial import to_quasipolynomial
 from symobs.formula.tree import Environment, Integral, Literal
 from symobs.formula.tree.term import Term, block, identity, letter
 from symobs.ground.dataclass import dataclass
@@ -24,31 +26,40 @@ from symobs.system.conditions import Condition, never_zero, sign_of
 from symobs.system.specification import read_interval, read_signal
 from symobs.tasks.analysis.rank.rank_test import determinant_term
 from symobs.tasks.analysis.strata.loci import distance_from
-from symobs.tasks.analysis.strata.strata import losses, strata
+from symobs.tasks.analysis.strata.strata import common_zeros, losses, strata
 from symobs.tasks.analysis.time_response.damping_cases import reject, vanishing_denominators
 from symobs.tasks.analysis.time_varying.time_varying_solution import (
     TimeVaryingRequest,
     closed_form,
     dependences,
+    has_functions,
     instant_where_not_zero,
     reject_poles,
     reject_sizes_and_names,
 )
-from symobs.tasks.analysis.time_varying.transition_matrix import START, TERMS_UP_TO, TIME
+from symobs.tasks.analysis.time_varying.transition_matrix import START, TERMS_UP_TO, TIME, in_time
 from symobs.tasks.result import Case, Result, choose, method, task_in_time
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
+    from symobs.exact import Ideal
     from symobs.system import StateSpace
     from symobs.system.specification import IntervalText, Name, SignalText
 
 
-def stack_of(A: Matrix, C: Matrix) -> tuple[Matrix, ...]:
-    """Return N₀ = C, N₁ = N₀ A + N₀', …, N_{n−1}; raises `BudgetExceeded` where they grow too long."""
+#: A determinant of a Gramian with functions whose products have more terms than this would be read by nobody.
+_DETERMINANT_UP_TO = 3_000
+
+
+def stack_of(A: Matrix, C: Matrix, ideal: Ideal | None = None) -> tuple[Matrix, ...]:
+    """Return N₀ = C, N₁ = N₀ A + N₀', …, N_{n−1}; raises `BudgetExceeded` where they grow too long.
+
+    They are simplified where the ideal vanishes, by c² + s² = 1 for example.
+    """
     rows = [C]
     for _ in range(A.shape[0] - 1):
-        rows.append((rows[-1] @ A + derivative(rows[-1], TIME)).normal())
+        rows.append(modulo((rows[-1] @ A + derivative(rows[-1], TIME)).normal(), ideal))
         if rows[-1].size > TERMS_UP_TO:
             message = f"N_{len(rows) - 1} has {rows[-1].size} terms, more than {TERMS_UP_TO}"
             raise BudgetExceeded(message, where="plant", repair="give some of the parameters values")
@@ -80,11 +91,14 @@ class TimeVaryingObservability(Result):
     def of(cls, plant: StateSpace, asked_for: TimeVaryingRequest, method_name: str) -> Self:
         """Return the result for a plant."""
         A, C = plant.matrices.A, plant.matrices.C
-        stack = stack_of(A, C)
+        ideal = plant.ideal
+        stack = stack_of(A, C, ideal)
         O = Matrix.block([[row] for row in stack]).normal()
-        columns, vectors = echelon(O)
+        columns, vectors = echelon(O, ideal)
         V = _beside(vectors, plant.order)
-        free, count = independent_rows(V), range(len(vectors))
+        free, count = independent_rows(V, ideal), range(len(vectors))
+        if has_functions(V):
+            V = _without_common_factors(V, free, ideal)
         moved = A @ V - derivative(V, TIME)
         X = V.select(free, count).solve(moved.select(free, count)) if vectors else Matrix.zeros(0, 0)
         answer: dict[str, Any] = {
@@ -92,8 +106,8 @@ class TimeVaryingObservability(Result):
             "stack": stack,
             "rank": len(columns),
             "hidden": V,
-            "restricted": X.normal(),
-            "rows": independent_rows(O.select(range(O.shape[0]), columns)),
+            "restricted": modulo(X.normal(), ideal),
+            "rows": independent_rows(O.select(range(O.shape[0]), columns), ideal),
             "columns": columns,
             "free": free,
         }
@@ -226,7 +240,7 @@ class TimeVaryingObservability(Result):
     def minor(self) -> Scalar:
         """The minor of the order of the rank that shows it; 1 where the rank is 0."""
         chosen = self.answer["matrix"].select(self.answer["rows"], self.answer["columns"])
-        return chosen.determinant() if chosen.shape[0] else Scalar.of(1)
+        return self.plant.simplified(chosen.determinant()) if chosen.shape[0] else Scalar.of(1)
 
     @property
     def verdict(self) -> str:
@@ -240,11 +254,29 @@ class TimeVaryingObservability(Result):
     @property
     def existence(self) -> tuple[Scalar, ...]:
         """What vanishes wherever the minor vanishes identically in t: the divisor of its coefficients, or one of them."""
-        coefficients = [c for c in self.minor.numerator.coefficients(TIME) if not c.is_zero]
+        coefficients = [*in_time(self.minor.numerator).values()]
         signs = self.plant.symbols.signs
         if any(never_zero(c, signs) for c in coefficients):
             return ()
         return (min(coefficients, key=lambda c: (c.size, str(c))),)
+
+    @cached_property
+    def meetings(self) -> tuple[tuple[Scalar, ...], ...]:
+        """Where exponents of the minor that differ in general are equal: there its terms are not independent.
+
+        Each is a system of equations, of a difference of rates and a difference or sum of frequencies.
+        """
+        waves = to_quasipolynomial(self.minor.numerator, TIME)
+        if waves is None or not has_functions(self.minor.numerator):
+            return ()
+        exponents = {(key.rate, key.frequency * turn) for key in waves.terms for turn in (1, -1)}
+        found: dict[tuple[Scalar, ...], None] = {}
+        for one, other in combinations(sorted(exponents, key=str), 2):
+            gaps = (derivative(a - b, TIME).numerator for a, b in zip(one, other, strict=True))
+            system = tuple(gap for gap in gaps if not gap.is_zero)
+            if system and not any(never_zero(gap, self.plant.symbols.signs) for gap in system):
+                found[system] = None
+        return tuple(found)
 
     @cached_property
     def denominators(self) -> tuple[Scalar, ...]:
@@ -273,7 +305,11 @@ class TimeVaryingObservability(Result):
         def solve(plant: StateSpace, values: dict[str, Scalar]) -> Result:
             return type(self).of(plant.in_time(), self.asked_for.substitute(values), self.method)
 
-        found = strata(self.plant, (*self.existence, *self.denominators), solve)
+        single = [system[0] for system in self.meetings if len(system) == 1]
+        cases = [*strata(self.plant, (*self.existence, *self.denominators, *single), solve)]
+        for system in self.meetings:
+            cases += common_zeros(self.plant, system, solve) if len(system) > 1 else ()
+        found = {frozenset(case.when): case for case in cases}.values()
         rank, others = self.answer["rank"], set(self.denominators)
         return tuple(
             case
@@ -289,8 +325,7 @@ class TimeVaryingObservability(Result):
         """The matrices that may be functions of time, with the given signals."""
         names = ("transition_matrix", "gramian", "gramian_in_time", "forced", "x0", "candidate", "moment")
         found = (*(self.answer[name] for name in names), self.asked_for.output, self.asked_for.input)
-        determinant = () if self.answer["gramian"] is None else (self.gramian_determinant,)
-        return (*(value for value in found if value is not None), *determinant)
+        return tuple(value for value in (*found, self.gramian_determinant) if value is not None)
 
     @property
     def never_seen(self) -> Matrix:
@@ -300,9 +335,14 @@ class TimeVaryingObservability(Result):
         return hidden if found is None else found
 
     @cached_property
-    def gramian_determinant(self) -> Scalar:
-        """The determinant of the Gramian."""
-        return collected(self.answer["gramian"].determinant())
+    def gramian_determinant(self) -> Scalar | None:
+        """The determinant of the Gramian, None where that has no closed form or so many functions that nobody reads it."""
+        W = self.answer["gramian"]
+        if W is None or (
+            has_functions(W) and max(entry.size for entry in W.entries) ** W.shape[0] > _DETERMINANT_UP_TO
+        ):
+            return None
+        return collected(W.determinant())
 
     @cached_property
     def fields(self) -> Mapping[str, Any]:
@@ -314,7 +354,7 @@ class TimeVaryingObservability(Result):
         for name in ("transition_matrix", "gramian"):
             if answer[name] is not None:
                 found[name] = answer[name]
-        if answer["gramian"] is not None:
+        if self.gramian_determinant is not None:
             found["determinant"] = self.gramian_determinant
         if self.asked_for.output is not None:
             found["x0"] = None if answer["x0"] is None else [*answer["x0"].entries]
@@ -329,6 +369,13 @@ class TimeVaryingObservability(Result):
 
 def _beside(vectors: tuple[Matrix, ...], order: int) -> Matrix:
     return Matrix.of([[v[i, 0] for v in vectors] for i in range(order)], len(vectors))
+
+
+def _without_common_factors(V: Matrix, free: tuple[int, ...], ideal: Ideal | None) -> Matrix:
+    """Return V with units in some rows where that leaves no function in a denominator, else as it is."""
+    units = V.select(free, range(V.shape[1])).inverse()
+    plain = modulo((V @ units).normal(), ideal)
+    return V if has_functions(plain.common_denominator()) else plain
 
 
 def _has_value(Phi: Matrix, start: Scalar) -> bool:
@@ -357,7 +404,7 @@ def time_varying_observability(
 ) -> Result:
     """Decide whether ẋ = A(t) x, y = C(t) x is observable, by N₀ = C, N_{k+1} = N_k A + N_k'.
 
-    plant      n states, p ≥ 1 outputs; t in A, B, C is the time
+    plant      n states, p ≥ 1 outputs; t in A, B, C is the time: rational in t, cos ωt, sin ωt, e^{at}
     interval   "0, T": the interval of time; without it any interval without a pole of A and C
     output     y(t), in t, exp, cos, sin, from which the initial state is to be found; with
     input      u(t), 0 if left out

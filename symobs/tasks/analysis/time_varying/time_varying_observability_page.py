@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from symobs.exact import Matrix, Scalar, antiderivative, product_of, rank
-from symobs.exact.core.generators import substitute
+from symobs.exact.core.generators import substitute, symbols_in
 from symobs.formula.tree import Conjunction, Evaluated, Integral, Literal
 from symobs.formula.tree.term import Term, block
 from symobs.proof.derivation import CaseStep, Conclude, Equal
@@ -38,7 +38,7 @@ _DUMMIES = ("sigma", "tau", "rho", "nu")
 def write(page: Builder, result: TimeVaryingObservability) -> None:
     """Write the page in the order of the theory."""
     asked = result.asked_for
-    page.in_time_by(*dependences((*result.closed_forms, *_squares(result)), asked, _dummy(page)))
+    page.in_time_by(*dependences((*_data(result), *result.closed_forms, *_squares(result)), asked, _dummy(page)))
     given(page)
     if asked.interval is not None:
         ends = {name: page.set(f"t_{name}", value) for name, value in (("start", asked.start), ("end", asked.end))}
@@ -54,6 +54,11 @@ def write(page: Builder, result: TimeVaryingObservability) -> None:
     if asked.output is not None:
         with page.section("reconstruction"):
             _initial_state(page, result)
+
+
+def _data(result: TimeVaryingObservability) -> tuple[Matrix, ...]:
+    m = result.plant.matrices
+    return m.A, m.B, m.C, m.D, result.answer["matrix"]
 
 
 def integral(page: Builder, integrand: Term, name: str, lower: Scalar, upper: Scalar, primitive: Matrix) -> Term:
@@ -162,17 +167,21 @@ def _gramian(page: Builder, result: TimeVaryingObservability) -> None:
         seen = _seen(page, result)
         (product,), order = _squares(result), page.plant.order
         places = [(i, j) for i in range(order) for j in range(order)]
-        i, j = next((p for p in places if antiderivative(product[p], TIME) is None), (0, 0))
-        unit = Matrix.identity(order)
-        row, column = (page.value(unit.select(range(order), [k])) for k in (i, j))
-        entry = row.T @ seen.T @ seen @ column
-        page.remark("gramian_open_integral", integrand=Evaluated(entry.formula, Literal(product[i, j])))
+        open_places = [p for p in places if antiderivative(product[p], TIME) is None]
+        if open_places:
+            i, j = open_places[0]
+            unit = Matrix.identity(order)
+            row, column = (page.value(unit.select(range(order), [k])) for k in (i, j))
+            entry = row.T @ seen.T @ seen @ column
+            page.remark("gramian_open_integral", integrand=Evaluated(entry.formula, Literal(product[i, j])))
+        else:
+            page.remark("gramian_long")
     else:
         Phi = page["Phi"].at(START, asked.start)
         squared = Phi.T @ page["C"].T @ page["C"] @ Phi
         whole = integral(page, squared, TIME, asked.start, asked.end, answer["gramian_in_time"])
         page.define("W", whole, page.value(answer["gramian"]), say="gramian", answer=True, closing=False)
-        if answer["rank"] == page.plant.order:
+        if answer["rank"] == page.plant.order and result.gramian_determinant is not None:
             _determinant(page, result.gramian_determinant)
     if answer["kernel"] is None or not answer["kernel"].shape[1]:
         return
@@ -208,12 +217,12 @@ def _rank_test(page: Builder, result: TimeVaryingObservability) -> None:
         page.define(f"N_{k + 1}", row @ page["A"] + row.derivative)
     rows = [[page[f"N_{k}"]] for k in range(order)]
     page.define("O", block(rows), say="stack_matrix", answer=True)
-    found = relation(page["O"].apply("rank"), answer["rank"])
+    by_functions = has_functions(answer["matrix"])
     if answer["rank"] < order:
         _hidden(page, result)
         return
     conditions = [c.expression for c in result.holds_where if c.kind == "existence"]
-    determinant = result.answer["matrix"].determinant() if page.plant.outputs == 1 else None
+    determinant = page.plant.simplified(answer["matrix"].determinant()) if page.plant.outputs == 1 else None
     if determinant is not None:
         page.equal(relation(page["O"].apply("det"), determinant_form(page, determinant)))
     if conditions:
@@ -223,8 +232,11 @@ def _rank_test(page: Builder, result: TimeVaryingObservability) -> None:
         value = determinant.substitute({TIME: answer["point"]})
         key = "stack_yes_at" if result.asked_for.interval is None else "stack_yes_on"
         page.conclude(key, instant=relation(instant, value, "!=", 0))
+    elif by_functions:
+        minor = _minor(page, answer["rows"])
+        page.conclude("stack_yes_minor", minor=relation(minor, "!==", minor.scalar * 0))
     else:
-        page.conclude("stack_yes", rank=found)
+        page.conclude("stack_yes", rank=relation(page["O"].apply("rank"), answer["rank"]))
     drop = _instant_of_drop(result)
     if drop is not None:
         at_drop = page["O"].at(TIME, drop)
@@ -232,12 +244,21 @@ def _rank_test(page: Builder, result: TimeVaryingObservability) -> None:
     page.steps += [_case(page, case) for case in result.case_tree]
 
 
+def _minor(page: Builder, rows: tuple[int, ...]) -> Term:
+    """Return the determinant of some rows of the stack, as many as there are states."""
+    O = page["O"]
+    height, order = O.value.shape
+    chosen = O if height == order else page.value(Matrix.identity(height).select(rows, range(height))) @ O
+    return chosen.apply("det")
+
+
 def _instant_of_drop(result: TimeVaryingObservability) -> Scalar | None:
     """Return the first instant that comes to mind at which the stack loses rank, in the interval."""
     O, asked = result.answer["matrix"], result.asked_for
     for instant in (asked.start, asked.end) if asked.interval else map(Scalar.of, (0, 1, -1)):
         try:
-            if rank(O.substitute({TIME: instant})) < result.answer["rank"]:
+            there = O.substitute({TIME: instant})
+            if not has_functions(there) and rank(there) < result.answer["rank"]:
                 return instant
         except ZeroDivisionError:
             continue
@@ -247,9 +268,15 @@ def _instant_of_drop(result: TimeVaryingObservability) -> Scalar | None:
 def _hidden(page: Builder, result: TimeVaryingObservability) -> None:
     """Give the hidden states, which move with t, and why they stay hidden."""
     answer, order = result.answer, page.plant.order
-    page.conclude("stack_no", rank=relation(page["O"].apply("rank"), answer["rank"], "<", order))
     V, X = answer["hidden"], answer["restricted"]
-    page.define("V", page.value(V), say="stack_moving")
+    if has_functions(answer["matrix"]):
+        page.set("V", V)
+        zero = Matrix.zeros(answer["matrix"].shape[0], V.shape[1])
+        page.conclude("stack_no_states", hidden=relation(page["O"] @ page["V"], zero))
+        page.equal(relation(page["V"], V), say="stack_moving")
+    else:
+        page.conclude("stack_no", rank=relation(page["O"].apply("rank"), answer["rank"], "<", order))
+        page.define("V", page.value(V), say="stack_moving")
     page.set("X", X)
     unseen = relation(page["C"] @ page["V"], Matrix.zeros(page.plant.outputs, V.shape[1]))
     stays = relation(page["A"] @ page["V"] - page["V"].derivative, page["V"] @ page["X"], page["V"] @ page.value(X))
@@ -259,9 +286,16 @@ def _hidden(page: Builder, result: TimeVaryingObservability) -> None:
 def _case(page: Builder, case: Case, *, modulo: bool = False) -> Step:
     if case.result is None:
         return undecided(page, case)
-    found = relation(page["O"].apply("rank"), case.result.answer["rank"])
     deficient = case.result.answer["rank"] < page.plant.order
-    steps: list[Step] = [Conclude(sentence("case_stack" if deficient else "case_stack_yes", {"rank": found}))]
+    steps: list[Step] = []
+    if not has_functions(page["O"].value):
+        found = relation(page["O"].apply("rank"), case.result.answer["rank"])
+        steps.append(Conclude(sentence("case_stack" if deficient else "case_stack_yes", {"rank": found})))
+    elif deficient:
+        steps.append(Conclude(sentence("case_stack_states", {})))
+    else:
+        minor = _minor(page, case.result.answer["rows"])
+        steps.append(Conclude(sentence("case_stack_minor", {"minor": relation(minor, "!==", Scalar.of(0))})))
     if deficient:
         hidden = case.result.answer["hidden"]
         zero = Matrix.zeros(page["O"].value.shape[0], hidden.shape[1])
@@ -286,17 +320,17 @@ def _frozen(page: Builder, result: TimeVaryingObservability) -> None:
     """Warn of the test at a frozen instant, by this plant where it misleads here, else by another one."""
     A, C, order, found = page["A"], page["C"], page.plant.order, result.answer["rank"]
     frozen = _frozen_test(A, C, order)
-    generic = rank(frozen.value)
-    if TIME not in (A.value.names | C.value.names):
+    generic = rank(frozen.value, page.plant.ideal)
+    if TIME not in symbols_in(A.value) | symbols_in(C.value):
         return
-    if (generic < order) != (found < order):
+    if (generic < order) != (found < order) and not has_functions(frozen.value):
         key = "frozen_misled_no" if found < order else "frozen_misled_yes"
         page.caution(key, frozen=relation(frozen.apply("rank"), generic))
         return
     for instant in map(Scalar.of, (0, 1, -1)) if found == order else ():
         try:
             there = _frozen_test(A.at(TIME, instant), C.at(TIME, instant), order)
-            value = rank(there.value)
+            value = order if has_functions(there.value) else rank(there.value)
         except ZeroDivisionError:
             continue
         if value < order:

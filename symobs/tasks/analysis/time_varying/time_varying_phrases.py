@@ -25,6 +25,7 @@ PHRASES: dict[str, str] = {
     "commute, so $Phi$ is the product of the exponentials of their integrals:",
     "gramian": "After subtraction of the forced response the output is $C Phi x_0$. Multiplying by $Phiᵀ Cᵀ$ and integrating over the interval gives $W x_0$ with",
     "gramian_open_integral": "After subtraction of the forced response the output is $C Phi x_0$. The Gramian, the integral of $Phiᵀ Cᵀ C Phi$, contains the integral of {integrand} over $t$, for which no closed form was found, so it is not given.",
+    "gramian_long": "After subtraction of the forced response the output is $C Phi x_0$. The Gramian, the integral of $Phiᵀ Cᵀ C Phi$, has too many terms to be given here.",
     "gramian_regular": "Its determinant is nonzero, so the kernel of $W$ is trivial, and distinct initial states give distinct outputs.",
     "gramian_generic": "The initial state is uniquely determined if and only if this is nonzero; the rank test shows when.",
     "gramian_singular": "It is singular, and the initial states in its kernel are unobservable:",
@@ -32,6 +33,10 @@ PHRASES: dict[str, str] = {
     "stack_rule": "The derivatives of the output $C Phi x_0$ are $N_k Phi x_0$, where each $N_k$ is the preceding one times $A$ plus its derivative:",
     "stack_matrix": "Stacked, they are",
     "stack_yes": "Since {rank} for almost all $t$, the plant is observable on every interval of time on which $A$ and $C$ have no pole.",
+    "stack_yes_minor": "Since {minor} as a function of $t$, and it is analytic§, the plant is observable on every interval of time on which $A$ and $C$ have no pole.",
+    "stack_no_states": "Since {hidden} with the matrix $V$ below, the plant is observable on no interval.",
+    "case_stack_states": "In this case the plant is not observable:",
+    "case_stack_minor": "In this case {minor}: the plant is observable.",
     "stack_yes_at": "Full rank at one instant is enough: {instant}, so the plant is observable on every interval that contains this instant. The "
     "rank is the same for almost all $t$, hence on every other interval without a pole of $A$ and $C$ as well.",
     "stack_yes_on": "Full rank at one instant of the interval is enough: {instant}, so the plant is observable on it.",
@@ -73,6 +78,10 @@ DEMANDS: dict[str, str] = {
     "gramian_singular": "vanishes C Phi v",
     "never_seen_start": "vanishes C Phi v",
     "stack_yes": "says_observable C A",
+    "stack_yes_minor": "observable C A",
+    "stack_no_states": "unobservable C A",
+    "case_stack_states": "unobservable C A",
+    "case_stack_minor": "observable C A",
     "stack_yes_at": "says_regular_at C A",
     "stack_yes_on": "says_regular_at C A",
     "stack_yes_if": "observable C A",
@@ -87,6 +96,7 @@ DEMANDS: dict[str, str] = {
 
 RESTS_ON: dict[str, str] = {
     "stack_yes": "time_varying_rank",
+    "stack_yes_minor": "time_varying_rank",
     "stack_yes_at": "time_varying_rank",
     "stack_yes_on": "time_varying_rank",
     "stack_yes_if": "time_varying_rank",

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from fractions import Fraction
 from itertools import pairwise, product
 from typing import TYPE_CHECKING, Any
 
 from symobs.exact import Matrix, Scalar, independent_rows, kernel, rank
-from symobs.exact.core.generators import derivative, function_named, identities, substitute
+from symobs.exact.core.generators import derivative, function_named, identities, substitute, symbols_in
 from symobs.ground.dataclass import dataclass
-from symobs.ground.errors import InputError
+from symobs.ground.errors import InputError, Undecided
 from symobs.system.conditions import never_zero, sign_of, vanishing_factors
 from symobs.tasks.analysis.time_varying.transition_matrix import (
     START,
@@ -56,7 +57,12 @@ def reject_poles(plant: StateSpace, ends: tuple[Scalar, Scalar]) -> None:
     """Raise `InputError` where a denominator of the plant certainly vanishes in the interval."""
     m, signs = plant.matrices, plant.symbols.signs
     for factor in vanishing_factors([part.common_denominator() for part in (m.A, m.B, m.C, m.D)], signs):
-        if TIME not in factor.names:
+        if TIME not in symbols_in(factor):
+            continue
+        if has_functions(factor) and not _is_bounded_away(factor):
+            message = f"time_varying_observability is undecided: whether {factor} vanishes in the interval is not decided here"
+            raise Undecided(message)
+        if has_functions(factor):
             continue
         first, last = (factor.substitute({TIME: end}) for end in ends)
         opposite = sign_of(first * last, signs) in {"zero", "negative", "nonpositive"}
@@ -64,6 +70,13 @@ def reject_poles(plant: StateSpace, ends: tuple[Scalar, Scalar]) -> None:
         if opposite or (numeric and _vanishes_between(factor, *ends)):
             message = f"{factor} vanishes in the interval, and there the plant has a pole"
             raise InputError(message, where="specification.interval", repair="choose an interval without the pole")
+
+
+def _is_bounded_away(factor: Scalar) -> bool:
+    """Return whether the constant of a polynomial in cosines and sines is larger than its other coefficients together."""
+    waves = all(f is not None and f.kind in {"cos", "sin"} for f in map(function_named, factor.names))
+    parts = [(abs(Fraction(number)), bool(powers)) for number, powers in factor.numerator.terms()]
+    return waves and 2 * sum(size for size, moves in parts if not moves) > sum(size for size, _ in parts)
 
 
 def _vanishes_between(factor: Scalar, first: Scalar, last: Scalar, halvings: int = _HALVINGS) -> bool:
@@ -87,7 +100,7 @@ def instant_where_not_zero(plant: StateSpace, interval: tuple[Scalar, Scalar] | 
     """Return an instant of the interval at which a minor is certainly not 0 and no pole lies, None where none is found."""
     if not minor.shape[0]:
         return None
-    value, signs = minor.determinant(), plant.symbols.signs
+    value, signs = plant.simplified(minor.determinant()), plant.symbols.signs
     if interval is None:
         tried = [Scalar.of(k) for k in (0, 1, -1, 2, -2, 3)]
     else:
@@ -97,7 +110,8 @@ def instant_where_not_zero(plant: StateSpace, interval: tuple[Scalar, Scalar] | 
         try:
             for part in (plant.matrices.A, plant.matrices.C):
                 part.substitute({TIME: instant})
-            if never_zero(value.substitute({TIME: instant}), signs):
+            there = value.substitute({TIME: instant})
+            if not has_functions(there) and never_zero(there, signs):
                 return instant
         except ZeroDivisionError:
             continue
@@ -175,7 +189,7 @@ def closed_form(plant: StateSpace, asked: TimeVaryingRequest, test: Mapping[str,
     try:
         Phi = substitute(found.matrix, {START: asked.start})
         seen = tidied(plant.matrices.C @ Phi)
-        kernel_at_start = _moving_kernel(test["hidden"], asked) if has_functions(Phi) else _constant_kernel(seen)
+        kernel_at_start = _moving_kernel(test["hidden"], asked) if has_functions(seen) else _constant_kernel(seen)
     except ZeroDivisionError:  # the interval begins or ends where A has a pole
         return answer | {"transition_matrix": found.matrix}
     if kernel_at_start is None:

@@ -12,18 +12,20 @@ from itertools import combinations
 from typing import TYPE_CHECKING
 
 from symobs.exact import Matrix, Scalar, antiderivative, exponential_of_integral, roots_of
-from symobs.exact.core.generators import substitute
+from symobs.exact.core.generators import function_named, functions_in, substitute, symbols_in, symbols_named
 from symobs.exact.time_functions.antiderivative import collected
 from symobs.exact.time_functions.matrix_exponential import NoClosedForm, OpenBranch, exponential
 from symobs.ground.dataclass import dataclass
 from symobs.system.conditions import sign_of
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
+    from collections.abc import Iterable, Mapping, Sequence
 
 TIME, START = "t", "t0"
 #: A series or a solution whose terms grow beyond this is given up: it would be read by nobody.
 TERMS_UP_TO = 2_000
+#: The same with exponentials, cosines and sines, whose dependences are looked through in every check.
+_WITH_FUNCTIONS_UP_TO = 300
 
 
 @dataclass(frozen=True)
@@ -52,7 +54,7 @@ def transition(A: Matrix, signs: Mapping[str, str]) -> Transition | None:
 def antiderivative_since(value: Matrix, start: Scalar) -> Matrix | None:
     """Return the antiderivative in t that is 0 at `start`, None where none is found (or it is too large)."""
     found = antiderivative(value, TIME)
-    if found is None or found.size > TERMS_UP_TO:
+    if found is None or found.size > (_WITH_FUNCTIONS_UP_TO if functions_in([found]) else TERMS_UP_TO):
         return None
     try:
         return tidied(found - substitute(found, {TIME: start}))
@@ -126,23 +128,34 @@ def _sum(values: Iterable[Scalar]) -> Scalar:
 
 
 def commuting_parts(A: Matrix) -> list[tuple[Scalar, Matrix]]:
-    """Return (α, M) with A(t) = Σ α M, the M constant: A by its powers of t, or A = α K; [] where neither holds."""
-    if A.common_denominator().degree(TIME) <= 0:
-        powers = range(max(entry.degree(TIME) for entry in A.entries) + 1)
-        found = [(Scalar.symbol(TIME) ** k, _of_power(A, k)) for k in powers]
-        return [(alpha, M) for alpha, M in found if not M.is_zero]
+    """Return (α, M) with A(t) = Σ α M, the M constant: A by its powers of t and functions, or A = α K; [] for neither."""
+    below = A.common_denominator()
+    if TIME not in symbols_in(below):
+        parts: dict[Scalar, Matrix] = {}
+        for place, entry in enumerate((A * below).entries):
+            for alpha, c in in_time(entry).items():
+                unit = Matrix.unit(len(A.entries), place) * (c / below)
+                parts[alpha] = parts[alpha] + unit if alpha in parts else unit
+        shaped = {alpha: Matrix.of(_rows(M.entries, A.shape[1])) for alpha, M in parts.items()}
+        return [(alpha, M.normal()) for alpha, M in shaped.items() if not M.is_zero]
     direction = constant_direction(A)
     return [] if direction is None else [direction]
 
 
-def _of_power(A: Matrix, power: int) -> Matrix:
-    """Return the matrix of the coefficients of a power of t."""
+def _rows(entries: Sequence[Scalar], width: int) -> list[list[Scalar]]:
+    return [list(entries[k : k + width]) for k in range(0, len(entries), width)]
 
-    def coefficient(entry: Scalar) -> Scalar:
-        found = entry.coefficients(TIME)
-        return found[len(found) - 1 - power] if power < len(found) else Scalar.of(0)
 
-    return Matrix.of([[coefficient(entry) for entry in row] for row in A.rows])
+def in_time(value: Scalar) -> dict[Scalar, Scalar]:
+    """Return a polynomial in t and functions of t as coefficients by their monomials."""
+    found: dict[Scalar, Scalar] = {}
+    for number, powers in value.numerator.terms():
+        alpha, c = Scalar.of(1), Scalar.of(number) / value.denominator
+        for name, power in powers:
+            factor = Scalar.symbol(name) ** power
+            alpha, c = (alpha * factor, c) if TIME in symbols_named(name) else (alpha, c * factor)
+        found[alpha] = found[alpha] + c if alpha in found else c
+    return {alpha: c for alpha, c in found.items() if not c.is_zero}
 
 
 def _commuting(A: Matrix, signs: Mapping[str, str]) -> Transition | None:
@@ -152,7 +165,7 @@ def _commuting(A: Matrix, signs: Mapping[str, str]) -> Transition | None:
         return None
     for alpha, M in parts:
         since = antiderivative_since(Matrix.of([[alpha]]), Scalar.symbol(START))
-        if since is None:
+        if since is None or any(map(function_named, since.names)):  # cos(sin(t)) is treated nowhere
             return None
         try:
             found = exponential(M, "s", lambda delta: sign_of(delta, signs))
@@ -168,7 +181,7 @@ def constant_direction(A: Matrix) -> tuple[Scalar, Matrix] | None:
     if alpha is None:
         return None
     K = (A * (1 / alpha)).normal()
-    return None if TIME in K.names else (alpha, K)
+    return None if TIME in symbols_in(K) else (alpha, K)
 
 
 def _direction(A: Matrix) -> Transition | None:
