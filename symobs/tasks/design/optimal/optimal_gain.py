@@ -124,6 +124,12 @@ class OptimalGain(Result):
         """The regulator that this problem is or is dual to."""
         return self.regulator_of(self.plant, self.weights)
 
+    @property
+    def data(self) -> Mapping[str, Scalar | Matrix]:
+        """The gain and P besides the plant's matrices: pages speak of these."""
+        exact = {self.letter: self.answer[self.letter], "P_x": self.answer["P"]}
+        return {**super().data, **({} if self.answer["P"] is None else exact)}
+
     # -- claims ------------------------------------------------------------------------------------------------------
 
     def values(self) -> dict[str, Matrix | Scalar]:

@@ -37,7 +37,7 @@ class NoFactor(ArithmeticError):
 
 def with_signs(signs: Mapping[str, str], *values: Scalar | Matrix) -> dict[str, str]:
     """Return the signs of the parameters, and those of the square roots in values: a root is positive where it is not 0."""
-    roots = {root.name: "positive" for value in values for root in roots_in(value)}
+    roots: dict[str, str] = {root.name: "positive" for value in values for root in roots_in(value)}
     inner = [root.argument for value in values for root in roots_in(value)]
     return {**(with_signs({}, *inner) if inner else {}), **roots, **signs}
 
