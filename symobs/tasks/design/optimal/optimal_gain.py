@@ -236,7 +236,7 @@ class OptimalGain(Result):
         regulator, plant = self.regulator, self.plant
         _, *_, c_2, _, c_0 = (Scalar.of(0), *self.even.coefficients(plant.variable))
         chi = regulator.uncrossed[0].characteristic_polynomial(plant.variable).coefficients(plant.variable)
-        found, signs = [c_0], plant.symbols.signs
+        found, signs = [c_0.numerator, *([c_0.denominator] if plant.is_discrete else [])], plant.symbols.signs
         if plant.order == 2:  # p₁² is the sum of a² and the others, but for what is positive where b < 0
             a, b = chi[1:]
             found.append(a**2 + (2 * b - a**2 - c_2) + c_0 - b**2)
@@ -440,13 +440,14 @@ def hamiltonian(regulator: Regulator) -> Matrix:
     return (M + L).solve(M - L).normal()
 
 
-def to_disc(polynomial: Scalar, variable: str) -> Scalar:
+def to_disc(polynomial: Scalar, variable: str, *, reduce: bool = True) -> Scalar:
     """Return the monic polynomial with the roots z = (1 + w)/(1 − w)."""
     z, coefficients = Scalar.symbol(variable), polynomial.coefficients(variable)
     order = len(coefficients) - 1
     moved = sum((c * (z - 1) ** (order - k) * (z + 1) ** k for k, c in enumerate(coefficients)), Scalar.of(0))
     lead, *rest = moved.coefficients(variable)
-    return from_coefficients([Scalar.of(1), *(reduced(c / lead) for c in rest)], variable)
+    quotients = [c / lead for c in rest]
+    return from_coefficients([Scalar.of(1), *(map(reduced, quotients) if reduce else quotients)], variable)
 
 
 class Solution(NamedTuple):
@@ -461,12 +462,13 @@ class Solution(NamedTuple):
 def _exact_solution(regulator: Regulator, plant: StateSpace) -> Solution:
     """Return P from p(H) [I; P] = 0; raises `NoFactor`."""
     n, variable, signs = plant.order, plant.variable, plant.symbols.signs
-    with_parameters = 0 if regulator.discrete else MOST_WITH_PARAMETERS
+    with_parameters = 1 if regulator.discrete else MOST_WITH_PARAMETERS
     if n > (_EXACT_UP_TO if _is_numeric(regulator) else with_parameters):
         time = "discrete" if regulator.discrete else "continuous"
         raise NoFactor(f"with parameters a closed form is looked for in {time} time up to order {with_parameters}")
     H = hamiltonian(regulator)
-    factors = stable_factors(H.characteristic_polynomial(variable), variable, signs)
+    in_parameters = regulator.discrete and not _is_numeric(regulator)
+    factors = stable_factors(H.characteristic_polynomial(variable), variable, signs, whole=in_parameters)
     if sum(factor.degree(variable) for factor in factors) != n:
         raise NoFactor("the polynomial has roots on the boundary")
     product = Matrix.identity(2 * n)
@@ -483,6 +485,8 @@ def _exact_solution(regulator: Regulator, plant: StateSpace) -> Solution:
     gain = _normal(_normal(weight).solve(coupled + N.T))
     loop = (A - B @ gain).characteristic_polynomial(variable)
     polynomial = from_coefficients([reduced(c) for c in loop.coefficients(variable)], variable)
+    if in_parameters:  # 1 − π = 2σ/(1 + σ) is seen to be positive, and it would not with the root in the numerator
+        polynomial = to_disc(product_of(factors), variable, reduce=False)
     if max(entry.size for entry in (*P.entries, *gain.entries)) > _MOST_TERMS and _is_numeric(regulator):
         raise NoFactor("its closed form is too long")
     return Solution(P, gain, polynomial, factors)

@@ -12,6 +12,7 @@ from symobs.exact.floating.riccati_check import is_proved
 from symobs.formula.tree import Decimals
 from symobs.formula.tree.term import block
 from symobs.proof.derivation.builder import predicate, relation
+from symobs.stability.plots import root_locus
 from symobs.system.conditions import sign_of
 from symobs.tasks.analysis.page_parts import case_steps, given
 from symobs.tasks.design.optimal.spectral_factor import with_signs
@@ -25,6 +26,8 @@ if TYPE_CHECKING:
 
 #: Up to this order the coefficients of the loop are compared on the page.
 _MATCHED_UP_TO = 3
+#: The roots are drawn up to this order; the factor of the weight has this name.
+_DRAWN_UP_TO, _WEIGHT = 4, "rho"
 #: Significant digits on the page, and how many more are tried.
 _DIGITS, _MORE = 6, 9
 _LETTERS = {"Q": "Q_x", "R": "R_u", "N": "N_x", "P": "P_x", "W": "W_n", "V": "V_n", "G": "G_n"}
@@ -136,6 +139,7 @@ def _tell_exact(page: Builder, result: OptimalGain) -> None:
     else:
         _tell_pencil(page, A, B, Q, R)
     page.define("p_s", page.value(answer["polynomial"]), say="optimal_factor", closing=False)
+    _tell_locus(page)
     if _open_radicands(page, [answer["P"], *answer["factors"]]):
         page.remark("optimal_roots_real")
     matched = result.regulator.B.shape[1] == 1 and plant.order <= _MATCHED_UP_TO and _is_controllable(result)
@@ -175,6 +179,20 @@ def _tell_root_square(page: Builder, A: Term, B: Term, Q: Term, R: Term) -> None
     page.define("v_m", backward.apply("adj") @ B)
     cost = R.inverse @ page["v_m"].T @ Q @ page["v_s"]
     page.define("c_even", page["chi_p"] @ page["chi_m"] + cost, say="optimal_even")
+
+
+def _tell_locus(page: Builder) -> None:
+    """Draw the roots of χ(s) χ(−s) + ρ R⁻¹ v(−s)ᵀ Q v(s) for ρ from 0 to 1, where the data are numbers."""
+    variable, values = page.plant.variable, page.environment.values
+    if "chi_m" not in values or values["c_even"].names - {variable} or page.plant.order > _DRAWN_UP_TO:
+        return
+    free, cost = values["chi_p"] * values["chi_m"], values["c_even"] - values["chi_p"] * values["chi_m"]
+    picture = root_locus(
+        free + cost * Scalar.symbol(_WEIGHT), variable, _WEIGHT, (Fraction(0), Fraction(1)), None, None
+    )
+    if picture is not None and not cost.is_zero:
+        grown = page["chi_p"] @ page["chi_m"] + page.value(Scalar.symbol(_WEIGHT)) @ page.value(cost)
+        page.plot(picture, grown, say="optimal_locus")
 
 
 def _tell_pencil(page: Builder, A: Term, B: Term, Q: Term, R: Term) -> None:

@@ -20,6 +20,7 @@ PHRASES: dict[str, str] = {
     "optimal_hamiltonian": "The stable modes of the Hamiltonian matrix are those of the optimal loop§:",
     "optimal_even_of_pencil": "The polynomial of the optimal loop, times its mirror image, is up to a factor§",
     "optimal_factor": "Its factor with all roots in the stable region is the polynomial of the loop,",
+    "optimal_locus": "The symmetric root locus while the weight grows from 0 to the given one.",
     "optimal_roots_real": "The square roots are real and positive: on the boundary the polynomial above is not negative, and where the conditions hold it has no root there.",
     "optimal_matched": "With unknown entries of the gain the polynomial of the loop is",
     "optimal_matched_gain": "Comparing coefficients gives",

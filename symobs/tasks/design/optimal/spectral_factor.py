@@ -31,6 +31,10 @@ _PRIMES, _MOST_PRIMES = (2, 3, 5, 7, 11, 13), 2
 _NESTED = 3
 
 
+#: A name that no parameter has, among the signs where roots are left whole.
+_WHOLE = "whole roots"
+
+
 class NoFactor(ArithmeticError):
     """No square roots that are looked for write the stable factor; the reason is the message."""
 
@@ -51,11 +55,13 @@ def reduced(value: Scalar) -> Scalar:
     return value
 
 
-def stable_factors(even: Scalar, variable: str, signs: Mapping[str, str]) -> tuple[Scalar, ...]:
+def stable_factors(even: Scalar, variable: str, signs: Mapping[str, str], *, whole: bool = False) -> tuple[Scalar, ...]:
     """Return monic stable factors, the product of which times its mirror image is the polynomial up to a number.
 
+    With `whole` nothing is taken out of a root: then its sign is known, whatever those of the parameters.
     Raises `NoFactor`.
     """
+    signs = {**signs, _WHOLE: "real"} if whole else signs
     found: list[Scalar] = []
     s = Scalar.symbol(variable)
     waiting = [(monic(f, variable), power) for f, power in even.numerator.factors()[1] if f.degree(variable)]
@@ -118,6 +124,8 @@ def _root(radicand: Scalar, signs: Mapping[str, str]) -> Scalar:
     known = with_signs(signs, radicand)
     if sign_of(radicand, known) == "negative":
         raise NoFactor(f"{radicand} has no real root")
+    if _WHOLE in signs:
+        return generator("sqrt", radicand)
     root = square_root(radicand)
     known = with_signs(signs, root)
     sign = sign_of(root, known)

@@ -253,3 +253,17 @@ def test_what_no_square_roots_write_is_undecided_with_parameters() -> None:
     assert "up to order 2" in result.question
     result.to("text")
     assert result.at(a=0).verdict == "yes"
+
+
+def test_a_scalar_in_discrete_time_with_four_parameters() -> None:
+    result: Any = symobs.lqr(symobs.StateSpace("[a]", "[b]", dt=1, symbols=SIGNS), Q="q", R="r")
+    assert [str(condition) for condition in result.conditions] == ["Ne(a, 0)"]
+    draw = seeded(5)
+    for _ in range(12):
+        a, b = draw.choice([-1, 1]) * draw.randint(1, 20) / 4, draw.choice([-1, 1]) * draw.randint(1, 20) / 4
+        q, r = draw.randint(1, 30) / 8, draw.randint(1, 30) / 8
+        values = {sympy.Symbol(name): sympy.Rational(value) for name, value in zip("abqr", (a, b, q, r), strict=True)}
+        expected = solve_discrete_are(*(np.array([[value]]) for value in (a, b, q, r)))[0, 0]
+        assert np.isclose(float(result.P[0, 0].subs(values)), expected, rtol=1e-8)
+    (case,) = result.cases
+    assert (case.result.K[0, 0], case.result.P[0, 0]) == (0, sympy.Symbol("q"))
