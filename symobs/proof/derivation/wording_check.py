@@ -547,7 +547,7 @@ def _encloses(said: Said, *names: str) -> bool:
     unit = as_scalar(evaluate(said.slots["radius"], here, Exact(here))).fraction()  # type: ignore[arg-type]
     *data, centre, K = (evaluate(_letter(name), here, Exact(here)) for name in names)
     told = [[[(entry.fraction(), unit / 2) for entry in row] for row in M.rows] for M in (centre, K, -K)]
-    problem = Regulator(*data, here.variable == "z")
+    problem = Regulator(*data, here.variable == "z")  # type: ignore[call-arg]
     return any(is_proved(problem, centre, unit, told[0], gain) for gain in told[1:])
 
 

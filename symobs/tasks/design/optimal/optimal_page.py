@@ -18,7 +18,7 @@ from symobs.tasks.analysis.page_parts import case_steps, given
 from symobs.tasks.design.optimal.spectral_factor import with_signs
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Mapping
 
     from symobs.formula.tree.term import Term
     from symobs.proof.derivation.builder import Builder
@@ -233,27 +233,32 @@ def _tell_matching(page: Builder, result: OptimalGain) -> None:
 
 
 def _tell_digits(page: Builder, result: OptimalGain) -> None:
-    """Write P and the gain in decimals, and how near they are."""
+    """Write P and the gain in decimals: in so many that a box of the size of their last place is mapped into itself."""
     letter, digits = result.letter, result.decimals
     tables = {f"{name}_r": [[Fraction(entry) for entry in row] for row in digits[name]] for name in ("P", letter)}
     largest = max(abs(entry) for table in tables.values() for row in table for entry in row)
     fewest = max(_DIGITS - len(str(int(largest))), 1)
-    for places in range(fewest, fewest + _MORE):  # where a coarse box is not mapped into itself, more digits are shown
-        near = {name: _rounded(table, places) for name, table in tables.items()}
-        unit = Fraction(1, 10**places)
-        P, K = near["P_r"], result.turned(near[f"{letter}_r"])
-        told = [[[(entry.fraction(), unit / 2) for entry in row] for row in table.rows] for table in (P, K)]
-        if is_proved(result.regulator, P, unit, told[0], told[1]):
-            break
+    units = (Fraction(1, 10**places) for places in range(fewest, fewest + _MORE))
+    unit = next((unit for unit in units if _is_enough(result, tables, unit)), None)
+    if unit is None:
+        page.remark("optimal_too_long")
+        return
+    near = {name: _rounded(table, unit) for name, table in tables.items()}
     shown = [relation(page.set(name, value), page.term(Decimals(value))) for name, value in near.items()]
     page.equal(*shown, say="optimal_digits", answer=True)
-    radius = Scalar.of(Fraction(1, 10**places))
     kind = "feedback" if letter == "K" else "filter"
-    page.conclude(f"optimal_{kind}_enclosed", radius=page.term(Decimals(radius)))
+    page.conclude(f"optimal_{kind}_enclosed", radius=page.term(Decimals(Scalar.of(unit))))
 
 
-def _rounded(table: list[list[Fraction]], places: int) -> Matrix:
-    return Matrix.of([[Fraction(round(entry * 10**places), 10**places) for entry in row] for row in table])
+def _is_enough(result: OptimalGain, tables: Mapping[str, list[list[Fraction]]], unit: Fraction) -> bool:
+    """Return whether decimals of this last place are proved to be right."""
+    P, gain = (_rounded(table, unit) for table in tables.values())
+    told = [[[(entry.fraction(), unit / 2) for entry in row] for row in M.rows] for M in (P, result.turned(gain))]
+    return is_proved(result.regulator, P, unit, told[0], told[1])
+
+
+def _rounded(table: list[list[Fraction]], unit: Fraction) -> Matrix:
+    return Matrix.of([[round(entry / unit) * unit for entry in row] for row in table])
 
 
 # -- the obstacle ------------------------------------------------------------------------------------------------------

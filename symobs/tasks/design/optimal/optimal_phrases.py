@@ -31,6 +31,7 @@ PHRASES: dict[str, str] = {
     "optimal_filter_found": "The error is asymptotically stable, hence no other gain leads to a smaller covariance of the error, and this covariance is $P_x$§.",
     "optimal_margins": "Without a cross weight such a loop has a phase margin of at least a sixth of a turn, and stays stable for every gain from one half of the nominal one upwards§.",
     "optimal_digits": "The solution is not written with square roots here. In decimals",
+    "optimal_too_long": "The solution is not written with square roots here, and the digits that prove it are too many for a page.",
     "optimal_feedback_enclosed": "The stabilizing solution of Riccati's equation, and the gain that follows from it, round to these to the last of their places, of {radius}: Newton's map sends the box of this size around them into itself, and all of its loops are stable§.",
     "optimal_filter_enclosed": "The stabilizing solution of Riccati's equation, and the gain that follows from it, round to these to the last of their places, of {radius}: Newton's map sends the box of this size around them into itself, and all of its loops are stable§.",
     "optimal_open": "No closed form of the solution is found here for all values of the parameters; with numbers in their places its digits can be given.",
