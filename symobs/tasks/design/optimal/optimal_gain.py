@@ -25,7 +25,7 @@ from symobs.exact import (
 )
 from symobs.exact.algebraic.enclosure import is_number
 from symobs.exact.core.generators import identities
-from symobs.exact.floating.riccati import enclosed_solution
+from symobs.exact.floating.riccati import enclosed_solution, hamiltonian
 from symobs.formula.tree import Environment
 from symobs.formula.tree.term import identity, letter
 from symobs.ground.dataclass import dataclass
@@ -281,32 +281,23 @@ class OptimalGain(Result):
     @property
     def hidden_modes(self) -> tuple[Root, ...]:
         """The modes that are the obstacle."""
-        found = self.answer["obstacle"]
-        plant = self.plant
-        if found is None:
-            return ()
-        bad = [
-            f
-            for f, _ in found.polynomial.numerator.factors()[1]
-            if f.degree(plant.variable)
-            and stability(f, plant.variable, plant.symbols.signs, discrete=plant.is_discrete).verdict != "yes"
-        ]
-        return roots_of(product_of(bad), plant.variable)
+        found, plant = self.answer["obstacle"], self.plant
+        v, signs, discrete = plant.variable, plant.symbols.signs, plant.is_discrete
+        factors = [] if found is None else [f for f, _ in found.polynomial.numerator.factors()[1] if f.degree(v)]
+        bad = [factor for factor in factors if stability(factor, v, signs, discrete=discrete).verdict != "yes"]
+        return roots_of(product_of(bad), v) if bad else ()
 
     @cached_property
     def fields(self) -> Mapping[str, Any]:
         """The gain, P, the polynomial of the loop and its poles; the modes that are an obstacle."""
         answer, plant = self.answer, self.plant
-        factors = answer["factors"]
-        poles = None if factors is None else tuple(root for f in factors for root in roots_of(f, plant.variable))
-        if factors is not None and plant.is_discrete:
-            poles = tuple(root for f in map(self._in_disc, factors) for root in roots_of(f, plant.variable))
+        v, factors, poles = plant.variable, answer["factors"], None
+        if factors is not None:
+            moved = [to_disc(factor, v) for factor in factors] if plant.is_discrete else factors
+            poles = tuple(root for factor in moved for root in roots_of(factor, v))
         found = {self.letter: answer[self.letter], "P": answer["P"], "polynomial": answer["polynomial"], "poles": poles}
         asked = answer["question"]
         return {**found, "modes": self.hidden_modes, **({} if asked is None else {"question": asked})}
-
-    def _in_disc(self, factor: Scalar) -> Scalar:
-        return to_disc(factor, self.plant.variable)
 
     @property
     def decimals(self) -> dict[str, Any]:
@@ -428,16 +419,6 @@ def _at(polynomial: Scalar, variable: str, matrix: Matrix) -> Matrix:
 
 
 # -- the exact solution ------------------------------------------------------------------------------------------------
-
-
-def hamiltonian(regulator: Regulator) -> Matrix:
-    """Return [A −S; −Q −Aᵀ]; in discrete time (M + L)⁻¹(M − L), M = [A 0; −Q I], L = [I S; 0 Aᵀ], in w = (z − 1)/(z + 1)."""
-    A, S, Q = regulator.uncrossed
-    if not regulator.discrete:
-        return Matrix.block([[A, -S], [-Q, -A.T]])
-    zero, one = Matrix.zeros(*A.shape), Matrix.identity(A.shape[0])
-    M, L = Matrix.block([[A, zero], [-Q, one]]), Matrix.block([[one, S], [zero, A.T]])
-    return (M + L).solve(M - L).normal()
 
 
 def to_disc(polynomial: Scalar, variable: str, *, reduce: bool = True) -> Scalar:

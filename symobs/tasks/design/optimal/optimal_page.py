@@ -11,6 +11,7 @@ from symobs.exact.core.generators import all_roots
 from symobs.exact.floating.riccati_check import is_proved
 from symobs.formula.tree import Decimals
 from symobs.formula.tree.term import block
+from symobs.proof.certificate.claims import as_scalar
 from symobs.proof.derivation.builder import predicate, relation
 from symobs.stability.plots import root_locus
 from symobs.system.conditions import sign_of
@@ -186,10 +187,10 @@ def _tell_locus(page: Builder) -> None:
     variable, values = page.plant.variable, page.environment.values
     if "chi_m" not in values or values["c_even"].names - {variable} or page.plant.order > _DRAWN_UP_TO:
         return
-    free, cost = values["chi_p"] * values["chi_m"], values["c_even"] - values["chi_p"] * values["chi_m"]
-    picture = root_locus(
-        free + cost * Scalar.symbol(_WEIGHT), variable, _WEIGHT, (Fraction(0), Fraction(1)), None, None
-    )
+    free = as_scalar(values["chi_p"]) * as_scalar(values["chi_m"])
+    cost = as_scalar(values["c_even"]) - free
+    moved = free + cost * Scalar.symbol(_WEIGHT)
+    picture = root_locus(moved, variable, _WEIGHT, (Fraction(0), Fraction(1)), None, None)
     if picture is not None and not cost.is_zero:
         grown = page["chi_p"] @ page["chi_m"] + page.value(Scalar.symbol(_WEIGHT)) @ page.value(cost)
         page.plot(picture, grown, say="optimal_locus")

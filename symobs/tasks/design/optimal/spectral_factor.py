@@ -69,6 +69,9 @@ def stable_factors(even: Scalar, variable: str, signs: Mapping[str, str], *, who
         factor, power = waiting.pop(0)
         mirror = monic(factor.substitute({variable: -s}), variable)
         if mirror == factor:
+            radicand = -factor.coefficients(variable)[-1]
+            if power % 2 == 0 and sign_of(radicand, with_signs(signs, radicand)) != "positive":  # it may be on the axis
+                raise NoFactor(f"whether roots of {factor} are on the boundary depends on the parameters")
             found += [_half(factor, variable, signs)] * power
             continue
         waiting = [(other, count) for other, count in waiting if other != mirror]

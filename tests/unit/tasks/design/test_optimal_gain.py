@@ -267,3 +267,11 @@ def test_a_scalar_in_discrete_time_with_four_parameters() -> None:
         assert np.isclose(float(result.P[0, 0].subs(values)), expected, rtol=1e-8)
     (case,) = result.cases
     assert (case.result.K[0, 0], case.result.P[0, 0]) == (0, sympy.Symbol("q"))
+
+
+def test_a_mode_that_may_lie_on_the_boundary_is_left_open() -> None:
+    plant = symobs.StateSpace("[0 1; -k 0]", "[0; 1]", symbols={"k": "real", "r": "positive"})
+    result: Any = symobs.lqr(plant, Q="0", R="r")  # for k > 0 a hidden oscillation, for k < 0 a saddle
+    assert result.verdict == "undecided"
+    assert [result.at(k=k, r=1).verdict for k in (4, 0, -4)] == ["no", "no", "yes"]
+    assert result.at(k=-4, r=1).K.tolist() == [[8, 4]]
