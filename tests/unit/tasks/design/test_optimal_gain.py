@@ -18,6 +18,7 @@ from symobs.exact.sympy_bridge.conversion import scalar_to_sympy
 from symobs.formula.expression import parse_poles
 from symobs.ground.errors import CertificateRejected, InputError
 from tests.support.algebra import seeded
+from tests.support.paths import ROOT
 
 PROBLEMS = tomllib.loads(Path(__file__).with_suffix(".toml").read_text(encoding="utf-8"))["problem"]
 
@@ -275,3 +276,9 @@ def test_a_mode_that_may_lie_on_the_boundary_is_left_open() -> None:
     assert result.verdict == "undecided"
     assert [result.at(k=k, r=1).verdict for k in (4, 0, -4)] == ["no", "no", "yes"]
     assert result.at(k=-4, r=1).K.tolist() == [[8, 4]]
+
+
+def test_decimals_answer_where_there_is_no_closed_form() -> None:
+    problem = (ROOT / "worked_examples" / "lqr_third_order.toml").read_text(encoding="utf-8")
+    given = {"K = [0.0143 0.1107 0.0676]": "right", "K = [0.0143 0.1108 0.0676]": "wrong", "K = [1 1 1]": "wrong"}
+    assert {answer: symobs.check(problem, answer).verdict for answer in given} == given
