@@ -29,7 +29,7 @@ PHRASES: dict[str, str] = {
     "optimal_checked": "{riccati}, and {gain}.",
     "optimal_feedback_found": "The loop is asymptotically stable, hence no other control law costs less, and the least cost from $x_0$ is $x_0ᵀ P_x x_0$§.",
     "optimal_filter_found": "The error is asymptotically stable, hence no other gain leads to a smaller covariance of the error, and this covariance is $P_x$§.",
-    "optimal_margins": "Without a cross weight such a loop has a phase margin of at least a sixth of a turn, and stays stable for every gain from one half of the nominal one upwards§.",
+    "optimal_margins": "Without a cross weight such a loop has a phase margin of at least 60°, and stays stable when the gain is multiplied by any number greater than 1/2§.",
     "optimal_digits": "The solution is not written with square roots here. In decimals",
     "optimal_too_long": "The solution is not written with square roots here, and the digits that prove it are too many for a page.",
     "optimal_feedback_enclosed": "The stabilizing solution of Riccati's equation, and the gain that follows from it, round to these to the last of their places, of {radius}: Newton's map sends the box of this size around them into itself, and all of its loops are stable§.",
