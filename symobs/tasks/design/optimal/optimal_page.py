@@ -13,6 +13,7 @@ from symobs.formula.tree import Decimals
 from symobs.formula.tree.term import block
 from symobs.proof.certificate.claims import as_scalar
 from symobs.proof.derivation.builder import predicate, relation
+from symobs.stability.criteria.stability import stability
 from symobs.stability.plots import root_locus
 from symobs.system.conditions import sign_of
 from symobs.tasks.analysis.page_parts import case_steps, given
@@ -249,6 +250,11 @@ def _tell_digits(page: Builder, result: OptimalGain) -> None:
     page.equal(*shown, say="optimal_digits", answer=True)
     kind = "feedback" if letter == "K" else "filter"
     page.conclude(f"optimal_{kind}_enclosed", radius=page.term(Decimals(Scalar.of(unit))))
+    pencil, plant = _pencil(page, result, page[f"{letter}_r"]), page.plant
+    chi = page.define(f"chi_{letter}", pencil.apply("det"), silent=True)
+    found = stability(as_scalar(chi.value), plant.variable, plant.symbols.signs, discrete=plant.is_discrete)
+    if found.verdict == "yes":
+        page.conclude(f"optimal_rounded_{kind}", predicate("stable", chi))
 
 
 def _is_enough(result: OptimalGain, tables: Mapping[str, list[list[Fraction]]], unit: Fraction) -> bool:

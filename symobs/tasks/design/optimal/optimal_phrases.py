@@ -33,6 +33,8 @@ PHRASES: dict[str, str] = {
     "optimal_digits": "The solution is not written with square roots here. In decimals",
     "optimal_too_long": "The solution is not written with square roots here, and the digits that prove it are too many for a page.",
     "optimal_feedback_enclosed": "The stabilizing solution of Riccati's equation, and the gain that follows from it, round to these to the last of their places, of {radius}: Newton's map sends the box of this size around them into itself, and all of its loops are stable§.",
+    "optimal_rounded_feedback": "With the gain as it is rounded here the loop is asymptotically stable, too.",
+    "optimal_rounded_filter": "With the gain as it is rounded here the error is asymptotically stable, too.",
     "optimal_filter_enclosed": "The stabilizing solution of Riccati's equation, and the gain that follows from it, round to these to the last of their places, of {radius}: Newton's map sends the box of this size around them into itself, and all of its loops are stable§.",
     "optimal_open": "No closed form of the solution is found here for all values of the parameters; with numbers in their places its digits can be given.",
     "optimal_uncontrollable_modes": "No input moves the modes with the polynomial",
@@ -53,6 +55,8 @@ QUESTIONS: dict[str, str] = {
 }
 
 ASSERTS: dict[str, tuple[str, ...]] = {
+    "optimal_rounded_feedback": ("stable",),
+    "optimal_rounded_filter": ("stable",),
     "optimal_feedback_found": ("stable",),
     "optimal_filter_found": ("stable",),
     "optimal_not_stabilizable": ("unstable",),
@@ -67,6 +71,8 @@ DEMANDS: dict[str, str] = {
     "optimal_feedback_enclosed": "encloses A B Q_x R_u N_x P_r K_r",
     "optimal_not_stabilizable": "modes_unstable Bᵀ Aᵀ N_K X_K mu",
     "optimal_not_detectable": "modes_unstable C A N X mu",
+    "optimal_rounded_feedback": "about chi_K stable",
+    "optimal_rounded_filter": "about chi_L stable",
     "optimal_on_boundary": "on_boundary Q_N A_N N X",
     "optimal_filter_on_boundary": "on_boundary Q_x Aᵀ N_K X_K",
     "optimal_filter_enclosed": "encloses Aᵀ Cᵀ Q_x V_n N_x P_r L_rᵀ",

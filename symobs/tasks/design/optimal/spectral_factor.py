@@ -24,7 +24,6 @@ if TYPE_CHECKING:
 
     from symobs.exact import Matrix
 
-_NOT_NEGATIVE = {"positive", "nonnegative", "zero"}
 #: Primes whose roots are tried where a factor has none over its own field, and how many of them at once.
 _PRIMES, _MOST_PRIMES = (2, 3, 5, 7, 11, 13), 2
 #: Roots in roots take the radicands in turn, the outermost last.
@@ -134,24 +133,4 @@ def _root(radicand: Scalar, signs: Mapping[str, str]) -> Scalar:
     sign = sign_of(root, known)
     if sign in {"negative", "nonpositive"}:
         return -root
-    if sign not in _NOT_NEGATIVE and not _is_not_negative(root, known):
-        root = generator("sqrt", radicand)
-    return root
-
-
-def _is_not_negative(value: Scalar, signs: Mapping[str, str]) -> bool:
-    """Return whether each factor that may have any sign is a square completed: α x² + β x + γ with 4αγ − β² ≥ 0 and α > 0."""
-    unit, factors = value.factors()
-    return sign_of(unit, {}) == "positive" and all(
-        power % 2 == 0 or sign_of(factor, signs) in _NOT_NEGATIVE or _is_square_completed(factor, signs)
-        for factor, power in factors
-    )
-
-
-def _is_square_completed(factor: Scalar, signs: Mapping[str, str]) -> bool:
-    for name in sorted(factor.names):
-        if factor.degree(name) == 2:
-            lead, linear, constant = factor.coefficients(name)
-            if sign_of(lead, signs) == "positive" and sign_of(4 * lead * constant - linear**2, signs) in _NOT_NEGATIVE:
-                return True
-    return False
+    return root if sign in {"positive", "nonnegative", "zero"} else generator("sqrt", radicand)
