@@ -600,8 +600,8 @@ def _judged(task: _Task, part: Judged) -> Judged:
     if not exists(task.right, name) and name in task.right.decimals:  # there is no closed form: digits answer
         try:
             return replace(part, verdict="right", hints=("rounded",)) if _met(task, task.right, part, given) else part
-        except SymobsError as error:
-            return _unreadable(part, error)
+        except SymobsError as unread:
+            return _unreadable(part, unread)
     if not exists(task.right, name):
         return replace(part, reason=f"there is no {part.letter} here")
     if (task.view.task, name) == ("stability_region", "stable_if"):

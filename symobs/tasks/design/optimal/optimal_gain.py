@@ -35,8 +35,8 @@ from symobs.proof.certificate.pointwise import never_together_zero
 from symobs.proof.derivation.builder import relation
 from symobs.proof.derivation.facts import leading_minors
 from symobs.stability.criteria.stability import monic, on_boundary, stability
-from symobs.system.conditions import Condition, sign_of, vanishing_factors
-from symobs.tasks.analysis.strata.strata import places, solved
+from symobs.system.conditions import Condition, real_consequences, sign_of, vanishing_factors
+from symobs.tasks.analysis.strata.strata import common_places, places, solved
 from symobs.tasks.design.optimal.spectral_factor import NoFactor, reduced, stable_factors, with_signs
 from symobs.tasks.result import Case, Result
 
@@ -48,6 +48,7 @@ if TYPE_CHECKING:
     from symobs.formula.tree import Relation
     from symobs.formula.tree.term import Term
     from symobs.system import StateSpace
+    from symobs.tasks.analysis.strata.strata import Place
 
 #: With more states the proof of the digits takes seconds; with parameters no square roots write the factor in general.
 MOST_STATES, MOST_WITH_PARAMETERS = 12, 2
@@ -240,13 +241,13 @@ class OptimalGain(Result):
         if plant.order == 2:  # p₁² is the sum of a² and the others, but for what is positive where b < 0
             a, b = chi[1:]
             found.append(a**2 + (2 * b - a**2 - c_2) + c_0 - b**2)
+        beside: list[Scalar] = []
         if regulator.B.shape[1] == 1:
             determinant = Matrix.block([[regulator.B, regulator.A @ regulator.B][: plant.order]]).determinant()
-            if not determinant.is_zero:
-                beside = [apart_from_zero(determinant)]
-                found = [value for value in found if not never_together_zero([value.numerator], beside, signs)]
-                found.append(determinant)
-        return tuple(plant.simplified(value) for value in found)
+            beside += [] if determinant.is_zero else [determinant]
+        known = [apart_from_zero(value) for value in beside]
+        found = [value for value in found if not never_together_zero([value.numerator], known, signs)]
+        return tuple(plant.simplified(value) for value in (*found, *beside))
 
     @cached_property
     def domain(self) -> tuple[Condition, ...]:
@@ -272,11 +273,18 @@ class OptimalGain(Result):
 
         def on(there: StateSpace, values: dict[str, Scalar]) -> Result | None:
             weights = {name: weight.substitute(values) for name, weight in self.weights.items()}
+            there_signs, weight = there.symbols.signs, self.regulator_of(there, weights).uncrossed[2]
+            if there.equations or not is_semidefinite(weight, there_signs):  # ranks and signs are not known there
+                return None
             found = type(self).of(there, weights, self.method)
             return None if found.answer["question"] is not None else found
 
-        found = [c.expression for c in self.holds_where if c.kind != "domain"]
-        return solved(self.plant, places(self.plant, found), on)  # type: ignore[arg-type]
+        asked: list[Place] = []
+        for condition in self.holds_where:
+            if condition.kind != "domain":
+                each = real_consequences(condition.expression, self.plant.symbols.signs)
+                asked += common_places(self.plant, each) if each else places(self.plant, [condition.expression])
+        return solved(self.plant, {frozenset(place.when): place for place in asked}.values(), on)
 
     @property
     def hidden_modes(self) -> tuple[Root, ...]:

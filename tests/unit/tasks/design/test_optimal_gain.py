@@ -282,3 +282,14 @@ def test_decimals_answer_where_there_is_no_closed_form() -> None:
     problem = (ROOT / "worked_examples" / "lqr_third_order.toml").read_text(encoding="utf-8")
     given = {"K = [0.0143 0.1107 0.0676]": "right", "K = [0.0143 0.1108 0.0676]": "wrong", "K = [1 1 1]": "wrong"}
     assert {answer: symobs.check(problem, answer).verdict for answer in given} == given
+
+
+def test_a_condition_that_never_fails_is_not_told_and_sums_fail_together() -> None:
+    both: Any = symobs.lqr(symobs.StateSpace("[a 0; 0 b]", "[1 0; 0 1]"), Q="1", R="1")
+    assert (both.verdict, both.conditions, both.cases) == ("yes", (), ())
+    signs = {"k": "positive", "m": "positive", "c": "nonnegative", "q": "nonnegative", "r": "positive"}
+    damped: Any = symobs.lqr(symobs.StateSpace("[0 1; -k/m -c/m]", "[0; 1/m]", symbols=signs), Q="[0 0; 0 q]", R="r")
+    assert [str(condition) for condition in damped.conditions] == ["Ne(c**2*r + q, 0)"]
+    (case,) = damped.cases
+    assert ({str(each) for each in case.when}, case.result.verdict) == ({"Eq(c, 0)", "Eq(q, 0)"}, "no")
+    damped.to("text")
