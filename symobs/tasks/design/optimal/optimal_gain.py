@@ -29,16 +29,17 @@ from symobs.exact.floating.riccati import enclosed_solution, hamiltonian
 from symobs.formula.tree import Environment
 from symobs.formula.tree.term import identity, letter
 from symobs.ground.dataclass import dataclass
-from symobs.ground.errors import CertificateRejected, InputError
+from symobs.ground.errors import CertificateRejected, InputError, Undecided
 from symobs.proof.certificate.claims import Claim, Statement
 from symobs.proof.certificate.pointwise import never_together_zero
 from symobs.proof.derivation.builder import relation
 from symobs.proof.derivation.facts import leading_minors
 from symobs.stability.criteria.stability import monic, on_boundary, stability
 from symobs.system.conditions import Condition, real_consequences, sign_of, vanishing_factors
+from symobs.system.specification import over_common_data, read_symmetric
 from symobs.tasks.analysis.strata.strata import common_places, places, solved
 from symobs.tasks.design.optimal.spectral_factor import NoFactor, reduced, stable_factors, with_signs
-from symobs.tasks.result import Case, Result
+from symobs.tasks.result import Case, Result, choose
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping
@@ -81,19 +82,19 @@ class OptimalGain(Result):
         """Return the regulator that this problem is or is dual to."""
         raise NotImplementedError
 
-    @staticmethod
-    def turned(matrix: Matrix) -> Matrix:
+    @classmethod
+    def turned(cls, matrix: Matrix) -> Matrix:
         """Return a gain of the regulator as this task's gain, and the other way round."""
-        raise NotImplementedError
+        return matrix if cls.letter == "K" else matrix.T
+
+    @classmethod
+    def loop(cls, of: Callable[[str], Term]) -> Term:
+        """Return A − BK or A − LC."""
+        return of("A") - (of("B") @ of("K") if cls.letter == "K" else of("L") @ of("C"))
 
     @staticmethod
     def equations(of: Callable[[str], Term], *, discrete: bool, cross: bool = True) -> tuple[tuple[Relation, str], ...]:
         """Return Riccati's equation and that of the gain, with their texts."""
-        raise NotImplementedError
-
-    @staticmethod
-    def loop(of: Callable[[str], Term]) -> Term:
-        """Return A − BK or A − LC."""
         raise NotImplementedError
 
     # -- construction ------------------------------------------------------------------------------------------------
@@ -343,14 +344,39 @@ def _sums_of_minors(matrix: Matrix) -> tuple[Scalar, ...]:
     return (-matrix).characteristic_polynomial("s").coefficients("s")
 
 
-def require_weights(regulator: Regulator, state: str, of_input: str, signs: Mapping[str, str]) -> None:
+def design_optimal(
+    kind: type[OptimalGain],
+    plant: StateSpace,
+    given: Mapping[str, tuple[object, int]],
+    further: tuple[str, Matrix],
+    method: str,
+) -> Result:
+    """Return the design for weights that are given, with their sizes, and one more matrix.
+
+    Raises `InputError` where a weight is missing or has not its sign, and `Undecided` for too many states.
+    """
+    for name, (value, size) in given.items():
+        if value is None:
+            message = f"the weight {name} is missing"
+            raise InputError(message, where=f"specification.{name}", repair=f"give a symmetric {size}×{size} matrix")
+    if plant.order > MOST_STATES:
+        raise Undecided(f"{kind.task} is undecided: {plant.order} states are too many")
+    read = [read_symmetric(value, plant, name, size) for name, (value, size) in given.items()]
+    plant, found = over_common_data(plant, *read, further[1])
+    weights = dict(zip((*given, further[0]), found, strict=True))
+    _require_signs(kind.regulator_of(plant, weights), weights, plant.symbols.signs)
+    return choose(kind.task, method, "riccati").solve(plant, weights).asked(method)
+
+
+def _require_signs(regulator: Regulator, weights: Mapping[str, Matrix], signs: Mapping[str, str]) -> None:
     """Refuse weights of the input that are not positive definite, of the state that are not positive semidefinite."""
+    state, of_input, *_ = weights
     checks = (
-        (of_input, regulator.R, leading_minors(regulator.R), "positive definite", {"positive"}),
+        (of_input, weights[of_input], leading_minors(weights[of_input]), "positive definite", {"positive"}),
         (
             state,
-            regulator.Q,
-            _sums_of_minors(regulator.Q),
+            weights[state],
+            _sums_of_minors(weights[state]),
             "positive semidefinite",
             {"positive", "nonnegative", "zero"},
         ),

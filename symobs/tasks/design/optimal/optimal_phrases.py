@@ -93,7 +93,7 @@ RESTS_ON: dict[str, str] = {
 
 THEOREMS: dict[str, str] = {
     "root_square": "kalman1964; anderson1990, ch. 5",
-    "hamiltonian_modes": "kucera1972; pappas1980",
+    "hamiltonian_modes": "kucera1972",
     "regulator_optimal": "kalman1960b; kucera1972",
     "filter_optimal": "kalman1961; kucera1972",
     "regulator_margins": "safonov1977; anderson1990, ch. 5",
