@@ -137,7 +137,7 @@ def _tell_exact(page: Builder, result: OptimalGain) -> None:
         page.assume("optimal_provided", *held)
     A, B, Q, R = _problem(page, result)
     if result.regulator.B.shape[1] == 1 and not plant.is_discrete:
-        _tell_root_square(page, A, B, Q, R)
+        _tell_root_square(page, A, B, Q, R, "_dual" if letter == "L" else "")
     else:
         _tell_pencil(page, A, B, Q, R)
     page.define("p_s", page.value(answer["polynomial"]), say="optimal_factor", closing=False)
@@ -171,11 +171,11 @@ def _pencil(page: Builder, result: OptimalGain, gain: Term) -> Term:
     return page.s @ page.identity(page.plant.order) - page["A"] + moved
 
 
-def _tell_root_square(page: Builder, A: Term, B: Term, Q: Term, R: Term) -> None:
+def _tell_root_square(page: Builder, A: Term, B: Term, Q: Term, R: Term, side: str) -> None:
     """Write p(s) p(−s) = χ(s) χ(−s) + R⁻¹ v(−s)ᵀ Q v(s) with v(s) = adj(sI − A) B."""
     one = page.identity(page.plant.order)
     forward, backward = page.s @ one - A, -(page.s @ one) - A
-    page.define("chi_p", forward.apply("det"), say="optimal_open_loop")
+    page.define("chi_p", forward.apply("det"), say=f"optimal_open_loop{side}")
     page.define("chi_m", backward.apply("det"))
     page.define("v_s", forward.apply("adj") @ B)
     page.define("v_m", backward.apply("adj") @ B)
