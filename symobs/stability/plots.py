@@ -552,7 +552,19 @@ def pole_map(region: LineRegion, polynomial: Scalar, boundary: StabilityBoundary
     low, high = _way(region)
     if _runs_off(polynomial, name, low, high):
         return None
-    nodes = _locus_nodes(polynomial, variable, name, low, high)
+    margin = None if boundary.discrete else boundary.margin.fraction()
+    radius = boundary.radius.fraction() if boundary.discrete else None
+    return root_locus(polynomial, variable, name, (low, high), margin, radius)
+
+
+def root_locus(
+    polynomial: Scalar, variable: str, name: str, values: Interval, margin: Fraction | None, radius: Fraction | None
+) -> PoleMap | None:
+    """Return the paths of the roots while a parameter runs through an interval, None where the window is too long.
+
+    In discrete time there is a radius of stability.
+    """
+    nodes = _locus_nodes(polynomial, variable, name, *values)
     rows = [_roots(polynomial, variable, name, value) for value in nodes]
     paths = [[root] for root in rows[0]]
     for row in rows[1:]:
@@ -563,15 +575,13 @@ def pole_map(region: LineRegion, polynomial: Scalar, boundary: StabilityBoundary
     sides = [end - begin for begin, end in window]
     if max(sides) > _LONGEST * min(sides):
         return None
-    margin = None if boundary.discrete else boundary.margin.fraction()
-    radius = boundary.radius.fraction() if boundary.discrete else None
     return PoleMap(
         variable,
         name,
         (nodes[0], nodes[-1]),
         tuple(tuple(path) for path in paths),
         window,
-        boundary.discrete,
+        radius is not None,
         margin,
         radius,
         tuple(tuple(nodes) for _ in paths),

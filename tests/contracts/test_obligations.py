@@ -30,6 +30,8 @@ DEMANDED = {
     "about F unstable": "minimal_unstable",
     "about F unstable, loop stable": "minimal_unstable_alone",
     "about P": "no_stable_compensator",
+    "about chi_K stable": "optimal_rounded_feedback",
+    "about chi_L stable": "optimal_rounded_filter",
     "about P_l positive_definite": "lyapunov_definite lyapunov_definite_if",
     "about phi_c": "integral_rest_stable regulation_reached",
     "about phi_c unstable marginal, continuous_time": "drifts_state_feedback_continuous",
@@ -278,7 +280,8 @@ ASSERTED = {
     """,
     "stable": """
         case_everywhere gramian_infinite_controllability gramian_infinite_observability only_stable
-        margins_stable optimal_feedback_found optimal_filter_found regulation_reached regulation_reached_estimated
+        margins_stable optimal_feedback_found optimal_filter_found optimal_rounded_feedback optimal_rounded_filter
+        regulation_reached regulation_reached_estimated
         stable_continuous stable_discrete
     """,
     "stable strictly_proper": "compensator_stable compensator_stable_low minimal_stable",

@@ -96,7 +96,7 @@ OF_THE_PLANT = ("A", "B", "C", "D")
 
 def asked_of(result: Result) -> tuple[str, ...]:
     """Return the fields that a task asks for; the verdict where there is nothing else to be found."""
-    there = tuple(name for name in result.answered_by if exists(result, name))
+    there = tuple(name for name in result.answered_by if exists(result, name) or name in result.decimals)
     return there or ("verdict",)
 
 
@@ -597,6 +597,11 @@ def _with_gain_behind(task: _Task, part: Judged) -> Result:
 def _judged(task: _Task, part: Judged) -> Judged:
     """Return the verdict on a value: against the right gains, then against the student's own."""
     name, given = part.name, part.given
+    if not exists(task.right, name) and name in task.right.decimals:  # there is no closed form: digits answer
+        try:
+            return replace(part, verdict="right", hints=("rounded",)) if _met(task, task.right, part, given) else part
+        except SymobsError as unread:
+            return _unreadable(part, unread)
     if not exists(task.right, name):
         return replace(part, reason=f"there is no {part.letter} here")
     if (task.view.task, name) == ("stability_region", "stable_if"):

@@ -48,14 +48,14 @@ def _half_unit(text: str) -> Fraction:
 
 
 def enclosed_solution(regulator: Regulator) -> Enclosure | None:
-    """Return certain digits of P and K; None where no precision that is tried suffices."""
+    """Return digits of P and K that can be proved; None where no precision that is tried suffices."""
     for bits in _BITS:
         with Precision(bits):
             try:
                 found = _found(regulator, bits)
             except ZeroDivisionError:
                 continue
-        if found is not None and found.is_proved(regulator):
+        if found is not None:
             return found
     return None
 
@@ -83,16 +83,19 @@ def _found(regulator: Regulator, bits: int) -> Enclosure | None:
     )
 
 
+def hamiltonian(regulator: Regulator) -> Matrix:
+    """Return [A −S; −Q −Aᵀ]; in discrete time (M + L)⁻¹(M − L), M = [A 0; −Q I], L = [I S; 0 Aᵀ], in w = (z − 1)/(z + 1)."""
+    A, S, Q = regulator.uncrossed
+    if not regulator.discrete:
+        return Matrix.block([[A, -S], [-Q, -A.T]])
+    zero, one = Matrix.zeros(*A.shape), Matrix.identity(A.shape[0])
+    M, L = Matrix.block([[A, zero], [-Q, one]]), Matrix.block([[one, S], [zero, A.T]])
+    return (M + L).solve(M - L).normal()
+
+
 def _start(regulator: Regulator) -> arb_mat:
     """Return an approximate solution: [I; P] spans the stable subspace, on which the sign of the matrix is −1."""
-    A, S, Q = (balls(part) for part in regulator.uncrossed)
-    n = A.nrows()
-    one, zero = _identity(n), arb_mat(n, n)
-    if regulator.discrete:  # (z − 1)/(z + 1) moves the unit disc to the left half-plane
-        M, L = _block(A, zero, -1 * Q, one), _block(one, S, zero, A.transpose())
-        Z = (M + L).mid().solve((M - L).mid()).mid()
-    else:
-        Z = _block(A, -1 * S, -1 * Q, -1 * A.transpose()).mid()
+    n, Z = regulator.A.shape[0], balls(hamiltonian(regulator)).mid()
     for _ in range(_STEPS):
         inverse = Z.inv().mid()
         scale = arb(abs(Z.det()).mid()) ** (arb(-1) / (2 * n))
@@ -100,21 +103,11 @@ def _start(regulator: Regulator) -> arb_mat:
         change, Z = _largest(moved - Z), moved
         if change < arb(2) ** -40 * _largest(Z):
             break
-    sign = Z + _identity(2 * n)
+    sign = Z + balls(Matrix.identity(2 * n))
     right = arb_mat([[-sign[i, j] for j in range(n)] for i in range(2 * n)])
     left = arb_mat([[sign[i, n + j] for j in range(n)] for i in range(2 * n)])
     normal = left.transpose()
     return (normal * left).mid().solve((normal * right).mid()).mid()
-
-
-def _identity(order: int) -> arb_mat:
-    return arb_mat([[int(i == j) for j in range(order)] for i in range(order)])
-
-
-def _block(a: arb_mat, b: arb_mat, c: arb_mat, d: arb_mat) -> arb_mat:
-    n = a.nrows()
-    upper = [[a[i, j] for j in range(n)] + [b[i, j] for j in range(n)] for i in range(n)]
-    return arb_mat(upper + [[c[i, j] for j in range(n)] + [d[i, j] for j in range(n)] for i in range(n)])
 
 
 def _symmetric(matrix: arb_mat) -> arb_mat:

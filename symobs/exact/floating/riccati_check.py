@@ -114,7 +114,7 @@ def _solved(loop: arb_mat, right: arb_mat, *, discrete: bool) -> arb_mat:
 
     both = [[(coefficient(p, q, i, j), coefficient(p, q, j, i)) for i, j in places] for p, q in places]
     table = [[a + b if i != j else a for (a, b), (i, j) in zip(row, places, strict=True)] for row in both]
-    entries = arb_mat(table).solve(arb_mat([[right[place]] for place in places]))
+    entries = arb_mat(table).inv() * arb_mat([[right[place]] for place in places])
     at = [[places.index((min(i, j), max(i, j))) for j in range(order)] for i in range(order)]
     return arb_mat([[entries[k, 0] for k in row] for row in at])
 

@@ -92,10 +92,10 @@ def of_determinant(gramian: LetterForm) -> dict[str, LetterForm]:
 
 
 #: The letters whose meaning changes its sign with the control law, and those with the observer matrix.
-FEEDBACK_GAINS = frozenset({"K", "K_1", "K_2", "K_0", "K_G", "K_y"})
+FEEDBACK_GAINS = frozenset({"K", "K_1", "K_2", "K_0", "K_G", "K_y", "K_r"})
 
 
-OBSERVER_GAINS = frozenset({"L", "L_0", "L_G"})
+OBSERVER_GAINS = frozenset({"L", "L_0", "L_G", "L_r"})
 
 
 #: Letters that a page has only where it speaks of an observer whose state is no estimate of x, of reduced order mostly.
@@ -153,7 +153,8 @@ class Convention:
         estimate = written.get("x_hat", "")
         numbered = estimate if estimate[-1:].isdigit() else f"{estimate}_"
         components = {name: f"{numbered}{name[-1]}" for name in ("x_hat_1", "x_hat_2") if estimate}
-        return {**components, **written}
+        digits = {f"{name}_r": f"{written[name]}_hat" for name in ("K", "L") if name in written}
+        return {**components, **digits, **written}
 
     @property
     def law(self) -> str:

@@ -249,15 +249,6 @@ _article(
     "51–60",
 )
 _article(
-    "pappas1980",
-    "T. Pappas, A. J. Laub and N. R. Sandell",
-    "On the numerical solution of the discrete-time algebraic Riccati equation",
-    _TAC,
-    "25",
-    "1980",
-    "631–641",
-)
-_article(
     "safonov1977",
     "M. G. Safonov and M. Athans",
     "Gain and phase margin for multiloop LQG regulators",

@@ -592,39 +592,38 @@ def _is_lyapunov(said: Said, P: str, Q: str, of: str) -> bool:
 
 
 def _is_optimal(said: Said, of: str, by: str, Q: str, R: str, N: str, P: str, K: str, chi: str) -> bool:
-    """Return whether P and K solve Riccati's equation for weights of the right signs, and χ, that of the loop, is stable."""
+    """Return whether P solves Riccati's equation, weights have their signs, and χ, said to be stable, is of the loop with K.
+
+    In the signs of a convention K may be minus the gain: that of the result itself is held to its own letter.
+    """
     here, (a, b, q, r, n, p, k) = said.environment, map(_letter, (of, by, Q, R, N, P, K))
-    discrete, order = here.variable == "z", _sizes(P, here)[0]
+    discrete, one = here.variable == "z", Identity(_sizes(P, here)[0])
     inner = Sum((r, Product((Transpose(b), p, b)))) if discrete else r
-    coupled = Product((Transpose(b), p, a)) if discrete else Product((Transpose(b), p))
-    pencil = Sum((Product((Letter("s"), Identity(order))), Negative(a), Product((b, k))))
-    problem = Regulator(*(evaluate(each, here, Exact(here)) for each in (a, b, q, r, n)), discrete)
-    sums = (-problem.uncrossed[2]).characteristic_polynomial("s").coefficients("s")
-    signs = {sign_of(c, here.signs) for c in sums}
-    equations = (
-        (p, Transpose(p)),
-        (Sum((_left_side(here, a, p), q)), Product((Transpose(k), inner, k))),
-        (Product((inner, k)), Sum((coupled, Transpose(n)))),
-        (Letter(chi), Apply("det", pencil)),
-    )
+    coupled = Sum((Product((Transpose(b), p, a)) if discrete else Product((Transpose(b), p)), Transpose(n)))
+    data = (evaluate(each, here, Exact(here)) for each in (a, b, q, r, n))
+    problem = Regulator(*data, discrete)  # type: ignore[call-arg]
+    signs = {sign_of(c, here.signs) for c in (-problem.uncrossed[2]).characteristic_polynomial("s").coefficients("s")}
     definite = all(sign_of(minor, here.signs) == "positive" for minor in leading_minors(problem.R))
-    solves = all(_holds(here, left, "=", right) for left, right in equations)
-    return (
-        definite
-        and solves
-        and signs <= {"positive", "nonnegative", "zero"}
-        and said.subjects("stable") == [Letter(chi)]
+    solves = _holds(here, Sum((_left_side(here, a, p), q)), "=", Product((Transpose(k), inner, k)))
+    loops = (
+        _holds(here, Product((inner, gain)), "=", coupled)
+        and _holds(
+            here, Letter(chi), "=", Apply("det", Sum((Product((Letter("s"), one)), Negative(a), Product((b, gain)))))
+        )
+        for gain in (k, Negative(k))
     )
+    known = definite and signs <= {"positive", "nonnegative", "zero"} and said.subjects("stable") == [Letter(chi)]
+    return known and solves and _holds(here, p, "=", Transpose(p)) and any(loops)
 
 
 def _encloses(said: Said, *names: str) -> bool:
-    """Return whether P and K are those of the stabilising solution, rounded to the decimal places told."""
+    """Return whether P and K, or −K, are those of the stabilising solution, rounded to the decimal places told."""
     here = said.environment
     unit = as_scalar(evaluate(said.slots["radius"], here, Exact(here))).fraction()  # type: ignore[arg-type]
-    centre, K = (evaluate(_letter(name), here, Exact(here)) for name in names[-2:])
-    told = [[[(entry.fraction(), unit / 2) for entry in row] for row in matrix.rows] for matrix in (centre, K)]
-    problem = Regulator(*(evaluate(_letter(name), here, Exact(here)) for name in names[:-2]), here.variable == "z")
-    return is_proved(problem, centre, unit, told[0], told[1])
+    *data, centre, K = (evaluate(_letter(name), here, Exact(here)) for name in names)
+    told = [[[(entry.fraction(), unit / 2) for entry in row] for row in M.rows] for M in (centre, K, -K)]
+    problem = Regulator(*data, here.variable == "z")  # type: ignore[call-arg]
+    return any(is_proved(problem, centre, unit, told[0], gain) for gain in told[1:])
 
 
 def _splits(said: Said, even: str, of: str) -> bool:

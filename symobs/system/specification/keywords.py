@@ -129,7 +129,7 @@ KINDS: dict[str, dict[str, Any]] = {
         "oneOf": [{"type": "string"}, {"type": "array"}, {"type": "number"}],
     },
     "Intensity": {
-        "description": 'a symmetric matrix, as the intensity of white noise: "q" (for q I) or "[q1 0; 0 q2]"',
+        "description": 'a symmetric matrix, a weight or the intensity of white noise: "q" (for q I) or "[q1 0; 0 q2]"',
         "oneOf": [{"type": "string"}, {"type": "array"}, {"type": "number"}],
     },
 }

@@ -23,6 +23,8 @@ FEWER = {
 MORE = {"integral_action": ("",), "disturbance_observer": ("",), "output_regulation": ("observer_",)}
 #: Tasks whose gain is not one of x̄ = T x: they choose coordinates themselves.
 OWN_COORDINATES = {"reduced_order_observer", "compensator/minimal_order", "tracking"}
+#: Tasks whose weights belong to the coordinates of the states.
+WEIGHTED = {"kalman", "lqr"}
 #: Methods that answer another question than the other methods of their task.
 OTHER_QUESTIONS = {"compensator/minimal_order", "pole_advice/dominant_pair"}
 #: Which of a task's keywords for quantities, and which inputs, are asked for, and with what: not all of them go together.

@@ -82,8 +82,8 @@ def specification_of(name: str, plant: symobs.StateSpace, chance: random.Random)
         "response": {"input": ["1"] * plant.inputs},
         "margins": {"controller": chance.choice(["2", "(s + 2)/(s + 3)"]).replace("s", plant.variable)},
         "pole_advice": {"radius": "1"},
-        "lqr": {"Q": "0", "R": "1"},  # weights of their own coordinates would have to be moved
-        "kalman": {"W": "0", "V": "1"},
+        "lqr": {"Q": "1", "R": "1"},
+        "kalman": {"W": "1", "V": "1"},
         "minimum_energy_input": {"horizon": horizon, "final": ["1"] * plant.order},
         "lyapunov": {"Q": [[int(i == j) for j in range(plant.order)] for i in range(plant.order)]},
     }

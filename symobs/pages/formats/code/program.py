@@ -240,7 +240,8 @@ def chosen_answers(document: Document) -> list[Answer]:
 def _answers(result: Result, document: Document) -> list[Answer]:
     """Return what --print may name: the fields of a result, its verdict, and its conditions."""
     fields = ResultInConvention(result, document.convention).fields
-    named = {**fields, "verdict": result.verdict, "conditions": result.holds_where}
+    digits = {name: result.decimals[name] for name in result.fields if fields[name] is None and name in result.decimals}
+    named = {**fields, **digits, "verdict": result.verdict, "conditions": result.holds_where}
     return [Answer(result.task, name, value) for name, value in named.items()]
 
 

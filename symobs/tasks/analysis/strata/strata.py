@@ -49,7 +49,7 @@ if TYPE_CHECKING:
     from symobs.tasks.analysis.strata.rank_stratification import Tree
     from symobs.tasks.result import Result
 
-    Solve: TypeAlias = Callable[[StateSpace, dict[str, Scalar]], Result]
+    Solve: TypeAlias = Callable[[StateSpace, dict[str, Scalar]], Result | None]
 
 
 # The cases of a rank: the strata of a `RankTree` as plants, conditions and claims.

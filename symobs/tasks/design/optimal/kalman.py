@@ -7,13 +7,13 @@ from typing import TYPE_CHECKING, ClassVar
 from symobs.exact import Matrix
 from symobs.exact.floating.riccati_check import Regulator
 from symobs.ground.dataclass import dataclass
-from symobs.ground.errors import InputError, ShapeMismatch, Undecided
+from symobs.ground.errors import ShapeMismatch
 from symobs.proof.derivation.builder import relation
 from symobs.system import read_matrix
-from symobs.system.specification import from_list, over_common_data, read_symmetric
-from symobs.tasks.design.optimal.optimal_gain import MOST_STATES, OptimalGain, require_weights
+from symobs.system.specification import from_list
+from symobs.tasks.design.optimal.optimal_gain import OptimalGain, design_optimal
 from symobs.tasks.design.optimal.optimal_page import write_optimal
-from symobs.tasks.result import Result, choose, method, page_of, task
+from symobs.tasks.result import Result, method, page_of, task
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -43,11 +43,6 @@ class OptimalFilter(OptimalGain):
         return Regulator(m.A.T, m.C.T, (G @ weights["W"] @ G.T).normal(), weights["V"], nothing, plant.is_discrete)
 
     @staticmethod
-    def turned(matrix: Matrix) -> Matrix:
-        """Return the transpose."""
-        return matrix.T
-
-    @staticmethod
     def equations(
         of: Callable[[str], Term],
         *,
@@ -66,11 +61,6 @@ class OptimalFilter(OptimalGain):
             (relation(A @ P + P @ A.T + noise, L @ V @ L.T), "A*P + P*A.T + G*W*G.T = L*V*L.T"),
             (relation(L @ V, P @ C.T), "L*V = P*C.T"),
         )
-
-    @staticmethod
-    def loop(of: Callable[[str], Term]) -> Term:
-        """Return A − LC."""
-        return of("A") - of("L") @ of("C")
 
 
 page_of(OptimalFilter)(write_optimal)
@@ -107,27 +97,12 @@ def kalman(
     """
     plant = plant.knowing(W, V, G)
     plant.require("C", task="kalman")
-    n, p = plant.order, plant.outputs
-    entering = Matrix.identity(n) if G is None else read_entering(G, plant)
-    for name, value, size in (("W", W, entering.shape[1]), ("V", V, p)):
-        if value is None:
-            message = f"the intensity {name} is missing"
-            raise InputError(message, where=f"specification.{name}", repair=f"give a symmetric {size}×{size} matrix")
-    if n > MOST_STATES:
-        raise Undecided(f"kalman is undecided: {n} states are too many")
-    plant, (noise, of_output, entering) = over_common_data(
-        plant, read_symmetric(W, plant, "W", entering.shape[1]), read_symmetric(V, plant, "V", p), entering
-    )
-    require_weights(
-        Regulator(plant.matrices.A.T, plant.matrices.C.T, noise, of_output, Matrix.zeros(n, p), plant.is_discrete),
-        "W",
-        "V",
-        plant.symbols.signs,
-    )
-    return choose("kalman", method, "riccati").solve(plant, {"W": noise, "V": of_output, "G": entering}).asked(method)
+    entering = Matrix.identity(plant.order) if G is None else _read_entering(G, plant)
+    given = {"W": (W, entering.shape[1]), "V": (V, plant.outputs)}
+    return design_optimal(OptimalFilter, plant, given, ("G", entering), method)
 
 
-def read_entering(value: object, plant: StateSpace) -> Matrix:
+def _read_entering(value: object, plant: StateSpace) -> Matrix:
     """Return G with as many rows as there are states; raises `ShapeMismatch`."""
     found = read_matrix(from_list(value, column=True), plant.symbols.seen(value), "specification.G")
     if found.shape[0] != plant.order:

@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
 from symobs.exact import Matrix
 from symobs.exact.floating.riccati_check import Regulator
 from symobs.ground.dataclass import dataclass
-from symobs.ground.errors import InputError, Undecided
 from symobs.proof.derivation.builder import relation
-from symobs.system.specification import over_common_data, read_gain, read_symmetric
-from symobs.tasks.design.optimal.optimal_gain import MOST_STATES, OptimalGain, require_weights
+from symobs.system.specification import read_gain
+from symobs.tasks.design.optimal.optimal_gain import OptimalGain, design_optimal
 from symobs.tasks.design.optimal.optimal_page import write_optimal
-from symobs.tasks.result import Result, choose, method, page_of, task
+from symobs.tasks.result import Result, method, page_of, task
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -41,11 +40,6 @@ class OptimalFeedback(OptimalGain):
         return Regulator(m.A, m.B, weights["Q"], weights["R"], weights["N"], plant.is_discrete)
 
     @staticmethod
-    def turned(matrix: Matrix) -> Matrix:
-        """Return the gain."""
-        return matrix
-
-    @staticmethod
     def equations(of: Callable[[str], Term], *, discrete: bool, cross: bool = True) -> tuple[tuple[Relation, str], ...]:
         """Return Riccati's equation and that of K."""
         A, B, Q, R, K, P = map(of, ("A", "B", "Q", "R", "K", "P"))
@@ -61,11 +55,6 @@ class OptimalFeedback(OptimalGain):
             (relation(A.T @ P + P @ A + Q, K.T @ R @ K), "A.T*P + P*A + Q = K.T*R*K"),
             (relation(R @ K, coupled), "R*K = B.T*P + N.T"),
         )
-
-    @staticmethod
-    def loop(of: Callable[[str], Term]) -> Term:
-        """Return A − BK."""
-        return of("A") - of("B") @ of("K")
 
 
 page_of(OptimalFeedback)(write_optimal)
@@ -102,16 +91,5 @@ def lqr(
     plant = plant.knowing(Q, R, N)
     plant.require("B", task="lqr")
     n, m = plant.order, plant.inputs
-    for name, value, size in (("Q", Q, n), ("R", R, m)):
-        if value is None:
-            message = f"the weight {name} is missing"
-            raise InputError(message, where=f"specification.{name}", repair=f"give a symmetric {size}×{size} matrix")
-    if n > MOST_STATES:
-        raise Undecided(f"lqr is undecided: {n} states are too many")
     cross = Matrix.zeros(n, m) if N is None else read_gain(N, plant, "N", (n, m))
-    plant, (state, of_input, cross) = over_common_data(
-        plant, read_symmetric(Q, plant, "Q", n), read_symmetric(R, plant, "R", m), cross
-    )
-    weights: dict[str, Any] = {"Q": state, "R": of_input, "N": cross}
-    require_weights(OptimalFeedback.regulator_of(plant, weights), "Q", "R", plant.symbols.signs)
-    return choose("lqr", method, "riccati").solve(plant, weights).asked(method)
+    return design_optimal(OptimalFeedback, plant, {"Q": (Q, n), "R": (R, m)}, ("N", cross), method)

@@ -25,20 +25,21 @@ from symobs.exact import (
 )
 from symobs.exact.algebraic.enclosure import is_number
 from symobs.exact.core.generators import identities
-from symobs.exact.floating.riccati import enclosed_solution
+from symobs.exact.floating.riccati import enclosed_solution, hamiltonian
 from symobs.formula.tree import Environment
 from symobs.formula.tree.term import identity, letter
 from symobs.ground.dataclass import dataclass
-from symobs.ground.errors import CertificateRejected, InputError
+from symobs.ground.errors import CertificateRejected, InputError, Undecided
 from symobs.proof.certificate.claims import Claim, Statement
 from symobs.proof.certificate.pointwise import never_together_zero
 from symobs.proof.derivation.builder import relation
 from symobs.proof.derivation.facts import leading_minors
 from symobs.stability.criteria.stability import monic, on_boundary, stability
-from symobs.system.conditions import Condition, sign_of, vanishing_factors
-from symobs.tasks.analysis.strata.strata import places, solved
+from symobs.system.conditions import Condition, real_consequences, sign_of, vanishing_factors
+from symobs.system.specification import over_common_data, read_symmetric
+from symobs.tasks.analysis.strata.strata import common_places, places, solved
 from symobs.tasks.design.optimal.spectral_factor import NoFactor, reduced, stable_factors, with_signs
-from symobs.tasks.result import Case, Result
+from symobs.tasks.result import Case, Result, choose
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping
@@ -48,6 +49,7 @@ if TYPE_CHECKING:
     from symobs.formula.tree import Relation
     from symobs.formula.tree.term import Term
     from symobs.system import StateSpace
+    from symobs.tasks.analysis.strata.strata import Place
 
 #: With more states the proof of the digits takes seconds; with parameters no square roots write the factor in general.
 MOST_STATES, MOST_WITH_PARAMETERS = 12, 2
@@ -80,19 +82,19 @@ class OptimalGain(Result):
         """Return the regulator that this problem is or is dual to."""
         raise NotImplementedError
 
-    @staticmethod
-    def turned(matrix: Matrix) -> Matrix:
+    @classmethod
+    def turned(cls, matrix: Matrix) -> Matrix:
         """Return a gain of the regulator as this task's gain, and the other way round."""
-        raise NotImplementedError
+        return matrix if cls.letter == "K" else matrix.T
+
+    @classmethod
+    def loop(cls, of: Callable[[str], Term]) -> Term:
+        """Return A − BK or A − LC."""
+        return of("A") - (of("B") @ of("K") if cls.letter == "K" else of("L") @ of("C"))
 
     @staticmethod
     def equations(of: Callable[[str], Term], *, discrete: bool, cross: bool = True) -> tuple[tuple[Relation, str], ...]:
         """Return Riccati's equation and that of the gain, with their texts."""
-        raise NotImplementedError
-
-    @staticmethod
-    def loop(of: Callable[[str], Term]) -> Term:
-        """Return A − BK or A − LC."""
         raise NotImplementedError
 
     # -- construction ------------------------------------------------------------------------------------------------
@@ -123,6 +125,12 @@ class OptimalGain(Result):
     def regulator(self) -> Regulator:
         """The regulator that this problem is or is dual to."""
         return self.regulator_of(self.plant, self.weights)
+
+    @property
+    def data(self) -> Mapping[str, Scalar | Matrix]:
+        """The gain and P besides the plant's matrices: pages speak of these."""
+        exact = {self.letter: self.answer[self.letter], "P_x": self.answer["P"]}
+        return {**super().data, **({} if self.answer["P"] is None else exact)}
 
     # -- claims ------------------------------------------------------------------------------------------------------
 
@@ -230,17 +238,17 @@ class OptimalGain(Result):
         regulator, plant = self.regulator, self.plant
         _, *_, c_2, _, c_0 = (Scalar.of(0), *self.even.coefficients(plant.variable))
         chi = regulator.uncrossed[0].characteristic_polynomial(plant.variable).coefficients(plant.variable)
-        found, signs = [c_0], plant.symbols.signs
+        found, signs = [c_0.numerator, *([c_0.denominator] if plant.is_discrete else [])], plant.symbols.signs
         if plant.order == 2:  # p₁² is the sum of a² and the others, but for what is positive where b < 0
             a, b = chi[1:]
             found.append(a**2 + (2 * b - a**2 - c_2) + c_0 - b**2)
+        beside: list[Scalar] = []
         if regulator.B.shape[1] == 1:
             determinant = Matrix.block([[regulator.B, regulator.A @ regulator.B][: plant.order]]).determinant()
-            if not determinant.is_zero:
-                beside = [apart_from_zero(determinant)]
-                found = [value for value in found if not never_together_zero([value.numerator], beside, signs)]
-                found.append(determinant)
-        return tuple(plant.simplified(value) for value in found)
+            beside += [] if determinant.is_zero else [determinant]
+        known = [apart_from_zero(value) for value in beside]
+        found = [value for value in found if not never_together_zero([value.numerator], known, signs)]
+        return tuple(plant.simplified(value) for value in (*found, *beside))
 
     @cached_property
     def domain(self) -> tuple[Condition, ...]:
@@ -266,41 +274,39 @@ class OptimalGain(Result):
 
         def on(there: StateSpace, values: dict[str, Scalar]) -> Result | None:
             weights = {name: weight.substitute(values) for name, weight in self.weights.items()}
+            there_signs, weight = there.symbols.signs, self.regulator_of(there, weights).uncrossed[2]
+            if there.equations or not is_semidefinite(weight, there_signs):  # ranks and signs are not known there
+                return None
             found = type(self).of(there, weights, self.method)
             return None if found.answer["question"] is not None else found
 
-        found = [c.expression for c in self.holds_where if c.kind != "domain"]
-        return solved(self.plant, places(self.plant, found), on)  # type: ignore[arg-type]
+        asked: list[Place] = []
+        for condition in self.holds_where:
+            if condition.kind != "domain":
+                each = real_consequences(condition.expression, self.plant.symbols.signs)
+                asked += common_places(self.plant, each) if each else places(self.plant, [condition.expression])
+        return solved(self.plant, {frozenset(place.when): place for place in asked}.values(), on)
 
     @property
     def hidden_modes(self) -> tuple[Root, ...]:
         """The modes that are the obstacle."""
-        found = self.answer["obstacle"]
-        plant = self.plant
-        if found is None:
-            return ()
-        bad = [
-            f
-            for f, _ in found.polynomial.numerator.factors()[1]
-            if f.degree(plant.variable)
-            and stability(f, plant.variable, plant.symbols.signs, discrete=plant.is_discrete).verdict != "yes"
-        ]
-        return roots_of(product_of(bad), plant.variable)
+        found, plant = self.answer["obstacle"], self.plant
+        v, signs, discrete = plant.variable, plant.symbols.signs, plant.is_discrete
+        factors = [] if found is None else [f for f, _ in found.polynomial.numerator.factors()[1] if f.degree(v)]
+        bad = [factor for factor in factors if stability(factor, v, signs, discrete=discrete).verdict != "yes"]
+        return roots_of(product_of(bad), v) if bad else ()
 
     @cached_property
     def fields(self) -> Mapping[str, Any]:
         """The gain, P, the polynomial of the loop and its poles; the modes that are an obstacle."""
         answer, plant = self.answer, self.plant
-        factors = answer["factors"]
-        poles = None if factors is None else tuple(root for f in factors for root in roots_of(f, plant.variable))
-        if factors is not None and plant.is_discrete:
-            poles = tuple(root for f in map(self._in_disc, factors) for root in roots_of(f, plant.variable))
+        v, factors, poles = plant.variable, answer["factors"], None
+        if factors is not None:
+            moved = [to_disc(factor, v) for factor in factors] if plant.is_discrete else factors
+            poles = tuple(root for factor in moved for root in roots_of(factor, v))
         found = {self.letter: answer[self.letter], "P": answer["P"], "polynomial": answer["polynomial"], "poles": poles}
         asked = answer["question"]
         return {**found, "modes": self.hidden_modes, **({} if asked is None else {"question": asked})}
-
-    def _in_disc(self, factor: Scalar) -> Scalar:
-        return to_disc(factor, self.plant.variable)
 
     @property
     def decimals(self) -> dict[str, Any]:
@@ -338,14 +344,39 @@ def _sums_of_minors(matrix: Matrix) -> tuple[Scalar, ...]:
     return (-matrix).characteristic_polynomial("s").coefficients("s")
 
 
-def require_weights(regulator: Regulator, state: str, of_input: str, signs: Mapping[str, str]) -> None:
+def design_optimal(
+    kind: type[OptimalGain],
+    plant: StateSpace,
+    given: Mapping[str, tuple[object, int]],
+    further: tuple[str, Matrix],
+    method: str,
+) -> Result:
+    """Return the design for weights that are given, with their sizes, and one more matrix.
+
+    Raises `InputError` where a weight is missing or has not its sign, and `Undecided` for too many states.
+    """
+    for name, (value, size) in given.items():
+        if value is None:
+            message = f"the weight {name} is missing"
+            raise InputError(message, where=f"specification.{name}", repair=f"give a symmetric {size}×{size} matrix")
+    if plant.order > MOST_STATES:
+        raise Undecided(f"{kind.task} is undecided: {plant.order} states are too many")
+    read = [read_symmetric(value, plant, name, size) for name, (value, size) in given.items()]
+    plant, found = over_common_data(plant, *read, further[1])
+    weights = dict(zip((*given, further[0]), found, strict=True))
+    _require_signs(kind.regulator_of(plant, weights), weights, plant.symbols.signs)
+    return choose(kind.task, method, "riccati").solve(plant, weights).asked(method)
+
+
+def _require_signs(regulator: Regulator, weights: Mapping[str, Matrix], signs: Mapping[str, str]) -> None:
     """Refuse weights of the input that are not positive definite, of the state that are not positive semidefinite."""
+    state, of_input, *_ = weights
     checks = (
-        (of_input, regulator.R, leading_minors(regulator.R), "positive definite", {"positive"}),
+        (of_input, weights[of_input], leading_minors(weights[of_input]), "positive definite", {"positive"}),
         (
             state,
-            regulator.Q,
-            _sums_of_minors(regulator.Q),
+            weights[state],
+            _sums_of_minors(weights[state]),
             "positive semidefinite",
             {"positive", "nonnegative", "zero"},
         ),
@@ -424,23 +455,14 @@ def _at(polynomial: Scalar, variable: str, matrix: Matrix) -> Matrix:
 # -- the exact solution ------------------------------------------------------------------------------------------------
 
 
-def hamiltonian(regulator: Regulator) -> Matrix:
-    """Return [A −S; −Q −Aᵀ]; in discrete time (M + L)⁻¹(M − L), M = [A 0; −Q I], L = [I S; 0 Aᵀ], in w = (z − 1)/(z + 1)."""
-    A, S, Q = regulator.uncrossed
-    if not regulator.discrete:
-        return Matrix.block([[A, -S], [-Q, -A.T]])
-    zero, one = Matrix.zeros(*A.shape), Matrix.identity(A.shape[0])
-    M, L = Matrix.block([[A, zero], [-Q, one]]), Matrix.block([[one, S], [zero, A.T]])
-    return (M + L).solve(M - L).normal()
-
-
-def to_disc(polynomial: Scalar, variable: str) -> Scalar:
+def to_disc(polynomial: Scalar, variable: str, *, reduce: bool = True) -> Scalar:
     """Return the monic polynomial with the roots z = (1 + w)/(1 − w)."""
     z, coefficients = Scalar.symbol(variable), polynomial.coefficients(variable)
     order = len(coefficients) - 1
     moved = sum((c * (z - 1) ** (order - k) * (z + 1) ** k for k, c in enumerate(coefficients)), Scalar.of(0))
     lead, *rest = moved.coefficients(variable)
-    return from_coefficients([Scalar.of(1), *(reduced(c / lead) for c in rest)], variable)
+    quotients = [c / lead for c in rest]
+    return from_coefficients([Scalar.of(1), *(map(reduced, quotients) if reduce else quotients)], variable)
 
 
 class Solution(NamedTuple):
@@ -455,12 +477,13 @@ class Solution(NamedTuple):
 def _exact_solution(regulator: Regulator, plant: StateSpace) -> Solution:
     """Return P from p(H) [I; P] = 0; raises `NoFactor`."""
     n, variable, signs = plant.order, plant.variable, plant.symbols.signs
-    with_parameters = 0 if regulator.discrete else MOST_WITH_PARAMETERS
+    with_parameters = 1 if regulator.discrete else MOST_WITH_PARAMETERS
     if n > (_EXACT_UP_TO if _is_numeric(regulator) else with_parameters):
         time = "discrete" if regulator.discrete else "continuous"
         raise NoFactor(f"with parameters a closed form is looked for in {time} time up to order {with_parameters}")
     H = hamiltonian(regulator)
-    factors = stable_factors(H.characteristic_polynomial(variable), variable, signs)
+    in_parameters = regulator.discrete and not _is_numeric(regulator)
+    factors = stable_factors(H.characteristic_polynomial(variable), variable, signs, whole=in_parameters)
     if sum(factor.degree(variable) for factor in factors) != n:
         raise NoFactor("the polynomial has roots on the boundary")
     product = Matrix.identity(2 * n)
@@ -477,6 +500,8 @@ def _exact_solution(regulator: Regulator, plant: StateSpace) -> Solution:
     gain = _normal(_normal(weight).solve(coupled + N.T))
     loop = (A - B @ gain).characteristic_polynomial(variable)
     polynomial = from_coefficients([reduced(c) for c in loop.coefficients(variable)], variable)
+    if in_parameters:  # 1 − π = 2σ/(1 + σ) is seen to be positive, and it would not with the root in the numerator
+        polynomial = to_disc(product_of(factors), variable, reduce=False)
     if max(entry.size for entry in (*P.entries, *gain.entries)) > _MOST_TERMS and _is_numeric(regulator):
         raise NoFactor("its closed form is too long")
     return Solution(P, gain, polynomial, factors)

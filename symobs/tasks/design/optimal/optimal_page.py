@@ -11,13 +11,16 @@ from symobs.exact.core.generators import all_roots
 from symobs.exact.floating.riccati_check import is_proved
 from symobs.formula.tree import Decimals
 from symobs.formula.tree.term import block
+from symobs.proof.certificate.claims import as_scalar
 from symobs.proof.derivation.builder import predicate, relation
+from symobs.stability.criteria.stability import stability
+from symobs.stability.plots import root_locus
 from symobs.system.conditions import sign_of
 from symobs.tasks.analysis.page_parts import case_steps, given
 from symobs.tasks.design.optimal.spectral_factor import with_signs
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Mapping
 
     from symobs.formula.tree.term import Term
     from symobs.proof.derivation.builder import Builder
@@ -25,6 +28,8 @@ if TYPE_CHECKING:
 
 #: Up to this order the coefficients of the loop are compared on the page.
 _MATCHED_UP_TO = 3
+#: The roots are drawn up to this order; the factor of the weight has this name.
+_DRAWN_UP_TO, _WEIGHT = 4, "rho"
 #: Significant digits on the page, and how many more are tried.
 _DIGITS, _MORE = 6, 9
 _LETTERS = {"Q": "Q_x", "R": "R_u", "N": "N_x", "P": "P_x", "W": "W_n", "V": "V_n", "G": "G_n"}
@@ -132,10 +137,11 @@ def _tell_exact(page: Builder, result: OptimalGain) -> None:
         page.assume("optimal_provided", *held)
     A, B, Q, R = _problem(page, result)
     if result.regulator.B.shape[1] == 1 and not plant.is_discrete:
-        _tell_root_square(page, A, B, Q, R)
+        _tell_root_square(page, A, B, Q, R, "_dual" if letter == "L" else "")
     else:
         _tell_pencil(page, A, B, Q, R)
     page.define("p_s", page.value(answer["polynomial"]), say="optimal_factor", closing=False)
+    _tell_locus(page)
     if _open_radicands(page, [answer["P"], *answer["factors"]]):
         page.remark("optimal_roots_real")
     matched = result.regulator.B.shape[1] == 1 and plant.order <= _MATCHED_UP_TO and _is_controllable(result)
@@ -165,16 +171,30 @@ def _pencil(page: Builder, result: OptimalGain, gain: Term) -> Term:
     return page.s @ page.identity(page.plant.order) - page["A"] + moved
 
 
-def _tell_root_square(page: Builder, A: Term, B: Term, Q: Term, R: Term) -> None:
+def _tell_root_square(page: Builder, A: Term, B: Term, Q: Term, R: Term, side: str) -> None:
     """Write p(s) p(−s) = χ(s) χ(−s) + R⁻¹ v(−s)ᵀ Q v(s) with v(s) = adj(sI − A) B."""
     one = page.identity(page.plant.order)
     forward, backward = page.s @ one - A, -(page.s @ one) - A
-    page.define("chi_p", forward.apply("det"), say="optimal_open_loop")
+    page.define("chi_p", forward.apply("det"), say=f"optimal_open_loop{side}")
     page.define("chi_m", backward.apply("det"))
     page.define("v_s", forward.apply("adj") @ B)
     page.define("v_m", backward.apply("adj") @ B)
     cost = R.inverse @ page["v_m"].T @ Q @ page["v_s"]
     page.define("c_even", page["chi_p"] @ page["chi_m"] + cost, say="optimal_even")
+
+
+def _tell_locus(page: Builder) -> None:
+    """Draw the roots of χ(s) χ(−s) + ρ R⁻¹ v(−s)ᵀ Q v(s) for ρ from 0 to 1, where the data are numbers."""
+    variable, values = page.plant.variable, page.environment.values
+    if "chi_m" not in values or values["c_even"].names - {variable} or page.plant.order > _DRAWN_UP_TO:
+        return
+    free = as_scalar(values["chi_p"]) * as_scalar(values["chi_m"])
+    cost = as_scalar(values["c_even"]) - free
+    moved = free + cost * Scalar.symbol(_WEIGHT)
+    picture = root_locus(moved, variable, _WEIGHT, (Fraction(0), Fraction(1)), None, None)
+    if picture is not None and not cost.is_zero:
+        grown = page["chi_p"] @ page["chi_m"] + page.value(Scalar.symbol(_WEIGHT)) @ page.value(cost)
+        page.plot(picture, grown, say="optimal_locus")
 
 
 def _tell_pencil(page: Builder, A: Term, B: Term, Q: Term, R: Term) -> None:
@@ -215,27 +235,37 @@ def _tell_matching(page: Builder, result: OptimalGain) -> None:
 
 
 def _tell_digits(page: Builder, result: OptimalGain) -> None:
-    """Write P and the gain in decimals, and how near they are."""
+    """Write P and the gain in decimals: in so many that a box of the size of their last place is mapped into itself."""
     letter, digits = result.letter, result.decimals
     tables = {f"{name}_r": [[Fraction(entry) for entry in row] for row in digits[name]] for name in ("P", letter)}
     largest = max(abs(entry) for table in tables.values() for row in table for entry in row)
     fewest = max(_DIGITS - len(str(int(largest))), 1)
-    for places in range(fewest, fewest + _MORE):  # where a coarse box is not mapped into itself, more digits are shown
-        near = {name: _rounded(table, places) for name, table in tables.items()}
-        unit = Fraction(1, 10**places)
-        P, K = near["P_r"], result.turned(near[f"{letter}_r"])
-        told = [[[(entry.fraction(), unit / 2) for entry in row] for row in table.rows] for table in (P, K)]
-        if is_proved(result.regulator, P, unit, told[0], told[1]):
-            break
+    units = (Fraction(1, 10**places) for places in range(fewest, fewest + _MORE))
+    unit = next((unit for unit in units if _is_enough(result, tables, unit)), None)
+    if unit is None:
+        page.remark("optimal_too_long")
+        return
+    near = {name: _rounded(table, unit) for name, table in tables.items()}
     shown = [relation(page.set(name, value), page.term(Decimals(value))) for name, value in near.items()]
     page.equal(*shown, say="optimal_digits", answer=True)
-    radius = Scalar.of(Fraction(1, 10**places))
     kind = "feedback" if letter == "K" else "filter"
-    page.conclude(f"optimal_{kind}_enclosed", radius=page.term(Decimals(radius)))
+    page.conclude(f"optimal_{kind}_enclosed", radius=page.term(Decimals(Scalar.of(unit))))
+    pencil, plant = _pencil(page, result, page[f"{letter}_r"]), page.plant
+    chi = page.define(f"chi_{letter}", pencil.apply("det"), silent=True)
+    found = stability(as_scalar(chi.value), plant.variable, plant.symbols.signs, discrete=plant.is_discrete)
+    if found.verdict == "yes":
+        page.conclude(f"optimal_rounded_{kind}", predicate("stable", chi))
 
 
-def _rounded(table: list[list[Fraction]], places: int) -> Matrix:
-    return Matrix.of([[Fraction(round(entry * 10**places), 10**places) for entry in row] for row in table])
+def _is_enough(result: OptimalGain, tables: Mapping[str, list[list[Fraction]]], unit: Fraction) -> bool:
+    """Return whether decimals of this last place are proved to be right."""
+    P, gain = (_rounded(table, unit) for table in tables.values())
+    told = [[[(entry.fraction(), unit / 2) for entry in row] for row in M.rows] for M in (P, result.turned(gain))]
+    return is_proved(result.regulator, P, unit, told[0], told[1])
+
+
+def _rounded(table: list[list[Fraction]], unit: Fraction) -> Matrix:
+    return Matrix.of([[round(entry / unit) * unit for entry in row] for row in table])
 
 
 # -- the obstacle ------------------------------------------------------------------------------------------------------

@@ -24,11 +24,14 @@ if TYPE_CHECKING:
 
     from symobs.exact import Matrix
 
-_NOT_NEGATIVE = {"positive", "nonnegative", "zero"}
 #: Primes whose roots are tried where a factor has none over its own field, and how many of them at once.
 _PRIMES, _MOST_PRIMES = (2, 3, 5, 7, 11, 13), 2
 #: Roots in roots take the radicands in turn, the outermost last.
 _NESTED = 3
+
+
+#: A name that no parameter has, among the signs where roots are left whole.
+_WHOLE = "whole roots"
 
 
 class NoFactor(ArithmeticError):
@@ -37,7 +40,7 @@ class NoFactor(ArithmeticError):
 
 def with_signs(signs: Mapping[str, str], *values: Scalar | Matrix) -> dict[str, str]:
     """Return the signs of the parameters, and those of the square roots in values: a root is positive where it is not 0."""
-    roots = {root.name: "positive" for value in values for root in roots_in(value)}
+    roots: dict[str, str] = {root.name: "positive" for value in values for root in roots_in(value)}
     inner = [root.argument for value in values for root in roots_in(value)]
     return {**(with_signs({}, *inner) if inner else {}), **roots, **signs}
 
@@ -51,11 +54,13 @@ def reduced(value: Scalar) -> Scalar:
     return value
 
 
-def stable_factors(even: Scalar, variable: str, signs: Mapping[str, str]) -> tuple[Scalar, ...]:
+def stable_factors(even: Scalar, variable: str, signs: Mapping[str, str], *, whole: bool = False) -> tuple[Scalar, ...]:
     """Return monic stable factors, the product of which times its mirror image is the polynomial up to a number.
 
+    With `whole` nothing is taken out of a root: then its sign is known, whatever those of the parameters.
     Raises `NoFactor`.
     """
+    signs = {**signs, _WHOLE: "real"} if whole else signs
     found: list[Scalar] = []
     s = Scalar.symbol(variable)
     waiting = [(monic(f, variable), power) for f, power in even.numerator.factors()[1] if f.degree(variable)]
@@ -63,6 +68,9 @@ def stable_factors(even: Scalar, variable: str, signs: Mapping[str, str]) -> tup
         factor, power = waiting.pop(0)
         mirror = monic(factor.substitute({variable: -s}), variable)
         if mirror == factor:
+            radicand = -factor.coefficients(variable)[-1]
+            if power % 2 == 0 and sign_of(radicand, with_signs(signs, radicand)) != "positive":  # it may be on the axis
+                raise NoFactor(f"whether roots of {factor} are on the boundary depends on the parameters")
             found += [_half(factor, variable, signs)] * power
             continue
         waiting = [(other, count) for other, count in waiting if other != mirror]
@@ -118,29 +126,11 @@ def _root(radicand: Scalar, signs: Mapping[str, str]) -> Scalar:
     known = with_signs(signs, radicand)
     if sign_of(radicand, known) == "negative":
         raise NoFactor(f"{radicand} has no real root")
+    if _WHOLE in signs:
+        return generator("sqrt", radicand)
     root = square_root(radicand)
     known = with_signs(signs, root)
     sign = sign_of(root, known)
     if sign in {"negative", "nonpositive"}:
         return -root
-    if sign not in _NOT_NEGATIVE and not _is_not_negative(root, known):
-        root = generator("sqrt", radicand)
-    return root
-
-
-def _is_not_negative(value: Scalar, signs: Mapping[str, str]) -> bool:
-    """Return whether each factor that may have any sign is a square completed: α x² + β x + γ with 4αγ − β² ≥ 0 and α > 0."""
-    unit, factors = value.factors()
-    return sign_of(unit, {}) == "positive" and all(
-        power % 2 == 0 or sign_of(factor, signs) in _NOT_NEGATIVE or _is_square_completed(factor, signs)
-        for factor, power in factors
-    )
-
-
-def _is_square_completed(factor: Scalar, signs: Mapping[str, str]) -> bool:
-    for name in sorted(factor.names):
-        if factor.degree(name) == 2:
-            lead, linear, constant = factor.coefficients(name)
-            if sign_of(lead, signs) == "positive" and sign_of(4 * lead * constant - linear**2, signs) in _NOT_NEGATIVE:
-                return True
-    return False
+    return root if sign in {"positive", "nonnegative", "zero"} else generator("sqrt", radicand)

@@ -7,7 +7,7 @@ from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
-import mpmath  # type: ignore[import-untyped]
+import mpmath
 import numpy as np
 import pytest
 import sympy
@@ -18,6 +18,7 @@ from symobs.exact.sympy_bridge.conversion import scalar_to_sympy
 from symobs.formula.expression import parse_poles
 from symobs.ground.errors import CertificateRejected, InputError
 from tests.support.algebra import seeded
+from tests.support.paths import ROOT
 
 PROBLEMS = tomllib.loads(Path(__file__).with_suffix(".toml").read_text(encoding="utf-8"))["problem"]
 
@@ -92,7 +93,7 @@ def hold(seed: int, *, digits: bool) -> None:
 
 @pytest.mark.parametrize("seed", range(20))
 def test_digits_are_those_of_scipy(seed: int) -> None:
-    hold(seed, digits=seed < 4)
+    hold(seed, digits=seed < 2)
 
 
 @pytest.mark.slow
@@ -246,6 +247,14 @@ def test_wrong_weights_are_refused(weights: dict[str, str], match: str) -> None:
         symobs.lqr(symobs.StateSpace("[0 1; 0 0]", "[0; 1]"), **weights)
 
 
+def test_intensities_of_noise_have_their_signs() -> None:
+    plant = symobs.StateSpace("[0 1; 0 0]", None, "[1 0]")
+    with pytest.raises(InputError, match="W is not positive semidefinite"):
+        symobs.kalman(plant, W="[1 0; 0 -1]", V="1", G="[1 0; 1 0]")
+    with pytest.raises(InputError, match="V is not positive definite"):
+        symobs.kalman(plant, W="1", V="0")
+
+
 def test_what_no_square_roots_write_is_undecided_with_parameters() -> None:
     plant = symobs.StateSpace("[0 1 0; 0 0 1; 0 0 a]", "[0; 0; 1]")
     result: Any = symobs.lqr(plant, Q="1", R="1")
@@ -253,3 +262,42 @@ def test_what_no_square_roots_write_is_undecided_with_parameters() -> None:
     assert "up to order 2" in result.question
     result.to("text")
     assert result.at(a=0).verdict == "yes"
+
+
+def test_a_scalar_in_discrete_time_with_four_parameters() -> None:
+    result: Any = symobs.lqr(symobs.StateSpace("[a]", "[b]", dt=1, symbols=SIGNS), Q="q", R="r")
+    assert [str(condition) for condition in result.conditions] == ["Ne(a, 0)"]
+    draw = seeded(5)
+    for _ in range(12):
+        a, b = draw.choice([-1, 1]) * draw.randint(1, 20) / 4, draw.choice([-1, 1]) * draw.randint(1, 20) / 4
+        q, r = draw.randint(1, 30) / 8, draw.randint(1, 30) / 8
+        values = {sympy.Symbol(name): sympy.Rational(value) for name, value in zip("abqr", (a, b, q, r), strict=True)}
+        expected = solve_discrete_are(*(np.array([[value]]) for value in (a, b, q, r)))[0, 0]
+        assert np.isclose(float(result.P[0, 0].subs(values)), expected, rtol=1e-8)
+    (case,) = result.cases
+    assert (case.result.K[0, 0], case.result.P[0, 0]) == (0, sympy.Symbol("q"))
+
+
+def test_a_mode_that_may_lie_on_the_boundary_is_left_open() -> None:
+    plant = symobs.StateSpace("[0 1; -k 0]", "[0; 1]", symbols={"k": "real", "r": "positive"})
+    result: Any = symobs.lqr(plant, Q="0", R="r")  # for k > 0 a hidden oscillation, for k < 0 a saddle
+    assert result.verdict == "undecided"
+    assert [result.at(k=k, r=1).verdict for k in (4, 0, -4)] == ["no", "no", "yes"]
+    assert result.at(k=-4, r=1).K.tolist() == [[8, 4]]
+
+
+def test_decimals_answer_where_there_is_no_closed_form() -> None:
+    problem = (ROOT / "worked_examples" / "lqr_third_order.toml").read_text(encoding="utf-8")
+    given = {"K = [0.0143 0.1107 0.0676]": "right", "K = [0.0143 0.1108 0.0676]": "wrong", "K = [1 1 1]": "wrong"}
+    assert {answer: symobs.check(problem, answer).verdict for answer in given} == given
+
+
+def test_a_condition_that_never_fails_is_not_told_and_sums_fail_together() -> None:
+    both: Any = symobs.lqr(symobs.StateSpace("[a 0; 0 b]", "[1 0; 0 1]"), Q="1", R="1")
+    assert (both.verdict, both.conditions, both.cases) == ("yes", (), ())
+    signs = {"k": "positive", "m": "positive", "c": "nonnegative", "q": "nonnegative", "r": "positive"}
+    damped: Any = symobs.lqr(symobs.StateSpace("[0 1; -k/m -c/m]", "[0; 1/m]", symbols=signs), Q="[0 0; 0 q]", R="r")
+    assert [str(condition) for condition in damped.conditions] == ["Ne(c**2*r + q, 0)"]
+    (case,) = damped.cases
+    assert ({str(each) for each in case.when}, case.result.verdict) == ({"Eq(c, 0)", "Eq(q, 0)"}, "no")
+    damped.to("text")
