@@ -1,0 +1,269 @@
+"""Published problems, typed as their sources print them, go through at first try, and other means confirm every answer.
+
+The rows lie in `published_problems.toml`.  Each is run as the file that a reader would type.  Its data are read here a
+second time, by SymPy's parser with a number in place of every parameter; the answer is held to them by SymPy and SciPy,
+and to what the source prints, with the digits that are printed.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+import tomllib
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import scipy.linalg
+import sympy
+
+from symobs import problem
+from symobs.ground.errors import SymobsError
+from tests.oracles.test_textbook_problems import characteristic, observability_matrix, point
+
+TABLE = tomllib.loads(Path(__file__).with_name("published_problems.toml").read_text(encoding="utf-8"))
+ROWS = TABLE["problems"]
+FILE = "task", "plant", "specification", "symbols", "values", "constants"
+MOST_FAILURES = 6
+s, z, t = sympy.symbols("s z t")
+THIRD = sympy.Rational(1, 3)
+NAMES = {name: getattr(sympy, name) for name in ("sin", "cos", "exp", "sqrt", "pi", "oo", "Rational")}
+NAMES |= {"s": s, "z": z, "t": t, "i": sympy.I, "j": sympy.I}
+
+
+def solved(row: dict[str, Any]) -> Any:
+    """The answer to a row, read as `symobs solve` reads a file."""
+    (result,) = problem.read(json.dumps({key: row[key] for key in FILE if key in row})).solve()
+    return result
+
+
+def floats(matrix: Any) -> Any:
+    return np.array(sympy.Matrix(matrix).evalf(30).tolist(), dtype=complex).real
+
+
+def close(found: Any, wanted: Any, room: float = 1e-9) -> bool:
+    return bool(np.allclose(floats(found), floats(wanted), rtol=room, atol=room * 1e-3))
+
+
+def hidden_modes(A: Any, B: Any) -> list[Any]:
+    """The eigenvalues at which [A - λI, B] loses rank."""
+    A, B = floats(A), floats(B)
+    pencils = [(e, np.hstack([A - e * np.eye(len(A)), B])) for e in np.linalg.eigvals(A)]
+    return [e for e, pencil in pencils if np.linalg.svd(pencil, compute_uv=False)[-1] < 1e-9]
+
+
+class Data:
+    """The data of a row, with the numbers of the row or of `point` in place of its parameters, and the checks."""
+
+    def __init__(self, row: dict[str, Any]) -> None:
+        self.row, self.plant, self.given = row, row.get("plant", {}), row.get("specification", {})
+        self.discrete = bool(self.plant.get("dt"))
+        self.x = z if self.discrete else s
+        fixed = row.get("values", {}) | row.get("constants", {})
+        names = [*row.get("symbols", {}), *fixed]
+        self.numbers = {name: sympy.Rational(str(fixed.get(name, point(name)))) for name in names}
+        if "transfer_function" in self.plant:  # the realisation found, if it is one
+            origin = problem.read(json.dumps({"task": row["task"], "plant": self.plant})).plant
+            self.A, self.B, self.C, self.D = (sympy.Matrix(getattr(origin, name)) for name in "ABCD")
+            wanted = self.value(self.plant["transfer_function"])
+            assert all(self.function_at(at)[0] == wanted.subs(self.x, at) for at in (2, 11, 13, 17))
+        else:
+            self.A, self.B, self.C = (self.matrix(self.plant[n]) if n in self.plant else None for n in "ABC")
+            size = self.C.rows if self.C else 0, self.B.cols if self.B else 0
+            self.D = self.matrix(self.plant["D"]) if "D" in self.plant else sympy.zeros(*size)
+
+    def value(self, typed: Any, left: Any = ()) -> Any:
+        """An expression of the table, with every decimal exact and numbers in place of all names but those `left`."""
+        text = re.sub(r"(?<![A-Za-z_])([ij])(?=\d)", r"\1*", str(typed).replace("^", "**"))
+        text = re.sub(r"(?<![\w.])(\d+\.?\d*|\.\d+)(e[-+]?\d+)?", r"Rational('\1\2')", text)
+        text = re.sub(r"\)\s*(?=[A-Za-z(])|(?<=\w)\s+(?=[A-Za-z(])", lambda gap: f"{gap[0].strip()}*", text)
+        text = re.sub(r"\b(?!(?:sin|cos|exp|sqrt|Rational)\()([A-Za-z]\w*)(?=\()", r"\1*", text)
+        names = {name: sympy.Symbol(name) for name in re.findall(r"[A-Za-z]\w*", text)} | NAMES
+        names |= {name: number for name, number in self.numbers.items() if name not in left}
+        return sympy.expand(eval(text, {"__builtins__": {}}, names))  # noqa: S307 - our own table
+
+    def matrix(self, typed: Any) -> Any:
+        rows = [re.split(r"\s*,\s*|\s+", row.strip()) for row in str(typed).strip("[] ").split(";")]
+        return sympy.Matrix([[self.value(entry) for entry in row] for row in rows])
+
+    def at(self, answer: Any) -> Any:
+        """An answer of symobs with the same numbers in place of its parameters."""
+        return answer.subs({letter: self.numbers.get(str(letter), letter) for letter in answer.free_symbols})
+
+    def polynomial(self, stem: str = "") -> Any:
+        if f"{stem}polynomial" in self.given:
+            return sympy.Poly(self.value(self.given[f"{stem}polynomial"]), self.x)
+        factors = [self.x - self.value(pole) for pole in self.given[f"{stem}poles"].split(",")]
+        return sympy.Poly(sympy.expand(sympy.prod(factors)), self.x)
+
+    def function_at(self, at: Any) -> Any:
+        return self.C * (at * sympy.eye(self.A.rows) - self.A).inv() * self.B + self.D
+
+    # -- the checks, by their names in the table
+
+    def rank(self, result: Any) -> None:
+        seen = self.row["task"] == "observability"
+        matrix = observability_matrix(self.A, self.C) if seen else observability_matrix(self.A.T, self.B.T)
+        assert (result.rank, result.verdict == "no") == (matrix.rank(), matrix.rank() < self.A.rows)
+
+    def hidden(self, result: Any) -> None:
+        seen = self.given.get("of", self.row["task"]) in {"observability", "detectability"}
+        lost = hidden_modes(*((self.A.T, self.C.T) if seen else (self.A, self.B)))
+        stable = [abs(e) < 1 - 1e-9 if self.discrete else e.real < -1e-9 for e in lost]
+        assert (result.verdict == "no") == (bool(lost) if self.row["task"] == "pbh" else not all(stable))
+
+    def poles(self, result: Any) -> None:
+        A, B = (self.A, self.B) if self.row["task"] == "state_feedback" else (self.A.T, self.C.T)
+        if result.verdict == "no":  # a mode that no gain moves, and that is not desired
+            assert any(abs(complex(self.polynomial().eval(mode))) > 1e-6 for mode in hidden_modes(A, B))
+            return
+        gain = self.at(result.K) if self.row["task"] == "state_feedback" else self.at(result.L).T
+        assert characteristic(A - B * gain, self.x) == self.polynomial()
+
+    def gains(self, result: Any) -> None:
+        L = self.matrix(self.given["L"])
+        if "K" not in self.given:
+            assert (result.A, result.B_u) == (self.A - L * self.C, self.B - L * self.D)
+            return
+        K = self.matrix(self.given["K"])
+        inner = self.A - self.B * K - L * self.C
+        assert all(result.F.subs(s, x) == (K * (x * sympy.eye(K.cols) - inner).inv() * L)[0] for x in (3, 5, 7))
+
+    def reduced(self, result: Any) -> None:
+        P = self.at(result.M).inv()[self.C.rows :, :]
+        F, G, H = (self.at(getattr(result, name)) for name in "FGH")
+        assert characteristic(F, self.x) == self.polynomial()
+        assert (P * self.A - F * P, P * self.B) == (H * self.C, G)
+
+    def loop(self, result: Any) -> None:
+        above, below = (sympy.Poly(part, self.x) for part in sympy.fraction(sympy.together(self.at(result.F))))
+        P = sympy.fraction(sympy.together(self.function_at(self.x)[0]))
+        closed = sympy.Poly(P[1], self.x) * below + sympy.Poly(P[0], self.x) * above
+        assert closed.monic() == (self.polynomial("control_") * self.polynomial("observer_")).monic()
+
+    def unit_gain(self, result: Any) -> None:
+        K = self.matrix(self.given["K"]) if "K" in self.given else self.at(result.K)
+        assert (-self.C * (self.A - self.B * K).inv() * self.B * sympy.Matrix([[result.F]]))[0] == 1
+
+    def integral(self, result: Any) -> None:
+        upper = (self.A - self.B * self.at(result.K)).row_join(self.B * self.at(result.k_I))
+        whole = upper.col_join((-self.C).row_join(sympy.zeros(self.C.rows)))
+        assert characteristic(whole, self.x) == self.polynomial()
+
+    def function(self, result: Any) -> None:
+        for at in (THIRD, 11, sympy.Rational(-7, 2)):
+            found = self.at(result.transfer_function).subs(self.x, at)
+            assert sympy.Matrix([found]) == self.function_at(at)
+
+    def realisation(self, result: Any) -> None:
+        T, A, B, C = (self.at(getattr(result, name)) for name in "TABC")
+        assert all(rest.is_zero_matrix for rest in (T * self.A - A * T, T * self.B - B, self.C - C * T))
+        last = [-c for c in characteristic(self.A, s).all_coeffs()[:0:-1]]
+        forms = {"modal": A.is_diagonal(), "controllable": list(A[-1, :]) == last, "observable": list(A[:, -1]) == last}
+        assert forms[self.given["kind"]]
+
+    def parts(self, result: Any) -> None:
+        hankel = observability_matrix(self.A, self.C) * observability_matrix(self.A.T, self.B.T).T
+        assert (result.minimal_order, sum(result.sizes.values())) == (hankel.rank(), self.A.rows)
+        assert (result.T * self.A, result.T * self.B, self.C) == (result.A * result.T, result.B, result.C * result.T)
+
+    def expm(self, result: Any) -> None:
+        assert close(self.at(result.matrix).subs(t, THIRD), scipy.linalg.expm(floats(self.A) / 3))
+
+    def response(self, result: Any) -> None:
+        x, start = self.at(result.state), self.matrix(self.given.get("initial", ", ".join("0" * self.A.rows))).T
+        forced = self.B * self.value(self.given["input"]) if "input" in self.given else sympy.zeros(*x.shape)
+        rest = x.diff(t) - self.A * x - forced
+        assert close(x.subs(t, 0), start)
+        assert all(close(rest.subs(t, at), sympy.zeros(*x.shape)) for at in (0, THIRD, 2))
+
+    def zoh(self, result: Any) -> None:
+        n, m = self.B.shape
+        whole = floats(
+            self.A.row_join(self.B).col_join(sympy.zeros(m, n + m)) * self.value(self.given["sampling_period"])
+        )
+        assert close(result.A.row_join(result.B), scipy.linalg.expm(whole)[:n])
+
+    def gramian(self, result: Any) -> None:
+        A, C = (self.A.T, self.B.T) if self.given.get("of") == "controllability" else (self.A, self.C)
+        assert (A.T * result.matrix + result.matrix * A + C.T * C).is_zero_matrix
+
+    def lyapunov(self, result: Any) -> None:
+        A, P, Q = self.A, result.P, self.matrix(self.given["Q"])
+        assert (A.T * P * A - P + Q if self.discrete else A.T * P + P * A + Q).is_zero_matrix
+        assert (result.positive_definite == "yes") == bool((np.linalg.eigvalsh(floats(P)) > 0).all())
+
+    def riccati(self, result: Any) -> None:
+        A, B, Q, R = map(floats, (self.A, self.B, *(self.matrix(self.given[name]) for name in "QR")))
+        P = (scipy.linalg.solve_discrete_are if self.discrete else scipy.linalg.solve_continuous_are)(A, B, Q, R)
+        both = (R + B.T @ P @ B, B.T @ P @ A) if self.discrete else (R, B.T @ P)
+        assert close(result.decimals["K"] if result.K is None else result.K, np.linalg.solve(*both), 1e-7)
+
+    def energy(self, result: Any) -> None:
+        steps, target = int(self.given["horizon"]), self.matrix(self.given["final"]).T
+        moves = sympy.Matrix.hstack(*(self.A ** (steps - 1 - step) * self.B for step in range(steps)))
+        u = sympy.Matrix(result.input).reshape(self.B.cols, steps).T.reshape(self.B.cols * steps, 1)
+        assert moves * u == target
+        assert result.energy == (target.T * (moves * moves.T).inv() * target)[0] == (u.T * u)[0]
+
+    def jacobian(self, result: Any) -> None:
+        names = [name.strip() for name in self.plant["states"].split(",")]
+        f = sympy.Matrix([self.value(row, names) for row in self.plant["f"].strip("[] ").split(";")])
+        around = {sympy.Symbol(name): self.value(at) for name, at in self.plant["equilibrium"].items()}
+        polynomial = f.jacobian([sympy.Symbol(name) for name in names]).subs(around).charpoly(s).as_expr()
+        assert sympy.simplify(self.at(result.polynomial) - polynomial) == 0
+
+    def hurwitz(self, result: Any) -> None:
+        free = list(self.row.get("symbols", {}))
+        polynomial = self.value(self.given["polynomial"], free)
+        for number in [sympy.Rational(n, 2) for n in (-9, -1, 1, 3, 7, 9, 31, 400, 8597, 8598, 59999, 60001)]:
+            numbers = sympy.Poly(polynomial.subs(dict.fromkeys(free, number)), s).all_coeffs()
+            stable = (np.roots(list(map(float, numbers))).real < -1e-9).all()
+            ends = [[self.value(end) for end in pair] for pair in (result.intervals if free else [])]
+            assert (result.verdict == "yes" or any(low < number < high for low, high in ends)) == stable, number
+
+    # -- what the source prints
+
+    def printed(self, result: Any) -> None:
+        for name, printed in self.row.get("printed", {}).items():
+            found = getattr(result, name, None)
+            if name == "transfer_function":
+                if found is None:  # of a sampled plant, in numbers
+                    A, B, C = map(floats, (result.A, result.B, result.C))
+                    found = sympy.Matrix(C @ np.linalg.solve(3 * np.eye(len(A)) - A, B))
+                wanted = [[self.value(part).subs({s: 3, z: 3})] for part in printed.strip("[]").split(";")]
+                plain = sympy.Matrix([self.at(found).subs(self.x, 3)])
+                assert close(plain, wanted, float(self.row.get("tolerance", 1e-12)))
+            elif not isinstance(printed, (str, list)) or name in {"verdict", "positive_definite"}:
+                assert found == printed
+            else:
+                found = self.A - self.B * result.K - result.L * self.C if name == "compensator" else found
+                found = result.decimals[name] if found is None else found
+                texts = re.findall(r"[^\s;\[\],']+", str(printed))
+                flat = list(found) if hasattr(found, "shape") else re.findall(r"[^\s()\[\],']+", str(found))
+                assert all(self.rounds_to(*pair) for pair in zip(texts, flat, strict=True)), (name, found)
+
+    def rounds_to(self, printed: str, answer: Any) -> bool:
+        found = self.at(self.value(answer) if isinstance(answer, str) else answer).subs(t, THIRD)
+        wanted, digits = self.value(printed).subs(t, THIRD), re.fullmatch(r"-?\d*\.(\d+)(?:e(-?\d+))?", printed)
+        unit = 10.0 ** (int(digits[2] or 0) - len(digits[1])) if digits else 0.0
+        room = max(unit / 2, float(self.row.get("tolerance", 0)), 1e-13 * abs(sympy.N(found)))
+        return bool(found == wanted or abs(sympy.N(wanted - found)) <= room)
+
+
+@pytest.mark.parametrize("row", ROWS, ids=lambda row: f"{row['source']}, {row['name']}, {row['task']}")
+def test_a_published_problem_goes_through_at_first_try(row: dict[str, Any]) -> None:
+    message = row.get("first_try", row.get("refused"))
+    if message is not None:
+        with pytest.raises(SymobsError, match=re.escape(message)):
+            solved(row)
+        return
+    result, data = solved(row), Data(row)
+    getattr(data, row["check"])(result)
+    data.printed(result)
+
+
+def test_few_first_tries_fail_and_every_source_is_named() -> None:
+    assert sum("first_try" in row for row in ROWS) <= MOST_FAILURES
+    assert {row["source"] for row in ROWS} == set(TABLE["sources"])
