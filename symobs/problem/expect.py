@@ -384,7 +384,8 @@ def _held_against(result: Answered, expected: Mapping[str, tuple[Any, str]], err
 
 def _with_member(result: Answered, name: str, entry: Any, where: str) -> Answered:
     """Return the result with the expected gain of its family, or value of what many meet, else the result itself."""
-    answer, kind = result.answer[name], getattr(result, "result", result)
+    kind: Any = getattr(result, "result", result)
+    answer = result.answer[name]
     if not isinstance(answer, Matrix) or (result.fields.get("family") is None and name not in kind.claimed):
         return result
     try:

@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-import scipy.linalg
+import scipy.linalg  # type: ignore[import-untyped]
 import sympy
 
 from symobs import problem
