@@ -151,7 +151,7 @@ class Data:
             assert (result.minimal_order, sum(result.sizes.values())) == (hankel.rank(), self.A.rows)
             return
         last = [-c for c in characteristic(self.A, s).all_coeffs()[:0:-1]]
-        forms = {"modal": A.is_diagonal(), "controllable": list(A[-1, :]) == last, "observable": list(A[:, -1]) == last}
+        forms = {"controllable": list(A[-1, :]) == last, "observable": list(A[:, -1]) == last}
         assert forms[self.given["kind"]]
 
     def expm(self, result: Any) -> None:
