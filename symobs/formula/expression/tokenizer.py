@@ -426,7 +426,9 @@ class Tokeniser:
 
     def _unknown(self, name: str, at: int, *, called: bool) -> InputError:
         declared, nearest = self.scope.declared(), self.scope.nearest(name, called=called)
+        pairs = [(name[:i], name[i:]) for i in range(1, len(name)) if {name[:i], name[i:]} <= {*declared}]
         question = f'did you mean "{nearest}"? ' if nearest else ""
+        question = f"write {'*'.join(pairs[0])} for the product; " if pairs else question
         declare = f'add {name} = "real" to [symbols], or --symbol {name}=real to a command'
         unit = self.scope.unit_first(name)
         if unit:
