@@ -551,13 +551,14 @@ def _encloses(said: Said, *names: str) -> bool:
 
 
 def _splits(said: Said, even: str, of: str) -> bool:
-    """Return whether a polynomial is that of the stable p times its mirror image, up to a number."""
+    """Return whether a polynomial is that of the stable monic p times its mirror image, up to a number."""
     here, v = said.environment, said.environment.variable
     whole, p = (as_scalar(here.values[name]) for name in (even, of))
-    s = Scalar.symbol(v)
+    s, is_monic = Scalar.symbol(v), p.coefficients(v)[0].is_one
     product = p * (p.substitute({v: 1 / s}) * s ** p.degree(v) if v == "z" else p.substitute({v: -s}))
     number = whole.coefficients(v)[0] / product.coefficients(v)[0]
-    return _holds(here, Letter(even), "=", Literal(number * product)) and _is(here, "stable", Letter(of))
+    same = _holds(here, Letter(even), "=", Literal(number * product))
+    return is_monic and same and _is(here, "stable", Letter(of))
 
 
 def _is_on_boundary(said: Said, row: str, of: str, N: str, X: str) -> bool:
