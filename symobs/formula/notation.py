@@ -137,6 +137,7 @@ LETTERS: dict[str, LetterForm] = {
     "v_m": LetterForm("v(-{v})", "v(-{v})", "numerators at the mirror image"),
     "chi_m": LetterForm(r"\chi(-{v})", "χ(-{v})", "characteristic polynomial at the mirror image"),
     "c_even": LetterForm("c({v})", "c({v})", "polynomial of the optimal loop times its mirror image"),
+    "c_rho": LetterForm(r"c_\rho({v})", "c_ρ({v})", "the same polynomial with the weight multiplied by a factor"),
     "p_s": LetterForm("p({v})", "p({v})", "polynomial of the optimal loop"),
     "H_m": LetterForm("H", "H", "Hamiltonian matrix"),
     "P_r": LetterForm(r"\hat P", "P̂", "digits of the solution of Riccati's equation"),

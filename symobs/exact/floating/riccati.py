@@ -28,6 +28,10 @@ _BITS, _DIGITS = (128, 256, 512, 1024), 15
 _STEPS = 60
 
 
+class Uncertain(ArithmeticError):
+    """An enclosure is too wide for one digit."""
+
+
 class Enclosure(NamedTuple):
     """A rational matrix, how far the solution is from it at most in each entry, and the digits of P and of the gain."""
 
@@ -53,7 +57,7 @@ def enclosed_solution(regulator: Regulator) -> Enclosure | None:
         with Precision(bits):
             try:
                 found = _found(regulator, bits)
-            except ZeroDivisionError:
+            except (Uncertain, ZeroDivisionError):
                 continue
         if found is not None:
             return found
@@ -126,7 +130,8 @@ def _rational(value: arb) -> Fraction:
 
 def _written(value: arb_mat) -> tuple[tuple[str, ...], ...]:
     """Return the entries in decimals, with as many digits as are certain."""
-    largest = float(_largest(value)) or 1.0
+    entries = [value[i, j] for i in range(value.nrows()) for j in range(value.ncols())]
+    largest = max((float(abs(entry).upper()) for entry in entries if not entry.contains(0)), default=1.0)
     return tuple(tuple(_decimal(value[i, j], largest) for j in range(value.ncols())) for i in range(value.nrows()))
 
 
@@ -143,4 +148,4 @@ def _decimal(value: arb, largest: float) -> str:
             digits = str(abs(units)).rjust(count + 1, "0")
             text = f"{digits[:-count]}.{digits[-count:]}" if count else digits
             return f"-{text}" if units < 0 else text
-    return str(round(_rational(value)))
+    raise Uncertain

@@ -592,12 +592,10 @@ def _is_lyapunov(said: Said, P: str, Q: str, of: str) -> bool:
 
 
 def _is_optimal(said: Said, of: str, by: str, Q: str, R: str, N: str, P: str, K: str, chi: str) -> bool:
-    """Return whether P solves Riccati's equation, weights have their signs, and χ, said to be stable, is of the loop with K.
-
-    In the signs of a convention K may be minus the gain: that of the result itself is held to its own letter.
-    """
+    """Return whether P solves Riccati's equation, weights have their signs, and χ, said to be stable, is of the loop with K."""
     here, (a, b, q, r, n, p, k) = said.environment, map(_letter, (of, by, Q, R, N, P, K))
     discrete, one = here.variable == "z", Identity(_sizes(P, here)[0])
+    pencil = Sum((Product((Letter("s"), one)), Negative(a)))
     inner = Sum((r, Product((Transpose(b), p, b)))) if discrete else r
     coupled = Sum((Product((Transpose(b), p, a)) if discrete else Product((Transpose(b), p)), Transpose(n)))
     data = (evaluate(each, here, Exact(here)) for each in (a, b, q, r, n))
@@ -607,10 +605,8 @@ def _is_optimal(said: Said, of: str, by: str, Q: str, R: str, N: str, P: str, K:
     solves = _holds(here, Sum((_left_side(here, a, p), q)), "=", Product((Transpose(k), inner, k)))
     loops = (
         _holds(here, Product((inner, gain)), "=", coupled)
-        and _holds(
-            here, Letter(chi), "=", Apply("det", Sum((Product((Letter("s"), one)), Negative(a), Product((b, gain)))))
-        )
-        for gain in (k, Negative(k))
+        and _holds(here, Letter(chi), "=", Apply("det", Sum((pencil, Product((b, gain))))))
+        for gain in (k, Negative(k))  # minus the gain in the signs of some conventions: the result holds its own letter
     )
     known = definite and signs <= {"positive", "nonnegative", "zero"} and said.subjects("stable") == [Letter(chi)]
     return known and solves and _holds(here, p, "=", Transpose(p)) and any(loops)
@@ -623,17 +619,21 @@ def _encloses(said: Said, *names: str) -> bool:
     *data, centre, K = (evaluate(_letter(name), here, Exact(here)) for name in names)
     told = [[[(entry.fraction(), unit / 2) for entry in row] for row in M.rows] for M in (centre, K, -K)]
     problem = Regulator(*data, here.variable == "z")  # type: ignore[call-arg]
-    return any(is_proved(problem, centre, unit, told[0], gain) for gain in told[1:])
+    ends = str(1 / unit).strip("0") == "1" and not any(
+        1 / unit % M.common_denominator().fraction() for M in (centre, K)
+    )
+    return ends and any(is_proved(problem, centre, unit, told[0], gain) for gain in told[1:])
 
 
 def _splits(said: Said, even: str, of: str) -> bool:
-    """Return whether a polynomial is that of the stable p times its mirror image, up to a number."""
+    """Return whether a polynomial is that of the stable monic p times its mirror image, up to a number."""
     here, v = said.environment, said.environment.variable
     whole, p = (as_scalar(here.values[name]) for name in (even, of))
-    s = Scalar.symbol(v)
+    s, is_monic = Scalar.symbol(v), p.coefficients(v)[0].is_one
     product = p * (p.substitute({v: 1 / s}) * s ** p.degree(v) if v == "z" else p.substitute({v: -s}))
     number = whole.coefficients(v)[0] / product.coefficients(v)[0]
-    return _holds(here, Letter(even), "=", Literal(number * product)) and _is(here, "stable", Letter(of))
+    same = _holds(here, Letter(even), "=", Literal(number * product))
+    return is_monic and same and _is(here, "stable", Letter(of))
 
 
 def _is_on_boundary(said: Said, row: str, of: str, N: str, X: str) -> bool:

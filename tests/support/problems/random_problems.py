@@ -349,6 +349,10 @@ def specification(random: Random, task: str, shape: Shape) -> Drawn:
             return {"of": random.choice(["observability", "controllability"])}
         case "canonical_form":
             return {"kind": random.choice(["controllable", "observable", "modal"])}
+        case "lqr":
+            return {"Q": random.choice(["0", "1", "4"]), "R": random.choice(["1", "1/4"])}
+        case "kalman":
+            return {"W": random.choice(["0", "1", "4"]), "V": random.choice(["1", "1/4"])}
         case "dual":
             return {"sign": random.choice([1, -1])}
         case "matrix_exponential":

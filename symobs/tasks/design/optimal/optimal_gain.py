@@ -182,13 +182,13 @@ class OptimalGain(Result):
             yield Claim(equation, e, says)
         pencil = letter("s", e) @ identity(plant.order, e) - self.loop(of)
         yield Claim(relation(pencil.apply("det"), of("p")), e, "the polynomial is that of the loop")
-        yield Statement(
-            "the loop is asymptotically stable",
-            lambda: _shown(
-                stability(polynomial, plant.variable, signs, discrete=plant.is_discrete).verdict == "yes"
-                and product_of(self.answer["factors"]).degree(plant.variable) == plant.order
-            ),
-        )
+        v, factors = plant.variable, self.answer["factors"]
+        is_stable = stability(polynomial, v, signs, discrete=plant.is_discrete).verdict == "yes"
+        yield Statement("the loop is asymptotically stable", lambda: _shown(is_stable))
+        are_monic = all(factor.coefficients(v)[0].is_one for factor in factors)
+        yield Statement("the factors are monic", lambda: _shown(are_monic))
+        moved = [to_disc(factor, v) for factor in factors] if plant.is_discrete else factors
+        yield Claim(relation(of("p"), product_of(moved)), e, "the polynomial is the product of the factors")
         if not _is_numeric(self.regulator):
             even, s = self.even, Scalar.symbol(plant.variable)
             p = product_of(self.answer["factors"])

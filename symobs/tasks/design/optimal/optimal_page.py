@@ -141,7 +141,7 @@ def _tell_exact(page: Builder, result: OptimalGain) -> None:
     else:
         _tell_pencil(page, A, B, Q, R)
     page.define("p_s", page.value(answer["polynomial"]), say="optimal_factor", closing=False)
-    _tell_locus(page)
+    _tell_locus(page, Q, R)
     if _open_radicands(page, [answer["P"], *answer["factors"]]):
         page.remark("optimal_roots_real")
     matched = result.regulator.B.shape[1] == 1 and plant.order <= _MATCHED_UP_TO and _is_controllable(result)
@@ -183,7 +183,7 @@ def _tell_root_square(page: Builder, A: Term, B: Term, Q: Term, R: Term, side: s
     page.define("c_even", page["chi_p"] @ page["chi_m"] + cost, say="optimal_even")
 
 
-def _tell_locus(page: Builder) -> None:
+def _tell_locus(page: Builder, Q: Term, R: Term) -> None:
     """Draw the roots of χ(s) χ(−s) + ρ R⁻¹ v(−s)ᵀ Q v(s) for ρ from 0 to 1, where the data are numbers."""
     variable, values = page.plant.variable, page.environment.values
     if "chi_m" not in values or values["c_even"].names - {variable} or page.plant.order > _DRAWN_UP_TO:
@@ -193,8 +193,10 @@ def _tell_locus(page: Builder) -> None:
     moved = free + cost * Scalar.symbol(_WEIGHT)
     picture = root_locus(moved, variable, _WEIGHT, (Fraction(0), Fraction(1)), None, None)
     if picture is not None and not cost.is_zero:
-        grown = page["chi_p"] @ page["chi_m"] + page.value(Scalar.symbol(_WEIGHT)) @ page.value(cost)
-        page.plot(picture, grown, say="optimal_locus")
+        cost_term = R.inverse @ page["v_m"].T @ Q @ page["v_s"]
+        grown = page["chi_p"] @ page["chi_m"] + page.value(Scalar.symbol(_WEIGHT)) @ cost_term
+        page.define("c_rho", grown, moved, say="optimal_weighted")
+        page.plot(picture, page["c_rho"], say="optimal_locus")
 
 
 def _tell_pencil(page: Builder, A: Term, B: Term, Q: Term, R: Term) -> None:

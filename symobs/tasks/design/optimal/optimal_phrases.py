@@ -21,6 +21,7 @@ PHRASES: dict[str, str] = {
     "optimal_hamiltonian": "The stable eigenvalues of the Hamiltonian matrix are the optimal poles§:",
     "optimal_even_of_pencil": "The optimal polynomial, times its mirror image, is up to a factor§",
     "optimal_factor": "Its factor with all roots in the stable region is",
+    "optimal_weighted": "With the weight multiplied by a factor the product above is",
     "optimal_locus": "The symmetric root locus while the weight grows from 0 to the given one.",
     "optimal_roots_real": "The square roots are real and positive: on the boundary the polynomial above is not negative, and where the conditions hold it has no root there.",
     "optimal_matched": "With unknown entries of the gain the polynomial is",

@@ -23,6 +23,10 @@ from tests.support.paths import ROOT
 PROBLEMS = tomllib.loads(Path(__file__).with_suffix(".toml").read_text(encoding="utf-8"))["problem"]
 
 
+#: Seeds of plants for which SciPy has eight or nine right digits.
+ILL_CONDITIONED = {119, 129, 161, 209, 225}
+
+
 def text(rows: Any) -> str:
     return "[" + "; ".join(" ".join(map(str, row)) for row in rows) + "]"
 
@@ -99,7 +103,7 @@ def test_digits_are_those_of_scipy(seed: int) -> None:
 @pytest.mark.slow
 def test_many_digits_are_those_of_scipy_and_of_ninety_digits() -> None:
     for seed in range(20, 320):
-        hold(seed, digits=seed % 4 == 0)
+        hold(seed, digits=seed % 4 == 0 or seed in ILL_CONDITIONED)
 
 
 def solved(problem: dict[str, Any]) -> Any:
@@ -301,3 +305,22 @@ def test_a_condition_that_never_fails_is_not_told_and_sums_fail_together() -> No
     (case,) = damped.cases
     assert ({str(each) for each in case.when}, case.result.verdict) == ({"Eq(c, 0)", "Eq(q, 0)"}, "no")
     damped.to("text")
+
+
+@pytest.mark.parametrize(
+    ("A", "B", "Q", "R", "dt"),
+    [
+        ("[1 0; 0 -1]", "[1e-8; 1]", "1", "1", 0),
+        ("[1 1; 0 1]", "[0; 1e-9]", "1", "1", 0),
+        ("[0 1 0; 0 0 1; 0 0 0]", "[0; 0; 1]", "[1e-12 0 0; 0 0 0; 0 0 1]", "1", 0),
+        ("[1 1e-3; 0 1]", "[0; 1]", "[1e-10 0; 0 0]", "1", 1),
+        ("[0 1; -1 -1e-9]", "[0; 1]", "0", "1", 0),
+    ],
+)
+def test_plants_near_an_obstacle(A: str, B: str, Q: str, R: str, dt: int) -> None:
+    result: Any = symobs.lqr(symobs.StateSpace(A, B, dt=dt), Q=Q, R=R)
+    assert result.verdict == "yes"
+    exact = [[float(entry) for entry in row] for row in result.decimals["P"]]
+    if result.P is not None:
+        assert np.allclose(np.array(result.P.evalf(40).tolist(), dtype=float), exact, rtol=1e-12)
+    result.to("text")
