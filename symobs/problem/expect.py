@@ -384,9 +384,8 @@ def _held_against(result: Answered, expected: Mapping[str, tuple[Any, str]], err
 
 def _with_member(result: Answered, name: str, entry: Any, where: str) -> Answered:
     """Return the result with the expected gain of its family, or value of what many meet, else the result itself."""
-    kind: Any = getattr(result, "result", result)
-    answer = result.answer[name]
-    if not isinstance(answer, Matrix) or (result.fields.get("family") is None and name not in kind.claimed):
+    answer, claimed = result.answer[name], result.claimed
+    if not isinstance(answer, Matrix) or (result.fields.get("family") is None and name not in claimed):
         return result
     try:
         wanted = parse_matrix(entry, names_of(result), where=where)

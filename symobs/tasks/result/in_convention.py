@@ -61,6 +61,11 @@ class ResultInConvention:
         return self.result.plant
 
     @property
+    def claimed(self) -> tuple[str, ...]:
+        """The result's fields that many values meet."""
+        return self.result.claimed
+
+    @property
     def in_time(self) -> bool:
         """Whether the answers are functions of time."""
         return self.result.in_time

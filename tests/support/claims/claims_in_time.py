@@ -263,7 +263,7 @@ def stack_holds(result: Any, at: Setting) -> None:
         expected = plus(multiply(found, world.value(m.A)), world.derivative(Literal(block), "t"))
         rows += found
     assert rank_of(rows) == fields["rank"]
-    if "t" not in m.A.names | m.C.names:
+    if "t" not in m.symbols:
         assert rows == observability_rows(at.A, at.C)
     if "transition_matrix" in fields:
         _transition_holds(result, world)
