@@ -38,10 +38,6 @@ if TYPE_CHECKING:
     from symobs.system.conditions import Condition
 
 
-#: The gains that are a choice among many where there are several inputs or outputs: the value of the one that was chosen.
-_CHOSEN = ("K", "L")
-
-
 #: The keywords for which a flat list is a row; it is a column for the others.
 _ROWS = {"K", "reference"}
 
@@ -110,13 +106,16 @@ def _plant(plant: StateSpace, values: dict[str, Scalar]) -> StateSpace:
 
 def _with_chosen(result: Any, found: Any, values: dict[str, Scalar]) -> Any:
     """Return the found result with the gains that were chosen, which its constructor checks, where they serve here."""
-    for letter in _CHOSEN:
-        chosen, here = result.answer.get(letter), found.answer.get(letter)
-        if not isinstance(chosen, Matrix) or not isinstance(here, Matrix):
+    for letters in [result.gains] if result.gains_are_one else [(letter,) for letter in result.gains]:
+        chosen = {letter: result.fields.get(letter) for letter in letters}
+        here = {letter: found.fields.get(letter) for letter in letters}
+        if not all(isinstance(gain, Matrix) for gain in (*chosen.values(), *here.values())):
             continue
         try:
-            _, (kept,) = over_common_data(found.plant, substitute(chosen, values))
-            found = found if kept == here or not found.plant.admits(kept) else found.with_answer(letter, kept)
+            _, kept = over_common_data(found.plant, *(substitute(gain, values) for gain in chosen.values()))
+            gains = dict(zip(letters, kept, strict=True))
+            if gains != here and all(map(found.plant.admits, kept)):
+                found = found.with_gains(gains)
         except (ZeroDivisionError, CertificateRejected):  # it divides by zero here, or serves in general only
             continue
     return found
