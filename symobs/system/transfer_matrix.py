@@ -322,7 +322,8 @@ def connected(kind: str, plant: Plant, other: object) -> Plant:
             message = "the loop is algebraic: I + D₂ D₁ is singular"
             raise InputError(message, where="plant", repair="give a plant without feedthrough to one of the two")
         found = closed(first, second)
-    return _made(found, plant, other if isinstance(other, type(plant)) else plant)
+    beside = other if isinstance(other, type(plant)) else plant
+    return _made(found, plant, beside).restricted((), (*plant.nonzero, *beside.nonzero))
 
 
 def _system(plant: Any) -> Realisation:

@@ -284,6 +284,10 @@ def test_a_design_in_canonical_form_says_where_that_is() -> None:
     assert list(design.L) == [28, 8]
     assert {str(condition) for condition in design.conditions} == {"Ne(2*c - 1, 0)", "Ne(c - 1, 0)"}
     assert "c ≠ 1/2" in design.to("text")
+    lag, there = symobs.StateSpace([[-1]], [[1]], [[1]]), found.as_plant
+    assert there is not None
+    for plant in (there * lag, lag * there, there + lag, lag - there, -there, 2 * there, there**2, there.feedback(lag)):
+        assert plant.nonzero == there.nonzero
 
 
 def test_each_eigenvalue_of_two_masses_has_a_condition_of_its_own() -> None:
