@@ -323,7 +323,8 @@ def connected(kind: str, plant: Plant, other: object) -> Plant:
             raise InputError(message, where="plant", repair="give a plant without feedthrough to one of the two")
         found = closed(first, second)
     beside = other if isinstance(other, type(plant)) else plant
-    return _made(found, plant, beside).restricted((), (*plant.nonzero, *beside.nonzero))
+    connection: Plant = _made(found, plant, beside).restricted((), (*plant.nonzero, *beside.nonzero))
+    return connection
 
 
 def _system(plant: Any) -> Realisation:
