@@ -42,8 +42,8 @@ QUESTIONS: dict[str, str] = {
     "also output_regulation S": "The exosystem has the state matrix $S_w$.",
     "also output_regulation reference": "The reference is $Q_r$ times the state of the exosystem.",
     "also output_regulation E": "The term $E_d w_e$ with the state $w_e$ of the exosystem is added to the state equation.",
-    "also output_regulation observer_poles": "Estimate both states by an observer with the poles {observer_poles}.",
-    "also output_regulation observer_polynomial": "Estimate both states by an observer with the characteristic polynomial {observer_polynomial}.",
+    "also output_regulation observer_poles": "Estimate both states by an observer.",
+    "also output_regulation observer_polynomial": "Estimate both states by an observer.",
 }
 
 DEMANDS: dict[str, str] = {
