@@ -74,7 +74,7 @@ def test_metadata(wheel: dict[str, bytes]) -> None:
     required = [line for line in metadata.get_all("Requires-Dist", []) if "extra ==" not in line]
     names = {line.split(">=")[0] for line in required}
     assert names == {"click", "jinja2", "mpmath", "numpy", "python-flint", "sympy"}
-    extras = {"browser-test", "control", "distributed", "docs", "notebook", "plot", "table", "test", "verify"}
+    extras = {"browser-test", "control", "distributed", "docs", "mcp", "notebook", "plot", "table", "test", "verify"}
     assert set(metadata.get_all("Provides-Extra", [])) == extras
     assert b"symobs = symobs.__main__:main" in wheel[f"{INFO}/entry_points.txt"]
 

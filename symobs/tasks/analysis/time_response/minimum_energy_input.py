@@ -137,8 +137,11 @@ class MinimumEnergyInput(DampingCases):
     def claims(self) -> Iterator[Claim]:
         """Yield W λ = d, the input, and its energy; or the row that excludes the final state."""
         yield from super().claims()
-        if self.answer["gramian"] != self.inner.answer["matrix"] or self.inner.plant != self.plant:
-            reject("the Gramian is another one")
+        known = self.inner.answer
+        if (self.answer["gramian"], self.answer["horizon"]) != (known["matrix"], known["horizon"]):
+            reject("the Gramian or its horizon is another one")
+        if self.inner.plant != self.plant:
+            reject("the Gramian is that of another plant")
         if self.answer.get("question") is not None:
             return
         answer, inner, m = self.answer, self.inner, self.plant.matrices
@@ -328,7 +331,7 @@ def _write_branch(page: Builder, result: MinimumEnergyInput) -> None:
     stated = (relation(x_0, x_0.as_value), relation(x_f, x_f.as_value))
     steps = len(powers) - 1
     if plant.is_discrete:
-        page.equal(*stated, say="energy_states_discrete", steps=Counted("step", steps))
+        page.equal(*stated, say="energy_states_discrete")
         over = A**steps
     else:
         beside = () if end == Scalar.symbol("T") else (relation(page.set("T_h", end), end),)
@@ -375,9 +378,11 @@ def _tell_gramian(page: Builder, result: MinimumEnergyInput) -> Term:
     A, B, W = page["A"], page["B"], result.answer["gramian"]
     if result.plant.is_discrete:
         total = B @ B.T
-        for k in range(1, int(result.answer["horizon"].fraction())):
+        steps = int(result.answer["horizon"].fraction())
+        for k in range(1, steps):
             total = total + A**k @ B @ B.T @ A.T**k
-        return page.define("W", total, W, say="energy_gramian_discrete", closing=False)
+        counted = Counted("step", steps)
+        return page.define("W", total, W, say="energy_gramian_discrete", closing=False, steps=counted)
     Phi = page["exp_At"]
     integrand = Phi @ B @ B.T @ Phi.T
     whole = page.term(

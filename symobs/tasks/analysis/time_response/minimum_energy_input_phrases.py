@@ -5,10 +5,10 @@ from __future__ import annotations
 PHRASES: dict[str, str] = {
     "minimum_energy_input": "Input of minimum energy.",
     "energy_states": "Among the inputs that lead from $x_0$ at the time 0 to $x_1f$ at the time $T_h$, that of minimum energy is sought, where",
-    "energy_states_discrete": "Among the inputs that lead from $x_0$ to $x_1f$ in {steps}, that of minimum energy is sought, where",
+    "energy_states_discrete": "Among the input sequences that lead from $x_0$ to $x_1f$, that of minimum energy is sought, where",
     "energy_difference": "The input has to contribute the difference to the zero-input response,",
     "energy_gramian": "The controllability Gramian over the horizon is",
-    "energy_gramian_discrete": "The controllability Gramian over these steps is",
+    "energy_gramian_discrete": "The controllability Gramian over a horizon of {steps} is",
     "energy_multiplier": "The equation $W lam_e = d_r$ is solved by",
     "energy_solved": "{equation}.",
     "energy_input": "The input of minimum energy is therefore§",
@@ -29,7 +29,7 @@ QUESTIONS: dict[str, str] = {
 
 DEMANDS: dict[str, str] = {
     "energy_states_discrete": "discrete_time",
-    "energy_gramian_discrete": "discrete_time",
+    "energy_gramian_discrete": "discrete_time, counts_steps",
     "energy_multiplier": "solves W lam_e d_r",
     "energy_input": "solves W lam_e d_r, continuous_time",
     "energy_sequence": "solves W lam_e d_r, discrete_time",
