@@ -35,8 +35,7 @@ from tests.support.algebra import (
     transposed,
     value_at,
 )
-from tests.support.claims.claims import Setting, conditions_hold
-from tests.support.claims.claims_in_time import FUNCTIONS_OF_TIME
+from tests.support.claims.claims import HOLDS, Setting, conditions_hold
 from tests.support.claims.claims_of_advice import advice_holds
 from tests.support.claims.claims_of_kalman import holds as kalman_holds
 from tests.support.claims.claims_of_lqr import holds as lqr_holds
@@ -394,7 +393,7 @@ def hold_in_time(part: Result) -> None:
     found = list(islice(points_in_time(part), FEW))
     assert len(found) == FEW
     for point in found:
-        FUNCTIONS_OF_TIME[part.task](part, Setting.of(part.plant, {}, point))
+        HOLDS[part.task](part, Setting.of(part.plant, {}, point))
 
 
 def slope_of(variance: Scalar, point: Point, end: Any) -> Any:

@@ -66,6 +66,8 @@ def formula_of_matrix(matrix: Matrix, variable: str) -> Formula:
     if common is None or 2 * denominators.count(common) < len(denominators):
         return Literal(matrix)
     front, cleared = formula_of(Scalar.of(1) / common, variable), matrix * common
+    if exponentials_in(common).keys() & cleared.names:
+        return Literal(matrix)  # 1 − e^{−2} in an entry, not e² − 1 behind e^{−2}
     inside = sum(size(formula_of(entry, variable)) for entry in cleared.entries)
     kept = sum(size(formula_of(entry, variable)) for entry in matrix.entries)
     return Product((front, Literal(cleared))) if size(front) + inside < kept else Literal(matrix)

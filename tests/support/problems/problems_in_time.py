@@ -27,7 +27,7 @@ from tests.support.problems.second_reading import given
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
-t, t0, T, sigma, x10, x20, a, b = symbols("t t0 T sigma x10 x20 a b")
+t, t0, T, sigma, x10, x20, a, b, omega = symbols("t t0 T sigma x10 x20 a b omega")
 
 
 def exponential(A: Any, time: Any) -> Any:
@@ -238,6 +238,7 @@ def in_time(name: str) -> InTime:
 # -- plants in which the time stands -----------------------------------------------------------------------------------
 
 DECAYED, TURNED = exp(-t) * Matrix([[1, t + t**2 / 2]]), (t**2 - t0**2) / 2
+FADED, ROTATED = exp(-t) * Matrix([[1, t]]), Matrix([[cos(omega * t), sin(omega * t)]])
 #: What the letters of pages about time-varying plants must be worth.
 VARYING: dict[str, dict[str, Any]] = {
     "time_varying_integrator": {
@@ -304,5 +305,39 @@ VARYING: dict[str, dict[str, Any]] = {
         "N_0": Matrix([[1, 0]]),
         "N_1": Matrix([[0, t]]),
         "O": sympy.diag(1, t),
+    },
+    "time_varying_fading_sensor": {
+        "A": Matrix([[0, 1], [0, 0]]),
+        "C": Matrix([[exp(-t), 0]]),
+        "x'": {"x": Matrix([[0, 1], [0, 0]])},
+        "y": {"x": Matrix([[exp(-t), 0]])},
+        "M": Matrix([[0, t - t0], [0, 0]]),
+        "Phi": Matrix([[1, t - t0], [0, 1]]),
+        "W": integral(FADED.T * FADED, t, 0, 1).doit(),
+        "N_0": Matrix([[exp(-t), 0]]),
+        "N_1": Matrix([[-exp(-t), exp(-t)]]),
+        "O": exp(-t) * Matrix([[1, 0], [-1, 1]]),
+        "A_1": Matrix([[0, 1], [0, 0]]),
+        "C_1": Matrix([[1, -t]]),
+        "t_start": sympy.Integer(0),
+        "t_end": sympy.Integer(1),
+        "y_t": exp(-t) * (2 + 3 * t),
+        "xi": exp(-t) * (2 + 3 * t),
+        "x_0": Matrix([2, 3]),
+        "x_t": Matrix([2 + 3 * t, 3]),
+    },
+    "time_varying_rotating_sensor": {
+        "A": sympy.zeros(2, 2),
+        "C": ROTATED,
+        "x'": {"x": sympy.zeros(2, 2)},
+        "y": {"x": ROTATED},
+        "Phi": sympy.eye(2),
+        "W": sympy.eye(2) / 2
+        + Matrix([[sin(2 * omega), 1 - cos(2 * omega)], [1 - cos(2 * omega), -sin(2 * omega)]]) / (4 * omega),
+        "N_0": ROTATED,
+        "N_1": ROTATED.diff(t),
+        "O": ROTATED.col_join(ROTATED.diff(t)),
+        "t_start": sympy.Integer(0),
+        "t_end": sympy.Integer(1),
     },
 }
