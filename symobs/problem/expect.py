@@ -27,7 +27,17 @@ if TYPE_CHECKING:
     from symobs.tasks.result.in_convention import Answered
 
 
-__all__ = ["applicable", "available", "found_in", "met", "mismatches", "names_of", "shown_value", "unreadable"]
+__all__ = [
+    "applicable",
+    "available",
+    "found_in",
+    "is_digits",
+    "met",
+    "mismatches",
+    "names_of",
+    "shown_value",
+    "unreadable",
+]
 
 
 # Equality of functions of time: exponentials, sines, cosines and square roots.
@@ -496,6 +506,8 @@ def met(result: Answered, name: str, expected: Any, where: str) -> bool:
             read_as = parse_scalar(expected, names, variable=free, where=where, functions=True, rounding=True)
             return functions_agree(read_as, value)
         return agrees(parse_scalar(expected, names, variable=free, where=where, rounding=True), value)
+    if is_digits(found) and not isinstance(expected, bool):
+        return agrees(parse_scalar(expected, names, where=where, rounding=True), Scalar.of(Fraction(found)))
     if isinstance(found, int) and not isinstance(found, bool):
         return parse_scalar(expected, names, where=where) == Scalar.of(found)
     if found is None or isinstance(found, (str, bool)):
@@ -506,6 +518,11 @@ def met(result: Answered, name: str, expected: Any, where: str) -> bool:
             return _same_span(list(found), wanted, names, where)
         return _lists_agree(list(found), wanted, result, where)
     raise InputError(f"the field {name} cannot be compared", where=where, repair="leave it out")
+
+
+def is_digits(value: Any) -> bool:
+    """Return whether a field is a number in certain digits, which has no closed form."""
+    return isinstance(value, str) and re.fullmatch(r"-?\d+(\.\d+)?", value) is not None
 
 
 def _digits(result: Answered, name: str) -> Matrix | None:

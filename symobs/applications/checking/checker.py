@@ -234,7 +234,7 @@ def _exact(right: Any) -> Matrix | Scalar | None:
 def other_polynomial(result: Result, name: str) -> Scalar | None:
     """Return the polynomial of the other half of a compensator, where it has the same degree."""
     loop = result if isinstance(result, OutputFeedback) else getattr(result, "loop", None)
-    if not isinstance(loop, OutputFeedback):
+    if not isinstance(loop, OutputFeedback) or loop.estimator is None:
         return None
     own, other = loop.design_of(name), loop.design_of("L" if name == "K" else "K")
     phi, second = own.answer["polynomial"], other.answer["polynomial"]

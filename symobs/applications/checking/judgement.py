@@ -31,7 +31,7 @@ from symobs.formula.expression import parse_matrix
 from symobs.formula.expression.source import shown
 from symobs.ground.dataclass import dataclass
 from symobs.ground.errors import CertificateRejected, InputError, NotShown, ProblemErrors, SymobsError, UnknownName
-from symobs.problem.expect import agrees, found_in, met, names_of
+from symobs.problem.expect import agrees, found_in, is_digits, met, names_of
 from symobs.tasks.analysis.realization.canonical_form import CanonicalForm
 from symobs.tasks.analysis.realization.kalman_decomposition import Decomposition
 from symobs.tasks.design.compensator.output_feedback import OutputFeedback
@@ -597,7 +597,8 @@ def _with_gain_behind(task: _Task, part: Judged) -> Result:
 def _judged(task: _Task, part: Judged) -> Judged:
     """Return the verdict on a value: against the right gains, then against the student's own."""
     name, given = part.name, part.given
-    if not exists(task.right, name) and name in task.right.decimals:  # there is no closed form: digits answer
+    in_digits = is_digits(task.right.fields.get(name))
+    if in_digits or (not exists(task.right, name) and name in task.right.decimals):  # digits answer: no closed form
         try:
             return replace(part, verdict="right", hints=("rounded",)) if _met(task, task.right, part, given) else part
         except SymobsError as unread:

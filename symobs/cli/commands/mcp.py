@@ -92,6 +92,8 @@ def _solving(task: Task, limits: tuple[str, ...], timeout: float) -> Callable[..
         if "result" in found:
             page = await _run((*asked, "--format", "text", "--language", language), problem, timeout)
             found["page"] = page["output"]
+            if not page["output"]:
+                found |= {"exit_code": page["exit_code"], "messages": page["messages"]}
         return found
 
     return solve

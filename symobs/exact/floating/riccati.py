@@ -65,7 +65,7 @@ def enclosed_solution(regulator: Regulator) -> Enclosure | None:
 
 
 def _found(regulator: Regulator, bits: int) -> Enclosure | None:
-    X = _symmetric(_start(regulator))
+    X = _symmetric(_start(regulator, bits))
     nothing = arb_mat(X.nrows(), X.nrows())
     size = float(_largest(X)) or 1.0
     for _ in range(_STEPS):
@@ -97,7 +97,7 @@ def hamiltonian(regulator: Regulator) -> Matrix:
     return (M + L).solve(M - L).normal()
 
 
-def _start(regulator: Regulator) -> arb_mat:
+def _start(regulator: Regulator, bits: int) -> arb_mat:
     """Return an approximate solution: [I; P] spans the stable subspace, on which the sign of the matrix is −1."""
     n, Z = regulator.A.shape[0], balls(hamiltonian(regulator)).mid()
     for _ in range(_STEPS):
@@ -105,7 +105,7 @@ def _start(regulator: Regulator) -> arb_mat:
         scale = arb(abs(Z.det()).mid()) ** (arb(-1) / (2 * n))
         moved = ((Z * scale.mid() + inverse * (1 / scale).mid()) * arb(0.5)).mid()
         change, Z = _largest(moved - Z), moved
-        if change < arb(2) ** -40 * _largest(Z):
+        if change < arb(2) ** (-bits // 2) * _largest(Z):
             break
     sign = Z + balls(Matrix.identity(2 * n))
     right = arb_mat([[-sign[i, j] for j in range(n)] for i in range(2 * n)])

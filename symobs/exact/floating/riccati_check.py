@@ -55,6 +55,8 @@ def is_proved(regulator: Regulator, centre: Matrix, radius: Fraction, P: Rounded
 
 
 def _agree(told: Rounded, value: arb_mat) -> bool:
+    if [len(row) for row in told] != [value.ncols()] * value.nrows():
+        return False
     pairs = [(value[i, j], *each) for i, row in enumerate(told) for j, each in enumerate(row)]
     return all(abs(exact - number(near)) <= number(off) for exact, near, off in pairs)
 

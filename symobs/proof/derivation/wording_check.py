@@ -550,7 +550,7 @@ def _is_blocked(said: Said, of: str, *, everywhere: bool) -> bool:
     there = own.substitute(eigenvalue)
     factors = [f.substitute(eigenvalue) for f, _ in polynomial.numerator.factors()[1] if here.variable in f.names]
     lost = all(rank(there, _ideal((*here.relations, factor))) < full for factor in factors)
-    return lost and _is(here, "polynomial", Quotient(_characteristic(of, here), told.polynomial))
+    return bool(factors) and lost and _is(here, "polynomial", Quotient(_characteristic(of, here), told.polynomial))
 
 
 def _ideal(relations: tuple[Scalar, ...]) -> Ideal | None:

@@ -15,7 +15,15 @@ from typing import TYPE_CHECKING, Annotated, Any, TypeAlias
 
 from symobs.exact import Complex, Field, Matrix, Scalar, modulo, product_of
 from symobs.exact.algebraic.rounded_decimals import conjugates, is_in_kernel, product_of_linear, tidied
-from symobs.exact.core.generators import NotWritten, functions_in, identities, roots_in, square_root, substitute
+from symobs.exact.core.generators import (
+    NotWritten,
+    functions_in,
+    identities,
+    roots_in,
+    square_root,
+    substitute,
+    symbols_in,
+)
 from symobs.exact.time_functions.matrix_power import PowerOf
 from symobs.formula.expression import comma_between_digits, declared_name, parse_matrix, parse_poles, parse_polynomial
 from symobs.ground.dataclass import dataclass
@@ -399,7 +407,15 @@ def read_gain(value: object, plant: StateSpace, name: str, shape: tuple[int, int
     if gain.shape != shape:
         message = f"{name} is {gain.shape[0]}×{gain.shape[1]}, expected {shape[0]}×{shape[1]}"
         raise ShapeMismatch(message, where=where, repair=f"write {name} as a {shape[0]}×{shape[1]} matrix")
-    return gain
+    return constant(gain, plant, name, where)
+
+
+def constant(value: Matrix, plant: StateSpace, name: str, where: str) -> Matrix:
+    """Return a matrix; raises `InputError` where the time or the variable of polynomials stands in it."""
+    if symbols_in(value) & {plant.variable, "t"}:
+        message = f"{name} contains a name that stands for the time or the variable of polynomials"
+        raise InputError(message, where=where, repair=f"give the parameters in {name} other names")
+    return value
 
 
 def read_symmetric(value: object, plant: StateSpace, name: str, size: int) -> Matrix:
@@ -416,7 +432,7 @@ def read_symmetric(value: object, plant: StateSpace, name: str, size: int) -> Ma
         i, j = next((i, j) for i in range(size) for j in range(i) if found[i, j] != found[j, i])
         message = f"{name} is not symmetric: its entries ({j + 1}, {i + 1}) and ({i + 1}, {j + 1}) differ"
         raise InputError(message, where=where, repair=f"write {name} as a symmetric {size}×{size} matrix")
-    return found
+    return constant(found, plant, name, where)
 
 
 def read_quantity(value: object, plant: StateSpace, name: str, where: str = "", *, functions: bool = False) -> Scalar:

@@ -20,6 +20,7 @@ from symobs.system import StateSpace, read_matrix, read_scalar
 from symobs.system.conditions import sign_of
 from symobs.system.reading import has_decimals, inserted, read_values
 from symobs.system.specification import (
+    from_list,
     is_pattern,
     over_common_data,
     parse_in_steps,
@@ -28,7 +29,6 @@ from symobs.system.specification import (
     read_pattern,
     read_poles,
 )
-from symobs.system.specification.keywords import from_list
 from symobs.system.specification.pole_patterns import OTHERS
 from symobs.system.transfer_function_text import read_transfer_function
 

@@ -291,11 +291,11 @@ def minimum_energy_input(
     size, end = (plant.order, 1), read_horizon(plant, horizon)
     states = {"initial": initial, "final": final}
     asked = {n: Matrix.zeros(*size) if v is None else read_gain(v, plant, n, size) for n, v in states.items()}
-    for name, value in asked.items():
-        if "t" in value.names:
-            raise InputError(f"the {name} state does not depend on the time t", where=f"specification.{name}")
     if end == INFINITE:
         message = "the final state is to be reached at a finite time"
+        raise InputError(message, where="specification.horizon", repair='write "T", or a number above 0')
+    if isinstance(end, Scalar) and "t" in end.names:
+        message = "the input is a function of t, which cannot be its horizon, too"
         raise InputError(message, where="specification.horizon", repair='write "T", or a number above 0')
     if not plant.is_discrete:
         require_continuous(plant, "minimum_energy_input")

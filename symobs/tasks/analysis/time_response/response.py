@@ -536,10 +536,6 @@ def response(
             raise InputError(
                 message, where="specification.impulse", repair="leave C and D out: the state is a function of t"
             )
-    for name, value in (("initial", start), ("impulse", v)):
-        if value is not None and "t" in value.names:
-            message = f"the {'initial state' if name == 'initial' else 'strength of the impulse'} does not depend on the time t"
-            raise InputError(message, where=f"specification.{name}", repair="give the values at t = 0")
     u = None
     if input is not None:
         plant.require("B", task="response")

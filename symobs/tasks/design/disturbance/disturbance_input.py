@@ -8,6 +8,7 @@ from symobs.exact import Matrix
 from symobs.ground.errors import InputError, ShapeMismatch
 from symobs.system import StateSpace, read_matrix
 from symobs.system.reading import as_rows
+from symobs.system.specification import constant
 
 
 class Exosystem(NamedTuple):
@@ -53,10 +54,7 @@ def _matrix(plant: StateSpace, value: object, name: str) -> Matrix:
     """Return a matrix, a flat list a row or, for E, a column; raises `InputError` where it contains s or t."""
     where = f"specification.{name}"
     found = read_matrix(as_rows("B" if name == "E" else "C", value), plant.symbols.seen(value), where, functions=True)
-    if found.names & {plant.variable, "t"}:
-        message = f"{name} contains a name that stands for the time or the variable of polynomials"
-        raise InputError(message, where=where, repair="give the parameter another name")
-    return found
+    return constant(found, plant, name, where)
 
 
 def read_disturbance_input(plant: StateSpace, value: object) -> Matrix:

@@ -6,6 +6,7 @@ negative feedback.  P is its denominator without any cancelling, P + N the chara
 
 from __future__ import annotations
 
+from dataclasses import replace
 from decimal import Decimal
 from fractions import Fraction
 from functools import cached_property
@@ -82,7 +83,16 @@ class Margins(Result):
                 answer["open"] = f"{error} is no rational number"
             if None in (answer[name] for name in MARGINS) and answer["slowest"] is not None and answer["gain_up"]:
                 answer |= {**dict.fromkeys(MARGINS), "open": "the digits of the margins are not certain"}
+        if answer["open"] is None and "k" in plant.symbols.signs and "k" not in plant.field.names:
+            # k multiplies the gain on the page, whatever sign a name of the data has that does not occur in them
+            signs = {name: sign for name, sign in plant.symbols.signs.items() if name != "k"}
+            plant = plant.with_symbols(replace(plant.symbols, signs=signs))
         return cls(plant, method_name, answer, design, controller)
+
+    @property
+    def free_signals(self) -> Mapping[str, int]:
+        """Those of the page of the design."""
+        return {} if self.design is None else self.design.free_signals
 
     def claims(self) -> Iterator[Claim | Statement]:
         """Yield what P and P + N are, the slowest root, the ends of the gain, and the digits of the rest."""

@@ -105,7 +105,7 @@ class OptimalGain(Result):
         regulator = cls.regulator_of(plant, weights)
         names = (cls.letter, "P", "polynomial", "factors", "digits", "obstacle", "question")
         answer: dict[str, Any] = dict.fromkeys(names)
-        reason = "no precision that is tried proves the digits"
+        reason = ""
         try:
             answer["obstacle"] = _obstacle(regulator, plant)
             if answer["obstacle"] is not None:
@@ -117,6 +117,7 @@ class OptimalGain(Result):
             reason = str(error)
         if _is_numeric(regulator):
             answer["digits"] = enclosed_solution(regulator)
+            reason = "no precision that is tried proves the digits"
         if answer["P"] is None and answer["digits"] is None:
             answer["question"] = reason
         return cls(plant, method_name, answer, weights)

@@ -426,9 +426,6 @@ def _read_coordinates(value: object, plant: StateSpace) -> Matrix:
     if T.select(range(plant.outputs), range(plant.order)) != plant.matrices.C:
         message = "the upper rows of T are not C"
         raise InputError(message, where="specification.T", repair="write T as [C; R]")
-    if T.names & {plant.variable, "t"}:
-        message = "T contains a name that stands for the time or the variable of polynomials"
-        raise InputError(message, where="specification.T", repair="give the parameter another name")
     if T.determinant().is_zero:
         message = "T is singular"
         raise InputError(message, where="specification.T", repair="choose rows below C that are independent of it")

@@ -121,6 +121,10 @@ class OutputRegulation(Result):
             return self.with_gains({name: value})
         if name not in {"Pi", "Gamma"} or not isinstance(value, Matrix):
             return super().with_answer(name, value)
+        own = self.answer[name]
+        if own is None or value.shape != own.shape:
+            message = f"{name} is {value.shape[0]}×{value.shape[1]}"
+            raise CertificateRejected(message, repair="give one of the shape of the answer")
         found = solution(self.plant, self.exogenous, {name: value})
         other = {key: part for key in ("Pi", "Gamma") if (part := found[key]) is not None}
         answer = {**self.answer, name: value, **other}

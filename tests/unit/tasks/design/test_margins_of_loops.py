@@ -131,3 +131,16 @@ def test_what_is_no_single_loop_of_numbers_is_told() -> None:
         symobs.margins(StateSpace("[0 1; 0 -1]", "[0; 1]", "[1 0; 0 1]"), controller="2")
     with pytest.raises(InputError, match="controller"):
         symobs.margins(SERVO, controller="2", poles="-1, -2")
+
+
+def test_margins_have_values_a_page_with_any_observer_and_answers_in_digits() -> None:
+    plant = symobs.StateSpace("[0 1; 0 -1]", "[0; 1]", "[1 0]", symbols={"k": "positive"})
+    there: Any = symobs.margins(plant, K="[k 1]")
+    assert there.at(k=2).gain_down == 0  # 1 + g (2 + s)/(s (s + 1)) has no roots on the right for g > 0
+    minimal: Any = symobs.margins(plant, control_poles="-1, -2", observer_poles="-3", observer="minimal")
+    assert "Margins" in minimal.to("text")
+    problem = 'task = "margins"\n[plant]\nA = "[0 1; 0 -1]"\nB = "[0; 1]"\n[specification]\nK = "[1 1]"\n'
+    angle = float(there.at(k=1).phase_deg)
+    for answer, verdict in ((f"{angle:.3f}", "right"), (f"{angle + 1:.3f}", "wrong")):
+        report = symobs.check(problem, {"gain_down": "0", "gain_up": "oo", "phase_deg": answer})
+        assert [part.verdict for part in report.parts if part.letter == "phase_deg"] == [verdict]

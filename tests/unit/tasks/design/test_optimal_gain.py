@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import tomllib
 from fractions import Fraction
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -14,6 +15,9 @@ import sympy
 from scipy.linalg import solve_continuous_are, solve_discrete_are  # type: ignore[import-untyped]
 
 import symobs
+from symobs.exact import Matrix
+from symobs.exact.floating.riccati import enclosed_solution
+from symobs.exact.floating.riccati_check import Regulator, is_proved
 from symobs.exact.sympy_bridge.conversion import scalar_to_sympy
 from symobs.formula.expression import parse_poles
 from symobs.ground.errors import CertificateRejected, InputError
@@ -324,3 +328,19 @@ def test_plants_near_an_obstacle(A: str, B: str, Q: str, R: str, dt: int) -> Non
     if result.P is not None:
         assert np.allclose(np.array(result.P.evalf(40).tolist(), dtype=float), exact, rtol=1e-12)
     result.to("text")
+
+
+def test_digits_of_another_shape_are_not_those_of_the_gain() -> None:
+    A, B, Q, R, N = map(Matrix.of, ([[0, 1], [0, 0]], [[0], [1]], [[1, 0], [0, 0]], [[1]], [[0], [0]]))
+    regulator = Regulator(A, B, Q, R, N, discrete=False)
+    found = enclosed_solution(regulator)
+    assert found is not None
+    P, K = ([[(Fraction(text), Fraction(1, 10**12)) for text in row] for row in table] for table in (found.P, found.K))
+    told = partial(is_proved, regulator, found.centre, found.radius)
+    assert told(P, K)
+    assert not any((told(P, []), told(P, [K[0][:1]]), told(P[:1], K)))
+
+
+def test_the_time_is_no_weight() -> None:
+    with pytest.raises(InputError, match="stands for the time"):
+        symobs.lqr(symobs.StateSpace([[0]], [[1]], symbols={"t": "real"}), Q="t^2 + 1", R="1")
