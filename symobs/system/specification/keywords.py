@@ -414,7 +414,7 @@ def constant(value: Matrix, plant: StateSpace, name: str, where: str) -> Matrix:
     """Return a matrix; raises `InputError` where the time or the variable of polynomials stands in it."""
     if symbols_in(value) & {plant.variable, "t"}:
         message = f"{name} contains a name that stands for the time or the variable of polynomials"
-        raise InputError(message, where=where, repair=f"give the parameters in {name} other names")
+        raise InputError(message, where=where, repair="give the parameter another name")
     return value
 
 
