@@ -234,6 +234,8 @@ def test_every_spoiled_value_is_noticed(path: Path, record_property: Callable[[s
         if is_member(results[-1], place, expect):  # as good an answer; at most what follows from it differs
             assert not any(f"expect.{place}:" in line for line in lines)
             continue
+        if not lines and results[-1].standard(place.rpartition(".")[2])[0] in results[-1].result.claimed:
+            continue  # many values meet such a claim, which the lies about the answer hold to fractions
         others = [line for line in lines if f"expect.{place}:" not in line]
         assert len(lines) - len(others) == 1, (place, expect)
         assert not others or is_of_family(results[-1], place), others  # they followed from the gain expected
