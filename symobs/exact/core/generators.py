@@ -31,7 +31,7 @@ _MOST_MULTIPLE, _MOST_POWER = 1000, 100_000
 _LARGEST_POWER = 1_000_000
 #: Relations of angles and of exponents with larger multiples need polynomials of a higher degree than claims have.
 _RELATED_ANGLES, _RELATED_POWERS = 30, 100
-_WHOLE_POWER = 1000
+_WHOLE_POWER = 1000  # e^{p/q} is a power of e^{1/q} up to here: beyond, a polynomial of that degree
 ZERO, ONE = Scalar.of(0), Scalar.of(1)
 #: The number π, a generator like a parameter: no polynomial over Q vanishes at it.
 PI = "pi"

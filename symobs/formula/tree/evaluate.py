@@ -12,6 +12,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 from symobs.exact import EIGENVALUE, AlgebraicExtension, Ideal, Matrix, Scalar, rank
+from symobs.exact.core.generators import function_named
 from symobs.exact.core.modular import block, scaled
 from symobs.formula.tree import calculus
 from symobs.formula.tree.arithmetic import Arithmetic, Signal, add, scalar, times
@@ -203,8 +204,6 @@ class Modular:
 
 
 _MINUS_ONE = Scalar.of(-1)
-#: A value at an instant is taken before functions get a common base, which may be another one there.
-_PLAIN = Exact(Environment())
 
 
 _OF_MATRICES = {"det", "adj", "rank"}
@@ -256,12 +255,20 @@ def evaluate(formula: Formula, environment: Environment, arithmetic: Arithmetic)
                 return _derivative(value, environment, arithmetic)
             return arithmetic.leaf(calculus.rate(value, name, constant=environment.variable == calculus.TIME))
         case At(operand, name, instant):
-            return arithmetic.leaf(calculus.at(evaluate(operand, environment, _PLAIN), name, instant))
+            return arithmetic.leaf(
+                calculus.at(evaluate(operand, environment, _without_base(environment)), name, instant)
+            )
         case Integral(integrand, primitive, name, lower, upper):
             slope, whole = evaluate(integrand, environment, arithmetic), evaluate(primitive, environment, arithmetic)
             calculus.check_primitive(slope, whole, name, arithmetic)
-            whole = evaluate(primitive, environment, _PLAIN)
+            whole = evaluate(primitive, environment, _without_base(environment))
             return arithmetic.leaf(calculus.at(whole, name, upper) - calculus.at(whole, name, lower))
+
+
+def _without_base(environment: Environment) -> Exact:
+    """Return the kernel with named coefficients, but no common base of functions, which is another one at an instant."""
+    named = {name: value for name, value in environment.coefficients.items() if function_named(name) is None}
+    return Exact(replace(environment, coefficients=named))
 
 
 def _signal(name: str, environment: Environment, arithmetic: Arithmetic) -> Signal:

@@ -640,8 +640,8 @@ def _is_on_boundary(said: Said, row: str, of: str, N: str, X: str) -> bool:
     """Return whether N is hidden, and the eigenvalues of X lie on the boundary."""
     here, v = said.environment, said.environment.variable
     factors = as_scalar(evaluate(_characteristic(X, here), here, Exact(here))).numerator.factors()[1]
-    on = (on_boundary(factor, v, here.signs, discrete=v == "z") for factor, _ in factors if factor.degree(v))
-    return _is_part(here, row, of, N, X) and all(on)
+    on = [on_boundary(factor, v, here.signs, discrete=v == "z") for factor, _ in factors if factor.degree(v)]
+    return _is_part(here, row, of, N, X) and bool(on) and all(on)
 
 
 def _has_rank(said: Said, *, is_full: bool) -> bool:

@@ -37,6 +37,7 @@ from symobs.proof.derivation.facts import leading_minors
 from symobs.stability.criteria.stability import monic, on_boundary, stability
 from symobs.system.conditions import Condition, real_consequences, sign_of, vanishing_factors
 from symobs.system.specification import over_common_data, read_symmetric
+from symobs.tasks.analysis.modes.modes import polynomial_of
 from symobs.tasks.analysis.strata.strata import common_places, places, solved
 from symobs.tasks.design.optimal.spectral_factor import NoFactor, reduced, stable_factors, with_signs
 from symobs.tasks.result import Case, Result, choose
@@ -422,7 +423,7 @@ def _obstacle(regulator: Regulator, plant: StateSpace) -> Obstacle | None:
     N, X, polynomial = hidden
     for factor, _ in polynomial.numerator.factors()[1]:
         if factor.degree(variable) and on_boundary(factor, variable, signs, discrete=discrete):
-            part = primitive_kernel(_at(monic(factor, variable), variable, X), None)
+            part = primitive_kernel(polynomial_of(monic(factor, variable), variable, X), None)
             inner = _restricted(X, part)
             whole = (N @ part).normal()
             return Obstacle("unseen", whole, inner, inner.characteristic_polynomial(variable))
@@ -444,13 +445,6 @@ def _hidden(row: Matrix, of: Matrix, variable: str) -> tuple[Matrix, Matrix, Sca
 def _restricted(of: Matrix, N: Matrix) -> Matrix:
     rows, columns = independent_rows(N), range(N.shape[1])
     return N.select(rows, columns).solve((of @ N).select(rows, columns)).normal()
-
-
-def _at(polynomial: Scalar, variable: str, matrix: Matrix) -> Matrix:
-    found = Matrix.zeros(*matrix.shape)
-    for coefficient in polynomial.coefficients(variable):
-        found = found @ matrix + Matrix.identity(matrix.shape[0]) * coefficient
-    return found.normal()
 
 
 # -- the exact solution ------------------------------------------------------------------------------------------------
@@ -489,7 +483,7 @@ def _exact_solution(regulator: Regulator, plant: StateSpace) -> Solution:
         raise NoFactor("the polynomial has roots on the boundary")
     product = Matrix.identity(2 * n)
     for factor in factors:
-        product = _normal(product @ _at(factor, variable, H))
+        product = _normal(product @ polynomial_of(factor, variable, H))
     left, right = product.select(range(2 * n), range(n, 2 * n)), product.select(range(2 * n), range(n))
     relations = identities(factors)[1]
     P, _ = solve_or_refute(left, -right, Ideal.of(relations) if relations else None)

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from symobs.exact import Matrix, Scalar
 from symobs.exact.core.generators import all_roots
 from symobs.exact.floating.riccati_check import is_proved
+from symobs.exact.linear_algebra.krylov import Krylov
 from symobs.formula.tree import Decimals
 from symobs.formula.tree.term import block
 from symobs.proof.certificate.claims import as_scalar
@@ -213,11 +214,7 @@ def _tell_pencil(page: Builder, A: Term, B: Term, Q: Term, R: Term) -> None:
 
 def _is_controllable(result: OptimalGain) -> bool:
     """Return whether the polynomial determines the gain."""
-    A, B = result.regulator.A, result.regulator.B
-    columns = [B]
-    for _ in range(A.shape[0] - 1):
-        columns.append(A @ columns[-1])
-    return not Matrix.block([columns]).determinant().is_zero
+    return not Krylov.of(result.regulator.A.T, result.regulator.B.T).determinant.is_zero
 
 
 def _tell_matching(page: Builder, result: OptimalGain) -> None:

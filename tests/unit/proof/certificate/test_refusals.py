@@ -343,3 +343,13 @@ def test_the_bound_follows_degrees_and_heights(monkeypatch: pytest.MonkeyPatch) 
     for pair in ((left, x_and_y), (x_and_y, left)):
         with pytest.raises(AttributeError):
             claims._paired(*pair)
+
+
+def test_a_named_function_of_time_is_taken_at_the_instant_too() -> None:
+    """m = t is 0 at t = 0, and T at t = T, not t."""
+    t, T, m = (Scalar.symbol(name) for name in "tTm")
+    e = Environment(values={"f": m}, coefficients={"m": t})
+    for instant in (Scalar.of(0), T):
+        taken = At(Letter("f"), "t", instant)
+        assert verify(Relation((taken, Literal(instant)), ("=",)), e)[0]
+        assert not verify(Relation((taken, Literal(t)), ("=",)), e)[0]
