@@ -16,6 +16,8 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from symobs.cli.commands.audit import command as audit_command
+from symobs.cli.commands.check import command as check_command
 from symobs.ground.errors import UsageError
 from symobs.tasks.result import tasks
 
@@ -68,13 +70,10 @@ def command(timeout: float, memory: int) -> None:
     async def audit(problem: str) -> dict[str, Any]:
         return _with_json(await _run(("audit", "-", "--format", "json", *limits), problem, timeout))
 
-    for tool in (check, audit):
-        about = import_module(f"symobs.cli.commands.{tool.__name__}").command.help
-        server.add_tool(tool, description=f"{about}\n\n`problem` is the text of the file{_ANSWER[tool.__name__]}.")
+    answer_file = '`problem` is the text of the file, `answer` that of an answer file, as `K = "[9 5]"`.'
+    server.add_tool(check, description=f"{check_command.help}\n\n{answer_file}")
+    server.add_tool(audit, description=f"{audit_command.help}\n\n`problem` is the text of the file.")
     server.run("stdio")
-
-
-_ANSWER = {"check": ', `answer` that of an answer file, as `K = "[9 5]"`', "audit": ""}
 
 
 def _description(task: Task) -> str:
