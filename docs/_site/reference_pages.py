@@ -45,6 +45,8 @@ def tasks_page() -> str:
     parts = ["# Tasks\n\nA task is a function, a command and a word of problem files, with the same keywords.\n"]
     for name, task in sorted(tasks().items()):
         parts += [f"## {name}\n", function(name, task.function), _keywords(task), _methods(task), _fields(fields[name])]
+        if name in symobs.FUNCTIONS:
+            parts.append(f"Of a design, in Python:\n\n{told(_called(name))}")
     return "\n".join(filter(None, parts))
 
 
@@ -149,7 +151,7 @@ def python_page() -> str:
     """Plants, results, functions that are no tasks, and errors."""
     parts = ["# Python\n", "The functions of the tasks are on the page of [tasks](tasks.md).\n", "## Plants\n"]
     parts += [_class("StateSpace", symobs.StateSpace), "## Results\n", _class("Result", Result), "## Other functions\n"]
-    parts += [function(name, _called(name)) for name in sorted(symobs.FUNCTIONS)]
+    parts += [function(name, _called(name)) for name in sorted(symobs.FUNCTIONS.keys() - tasks())]
     parts.append("## Errors\n")
     for name, kind in sorted(vars(errors).items()):
         if isinstance(kind, type) and issubclass(kind, errors.SymobsError):
