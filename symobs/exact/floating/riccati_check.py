@@ -7,6 +7,7 @@ the stabilising one, of which there is only one.
 
 from __future__ import annotations
 
+from fractions import Fraction
 from functools import cached_property
 from typing import TYPE_CHECKING, TypeAlias
 
@@ -19,7 +20,6 @@ from symobs.ground.dataclass import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
-    from fractions import Fraction
 
 #: The entries of a matrix: a number, and how far the entry is from it at most.
 Rounded: TypeAlias = "Sequence[Sequence[tuple[Fraction, Fraction]]]"
@@ -89,6 +89,26 @@ def gain(regulator: Regulator, P: arb_mat) -> arb_mat:
     if regulator.discrete:
         return (R + B.transpose() * P * B).solve(B.transpose() * P * A + N.transpose())
     return R.solve(B.transpose() * P + N.transpose())
+
+
+def excess(regulator: Regulator, P: Matrix, K: Matrix, unit: Fraction, bits: int = 256) -> Fraction | None:
+    """Return the smallest power of ten found with x₀ᵀ(P_K − P*)x₀ ≤ it · x₀ᵀx₀, where P_K belongs to K and P* to the optimum.
+
+    P and K are the optimum, rounded to multiples of the unit; E = K − K* has entries up to unit/2, and P_K − P* solves
+    Lyapunov's equation of A − BK with EᵀRE, in discrete time Eᵀ(R + BᵀP*B)E.  None where A − BK is not seen to be stable.
+    """
+    with Precision(bits):
+        B, half = balls(regulator.B), number(unit / 2)
+        loop = balls(regulator.A) - B * balls(K)
+        if not is_stable(loop, discrete=regulator.discrete):
+            return None
+        weight, error = balls(regulator.R), arb_mat([[arb(0, half)] * K.shape[1]] * K.shape[0])
+        if regulator.discrete:
+            weight += B.transpose() * (balls(P) + arb_mat([[arb(0, half)] * P.shape[1]] * P.shape[0])) * B
+        found = _solved(loop, -(error.transpose() * weight * error), discrete=regulator.discrete)
+        largest = max((sum(abs(entry).upper() for entry in row) for row in found.tolist()), key=float)
+        powers = (Fraction(10) ** -k for k in range(bits // 4, -9, -1))
+        return next((bound for bound in powers if largest <= number(bound)), None)  # no eigenvalue is larger
 
 
 def correction(regulator: Regulator, X: arb_mat, D: arb_mat) -> arb_mat:

@@ -29,7 +29,7 @@ from symobs.exact import (
 )
 from symobs.exact.algebraic.loop_distances import INFINITE, MARGIN_DIGITS, Loop
 from symobs.exact.core.generators import PI, function
-from symobs.exact.floating.riccati_check import Regulator, is_proved
+from symobs.exact.floating.riccati_check import Regulator, excess, is_proved
 from symobs.exact.time_functions.matrix_power import modes_of
 from symobs.formula.phrases import DEMANDS
 from symobs.formula.phrases.languages import Counted, StateChoice
@@ -70,7 +70,7 @@ from symobs.stability.criteria.stability import on_boundary
 from symobs.system.conditions import sign_of
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
+    from collections.abc import Callable, Iterator, Mapping, Sequence
 
     from symobs.formula.tree import Environment, Fact
     from symobs.proof.derivation.steps import Sentence
@@ -614,15 +614,31 @@ def _is_optimal(said: Said, of: str, by: str, Q: str, R: str, N: str, P: str, K:
 
 def _encloses(said: Said, *names: str) -> bool:
     """Return whether P and K, or −K, are those of the stabilising solution, rounded to the decimal places told."""
+    return any(_rounded_optima(said, _number(said, "radius"), names))
+
+
+def _rounded_optima(said: Said, unit: Fraction, names: Sequence[str]) -> Iterator[tuple[Regulator, Matrix, Matrix]]:
+    """Yield the problem with P and K or −K, where these are the solution, rounded to multiples of a power of ten."""
     here = said.environment
-    unit = as_scalar(evaluate(said.slots["radius"], here, Exact(here))).fraction()  # type: ignore[arg-type]
-    *data, centre, K = (evaluate(_letter(name), here, Exact(here)) for name in names)
-    told = [[[(entry.fraction(), unit / 2) for entry in row] for row in M.rows] for M in (centre, K, -K)]
+    *data, P, K = (evaluate(_letter(name), here, Exact(here)) for name in names)
     problem = Regulator(*data, here.variable == "z")  # type: ignore[call-arg]
-    ends = str(1 / unit).strip("0") == "1" and not any(
-        1 / unit % M.common_denominator().fraction() for M in (centre, K)
-    )
-    return ends and any(is_proved(problem, centre, unit, told[0], gain) for gain in told[1:])
+    ends = str(1 / unit).strip("0") == "1" and not any(1 / unit % M.common_denominator().fraction() for M in (P, K))
+    told = [[[(entry.fraction(), unit / 2) for entry in row] for row in M.rows] for M in (P, K, -K)]
+    for gain, rows in zip((K, -K), told[1:], strict=True):
+        if ends and is_proved(problem, P, unit, told[0], rows):
+            yield problem, P, gain
+
+
+def _number(said: Said, slot: str) -> Fraction:
+    here = said.environment
+    return as_scalar(evaluate(said.slots[slot], here, Exact(here))).fraction()  # type: ignore[arg-type]
+
+
+def _exceeds(said: Said, *names: str) -> bool:
+    """Return whether the cost of K, or −K, rounded as told, is at most as far above the least one as told."""
+    unit = _number(said, "radius")
+    bounds = [excess(problem, P, gain, unit) for problem, P, gain in _rounded_optima(said, unit, names)]
+    return any(bound is not None and bound <= _number(said, "bound") for bound in bounds)
 
 
 def _splits(said: Said, even: str, of: str) -> bool:
@@ -915,6 +931,7 @@ _OF_STEP: dict[str, Callable[..., bool]] = {
     "solves_lyapunov": _is_lyapunov,
     "optimal": _is_optimal,
     "encloses": _encloses,
+    "exceeds": _exceeds,
     "splits": _splits,
     "on_boundary": _is_on_boundary,
     "vanishes": _vanishes_of,

@@ -53,6 +53,7 @@ _LETTERS = {"x": ("a", "positive"), "y": ("b", "real")}
 _NUMBERS = ["0", "0", "0", "1", "-1", "2"]
 #: Regions have points of their own, and what is read off signals is no matter of a plant alone.
 _ASKED_TASKS = sorted(set(TASKS) - {"stability_region", "initial_state", "initial_state_covariance"})
+_ASKED_TASKS += ["lyapunov", "minimum_energy_input", "output_regulation", "lqr", "kalman"]
 
 
 def meant(thing: Any) -> Any:

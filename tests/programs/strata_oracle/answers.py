@@ -281,6 +281,13 @@ def _gramian(held: Held) -> None:
     held.same_values("matrix", "determinant", "finite_sum")
 
 
+def _regulation(held: Held) -> None:
+    held.same("solvable")
+    held.same_roots("blocked_modes", "fixed_modes")
+    if held.said.get("K") is not None:
+        held.assigns(held.matrix("A") - held.matrix("B") * held.matrix("K"))
+
+
 _HELD: dict[str, Callable[[Held], None]] = {
     "observability": _rank_test,
     "controllability": _rank_test,
@@ -302,6 +309,11 @@ _HELD: dict[str, Callable[[Held], None]] = {
     "compensator": _loop,
     "feedforward": _loop,
     "tracking": lambda held: held.same("solvable"),
+    "lyapunov": lambda held: held.same_values("P", "determinant"),
+    "minimum_energy_input": lambda held: held.same_values("energy"),
+    "output_regulation": _regulation,
+    "lqr": lambda held: held.same_values("P", "K"),
+    "kalman": lambda held: held.same_values("P", "L"),
 }
 
 

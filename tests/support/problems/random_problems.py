@@ -339,7 +339,7 @@ def _joined(*parts: Drawn) -> Drawn:
 # -- the tasks ---------------------------------------------------------------------------------------------------------
 
 
-def specification(random: Random, task: str, shape: Shape) -> Drawn:
+def specification(random: Random, task: str, shape: Shape) -> Drawn:  # noqa: PLR0915 - one statement or two for each task
     """Return a specification of the task for a plant."""
     n, p, m, discrete = shape.order, shape.outputs, shape.inputs, shape.discrete
     match task:
@@ -353,6 +353,15 @@ def specification(random: Random, task: str, shape: Shape) -> Drawn:
             return {"Q": random.choice(["0", "1", "4"]), "R": random.choice(["1", "1/4"])}
         case "kalman":
             return {"W": random.choice(["0", "1", "4"]), "V": random.choice(["1", "1/4"])}
+        case "lyapunov":
+            return {"Q": text_of(identity(n))}
+        case "minimum_energy_input":
+            return {"horizon": str(n + 1) if discrete else "1", "final": ", ".join(["1"] + ["0"] * (n - 1))}
+        case "output_regulation":
+            S = random.choice(["[0]", "[0 1; 0 0]", "[0 2; -2 0]"] if not discrete else ["[1]", "[0 1; -1 0]"])
+            q = len(rows(S))
+            E = {"E": text_of(dense(random, n, q))} if random.random() < 0.5 else {}
+            return _joined(desired(random, shape, n), {"S": S, "reference": text_of(dense(random, p, q)), **E})
         case "dual":
             return {"sign": random.choice([1, -1])}
         case "matrix_exponential":

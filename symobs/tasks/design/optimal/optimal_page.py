@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from symobs.exact import Matrix, Scalar
 from symobs.exact.core.generators import all_roots
-from symobs.exact.floating.riccati_check import is_proved
+from symobs.exact.floating.riccati_check import excess, is_proved
 from symobs.exact.linear_algebra.krylov import Krylov
 from symobs.formula.tree import Decimals
 from symobs.formula.tree.term import block
@@ -248,12 +248,16 @@ def _tell_digits(page: Builder, result: OptimalGain) -> None:
     shown = [relation(page.set(name, value), page.term(Decimals(value))) for name, value in near.items()]
     page.equal(*shown, say="optimal_digits", answer=True)
     kind = "feedback" if letter == "K" else "filter"
-    page.conclude(f"optimal_{kind}_enclosed", radius=page.term(Decimals(Scalar.of(unit))))
+    radius = page.term(Decimals(Scalar.of(unit)))
+    page.conclude(f"optimal_{kind}_enclosed", radius=radius)
     pencil, plant = _pencil(page, result, page[f"{letter}_r"]), page.plant
     chi = page.define(f"chi_{letter}", pencil.apply("det"), silent=True)
     found = stability(as_scalar(chi.value), plant.variable, plant.symbols.signs, discrete=plant.is_discrete)
-    if found.verdict == "yes":
-        page.conclude(f"optimal_rounded_{kind}", predicate("stable", chi))
+    P, gain = near["P_r"], result.turned(near[f"{letter}_r"])
+    bound = excess(result.regulator, P, gain, unit) if found.verdict == "yes" else None
+    if bound is not None:
+        told = {"radius": radius, "bound": page.term(Decimals(Scalar.of(bound)))}
+        page.conclude(f"optimal_rounded_{kind}", predicate("stable", chi), **told)
 
 
 def _is_enough(result: OptimalGain, tables: Mapping[str, list[list[Fraction]]], unit: Fraction) -> bool:

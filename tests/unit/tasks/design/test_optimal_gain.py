@@ -12,12 +12,17 @@ import mpmath
 import numpy as np
 import pytest
 import sympy
-from scipy.linalg import solve_continuous_are, solve_discrete_are  # type: ignore[import-untyped]
+from scipy.linalg import (  # type: ignore[import-untyped]
+    solve_continuous_are,
+    solve_continuous_lyapunov,
+    solve_discrete_are,
+    solve_discrete_lyapunov,
+)
 
 import symobs
 from symobs.exact import Matrix
 from symobs.exact.floating.riccati import enclosed_solution
-from symobs.exact.floating.riccati_check import Regulator, is_proved
+from symobs.exact.floating.riccati_check import Regulator, excess, is_proved
 from symobs.exact.sympy_bridge.conversion import scalar_to_sympy
 from symobs.formula.expression import parse_poles
 from symobs.ground.errors import CertificateRejected, InputError
@@ -87,6 +92,17 @@ def hold(seed: int, *, digits: bool) -> None:
     assert np.allclose(found, expected, rtol=1e-5, atol=1e-5 * abs(expected).max()), data
     poles = np.linalg.eigvals(A - B @ gain)
     assert (abs(poles) < 1).all() if dt else (poles.real < 0).all()
+    unit = Fraction(1, 1000)
+    centre, near = (
+        Matrix.of([[round(Fraction(entry) / unit) * unit for entry in row] for row in result.decimals[name]])
+        for name in "PK"
+    )
+    bound = excess(result.regulator, centre, near, unit)
+    if bound is not None:
+        K = np.array([[float(entry.fraction()) for entry in row] for row in near.rows])
+        loop, cost = A - B @ K, Q + K.T @ R @ K
+        reached = solve_discrete_lyapunov(loop.T, cost) if dt else solve_continuous_lyapunov(loop.T, -cost)
+        assert np.linalg.eigvalsh(reached - expected).max() <= float(bound) + 1e-7 * abs(expected).max(), data
     if result.P is not None:
         exact = np.array(result.P.evalf(30).tolist(), dtype=float)
         assert np.allclose(exact, found, rtol=1e-12, atol=1e-12 * abs(found).max())
