@@ -614,7 +614,7 @@ def _is_optimal(said: Said, of: str, by: str, Q: str, R: str, N: str, P: str, K:
 
 def _encloses(said: Said, *names: str) -> bool:
     """Return whether P and K, or −K, are those of the stabilising solution, rounded to the decimal places told."""
-    return any(_rounded_optima(said, _number(said, "radius"), names))
+    return any(_rounded_optima(said, _told_number(said, "radius"), names))
 
 
 def _rounded_optima(said: Said, unit: Fraction, names: Sequence[str]) -> Iterator[tuple[Regulator, Matrix, Matrix]]:
@@ -629,16 +629,16 @@ def _rounded_optima(said: Said, unit: Fraction, names: Sequence[str]) -> Iterato
             yield problem, P, gain
 
 
-def _number(said: Said, slot: str) -> Fraction:
+def _told_number(said: Said, slot: str) -> Fraction:
     here = said.environment
     return as_scalar(evaluate(said.slots[slot], here, Exact(here))).fraction()  # type: ignore[arg-type]
 
 
 def _exceeds(said: Said, *names: str) -> bool:
     """Return whether the cost of K, or −K, rounded as told, is at most as far above the least one as told."""
-    unit = _number(said, "radius")
+    unit = _told_number(said, "radius")
     bounds = [excess(problem, P, gain, unit) for problem, P, gain in _rounded_optima(said, unit, names)]
-    return any(bound is not None and bound <= _number(said, "bound") for bound in bounds)
+    return any(bound is not None and bound <= _told_number(said, "bound") for bound in bounds)
 
 
 def _splits(said: Said, even: str, of: str) -> bool:
