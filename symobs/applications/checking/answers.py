@@ -10,6 +10,7 @@ from fractions import Fraction
 from itertools import takewhile
 from typing import Any, NamedTuple
 
+from symobs.applications.checking.handwriting import as_entries, plain_line, readable, squashed, without_latex
 from symobs.exact import Factored, Matrix, Scalar
 from symobs.formula.expression import declared_name, parse_matrix, parse_scalar
 from symobs.formula.expression.parse import ROW, ROWS
@@ -157,6 +158,7 @@ def as_value(text: str) -> str | list[str]:
     value = text.strip().removesuffix(";").rstrip()
     if quoted := _QUOTED.fullmatch(value):
         value = quoted[2].strip()
+    value = readable(value)
     if sized := _OF_SIZE.fullmatch(value):
         columns, entries = int(sized[2]), sized[3].split(",")
         if len(entries) != int(sized[1]) * columns or not columns:
@@ -319,9 +321,14 @@ def read_answer(given: str | Mapping[str, Any], where: str = "answer") -> Answer
         message = f"the answer is larger than {MAX_BYTES // 1024} kB"
         raise ProblemErrors((InputError(message, where=where, repair="hand in the answer alone"),))
     text = typed(given)
-    if text.lstrip().startswith("{") or _TABLES.search(text):
+    if re.match(r"\s*\{\s*[\"}]", text) or _TABLES.search(text):
         return _of_tables(parse(text, where))
-    return _of_lines(text, where)
+    return _of_lines(without_latex(text), where)
+
+
+def states(text: str) -> bool:
+    """Return whether a text says what something is, and is not a value alone."""
+    return bool(_RELATION.search(text)) or ":" in text or "{" in text
 
 
 def _of_lines(text: str, where: str) -> Answer:
@@ -340,6 +347,9 @@ def _of_lines(text: str, where: str) -> Answer:
         defined = definition(line)
         if not defined:
             steps.append(Step(line, place))
+            left, *members = (part.lstrip("=").strip() for part in _apart(_EQUALS, line))
+            if members and members[-1] and not _IS_INEQUALITY.search(line):
+                values[squashed(left)] = as_value(members[-1])
             if not _RELATION.search(line):
                 message = f'"{shown(line, 60)}" is no relation'
                 errors.append(InputError(message, where=place, repair="write for example L = [19; 81]"))
@@ -366,7 +376,8 @@ def _is_relation(name: str, value: str) -> bool:
 
 def _lines(text: str, where: str) -> list[tuple[int, str]]:
     """Return the lines that say something, with their numbers; a matrix that is not closed goes on in the lines below it."""
-    split = [(i, _REMARK.split(line, maxsplit=1)[0].strip()) for i, line in enumerate(text.splitlines(), start=1)]
+    lines = enumerate(text.splitlines(), start=1)
+    split = [(i, plain_line(_REMARK.split(line, maxsplit=1)[0].strip())) for i, line in lines]
     written = [(i, line) for i, line in split if line]
     _at_most(len(written), where)
     found: list[tuple[int, str]] = []
@@ -391,6 +402,10 @@ def _lines(text: str, where: str) -> list[tuple[int, str]]:
 def _displayed(written: list[tuple[int, str]]) -> str:
     """Take what is displayed below its name: a quotient over its bar, the rows of a matrix, or one expression."""
     lines = [line for _, line in takewhile(lambda each: not _RELATION.search(each[1]), written)]
+    scale = lines[0] if len(lines) > 1 and lines[0].endswith("*") else ""  # MATLAB's common factor 1.0e+03 *
+    if scale:
+        del written[0]
+        return f"{scale} {_displayed(written)}"
     if len(lines) > 2 and _BAR.fullmatch(lines[1]):
         del written[:3]
         return f"({lines[0]})/({lines[2]})"
@@ -548,6 +563,7 @@ def _is_zero(vector: Any, order: int) -> bool:
 
 def in_a_line(value: Any, shape: tuple[int, int]) -> Any:
     """Return a list of as many entries as a row or a column has as that one; another value as it is."""
+    value = as_entries(value, shape[0] * shape[1]) if 1 in shape and not has_two_readings(value) else value
     is_flat = isinstance(value, list) and not any(isinstance(entry, (list, Mapping)) for entry in value)
     if not is_flat or 1 not in shape or len(value) != shape[0] * shape[1]:
         return value

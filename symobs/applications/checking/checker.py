@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from dataclasses import replace
 from difflib import get_close_matches
@@ -10,10 +11,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from symobs.applications.audit.auditor import printed_entries
-from symobs.applications.checking.answers import Answer, as_value, plain, read_answer, written_text
+from symobs.applications.checking.answers import Answer, plain, read_answer, states, written_text
 from symobs.applications.checking.derivations import is_of_conditions, judge_lines, judge_milestone
 from symobs.applications.checking.faults import Explained, explain_gain, explain_value, other_values
-from symobs.applications.checking.judgement import asked_of, exists, field_called, is_of_time, judge_task, rounds
+from symobs.applications.checking.handwriting import entries_of, field_of, listed_of
+from symobs.applications.checking.judgement import asked_of, exists, field_called, judge_task, rounds
 from symobs.applications.checking.regions import read_conditions
 from symobs.applications.checking.report import SHOW, CheckReport, Line, Part
 from symobs.exact import Factored, Matrix, Scalar
@@ -385,7 +387,7 @@ class Checked:
         name = convention or handed_in.convention
         chosen = convention_named(name) if name else self.problem.convention
         views = self.views(chosen)
-        given = _given(handed_in, views)
+        given = _given(handed_in, views, self.asked(views))
         judged = {
             view.task: judge_task(view, given[view.task], handed_in.symbols, self.problem.marking) for view in views
         }
@@ -441,12 +443,12 @@ class Checked:
         """Return what was handed in: read, or the one value that is asked for."""
         if isinstance(answer, Answer):
             return answer
-        if isinstance(answer, Path) or (isinstance(answer, str) and not is_text(answer)):
+        if isinstance(answer, Path) or (isinstance(answer, str) and _is_path(answer)):
             return read_answer(text_of(answer, limit=MAX_BYTES)[0], "answer")
-        if isinstance(answer, (str, Mapping)):
-            return read_answer(answer)
         views = self.views()
         asked = self.asked(views)
+        if isinstance(answer, Mapping) or (isinstance(answer, str) and (len(asked) != 1 or states(answer))):
+            return read_answer(answer)
         if len(asked) != 1:
             parts = ", ".join(f"{view.task}.{name}" for view, name in asked)
             message = f"one value came, but {len(asked)} parts are asked for"
@@ -472,12 +474,19 @@ class Checked:
         return tuple(parts)
 
 
-def _given(answer: Answer, views: Sequence[ResultInConvention]) -> dict[str, dict[str, Any]]:
+def _is_path(text: str) -> bool:
+    """Return whether a text names a file: it has the ending of one, or nothing that a value could have."""
+    return not is_text(text) and bool(re.search(r"\.[A-Za-z]\w{0,5}$", text) or not re.search(r"[\s<>\[({]", text))
+
+
+def _given(
+    answer: Answer, views: Sequence[ResultInConvention], asked: Sequence[tuple[ResultInConvention, str]]
+) -> dict[str, dict[str, Any]]:
     """Return what is given for each task, without what is empty; raises `ProblemErrors` for what no task has."""
     found: dict[str, dict[str, Any]] = {view.task: {} for view in views}
     errors: list[SymobsError] = []
     tasks = {view.task: view for view in views}
-    for key, value in [*answer.values.items(), *_functions_of_time(answer, views)]:
+    for key, value in answer.values.items():
         if key in tasks and isinstance(value, Mapping):
             known = available(tasks[key])
             called = {field_called(tasks[key].result, name): (name, entry) for name, entry in value.items()}
@@ -497,15 +506,16 @@ def _given(answer: Answer, views: Sequence[ResultInConvention]) -> dict[str, dic
             errors.append(_unknown(key, views))
     if errors:
         raise ProblemErrors(tuple(errors))
+    for view in views if answer.loose else ():
+        own, wanted = available(view), [name for each, name in asked if each is view]
+        called = {
+            key: field_of(view, key, wanted) for key in answer.values if field_called(view.result, key) not in own
+        }
+        further = {field: answer.values[key] for key, field in called.items() if field is not None}
+        further |= {**entries_of(view, answer.values), **listed_of(view, answer.values)}
+        for field, value in further.items():
+            found[view.task].setdefault(field, value)
     return found
-
-
-def _functions_of_time(answer: Answer, views: Sequence[ResultInConvention]) -> list[tuple[str, Any]]:
-    """Return exp(A t) and its value, the last one, where a text of lines defines it: it is no letter."""
-    sides = [step.relation.rpartition("=") for step in answer.steps if answer.loose]
-    results = [view.result for view in views]
-    named = {left.strip(): as_value(right) for left, _, right in sides if is_of_time(results, left.strip())}
-    return [(left, right) for left, right in named.items() if left not in answer.values]
 
 
 def _without_answers(lines: Sequence[Line], parts: Sequence[Part]) -> tuple[Line, ...]:

@@ -14,6 +14,7 @@ from symobs.applications.audit.differences import as_matrix, wrong_entries
 from symobs.applications.audit.evaluation import Misfit, Unknown, value_of
 from symobs.applications.audit.slips import SearchBudget
 from symobs.applications.checking.answers import Answer, Step, as_value, read_like
+from symobs.applications.checking.handwriting import in_letters, letters_of_entries
 from symobs.applications.checking.judgement import OF_THE_PLANT, exists, field_called, is_of_time
 from symobs.applications.checking.regions import compare, read_conditions
 from symobs.applications.checking.report import Line
@@ -25,9 +26,10 @@ from symobs.ground.errors import BudgetExceeded, CertificateRejected, NotShown, 
 from symobs.problem.expect import found_in, met, names_of
 from symobs.proof.certificate.claims import UNREADABLE
 from symobs.tasks.analysis.rank.observability import controllability_rank, observability_rank
+from symobs.tasks.result.in_convention import ResultInConvention
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Callable, Iterable, Sequence
     from fractions import Fraction
 
     from symobs.applications.audit.auditor import PrintedEntry
@@ -36,7 +38,6 @@ if TYPE_CHECKING:
     from symobs.problem import Problem
     from symobs.problem.fields import Milestone
     from symobs.tasks.result import Result
-    from symobs.tasks.result.in_convention import ResultInConvention
 
 
 # The auditor of a derivation's lines: that of printed equations, with the student's values in place of letters.
@@ -255,7 +256,17 @@ class _Derivation:
 
     def auditor_of_right(self) -> LineAuditor:
         """Return the auditor with the right values."""
-        return auditor(self.problem, list(self.right.values()), self.views[0].convention, self.budget, self.symbols)
+        known = {**self.symbols, **self._entries(self.right.values())}
+        return auditor(self.problem, list(self.right.values()), self.views[0].convention, self.budget, known)
+
+    def _entries(self, results: Iterable[Result]) -> dict[str, Scalar]:
+        """Return the entries of gains that are rows or columns by their letters, l1, l2, ..."""
+        found: dict[str, Scalar] = {}
+        for result in results:
+            own = ResultInConvention(result, self.views[0].convention)
+            for letter, names in letters_of_entries(own).items():
+                found |= dict(zip(names, own.fields[letter].entries, strict=True))
+        return found
 
     def auditor_of_own(self) -> LineAuditor:
         """Return the auditor with the student's values of letters, and with what follows from the student's gains."""
@@ -272,7 +283,8 @@ class _Derivation:
             except (SymobsError, ArithmeticError, ValueError, AttributeError, TypeError):
                 results.append(result)
         own = {letter: value for letter, (value, _) in self.bound.items()}
-        return auditor(self.problem, results, self.views[0].convention, self.budget, {**self.symbols, **own})
+        known = {**self.symbols, **self._entries(results), **own}
+        return auditor(self.problem, results, self.views[0].convention, self.budget, known)
 
     def origins(self, letters: set[str]) -> tuple[str, ...]:
         """Return the lines that bound the letters of a line, or those that bound gains."""
@@ -395,10 +407,12 @@ def is_of_conditions(relation: str) -> bool:
 
 def _judged(state: _Derivation, step: Step, answer: Answer) -> Line:
     """Return a line with its verdict."""
+    written, names = step.relation, {*state.problem.plant.symbols.signs, *state.symbols}
+    step = replace(step, relation=in_letters(written, names))
     if is_of_conditions(step.relation):
         return _of_conditions(state, step)
     of_time = of_function_of_time(step, state.views, lambda member: _audited(state, member, answer))
-    return of_time or _audited(state, step, answer)
+    return replace(of_time or _audited(state, step, answer), relation=written)
 
 
 def _audited(state: _Derivation, step: Step, answer: Answer) -> Line:

@@ -23,6 +23,7 @@ from symobs.applications.checking.answers import (
     read_like,
     value_of,
 )
+from symobs.applications.checking.handwriting import in_letters, with_commas, without_and
 from symobs.applications.checking.regions import region_verdict
 from symobs.exact import Complex, Matrix, Root, Scalar, TooLarge, kernel
 from symobs.exact.algebraic.root_location import complex_roots
@@ -54,13 +55,22 @@ def as_asked(view: ResultInConvention, letter: str, value: Any) -> Any:
     if isinstance(value, str) and (inside := value_of(letter, value)) != value:
         value = as_value(inside)
     name = view.standard(letter)[0]
+    if isinstance(value, str):
+        value = in_letters(value, _known(view))
+    elif isinstance(value, list):
+        value = [in_letters(entry, _known(view)) if isinstance(entry, str) else entry for entry in value]
     if is_listed(view, letter):
-        return as_list(value)
+        value = as_list(without_and(value))
+        return value.split(",") if name == "sizes" and isinstance(value, str) else value
     if name == "kernel":
         return as_kernel(value, view.plant.order)
     right = view.result.fields.get(name)
     shape = shape_of(view.result, name) if name in view.result.gains else getattr(right, "shape", None)
-    return value if shape is None else in_a_line(value, shape)
+    return value if shape is None else in_a_line(with_commas(value, shape[1]), shape)
+
+
+def _known(view: ResultInConvention) -> set[str]:
+    return {*view.plant.symbols.signs, *getattr(getattr(view.result, "question", None), "parameters", ())}
 
 
 def is_listed(view: ResultInConvention, letter: str) -> bool:

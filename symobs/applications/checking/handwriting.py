@@ -1,0 +1,321 @@
+"""What people write, in the notation of problem files: LaTeX, calls of programs, transposes, words; and names of answers.
+
+Leniency is here alone.  A text is only rewritten where it could not be read otherwise, so no reading is taken away; what
+is rewritten is judged as everything else is.
+"""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING, Any
+
+from symobs.exact import Matrix
+from symobs.formula.expression.names import spellings
+from symobs.formula.notation import GREEK_LETTERS
+
+if TYPE_CHECKING:
+    from collections.abc import Collection, Iterable, Mapping
+
+    from symobs.tasks.result.in_convention import ResultInConvention
+
+
+# -- LaTeX -------------------------------------------------------------------------------------------------------------
+
+
+_TABLE = r"(?:[bpvBV]?matrix|array)\}"
+_ENVIRONMENT = re.compile(rf"\\begin\{{{_TABLE}(?:\{{[lcr|]*\}})?(.*?)\\end\{{{_TABLE}", re.DOTALL)
+_ROW_END = re.compile(r"\\\\(?:\[[^]]*\])?|\\cr\b")
+#: Commands with nothing to read, those that only set their argument, and fences.
+_SPACES = re.compile(r"(?<!\\)\\(?:[,;:! ]|q?quad\b|displaystyle\b)|\\(?:left|right|[bB]igg?[lr]?)(?![A-Za-z])\.?|\$")
+_SET = re.compile(r"\\(?:math(?:rm|bf|sf|it)|boldsymbol|operatorname|text(?:bf)?|boxed|underline)\s*\{([^{}]*)\}")
+_QUOTIENT = re.compile(r"\\[dt]?frac\s*(?:\{([^{}]*)\}|(\d))\s*(?:\{([^{}]*)\}|(\d))")
+_ROOT = re.compile(r"\\sqrt\s*\{([^{}]*)\}")
+_ABOVE, _BELOW = re.compile(r"\^\s*\{([^{}]*)\}"), re.compile(r"_\s*\{([^{}]*)\}")
+_SIGNS = {
+    "cdot": "*",
+    "times": "*",
+    "div": "/",
+    "le": "<=",
+    "leq": "<=",
+    "ge": ">=",
+    "geq": ">=",
+    "ne": "!=",
+    "neq": "!=",
+}
+_SIGNS |= {
+    "lt": "<",
+    "gt": ">",
+    "land": " and ",
+    "wedge": " and ",
+    "lor": " or ",
+    "vee": " or ",
+    "top": "T",
+    "implies": "=>",
+}
+
+
+def without_latex(text: str) -> str:
+    """Return a text whose LaTeX is written as in problem files: [1, 2; 3, 4], (a)/(b), exp(-t), omega_0."""
+    if not re.search(r"\\[A-Za-z]|[\^_]\{", text):
+        return text
+    text = _SPACES.sub(" ", text)
+    before = None
+    while before != text:
+        before = text
+        text = _SET.sub(r"\1", text)
+        text = _QUOTIENT.sub(lambda f: f"(({f[1] or f[2]})/({f[3] or f[4]}))", text)
+        text = _ROOT.sub(r" sqrt(\1)", text)
+        text = _ABOVE.sub(lambda f: "^" + (f[1].strip() if re.fullmatch(r"\s*\w+\s*", f[1]) else f"({f[1]})"), text)
+        text = _BELOW.sub(lambda f: "_" + re.sub(r"\s+", "", f[1]), text)
+    text = _ENVIRONMENT.sub(lambda found: _rows_of_latex(found[1]), text)
+    text = re.sub(r"\\([A-Za-z]+)", lambda f: _SIGNS.get(f[1], f" {f[1]} "), text)
+    text = re.sub(r"[(\[|]\s*(\[[^][]*\])\s*[)\]|]", r"\1", text)
+    text = re.sub(r"\\[{}]", lambda found: found[0][1], text)
+    return _ROW_END.sub("\n", text).replace("&", " ")
+
+
+def _rows_of_latex(body: str) -> str:
+    rows = [row for row in _ROW_END.split(re.sub(r"\\hline", "", body)) if row.strip()]
+    return f"[{'; '.join(', '.join(cell.strip() for cell in row.split('&')) for row in rows)}]"
+
+
+# -- calls of programs, transposes, sums of matrices ---------------------------------------------------------------------
+
+
+QUOTES = "\"' "
+_RATIONAL = re.compile(r"(?:\b[A-Za-z]+\.)?\b(?:Rational|Fraction)\(\s*([^(),]+?)\s*(?:,\s*([^(),]+?)\s*)?\)")
+_FUNCTION = re.compile(r"tf\(\s*\[?([^][]*?)\]?\s*,\s*\[([^][]*)\]\s*(,[^()]*)?\)")
+_TRANSPOSED = re.compile(r"(?P<inside>\[[^][]*\]|\([^()]*[,;][^()]*\))\s*(?:'|\^\s*\(?T\)?|\.T\b|ᵀ)")
+_TURNED = re.compile(r"\b(?:np\.)?transpose\(\s*(\[[^][]*\])\s*\)")
+_MATRIX = re.compile(r"\[[^][]*\]")
+#: Letters of matrices and the variable as a product without blanks: sI, BK, LC.
+_TOGETHER = re.compile(r"\b(?:[sz]I|[A-Z]{2,3})\b")
+_INDEXED = re.compile(r"\b([A-Za-z]+)(_?)(\d+)\b")
+_BEFORE_MATRIX = re.compile(r"(?<![\w.)])(\d+/\d+)\s*\*?\s*(?=\[)")
+_EXPONENTIAL = re.compile(r"(?<![A-Za-z0-9_.])e\s*\^\s*(\((?:[^()]|\([^()]*\))*\)|-?\s*[A-Za-z0-9.]+)")
+
+
+def readable(text: str) -> str:
+    """Return the text of a value as a problem file has it."""
+    text = without_latex(text).replace("÷", "/")
+    text = _BEFORE_MATRIX.sub(r"(\1)*", text)
+    text = _RATIONAL.sub(lambda f: f"(({f[1].strip(QUOTES)})/({f[2] or 1}))", text)
+    text = _FUNCTION.sub(_quotient, text)
+    text = _TURNED.sub(r"\1'", text)
+    text = _TRANSPOSED.sub(lambda found: _turned(found["inside"]), text)
+    return _summed(text) if len(_MATRIX.findall(text)) > 1 else text
+
+
+def in_letters(text: str, names: Collection[str]) -> str:
+    """Return a text in the names that are declared: h1 for h_1, h_1 for h1, and exp(-t) for e^(-t) where e is none."""
+
+    def declared(found: re.Match[str]) -> str:
+        letter, line, digits = found.groups()
+        other = f"{letter}{'' if line else '_'}{digits}"
+        return other if found[0] not in names and other in names else found[0]
+
+    text = _TOGETHER.sub(lambda found: found[0] if found[0] in names else "*".join(found[0]), text)
+    text = _INDEXED.sub(declared, text)
+    return text if "e" in names else _EXPONENTIAL.sub(lambda found: f"exp({found[1]})", text)
+
+
+def _quotient(found: re.Match[str]) -> str:
+    """Return the rational function of MATLAB's lists of coefficients; with a sampling period it is one in z."""
+    variable = "z" if found[3] else "s"
+
+    def polynomial(coefficients: str) -> str:
+        listed = re.split(r"[,\s]+", coefficients.strip())
+        return "+".join(f"({c})*{variable}^{len(listed) - k}" for k, c in enumerate(listed, 1))
+
+    return f"(({polynomial(found[1])})/({polynomial(found[2])}))"
+
+
+def _entries(row: str) -> list[str]:
+    return [entry.strip() for entry in (row.split(",") if "," in row else row.split())]
+
+
+def _rows(matrix: str) -> list[list[str]]:
+    return [_entries(row) for row in re.split(r"[;\n]", matrix.strip()[1:-1]) if row.strip()]
+
+
+def _written(rows: list[list[str]]) -> str:
+    return f"[{'; '.join(', '.join(row) for row in rows)}]"
+
+
+def _turned(matrix: str) -> str:
+    """Return the transpose; of (1, 2), which is a vector, neither row nor column, itself."""
+    rows = [] if matrix.startswith("(") else _rows(matrix)
+    return _written([list(column) for column in zip(*rows, strict=True)]) if len({*map(len, rows)}) == 1 else matrix
+
+
+def _summed(text: str) -> str:
+    """Return a sum of matrices, each with a factor before it, as one matrix; another text as it is."""
+    terms: list[tuple[str, list[list[str]]]] = []
+    end = 0
+    for found in _MATRIX.finditer(text):
+        factor = text[end : found.start()].strip()
+        if terms and not factor.startswith(("+", "-")):
+            return text
+        sign = "-" if factor.startswith("-") else ""
+        factor = factor.lstrip("+-").strip().removesuffix("*").strip()
+        if factor.count("(") != factor.count(")"):
+            return text
+        terms.append((f"{sign}({factor or 1})", _rows(found[0])))
+        end = found.end()
+    sizes = {tuple(map(len, rows)) for _, rows in terms}
+    if text[end:].strip() or len(sizes) != 1 or not all(rows for _, rows in terms):
+        return text
+    first = terms[0][1]
+    return _written(
+        [
+            ["+".join(f"{f}*({rows[i][j]})" for f, rows in terms) for j in range(len(first[0]))]
+            for i in range(len(first))
+        ]
+    )
+
+
+# -- lists without brackets ----------------------------------------------------------------------------------------------
+
+
+def as_entries(value: Any, count: int) -> Any:
+    """Return the entries of (1, 2), {1, 2}, 1, 2 or 1; 2 as a list where there are so many; another value as it is."""
+    if not isinstance(value, str) or count < 1:
+        return value
+    text = value.strip()
+    inside = text[1:-1] if text[:1] + text[-1:] in {"()", "{}"} else text
+    if "[" in inside or (inside == text and not re.search(r"[,;]|\d\s+-?\d", text)):
+        return value
+    for separator in (r";|\n", ",", r"\s+"):
+        parts = [part.strip() for part in re.split(separator, inside.strip())]
+        if len(parts) == count and all(parts) and all(p.count("(") == p.count(")") for p in parts):
+            return value if count == 1 else parts
+    return value
+
+
+def with_commas(value: Any, columns: int) -> Any:
+    """Return rows whose entries stand two blanks apart with commas, where that makes as many columns; [a b   a + b]."""
+    if not isinstance(value, str) or "," in value or not _MATRIX.fullmatch(value.strip()):
+        return value
+    rows = [re.split(r"\s{2,}", row.strip()) for row in value.strip()[1:-1].split(";")]
+    return _written(rows) if {len(row) for row in rows} == {columns} else value
+
+
+def without_and(value: Any) -> Any:
+    """Return a list of numbers, -1 and -2, (1, 2) or 1 1 0, as it is written with commas."""
+    if not isinstance(value, str) or re.search(r"[][{}\n]", value):
+        return value
+    text = re.sub(r"\s*,?\s*\b(?:and|und)\b\s*", ", ", value.strip())
+    text = text[1:-1] if text.startswith("(") and text.endswith(")") and "," in text and text.count("(") == 1 else text
+    return re.sub(r"\s+", ", ", text) if re.fullmatch(r"-?\d+(?:\s+-?\d+)+", text) else text
+
+
+# -- lines ---------------------------------------------------------------------------------------------------------------
+
+
+_LEADING = re.compile(r"(?:(?:[^\W\d_]{2,}|=>|⇒|->|→|∴)[,:]?\s+)+(?=[A-Za-z]\w*(?:\([stz]\))?\s*:?=(?![=<>]))")
+_ARROW = re.compile(r"(?:=>|⇒|->|→|∴)\s*")
+_COLON = re.compile(r"([A-Za-z]\w*)\s*:\s+(?!=)")
+_LEFT_TURNED = re.compile(r"(?:transpose\(\s*([A-Z]\w*)\s*\)|([A-Z]\w*)\s*(?:'|\^\s*T|\.T|ᵀ))\s*=\s*([^=]+)")
+_OF_P = re.compile(r"([A-Za-z]\w*)\s*\(\s*(p|lambda|λ)\s*\)\s*=")
+_WORDS = ((re.compile(r"&&|\u2227|\bund\b"), " and "), (re.compile(r"\|\||\u2228|\boder\b"), " or "))
+_NOT_LEADING = re.compile(r"(?:rank|rang|rk|det|ker)\b", re.IGNORECASE)
+
+
+def plain_line(line: str) -> str:
+    """Return a line without the words before its relation and the point behind it, its letter on the left alone."""
+    line = _ARROW.sub("", line, count=1) if _ARROW.match(line) else line
+    if (words := _LEADING.match(line)) and not _NOT_LEADING.match(line):
+        line = line[words.end() :]
+    if line.endswith(".") and not line.endswith(".."):
+        line = line[:-1].rstrip()
+    line = _COLON.sub(r"\1 = ", line, count=1) if _COLON.match(line) and "=" not in line else line
+    if turned := _LEFT_TURNED.fullmatch(line):
+        line = f"{turned[1] or turned[2]} = {_turned(v) if _MATRIX.fullmatch(v := readable(turned[3].strip())) else v}"
+    if of := _OF_P.match(line):
+        right = re.sub(rf"(?<![A-Za-z_]){of[2]}(?![A-Za-z0-9_])", "s", line[of.end() :])
+        line = f"{of[1]}(s) ={right}"
+    if re.search(r"[<>]", line):
+        for pattern, word in _WORDS:
+            line = pattern.sub(word, line)
+    return line
+
+
+# -- names of answers ----------------------------------------------------------------------------------------------------
+
+
+_PENCIL = re.compile(r"(?:det\(|\|)(?:[szp]|lambda)(?:I|E|1)-A(?:\)|\|)")
+_POLYNOMIAL = re.compile(r"chi\w*|phi|[pP]|Delta")
+_RANK, _DETERMINANT, _KERNEL = (
+    re.compile(rf"(?:{words})\(?[A-Za-z_0-9]*\)?", re.IGNORECASE) for words in ("rank|rang|rk", "det", "ker|kern|null")
+)
+_EXP_OF_A = re.compile(r"(?:e\^\(?At\)?|expm\(At\)|Phi|exp_At)")
+#: How a field is called besides by the letter of its page, for fields of these names; of a matrix by its task.
+_CALLED: dict[str, re.Pattern[str]] = {
+    "polynomial": _POLYNOMIAL,
+    "closed_loop_polynomial": _POLYNOMIAL,
+    "rank": _RANK,
+    "determinant": _DETERMINANT,
+    "kernel": _KERNEL,
+    "transfer_function": re.compile(r"[GHPT]|Y/U"),
+    "controllability.matrix": re.compile(r"(?:[QSMC](?:_?[csrBS])?|Ctr|Co)"),
+    "observability.matrix": re.compile(r"(?:[OQM](?:_?[obO])?|Ob|Obs)"),
+    "gramian.matrix": re.compile(r"[WPQ](?:_?[cors])?"),
+    "matrix_exponential.matrix": _EXP_OF_A,
+}
+
+
+def squashed(left: str) -> str:
+    """Return the left side of a relation without what is written in several ways: blanks, stars, the argument."""
+    spelt = "".join(spellings(c)[0] if c in GREEK_LETTERS.values() else c for c in left)
+    text = re.sub(r"[\s*·]", "", spelt)
+    return re.sub(r"\(([szpt]|lambda)\)", "", text)
+
+
+def field_of(view: ResultInConvention, left: str, asked: Iterable[str]) -> str | None:
+    """Return the field, one of those asked for, that the left side of a relation calls; None where it calls none.
+
+    An answer is called by its letter on the page, and by the names that are usual for its kind.
+    """
+    name, letters = squashed(left), view.result.letters
+    for field in asked:
+        usual = _CALLED.get(f"{view.task}.{field}", _CALLED.get(field))
+        own = squashed(letters.get(field, ""))
+        if name in {own, own.partition("_")[0]} - {""} or (usual and usual.fullmatch(name)):
+            return field
+        if own == "chi" and _PENCIL.fullmatch(name):
+            return field
+    return None
+
+
+def entries_of(view: ResultInConvention, values: Mapping[str, Any]) -> dict[str, list[Any]]:
+    """Return the gains, rows or columns, of which all entries are given: l1 = 16, l2 = 80."""
+    found = {}
+    for letter, names in letters_of_entries(view).items():
+        given = [next((values[n] for n in (name, f"{name[0]}_{name[1:]}") if n in values), None) for name in names]
+        if names and all(entry is not None for entry in given):
+            found[letter] = given
+    return found
+
+
+def listed_of(view: ResultInConvention, values: Mapping[str, Any]) -> dict[str, list[Any]]:
+    """Return the poles or zeros that are numbered: s1 = -1, s2 = -2."""
+    found = {}
+    for field, letters in (("poles", "s|p|lambda"), ("roots", "s|p|lambda"), ("zeros", "z|n")):
+        if view.result.fields.get(field):
+            numbered = {n[1]: values[key] for key in values if (n := re.fullmatch(rf"(?:{letters})_?(\d)", key))}
+            if [*numbered] == [str(k) for k in range(1, len(numbered) + 1)] and numbered:
+                found[field] = [*numbered.values()]
+    return found
+
+
+def letters_of_entries(view: ResultInConvention) -> dict[str, list[str]]:
+    """Return the letters k1, k2, … of the entries of each gain that is a row or a column, and no name of the problem."""
+    known = view.plant.symbols.signs
+    found = {}
+    for gain in view.result.gains:
+        value = view.result.fields.get(gain)
+        letter = next((own for own, (standard, _) in view.names.items() if standard == gain), gain)
+        if isinstance(value, Matrix) and 1 in value.shape and len(letter) == 1:
+            names = [f"{letter.lower()}{k}" for k in range(1, len(value.entries) + 1)]
+            found[letter] = names if not {*names} & {*known} else []
+    return found
