@@ -349,7 +349,7 @@ def _of_lines(text: str, where: str) -> Answer:
             steps.append(Step(line, place))
             left, *members = (part.lstrip("=").strip() for part in _apart(_EQUALS, line))
             if members and members[-1] and not _IS_INEQUALITY.search(line):
-                values[squashed(left)] = as_value(members[-1])
+                values |= {squashed(members[-1]): as_value(left), squashed(left): as_value(members[-1])}
             if not _RELATION.search(line):
                 message = f'"{shown(line, 60)}" is no relation'
                 errors.append(InputError(message, where=place, repair="write for example L = [19; 81]"))

@@ -91,6 +91,7 @@ _MATRIX = re.compile(r"\[[^][]*\]")
 #: Letters of matrices and the variable as a product without blanks: sI, BK, LC.
 _TOGETHER = re.compile(r"\b(?:[sz]I|[A-Z]{2,3})\b")
 _INDEXED = re.compile(r"\b([A-Za-z]+)(_?)(\d+)\b")
+_SQUARE_ROOT = re.compile(r"(\w+|\([^()]*\))\s*\^\s*(?:\(\s*1/2\s*\)|0?\.5)|\bsqrt\s*(\d+)")
 _BEFORE_MATRIX = re.compile(r"(?<![\w.)])(\d+/\d+)\s*\*?\s*(?=\[)")
 _EXPONENTIAL = re.compile(r"(?<![A-Za-z0-9_.])e\s*\^\s*(\((?:[^()]|\([^()]*\))*\)|-?\s*[A-Za-z0-9.]+)")
 
@@ -98,6 +99,7 @@ _EXPONENTIAL = re.compile(r"(?<![A-Za-z0-9_.])e\s*\^\s*(\((?:[^()]|\([^()]*\))*\
 def readable(text: str) -> str:
     """Return the text of a value as a problem file has it."""
     text = without_latex(text).replace("÷", "/")
+    text = _SQUARE_ROOT.sub(lambda f: f"sqrt({f[1].strip('()') if f[1] else f[2]})", text)
     text = _BEFORE_MATRIX.sub(r"(\1)*", text)
     text = _RATIONAL.sub(lambda f: f"(({f[1].strip(QUOTES)})/({f[2] or 1}))", text)
     text = _FUNCTION.sub(_quotient, text)
@@ -193,10 +195,12 @@ def as_entries(value: Any, count: int) -> Any:
 
 
 def with_commas(value: Any, columns: int) -> Any:
-    """Return rows whose entries stand two blanks apart with commas, where that makes as many columns; [a b   a + b]."""
+    """Return rows without commas as they have so many entries, two blanks apart, [a b   a + b], or one, [3 a; a^2]."""
     if not isinstance(value, str) or "," in value or not _MATRIX.fullmatch(value.strip()):
         return value
     rows = [re.split(r"\s{2,}", row.strip()) for row in value.strip()[1:-1].split(";")]
+    if columns == 1 and any(re.search(r"[\w)]\s+[^\W\d]", row[0]) for row in rows if len(row) == 1):
+        return _written([[f"({' '.join(row)})"] for row in rows])
     return _written(rows) if {len(row) for row in rows} == {columns} else value
 
 
@@ -216,7 +220,9 @@ _LEADING = re.compile(r"(?:(?:[^\W\d_]{2,}|=>|⇒|->|→|∴)[,:]?\s+)+(?=[A-Za-
 _ARROW = re.compile(r"(?:=>|⇒|->|→|∴)\s*")
 _COLON = re.compile(r"([A-Za-z]\w*)\s*:\s+(?!=)")
 _LEFT_TURNED = re.compile(r"(?:transpose\(\s*([A-Z]\w*)\s*\)|([A-Z]\w*)\s*(?:'|\^\s*T|\.T|ᵀ))\s*=\s*([^=]+)")
-_OF_P = re.compile(r"([A-Za-z]\w*)\s*\(\s*(p|lambda|λ)\s*\)\s*=")
+_OF_P = re.compile(
+    r"(?:[A-Za-zχφ]\w*\s*\(\s*(p|lambda|λ)\s*\)|(?:det\s*\(|\|)\s*(p|lambda|λ)\s*[*·]?\s*[IE]\s*-\s*A\s*[)|])\s*="
+)
 _WORDS = ((re.compile(r"&&|\u2227|\bund\b"), " and "), (re.compile(r"\|\||\u2228|\boder\b"), " or "))
 _NOT_LEADING = re.compile(r"(?:rank|rang|rk|det|ker)\b", re.IGNORECASE)
 
@@ -232,8 +238,7 @@ def plain_line(line: str) -> str:
     if turned := _LEFT_TURNED.fullmatch(line):
         line = f"{turned[1] or turned[2]} = {_turned(v) if _MATRIX.fullmatch(v := readable(turned[3].strip())) else v}"
     if of := _OF_P.match(line):
-        right = re.sub(rf"(?<![A-Za-z_]){of[2]}(?![A-Za-z0-9_])", "s", line[of.end() :])
-        line = f"{of[1]}(s) ={right}"
+        line = re.sub(rf"(?<![A-Za-z_]){of[1] or of[2]}(?![A-Za-z0-9_])", "s", line.replace("λI", "λ I"))
     if re.search(r"[<>]", line):
         for pattern, word in _WORDS:
             line = pattern.sub(word, line)
@@ -246,7 +251,7 @@ def plain_line(line: str) -> str:
 _PENCIL = re.compile(r"(?:det\(|\|)(?:[szp]|lambda)(?:I|E|1)-A(?:\)|\|)")
 _POLYNOMIAL = re.compile(r"chi\w*|phi|[pP]|Delta")
 _RANK, _DETERMINANT, _KERNEL = (
-    re.compile(rf"(?:{words})\(?[A-Za-z_0-9]*\)?", re.IGNORECASE) for words in ("rank|rang|rk", "det", "ker|kern|null")
+    re.compile(rf"(?:{words})[\W_]?.*", re.IGNORECASE) for words in ("rank|rang|rk", "det", "ker|kern|null")
 )
 _EXP_OF_A = re.compile(r"(?:e\^\(?At\)?|expm\(At\)|Phi|exp_At)")
 #: How a field is called besides by the letter of its page, for fields of these names; of a matrix by its task.
@@ -261,6 +266,8 @@ _CALLED: dict[str, re.Pattern[str]] = {
     "observability.matrix": re.compile(r"(?:[OQM](?:_?[obO])?|Ob|Obs)"),
     "gramian.matrix": re.compile(r"[WPQ](?:_?[cors])?"),
     "matrix_exponential.matrix": _EXP_OF_A,
+    "zero_order_hold.A": re.compile(r"A_?d|Phi|A_?zoh"),
+    "zero_order_hold.B": re.compile(r"B_?d|Gamma|B_?zoh"),
 }
 
 

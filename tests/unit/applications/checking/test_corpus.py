@@ -1,0 +1,27 @@
+"""Four hundred answers in the notations of books, LaTeX, MATLAB, NumPy and SymPy, right and wrong: each has its verdict."""
+
+from __future__ import annotations
+
+import tomllib
+from pathlib import Path
+
+import pytest
+
+from symobs.applications.checking import Checked
+
+CORPUS = tomllib.loads(Path(__file__).with_suffix(".toml").read_text(encoding="utf-8"))
+
+
+@pytest.mark.parametrize("name", CORPUS)
+def test_every_answer_has_its_verdict(name: str) -> None:
+    checked, wrong = Checked.of(CORPUS[name]["problem"]), []
+    for answer, expected in CORPUS[name]["answers"]:
+        report = checked.report(answer)
+        found = {part.verdict for part in report.parts} - {"missing"}
+        if expected.startswith("line "):
+            found = {"wrong" if any(line.verdict == "false" for line in report.lines) else "right"}
+            unread = [line for line in report.lines if line.verdict not in {"true", "false"}]
+            found |= {line.verdict for line in unread}
+        if found != {expected.removeprefix("line ")}:
+            wrong.append((answer, expected, found, [part.reason for part in report.parts]))
+    assert not wrong
