@@ -9,12 +9,13 @@ import subprocess
 import sys
 import threading
 from typing import TYPE_CHECKING, Any
-from urllib.parse import quote, unquote
+from urllib.parse import quote
 
 import pytest
 
 from symobs.applications.live import answer
 from symobs.applications.live.server import AnswerBudget, Children, Server
+from tests.support.live_link import problem_of
 from tests.support.tools.command_line import environment
 
 if TYPE_CHECKING:
@@ -155,7 +156,7 @@ def test_the_servo_opens(opened: Callable[..., Opened]) -> None:
     assert live.latex("K") == r"K=\begin{bmatrix}4&3\end{bmatrix}"
     assert live.latex("L") == r"L=\begin{bmatrix}19\\81\end{bmatrix}"
     assert live.latex("F") == r"F(s)=\frac{319s+400}{s^2+23s+161}"
-    assert live.page.inner_text(".cards .verdict") == "Checked · 3 claims"
+    assert live.page.inner_text(".cards .verdict") == "Closed loop stable · Checked · 3 claims"
     live.page.wait_for_selector(".html math")
     assert "Observer" in live.page.inner_text(".html")
     live.page.get_by_label("Language").select_option("de")
@@ -163,18 +164,18 @@ def test_the_servo_opens(opened: Callable[..., Opened]) -> None:
         "document.querySelector('.html math') && document.querySelector('.html').innerText.includes('Regler')"
     )
     assert live.latex("K") == r"K=\begin{bmatrix}4&3\end{bmatrix}"
-    assert live.page.inner_text(".cards .verdict") == "Geprüft · 3 Aussagen"
+    assert live.page.inner_text(".cards .verdict") == "Geschlossener Kreis stabil · Geprüft · 3 Aussagen"
     assert ENGLISH_WORDS.findall(live.page.inner_text(".grid").partition("Literatur")[0]) == []
     assert live.page.evaluate("document.activeElement.getAttribute('aria-label')") == "Sprache"
     live.page.go_back()
-    live.wait_for("document.querySelector('.cards .verdict').innerText === 'Checked · 3 claims'")
+    live.wait_for("document.querySelector('.cards .verdict').innerText.includes('Checked')")
 
 
 def test_each_language_has_its_labels_its_decimals_and_the_last_answer(opened: Callable[..., Opened]) -> None:
     live = opened(f"{SERVO}&language=xx")
     assert "no language xx" in live.page.inner_text(".message")
     live.page.get_by_label("Language").select_option("de")
-    live.wait_for("document.querySelector('.cards .verdict').innerText.startsWith('Geprüft')")
+    live.wait_for("document.querySelector('.cards .verdict').innerText.includes('Geprüft')")
     assert not live.page.is_visible(".message")
     live.page.click(".astext summary")
     assert "Übertragungsfunktion" in live.page.inner_text(".plant")
@@ -361,8 +362,8 @@ def test_another_task_takes_over_what_it_is_asked(opened: Callable[..., Opened])
     live.page.wait_for_url("**task=compensator**")
     assert "observer=-4,%20-5" in live.page.url
     assert "poles=" not in live.page.url
-    live.page.wait_for_selector(".symobs-live.stale")  # the field of what is missing is opened
-    entry = live.page.locator('[data-where="specification.control_poles"]')
+    assert problem_of(live.page.url)[0]["specification"]["control_poles"] == "-2, -3"  # what is missing has a default
+    entry = live.page.locator('[data-set="control_poles"]')
     entry.fill("-1, -2")
     entry.press("Tab")
     live.page.wait_for_selector(".symobs-live:not(.stale)")
@@ -371,19 +372,15 @@ def test_another_task_takes_over_what_it_is_asked(opened: Callable[..., Opened])
     assert live.latex("K") == r"K=\begin{bmatrix}2&2\end{bmatrix}"
 
 
-def problem_of(url: str) -> tuple[dict[str, Any], dict[str, str]]:
-    """Read the problem and the values of letters out of the address of the page."""
-    given = dict(pair.split("=", 1) for pair in unquote(url.partition("#")[2]).split("&"))
-    table = {
-        name: dict(pair.split(":") for pair in given.pop(name, "").split(",") if pair) for name in ("symbols", "at")
-    }
-    long = {"control": "control_poles", "observer": "observer_poles", "order": "observer"}
-    told = {"task": given["task"], "symbols": table["symbols"]}
-    told |= {name: given[name] for name in ("convention", "language") if name in given}
-    told["plant"] = {name: given[name] for name in ("A", "B", "C", "D", "transfer_function") if name in given}
-    other = {"v", "task", "snap", "closed", "detail", "x0", "xh0", *told, *told["plant"]}
-    told["specification"] = {long.get(name, name): text for name, text in given.items() if name not in other}
-    return told, table["at"]
+def test_every_task_of_the_menu_begins_with_an_answer(opened: Callable[..., Opened]) -> None:
+    live = opened("")
+    live.page.wait_for_selector("optgroup option", state="attached")
+    for task in live.page.eval_on_selector_all('[aria-label="Task"] option', "all => all.map(e => e.value)"):
+        live.page.get_by_label("Task").select_option(task)
+        live.wait_for(f"document.querySelector('.symobs-live:not(.stale):not(.busy)')?.dataset.task === '{task}'")
+        assert live.page.inner_text(".cards .verdict"), task
+        assert not live.page.is_visible(".message"), task
+        assert live.page.locator(".wrong:not(:empty)").count() == 0, task
 
 
 def test_what_is_in_full_ink_answers_what_is_on_the_screen(opened: Callable[..., Opened]) -> None:
@@ -429,7 +426,7 @@ def test_what_is_in_full_ink_answers_what_is_on_the_screen(opened: Callable[...,
 def test_a_loop_that_is_not_stable_has_no_tick(opened: Callable[..., Opened]) -> None:
     live = opened(SERVO.replace("-2, -2", "5, -2"))
     verdict = live.page.locator(".cards .verdict")
-    assert verdict.inner_text() == "Not stable: pole at 5 · Checked · 3 claims"
+    assert verdict.inner_text() == "Closed loop unstable: pole at 5 · Checked · 3 claims"
     assert verdict.evaluate("e => getComputedStyle(e, '::before').content") == '"✗ "'
 
 

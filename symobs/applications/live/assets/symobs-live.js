@@ -175,7 +175,7 @@ export function mount(element, transport, options = {}) {
   let s = begun(options.state ?? "");
   let view = null, viewed = "", answer = null, sets = {}, held = null, frame = null, start = null;
   let waiting = null, running = false, number = 0, drawn = 0, restTimer = 0, busyTimer = 0, said = 0, refused = false, gone = false, quiet = false, before = "";
-  let aborted = new AbortController(), language = null, notice = "", point = null;
+  let aborted = new AbortController(), language = null, notice = "", point = null, turning = "", fill = () => {};
   const el = {};
 
   const w = (name, slots = {}) => filled(language[name], slots);
@@ -336,6 +336,7 @@ export function mount(element, transport, options = {}) {
 
   function offer() {
     if (!start) return;
+    fill();
     el.task.replaceChildren(...Object.keys(start.tasks).map((name) => h("option", { value: name }, taskName(name))));
     el.task.value = s.task;
     const by = Object.groupBy ? Object.groupBy(start.examples, (e) => e.task) : { all: start.examples };
@@ -392,6 +393,7 @@ export function mount(element, transport, options = {}) {
   function choose() {
     const found = start?.examples.find((e) => e.name === el.examples.value), { snap, closed, detail, language } = s;
     if (!found) return;
+    turning = "";
     s = { ...decoded(found.link), snap, closed, detail, language };
     view = null;
     viewed = "";
@@ -399,13 +401,23 @@ export function mount(element, transport, options = {}) {
     problemChanged();
   }
 
-  /** Turn to another task with what it takes of the specification; poles keep what they are of. */
-  function turn(task) {
-    const takes = start?.tasks[task] ?? Object.keys(s.spec), half = /observer/.test(s.task) ? "observer_poles" : "control_poles";
-    if (s.spec.poles && !takes.includes("poles")) s.spec[half] = s.spec.poles;
-    s.spec = Object.fromEntries(Object.entries(s.spec).filter(([key]) => takes.includes(key) && key !== "method"));
-    s.task = task;
-    problemChanged();
+  /** Turn to another task, which begins with what it takes of the problem and with what that lacks. */
+  async function turn(task) {
+    const told = JSON.stringify(problem());
+    turning = task;
+    try {
+      const got = await transport(asking("begin", { task }));
+      if (gone || turning !== task) return;
+      if (told !== JSON.stringify(problem())) { turn(task); return; }
+      if (got.status !== "done") { drawAnswer(got); el.task.value = s.task; return; }
+      const { plant, spec, symbols } = decoded(got.link);
+      s = { ...s, task, plant, spec, symbols, at: Object.fromEntries(Object.entries(s.at).filter(([name]) => name in symbols)) };
+      problemChanged();
+    } catch (error) {
+      if (gone || turning !== task) return;
+      el.task.value = s.task;
+      say(w("no_answer", { reason: why(error) }), () => turn(task));
+    }
   }
 
   async function copyLink() {
@@ -465,10 +477,11 @@ export function mount(element, transport, options = {}) {
       return h("div", { class: "named" }, h("i", {}, name), " = ", grid, h("small", { class: "wrong", "data-of": `plant.${name}` }));
     });
     const told = (key) => field(`specification.${key}`, labelOf(key), s.spec[key], (t) => { if (t) s.spec[key] = t; else delete s.spec[key]; problemChanged(); });
-    const setKeys = (view?.sets ?? []).map((g) => g.key), untold = h("div", { class: "fields" });
-    const fill = () => untold.replaceChildren(...(start?.tasks[s.task] ?? []).filter((key) => s.spec[key] === undefined && !setKeys.includes(key)).map(told));
+    const setKeys = (view?.sets ?? []).map((g) => g.key);
+    el.untold = h("div", { class: "fields" });
+    fill = () => el.untold.replaceChildren(...(start?.tasks[s.task] ?? []).filter((key) => s.spec[key] === undefined && !setKeys.includes(key)).map(told));
     fill();
-    const all = h("details", { class: "astext", open: el.plant.querySelector(".astext")?.open, ontoggle: () => { if (!untold.childElementCount) fill(); } }, h("summary", {}, w("as_text")), h("div", { class: "fields" }, ["A", "B", "C", "D", "transfer_function", "dt"].map((name) => field(`text.${name}`, labelOf(name), s.plant[name], (t) => { if (t) s.plant[name] = t; else delete s.plant[name]; problemChanged(); })), field("text.symbols", labelOf("symbols"), Object.entries(s.symbols).map(([n, g]) => `${n}: ${g}`).join(", "), (t) => { s.symbols = Object.fromEntries(t.split(",").map((e) => e.split(":").map((p) => p.trim())).filter(([n]) => n).map(([n, g]) => [n, g || "real"])); problemChanged(); })), untold);
+    const all = h("details", { class: "astext", open: el.plant.querySelector(".astext")?.open }, h("summary", {}, w("as_text")), h("div", { class: "fields" }, ["A", "B", "C", "D", "transfer_function", "dt"].map((name) => field(`text.${name}`, labelOf(name), s.plant[name], (t) => { if (t) s.plant[name] = t; else delete s.plant[name]; problemChanged(); })), field("text.symbols", labelOf("symbols"), Object.entries(s.symbols).map(([n, g]) => `${n}: ${g}`).join(", "), (t) => { s.symbols = Object.fromEntries(t.split(",").map((e) => e.split(":").map((p) => p.trim())).filter(([n]) => n).map(([n, g]) => [n, g || "real"])); problemChanged(); })), el.untold);
     if (s.plant.transfer_function !== undefined) rows.push(field("plant.transfer_function", "P(s)", s.plant.transfer_function, (t) => { s.plant.transfer_function = t; problemChanged(); }));
     const others = Object.keys(s.spec).filter((key) => !setKeys.includes(key) && key !== "observer").map(told);
     const kind = s.task === "compensator" ? h("label", { class: "field" }, h("span", {}, w("kind")), h("select", { onchange: (e) => { s.spec.observer = e.target.value; fitObserver(); problemChanged(); } }, ["full", "minimal"].map((k) => h("option", { value: k, selected: (s.spec.observer ?? "full") === k }, w(`kind_${k}`))))) : null;
@@ -835,12 +848,10 @@ export function mount(element, transport, options = {}) {
 
   /** Show an answer. */
   function show(got) {
-    const claims = got.verdict === "no" ? "" : ` · ${w(got.claims === 1 ? "claim" : "claims", { count: got.claims })}`;
-    const isUnstable = got.verdict !== "no" && got.unstable.length > 0;
-    const unstable = isUnstable ? `${w(got.unstable.length > 1 ? "unstable_poles" : "unstable_pole", { poles: pretty(got.unstable.join(", ")) })} · ` : "";
-    const told = unstable + w(`verdict_${got.verdict}`) + claims;
+    const claims = got.verdict === "no" ? [] : [w("checked"), w(got.claims === 1 ? "claim" : "claims", { count: got.claims })];
+    const told = [pretty(got.says), ...claims].join(" · ");
     if (el.verdict.textContent !== told) el.verdict.textContent = told;
-    el.verdict.dataset.verdict = isUnstable ? "unstable" : got.verdict;
+    el.verdict.dataset.verdict = got.unstable.length ? "unstable" : got.verdict;
     if (el.notes.textContent !== (got.note ?? "")) el.notes.textContent = got.note ?? "";
     drawCards(got);
     if (!el.cases.hidden) drawCases(got);
@@ -902,12 +913,13 @@ export function mount(element, transport, options = {}) {
 
   // -- begin ------------------------------------------------------------------------------------------------------------
 
-  build();
-  ask();
+  const isEmpty = () => !Object.keys(s.plant).length && s.spec.polynomial === undefined;
+  const begin = () => { build(); if (isEmpty()) turn(s.task); else ask(); };
+  begin();
   return {
     destroy() { gone = true; aborted.abort(); root.remove(); },
     state: () => encoded(s),
-    set(link) { s = begun(link); frame = null; build(); ask(); },
+    set(link) { turning = ""; s = begun(link); frame = null; begin(); },
   };
 }
 

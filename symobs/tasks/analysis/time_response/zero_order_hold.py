@@ -51,7 +51,7 @@ class ZeroOrderHold(DampingCases):
     """A_d = Φ(T) with Φ′ = A Φ and Φ(0) = I, and B_d = ∫₀ᵀ Φ(t) B dt."""
 
     task: ClassVar[str] = "zero_order_hold"
-    letters = {"A_d": "A_zoh", "B_d": "B_zoh"}
+    letters = {"A": "A_zoh", "B": "B_zoh"}
     main: ClassVar[str] = "A_d"
     asked_for: ClassVar[tuple[str, ...]] = ("horizon",)
 

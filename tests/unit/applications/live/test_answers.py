@@ -24,6 +24,7 @@ from symobs.pages.formats.json import result_object
 from symobs.problem import validate
 from symobs.tasks.result import result_type, tasks
 from tests.kit import tabled
+from tests.support.live_link import problem_of
 from tests.support.sampling import every
 from tests.support.tools.command_line import EXAMPLES, SAFETY, environment
 
@@ -272,6 +273,49 @@ print(*sys.modules, sep="\\n")
     )
     heavy = {"sympy", "numpy", "jinja2", "click", "mpmath", "http.server", "multiprocessing", "matplotlib"}
     assert set(run.stdout.split()) & heavy == set()
+
+
+#: Beside the plant of an empty page: of two inputs and outputs, of letters, without input or output, in discrete time.
+_PLANTS: list[dict[str, Any]] = [
+    {"plant": {"A": "[0 1 0; 0 0 1; -6 -11 -6]", "B": "[0 0; 1 0; 0 1]", "C": "[1 0 0; 0 1 0]"}},
+    {"plant": {"A": "[0 1; -omega^2 0]", "C": "[1 0]"}, "symbols": {"omega": "positive"}},
+    {"plant": {"A": "[0 1; -2 -2]"}},
+    {"plant": {"A": "[1 0; 0 -1]", "B": "[0; 1]", "C": "[0 1]"}},
+    {"plant": {"A": "[1 1; 0 1/2]", "B": "[0; 1]", "C": "[1 0]", "dt": "1"}},
+]
+_SHOWN = {"task": "observer", "specification": {"poles": "-4, -4"}}
+
+
+@pytest.mark.parametrize("task", sorted(tasks()))
+def test_every_task_begins_with_a_working_default_and_a_sentence(task: str) -> None:
+    for shown in ({}, SERVO, *({**_SHOWN, **plant} for plant in _PLANTS)):
+        problem, _ = problem_of(asked(shown, "begin", task=task)["link"])
+        found = asked(problem)
+        if shown in ({}, SERVO):
+            expected = "no" if task == "lyapunov" else "done"  # the servo has a pole at 0
+            assert found["status"] == expected, (shown, found)
+            assert found["cards"] or task in {"lyapunov", "margins"}  # whose answer is the sentence
+        if found["status"] == "bad":  # only what the plant itself does not allow
+            assert {error["where"].partition(".")[0] for error in found["errors"]} <= {"plant", "design"}, (
+                shown,
+                found,
+            )
+        else:
+            assert found["says"][0].isupper(), (shown, found)
+
+
+@tabled
+def test_an_answer_is_said_in_a_sentence(
+    task: str, plant: dict[str, str], specification: dict[str, str], says: str
+) -> None:
+    assert asked({"task": task, "plant": plant, "specification": specification})["says"] == says
+
+
+def test_inequalities_are_among_the_answers() -> None:
+    # s³ + 2 s² + 3 s + k is stable exactly for 0 < k < 6.
+    specification = {"polynomial": "s^3 + 2 s^2 + 3 s + k", "parameters": ["k"]}
+    found = asked({"task": "stability_region", "specification": specification, "symbols": {"k": "real"}})
+    assert [card["latex"] for card in found["cards"] if card["name"].startswith("stable_if")] == ["0<k<6"]
 
 
 def test_the_start_names_tasks_and_examples() -> None:
