@@ -579,6 +579,13 @@ def test_a_link_opens_the_same_and_back_undoes(opened: Callable[..., Opened]) ->
     assert other.latex("L") == live.latex("L")
     other.page.wait_for_selector(".html math")
     assert other.page.inner_text(".html") == live.page.inner_text(".html")
+    tab = live.context.new_page()
+    tab.goto(link)
+    tab.wait_for_selector(".card math")
+    assert tab.input_value('[data-set="observer_poles"]') == moved
+    tab.evaluate("document.querySelector('main').dataset.share = 'https://example.org/live/'")
+    tab.click(".copy")
+    assert tab.evaluate("navigator.clipboard.readText()") == f"https://example.org/live/#{link.partition('#')[2]}"
     live.page.go_back()
     live.page.go_back()
     live.at_rest()

@@ -39,6 +39,7 @@ from symobs.problem.schema import kinds_of
 from symobs.system import Symbols, read_scalar
 from symobs.system.conditions import sign_of
 from symobs.system.specification import is_pattern, read_poles
+from symobs.tasks.analysis.stability_region.stability_region import StabilityRegion
 from symobs.tasks.analysis.stability_region.stability_region_page import inequalities
 from symobs.tasks.result import Document, result_type, task_named, tasks
 from symobs.tasks.result.output_methods import to_json
@@ -380,7 +381,7 @@ def _answer(asked: Request) -> dict[str, Any]:
             notes += [language.phrases[str(reason)]] if str(reason) else []
     notes += _notes(there.result, printer)
     claims, stable = len(result.all_certificates), stability_of(result)
-    if asked.names is None and result.task == "stability_region":
+    if asked.names is None and isinstance(result, StabilityRegion):
         found += tuple(Card(f"stable_if_{k}", each, None) for k, each in enumerate(inequalities(result), 1))
     whole = {
         "status": _status(result),

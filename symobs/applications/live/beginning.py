@@ -11,7 +11,7 @@ from symobs.exact import Matrix
 from symobs.ground.errors import ProblemErrors, SymobsError, Undecided
 from symobs.problem import validate
 from symobs.problem.schema import kinds_of
-from symobs.tasks.result import result_type, task_named
+from symobs.tasks.result import result_type, task_named, tasks
 from symobs.tasks.result.output_methods import to_json
 
 if TYPE_CHECKING:
@@ -170,9 +170,9 @@ def _measured(plant: StateSpace) -> dict[str, Any]:
             state = m.A @ state
         return {"output": str(Matrix.block([samples])).replace("**", "^")}
     with suppress(SymobsError):
-        response = task_named("response").function(plant, initial=_ones(plant.order))
+        response = tasks()["response"].function(plant, initial=_ones(plant.order))
         output = _column(row[0] for row in to_json(response.fields["output"]))
-        if task_named("initial_state").function(plant, output=output).verdict == "yes":
+        if tasks()["initial_state"].function(plant, output=output).verdict == "yes":
             return {"output": output}
     return {"output": _column(["0"] * plant.outputs)}
 
@@ -183,7 +183,7 @@ def _region(plant: StateSpace) -> dict[str, Any]:
     if m.A.names or not (m.has_input or m.has_output):
         return {"parameters": ", ".join(sorted(m.A.names)[:2])} if m.A.names else {}
     name, task = ("K", "state_feedback") if m.has_input else ("L", "observer")
-    found = task_named(task)
+    found = tasks()[task]
     gain = found.function(plant, poles=_poles("poles", plant, found, {})).fields.get(name)
     table = (
         [["0"] * order] if gain is None else [[str(x) for x in row] for row in (gain if name == "K" else gain.T).rows]

@@ -926,9 +926,10 @@ export function mount(element, transport, options = {}) {
 /** Show a page whose state is that of its address: a drag is one step of its history, which Back undoes. */
 export function atAddress(transport) {
   let moving = false, timer = 0;
-  const live = mount(/** @type {HTMLElement} */ (document.querySelector("main")), transport, {
+  const main = /** @type {HTMLElement} */ (document.querySelector("main"));
+  const live = mount(main, transport, {
     state: location.hash,
-    link: (state) => `${location.origin}${location.pathname}#${state}`,
+    link: (state) => `${main.dataset.share || `${location.origin}${location.pathname}`}#${state}`,
     changed(state, final) {
       const write = () => { history[moving ? "replaceState" : "pushState"](null, "", `#${state}`); moving = !final; };
       clearTimeout(timer);

@@ -123,7 +123,7 @@ PHRASES: dict[str, str] = {
     "live_no_derivation": "no derivation",
     "live_try_again": "Try again",
     "live_too_long": "This problem is too long for a link: save the problem file instead.",
-    "live_another_page": "this page is not the one the server opened",
+    "live_another_page": "this page is not the one the server opened; open the address that symobs serve prints",
     "live_server_says": "the server says {status}",
     "live_late": "not decided within {seconds} s",
     # the page that needs no server
