@@ -343,10 +343,14 @@ def test_a_bad_entry_is_said_at_its_field(opened: Callable[..., Opened]) -> None
     entry = live.page.get_by_label("A row 2 column 2")
     entry.fill("q")
     entry.press("Tab")
-    live.page.wait_for_selector(".symobs-live.stale")
-    assert "q" in live.page.inner_text(".plant .wrong >> nth=0")
+    live.page.wait_for_selector(".symobs-live.stale .plant .wrong:has-text('q is not declared')")
     assert live.latex("K") == r"K=\begin{bmatrix}4&3\end{bmatrix}"
     assert live.page.eval_on_selector(".cards .list", "e => getComputedStyle(e).opacity") == "0.38"
+    assert "--symbol" not in live.page.inner_text(".plant")
+    live.page.get_by_role("button", name="a slider").click()  # A = [0 1; 0 q] at q = 1: s² + (k₂ − 1) s + k₁
+    live.page.wait_for_selector(".symobs-live:not(.stale)")
+    assert live.page.input_value('[data-where="at.q"]') == "1"
+    assert live.latex("K") == r"K=\begin{bmatrix}4&5\end{bmatrix}"
     entry = live.page.get_by_label("A row 2 column 2")
     entry.fill("-2")
     entry.press("Tab")

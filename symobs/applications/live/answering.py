@@ -29,6 +29,7 @@ from symobs.ground.errors import (
     OutOfBudget,
     ProblemErrors,
     SymobsError,
+    UnknownName,
 )
 from symobs.pages.cards import Card, CardPrinter, cards
 from symobs.pages.drawings.plot_file import is_shown
@@ -302,9 +303,19 @@ def errors_of(error: SymobsError, language: Language) -> list[dict[str, str]]:
         if isinstance(each, FieldError):
             message, repair = each.told(language)
             found.append({"where": each.where, "message": message, "repair": repair})
+        elif (name := _declarable(each)) is not None:
+            message = language.phrases["said_undeclared"].format(name=name)
+            found.append({"where": each.where, "message": message, "repair": "", "undeclared": name})
         else:
             found.append({"where": each.where, "message": each.message, "repair": each.repair, "lang": "en"})
     return found
+
+
+def _declarable(error: SymobsError) -> str | None:
+    """Return a name that only has to be declared; of one that may be a misspelling or a function the error says so."""
+    name = str(error.facts.get("name"))
+    is_one = isinstance(error, UnknownName) and not error.where.startswith("at.")
+    return name if is_one and f'add {name} = "real"' in error.repair else None
 
 
 def _solve(key: str, find: Callable[[], Problem]) -> Solved:

@@ -453,13 +453,15 @@ export function mount(element, transport, options = {}) {
     const isParted = given.includes(";") && (input.dataset.set || where.startsWith("courses."));
     if (language.decimal_mark === "," && (isOne || isParted)) changed(input.value = points.replace(/\s*;\s*/g, ", "));
     else if (language.decimal_mark !== "," || points === given) changed(given);
-    else { refused = true; clearWrong(); showErrors([{ where, message: w("comma"), repair: w("comma_repair") }]); fade(); }
+    else { refused = false; clearWrong(); refused = true; showErrors([{ where, message: w("comma"), repair: w("comma_repair") }]); fade(); }
   }
 
   function field(where, label, given, changed, wide = true) {
     const input = h("input", { value: given ?? "", "aria-label": label, "data-where": where, spellcheck: "false", autocapitalize: "off", autocomplete: "off", onchange: () => typed(input, changed), onkeydown: (e) => { if (e.key === "Enter") typed(input, changed); } });
-    return wide ? h("label", { class: "field" }, h("span", {}, label), input, h("small", { class: "wrong" })) : input;
+    return wide ? labelled(label, input) : input;
   }
+
+  const labelled = (label, input, mark = "", of = undefined) => h("div", { class: `field ${mark}` }, h("label", {}, h("span", {}, label), input), h("small", { class: "wrong", "data-of": of }));
 
   function build() {
     const isFresh = furnish();
@@ -538,7 +540,7 @@ export function mount(element, transport, options = {}) {
 
   function buildSets() {
     sets = Object.fromEntries((view?.sets ?? []).map((group) => [group.key, handles(s.spec[group.key] ?? "")]));
-    el.texts.replaceChildren(...(view?.sets ?? []).map((group) => h("label", { class: `field ${group.mark}` }, h("span", {}, w(`${group.label}s`)), poleField(group), h("small", { class: "wrong", "data-of": `specification.${group.key}` }))));
+    el.texts.replaceChildren(...(view?.sets ?? []).map((group) => labelled(w(`${group.label}s`), poleField(group), group.mark, `specification.${group.key}`)));
     el.starts.replaceChildren(field("courses.start", "x(0)", s.x0 || "", (t) => { s.x0 = t; commit(true); ask(); }), ...(s.task === "state_feedback" ? [] : [field("courses.estimate", "x̂(0)", s.xh0 || "", (t) => { s.xh0 = t; commit(true); ask(); })]));
     for (const [input, fallback] of [[el.starts.querySelectorAll("input")[0], "1, 1, …"], [el.starts.querySelectorAll("input")[1], "0, 0, …"]]) input?.setAttribute("placeholder", fallback);
     drawPlane(true);
@@ -814,23 +816,32 @@ export function mount(element, transport, options = {}) {
 
   // -- answers ----------------------------------------------------------------------------------------------------------
 
+  /** Take away what was wrong; what a field of the page itself refused stays until the field is changed. */
   function clearWrong() {
+    if (refused) return;
     root.querySelectorAll(".wrong").forEach((e) => e.replaceChildren());
     root.querySelectorAll("[aria-invalid]").forEach((e) => e.removeAttribute("aria-invalid"));
     say("");
   }
 
+  /** Declare a letter; a slider gives it a value, too. */
+  function declare(name, as) {
+    s.symbols[name] = as === "positive" ? as : "real";
+    if (as === "slider") s.at[name] = "1";
+    problemChanged();
+  }
+
   function showErrors(errors) {
     const left = [];
-    for (const { where, message, repair, lang } of errors) {
+    for (const { where, message, repair, lang, undeclared } of errors) {
       const words = `${message}${repair ? `: ${repair}` : ""}`, base = where.replace(/\[.*$/, "");
       const exact = where.replace(/\[(\d+)\]\[(\d+)\]$/, (_, i, j) => `[${Number(i) + 1},${Number(j) + 1}]`);
       const input = root.querySelector(`[data-where="${CSS.escape(exact)}"]`) ?? root.querySelector(`[data-set="${CSS.escape(base.replace("specification.", ""))}"]`) ?? root.querySelector(`[data-where="${CSS.escape(base)}"]`);
       const below = root.querySelector(`.wrong[data-of="${CSS.escape(base)}"]`), field = input ?? (below ? null : root.querySelector(`[data-where="${CSS.escape(base.replace("plant.", "text."))}"]`));
       field?.setAttribute("aria-invalid", "true");
       field?.closest("details")?.setAttribute("open", "");
-      const spot = field?.closest("label")?.querySelector(".wrong") ?? below;
-      if (spot) spot.append(h("span", { lang }, words)); else left.push(`${where ? `${where}: ` : ""}${words}`);
+      const spot = field?.closest(".field")?.querySelector(".wrong") ?? below;
+      if (spot) spot.append(h("span", { lang }, words), ...(undeclared ? ["real", "positive", "slider"].map((as) => h("button", { onclick: () => declare(undeclared, as) }, w(`as_${as}`))) : [])); else left.push(`${where ? `${where}: ` : ""}${words}`);
     }
     if (left.length) say(left.slice(0, 4).join(" · "));
   }

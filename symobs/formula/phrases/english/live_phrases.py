@@ -72,6 +72,9 @@ PHRASES: dict[str, str] = {
     "live_field_sampling_period": "sampling period",
     "live_field_impulse": "impulse",
     "live_no_language": "There is no language {code} here; choose one of the list.",
+    "live_as_real": "real",
+    "live_as_positive": "positive",
+    "live_as_slider": "a slider",
     "live_comma": "a comma between two digits may be a decimal mark, or part two entries",
     "live_comma_repair": "write 1.5, or a space after the comma; in a list of numbers, 1,5; 2",
     # poles in their plane
@@ -133,6 +136,7 @@ PHRASES: dict[str, str] = {
     "live_not_loaded": "Python could not be loaded",
     # said by Python
     "said_memory": "{megabytes} MB of memory were not enough",
+    "said_undeclared": "{name} is not declared; declare it as",
     "said_no_state": "{count} numbers are expected",
     "said_no_state_repair": "write them with commas between, 1, 1/2",
     "said_other_sign": "{name} is {sign}",
@@ -235,7 +239,7 @@ CONTINUES = (
     "live_task_stabilizability", "live_task_state_feedback", "live_task_time_varying_observability",
     "live_task_tracking", "live_task_transfer_function", "live_task_unknown_input_observer",
     "live_task_zero_order_hold",
-    "live_field_method", "live_field_meaning", "live_field_of", "live_field_kind", "live_field_sign",
+    "live_as_real", "live_as_positive", "live_as_slider", "live_field_method", "live_field_meaning", "live_field_of", "live_field_kind", "live_field_sign",
     "live_field_output", "live_field_input", "live_field_horizon", "live_field_initial", "live_field_polynomial",
     "live_field_parameters", "live_field_margin", "live_field_radius", "live_field_interval", "live_field_poles",
     "live_field_zero", "live_field_member", "live_field_observer_poles", "live_field_observer_polynomial",
