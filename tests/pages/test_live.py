@@ -233,10 +233,47 @@ def test_a_response_says_when_it_settles_and_a_pole_what_it_does_alone(opened: C
     assert 0.9537 < float(first.removeprefix("settles in ")) < 0.97
     assert second == "settles in 1.5"
     live.page.focus('[data-handle="poles.0"]')
-    assert live.page.locator(".readout").all_text_contents() == ["−4", "alone settles in 0.978"]
+    assert live.page.locator(".readout:visible").all_text_contents() == ["−4", "alone settles in 0.978"]
     live.page.keyboard.press("ArrowLeft")
     live.at_rest()
-    assert live.page.locator(".readout").all_text_contents() == ["−9/2", "alone settles in 0.869"]
+    assert live.page.locator(".readout:visible").all_text_contents() == ["−9/2", "alone settles in 0.869"]
+
+
+def test_a_pole_is_read_off_when_it_is_pointed_at_and_put_back_by_escape(opened: Callable[..., Opened]) -> None:
+    live = opened(PAIR.replace("5/2i", "5i"))
+    live.page.mouse.move(*live.middle("observer_poles.0"))
+    # ζ = 5/√50, overshoot e^(−π) and ln 50 / 5
+    expected = ["−5 ± 5 i", "ζ = 0.707, ωₙ = √50", "alone overshoots by 4.32 %", "alone settles in 0.782"]
+    assert live.page.locator(".readout:visible").all_text_contents() == expected
+    signs = ["control pole", "observer pole", "pole of the plant", "pole of F"]
+    assert live.page.locator(".marks span").all_text_contents() == signs
+    x, y = live.middle("observer_poles.0")
+    live.page.mouse.down()
+    live.page.mouse.move(x - 80, y - 40)
+    live.page.keyboard.press("Escape")
+    live.page.mouse.up()
+    live.at_rest()
+    assert live.poles("observer_poles") == "-5+5i, -5-5i"
+
+
+def test_changes_are_undone_done_again_and_begun_anew(opened: Callable[..., Opened]) -> None:
+    live = opened(SERVO)
+    field = live.page.locator('[data-set="control_poles"]')
+    for poles in ("-3, -3", "-4, -4"):
+        field.fill(poles)
+        field.press("Tab")
+        live.at_rest()
+    seen = []
+    for name in ("Undo", "Undo", "Redo", "Redo", "Undo", "Back to the beginning of this problem"):
+        live.page.get_by_role("button", name=name).click()
+        live.at_rest()
+        seen.append(live.poles("control_poles"))
+    assert seen == ["-3, -3", "-2, -2", "-3, -3", "-4, -4", "-3, -3", "-2, -2"]
+    assert live.page.get_by_role("button", name="Back to the beginning of this problem").is_disabled()
+    live.page.keyboard.press("Control+z")
+    live.at_rest()
+    assert live.poles("control_poles") == "-3, -3"
+    assert live.latex("K") == r"K=\begin{bmatrix}9&5\end{bmatrix}"  # s² + (1 + k₂) s + k₁ = (s + 3)²
 
 
 def test_pairs_form_and_part(opened: Callable[..., Opened]) -> None:
@@ -615,7 +652,7 @@ _CONTRAST = """() => {
   const light = c => { const [r, g, b] = rgb(c).map(v => (v /= 255) <= .03928 ? v / 12.92 : ((v + .055) / 1.055) ** 2.4);
     return .2126 * r + .7152 * g + .0722 * b; };
   const style = getComputedStyle(document.querySelector('.symobs-live')), of = n => light(style.getPropertyValue(n));
-  return ['--ink', '--control', '--observer', '--pale', '--bad', '--good', '--c2', '--c3'].flatMap(n =>
+  return ['--ink', '--control', '--observer', '--pale', '--bad', '--good', '--c0', '--c1', '--c2', '--c3'].flatMap(n =>
     ['--paper', '--back', '--ground'].map(b => { const [x, y] = [of(n), of(b)].sort((p, q) => q - p);
       return [n + ' on ' + b, (x + .05) / (y + .05)]; }));
 }"""

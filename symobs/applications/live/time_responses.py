@@ -5,7 +5,7 @@ from __future__ import annotations
 from decimal import Decimal
 from fractions import Fraction
 from itertools import pairwise
-from math import ceil, isqrt, lcm, log, log10
+from math import ceil, exp, isqrt, lcm, log, log10, pi
 from operator import mul
 from typing import TYPE_CHECKING, Any
 
@@ -32,6 +32,8 @@ _DEAD, _SAMPLES = 1e-9, 40
 _BETWEEN, _MOST_SEGMENTS, _LEAST_BEHIND = Fraction(1, 110), 512, 32
 #: What stays below this part of the peak has settled; nothing is read off a response whose second difference is a larger one.
 _SETTLED, _COARSEST = Fraction(1, 50), Fraction(1, 3)
+#: A mode that overshoots by less is not seen to.
+_LEAST_PERCENT = 0.01
 #: What is larger cannot be drawn beside numbers of usual size.
 _LARGEST = 10**12
 #: Why there is no response, as phrases.
@@ -283,11 +285,14 @@ def readout(real: Fraction, imaginary: Fraction, *, discrete: bool) -> dict[str,
     square = real * real + imaginary * imaginary
     if discrete:
         return {"exact": f"|z|² = {square}", "modulus": _places(_root(square))}
-    exact = f"ωₙ² = {square}" if imaginary else f"ωₙ = {abs(real)}"
-    found = {"exact": exact}
+    root = _root(square)
+    whole = f"{square}" if square.denominator == 1 else f"({square})"
+    found = {"exact": f"ωₙ = {root}" if root * root == square else f"ωₙ = √{whole}"}
     if square:
-        found["damping"] = _places(-real / _root(square))
+        found["damping"] = _places(-real / root)
     if real < 0:
+        if imaginary and (percent := 100 * exp(pi * float(real / abs(imaginary)))) >= _LEAST_PERCENT:
+            found["overshoot"] = _digits(Fraction(percent), 3)
         found["settles"] = _digits(Fraction(log(50)) / -real, 3)
     return found
 

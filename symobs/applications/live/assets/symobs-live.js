@@ -175,7 +175,8 @@ export function mount(element, transport, options = {}) {
   let s = begun(options.state ?? "");
   let view = null, viewed = "", answer = null, sets = {}, held = null, frame = null, start = null;
   let waiting = null, running = false, number = 0, drawn = 0, restTimer = 0, busyTimer = 0, said = 0, refused = false, gone = false, quiet = false, before = "";
-  let aborted = new AbortController(), language = null, notice = "", point = null, turning = "", fill = () => {};
+  let aborted = new AbortController(), language = null, notice = "", point = null, turning = "", isLetGo = false, fill = () => {};
+  let origin = encoded(s), steps = [origin], reached = 0;
   const el = {};
 
   const w = (name, slots = {}) => filled(language[name], slots);
@@ -207,7 +208,8 @@ export function mount(element, transport, options = {}) {
     el.snap = h("select", { title: w("grid_of_poles"), onchange: () => { s.snap = el.snap.value; commit(true); drawPlane(); } }, Object.keys(SNAPS).map((k) => h("option", { value: k }, k)));
     el.message = h("div", { class: "message", hidden: true });
     for (const name of ["list", "map", "point"]) el[name] = h("div", { class: name });
-    for (const name of ["verdict", "notes", "legend"]) el[name] = h("p", { class: name });
+    for (const name of ["verdict", "notes", "legend", "marks", "hint"]) el[name] = h("p", { class: name });
+    el.hint.textContent = w("drag");
     el.live = h("div", { class: "hidden", "aria-live": "polite", role: "status" });
     el.poles = h("svg:svg", { class: "picture", viewBox: "0 0 480 360", role: "group", "aria-label": w("plane_of_poles") });
     el.texts = h("div", { class: "fields" });
@@ -216,18 +218,20 @@ export function mount(element, transport, options = {}) {
     el.html = h("div", { class: "html", tabindex: "0", "aria-label": w("page") }, derivation);
     el.plant = h("section", { class: "panel plant", "aria-label": w("problem") });
     el.reopen = h("span", { class: "reopen" });
+    const button = (name, sign, act) => (el[name] = h("button", { class: "quiet", title: w(name), "aria-label": w(name), onclick: act }, sign));
     el.copy = h("button", { class: "copy", onclick: copyLink }, w("copy_link"));
     const save = ["toml", "python", "latex", "html"].map((as) => h("button", { onclick: () => take(as) }, w(`save_${as}`)));
     root.replaceChildren(
-      h("header", { class: "bar" }, h("strong", {}, "symobs"), el.task, el.examples, el.reopen, h("span", { class: "space" }), el.language, el.copy, h("details", { class: "menu" }, h("summary", {}, w("save")), h("div", {}, save))),
+      h("header", { class: "bar" }, h("h1", {}, "symobs"), el.task, el.examples, button("undo", "↶", () => walk(-1)), button("redo", "↷", () => walk(1)), button("reset", "⟲", () => shift(origin)), el.reopen, h("span", { class: "space" }), el.language, el.copy, h("details", { class: "menu" }, h("summary", {}, w("save")), h("div", {}, save))),
       el.message,
-      h("div", { class: "grid" }, el.plant, panel("region", el.map, el.point), panel("plane", el.poles, el.texts), panel("responses", el.curves, el.legend, el.starts), panel("cases"), panel("cards", el.verdict, el.notes, el.list), panel("page", el.html)),
+      h("div", { class: "grid" }, el.plant, panel("region", el.map, el.point), panel("plane", el.poles, el.marks, el.texts, el.hint), panel("responses", el.curves, el.legend, el.starts), panel("cases"), panel("cards", el.verdict, el.notes, el.list), panel("page", el.html)),
       el.live,
     );
     el.planeBar.append(h("label", {}, `${w("grid")} `, el.snap));
     el.detail = h("select", { "aria-label": w("detail"), onchange: () => { s.detail = el.detail.value; commit(true); rest(0); } }, DETAILS.map((d) => h("option", { value: d }, w(`detail_${d}`))));
     el.pageBar.append(el.detail);
     offer();
+    drawSteps();
     say("");
     return true;
   }
@@ -387,6 +391,29 @@ export function mount(element, transport, options = {}) {
     const link = encoded(s);
     if (link.length > LONGEST) say(w("too_long"));
     else options.changed?.(link, final);
+    if (!final || link === steps[reached]) return;
+    steps.splice(reached + 1, Infinity, link);
+    reached += 1;
+    drawSteps();
+  }
+
+  /** Go to a state; it is a step of its own unless it is one of those that were gone. */
+  function shift(link) {
+    turning = "";
+    s = begun(link);
+    frame = null;
+    commit(true);
+    begin();
+  }
+  function walk(by) {
+    if (steps[reached + by] === undefined) return;
+    reached += by;
+    shift(steps[reached]);
+    drawSteps();
+  }
+  function drawSteps() {
+    const idle = { undo: reached < 1, redo: reached > steps.length - 2, reset: steps[reached] === origin };
+    for (const [name, is] of Object.entries(idle)) el[name].setAttribute("aria-disabled", String(is));
   }
   function problemChanged() { commit(true); build(); ask(); }
 
@@ -398,6 +425,7 @@ export function mount(element, transport, options = {}) {
     view = null;
     viewed = "";
     el.examples.value = "";
+    origin = encoded(s);
     problemChanged();
   }
 
@@ -412,6 +440,7 @@ export function mount(element, transport, options = {}) {
       if (got.status !== "done") { drawAnswer(got); el.task.value = s.task; return; }
       const { plant, spec, symbols } = decoded(got.link);
       s = { ...s, task, plant, spec, symbols, at: Object.fromEntries(Object.entries(s.at).filter(([name]) => name in symbols)) };
+      origin = encoded(s);
       problemChanged();
     } catch (error) {
       if (gone || turning !== task) return;
@@ -582,15 +611,29 @@ export function mount(element, transport, options = {}) {
     else while (el.poles.childElementCount > 1) el.poles.lastChild.remove();
     for (const m of answer?.marks ?? []) {
       const [x, y] = [X(Number(m.re)), Y(Number(m.im))];
-      if (x > 38 && x < 466 && y > 14 && y < 338) parts.push(h("svg:path", { class: `mark ${m.kind}`, d: m.kind === "F" ? `M${x - 4} ${y}h8M${x} ${y - 4}v8` : `M${x - 3.5} ${y - 3.5}l7 7m0 -7l-7 7` }, h("svg:title", {}, w(`pole_of_${m.kind}`))));
+      if (x > 38 && x < 466 && y > 14 && y < 338) parts.push(h("svg:path", { class: `mark ${m.kind}`, d: MARKS[m.kind](x, y) }, h("svg:title", {}, w(`pole_of_${m.kind}`))));
     }
     for (const group of view.sets) {
       const list = sets[group.key] ?? [], count = list.length;
-      list.forEach((p, k) => p.raw || parts.push(handle(group, list, p, k, count, focus === `${group.key}.${k}`)));
+      list.forEach((p, k) => p.raw || parts.push(handle(group, list, p, k, count)));
     }
     if (Object.values(sets).flat().some((p) => p.raw)) parts.push(h("svg:text", { x: 46, y: 330 }, w("in_fields")));
     el.poles.append(...parts);
+    drawMarks();
     if (focus) refocus(focus);
+  }
+
+  const CROSS = (x, y, r) => `M${x - r} ${y - r}l${2 * r} ${2 * r}m0 ${-2 * r}l${-2 * r} ${2 * r}`;
+  const MARKS = { plant: (x, y) => CROSS(x, y, 3.5), F: (x, y) => `M${x - 4} ${y}h8M${x} ${y - 4}v8` };
+
+  /** Say what the signs in the plane are. */
+  function drawMarks() {
+    const kinds = [...new Set((answer?.marks ?? []).map((m) => m.kind))];
+    if (el.marks.dataset.of === `${view.sets.map((g) => g.mark)}${kinds}${root.lang}`) return;
+    el.marks.dataset.of = `${view.sets.map((g) => g.mark)}${kinds}${root.lang}`;
+    const sign = (mark, of, words) => h("span", {}, h("svg:svg", { viewBox: "0 0 16 16", "aria-hidden": "true", class: of }, mark), words);
+    const ring = h("svg:circle", { class: "glyph", cx: 8, cy: 8, r: 5 }), cross = h("svg:path", { class: "glyph", d: CROSS(8, 8, 5) });
+    el.marks.replaceChildren(...view.sets.map((g) => sign(g.mark === "cross" ? cross : ring, g.mark, w(g.label))), ...kinds.map((k) => sign(h("svg:path", { class: "mark", d: MARKS[k](8, 8) }), "", w(`pole_of_${k}`))));
   }
 
   /** What stands still while poles are moved: the stable part, and the lines with their numbers. */
@@ -616,14 +659,14 @@ export function mount(element, transport, options = {}) {
     quiet = false;
   }
 
-  function handle(group, list, p, k, count, focused) {
+  function handle(group, list, p, k, count) {
     const spoken = pretty(p.pair && p.im[0] ? w("pair", { real: text(p.re), imaginary: text(p.im) }) : text(p.re));
     const same = list.slice(0, k).filter((q) => !q.raw && !q.pair && !p.pair && text(q.re) === text(p.re)).length;
     const places = p.pair ? [[X(value(p.re)), Y(value(p.im))], [X(value(p.re)), Y(-value(p.im))]] : [[X(value(p.re)), Y(0)]];
     const nested = p.pair && !p.im[0];
     const glyph = ([x, y], index) => {
       const r = 6.5 + 4 * (same + (nested ? index : 0));
-      return [h("svg:circle", { class: "hit", cx: x, cy: y, r: 18 }), h("svg:circle", { class: "halo", cx: x, cy: y, r: 12 }), group.mark === "cross" ? h("svg:path", { class: "glyph", d: `M${x - r} ${y - r}l${2 * r} ${2 * r}m0 ${-2 * r}l${-2 * r} ${2 * r}` }) : h("svg:circle", { class: "glyph", cx: x, cy: y, r })];
+      return [h("svg:circle", { class: "hit", cx: x, cy: y, r: 18 }), h("svg:circle", { class: "halo", cx: x, cy: y, r: 12 }), group.mark === "cross" ? h("svg:path", { class: "glyph", d: CROSS(x, y, r) }) : h("svg:circle", { class: "glyph", cx: x, cy: y, r })];
     };
     const said = isOld("answer") ? null : answer?.readouts?.find((r) => r.handle === `${group.key}.${k}`);
     const isHeld = held && held.p === p;
@@ -632,15 +675,14 @@ export function mount(element, transport, options = {}) {
       "aria-label": w("one_of", { pole: w(group.label), number: k + 1, count }), "aria-roledescription": w("pole"), "aria-valuemin": -100, "aria-valuemax": 100, "aria-valuenow": value(p.re), "aria-valuetext": spoken,
       onpointerdown: (e) => grab(e, group, p), onkeydown: (e) => key(e, group, p, k), onfocus: () => { if (!quiet) { before = JSON.stringify(sets); drawPlane(); } },
     }, places.map(glyph));
-    if (isHeld || focused) {
-      const [x, y] = places[0], right = x < 300;
-      const lines = [pretty(p.pair && p.im[0] ? `${text(p.re)} ± ${text(p.im)} i` : text(p.re))];
-      if (said?.damping && p.pair) lines.push(`ζ = ${pretty(said.damping)}, ${said.exact}`);
-      if (said?.settles) lines.push(w("mode_settles", { time: pretty(said.settles) }));
-      if (said?.modulus) lines.push(`|z| = ${pretty(said.modulus)}`);
-      const below = y < 70, up = below ? 0 : lines.length - 1;
-      mine.append(...lines.map((words, n) => h("svg:text", { class: n ? "readout" : "readout first", x: x + (right ? 16 : -16), y: below ? y + 26 : y - 12, dy: `${1.25 * (n - up)}em`, "text-anchor": right ? "start" : "end" }, words)));
-    }
+    const [x, y] = places[0], right = x < 300;
+    const lines = [pretty(p.pair && p.im[0] ? `${text(p.re)} ± ${text(p.im)} i` : text(p.re))];
+    if (said?.damping && p.pair) lines.push(`ζ = ${pretty(said.damping)}, ${said.exact}`);
+    if (said?.overshoot) lines.push(w("mode_overshoots", { percent: pretty(said.overshoot) }));
+    if (said?.settles) lines.push(w("mode_settles", { time: pretty(said.settles) }));
+    if (said?.modulus) lines.push(`|z| = ${pretty(said.modulus)}`);
+    const below = y < 90, up = below ? 0 : lines.length - 1;
+    mine.append(...lines.map((words, n) => h("svg:text", { class: n ? "readout" : "readout first", x: x + (right ? 16 : -16), y: below ? y + 26 : y - 12, dy: `${1.25 * (n - up)}em`, "text-anchor": right ? "start" : "end" }, words)));
     return mine;
   }
 
@@ -671,7 +713,7 @@ export function mount(element, transport, options = {}) {
   function pursue(event, svg, follow, ended) {
     event.preventDefault();
     svg.setPointerCapture(event.pointerId);
-    const heard = [[svg, "pointermove", follow], [svg, "pointerup", () => end(false)], [svg, "pointercancel", () => end(true)], [root, "keydown", (e) => { if (e.key === "Escape") end(true); }]];
+    const heard = [[svg, "pointermove", follow], [svg, "pointerup", () => end(false)], [svg, "pointercancel", () => end(true)], [document, "keydown", (e) => { if (e.key === "Escape") { e.stopPropagation(); end(true); } }]];
     const end = (back) => {
       for (const [where, what, hear] of heard) where.removeEventListener(what, hear, true);
       held = null;
@@ -692,7 +734,7 @@ export function mount(element, transport, options = {}) {
       if (back) sets = JSON.parse(before);
       const k = sets[group.key].indexOf(p);
       sets[group.key] = settled(sets[group.key]);
-      fit();
+      isLetGo = true;
       moved(true);
       refocus(`${group.key}.${Math.max(0, k)}`);
     });
@@ -867,7 +909,8 @@ export function mount(element, transport, options = {}) {
     drawCards(got);
     if (!el.cases.hidden) drawCases(got);
     if (!el.responses.hidden) drawCurves(got.courses);
-    drawPlane();
+    drawPlane(isLetGo);  // the poles of F are known now
+    isLetGo = false;
   }
 
   function drawCards(got) {
@@ -926,11 +969,26 @@ export function mount(element, transport, options = {}) {
 
   const isEmpty = () => !Object.keys(s.plant).length && s.spec.polynomial === undefined;
   const begin = () => { build(); if (isEmpty()) turn(s.task); else ask(); };
+  root.addEventListener("keydown", (e) => {
+    if (!(e.ctrlKey || e.metaKey) || e.key.toLowerCase() !== "z" || /** @type {HTMLElement} */ (e.target).closest("input")) return;
+    e.preventDefault();
+    walk(e.shiftKey ? 1 : -1);
+  });
   begin();
   return {
     destroy() { gone = true; aborted.abort(); root.remove(); },
     state: () => encoded(s),
-    set(link) { turning = ""; s = begun(link); frame = null; begin(); },
+    /** Take over a state that is written already: of the history of the browser, or of another view. */
+    set(link) {
+      turning = "";
+      s = begun(link);
+      frame = null;
+      const now = encoded(s), near = [reached, reached - 1, reached + 1].find((k) => steps[k] === now);
+      if (near === undefined) steps.splice(reached + 1, Infinity, now);
+      reached = near ?? reached + 1;
+      begin();
+      drawSteps();
+    },
   };
 }
 
