@@ -17,7 +17,9 @@ from symobs.applications.live.request import FieldError, Request, link_of, put_i
 from symobs.applications.live.sentences import sentence, stability_of
 from symobs.applications.live.time_responses import NoResponse, readout, responses_of
 from symobs.exact import Scalar
+from symobs.exact.algebraic.enclosure import is_number
 from symobs.exact.algebraic.root_location import complex_roots, root_boxes, value_at
+from symobs.exact.time_functions.matrix_exponential import fraction_near
 from symobs.formula.figures import LinePicture, PoleMap, RegionPicture
 from symobs.formula.phrases.languages import language_named
 from symobs.formula.tree import Letter, Literal, Relation
@@ -540,10 +542,10 @@ def _marks(result: Result) -> list[dict[str, str]]:
         known.append(("F", result.fields.get("compensator_matrix")))
     found = []
     for kind, matrix in known:
-        if matrix is None or matrix.names:
+        if matrix is None or not all(map(is_number, matrix.entries)):
             continue
         chi = matrix.characteristic_polynomial(plant.variable).coefficients(plant.variable)
-        for real, imaginary in complex_roots([entry.fraction() for entry in chi]):
+        for real, imaginary in complex_roots(list(map(fraction_near, chi))):
             found.append({"kind": kind, "re": f"{float(real):.6f}", "im": f"{float(imaginary):.6f}"})
     return found
 

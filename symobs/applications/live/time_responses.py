@@ -11,12 +11,16 @@ from typing import TYPE_CHECKING, Any
 
 from symobs.applications.live.request import FieldError
 from symobs.exact import Matrix
+from symobs.exact.algebraic.enclosure import is_number
 from symobs.ground.errors import InputError
 from symobs.system import Symbols, read_matrix
 from symobs.tasks.analysis.time_response.response import rounded_up
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from symobs.applications.live.request import Responses
+    from symobs.exact import Scalar
     from symobs.tasks.result import Result
 
 #: States are enclosed in these parts; a response is rounded from them to coarser ones.
@@ -50,11 +54,15 @@ class NoResponse(Exception):
 class Signals:
     """A linear equation with its initial state, and the signals drawn: name, component, row of the state, dashed."""
 
-    def __init__(self, matrix: Matrix, start: list[Fraction], drawn: list[tuple[str, Matrix, bool]]) -> None:
+    def __init__(
+        self, matrix: Matrix, start: Sequence[Fraction | Scalar], drawn: list[tuple[str, Matrix, bool]]
+    ) -> None:
         """Take the signals apart into rows."""
+        from symobs.exact.time_functions.matrix_exponential import fraction_near  # noqa: PLC0415 - FLINT
+
         self.matrix, self.start = matrix, start
         self.rows = [
-            (name, place if table.shape[0] > 1 else 0, [entry.fraction() for entry in row], dashed)
+            (name, place if table.shape[0] > 1 else 0, list(map(fraction_near, row)), dashed)
             for name, table, dashed in drawn
             for place, row in enumerate(table.rows, 1)
         ]
@@ -98,7 +106,7 @@ def _signals(result: Result, asked: Responses) -> Signals:
     state = _vector(asked.start, order, Fraction(1), "courses.start")
     estimate = _vector(asked.estimate, order, Fraction(0), "courses.estimate")
     error = [a - b for a, b in zip(state, estimate, strict=True)]
-    start: list[Fraction] = []
+    start: list[Any] = []
     drawn: list[tuple[str, Matrix, bool]] = []
     match result.task:
         case "observer":
@@ -120,7 +128,7 @@ def _signals(result: Result, asked: Responses) -> Signals:
             raise NoResponse
     if matrix is None:
         raise NoResponse
-    if matrix.names or result.plant.relations:
+    if not all(map(is_number, matrix.entries)) or result.plant.relations:
         raise NoResponse(_NEEDS_NUMBERS)
     return Signals(matrix, start, drawn)
 
@@ -138,12 +146,11 @@ def _state_and_estimate(order: int, T: Matrix | None, size: int) -> list[tuple[s
     return [("x", plain, False), ("x_hat", Matrix.block([[Matrix.identity(order), -whole]]), True)]
 
 
-def _below(T: Matrix, error: list[Fraction], size: int) -> list[Fraction]:
+def _below(T: Matrix, error: list[Fraction], size: int) -> list[Scalar]:
     """Return the last components of T e."""
-    if T.names:
+    if not all(map(is_number, T.entries)):
         raise NoResponse(_NEEDS_NUMBERS)
-    product = T @ Matrix.column(error)
-    return [entry.fraction() for entry in product.entries][-size:]
+    return list((T @ Matrix.column(error)).entries)[-size:]
 
 
 def _vector(text: str, size: int, otherwise: Fraction, where: str) -> list[Fraction]:
@@ -228,11 +235,12 @@ def _at_instants(signals: Signals, step: Fraction, count: int) -> list[list[int]
 
 def _stepped(signals: Signals, count: int) -> list[list[int]]:
     """Return the values at 0, 1, 2, … in fine parts, rounded from exact ones."""
-    table = [[entry.fraction() for entry in row] for row in signals.matrix.rows]
-    state, states = list(signals.start), []
+    from symobs.exact.time_functions.matrix_exponential import fraction_near  # noqa: PLC0415 - FLINT
+
+    state, states = Matrix.column(list(signals.start)), []
     for _ in range(count):
-        states.append(state)
-        state = [sum(map(mul, row, state), Fraction(0)) for row in table]
+        states.append([fraction_near(entry) for entry in state.entries])
+        state = signals.matrix @ state
     return [
         [round(sum(map(mul, row, state), Fraction(0)) * _FINE) for state in states] for _, _, row, _ in signals.rows
     ]

@@ -147,6 +147,33 @@ def test_responses_are_within_their_bound() -> None:
     ]  # fmt: skip
 
 
+@pytest.mark.parametrize("dt", [{}, {"dt": "1"}])
+@pytest.mark.parametrize("task", ["observer", "reduced_order_observer"])
+def test_roots_in_the_data_have_responses(task: str, dt: dict[str, str]) -> None:
+    plant = {"A": "[0 1; sqrt(2)/4 -1/2]", "C": "[1 sqrt(3)/2]", **dt}
+    poles = {"observer": "-1/2, -1/3", "reduced_order_observer": "-1/2"}[task]
+    found = asked({"task": task, "plant": plant, "specification": {"poles": poles}}, courses={"end": "6", "count": 33})
+    table = mpmath.matrix(
+        [[_decimal(entry) for entry in row] for row in found["result"]["A" if task == "observer" else "F"]]
+    )
+    start = mpmath.matrix([1, 1]) if task == "observer" else None
+    lines, parts = found["courses"]["lines"], found["courses"]["parts"]
+    last = len(lines[0]["heights"]) - 1
+    if start is None:
+        start = mpmath.matrix([mpmath.mpf(line["heights"][0]) / parts for line in lines])
+    for k in range(last + 1):
+        state = (table**k if dt else mpmath.expm(table * mpmath.mpf(6 * k) / last)) * start
+        for place, line in enumerate(lines):
+            assert abs(line["heights"][k] - parts * state[place]) <= 2
+    marks = sorted(float(mark["re"]) for mark in found["marks"])
+    # s² + s/2 − √2/4 = 0
+    assert marks == pytest.approx([-(1 + (1 + 4 * 2**0.5) ** 0.5) / 4, ((1 + 4 * 2**0.5) ** 0.5 - 1) / 4], abs=1e-6)
+
+
+def _decimal(entry: str) -> Any:
+    return eval(entry, {"sqrt": mpmath.sqrt}) + mpmath.mpf(0)  # noqa: S307 - our own answer
+
+
 @pytest.mark.parametrize("poles", ["-1, -20, -20", "-1, -40, -40", "-1/10+10i, -1/10-10i, -1", "-1, -1, -1"])
 def test_peak_and_settling_are_those_of_the_whole_response(poles: str) -> None:
     chain = {"A": "[0 1 0; 0 0 1; 0 0 0]", "C": "[1 0 0]"}
