@@ -299,6 +299,35 @@ def test_pairs_form_and_part(opened: Callable[..., Opened]) -> None:
     assert moved != "-5, -5"
 
 
+def test_tab_goes_through_the_entries_and_a_matrix_grows(opened: Callable[..., Opened]) -> None:
+    live = opened(SERVO)
+    focused = "document.activeElement.getAttribute('aria-label')"
+    live.page.get_by_label("A row 1 column 1").focus()
+    for typed, after in (("0", "A row 1 column 2"), ("1", "A row 2 column 1"), ("-2", "A row 2 column 2")):
+        live.page.keyboard.press("Control+a")
+        live.page.keyboard.type(typed)
+        live.page.keyboard.press("Tab")
+        live.page.keyboard.type("1")  # on top of what is chosen there, while the answer comes
+        live.at_rest()
+        assert live.page.evaluate(focused) == after
+    assert live.page.input_value('[aria-label="A row 2 column 2"]') == "1"
+    live.page.keyboard.press("Enter")
+    live.at_rest()
+    assert live.latex("K") == r"K=\begin{bmatrix}2&5\end{bmatrix}"  # s² − s + 2 + k₂ s + k₁ = (s + 2)²
+    for kind in ("states", "outputs", "inputs"):
+        live.page.get_by_role("button", name=f"more {kind}").click()
+        live.at_rest()
+        assert live.page.evaluate(focused) == f"more {kind}"
+    problem, _ = problem_of(live.page.url)
+    grown = {"A": "[0 1 0; -2 1 1; 0 0 0]", "B": "[0 0; 1 1; 1 0]", "C": "[1 0 0; 0 1 0]"}
+    assert problem["plant"] == grown
+    assert [count(poles) for poles in problem["specification"].values()] == [3, 3]
+    for kind in ("states", "outputs", "inputs"):
+        live.page.get_by_role("button", name=f"fewer {kind}").click()
+        live.at_rest()
+    assert problem_of(live.page.url)[0]["plant"] == {"A": "[0 1; -2 1]", "B": "[0; 1]", "C": "[1 0]"}
+
+
 def test_the_only_real_pole_of_a_set_stays_on_the_axis(opened: Callable[..., Opened]) -> None:
     live = opened(SERVO.replace("observer=-10, -10", "observer=-4&order=minimal"))
     x, y = live.middle("observer_poles.0")

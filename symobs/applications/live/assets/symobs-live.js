@@ -107,7 +107,7 @@ function cells(source) {
   });
   return rows.every((row) => row.length === rows[0].length && row.length) ? rows : null;
 }
-const matrix = (rows) => `[${rows.map((row) => row.map((c) => c.trim() || "0").join(" ")).join("; ")}]`;
+const matrix = (rows) => `[${rows.map((row) => row.map((c) => (/\s/.test(c.replace(/\(.*\)/g, "")) ? `(${c})` : c || "0")).join(" ")).join("; ")}]`;
 
 // -- state in a link ------------------------------------------------------------------------------------------------
 
@@ -175,7 +175,7 @@ export function mount(element, transport, options = {}) {
   let s = begun(options.state ?? "");
   let view = null, viewed = "", answer = null, sets = {}, held = null, frame = null, start = null;
   let waiting = null, running = false, number = 0, drawn = 0, restTimer = 0, busyTimer = 0, said = 0, refused = false, gone = false, quiet = false, before = "";
-  let aborted = new AbortController(), language = null, notice = "", point = null, turning = "", isLetGo = false, fill = () => {};
+  let aborted = new AbortController(), language = null, notice = "", point = null, turns = 0, turning = 0, isLetGo = false, fill = () => {};
   let origin = encoded(s), steps = [origin], reached = 0;
   const el = {};
 
@@ -204,7 +204,7 @@ export function mount(element, transport, options = {}) {
     if (stranger) notice = w("no_language", { code: stranger.slice(0, 40) });
     el.task = h("select", { "aria-label": w("task"), onchange: () => turn(el.task.value) }, h("option", { value: s.task }, taskName(s.task)));
     el.examples = h("select", { "aria-label": w("example"), onchange: choose }, h("option", { value: "" }, w("examples")));
-    el.language = h("select", { "aria-label": w("language"), onchange: () => { s.language = el.language.value; problemChanged(); el.language.focus(); } }, Object.entries(LANGUAGES).map(([key, own]) => h("option", { value: key, lang: key, selected: key === code }, own.name)));
+    el.language = h("select", { "aria-label": w("language"), onchange: () => { s.language = el.language.value; commit(true); build(); ask(); el.language.focus(); } }, Object.entries(LANGUAGES).map(([key, own]) => h("option", { value: key, lang: key, selected: key === code }, own.name)));
     el.snap = h("select", { title: w("grid_of_poles"), onchange: () => { s.snap = el.snap.value; commit(true); drawPlane(); } }, Object.keys(SNAPS).map((k) => h("option", { value: k }, k)));
     el.message = h("div", { class: "message", hidden: true });
     for (const name of ["list", "map", "point"]) el[name] = h("div", { class: name });
@@ -323,7 +323,7 @@ export function mount(element, transport, options = {}) {
     }
     running = false;
     clearTimeout(busyTimer);
-    busy(false);
+    busy(turning > 0);
     rest(REST);
   }
 
@@ -399,7 +399,7 @@ export function mount(element, transport, options = {}) {
 
   /** Go to a state; it is a step of its own unless it is one of those that were gone. */
   function shift(link) {
-    turning = "";
+    turning = 0;
     s = begun(link);
     frame = null;
     commit(true);
@@ -415,12 +415,13 @@ export function mount(element, transport, options = {}) {
     const idle = { undo: reached < 1, redo: reached > steps.length - 2, reset: steps[reached] === origin };
     for (const [name, is] of Object.entries(idle)) el[name].setAttribute("aria-disabled", String(is));
   }
-  function problemChanged() { commit(true); build(); ask(); }
+  // Fields are built anew when the focus has reached the next one.
+  function problemChanged() { commit(true); setTimeout(() => gone || build()); ask(); }
 
   function choose() {
     const found = start?.examples.find((e) => e.name === el.examples.value), { snap, closed, detail, language } = s;
     if (!found) return;
-    turning = "";
+    turning = 0;
     s = { ...decoded(found.link), snap, closed, detail, language };
     view = null;
     viewed = "";
@@ -430,22 +431,25 @@ export function mount(element, transport, options = {}) {
   }
 
   /** Turn to another task, which begins with what it takes of the problem and with what that lacks. */
-  async function turn(task) {
-    const told = JSON.stringify(problem());
-    turning = task;
+  async function turn(task, resized = {}) {
+    const told = problem(), mine = turning = ++turns;
+    busy(true);
     try {
-      const got = await transport(asking("begin", { task }));
-      if (gone || turning !== task) return;
-      if (told !== JSON.stringify(problem())) { turn(task); return; }
+      const got = await transport(asking("begin", { task, problem: { ...told, plant: { ...told.plant, ...resized } } }));
+      if (gone || turning !== mine) return;
+      if (JSON.stringify(told) !== JSON.stringify(problem())) { turn(task, resized); return; }
       if (got.status !== "done") { drawAnswer(got); el.task.value = s.task; return; }
       const { plant, spec, symbols } = decoded(got.link);
       s = { ...s, task, plant, spec, symbols, at: Object.fromEntries(Object.entries(s.at).filter(([name]) => name in symbols)) };
       origin = encoded(s);
       problemChanged();
     } catch (error) {
-      if (gone || turning !== task) return;
+      if (gone || turning !== mine) return;
       el.task.value = s.task;
-      say(w("no_answer", { reason: why(error) }), () => turn(task));
+      say(w("no_answer", { reason: why(error) }), () => turn(task, resized));
+    } finally {
+      if (turning === mine) turning = 0;
+      if (!running && !turning) busy(false);
     }
   }
 
@@ -492,7 +496,20 @@ export function mount(element, transport, options = {}) {
 
   const labelled = (label, input, mark = "", of = undefined) => h("div", { class: `field ${mark}` }, h("label", {}, h("span", {}, label), input), h("small", { class: "wrong", "data-of": of }));
 
-  function build() {
+  /** Do what builds fields anew; the focus stays where it is, and so does what is being typed. */
+  function keepingFocus(renew) {
+    const active = root.getRootNode().activeElement, { where, set } = root.contains(active) ? active?.dataset ?? {} : {};
+    renew();
+    const again = where || set ? root.querySelector(where ? `[data-where="${CSS.escape(where)}"]` : `[data-set="${CSS.escape(set)}"]`) : null;
+    if (!again || again === active) return;
+    if (active.value !== active.defaultValue) again.value = active.value;
+    again.focus({ preventScroll: true });
+    again.setSelectionRange?.(active.selectionStart, active.selectionEnd);
+  }
+
+  function build() { keepingFocus(buildFields); }
+
+  function buildFields() {
     const isFresh = furnish();
     const listed = ["A", "B", "C", "D"].filter((name) => s.plant[name] !== undefined);
     const rows = listed.map((name) => {
@@ -501,7 +518,7 @@ export function mount(element, transport, options = {}) {
       if (!table) return field(`plant.${name}`, name, s.plant[name], set);
       const grid = h("span", { class: "matrix", style: `--columns:${table[0].length}` }, table.map((row, i) => row.map((cell, j) => {
         const size = Math.max(2, Math.min(14, Math.max(...table.map((r) => r[j].length))));
-        const input = field(`plant.${name}[${i + 1},${j + 1}]`, w("entry", { name, row: i + 1, column: j + 1 }), cell, (t) => { if (t === table[i][j]) return; table[i][j] = t; s.plant[name] = matrix(table.map((r) => r.map((c) => (/\s/.test(c) ? `(${c})` : c)))); commit(true); ask(); build(); }, false);
+        const input = field(`plant.${name}[${i + 1},${j + 1}]`, w("entry", { name, row: i + 1, column: j + 1 }), cell, (t) => { if (t === table[i][j]) return; table[i][j] = t; set(matrix(table)); }, false);
         input.style.setProperty("--size", `${size}ch`);
         return input;
       })));
@@ -513,12 +530,14 @@ export function mount(element, transport, options = {}) {
     fill = () => el.untold.replaceChildren(...(start?.tasks[s.task] ?? []).filter((key) => s.spec[key] === undefined && !setKeys.includes(key)).map(told));
     fill();
     const all = h("details", { class: "astext", open: el.plant.querySelector(".astext")?.open }, h("summary", {}, w("as_text")), h("div", { class: "fields" }, ["A", "B", "C", "D", "transfer_function", "dt"].map((name) => field(`text.${name}`, labelOf(name), s.plant[name], (t) => { if (t) s.plant[name] = t; else delete s.plant[name]; problemChanged(); })), field("text.symbols", labelOf("symbols"), Object.entries(s.symbols).map(([n, g]) => `${n}: ${g}`).join(", "), (t) => { s.symbols = Object.fromEntries(t.split(",").map((e) => e.split(":").map((p) => p.trim())).filter(([n]) => n).map(([n, g]) => [n, g || "real"])); problemChanged(); })), el.untold);
+    const tables = Object.fromEntries(listed.map((name) => [name, cells(s.plant[name])]));
+    const sizes = Object.entries({ states: tables.A?.length, inputs: tables.B?.[0]?.length, outputs: tables.C?.length }).filter(([, count]) => count).map(([kind, count]) => h("span", { class: "size" }, `${count} ${w(`count_${kind}`)} `, [[-1, "−"], [1, "+"]].map(([by, sign]) => h("button", { class: "quiet", "aria-label": w(by < 0 ? "fewer" : "more", { kind: w(`count_${kind}`) }), "data-where": `${kind}${by}`, "aria-disabled": String(count + by < 1), onclick: () => { if (count + by > 0 && !turning) resize(tables, kind, by); } }, sign))));
     if (s.plant.transfer_function !== undefined) rows.push(field("plant.transfer_function", "P(s)", s.plant.transfer_function, (t) => { s.plant.transfer_function = t; problemChanged(); }));
     const others = Object.keys(s.spec).filter((key) => !setKeys.includes(key) && key !== "observer").map(told);
     const kind = s.task === "compensator" ? h("label", { class: "field" }, h("span", {}, w("kind")), h("select", { onchange: (e) => { s.spec.observer = e.target.value; fitObserver(); problemChanged(); } }, ["full", "minimal"].map((k) => h("option", { value: k, selected: (s.spec.observer ?? "full") === k }, w(`kind_${k}`))))) : null;
     const names = Object.keys(s.symbols).filter((n) => !axes().includes(n) || !view);
     const sliders = names.map((name) => slider(name));
-    el.plant.replaceChildren(h("header", {}, h("h2", {}, w("problem"))), h("div", { class: "body" }, h("div", { class: "matrices" }, rows), kind, others, sliders.length ? h("div", { class: "sliders" }, sliders) : null, all));
+    el.plant.replaceChildren(h("header", {}, h("h2", {}, w("problem"))), h("div", { class: "body" }, h("div", { class: "matrices" }, rows), sizes.length ? h("div", { class: "sizes" }, sizes) : null, kind, others, sliders.length ? h("div", { class: "sliders" }, sliders) : null, all));
     if ([...el.task.options].some((o) => o.value === s.task)) el.task.value = s.task;
     el.snap.value = s.snap;
     el.detail.value = s.detail;
@@ -529,6 +548,27 @@ export function mount(element, transport, options = {}) {
     if (point && el.pointVerdict) drawPoint(point, answered.point);
     show(answer);
     fade();
+  }
+
+  /** Take away the last state, input or output, or add one: a state that drives the last one, an input or output of its own. */
+  function resize(tables, kind, by) {
+    const { A, B, C, D } = tables, unit = (size, k, entry) => Array.from({ length: size }, (_, j) => (j === k ? entry : "0"));
+    const wider = (table, column) => table?.forEach((row, i) => { if (by < 0) row.pop(); else row.push(column[i]); });
+    const taller = (table, row) => { if (by < 0) table?.pop(); else table?.push(row); };
+    const n = A?.length ?? 0, m = B?.[0].length ?? 0, p = C?.length ?? 0;
+    if (kind === "states") {
+      wider(A, unit(n, n - 1, "1"));
+      taller(A, unit(n + 1, n, "0"));
+      taller(B, unit(m, m - 1, "1"));
+      wider(C, unit(p, -1, "1"));
+    } else if (kind === "inputs") {
+      wider(B, unit(n, n - 1 - (m % n), "1"));
+      wider(D, unit(p, -1, "1"));
+    } else {
+      taller(C, unit(n, p % n, "1"));
+      taller(D, unit(m, -1, "1"));
+    }
+    turn(s.task, Object.fromEntries(Object.entries(tables).filter(([, table]) => table).map(([name, table]) => [name, matrix(table)])));
   }
 
   /** An observer of minimal order has fewer poles: drop the last ones, or repeat the first. */
@@ -550,7 +590,7 @@ export function mount(element, transport, options = {}) {
   }
 
   function takeView() {
-    build();
+    if (!held) build();  // a slider that is held stays
     point = null;
     el.map.replaceChildren();
     if (view.panels.includes("region")) drawMap();
@@ -980,7 +1020,7 @@ export function mount(element, transport, options = {}) {
     state: () => encoded(s),
     /** Take over a state that is written already: of the history of the browser, or of another view. */
     set(link) {
-      turning = "";
+      turning = 0;
       s = begun(link);
       frame = null;
       const now = encoded(s), near = [reached, reached - 1, reached + 1].find((k) => steps[k] === now);

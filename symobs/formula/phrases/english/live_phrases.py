@@ -38,6 +38,11 @@ PHRASES: dict[str, str] = {
     "live_detail_answer": "answer",
     # the problem
     "live_entry": "{name} row {row} column {column}",
+    "live_count_states": "states",
+    "live_count_inputs": "inputs",
+    "live_count_outputs": "outputs",
+    "live_fewer": "fewer {kind}",
+    "live_more": "more {kind}",
     "live_as_text": "as text",
     "live_kind": "observer",
     "live_kind_full": "full order",
@@ -229,7 +234,7 @@ PHRASES: dict[str, str] = {
 
 #: They stand within a sentence, or beside one.
 CONTINUES = (
-    "live_detail_full", "live_detail_outline", "live_detail_answer", "live_as_text", "live_kind", "live_kind_full",
+    "live_detail_full", "live_detail_outline", "live_detail_answer", "live_count_states", "live_count_inputs", "live_count_outputs", "live_fewer", "live_more", "live_as_text", "live_kind", "live_kind_full",
     "live_kind_minimal", "live_value_of", "live_letter", "live_grid", "live_control_pole", "live_control_poles",
     "live_observer_pole", "live_observer_poles", "live_pole", "live_settles", "live_mode_overshoots", "live_mode_settles", "live_pole_of_plant", "live_pole_of_F",
     "live_in_fields", "live_point", "live_point_of", "live_point_stable", "live_point_unstable",
