@@ -404,6 +404,33 @@ def test_everything_that_takes_the_focus_has_a_name(opened: Callable[..., Opened
     assert live.page.locator("[tabindex]:not([tabindex='0'])").count() == 0
 
 
+_WITHOUT_A_NAME = """[...document.querySelectorAll('svg[role], [role=slider], [role=group]')].filter(e => !e.closest('[hidden]')
+  && !(e.getAttribute('aria-label') || e.querySelector(':scope > title'))).map(e => e.outerHTML.slice(0, 200))"""
+_NESTED = "[...document.querySelectorAll(':is([role=img], button, a, label) :is([tabindex], button, a)')].map(e => e.outerHTML)"
+
+
+@pytest.mark.parametrize("state", [PAIR, REGION, LOCUS, CASES], ids=["poles", "region", "locus", "cases"])
+def test_a_reader_of_the_screen_finds_its_way(opened: Callable[..., Opened], state: str) -> None:
+    live = opened(state)
+    assert live.page.evaluate(_WITHOUT_A_NAME) == []
+    assert live.page.evaluate(_NESTED) == []
+    assert live.page.locator("h1").count() == 1
+    labels = live.page.eval_on_selector_all(
+        "section:not([hidden])", "all => all.map(e => e.getAttribute('aria-label'))"
+    )
+    assert len(set(labels)) == len(labels)
+
+
+def test_the_gains_stand_beside_what_is_moved_on_a_phone(opened: Callable[..., Opened]) -> None:
+    live = opened(SERVO)
+    live.page.set_viewport_size({"width": 320, "height": 640})
+    live.page.locator('[data-handle="control_poles.0"] .hit').scroll_into_view_if_needed()
+    for place in ('[data-handle="control_poles.0"]', '.card[data-name="K"]', '.card[data-name="L"]'):
+        box = live.page.locator(place).first.bounding_box()
+        assert box["y"] >= 0, place
+        assert box["y"] + box["height"] <= 640, place
+
+
 def test_a_bad_entry_is_said_at_its_field(opened: Callable[..., Opened]) -> None:
     live = opened(SERVO)
     entry = live.page.get_by_label("A row 2 column 2")
@@ -444,7 +471,7 @@ def test_another_task_takes_over_what_it_is_asked(opened: Callable[..., Opened])
 
 def test_every_task_of_the_menu_begins_with_an_answer(opened: Callable[..., Opened]) -> None:
     live = opened("")
-    live.page.wait_for_selector("optgroup option", state="attached")
+    live.page.wait_for_selector("datalist option", state="attached")
     for task in live.page.eval_on_selector_all('[aria-label="Task"] option', "all => all.map(e => e.value)"):
         live.page.get_by_label("Task").select_option(task)
         live.wait_for(f"document.querySelector('.symobs-live:not(.stale):not(.busy)')?.dataset.task === '{task}'")
@@ -456,16 +483,17 @@ def test_every_task_of_the_menu_begins_with_an_answer(opened: Callable[..., Open
 def test_what_is_in_full_ink_answers_what_is_on_the_screen(opened: Callable[..., Opened]) -> None:
     live, draw, dead, changes = opened(SERVO), random.Random(20), False, 0  # noqa: S311 - repeatable by design
     page, compared, pale = live.page, 0, 0
-    page.wait_for_selector("optgroup option", state="attached")
-    examples = page.eval_on_selector_all("optgroup option", "all => all.map(e => e.value)")
-    picked = [name for name in examples if "region" not in name and "minimal" not in name][:30]
+    page.wait_for_selector("datalist option", state="attached")
+    examples = page.eval_on_selector_all("datalist option", "all => all.map(e => [e.value, e.textContent])")
+    assert len({title for title, _ in examples}) == len(examples)
+    picked = [title for title, task in examples if task != "stability region" and "minimal" not in title][:30]
     for _ in range(40):
         before = page.url
         match draw.randrange(7):
             case 0 | 1:
                 name = draw.choice(picked)
                 for _ in range(draw.randint(1, 2)):  # chosen a second time, it begins anew
-                    page.get_by_label("example").select_option(name)
+                    page.get_by_label("example").fill(name)
             case 2:
                 page.get_by_label("task").select_option(draw.choice(["observer", "state_feedback", "observability"]))
             case 3 | 4 if page.locator("[data-set]").count():

@@ -14,6 +14,8 @@ const PANELS = ["plane", "responses", "cards", "cases", "region", "page"];
 /** The words of each language by its code; whoever hands out this file puts them in. @type {Record<string, Record<string, string>>} */
 export const LANGUAGES = {};
 
+let mounted = 0;
+
 /** Put what a phrase speaks of into its slots. @param {string} phrase @param {object} slots */
 export const filled = (phrase, slots) => phrase.replace(/\{(\w+)\}/g, (_, slot) => slots[slot]);
 
@@ -203,7 +205,8 @@ export function mount(element, transport, options = {}) {
     root.lang = code;
     if (stranger) notice = w("no_language", { code: stranger.slice(0, 40) });
     el.task = h("select", { "aria-label": w("task"), onchange: () => turn(el.task.value) }, h("option", { value: s.task }, taskName(s.task)));
-    el.examples = h("select", { "aria-label": w("example"), onchange: choose }, h("option", { value: "" }, w("examples")));
+    el.titles = h("datalist", { id: `symobs-examples-${(mounted += 1)}` });
+    el.examples = h("input", { list: el.titles.id, "aria-label": w("example"), placeholder: w("examples"), autocomplete: "off", oninput: choose });
     el.language = h("select", { "aria-label": w("language"), onchange: () => { s.language = el.language.value; commit(true); build(); ask(); el.language.focus(); } }, Object.entries(LANGUAGES).map(([key, own]) => h("option", { value: key, lang: key, selected: key === code }, own.name)));
     el.snap = h("select", { title: w("grid_of_poles"), onchange: () => { s.snap = el.snap.value; commit(true); drawPlane(); } }, Object.keys(SNAPS).map((k) => h("option", { value: k }, k)));
     el.message = h("div", { class: "message", hidden: true });
@@ -213,7 +216,7 @@ export function mount(element, transport, options = {}) {
     el.live = h("div", { class: "hidden", "aria-live": "polite", role: "status" });
     el.poles = h("svg:svg", { class: "picture", viewBox: "0 0 480 360", role: "group", "aria-label": w("plane_of_poles") });
     el.texts = h("div", { class: "fields" });
-    el.curves = h("svg:svg", { class: "picture", viewBox: "0 0 480 300", role: "img" });
+    el.curves = h("svg:svg", { class: "picture", viewBox: "0 0 480 300", role: "img", "aria-label": w("responses") });
     el.starts = h("div", { class: "fields starts" });
     el.html = h("div", { class: "html", tabindex: "0", "aria-label": w("page") }, derivation);
     el.plant = h("section", { class: "panel plant", "aria-label": w("problem") });
@@ -222,7 +225,7 @@ export function mount(element, transport, options = {}) {
     el.copy = h("button", { class: "copy", onclick: copyLink }, w("copy_link"));
     const save = ["toml", "python", "latex", "html"].map((as) => h("button", { onclick: () => take(as) }, w(`save_${as}`)));
     root.replaceChildren(
-      h("header", { class: "bar" }, h("h1", {}, "symobs"), el.task, el.examples, button("undo", "↶", () => walk(-1)), button("redo", "↷", () => walk(1)), button("reset", "⟲", () => shift(origin)), el.reopen, h("span", { class: "space" }), el.language, el.copy, h("details", { class: "menu" }, h("summary", {}, w("save")), h("div", {}, save))),
+      h("header", { class: "bar" }, h("h1", {}, "symobs"), el.task, el.examples, el.titles, button("undo", "↶", () => walk(-1)), button("redo", "↷", () => walk(1)), button("reset", "⟲", () => shift(origin)), el.reopen, h("span", { class: "space" }), el.language, el.copy, h("details", { class: "menu" }, h("summary", {}, w("save")), h("div", {}, save))),
       el.message,
       h("div", { class: "grid" }, el.plant, panel("region", el.map, el.point), panel("plane", el.poles, el.marks, el.texts, el.hint), panel("responses", el.curves, el.legend, el.starts), panel("cases"), panel("cards", el.verdict, el.notes, el.list), panel("page", el.html)),
       el.live,
@@ -343,8 +346,7 @@ export function mount(element, transport, options = {}) {
     fill();
     el.task.replaceChildren(...Object.keys(start.tasks).map((name) => h("option", { value: name }, taskName(name))));
     el.task.value = s.task;
-    const by = Object.groupBy ? Object.groupBy(start.examples, (e) => e.task) : { all: start.examples };
-    el.examples.append(...Object.entries(by).map(([task, list]) => h("optgroup", { label: taskName(task) }, list.map((e) => h("option", { value: e.name, lang: "en" }, e.title)))));
+    el.titles.replaceChildren(...start.examples.map((e) => h("option", { value: e.title, lang: "en" }, taskName(e.task))));
   }
 
   function rest(after) {
@@ -419,7 +421,7 @@ export function mount(element, transport, options = {}) {
   function problemChanged() { commit(true); setTimeout(() => gone || build()); ask(); }
 
   function choose() {
-    const found = start?.examples.find((e) => e.name === el.examples.value), { snap, closed, detail, language } = s;
+    const found = start?.examples.find((e) => e.title === el.examples.value), { snap, closed, detail, language } = s;
     if (!found) return;
     turning = 0;
     s = { ...decoded(found.link), snap, closed, detail, language };
@@ -599,6 +601,9 @@ export function mount(element, transport, options = {}) {
   function drawMap() {
     const region = view.region;
     el.map.innerHTML = region?.svg ?? "";
+    const svg = el.map.querySelector("svg");
+    svg?.setAttribute("role", "group");  // it holds what can be moved
+    svg?.setAttribute("aria-label", w("region"));
     if (region?.handle) {
       region.parameters.forEach((name, k) => { s.at[name] ??= region.handle[k]; });
       buildPoint();
@@ -1001,7 +1006,8 @@ export function mount(element, transport, options = {}) {
       if (line.peak) told.push(`${w("peaks", { signal: nameOf(line), peak: pretty(line.peak), last: pretty(line.last) })}${settles && `, ${settles}`}`);
       named.push(h("span", {}, h("svg:svg", { viewBox: "0 0 24 8", "aria-hidden": "true" }, h("svg:path", { class: kind, d: "M1 4h22" })), nameOf(line), h("small", {}, settles)));
     }
-    el.curves.replaceChildren(h("svg:title", {}, w("up_to", { end: got.end, told: told.join("; ") })), ...made);
+    el.curves.setAttribute("aria-label", w("up_to", { end: got.end, told: told.join("; ") }));
+    el.curves.replaceChildren(...made);
     el.legend.replaceChildren(...named);
   }
 
