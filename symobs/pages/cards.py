@@ -85,11 +85,15 @@ class CardPrinter:
             return ",\\ ".join(listed(card.shown, printer, LATEX))
         return printer.unbroken(card.shown)
 
+    def roots(self, values: Iterable[Root]) -> str:
+        """Return roots in a line of text."""
+        return ", ".join(listed(Roots(Letter("chi"), tuple(values)), self._text, TEXT))
+
     def says(self, card: Card) -> str:
         """Return the card in words for a reader of the screen: `K equals 4, 3`."""
         printer = self._text
         if isinstance(card.shown, Roots):
-            return self.language.phrases["said_roots"].format(roots=", ".join(listed(card.shown, printer, TEXT)))
+            return self.language.phrases["said_roots"].format(roots=self.roots(card.shown.values))
         left, right = card.shown.members[0], card.shown.members[-1]
         return self.language.phrases["said_equals"].format(name=printer.inline(left), value=printer.inline(right))
 

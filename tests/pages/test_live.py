@@ -9,12 +9,13 @@ import subprocess
 import sys
 import threading
 from typing import TYPE_CHECKING, Any
-from urllib.parse import quote, unquote
+from urllib.parse import quote
 
 import pytest
 
 from symobs.applications.live import answer
 from symobs.applications.live.server import AnswerBudget, Children, Server
+from tests.support.live_link import problem_of
 from tests.support.tools.command_line import environment
 
 if TYPE_CHECKING:
@@ -155,7 +156,7 @@ def test_the_servo_opens(opened: Callable[..., Opened]) -> None:
     assert live.latex("K") == r"K=\begin{bmatrix}4&3\end{bmatrix}"
     assert live.latex("L") == r"L=\begin{bmatrix}19\\81\end{bmatrix}"
     assert live.latex("F") == r"F(s)=\frac{319s+400}{s^2+23s+161}"
-    assert live.page.inner_text(".cards .verdict") == "Checked · 3 claims"
+    assert live.page.inner_text(".cards .verdict") == "Closed loop stable · Checked · 3 claims"
     live.page.wait_for_selector(".html math")
     assert "Observer" in live.page.inner_text(".html")
     live.page.get_by_label("Language").select_option("de")
@@ -163,18 +164,18 @@ def test_the_servo_opens(opened: Callable[..., Opened]) -> None:
         "document.querySelector('.html math') && document.querySelector('.html').innerText.includes('Regler')"
     )
     assert live.latex("K") == r"K=\begin{bmatrix}4&3\end{bmatrix}"
-    assert live.page.inner_text(".cards .verdict") == "Geprüft · 3 Aussagen"
+    assert live.page.inner_text(".cards .verdict") == "Geschlossener Kreis stabil · Geprüft · 3 Aussagen"
     assert ENGLISH_WORDS.findall(live.page.inner_text(".grid").partition("Literatur")[0]) == []
     assert live.page.evaluate("document.activeElement.getAttribute('aria-label')") == "Sprache"
     live.page.go_back()
-    live.wait_for("document.querySelector('.cards .verdict').innerText === 'Checked · 3 claims'")
+    live.wait_for("document.querySelector('.cards .verdict').innerText.includes('Checked')")
 
 
 def test_each_language_has_its_labels_its_decimals_and_the_last_answer(opened: Callable[..., Opened]) -> None:
     live = opened(f"{SERVO}&language=xx")
     assert "no language xx" in live.page.inner_text(".message")
     live.page.get_by_label("Language").select_option("de")
-    live.wait_for("document.querySelector('.cards .verdict').innerText.startsWith('Geprüft')")
+    live.wait_for("document.querySelector('.cards .verdict').innerText.includes('Geprüft')")
     assert not live.page.is_visible(".message")
     live.page.click(".astext summary")
     assert "Übertragungsfunktion" in live.page.inner_text(".plant")
@@ -232,10 +233,47 @@ def test_a_response_says_when_it_settles_and_a_pole_what_it_does_alone(opened: C
     assert 0.9537 < float(first.removeprefix("settles in ")) < 0.97
     assert second == "settles in 1.5"
     live.page.focus('[data-handle="poles.0"]')
-    assert live.page.locator(".readout").all_text_contents() == ["−4", "alone settles in 0.978"]
+    assert live.page.locator(".readout:visible").all_text_contents() == ["−4", "alone settles in 0.978"]
     live.page.keyboard.press("ArrowLeft")
     live.at_rest()
-    assert live.page.locator(".readout").all_text_contents() == ["−9/2", "alone settles in 0.869"]
+    assert live.page.locator(".readout:visible").all_text_contents() == ["−9/2", "alone settles in 0.869"]
+
+
+def test_a_pole_is_read_off_when_it_is_pointed_at_and_put_back_by_escape(opened: Callable[..., Opened]) -> None:
+    live = opened(PAIR.replace("5/2i", "5i"))
+    live.page.mouse.move(*live.middle("observer_poles.0"))
+    # ζ = 5/√50, overshoot e^(−π) and ln 50 / 5
+    expected = ["−5 ± 5 i", "ζ = 0.707, ωₙ = √50", "alone overshoots by 4.32 %", "alone settles in 0.782"]
+    assert live.page.locator(".readout:visible").all_text_contents() == expected
+    signs = ["control pole", "observer pole", "pole of the plant", "pole of F"]
+    assert live.page.locator(".marks span").all_text_contents() == signs
+    x, y = live.middle("observer_poles.0")
+    live.page.mouse.down()
+    live.page.mouse.move(x - 80, y - 40)
+    live.page.keyboard.press("Escape")
+    live.page.mouse.up()
+    live.at_rest()
+    assert live.poles("observer_poles") == "-5+5i, -5-5i"
+
+
+def test_changes_are_undone_done_again_and_begun_anew(opened: Callable[..., Opened]) -> None:
+    live = opened(SERVO)
+    field = live.page.locator('[data-set="control_poles"]')
+    for poles in ("-3, -3", "-4, -4"):
+        field.fill(poles)
+        field.press("Tab")
+        live.at_rest()
+    seen = []
+    for name in ("Undo", "Undo", "Redo", "Redo", "Undo", "Back to the beginning of this problem"):
+        live.page.get_by_role("button", name=name).click()
+        live.at_rest()
+        seen.append(live.poles("control_poles"))
+    assert seen == ["-3, -3", "-2, -2", "-3, -3", "-4, -4", "-3, -3", "-2, -2"]
+    assert live.page.get_by_role("button", name="Back to the beginning of this problem").is_disabled()
+    live.page.keyboard.press("Control+z")
+    live.at_rest()
+    assert live.poles("control_poles") == "-3, -3"
+    assert live.latex("K") == r"K=\begin{bmatrix}9&5\end{bmatrix}"  # s² + (1 + k₂) s + k₁ = (s + 3)²
 
 
 def test_pairs_form_and_part(opened: Callable[..., Opened]) -> None:
@@ -259,6 +297,35 @@ def test_pairs_form_and_part(opened: Callable[..., Opened]) -> None:
     moved = live.poles("observer_poles")
     assert moved.startswith("-5, -")
     assert moved != "-5, -5"
+
+
+def test_tab_goes_through_the_entries_and_a_matrix_grows(opened: Callable[..., Opened]) -> None:
+    live = opened(SERVO)
+    focused = "document.activeElement.getAttribute('aria-label')"
+    live.page.get_by_label("A row 1 column 1").focus()
+    for typed, after in (("0", "A row 1 column 2"), ("1", "A row 2 column 1"), ("-2", "A row 2 column 2")):
+        live.page.keyboard.press("Control+a")
+        live.page.keyboard.type(typed)
+        live.page.keyboard.press("Tab")
+        live.page.keyboard.type("1")  # on top of what is chosen there, while the answer comes
+        live.at_rest()
+        assert live.page.evaluate(focused) == after
+    assert live.page.input_value('[aria-label="A row 2 column 2"]') == "1"
+    live.page.keyboard.press("Enter")
+    live.at_rest()
+    assert live.latex("K") == r"K=\begin{bmatrix}2&5\end{bmatrix}"  # s² − s + 2 + k₂ s + k₁ = (s + 2)²
+    for kind in ("states", "outputs", "inputs"):
+        live.page.get_by_role("button", name=f"more {kind}").click()
+        live.at_rest()
+        assert live.page.evaluate(focused) == f"more {kind}"
+    problem, _ = problem_of(live.page.url)
+    grown = {"A": "[0 1 0; -2 1 1; 0 0 0]", "B": "[0 0; 1 1; 1 0]", "C": "[1 0 0; 0 1 0]"}
+    assert problem["plant"] == grown
+    assert [count(poles) for poles in problem["specification"].values()] == [3, 3]
+    for kind in ("states", "outputs", "inputs"):
+        live.page.get_by_role("button", name=f"fewer {kind}").click()
+        live.at_rest()
+    assert problem_of(live.page.url)[0]["plant"] == {"A": "[0 1; -2 1]", "B": "[0; 1]", "C": "[1 0]"}
 
 
 def test_the_only_real_pole_of_a_set_stays_on_the_axis(opened: Callable[..., Opened]) -> None:
@@ -337,15 +404,46 @@ def test_everything_that_takes_the_focus_has_a_name(opened: Callable[..., Opened
     assert live.page.locator("[tabindex]:not([tabindex='0'])").count() == 0
 
 
+_WITHOUT_A_NAME = """[...document.querySelectorAll('svg[role], [role=slider], [role=group]')].filter(e => !e.closest('[hidden]')
+  && !(e.getAttribute('aria-label') || e.querySelector(':scope > title'))).map(e => e.outerHTML.slice(0, 200))"""
+_NESTED = "[...document.querySelectorAll(':is([role=img], button, a, label) :is([tabindex], button, a)')].map(e => e.outerHTML)"
+
+
+@pytest.mark.parametrize("state", [PAIR, REGION, LOCUS, CASES], ids=["poles", "region", "locus", "cases"])
+def test_a_reader_of_the_screen_finds_its_way(opened: Callable[..., Opened], state: str) -> None:
+    live = opened(state)
+    assert live.page.evaluate(_WITHOUT_A_NAME) == []
+    assert live.page.evaluate(_NESTED) == []
+    assert live.page.locator("h1").count() == 1
+    labels = live.page.eval_on_selector_all(
+        "section:not([hidden])", "all => all.map(e => e.getAttribute('aria-label'))"
+    )
+    assert len(set(labels)) == len(labels)
+
+
+def test_the_gains_stand_beside_what_is_moved_on_a_phone(opened: Callable[..., Opened]) -> None:
+    live = opened(SERVO)
+    live.page.set_viewport_size({"width": 320, "height": 640})
+    live.page.locator('[data-handle="control_poles.0"] .hit').scroll_into_view_if_needed()
+    for place in ('[data-handle="control_poles.0"]', '.card[data-name="K"]', '.card[data-name="L"]'):
+        box = live.page.locator(place).first.bounding_box()
+        assert box["y"] >= 0, place
+        assert box["y"] + box["height"] <= 640, place
+
+
 def test_a_bad_entry_is_said_at_its_field(opened: Callable[..., Opened]) -> None:
     live = opened(SERVO)
     entry = live.page.get_by_label("A row 2 column 2")
     entry.fill("q")
     entry.press("Tab")
-    live.page.wait_for_selector(".symobs-live.stale")
-    assert "q" in live.page.inner_text(".plant .wrong >> nth=0")
+    live.page.wait_for_selector(".symobs-live.stale .plant .wrong:has-text('q is not declared')")
     assert live.latex("K") == r"K=\begin{bmatrix}4&3\end{bmatrix}"
     assert live.page.eval_on_selector(".cards .list", "e => getComputedStyle(e).opacity") == "0.38"
+    assert "--symbol" not in live.page.inner_text(".plant")
+    live.page.get_by_role("button", name="a slider").click()  # A = [0 1; 0 q] at q = 1: s² + (k₂ − 1) s + k₁
+    live.page.wait_for_selector(".symobs-live:not(.stale)")
+    assert live.page.input_value('[data-where="at.q"]') == "1"
+    assert live.latex("K") == r"K=\begin{bmatrix}4&5\end{bmatrix}"
     entry = live.page.get_by_label("A row 2 column 2")
     entry.fill("-2")
     entry.press("Tab")
@@ -361,8 +459,8 @@ def test_another_task_takes_over_what_it_is_asked(opened: Callable[..., Opened])
     live.page.wait_for_url("**task=compensator**")
     assert "observer=-4,%20-5" in live.page.url
     assert "poles=" not in live.page.url
-    live.page.wait_for_selector(".symobs-live.stale")  # the field of what is missing is opened
-    entry = live.page.locator('[data-where="specification.control_poles"]')
+    assert problem_of(live.page.url)[0]["specification"]["control_poles"] == "-2, -3"  # what is missing has a default
+    entry = live.page.locator('[data-set="control_poles"]')
     entry.fill("-1, -2")
     entry.press("Tab")
     live.page.wait_for_selector(".symobs-live:not(.stale)")
@@ -371,34 +469,31 @@ def test_another_task_takes_over_what_it_is_asked(opened: Callable[..., Opened])
     assert live.latex("K") == r"K=\begin{bmatrix}2&2\end{bmatrix}"
 
 
-def problem_of(url: str) -> tuple[dict[str, Any], dict[str, str]]:
-    """Read the problem and the values of letters out of the address of the page."""
-    given = dict(pair.split("=", 1) for pair in unquote(url.partition("#")[2]).split("&"))
-    table = {
-        name: dict(pair.split(":") for pair in given.pop(name, "").split(",") if pair) for name in ("symbols", "at")
-    }
-    long = {"control": "control_poles", "observer": "observer_poles", "order": "observer"}
-    told = {"task": given["task"], "symbols": table["symbols"]}
-    told |= {name: given[name] for name in ("convention", "language") if name in given}
-    told["plant"] = {name: given[name] for name in ("A", "B", "C", "D", "transfer_function") if name in given}
-    other = {"v", "task", "snap", "closed", "detail", "x0", "xh0", *told, *told["plant"]}
-    told["specification"] = {long.get(name, name): text for name, text in given.items() if name not in other}
-    return told, table["at"]
+def test_every_task_of_the_menu_begins_with_an_answer(opened: Callable[..., Opened]) -> None:
+    live = opened("")
+    live.page.wait_for_selector("datalist option", state="attached")
+    for task in live.page.eval_on_selector_all('[aria-label="Task"] option', "all => all.map(e => e.value)"):
+        live.page.get_by_label("Task").select_option(task)
+        live.wait_for(f"document.querySelector('.symobs-live:not(.stale):not(.busy)')?.dataset.task === '{task}'")
+        assert live.page.inner_text(".cards .verdict"), task
+        assert not live.page.is_visible(".message"), task
+        assert live.page.locator(".wrong:not(:empty)").count() == 0, task
 
 
 def test_what_is_in_full_ink_answers_what_is_on_the_screen(opened: Callable[..., Opened]) -> None:
     live, draw, dead, changes = opened(SERVO), random.Random(20), False, 0  # noqa: S311 - repeatable by design
     page, compared, pale = live.page, 0, 0
-    page.wait_for_selector("optgroup option", state="attached")
-    examples = page.eval_on_selector_all("optgroup option", "all => all.map(e => e.value)")
-    picked = [name for name in examples if "region" not in name and "minimal" not in name][:30]
+    page.wait_for_selector("datalist option", state="attached")
+    examples = page.eval_on_selector_all("datalist option", "all => all.map(e => [e.value, e.textContent])")
+    assert len({title for title, _ in examples}) == len(examples)
+    picked = [title for title, task in examples if task != "stability region" and "minimal" not in title][:30]
     for _ in range(40):
         before = page.url
         match draw.randrange(7):
             case 0 | 1:
                 name = draw.choice(picked)
                 for _ in range(draw.randint(1, 2)):  # chosen a second time, it begins anew
-                    page.get_by_label("example").select_option(name)
+                    page.get_by_label("example").fill(name)
             case 2:
                 page.get_by_label("task").select_option(draw.choice(["observer", "state_feedback", "observability"]))
             case 3 | 4 if page.locator("[data-set]").count():
@@ -429,7 +524,7 @@ def test_what_is_in_full_ink_answers_what_is_on_the_screen(opened: Callable[...,
 def test_a_loop_that_is_not_stable_has_no_tick(opened: Callable[..., Opened]) -> None:
     live = opened(SERVO.replace("-2, -2", "5, -2"))
     verdict = live.page.locator(".cards .verdict")
-    assert verdict.inner_text() == "Not stable: pole at 5 · Checked · 3 claims"
+    assert verdict.inner_text() == "Closed loop unstable: pole at 5 · Checked · 3 claims"
     assert verdict.evaluate("e => getComputedStyle(e, '::before').content") == '"✗ "'
 
 
@@ -582,6 +677,13 @@ def test_a_link_opens_the_same_and_back_undoes(opened: Callable[..., Opened]) ->
     assert other.latex("L") == live.latex("L")
     other.page.wait_for_selector(".html math")
     assert other.page.inner_text(".html") == live.page.inner_text(".html")
+    tab = live.context.new_page()
+    tab.goto(link)
+    tab.wait_for_selector(".card math")
+    assert tab.input_value('[data-set="observer_poles"]') == moved
+    tab.evaluate("document.querySelector('main').dataset.share = 'https://example.org/live/'")
+    tab.click(".copy")
+    assert tab.evaluate("navigator.clipboard.readText()") == f"https://example.org/live/#{link.partition('#')[2]}"
     live.page.go_back()
     live.page.go_back()
     live.at_rest()
@@ -607,7 +709,7 @@ _CONTRAST = """() => {
   const light = c => { const [r, g, b] = rgb(c).map(v => (v /= 255) <= .03928 ? v / 12.92 : ((v + .055) / 1.055) ** 2.4);
     return .2126 * r + .7152 * g + .0722 * b; };
   const style = getComputedStyle(document.querySelector('.symobs-live')), of = n => light(style.getPropertyValue(n));
-  return ['--ink', '--control', '--observer', '--pale', '--bad', '--good', '--c2', '--c3'].flatMap(n =>
+  return ['--ink', '--control', '--observer', '--pale', '--bad', '--good', '--c0', '--c1', '--c2', '--c3'].flatMap(n =>
     ['--paper', '--back', '--ground'].map(b => { const [x, y] = [of(n), of(b)].sort((p, q) => q - p);
       return [n + ' on ' + b, (x + .05) / (y + .05)]; }));
 }"""

@@ -130,4 +130,5 @@ def test_the_site_opens_and_answers_when_its_server_is_gone(page: Any, site: Thr
     page.goto(address)
     page.wait_for_selector(".card math")
     page.wait_for_selector(".html math")
+    assert page.locator(".first").count() == 0
     assert page.get_attribute('.card[data-name="L"] .display', "data-latex") == r"L=\begin{bmatrix}19\\81\end{bmatrix}"

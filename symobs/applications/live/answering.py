@@ -11,12 +11,15 @@ from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
 from symobs.applications.live.assets import SCHEMA, language_asked
+from symobs.applications.live.beginning import begun, halves
 from symobs.applications.live.page import export_object, page_object
-from symobs.applications.live.request import FieldError, Request, put_in, read
+from symobs.applications.live.request import FieldError, Request, link_of, put_in, read
+from symobs.applications.live.sentences import sentence, stability_of
 from symobs.applications.live.time_responses import NoResponse, readout, responses_of
 from symobs.exact import Scalar
-from symobs.exact.algebraic.polynomial_roots import Factored, factored, roots_of
+from symobs.exact.algebraic.enclosure import is_number
 from symobs.exact.algebraic.root_location import complex_roots, root_boxes, value_at
+from symobs.exact.time_functions.matrix_exponential import fraction_near
 from symobs.formula.figures import LinePicture, PoleMap, RegionPicture
 from symobs.formula.phrases.languages import language_named
 from symobs.formula.tree import Letter, Literal, Relation
@@ -28,6 +31,7 @@ from symobs.ground.errors import (
     OutOfBudget,
     ProblemErrors,
     SymobsError,
+    UnknownName,
 )
 from symobs.pages.cards import Card, CardPrinter, cards
 from symobs.pages.drawings.plot_file import is_shown
@@ -38,8 +42,9 @@ from symobs.problem.schema import kinds_of
 from symobs.system import Symbols, read_scalar
 from symobs.system.conditions import sign_of
 from symobs.system.specification import is_pattern, read_poles
-from symobs.tasks.analysis.modes.modes import stable_modes
-from symobs.tasks.result import Document, result_type, tasks
+from symobs.tasks.analysis.stability_region.stability_region import StabilityRegion
+from symobs.tasks.analysis.stability_region.stability_region_page import inequalities
+from symobs.tasks.result import Document, result_type, task_named, tasks
 from symobs.tasks.result.output_methods import to_json
 
 if TYPE_CHECKING:
@@ -300,9 +305,19 @@ def errors_of(error: SymobsError, language: Language) -> list[dict[str, str]]:
         if isinstance(each, FieldError):
             message, repair = each.told(language)
             found.append({"where": each.where, "message": message, "repair": repair})
+        elif (name := _declarable(each)) is not None:
+            message = language.phrases["said_undeclared"].format(name=name)
+            found.append({"where": each.where, "message": message, "repair": "", "undeclared": name})
         else:
             found.append({"where": each.where, "message": each.message, "repair": each.repair, "lang": "en"})
     return found
+
+
+def _declarable(error: SymobsError) -> str | None:
+    """Return a name that only has to be declared; of one that may be a misspelling or a function the error says so."""
+    name = str(error.facts.get("name"))
+    is_one = isinstance(error, UnknownName) and not error.where.startswith("at.")
+    return name if is_one and f'add {name} = "real"' in error.repair else None
 
 
 def _solve(key: str, find: Callable[[], Problem]) -> Solved:
@@ -377,8 +392,10 @@ def _answer(asked: Request) -> dict[str, Any]:
             responses = responses_of(there.result, asked.responses)
         except NoResponse as reason:
             notes += [language.phrases[str(reason)]] if str(reason) else []
-    notes += _notes(there.result, language)
-    claims = len(result.all_certificates)
+    notes += _notes(there.result, printer)
+    claims, stable = len(result.all_certificates), stability_of(result)
+    if asked.names is None and isinstance(result, StabilityRegion):
+        found += tuple(Card(f"stable_if_{k}", each, None) for k, each in enumerate(inequalities(result), 1))
     whole = {
         "status": _status(result),
         "verdict": result.verdict,
@@ -392,7 +409,8 @@ def _answer(asked: Request) -> dict[str, Any]:
         "cards": [card_object(card, printer) for card in found],
         "readouts": _readouts(there),
         "marks": _marks(there.result),
-        "unstable": _unstable_poles(there.result),
+        "says": sentence(result, stable, printer),
+        "unstable": [str(pole) for pole in stable.poles] if result.gains and result.verdict != "no" else [],
         "courses": responses,
     }
     if asked.cases:
@@ -437,6 +455,14 @@ def _export(asked: Request) -> dict[str, Any]:
     return {"status": "done", **text}
 
 
+def _begin(asked: Request) -> dict[str, Any]:
+    """Return the link of the problem on the screen as one of another task, which has an answer."""
+    task = None if asked.task is None else task_named(asked.task)
+    if task is None:
+        raise InputError("the name of a task is expected", where="task", repair='write for example "task": "observer"')
+    return {"status": "done", "link": link_of(begun(asked.data, task))}
+
+
 def _start(_: Request) -> dict[str, Any]:
     from symobs.applications.live.page import examples  # noqa: PLC0415
     from symobs.formula.convention import conventions  # noqa: PLC0415 - asked once
@@ -456,6 +482,7 @@ _WANTED: dict[str, Callable[[Request], dict[str, Any]]] = {
     "view": _view,
     "export": _export,
     "start": _start,
+    "begin": _begin,
 }
 
 
@@ -489,13 +516,13 @@ def _case(case: Case, printer: CardPrinter) -> dict[str, Any]:
 
 def _readouts(solved: Solved) -> list[dict[str, str]]:
     """Return frequency, damping and settling time of every pole that was given as a number, a pair once."""
-    found, plant, designs = [], solved.result.plant, _designs(solved.result)
+    found, plant, designs = [], solved.result.plant, halves(solved.result)
     for group in pole_sets(solved.result.task):
         for key in (group.key, *(f"{half}_{group.key}" for half in ("control", "observer"))):
             given = solved.problem.specification.get(key)
             if given is None or is_pattern(given):
                 continue
-            asked = designs.get(key)
+            asked = getattr(designs.get(key), "desired", None)
             poles = asked.poles if asked else read_poles(given, plant.symbols, f"specification.{key}")
             upper = [pole for pole in poles if pole.imaginary.names or pole.imaginary.fraction() >= 0]
             for place, pole in enumerate(upper):
@@ -504,12 +531,6 @@ def _readouts(solved: Solved) -> list[dict[str, str]]:
                 read_out = readout(pole.real.fraction(), pole.imaginary.fraction(), discrete=plant.is_discrete)
                 found.append({"handle": f"{key}.{place}", **read_out})
     return found
-
-
-def _designs(result: Result) -> dict[str, Any]:
-    """Return the desired polynomials of the two halves of a compensator."""
-    halves = {"control_poles": "feedback", "observer_poles": "estimator"}
-    return {key: getattr(vars(result)[half], "desired", None) for key, half in halves.items() if half in vars(result)}
 
 
 def _marks(result: Result) -> list[dict[str, str]]:
@@ -521,40 +542,23 @@ def _marks(result: Result) -> list[dict[str, str]]:
         known.append(("F", result.fields.get("compensator_matrix")))
     found = []
     for kind, matrix in known:
-        if matrix is None or matrix.names:
+        if matrix is None or not all(map(is_number, matrix.entries)):
             continue
         chi = matrix.characteristic_polynomial(plant.variable).coefficients(plant.variable)
-        for real, imaginary in complex_roots([entry.fraction() for entry in chi]):
+        for real, imaginary in complex_roots(list(map(fraction_near, chi))):
             found.append({"kind": kind, "re": f"{float(real):.6f}", "im": f"{float(imaginary):.6f}"})
     return found
 
 
-def _notes(result: Result, language: Language) -> list[str]:
+#: Designs whose fixed modes are those of a pair.
+_PAIRS = {"state_feedback": "(A, B)", "observer": "(C, A)", "reduced_order_observer": "(C, A)"}
+
+
+def _notes(result: Result, printer: CardPrinter) -> list[str]:
     """Return why there is no design, and what a look at the curves may miss."""
-    whole: Any = result
-    parts = [getattr(whole, name) for name in ("feedback", "estimator") if name in vars(result)] or [result]
-    notes = []
-    for part in parts if result.verdict == "no" else []:
-        fixed = part.fields.get("fixed_modes") or ()
-        pair = "(A, B)" if part.task == "state_feedback" else "(C, A)"
-        if fixed:
-            phrase = language.phrases["said_fixed_modes" if len(fixed) > 1 else "said_fixed_mode"]
-            notes.append(phrase.format(modes=", ".join(map(str, fixed)), pair=pair))
-    return notes + [language.phrases["said_unstable_compensator"]] * (result.fields.get("compensator_stable") == "no")
-
-
-def _unstable_poles(result: Result) -> list[str]:
-    """Return the poles of a design's loop or error outside of the region of stability, where they are numbers."""
-    found, variable = (
-        result.fields.get("closed_loop_polynomial") or result.fields.get("polynomial"),
-        result.plant.variable,
-    )
-    factors = found if isinstance(found, Factored) else factored(found, variable) if isinstance(found, Scalar) else None
-    if not result.gains or factors is None or factors.names - {variable}:
-        return []
-    outside = []
-    for factor, _ in factors.factors:
-        roots = roots_of(factor, variable)
-        stable = stable_modes(roots, {}, discrete=result.plant.is_discrete)
-        outside += [str(root) for root, is_stable in zip(roots, stable, strict=True) if is_stable is False]
-    return outside
+    notes, said = [], printer.language.phrases
+    for part in list(halves(result).values()) or [result] if result.verdict == "no" else []:
+        if fixed := part.fields.get("fixed_modes") or ():
+            kind = f"said_{'fixed' if part.task in _PAIRS else 'unmoved'}_mode{'s' * (len(fixed) > 1)}"
+            notes.append(said[kind].format(modes=printer.roots(fixed), pair=_PAIRS.get(part.task)))
+    return notes + [said["said_unstable_compensator"]] * (result.fields.get("compensator_stable") == "no")

@@ -9,6 +9,7 @@ from itertools import count
 
 from symobs.applications.live.answering import answer, errors_of
 from symobs.applications.live.assets import SCHEMA
+from symobs.applications.live.beginning import SERVO
 from symobs.applications.live.request import parsed
 from symobs.formula.phrases.languages import ENGLISH
 from symobs.ground.child_processes.inside import serve
@@ -21,9 +22,8 @@ _answers = count(1)
 
 def prepare() -> None:
     """Solve the problem that the page begins with, so that the first question pays for nothing; further tasks wait."""
-    plant = {"A": "[0 1; 0 -1]", "B": "[0; 1]", "C": "[1 0]"}
     poles = {"control_poles": "-2, -2", "observer_poles": "-10, -10"}
-    problem = {"task": "compensator", "plant": plant, "specification": poles}
+    problem = {"task": "compensator", "plant": SERVO, "specification": poles}
     for want in ("view", "answer"):
         answer({"schema": SCHEMA, "want": want, "problem": problem, "courses": {"count": 9}})
 

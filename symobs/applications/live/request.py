@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 MOST_DEPTH, LONGEST_VALUE = 20, 200
 
 
-WANTS = ("answer", "page", "point", "view", "export", "start")
+WANTS = ("answer", "page", "point", "view", "export", "start", "begin")
 
 
 DETAILS = ("full", "outline", "answer")
@@ -176,7 +176,7 @@ def read(body: object) -> Request:
     if not isinstance(data, Mapping):
         note("an object is expected", "problem", "send a problem file as JSON")
         data = {}
-    elif not data and want != "start":
+    elif not data and want not in {"start", "begin"}:
         note("the problem is missing", "problem", "send a problem file as JSON")
     task = body.get("task")
     if task is None:

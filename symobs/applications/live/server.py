@@ -15,6 +15,7 @@ import sys
 import threading
 import time
 from contextlib import suppress
+from html import escape
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from socketserver import TCPServer
 from typing import TYPE_CHECKING, Any
@@ -124,11 +125,12 @@ _HEADERS = {
 }
 
 
-def routes() -> dict[str, tuple[str, bytes]]:
-    """Return every path there is, with its kind and its content."""
+def routes(share: str = "") -> dict[str, tuple[str, bytes]]:
+    """Return every path there is, with its kind and its content; copied links lead to `share` where that is given."""
     javascript = "text/javascript; charset=utf-8"
+    page = (ASSETS / "http.html").read_text(encoding="utf-8")
     return {
-        "/": ("text/html; charset=utf-8", (ASSETS / "http.html").read_bytes()),
+        "/": ("text/html; charset=utf-8", page.replace("<main>", f'<main data-share="{escape(share)}">').encode()),
         "/symobs-live.js": (javascript, script().encode()),
         "/start-http.js": (javascript, (ASSETS / "start-http.js").read_bytes()),
         "/live.css": ("text/css; charset=utf-8", style().encode()),
@@ -141,13 +143,20 @@ class Server(ThreadingHTTPServer):
     daemon_threads = True
     allow_reuse_address = sys.platform != "win32"
 
-    def __init__(self, host: str = "127.0.0.1", port: int = 0, budget: AnswerBudget | None = None) -> None:
-        """Bind the address, choose a token, read the files."""
+    def __init__(
+        self,
+        host: str = "127.0.0.1",
+        port: int = 0,
+        budget: AnswerBudget | None = None,
+        token: str = "",
+        share: str = "",
+    ) -> None:
+        """Bind the address, choose a token where none is given, read the files."""
         self.address_family = socket.AF_INET6 if host == "::1" else socket.AF_INET
         super().__init__((host, port), Handler)
         self.children = Children(budget or AnswerBudget())  # the first gets ready while the page is put together
-        self.token = secrets.token_urlsafe(24)
-        self.routes = routes()
+        self.token = token or secrets.token_urlsafe(24)
+        self.routes = routes(share)
         self.connections = threading.BoundedSemaphore(_MOST_CONNECTIONS)
         number = self.server_address[1]
         self.names = frozenset({f"127.0.0.1:{number}", f"localhost:{number}", f"[::1]:{number}"})

@@ -5,18 +5,22 @@ from __future__ import annotations
 from decimal import Decimal
 from fractions import Fraction
 from itertools import pairwise
-from math import ceil, isqrt, lcm, log, log10
+from math import ceil, exp, isqrt, lcm, log, log10, pi
 from operator import mul
 from typing import TYPE_CHECKING, Any
 
 from symobs.applications.live.request import FieldError
 from symobs.exact import Matrix
+from symobs.exact.algebraic.enclosure import is_number
 from symobs.ground.errors import InputError
 from symobs.system import Symbols, read_matrix
 from symobs.tasks.analysis.time_response.response import rounded_up
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from symobs.applications.live.request import Responses
+    from symobs.exact import Scalar
     from symobs.tasks.result import Result
 
 #: States are enclosed in these parts; a response is rounded from them to coarser ones.
@@ -32,6 +36,8 @@ _DEAD, _SAMPLES = 1e-9, 40
 _BETWEEN, _MOST_SEGMENTS, _LEAST_BEHIND = Fraction(1, 110), 512, 32
 #: What stays below this part of the peak has settled; nothing is read off a response whose second difference is a larger one.
 _SETTLED, _COARSEST = Fraction(1, 50), Fraction(1, 3)
+#: A mode that overshoots by less is not seen to.
+_LEAST_PERCENT = 0.01
 #: What is larger cannot be drawn beside numbers of usual size.
 _LARGEST = 10**12
 #: Why there is no response, as phrases.
@@ -48,11 +54,15 @@ class NoResponse(Exception):
 class Signals:
     """A linear equation with its initial state, and the signals drawn: name, component, row of the state, dashed."""
 
-    def __init__(self, matrix: Matrix, start: list[Fraction], drawn: list[tuple[str, Matrix, bool]]) -> None:
+    def __init__(
+        self, matrix: Matrix, start: Sequence[Fraction | Scalar], drawn: list[tuple[str, Matrix, bool]]
+    ) -> None:
         """Take the signals apart into rows."""
+        from symobs.exact.time_functions.matrix_exponential import fraction_near  # noqa: PLC0415 - FLINT
+
         self.matrix, self.start = matrix, start
         self.rows = [
-            (name, place if table.shape[0] > 1 else 0, [entry.fraction() for entry in row], dashed)
+            (name, place if table.shape[0] > 1 else 0, list(map(fraction_near, row)), dashed)
             for name, table, dashed in drawn
             for place, row in enumerate(table.rows, 1)
         ]
@@ -96,7 +106,7 @@ def _signals(result: Result, asked: Responses) -> Signals:
     state = _vector(asked.start, order, Fraction(1), "courses.start")
     estimate = _vector(asked.estimate, order, Fraction(0), "courses.estimate")
     error = [a - b for a, b in zip(state, estimate, strict=True)]
-    start: list[Fraction] = []
+    start: list[Any] = []
     drawn: list[tuple[str, Matrix, bool]] = []
     match result.task:
         case "observer":
@@ -118,7 +128,7 @@ def _signals(result: Result, asked: Responses) -> Signals:
             raise NoResponse
     if matrix is None:
         raise NoResponse
-    if matrix.names or result.plant.relations:
+    if not all(map(is_number, matrix.entries)) or result.plant.relations:
         raise NoResponse(_NEEDS_NUMBERS)
     return Signals(matrix, start, drawn)
 
@@ -136,12 +146,11 @@ def _state_and_estimate(order: int, T: Matrix | None, size: int) -> list[tuple[s
     return [("x", plain, False), ("x_hat", Matrix.block([[Matrix.identity(order), -whole]]), True)]
 
 
-def _below(T: Matrix, error: list[Fraction], size: int) -> list[Fraction]:
+def _below(T: Matrix, error: list[Fraction], size: int) -> list[Scalar]:
     """Return the last components of T e."""
-    if T.names:
+    if not all(map(is_number, T.entries)):
         raise NoResponse(_NEEDS_NUMBERS)
-    product = T @ Matrix.column(error)
-    return [entry.fraction() for entry in product.entries][-size:]
+    return list((T @ Matrix.column(error)).entries)[-size:]
 
 
 def _vector(text: str, size: int, otherwise: Fraction, where: str) -> list[Fraction]:
@@ -226,11 +235,12 @@ def _at_instants(signals: Signals, step: Fraction, count: int) -> list[list[int]
 
 def _stepped(signals: Signals, count: int) -> list[list[int]]:
     """Return the values at 0, 1, 2, … in fine parts, rounded from exact ones."""
-    table = [[entry.fraction() for entry in row] for row in signals.matrix.rows]
-    state, states = list(signals.start), []
+    from symobs.exact.time_functions.matrix_exponential import fraction_near  # noqa: PLC0415 - FLINT
+
+    state, states = Matrix.column(list(signals.start)), []
     for _ in range(count):
-        states.append(state)
-        state = [sum(map(mul, row, state), Fraction(0)) for row in table]
+        states.append([fraction_near(entry) for entry in state.entries])
+        state = signals.matrix @ state
     return [
         [round(sum(map(mul, row, state), Fraction(0)) * _FINE) for state in states] for _, _, row, _ in signals.rows
     ]
@@ -283,11 +293,14 @@ def readout(real: Fraction, imaginary: Fraction, *, discrete: bool) -> dict[str,
     square = real * real + imaginary * imaginary
     if discrete:
         return {"exact": f"|z|² = {square}", "modulus": _places(_root(square))}
-    exact = f"ωₙ² = {square}" if imaginary else f"ωₙ = {abs(real)}"
-    found = {"exact": exact}
+    root = _root(square)
+    whole = f"{square}" if square.denominator == 1 else f"({square})"
+    found = {"exact": f"ωₙ = {root}" if root * root == square else f"ωₙ = √{whole}"}
     if square:
-        found["damping"] = _places(-real / _root(square))
+        found["damping"] = _places(-real / root)
     if real < 0:
+        if imaginary and (percent := 100 * exp(pi * float(real / abs(imaginary)))) >= _LEAST_PERCENT:
+            found["overshoot"] = _digits(Fraction(percent), 3)
         found["settles"] = _digits(Fraction(log(50)) / -real, 3)
     return found
 

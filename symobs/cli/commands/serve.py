@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 import click
 
 from symobs.cli.shared.common import read_file
@@ -11,7 +13,13 @@ from symobs.ground.errors import UsageError
 
 @click.command("serve")
 @click.argument("file", required=False)
-@click.option("--port", type=click.IntRange(0, 65535), default=0, metavar="N", help="Listen there; 0 is any free port.")
+@click.option(
+    "--port",
+    type=click.IntRange(0, 65535),
+    default=0,
+    metavar="N",
+    help="Listen there; 0: where it did before.",
+)
 @click.option("--host", default="127.0.0.1", metavar="NAME", help="127.0.0.1, ::1 or localhost.")
 @click.option("--no-browser", is_flag=True, help="Do not open a browser.")
 @click.option(
@@ -22,6 +30,7 @@ from symobs.ground.errors import UsageError
     help="What an answer may take.",
 )
 @click.option("--memory", type=click.IntRange(100), default=1000, metavar="MB", help="What an answer may use.")
+@click.option("--share", metavar="URL", help="Copy links to the page at URL, a public site, instead of this server.")
 @click.option("--convention", "convention_name", metavar="NAME", help="Write answers in another convention.")
 @options("language")
 def command(
@@ -31,10 +40,12 @@ def command(
     no_browser: bool,  # noqa: FBT001 - click's signature
     timeout: float,
     memory: int,
+    share: str | None,
     convention_name: str | None,
     language: str | None,
 ) -> None:
     """Move poles, parameters and entries in a browser, every answer checked; FILE is the problem to begin with."""
+    from symobs.applications.live.address import keep_address, known_address  # noqa: PLC0415
     from symobs.applications.live.server import (  # noqa: PLC0415
         HOSTS,
         AnswerBudget,
@@ -48,6 +59,8 @@ def command(
             where="--host",
             repair="leave it out; to look at it from another machine, use an SSH tunnel",
         )
+    if share is not None and not re.fullmatch(r"https?://[^\s#\"'<>]+", share):
+        raise UsageError(f"{share[:60]!r} is no address", where="--share", repair="write https://…, without #")
     state = ""
     if file is not None or convention_name is not None or language is not None:
         from symobs.applications.live.request import link_of  # noqa: PLC0415 - only with a problem
@@ -69,10 +82,16 @@ def command(
 
             data = {**data, "language": language_named(language, "--language").code}
         state = link_of(data)
-    try:
-        server = Server(host, port, AnswerBudget(timeout, memory))
-    except OSError as error:
-        raise UsageError(error.strerror or "cannot listen", where="--port", repair="leave it out") from None
+    last, token = known_address()
+    for number in (port,) if port else (last, 0):
+        try:
+            server = Server(host, number, AnswerBudget(timeout, memory), token, share or "")
+            break
+        except OSError as error:
+            if number == port:
+                raise UsageError(error.strerror or "cannot listen", where="--port", repair="leave it out") from None
+    if not last:
+        keep_address(server.server_address[1], token)
     url = server.url + (f"&{state}" if state else "")
     click.echo(url)
     if not no_browser:

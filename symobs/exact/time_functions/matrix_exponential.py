@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 from flint import arb, arb_mat, fmpq, fmpq_mat
 
+from symobs.exact.algebraic.enclosure import near, polynomial_ball
 from symobs.exact.algebraic.extension import AlgebraicExtension
 from symobs.exact.algebraic.polynomial_roots import factored
 from symobs.exact.algebraic.root_sum import RootSum
@@ -264,13 +265,18 @@ _BITS = (128, 256, 512, 1024, 2048, 4096)
 _HALF = arb(0.5)
 
 
+#: Bits of a rational number near to one that is none.
+_NEAR = 240
+
+
 #: Columns are doubled until so many blocks of them are all.
 _BLOCKS = 8
 
 
 def eigenvalues_near(matrix: Matrix) -> list[complex]:
     """Return the different eigenvalues of a numeric matrix, approximately."""
-    roots: Any = _rational(matrix).charpoly().complex_roots()  # pairs (root, multiplicity), not what its stub says
+    rows = [[fmpq(f.numerator, f.denominator) for f in map(fraction_near, row)] for row in matrix.rows]
+    roots: Any = fmpq_mat(rows).charpoly().complex_roots()  # pairs (root, multiplicity), not what its stub says
     return [complex(float(root.real.mid()), float(root.imag.mid())) for root, _ in roots]
 
 
@@ -285,19 +291,29 @@ def spectral_radius(matrix: Matrix) -> float:
     return max(map(abs, eigenvalues_near(matrix)))
 
 
+def fraction_near(value: Scalar) -> Fraction:
+    """Return a rational number itself, and one near to any other number; raises `ArithmeticError` where none is known."""
+    if value.is_constant:
+        return value.fraction()
+    found = near(value, _NEAR)
+    if found is None:
+        raise ArithmeticError(f"{value} is no number")
+    return found
+
+
 def state_response(
-    matrix: Matrix, start: Sequence[Fraction], step: Fraction, count: int, parts: int
+    matrix: Matrix, start: Sequence[Fraction | Scalar], step: Fraction, count: int, parts: int
 ) -> list[list[int]]:
     """Return e^{Mt} v at `count` instants from 0 on, in integer multiples of 1/parts, with errors of at most one.
 
     The columns that are known times e^{Mh}, e^{2Mh}, e^{4Mh}, … are as many again, until a few blocks of them are all: an
     enclosure goes through few products.  Raises `ArithmeticError` where the enclosures stay too wide.
     """
-    known = _rational(matrix)
     for bits in _BITS:
         with Precision(bits):
-            power = (arb_mat(known) * arb(fmpq(step.numerator, step.denominator))).exp()
-            columns = [[arb(fmpq(part.numerator, part.denominator)) * parts] for part in start]
+            known = arb_mat([[_ball(entry) for entry in row] for row in matrix.rows])
+            power = (known * arb(fmpq(step.numerator, step.denominator))).exp()
+            columns = [[_ball(Scalar.of(part)) * parts] for part in start]
             while _BLOCKS * len(columns[0]) < count:
                 more = (power * arb_mat(columns)).tolist()
                 columns = [[*row, *new] for row, new in zip(columns, more, strict=True)]
@@ -311,11 +327,11 @@ def state_response(
     raise ArithmeticError("a response with too much to compute")
 
 
-def _rational(matrix: Matrix) -> fmpq_mat:
-    """Return a numeric matrix as FLINT's."""
-    return fmpq_mat(
-        [[fmpq(number_of(e.numerator_part), number_of(e.denominator_part)) for e in row] for row in matrix.rows]
-    )
+def _ball(value: Scalar) -> arb:
+    """Return an enclosure of a number."""
+    if value.is_constant:
+        return arb(fmpq(number_of(value.numerator_part), number_of(value.denominator_part)))
+    return polynomial_ball(value.numerator, {}) / polynomial_ball(value.denominator, {})
 
 
 def _nearest(columns: arb_mat) -> list[tuple[int, ...]]:

@@ -44,7 +44,8 @@ class Run(NamedTuple):
 
 def environment(checkout: Path = ROOT) -> dict[str, str]:
     """The environment in which `python -m symobs` is the symobs of a checkout, in every folder."""
-    return {**os.environ, "PYTHONPATH": str(checkout), "PYTHONDONTWRITEBYTECODE": "1"}
+    own = {"PYTHONPATH": str(checkout), "PYTHONDONTWRITEBYTECODE": "1", "XDG_STATE_HOME": os.devnull}
+    return {**os.environ, **own}
 
 
 def installed_environment(cache: Path) -> dict[str, str]:

@@ -14,6 +14,8 @@ const PANELS = ["plane", "responses", "cards", "cases", "region", "page"];
 /** The words of each language by its code; whoever hands out this file puts them in. @type {Record<string, Record<string, string>>} */
 export const LANGUAGES = {};
 
+let mounted = 0;
+
 /** Put what a phrase speaks of into its slots. @param {string} phrase @param {object} slots */
 export const filled = (phrase, slots) => phrase.replace(/\{(\w+)\}/g, (_, slot) => slots[slot]);
 
@@ -107,7 +109,7 @@ function cells(source) {
   });
   return rows.every((row) => row.length === rows[0].length && row.length) ? rows : null;
 }
-const matrix = (rows) => `[${rows.map((row) => row.map((c) => c.trim() || "0").join(" ")).join("; ")}]`;
+const matrix = (rows) => `[${rows.map((row) => row.map((c) => (/\s/.test(c.replace(/\(.*\)/g, "")) ? `(${c})` : c || "0")).join(" ")).join("; ")}]`;
 
 // -- state in a link ------------------------------------------------------------------------------------------------
 
@@ -175,7 +177,8 @@ export function mount(element, transport, options = {}) {
   let s = begun(options.state ?? "");
   let view = null, viewed = "", answer = null, sets = {}, held = null, frame = null, start = null;
   let waiting = null, running = false, number = 0, drawn = 0, restTimer = 0, busyTimer = 0, said = 0, refused = false, gone = false, quiet = false, before = "";
-  let aborted = new AbortController(), language = null, notice = "", point = null;
+  let aborted = new AbortController(), language = null, notice = "", point = null, turns = 0, turning = 0, isLetGo = false, fill = () => {};
+  let origin = encoded(s), steps = [origin], reached = 0;
   const el = {};
 
   const w = (name, slots = {}) => filled(language[name], slots);
@@ -202,32 +205,36 @@ export function mount(element, transport, options = {}) {
     root.lang = code;
     if (stranger) notice = w("no_language", { code: stranger.slice(0, 40) });
     el.task = h("select", { "aria-label": w("task"), onchange: () => turn(el.task.value) }, h("option", { value: s.task }, taskName(s.task)));
-    el.examples = h("select", { "aria-label": w("example"), onchange: choose }, h("option", { value: "" }, w("examples")));
-    el.language = h("select", { "aria-label": w("language"), onchange: () => { s.language = el.language.value; problemChanged(); el.language.focus(); } }, Object.entries(LANGUAGES).map(([key, own]) => h("option", { value: key, lang: key, selected: key === code }, own.name)));
+    el.titles = h("datalist", { id: `symobs-examples-${(mounted += 1)}` });
+    el.examples = h("input", { list: el.titles.id, "aria-label": w("example"), placeholder: w("examples"), autocomplete: "off", oninput: choose });
+    el.language = h("select", { "aria-label": w("language"), onchange: () => { s.language = el.language.value; commit(true); build(); ask(); el.language.focus(); } }, Object.entries(LANGUAGES).map(([key, own]) => h("option", { value: key, lang: key, selected: key === code }, own.name)));
     el.snap = h("select", { title: w("grid_of_poles"), onchange: () => { s.snap = el.snap.value; commit(true); drawPlane(); } }, Object.keys(SNAPS).map((k) => h("option", { value: k }, k)));
     el.message = h("div", { class: "message", hidden: true });
     for (const name of ["list", "map", "point"]) el[name] = h("div", { class: name });
-    for (const name of ["verdict", "notes", "legend"]) el[name] = h("p", { class: name });
+    for (const name of ["verdict", "notes", "legend", "marks", "hint"]) el[name] = h("p", { class: name });
+    el.hint.textContent = w("drag");
     el.live = h("div", { class: "hidden", "aria-live": "polite", role: "status" });
     el.poles = h("svg:svg", { class: "picture", viewBox: "0 0 480 360", role: "group", "aria-label": w("plane_of_poles") });
     el.texts = h("div", { class: "fields" });
-    el.curves = h("svg:svg", { class: "picture", viewBox: "0 0 480 300", role: "img" });
+    el.curves = h("svg:svg", { class: "picture", viewBox: "0 0 480 300", role: "img", "aria-label": w("responses") });
     el.starts = h("div", { class: "fields starts" });
     el.html = h("div", { class: "html", tabindex: "0", "aria-label": w("page") }, derivation);
     el.plant = h("section", { class: "panel plant", "aria-label": w("problem") });
     el.reopen = h("span", { class: "reopen" });
+    const button = (name, sign, act) => (el[name] = h("button", { class: "quiet", title: w(name), "aria-label": w(name), onclick: act }, sign));
     el.copy = h("button", { class: "copy", onclick: copyLink }, w("copy_link"));
     const save = ["toml", "python", "latex", "html"].map((as) => h("button", { onclick: () => take(as) }, w(`save_${as}`)));
     root.replaceChildren(
-      h("header", { class: "bar" }, h("strong", {}, "symobs"), el.task, el.examples, el.reopen, h("span", { class: "space" }), el.language, el.copy, h("details", { class: "menu" }, h("summary", {}, w("save")), h("div", {}, save))),
+      h("header", { class: "bar" }, h("h1", {}, "symobs"), el.task, el.examples, el.titles, button("undo", "↶", () => walk(-1)), button("redo", "↷", () => walk(1)), button("reset", "⟲", () => shift(origin)), el.reopen, h("span", { class: "space" }), el.language, el.copy, h("details", { class: "menu" }, h("summary", {}, w("save")), h("div", {}, save))),
       el.message,
-      h("div", { class: "grid" }, el.plant, panel("region", el.map, el.point), panel("plane", el.poles, el.texts), panel("responses", el.curves, el.legend, el.starts), panel("cases"), panel("cards", el.verdict, el.notes, el.list), panel("page", el.html)),
+      h("div", { class: "grid" }, el.plant, panel("region", el.map, el.point), panel("plane", el.poles, el.marks, el.texts, el.hint), panel("responses", el.curves, el.legend, el.starts), panel("cases"), panel("cards", el.verdict, el.notes, el.list), panel("page", el.html)),
       el.live,
     );
     el.planeBar.append(h("label", {}, `${w("grid")} `, el.snap));
     el.detail = h("select", { "aria-label": w("detail"), onchange: () => { s.detail = el.detail.value; commit(true); rest(0); } }, DETAILS.map((d) => h("option", { value: d }, w(`detail_${d}`))));
     el.pageBar.append(el.detail);
     offer();
+    drawSteps();
     say("");
     return true;
   }
@@ -319,7 +326,7 @@ export function mount(element, transport, options = {}) {
     }
     running = false;
     clearTimeout(busyTimer);
-    busy(false);
+    busy(turning > 0);
     rest(REST);
   }
 
@@ -336,10 +343,10 @@ export function mount(element, transport, options = {}) {
 
   function offer() {
     if (!start) return;
+    fill();
     el.task.replaceChildren(...Object.keys(start.tasks).map((name) => h("option", { value: name }, taskName(name))));
     el.task.value = s.task;
-    const by = Object.groupBy ? Object.groupBy(start.examples, (e) => e.task) : { all: start.examples };
-    el.examples.append(...Object.entries(by).map(([task, list]) => h("optgroup", { label: taskName(task) }, list.map((e) => h("option", { value: e.name, lang: "en" }, e.title)))));
+    el.titles.replaceChildren(...start.examples.map((e) => h("option", { value: e.title, lang: "en" }, taskName(e.task))));
   }
 
   function rest(after) {
@@ -386,26 +393,66 @@ export function mount(element, transport, options = {}) {
     const link = encoded(s);
     if (link.length > LONGEST) say(w("too_long"));
     else options.changed?.(link, final);
+    if (!final || link === steps[reached]) return;
+    steps.splice(reached + 1, Infinity, link);
+    reached += 1;
+    drawSteps();
   }
-  function problemChanged() { commit(true); build(); ask(); }
+
+  /** Go to a state; it is a step of its own unless it is one of those that were gone. */
+  function shift(link) {
+    turning = 0;
+    s = begun(link);
+    frame = null;
+    commit(true);
+    begin();
+  }
+  function walk(by) {
+    if (steps[reached + by] === undefined) return;
+    reached += by;
+    shift(steps[reached]);
+    drawSteps();
+  }
+  function drawSteps() {
+    const idle = { undo: reached < 1, redo: reached > steps.length - 2, reset: steps[reached] === origin };
+    for (const [name, is] of Object.entries(idle)) el[name].setAttribute("aria-disabled", String(is));
+  }
+  // Fields are built anew when the focus has reached the next one.
+  function problemChanged() { commit(true); setTimeout(() => gone || build()); ask(); }
 
   function choose() {
-    const found = start?.examples.find((e) => e.name === el.examples.value), { snap, closed, detail, language } = s;
+    const found = start?.examples.find((e) => e.title === el.examples.value), { snap, closed, detail, language } = s;
     if (!found) return;
+    turning = 0;
     s = { ...decoded(found.link), snap, closed, detail, language };
     view = null;
     viewed = "";
     el.examples.value = "";
+    origin = encoded(s);
     problemChanged();
   }
 
-  /** Turn to another task with what it takes of the specification; poles keep what they are of. */
-  function turn(task) {
-    const takes = start?.tasks[task] ?? Object.keys(s.spec), half = /observer/.test(s.task) ? "observer_poles" : "control_poles";
-    if (s.spec.poles && !takes.includes("poles")) s.spec[half] = s.spec.poles;
-    s.spec = Object.fromEntries(Object.entries(s.spec).filter(([key]) => takes.includes(key) && key !== "method"));
-    s.task = task;
-    problemChanged();
+  /** Turn to another task, which begins with what it takes of the problem and with what that lacks. */
+  async function turn(task, resized = {}) {
+    const told = problem(), mine = turning = ++turns;
+    busy(true);
+    try {
+      const got = await transport(asking("begin", { task, problem: { ...told, plant: { ...told.plant, ...resized } } }));
+      if (gone || turning !== mine) return;
+      if (JSON.stringify(told) !== JSON.stringify(problem())) { turn(task, resized); return; }
+      if (got.status !== "done") { drawAnswer(got); el.task.value = s.task; return; }
+      const { plant, spec, symbols } = decoded(got.link);
+      s = { ...s, task, plant, spec, symbols, at: Object.fromEntries(Object.entries(s.at).filter(([name]) => name in symbols)) };
+      origin = encoded(s);
+      problemChanged();
+    } catch (error) {
+      if (gone || turning !== mine) return;
+      el.task.value = s.task;
+      say(w("no_answer", { reason: why(error) }), () => turn(task, resized));
+    } finally {
+      if (turning === mine) turning = 0;
+      if (!running && !turning) busy(false);
+    }
   }
 
   async function copyLink() {
@@ -441,15 +488,30 @@ export function mount(element, transport, options = {}) {
     const isParted = given.includes(";") && (input.dataset.set || where.startsWith("courses."));
     if (language.decimal_mark === "," && (isOne || isParted)) changed(input.value = points.replace(/\s*;\s*/g, ", "));
     else if (language.decimal_mark !== "," || points === given) changed(given);
-    else { refused = true; clearWrong(); showErrors([{ where, message: w("comma"), repair: w("comma_repair") }]); fade(); }
+    else { refused = false; clearWrong(); refused = true; showErrors([{ where, message: w("comma"), repair: w("comma_repair") }]); fade(); }
   }
 
   function field(where, label, given, changed, wide = true) {
     const input = h("input", { value: given ?? "", "aria-label": label, "data-where": where, spellcheck: "false", autocapitalize: "off", autocomplete: "off", onchange: () => typed(input, changed), onkeydown: (e) => { if (e.key === "Enter") typed(input, changed); } });
-    return wide ? h("label", { class: "field" }, h("span", {}, label), input, h("small", { class: "wrong" })) : input;
+    return wide ? labelled(label, input) : input;
   }
 
-  function build() {
+  const labelled = (label, input, mark = "", of = undefined) => h("div", { class: `field ${mark}` }, h("label", {}, h("span", {}, label), input), h("small", { class: "wrong", "data-of": of }));
+
+  /** Do what builds fields anew; the focus stays where it is, and so does what is being typed. */
+  function keepingFocus(renew) {
+    const active = root.getRootNode().activeElement, { where, set } = root.contains(active) ? active?.dataset ?? {} : {};
+    renew();
+    const again = where || set ? root.querySelector(where ? `[data-where="${CSS.escape(where)}"]` : `[data-set="${CSS.escape(set)}"]`) : null;
+    if (!again || again === active) return;
+    if (active.value !== active.defaultValue) again.value = active.value;
+    again.focus({ preventScroll: true });
+    again.setSelectionRange?.(active.selectionStart, active.selectionEnd);
+  }
+
+  function build() { keepingFocus(buildFields); }
+
+  function buildFields() {
     const isFresh = furnish();
     const listed = ["A", "B", "C", "D"].filter((name) => s.plant[name] !== undefined);
     const rows = listed.map((name) => {
@@ -458,23 +520,26 @@ export function mount(element, transport, options = {}) {
       if (!table) return field(`plant.${name}`, name, s.plant[name], set);
       const grid = h("span", { class: "matrix", style: `--columns:${table[0].length}` }, table.map((row, i) => row.map((cell, j) => {
         const size = Math.max(2, Math.min(14, Math.max(...table.map((r) => r[j].length))));
-        const input = field(`plant.${name}[${i + 1},${j + 1}]`, w("entry", { name, row: i + 1, column: j + 1 }), cell, (t) => { if (t === table[i][j]) return; table[i][j] = t; s.plant[name] = matrix(table.map((r) => r.map((c) => (/\s/.test(c) ? `(${c})` : c)))); commit(true); ask(); build(); }, false);
+        const input = field(`plant.${name}[${i + 1},${j + 1}]`, w("entry", { name, row: i + 1, column: j + 1 }), cell, (t) => { if (t === table[i][j]) return; table[i][j] = t; set(matrix(table)); }, false);
         input.style.setProperty("--size", `${size}ch`);
         return input;
       })));
       return h("div", { class: "named" }, h("i", {}, name), " = ", grid, h("small", { class: "wrong", "data-of": `plant.${name}` }));
     });
     const told = (key) => field(`specification.${key}`, labelOf(key), s.spec[key], (t) => { if (t) s.spec[key] = t; else delete s.spec[key]; problemChanged(); });
-    const setKeys = (view?.sets ?? []).map((g) => g.key), untold = h("div", { class: "fields" });
-    const fill = () => untold.replaceChildren(...(start?.tasks[s.task] ?? []).filter((key) => s.spec[key] === undefined && !setKeys.includes(key)).map(told));
+    const setKeys = (view?.sets ?? []).map((g) => g.key);
+    el.untold = h("div", { class: "fields" });
+    fill = () => el.untold.replaceChildren(...(start?.tasks[s.task] ?? []).filter((key) => s.spec[key] === undefined && !setKeys.includes(key)).map(told));
     fill();
-    const all = h("details", { class: "astext", open: el.plant.querySelector(".astext")?.open, ontoggle: () => { if (!untold.childElementCount) fill(); } }, h("summary", {}, w("as_text")), h("div", { class: "fields" }, ["A", "B", "C", "D", "transfer_function", "dt"].map((name) => field(`text.${name}`, labelOf(name), s.plant[name], (t) => { if (t) s.plant[name] = t; else delete s.plant[name]; problemChanged(); })), field("text.symbols", labelOf("symbols"), Object.entries(s.symbols).map(([n, g]) => `${n}: ${g}`).join(", "), (t) => { s.symbols = Object.fromEntries(t.split(",").map((e) => e.split(":").map((p) => p.trim())).filter(([n]) => n).map(([n, g]) => [n, g || "real"])); problemChanged(); })), untold);
+    const all = h("details", { class: "astext", open: el.plant.querySelector(".astext")?.open }, h("summary", {}, w("as_text")), h("div", { class: "fields" }, ["A", "B", "C", "D", "transfer_function", "dt"].map((name) => field(`text.${name}`, labelOf(name), s.plant[name], (t) => { if (t) s.plant[name] = t; else delete s.plant[name]; problemChanged(); })), field("text.symbols", labelOf("symbols"), Object.entries(s.symbols).map(([n, g]) => `${n}: ${g}`).join(", "), (t) => { s.symbols = Object.fromEntries(t.split(",").map((e) => e.split(":").map((p) => p.trim())).filter(([n]) => n).map(([n, g]) => [n, g || "real"])); problemChanged(); })), el.untold);
+    const tables = Object.fromEntries(listed.map((name) => [name, cells(s.plant[name])]));
+    const sizes = Object.entries({ states: tables.A?.length, inputs: tables.B?.[0]?.length, outputs: tables.C?.length }).filter(([, count]) => count).map(([kind, count]) => h("span", { class: "size" }, `${count} ${w(`count_${kind}`)} `, [[-1, "−"], [1, "+"]].map(([by, sign]) => h("button", { class: "quiet", "aria-label": w(by < 0 ? "fewer" : "more", { kind: w(`count_${kind}`) }), "data-where": `${kind}${by}`, "aria-disabled": String(count + by < 1), onclick: () => { if (count + by > 0 && !turning) resize(tables, kind, by); } }, sign))));
     if (s.plant.transfer_function !== undefined) rows.push(field("plant.transfer_function", "P(s)", s.plant.transfer_function, (t) => { s.plant.transfer_function = t; problemChanged(); }));
     const others = Object.keys(s.spec).filter((key) => !setKeys.includes(key) && key !== "observer").map(told);
     const kind = s.task === "compensator" ? h("label", { class: "field" }, h("span", {}, w("kind")), h("select", { onchange: (e) => { s.spec.observer = e.target.value; fitObserver(); problemChanged(); } }, ["full", "minimal"].map((k) => h("option", { value: k, selected: (s.spec.observer ?? "full") === k }, w(`kind_${k}`))))) : null;
     const names = Object.keys(s.symbols).filter((n) => !axes().includes(n) || !view);
     const sliders = names.map((name) => slider(name));
-    el.plant.replaceChildren(h("header", {}, h("h2", {}, w("problem"))), h("div", { class: "body" }, h("div", { class: "matrices" }, rows), kind, others, sliders.length ? h("div", { class: "sliders" }, sliders) : null, all));
+    el.plant.replaceChildren(h("header", {}, h("h2", {}, w("problem"))), h("div", { class: "body" }, h("div", { class: "matrices" }, rows), sizes.length ? h("div", { class: "sizes" }, sizes) : null, kind, others, sliders.length ? h("div", { class: "sliders" }, sliders) : null, all));
     if ([...el.task.options].some((o) => o.value === s.task)) el.task.value = s.task;
     el.snap.value = s.snap;
     el.detail.value = s.detail;
@@ -485,6 +550,27 @@ export function mount(element, transport, options = {}) {
     if (point && el.pointVerdict) drawPoint(point, answered.point);
     show(answer);
     fade();
+  }
+
+  /** Take away the last state, input or output, or add one: a state that drives the last one, an input or output of its own. */
+  function resize(tables, kind, by) {
+    const { A, B, C, D } = tables, unit = (size, k, entry) => Array.from({ length: size }, (_, j) => (j === k ? entry : "0"));
+    const wider = (table, column) => table?.forEach((row, i) => { if (by < 0) row.pop(); else row.push(column[i]); });
+    const taller = (table, row) => { if (by < 0) table?.pop(); else table?.push(row); };
+    const n = A?.length ?? 0, m = B?.[0].length ?? 0, p = C?.length ?? 0;
+    if (kind === "states") {
+      wider(A, unit(n, n - 1, "1"));
+      taller(A, unit(n + 1, n, "0"));
+      taller(B, unit(m, m - 1, "1"));
+      wider(C, unit(p, -1, "1"));
+    } else if (kind === "inputs") {
+      wider(B, unit(n, n - 1 - (m % n), "1"));
+      wider(D, unit(p, -1, "1"));
+    } else {
+      taller(C, unit(n, p % n, "1"));
+      taller(D, unit(m, -1, "1"));
+    }
+    turn(s.task, Object.fromEntries(Object.entries(tables).filter(([, table]) => table).map(([name, table]) => [name, matrix(table)])));
   }
 
   /** An observer of minimal order has fewer poles: drop the last ones, or repeat the first. */
@@ -506,7 +592,7 @@ export function mount(element, transport, options = {}) {
   }
 
   function takeView() {
-    build();
+    if (!held) build();  // a slider that is held stays
     point = null;
     el.map.replaceChildren();
     if (view.panels.includes("region")) drawMap();
@@ -515,6 +601,9 @@ export function mount(element, transport, options = {}) {
   function drawMap() {
     const region = view.region;
     el.map.innerHTML = region?.svg ?? "";
+    const svg = el.map.querySelector("svg");
+    svg?.setAttribute("role", "group");  // it holds what can be moved
+    svg?.setAttribute("aria-label", w("region"));
     if (region?.handle) {
       region.parameters.forEach((name, k) => { s.at[name] ??= region.handle[k]; });
       buildPoint();
@@ -525,7 +614,7 @@ export function mount(element, transport, options = {}) {
 
   function buildSets() {
     sets = Object.fromEntries((view?.sets ?? []).map((group) => [group.key, handles(s.spec[group.key] ?? "")]));
-    el.texts.replaceChildren(...(view?.sets ?? []).map((group) => h("label", { class: `field ${group.mark}` }, h("span", {}, w(`${group.label}s`)), poleField(group), h("small", { class: "wrong", "data-of": `specification.${group.key}` }))));
+    el.texts.replaceChildren(...(view?.sets ?? []).map((group) => labelled(w(`${group.label}s`), poleField(group), group.mark, `specification.${group.key}`)));
     el.starts.replaceChildren(field("courses.start", "x(0)", s.x0 || "", (t) => { s.x0 = t; commit(true); ask(); }), ...(s.task === "state_feedback" ? [] : [field("courses.estimate", "x̂(0)", s.xh0 || "", (t) => { s.xh0 = t; commit(true); ask(); })]));
     for (const [input, fallback] of [[el.starts.querySelectorAll("input")[0], "1, 1, …"], [el.starts.querySelectorAll("input")[1], "0, 0, …"]]) input?.setAttribute("placeholder", fallback);
     drawPlane(true);
@@ -567,15 +656,29 @@ export function mount(element, transport, options = {}) {
     else while (el.poles.childElementCount > 1) el.poles.lastChild.remove();
     for (const m of answer?.marks ?? []) {
       const [x, y] = [X(Number(m.re)), Y(Number(m.im))];
-      if (x > 38 && x < 466 && y > 14 && y < 338) parts.push(h("svg:path", { class: `mark ${m.kind}`, d: m.kind === "F" ? `M${x - 4} ${y}h8M${x} ${y - 4}v8` : `M${x - 3.5} ${y - 3.5}l7 7m0 -7l-7 7` }, h("svg:title", {}, w(`pole_of_${m.kind}`))));
+      if (x > 38 && x < 466 && y > 14 && y < 338) parts.push(h("svg:path", { class: `mark ${m.kind}`, d: MARKS[m.kind](x, y) }, h("svg:title", {}, w(`pole_of_${m.kind}`))));
     }
     for (const group of view.sets) {
       const list = sets[group.key] ?? [], count = list.length;
-      list.forEach((p, k) => p.raw || parts.push(handle(group, list, p, k, count, focus === `${group.key}.${k}`)));
+      list.forEach((p, k) => p.raw || parts.push(handle(group, list, p, k, count)));
     }
     if (Object.values(sets).flat().some((p) => p.raw)) parts.push(h("svg:text", { x: 46, y: 330 }, w("in_fields")));
     el.poles.append(...parts);
+    drawMarks();
     if (focus) refocus(focus);
+  }
+
+  const CROSS = (x, y, r) => `M${x - r} ${y - r}l${2 * r} ${2 * r}m0 ${-2 * r}l${-2 * r} ${2 * r}`;
+  const MARKS = { plant: (x, y) => CROSS(x, y, 3.5), F: (x, y) => `M${x - 4} ${y}h8M${x} ${y - 4}v8` };
+
+  /** Say what the signs in the plane are. */
+  function drawMarks() {
+    const kinds = [...new Set((answer?.marks ?? []).map((m) => m.kind))];
+    if (el.marks.dataset.of === `${view.sets.map((g) => g.mark)}${kinds}${root.lang}`) return;
+    el.marks.dataset.of = `${view.sets.map((g) => g.mark)}${kinds}${root.lang}`;
+    const sign = (mark, of, words) => h("span", {}, h("svg:svg", { viewBox: "0 0 16 16", "aria-hidden": "true", class: of }, mark), words);
+    const ring = h("svg:circle", { class: "glyph", cx: 8, cy: 8, r: 5 }), cross = h("svg:path", { class: "glyph", d: CROSS(8, 8, 5) });
+    el.marks.replaceChildren(...view.sets.map((g) => sign(g.mark === "cross" ? cross : ring, g.mark, w(g.label))), ...kinds.map((k) => sign(h("svg:path", { class: "mark", d: MARKS[k](8, 8) }), "", w(`pole_of_${k}`))));
   }
 
   /** What stands still while poles are moved: the stable part, and the lines with their numbers. */
@@ -601,14 +704,14 @@ export function mount(element, transport, options = {}) {
     quiet = false;
   }
 
-  function handle(group, list, p, k, count, focused) {
+  function handle(group, list, p, k, count) {
     const spoken = pretty(p.pair && p.im[0] ? w("pair", { real: text(p.re), imaginary: text(p.im) }) : text(p.re));
     const same = list.slice(0, k).filter((q) => !q.raw && !q.pair && !p.pair && text(q.re) === text(p.re)).length;
     const places = p.pair ? [[X(value(p.re)), Y(value(p.im))], [X(value(p.re)), Y(-value(p.im))]] : [[X(value(p.re)), Y(0)]];
     const nested = p.pair && !p.im[0];
     const glyph = ([x, y], index) => {
       const r = 6.5 + 4 * (same + (nested ? index : 0));
-      return [h("svg:circle", { class: "hit", cx: x, cy: y, r: 18 }), h("svg:circle", { class: "halo", cx: x, cy: y, r: 12 }), group.mark === "cross" ? h("svg:path", { class: "glyph", d: `M${x - r} ${y - r}l${2 * r} ${2 * r}m0 ${-2 * r}l${-2 * r} ${2 * r}` }) : h("svg:circle", { class: "glyph", cx: x, cy: y, r })];
+      return [h("svg:circle", { class: "hit", cx: x, cy: y, r: 18 }), h("svg:circle", { class: "halo", cx: x, cy: y, r: 12 }), group.mark === "cross" ? h("svg:path", { class: "glyph", d: CROSS(x, y, r) }) : h("svg:circle", { class: "glyph", cx: x, cy: y, r })];
     };
     const said = isOld("answer") ? null : answer?.readouts?.find((r) => r.handle === `${group.key}.${k}`);
     const isHeld = held && held.p === p;
@@ -617,15 +720,14 @@ export function mount(element, transport, options = {}) {
       "aria-label": w("one_of", { pole: w(group.label), number: k + 1, count }), "aria-roledescription": w("pole"), "aria-valuemin": -100, "aria-valuemax": 100, "aria-valuenow": value(p.re), "aria-valuetext": spoken,
       onpointerdown: (e) => grab(e, group, p), onkeydown: (e) => key(e, group, p, k), onfocus: () => { if (!quiet) { before = JSON.stringify(sets); drawPlane(); } },
     }, places.map(glyph));
-    if (isHeld || focused) {
-      const [x, y] = places[0], right = x < 300;
-      const lines = [pretty(p.pair && p.im[0] ? `${text(p.re)} ± ${text(p.im)} i` : text(p.re))];
-      if (said?.damping && p.pair) lines.push(`ζ = ${pretty(said.damping)}, ${said.exact}`);
-      if (said?.settles) lines.push(w("mode_settles", { time: pretty(said.settles) }));
-      if (said?.modulus) lines.push(`|z| = ${pretty(said.modulus)}`);
-      const below = y < 70, up = below ? 0 : lines.length - 1;
-      mine.append(...lines.map((words, n) => h("svg:text", { class: n ? "readout" : "readout first", x: x + (right ? 16 : -16), y: below ? y + 26 : y - 12, dy: `${1.25 * (n - up)}em`, "text-anchor": right ? "start" : "end" }, words)));
-    }
+    const [x, y] = places[0], right = x < 300;
+    const lines = [pretty(p.pair && p.im[0] ? `${text(p.re)} ± ${text(p.im)} i` : text(p.re))];
+    if (said?.damping && p.pair) lines.push(`ζ = ${pretty(said.damping)}, ${said.exact}`);
+    if (said?.overshoot) lines.push(w("mode_overshoots", { percent: pretty(said.overshoot) }));
+    if (said?.settles) lines.push(w("mode_settles", { time: pretty(said.settles) }));
+    if (said?.modulus) lines.push(`|z| = ${pretty(said.modulus)}`);
+    const below = y < 90, up = below ? 0 : lines.length - 1;
+    mine.append(...lines.map((words, n) => h("svg:text", { class: n ? "readout" : "readout first", x: x + (right ? 16 : -16), y: below ? y + 26 : y - 12, dy: `${1.25 * (n - up)}em`, "text-anchor": right ? "start" : "end" }, words)));
     return mine;
   }
 
@@ -656,7 +758,7 @@ export function mount(element, transport, options = {}) {
   function pursue(event, svg, follow, ended) {
     event.preventDefault();
     svg.setPointerCapture(event.pointerId);
-    const heard = [[svg, "pointermove", follow], [svg, "pointerup", () => end(false)], [svg, "pointercancel", () => end(true)], [root, "keydown", (e) => { if (e.key === "Escape") end(true); }]];
+    const heard = [[svg, "pointermove", follow], [svg, "pointerup", () => end(false)], [svg, "pointercancel", () => end(true)], [document, "keydown", (e) => { if (e.key === "Escape") { e.stopPropagation(); end(true); } }]];
     const end = (back) => {
       for (const [where, what, hear] of heard) where.removeEventListener(what, hear, true);
       held = null;
@@ -677,7 +779,7 @@ export function mount(element, transport, options = {}) {
       if (back) sets = JSON.parse(before);
       const k = sets[group.key].indexOf(p);
       sets[group.key] = settled(sets[group.key]);
-      fit();
+      isLetGo = true;
       moved(true);
       refocus(`${group.key}.${Math.max(0, k)}`);
     });
@@ -801,23 +903,32 @@ export function mount(element, transport, options = {}) {
 
   // -- answers ----------------------------------------------------------------------------------------------------------
 
+  /** Take away what was wrong; what a field of the page itself refused stays until the field is changed. */
   function clearWrong() {
+    if (refused) return;
     root.querySelectorAll(".wrong").forEach((e) => e.replaceChildren());
     root.querySelectorAll("[aria-invalid]").forEach((e) => e.removeAttribute("aria-invalid"));
     say("");
   }
 
+  /** Declare a letter; a slider gives it a value, too. */
+  function declare(name, as) {
+    s.symbols[name] = as === "positive" ? as : "real";
+    if (as === "slider") s.at[name] = "1";
+    problemChanged();
+  }
+
   function showErrors(errors) {
     const left = [];
-    for (const { where, message, repair, lang } of errors) {
+    for (const { where, message, repair, lang, undeclared } of errors) {
       const words = `${message}${repair ? `: ${repair}` : ""}`, base = where.replace(/\[.*$/, "");
       const exact = where.replace(/\[(\d+)\]\[(\d+)\]$/, (_, i, j) => `[${Number(i) + 1},${Number(j) + 1}]`);
       const input = root.querySelector(`[data-where="${CSS.escape(exact)}"]`) ?? root.querySelector(`[data-set="${CSS.escape(base.replace("specification.", ""))}"]`) ?? root.querySelector(`[data-where="${CSS.escape(base)}"]`);
       const below = root.querySelector(`.wrong[data-of="${CSS.escape(base)}"]`), field = input ?? (below ? null : root.querySelector(`[data-where="${CSS.escape(base.replace("plant.", "text."))}"]`));
       field?.setAttribute("aria-invalid", "true");
       field?.closest("details")?.setAttribute("open", "");
-      const spot = field?.closest("label")?.querySelector(".wrong") ?? below;
-      if (spot) spot.append(h("span", { lang }, words)); else left.push(`${where ? `${where}: ` : ""}${words}`);
+      const spot = field?.closest(".field")?.querySelector(".wrong") ?? below;
+      if (spot) spot.append(h("span", { lang }, words), ...(undeclared ? ["real", "positive", "slider"].map((as) => h("button", { onclick: () => declare(undeclared, as) }, w(`as_${as}`))) : [])); else left.push(`${where ? `${where}: ` : ""}${words}`);
     }
     if (left.length) say(left.slice(0, 4).join(" · "));
   }
@@ -835,17 +946,16 @@ export function mount(element, transport, options = {}) {
 
   /** Show an answer. */
   function show(got) {
-    const claims = got.verdict === "no" ? "" : ` · ${w(got.claims === 1 ? "claim" : "claims", { count: got.claims })}`;
-    const isUnstable = got.verdict !== "no" && got.unstable.length > 0;
-    const unstable = isUnstable ? `${w(got.unstable.length > 1 ? "unstable_poles" : "unstable_pole", { poles: pretty(got.unstable.join(", ")) })} · ` : "";
-    const told = unstable + w(`verdict_${got.verdict}`) + claims;
+    const claims = got.verdict === "no" ? [] : [w("checked"), w(got.claims === 1 ? "claim" : "claims", { count: got.claims })];
+    const told = [pretty(got.says), ...claims].join(" · ");
     if (el.verdict.textContent !== told) el.verdict.textContent = told;
-    el.verdict.dataset.verdict = isUnstable ? "unstable" : got.verdict;
+    el.verdict.dataset.verdict = got.unstable.length ? "unstable" : got.verdict;
     if (el.notes.textContent !== (got.note ?? "")) el.notes.textContent = got.note ?? "";
     drawCards(got);
     if (!el.cases.hidden) drawCases(got);
     if (!el.responses.hidden) drawCurves(got.courses);
-    drawPlane();
+    drawPlane(isLetGo);  // the poles of F are known now
+    isLetGo = false;
   }
 
   function drawCards(got) {
@@ -896,27 +1006,45 @@ export function mount(element, transport, options = {}) {
       if (line.peak) told.push(`${w("peaks", { signal: nameOf(line), peak: pretty(line.peak), last: pretty(line.last) })}${settles && `, ${settles}`}`);
       named.push(h("span", {}, h("svg:svg", { viewBox: "0 0 24 8", "aria-hidden": "true" }, h("svg:path", { class: kind, d: "M1 4h22" })), nameOf(line), h("small", {}, settles)));
     }
-    el.curves.replaceChildren(h("svg:title", {}, w("up_to", { end: got.end, told: told.join("; ") })), ...made);
+    el.curves.setAttribute("aria-label", w("up_to", { end: got.end, told: told.join("; ") }));
+    el.curves.replaceChildren(...made);
     el.legend.replaceChildren(...named);
   }
 
   // -- begin ------------------------------------------------------------------------------------------------------------
 
-  build();
-  ask();
+  const isEmpty = () => !Object.keys(s.plant).length && s.spec.polynomial === undefined;
+  const begin = () => { build(); if (isEmpty()) turn(s.task); else ask(); };
+  root.addEventListener("keydown", (e) => {
+    if (!(e.ctrlKey || e.metaKey) || e.key.toLowerCase() !== "z" || /** @type {HTMLElement} */ (e.target).closest("input")) return;
+    e.preventDefault();
+    walk(e.shiftKey ? 1 : -1);
+  });
+  begin();
   return {
     destroy() { gone = true; aborted.abort(); root.remove(); },
     state: () => encoded(s),
-    set(link) { s = begun(link); frame = null; build(); ask(); },
+    /** Take over a state that is written already: of the history of the browser, or of another view. */
+    set(link) {
+      turning = 0;
+      s = begun(link);
+      frame = null;
+      const now = encoded(s), near = [reached, reached - 1, reached + 1].find((k) => steps[k] === now);
+      if (near === undefined) steps.splice(reached + 1, Infinity, now);
+      reached = near ?? reached + 1;
+      begin();
+      drawSteps();
+    },
   };
 }
 
 /** Show a page whose state is that of its address: a drag is one step of its history, which Back undoes. */
 export function atAddress(transport) {
   let moving = false, timer = 0;
-  const live = mount(/** @type {HTMLElement} */ (document.querySelector("main")), transport, {
+  const main = /** @type {HTMLElement} */ (document.querySelector("main"));
+  const live = mount(main, transport, {
     state: location.hash,
-    link: (state) => `${location.origin}${location.pathname}#${state}`,
+    link: (state) => `${main.dataset.share || `${location.origin}${location.pathname}`}#${state}`,
     changed(state, final) {
       const write = () => { history[moving ? "replaceState" : "pushState"](null, "", `#${state}`); moving = !final; };
       clearTimeout(timer);

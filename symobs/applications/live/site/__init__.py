@@ -14,6 +14,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from symobs.applications.live.assets import ASSETS, script, style
+from symobs.applications.live.beginning import SERVO
+from symobs.applications.live.page import page_object
+from symobs.problem import validate
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -101,18 +104,32 @@ def _wrong_wheel(wheel: Path) -> Iterator[str]:
 
 
 def _page(text: str) -> str:
-    """Return the page of the server with the site's policy, its script, and a line that says what is being loaded."""
+    """Return the page of the server with the site's policy, its script, what is being loaded, and a derivation meanwhile."""
     policy = f'<meta http-equiv="Content-Security-Policy" content="{POLICY}">'
     changes = (
         ('<meta charset="utf-8">', f'<meta charset="utf-8">\n{policy}'),
         ("start-http.js", "start-wasm.js"),
-        ("<main></main>", '<p role="status" class="loading">Loading …</p>\n<main></main>'),
+        (
+            "<main></main>",
+            f'<p role="status" class="loading">Loading …</p>\n<main></main>\n<article class="first">{_first()}</article>',
+        ),
     )
     for before, after in changes:
         if text.count(before) != 1:
             raise ValueError(f"http.html: {before} is expected once")
         text = text.replace(before, after)
     return text
+
+
+def _first() -> str:
+    """Return the derivation of the problem that the page begins with, to be read while Python is loaded."""
+    data = {
+        "task": "compensator",
+        "plant": SERVO,
+        "specification": {"control_poles": "-2, -2", "observer_poles": "-10, -10"},
+    }
+    problem = validate(data)
+    return str(page_object(problem, problem.solve()[-1], "outline")["html"])
 
 
 def _pack(path: Path) -> None:

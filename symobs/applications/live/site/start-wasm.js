@@ -35,6 +35,7 @@ function place() {
       else {
         clearTimeout(timer);
         told.textContent = "";
+        document.querySelector(".first")?.remove();
         answered(data.answer);
       }
     };

@@ -214,7 +214,7 @@ def _conditions(page: Builder, result: StabilityRegion, chi: str) -> None:
     if result.empty:
         page.steps.append(RegionSummary(page[chi].formula, names, findings))
         return
-    relations = tuple(relation(*solved(bound, signs, names)) for bound in result.answer["bounds"])
+    relations = inequalities(result)
     raw = short.equivalence.raw
     known = tuple(relation(value, ">", 0) for value in raw if sign_of(value, signs) != "positive")
     say = "region_is"
@@ -249,9 +249,7 @@ def _case(page: Builder, case: Case, chi: str) -> Step:
     elif not found.answer["bounds"]:
         steps = (Conclude(sentence("case_everywhere", {}), (stable,)),)
     else:
-        names = found.question.parameters
-        relations = tuple(relation(*solved(bound, found.signs, names)) for bound in found.answer["bounds"])
-        steps = (Inequalities(HoldsExactlyWhere(stable, relations), sentence("case_region", {})),)
+        steps = (Inequalities(HoldsExactlyWhere(stable, inequalities(found)), sentence("case_region", {})),)
     return CaseStep(when, tuple(case.substitution.items()), steps)
 
 
@@ -267,7 +265,7 @@ def _region(page: Builder, result: StabilityRegion, written: str, chi: str) -> N
     if result.empty:
         page.steps.append(RegionSummary(page[chi].formula, names, found))
         return
-    relations = _inequalities(result, region)
+    relations = inequalities(result)
     if relations:
         fact = HoldsExactlyWhere(predicate("stable", page[chi]), relations)
         page.steps.append(Inequalities(fact, sentence("region_is", {}), answer=True))
@@ -297,12 +295,14 @@ def _pictures(page: Builder, result: StabilityRegion, chi: str, moved: str) -> N
         page.plot(result.picture, page[moved])
 
 
-def _inequalities(result: StabilityRegion, region: object) -> tuple[Relation, ...]:
+def inequalities(result: StabilityRegion) -> tuple[Relation, ...]:
+    """Return the inequalities that hold exactly where all roots are stable; of a single interval its ends."""
+    region = result.region
     if isinstance(region, LineRegion) and len(region.intervals) == 1 and not region.cuts:
         is_bounded_by_sign = region.name not in region.critical.parameters
         return () if is_bounded_by_sign else tuple(r for found in interval_relations(region) for r in found)
     names = result.question.parameters
-    return tuple(relation(*solved(bound, result.signs, names)) for bound in result.answer["bounds"])
+    return tuple(relation(*solved(bound, result.signs, names)) for bound in result.answer["bounds"] or ())
 
 
 def _parts(result: StabilityRegion, region: object) -> tuple[tuple[Relation, ...], ...]:

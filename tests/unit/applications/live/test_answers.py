@@ -24,6 +24,7 @@ from symobs.pages.formats.json import result_object
 from symobs.problem import validate
 from symobs.tasks.result import result_type, tasks
 from tests.kit import tabled
+from tests.support.live_link import problem_of
 from tests.support.sampling import every
 from tests.support.tools.command_line import EXAMPLES, SAFETY, environment
 
@@ -144,6 +145,33 @@ def test_responses_are_within_their_bound() -> None:
     assert [(line["signal"], line["component"], line["dashed"]) for line in lines] == [
         ("x", 1, False), ("x", 2, False), ("x_hat", 1, True), ("x_hat", 2, True),
     ]  # fmt: skip
+
+
+@pytest.mark.parametrize("dt", [{}, {"dt": "1"}])
+@pytest.mark.parametrize("task", ["observer", "reduced_order_observer"])
+def test_roots_in_the_data_have_responses(task: str, dt: dict[str, str]) -> None:
+    plant = {"A": "[0 1; sqrt(2)/4 -1/2]", "C": "[1 sqrt(3)/2]", **dt}
+    poles = {"observer": "-1/2, -1/3", "reduced_order_observer": "-1/2"}[task]
+    found = asked({"task": task, "plant": plant, "specification": {"poles": poles}}, courses={"end": "6", "count": 33})
+    table = mpmath.matrix(
+        [[_decimal(entry) for entry in row] for row in found["result"]["A" if task == "observer" else "F"]]
+    )
+    start = mpmath.matrix([1, 1]) if task == "observer" else None
+    lines, parts = found["courses"]["lines"], found["courses"]["parts"]
+    last = len(lines[0]["heights"]) - 1
+    if start is None:
+        start = mpmath.matrix([mpmath.mpf(line["heights"][0]) / parts for line in lines])
+    for k in range(last + 1):
+        state = (table**k if dt else mpmath.expm(table * mpmath.mpf(6 * k) / last)) * start
+        for place, line in enumerate(lines):
+            assert abs(line["heights"][k] - parts * state[place]) <= 2
+    marks = sorted(float(mark["re"]) for mark in found["marks"])
+    # s² + s/2 − √2/4 = 0
+    assert marks == pytest.approx([-(1 + (1 + 4 * 2**0.5) ** 0.5) / 4, ((1 + 4 * 2**0.5) ** 0.5 - 1) / 4], abs=1e-6)
+
+
+def _decimal(entry: str) -> Any:
+    return eval(entry, {"sqrt": mpmath.sqrt}) + mpmath.mpf(0)  # noqa: S307 - our own answer
 
 
 @pytest.mark.parametrize("poles", ["-1, -20, -20", "-1, -40, -40", "-1/10+10i, -1/10-10i, -1", "-1, -1, -1"])
@@ -272,6 +300,49 @@ print(*sys.modules, sep="\\n")
     )
     heavy = {"sympy", "numpy", "jinja2", "click", "mpmath", "http.server", "multiprocessing", "matplotlib"}
     assert set(run.stdout.split()) & heavy == set()
+
+
+#: Beside the plant of an empty page: of two inputs and outputs, of letters, without input or output, in discrete time.
+_PLANTS: list[dict[str, Any]] = [
+    {"plant": {"A": "[0 1 0; 0 0 1; -6 -11 -6]", "B": "[0 0; 1 0; 0 1]", "C": "[1 0 0; 0 1 0]"}},
+    {"plant": {"A": "[0 1; -omega^2 0]", "C": "[1 0]"}, "symbols": {"omega": "positive"}},
+    {"plant": {"A": "[0 1; -2 -2]"}},
+    {"plant": {"A": "[1 0; 0 -1]", "B": "[0; 1]", "C": "[0 1]"}},
+    {"plant": {"A": "[1 1; 0 1/2]", "B": "[0; 1]", "C": "[1 0]", "dt": "1"}},
+]
+_SHOWN = {"task": "observer", "specification": {"poles": "-4, -4"}}
+
+
+@pytest.mark.parametrize("task", sorted(tasks()))
+def test_every_task_begins_with_a_working_default_and_a_sentence(task: str) -> None:
+    for shown in ({}, SERVO, *({**_SHOWN, **plant} for plant in _PLANTS)):
+        problem, _ = problem_of(asked(shown, "begin", task=task)["link"])
+        found = asked(problem)
+        if shown in ({}, SERVO):
+            expected = "no" if task == "lyapunov" else "done"  # the servo has a pole at 0
+            assert found["status"] == expected, (shown, found)
+            assert found["cards"] or task in {"lyapunov", "margins"}  # whose answer is the sentence
+        if found["status"] == "bad":  # only what the plant itself does not allow
+            assert {error["where"].partition(".")[0] for error in found["errors"]} <= {"plant", "design"}, (
+                shown,
+                found,
+            )
+        else:
+            assert found["says"][0].isupper(), (shown, found)
+
+
+@tabled
+def test_an_answer_is_said_in_a_sentence(
+    task: str, plant: dict[str, str], specification: dict[str, str], says: str
+) -> None:
+    assert asked({"task": task, "plant": plant, "specification": specification})["says"] == says
+
+
+def test_inequalities_are_among_the_answers() -> None:
+    # s³ + 2 s² + 3 s + k is stable exactly for 0 < k < 6.
+    specification = {"polynomial": "s^3 + 2 s^2 + 3 s + k", "parameters": ["k"]}
+    found = asked({"task": "stability_region", "specification": specification, "symbols": {"k": "real"}})
+    assert [card["latex"] for card in found["cards"] if card["name"].startswith("stable_if")] == ["0<k<6"]
 
 
 def test_the_start_names_tasks_and_examples() -> None:

@@ -236,6 +236,37 @@ def test_an_interrupt_while_the_first_child_is_started_is_all_that_is_said(tmp_p
     }
 
 
+def test_the_address_is_that_of_the_last_start(tmp_path: Path) -> None:
+    command = [sys.executable, "-m", "symobs", "serve", "--no-browser", "--share", "https://example.org/live/"]
+    own = environment() | {"XDG_STATE_HOME": str(tmp_path)}
+
+    def started() -> subprocess.Popen[str]:
+        return subprocess.Popen(command, env=own, stdout=subprocess.PIPE, text=True)
+
+    def ended(run: subprocess.Popen[str]) -> None:
+        run.send_signal(signal.SIGINT)
+        run.communicate(timeout=SAFETY)
+
+    urls = []
+    for _ in range(2):
+        with started() as run:
+            assert run.stdout is not None
+            urls.append(run.stdout.readline())
+            with started() as other:  # while the first one has the port
+                assert other.stdout is not None
+                assert other.stdout.readline().partition("#")[0] != urls[-1].partition("#")[0]
+                ended(other)
+            ended(run)
+    assert urls[0] == urls[1]
+    kept = tmp_path / "symobs" / "serve.json"
+    assert kept.stat().st_mode & 0o777 == 0o600
+    kept.chmod(0o644)  # anybody may have read the token
+    with started() as run:
+        assert run.stdout is not None
+        assert run.stdout.readline().partition("token=")[2] != urls[0].partition("token=")[2]
+        ended(run)
+
+
 @pytest.mark.parametrize("host", ["0.0.0.0", "192.168.0.1", "::", "example.org"])  # noqa: S104 - what must be refused
 def test_no_other_address_is_served(host: str) -> None:
     command = [sys.executable, "-m", "symobs", "serve", "--no-browser", "--host", host]

@@ -48,6 +48,7 @@ def test_the_folder_holds_everything_that_it_asks_for(given: tuple[Path, Path], 
     assert asked - set(files) - {"pyodide/"} == set()
     page = files["index.html"].read_text(encoding="utf-8")
     assert "script-src 'self' 'wasm-unsafe-eval'; worker-src 'self'; connect-src 'self';" in page
+    assert "<math" in page.partition('class="first"')[2]  # there is something to read while Python is loaded
     whole = "".join(
         path.read_text(encoding="utf-8") for name, path in files.items() if name.endswith(("html", "js", "css"))
     )

@@ -15,7 +15,7 @@ from tests.support.paths import ROOT
 SITE = ROOT / "symobs" / "applications" / "live" / "site"
 FILES = (ASSETS / "symobs-live.js", SITE / "start-wasm.js", SITE / "worker.js")
 SOURCE = "".join(path.read_text(encoding="utf-8") for path in FILES)
-#: Words of which the script makes the names: `verdict_yes`.
+#: Words of which the script makes the names: `case_yes`.
 MADE = re.findall(r"\[?`(\w+_)\$\{\w+(?:\.\w+)?\}`", SOURCE)
 
 
@@ -33,7 +33,7 @@ def test_every_word_that_is_shown_is_there_in_every_language() -> None:
 def test_no_word_is_kept_that_is_not_shown() -> None:
     labels = {pole.label for name in tasks() for pole in pole_sets(name)}
     known = {*labels, *(f"{label}s" for label in labels)}
-    assert {"verdict_", "case_", "point_", "pole_of_", "detail_", "kind_", "save_", "task_", "field_"} == set(MADE)
+    assert {"case_", "point_", "pole_of_", "detail_", "kind_", "save_", "task_", "field_", "as_", "count_"} == set(MADE)
     for key in words()["en"]:
         found = f'"{key}"' in SOURCE or f".{key}" in SOURCE or key.startswith(tuple(MADE)) or key in known
         assert found, key
