@@ -38,6 +38,7 @@ from symobs.tasks.analysis.page_parts import formula_of_factored, given, state_s
 from symobs.tasks.analysis.time_response.horizons import INFINITE, read_horizon
 from symobs.tasks.result import Document
 from symobs.tasks.result.output_methods import DIGITS
+from symobs.tasks.result.registry import result_type
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
@@ -61,6 +62,13 @@ class Question(Document):
     """A question: a document without results."""
 
     page: Derivation | None = None
+    tasks: tuple[str, ...] = ()
+
+    @property
+    def letters_asked(self) -> frozenset[str]:
+        """The letters of what the tasks ask for."""
+        kinds = map(result_type, self.tasks)
+        return frozenset(kind.letters.get(name, name) for kind in kinds for name in kind.answered_by)
 
     @cached_property
     def derivations(self) -> tuple[Derivation, ...]:
@@ -85,7 +93,13 @@ def question_of(problem: Problem) -> Question:
                 page.remark("plant_found", letter=_letter_of(place))
     typed = problem.plant.is_in_decimals or has_decimals([*problem.specification.values()])
     digits = DIGITS if problem.digits is None and typed else problem.digits
-    of_page: dict[str, Any] = {"page": page.derivation(), "digits": digits, "language": problem.language}
+    names = tuple(task.name for task, _ in asked)
+    of_page: dict[str, Any] = {
+        "page": page.derivation(),
+        "tasks": names,
+        "digits": digits,
+        "language": problem.language,
+    }
     return Question(problem.title, problem.source, (), problem.convention, problem.text, **of_page)
 
 

@@ -292,6 +292,11 @@ class ExerciseSet:
         return self.variants[0]
 
     @property
+    def title(self) -> str:
+        """The title of the first, without the number of the variant where there are several."""
+        return re.sub(r"(?:, )?[Vv]ariante? \d+$", "", self.first.title) if self.variants[1:] else self.first.title
+
+    @property
     def identifier(self) -> str:
         """Of one problem its own; of several, the hash of theirs."""
         if len(self.variants) == 1:

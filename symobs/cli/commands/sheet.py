@@ -94,7 +94,7 @@ def command(
         convention=convention_of(convention_name) or file.convention,
         timeout=timeout,
         memory=memory,
-        final_answers=file.has_final_answers,
+        final_answers=file.has_final_answers and not (questions and file.header.is_exam),
         is_exam=file.header.is_exam,
         **page_options,
     )

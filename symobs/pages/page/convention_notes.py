@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 from symobs.formula.phrases.languages import SPOKEN
 from symobs.formula.tree import (
     Conjunction,
+    Derivative,
     Evaluated,
     HoldsExactlyWhere,
     Letter,
@@ -68,11 +69,24 @@ def stated_conventions(
     return tuple(conventions)
 
 
+def _meanings(asked: frozenset[str], convention: Convention, *, discrete: bool) -> tuple[tuple[Inline, ...], ...]:
+    """Return what letters mean that a question asks for, where only a derivation says it."""
+    turned = SignReversal(convention.turned)
+    told = {"F": _OUTPUT_FEEDBACK, "F_z": _reduced_observer("w_o" if discrete else "z_o")}
+    return tuple((turned.relation(relation),) for letter, relation in told.items() if letter in asked)
+
+
+def _reduced_observer(state: str) -> Relation:
+    terms = (Product((Letter(a), Letter(b))) for a, b in (("F_z", state), ("G_z", "u"), ("H_z", "y")))
+    return Relation((Derivative(Letter(state)), Sum(tuple(terms))), ("=",))
+
+
 def _control_law(state: str) -> Relation:
     return Relation((Letter("u"), Negative(Product((Letter("K"), Letter(state))))), ("=",))
 
 
 _OBSERVER_MATRIX = Sum((Letter("A"), Negative(Product((Letter("L"), Letter("C"))))))
+_OUTPUT_FEEDBACK = Relation((Letter("u"), Negative(Product((Letter("F"), Letter("y"))))), ("=",))
 _ERROR = Relation((Letter("e"), Sum((Letter("x"), Negative(Letter("x_hat"))))), ("=",))
 
 
@@ -133,7 +147,9 @@ def _in_sentence(sentence: Sentence | None) -> Iterator[Formula]:
 def title_of(document: Document, language: Language) -> Title:
     """Return the title of a page, with its source and the conventions that it states."""
     steps = [step for derivation in document.derivations for step in derivation.steps]
-    conventions = stated_conventions(letters_used(steps), document.convention, language.words)
+    asked, convention = document.letters_asked, document.convention
+    conventions = stated_conventions(letters_used(steps) | asked, convention, language.words)
+    conventions += _meanings(asked, convention, discrete=any(each.discrete for each in document.derivations))
     if not conventions:
         return Title(document.title, _as_sentence(document.source), ())
     listed: list[Inline] = [f"{language.words['conventions']} "]

@@ -211,7 +211,8 @@ class Sheet:
 
     def chapters(self) -> tuple[Chapter, ...]:
         """Return the chapters: questions, hints and final answers where there are any, and solutions."""
-        ends = {"hints": self._hints(), "answers": self._answers()} if self.has_questions else {}
+        is_paper = self.header.is_exam and not self.has_solutions  # what students of an exam get
+        ends = {"hints": self._hints(), "answers": self._answers()} if self.has_questions and not is_paper else {}
         if self.header.is_exam:
             both = [self._items(kind) for kind in self.kinds]
             named = {"problems": tuple(item for items in zip(*both, strict=True) for item in items), **ends}

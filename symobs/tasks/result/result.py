@@ -330,6 +330,11 @@ class Document:
     #: What a page of HTML offers besides its text.
     web: WebPage = field(default=PLAIN, kw_only=True)
 
+    @property
+    def letters_asked(self) -> frozenset[str]:
+        """The letters of answers that are asked for and stand in no derivation: a question says what they mean."""
+        return frozenset()
+
     @cached_property
     def derivations(self) -> tuple[Derivation, ...]:
         """The checked derivations of the results, in the signs of the convention."""

@@ -106,7 +106,7 @@ def files(exercises: Sequence[ExerciseSet]) -> Files:
 def _info(each: ExerciseSet) -> dict[str, Any]:
     return {
         "uuid": str(uuid.uuid5(_NAMESPACE, f"symobs/{each.identifier}")),
-        "title": each.first.title,
+        "title": each.title or each.first.title,
         "topic": each.first.topic,
         "tags": ["symobs"],
         "type": "v3",
@@ -174,15 +174,16 @@ def _input(part: ExportedPart) -> str:
     shown = escape(f"{label(part, '$', '$')} =", quote=True)
     head = f"<p>{escape(instruction(part))}</p>\n"
     if _is_single(part):
-        return f'{head}<pl-string-input answers-name="{part.name}" label="{shown}"></pl-string-input>'
+        return f'{head}<pl-string-input answers-name="{part.name}" label="{shown}" allow-blank="true"></pl-string-input>'
     if part.numbers is not None and not part.data["symbolic"]:
         return (
             f'{head}<pl-matrix-component-input answers-name="{part.name}" rows="{rows}" columns="{columns}" '
-            f'allow-fractions="true" rtol="0" atol="0" label="{shown}"></pl-matrix-component-input>'
+            f'allow-fractions="true" rtol="0" atol="0" allow-blank="true" label="{shown}"></pl-matrix-component-input>'
         )
     cells = [
         "".join(
-            f'<td><pl-string-input answers-name="{part.name}{columns * i + j + 1}" label="({i + 1},{j + 1})" size="12">'
+            f'<td><pl-string-input answers-name="{part.name}{columns * i + j + 1}" label="({i + 1},{j + 1})" size="12" '
+            'allow-blank="true">'
             "</pl-string-input></td>"
             for j in range(columns)
         )

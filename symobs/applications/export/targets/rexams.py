@@ -80,6 +80,7 @@ def _instruction(part: ExportedPart) -> str:
 
 def _kept_from_r(text: str) -> str:
     """Return text without what knitr would execute, or R/exams take for meta-information."""
+    text = text.replace(r"\cr ", r"\\ ")  # which the conversion to QTI does not know
     return _META.sub(r"\1&#58;", text.replace(r"\`", "`").replace("`", "&#96;"))
 
 

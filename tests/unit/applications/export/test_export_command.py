@@ -163,7 +163,7 @@ def test_hostile_text_stands_literally_in_moodle_and_stack(hostile: str) -> None
         commands = re.findall(r"\[\[\w+:\w+\]\]|\{[@#].*?[@#]\}|\{\d*:[A-Z]+:", body)
         own = ["[[input:ans1]]", "[[validation:ans1]]"] if platform == "stack" else ["{1:NUMERICAL:"] * 2
         assert commands == own
-        text = body.split("<h4>")[0]
+        text = body.split("<h4>")[0].split("</p>", 1)[1]  # behind the line of notation
         assert not re.search(r"[\\$`{}\[\]]", text.replace("`r 1+1`", ""))
 
 
