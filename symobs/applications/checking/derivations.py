@@ -407,7 +407,7 @@ def is_of_conditions(relation: str) -> bool:
 
 def _judged(state: _Derivation, step: Step, answer: Answer) -> Line:
     """Return a line with its verdict."""
-    written, names = step.relation, {*state.problem.plant.symbols.signs, *state.symbols}
+    written, names = step.relation, {*state.problem.plant.symbols.signs, *state.symbols, state.problem.plant.variable}
     step = replace(step, relation=in_letters(written, names))
     if is_of_conditions(step.relation):
         return _of_conditions(state, step)

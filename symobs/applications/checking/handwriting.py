@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from symobs.exact import Matrix
 from symobs.formula.expression.names import spellings
-from symobs.formula.notation import GREEK_LETTERS
+from symobs.formula.notation import GREEK_LETTERS, LETTERS
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Mapping
@@ -27,7 +27,10 @@ _ENVIRONMENT = re.compile(rf"\\begin\{{{_TABLE}(?:\{{[lcr|]*\}})?(.*?)\\end\{{{_
 _ROW_END = re.compile(r"\\\\(?:\[[^]]*\])?|\\cr\b")
 #: Commands with nothing to read, those that only set their argument, and fences.
 _SPACES = re.compile(r"(?<!\\)\\(?:[,;:! ]|q?quad\b|displaystyle\b)|\\(?:left|right|[bB]igg?[lr]?)(?![A-Za-z])\.?|\$")
-_SET = re.compile(r"\\(?:math(?:rm|bf|sf|it)|boldsymbol|operatorname|text(?:bf)?|boxed|underline)\s*\{([^{}]*)\}")
+_SET = re.compile(
+    r"\\(?:math(?:rm|bf|sf|it)|boldsymbol|operatorname|text(?:bf)?|boxed|underline)(?:\s*\{([^{}]*)\}|\s+([A-Za-z0-9]))"
+)
+_APPLIED = re.compile(r"\\(sinh?|cosh?|exp)\s*(?:(?=\()|([\d.]*\s*(?:\\[A-Za-z]+|[A-Za-z](?![A-Za-z]))(?:_\w+)?))")
 _QUOTIENT = re.compile(r"\\[dt]?frac\s*(?:\{([^{}]*)\}|(\d))\s*(?:\{([^{}]*)\}|(\d))")
 _ROOT = re.compile(r"\\sqrt\s*\{([^{}]*)\}")
 _ABOVE, _BELOW = re.compile(r"\^\s*\{([^{}]*)\}"), re.compile(r"_\s*\{([^{}]*)\}")
@@ -62,13 +65,15 @@ def without_latex(text: str) -> str:
     before = None
     while before != text:
         before = text
-        text = _SET.sub(r"\1", text)
+        text = _SET.sub(lambda f: f[1] if f[1] is not None else f[2], text)
         text = _QUOTIENT.sub(lambda f: f"(({f[1] or f[2]})/({f[3] or f[4]}))", text)
         text = _ROOT.sub(r" sqrt(\1)", text)
         text = _ABOVE.sub(lambda f: "^" + (f[1].strip() if re.fullmatch(r"\s*\w+\s*", f[1]) else f"({f[1]})"), text)
         text = _BELOW.sub(lambda f: "_" + re.sub(r"\s+", "", f[1]), text)
     text = _ENVIRONMENT.sub(lambda found: _rows_of_latex(found[1]), text)
-    text = re.sub(r"\\([A-Za-z]+)", lambda f: _SIGNS.get(f[1], f" {f[1]} "), text)
+    text = re.sub(r"(?<=[A-Za-z0-9])e\^", " e^", text)
+    text = _APPLIED.sub(lambda f: f" {f[1]}({f[2]})" if f[2] else f" {f[1]}", text)
+    text = re.sub(r"\\([A-Za-z]+)(_?)", lambda f: _SIGNS.get(f[1], f" {f[1]}{f[2] or ' '}"), text)
     text = re.sub(r"[(\[|]\s*(\[[^][]*\])\s*[)\]|]", r"\1", text)
     text = re.sub(r"\\[{}]", lambda found: found[0][1], text)
     return _ROW_END.sub("\n", text).replace("&", " ")
@@ -93,7 +98,9 @@ _TOGETHER = re.compile(r"\b(?:[sz]I|[A-Z]{2,3})\b")
 _INDEXED = re.compile(r"\b([A-Za-z]+)(_?)(\d+)\b")
 _SQUARE_ROOT = re.compile(r"(\w+|\([^()]*\))\s*\^\s*(?:\(\s*1/2\s*\)|0?\.5)|\bsqrt\s*(\d+)")
 _BEFORE_MATRIX = re.compile(r"(?<![\w.)])(\d+/\d+)\s*\*?\s*(?=\[)")
-_EXPONENTIAL = re.compile(r"(?<![A-Za-z0-9_.])e\s*\^\s*(\((?:[^()]|\([^()]*\))*\)|-?\s*[A-Za-z0-9.]+)")
+_WORDS_OF_LINES = {"rank", "det", "adj", "exp", "where", "and", "or", "yes", "no", "trace"}
+_NAME = re.compile(r"(?<![A-Za-z_.])[A-Za-z][A-Za-z0-9_]*(?![A-Za-z0-9_(])")
+_EXPONENTIAL = re.compile(r"(?<![A-Za-z_])e\s*\^\s*(\((?:[^()]|\([^()]*\))*\)|-?\s*[A-Za-z0-9.]+)")
 
 
 def readable(text: str) -> str:
@@ -118,7 +125,26 @@ def in_letters(text: str, names: Collection[str]) -> str:
 
     text = _TOGETHER.sub(lambda found: found[0] if found[0] in names else "*".join(found[0]), text)
     text = _INDEXED.sub(declared, text)
+    text = _NAME.sub(lambda found: _as_product(found[0], names), text)
     return text if "e" in names else _EXPONENTIAL.sub(lambda found: f"exp({found[1]})", text)
+
+
+def _as_product(word: str, names: Collection[str]) -> str:
+    """Return names that are written together, ab or h_1k_1, as their product, where they can be parted in one way alone."""
+    if word in names or len(word) < 2 or word in _WORDS_OF_LINES:
+        return word
+    known = {spelt: name for name in names for spelt in (name, re.sub(r"(?<=[A-Za-z])_?(?=\d+$)", "_", name))}
+    found: list[list[str]] = []
+
+    def part(rest: str, before: list[str]) -> None:
+        if not rest:
+            found.append(before)
+        for spelt, name in known.items():
+            if rest.startswith(spelt) and len(found) < 2:
+                part(rest[len(spelt) :], [*before, name])
+
+    part(word, [])
+    return "*".join(found[0]) if len(found) == 1 else word
 
 
 def _quotient(found: re.Match[str]) -> str:
@@ -284,10 +310,12 @@ def field_of(view: ResultInConvention, left: str, asked: Iterable[str]) -> str |
     An answer is called by its letter on the page, and by the names that are usual for its kind.
     """
     name, letters = squashed(left), view.result.letters
+    forms = {**LETTERS, **view.convention.forms(reduced=view.result.has_reduced_observer)}
     for field in asked:
         usual = _CALLED.get(f"{view.task}.{field}", _CALLED.get(field))
         own = squashed(letters.get(field, ""))
-        if name in {own, own.partition("_")[0]} - {""} or (usual and usual.fullmatch(name)):
+        printed = squashed(forms[letters[field]].alone.text) if letters.get(field) in forms else own
+        if name in {printed, own, own.partition("_")[0]} - {""} or (usual and usual.fullmatch(name)):
             return field
         if own == "chi" and _PENCIL.fullmatch(name):
             return field

@@ -70,7 +70,8 @@ def as_asked(view: ResultInConvention, letter: str, value: Any) -> Any:
 
 
 def _known(view: ResultInConvention) -> set[str]:
-    return {*view.plant.symbols.signs, *getattr(getattr(view.result, "question", None), "parameters", ())}
+    parameters = getattr(getattr(view.result, "question", None), "parameters", ())
+    return {*view.plant.symbols.signs, *parameters, "t" if view.in_time else view.plant.variable}
 
 
 def is_listed(view: ResultInConvention, letter: str) -> bool:

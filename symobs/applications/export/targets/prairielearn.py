@@ -174,7 +174,9 @@ def _input(part: ExportedPart) -> str:
     shown = escape(f"{label(part, '$', '$')} =", quote=True)
     head = f"<p>{escape(instruction(part))}</p>\n"
     if _is_single(part):
-        return f'{head}<pl-string-input answers-name="{part.name}" label="{shown}" allow-blank="true"></pl-string-input>'
+        return (
+            f'{head}<pl-string-input answers-name="{part.name}" label="{shown}" allow-blank="true"></pl-string-input>'
+        )
     if part.numbers is not None and not part.data["symbolic"]:
         return (
             f'{head}<pl-matrix-component-input answers-name="{part.name}" rows="{rows}" columns="{columns}" '
