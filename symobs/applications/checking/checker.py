@@ -165,9 +165,10 @@ def _explained(
         return replace(part, slip=slip, place=place, credit=credit)
     found = _explanation(view, judgement, judged)
     reasons = tuple(fault.reason for fault in found.alternatives)
+    other = _exchanged(view, judged)
     slips = [fault.slip for fault in found.alternatives] or [found.slip or ""]
     credit = min(marking.credit.get(slip, Fraction(0)) for slip in slips)
-    said = found.reason or part.reason
+    said = other or found.reason or part.reason
     if not said and "polynomial" in found.effect:
         said = f"with your {judged.letter} the polynomial is {found.effect['polynomial']}, not the one asked for"
     if not said and (view.task, judged.name) == ("compensator", "F") and judgement.has_gains:
@@ -181,6 +182,21 @@ def _explained(
         effect=found.effect,
         credit=credit,
     )
+
+
+def _exchanged(view: ResultInConvention, judged: Judged) -> str:
+    """Return that a matrix is another one of those asked for, or its transpose; empty where it is none of them."""
+    value = judged.value
+    if not isinstance(value, Matrix) or value.is_zero:
+        return ""
+    for letter, (name, sign) in {**{name: (name, 1) for name in asked_of(view.result)}, **view.names}.items():
+        right = view.result.fields.get(name)
+        if name == judged.name or not isinstance(right, Matrix) or right == view.result.fields.get(judged.name):
+            continue
+        right = -right if sign * view.standard(judged.letter)[1] < 0 else right
+        if value in {right, right.T}:
+            return f"this is {'' if value == right else 'the transpose of '}{letter}"
+    return ""
 
 
 def _explanation(view: ResultInConvention, judgement: TaskJudgement, judged: Judged) -> Explained:

@@ -249,7 +249,12 @@ _LEFT_TURNED = re.compile(r"(?:transpose\(\s*([A-Z]\w*)\s*\)|([A-Z]\w*)\s*(?:'|\
 _OF_P = re.compile(
     r"(?:[A-Za-zχφ]\w*\s*\(\s*(p|lambda|λ)\s*\)|(?:det\s*\(|\|)\s*(p|lambda|λ)\s*[*·]?\s*[IE]\s*-\s*A\s*[)|])\s*="
 )
-_WORDS = ((re.compile(r"&&|\u2227|\bund\b"), " and "), (re.compile(r"\|\||\u2228|\boder\b"), " or "))
+_WORDS = (
+    (re.compile("=>"), ">="),
+    (re.compile("=<"), "<="),
+    (re.compile(r"&&|\u2227|\bund\b"), " and "),
+    (re.compile(r"\|\||\u2228|\boder\b"), " or "),
+)
 _NOT_LEADING = re.compile(r"(?:rank|rang|rk|det|ker)\b", re.IGNORECASE)
 
 
@@ -265,7 +270,7 @@ def plain_line(line: str) -> str:
         line = f"{turned[1] or turned[2]} = {_turned(v) if _MATRIX.fullmatch(v := readable(turned[3].strip())) else v}"
     if of := _OF_P.match(line):
         line = re.sub(rf"(?<![A-Za-z_]){of[1] or of[2]}(?![A-Za-z0-9_])", "s", line.replace("λI", "λ I"))
-    if re.search(r"[<>]", line):
+    if re.search(r"[<>](?!.*\bwhere\b)", line):
         for pattern, word in _WORDS:
             line = pattern.sub(word, line)
     return line

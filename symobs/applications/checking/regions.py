@@ -11,6 +11,8 @@ import re
 from contextlib import suppress
 from dataclasses import replace
 from fractions import Fraction
+from itertools import product
+from math import prod
 from random import Random
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -43,7 +45,7 @@ if TYPE_CHECKING:
 _OPERATOR = re.compile(r"(!=|>=|<=|>|<|==|=)")
 
 
-_BETWEEN = re.compile(r"[()]|\band\b|&&?|[,;]")
+_AND = re.compile(r"\band\b|&&?|[,;]")
 
 
 _OR = re.compile(r"\bor\b|\|\|?")
@@ -75,7 +77,7 @@ def read_conditions(given: Any, names: Any, where: str = "stable_if") -> Union:
     """
     given = _unpacked(given)
     if isinstance(given, str):
-        union = [_conjunction([part], names, where) for part in _OR.split(given)]
+        union = [_conjunction(parts, names, where) for parts in _disjuncts(given, where)]
     elif isinstance(given, list) and any(isinstance(part, list) for part in given):
         parts = [part if isinstance(part, list) else [part] for part in given]
         union = [_conjunction(part, names, where) for part in parts]
@@ -111,7 +113,10 @@ def _conjunction(parts: Sequence[Any], names: Any, where: str) -> tuple[Inequali
     for part in parts:
         if not isinstance(part, str):
             raise InputError("a condition is a text", where=where, repair='write "h1 > 3"')
-        for text in _conjuncts(part, where):
+        together = _disjuncts(part, where)
+        if len(together) > 1:
+            raise InputError('a list with "or" has two readings', where=where, repair="write a list of lists")
+        for text in together[0]:
             if text == "False":
                 return None
             if text not in {"", "True"}:
@@ -119,21 +124,35 @@ def _conjunction(parts: Sequence[Any], names: Any, where: str) -> tuple[Inequali
     return tuple(found)
 
 
-def _conjuncts(text: str, where: str, depth: int = 0) -> list[str]:
-    """Return the parts of a conjunction, each without the brackets around it, however these are nested."""
+def _disjuncts(text: str, where: str, depth: int = 0) -> list[list[str]]:
+    """Return the conditions of a text with "and", "or" and brackets: one of the lists holds, all of its conditions do."""
     if depth > _DEEPEST:
         raise InputError("brackets are nested too deeply", where=where, repair="write the conditions as a list")
     inner = _without_brackets(text)
-    pieces, level, start = [], 0, 0
-    for found in _BETWEEN.finditer(inner):
-        level += (found[0] == "(") - (found[0] == ")")
-        if level == 0 and found[0] not in "()":
-            pieces.append(inner[start : found.start()])
-            start = found.end()
-    pieces.append(inner[start:])
-    if len(pieces) == 1 and inner == text.strip():
-        return [inner]
-    return [part for piece in pieces for part in _conjuncts(piece, where, depth + 1)]
+    if len(pieces := _outside_brackets(inner, _OR)) > 1:
+        found = [each for piece in pieces for each in _disjuncts(piece, where, depth + 1)]
+    elif len(pieces := _outside_brackets(inner, _AND)) > 1:
+        parts = [_disjuncts(piece, where, depth + 1) for piece in pieces]
+        if prod(map(len, parts)) > _MOST:
+            raise InputError(f"more than {_MOST} conditions", where=where, repair="write fewer")
+        found = [[text for part in each for text in part] for each in product(*parts)]
+    else:
+        return [[inner]] if inner == text.strip() else _disjuncts(inner, where, depth + 1)
+    if len(found) > _MOST:
+        raise InputError(f"more than {_MOST} conditions", where=where, repair="write fewer")
+    return found
+
+
+def _outside_brackets(text: str, separator: re.Pattern[str]) -> list[str]:
+    """Return the parts of a text between separators that stand in no bracket."""
+    found, depth, start, seen = [], 0, 0, 0
+    for place in separator.finditer(text):
+        between, seen = text[seen : place.start()], place.start()
+        depth += between.count("(") - between.count(")")
+        if depth == 0:
+            found.append(text[start : place.start()])
+            start = place.end()
+    return [*found, text[start:]]
 
 
 def _without_brackets(text: str) -> str:

@@ -25,3 +25,8 @@ def test_every_answer_has_its_verdict(name: str) -> None:
         if found != {expected.removeprefix("line ")}:
             wrong.append((answer, expected, found, [part.reason for part in report.parts]))
     assert not wrong
+
+
+def test_exchanged_answers_are_called_by_their_names() -> None:
+    report = Checked.of(CORPUS["servo"]["problem"]).report("K = [19 81]\nL = [4 3]")
+    assert [part.reason for part in report.parts[:2]] == ["this is the transpose of L", "this is K"]
