@@ -15,7 +15,7 @@ from symobs.applications.live.beginning import begun, halves
 from symobs.applications.live.page import export_object, page_object
 from symobs.applications.live.request import FieldError, Request, link_of, put_in, read
 from symobs.applications.live.sentences import sentence, stability_of
-from symobs.applications.live.time_responses import NoResponse, readout, responses_of
+from symobs.applications.live.time_responses import NoResponse, has_step, readout, responses_of
 from symobs.exact import Scalar
 from symobs.exact.algebraic.enclosure import is_number
 from symobs.exact.algebraic.root_location import complex_roots, root_boxes, value_at
@@ -215,7 +215,7 @@ def pole_sets(task: str) -> tuple[PoleSet, ...]:
         return ()
     control, observer = _SETS
     if "poles" in keywords:
-        return (replace(control if kind.gains == ("K",) else observer, key="poles"),)
+        return (replace(control if "K" in kind.gains else observer, key="poles"),)
     return tuple(found for found in _SETS if found.key in keywords)
 
 
@@ -234,6 +234,7 @@ def view_object(result: Result, specification: Any) -> dict[str, Any]:
         "panels": [*result.panels, "cards", "page"],
         "sets": sets,
         "cards": list(result.cards or result.letters),
+        "step": has_step(result),
     }
 
 

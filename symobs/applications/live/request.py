@@ -45,7 +45,7 @@ _KEYS = {
 }  # fmt: skip
 
 
-_COURSES = {"start", "estimate", "end", "count"}
+_COURSES = {"start", "estimate", "end", "count", "step"}
 
 
 _NAME = re.compile(r"\d+\.?\d*(?:[eE][+-]?\d+)?|[A-Za-z_]\w*")
@@ -77,12 +77,13 @@ class FieldError(InputError):
 
 @dataclass(frozen=True)
 class Responses:
-    """Which time responses are wanted: initial state and estimate as texts, the last instant, how many instants."""
+    """Which time responses are wanted: from an initial state and estimate, or to a step; last instant, how many instants."""
 
     start: str = ""
     estimate: str = ""
     end: str | None = None
     count: int = 129
+    step: bool = False
 
 
 @dataclass(frozen=True)
@@ -257,7 +258,11 @@ def _responses(value: object, note: Any) -> Responses | None:
     if not isinstance(count, int) or isinstance(count, bool) or not 2 <= count <= _MOST_INSTANTS:
         note(f"a number from 2 to {_MOST_INSTANTS} is expected", "courses.count", 'write "count": 129')
         return None
-    return Responses(texts["start"], texts["estimate"], end, count)
+    step = value.get("step", False)
+    if not isinstance(step, bool):
+        note("true or false is expected", "courses.step", 'write "step": true')
+        return None
+    return Responses(texts["start"], texts["estimate"], end, count, step)
 
 
 # -- values in the place of symbols -----------------------------------------------------------------------------------

@@ -7,7 +7,7 @@ const SVG = "http://www.w3.org/2000/svg";
 const SNAPS = { "1/20": 1, "1/10": 2, "1/4": 5, "1/2": 10, 1: 20 };
 const SHORT = { control: "control_poles", observer: "observer_poles", order: "observer" };
 const PLANT = ["A", "B", "C", "D", "transfer_function", "dt"];
-const OWN = ["v", "task", "symbols", "convention", "language", "at", "snap", "closed", "detail", "x0", "xh0"];
+const OWN = ["v", "task", "symbols", "convention", "language", "at", "snap", "closed", "detail", "x0", "xh0", "step"];
 const DETAILS = ["full", "outline", "answer"];
 const PANELS = ["plane", "responses", "cards", "cases", "region", "page"];
 
@@ -120,7 +120,7 @@ function decoded(link) {
   const listed = (source) => Object.fromEntries((source ?? "").split(",").filter(Boolean).map((e) => e.split(/:(.*)/s).slice(0, 2)));
   Object.assign(state, { symbols: listed(given.symbols), at: listed(given.at) });
   Object.assign(state, { snap: given.snap in SNAPS ? given.snap : "1/2", closed: (given.closed ?? "").split(",").filter(Boolean) });
-  Object.assign(state, { detail: DETAILS.includes(given.detail) ? given.detail : "full", x0: given.x0 ?? "", xh0: given.xh0 ?? "" });
+  Object.assign(state, { detail: DETAILS.includes(given.detail) ? given.detail : "full", x0: given.x0 ?? "", xh0: given.xh0 ?? "", step: given.step ?? "" });
   for (const [key, entry] of Object.entries(given)) {
     if (PLANT.includes(key)) state.plant[key] = entry;
     else if (!OWN.includes(key) && key !== "token") state.spec[SHORT[key] ?? key] = entry;
@@ -134,7 +134,7 @@ function encoded(state) {
   const spec = Object.fromEntries(Object.entries(state.spec).map(([key, entry]) => [long[key] ?? key, entry]));
   const all = { v: 1, task: state.task, ...state.plant, ...spec, symbols: paired(state.symbols), at: paired(state.at) };
   Object.assign(all, { convention: state.convention, language: state.language, snap: state.snap === "1/2" ? "" : state.snap });
-  Object.assign(all, { closed: state.closed.join(","), detail: state.detail === "full" ? "" : state.detail, x0: state.x0, xh0: state.xh0 });
+  Object.assign(all, { closed: state.closed.join(","), detail: state.detail === "full" ? "" : state.detail, x0: state.x0, xh0: state.xh0, step: state.step });
   const plain = (t) => encodeURIComponent(t).replace(/%(2C|3B|3A|2F|5B|5D|5E)/g, decodeURIComponent);
   return Object.entries(all).filter(([, entry]) => entry !== "" && entry !== undefined).map(([key, entry]) => `${key}=${plain(String(entry))}`).join("&");
 }
@@ -160,7 +160,7 @@ function ticks(low, high, count) {
 }
 
 const SUB = (n) => String(n).replace(/\d/g, (d) => "₀₁₂₃₄₅₆₇₈₉"[Number(d)]);
-const SIGNALS = { x: "x", x_hat: "x̂", e: "e", e_2: "e" };
+const SIGNALS = { x_hat: "x̂", e_2: "e" };
 const nameOf = (line) => `${SIGNALS[line.signal] ?? line.signal}${line.component ? SUB(line.component) : ""}`;
 const DEMO = "v=1&task=compensator&A=[0 1; 0 -1]&B=[0; 1]&C=[1 0]&control=-2, -2&observer=-10, -10";
 
@@ -217,6 +217,8 @@ export function mount(element, transport, options = {}) {
     el.poles = h("svg:svg", { class: "picture", viewBox: "0 0 480 360", role: "group", "aria-label": w("plane_of_poles") });
     el.texts = h("div", { class: "fields" });
     el.curves = h("svg:svg", { class: "picture", viewBox: "0 0 480 300", role: "img", "aria-label": w("responses") });
+    el.effort = h("svg:svg", { class: "picture effort", viewBox: "0 0 480 300", role: "img", "aria-label": w("effort") });
+    el.efforts = h("p", { class: "legend" });
     el.starts = h("div", { class: "fields starts" });
     el.html = h("div", { class: "html", tabindex: "0", "aria-label": w("page") }, derivation);
     el.plant = h("section", { class: "panel plant", "aria-label": w("problem") });
@@ -227,9 +229,11 @@ export function mount(element, transport, options = {}) {
     root.replaceChildren(
       h("header", { class: "bar" }, h("h1", {}, "symobs"), el.task, el.examples, el.titles, button("undo", "↶", () => walk(-1)), button("redo", "↷", () => walk(1)), button("reset", "⟲", () => shift(origin)), el.reopen, h("span", { class: "space" }), el.language, el.copy, h("details", { class: "menu" }, h("summary", {}, w("save")), h("div", {}, save))),
       el.message,
-      h("div", { class: "grid" }, el.plant, panel("region", el.map, el.point), panel("plane", el.poles, el.marks, el.texts, el.hint), panel("responses", el.curves, el.legend, el.starts), panel("cases"), panel("cards", el.verdict, el.notes, el.list), panel("page", el.html)),
+      h("div", { class: "grid" }, el.plant, panel("region", el.map, el.point), panel("plane", el.poles, el.marks, el.texts, el.hint), panel("responses", el.curves, el.legend, el.effort, el.efforts, el.starts), panel("cases"), panel("cards", el.verdict, el.notes, el.list), panel("page", el.html)),
       el.live,
     );
+    el.drive = h("select", { "aria-label": w("drive"), onchange: () => { s.step = el.drive.value; commit(true); ask(); } }, [["", "drive_state"], ["1", "drive_step"]].map(([value, word]) => h("option", { value }, w(word))));
+    el.responsesBar.append(el.drive);
     el.planeBar.append(h("label", {}, `${w("grid")} `, el.snap));
     el.detail = h("select", { "aria-label": w("detail"), onchange: () => { s.detail = el.detail.value; commit(true); rest(0); } }, DETAILS.map((d) => h("option", { value: d }, w(`detail_${d}`))));
     el.pageBar.append(el.detail);
@@ -266,11 +270,12 @@ export function mount(element, transport, options = {}) {
   };
   const isRegion = () => s.task === "stability_region";
   const signature = () => JSON.stringify([s.task, s.plant, s.symbols, s.convention, s.language, isRegion() ? [s.spec, free()] : Object.keys(s.spec)]);
+  const isStep = () => Boolean(s.step && view?.step);
   const axes = () => (isRegion() ? view?.region?.parameters ?? Object.keys(s.at) : []);
   const free = () => Object.fromEntries(Object.entries(s.at).filter(([name]) => !axes().includes(name)));
 
   // Whatever is shown carries the question that it answers: it is pale while the fields and handles say another.
-  const questions = { answer: () => [problem(), free(), s.x0, s.xh0], region: () => [problem(), free()], point: () => [problem(), s.at], page: () => [problem(), free(), s.detail] };
+  const questions = { answer: () => [problem(), free(), s.x0, s.xh0, isStep()], region: () => [problem(), free()], point: () => [problem(), s.at], page: () => [problem(), free(), s.detail] };
   const answered = {};
   const question = (kind) => JSON.stringify(questions[kind]());
   const isOld = (kind) => refused || answered[kind] !== question(kind);
@@ -315,7 +320,7 @@ export function mount(element, transport, options = {}) {
           drawPoint(got, asked);
           if (waiting || moving || got.status !== "done") continue;
         }
-        const at = free(), courses = open("responses") ? { start: s.x0, estimate: s.xh0, end: null, count: 129 } : undefined;
+        const at = free(), courses = open("responses") ? { start: s.x0, estimate: s.xh0, step: isStep(), end: null, count: 129 } : undefined;
         const more = { at, cards_at: Object.keys(at).length > 0, cases: !moving && open("cases") };
         if (courses) more.courses = courses;
         const asked = question("answer"), got = await transport(asking("answer", more));
@@ -533,7 +538,7 @@ export function mount(element, transport, options = {}) {
     fill();
     const all = h("details", { class: "astext", open: el.plant.querySelector(".astext")?.open }, h("summary", {}, w("as_text")), h("div", { class: "fields" }, ["A", "B", "C", "D", "transfer_function", "dt"].map((name) => field(`text.${name}`, labelOf(name), s.plant[name], (t) => { if (t) s.plant[name] = t; else delete s.plant[name]; problemChanged(); })), field("text.symbols", labelOf("symbols"), Object.entries(s.symbols).map(([n, g]) => `${n}: ${g}`).join(", "), (t) => { s.symbols = Object.fromEntries(t.split(",").map((e) => e.split(":").map((p) => p.trim())).filter(([n]) => n).map(([n, g]) => [n, g || "real"])); problemChanged(); })), el.untold);
     const tables = Object.fromEntries(listed.map((name) => [name, cells(s.plant[name])]));
-    const sizes = Object.entries({ states: tables.A?.length, inputs: tables.B?.[0]?.length, outputs: tables.C?.length }).filter(([, count]) => count).map(([kind, count]) => h("span", { class: "size" }, `${count} ${w(`count_${kind}`)} `, [[-1, "−"], [1, "+"]].map(([by, sign]) => h("button", { class: "quiet", "aria-label": w(by < 0 ? "fewer" : "more", { kind: w(`count_${kind}`) }), "data-where": `${kind}${by}`, "aria-disabled": String(count + by < 1), onclick: () => { if (count + by > 0 && !turning) resize(tables, kind, by); } }, sign))));
+    const sizes = Object.entries({ states: tables.A?.length, inputs: tables.B?.[0]?.length, outputs: tables.C?.length }).filter(([, count]) => count).map(([kind, count]) => h("span", { class: "size" }, `${w(`count_${kind}`)} ${count} `, [[-1, "−"], [1, "+"]].map(([by, sign]) => h("button", { class: "quiet", "aria-label": w(by < 0 ? "fewer" : "more", { kind: w(`count_${kind}`) }), "data-where": `${kind}${by}`, "aria-disabled": String(count + by < 1), onclick: () => { if (count + by > 0 && !turning) resize(tables, kind, by); } }, sign))));
     if (s.plant.transfer_function !== undefined) rows.push(field("plant.transfer_function", "P(s)", s.plant.transfer_function, (t) => { s.plant.transfer_function = t; problemChanged(); }));
     const others = Object.keys(s.spec).filter((key) => !setKeys.includes(key) && key !== "observer").map(told);
     const kind = s.task === "compensator" ? h("label", { class: "field" }, h("span", {}, w("kind")), h("select", { onchange: (e) => { s.spec.observer = e.target.value; fitObserver(); problemChanged(); } }, ["full", "minimal"].map((k) => h("option", { value: k, selected: (s.spec.observer ?? "full") === k }, w(`kind_${k}`))))) : null;
@@ -543,6 +548,8 @@ export function mount(element, transport, options = {}) {
     if ([...el.task.options].some((o) => o.value === s.task)) el.task.value = s.task;
     el.snap.value = s.snap;
     el.detail.value = s.detail;
+    el.drive.hidden = !view?.step;
+    el.drive.value = isStep() ? "1" : "";
     buildSets();
     showPanels();
     if (!isFresh || !answer) return;
@@ -953,7 +960,11 @@ export function mount(element, transport, options = {}) {
     if (el.notes.textContent !== (got.note ?? "")) el.notes.textContent = got.note ?? "";
     drawCards(got);
     if (!el.cases.hidden) drawCases(got);
-    if (!el.responses.hidden) drawCurves(got.courses);
+    if (!el.responses.hidden) {
+      drawCurves(el.curves, el.legend, got.courses, got.courses);
+      drawCurves(el.effort, el.efforts, got.courses?.effort, got.courses);
+      el.starts.hidden = isStep();
+    }
     drawPlane(isLetGo);  // the poles of F are known now
     isLetGo = false;
   }
@@ -988,27 +999,28 @@ export function mount(element, transport, options = {}) {
     el.casesBody.querySelectorAll("[data-case]").forEach((b) => b.classList.toggle("chosen", b.dataset.case === JSON.stringify(free())));
   }
 
-  function drawCurves(got) {
-    if (el.curves.classList.toggle("absent", !got)) { el.legend.replaceChildren(); return; }
+  /** Draw responses over time, of which `all` says up to when. */
+  function drawCurves(svg, legend, got, all) {
+    if (svg.classList.toggle("absent", !got)) { legend.replaceChildren(); return; }
     const [[t0, t1], [low, high]] = got.window.map((w) => w.map(numberOf));
     const px = (t) => 40 + ((t - t0) / (t1 - t0)) * 424, py = (v) => 268 - ((v - low) / (high - low || 1)) * 252;
     const made = [h("svg:rect", { class: "ground", x: 40, y: 16, width: 424, height: 252 })];
     for (const t of ticks(t0, t1, 7)) made.push(h("svg:line", { class: "rule", x1: px(t), y1: 16, x2: px(t), y2: 268 }), h("svg:text", { x: px(t), y: 284, "text-anchor": "middle" }, pretty(String(t))));
     for (const v of ticks(low, high, 6)) made.push(h("svg:line", { class: v ? "rule" : "axis", x1: 40, y1: py(v), x2: 464, y2: py(v) }), h("svg:text", { x: 34, y: py(v) + 4, "text-anchor": "end" }, pretty(String(v))));
-    made.push(h("svg:text", { x: 464, y: 284, dy: "1.15em", "text-anchor": "end" }, got.discrete ? "k" : "t"));
+    made.push(h("svg:text", { x: 464, y: 284, dy: "1.15em", "text-anchor": "end" }, all.discrete ? "k" : "t"));
     const told = [], named = [];
     for (const line of got.lines) {
       const n = line.heights.length - 1, place = (v, k) => `${px(t0 + ((t1 - t0) * k) / n).toFixed(1)} ${py(v / got.parts).toFixed(1)}`;
       const kind = `curve c${((line.component || 1) - 1) % 4}${line.dashed ? " dashed" : ""}`;
       made.push(h("svg:path", { class: kind, d: `M${line.heights.map(place).join("L")}` }));
-      if (got.discrete) line.heights.forEach((v, k) => { const [x, y] = place(v, k).split(" "); made.push(h("svg:circle", { class: kind, cx: x, cy: y, r: 2.6 })); });
-      const settles = line.settles ? w("settles", { time: pretty(line.settles) }) : "";
+      if (all.discrete) line.heights.forEach((v, k) => { const [x, y] = place(v, k).split(" "); made.push(h("svg:circle", { class: kind, cx: x, cy: y, r: 2.6 })); });
+      const settles = [line.overshoot ? w("overshoots", { percent: pretty(line.overshoot) }) : "", line.settles ? w("settles", { time: pretty(line.settles) }) : "", line.signal === "u" && line.peak ? w("peak", { peak: pretty(line.peak) }) : ""].filter(Boolean).join(", ");
       if (line.peak) told.push(`${w("peaks", { signal: nameOf(line), peak: pretty(line.peak), last: pretty(line.last) })}${settles && `, ${settles}`}`);
       named.push(h("span", {}, h("svg:svg", { viewBox: "0 0 24 8", "aria-hidden": "true" }, h("svg:path", { class: kind, d: "M1 4h22" })), nameOf(line), h("small", {}, settles)));
     }
-    el.curves.setAttribute("aria-label", w("up_to", { end: got.end, told: told.join("; ") }));
-    el.curves.replaceChildren(...made);
-    el.legend.replaceChildren(...named);
+    svg.setAttribute("aria-label", w("up_to", { end: all.end, told: told.join("; ") }));
+    svg.replaceChildren(...made);
+    legend.replaceChildren(...named);
   }
 
   // -- begin ------------------------------------------------------------------------------------------------------------

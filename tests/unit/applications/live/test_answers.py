@@ -170,6 +170,41 @@ def test_roots_in_the_data_have_responses(task: str, dt: dict[str, str]) -> None
     assert marks == pytest.approx([-(1 + (1 + 4 * 2**0.5) ** 0.5) / 4, ((1 + 4 * 2**0.5) ** 0.5 - 1) / 4], abs=1e-6)
 
 
+#: y and u after a step, as numerators over one denominator, by hand for the plant 1/(s(s + 1)): G_r and G_r s(s + 1) of the
+#: compensator; 4 and 4 s(s + 1) over (s + 2)²; 12 and 12 s(s + 1) over (s + 2)²(s + 3) of the integral action.
+_STEPS = {
+    "compensator": ([319, 400], [2, 2, 10, 10], {"control_poles": "-2, -2", "observer_poles": "-10, -10"}),
+    "feedforward": ([4], [2, 2], {"control_poles": "-2, -2", "observer_poles": "-10"} | {"observer": "minimal"}),
+    "integral_action": ([12], [2, 2, 3], {"poles": "-2, -2, -3"}),
+}
+
+
+@pytest.mark.parametrize("task", _STEPS)
+def test_output_and_input_after_a_step_of_the_reference(task: str) -> None:
+    numerator, poles, specification = _STEPS[task]
+    found = asked(
+        {**SERVO, "task": task, "specification": specification}, courses={"step": True, "end": "4", "count": 33}
+    )
+    denominator = [mpmath.mpf(1)]
+    for pole in poles:
+        denominator = [a + pole * b for a, b in zip([*denominator, 0], [0, *denominator], strict=True)]
+    for own, factor in (("y", [1]), ("u", [1, 1, 0])):
+        (line,) = (found["courses"] if own == "y" else found["courses"]["effort"])["lines"]
+        parts = (found["courses"] if own == "y" else found["courses"]["effort"])["parts"]
+        top = np.polymul(numerator, factor)
+        last = len(line["heights"]) - 1
+        assert line["signal"] == own
+        for k in range(1, last + 1):
+            time = mpmath.mpf(4 * k) / last
+            value = mpmath.invertlaplace(
+                lambda s, top=top: mpmath.polyval(list(map(int, top)), s) / mpmath.polyval(denominator, s) / s, time
+            )
+            assert abs(line["heights"][k] - parts * value) <= 2, (own, k)
+    (line,) = found["courses"]["lines"]
+    assert ("overshoot" in line) == (task == "compensator")
+    assert asked({**SERVO, "task": task, "specification": specification}, courses={})["courses"]["effort"]["lines"]
+
+
 def _decimal(entry: str) -> Any:
     return eval(entry, {"sqrt": mpmath.sqrt}) + mpmath.mpf(0)  # noqa: S307 - our own answer
 
