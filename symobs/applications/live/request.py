@@ -41,11 +41,14 @@ FORMATS = ("mathml",)
 
 
 _KEYS = {
-    "schema", "id", "want", "problem", "task", "at", "cards", "cards_at", "courses", "cases", "format", "detail", "as",
+    "schema", "id", "want", "problem", "task", "at", "cards", "cards_at", "courses", "cases", "format", "detail", "as", "goal",
 }  # fmt: skip
 
 
 _COURSES = {"start", "estimate", "end", "count", "step"}
+
+
+_GOALS = {"settling", "overshoot", "gain"}
 
 
 _NAME = re.compile(r"\d+\.?\d*(?:[eE][+-]?\d+)?|[A-Za-z_]\w*")
@@ -99,6 +102,7 @@ class Request:
     cards_at: bool
     cases: bool
     responses: Responses | None
+    goal: Mapping[str, str]
     detail: str
     export: str
 
@@ -188,10 +192,13 @@ def read(body: object) -> Request:
     names = _names(body.get("cards"), note)
     at = _at(body.get("at", {}), note)
     responses = _responses(body.get("courses"), note)
-    cards_at, cases = truth("cards_at"), truth("cases")
+    cards_at, cases, goal = truth("cards_at"), truth("cases"), body.get("goal", {})
+    if not isinstance(goal, Mapping) or not _GOALS.issuperset(goal) or not all(map(_is_short, goal.values())):
+        note("another object is expected", "goal", f"its keys are {', '.join(sorted(_GOALS))}, its values texts")
+        goal = {}
     if errors:
         raise ProblemErrors(tuple(errors))
-    return Request(identity, want, data, task, at, names, cards_at, cases, responses, detail, export)
+    return Request(identity, want, data, task, at, names, cards_at, cases, responses, goal, detail, export)
 
 
 def _refuse(value: object, where: str, depth: int, note: Any) -> None:
@@ -206,6 +213,10 @@ def _refuse(value: object, where: str, depth: int, note: Any) -> None:
     elif isinstance(value, (list, tuple)):
         for place, entry in enumerate(value):
             _refuse(entry, f"{where}[{place}]", depth + 1, note)
+
+
+def _is_short(text: object) -> bool:
+    return isinstance(text, str) and 0 < len(text) <= LONGEST_VALUE
 
 
 def _only_task(data: Mapping[str, Any]) -> str | None:

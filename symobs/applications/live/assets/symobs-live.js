@@ -7,7 +7,8 @@ const SVG = "http://www.w3.org/2000/svg";
 const SNAPS = { "1/20": 1, "1/10": 2, "1/4": 5, "1/2": 10, 1: 20 };
 const SHORT = { control: "control_poles", observer: "observer_poles", order: "observer" };
 const PLANT = ["A", "B", "C", "D", "transfer_function", "dt"];
-const OWN = ["v", "task", "symbols", "convention", "language", "at", "snap", "closed", "detail", "x0", "xh0", "step"];
+const OWN = ["v", "task", "symbols", "convention", "language", "at", "snap", "closed", "detail", "x0", "xh0", "step", "goal"];
+const GOALS = ["settling", "overshoot", "gain"];
 const DETAILS = ["full", "outline", "answer"];
 const PANELS = ["plane", "responses", "cards", "cases", "region", "page"];
 
@@ -118,7 +119,7 @@ function decoded(link) {
   const given = Object.fromEntries(new URLSearchParams(link.replace(/^#/, "").replace(/\+/g, "%2B")));
   const state = { task: given.task ?? "", plant: {}, spec: {}, symbols: {}, at: {}, convention: given.convention ?? "", language: given.language ?? "" };
   const listed = (source) => Object.fromEntries((source ?? "").split(",").filter(Boolean).map((e) => e.split(/:(.*)/s).slice(0, 2)));
-  Object.assign(state, { symbols: listed(given.symbols), at: listed(given.at) });
+  Object.assign(state, { symbols: listed(given.symbols), at: listed(given.at), goal: listed(given.goal) });
   Object.assign(state, { snap: given.snap in SNAPS ? given.snap : "1/2", closed: (given.closed ?? "").split(",").filter(Boolean) });
   Object.assign(state, { detail: DETAILS.includes(given.detail) ? given.detail : "full", x0: given.x0 ?? "", xh0: given.xh0 ?? "", step: given.step ?? "" });
   for (const [key, entry] of Object.entries(given)) {
@@ -134,7 +135,7 @@ function encoded(state) {
   const spec = Object.fromEntries(Object.entries(state.spec).map(([key, entry]) => [long[key] ?? key, entry]));
   const all = { v: 1, task: state.task, ...state.plant, ...spec, symbols: paired(state.symbols), at: paired(state.at) };
   Object.assign(all, { convention: state.convention, language: state.language, snap: state.snap === "1/2" ? "" : state.snap });
-  Object.assign(all, { closed: state.closed.join(","), detail: state.detail === "full" ? "" : state.detail, x0: state.x0, xh0: state.xh0, step: state.step });
+  Object.assign(all, { closed: state.closed.join(","), detail: state.detail === "full" ? "" : state.detail, x0: state.x0, xh0: state.xh0, step: state.step, goal: paired(state.goal) });
   const plain = (t) => encodeURIComponent(t).replace(/%(2C|3B|3A|2F|5B|5D|5E)/g, decodeURIComponent);
   return Object.entries(all).filter(([, entry]) => entry !== "" && entry !== undefined).map(([key, entry]) => `${key}=${plain(String(entry))}`).join("&");
 }
@@ -219,6 +220,8 @@ export function mount(element, transport, options = {}) {
     el.curves = h("svg:svg", { class: "picture", viewBox: "0 0 480 300", role: "img", "aria-label": w("responses") });
     el.effort = h("svg:svg", { class: "picture effort", viewBox: "0 0 480 300", role: "img", "aria-label": w("effort") });
     el.efforts = h("p", { class: "legend" });
+    el.goals = h("div", { class: "fields" });
+    el.required = h("details", { class: "goals", open: Object.keys(s.goal).length > 0 }, h("summary", {}, w("goals")), el.goals);
     el.starts = h("div", { class: "fields starts" });
     el.html = h("div", { class: "html", tabindex: "0", "aria-label": w("page") }, derivation);
     el.plant = h("section", { class: "panel plant", "aria-label": w("problem") });
@@ -229,7 +232,7 @@ export function mount(element, transport, options = {}) {
     root.replaceChildren(
       h("header", { class: "bar" }, h("h1", {}, "symobs"), el.task, el.examples, el.titles, button("undo", "↶", () => walk(-1)), button("redo", "↷", () => walk(1)), button("reset", "⟲", () => shift(origin)), el.reopen, h("span", { class: "space" }), el.language, el.copy, h("details", { class: "menu" }, h("summary", {}, w("save")), h("div", {}, save))),
       el.message,
-      h("div", { class: "grid" }, el.plant, panel("region", el.map, el.point), panel("plane", el.poles, el.marks, el.texts, el.hint), panel("responses", el.curves, el.legend, el.effort, el.efforts, el.starts), panel("cases"), panel("cards", el.verdict, el.notes, el.list), panel("page", el.html)),
+      h("div", { class: "grid" }, el.plant, panel("region", el.map, el.point), panel("plane", el.poles, el.marks, el.texts, el.required, el.hint), panel("responses", el.curves, el.legend, el.effort, el.efforts, el.starts), panel("cases"), panel("cards", el.verdict, el.notes, el.list), panel("page", el.html)),
       el.live,
     );
     el.drive = h("select", { "aria-label": w("drive"), onchange: () => { s.step = el.drive.value; commit(true); ask(); } }, [["", "drive_state"], ["1", "drive_step"]].map(([value, word]) => h("option", { value }, w(word))));
@@ -275,7 +278,7 @@ export function mount(element, transport, options = {}) {
   const free = () => Object.fromEntries(Object.entries(s.at).filter(([name]) => !axes().includes(name)));
 
   // Whatever is shown carries the question that it answers: it is pale while the fields and handles say another.
-  const questions = { answer: () => [problem(), free(), s.x0, s.xh0, isStep()], region: () => [problem(), free()], point: () => [problem(), s.at], page: () => [problem(), free(), s.detail] };
+  const questions = { answer: () => [problem(), free(), s.x0, s.xh0, isStep(), s.goal], region: () => [problem(), free()], point: () => [problem(), s.at], page: () => [problem(), free(), s.detail] };
   const answered = {};
   const question = (kind) => JSON.stringify(questions[kind]());
   const isOld = (kind) => refused || answered[kind] !== question(kind);
@@ -321,7 +324,7 @@ export function mount(element, transport, options = {}) {
           if (waiting || moving || got.status !== "done") continue;
         }
         const at = free(), courses = open("responses") ? { start: s.x0, estimate: s.xh0, step: isStep(), end: null, count: 129 } : undefined;
-        const more = { at, cards_at: Object.keys(at).length > 0, cases: !moving && open("cases") };
+        const more = { at, goal: s.goal, cards_at: Object.keys(at).length > 0, cases: !moving && open("cases") };
         if (courses) more.courses = courses;
         const asked = question("answer"), got = await transport(asking("answer", more));
         if (got.id >= drawn || !got.id) drawAnswer(got, asked);
@@ -624,7 +627,16 @@ export function mount(element, transport, options = {}) {
     el.texts.replaceChildren(...(view?.sets ?? []).map((group) => labelled(w(`${group.label}s`), poleField(group), group.mark, `specification.${group.key}`)));
     el.starts.replaceChildren(field("courses.start", "x(0)", s.x0 || "", (t) => { s.x0 = t; commit(true); ask(); }), ...(s.task === "state_feedback" ? [] : [field("courses.estimate", "x̂(0)", s.xh0 || "", (t) => { s.xh0 = t; commit(true); ask(); })]));
     for (const [input, fallback] of [[el.starts.querySelectorAll("input")[0], "1, 1, …"], [el.starts.querySelectorAll("input")[1], "0, 0, …"]]) input?.setAttribute("placeholder", fallback);
+    el.goals.replaceChildren(...GOALS.filter((name) => name === "gain" || !view?.discrete).map((name) => field(`goal.${name}`, w(`goal_${name}`), s.goal[name], (t) => { if (t) s.goal[name] = t; else delete s.goal[name]; commit(true); ask(); })));
     drawPlane(true);
+  }
+
+  /** Say beside each goal whether it is met. */
+  function drawGoals() {
+    for (const name of GOALS) {
+      const box = el.goals.querySelector(`[data-where="goal.${name}"]`)?.closest(".field"), goal = answer.goal?.[name];
+      box?.querySelector("span").replaceChildren(w(`goal_${name}`), goal ? h("b", { class: "met", "data-met": String(goal.met) }, `${goal.value ? `: ${pretty(goal.value)} ` : " "}${{ true: "✓", false: "✗" }[goal.met] ?? "○"}`, h("span", { class: "hidden" }, w({ true: "met", false: "missed" }[goal.met] ?? "open"))) : "");
+    }
   }
 
   function poleField(group) {
@@ -661,6 +673,13 @@ export function mount(element, transport, options = {}) {
     const grounded = JSON.stringify([frame, view.discrete, root.lang]), parts = [];
     if (el.poles.firstChild?.dataset.of !== grounded) el.poles.replaceChildren(h("svg:g", { "data-of": grounded }, ground()));
     else while (el.poles.childElementCount > 1) el.poles.lastChild.remove();
+    const line = (x1, y1, x2, y2) => parts.push(h("svg:line", { class: "goal", x1, y1, x2, y2 })), { settling, overshoot } = answer?.goal ?? {};
+    const cut = settling ? X(Number(settling.re)) : 0;
+    if (cut > 40 && cut < 464) line(cut, 16, cut, 336);
+    if (overshoot?.slope) for (const side of [-1, 1]) {
+      const slope = side * Number(overshoot.slope), far = Math.min(X(0) - 40, (side < 0 ? 336 - Y(0) : Y(0) - 16) / Math.abs(slope));
+      if (far > 0) line(X(0), Y(0), X(0) - far, Y(0) - slope * far);
+    }
     for (const m of answer?.marks ?? []) {
       const [x, y] = [X(Number(m.re)), Y(Number(m.im))];
       if (x > 38 && x < 466 && y > 14 && y < 338) parts.push(h("svg:path", { class: `mark ${m.kind}`, d: MARKS[m.kind](x, y) }, h("svg:title", {}, w(`pole_of_${m.kind}`))));
@@ -959,6 +978,7 @@ export function mount(element, transport, options = {}) {
     el.verdict.dataset.verdict = got.unstable.length ? "unstable" : got.verdict;
     if (el.notes.textContent !== (got.note ?? "")) el.notes.textContent = got.note ?? "";
     drawCards(got);
+    drawGoals();
     if (!el.cases.hidden) drawCases(got);
     if (!el.responses.hidden) {
       drawCurves(el.curves, el.legend, got.courses, got.courses);

@@ -256,6 +256,20 @@ def test_a_value_that_cannot_be_is_refused(at: dict[str, object], where: str, me
     assert message in found["errors"][0]["message"]
 
 
+def test_goals_are_held_against_poles_and_gains() -> None:
+    poles = {"control_poles": "-2, -2", "observer_poles": "-5+5i, -5-5i"}
+    # The modes settle in ln 50 / 2 = 1.956, the pair overshoots by 100 e^(-π) = 4.32 %, L = (9, 41).
+    met = {"settling": "1.96", "overshoot": "4.33", "gain": "41"}
+    missed = {"settling": "1.95", "overshoot": "4.32", "gain": "40.99"}
+    for goal, expected in ((met, True), (missed, False)):
+        found = asked({**SERVO, "specification": poles}, goal=goal)["goal"]
+        assert {name: each["met"] for name, each in found.items()} == dict.fromkeys(goal, expected)
+    assert float(found["settling"]["re"]) == pytest.approx(-np.log(50) / 1.95, rel=1e-5)
+    assert float(found["overshoot"]["slope"]) == pytest.approx(-np.pi / np.log(0.0432), rel=1e-5)
+    for wrong, where in (({"gain": "0"}, "goal.gain"), ({"gain": 1}, "goal"), ({"speed": "1"}, "goal")):
+        assert asked(SERVO, goal=wrong)["errors"][0]["where"] == where
+
+
 def test_a_value_keeps_the_declared_sign() -> None:
     problem = {**DETECTABLE, "symbols": {"c": "positive"}}
     found = asked(problem, at={"c": "-1"}, cards_at=True)
