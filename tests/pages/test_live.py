@@ -274,6 +274,28 @@ def test_a_link_sets_a_task_which_the_page_checks(opened: Callable[..., Opened])
     assert "goal=settling:1,gain:80" in unquote(live.page.url)
 
 
+def test_designs_are_pinned_side_by_side(opened: Callable[..., Opened]) -> None:
+    live = opened("v=1&task=state_feedback&A=[0 1; 0 -1]&B=[0; 1]&C=[1 0]&poles=-1, -1")
+    field = live.page.locator('[data-set="poles"]')
+    for poles in ("-2, -2", "-3, -3", "-4, -4", "-5, -5"):
+        field.fill(poles)
+        field.press("Tab")
+        live.at_rest()
+        live.page.get_by_role("button", name="Pin").click()
+    rows = live.page.locator(".pins tbody tr")
+    assert rows.count() == 3
+    # K = (p², 2 p − 1); from x(0) = (1, 1) the largest |u| is |−p² − 2 p + 1|, at first
+    for row, p in enumerate((3, 4, 5)):
+        cells = rows.nth(row).locator("td").all_inner_texts()
+        assert re.findall(r"-?\d+", cells[1]) == [str(p * p), str(2 * p - 1)]
+        assert float(cells[2].replace("−", "-")) == pytest.approx(-(p * p) - 2 * p + 1, rel=5e-3)
+    rows.nth(0).get_by_role("button", name="−3, −3", exact=True).click()
+    live.at_rest()
+    assert live.poles("poles") == "-3, -3"
+    rows.nth(1).get_by_role("button", name="Take away −4, −4").click()
+    assert rows.count() == 2
+
+
 def test_changes_are_undone_done_again_and_begun_anew(opened: Callable[..., Opened]) -> None:
     live = opened(SERVO)
     field = live.page.locator('[data-set="control_poles"]')

@@ -235,6 +235,7 @@ def view_object(result: Result, specification: Any) -> dict[str, Any]:
         "panels": [*result.panels, "cards", "page"],
         "sets": sets,
         "cards": list(result.cards or result.letters),
+        "gains": list(result.gains),
         "step": has_step(result),
     }
 

@@ -8,7 +8,7 @@ const SNAPS = { "1/20": 1, "1/10": 2, "1/4": 5, "1/2": 10, 1: 20 };
 const SHORT = { control: "control_poles", observer: "observer_poles", order: "observer" };
 const PLANT = ["A", "B", "C", "D", "transfer_function", "dt"];
 const OWN = ["v", "task", "symbols", "convention", "language", "at", "snap", "closed", "detail", "x0", "xh0", "step", "goal"];
-const GOALS = ["settling", "overshoot", "gain"];
+const GOALS = ["settling", "overshoot", "gain"], MOST_PINNED = 3;
 const DETAILS = ["full", "outline", "answer"];
 const PANELS = ["plane", "responses", "cards", "cases", "region", "page"];
 
@@ -178,7 +178,7 @@ export function mount(element, transport, options = {}) {
   let s = begun(options.state ?? "");
   let view = null, viewed = "", answer = null, sets = {}, held = null, frame = null, start = null;
   let waiting = null, running = false, number = 0, drawn = 0, restTimer = 0, busyTimer = 0, said = 0, refused = false, gone = false, quiet = false, before = "";
-  let aborted = new AbortController(), language = null, notice = "", point = null, turns = 0, turning = 0, isLetGo = false, fill = () => {};
+  let aborted = new AbortController(), language = null, notice = "", point = null, pinned = [], turns = 0, turning = 0, isLetGo = false, fill = () => {};
   let origin = encoded(s), steps = [origin], reached = 0;
   const el = {};
 
@@ -214,6 +214,7 @@ export function mount(element, transport, options = {}) {
     for (const name of ["list", "map", "point"]) el[name] = h("div", { class: name });
     for (const name of ["verdict", "notes", "legend", "marks", "hint"]) el[name] = h("p", { class: name });
     el.hint.textContent = w("drag");
+    el.pins = h("div", { class: "pins" });
     el.live = h("div", { class: "hidden", "aria-live": "polite", role: "status" });
     el.poles = h("svg:svg", { class: "picture", viewBox: "0 0 480 360", role: "group", "aria-label": w("plane_of_poles") });
     el.texts = h("div", { class: "fields" });
@@ -232,11 +233,14 @@ export function mount(element, transport, options = {}) {
     root.replaceChildren(
       h("header", { class: "bar" }, h("h1", {}, "symobs"), el.task, el.examples, el.titles, button("undo", "↶", () => walk(-1)), button("redo", "↷", () => walk(1)), button("reset", "⟲", () => shift(origin)), el.reopen, h("span", { class: "space" }), el.language, el.copy, h("details", { class: "menu" }, h("summary", {}, w("save")), h("div", {}, save))),
       el.message,
-      h("div", { class: "grid" }, el.plant, panel("region", el.map, el.point), panel("plane", el.poles, el.marks, el.texts, el.required, el.hint), panel("responses", el.curves, el.legend, el.effort, el.efforts, el.starts), panel("cases"), panel("cards", el.verdict, el.notes, el.list), panel("page", el.html)),
+      h("div", { class: "grid" }, el.plant, panel("region", el.map, el.point), panel("plane", el.poles, el.marks, el.texts, el.required, el.hint), panel("responses", el.curves, el.legend, el.effort, el.efforts, el.starts), panel("cases"), panel("cards", el.verdict, el.notes, el.list, el.pins), panel("page", el.html)),
       el.live,
     );
     el.drive = h("select", { "aria-label": w("drive"), onchange: () => { s.step = el.drive.value; commit(true); ask(); } }, [["", "drive_state"], ["1", "drive_step"]].map(([value, word]) => h("option", { value }, w(word))));
     el.responsesBar.append(el.drive);
+    el.pin = h("button", { class: "quiet", onclick: pin }, w("pin"));
+    el.cardsBar.append(el.pin);
+    drawPins();
     el.planeBar.append(h("label", {}, `${w("grid")} `, el.snap));
     el.detail = h("select", { "aria-label": w("detail"), onchange: () => { s.detail = el.detail.value; commit(true); rest(0); } }, DETAILS.map((d) => h("option", { value: d }, w(`detail_${d}`))));
     el.pageBar.append(el.detail);
@@ -551,6 +555,7 @@ export function mount(element, transport, options = {}) {
     if ([...el.task.options].some((o) => o.value === s.task)) el.task.value = s.task;
     el.snap.value = s.snap;
     el.detail.value = s.detail;
+    el.pin.hidden = !view?.gains.length;
     el.drive.hidden = !view?.step;
     el.drive.value = isStep() ? "1" : "";
     buildSets();
@@ -1004,6 +1009,22 @@ export function mount(element, transport, options = {}) {
     });
     const last = el.list.lastChild;
     last.innerHTML = got.conditions.length ? `<p>${w("provided")}</p>${got.conditions.map((c) => `<div class="display">${c.mathml}</div>`).join("")}` : "";
+  }
+
+  /** Keep a design beside those that follow, with the answers as they were checked. */
+  function pin() {
+    if (!answer || isOld("answer")) return;
+    const gains = answer.cards.filter((card) => view.gains.includes(card.name)).map((card) => card.mathml).join("");
+    const effort = (answer.courses?.effort?.lines ?? []).map((line) => line.peak ?? "").join("; ");
+    pinned = [...pinned.filter((each) => each.link !== encoded(s)), { link: encoded(s), task: s.task, poles: view.sets.map((group) => s.spec[group.key]).join("; "), gains, effort, says: answer.says }].slice(-MOST_PINNED);
+    drawPins();
+  }
+
+  function drawPins() {
+    const row = (kind, ...inside) => h("tr", {}, inside.map((cell) => h(kind, {}, cell)));
+    const math = (source) => { const cell = h("div", { class: "symobs" }); cell.innerHTML = source; return cell; };
+    const rows = pinned.map((each) => row("td", h("button", { onclick: () => shift(each.link) }, pretty(each.poles) || taskName(each.task)), math(each.gains), pretty(each.effort), pretty(each.says), h("button", { class: "quiet", "aria-label": w("unpin", { poles: pretty(each.poles) }), onclick: () => { pinned = pinned.filter((other) => other !== each); drawPins(); el.pin.focus(); } }, "×")));
+    el.pins.replaceChildren(...(rows.length ? [h("table", {}, h("caption", {}, w("pinned")), h("thead", {}, row("th", w("plane"), w("gains"), w("effort_peak"), w("cards"), h("span", { class: "hidden" }, w("unpin", { poles: "" })))), h("tbody", {}, rows))] : []));
   }
 
   function drawCases(got) {
