@@ -564,6 +564,23 @@ class StateSpace:
         given = self.origin, self.polynomial, self.nonlinear, self.is_from_floats, self.is_in_decimals
         return (self.matrices, self.time, signs, self.symbols.latex, given, self.equations, self.nonzero)
 
+    def _repr_latex_(self) -> str:
+        """Return the equations of state and output for a notebook."""
+        m = self.matrices
+        there = {"A": True, "B": m.has_input, "C": m.has_output, "D": m.has_feedthrough}
+        written = {
+            name: getattr(self, name)._repr_latex_().removeprefix("$\\displaystyle ").removesuffix("$")
+            for name, is_there in there.items()
+            if is_there
+        }
+
+        def terms(*pairs: tuple[str, str]) -> str:
+            return " + ".join(f"{written[name]} {signal}" for name, signal in pairs if name in written)
+
+        next_state, x, u, y = ("x(k+1)", "x(k)", "u(k)", "y(k)") if self.is_discrete else (r"\dot{x}", "x", "u", "y")
+        output = rf",\qquad {y} = {terms(('C', x), ('D', u))}" if "C" in written else ""
+        return rf"$\displaystyle {next_state} = {terms(('A', x), ('B', u))}{output}$"
+
     def __repr__(self) -> str:
         m = self.matrices
         shown = [f"A={m.A}"] + [f"{n}={getattr(m, n)}" for n in "BC" if getattr(m, n).entries]

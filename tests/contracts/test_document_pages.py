@@ -14,13 +14,13 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 PAGES = [
-    "start", "how_to", "web_pages", "live", "believe", "sheets", "checking", "exporting", "values_and_programs",
+    "index", "start", "how_to", "web_pages", "live", "believe", "sheets", "checking", "exporting", "values_and_programs",
     "tutorials/engineer", "tutorials/lecturer", "tutorials/student",
 ]  # fmt: skip
 #: They need more than their lines.
 ELSEWHERE = {"guide", "cluster", "variants", "tutorials/afternoon"}
 #: Without blocks of a shell or of Python, or with those of a developer.
-WITHOUT = {"index", "architecture", "measurements", "changelog", "contributing"}
+WITHOUT = {"architecture", "measurements", "changelog", "contributing"}
 
 
 @pytest.fixture(name="written")

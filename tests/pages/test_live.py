@@ -9,7 +9,7 @@ import subprocess
 import sys
 import threading
 from typing import TYPE_CHECKING, Any
-from urllib.parse import quote
+from urllib.parse import quote, unquote
 
 import pytest
 
@@ -254,6 +254,46 @@ def test_a_pole_is_read_off_when_it_is_pointed_at_and_put_back_by_escape(opened:
     live.page.mouse.up()
     live.at_rest()
     assert live.poles("observer_poles") == "-5+5i, -5-5i"
+
+
+def test_a_link_sets_a_task_which_the_page_checks(opened: Callable[..., Opened]) -> None:
+    live = opened(f"{SERVO}&goal=settling:1,gain:100")
+    met = live.page.locator(".met")
+    assert met.evaluate_all("all => all.map(e => e.dataset.met)") == ["false", "true"]  # ln 50 / 2 = 1.956
+    assert live.page.locator(".goal").count() == 1
+    field = live.page.locator('[data-set="control_poles"]')
+    field.fill("-4, -4")  # K = [16 7], ln 50 / 4 = 0.978
+    field.press("Tab")
+    live.at_rest()
+    assert met.all_inner_texts()[0].startswith(": 0.978 ✓")
+    assert met.evaluate_all("all => all.map(e => e.dataset.met)") == ["true", "true"]
+    live.page.fill('[data-where="goal.gain"]', "80")
+    live.page.press('[data-where="goal.gain"]', "Tab")
+    live.at_rest()
+    assert met.evaluate_all("all => all.map(e => e.dataset.met)") == ["true", "false"]  # L = (19, 81)
+    assert "goal=settling:1,gain:80" in unquote(live.page.url)
+
+
+def test_designs_are_pinned_side_by_side(opened: Callable[..., Opened]) -> None:
+    live = opened("v=1&task=state_feedback&A=[0 1; 0 -1]&B=[0; 1]&C=[1 0]&poles=-1, -1")
+    field = live.page.locator('[data-set="poles"]')
+    for poles in ("-2, -2", "-3, -3", "-4, -4", "-5, -5"):
+        field.fill(poles)
+        field.press("Tab")
+        live.at_rest()
+        live.page.get_by_role("button", name="Pin").click()
+    rows = live.page.locator(".pins tbody tr")
+    assert rows.count() == 3
+    # K = (p², 2 p − 1); from x(0) = (1, 1) the largest |u| is |−p² − 2 p + 1|, at first
+    for row, p in enumerate((3, 4, 5)):
+        cells = rows.nth(row).locator("td").all_inner_texts()
+        assert re.findall(r"-?\d+", cells[1]) == [str(p * p), str(2 * p - 1)]
+        assert float(cells[2].replace("−", "-")) == pytest.approx(-(p * p) - 2 * p + 1, rel=5e-3)
+    rows.nth(0).get_by_role("button", name="−3, −3", exact=True).click()
+    live.at_rest()
+    assert live.poles("poles") == "-3, -3"
+    rows.nth(1).get_by_role("button", name="Take away −4, −4").click()
+    assert rows.count() == 2
 
 
 def test_changes_are_undone_done_again_and_begun_anew(opened: Callable[..., Opened]) -> None:

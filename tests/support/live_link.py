@@ -16,6 +16,6 @@ def problem_of(link: str) -> tuple[dict[str, Any], dict[str, str]]:
     told = {"task": given["task"], "symbols": table["symbols"]}
     told |= {name: given[name] for name in ("convention", "language") if name in given}
     told["plant"] = {name: given[name] for name in ("A", "B", "C", "D", "transfer_function", "dt") if name in given}
-    other = {"v", "task", "snap", "closed", "detail", "x0", "xh0", *told, *told["plant"]}
+    other = {"v", "task", "snap", "closed", "detail", "x0", "xh0", "step", "goal", *told, *told["plant"]}
     told["specification"] = {long.get(name, name): text for name, text in given.items() if name not in other}
     return told, table["at"]

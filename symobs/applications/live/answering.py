@@ -5,17 +5,18 @@ from __future__ import annotations
 import sys
 import traceback
 from collections import OrderedDict
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
 from symobs.applications.live.assets import SCHEMA, language_asked
 from symobs.applications.live.beginning import begun, halves
+from symobs.applications.live.goals import goals_of
 from symobs.applications.live.page import export_object, page_object
 from symobs.applications.live.request import FieldError, Request, link_of, put_in, read
 from symobs.applications.live.sentences import sentence, stability_of
-from symobs.applications.live.time_responses import NoResponse, readout, responses_of
+from symobs.applications.live.time_responses import NoResponse, has_step, readout, responses_of
 from symobs.exact import Scalar
 from symobs.exact.algebraic.enclosure import is_number
 from symobs.exact.algebraic.root_location import complex_roots, root_boxes, value_at
@@ -215,7 +216,7 @@ def pole_sets(task: str) -> tuple[PoleSet, ...]:
         return ()
     control, observer = _SETS
     if "poles" in keywords:
-        return (replace(control if kind.gains == ("K",) else observer, key="poles"),)
+        return (replace(control if "K" in kind.gains else observer, key="poles"),)
     return tuple(found for found in _SETS if found.key in keywords)
 
 
@@ -234,6 +235,8 @@ def view_object(result: Result, specification: Any) -> dict[str, Any]:
         "panels": [*result.panels, "cards", "page"],
         "sets": sets,
         "cards": list(result.cards or result.letters),
+        "gains": list(result.gains),
+        "step": has_step(result),
     }
 
 
@@ -412,6 +415,7 @@ def _answer(asked: Request) -> dict[str, Any]:
         "says": sentence(result, stable, printer),
         "unstable": [str(pole) for pole in stable.poles] if result.gains and result.verdict != "no" else [],
         "courses": responses,
+        "goal": goals_of(there.result, ((re, im) for _, re, im in _placed(there)), asked.goal),
     }
     if asked.cases:
         given = _as_given(asked).result
@@ -514,9 +518,9 @@ def _case(case: Case, printer: CardPrinter) -> dict[str, Any]:
     return whole | ({"rank": rank} if isinstance(rank, int) else {})
 
 
-def _readouts(solved: Solved) -> list[dict[str, str]]:
-    """Return frequency, damping and settling time of every pole that was given as a number, a pair once."""
-    found, plant, designs = [], solved.result.plant, halves(solved.result)
+def _placed(solved: Solved) -> Iterator[tuple[str, Fraction, Fraction]]:
+    """Yield every pole that was given as a number, a pair once, with the name of its handle."""
+    plant, designs = solved.result.plant, halves(solved.result)
     for group in pole_sets(solved.result.task):
         for key in (group.key, *(f"{half}_{group.key}" for half in ("control", "observer"))):
             given = solved.problem.specification.get(key)
@@ -526,11 +530,14 @@ def _readouts(solved: Solved) -> list[dict[str, str]]:
             poles = asked.poles if asked else read_poles(given, plant.symbols, f"specification.{key}")
             upper = [pole for pole in poles if pole.imaginary.names or pole.imaginary.fraction() >= 0]
             for place, pole in enumerate(upper):
-                if pole.real.names or pole.imaginary.names:
-                    continue
-                read_out = readout(pole.real.fraction(), pole.imaginary.fraction(), discrete=plant.is_discrete)
-                found.append({"handle": f"{key}.{place}", **read_out})
-    return found
+                if not pole.real.names and not pole.imaginary.names:
+                    yield f"{key}.{place}", pole.real.fraction(), pole.imaginary.fraction()
+
+
+def _readouts(solved: Solved) -> list[dict[str, str]]:
+    """Return frequency, damping, overshoot and settling time of every pole that was given as a number."""
+    is_discrete = solved.result.plant.is_discrete
+    return [{"handle": handle, **readout(*pole, discrete=is_discrete)} for handle, *pole in _placed(solved)]
 
 
 def _marks(result: Result) -> list[dict[str, str]]:

@@ -41,11 +41,14 @@ FORMATS = ("mathml",)
 
 
 _KEYS = {
-    "schema", "id", "want", "problem", "task", "at", "cards", "cards_at", "courses", "cases", "format", "detail", "as",
+    "schema", "id", "want", "problem", "task", "at", "cards", "cards_at", "courses", "cases", "format", "detail", "as", "goal",
 }  # fmt: skip
 
 
-_COURSES = {"start", "estimate", "end", "count"}
+_COURSES = {"start", "estimate", "end", "count", "step"}
+
+
+_GOALS = {"settling", "overshoot", "gain"}
 
 
 _NAME = re.compile(r"\d+\.?\d*(?:[eE][+-]?\d+)?|[A-Za-z_]\w*")
@@ -77,12 +80,13 @@ class FieldError(InputError):
 
 @dataclass(frozen=True)
 class Responses:
-    """Which time responses are wanted: initial state and estimate as texts, the last instant, how many instants."""
+    """Which time responses are wanted: from an initial state and estimate, or to a step; last instant, how many instants."""
 
     start: str = ""
     estimate: str = ""
     end: str | None = None
     count: int = 129
+    step: bool = False
 
 
 @dataclass(frozen=True)
@@ -98,6 +102,7 @@ class Request:
     cards_at: bool
     cases: bool
     responses: Responses | None
+    goal: Mapping[str, str]
     detail: str
     export: str
 
@@ -187,10 +192,13 @@ def read(body: object) -> Request:
     names = _names(body.get("cards"), note)
     at = _at(body.get("at", {}), note)
     responses = _responses(body.get("courses"), note)
-    cards_at, cases = truth("cards_at"), truth("cases")
+    cards_at, cases, goal = truth("cards_at"), truth("cases"), body.get("goal", {})
+    if not isinstance(goal, Mapping) or not _GOALS.issuperset(goal) or not all(map(_is_short, goal.values())):
+        note("another object is expected", "goal", f"its keys are {', '.join(sorted(_GOALS))}, its values texts")
+        goal = {}
     if errors:
         raise ProblemErrors(tuple(errors))
-    return Request(identity, want, data, task, at, names, cards_at, cases, responses, detail, export)
+    return Request(identity, want, data, task, at, names, cards_at, cases, responses, goal, detail, export)
 
 
 def _refuse(value: object, where: str, depth: int, note: Any) -> None:
@@ -205,6 +213,10 @@ def _refuse(value: object, where: str, depth: int, note: Any) -> None:
     elif isinstance(value, (list, tuple)):
         for place, entry in enumerate(value):
             _refuse(entry, f"{where}[{place}]", depth + 1, note)
+
+
+def _is_short(text: object) -> bool:
+    return isinstance(text, str) and 0 < len(text) <= LONGEST_VALUE
 
 
 def _only_task(data: Mapping[str, Any]) -> str | None:
@@ -257,7 +269,11 @@ def _responses(value: object, note: Any) -> Responses | None:
     if not isinstance(count, int) or isinstance(count, bool) or not 2 <= count <= _MOST_INSTANTS:
         note(f"a number from 2 to {_MOST_INSTANTS} is expected", "courses.count", 'write "count": 129')
         return None
-    return Responses(texts["start"], texts["estimate"], end, count)
+    step = value.get("step", False)
+    if not isinstance(step, bool):
+        note("true or false is expected", "courses.step", 'write "step": true')
+        return None
+    return Responses(texts["start"], texts["estimate"], end, count, step)
 
 
 # -- values in the place of symbols -----------------------------------------------------------------------------------

@@ -55,30 +55,61 @@ class Signals:
     """A linear equation with its initial state, and the signals drawn: name, component, row of the state, dashed."""
 
     def __init__(
-        self, matrix: Matrix, start: Sequence[Fraction | Scalar], drawn: list[tuple[str, Matrix, bool]]
+        self,
+        loop: Matrix,
+        start: Sequence[Fraction | Scalar],
+        drawn: list[tuple[str, Matrix, bool]],
+        driven: Matrix | None = None,
+        *,
+        discrete: bool = False,
     ) -> None:
-        """Take the signals apart into rows."""
+        """Take the signals apart into rows; a reference that enters by `driven` and stays 1 is the last state."""
         from symobs.exact.time_functions.matrix_exponential import fraction_near  # noqa: PLC0415 - FLINT
 
-        self.matrix, self.start = matrix, start
+        order = loop.shape[0]
+        self.loop, self.matrix, self.start = loop, loop, start
+        if driven is not None:
+            held = Matrix.identity(1) if discrete else Matrix.zeros(1, 1)
+            self.matrix = Matrix.block([[loop, driven], [Matrix.zeros(1, order), held]])
+            self.start = [Fraction(0)] * order + [Fraction(1)]
         self.rows = [
             (name, place if table.shape[0] > 1 else 0, list(map(fraction_near, row)), dashed)
             for name, table, dashed in drawn
             for place, row in enumerate(table.rows, 1)
         ]
+        self.finals: list[int | None] = [0 if driven is None else None] * len(self.rows)
+        if driven is not None and _converges(loop, discrete=discrete):
+            rest = (Matrix.identity(order) - loop if discrete else -loop).solve(driven)
+            state = [*map(fraction_near, rest.entries), Fraction(1)]
+            self.finals = [round(sum(map(mul, row, state), Fraction(0)) * _FINE) for _, _, row, _ in self.rows]
+
+
+def _converges(loop: Matrix, *, discrete: bool) -> bool:
+    from symobs.exact.time_functions.matrix_exponential import spectral_abscissae, spectral_radius  # noqa: PLC0415 - FLINT
+
+    return spectral_radius(loop) < 1 if discrete else spectral_abscissae(loop)[0] < 0
 
 
 def responses_of(result: Result, asked: Responses) -> dict[str, Any]:
-    """Return the responses of a design; raises `NoResponse` where it has none, `InputError` for what was asked."""
+    """Return the responses of a design, those of the input apart; raises `NoResponse` or, for what was asked, `InputError`."""
     signals = _signals(result, asked)
-    end = _end(signals.matrix, asked.end, discrete=result.plant.is_discrete)
+    end = _end(signals.loop, asked.end, discrete=result.plant.is_discrete)
     if result.plant.is_discrete:
         last = int(end)
         values = _stepped(signals, 2 * last + 1)
         every, seen, behind = 1, [line[: last + 1] for line in values], [line[last:] for line in values]
     else:
         every, (seen, behind) = 2, _enclosed(signals, end, asked.count)
-    heights = [line[::every] for line in seen]
+    told = list(zip(signals.rows, seen, behind, signals.finals, strict=True))
+    head = {"end": str(end), "discrete": result.plant.is_discrete, "step": asked.step}
+    effort = [each for each in told if each[0][0] == "u"]
+    found = head | _picture([each for each in told if each[0][0] != "u"], end, every)
+    return found | ({"effort": head | _picture(effort, end, every)} if effort else {})
+
+
+def _picture(told: list[Any], end: Fraction, every: int) -> dict[str, Any]:
+    """Return lines with a window around them."""
+    heights = [line[::every] for _, line, _, _ in told]
     peak = max(abs(height) for line in heights for height in line)
     if peak > _LARGEST * _FINE:
         raise NoResponse(_TOO_LARGE)
@@ -87,13 +118,14 @@ def responses_of(result: Result, asked: Responses) -> dict[str, Any]:
     coarser = _FINE // parts
     rounded = [[(height + coarser // 2) // coarser for height in line] for line in heights]
     lines = [
-        {"signal": name, "component": place, "dashed": dashed, "heights": line, **_read_off(fine, after, end, every)}
-        for (name, place, _, dashed), line, fine, after in zip(signals.rows, rounded, seen, behind, strict=True)
+        {"signal": name, "component": place, "dashed": dashed, "heights": line}
+        | _read_off(fine, after, end, every, final)
+        for ((name, place, _, dashed), fine, after, final), line in zip(told, rounded, strict=True)
     ]
     low, high = min(map(min, rounded)), max(map(max, rounded))
     room = Fraction(max(high - low, 1), 20)
     window = [["0", str(end)], [_decimal((low - room) / parts), _decimal((high + room) / parts)]]
-    return {"end": str(end), "parts": parts, "window": window, "discrete": result.plant.is_discrete, "lines": lines}
+    return {"parts": parts, "window": window, "lines": lines}
 
 
 # -- which ------------------------------------------------------------------------------------------------------------
@@ -101,49 +133,90 @@ def responses_of(result: Result, asked: Responses) -> dict[str, Any]:
 
 def _signals(result: Result, asked: Responses) -> Signals:
     """Return what is drawn of a design."""
-    given: Any = result
-    fields, order = result.fields, result.plant.order
+    fields, order, is_discrete = result.fields, result.plant.order, result.plant.is_discrete
+    loop = fields.get({"observer": "A", "reduced_order_observer": "F"}.get(result.task, "closed_loop_matrix"))
+    if loop is None or "responses" not in result.panels:
+        raise NoResponse
+    if not all(map(is_number, loop.entries)) or result.plant.relations:
+        raise NoResponse(_NEEDS_NUMBERS)
+    if asked.step:
+        return Signals(loop, [], *_of_a_step(result, loop.shape[0]), discrete=is_discrete)
     state = _vector(asked.start, order, Fraction(1), "courses.start")
     estimate = _vector(asked.estimate, order, Fraction(0), "courses.estimate")
     error = [a - b for a, b in zip(state, estimate, strict=True)]
-    start: list[Any] = []
-    drawn: list[tuple[str, Matrix, bool]] = []
+    size = loop.shape[0]
     match result.task:
         case "observer":
-            matrix, start, drawn = fields.get("A"), error, [("e", Matrix.identity(order), False)]
-        case "state_feedback":
-            matrix, start, drawn = fields.get("closed_loop_matrix"), state, [("x", Matrix.identity(order), False)]
+            return Signals(loop, error, [("e", Matrix.identity(order), False)])
         case "reduced_order_observer":
-            matrix = fields.get("F")
-            if matrix is not None:
-                start = _below(fields["T"], error, matrix.shape[0])
-                drawn = [("e_2", Matrix.identity(matrix.shape[0]), False)]
-        case "compensator" | "feedforward":
-            matrix = fields.get("closed_loop_matrix")
-            if matrix is not None:
-                unseen, hidden = _unseen(given, order, matrix.shape[0] - order)
-                start = state + ([] if not hidden else error if unseen is None else _below(unseen, error, hidden))
-                drawn = _state_and_estimate(order, unseen, hidden)[: 2 if hidden else 1]
-        case _:
-            raise NoResponse
-    if matrix is None:
+            return Signals(loop, _below(fields["T"], error, size), [("e_2", Matrix.identity(size), False)])
+        case "state_feedback":
+            x = Matrix.identity(order)
+            return Signals(loop, state, [("x", x, False), _input(fields["K"] @ x)])
+        case "integral_action":
+            x = Matrix.identity(size).select(range(order), range(size))
+            gains = Matrix.block([[fields["K"], -fields["k_I"]]])
+            return Signals(loop, [*state, *[Fraction(0)] * (size - order)], [("x", x, False), _input(gains)])
+    unseen, hidden = _unseen(result, order, size - order)
+    start = [*state, *([] if not hidden else error if unseen is None else _below(unseen, error, hidden))]
+    x, x_hat = _state_and_estimate(order, unseen, hidden)
+    drawn = [("x", x, False)] + ([("x_hat", x_hat, True)] if hidden else [])
+    return Signals(loop, start, [*drawn, _input(fields["K"] @ x_hat)])
+
+
+def _input(gain: Matrix) -> tuple[str, Matrix, bool]:
+    """Return u = −K x̂ as a signal."""
+    return "u", -gain, False
+
+
+def has_step(result: Result) -> bool:
+    """Return whether a design has a response to a step of its reference."""
+    size = getattr(result.fields.get("closed_loop_matrix"), "shape", (0,))[0]
+    is_full = result.task == "compensator" and size == 2 * result.plant.order and result.plant.matrices.D.is_zero
+    return size > 0 and (is_full or result.task in {"feedforward", "integral_action"})
+
+
+def _of_a_step(result: Result, size: int) -> tuple[list[tuple[str, Matrix, bool]], Matrix]:
+    """Return output and input after a step of every component of the reference, and how the reference enters the loop.
+
+    It enters as F w beside −K x̂, as the integrated error r − y, or, in unity feedback, by y − r into the observer.
+    """
+    if not has_step(result):
         raise NoResponse
-    if not all(map(is_number, matrix.entries)) or result.plant.relations:
-        raise NoResponse(_NEEDS_NUMBERS)
-    return Signals(matrix, start, drawn)
+    fields, m, order = result.fields, result.plant.matrices, result.plant.order
+    K, ones = fields["K"], Matrix.column([1] * result.plant.outputs)
+    pick = Matrix.identity(size).select(range(order), range(size))
+    if result.task == "integral_action":
+        below = Matrix.identity(size).select(range(order, size), range(size))
+        driven = Matrix.block([[Matrix.zeros(order, 1)], [ones]])
+        law = Matrix.block([[fields["k_I"] @ below - K @ pick, Matrix.zeros(K.shape[0], 1)]])
+    else:
+        unseen, hidden = _unseen(result, order, size - order)
+        _, x_hat = _state_and_estimate(order, unseen, hidden)
+        gain = fields["F"] if isinstance(fields["F"], Matrix) else Matrix.of([[fields["F"]]])
+        through = gain @ ones if result.task == "feedforward" else Matrix.zeros(K.shape[0], 1)
+        law = Matrix.block([[Matrix.zeros(K.shape[0], size) - K @ x_hat, through]])
+        entering = [m.B @ through, *([Matrix.zeros(hidden, 1)] if hidden else [])]
+        if result.task == "compensator":
+            entering = [Matrix.zeros(order, 1), fields["L"] @ ones]
+        driven = Matrix.block([[part] for part in entering])
+    y = Matrix.block([[m.C @ pick, Matrix.zeros(m.C.shape[0], 1)]])
+    if m.has_feedthrough:
+        y = y + m.D @ law
+    return [("y", y, False), ("u", law, False)], driven
 
 
 def _unseen(result: Any, order: int, size: int) -> tuple[Matrix | None, int]:
     """Return T of an observer of reduced order, None for one of full order, and the size of the error."""
-    T = result.fields.get("T")
+    T = (result.loop if result.task == "feedforward" else result).fields.get("T")
     return (T if 0 < size < order else None), size
 
 
-def _state_and_estimate(order: int, T: Matrix | None, size: int) -> list[tuple[str, Matrix, bool]]:
+def _state_and_estimate(order: int, T: Matrix | None, size: int) -> tuple[Matrix, Matrix]:
     """Return x and x̂ = x − e, or x̂ = x − T⁻¹ [0; e₂]."""
     whole = Matrix.identity(order) if T is None else T.inverse().select(range(order), range(order - size, order))
     plain = Matrix.block([[Matrix.identity(order), Matrix.zeros(order, size)]])
-    return [("x", plain, False), ("x_hat", Matrix.block([[Matrix.identity(order), -whole]]), True)]
+    return plain, plain if not size else Matrix.block([[Matrix.identity(order), -whole]])
 
 
 def _below(T: Matrix, error: list[Fraction], size: int) -> list[Scalar]:
@@ -253,26 +326,44 @@ def _decimal(value: Fraction) -> str:
 # -- readouts ---------------------------------------------------------------------------------------------------------
 
 
-def _read_off(line: list[int], after: list[int], end: Fraction, every: int) -> dict[str, str]:
+def _read_off(line: list[int], after: list[int], end: Fraction, every: int, final: int | None) -> dict[str, str]:
     """Return the peak and the last value up to the end, and when the response settles, if that is before the end.
 
-    It has settled from an instant on if it stays below a fiftieth of its peak up to twice the end, between the instants too
-    if time is continuous.  Where a response by itself is drawn too coarsely to see that, nothing is read off.
+    It has settled from an instant on if its distance from the final value stays below a fiftieth of the largest one up to
+    twice the end, between the instants too if time is continuous.  Where a response by itself is drawn too coarsely to see
+    that, nothing is read off.
     """
     last, is_continuous = len(line) - 1, every > 1
+    peak = _peak(line, is_continuous=is_continuous)
+    if peak is None:
+        return {}
+    found = {"peak": _digits(peak / _FINE, 3), "last": _digits(Fraction(line[last], _FINE), 2)}
+    distance = [value - (final or 0) for value in line]
+    largest = _peak(distance, is_continuous=is_continuous)
+    if final is None or largest is None:
+        return found
+    if final and (percent := 100 * (peak / final - 1)) >= _LEAST_PERCENT:
+        found["overshoot"] = _digits(Fraction(percent), 3)
+    band = int(_SETTLED * abs(largest)) - 1
+    settled = max(
+        (k + 1 for k, most in enumerate(_most(distance, is_continuous=is_continuous)) if most > band), default=0
+    )
+    stays = all(most <= band for most in _most([value - final for value in after], is_continuous=is_continuous))
+    return found | ({"settles": _digits(settled * end / last, 3)} if stays else {})
+
+
+def _peak(line: list[int], *, is_continuous: bool) -> Fraction | None:
+    """Return the value of largest modulus, between the instants too; None where the line is too coarse."""
+    last = len(line) - 1
     place = max(range(last + 1), key=lambda k: abs(line[k]))
     peak = Fraction(line[place])
     if is_continuous:
         second = _second_differences(line)
         if max(map(abs, second)) > _COARSEST * abs(peak):
-            return {}
+            return None
         if 0 < place < last and (bend := second[place - 1]):
             peak -= Fraction((line[place + 1] - line[place - 1]) ** 2, 8 * bend)  # of the parabola through three
-    band = int(_SETTLED * abs(peak)) - 1
-    settled = max((k + 1 for k, most in enumerate(_most(line, is_continuous=is_continuous)) if most > band), default=0)
-    found = {"peak": _digits(peak / _FINE, 3), "last": _digits(Fraction(line[last], _FINE), 2)}
-    stays = all(most <= band for most in _most(after, is_continuous=is_continuous))
-    return found | ({"settles": _digits(settled * end / last, 3)} if stays else {})
+    return peak
 
 
 def _most(line: list[int], *, is_continuous: bool) -> list[int]:

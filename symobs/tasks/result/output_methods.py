@@ -156,12 +156,10 @@ class OutputMethods:
         """Return the result as JSON."""
         return str(self.to("json"))
 
-    def _repr_latex_(self) -> str:
-        return str(self.to("fragment"))
-
     def _repr_mimebundle_(self, **_: Any) -> dict[str, str]:
-        kinds = {"plain": "text", "markdown": "markdown", "latex": "fragment", "html": "html_fragment"}
-        return {f"text/{kind}": str(self.to(name)) for kind, name in kinds.items()}
+        # no LaTeX: its pictures need TikZ, which a converted notebook does not load
+        kinds = {"markdown": "markdown", "html": "html_fragment"}
+        return {"text/plain": repr(self), **{f"text/{kind}": str(self.to(name)) for kind, name in kinds.items()}}
 
     def at(self, values: Mapping[Any, Any] | None = None, /, **named: Any) -> Self:
         """Return the same result where parameters have values: `result.at(k=4, m="1/2")`, or `result.at({k: 4})`.

@@ -7,7 +7,8 @@ const SVG = "http://www.w3.org/2000/svg";
 const SNAPS = { "1/20": 1, "1/10": 2, "1/4": 5, "1/2": 10, 1: 20 };
 const SHORT = { control: "control_poles", observer: "observer_poles", order: "observer" };
 const PLANT = ["A", "B", "C", "D", "transfer_function", "dt"];
-const OWN = ["v", "task", "symbols", "convention", "language", "at", "snap", "closed", "detail", "x0", "xh0"];
+const OWN = ["v", "task", "symbols", "convention", "language", "at", "snap", "closed", "detail", "x0", "xh0", "step", "goal"];
+const GOALS = ["settling", "overshoot", "gain"], MOST_PINNED = 3;
 const DETAILS = ["full", "outline", "answer"];
 const PANELS = ["plane", "responses", "cards", "cases", "region", "page"];
 
@@ -118,9 +119,9 @@ function decoded(link) {
   const given = Object.fromEntries(new URLSearchParams(link.replace(/^#/, "").replace(/\+/g, "%2B")));
   const state = { task: given.task ?? "", plant: {}, spec: {}, symbols: {}, at: {}, convention: given.convention ?? "", language: given.language ?? "" };
   const listed = (source) => Object.fromEntries((source ?? "").split(",").filter(Boolean).map((e) => e.split(/:(.*)/s).slice(0, 2)));
-  Object.assign(state, { symbols: listed(given.symbols), at: listed(given.at) });
+  Object.assign(state, { symbols: listed(given.symbols), at: listed(given.at), goal: listed(given.goal) });
   Object.assign(state, { snap: given.snap in SNAPS ? given.snap : "1/2", closed: (given.closed ?? "").split(",").filter(Boolean) });
-  Object.assign(state, { detail: DETAILS.includes(given.detail) ? given.detail : "full", x0: given.x0 ?? "", xh0: given.xh0 ?? "" });
+  Object.assign(state, { detail: DETAILS.includes(given.detail) ? given.detail : "full", x0: given.x0 ?? "", xh0: given.xh0 ?? "", step: given.step ?? "" });
   for (const [key, entry] of Object.entries(given)) {
     if (PLANT.includes(key)) state.plant[key] = entry;
     else if (!OWN.includes(key) && key !== "token") state.spec[SHORT[key] ?? key] = entry;
@@ -134,7 +135,7 @@ function encoded(state) {
   const spec = Object.fromEntries(Object.entries(state.spec).map(([key, entry]) => [long[key] ?? key, entry]));
   const all = { v: 1, task: state.task, ...state.plant, ...spec, symbols: paired(state.symbols), at: paired(state.at) };
   Object.assign(all, { convention: state.convention, language: state.language, snap: state.snap === "1/2" ? "" : state.snap });
-  Object.assign(all, { closed: state.closed.join(","), detail: state.detail === "full" ? "" : state.detail, x0: state.x0, xh0: state.xh0 });
+  Object.assign(all, { closed: state.closed.join(","), detail: state.detail === "full" ? "" : state.detail, x0: state.x0, xh0: state.xh0, step: state.step, goal: paired(state.goal) });
   const plain = (t) => encodeURIComponent(t).replace(/%(2C|3B|3A|2F|5B|5D|5E)/g, decodeURIComponent);
   return Object.entries(all).filter(([, entry]) => entry !== "" && entry !== undefined).map(([key, entry]) => `${key}=${plain(String(entry))}`).join("&");
 }
@@ -160,7 +161,7 @@ function ticks(low, high, count) {
 }
 
 const SUB = (n) => String(n).replace(/\d/g, (d) => "₀₁₂₃₄₅₆₇₈₉"[Number(d)]);
-const SIGNALS = { x: "x", x_hat: "x̂", e: "e", e_2: "e" };
+const SIGNALS = { x_hat: "x̂", e_2: "e" };
 const nameOf = (line) => `${SIGNALS[line.signal] ?? line.signal}${line.component ? SUB(line.component) : ""}`;
 const DEMO = "v=1&task=compensator&A=[0 1; 0 -1]&B=[0; 1]&C=[1 0]&control=-2, -2&observer=-10, -10";
 
@@ -177,7 +178,7 @@ export function mount(element, transport, options = {}) {
   let s = begun(options.state ?? "");
   let view = null, viewed = "", answer = null, sets = {}, held = null, frame = null, start = null;
   let waiting = null, running = false, number = 0, drawn = 0, restTimer = 0, busyTimer = 0, said = 0, refused = false, gone = false, quiet = false, before = "";
-  let aborted = new AbortController(), language = null, notice = "", point = null, turns = 0, turning = 0, isLetGo = false, fill = () => {};
+  let aborted = new AbortController(), language = null, notice = "", point = null, pinned = [], turns = 0, turning = 0, isLetGo = false, fill = () => {};
   let origin = encoded(s), steps = [origin], reached = 0;
   const el = {};
 
@@ -213,10 +214,15 @@ export function mount(element, transport, options = {}) {
     for (const name of ["list", "map", "point"]) el[name] = h("div", { class: name });
     for (const name of ["verdict", "notes", "legend", "marks", "hint"]) el[name] = h("p", { class: name });
     el.hint.textContent = w("drag");
+    el.pins = h("div", { class: "pins" });
     el.live = h("div", { class: "hidden", "aria-live": "polite", role: "status" });
     el.poles = h("svg:svg", { class: "picture", viewBox: "0 0 480 360", role: "group", "aria-label": w("plane_of_poles") });
     el.texts = h("div", { class: "fields" });
     el.curves = h("svg:svg", { class: "picture", viewBox: "0 0 480 300", role: "img", "aria-label": w("responses") });
+    el.effort = h("svg:svg", { class: "picture effort", viewBox: "0 0 480 300", role: "img", "aria-label": w("effort") });
+    el.efforts = h("p", { class: "legend" });
+    el.goals = h("div", { class: "fields" });
+    el.required = h("details", { class: "goals", open: Object.keys(s.goal).length > 0 }, h("summary", {}, w("goals")), el.goals);
     el.starts = h("div", { class: "fields starts" });
     el.html = h("div", { class: "html", tabindex: "0", "aria-label": w("page") }, derivation);
     el.plant = h("section", { class: "panel plant", "aria-label": w("problem") });
@@ -227,9 +233,14 @@ export function mount(element, transport, options = {}) {
     root.replaceChildren(
       h("header", { class: "bar" }, h("h1", {}, "symobs"), el.task, el.examples, el.titles, button("undo", "↶", () => walk(-1)), button("redo", "↷", () => walk(1)), button("reset", "⟲", () => shift(origin)), el.reopen, h("span", { class: "space" }), el.language, el.copy, h("details", { class: "menu" }, h("summary", {}, w("save")), h("div", {}, save))),
       el.message,
-      h("div", { class: "grid" }, el.plant, panel("region", el.map, el.point), panel("plane", el.poles, el.marks, el.texts, el.hint), panel("responses", el.curves, el.legend, el.starts), panel("cases"), panel("cards", el.verdict, el.notes, el.list), panel("page", el.html)),
+      h("div", { class: "grid" }, el.plant, panel("region", el.map, el.point), panel("plane", el.poles, el.marks, el.texts, el.required, el.hint), panel("responses", el.curves, el.legend, el.effort, el.efforts, el.starts), panel("cases"), panel("cards", el.verdict, el.notes, el.list, el.pins), panel("page", el.html)),
       el.live,
     );
+    el.drive = h("select", { "aria-label": w("drive"), onchange: () => { s.step = el.drive.value; commit(true); ask(); } }, [["", "drive_state"], ["1", "drive_step"]].map(([value, word]) => h("option", { value }, w(word))));
+    el.responsesBar.append(el.drive);
+    el.pin = h("button", { class: "quiet", onclick: pin }, w("pin"));
+    el.cardsBar.append(el.pin);
+    drawPins();
     el.planeBar.append(h("label", {}, `${w("grid")} `, el.snap));
     el.detail = h("select", { "aria-label": w("detail"), onchange: () => { s.detail = el.detail.value; commit(true); rest(0); } }, DETAILS.map((d) => h("option", { value: d }, w(`detail_${d}`))));
     el.pageBar.append(el.detail);
@@ -266,11 +277,12 @@ export function mount(element, transport, options = {}) {
   };
   const isRegion = () => s.task === "stability_region";
   const signature = () => JSON.stringify([s.task, s.plant, s.symbols, s.convention, s.language, isRegion() ? [s.spec, free()] : Object.keys(s.spec)]);
+  const isStep = () => Boolean(s.step && view?.step);
   const axes = () => (isRegion() ? view?.region?.parameters ?? Object.keys(s.at) : []);
   const free = () => Object.fromEntries(Object.entries(s.at).filter(([name]) => !axes().includes(name)));
 
   // Whatever is shown carries the question that it answers: it is pale while the fields and handles say another.
-  const questions = { answer: () => [problem(), free(), s.x0, s.xh0], region: () => [problem(), free()], point: () => [problem(), s.at], page: () => [problem(), free(), s.detail] };
+  const questions = { answer: () => [problem(), free(), s.x0, s.xh0, isStep(), s.goal], region: () => [problem(), free()], point: () => [problem(), s.at], page: () => [problem(), free(), s.detail] };
   const answered = {};
   const question = (kind) => JSON.stringify(questions[kind]());
   const isOld = (kind) => refused || answered[kind] !== question(kind);
@@ -315,8 +327,8 @@ export function mount(element, transport, options = {}) {
           drawPoint(got, asked);
           if (waiting || moving || got.status !== "done") continue;
         }
-        const at = free(), courses = open("responses") ? { start: s.x0, estimate: s.xh0, end: null, count: 129 } : undefined;
-        const more = { at, cards_at: Object.keys(at).length > 0, cases: !moving && open("cases") };
+        const at = free(), courses = open("responses") ? { start: s.x0, estimate: s.xh0, step: isStep(), end: null, count: 129 } : undefined;
+        const more = { at, goal: s.goal, cards_at: Object.keys(at).length > 0, cases: !moving && open("cases") };
         if (courses) more.courses = courses;
         const asked = question("answer"), got = await transport(asking("answer", more));
         if (got.id >= drawn || !got.id) drawAnswer(got, asked);
@@ -533,7 +545,7 @@ export function mount(element, transport, options = {}) {
     fill();
     const all = h("details", { class: "astext", open: el.plant.querySelector(".astext")?.open }, h("summary", {}, w("as_text")), h("div", { class: "fields" }, ["A", "B", "C", "D", "transfer_function", "dt"].map((name) => field(`text.${name}`, labelOf(name), s.plant[name], (t) => { if (t) s.plant[name] = t; else delete s.plant[name]; problemChanged(); })), field("text.symbols", labelOf("symbols"), Object.entries(s.symbols).map(([n, g]) => `${n}: ${g}`).join(", "), (t) => { s.symbols = Object.fromEntries(t.split(",").map((e) => e.split(":").map((p) => p.trim())).filter(([n]) => n).map(([n, g]) => [n, g || "real"])); problemChanged(); })), el.untold);
     const tables = Object.fromEntries(listed.map((name) => [name, cells(s.plant[name])]));
-    const sizes = Object.entries({ states: tables.A?.length, inputs: tables.B?.[0]?.length, outputs: tables.C?.length }).filter(([, count]) => count).map(([kind, count]) => h("span", { class: "size" }, `${count} ${w(`count_${kind}`)} `, [[-1, "−"], [1, "+"]].map(([by, sign]) => h("button", { class: "quiet", "aria-label": w(by < 0 ? "fewer" : "more", { kind: w(`count_${kind}`) }), "data-where": `${kind}${by}`, "aria-disabled": String(count + by < 1), onclick: () => { if (count + by > 0 && !turning) resize(tables, kind, by); } }, sign))));
+    const sizes = Object.entries({ states: tables.A?.length, inputs: tables.B?.[0]?.length, outputs: tables.C?.length }).filter(([, count]) => count).map(([kind, count]) => h("span", { class: "size" }, `${w(`count_${kind}`)} ${count} `, [[-1, "−"], [1, "+"]].map(([by, sign]) => h("button", { class: "quiet", "aria-label": w(by < 0 ? "fewer" : "more", { kind: w(`count_${kind}`) }), "data-where": `${kind}${by}`, "aria-disabled": String(count + by < 1), onclick: () => { if (count + by > 0 && !turning) resize(tables, kind, by); } }, sign))));
     if (s.plant.transfer_function !== undefined) rows.push(field("plant.transfer_function", "P(s)", s.plant.transfer_function, (t) => { s.plant.transfer_function = t; problemChanged(); }));
     const others = Object.keys(s.spec).filter((key) => !setKeys.includes(key) && key !== "observer").map(told);
     const kind = s.task === "compensator" ? h("label", { class: "field" }, h("span", {}, w("kind")), h("select", { onchange: (e) => { s.spec.observer = e.target.value; fitObserver(); problemChanged(); } }, ["full", "minimal"].map((k) => h("option", { value: k, selected: (s.spec.observer ?? "full") === k }, w(`kind_${k}`))))) : null;
@@ -543,6 +555,9 @@ export function mount(element, transport, options = {}) {
     if ([...el.task.options].some((o) => o.value === s.task)) el.task.value = s.task;
     el.snap.value = s.snap;
     el.detail.value = s.detail;
+    el.pin.hidden = !view?.gains.length;
+    el.drive.hidden = !view?.step;
+    el.drive.value = isStep() ? "1" : "";
     buildSets();
     showPanels();
     if (!isFresh || !answer) return;
@@ -617,7 +632,16 @@ export function mount(element, transport, options = {}) {
     el.texts.replaceChildren(...(view?.sets ?? []).map((group) => labelled(w(`${group.label}s`), poleField(group), group.mark, `specification.${group.key}`)));
     el.starts.replaceChildren(field("courses.start", "x(0)", s.x0 || "", (t) => { s.x0 = t; commit(true); ask(); }), ...(s.task === "state_feedback" ? [] : [field("courses.estimate", "x̂(0)", s.xh0 || "", (t) => { s.xh0 = t; commit(true); ask(); })]));
     for (const [input, fallback] of [[el.starts.querySelectorAll("input")[0], "1, 1, …"], [el.starts.querySelectorAll("input")[1], "0, 0, …"]]) input?.setAttribute("placeholder", fallback);
+    el.goals.replaceChildren(...GOALS.filter((name) => name === "gain" || !view?.discrete).map((name) => field(`goal.${name}`, w(`goal_${name}`), s.goal[name], (t) => { if (t) s.goal[name] = t; else delete s.goal[name]; commit(true); ask(); })));
     drawPlane(true);
+  }
+
+  /** Say beside each goal whether it is met. */
+  function drawGoals() {
+    for (const name of GOALS) {
+      const box = el.goals.querySelector(`[data-where="goal.${name}"]`)?.closest(".field"), goal = answer.goal?.[name];
+      box?.querySelector("span").replaceChildren(w(`goal_${name}`), goal ? h("b", { class: "met", "data-met": String(goal.met) }, `${goal.value ? `: ${pretty(goal.value)} ` : " "}${{ true: "✓", false: "✗" }[goal.met] ?? "○"}`, h("span", { class: "hidden" }, w({ true: "met", false: "missed" }[goal.met] ?? "open"))) : "");
+    }
   }
 
   function poleField(group) {
@@ -654,6 +678,13 @@ export function mount(element, transport, options = {}) {
     const grounded = JSON.stringify([frame, view.discrete, root.lang]), parts = [];
     if (el.poles.firstChild?.dataset.of !== grounded) el.poles.replaceChildren(h("svg:g", { "data-of": grounded }, ground()));
     else while (el.poles.childElementCount > 1) el.poles.lastChild.remove();
+    const line = (x1, y1, x2, y2) => parts.push(h("svg:line", { class: "goal", x1, y1, x2, y2 })), { settling, overshoot } = answer?.goal ?? {};
+    const cut = settling ? X(Number(settling.re)) : 0;
+    if (cut > 40 && cut < 464) line(cut, 16, cut, 336);
+    if (overshoot?.slope) for (const side of [-1, 1]) {
+      const slope = side * Number(overshoot.slope), far = Math.min(X(0) - 40, (side < 0 ? 336 - Y(0) : Y(0) - 16) / Math.abs(slope));
+      if (far > 0) line(X(0), Y(0), X(0) - far, Y(0) - slope * far);
+    }
     for (const m of answer?.marks ?? []) {
       const [x, y] = [X(Number(m.re)), Y(Number(m.im))];
       if (x > 38 && x < 466 && y > 14 && y < 338) parts.push(h("svg:path", { class: `mark ${m.kind}`, d: MARKS[m.kind](x, y) }, h("svg:title", {}, w(`pole_of_${m.kind}`))));
@@ -952,8 +983,13 @@ export function mount(element, transport, options = {}) {
     el.verdict.dataset.verdict = got.unstable.length ? "unstable" : got.verdict;
     if (el.notes.textContent !== (got.note ?? "")) el.notes.textContent = got.note ?? "";
     drawCards(got);
+    drawGoals();
     if (!el.cases.hidden) drawCases(got);
-    if (!el.responses.hidden) drawCurves(got.courses);
+    if (!el.responses.hidden) {
+      drawCurves(el.curves, el.legend, got.courses, got.courses);
+      drawCurves(el.effort, el.efforts, got.courses?.effort, got.courses);
+      el.starts.hidden = isStep();
+    }
     drawPlane(isLetGo);  // the poles of F are known now
     isLetGo = false;
   }
@@ -975,6 +1011,22 @@ export function mount(element, transport, options = {}) {
     last.innerHTML = got.conditions.length ? `<p>${w("provided")}</p>${got.conditions.map((c) => `<div class="display">${c.mathml}</div>`).join("")}` : "";
   }
 
+  /** Keep a design beside those that follow, with the answers as they were checked. */
+  function pin() {
+    if (!answer || isOld("answer")) return;
+    const gains = answer.cards.filter((card) => view.gains.includes(card.name)).map((card) => card.mathml).join("");
+    const effort = (answer.courses?.effort?.lines ?? []).map((line) => line.peak ?? "").join("; ");
+    pinned = [...pinned.filter((each) => each.link !== encoded(s)), { link: encoded(s), task: s.task, poles: view.sets.map((group) => s.spec[group.key]).join("; "), gains, effort, says: answer.says }].slice(-MOST_PINNED);
+    drawPins();
+  }
+
+  function drawPins() {
+    const row = (kind, ...inside) => h("tr", {}, inside.map((cell) => h(kind, {}, cell)));
+    const math = (source) => { const cell = h("div", { class: "symobs" }); cell.innerHTML = source; return cell; };
+    const rows = pinned.map((each) => row("td", h("button", { onclick: () => shift(each.link) }, pretty(each.poles) || taskName(each.task)), math(each.gains), pretty(each.effort), pretty(each.says), h("button", { class: "quiet", "aria-label": w("unpin", { poles: pretty(each.poles) }), onclick: () => { pinned = pinned.filter((other) => other !== each); drawPins(); el.pin.focus(); } }, "×")));
+    el.pins.replaceChildren(...(rows.length ? [h("table", {}, h("caption", {}, w("pinned")), h("thead", {}, row("th", w("plane"), w("gains"), w("effort_peak"), w("cards"), h("span", { class: "hidden" }, w("unpin", { poles: "" })))), h("tbody", {}, rows))] : []));
+  }
+
   function drawCases(got) {
     if (!got.cases) return;
     const general = h("button", { class: Object.keys(free()).length ? "" : "chosen", onclick: () => { s.at = {}; problemChanged(); } }, w("in_general"));
@@ -988,27 +1040,28 @@ export function mount(element, transport, options = {}) {
     el.casesBody.querySelectorAll("[data-case]").forEach((b) => b.classList.toggle("chosen", b.dataset.case === JSON.stringify(free())));
   }
 
-  function drawCurves(got) {
-    if (el.curves.classList.toggle("absent", !got)) { el.legend.replaceChildren(); return; }
+  /** Draw responses over time, of which `all` says up to when. */
+  function drawCurves(svg, legend, got, all) {
+    if (svg.classList.toggle("absent", !got)) { legend.replaceChildren(); return; }
     const [[t0, t1], [low, high]] = got.window.map((w) => w.map(numberOf));
     const px = (t) => 40 + ((t - t0) / (t1 - t0)) * 424, py = (v) => 268 - ((v - low) / (high - low || 1)) * 252;
     const made = [h("svg:rect", { class: "ground", x: 40, y: 16, width: 424, height: 252 })];
     for (const t of ticks(t0, t1, 7)) made.push(h("svg:line", { class: "rule", x1: px(t), y1: 16, x2: px(t), y2: 268 }), h("svg:text", { x: px(t), y: 284, "text-anchor": "middle" }, pretty(String(t))));
     for (const v of ticks(low, high, 6)) made.push(h("svg:line", { class: v ? "rule" : "axis", x1: 40, y1: py(v), x2: 464, y2: py(v) }), h("svg:text", { x: 34, y: py(v) + 4, "text-anchor": "end" }, pretty(String(v))));
-    made.push(h("svg:text", { x: 464, y: 284, dy: "1.15em", "text-anchor": "end" }, got.discrete ? "k" : "t"));
+    made.push(h("svg:text", { x: 464, y: 284, dy: "1.15em", "text-anchor": "end" }, all.discrete ? "k" : "t"));
     const told = [], named = [];
     for (const line of got.lines) {
       const n = line.heights.length - 1, place = (v, k) => `${px(t0 + ((t1 - t0) * k) / n).toFixed(1)} ${py(v / got.parts).toFixed(1)}`;
       const kind = `curve c${((line.component || 1) - 1) % 4}${line.dashed ? " dashed" : ""}`;
       made.push(h("svg:path", { class: kind, d: `M${line.heights.map(place).join("L")}` }));
-      if (got.discrete) line.heights.forEach((v, k) => { const [x, y] = place(v, k).split(" "); made.push(h("svg:circle", { class: kind, cx: x, cy: y, r: 2.6 })); });
-      const settles = line.settles ? w("settles", { time: pretty(line.settles) }) : "";
+      if (all.discrete) line.heights.forEach((v, k) => { const [x, y] = place(v, k).split(" "); made.push(h("svg:circle", { class: kind, cx: x, cy: y, r: 2.6 })); });
+      const settles = [line.overshoot ? w("overshoots", { percent: pretty(line.overshoot) }) : "", line.settles ? w("settles", { time: pretty(line.settles) }) : "", line.signal === "u" && line.peak ? w("peak", { peak: pretty(line.peak) }) : ""].filter(Boolean).join(", ");
       if (line.peak) told.push(`${w("peaks", { signal: nameOf(line), peak: pretty(line.peak), last: pretty(line.last) })}${settles && `, ${settles}`}`);
       named.push(h("span", {}, h("svg:svg", { viewBox: "0 0 24 8", "aria-hidden": "true" }, h("svg:path", { class: kind, d: "M1 4h22" })), nameOf(line), h("small", {}, settles)));
     }
-    el.curves.setAttribute("aria-label", w("up_to", { end: got.end, told: told.join("; ") }));
-    el.curves.replaceChildren(...made);
-    el.legend.replaceChildren(...named);
+    svg.setAttribute("aria-label", w("up_to", { end: all.end, told: told.join("; ") }));
+    svg.replaceChildren(...made);
+    legend.replaceChildren(...named);
   }
 
   // -- begin ------------------------------------------------------------------------------------------------------------

@@ -74,6 +74,7 @@ class IntegralAction(Result):
         "polynomial": "chi_cl",
         "closed_loop_matrix": "A_cl",
     }
+    panels = ("plane", "responses")
 
     @classmethod
     def of(cls, plant: StateSpace, desired: DesiredPolynomial, method_name: str) -> Self:

@@ -170,6 +170,41 @@ def test_roots_in_the_data_have_responses(task: str, dt: dict[str, str]) -> None
     assert marks == pytest.approx([-(1 + (1 + 4 * 2**0.5) ** 0.5) / 4, ((1 + 4 * 2**0.5) ** 0.5 - 1) / 4], abs=1e-6)
 
 
+#: y and u after a step, as numerators over one denominator, by hand for the plant 1/(s(s + 1)): G_r and G_r s(s + 1) of the
+#: compensator; 4 and 4 s(s + 1) over (s + 2)²; 12 and 12 s(s + 1) over (s + 2)²(s + 3) of the integral action.
+_STEPS = {
+    "compensator": ([319, 400], [2, 2, 10, 10], {"control_poles": "-2, -2", "observer_poles": "-10, -10"}),
+    "feedforward": ([4], [2, 2], {"control_poles": "-2, -2", "observer_poles": "-10"} | {"observer": "minimal"}),
+    "integral_action": ([12], [2, 2, 3], {"poles": "-2, -2, -3"}),
+}
+
+
+@pytest.mark.parametrize("task", _STEPS)
+def test_output_and_input_after_a_step_of_the_reference(task: str) -> None:
+    numerator, poles, specification = _STEPS[task]
+    found = asked(
+        {**SERVO, "task": task, "specification": specification}, courses={"step": True, "end": "4", "count": 33}
+    )
+    denominator = [mpmath.mpf(1)]
+    for pole in poles:
+        denominator = [a + pole * b for a, b in zip([*denominator, 0], [0, *denominator], strict=True)]
+    for own, factor in (("y", [1]), ("u", [1, 1, 0])):
+        (line,) = (found["courses"] if own == "y" else found["courses"]["effort"])["lines"]
+        parts = (found["courses"] if own == "y" else found["courses"]["effort"])["parts"]
+        top = np.polymul(numerator, factor)
+        last = len(line["heights"]) - 1
+        assert line["signal"] == own
+        for k in range(1, last + 1):
+            time = mpmath.mpf(4 * k) / last
+            value = mpmath.invertlaplace(
+                lambda s, top=top: mpmath.polyval(list(map(int, top)), s) / mpmath.polyval(denominator, s) / s, time
+            )
+            assert abs(line["heights"][k] - parts * value) <= 2, (own, k)
+    (line,) = found["courses"]["lines"]
+    assert ("overshoot" in line) == (task == "compensator")
+    assert asked({**SERVO, "task": task, "specification": specification}, courses={})["courses"]["effort"]["lines"]
+
+
 def _decimal(entry: str) -> Any:
     return eval(entry, {"sqrt": mpmath.sqrt}) + mpmath.mpf(0)  # noqa: S307 - our own answer
 
@@ -219,6 +254,20 @@ def test_a_value_that_cannot_be_is_refused(at: dict[str, object], where: str, me
     assert found["status"] == "bad"
     assert found["errors"][0]["where"].startswith(where)
     assert message in found["errors"][0]["message"]
+
+
+def test_goals_are_held_against_poles_and_gains() -> None:
+    poles = {"control_poles": "-2, -2", "observer_poles": "-5+5i, -5-5i"}
+    # The modes settle in ln 50 / 2 = 1.956, the pair overshoots by 100 e^(-π) = 4.32 %, L = (9, 41).
+    met = {"settling": "1.96", "overshoot": "4.33", "gain": "41"}
+    missed = {"settling": "1.95", "overshoot": "4.32", "gain": "40.99"}
+    for goal, expected in ((met, True), (missed, False)):
+        found = asked({**SERVO, "specification": poles}, goal=goal)["goal"]
+        assert {name: each["met"] for name, each in found.items()} == dict.fromkeys(goal, expected)
+    assert float(found["settling"]["re"]) == pytest.approx(-np.log(50) / 1.95, rel=1e-5)
+    assert float(found["overshoot"]["slope"]) == pytest.approx(-np.pi / np.log(0.0432), rel=1e-5)
+    for wrong, where in (({"gain": "0"}, "goal.gain"), ({"gain": 1}, "goal"), ({"speed": "1"}, "goal")):
+        assert asked(SERVO, goal=wrong)["errors"][0]["where"] == where
 
 
 def test_a_value_keeps_the_declared_sign() -> None:

@@ -75,3 +75,17 @@ def test_options_that_no_page_has_are_refused_with_those_that_it_has() -> None:
         result.to("html", details=True)  # type: ignore[call-overload]
     with pytest.raises(UsageError, match=r"^language: '3' is not a language of pages; use one of en, "):
         result.to_html(language=3)  # type: ignore[arg-type]
+
+
+def test_a_notebook_shows_answers_in_a_line_and_a_plant_as_its_equations() -> None:
+    plant = symobs.StateSpace("[0 1; -omega^2 0]", "[0; 1]", "[1 0]", symbols={"omega": "positive"})
+    shown = symobs.observer(plant, poles="-1, -1")._repr_mimebundle_()
+    assert set(shown) == {"text/plain", "text/markdown", "text/html"}  # LaTeX would need TikZ, which nbconvert lacks
+    assert shown["text/plain"].count("\n") == 0
+    assert plant._repr_latex_() == (
+        r"$\displaystyle \dot{x} = \left[\begin{matrix}0 & 1\\- \omega^{2} & 0\end{matrix}\right] x + "
+        r"\left[\begin{matrix}0\\1\end{matrix}\right] u,\qquad y = \left[\begin{matrix}1 & 0\end{matrix}\right] x$"
+    )
+    discrete = symobs.StateSpace("[1]", "[1]", dt=True)._repr_latex_()
+    assert discrete.startswith(r"$\displaystyle x(k+1) = ")
+    assert discrete.endswith("u(k)$")

@@ -1,0 +1,69 @@
+"""Goals of a design that its poles and gains are held against: settling time, overshoot, largest gain.
+
+Settling and overshoot are those of every mode alone, so that they are lines in the plane of the poles.
+"""
+
+from __future__ import annotations
+
+from math import exp, inf, log, pi
+from typing import TYPE_CHECKING, Any
+
+from symobs.applications.live.request import FieldError
+from symobs.exact import Matrix, Scalar
+from symobs.exact.algebraic.enclosure import sign_of_number
+from symobs.system import Symbols, read_scalar
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping
+    from fractions import Fraction
+
+    from symobs.tasks.result import Result
+
+#: Two floating-point values that are closer are not told apart: their own errors are much smaller.
+_TOLD_APART = 1e-9
+
+
+def goals_of(
+    result: Result, poles: Iterable[tuple[Fraction, Fraction]], asked: Mapping[str, str]
+) -> dict[str, dict[str, Any]]:
+    """Return for each goal whether it is met (None: undecided), the value there, and the line in the plane."""
+    placed, found = list(poles), dict[str, dict[str, Any]]()
+    limits = {name: _positive(text, name) for name, text in asked.items()}
+    if not result.plant.is_discrete and placed:
+        slowest = min(-real for real, _ in placed)
+        if (limit := limits.get("settling")) is not None:
+            needed = log(50) / limit
+            value = log(50) / slowest if slowest > 0 else inf
+            found["settling"] = {"met": _within(value, float(limit)), "value": _digits(value), "re": f"{-needed:.6g}"}
+        if (limit := limits.get("overshoot")) is not None:
+            most = max((100 * exp(pi * float(re / abs(im))) if re < 0 else inf for re, im in placed if im), default=0.0)
+            line = {"slope": f"{pi / log(100 / limit):.6g}"} if limit < 100 else {}
+            found["overshoot"] = {"met": _within(most, float(limit)), "value": _digits(most), **line}
+    if (limit := limits.get("gain")) is not None:
+        entries = [entry for name in result.gains for entry in _entries(result.fields.get(name))]
+        signs = [
+            sign_of_number(side) if not side.is_zero else "zero" for e in entries for side in (limit - e, limit + e)
+        ]
+        if entries:
+            met = False if "negative" in signs else None if "real" in signs else True
+            found["gain"] = {"met": met}
+    return found
+
+
+def _positive(text: str, name: str) -> Fraction:
+    value = read_scalar(text, Symbols.of({}), f"goal.{name}")
+    if value.names or value.fraction() <= 0:
+        raise FieldError("said_no_goal", f"goal.{name}")
+    return value.fraction()
+
+
+def _entries(gain: object) -> tuple[Scalar, ...]:
+    return tuple(gain.entries) if isinstance(gain, Matrix) else (gain,) if isinstance(gain, Scalar) else ()
+
+
+def _within(value: float, limit: float) -> bool | None:
+    return None if abs(value - limit) <= _TOLD_APART * limit else value < limit
+
+
+def _digits(value: float) -> str:
+    return "∞" if value == inf else f"{value:.3g}" if 1e-3 <= value < 1e6 else "0" if value < 1e-3 else f"{value:.0f}"
