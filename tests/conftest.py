@@ -6,6 +6,7 @@ import os
 import re
 import shutil
 import signal
+import sys
 from functools import cache
 from pathlib import Path
 from types import CodeType, FunctionType, ModuleType
@@ -16,6 +17,7 @@ from hypothesis import HealthCheck, settings
 
 from symobs.formula.phrases import PHRASES
 from tests.support.examples import example_of
+from tests.support.paths import COMPILED, ROOT
 from tests.support.problems.steps import OWN_PHRASES
 from tests.support.sampling import FULL
 
@@ -35,6 +37,11 @@ settings.register_profile(
     suppress_health_check=[HealthCheck.too_slow],
 )
 settings.load_profile("symobs")
+
+# What is compiled once is compiled for the hundreds of processes that tests start, whatever the environment says.
+sys.dont_write_bytecode, sys.pycache_prefix = False, str(ROOT / COMPILED)
+os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
+os.environ["PYTHONPYCACHEPREFIX"] = sys.pycache_prefix
 
 # A shell's background jobs begin with it ignored, and so would every process that a test starts and interrupts.
 if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:

@@ -28,7 +28,7 @@ from symobs.proof.derivation import RegionSummary, Section
 from symobs.tasks.result import Document, render
 from tests.support.examples import document_of
 from tests.support.paths import ROOT
-from tests.support.problems.render_examples import HandWritten
+from tests.support.problems.steps import HandWritten
 from tests.support.tools.command_line import inside
 
 FOLDERS = sorted(path.parent for path in (ROOT / "symobs" / "formula" / "phrases").glob("*/words.toml"))

@@ -14,7 +14,7 @@ from symobs.formula.convention import STANDARD, convention_named
 from symobs.formula.notation import GREEK
 from symobs.formula.tree import Formula, Letter, Relation
 from symobs.pages.formats.html import page
-from symobs.pages.page.blocks import CaseBlock, Display, Drawing, Heading, PictureBlock, TableBlock, every
+from symobs.pages.page.blocks import CaseBlock, Display, Drawing, Heading, PictureBlock, TableBlock, Verified, every
 from symobs.pages.page.narrator import narrate, printer_for
 from symobs.pages.printers.latex_printer import LatexPrinter
 from symobs.pages.printers.mathml import MathmlPrinter
@@ -143,6 +143,7 @@ def test_every_example_is_a_page_of_html() -> None:
         assert displays <= kinds.count("display") <= displays + tables, name
         assert kinds.count("case") == sum(isinstance(block, CaseBlock) for block in blocks), name
         assert kinds.count("answer") == sum(isinstance(block, Display) and block.boxed for block in blocks), name
+        assert kinds.count("verified") == sum(isinstance(block, Verified) for block in blocks), name
         headings = [node for node in nodes if re.fullmatch("h[2-6]", local(node))]
         assert len(headings) == sum(isinstance(block, Heading) for block in blocks), name
         assert len({node.get("id") for node in headings}) == len(headings), name

@@ -18,8 +18,10 @@ from symobs.formula.tree import (
     Relation,
     Sum,
 )
+from symobs.ground.dataclass import dataclass
 from symobs.ground.errors import DerivationRejected
-from symobs.proof.derivation import Define, Derivation, Given, Sentence, Step
+from symobs.proof.derivation import CaseStep, Define, Derivation, Equal, Given, Sentence, Step
+from symobs.tasks.result import Document
 
 A, B, C, F, L, P, S = (Letter(name) for name in ("A", "B", "C", "F", "L", "P", "s"))
 X, ESTIMATE, E, U, Y = (Letter(name) for name in ("x", "x_hat", "e", "u", "y"))
@@ -32,7 +34,22 @@ START = Environment(
 
 
 #: The phrases that tests put in while they run.
-OWN_PHRASES = {"test_plain": "And so on.", "test_slot": "This is {it}."}
+OWN_PHRASES = {"test_plain": "And so on.", "test_slot": "This is {it}.", "test_case": "the gain loses an entry, and"}
+
+
+@dataclass(frozen=True)
+class HandWritten(Document):
+    """A document whose derivations were written by hand instead of by results."""
+
+    written: tuple[Derivation, ...] = ()
+
+    @property
+    def derivations(self) -> tuple[Derivation, ...]:
+        return self.written
+
+
+def document(*derivations: Derivation, title: str = "", source: str = "") -> HandWritten:
+    return HandWritten(title, source, (), written=derivations)
 
 
 def literal(item: Formula | Scalar | Matrix | int) -> Formula:
@@ -64,3 +81,12 @@ COMPANION = Matrix.of([[0, 1], [-2, -3]])
 A_IS = Given((said(A, COMPANION),), silent=True)
 C_IS = Given((said(C, Matrix.of([[1, c]])),), silent=True)
 CHI = Define(said(Letter("chi"), Apply("det", Sum((Product((S, Identity(2))), Negative(A)))), s**2 + 3 * s + 2))
+
+
+def with_a_case() -> Derivation:
+    """A plant with a parameter, and what is special where it takes one value."""
+    case = CaseStep(
+        said(b, 0), (("b", Scalar.of(0)),), (Equal((said(C, Matrix.of([[1, 0]])),)),), Sentence("test_case")
+    )
+    row = Matrix.of([[1, b]])
+    return Derivation((Given((said(C, row),)), case), Environment(values={"C": row}))

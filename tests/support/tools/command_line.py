@@ -12,7 +12,7 @@ import pytest
 
 from symobs.cli import main
 from tests.support import examples
-from tests.support.paths import ROOT
+from tests.support.paths import COMPILED, ROOT
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -44,16 +44,8 @@ class Run(NamedTuple):
 
 def environment(checkout: Path = ROOT) -> dict[str, str]:
     """The environment in which `python -m symobs` is the symobs of a checkout, in every folder."""
-    own = {"PYTHONPATH": str(checkout), "PYTHONDONTWRITEBYTECODE": "1", "XDG_STATE_HOME": os.devnull}
-    return {**os.environ, **own}
-
-
-def installed_environment(cache: Path) -> dict[str, str]:
-    """The environment of a symobs as it is installed: its modules are compiled already, here into the folder `cache`."""
-    found = {**environment(), "PYTHONPYCACHEPREFIX": str(cache)}
-    del found["PYTHONDONTWRITEBYTECODE"]
-    subprocess.run([sys.executable, "-m", "compileall", "-q", str(ROOT / "symobs")], env=found, check=True)
-    return found
+    compiled = str(checkout / COMPILED)
+    return {**os.environ, "PYTHONPATH": str(checkout), "PYTHONPYCACHEPREFIX": compiled, "XDG_STATE_HOME": os.devnull}
 
 
 def fresh(*arguments: str, folder: Path, checkout: Path = ROOT, stdin: bytes = b"") -> Run:

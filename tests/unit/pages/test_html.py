@@ -11,13 +11,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from symobs.exact import Scalar
-from symobs.formula.phrases import PHRASES
 from symobs.pages.formats.html import Html, HtmlFragment, HtmlWriter, page, plain, style
 from symobs.pages.page.blocks import Heading, Paragraph, Title, Verified, every
 from symobs.pages.page.narrator import narrate
 from symobs.pages.printers.mathml import MathmlPrinter
-from tests.support.problems import render_examples as example
-from tests.support.problems.render_examples import document
+from tests.support.examples import document_of
+from tests.support.problems.steps import document, with_a_case
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -33,10 +32,7 @@ ATTRIBUTES |= {"form", "fence", "separator", "symmetric", "minsize", "maxsize", 
 ATTRIBUTES |= {"depth", "scope", "role", "aria-label", "lang", "charset", "content", "name", "http-equiv", "href"}
 
 
-@pytest.fixture(autouse=True)
-def _phrases(monkeypatch: pytest.MonkeyPatch) -> None:
-    for key, phrase in example.PHRASES.items():
-        monkeypatch.setitem(PHRASES, key, phrase)
+pytestmark = pytest.mark.usefixtures("own_phrases")
 
 
 def local(node: ET.Element) -> str:
@@ -85,9 +81,9 @@ HOSTILE = [
 @pytest.mark.parametrize("text", HOSTILE, ids=range(len(HOSTILE)))
 @pytest.mark.parametrize("kind", [Html, HtmlFragment])
 def test_hostile_text_is_shown_and_does_nothing(text: str, kind: type[Html | HtmlFragment]) -> None:
-    html = kind().render(document(example.with_a_case(), title=text, source=text))
+    html = kind().render(document(with_a_case(), title=text, source=text))
     assert list(faults(html)) == []
-    plain_page = kind().render(document(example.with_a_case(), title="A", source="A"))
+    plain_page = kind().render(document(with_a_case(), title="A", source="A"))
     assert [local(node) for node in parsed(html).iter()] == [local(node) for node in parsed(plain_page).iter()]
     heading = next(node for node in parsed(html).iter() if local(node) in {"h1", "h2"})
     shown = words_of(heading).replace("“", '"').replace("”", '"').replace("\N{RIGHT SINGLE QUOTATION MARK}", "'")
@@ -103,26 +99,6 @@ def test_any_text_can_stand_on_a_page(text: str) -> None:
 # -- pages ------------------------------------------------------------------------------------------------------------
 
 
-def test_the_page_to_aim_at() -> None:
-    root = parsed(html := Html().render(example.target_document()))
-    assert list(faults(html)) == []
-    headings = [(local(node), words_of(node)) for node in root.iter() if re.fullmatch("h[1-4]", local(node))]
-    assert headings == [
-        ("h1", "Output feedback of 1/(s(s+1)) with a full-order observer"),
-        ("h2", "Given"),
-        ("h2", "1. State feedback"),
-        ("h2", "2. Observer"),
-        ("h2", "3. Compensator"),
-        ("h2", "4. Closed loop"),
-    ]
-    kinds = [node.get("class") for node in root.iter()]
-    assert kinds.count("verified") == 2
-    assert kinds.count("caution") == 1
-    assert kinds.count("answer") == 4
-    drawing = next(node for node in root.iter() if node.get("role") == "img")
-    assert words_of(drawing[0]) == "Block diagram"
-
-
 def test_a_page_says_its_language_and_forbids_itself_the_network() -> None:
     root = parsed(Html().render(document(title="A page")))
     assert root.get("lang") == "en"
@@ -134,7 +110,7 @@ def test_a_page_says_its_language_and_forbids_itself_the_network() -> None:
 
 
 def test_parts_of_one_page_have_ids_of_their_own() -> None:
-    blocks = narrate(document(*example.target_document().derivations, example.with_a_case()))
+    blocks = narrate(document(*document_of("output_feedback_servo").derivations, with_a_case()))
     parts = [HtmlWriter(MathmlPrinter(), prefix=f"p{k}-", level=2).body(blocks) for k in (1, 2)]
     root = parsed(page("Two", "\n".join(parts)))
     ids = [node.get("id") for node in root.iter() if node.get("id")]

@@ -10,15 +10,14 @@ import pytest
 
 import symobs
 from symobs.exact import Matrix, Scalar
-from symobs.formula.phrases import PHRASES
 from symobs.formula.tree import Block, Environment, Formula, Letter, Literal, Negative, Numeral
 from symobs.pages.formats.latex import LatexArticle, typeset
 from symobs.pages.formats.templates import fill
 from symobs.pages.formats.text import WIDTH, Text
 from symobs.pages.printers.latex_printer import LETTERS, LatexPrinter, escape
 from symobs.proof.derivation import Define, Derivation, Diagram, Equal, Note
-from tests.support.problems import render_examples as example
-from tests.support.problems.render_examples import document, equals, number
+from tests.support.examples import document_of
+from tests.support.problems.steps import HandWritten, document, said, with_a_case
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -29,11 +28,7 @@ FAULTS = re.compile(
 )
 
 
-@pytest.fixture(autouse=True)
-def _phrases(monkeypatch: pytest.MonkeyPatch) -> None:
-    for key, phrase in example.PHRASES.items():
-        monkeypatch.setitem(PHRASES, key, phrase)
-    monkeypatch.setitem(PHRASES, "test_roots", "The poles are {roots}, all of them.")
+pytestmark = pytest.mark.usefixtures("own_phrases")
 
 
 @pytest.fixture(name="faults")
@@ -63,13 +58,12 @@ def a_loop(plant: Scalar, compensator: Scalar) -> list[Define | Equal | Diagram 
         "response": Literal(plant / (1 + plant * compensator)),
     }
     known = (
-        Define(equals(Letter(name), number(value)), silent=True)
-        for name, value in zip("PF", (plant, compensator), strict=True)
+        Define(said(Letter(name), value), silent=True) for name, value in zip("PF", (plant, compensator), strict=True)
     )
     return [*known, Diagram("loop", tuple(labels.items()))]
 
 
-def page_with(*steps: Define | Equal | Diagram | Note, title: str = "") -> example.HandWritten:
+def page_with(*steps: Define | Equal | Diagram | Note, title: str = "") -> HandWritten:
     return document(Derivation(steps, Environment(signals={"u": None, "y": None})), title=title)
 
 
@@ -118,7 +112,7 @@ def test_every_letter_kept_is_typeset(faults: Callable[[str], list[str]]) -> Non
 
 
 def test_the_page_to_aim_at_is_typeset_without_a_fault(faults: Callable[[str], list[str]]) -> None:
-    assert faults(LatexArticle().render(example.target_document())) == []
+    assert faults(LatexArticle().render(document_of("output_feedback_servo"))) == []
 
 
 def test_a_page_in_another_language_is_typeset_without_a_fault(faults: Callable[[str], list[str]]) -> None:
@@ -152,7 +146,7 @@ def test_a_user_replaces_one_block(tmp_path: Path, faults: Callable[[str], list[
 \BLOCK{endblock}
 """
     (tmp_path / "sheet.tex").write_text(own, encoding="utf-8")
-    latex = typeset(document(example.with_a_case(), title="100 %"), "sheet.tex", folder=tmp_path)
+    latex = typeset(document(with_a_case(), title="100 %"), "sheet.tex", folder=tmp_path)
     assert r"\textit{100 \%: the end}" in latex
     assert latex.count("fancyhdr") == 1
     assert "not on the page" not in latex
@@ -168,7 +162,7 @@ def test_marks_of_templates_in_a_title_mean_nothing() -> None:
 
 
 def test_text_keeps_to_its_width() -> None:
-    text = Text().render(document(*example.target_document().derivations, example.with_a_case(), title="word " * 60))
+    text = Text().render(document(*document_of("output_feedback_servo").derivations, with_a_case(), title="word " * 60))
     assert max(len(line) for line in text.splitlines()) <= WIDTH
     assert text.endswith("\n")
 

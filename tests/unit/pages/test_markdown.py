@@ -4,26 +4,17 @@ from __future__ import annotations
 
 import re
 
-import pytest
-
 from symobs.exact import Matrix, Scalar
-from symobs.formula.phrases import PHRASES
 from symobs.formula.tree import Environment, Letter, Literal, Relation
 from symobs.pages.formats.markdown import Markdown, paragraph, plain, portable
 from symobs.proof.derivation import Define, Derivation
 from tests.kit import tabled
-from tests.support.problems import render_examples as example
-from tests.support.problems.render_examples import document
+from tests.support.examples import document_of
+from tests.support.problems.steps import document
 
 s, b = Scalar.symbol("s"), Scalar.symbol("b")
 #: Everything in dollars, displays first.
 MATHEMATICS = re.compile(r"\$\$ (.+?) \$\$|\$([^$]+)\$")
-
-
-@pytest.fixture(autouse=True)
-def _phrases(monkeypatch: pytest.MonkeyPatch) -> None:
-    for key, phrase in example.PHRASES.items():
-        monkeypatch.setitem(PHRASES, key, phrase)
 
 
 def formulas(page: str) -> list[str]:
@@ -31,30 +22,12 @@ def formulas(page: str) -> list[str]:
     return [display or inline for display, inline in MATHEMATICS.findall(without_code)]
 
 
-def test_the_page_to_aim_at() -> None:
-    page = Markdown().render(example.target_document())
-    lines = page.splitlines()
-    assert lines[0] == "# Output feedback of 1/(s(s+1)) with a full-order observer"
-    assert [line for line in lines if line.startswith("## ")] == [
-        "## Given",
-        "## 1. State feedback",
-        "## 2. Observer",
-        "## 3. Compensator",
-        "## 4. Closed loop",
-    ]
-    assert sum(line.startswith("✓ ") for line in lines) == 2
-    assert r"=\boxed{\begin{bmatrix}4&3\end{bmatrix}} $$" in page
-    assert "> **Remark.** The double pole at $-2$ is defective" in page
-    (sketch,) = re.findall(r"\n\n```text\n(.*?)\n```\n\n", page, flags=re.DOTALL)
-    assert "┌" in sketch
-    assert "(319s + 400)/(s² + 23s + 161)" in sketch
-
-
-def test_mathematics_has_no_backslash_before_punctuation_and_no_angle_brackets() -> None:
-    page = Markdown().render(example.target_document())
-    found = formulas(page)
-    assert len(found) > 30
-    assert [formula for formula in found if re.search(r"\\[^A-Za-z]|[<>|\n]", formula)] == []
+def test_an_answer_is_boxed_a_caution_quoted_and_a_loop_drawn() -> None:
+    page = Markdown().render(document_of("output_feedback_servo"))
+    assert r"\boxed{\begin{bmatrix}4&3\end{bmatrix}} $$" in page
+    assert "> **Remark.** Since" in page
+    sketches = re.findall(r"\n\n```text\n(.*?)\n```\n\n", page, flags=re.DOTALL)
+    assert any("┌" in sketch and "(319s + 400)/(s² + 23s + 161)" in sketch for sketch in sketches)
 
 
 def test_portable_mathematics_is_the_same_mathematics() -> None:

@@ -7,9 +7,9 @@ import re
 import pytest
 
 from symobs import StateSpace, observer
-from symobs.exact import Scalar
+from symobs.exact import Matrix, Scalar
 from symobs.formula.phrases import CONTINUES, PHRASES, WORDS
-from symobs.formula.tree import Environment, Letter, Literal, Relation, Transpose
+from symobs.formula.tree import Environment, Letter, Negative, Product, Sum, Transpose
 from symobs.ground.errors import DerivationRejected, ProblemErrors, UsageError
 from symobs.pages.page import narrator
 from symobs.pages.page.blocks import Block, CaseBlock, Display, Paragraph, Title, every
@@ -18,19 +18,18 @@ from symobs.pages.page.prose import filled, with_reference
 from symobs.problem.validation import validate
 from symobs.proof.derivation import Derivation, Equal, Given, Note, Sentence, Step
 from tests.kit import tabled
-from tests.support.problems import render_examples as example
-from tests.support.problems.render_examples import document, equals, minus, number, plus, times, values
+from tests.support.problems.steps import OWN_PHRASES, document, said, with_a_case
 
 A, C = Letter("A"), Letter("C")
-A_IS_ONE, A_IS_TWO = equals(A, values((1,))), equals(A, values((2,)))
-C_IS_ONE = equals(C, values((1,)))
-ONE = equals(number(1), number(1))
-TWO = equals(number(2), number(2))
+A_IS_ONE, A_IS_TWO = said(A, Matrix.of([[1]])), said(A, Matrix.of([[2]]))
+C_IS_ONE = said(C, Matrix.of([[1]]))
+ONE = said(1, 1)
+TWO = said(2, 2)
 
 
 @pytest.fixture(autouse=True)
 def _phrases(monkeypatch: pytest.MonkeyPatch) -> None:
-    phrases = example.PHRASES | {
+    phrases = OWN_PHRASES | {
         "test_small": "and so on",
         "test_large": "Now",
         "test_about": "with {A} as it is.",
@@ -52,7 +51,7 @@ def told(*steps: Step) -> tuple[Block, ...]:
 
 def test_a_derivation_with_a_false_line_is_not_told() -> None:
     with pytest.raises(DerivationRejected, match="the line 1 = 2"):
-        told(Equal((equals(number(1), number(2)),)))
+        told(Equal((said(1, 2),)))
 
 
 @tabled
@@ -130,20 +129,20 @@ def test_an_equation_has_a_number_where_a_later_sentence_refers_to_it() -> None:
 
 
 def test_a_condition_keeps_its_place() -> None:
-    b = Literal(Scalar.symbol("b"))
-    condition = Relation((b, number(0)), ("!=",))
+    b = Scalar.symbol("b")
+    condition = said(b, "!=", 0)
     assert told(Equal((ONE,)), Given((condition,))) == (Display((ONE, condition), closing="."),)
-    said = Sentence("test_about", (("A", condition),))
-    assert told(Given((condition,), said)) == (Paragraph(("with ", condition, " as it is."), continues=True),)
+    about = Sentence("test_about", (("A", condition),))
+    assert told(Given((condition,), about)) == (Paragraph(("with ", condition, " as it is."), continues=True),)
 
 
 def test_a_case_says_when_it_holds_and_keeps_its_own_data() -> None:
-    block = narrate(document(example.with_a_case()))[-1]
+    block = narrate(document(with_a_case()))[-1]
     assert isinstance(block, CaseBlock)
     assert block.label[0] == f"{WORDS['case']} "
     assert block.blocks == (
         Paragraph((PHRASES["test_case"],)),
-        Display((equals(C, values((1, 0))),), closing="."),
+        Display((said(C, Matrix.of([[1, 0]])),), closing="."),
     )
 
 
@@ -151,10 +150,10 @@ def test_a_case_says_when_it_holds_and_keeps_its_own_data() -> None:
     ("written", "formula"),
     [
         ("A", A),
-        ("A - L C", plus(A, minus(times(Letter("L"), C)))),
-        ("−U", minus(Letter("U"))),
+        ("A - L C", Sum((A, Negative(Product((Letter("L"), C)))))),
+        ("−U", Negative(Letter("U"))),
         ("Aᵀ", Transpose(A)),
-        ("u = −K x_hat", equals(Letter("u"), minus(times(Letter("K"), Letter("x_hat"))))),
+        ("u = −K x_hat", said(Letter("u"), Negative(Product((Letter("K"), Letter("x_hat")))))),
     ],
 )
 def test_a_name_between_dollars_is_mathematics(written: str, formula: object, monkeypatch: pytest.MonkeyPatch) -> None:

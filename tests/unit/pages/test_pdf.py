@@ -14,12 +14,11 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from symobs.formula.phrases import PHRASES
 from symobs.ground.errors import TypesettingError
 from symobs.pages.formats import pdf
 from symobs.pages.formats.pdf import Pdf, compiled
-from tests.support.problems import render_examples as example
-from tests.support.problems.render_examples import document
+from tests.support.examples import document_of
+from tests.support.problems.steps import document, with_a_case
 from tests.support.tools.command_line import SAFETY
 
 if TYPE_CHECKING:
@@ -28,10 +27,7 @@ if TYPE_CHECKING:
     RequireTool = Callable[[str], str]
 
 
-@pytest.fixture(autouse=True)
-def _phrases(monkeypatch: pytest.MonkeyPatch) -> None:
-    for key, phrase in example.PHRASES.items():
-        monkeypatch.setitem(PHRASES, key, phrase)
+pytestmark = pytest.mark.usefixtures("own_phrases")
 
 
 def article(body: str) -> str:
@@ -46,9 +42,7 @@ def words_of(page: bytes, folder: Path, pdftotext: str) -> str:
 
 def test_the_page_to_aim_at(require_tool: RequireTool, tmp_path: Path) -> None:
     require_tool("pdflatex")
-    words = words_of(Pdf().render(example.target_document()), tmp_path, require_tool("pdftotext"))
-    assert "Output feedback of 1/(s(s+1)) with a full-order observer" in words
-    assert "4. Closed loop." in words
+    words = words_of(Pdf().render(document_of("output_feedback_servo")), tmp_path, require_tool("pdftotext"))
     assert "Remark." in words
 
 
@@ -74,7 +68,7 @@ HOSTILE = [
 @pytest.mark.parametrize("text", HOSTILE, ids=range(len(HOSTILE)))
 def test_hostile_text_is_shown_and_does_nothing(text: str, require_tool: RequireTool, tmp_path: Path) -> None:
     require_tool("pdflatex")
-    page = Pdf().render(document(example.with_a_case(), title=text, source=text))
+    page = Pdf().render(document(with_a_case(), title=text, source=text))
     words = words_of(page, tmp_path, require_tool("pdftotext"))
     assert "root:" not in words
     assert "Given." in words

@@ -26,7 +26,7 @@ from symobs.pages.printers.latex_printer import LatexPrinter
 from symobs.pages.printers.text_printer import TextPrinter
 from symobs.proof.derivation import Derivation, Plot
 from tests.kit import tabled
-from tests.support.problems.render_examples import document
+from tests.support.problems.steps import document
 from tests.support.regions import drawn_by_hand as hand
 from tests.support.regions.drawn_by_hand import ALL
 

@@ -17,11 +17,10 @@ from symobs.pages.tables import fitted
 from symobs.proof.derivation import Define, Derivation, Sentence, Tabulate
 from symobs.proof.derivation.routh_check import findings_of
 from symobs.stability.criteria.routh_table import routh_table
-from tests.support.problems.render_examples import document
-from tests.support.problems.steps import said
+from tests.support.problems.steps import document, said
 
 if TYPE_CHECKING:
-    from tests.support.problems.render_examples import HandWritten
+    from tests.support.problems.steps import HandWritten
 
 s = Scalar.symbol("s")
 CHI = Letter("chi")

@@ -11,7 +11,7 @@ from symobs.pages.formats.latex import typeset
 from symobs.pages.formats.templates import template_folder
 from tests.kit import tabled
 from tests.support.paths import ROOT
-from tests.support.problems.render_examples import document
+from tests.support.problems.steps import document
 from tests.support.tools.command_line import inside
 
 if TYPE_CHECKING:
