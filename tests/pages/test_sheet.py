@@ -81,6 +81,20 @@ def test_one_half_of_a_sheet(flag: str, has: str, has_not: str, folder: Path) ->
     assert "Given" in run.out  # solutions alone give the data too
 
 
+@pytest.mark.parametrize("options", [["--format", "text"], ["--format", "html", "--details"], ["--detail", "answer"]])
+def test_the_questions_of_an_exam_hold_neither_answers_nor_hints(options: list[str], tmp_path: Path) -> None:
+    (tmp_path / "exam.toml").write_text(
+        f'title = "Exam"\nstyle = "exam"\nfinal_answers = true\n[[problem]]\nfile = "{OBSERVER}"\nhint = "By heart."\n',
+        encoding="utf-8",
+    )
+    run = inside("sheet", "exam.toml", "--questions", *options, folder=tmp_path)
+    assert run.code == 0, run.err
+    assert "By heart" not in run.out
+    entry = r"\b81\b(?!b)"  # of L; no colour
+    assert not re.search(entry, run.out)
+    assert re.search(entry, inside("sheet", "exam.toml", "--solutions", *options, folder=tmp_path).out)
+
+
 def test_every_part_has_symbols_and_time_of_its_own(folder: Path) -> None:
     texts = {
         "first": '[symbols]\nw = { sign = "positive", latex = "\\\\Xi" }\n[plant]\nA = "[0 w; 1 0]"\n',

@@ -2,19 +2,23 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import pytest
 import sympy as sp
 
 from symobs.applications.checking import Checked, CheckReport, check
 from symobs.ground.errors import InputError, ProblemErrors
+from symobs.pages.cards import CardPrinter, cards
 from symobs.problem import read
 from symobs.problem.expect import found_in, mismatches
 from symobs.tasks.result.output_methods import to_json
 from tests.kit import tabled
 from tests.support.paths import ROOT
 from tests.support.problems.answered import SERVO, THIRD_ORDER, A, F, K, L, S, text
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
 
 EXAMPLES = ROOT / "worked_examples"
 CANONICAL = """
@@ -53,7 +57,23 @@ def test_our_own_answer_is_right_in_every_worked_example() -> None:
         report = checked.report(own_answer(checked))
         too_long = path.stem == "cart_pole"  # its F has 35,615 characters
         assert report.verdict == ("unreadable" if too_long else "right"), (path.name, report.to_text())
+        printed = {part: checked.report(latex) for part, latex in _printed(checked)} if not too_long else {}
+        found = {part.part: part.verdict for name, each in printed.items() for part in each.parts if part.part == name}
+        assert path.stem in _NOT_WRITTEN_SO or {*found.values()} <= {"right"}, (path.name, found)
     assert len(tasks) == 34
+
+
+#: A sequence as a column, and cos 2√… without brackets.
+_NOT_WRITTEN_SO = {"minimum_energy_sequence", "pendulum_gramian"}
+
+
+def _printed(checked: Checked) -> Iterator[tuple[str, str]]:
+    """Yield the parts that are asked for with the LaTeX that shows them."""
+    convention = checked.problem.convention
+    for view, field in checked.asked(checked.views()):
+        printer = CardPrinter(view.result, convention)
+        for card in cards(view.result, [field], convention):
+            yield f"{view.task}.{field}", printer.latex(card) + "\n"
 
 
 # -- gains: the claim decides -----------------------------------------------------------------------------------------
