@@ -46,7 +46,9 @@ MARGINS = ("gain_down", "gain_up", "phase_deg", "modulus", "peak", "slowest")
 #: The polynomial of the closed loop, the matrix of what is added to the plant, and where the loop is cut.
 _LOOPS = {
     "state_feedback": ("polynomial", None, "inputs"),
+    "lqr": ("polynomial", None, "inputs"),
     "observer": ("polynomial", None, "outputs"),
+    "kalman": ("polynomial", None, "outputs"),
     "compensator": ("closed_loop_polynomial", "compensator_matrix", "inputs"),
 }
 

@@ -360,3 +360,9 @@ def test_digits_of_another_shape_are_not_those_of_the_gain() -> None:
 def test_the_time_is_no_weight() -> None:
     with pytest.raises(InputError, match="stands for the time"):
         symobs.lqr(symobs.StateSpace([[0]], [[1]], symbols={"t": "real"}), Q="t^2 + 1", R="1")
+
+
+def test_margins_of_an_optimal_loop() -> None:
+    # x' = x + u with Q = 3, R = 1: P = K = 3, and the loop 3/(s - 1) is stable for gains above 1/3.
+    found = symobs.margins(symobs.lqr(symobs.StateSpace("[1]", "[1]"), Q="3", R="1"))
+    assert (found["gain_down"], found["gain_up"], found["slowest"]) == (sympy.Rational(1, 3), sympy.oo, -2)
