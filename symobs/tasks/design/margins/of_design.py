@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 def margins(design: Any, **asked: Any) -> Mapping[str, Any] | Result:
-    """Return how far the loop of a state feedback (also `lqr`), an observer (also `kalman`) or a compensator is from instability.
+    """Return how far a loop is from instability: of a state feedback, an observer, a compensator, `lqr` or `kalman`.
 
     The loop is K(sI − A)⁻¹B, C(sI − A)⁻¹L, or F(s)G(s) cut at the input of the plant; it has one input and one output,
     numbers without roots, and a stable closed loop.  Returns by name: gain_down and gain_up, the ends of the interval
