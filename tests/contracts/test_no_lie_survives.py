@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from fractions import Fraction
+from random import Random
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -18,7 +19,8 @@ from symobs import StateSpace, compensator, observability, observer, state_feedb
 from symobs.exact import Matrix, Scalar
 from symobs.formula.phrases import DEMANDS, slots_of
 from symobs.formula.tree import Letter
-from symobs.ground.errors import CertificateRejected, DerivationRejected
+from symobs.ground.errors import CertificateRejected, DerivationRejected, SymobsError
+from symobs.problem import read
 from symobs.proof.derivation import Conclude, Diagram, Sentence
 from symobs.proof.derivation.builder import Builder
 from symobs.proof.derivation.steps import everything_in
@@ -27,9 +29,9 @@ from symobs.tasks.design.compensator.output_feedback import OutputFeedback
 from symobs.tasks.design.gain.gain_design import GainDesign
 from tests.support.algebra import determinant, multiply, observability_rows, rank_of, transposed
 from tests.support.derivations import World, is_true, plus, still_true, times
-from tests.support.examples import results_of
-from tests.support.paths import ROOT
-from tests.support.sampling import every
+from tests.support.examples import EXAMPLES, results_of
+from tests.support.problems.random_problems import problem, to_toml
+from tests.support.sampling import FULL, every
 from tests.support.tampering.lies import Count, tampered, try_answers, try_lines, try_witnesses
 from tests.support.tampering.mutations import changes, lines_of, parts_of
 
@@ -44,8 +46,6 @@ if TYPE_CHECKING:
 
 pytestmark = pytest.mark.slow
 
-FILES = sorted((ROOT / "worked_examples").glob("*.toml"))
-EXAMPLES = FILES
 #: Pages of nothing but ranks and modes: a rank, a product that is 0 and a property say the same when they are doubled or
 #: negated, and b >= 0 is as true as b > 0, so a larger share of the changes of their lines is true.
 OF_RANKS = {"observability", "controllability", "pbh", "detectability", "stabilizability"}
@@ -87,6 +87,39 @@ def test_no_lie_survives(path: Path, record_property: Callable[[str, object], No
     assert lines.tried >= 60
 
 
+#: Tasks with a plant whose claims are held in plain fractions or by SymPy.
+ASKED = (
+    *("observer", "state_feedback", "compensator", "observability", "controllability", "reduced_order_observer"),
+    *("tracking", "detectability", "stabilizability", "transfer_function", "characteristic_polynomial"),
+    *("canonical_form", "decomposition", "dual", "pbh", "feedforward"),
+)
+KINDS = ("numeric", "parametric", "defective", "hidden", "discrete", "feedthrough", "several")
+
+
+def test_no_lie_about_a_random_design_survives() -> None:
+    """Every answer and witness, and of the lines of each page a few at even distances."""
+    answers, lines, designs, total = Count(), Count(), 0, 1000 if FULL else 40
+    for number in range(total):
+        kind, task = KINDS[number % len(KINDS)], ASKED[number // len(KINDS) % len(ASKED)]
+        kinds = [kind if (task, kind) != ("feedforward", "several") else "numeric"]
+        try:
+            (result,) = read(to_toml(problem(Random(f"design {number}"), [task], kinds))).solve()  # noqa: S311
+        except SymobsError:
+            continue
+        designs += 1
+        assert is_true(result.derivation)
+        for where, part in parts_of(result, f"design {number} "):
+            try_answers(part, where, answers, 10**9)
+            try_witnesses(part, where, answers, 10**9)
+        try_lines(result, lines, 25)
+    assert designs > 0.85 * total
+    for count in (answers, lines):
+        assert count.lies == []
+        assert count.tried == count.rejected + count.true
+        assert count.tried > 500
+        assert count.rejected > 0.8 * count.tried
+
+
 @pytest.mark.parametrize("path", every(4, EXAMPLES, 1), ids=lambda path: path.stem)
 def test_every_line_holds_in_plain_fractions(path: Path) -> None:
     for result in results(path):
@@ -112,7 +145,7 @@ def test_every_line_holds_in_plain_fractions(path: Path) -> None:
     ],
 )
 def test_a_lie_that_survived_once_is_rejected(stem: str, key: str, where: str) -> None:
-    (path,) = (path for path in FILES if path.stem == stem)
+    (path,) = (path for path in EXAMPLES if path.stem == stem)
     told = [
         line.told(change.value)
         for result in results(path)
@@ -130,7 +163,7 @@ def test_a_lie_that_survived_once_is_rejected(stem: str, key: str, where: str) -
 @pytest.mark.parametrize(("stem", "is_another"), [("fixed_modes_all_wanted", True), ("servo_observer", False)])
 def test_a_sign_before_a_gain_of_zero_may_be_any(stem: str, *, is_another: bool) -> None:
     """With L = 0 nothing of y − C x̂ reaches the integrator, nor of y + C x̂."""
-    (path,) = (path for path in FILES if path.stem == stem)
+    (path,) = (path for path in EXAMPLES if path.stem == stem)
     lines = [line for result in results(path) for line in lines_of(result.derivation)]
     drawn = [(line, line.step) for line in lines if isinstance(line.step, Diagram)]
     ((line, place),) = ((line, list(dict(step.labels)).index("U")) for line, step in drawn if "U" in dict(step.labels))

@@ -1,11 +1,13 @@
 """Published problems, typed as their sources print them, go through at first try, and other means confirm every answer.
 
-The rows lie in `published_problems.toml`.  Each is run as the file that a reader would type.  Its data are read here a
-second time, with a number in place of every parameter; SymPy and SciPy hold the answer to them, and to what is printed.
+The rows of `published_problems.toml` are run as the files that a reader would type, those of `textbook_problems.toml` from
+Python.  Their data are read here a second time, with a number in place of every parameter; SymPy and SciPy hold the answer
+to them, and to what is printed.
 """
 
 from __future__ import annotations
 
+import itertools
 import json
 import re
 import tomllib
@@ -17,21 +19,80 @@ import pytest
 import scipy.linalg  # type: ignore[import-untyped]
 import sympy
 
+import symobs
 from symobs import problem
 from symobs.ground.errors import SymobsError
-from tests.oracles.test_textbook_problems import characteristic, observability_matrix, point, s, t, z
 
-TABLE = tomllib.loads(Path(__file__).with_name("published_problems.toml").read_text(encoding="utf-8"))
-ROWS = TABLE["problems"]
+TABLE, BOOKS = (
+    tomllib.loads(Path(__file__).with_name(f"{name}_problems.toml").read_text(encoding="utf-8"))
+    for name in ("published", "textbook")
+)
+s, z, t = sympy.symbols("s z t")
 NAMES = {name: getattr(sympy, name) for name in ("sin", "cos", "exp", "sqrt", "pi", "oo", "Rational")}
 NAMES |= {"s": s, "z": z, "t": t, "i": sympy.I, "j": sympy.I}
+#: What holds the answer of a task to its data; the rows that are files name it themselves.
+CHECKS = {
+    **dict.fromkeys(("state_feedback", "observer"), "poles"),
+    **dict.fromkeys(("observability", "controllability"), "rank"),
+    **dict.fromkeys(("pbh", "detectability", "stabilizability"), "hidden"),
+    **dict.fromkeys(("canonical_form", "decomposition"), "realisation"),
+    "reduced_order_observer": "functional",
+    "compensator": "loop",
+    "feedforward": "unit_gain",
+    "transfer_function": "function",
+    "matrix_exponential": "expm",
+    "stability_region": "hurwitz",
+}
+
+
+def of_book(row: dict[str, Any]) -> dict[str, Any]:
+    """Return a row of a textbook in the form of the others: every name in its data is a real parameter."""
+    plant = {key: row[key] for key in (*"ABCD", "transfer_function", "dt") if key in row}
+    about = {"source", "task", "verdict", "printed", "refused", "tolerance", *plant}
+    given = {key: value for key, value in row.items() if key not in about}
+    typed = " ".join(str(v) for k, v in (plant | given).items() if k not in {"kind", "of", "observer", "dt"})
+    names = {*re.findall(r"[A-Za-z]\w*", re.sub(r"(?<=\d)(?=[A-Za-z])", " ", typed))} - {*NAMES, "inf"}
+    found = {key: row[key] for key in ("source", "task", "printed", "verdict", "refused", "tolerance") if key in row}
+    check = CHECKS.get(row["task"], row["task"])
+    own = {"name": row["source"], "plant": plant, "specification": given, "check": check, "book": True}
+    return found | own | {"symbols": dict.fromkeys(sorted(names), "real")}
+
+
+ROWS = [*TABLE["problems"], *map(of_book, (*BOOKS["problems"], *BOOKS["algebraic"]))]
+
+
+def point(name: str) -> Any:
+    """A rational number for a parameter: another one for another name."""
+    return sympy.Rational(2 + sum(map(ord, name)) % 23, 7)
+
+
+def characteristic(A: Any, x: Any) -> Any:
+    return sympy.Poly(A.charpoly(x).as_expr(), x)
+
+
+def observability_matrix(A: Any, C: Any) -> Any:
+    return sympy.Matrix.vstack(*(C * A**i for i in range(A.shape[0])))
 
 
 def solved(row: dict[str, Any]) -> Any:
-    """The answer to a row, read as `symobs solve` reads a file."""
+    """The answer to a row, read as `symobs solve` reads a file, or that of Python, where nothing is declared."""
+    if row.get("book"):
+        return of_python(row)
     own = {"name", "printed", "check", "tolerance", "first_try", "refused"}
     (result,) = problem.read(json.dumps({key: row[key] for key in row if key not in own})).solve()
     return result
+
+
+def of_python(row: dict[str, Any]) -> Any:
+    given, asked = row["plant"], dict(row["specification"])
+    plant = None
+    if "transfer_function" in given:
+        plant = symobs.StateSpace.from_transfer_function(given["transfer_function"], given.get("dt", 0))
+    elif "A" in given:
+        plant = symobs.StateSpace(*(given.get(name) for name in "ABCD"), dt=given.get("dt", 0))
+    elif "dt" in given:
+        plant = symobs.StateSpace.from_polynomial(asked.pop("polynomial"), given["dt"])
+    return getattr(symobs, row["task"])(plant, **asked)
 
 
 def floats(matrix: Any) -> Any:
@@ -52,15 +113,18 @@ def hidden_modes(A: Any, B: Any) -> list[Any]:
 class Data:
     """The data of a row, with the numbers of the row or of `point` in place of its parameters, and the checks."""
 
-    def __init__(self, row: dict[str, Any]) -> None:
+    def __init__(self, row: dict[str, Any], plant: Any) -> None:
         self.row, self.plant, self.given = row, row.get("plant", {}), row.get("specification", {})
         self.discrete, self.x = bool(self.plant.get("dt")), z if self.plant.get("dt") else s
         fixed = row.get("values", {}) | row.get("constants", {})
         self.numbers = {name: sympy.Rational(str(fixed.get(name, point(name)))) for name in row.get("symbols", fixed)}
         if "transfer_function" in self.plant:  # the realisation found, if it is one
-            origin = problem.read(json.dumps({"task": row["task"], "plant": self.plant})).plant
-            self.A, self.B, self.C, self.D = (sympy.Matrix(getattr(origin, name)) for name in "ABCD")
-            assert sympy.simplify(self.function_at(self.x)[0] - self.value(self.plant["transfer_function"])) == 0
+            self.A, self.B, self.C, self.D = (self.at(sympy.Matrix(getattr(plant, name))) for name in "ABCD")
+            typed = self.plant["transfer_function"]
+            wanted = self.matrix(typed) if typed.startswith("[") else sympy.Matrix([[self.value(typed)]])
+            assert all(
+                self.function_at(number) == wanted.subs(self.x, number) for number in (sympy.Rational(22, 7), 11)
+            )
         else:
             self.A, self.B, self.C = (self.matrix(self.plant[n]) if n in self.plant else None for n in "ABC")
             size = self.C.rows if self.C else 0, self.B.cols if self.B else 0
@@ -122,6 +186,7 @@ class Data:
         P = self.at(result.T) if "E" in self.given else self.at(result.M).inv()[self.C.rows :, :]
         F, G, H = (self.at(getattr(result, n)) for n in (("F", "B_u", "B_y") if "E" in self.given else "FGH"))
         assert characteristic(F, self.x) == self.polynomial()
+        assert "E" in self.given or self.at(result.M).inv()[: self.C.rows, :] == self.C
         assert ((P * E).is_zero_matrix, P * self.A - F * P, P * self.B) == (True, H * self.C, G)
 
     def loop(self, result: Any) -> None:
@@ -129,6 +194,8 @@ class Data:
         P = sympy.fraction(sympy.together(self.function_at(self.x)[0]))
         closed = sympy.Poly(P[1], self.x) * below + sympy.Poly(P[0], self.x) * above
         assert closed.monic() == (self.polynomial("control_") * self.polynomial("observer_")).monic()
+
+        assert characteristic(self.A - self.B * self.at(result.K), self.x) == self.polynomial("control_")
 
     def unit_gain(self, result: Any) -> None:
         assert (-self.C * (self.A - self.B * self.at(result.K)).inv() * self.B * sympy.Matrix([[result.F]]))[0] == 1
@@ -151,7 +218,7 @@ class Data:
             assert (result.minimal_order, sum(result.sizes.values())) == (hankel.rank(), self.A.rows)
             return
         last = [-c for c in characteristic(self.A, s).all_coeffs()[:0:-1]]
-        forms = {"controllable": list(A[-1, :]) == last, "observable": list(A[:, -1]) == last}
+        forms = {"modal": A.is_diagonal(), "controllable": list(A[-1, :]) == last, "observable": list(A[:, -1]) == last}
         assert forms[self.given["kind"]]
 
     def expm(self, result: Any) -> None:
@@ -173,7 +240,19 @@ class Data:
 
     def gramian(self, result: Any) -> None:
         A, C = (self.A.T, self.B.T) if self.given.get("of") == "controllability" else (self.A, self.C)
-        assert (A.T * result.matrix + result.matrix * A + C.T * C).is_zero_matrix
+        W = self.at(result.matrix)
+        rest = (A.T * W + W * A + C.T * C).applyfunc(sympy.simplify)
+        if self.given.get("horizon", "inf") == "inf":
+            assert rest.is_zero_matrix
+            return
+        end = scipy.linalg.expm(floats(A * self.value(self.given["horizon"])))
+        assert close(rest, end.T @ floats(C.T * C) @ end)
+
+    def characteristic_polynomial(self, result: Any) -> None:
+        assert sympy.Poly(self.at(result.polynomial), self.x) == characteristic(self.A, self.x)
+
+    def dual(self, result: Any) -> None:
+        assert (result.A, result.B, result.C) == (self.A.T, self.C.T, self.B.T)
 
     def lyapunov(self, result: Any) -> None:
         A, P, Q = self.A, result.P, self.matrix(self.given["Q"])
@@ -201,18 +280,33 @@ class Data:
         assert sympy.simplify(self.at(result.polynomial) - polynomial) == 0
 
     def hurwitz(self, result: Any) -> None:
-        free = list(self.row.get("symbols", {}))
+        free = sorted(self.row.get("symbols", {}))
         polynomial = self.value(self.given["polynomial"], free)
-        for number in (sympy.Rational(n, 2) for n in (-9, -1, 1, 3, 7, 9, 31, 400, 8597, 8598, 59999, 60001)):
-            roots = sympy.Poly(polynomial.subs(dict.fromkeys(free, number)), s).nroots()
-            stable = all(sympy.re(root) < -1e-9 for root in roots)
-            ends = [[self.value(end) for end in pair] for pair in (result.intervals if free else [])]
-            assert (result.verdict == "yes" or any(low < number < high for low, high in ends)) == stable, number
+        grid = [sympy.Rational(n, 2) for n in (-9, -3, -1, 1, 2, 3, 5, 7, 9, 14, 31, 90, 400, 8597, 8598, 59999, 60001)]
+        for numbers in itertools.product(grid, repeat=len(free)):
+            chosen = dict(zip(map(sympy.Symbol, free), numbers, strict=True))
+            roots = sympy.Poly(polynomial.subs(chosen), self.x).sqf_part().nroots(maxsteps=500)
+            beyond = (
+                abs(r) - 1 if self.discrete else sympy.re(r) + self.value(self.given.get("margin", 0)) for r in roots
+            )
+            assert self.lies_in(result, chosen) == all(distance < -1e-9 for distance in beyond), chosen
+
+    def lies_in(self, result: Any, chosen: dict[Any, Any]) -> bool:
+        """Whether the answer says that numbers lie in the region: its conditions, or else its intervals."""
+        if result.verdict != "conditional":
+            return bool(result.verdict == "yes")
+        if result.stable_if and len(chosen) > 1:
+            sides = (re.split(r"\s*([<>])\s*", condition) for condition in result.stable_if)
+            told = ((self.value(f"{a}-({b})", map(str, chosen)).subs(chosen), sign) for a, sign, b in sides)
+            return all(value > 0 if sign == ">" else value < 0 for value, sign in told)
+        (number,) = chosen.values()
+        ends = [[self.value(end) for end in pair] for pair in result.intervals]
+        return any(low < number < high for low, high in ends)
 
     def printed(self, result: Any) -> None:
         for name, printed in self.row.get("printed", {}).items():
             found = getattr(result, name, None)
-            if name == "transfer_function":
+            if name in {"transfer_function", "F"}:
                 wanted = [[self.value(part).subs({s: 3, z: 3})] for part in printed.strip("[]").split(";")]
                 plain = sympy.Matrix([self.at(found).subs(self.x, 3)])
                 assert close(plain, wanted, float(self.row.get("tolerance", 1e-12)))
@@ -239,12 +333,29 @@ def test_a_published_problem_goes_through_at_first_try(row: dict[str, Any]) -> N
         with pytest.raises(SymobsError, match=re.escape(message)):
             solved(row)
         return
-    result, data = solved(row), Data(row)
+    result = solved(row)
+    data = Data(row, result.plant)
     assert result.to_latex()
+    if "verdict" in row:
+        assert result.verdict == row["verdict"]
     getattr(data, row["check"])(result)
     data.printed(result)
 
 
+@pytest.mark.parametrize("task", ["state_feedback", "observer", "reduced_order_observer", "compensator"])
+def test_a_design_for_other_poles_is_seen(task: str) -> None:
+    """The checks hold a design to the polynomial of its row: with another one they fail."""
+    rows = [row for row in ROWS if row.get("book") and row["task"] == task and not {"verdict", "refused"} & row.keys()]
+    stem = "observer_" if task == "compensator" else ""
+    for row in rows[:5]:
+        result = solved(row)
+        wanted = Data(row, result.plant).polynomial(stem).as_expr() + 1
+        given = {key: value for key, value in row["specification"].items() if key != f"{stem}poles"}
+        other = row | {"specification": given | {f"{stem}polynomial": str(wanted)}}
+        with pytest.raises(AssertionError):
+            getattr(Data(other, result.plant), row["check"])(result)
+
+
 def test_few_first_tries_fail_and_every_source_is_named() -> None:
     assert sum("first_try" in row for row in ROWS) <= 6
-    assert {row["source"] for row in ROWS} == set(TABLE["sources"])
+    assert {row["source"] for row in TABLE["problems"]} == set(TABLE["sources"])

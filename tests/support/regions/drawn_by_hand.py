@@ -155,13 +155,11 @@ QUINTIC = s**5 + 3 * s**4 + (5 + h1) * s**3 + (6 + h2) * s**2 + (4 + h1 - h2) * 
 
 
 @cache
-@cache
 def hyperbola() -> RegionPicture:
     curves = {h1 * h2 - 1: equation(h1 * h2, 1)}
     return region(HYPERBOLA, curves, ((-1, 5), (-1, 5)))
 
 
-@cache
 @cache
 def pendulum() -> RegionPicture:
     """Two walls whose equations keep their symbols: h1 = 1 and h2 = −b."""
@@ -174,19 +172,16 @@ def pendulum() -> RegionPicture:
 
 
 @cache
-@cache
 def annulus() -> RegionPicture:
     curves = {h1**2 + h2**2 - 1: equation(h1**2 + h2**2, 1), h1**2 + h2**2 - 5: equation(h1**2 + h2**2, 5)}
     return region(ANNULUS, curves, ((-3, 3), (-3, 3)))
 
 
 @cache
-@cache
 def ring_hole() -> RegionPicture:
     return region(RING, {h1**2 + h2**2 + 1: equation(0, 1)}, ((-2, 2), (-2, 2)), excluded=[(Fraction(0), Fraction(0))])
 
 
-@cache
 @cache
 def three_components() -> RegionPicture:
     cubic = h1**3 + 2 * h1**2 + h1 * h2**2 - h1 * h2 - 4 * h1 + 2 * h2**2 - 9
@@ -195,13 +190,11 @@ def three_components() -> RegionPicture:
 
 
 @cache
-@cache
 def triangle() -> RegionPicture:
     curves = {h2 - 1: equation(h2, 1), h2 - h1 + 1: equation(h2, h1 - 1), h2 + h1 + 1: equation(h2, -h1 - 1)}
     return region(JURY2, curves, ((-3, 3), (-2, 2)), discrete=True, marked=False)
 
 
-@cache
 @cache
 def fourth_order() -> RegionPicture:
     conic = 64 * h1**2 - 576 * h1 * h2 + 512 * h2**2 - 441
@@ -214,7 +207,6 @@ def fourth_order() -> RegionPicture:
 
 
 @cache
-@cache
 def fifth_order() -> RegionPicture:
     long = 6 * h1**2 - 3 * h1 * h2**2 - 2 * h1 * h2 + 36 * h1 + h2**3 - 18 * h2**2 + 6 * h2 + 50
     curves = {h2 + 1: equation(h2, -1), 3 * h1 - h2 + 9: equation(h2, 3 * h1 + 9), long: equation(long, 0)}
@@ -224,7 +216,6 @@ def fifth_order() -> RegionPicture:
 # -- lines and poles --------------------------------------------------------------------------------------------------
 
 
-@cache
 @cache
 def interval() -> LinePicture:
     """s³ + 6 s² + 11 s + 6 + k is stable for −6 < k < 60."""
@@ -237,7 +228,6 @@ INTERVAL = s**3 + 6 * s**2 + 11 * s + 6 + k
 PIECES = s**2 + s + (k + 2) * k * (k - 1) ** 2 * (k - 4) * (3 * k - 13)
 
 
-@cache
 @cache
 def four_pieces() -> LinePicture:
     places = (Scalar.of(-2), Scalar.of(0), Scalar.of(1), Scalar.of(4), Scalar.rational(13, 3))
@@ -297,18 +287,15 @@ SAMPLED = z**2 - Scalar.rational(3, 2) * z + Scalar.rational(1, 2) + k * (z + 1)
 
 
 @cache
-@cache
 def second_order() -> PoleMap:
     return pole_map(SECOND_ORDER, (0, 2), ((-3, 1), (-2, 2)))
 
 
 @cache
-@cache
 def third_order() -> PoleMap:
     return pole_map(THIRD_ORDER, (0, 20), ((-5, 2), (-4, 4)), through=("0.6311303",), margin=Fraction(1, 2))
 
 
-@cache
 @cache
 def sampled() -> PoleMap:
     return pole_map(SAMPLED, (0, 6), ((-2, 2), (-2, 2)), radius=Fraction(1))

@@ -136,17 +136,6 @@ def test_every_row_and_every_count_is_found_again(coefficients: list[int]) -> No
         assert sign_changes(table) == right
 
 
-PARI = r"""
-where(p) = {
-  my(f = factor(p), r = 0, a = 0);
-  for(i = 1, matsize(f)[1], my(z = polroots(f[i,1]));
-    for(j = 1, #z, my(x = real(z[j])); if(abs(x) < 1e-40, a += f[i,2], if(x > 0, r += f[i,2]))));
-  print(r, " ", a);
-}
-default(realprecision, 77);
-"""
-
-
 # -- the check ------------------------------------------------------------------------------------------------------------
 
 LETTERED: list[list[Any]] = [
