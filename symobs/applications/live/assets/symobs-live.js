@@ -118,7 +118,7 @@ const matrix = (rows) => `[${rows.map((row) => row.map((c) => (/\s/.test(c.repla
 function decoded(link) {
   const given = Object.fromEntries(new URLSearchParams(link.replace(/^#/, "").replace(/\+/g, "%2B")));
   const state = { task: given.task ?? "", plant: {}, spec: {}, symbols: {}, at: {}, convention: given.convention ?? "", language: given.language ?? "" };
-  const listed = (source) => Object.fromEntries((source ?? "").split(",").filter(Boolean).map((e) => e.split(/:(.*)/s).slice(0, 2)));
+  const listed = (source) => Object.fromEntries((source ?? "").split(",").filter(Boolean).map((e) => e.split(/:(.*)/s)).map(([name, entry = ""]) => [name, entry.replace(/%2C/g, ",")]));
   Object.assign(state, { symbols: listed(given.symbols), at: listed(given.at), goal: listed(given.goal) });
   Object.assign(state, { snap: given.snap in SNAPS ? given.snap : "1/2", closed: (given.closed ?? "").split(",").filter(Boolean) });
   Object.assign(state, { detail: DETAILS.includes(given.detail) ? given.detail : "full", x0: given.x0 ?? "", xh0: given.xh0 ?? "", step: given.step ?? "" });
@@ -131,7 +131,7 @@ function decoded(link) {
 
 function encoded(state) {
   const long = Object.fromEntries(Object.entries(SHORT).map(([a, b]) => [b, a]));
-  const paired = (table) => Object.entries(table).map(([name, entry]) => `${name}:${entry}`).join(",");
+  const paired = (table) => Object.entries(table).map(([name, entry]) => `${name}:${entry.replace(/,/g, "%2C")}`).join(",");
   const spec = Object.fromEntries(Object.entries(state.spec).map(([key, entry]) => [long[key] ?? key, entry]));
   const all = { v: 1, task: state.task, ...state.plant, ...spec, symbols: paired(state.symbols), at: paired(state.at) };
   Object.assign(all, { convention: state.convention, language: state.language, snap: state.snap === "1/2" ? "" : state.snap });
