@@ -89,7 +89,8 @@ def of_python(row: dict[str, Any]) -> Any:
     if "transfer_function" in given:
         plant = symobs.StateSpace.from_transfer_function(given["transfer_function"], given.get("dt", 0))
     elif "A" in given:
-        plant = symobs.StateSpace(*(given.get(name) for name in "ABCD"), dt=given.get("dt", 0))
+        A, B, C, D = (given.get(name) for name in "ABCD")
+        plant = symobs.StateSpace(A, B, C, D, dt=given.get("dt", 0))
     elif "dt" in given:
         plant = symobs.StateSpace.from_polynomial(asked.pop("polynomial"), given["dt"])
     return getattr(symobs, row["task"])(plant, **asked)

@@ -137,7 +137,8 @@ def signature(task: Task) -> str:
     told = f'    """{task.summary}"""'
     star = "    *,\n" if keywords else ""
     if task.name in symobs.FUNCTIONS:  # it takes a design as well
-        designs = " | ".join(own_class(tasks()[name]) for name in ("state_feedback", "observer", "compensator"))
+        kinds = ("state_feedback", "observer", "compensator", "lqr", "kalman")
+        designs = " | ".join(own_class(tasks()[name]) for name in kinds)
         told = f"@overload\ndef {task.name}(design: {designs}) -> Mapping[str, Any]: ...\n"
         return told + f"@overload\ndef {task.name}(\n    {plant},\n{star}" + "\n".join(keywords) + f"\n) -> {own}: ..."
     return f"def {task.name}(\n    {plant},\n{star}" + "\n".join(keywords) + f"\n) -> {own}:\n{told}"

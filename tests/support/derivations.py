@@ -15,7 +15,7 @@ from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import lru_cache, reduce
 from operator import mul
-from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
+from typing import TYPE_CHECKING, Any, NamedTuple, Self, TypeAlias
 
 import mpmath
 import sympy
@@ -116,7 +116,7 @@ class World:
     meanings: dict[str, Any] = field(default_factory=dict)
 
     @classmethod
-    def of(cls, environment: Environment, seed: int) -> World:
+    def of(cls, environment: Environment, seed: int) -> Self:
         return cls(
             seed,
             environment.variable,

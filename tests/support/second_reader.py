@@ -92,6 +92,8 @@ class Reader(World):
             case Literal(symbol):
                 (name,) = symbol.names
                 value = self.number(name)
+            case other:
+                raise TypeError(other)
         known = self.known(self)
         if name not in known:
             self.unknown.append(name)
@@ -156,7 +158,7 @@ class Reader(World):
             return any(CONTEXT.polyval(list(map(digits, poles)), z) * digits(poles[0]) < 0 for z in real)
         decided = self.decided(subject)
         if name in {"marginal", "beyond"}:
-            return (max(map(CONTEXT.re, roots_of(decided[0]))) <= NEAR) == (name == "marginal")
+            return bool(max(map(CONTEXT.re, roots_of(decided[0]))) <= NEAR) == (name == "marginal")
         return all(map(self.is_stable_here, decided)) == (name == "stable")
 
     def is_stable_here(self, polynomial: list[Any]) -> bool:

@@ -524,13 +524,13 @@ def _given(
         raise ProblemErrors(tuple(errors))
     for view in views if answer.loose else ():
         own, wanted = available(view), [name for each, name in asked if each is view]
-        called = {
-            key: field_of(view, key, wanted) for key in answer.values if field_called(view.result, key) not in own
+        others = [key for key in answer.values if field_called(view.result, key) not in own]
+        further: dict[str, Any] = {
+            called: answer.values[key] for key in others if (called := field_of(view, key, wanted)) is not None
         }
-        further = {field: answer.values[key] for key, field in called.items() if field is not None}
-        further |= {**entries_of(view, answer.values), **listed_of(view, answer.values)}
-        for field, value in further.items():
-            found[view.task].setdefault(field, value)
+        further |= entries_of(view, answer.values) | listed_of(view, answer.values)
+        for name, entry in further.items():
+            found[view.task].setdefault(name, entry)
     return found
 
 

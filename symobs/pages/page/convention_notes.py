@@ -147,9 +147,9 @@ def _in_sentence(sentence: Sentence | None) -> Iterator[Formula]:
 def title_of(document: Document, language: Language) -> Title:
     """Return the title of a page, with its source and the conventions that it states."""
     steps = [step for derivation in document.derivations for step in derivation.steps]
-    asked, convention = document.letters_asked, document.convention
-    conventions = stated_conventions(letters_used(steps) | asked, convention, language.words)
-    conventions += _meanings(asked, convention, discrete=any(each.discrete for each in document.derivations))
+    asked, chosen = document.letters_asked, document.convention
+    conventions = stated_conventions(letters_used(steps) | asked, chosen, language.words)
+    conventions += _meanings(asked, chosen, discrete=any(each.discrete for each in document.derivations))
     if not conventions:
         return Title(document.title, _as_sentence(document.source), ())
     listed: list[Inline] = [f"{language.words['conventions']} "]

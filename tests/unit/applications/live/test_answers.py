@@ -261,6 +261,7 @@ def test_goals_are_held_against_poles_and_gains() -> None:
     # The modes settle in ln 50 / 2 = 1.956, the pair overshoots by 100 e^(-π) = 4.32 %, L = (9, 41).
     met = {"settling": "1.96", "overshoot": "4.33", "gain": "41"}
     missed = {"settling": "1.95", "overshoot": "4.32", "gain": "40.99"}
+    found: dict[str, Any] = {}
     for goal, expected in ((met, True), (missed, False)):
         found = asked({**SERVO, "specification": poles}, goal=goal)["goal"]
         assert {name: each["met"] for name, each in found.items()} == dict.fromkeys(goal, expected)
