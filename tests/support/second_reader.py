@@ -245,7 +245,7 @@ COMPARISONS = {"!=", "<", ">", "<=", ">="}
 def compares(difference: Any, operator: str) -> bool:
     """Tell whether difference operator 0 holds for a number."""
     value = difference.parts[0] if isinstance(difference, Series) else difference
-    return {"!=": value != 0, "<": value < 0, ">": value > 0, "<=": value <= 0, ">=": value >= 0}[operator]
+    return bool({"!=": value != 0, "<": value < 0, ">": value > 0, "<=": value <= 0, ">=": value >= 0}[operator])
 
 
 _PLACES = [Fraction(7 * k + 1, 11) for k in range(24)]

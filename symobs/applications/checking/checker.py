@@ -526,7 +526,7 @@ def _given(
         own, wanted = available(view), [name for each, name in asked if each is view]
         others = [key for key in answer.values if field_called(view.result, key) not in own]
         further: dict[str, Any] = {
-            called: answer.values[key] for key in others if (called := field_of(view, key, wanted)) is not None
+            alias: answer.values[key] for key in others if (alias := field_of(view, key, wanted)) is not None
         }
         further |= entries_of(view, answer.values) | listed_of(view, answer.values)
         for name, entry in further.items():

@@ -96,8 +96,12 @@ _MATRIX = re.compile(r"\[[^][]*\]")
 #: Letters of matrices and the variable as a product without blanks: sI, BK, LC.
 _TOGETHER = re.compile(r"\b(?:[sz]I|[A-Z]{2,3})\b")
 _INDEXED = re.compile(r"\b([A-Za-z]+)(_?)(\d+)\b")
-_SQUARE_ROOT = re.compile(r"(\w+|\([^()]*\))\s*\^\s*(?:\(\s*1/2\s*\)|0?\.5)|\bsqrt\s*(\d+)")
-_BEFORE_MATRIX = re.compile(r"(?<![\w.)])(\d+/\d+)\s*\*?\s*(?=\[)")
+_SQUARE_ROOT = re.compile(
+    r"(?<![\w.])(\d+|[A-Za-z]\w*|\([^()]*\))\s*\^\s*(?:\(\s*1/2\s*\)|0?\.5(?![\d.]))|\bsqrt\s*(\d+)(?![\w.(])"
+)
+_BEFORE_MATRIX = re.compile(r"(?<![\w.)/^])(\d+/\d+)\s*\*?\s*(?=\[)")
+#: Longer words are parted in too many ways.
+_LONGEST_PRODUCT = 20
 _WORDS_OF_LINES = {"rank", "det", "adj", "exp", "where", "and", "or", "yes", "no", "trace"}
 _NAME = re.compile(r"(?<![A-Za-z_.])[A-Za-z][A-Za-z0-9_]*(?![A-Za-z0-9_(])")
 _EXPONENTIAL = re.compile(r"(?<![A-Za-z_])e\s*\^\s*(\((?:[^()]|\([^()]*\))*\)|-?\s*[A-Za-z0-9.]+)")
@@ -131,7 +135,7 @@ def in_letters(text: str, names: Collection[str]) -> str:
 
 def _as_product(word: str, names: Collection[str]) -> str:
     """Return names that are written together, ab or h_1k_1, as their product, where they can be parted in one way alone."""
-    if word in names or len(word) < 2 or word in _WORDS_OF_LINES:
+    if word in names or not 1 < len(word) <= _LONGEST_PRODUCT or word in _WORDS_OF_LINES:
         return word
     known = {spelt: name for name in names for spelt in (name, re.sub(r"(?<=[A-Za-z])_?(?=\d+$)", "_", name))}
     found: list[list[str]] = []
@@ -186,7 +190,8 @@ def _summed(text: str) -> str:
             return text
         sign = "-" if factor.startswith("-") else ""
         factor = factor.lstrip("+-").strip().removesuffix("*").strip()
-        if factor.count("(") != factor.count(")"):
+        outside = re.sub(r"\([^()]*\)", "", re.sub(r"\([^()]*\)", "", factor))
+        if re.search(r"[-+()]", outside):
             return text
         terms.append((f"{sign}({factor or 1})", _rows(found[0])))
         end = found.end()
@@ -255,13 +260,17 @@ _WORDS = (
     (re.compile(r"&&|\u2227|\bund\b"), " and "),
     (re.compile(r"\|\||\u2228|\boder\b"), " or "),
 )
-_NOT_LEADING = re.compile(r"(?:rank|rang|rk|det|ker)\b", re.IGNORECASE)
+#: Operators, which are no words around a relation.
+_OPERATORS = (
+    r"adj|inv|det|tr|trace|spur|rank|rang|rk|ker|kern|im|dim|deg|grad|ord|expm?|sinh?|cosh?|log|eig|spec|norm|diag|null"
+)
+_OF_OPERATOR = re.compile(rf"\b(?:{_OPERATORS})\b", re.IGNORECASE)
 
 
 def plain_line(line: str) -> str:
     """Return a line without the words before its relation and the point behind it, its letter on the left alone."""
     line = _ARROW.sub("", line, count=1) if _ARROW.match(line) else line
-    if (words := _LEADING.match(line)) and not _NOT_LEADING.match(line):
+    if (words := _LEADING.match(line)) and not _OF_OPERATOR.search(words[0]):
         line = line[words.end() :]
     if line.endswith(".") and not line.endswith(".."):
         line = line[:-1].rstrip()

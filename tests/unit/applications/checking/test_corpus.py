@@ -30,3 +30,12 @@ def test_every_answer_has_its_verdict(name: str) -> None:
 def test_exchanged_answers_are_called_by_their_names() -> None:
     report = Checked.of(CORPUS["servo"]["problem"]).report("K = [19 81]\nL = [4 3]")
     assert [part.reason for part in report.parts[:2]] == ["this is the transpose of L", "this is K"]
+
+
+@pytest.mark.parametrize(
+    "line", ["adj A = [1 1; 0 0]", "inv A = [1 0; 0 1]", "eig A = -1", "let M = [1 2]", "aaaaaaaaaaaaaaaaaaaaaaaaa = 1"]
+)
+def test_operators_are_no_words_around_a_relation(line: str) -> None:
+    report = Checked.of(CORPUS["servo"]["problem"]).report(f"{line}\nL = [19; 81]")
+    assert {part.verdict for part in report.parts} == {"missing", "right"}
+    assert "false" not in {each.verdict for each in report.lines}
