@@ -83,13 +83,13 @@ def command(
             data = {**data, "language": language_named(language, "--language").code}
         state = link_of(data)
     last, token = known_address()
-    for number in (port,) if port else (last, 0):
-        try:
-            server = Server(host, number, AnswerBudget(timeout, memory), token, share or "")
-            break
-        except OSError as error:
-            if number == port:
-                raise UsageError(error.strerror or "cannot listen", where="--port", repair="leave it out") from None
+    own = AnswerBudget(timeout, memory), token, share or ""
+    try:
+        server = Server(host, port or last, *own)
+    except OSError as error:
+        if port or not last:
+            raise UsageError(error.strerror or "cannot listen", where="--port", repair="leave it out") from None
+        server = Server(host, 0, *own)  # something else has the port of the last start
     if not last:
         keep_address(server.server_address[1], token)
     url = server.url + (f"&{state}" if state else "")
