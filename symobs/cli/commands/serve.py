@@ -3,19 +3,12 @@
 from __future__ import annotations
 
 import re
-from contextlib import suppress
-from typing import TYPE_CHECKING
 
 import click
 
 from symobs.cli.shared.common import read_file
 from symobs.cli.shared.options import options
 from symobs.ground.errors import UsageError
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
-
-    from symobs.applications.live.server import Server
 
 
 @click.command("serve")
@@ -90,10 +83,13 @@ def command(
             data = {**data, "language": language_named(language, "--language").code}
         state = link_of(data)
     last, token = known_address()
-    server = _listening(
-        (port,) if port else (last, 0),
-        lambda number: Server(host, number, AnswerBudget(timeout, memory), token, share or ""),
-    )
+    own = AnswerBudget(timeout, memory), token, share or ""
+    try:
+        server = Server(host, port or last, *own)
+    except OSError as error:
+        if port or not last:
+            raise UsageError(error.strerror or "cannot listen", where="--port", repair="leave it out") from None
+        server = Server(host, 0, *own)  # something else has the port of the last start
     if not last:
         keep_address(server.server_address[1], token)
     url = server.url + (f"&{state}" if state else "")
@@ -103,14 +99,3 @@ def command(
 
         webbrowser.open(url)
     serve(server)
-
-
-def _listening(ports: Sequence[int], made: Callable[[int], Server]) -> Server:
-    """Return a server on the first port that is free."""
-    for number in ports[:-1]:
-        with suppress(OSError):
-            return made(number)
-    try:
-        return made(ports[-1])
-    except OSError as error:
-        raise UsageError(error.strerror or "cannot listen", where="--port", repair="leave it out") from None

@@ -265,6 +265,7 @@ def test_goals_are_held_against_poles_and_gains() -> None:
     for goal, expected in ((met, True), (missed, False)):
         found = asked({**SERVO, "specification": poles}, goal=goal)["goal"]
         assert {name: each["met"] for name, each in found.items()} == dict.fromkeys(goal, expected)
+    found = asked({**SERVO, "specification": poles}, goal=missed)["goal"]
     assert float(found["settling"]["re"]) == pytest.approx(-np.log(50) / 1.95, rel=1e-5)
     assert float(found["overshoot"]["slope"]) == pytest.approx(-np.pi / np.log(0.0432), rel=1e-5)
     for wrong, where in (({"gain": "0"}, "goal.gain"), ({"gain": 1}, "goal"), ({"speed": "1"}, "goal")):
