@@ -91,16 +91,18 @@ def pytest_ignore_collect(collection_path: Path, config: pytest.Config) -> bool 
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Mark the tests that take long or start processes, and let the tests of one worked example share a worker."""
+    """Mark the tests that take long or start processes; those of one worked example or one shared fixture share a worker."""
     for item in items:
         if item.nodeid.partition("[")[0].removeprefix("tests/") in SLOW:
             item.add_marker(pytest.mark.slow)
         if not isinstance(item, pytest.Function):
             continue
+        fixtures = [fixture for found in item._fixtureinfo.name2fixturedefs.values() for fixture in found]
         if example := example_of(list(item.callspec.params.values()) if hasattr(item, "callspec") else []):
             item.add_marker(pytest.mark.xdist_group(example))
-        fixtures = [fixture.func for found in item._fixtureinfo.name2fixturedefs.values() for fixture in found]
-        if any(map(starts_process, (item.function, *fixtures))):
+        elif any(fixture.scope == "module" for fixture in fixtures):
+            item.add_marker(pytest.mark.xdist_group(item.path.name))
+        if any(map(starts_process, (item.function, *(fixture.func for fixture in fixtures)))):
             item.add_marker(pytest.mark.process)
 
 

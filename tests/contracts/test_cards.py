@@ -28,7 +28,6 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 LARGE = {"cart_pole", "region_three_gains"}
-_WITHOUT_A_CARD = {"initial_state_covariance"}
 
 
 def value_of(field: Any) -> Any:

@@ -9,6 +9,7 @@ import subprocess
 import pytest
 
 import symobs as so
+from tests.support.sampling import FULL
 
 pytestmark = pytest.mark.skipif(shutil.which("gp") is None, reason="needs gp")
 
@@ -51,17 +52,9 @@ def _answers(count: int, seed: int) -> tuple[list[str], str]:
     return verdicts, "\n".join(script).replace("**", "^") + "\n"
 
 
-def _held(count: int, seed: int) -> None:
-    verdicts, script = _answers(count, seed)
+@pytest.mark.slow
+def test_gains_with_roots() -> None:
+    verdicts, script = _answers(200 if FULL else 40, 2)
     done = subprocess.run(["gp", "-q", "-f"], input=script, capture_output=True, text=True, timeout=300, check=True)
     assert done.stdout.split() == verdicts
     assert {"yes", "no"} <= set(verdicts)
-
-
-def test_gains_with_roots() -> None:
-    _held(15, 4)
-
-
-@pytest.mark.slow
-def test_many_gains_with_roots() -> None:
-    _held(200, 2)

@@ -100,9 +100,3 @@ def characteristic(A: Sequence[Sequence[str]], L: Sequence[str], C: Sequence[str
                 larger[key] = larger.get(key, Polynomial.of(0)) + (-term if odd else term)
         total = larger
     return total[tuple(range(order))].text("*")
-
-
-def in_powers(*coefficients: str, variable: str = "s") -> str:
-    """Return Σ cₖ λⁿ⁻ᵏ as a text."""
-    order = len(coefficients) - 1
-    return " + ".join(f"({c})*{variable}^{order - k}" for k, c in enumerate(coefficients))

@@ -54,8 +54,6 @@ BY_HAND = {
         'task = "state_feedback"\n[plant]\nA = "[0 1; 2 3]"\nB = "[1 0; 0 1]"\nC = "[1 0]"\n[specification]\npoles = "-2, -3"\n'
     ),
 }
-#: Gains of the first problem with signs that place the poles of the other half, in its letters.
-OTHER_HALF = {"K": [["-110", "-20"]], "M": [["-4"], ["-2"]]}
 _UNREADABLE = ("x", "1..2", "2 3", "1/2 3", "3/0", "(1", "1 +", "__import__('os')")
 
 

@@ -11,9 +11,10 @@ import sympy
 import symobs
 from symobs import StateSpace
 from symobs.ground.errors import InputError
+from tests.support.sampling import seeds
 
 #: All are drawn where there is time.
-SEEDS = [*range(30), *(pytest.param(seed, marks=pytest.mark.slow) for seed in range(30, 200))]
+SEEDS = seeds(15)
 
 
 def drawn(chance: random.Random, rows: int, columns: int) -> Any:

@@ -15,9 +15,11 @@ from scipy.linalg import (  # type: ignore[import-untyped]
 import symobs
 from symobs.ground.errors import InputError
 from tests.support.algebra import seeded
+from tests.support.sampling import seeds
 
 
-def hold(seed: int) -> None:
+@pytest.mark.parametrize("seed", seeds(12))
+def test_solutions_are_those_of_scipy(seed: int) -> None:
     """Hold P to SciPy where it is unique; where not, to the residual of the least-squares solution of all n² equations."""
     draw = seeded(seed)
     n, dt = draw.randint(1, 4), draw.choice([0, 1])
@@ -49,17 +51,6 @@ def hold(seed: int) -> None:
     smallest = min(np.linalg.eigvalsh(expected))
     if abs(smallest) > 1e-6:
         assert result.positive_definite == ("yes" if smallest > 0 else "no")
-
-
-@pytest.mark.parametrize("seed", range(12))
-def test_solutions_are_those_of_scipy(seed: int) -> None:
-    hold(seed)
-
-
-@pytest.mark.slow
-def test_many_solutions_are_those_of_scipy() -> None:
-    for seed in range(12, 220):
-        hold(seed)
 
 
 def test_a_parameter_says_where_there_is_a_solution_and_where_it_is_positive_definite() -> None:

@@ -14,12 +14,13 @@ from symobs.ground.errors import CertificateRejected, InputError
 from symobs.problem import read
 from symobs.problem.question import question_of
 from symobs.tasks.result import render
+from tests.support.sampling import seeds
 
 k = sympy.Symbol("k")
 #: Matrices of one to three states: a real, a double, a nilpotent, a turning and an irrational pair of modes.
 _BLOCKS = ("[r]", "[0]", "[r, 1; 0, r]", "[0, 1; 0, 0]", "[r, q; -q, r]", "[0, 1; 1, r]", "[0, 1; q, 0]")
 #: All are drawn where there is time.
-SEEDS = [*range(30), *(pytest.param(seed, marks=pytest.mark.slow) for seed in range(30, 200))]
+SEEDS = seeds(15)
 
 
 def drawn(chance: random.Random) -> Any:

@@ -12,13 +12,15 @@ from scipy.linalg import expm  # type: ignore[import-untyped]
 import symobs
 from symobs.ground.errors import InputError
 from tests.support.algebra import seeded
+from tests.support.sampling import seeds
 
 
 def text(rows: list[list[int]]) -> str:
     return "[" + "; ".join(" ".join(map(str, row)) for row in rows) + "]"
 
 
-def hold(seed: int) -> None:
+@pytest.mark.parametrize("seed", seeds(12))
+def test_inputs_steer_and_spend_no_more_than_needed(seed: int) -> None:
     draw = seeded(seed)
     n, m, dt, end = draw.randint(1, 3), draw.randint(1, 2), draw.choice([0, 1]), draw.randint(1, 3)
     A = [[draw.randint(-1, 1) if j > i else draw.choice([-1, 0, 1, -2]) * (i == j) for j in range(n)] for i in range(n)]
@@ -62,17 +64,6 @@ def hold(seed: int) -> None:
     )
     least = d @ np.linalg.lstsq(gramian, d, rcond=1e-11)[0]
     assert abs(energy - least) < 1e-5 * (1 + energy)
-
-
-@pytest.mark.parametrize("seed", range(12))
-def test_inputs_steer_and_spend_no_more_than_needed(seed: int) -> None:
-    hold(seed)
-
-
-@pytest.mark.slow
-def test_many_inputs_steer_and_spend_no_more_than_needed() -> None:
-    for seed in range(12, 212):
-        hold(seed)
 
 
 def test_a_parameter_says_where_the_state_is_not_reached() -> None:

@@ -12,6 +12,7 @@ import symobs
 from symobs import StateSpace
 from symobs.ground.errors import InputError, Undecided
 from tests.support.algebra import seeded
+from tests.support.sampling import seeds
 
 t = sympy.Symbol("t")
 ENTRIES = [
@@ -35,7 +36,8 @@ def stack(A: Any, C: Any) -> Any:
     return sympy.Matrix.vstack(*rows)
 
 
-def hold(seed: int) -> None:
+@pytest.mark.parametrize("seed", seeds(2))
+def test_ranks_are_those_of_the_stack(seed: int) -> None:
     """Hold the rank to that at random instants, the hidden states and Φ to their equations there."""
     draw = seeded(seed)
     n, p = draw.choice([1, 2, 2, 2, 3]), draw.randint(1, 2)
@@ -60,17 +62,6 @@ def hold(seed: int) -> None:
     for vector in found.kernel:
         seen = (N * Phi * sympy.Matrix(vector)).subs(at).evalf(30)
         assert all(abs(entry) < 1e-20 for entry in seen)
-
-
-@pytest.mark.parametrize("seed", range(10))
-def test_ranks_are_those_of_the_stack(seed: int) -> None:
-    hold(seed)
-
-
-@pytest.mark.slow
-def test_many_ranks_are_those_of_the_stack() -> None:
-    for seed in range(10, 200):
-        hold(seed)
 
 
 @pytest.mark.parametrize(

@@ -12,6 +12,7 @@ import symobs
 from symobs import StateSpace
 from symobs.ground.errors import InputError
 from tests.support.algebra import seeded
+from tests.support.sampling import seeds
 
 SERVO = StateSpace("[0 1; 0 -1]", "[0; 1]", "[1 0]")
 
@@ -48,7 +49,8 @@ def _linear(text: str) -> tuple[float, float]:
     return (eval_fraction(head.partition("*")[0]) if "*" in head else 1.0), eval_fraction(tail)
 
 
-def hold(seed: int) -> None:
+@pytest.mark.parametrize("seed", seeds(6))
+def test_margins_are_those_on_the_boundary(seed: int) -> None:
     """Hold verdict, gains, distance and angle to roots and minima on the boundary."""
     closed, opened, found, discrete = drawn(seed)
 
@@ -89,17 +91,6 @@ def hold(seed: int) -> None:
         loop = np.polyval(closed, s) / np.polyval(opened, s) - 1
         near = min(np.min(abs(1 + loop * turn)), np.min(abs(1 + loop / turn)))
         assert near < 0.05  # the turned loop meets -1
-
-
-@pytest.mark.parametrize("seed", range(6))
-def test_margins_are_those_on_the_boundary(seed: int) -> None:
-    hold(seed)
-
-
-@pytest.mark.slow
-def test_many_margins_are_those_on_the_boundary() -> None:
-    for seed in range(6, 220):
-        hold(seed)
 
 
 def test_the_task_finds_what_the_function_does() -> None:

@@ -11,6 +11,7 @@ from scipy.linalg import expm  # type: ignore[import-untyped]
 import symobs
 from symobs.ground.errors import InputError, ShapeMismatch
 from tests.support.algebra import seeded
+from tests.support.sampling import seeds
 
 GENERATORS = (
     [[0]],
@@ -40,7 +41,8 @@ def drawn(seed: int) -> tuple[dict[str, np.ndarray[Any, Any]], Any]:
     return {name: np.array(part, dtype=float) for name, part in (parts | exogenous).items()}, result
 
 
-def hold(seed: int) -> None:
+@pytest.mark.parametrize("seed", seeds(12))
+def test_solutions_are_those_of_the_linear_equations(seed: int) -> None:
     """Hold Π and Γ to the residual of least squares, F to its law, and the eigenvalues that block to their ranks."""
     given, result = drawn(seed)
     A, B, C, D, S, Q, E = given.values()
@@ -68,17 +70,6 @@ def hold(seed: int) -> None:
     assert np.allclose(A @ Pi + B @ Gamma + E, Pi @ S)
     assert np.allclose(C @ Pi + D @ Gamma, Q)
     assert np.allclose(F, Gamma + K @ Pi)
-
-
-@pytest.mark.parametrize("seed", range(12))
-def test_solutions_are_those_of_the_linear_equations(seed: int) -> None:
-    hold(seed)
-
-
-@pytest.mark.slow
-def test_many_solutions_are_those_of_the_linear_equations() -> None:
-    for seed in range(12, 220):
-        hold(seed)
 
 
 def test_the_compensator_follows_in_simulation() -> None:

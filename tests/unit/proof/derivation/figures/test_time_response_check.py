@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from fractions import Fraction
+from functools import cache
 from typing import TYPE_CHECKING
 
 import mpmath
@@ -15,16 +16,17 @@ from symobs.exact.time_functions.matrix_exponential import state_response
 from symobs.formula.figures import TimeResponse
 from symobs.formula.tree import Exact, Literal, evaluate
 from symobs.ground.errors import DerivationRejected
-from symobs.proof.derivation import Derivation, Plot, Section
+from symobs.proof.derivation import Plot
 from symobs.system import StateSpace
 from tests.kit import tabled
 from tests.support.derivations import untrue_responses
+from tests.support.tampering.mutations import lines_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
-    from symobs.proof.derivation import Step
     from symobs.tasks.result import Result
+    from tests.support.tampering.mutations import Line
 
 SERVO = StateSpace("[0 1; 0 -1]", "[0; 1]", "[1 0]")
 PAGES: dict[str, Callable[[], Result]] = {
@@ -57,19 +59,18 @@ PAGES |= {
     "impulse": lambda: symobs.response(SERVO, impulse=2, initial=[0, 1]),
     "growth": lambda: symobs.response(StateSpace("[0 1; 1 0]"), initial=[1, 0]),
 }
+PAGES = {name: cache(page) for name, page in PAGES.items()}
 every_page = pytest.mark.parametrize("page", PAGES.values(), ids=PAGES.keys())
 
 
-def within(steps: tuple[Step, ...]) -> Iterator[Step]:
-    for step in steps:
-        yield step
-        if isinstance(step, Section):
-            yield from within(step.steps)
+def courses(result: Result) -> list[Line]:
+    """Return the lines of a page that are pictures of courses over time."""
+    lines = (line for line in lines_of(result.derivation) if isinstance(line.step, Plot))
+    return [line for line in lines if isinstance(line.step.picture, TimeResponse)]  # type: ignore[union-attr]
 
 
 def plots(result: Result) -> list[tuple[Plot, TimeResponse]]:
-    found = (step for step in within(result.derivation.steps) if isinstance(step, Plot))
-    return [(step, step.picture) for step in found if isinstance(step.picture, TimeResponse)]
+    return [(line.step, line.step.picture) for line in courses(result)]  # type: ignore[union-attr, misc]
 
 
 @every_page
@@ -90,18 +91,17 @@ def test_a_deadbeat_observer_is_dead_after_as_many_instants_as_states() -> None:
 
 
 def test_a_spoiled_value_of_discrete_time_is_refused_however_near() -> None:
-    derivation = PAGES["sampled"]().derivation
+    (line,) = courses(PAGES["sampled"]())
     ((step, picture),) = plots(PAGES["sampled"]())
-    (step,) = [other for other in within(derivation.steps) if other == step]
     (course,) = picture.responses
     finer = picture.parts * 10**30
     exact = [height * 10**30 for height in course.heights]
     exact[2] += 1
     near = replace(course, heights=tuple(exact))
     with pytest.raises(DerivationRejected, match="the line the response of e_2, in a picture,"):
-        replaced(derivation, step, replace(step, picture=replace(picture, responses=(near,), parts=finer))).check()
+        line.told(replace(step, picture=replace(picture, responses=(near,), parts=finer))).check()
     with pytest.raises(DerivationRejected, match="the line another time, in a picture,"):
-        replaced(derivation, step, replace(step, picture=replace(picture, discrete=False))).check()
+        line.told(replace(step, picture=replace(picture, discrete=False))).check()
 
 
 def test_a_picture_is_left_out_where_it_would_show_nothing() -> None:
@@ -124,16 +124,15 @@ def test_a_picture_is_left_out_where_it_would_show_nothing() -> None:
 @every_page
 def test_no_spoiled_course_is_accepted(page: Callable[[], Result]) -> None:
     derivation = page().derivation
-    derivation.check()
+    (line,) = courses(page())
     ((step, picture),) = plots(page())
-    (step,) = [other for other in within(derivation.steps) if other == step]
     for spoiled in spoilt(picture):
         with pytest.raises(DerivationRejected):
-            replaced(derivation, step, replace(step, picture=spoiled)).check()
+            line.told(replace(step, picture=spoiled)).check()
     value = evaluate(step.subject, derivation.check(), Exact(derivation.check()))
     for subject in (Literal(value), Literal(value * Scalar.of(2))):
         with pytest.raises(DerivationRejected):
-            replaced(derivation, step, replace(step, subject=subject)).check()
+            line.told(replace(step, subject=subject)).check()
 
 
 def spoilt(picture: TimeResponse) -> Iterator[TimeResponse]:
@@ -163,16 +162,6 @@ def spoilt(picture: TimeResponse) -> Iterator[TimeResponse]:
     yield replace(picture, window=((Fraction(0), end), (top, bottom)))
     for parts in (picture.parts // 2, 2 * picture.parts, 0, -picture.parts):
         yield replace(picture, parts=parts)
-
-
-def replaced(derivation: Derivation, old: Plot, new: Plot) -> Derivation:
-    def through(steps: tuple[Step, ...]) -> tuple[Step, ...]:
-        return tuple(
-            replace(step, steps=through(step.steps)) if isinstance(step, Section) else new if step is old else step
-            for step in steps
-        )
-
-    return Derivation(through(derivation.steps), derivation.start, derivation.symbols, derivation.discrete)
 
 
 # -- the kernel -------------------------------------------------------------------------------------------------------
