@@ -700,12 +700,13 @@ export function mount(element, transport, options = {}) {
   }
 
   const CROSS = (x, y, r) => `M${x - r} ${y - r}l${2 * r} ${2 * r}m0 ${-2 * r}l${-2 * r} ${2 * r}`;
-  const MARKS = { plant: (x, y) => CROSS(x, y, 3.5), F: (x, y) => `M${x - 4} ${y}h8M${x} ${y - 4}v8` };
+  const MARKS = { plant: (x, y) => CROSS(x, y, 3.5), F: (x, y) => `M${x - 4} ${y}h8M${x} ${y - 4}v8`, loop: (x, y) => `M${x} ${y - 5}l5 5-5 5-5-5z` };
 
   /** Say what the signs in the plane are. */
   function drawMarks() {
     const kinds = [...new Set((answer?.marks ?? []).map((m) => m.kind))];
     if (el.marks.dataset.of === `${view.sets.map((g) => g.mark)}${kinds}${root.lang}`) return;
+    el.hint.hidden = el.required.hidden = !view.sets.length;
     el.marks.dataset.of = `${view.sets.map((g) => g.mark)}${kinds}${root.lang}`;
     const sign = (mark, of, words) => h("span", {}, h("svg:svg", { viewBox: "0 0 16 16", "aria-hidden": "true", class: of }, mark), words);
     const ring = h("svg:circle", { class: "glyph", cx: 8, cy: 8, r: 5 }), cross = h("svg:path", { class: "glyph", d: CROSS(8, 8, 5) });

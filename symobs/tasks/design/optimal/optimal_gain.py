@@ -7,6 +7,7 @@ polynomial the stable factor of that of the Hamiltonian matrix H; where square r
 
 from __future__ import annotations
 
+from fractions import Fraction
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Self
 
@@ -77,6 +78,7 @@ class OptimalGain(Result):
     weights: Mapping[str, Matrix]
 
     letter: ClassVar[str]
+    panels = ("plane",)
 
     @staticmethod
     def regulator_of(plant: StateSpace, weights: Mapping[str, Matrix]) -> Regulator:
@@ -226,6 +228,14 @@ class OptimalGain(Result):
         if self.answer["question"] is not None:
             return "undecided"
         return "no" if self.answer["obstacle"] is not None else super().verdict
+
+    @property
+    def loop_matrix(self) -> Matrix | None:
+        """A − BK, or A − LC, of the exact gain, else of the certain digits; None where there is no gain."""
+        gain, m = self.answer[self.letter], self.plant.matrices
+        if gain is None and self.decimals:
+            gain = Matrix.of([[Fraction(entry) for entry in row] for row in self.decimals[self.letter]])
+        return None if gain is None else m.A - (m.B @ gain if self.letter == "K" else gain @ m.C)
 
     @cached_property
     def even(self) -> Scalar:

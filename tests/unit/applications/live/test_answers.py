@@ -410,3 +410,16 @@ def test_the_start_names_tasks_and_examples() -> None:
         assert told.keys() - {SHORT.get(key, key) for key in found["tasks"][example["task"]]} <= {
             "v", "A", "B", "C", "D", "transfer_function", "dt", "symbols", "convention", "H",
         }  # fmt: skip  # H is L in the letters of one convention
+
+
+def test_poles_of_an_optimal_loop_follow_the_weight() -> None:
+    # s^4 + q for the double integrator: for q = 4 the stable roots are -1 ± i.
+    plant = {"A": "[0 1; 0 0]", "B": "[0; 1]"}
+    problem = {
+        "task": "lqr",
+        "plant": plant,
+        "specification": {"Q": "[q 0; 0 0]", "R": "1"},
+        "symbols": {"q": "positive"},
+    }
+    marks = [mark for mark in asked(problem, at={"q": "4"}, cards_at=True)["marks"] if mark["kind"] == "loop"]
+    assert sorted((float(mark["re"]), float(mark["im"])) for mark in marks) == [(-1, -1), (-1, 1)]
