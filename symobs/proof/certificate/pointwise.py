@@ -38,6 +38,10 @@ _MINORS = 100
 _FEW = (4, 12)
 
 
+#: So many terms a product may have that is looked for in an ideal.
+_MOST_TERMS = 2000
+
+
 def never_together_zero(
     values: Iterable[Scalar], relations: Iterable[Scalar], signs: Mapping[str, str], nonzero: tuple[Scalar, ...] = ()
 ) -> bool:
@@ -58,12 +62,19 @@ def never_together_zero(
     equations = [relation for relation in relations if relation not in apart]
     known = _implied([_stripped(value, signs, nonzero) for value in values if value], signs, nonzero)
     known = [part for ideal in known for part in _within(ideal, equations, signs, nonzero)]
-    known = [part for part in known if not any(value in part for value in nonzero)]
+    known = [part for part in known if not _holds_one_of(part, nonzero)]
     kept = [kept_from_zero(relation) for relation in apart]
     return all(
         any(value in part for value in kept) or (not part.is_seen_prime and not _within(part, apart, signs, nonzero))
         for part in known
     )
+
+
+def _holds_one_of(ideal: Ideal, nonzero: tuple[Scalar, ...]) -> bool:
+    """Return whether the ideal holds one of the values, or the product of all of them: it has no zero where none vanishes."""
+    if any(value in ideal for value in nonzero):
+        return True
+    return 1 < math.prod(value.size for value in nonzero) <= _MOST_TERMS and math.prod(nonzero) in ideal
 
 
 def _within(

@@ -32,6 +32,14 @@ def test_what_vanishes_only_where_the_data_mean_nothing_does_not_vanish() -> Non
     assert not never_together_zero([k - 3], (CURVE,), {}, (m,)), "k = 3 and m = 3/2"
 
 
+def test_a_product_of_what_does_not_vanish_does_not_vanish() -> None:
+    # With c = cos t and s = sin t, b^4 - 1 + c^2 = (b^2 + s)(b^2 - s), which no factor shows before it is reduced.
+    b, c, s = (Scalar.symbol(name) for name in "bcs")
+    circle = (c**2 + s**2 - 1,)
+    assert never_together_zero([b**4 - 1 + c**2], circle, {}, (b**2 + s, b**2 - s))
+    assert not never_together_zero([b**4 - 1 + c**2], circle, {}, (b**2 + s,))
+
+
 def rank_on_the_curve(given: Matrix, says: int) -> None:
     """Check a page that gives B, and on the curve says the rank of [-k; m]."""
     kernel = Matrix.of([[-k], [m]])
