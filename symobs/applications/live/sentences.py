@@ -90,6 +90,8 @@ class Stability:
         if not self.poles:
             return said[f"said_{self.of}stable"]
         fact = said[f"said_{self.of}{'unstable' if self.grows else 'not_stable'}"]
+        if not all(pole.is_closed for pole in self.poles):  # their polynomial has stable roots, too
+            return fact
         poles = said["said_at_pole" if len(self.poles) == 1 else "said_at_poles"]
         return poles.format(fact=fact, poles=printer.roots(self.poles))
 

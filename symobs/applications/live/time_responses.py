@@ -338,9 +338,11 @@ def _read_off(line: list[int], after: list[int], end: Fraction, every: int, fina
     if peak is None:
         return {}
     found = {"peak": _digits(peak / _FINE, 3), "last": _digits(Fraction(line[last], _FINE), 2)}
-    distance = [value - (final or 0) for value in line]
-    largest = _peak(distance, is_continuous=is_continuous)
-    if final is None or largest is None:
+    if final is None:
+        return found
+    distance = [value - final for value in line] if final else line
+    largest = _peak(distance, is_continuous=is_continuous) if final else peak
+    if largest is None:
         return found
     if final and (percent := 100 * (peak / final - 1)) >= _LEAST_PERCENT:
         found["overshoot"] = _digits(Fraction(percent), 3)
@@ -348,7 +350,10 @@ def _read_off(line: list[int], after: list[int], end: Fraction, every: int, fina
     settled = max(
         (k + 1 for k, most in enumerate(_most(distance, is_continuous=is_continuous)) if most > band), default=0
     )
-    stays = all(most <= band for most in _most([value - final for value in after], is_continuous=is_continuous))
+    stays = all(
+        most <= band
+        for most in _most([value - final for value in after] if final else after, is_continuous=is_continuous)
+    )
     return found | ({"settles": _digits(settled * end / last, 3)} if stays else {})
 
 
