@@ -573,7 +573,7 @@ def walked(live: Opened, seed: int, steps: int) -> tuple[int, int]:
             dead = not dead
             live.context.set_offline(dead)
         act(page, draw, picked)
-        page.wait_for_timeout(120)
+        page.wait_for_timeout(300)  # longer than the page waits before it says that it is busy
         live.wait_for("!document.querySelector('.symobs-live[aria-busy=true]')")
         where = f"step {step} of {seed}: {page.url}"
         assert [said for said in live.complaints if "ERR_INTERNET_DISCONNECTED" not in said] == [], where

@@ -298,6 +298,7 @@ export function mount(element, transport, options = {}) {
   function ask() {
     waiting = true;
     aborted.abort();
+    el.page.setAttribute("aria-busy", "false");
     clearTimeout(restTimer);
     fade();
     if (!running) run();
