@@ -22,10 +22,11 @@ def formulas(page: str) -> list[str]:
     return [display or inline for display, inline in MATHEMATICS.findall(without_code)]
 
 
-def test_an_answer_is_boxed_a_caution_quoted_and_a_loop_drawn() -> None:
+def test_an_answer_is_boxed_a_check_marked_a_caution_quoted_and_a_loop_drawn() -> None:
     page = Markdown().render(document_of("output_feedback_servo"))
     assert r"\boxed{\begin{bmatrix}4&3\end{bmatrix}} $$" in page
     assert "> **Remark.** Since" in page
+    assert sum(line.startswith("✓ ") for line in page.splitlines()) == 2  # one for each gain
     sketches = re.findall(r"\n\n```text\n(.*?)\n```\n\n", page, flags=re.DOTALL)
     assert any("┌" in sketch and "(319s + 400)/(s² + 23s + 161)" in sketch for sketch in sketches)
 
