@@ -67,7 +67,7 @@ class Question(Document):
     @property
     def letters_asked(self) -> frozenset[str]:
         """The letters of what the tasks ask for."""
-        kinds = map(result_type, self.tasks)
+        kinds = (result_type(task) for task in self.tasks if task != "unknown_input_observer")  # its L is of (C, TA)
         return frozenset(kind.letters.get(name, name) for kind in kinds for name in kind.answered_by)
 
     @cached_property

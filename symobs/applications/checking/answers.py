@@ -328,7 +328,7 @@ def read_answer(given: str | Mapping[str, Any], where: str = "answer") -> Answer
 
 def states(text: str) -> bool:
     """Return whether a text says what something is, and is not a value alone."""
-    return bool(_RELATION.search(text)) or ":" in text or "{" in text
+    return bool(_RELATION.search(text)) or ":" in text or text.lstrip().startswith("{")
 
 
 def _of_lines(text: str, where: str) -> Answer:
@@ -348,7 +348,10 @@ def _of_lines(text: str, where: str) -> Answer:
         if not defined:
             steps.append(Step(line, place))
             left, *members = (part.lstrip("=").strip() for part in _apart(_EQUALS, line))
-            if members and members[-1] and not _IS_INEQUALITY.search(line):
+            if len(members) > 1 and members[-1] == "0":
+                members.pop()
+            is_equation = members[-1:] == ["0"] and left.startswith(("det", "|"))  # of the eigenvalues
+            if members and members[-1] and not is_equation and not _IS_INEQUALITY.search(line):
                 values |= {squashed(members[-1]): as_value(left), squashed(left): as_value(members[-1])}
             if not _RELATION.search(line):
                 message = f'"{shown(line, 60)}" is no relation'

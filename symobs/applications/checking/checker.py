@@ -14,8 +14,8 @@ from symobs.applications.audit.auditor import printed_entries
 from symobs.applications.checking.answers import Answer, plain, read_answer, states, written_text
 from symobs.applications.checking.derivations import is_of_conditions, judge_lines, judge_milestone
 from symobs.applications.checking.faults import Explained, explain_gain, explain_value, other_values
-from symobs.applications.checking.handwriting import entries_of, field_of, listed_of
-from symobs.applications.checking.judgement import asked_of, exists, field_called, judge_task, rounds
+from symobs.applications.checking.handwriting import entries_of, fields_of, listed_of
+from symobs.applications.checking.judgement import OF_THE_PLANT, asked_of, exists, field_called, judge_task, rounds
 from symobs.applications.checking.regions import read_conditions
 from symobs.applications.checking.report import SHOW, CheckReport, Line, Part
 from symobs.exact import Factored, Matrix, Scalar
@@ -165,7 +165,7 @@ def _explained(
         return replace(part, slip=slip, place=place, credit=credit)
     found = _explanation(view, judgement, judged)
     reasons = tuple(fault.reason for fault in found.alternatives)
-    other = _exchanged(view, judged)
+    other = _exchanged(view, judgement, judged)
     slips = [fault.slip for fault in found.alternatives] or [found.slip or ""]
     credit = min(marking.credit.get(slip, Fraction(0)) for slip in slips)
     said = other or found.reason or part.reason
@@ -184,18 +184,16 @@ def _explained(
     )
 
 
-def _exchanged(view: ResultInConvention, judged: Judged) -> str:
-    """Return that a matrix is another one of those asked for, or its transpose; empty where it is none of them."""
-    value = judged.value
-    if not isinstance(value, Matrix) or value.is_zero:
-        return ""
-    for letter, (name, sign) in {**{name: (name, 1) for name in asked_of(view.result)}, **view.names}.items():
-        right = view.result.fields.get(name)
-        if name == judged.name or not isinstance(right, Matrix) or right == view.result.fields.get(judged.name):
+def _exchanged(view: ResultInConvention, judgement: TaskJudgement, judged: Judged) -> str:
+    """Return that a matrix is another part, or its transpose, which the student has, or has in its place; empty if not."""
+    fields, value = view.result.fields, judged.value
+    for other in judgement.parts:
+        right, mine = fields.get(other.name), fields.get(judged.name)
+        if other is judged or not isinstance(value, Matrix) or not isinstance(right, Matrix) or right == mine:
             continue
-        right = -right if sign * view.standard(judged.letter)[1] < 0 else right
-        if value in {right, right.T}:
-            return f"this is {'' if value == right else 'the transpose of '}{letter}"
+        is_exchanged = isinstance(mine, Matrix) and other.value in {mine, mine.T}
+        if value in {right, right.T} and not value.is_zero and (other.verdict == "right" or is_exchanged):
+            return f"this is {'' if value == right else 'the transpose of '}{other.letter}"
     return ""
 
 
@@ -492,7 +490,7 @@ class Checked:
 
 def _is_path(text: str) -> bool:
     """Return whether a text names a file: it has the ending of one, or nothing that a value could have."""
-    return not is_text(text) and bool(re.search(r"\.[A-Za-z]\w{0,5}$", text) or not re.search(r"[\s<>\[({]", text))
+    return not is_text(text) and bool(re.search(r"\.[A-Za-z]\w{0,5}$", text) or not re.search(r"[\s<>\[({^*+]", text))
 
 
 def _given(
@@ -522,15 +520,13 @@ def _given(
             errors.append(_unknown(key, views))
     if errors:
         raise ProblemErrors(tuple(errors))
+    called = fields_of(asked, answer.values) if answer.loose else {}
     for view in views if answer.loose else ():
-        own, wanted = available(view), [name for each, name in asked if each is view]
-        others = [key for key in answer.values if field_called(view.result, key) not in own]
-        further: dict[str, Any] = {
-            alias: answer.values[key] for key in others if (alias := field_of(view, key, wanted)) is not None
-        }
-        further |= entries_of(view, answer.values) | listed_of(view, answer.values)
-        for name, entry in further.items():
-            found[view.task].setdefault(name, entry)
+        further = {field: value for (task, field), value in called.items() if task == view.task}
+        given = {view.standard(letter)[0] for letter in found[view.task]} - {*OF_THE_PLANT}
+        for name, entry in (further | entries_of(view, answer.values) | listed_of(view, answer.values)).items():
+            if name not in given:
+                found[view.task][name] = entry
     return found
 
 
@@ -549,7 +545,8 @@ def _without_answers(lines: Sequence[Line], parts: Sequence[Part]) -> tuple[Line
         if letter not in judged:
             return True
         part = judged[letter]
-        if place in answers and (part.verdict == "unreadable" or (part.verdict == "right" and part.given == value)):
+        is_given = re.sub(r"[\s,]+", " ", str(part.given)) == re.sub(r"[\s,]+", " ", value)
+        if place in answers and (part.verdict == "unreadable" or (part.verdict == "right" and is_given)):
             return line.verdict == "true"
         return line.verdict != "unreadable"
 

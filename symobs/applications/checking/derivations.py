@@ -407,8 +407,9 @@ def is_of_conditions(relation: str) -> bool:
 
 def _judged(state: _Derivation, step: Step, answer: Answer) -> Line:
     """Return a line with its verdict."""
-    written, names = step.relation, {*state.problem.plant.symbols.signs, *state.symbols, state.problem.plant.variable}
-    step = replace(step, relation=in_letters(written, names))
+    written, variable = step.relation, state.problem.plant.variable
+    names = {*state.problem.plant.symbols.signs, *state.symbols, variable}
+    step = replace(step, relation=in_letters(written, names, variable))
     if is_of_conditions(step.relation):
         return _of_conditions(state, step)
     of_time = of_function_of_time(step, state.views, lambda member: _audited(state, member, answer))

@@ -1,7 +1,7 @@
 """What people write, in the notation of problem files: LaTeX, calls of programs, transposes, words; and names of answers.
 
-Leniency is here alone.  A text is only rewritten where it could not be read otherwise, so no reading is taken away; what
-is rewritten is judged as everything else is.
+Leniency is here alone: each rewriting is of what has one meaning, and what may have two is left as it is, to be refused with
+its place.  What is rewritten is judged as everything else is.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from symobs.formula.expression.names import spellings
 from symobs.formula.notation import GREEK_LETTERS, LETTERS
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Iterable, Mapping
+    from collections.abc import Collection, Mapping, Sequence
 
     from symobs.tasks.result.in_convention import ResultInConvention
 
@@ -22,16 +22,20 @@ if TYPE_CHECKING:
 # -- LaTeX -------------------------------------------------------------------------------------------------------------
 
 
-_TABLE = r"(?:[bpvBV]?matrix|array)\}"
+_TABLE = r"(?:[bpB]?matrix|array)\}"
 _ENVIRONMENT = re.compile(rf"\\begin\{{{_TABLE}(?:\{{[lcr|]*\}})?(.*?)\\end\{{{_TABLE}", re.DOTALL)
 _ROW_END = re.compile(r"\\\\(?:\[[^]]*\])?|\\cr\b")
 #: Commands with nothing to read, those that only set their argument, and fences.
 _SPACES = re.compile(r"(?<!\\)\\(?:[,;:! ]|q?quad\b|displaystyle\b)|\\(?:left|right|[bB]igg?[lr]?)(?![A-Za-z])\.?|\$")
 _SET = re.compile(
-    r"\\(?:math(?:rm|bf|sf|it)|boldsymbol|operatorname|text(?:bf)?|boxed|underline)(?:\s*\{([^{}]*)\}|\s+([A-Za-z0-9]))"
+    r"\\(?:math(?:rm|bf|sf|it|cal)|boldsymbol|operatorname|text(?:bf)?|boxed|underline)(?:\s*\{([^{}]*)\}|\s+([A-Za-z0-9]))"
 )
-_APPLIED = re.compile(r"\\(sinh?|cosh?|exp)\s*(?:(?=\()|([\d.]*\s*(?:\\[A-Za-z]+|[A-Za-z](?![A-Za-z]))(?:_\w+)?))")
+_APPLIED = re.compile(
+    r"\\(sinh?|cosh?|exp)\s*(?:(?=\()|([\d.]*\s*(?:\\[A-Za-z]+|[A-Za-z](?![A-Za-z]))(?:_\w+)?)(?=\s*(?:$|[-+=,;&)\]}]|\\\\)))"
+)
 _QUOTIENT = re.compile(r"\\[dt]?frac\s*(?:\{([^{}]*)\}|(\d))\s*(?:\{([^{}]*)\}|(\d))")
+#: Groups of LaTeX within each other.
+_DEEPEST = 20
 _ROOT = re.compile(r"\\sqrt\s*\{([^{}]*)\}")
 _ABOVE, _BELOW = re.compile(r"\^\s*\{([^{}]*)\}"), re.compile(r"_\s*\{([^{}]*)\}")
 _SIGNS = {
@@ -61,15 +65,16 @@ def without_latex(text: str) -> str:
     """Return a text whose LaTeX is written as in problem files: [1, 2; 3, 4], (a)/(b), exp(-t), omega_0."""
     if not re.search(r"\\[A-Za-z]|[\^_]\{", text):
         return text
-    text = _SPACES.sub(" ", text)
-    before = None
-    while before != text:
+    text = re.sub(r"\\bar\s*\{?\s*([A-Za-z])\s*\}?", r"\1_bar", _SPACES.sub(" ", text))
+    for _ in range(_DEEPEST):
         before = text
         text = _SET.sub(lambda f: f[1] if f[1] is not None else f[2], text)
         text = _QUOTIENT.sub(lambda f: f"(({f[1] or f[2]})/({f[3] or f[4]}))", text)
         text = _ROOT.sub(r" sqrt(\1)", text)
-        text = _ABOVE.sub(lambda f: "^" + (f[1].strip() if re.fullmatch(r"\s*\w+\s*", f[1]) else f"({f[1]})"), text)
-        text = _BELOW.sub(lambda f: "_" + re.sub(r"\s+", "", f[1]), text)
+        text = _ABOVE.sub(lambda f: f"^{f[1].strip()} " if re.fullmatch(r"\s*\w+\s*", f[1]) else f"^({f[1]})", text)
+        text = _BELOW.sub(lambda f: "_" + re.sub(r"\s+", "", f[1]) + " ", text)
+        if before == text:
+            break
     text = _ENVIRONMENT.sub(lambda found: _rows_of_latex(found[1]), text)
     text = re.sub(r"(?<=[A-Za-z0-9])e\^", " e^", text)
     text = _APPLIED.sub(lambda f: f" {f[1]}({f[2]})" if f[2] else f" {f[1]}", text)
@@ -89,22 +94,25 @@ def _rows_of_latex(body: str) -> str:
 
 QUOTES = "\"' "
 _RATIONAL = re.compile(r"(?:\b[A-Za-z]+\.)?\b(?:Rational|Fraction)\(\s*([^(),]+?)\s*(?:,\s*([^(),]+?)\s*)?\)")
-_FUNCTION = re.compile(r"tf\(\s*\[?([^][]*?)\]?\s*,\s*\[([^][]*)\]\s*(,[^()]*)?\)")
+_FUNCTION = re.compile(r"tf\(\s*\[?([^][]*?)\]?\s*,\s*\[([^][]*)\]\s*(,\s*[\w.]+\s*)?\)")
 _TRANSPOSED = re.compile(r"(?P<inside>\[[^][]*\]|\([^()]*[,;][^()]*\))\s*(?:'|\^\s*\(?T\)?|\.T\b|ᵀ)")
 _TURNED = re.compile(r"\b(?:np\.)?transpose\(\s*(\[[^][]*\])\s*\)")
 _MATRIX = re.compile(r"\[[^][]*\]")
 #: Letters of matrices and the variable as a product without blanks: sI, BK, LC.
-_TOGETHER = re.compile(r"\b(?:[sz]I|[A-Z]{2,3})\b")
+_TOGETHER = re.compile(r"\b(?:[sz]I|(?!AND|OR\b)[A-Z]{2,3})\b")
 _INDEXED = re.compile(r"\b([A-Za-z]+)(_?)(\d+)\b")
 _SQUARE_ROOT = re.compile(
-    r"(?<![\w.])(\d+|[A-Za-z]\w*|\([^()]*\))\s*\^\s*(?:\(\s*1/2\s*\)|0?\.5(?![\d.]))|\bsqrt\s*(\d+)(?![\w.(])"
+    r"(?<![\w.])(?!e\b)(\d+|[A-Za-z]\w*|\([^()]*\))\s*\^\s*(?:\(\s*1/2\s*\)|0?\.5(?![\d.]))|\bsqrt\s*(\d+)(?![\w.(])"
 )
 _BEFORE_MATRIX = re.compile(r"(?<![\w.)/^])(\d+/\d+)\s*\*?\s*(?=\[)")
 #: Longer words are parted in too many ways.
 _LONGEST_PRODUCT = 20
 _WORDS_OF_LINES = {"rank", "det", "adj", "exp", "where", "and", "or", "yes", "no", "trace"}
 _NAME = re.compile(r"(?<![A-Za-z_.])[A-Za-z][A-Za-z0-9_]*(?![A-Za-z0-9_(])")
-_EXPONENTIAL = re.compile(r"(?<![A-Za-z_])e\s*\^\s*(\((?:[^()]|\([^()]*\))*\)|-?\s*[A-Za-z0-9.]+)")
+_EXPONENTIAL = re.compile(
+    r"(?<![A-Za-z_])e\s*\^\s*(\((?:[^()]|\([^()]*\))*\)|-?\s*[A-Za-z0-9.]+(?![A-Za-z0-9_.]))(?!\s*\^)"
+)
+_DECIMAL_FACTOR = re.compile(r"(\d+\.\d+)(?=(?!e[-+]?\d)[A-Za-z(])")
 
 
 def readable(text: str) -> str:
@@ -119,8 +127,8 @@ def readable(text: str) -> str:
     return _summed(text) if len(_MATRIX.findall(text)) > 1 else text
 
 
-def in_letters(text: str, names: Collection[str]) -> str:
-    """Return a text in the names that are declared: h1 for h_1, h_1 for h1, and exp(-t) for e^(-t) where e is none."""
+def in_letters(text: str, names: Collection[str], variable: str) -> str:
+    """Return a text in the names that are declared: h1 for h_1, a*b for ab, exp(-t) for e^(-t), s for p and lambda."""
 
     def declared(found: re.Match[str]) -> str:
         letter, line, digits = found.groups()
@@ -130,6 +138,10 @@ def in_letters(text: str, names: Collection[str]) -> str:
     text = _TOGETHER.sub(lambda found: found[0] if found[0] in names else "*".join(found[0]), text)
     text = _INDEXED.sub(declared, text)
     text = _NAME.sub(lambda found: _as_product(found[0], names), text)
+    text = _DECIMAL_FACTOR.sub(r"\1*", text)
+    for other in {"p", "lambda", "λ"} - {*names}:
+        if not re.search(rf"(?<![A-Za-z_]){variable}(?![A-Za-z0-9_])", text):
+            text = re.sub(rf"(?<![A-Za-z_]){other}(?![A-Za-z0-9_])", variable, text)
     return text if "e" in names else _EXPONENTIAL.sub(lambda found: f"exp({found[1]})", text)
 
 
@@ -138,17 +150,13 @@ def _as_product(word: str, names: Collection[str]) -> str:
     if word in names or not 1 < len(word) <= _LONGEST_PRODUCT or word in _WORDS_OF_LINES:
         return word
     known = {spelt: name for name in names for spelt in (name, re.sub(r"(?<=[A-Za-z])_?(?=\d+$)", "_", name))}
-    found: list[list[str]] = []
-
-    def part(rest: str, before: list[str]) -> None:
-        if not rest:
-            found.append(before)
+    partings: list[list[list[str]]] = [[] for _ in word] + [[[]]]  # of what begins at each place, two at most
+    for place in reversed(range(len(word))):
         for spelt, name in known.items():
-            if rest.startswith(spelt) and len(found) < 2:
-                part(rest[len(spelt) :], [*before, name])
-
-    part(word, [])
-    return "*".join(found[0]) if len(found) == 1 else word
+            if word.startswith(spelt, place):
+                partings[place] += [[name, *rest] for rest in partings[place + len(spelt)]]
+        del partings[place][2:]
+    return "*".join(partings[0][0]) if len(partings[0]) == 1 else word
 
 
 def _quotient(found: re.Match[str]) -> str:
@@ -189,7 +197,7 @@ def _summed(text: str) -> str:
         if terms and not factor.startswith(("+", "-")):
             return text
         sign = "-" if factor.startswith("-") else ""
-        factor = factor.lstrip("+-").strip().removesuffix("*").strip()
+        factor = factor[factor[:1] in {"+", "-"} :].strip().removesuffix("*").strip()
         outside = re.sub(r"\([^()]*\)", "", re.sub(r"\([^()]*\)", "", factor))
         if re.search(r"[-+()]", outside):
             return text
@@ -229,9 +237,10 @@ def with_commas(value: Any, columns: int) -> Any:
     """Return rows without commas as they have so many entries, two blanks apart, [a b   a + b], or one, [3 a; a^2]."""
     if not isinstance(value, str) or "," in value or not _MATRIX.fullmatch(value.strip()):
         return value
-    rows = [re.split(r"\s{2,}", row.strip()) for row in value.strip()[1:-1].split(";")]
-    if columns == 1 and any(re.search(r"[\w)]\s+[^\W\d]", row[0]) for row in rows if len(row) == 1):
-        return _written([[f"({' '.join(row)})"] for row in rows])
+    lines = [row.strip() for row in value.strip()[1:-1].split(";")]
+    if columns == 1 and any(re.search(r"[\w)]\s+[^\W\d]", line) for line in lines):
+        return _written([[f"({line})"] for line in lines])
+    rows = [re.split(r"\s{2,}", line) for line in lines]
     return _written(rows) if {len(row) for row in rows} == {columns} else value
 
 
@@ -250,64 +259,60 @@ def without_and(value: Any) -> Any:
 _LEADING = re.compile(r"(?:(?:[^\W\d_]{2,}|=>|⇒|->|→|∴)[,:]?\s+)+(?=[A-Za-z]\w*(?:\([stz]\))?\s*:?=(?![=<>]))")
 _ARROW = re.compile(r"(?:=>|⇒|->|→|∴)\s*")
 _COLON = re.compile(r"([A-Za-z]\w*)\s*:\s+(?!=)")
-_LEFT_TURNED = re.compile(r"(?:transpose\(\s*([A-Z]\w*)\s*\)|([A-Z]\w*)\s*(?:'|\^\s*T|\.T|ᵀ))\s*=\s*([^=]+)")
-_OF_P = re.compile(
-    r"(?:[A-Za-zχφ]\w*\s*\(\s*(p|lambda|λ)\s*\)|(?:det\s*\(|\|)\s*(p|lambda|λ)\s*[*·]?\s*[IE]\s*-\s*A\s*[)|])\s*="
+_LEFT_TURNED = re.compile(r"(?:transpose\(\s*([A-Z]\w*)\s*\)|([A-Z]\w*)\s*(?:'|\^\s*T|\.T|ᵀ))\s*=\s*([^=]*\[[^=]*)")
+_OF_P = re.compile(r"([A-Za-zχφ]\w*\s*)\(\s*(?:p|lambda|λ)\s*\)(?=\s*=)")
+_WORDS = ((re.compile(r"&&|\u2227|\bund\b"), " and "), (re.compile(r"\|\||\u2228|\boder\b"), " or "))
+_TURNED_ORDER = re.compile(r"([^<>=]*)(?:=>|=<)([^<>=]*)")
+#: Words that stand before a relation and change nothing.
+_AROUND = frozenset(
+    """a an the this gain gains feedback observer state matrix matrices compensator controller answer result solution step
+    response transfer function characteristic polynomial is are thus so hence also then therefore we get obtain have gives
+    yields der die das ein eine verstärkung rückführung beobachter regler ergebnis lösung antwort polynom charakteristische
+    lautet ist sind folglich damit somit daher wir erhalten""".split()  # noqa: SIM905 - prose
 )
-_WORDS = (
-    (re.compile("=>"), ">="),
-    (re.compile("=<"), "<="),
-    (re.compile(r"&&|\u2227|\bund\b"), " and "),
-    (re.compile(r"\|\||\u2228|\boder\b"), " or "),
-)
-#: Operators, which are no words around a relation.
-_OPERATORS = (
-    r"adj|inv|det|tr|trace|spur|rank|rang|rk|ker|kern|im|dim|deg|grad|ord|expm?|sinh?|cosh?|log|eig|spec|norm|diag|null"
-)
-_OF_OPERATOR = re.compile(rf"\b(?:{_OPERATORS})\b", re.IGNORECASE)
 
 
 def plain_line(line: str) -> str:
     """Return a line without the words before its relation and the point behind it, its letter on the left alone."""
     line = _ARROW.sub("", line, count=1) if _ARROW.match(line) else line
-    if (words := _LEADING.match(line)) and not _OF_OPERATOR.search(words[0]):
+    words = _LEADING.match(line)
+    if words and {*re.findall(r"[^\W\d_]+", words[0].lower())} <= _AROUND:
         line = line[words.end() :]
     if line.endswith(".") and not line.endswith(".."):
         line = line[:-1].rstrip()
     line = _COLON.sub(r"\1 = ", line, count=1) if _COLON.match(line) and "=" not in line else line
     if turned := _LEFT_TURNED.fullmatch(line):
         line = f"{turned[1] or turned[2]} = {_turned(v) if _MATRIX.fullmatch(v := readable(turned[3].strip())) else v}"
-    if of := _OF_P.match(line):
-        line = re.sub(rf"(?<![A-Za-z_]){of[1] or of[2]}(?![A-Za-z0-9_])", "s", line.replace("λI", "λ I"))
+    line = _OF_P.sub(r"\1(s)", line, count=1)
     if re.search(r"[<>](?!.*\bwhere\b)", line):
         for pattern, word in _WORDS:
             line = pattern.sub(word, line)
+        parts = re.split(r"(\band\b|\bor\b|[,;()])", line)
+        line = "".join(p.replace("=>", ">=").replace("=<", "<=") if _TURNED_ORDER.fullmatch(p) else p for p in parts)
     return line
 
 
 # -- names of answers ----------------------------------------------------------------------------------------------------
 
 
-_PENCIL = re.compile(r"(?:det\(|\|)(?:[szp]|lambda)(?:I|E|1)-A(?:\)|\|)")
-_POLYNOMIAL = re.compile(r"chi\w*|phi|[pP]|Delta")
-_RANK, _DETERMINANT, _KERNEL = (
-    re.compile(rf"(?:{words})[\W_]?.*", re.IGNORECASE) for words in ("rank|rang|rk", "det", "ker|kern|null")
-)
-_EXP_OF_A = re.compile(r"(?:e\^\(?At\)?|expm\(At\)|Phi|exp_At)")
-#: How a field is called besides by the letter of its page, for fields of these names; of a matrix by its task.
+_PENCIL = re.compile(r"(?:det\(|\|)(?:[szp]|lam(?:bda)?)(?:I|E|1)-A(?:\)|\|)")
+_POLYNOMIAL = re.compile(r"chi(?:_?A)?|phi|[pP]|Delta")
+_O = r"(?:[OQM](?:_?[obO\d])?|Obs?)"
+_CTR = r"(?:[QSMC](?:_?[csrBS\d])?|Ctr|Co|\[B,?AB.*\])"
+#: How a field is called besides by the letter of its page; where the name may call others, in a task.
 _CALLED: dict[str, re.Pattern[str]] = {
     "polynomial": _POLYNOMIAL,
     "closed_loop_polynomial": _POLYNOMIAL,
-    "rank": _RANK,
-    "determinant": _DETERMINANT,
-    "kernel": _KERNEL,
     "transfer_function": re.compile(r"[GHPT]|Y/U"),
-    "controllability.matrix": re.compile(r"(?:[QSMC](?:_?[csrBS])?|Ctr|Co)"),
-    "observability.matrix": re.compile(r"(?:[OQM](?:_?[obO])?|Ob|Obs)"),
+    "controllability.matrix": re.compile(_CTR),
+    "controllability.rank": re.compile(rf"(?:rank|rang|rk)\(?{_CTR}\)?", re.IGNORECASE),
+    "observability.matrix": re.compile(_O),
+    "observability.rank": re.compile(rf"(?:rank|rang|rk)\(?{_O}\)?", re.IGNORECASE),
+    "observability.kernel": re.compile(rf"(?:ker|kern|null)\(?{_O}\)?"),
     "gramian.matrix": re.compile(r"[WPQ](?:_?[cors])?"),
-    "matrix_exponential.matrix": _EXP_OF_A,
-    "zero_order_hold.A": re.compile(r"A_?d|Phi|A_?zoh"),
-    "zero_order_hold.B": re.compile(r"B_?d|Gamma|B_?zoh"),
+    "matrix_exponential.matrix": re.compile(r"(?:e\^\(?At\)?|expm\(At\)|Phi|exp_At)"),
+    "zero_order_hold.A": re.compile(r"A_?d|Phi"),
+    "zero_order_hold.B": re.compile(r"B_?d|Gamma"),
 }
 
 
@@ -315,25 +320,40 @@ def squashed(left: str) -> str:
     """Return the left side of a relation without what is written in several ways: blanks, stars, the argument."""
     spelt = "".join(spellings(c)[0] if c in GREEK_LETTERS.values() else c for c in left)
     text = re.sub(r"[\s*·]", "", spelt)
-    return re.sub(r"\(([szpt]|lambda)\)", "", text)
+    return re.sub(r"\(([szpt]|lam(bda)?)\)", "", text)
 
 
-def field_of(view: ResultInConvention, left: str, asked: Iterable[str]) -> str | None:
-    """Return the field, one of those asked for, that the left side of a relation calls; None where it calls none.
-
-    An answer is called by its letter on the page, and by the names that are usual for its kind.
-    """
-    name, letters = squashed(left), view.result.letters
+def letters_of(view: ResultInConvention, field: str) -> set[str]:
+    """Return the letter by which the page calls a field, in the standard convention and in that of the result."""
+    name = view.result.letters.get(field, "")
     forms = {**LETTERS, **view.convention.forms(reduced=view.result.has_reduced_observer)}
-    for field in asked:
-        usual = _CALLED.get(f"{view.task}.{field}", _CALLED.get(field))
-        own = squashed(letters.get(field, ""))
-        printed = squashed(forms[letters[field]].alone.text) if letters.get(field) in forms else own
-        if name in {printed, own, own.partition("_")[0]} - {""} or (usual and usual.fullmatch(name)):
-            return field
-        if own == "chi" and _PENCIL.fullmatch(name):
-            return field
-    return None
+    return {squashed(name), squashed(forms[name].alone.text) if name in forms else ""} - {""}
+
+
+def fields_of(asked: Sequence[tuple[ResultInConvention, str]], values: Mapping[str, Any]) -> dict[tuple[str, str], Any]:
+    """Return the values of parts, task and field, that are called by their letter on the page, else as usual.
+
+    The letter of a page, whose last value counts, goes before other names; where these have several values, or may call
+    several parts, none counts.
+    """
+    keys, found, usual = (
+        {key: squashed(key) for key in values},
+        dict[tuple[str, str], Any](),
+        dict[tuple[str, str], Any](),
+    )
+    own = set[str]().union(*(letters_of(view, field) for view, field in asked))
+    for view, field in asked:
+        letters, part = letters_of(view, field), (view.task, field)
+        pattern = _CALLED.get(f"{view.task}.{field}", _CALLED.get(field))
+        by_letter = [values[key] for key, name in keys.items() if name in letters]
+        by_pencil = [values[key] for key, name in keys.items() if "chi" in letters and _PENCIL.fullmatch(name)]
+        others = [values[key] for key, name in keys.items() if name not in own and pattern and pattern.fullmatch(name)]
+        if by_letter or by_pencil:
+            found[part] = (by_letter or by_pencil)[-1]
+        elif others and all(value == others[0] for value in others):
+            usual[part] = others[0]
+    once = {part: value for part, value in usual.items() if sum(value is each for each in usual.values()) == 1}
+    return found | once
 
 
 def entries_of(view: ResultInConvention, values: Mapping[str, Any]) -> dict[str, list[Any]]:

@@ -106,9 +106,9 @@ def excess(regulator: Regulator, P: Matrix, K: Matrix, unit: Fraction, bits: int
         if regulator.discrete:
             weight += B.transpose() * (balls(P) + arb_mat([[arb(0, half)] * P.shape[1]] * P.shape[0])) * B
         found = _solved(loop, -(error.transpose() * weight * error), discrete=regulator.discrete)
-        largest = max((sum(abs(entry).upper() for entry in row) for row in found.tolist()), key=float)
+        sums = [sum(abs(entry).upper() for entry in row) for row in found.tolist()]  # no eigenvalue is larger
         powers = (Fraction(10) ** -k for k in range(bits // 4, -9, -1))
-        return next((bound for bound in powers if largest <= number(bound)), None)  # no eigenvalue is larger
+        return next((bound for bound in powers if all(row <= number(bound) for row in sums)), None)
 
 
 def correction(regulator: Regulator, X: arb_mat, D: arb_mat) -> arb_mat:
