@@ -520,14 +520,25 @@ def _given(
             errors.append(_unknown(key, views))
     if errors:
         raise ProblemErrors(tuple(errors))
-    called = fields_of(asked, answer.values) if answer.loose else {}
-    for view in views if answer.loose else ():
+    if answer.loose:
+        _add_called_otherwise(found, answer, views, asked)
+    return found
+
+
+def _add_called_otherwise(
+    found: dict[str, dict[str, Any]],
+    answer: Answer,
+    views: Sequence[ResultInConvention],
+    asked: Sequence[tuple[ResultInConvention, str]],
+) -> None:
+    """Add what a text of lines calls by the letters of the page, by other usual names, or by its entries."""
+    called = fields_of(asked, answer.values)
+    for view in views:
         further = {field: value for (task, field), value in called.items() if task == view.task}
         given = {view.standard(letter)[0] for letter in found[view.task]} - {*OF_THE_PLANT}
         for name, entry in (further | entries_of(view, answer.values) | listed_of(view, answer.values)).items():
             if name not in given:
                 found[view.task][name] = entry
-    return found
 
 
 def _without_answers(lines: Sequence[Line], parts: Sequence[Part]) -> tuple[Line, ...]:

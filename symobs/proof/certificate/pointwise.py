@@ -74,7 +74,10 @@ def _holds_one_of(ideal: Ideal, nonzero: tuple[Scalar, ...]) -> bool:
     """Return whether the ideal holds one of the values, or the product of all of them: it has no zero where none vanishes."""
     if any(value in ideal for value in nonzero):
         return True
-    return 1 < math.prod(value.size for value in nonzero) <= _MOST_TERMS and math.prod(nonzero) in ideal
+    return (
+        1 < math.prod(value.size for value in nonzero) <= _MOST_TERMS
+        and math.prod(nonzero, start=Scalar.of(1)) in ideal
+    )
 
 
 def _within(
