@@ -10,7 +10,14 @@ from fractions import Fraction
 from itertools import takewhile
 from typing import Any, NamedTuple
 
-from symobs.applications.checking.handwriting import as_entries, plain_line, readable, squashed, without_latex
+from symobs.applications.checking.handwriting import (
+    as_entries,
+    plain_line,
+    readable,
+    squashed,
+    without_drawings,
+    without_latex,
+)
 from symobs.exact import Factored, Matrix, Scalar
 from symobs.formula.expression import declared_name, parse_matrix, parse_scalar
 from symobs.formula.expression.parse import ROW, ROWS
@@ -323,7 +330,7 @@ def read_answer(given: str | Mapping[str, Any], where: str = "answer") -> Answer
     text = typed(given)
     if re.match(r"\s*\{\s*[\"}]", text) or _TABLES.search(text):
         return _of_tables(parse(text, where))
-    return _of_lines(without_latex(text), where)
+    return _of_lines(without_latex(without_drawings(text)), where)
 
 
 def states(text: str) -> bool:

@@ -89,6 +89,45 @@ def _rows_of_latex(body: str) -> str:
     return f"[{'; '.join(', '.join(cell.strip() for cell in row.split('&')) for row in rows)}]"
 
 
+# -- matrices drawn over several lines, in a box, as pages of text have them ---------------------------------------------
+
+
+_FRAME = re.compile(r"[┌┐└┘─│]")
+_DRAWN = re.compile(r"[⎡⎢⎣]([^⎡⎢⎣⎤⎥⎦]*)[⎤⎥⎦]")
+
+
+def without_drawings(text: str) -> str:
+    """Return a text with matrices that stand over several lines on one: ⎡1  2⎤ above ⎣3  4⎦ is [1, 2; 3, 4]."""
+    if not re.search("[⎡│]", text):
+        return text
+    written: list[str] = []
+    block: list[str] = []
+    for line in text.splitlines():
+        plain = _FRAME.sub(" ", line)
+        if not plain.strip() and line.strip():
+            continue
+        if not _DRAWN.search(plain):
+            written.append(plain)
+            continue
+        block.append(plain)
+        if "⎣" in plain:
+            written.append(_on_one_line(block))
+            block = []
+    return "\n".join(written + block)
+
+
+def _on_one_line(block: list[str]) -> str:
+    """Return lines that hold rows of matrices as one, what stands between these being on any of them."""
+    cut = [_DRAWN.split(line) for line in block]
+    count = max(map(len, cut))
+    if any(len(parts) != count for parts in cut):
+        return "\n".join(block)
+    columns = [[part.strip() for part in column] for column in zip(*cut, strict=True)]
+    told = [" ".join(filter(None, column)) for column in columns]
+    rows = [_written([re.split(r"\s{2,}", row) for row in column]) for column in columns]
+    return " ".join(rows[k] if k % 2 else told[k] for k in range(count))
+
+
 # -- calls of programs, transposes, sums of matrices ---------------------------------------------------------------------
 
 
