@@ -42,4 +42,4 @@ def test_every_answer_of_random_plants_has_its_page(part: int) -> None:
         if not text or found["verdict"] != result.verdict:
             wrong.append(f"{seed} {name}: page and JSON differ")
     assert not wrong, "\n".join(wrong)
-    assert left_out <= 1
+    assert left_out <= 2

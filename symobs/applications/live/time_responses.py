@@ -76,6 +76,7 @@ class Signals:
             (name, place if table.shape[0] > 1 else 0, list(map(fraction_near, row)), dashed)
             for name, table, dashed in drawn
             for place, row in enumerate(table.rows, 1)
+            if all(map(is_number, row))  # a gain may have parameters where the loop has none
         ]
         self.finals: list[int | None] = [0 if driven is None else None] * len(self.rows)
         if driven is not None and _converges(loop, discrete=discrete):
