@@ -20,10 +20,14 @@ pytestmark = pytest.mark.slow
 OTHERS = {"time_varying_observability", "stability_region", "initial_state_covariance", "disturbance_observer"}
 
 
+#: Seeds, of three hundred, of answers with a case whose page is beyond its check: it is named there as not decided.
+LEFT_OUT = {244, 256, 278}
+
+
 @pytest.mark.parametrize("part", range(100 if FULL else 10))
 def test_every_answer_of_random_plants_has_its_page(part: int) -> None:
     names = sorted(tasks().keys() - OTHERS)
-    wrong, left_out = list[str](), 0
+    wrong, left_out = list[str](), set[int]()
     for seed in range(30 * part, 30 * part + 30):
         chance, name = random.Random(seed), names[seed % len(names)]  # noqa: S311 - repeats
         try:
@@ -32,8 +36,8 @@ def test_every_answer_of_random_plants_has_its_page(part: int) -> None:
             result = symobs.bounded(solve, timeout=5)
             text = symobs.bounded(partial(result.to, "text"), timeout=5)
             found = json.loads(symobs.bounded(result.to_json, timeout=5))["results"][0]
-        except SymobsWarning:  # a case whose page is beyond its check, named as not decided
-            left_out += 1
+        except SymobsWarning:
+            left_out.add(seed)
             continue
         except SymobsError as error:
             if error.exit_code == 1:
@@ -42,4 +46,4 @@ def test_every_answer_of_random_plants_has_its_page(part: int) -> None:
         if not text or found["verdict"] != result.verdict:
             wrong.append(f"{seed} {name}: page and JSON differ")
     assert not wrong, "\n".join(wrong)
-    assert left_out <= 2
+    assert len(left_out - LEFT_OUT) <= (1 if part >= 10 else 0), left_out  # of the others nobody has looked at each

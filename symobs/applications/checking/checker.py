@@ -51,7 +51,7 @@ def answer_file(checked: Checked, convention: Convention | None = None) -> str:
         lines.append("[answer]" if alone and len(views) == 1 else f"[answer.{view}]")
         for each, field in asked:
             if each.task == view:
-                letter = next((own for own, (standard, _) in each.names.items() if standard == field), field)
+                letter = each.letter_of(field)
                 weight = checked.problem.marking.parts.get(f"{view}.{field}")
                 marks = f", weight {weight}" if weight is not None else ""
                 lines.append(f'# {letter} = ""    # {_shape(each.result.fields.get(field), field)}{marks}')
@@ -106,7 +106,7 @@ def part_of(
 
 def missing(view: ResultInConvention, name: str, marking: Marking) -> Part:
     """Return a part that the answer lacks."""
-    letter = next((own for own, (standard, _) in view.names.items() if standard == name), name)
+    letter = view.letter_of(name)
     part = f"{view.task}.{name}"
     right = _right(view, view.result, letter)
     return Part(part, letter, "missing", marking.parts.get(part, Fraction(1)), Fraction(0), right=right)

@@ -352,7 +352,7 @@ def _asked(checked: Checked) -> list[list[str]]:
     """Return the names of each part that counts: its letter, and with its task."""
     found = []
     for view, field in checked.asked(checked.views()):
-        letter = next((own for own, (standard, _) in view.names.items() if standard == field), field)
+        letter = view.letter_of(field)
         found.append([letter, f"{view.task}.{letter}", f"{view.task}.{field}"])
     return found
 

@@ -38,27 +38,9 @@ _QUOTIENT = re.compile(r"\\[dt]?frac\s*(?:\{([^{}]*)\}|(\d))\s*(?:\{([^{}]*)\}|(
 _DEEPEST = 20
 _ROOT = re.compile(r"\\sqrt\s*\{([^{}]*)\}")
 _ABOVE, _BELOW = re.compile(r"\^\s*\{([^{}]*)\}"), re.compile(r"_\s*\{([^{}]*)\}")
-_SIGNS = {
-    "cdot": "*",
-    "times": "*",
-    "div": "/",
-    "le": "<=",
-    "leq": "<=",
-    "ge": ">=",
-    "geq": ">=",
-    "ne": "!=",
-    "neq": "!=",
-}
-_SIGNS |= {
-    "lt": "<",
-    "gt": ">",
-    "land": " and ",
-    "wedge": " and ",
-    "lor": " or ",
-    "vee": " or ",
-    "top": "T",
-    "implies": "=>",
-}
+_SIGNS = {"cdot": "*", "times": "*", "div": "/", "top": "T", "implies": "=>", "land": " and ", "wedge": " and "}
+_SIGNS |= {"lor": " or ", "vee": " or ", "lt": "<", "gt": ">", "ne": "!=", "neq": "!="}
+_SIGNS |= {"le": "<=", "leq": "<=", "ge": ">=", "geq": ">="}
 
 
 def without_latex(text: str) -> str:
@@ -422,7 +404,7 @@ def letters_of_entries(view: ResultInConvention) -> dict[str, list[str]]:
     found = {}
     for gain in view.result.gains:
         value = view.result.fields.get(gain)
-        letter = next((own for own, (standard, _) in view.names.items() if standard == gain), gain)
+        letter = view.letter_of(gain)
         if isinstance(value, Matrix) and 1 in value.shape and len(letter) == 1:
             names = [f"{letter.lower()}{k}" for k in range(1, len(value.entries) + 1)]
             found[letter] = names if not {*names} & {*known} else []

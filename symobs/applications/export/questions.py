@@ -108,7 +108,7 @@ class ExportedPart:
 
 def exported_part(view: ResultInConvention, field: str, name: str, weight: str) -> ExportedPart:
     """Return a part of a question; raises `InputError` where no grader outside symobs can hold it."""
-    letter = next((own for own, (standard, _) in view.names.items() if standard == field), field)
+    letter = view.letter_of(field)
     made: dict[str, Any] = {
         "name": name,
         "part": f"{view.task}.{field}",
@@ -405,7 +405,7 @@ def _exercise(path: Path, asked: Sequence[str], points: Fraction | None) -> Exer
     wanted = checked.asked(views)
     letters = Counter(field for _, field in wanted)
     for view, field in wanted:
-        letter = next((own for own, (standard, _) in view.names.items() if standard == field), field)
+        letter = view.letter_of(field)
         name = letter if letters[field] == 1 else f"{view.task}_{letter}"
         weight = marking.parts.get(f"{view.task}.{field}", Fraction(1))
         try:

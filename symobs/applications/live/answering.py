@@ -45,7 +45,6 @@ from symobs.system.conditions import sign_of
 from symobs.system.specification import is_pattern, read_poles
 from symobs.tasks.analysis.stability_region.stability_region import StabilityRegion
 from symobs.tasks.analysis.stability_region.stability_region_page import inequalities
-from symobs.tasks.design.optimal.optimal_gain import OptimalGain
 from symobs.tasks.result import Document, result_type, task_named, tasks
 from symobs.tasks.result.output_methods import to_json
 
@@ -548,7 +547,7 @@ def _marks(result: Result) -> list[dict[str, str]]:
     if plant.polynomial is None and not plant.is_time_varying and "plane" in result.panels:
         known.append(("plant", plant.matrices.A))
         known.append(("F", result.fields.get("compensator_matrix")))
-        known.append(("loop", result.loop_matrix if isinstance(result, OptimalGain) else None))
+        known.append(("loop", result.loop_matrix))
     found = []
     for kind, matrix in known:
         if matrix is None or not all(map(is_number, matrix.entries)):

@@ -107,6 +107,10 @@ class ResultInConvention:
         """Return the standard name and the sign of a field; a standard name that means nothing else is its own."""
         return self.names.get(name, (name, 1))
 
+    def letter_of(self, name: str) -> str:
+        """Return what the convention calls a field."""
+        return next((own for own, (standard, _) in self.names.items() if standard == name), name)
+
     def with_answer(self, name: str, value: Any) -> ResultInConvention:
         """Return the result with another answer; raises `CertificateRejected` unless it holds too."""
         own, sign = self.standard(name)

@@ -43,6 +43,11 @@ class TaskTraits(OutputMethods):
         """
         return None
 
+    @property
+    def loop_matrix(self) -> Matrix | None:
+        """The closed loop of an answer whose poles are found and not asked for; None for any other answer."""
+        return None
+
     def __dir__(self) -> Iterable[str]:
         """List what users ask for: these are of the task, and not of its answer."""
         return [name for name in super().__dir__() if name not in TaskTraits.__annotations__]
