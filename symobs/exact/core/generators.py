@@ -430,14 +430,17 @@ def _at(value: Scalar | Matrix, instant: Scalar) -> Scalar | Matrix:
 def _common_denominators(moving: Iterable[Function]) -> dict[Function, Scalar]:
     """Return for each function the denominator of all arguments that may depend on its own.
 
-    exp(t), exp(t/(a + 1)) and exp(t*a/(a + 1)) do, exp(x) and exp(t*exp(x)/(exp(x) + 1)) do not: their numerators share no
-    letter, and they have different denominators.
+    exp(t), exp(t/(a + 1)) and exp(t*a/(a + 1)) do, exp(1), exp((a + 3)/(a + 1)) and exp(2/(a + 1)) as well; exp(x) and
+    exp(t*exp(x)/(exp(x) + 1)) do not: their numerators share no letter, and they have different denominators.
     """
     groups: list[tuple[set[str], list[Function]]] = []
     for f in moving:
         above, below = f.argument.numerator, f.argument.denominator
         letters, members = {name for name in above.names if function_named(name) is None} or {"1"}, [f]
-        letters |= set() if below.is_constant else {str(below)}
+        if not below.is_constant:
+            letters.add(str(below))
+            if any({name for name, _ in powers} <= set(below.names) for _, powers in above.terms()):
+                letters.add("1")
         for group in [group for group in groups if group[0] & letters]:
             groups.remove(group)
             letters |= group[0]

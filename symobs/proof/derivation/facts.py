@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, NoReturn
 
 from symobs.exact import Ideal, Matrix, Scalar, TooLarge, apart_from_zero, from_coefficients, remainder
 from symobs.exact.algebraic.polynomial_roots import polynomial_of_roots
-from symobs.exact.core.generators import substitute
+from symobs.exact.core.generators import NotWritten, function_named, identities, substitute, symbols_named
 from symobs.formula.tree import Conjunction, Environment, Exact, Relation, evaluate
 from symobs.formula.tree.plain_text import plain_relation
 from symobs.ground.errors import DerivationRejected, WrongKind
@@ -235,6 +235,7 @@ def on_stratum(when: Relation | Conjunction, substitution: dict[str, Scalar], en
     positive = _known_there(environment.positive, substitution)
     relations = tuple(value.numerator for value in _known_there(environment.relations, substitution) if value)
     domain = vanishing_factors(_known_there(environment.domain, substitution), environment.signs)
+    named, vanishing = _in_common_base(named, substitution)
     inside = replace(
         environment,
         values=replaced,
@@ -242,7 +243,7 @@ def on_stratum(when: Relation | Conjunction, substitution: dict[str, Scalar], en
         nonzero=(),
         domain=domain,
         positive=positive,
-        relations=relations,
+        relations=(*relations, *vanishing),
     )
     if isinstance(when, Conjunction):
         return inside.with_relations(_left_of(when, substitution, environment))
@@ -252,6 +253,22 @@ def on_stratum(when: Relation | Conjunction, substitution: dict[str, Scalar], en
     if not says_no_more or verify(when, inside)[0] == "":
         reject(plain_relation(when, environment.variable))
     return inside
+
+
+def _in_common_base(
+    named: Mapping[str, Scalar], substitution: Mapping[str, Scalar]
+) -> tuple[dict[str, Scalar], tuple[Scalar, ...]]:
+    """Return what generators stand for on a stratum, and what vanishes there, in functions that are independent there.
+
+    e^{at/(a+1)} and e^{t/(a+1)} are powers of one exponential where a is a number.
+    """
+    functions = {name: f.value for name in named if (f := function_named(name)) is not None}
+    kept = {name: value for name, value in functions.items() if symbols_named(name).isdisjoint(substitution)}
+    try:
+        meanings, vanishing = identities([*kept.values(), *(named[name] for name in functions)])
+    except NotWritten:
+        return dict(named), ()
+    return {n: value.substitute(meanings) for n, value in named.items() if n not in kept} | meanings, vanishing
 
 
 def _where_positive(value: Scalar, environment: Environment) -> Environment:

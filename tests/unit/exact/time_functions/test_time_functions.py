@@ -344,6 +344,16 @@ def test_a_horizon_that_may_be_zero_is_said_to_be_positive(asked: dict[str, Any]
 # -- exponents and angles far apart ----------------------------------------------------------------------------------
 
 
+def test_a_constant_exponent_is_that_of_a_quotient() -> None:
+    """At T = 1 the determinant holds e² e^{(2a+6)/(a+1)}, which is (e^{(2a+4)/(a+1)})², by 1 = (a + 1)/(a + 1)."""
+    result = symobs.gramian(symobs.StateSpace("[1 0; 0 (a+3)/(a+1)]", C="[1 1]"), horizon="1")
+    assert result.to_latex()
+    found = to_sympy(result.answer["determinant"], {}).subs(sympy.Symbol("a"), 1)
+    e_t = sympy.Matrix([[sympy.exp(t), sympy.exp(2 * t)]])
+    W = (e_t.T * e_t).applyfunc(lambda entry: sympy.integrate(entry, (t, 0, 1)))
+    assert abs(sympy.N(found - W.det(), 30)) < 1e-20
+
+
 FAR_APART = (
     lambda: symobs.matrix_exponential(symobs.StateSpace("[-0.12345 0; 0 -5.6789]")),
     lambda: symobs.matrix_exponential(symobs.StateSpace("[-0.5 1; 0 -5000000]")),
