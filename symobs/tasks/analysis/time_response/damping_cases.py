@@ -10,7 +10,7 @@ from dataclasses import replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar, NoReturn, Self
 
-from symobs.exact import Matrix, Scalar, product_of
+from symobs.exact import Matrix, Scalar
 from symobs.exact.algebraic.root_sum import RootSum
 from symobs.exact.core.generators import (
     all_roots,
@@ -193,9 +193,9 @@ class DampingCases(Result):
         found = dict.fromkeys(_distance(case) for case in self.case_tree if case.when[0].operator == "==")
         zeros = [zero for zero in found if zero not in ruled_out and -zero not in ruled_out]
         steps = tuple(inner.steps)
-        if zeros:
-            apart = relation(product_of(zeros), "!=", 0)
-            steps = (CaseStep(Conjunction((apart,)), (), steps),)  # inside, what is told rests on it
+        if factors := vanishing_factors(map(self.plant.simplified, zeros), self.plant.symbols.signs):
+            apart = Conjunction(tuple(relation(factor, "!=", 0) for factor in factors))
+            steps = (CaseStep(apart, (), steps),)  # inside, what is told rests on it
         page.steps += _narrowed(steps, chosen)
         page.steps += [_case(page, case, self.answer["chosen"], write_branch) for case in self.case_tree]
 

@@ -33,7 +33,7 @@ from symobs.tasks.analysis.time_response.matrix_exponential import (
     tell_polynomial,
     tell_question,
 )
-from symobs.tasks.result import Case, Result, choose, method, page_of, task
+from symobs.tasks.result import Result, choose, method, page_of, task
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -81,7 +81,10 @@ class MinimumEnergyInput(DampingCases):
             left = normal_form(plant.simplified((w.T @ d)[0, 0]))
             if not left.is_zero:
                 return cls(plant, method_name, answer | {"w": w, "left": left}, inner)
-        answer["multiplier"] = lam = _written(_solved(known["matrix"], d, independent_rows(N, plant.ideal)))
+        balance = known["matrix"], d
+        if not plant.is_discrete:
+            balance = _in_common_exponentials(known["matrix"]), _in_common_exponentials(d)
+        answer["multiplier"] = lam = _written(_solved(*balance, independent_rows(N, plant.ideal)))
         rows = [plant.matrices.B.T @ power.T @ lam for power in powers[1:]]
         answer["input"] = _written(Matrix.block([rows]))
         answer["energy"] = normal_form((d.T @ lam)[0, 0])
@@ -112,8 +115,7 @@ class MinimumEnergyInput(DampingCases):
     @property
     def further_zeros(self) -> tuple[Scalar, ...]:
         """Where less is reachable, and where what shows that d is not may vanish."""
-        plain = (factor for factor in self._refuting if not _has_functions(factor))
-        return tuple(dict.fromkeys((*self.inner.further_zeros, *plain)))
+        return tuple(dict.fromkeys((*self.inner.further_zeros, *self._refuting)))
 
     @property
     def _refuting(self) -> tuple[Scalar, ...]:
@@ -127,12 +129,6 @@ class MinimumEnergyInput(DampingCases):
         told = {c.expression for c in known}
         zeros = self.inner.further_zeros if self.has_answer else ()
         return (*known, *(Condition("existence", f) for f in zeros if f not in told))
-
-    @cached_property
-    def case_tree(self) -> tuple[Case, ...]:
-        """Those of all results in time; undecided where what refutes the final state vanishes with functions."""
-        beyond = filter(_has_functions, self._refuting)
-        return (*super().case_tree, *(Case((Condition("existence", f, "=="),), {}, None) for f in beyond))
 
     def claims(self) -> Iterator[Claim]:
         """Yield W λ = d, the input, and its energy; or the row that excludes the final state."""
@@ -245,7 +241,6 @@ def _in_common_exponentials(matrix: Matrix) -> Matrix:
 
 def _solved(W: Matrix, d: Matrix, hidden: tuple[int, ...]) -> Matrix:
     """Return a λ with W λ = d, 0 in as many places as W has a kernel, chosen so that the others are independent."""
-    W, d = _in_common_exponentials(W), _in_common_exponentials(d)
     kept = [i for i in range(W.shape[0]) if i not in hidden]
     values = [Scalar.of(0)] * W.shape[0]
     if kept:
