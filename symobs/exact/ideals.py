@@ -416,7 +416,8 @@ class Ideal:
     def simplified(self, value: Scalar) -> Scalar:
         """Return a rational function that agrees with `value` wherever the ideal vanishes, in normal form.
 
-        Where that would be longer, or divide by 0, the value stays as it is.
+        Where that would be longer, have fewer factors, or divide by 0, the value stays as it is: modulo c² + s² − 1 the
+        square (a + c)² (a − c) is a polynomial without factors.
         """
         if not self.generators:
             return value
@@ -424,7 +425,9 @@ class Ideal:
         if below.is_zero or one.is_zero:
             return value
         found = above / below
-        return found if found.size <= value.size else value
+        if found.is_zero or (found.size <= value.size and _count_of_factors(found) >= _count_of_factors(value)):
+            return found
+        return value
 
     @cached_property
     def _bounds(self) -> tuple[int, ...] | None:
@@ -479,6 +482,10 @@ class Ideal:
 
     def _back(self, polynomial: fmpz_mpoly) -> Scalar:
         return Scalar(self.field, self.field.normal(polynomial.project_to_context(self.field.context)), self.field.one)
+
+
+def _count_of_factors(value: Scalar) -> int:
+    return sum(power for _, power in value.numerator.factors()[1])
 
 
 def _pure_power(leading: Sequence[tuple[int, ...]], place: int) -> int | None:

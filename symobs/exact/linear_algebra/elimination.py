@@ -123,7 +123,10 @@ def independent_rows(matrix: Matrix, relations: Ideal | None = None) -> tuple[in
 
 
 def solve_or_refute(M: Matrix, right: Matrix, relations: Ideal | None = None) -> tuple[Matrix | None, Matrix | None]:
-    """Return a Y with M Y = right, or else a row w with w M = 0 and w right ≠ 0 (where the relations hold)."""
+    """Return a Y with M Y = right, or else a row w with w M = 0 and w right ≠ 0 (where the relations hold).
+
+    Raises `TooLarge` where neither is found, since the relations have several parts, or an entry is too long.
+    """
     rows, columns = independent_rows(M, relations), independent_rows(M.T, relations)
     parts = right.select(rows, range(right.shape[1]))
     lines = dict(zip(columns, M.select(rows, columns).solve(parts).rows, strict=True)) if columns else {}
@@ -136,7 +139,8 @@ def solve_or_refute(M: Matrix, right: Matrix, relations: Ideal | None = None) ->
         w = left.select(range(left.shape[0]), [j]).T
         if not modulo((w @ right).normal(), relations).is_zero:
             return None, w
-    raise AssertionError(left)
+    message = "where the relations hold the equations have different ranks"
+    raise TooLarge(message)
 
 
 def unit_rows(order: int, rows: tuple[int, ...]) -> Matrix:

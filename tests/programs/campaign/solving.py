@@ -7,7 +7,7 @@ from contextlib import contextmanager
 from threading import Event
 from typing import TYPE_CHECKING
 
-from symobs.ground.errors import CertificateRejected, DerivationRejected, SymobsError
+from symobs.ground.errors import CertificateRejected, DerivationRejected, SymobsError, Undecided
 from symobs.pages.formats.json import result_object
 from symobs.problem import read
 from tests.support.problems.random_problems import Tables, to_toml
@@ -28,6 +28,8 @@ def solved(problem: Tables, seconds: float = 20) -> Tables | str:
         with _at_most(seconds, over):
             (result,) = read(to_toml(problem)).solve()
             return result_object(result)
+    except Undecided as error:
+        return str(error)
     except (CertificateRejected, DerivationRejected):
         raise
     except SymobsError as error:

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Self
 from symobs.exact import (
     Matrix,
     Scalar,
+    TooLarge,
     from_coefficients,
     modulo,
     primitive,
@@ -79,6 +80,11 @@ class LyapunovSolution(Result):
             answer["P"] = modulo(symmetric(found).normal(), ideal)
             if answer["determinant"].is_zero:
                 null = primitive_kernel(operator, ideal)
+                if not null.shape[
+                    1
+                ]:  # the relations have several parts, and 0 is a power of what vanishes on one of them
+                    message = "where the relations hold the equations have different ranks"
+                    raise TooLarge(message)
                 answer["N"] = symmetric(null.select(range(null.shape[0]), [0]))
         return cls(plant, method_name, answer, Q)
 

@@ -24,7 +24,7 @@ from symobs.exact import (
 from symobs.exact.core.generators import NotWritten, letters_outside
 from symobs.formula.tree import Environment
 from symobs.ground.dataclass import dataclass
-from symobs.ground.errors import CertificateRejected
+from symobs.ground.errors import CertificateRejected, Undecided
 from symobs.proof.certificate.claims import Claim, verify
 from symobs.proof.derivation.builder import relation
 from symobs.system.conditions import Condition, never_zero, vanishing_factors
@@ -370,7 +370,7 @@ def _case(place: Place, plant: StateSpace, find: Callable[[], Result | None]) ->
         yield Case(when, values or {}, find())
     except ZeroDivisionError:
         return
-    except NotWritten:
+    except (NotWritten, Undecided):
         yield Case(when, values or {}, None)
     except (CertificateRejected, TooLarge):
         if values is not None and not plant.equations:

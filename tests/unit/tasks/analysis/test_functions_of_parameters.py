@@ -43,7 +43,18 @@ def test_a_rank_that_drops_where_a_cosine_vanishes_has_a_page() -> None:
         ("zero_order_hold", ("[-2 a; -1 sqrt(3)-1]", "[sqrt(2); -2]"), {}),
         # several inputs, and no family is known
         ("state_feedback", ("[0 0; cos(b) a]", "[exp(-a) 1; 0 -b]"), {"poles": "-1, -2"}),
+        # a case in a case, where the matrices of the outer one have equal values but divide by cos b
+        ("decomposition", ("[0 0; a 0]", "[exp(-a) 0; cos(b) 0]", "[0 -1]"), {}),
     ],
 )
 def test_pages_beside_letters_and_roots(task: str, data: tuple[str | None, ...], asked: dict[str, str]) -> None:
     assert getattr(symobs, task)(S(*data), **asked).to("text")
+
+
+def test_an_input_has_the_exponentials_of_its_plant() -> None:
+    """By hand, W₂λ = d with 𝒞₂ = [−1, e^b − 1; sin b, (a − 1) sin b]: u = 𝒞₂⁻¹ d, and det 𝒞₂ = (2 − a − e^b) sin b."""
+    plant = S("[1-exp(b) 0; sin(b) a]", "[-1; sin(b)]", dt=True)
+    page = symobs.minimum_energy_input(plant, final=["1", "1"], horizon="2").to("text")
+    assert "Case 1 + cos(b) ≠ 0, cos(b) - 1 ≠ 0, a - 2 + exp(b) ≠ 0." in page
+    assert "(1/((a - 2)sin(b) + exp(b)sin(b)))" in page
+    assert "not decided" not in page
