@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING
 from flint import Ordering, fmpq, fmpq_mat, fmpq_poly, fmpz_mpoly_vec
 
 from symobs.exact.core.field import EIGENVALUE, Field, context_of
+from symobs.exact.core.generators import function_named
 from symobs.exact.core.polynomial import from_coefficients
 from symobs.exact.core.scalar import Scalar
 
@@ -416,8 +417,8 @@ class Ideal:
     def simplified(self, value: Scalar) -> Scalar:
         """Return a rational function that agrees with `value` wherever the ideal vanishes, in normal form.
 
-        Where that would be longer, have fewer factors, or divide by 0, the value stays as it is: modulo c² + s² − 1 the
-        square (a + c)² (a − c) is a polynomial without factors.
+        Where that would be longer, or divide by 0, the value stays as it is, and where it has fewer factors in functions:
+        modulo cos² + sin² − 1 a product (a + cos)² (a − cos) may be a polynomial without factors.
         """
         if not self.generators:
             return value
@@ -425,9 +426,8 @@ class Ideal:
         if below.is_zero or one.is_zero:
             return value
         found = above / below
-        if found.is_zero or (found.size <= value.size and _count_of_factors(found) >= _count_of_factors(value)):
-            return found
-        return value
+        is_shorter = found.size <= value.size and not (found and _loses_factors(value, found))
+        return found if is_shorter else value
 
     @cached_property
     def _bounds(self) -> tuple[int, ...] | None:
@@ -484,8 +484,12 @@ class Ideal:
         return Scalar(self.field, self.field.normal(polynomial.project_to_context(self.field.context)), self.field.one)
 
 
-def _count_of_factors(value: Scalar) -> int:
-    return sum(power for _, power in value.numerator.factors()[1])
+def _loses_factors(value: Scalar, found: Scalar) -> bool:
+    """Return whether a value with functions has more factors than what agrees with it."""
+    if not any(function_named(name) for name in value.numerator.names):
+        return False
+    before, after = (sum(power for _, power in each.numerator.factors()[1]) for each in (value, found))
+    return before > after
 
 
 def _pure_power(leading: Sequence[tuple[int, ...]], place: int) -> int | None:
