@@ -417,8 +417,8 @@ class Ideal:
     def simplified(self, value: Scalar) -> Scalar:
         """Return a rational function that agrees with `value` wherever the ideal vanishes, in normal form.
 
-        Where that would be longer, or divide by 0, the value stays as it is, and where it has fewer factors in functions:
-        modulo cos² + sin² − 1 a product (a + cos)² (a − cos) may be a polynomial without factors.
+        Where that would be longer, or divide by 0, the value stays as it is, and where it would have fewer factors: modulo
+        cos² + sin² − 1 a product (a + cos)² (a − cos) may be a polynomial without factors.
         """
         if not self.generators:
             return value
@@ -485,8 +485,9 @@ class Ideal:
 
 
 def _loses_factors(value: Scalar, found: Scalar) -> bool:
-    """Return whether a value with functions has more factors than what agrees with it."""
-    if not any(function_named(name) for name in value.numerator.names):
+    """Return whether a value with cosines or sines has more factors than what agrees with it."""
+    kinds = {f.kind for name in value.numerator.names if (f := function_named(name)) is not None}
+    if kinds.isdisjoint({"cos", "sin"}):
         return False
     before, after = (sum(power for _, power in each.numerator.factors()[1]) for each in (value, found))
     return before > after

@@ -128,6 +128,9 @@ def solve_or_refute(M: Matrix, right: Matrix, relations: Ideal | None = None) ->
     Raises `TooLarge` where neither is found, since the relations have several parts, or an entry is too long.
     """
     rows, columns = independent_rows(M, relations), independent_rows(M.T, relations)
+    several = "where the relations hold the equations have different ranks"
+    if len(rows) != len(columns):
+        raise TooLarge(several)
     parts = right.select(rows, range(right.shape[1]))
     lines = dict(zip(columns, M.select(rows, columns).solve(parts).rows, strict=True)) if columns else {}
     nothing = [Scalar.of(0)] * right.shape[1]
@@ -139,8 +142,7 @@ def solve_or_refute(M: Matrix, right: Matrix, relations: Ideal | None = None) ->
         w = left.select(range(left.shape[0]), [j]).T
         if not modulo((w @ right).normal(), relations).is_zero:
             return None, w
-    message = "where the relations hold the equations have different ranks"
-    raise TooLarge(message)
+    raise TooLarge(several)
 
 
 def unit_rows(order: int, rows: tuple[int, ...]) -> Matrix:

@@ -58,3 +58,10 @@ def test_an_input_has_the_exponentials_of_its_plant() -> None:
     assert "Case 1 + cos(b) ≠ 0, cos(b) - 1 ≠ 0, a - 2 + exp(b) ≠ 0." in page
     assert "(1/((a - 2)sin(b) + exp(b)sin(b)))" in page
     assert "not decided" not in page
+
+
+def test_an_equation_that_factors_beside_another_leaves_its_case_undecided() -> None:
+    """Where c e^x = 1, (c − cos y)(sin y − e^x) = c sin y − 1 − cos y sin y + e^x cos y is a product: two sets, two ranks."""
+    plant = S("[0 0; exp(x) c*sin(y)]", "[exp(-x)-c -1; 0 exp(-x)]", "[c-cos(y) 0]", dt=True)
+    found = symobs.output_regulation(plant, S="[1]", reference="[2]", poles="-1/2-3*I, -1/2+3*I")
+    assert found.to_json()
