@@ -5,7 +5,7 @@ from __future__ import annotations
 import errno
 import os
 import sys
-from contextlib import contextmanager, suppress
+from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
     #: A complete file, the place it waits for, and how that was named.
-    Prepared = tuple[Path, Path, str]
+    Prepared = tuple[Path, Path, str | None]
 
 _ELSEWHERE = "name a file in a folder that can be written"
 #: What helps against reasons of the system; the others are helped by another file.
@@ -33,18 +33,24 @@ def write(content: str | bytes, target: str | None = None) -> None:
 
 def write_all(outputs: Sequence[tuple[str | bytes, str | None]]) -> None:
     """Write all results or none: files take their places when each is complete and the streams are served."""
-    files: list[Prepared] = []
-    try:
+    with ExitStack() as leftovers:
+        files: list[Prepared] = []
         for content, target in outputs:
-            if _is_file(target):
-                files.append(_prepared(_bytes(content), str(target)))
+            if not _is_file(target):
+                continue
+            check_target(target)
+            place = Path(os.path.realpath(str(target)))
+            temporary = place.with_name(f".symobs-{os.urandom(8).hex()}")
+            leftovers.callback(temporary.unlink, missing_ok=True)
+            with _explained(target):
+                temporary.write_bytes(_bytes(content))
+                if place.exists():
+                    temporary.chmod(place.stat().st_mode & 0o777)
+            files.append((temporary, place, target))
         for content, target in outputs:
             if not _is_file(target):
                 _send(content, target)
         _put_in_place(files)
-    finally:
-        for temporary, _, _ in files:
-            temporary.unlink(missing_ok=True)
 
 
 def copied(paths: Sequence[Path], folder: str) -> None:
@@ -131,63 +137,23 @@ def _bytes(content: str | bytes) -> bytes:
 # -- files ------------------------------------------------------------------------------------------------------------
 
 
-def _prepared(data: bytes, target: str) -> Prepared:
-    """Write a file beside its place."""
-    import tempfile  # noqa: PLC0415 - only with -o
-
-    check_target(target)
-    place = Path(os.path.realpath(target))
-    with _explained(target):
-        mode = place.stat().st_mode & 0o777 if place.exists() else 0o666 & ~_umask()
-        with tempfile.NamedTemporaryFile(dir=place.parent, prefix=".symobs-", delete=False) as stream:
-            temporary = Path(stream.name)
-            try:
-                stream.write(data)
-                stream.close()
-                temporary.chmod(mode)
-            except BaseException:
-                temporary.unlink(missing_ok=True)
-                raise
-    return temporary, place, target
-
-
 def _put_in_place(files: Sequence[Prepared]) -> None:
     """Move complete files to their places; if one fails, undo those before it."""
-    new = {place for _, place, _ in files if not place.exists()}
-    kept: dict[Path, Path] = {}
-    moved: list[Path] = []
-    try:
-        for temporary, place, name in files:
-            if len(files) > 1 and place not in new:
-                kept |= _kept(temporary, place)
-            with _explained(name):
+    with ExitStack() as undo:
+        for temporary, place, target in files:
+            with _explained(target):
+                before = place.read_bytes() if files[1:] and place.exists() else None
                 temporary.replace(place)
-            moved.append(place)
-    except BaseException:
-        for place in moved:
-            if place in new:
-                place.unlink(missing_ok=True)
-            elif place in kept:
-                kept[place].replace(place)
-        raise
-    finally:
-        for before in kept.values():
-            before.unlink(missing_ok=True)
+            undo.callback(_put_back, place, before)
+        undo.pop_all()
 
 
-def _kept(temporary: Path, place: Path) -> dict[Path, Path]:
-    """Link an existing file to a second name; return that, or nothing if the file system has no links."""
-    before = temporary.with_suffix(".before")
-    with suppress(OSError):
-        before.hardlink_to(place)
-        return {place: before}
-    return {}
-
-
-def _umask() -> int:
-    mask = os.umask(0)
-    os.umask(mask)
-    return mask
+def _put_back(place: Path, before: bytes | None) -> None:
+    """Give a place the content that it had, or none."""
+    if before is None:
+        place.unlink()
+    else:
+        place.write_bytes(before)
 
 
 # -- reasons ----------------------------------------------------------------------------------------------------------
